@@ -1,0 +1,19 @@
+// Fresnel quantities of a smooth boundary with relative index eta = inside / outside.
+#pragma once
+
+namespace quadgraph {
+
+inline constexpr double min_eta = 1.0;
+inline constexpr double max_eta = 3.0;
+
+// Unpolarised transmittance from outside at incidence cosine `cos_i` in [0, 1].
+double fresnel_transmittance(double cos_i, double eta);
+
+// Internal diffuse reflectance by the published polynomial: -1.440/eta^2 + 0.710/eta + 0.668 + 0.0636 eta for eta > 1,
+// 0 for eta = 1 [QG, PG; Groenhuis et al. 1983].
+double internal_diffuse_reflectance(double eta);
+
+// Boundary mismatch A = (1 + F_dr) / (1 - F_dr).
+double mismatch(double eta);
+
+}  // namespace quadgraph

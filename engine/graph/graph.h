@@ -1,0 +1,79 @@
+// A loaded .qgraph file: views into one owned, 64-byte aligned block of bytes. Immutable and move-only.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace quadgraph {
+
+// Row r of the target takes sum_k weight[r*width + k] * source[index[r*width + k]]. Weights are >= 0 and sum to 1.
+struct Transfer {
+  std::span<const std::uint32_t> index;
+  std::span<const float> weight;
+  std::uint32_t width = 0;  // entries per row; 0 where there is no coarser level
+};
+
+// One level of detail. The sections of docs/qgraph-format.md, all rules checked.
+struct Level {
+  std::span<const glm::vec3> vertices;       // mm; the first surface_vertex_count lie on the surface
+  std::span<const glm::uvec4> tets;          // positively oriented
+  std::span<const glm::uvec3> faces;         // outside triangles, counter-clockwise from outside
+  std::span<const std::uint32_t> face_tets;  // the tet behind each outside face
+  std::span<const glm::uvec4> links;         // entry k across the face opposite vertex k; >= n_t: surface node
+  std::span<const glm::vec3> nodes;          // mm; inner nodes, then surface nodes
+  Transfer inner;                            // inverse distance, inner nodes from inner nodes of the next level
+  Transfer surface;                          // inverse distance, surface nodes from surface nodes of the next level
+  Transfer barycentric;                      // clamped barycentric, vertices from vertices of the next level
+  std::uint32_t surface_vertex_count = 0;
+
+  std::uint32_t vertex_count() const { return static_cast<std::uint32_t>(vertices.size()); }
+  std::uint32_t tet_count() const { return static_cast<std::uint32_t>(tets.size()); }
+  std::uint32_t face_count() const { return static_cast<std::uint32_t>(faces.size()); }
+  std::uint32_t node_count() const { return static_cast<std::uint32_t>(nodes.size()); }
+};
+
+// The surface that is drawn, tied to the outside faces of level 0.
+struct DisplayMesh {
+  std::span<const glm::vec3> vertices;  // mm
+  std::span<const glm::vec3> normals;   // unit
+  std::span<const glm::uvec3> triangles;
+  std::span<const std::uint32_t> face;     // per vertex: outside face of level 0
+  std::span<const glm::vec3> barycentric;  // per vertex: position in that face
+};
+
+class QuadGraph {
+ public:
+  // Reads and validates a whole file. Throws FormatError naming `path`, the section and the broken rule; InputError if
+  // the file cannot be read.
+  static QuadGraph load(const std::filesystem::path& path);
+
+  // The same from bytes in memory; `name` stands for the file in messages.
+  static QuadGraph parse(std::span<const std::byte> bytes, const std::string& name);
+
+  const std::vector<Level>& levels() const { return levels_; }  // finest first, never empty
+  const DisplayMesh& display() const { return display_; }
+  const std::string& metadata() const { return metadata_; }  // JSON text, checked to be an object
+  std::size_t byte_size() const { return byte_size_; }
+
+ private:
+  struct AlignedDelete {
+    void operator()(std::byte* p) const;
+  };
+
+  QuadGraph() = default;
+
+  std::unique_ptr<std::byte[], AlignedDelete> bytes_;
+  std::size_t byte_size_ = 0;
+  std::vector<Level> levels_;
+  DisplayMesh display_;
+  std::string metadata_;
+};
+
+}  // namespace quadgraph

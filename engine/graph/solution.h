@@ -1,0 +1,80 @@
+// What a solve is asked and what it answers; the GPU solver and the CPU reference share these.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace quadgraph {
+
+enum class Method {
+  quadgraph_fdm,  // the published 1/d^2 differences on kappa*phi at the nodes of the QuadGraph [QG Eq. 5-6]
+  fem,            // linear elements on the tet vertices, consistent mass
+};
+
+enum class SolverKind {
+  cascade,  // relaxation from the coarsest level to the finest [QG Eq. 8-10, Fig. 9]
+  dpcg,     // conjugate gradients with diagonal preconditioning, started from the coarser level
+};
+
+// "quadgraph-fdm", "fem"; "cascade", "dpcg". Throw InputError listing the allowed names.
+Method method_from_name(std::string_view name);
+SolverKind solver_from_name(std::string_view name);
+std::string_view name_of(Method method);
+std::string_view name_of(SolverKind solver);
+
+struct SolveOptions {
+  Method method = Method::fem;
+  SolverKind solver = SolverKind::dpcg;
+  // Stop when sqrt(r^T D^-1 r / b^T D^-1 b) <= tolerance in every channel that receives light.
+  double tolerance = 1e-3;
+  std::uint32_t max_iterations = 5000;  // per level
+};
+
+// Power per channel. q enters; M leaves; the rest is absorbed: entered = exitance + absorbed for a conservative method.
+struct Energy {
+  glm::dvec3 entered{0};   // W, integral of q over the surface
+  glm::dvec3 exitance{0};  // W, integral of M over the surface
+  glm::dvec3 absorbed{0};  // W, integral of sigma_a * phi over the volume
+
+  // (entered - exitance - absorbed) / entered; 0 in a channel without light.
+  glm::dvec3 balance() const;
+};
+
+struct LevelReport {
+  std::uint32_t level = 0;  // 0 is the finest
+  std::uint32_t unknowns = 0;
+  std::uint32_t iterations = 0;
+  double residual = 0;  // as in SolveOptions::tolerance, worst channel
+  bool converged = false;
+};
+
+// Relative RMS difference of the exitance between the two finest levels, times the share that is the finer level's own
+// error (1/3: second order, spacing halved). Empty with a single level.
+struct ErrorEstimate {
+  double whole = 0;  // over the whole surface
+  double unlit = 0;  // over the part where q = 0; 0 if there is none
+};
+
+struct SolveReport {
+  Method method = Method::fem;
+  SolverKind solver = SolverKind::dpcg;
+  std::vector<LevelReport> levels;  // coarsest first, in the order solved
+  Energy energy;                    // on the finest level
+  std::optional<ErrorEstimate> error;
+};
+
+// Surface samples of one level: one per outside face, at its surface node.
+struct SurfaceField {
+  std::vector<glm::vec3> position;  // mm
+  std::vector<glm::vec3> normal;    // unit, outward
+  std::vector<float> area;          // mm^2
+  std::vector<glm::vec3> q;         // W/mm^2
+  std::vector<glm::vec3> phi;       // W/mm^2
+  std::vector<glm::vec3> exitance;  // W/mm^2
+};
+
+}  // namespace quadgraph

@@ -1,0 +1,17 @@
+"""The failures a caller can meet; every message says where, what was found, and what is allowed."""
+
+
+class QuadGraphError(Exception):
+    """Base of all errors that the command line turns into one line and a non-zero exit code."""
+
+
+class FormatError(QuadGraphError):
+    """A .qgraph file that breaks docs/qgraph-format.md."""
+
+
+class InputError(QuadGraphError):
+    """A mesh, scene, option or array that cannot be used."""
+
+
+class ToolError(QuadGraphError):
+    """A child program (TetGen, the CGAL mesher) that is missing, failed, or ran past its limit."""

@@ -1,0 +1,46 @@
+// Types that GLSL and C++ share, in scalar layout. tests/cpp/shared_layout_test.cpp compares every offset and array
+// stride in the compiled shaders with offsetof and sizeof.
+#ifndef QUADGRAPH_SHARED_H
+#define QUADGRAPH_SHARED_H
+
+#ifdef __cplusplus
+#include <cstdint>
+#include <glm/glm.hpp>
+#define QG_INLINE inline
+namespace quadgraph::gpu {
+using glm::mat4;
+using glm::uvec3;
+using glm::uvec4;
+using glm::vec2;
+using glm::vec3;
+using glm::vec4;
+using uint = std::uint32_t;
+#else
+#define QG_INLINE
+#endif
+
+// Optical coefficients of a point, per RGB channel.
+struct Optical {
+  vec3 kappa;    // mm, 1 / (3 (sigma_a + sigma_s_prime))
+  vec3 sigma_a;  // 1/mm
+};
+
+const uint MATERIAL_HOMOGENEOUS = 0u;
+const uint MATERIAL_MARBLE_VEINS = 1u;
+
+// A material field in object space. A homogeneous one uses the first three members only.
+struct Material {
+  vec3 sigma_s_prime;       // 1/mm
+  vec3 sigma_a;             // 1/mm
+  float eta;                // refractive index inside over outside, 1 to 3
+  uint kind;                // MATERIAL_*
+  vec3 vein_sigma_s_prime;  // 1/mm, at the centre of a vein
+  vec3 vein_sigma_a;        // 1/mm
+  float vein_period;        // mm between veins
+  float vein_sharpness;     // exponent, >= 1: larger is thinner
+};
+
+#ifdef __cplusplus
+}  // namespace quadgraph::gpu
+#endif
+#endif
