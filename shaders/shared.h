@@ -15,9 +15,22 @@ using glm::vec2;
 using glm::vec3;
 using glm::vec4;
 using uint = std::uint32_t;
+// In C++ a buffer reference is the device address of its first element.
+#define QG_REF(Name) std::uint64_t
 #else
+#include "buffers.glsl"
 #define QG_INLINE
+#define QG_REF(Name) Name
+QG_ARRAY(Floats, float);
+QG_ARRAY(Uints, uint);
+QG_ARRAY(Vec3s, vec3);
+QG_ARRAY(Vec4s, vec4);
+QG_ARRAY(Uvec3s, uvec3);
+QG_ARRAY(Uvec4s, uvec4);
 #endif
+
+// Invocations per compute workgroup. Every device of Vulkan 1.3 offers at least 128; GPUs and lavapipe offer 1024.
+#define WORKGROUP_SIZE 256
 
 // Optical coefficients of a point, per RGB channel.
 struct Optical {
@@ -38,6 +51,18 @@ struct Material {
   vec3 vein_sigma_a;        // 1/mm
   float vein_period;        // mm between veins
   float vein_sharpness;     // exponent, >= 1: larger is thinner
+};
+
+#ifndef __cplusplus
+QG_ARRAY(Opticals, Optical);
+#endif
+
+// evaluate_material.comp: optical[i] = material_at(nodes[i]).
+struct EvaluateMaterialPush {
+  Material material;
+  QG_REF(Vec3s) nodes;
+  QG_REF(Opticals) optical;
+  uint count;
 };
 
 #ifdef __cplusplus

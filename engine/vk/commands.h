@@ -1,0 +1,73 @@
+// Recording and submitting one command buffer, and timing what is recorded.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/vk/context.h"
+#include "engine/vk/memory.h"
+#include "engine/vk/pipeline.h"
+
+namespace quadgraph::vk {
+
+// Device time of one named pass.
+struct PassTime {
+  std::string name;
+  double time_ms = 0;
+};
+
+class Commands {
+ public:
+  // Starts recording. At most `max_passes` calls of begin_pass are timed.
+  explicit Commands(Context& context, std::uint32_t max_passes = 0);
+
+  VkCommandBuffer handle() const { return commands_; }
+
+  // All writes before are visible to all that follows: the one barrier the engine needs between passes.
+  void barrier();
+
+  // Moves every layer of an image from `from` (UNDEFINED discards its contents) to `to`, with a full barrier.
+  void transition(const Image& image, VkImageLayout from, VkImageLayout to);
+
+  void copy(const Buffer& source, const Buffer& target, std::uint64_t bytes);
+
+  // Layer after layer, rows tightly packed; the image must be in TRANSFER_SRC_OPTIMAL.
+  void copy(const Image& source, const Buffer& target);
+
+  void fill(const Buffer& target, std::uint32_t value);
+
+  // One invocation per element, in workgroups of the pass's size; followed by a barrier.
+  template <typename Push>
+  void dispatch(const ComputePass& pass, const Push& push, std::uint64_t elements) {
+    dispatch_bytes(pass, &push, sizeof(Push), elements);
+  }
+
+  // Workgroup counts from three u32 at `offset` in `arguments`; followed by a barrier.
+  template <typename Push>
+  void dispatch_indirect(const ComputePass& pass, const Push& push, const Buffer& arguments, std::uint64_t offset) {
+    dispatch_indirect_bytes(pass, &push, sizeof(Push), arguments, offset);
+  }
+
+  void begin_pass(const std::string& name);
+  void end_pass();
+
+  // Ends recording, runs it, waits. Call once. Returns the device time of every pass, in order of recording.
+  std::vector<PassTime> submit_and_wait();
+
+ private:
+  void dispatch_bytes(const ComputePass& pass, const void* push, std::uint32_t size, std::uint64_t elements);
+  void dispatch_indirect_bytes(const ComputePass& pass, const void* push, std::uint32_t size, const Buffer& arguments,
+                               std::uint64_t offset);
+  void bind(const ComputePass& pass, const void* push, std::uint32_t size);
+  std::vector<PassTime> read_times();
+
+  Context& context_;
+  UniqueCommandPool pool_;
+  VkCommandBuffer commands_ = VK_NULL_HANDLE;
+  UniqueQueryPool queries_;
+  std::uint32_t max_passes_ = 0;
+  std::vector<std::string> pass_names_;
+};
+
+}  // namespace quadgraph::vk

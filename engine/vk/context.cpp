@@ -1,0 +1,279 @@
+#include "engine/vk/context.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstring>
+
+#include "engine/graph/error.h"
+
+namespace quadgraph::vk {
+namespace {
+
+constexpr const char* validation_layer = "VK_LAYER_KHRONOS_validation";
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+bool layer_present(const char* name) {
+  std::uint32_t count = 0;
+  check(vkEnumerateInstanceLayerProperties(&count, nullptr), "vkEnumerateInstanceLayerProperties");
+  std::vector<VkLayerProperties> layers(count);
+  check(vkEnumerateInstanceLayerProperties(&count, layers.data()), "vkEnumerateInstanceLayerProperties");
+  return std::any_of(layers.begin(), layers.end(), [&](const auto& l) { return std::strcmp(l.layerName, name) == 0; });
+}
+
+bool extension_present(const char* layer, const char* name) {
+  std::uint32_t count = 0;
+  check(vkEnumerateInstanceExtensionProperties(layer, &count, nullptr), "vkEnumerateInstanceExtensionProperties");
+  std::vector<VkExtensionProperties> extensions(count);
+  check(vkEnumerateInstanceExtensionProperties(layer, &count, extensions.data()),
+        "vkEnumerateInstanceExtensionProperties");
+  return std::any_of(extensions.begin(), extensions.end(),
+                     [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
+}
+
+// The features the engine relies on, chained so that one call queries or enables them all.
+struct Features {
+  VkPhysicalDeviceVulkan13Features v13{};
+  VkPhysicalDeviceVulkan12Features v12{};
+  VkPhysicalDeviceFeatures2 base{};
+
+  Features() {
+    v13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
+    v12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+    base.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+    base.pNext = &v12;
+    v12.pNext = &v13;
+  }
+  Features(const Features&) = delete;
+  Features& operator=(const Features&) = delete;
+
+  std::vector<std::pair<const char*, VkBool32*>> required() {
+    return {{"bufferDeviceAddress", &v12.bufferDeviceAddress}, {"scalarBlockLayout", &v12.scalarBlockLayout},
+            {"dynamicRendering", &v13.dynamicRendering},       {"synchronization2", &v13.synchronization2},
+            {"hostQueryReset", &v12.hostQueryReset},           {"maintenance4", &v13.maintenance4},
+            {"shaderInt64", &base.features.shaderInt64}};
+  }
+};
+
+// Empty if the device can run the engine, else what it lacks.
+std::string what_is_missing(VkPhysicalDevice device) {
+  VkPhysicalDeviceProperties properties;
+  vkGetPhysicalDeviceProperties(device, &properties);
+  if (properties.apiVersion < VK_API_VERSION_1_3) return "Vulkan 1.3";
+  Features features;
+  vkGetPhysicalDeviceFeatures2(device, &features.base);
+  for (const auto& [name, value] : features.required()) {
+    if (*value == VK_FALSE) return name;
+  }
+  return {};
+}
+
+int preference(VkPhysicalDeviceType type) {
+  switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+      return 0;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+      return 1;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+      return 2;
+    default:
+      return 3;
+  }
+}
+
+std::string result_name(VkResult result) {
+  switch (result) {
+    case VK_ERROR_OUT_OF_HOST_MEMORY:
+      return "out of host memory";
+    case VK_ERROR_OUT_OF_DEVICE_MEMORY:
+      return "out of device memory";
+    case VK_ERROR_INITIALIZATION_FAILED:
+      return "initialisation failed";
+    case VK_ERROR_DEVICE_LOST:
+      return "device lost";
+    case VK_ERROR_LAYER_NOT_PRESENT:
+      return "layer not present";
+    case VK_ERROR_EXTENSION_NOT_PRESENT:
+      return "extension not present";
+    case VK_ERROR_FEATURE_NOT_PRESENT:
+      return "feature not present";
+    case VK_ERROR_INCOMPATIBLE_DRIVER:
+      return "no compatible Vulkan driver (Debian: mesa-vulkan-drivers has a software device)";
+    case VK_TIMEOUT:
+      return "timed out";
+    default:
+      return "VkResult " + std::to_string(static_cast<int>(result));
+  }
+}
+
+}  // namespace
+
+void check(VkResult result, std::string_view call) {
+  if (result != VK_SUCCESS) throw VulkanError(std::string(call) + ": " + result_name(result));
+}
+
+Context::Context(const ContextOptions& options) {
+  try {
+    create_instance(options);
+    if (options.validation) create_messenger();
+    pick_device(options.device);
+    read_properties();
+    create_device();
+  } catch (...) {
+    destroy();
+    throw;
+  }
+}
+
+Context::~Context() {
+  destroy();
+}
+
+void Context::destroy() noexcept {
+  if (device_ != VK_NULL_HANDLE) vkDestroyDevice(device_, nullptr);
+  if (messenger_ != VK_NULL_HANDLE) {
+    auto destroy_messenger = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
+        vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
+    destroy_messenger(instance_, messenger_, nullptr);
+  }
+  if (instance_ != VK_NULL_HANDLE) vkDestroyInstance(instance_, nullptr);
+}
+
+void Context::create_instance(const ContextOptions& options) {
+  if (options.validation && !layer_present(validation_layer)) {
+    throw VulkanError(std::string(validation_layer) + " is not installed (Debian: vulkan-validationlayers)");
+  }
+  debug_utils_ = extension_present(nullptr, VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+  std::vector<const char*> extensions;
+  if (debug_utils_) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+
+  VkApplicationInfo application{};
+  application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
+  application.pApplicationName = "quadgraph";
+  application.apiVersion = VK_API_VERSION_1_3;
+  VkInstanceCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
+  info.pApplicationInfo = &application;
+  info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
+  info.ppEnabledExtensionNames = extensions.data();
+  info.enabledLayerCount = options.validation ? 1 : 0;
+  info.ppEnabledLayerNames = &validation_layer;
+  check(vkCreateInstance(&info, nullptr, &instance_), "vkCreateInstance");
+}
+
+void Context::create_messenger() {
+  if (!debug_utils_) throw VulkanError("validation needs VK_EXT_debug_utils, which the loader does not offer");
+  VkDebugUtilsMessengerCreateInfoEXT info{};
+  info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
+  info.messageSeverity =
+      VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+  info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
+  info.pfnUserCallback = on_message;
+  info.pUserData = this;
+  auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
+      vkGetInstanceProcAddr(instance_, "vkCreateDebugUtilsMessengerEXT"));
+  check(create(instance_, &info, nullptr, &messenger_), "vkCreateDebugUtilsMessengerEXT");
+}
+
+VkBool32 Context::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                             const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
+  static_cast<Context*>(user)->validation_messages_.emplace_back(data->pMessage);
+  return VK_FALSE;
+}
+
+void Context::pick_device(const std::string& wanted) {
+  std::uint32_t count = 0;
+  check(vkEnumeratePhysicalDevices(instance_, &count, nullptr), "vkEnumeratePhysicalDevices");
+  std::vector<VkPhysicalDevice> devices(count);
+  check(vkEnumeratePhysicalDevices(instance_, &count, devices.data()), "vkEnumeratePhysicalDevices");
+
+  std::string seen;
+  int best = 4;
+  for (VkPhysicalDevice candidate : devices) {
+    VkPhysicalDeviceProperties properties;
+    vkGetPhysicalDeviceProperties(candidate, &properties);
+    const std::string missing = what_is_missing(candidate);
+    seen += std::string(seen.empty() ? "" : "; ") + properties.deviceName;
+    if (!missing.empty()) seen += " (lacks " + missing + ")";
+    const bool named = lower(properties.deviceName).find(lower(wanted)) != std::string::npos;
+    if (!missing.empty() || !named || preference(properties.deviceType) >= best) continue;
+    best = preference(properties.deviceType);
+    physical_device_ = candidate;
+  }
+  if (physical_device_ == VK_NULL_HANDLE) {
+    throw VulkanError("no usable Vulkan device" + (wanted.empty() ? "" : " named '" + wanted + "'") +
+                      "; found: " + (seen.empty() ? "none (Debian: mesa-vulkan-drivers has a software device)" : seen));
+  }
+}
+
+void Context::read_properties() {
+  VkPhysicalDeviceDriverProperties driver{};
+  driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
+  VkPhysicalDeviceProperties2 properties{};
+  properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+  properties.pNext = &driver;
+  vkGetPhysicalDeviceProperties2(physical_device_, &properties);
+  limits_ = properties.properties.limits;
+  info_ = {properties.properties.deviceName, std::string(driver.driverName) + " " + driver.driverInfo,
+           properties.properties.deviceType};
+  vkGetPhysicalDeviceMemoryProperties(physical_device_, &memory_properties_);
+}
+
+void Context::create_device() {
+  std::uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(physical_device_, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(physical_device_, &count, families.data());
+  const VkQueueFlags wanted = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+  auto family =
+      std::find_if(families.begin(), families.end(), [&](const auto& f) { return (f.queueFlags & wanted) == wanted; });
+  if (family == families.end()) throw VulkanError(info_.name + " has no queue that both draws and computes");
+  queue_family_ = static_cast<std::uint32_t>(family - families.begin());
+
+  const float priority = 1.0f;
+  VkDeviceQueueCreateInfo queue_info{};
+  queue_info.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
+  queue_info.queueFamilyIndex = queue_family_;
+  queue_info.queueCount = 1;
+  queue_info.pQueuePriorities = &priority;
+  Features features;
+  for (const auto& [name, value] : features.required()) *value = VK_TRUE;
+  VkDeviceCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
+  info.pNext = &features.base;
+  info.queueCreateInfoCount = 1;
+  info.pQueueCreateInfos = &queue_info;
+  check(vkCreateDevice(physical_device_, &info, nullptr, &device_), "vkCreateDevice");
+  vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
+  if (debug_utils_) {
+    set_object_name_ = reinterpret_cast<PFN_vkSetDebugUtilsObjectNameEXT>(
+        vkGetDeviceProcAddr(device_, "vkSetDebugUtilsObjectNameEXT"));
+  }
+}
+
+std::uint32_t Context::memory_type(std::uint32_t type_bits, VkMemoryPropertyFlags required,
+                                   VkMemoryPropertyFlags preferred) const {
+  for (VkMemoryPropertyFlags flags : {required | preferred, required}) {
+    for (std::uint32_t i = 0; i < memory_properties_.memoryTypeCount; ++i) {
+      const bool allowed = (type_bits >> i & 1u) != 0;
+      if (allowed && (memory_properties_.memoryTypes[i].propertyFlags & flags) == flags) return i;
+    }
+  }
+  throw VulkanError(info_.name + " has no memory type with properties " + std::to_string(required));
+}
+
+void Context::set_name(VkObjectType type, std::uint64_t handle, const std::string& name) const {
+  if (set_object_name_ == nullptr) return;
+  VkDebugUtilsObjectNameInfoEXT info{};
+  info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT;
+  info.objectType = type;
+  info.objectHandle = handle;
+  info.pObjectName = name.c_str();
+  check(set_object_name_(device_, &info), "vkSetDebugUtilsObjectNameEXT");
+}
+
+}  // namespace quadgraph::vk

@@ -1,0 +1,82 @@
+// One Vulkan device with one queue that can compute and draw. Everything else in vk/ borrows a Context and must die
+// before it.
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/vk/handle.h"
+
+namespace quadgraph::vk {
+
+struct ContextOptions {
+  // Load VK_LAYER_KHRONOS_validation and keep its messages; VulkanError if the layer is not installed.
+  bool validation = false;
+  // Part of the device's name, case-insensitive; empty: a discrete GPU, else an integrated one, else any.
+  std::string device;
+};
+
+struct DeviceInfo {
+  std::string name;
+  std::string driver;  // name and version, as the driver reports it
+  VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;
+};
+
+class Context {
+ public:
+  explicit Context(const ContextOptions& options = {});
+  ~Context();
+  Context(const Context&) = delete;
+  Context& operator=(const Context&) = delete;
+
+  VkDevice device() const { return device_; }
+  VkQueue queue() const { return queue_; }
+  std::uint32_t queue_family() const { return queue_family_; }
+  const VkPhysicalDeviceLimits& limits() const { return limits_; }
+  const DeviceInfo& info() const { return info_; }
+
+  // Index of a memory type allowed by `type_bits` with all of `required`, preferring `preferred`. Throws VulkanError.
+  std::uint32_t memory_type(std::uint32_t type_bits, VkMemoryPropertyFlags required,
+                            VkMemoryPropertyFlags preferred) const;
+
+  // Bytes of device memory allocated now, kept up to date by Allocation.
+  std::uint64_t allocated_bytes() const { return allocated_bytes_; }
+
+  // Names an object for validation messages and debuggers; does nothing without the debug extension.
+  void set_name(VkObjectType type, std::uint64_t handle, const std::string& name) const;
+
+  // Warnings and errors of the validation layer so far; empty without `validation`.
+  const std::vector<std::string>& validation_messages() const { return validation_messages_; }
+
+ private:
+  friend class Allocation;
+
+  void create_instance(const ContextOptions& options);
+  void create_messenger();
+  void pick_device(const std::string& wanted);
+  void read_properties();
+  void create_device();
+  void destroy() noexcept;
+  static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
+                                                   VkDebugUtilsMessageTypeFlagsEXT types,
+                                                   const VkDebugUtilsMessengerCallbackDataEXT* data, void* user);
+
+  VkInstance instance_ = VK_NULL_HANDLE;
+  VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+  VkPhysicalDevice physical_device_ = VK_NULL_HANDLE;
+  VkDevice device_ = VK_NULL_HANDLE;
+  VkQueue queue_ = VK_NULL_HANDLE;
+  std::uint32_t queue_family_ = 0;
+  VkPhysicalDeviceLimits limits_{};
+  VkPhysicalDeviceMemoryProperties memory_properties_{};
+  DeviceInfo info_;
+  bool debug_utils_ = false;
+  PFN_vkSetDebugUtilsObjectNameEXT set_object_name_ = nullptr;
+  std::uint64_t allocated_bytes_ = 0;
+  std::vector<std::string> validation_messages_;
+};
+
+}  // namespace quadgraph::vk

@@ -1,0 +1,152 @@
+#include "engine/vk/pipeline.h"
+
+#include "engine/graph/error.h"
+
+namespace quadgraph::vk {
+namespace {
+
+UniqueShaderModule shader_module(Context& context, Spirv code, const std::string& name) {
+  VkShaderModuleCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
+  info.codeSize = code.size_bytes();
+  info.pCode = code.data();
+  VkShaderModule module = VK_NULL_HANDLE;
+  check(vkCreateShaderModule(context.device(), &info, nullptr, &module), "vkCreateShaderModule '" + name + "'");
+  return {context.device(), module};
+}
+
+UniquePipelineLayout push_layout(Context& context, std::uint32_t push_size, VkShaderStageFlags stages,
+                                 const std::string& name) {
+  if (push_size > context.limits().maxPushConstantsSize) {
+    throw VulkanError(name + " needs " + std::to_string(push_size) + " bytes of push constants, " +
+                      context.info().name + " allows " + std::to_string(context.limits().maxPushConstantsSize));
+  }
+  const VkPushConstantRange range{stages, 0, push_size};
+  VkPipelineLayoutCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+  info.pushConstantRangeCount = push_size > 0 ? 1 : 0;
+  info.pPushConstantRanges = &range;
+  VkPipelineLayout layout = VK_NULL_HANDLE;
+  check(vkCreatePipelineLayout(context.device(), &info, nullptr, &layout), "vkCreatePipelineLayout '" + name + "'");
+  return {context.device(), layout};
+}
+
+VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits bit, const UniqueShaderModule& module) {
+  VkPipelineShaderStageCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+  info.stage = bit;
+  info.module = module.get();
+  info.pName = "main";
+  return info;
+}
+
+// The fixed-function state of every graphics pass, kept alive while the pipeline is created.
+struct FixedState {
+  VkPipelineVertexInputStateCreateInfo vertex_input{};
+  VkPipelineInputAssemblyStateCreateInfo assembly{};
+  VkPipelineViewportStateCreateInfo viewport{};
+  VkPipelineRasterizationStateCreateInfo raster{};
+  VkPipelineMultisampleStateCreateInfo multisample{};
+  VkPipelineDepthStencilStateCreateInfo depth{};
+  std::vector<VkPipelineColorBlendAttachmentState> attachments;
+  VkPipelineColorBlendStateCreateInfo blend{};
+  std::vector<VkDynamicState> dynamic_states = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
+  VkPipelineDynamicStateCreateInfo dynamic{};
+  VkPipelineRenderingCreateInfo rendering{};
+
+  explicit FixedState(const GraphicsOptions& options) {
+    vertex_input.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
+    assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
+    assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+    viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
+    viewport.viewportCount = 1;
+    viewport.scissorCount = 1;
+    raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
+    raster.polygonMode = VK_POLYGON_MODE_FILL;
+    raster.cullMode = options.cull;
+    raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
+    raster.lineWidth = 1.0f;
+    multisample.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
+    multisample.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
+    set_outputs(options);
+    dynamic.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO;
+    dynamic.dynamicStateCount = static_cast<std::uint32_t>(dynamic_states.size());
+    dynamic.pDynamicStates = dynamic_states.data();
+  }
+  FixedState(const FixedState&) = delete;
+  FixedState& operator=(const FixedState&) = delete;
+
+  void set_outputs(const GraphicsOptions& options) {
+    const bool has_depth = options.depth_format != VK_FORMAT_UNDEFINED;
+    depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
+    depth.depthTestEnable = has_depth;
+    depth.depthWriteEnable = has_depth;
+    depth.depthCompareOp = VK_COMPARE_OP_LESS;
+    VkPipelineColorBlendAttachmentState opaque{};
+    opaque.colorWriteMask =
+        VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
+    attachments.assign(options.colour_formats.size(), opaque);
+    blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
+    blend.attachmentCount = static_cast<std::uint32_t>(attachments.size());
+    blend.pAttachments = attachments.data();
+    rendering.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO;
+    rendering.colorAttachmentCount = static_cast<std::uint32_t>(options.colour_formats.size());
+    rendering.pColorAttachmentFormats = options.colour_formats.data();
+    rendering.depthAttachmentFormat = options.depth_format;
+  }
+};
+
+}  // namespace
+
+ComputePass::ComputePass(Context& context, Spirv code, std::uint32_t push_size, const std::string& name,
+                         std::uint32_t workgroup_size)
+    : push_size_(push_size),
+      workgroup_size_(workgroup_size),
+      name_(name),
+      layout_(push_layout(context, push_size, VK_SHADER_STAGE_COMPUTE_BIT, name)) {
+  const UniqueShaderModule module = shader_module(context, code, name);
+  VkComputePipelineCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
+  info.stage = stage(VK_SHADER_STAGE_COMPUTE_BIT, module);
+  info.layout = layout_.get();
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  check(vkCreateComputePipelines(context.device(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
+        "vkCreateComputePipelines '" + name + "'");
+  pipeline_ = UniquePipeline(context.device(), pipeline);
+  context.set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline), name);
+}
+
+GraphicsPass::GraphicsPass(Context& context, const GraphicsOptions& options, const std::string& name)
+    : push_size_(options.push_size),
+      layout_(
+          push_layout(context, options.push_size, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, name)) {
+  const UniqueShaderModule vertex = shader_module(context, options.vertex, name + ".vert");
+  std::vector<VkPipelineShaderStageCreateInfo> stages = {stage(VK_SHADER_STAGE_VERTEX_BIT, vertex)};
+  UniqueShaderModule fragment;
+  if (!options.fragment.empty()) {
+    fragment = shader_module(context, options.fragment, name + ".frag");
+    stages.push_back(stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment));
+  }
+  const FixedState state(options);
+  VkGraphicsPipelineCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
+  info.pNext = &state.rendering;
+  info.stageCount = static_cast<std::uint32_t>(stages.size());
+  info.pStages = stages.data();
+  info.pVertexInputState = &state.vertex_input;
+  info.pInputAssemblyState = &state.assembly;
+  info.pViewportState = &state.viewport;
+  info.pRasterizationState = &state.raster;
+  info.pMultisampleState = &state.multisample;
+  info.pDepthStencilState = &state.depth;
+  info.pColorBlendState = &state.blend;
+  info.pDynamicState = &state.dynamic;
+  info.layout = layout_.get();
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  check(vkCreateGraphicsPipelines(context.device(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
+        "vkCreateGraphicsPipelines '" + name + "'");
+  pipeline_ = UniquePipeline(context.device(), pipeline);
+  context.set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline), name);
+}
+
+}  // namespace quadgraph::vk

@@ -1,0 +1,65 @@
+// Compute and graphics pipelines. Shaders reach all data through addresses in their push constants, so there are no
+// descriptor sets.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/vk/context.h"
+#include "engine/vk/handle.h"
+
+namespace quadgraph::vk {
+
+// A SPIR-V module as the build embeds it ("spirv/NAME.STAGE.h").
+using Spirv = std::span<const std::uint32_t>;
+
+class ComputePass {
+ public:
+  // `push_size` in bytes must equal the size of the shader's push-constant block, and `workgroup_size` its
+  // local_size_x.
+  ComputePass(Context& context, Spirv code, std::uint32_t push_size, const std::string& name,
+              std::uint32_t workgroup_size = default_workgroup_size);
+
+  static constexpr std::uint32_t default_workgroup_size = 256;  // WORKGROUP_SIZE in shaders/shared.h
+
+  VkPipeline pipeline() const { return pipeline_.get(); }
+  VkPipelineLayout layout() const { return layout_.get(); }
+  std::uint32_t push_size() const { return push_size_; }
+  std::uint32_t workgroup_size() const { return workgroup_size_; }
+  const std::string& name() const { return name_; }
+
+ private:
+  std::uint32_t push_size_;
+  std::uint32_t workgroup_size_;
+  std::string name_;
+  UniquePipelineLayout layout_;
+  UniquePipeline pipeline_;
+};
+
+struct GraphicsOptions {
+  Spirv vertex;
+  Spirv fragment;                                // empty: depth only
+  std::uint32_t push_size = 0;                   // bytes, visible to both stages
+  std::vector<VkFormat> colour_formats;          // no blending
+  VkFormat depth_format = VK_FORMAT_D32_SFLOAT;  // VK_FORMAT_UNDEFINED: no depth test
+  VkCullModeFlags cull = VK_CULL_MODE_BACK_BIT;  // front faces are counter-clockwise in the window with y up
+};
+
+// Triangle lists without vertex buffers (shaders pull from addresses), dynamic viewport and scissor, depth test LESS.
+class GraphicsPass {
+ public:
+  GraphicsPass(Context& context, const GraphicsOptions& options, const std::string& name);
+
+  VkPipeline pipeline() const { return pipeline_.get(); }
+  VkPipelineLayout layout() const { return layout_.get(); }
+  std::uint32_t push_size() const { return push_size_; }
+
+ private:
+  std::uint32_t push_size_;
+  UniquePipelineLayout layout_;
+  UniquePipeline pipeline_;
+};
+
+}  // namespace quadgraph::vk
