@@ -1,0 +1,82 @@
+// The diffusion solve on the GPU: every level's geometry, material, operator and solution as storage buffers.
+//
+// Per frame: (material) -> optical coefficients at the nodes -> operator rows on every level -> right-hand side from q
+// -> solve, coarsest level first -> exitance. Only what changed since the last solve is done again: a new material
+// re-assembles, a new q only rebuilds the right-hand side.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/graph/graph.h"
+#include "engine/graph/solution.h"
+#include "engine/vk/context.h"
+#include "engine/vk/memory.h"
+#include "shaders/shared.h"
+
+namespace quadgraph {
+
+// One kind of pass in a frame.
+struct PassStats {
+  std::string name;
+  double time_ms = 0;       // device time, all dispatches together
+  std::uint64_t bytes = 0;  // bytes the algorithm reads and writes, all dispatches together
+  std::uint32_t count = 0;  // dispatches that did work
+};
+
+// Geometry and fields of one level on the device. Counts as in Level.
+struct LevelBuffers {
+  std::uint32_t vertex_count = 0, tet_count = 0, face_count = 0, node_count = 0, surface_vertex_count = 0;
+  vk::Buffer vertices;   // vec3, mm
+  vk::Buffer tets;       // uvec4
+  vk::Buffer faces;      // uvec3
+  vk::Buffer face_tets;  // uint
+  vk::Buffer links;      // uvec4
+  vk::Buffer nodes;      // vec3, mm; inner nodes, then surface nodes
+  vk::Buffer optical;    // Optical per node
+  vk::Buffer q;          // vec3 per face, W/mm^2: written by the lights or by set_irradiance
+};
+
+class Simulation {
+ public:
+  // `graph` is copied to the device; it must stay alive (its spans are used to set up row structures lazily).
+  Simulation(vk::Context& context, const QuadGraph& graph);
+  ~Simulation();
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  std::uint32_t level_count() const;
+  const LevelBuffers& level(std::uint32_t level) const;
+
+  // Throws InputError as check_material does.
+  void set_material(const gpu::Material& material);
+  const gpu::Material& material() const;
+
+  // Irradiance q >= 0, one per surface node of `level`. Throws InputError on a wrong size or value.
+  void set_irradiance(std::uint32_t level, std::span<const glm::vec3> q);
+
+  // To be called by whoever wrote the q buffers of all levels on the device.
+  void irradiance_changed();
+
+  // Solves for the present material and q, all levels. Throws InputError before set_material, SolverError when
+  // conjugate gradients break down or a value is not finite.
+  SolveReport solve(const SolveOptions& options);
+
+  // Passes of the last solve.
+  const std::vector<PassStats>& passes() const;
+
+  // Results of the last solve, level 0.
+  SurfaceField surface_field() const;
+  std::vector<glm::vec3> phi() const;         // per unknown of the method
+  const vk::Buffer& vertex_exitance() const;  // vec3 per surface vertex of level 0, W/mm^2, for display
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace quadgraph
