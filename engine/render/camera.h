@@ -1,0 +1,51 @@
+// Where the picture is taken from.
+#pragma once
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace quadgraph {
+
+struct Sphere {
+  glm::vec3 centre{0};  // mm
+  float radius = 0;     // mm
+};
+
+// The sphere around the middle of the bounding box that holds every point.
+Sphere bounding_sphere(std::span<const glm::vec3> points);
+
+enum class UpAxis { y, z };
+
+// A view of the object's centre. With y up, azimuth 0 looks along -z (from +z), azimuth 90 looks along -x (from +x).
+// With z up, azimuth 0 looks along +y (from -y), azimuth 90 along -x. Positive elevation looks from above.
+struct View {
+  float azimuth = 0;              // degrees
+  float elevation = 10;           // degrees, -90 to 90
+  std::optional<float> distance;  // mm from the centre; without it the bounding sphere fits the picture
+  UpAxis up = UpAxis::y;
+  float vertical_fov = 30;  // degrees, 1 to 150
+};
+
+// Parses "azimuth,elevation" or "azimuth,elevation,distance" into a view with the given rest. Throws InputError.
+View parse_view(std::string_view text, View rest = {});
+
+// The text that parse_view reads, with the distance if there is one.
+std::string to_string(const View& view);
+
+// A perspective camera; axes are unit, right-handed, and `backward` points from the target to the eye.
+struct Camera {
+  glm::vec3 eye{0};  // mm
+  glm::vec3 right{1, 0, 0};
+  glm::vec3 up{0, 1, 0};
+  glm::vec3 backward{0, 0, 1};
+  glm::mat4 clip_from_world{1};  // depth 0 to 1, y up
+};
+
+// Throws InputError if an angle or the distance is out of range. `aspect` is width / height.
+Camera place_camera(const View& view, const Sphere& bounds, float aspect);
+
+}  // namespace quadgraph

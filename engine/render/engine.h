@@ -1,0 +1,79 @@
+// One object, its material, lights and picture on one device: what the executable and the Python module drive.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/graph/graph.h"
+#include "engine/render/camera.h"
+#include "engine/render/lights.h"
+#include "engine/render/picture.h"
+#include "engine/solve/simulation.h"
+#include "engine/vk/context.h"
+
+namespace quadgraph {
+
+struct RenderOptions {
+  std::uint32_t width = 1024, height = 1024;  // pixels, 1 to 16384 each; every pixel is the mean of 2 x 2 samples
+  float roughness = 0.3f;                     // alpha of the GGX distribution of the surface, 0.02 to 1
+};
+
+class Engine {
+ public:
+  // Loads a .qgraph onto a device. Throws FormatError, InputError, VulkanError.
+  explicit Engine(const std::filesystem::path& path, const vk::ContextOptions& device = {});
+  ~Engine();
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
+
+  const QuadGraph& graph() const;
+  const vk::Context& context() const;
+  Simulation& simulation();
+  const Sphere& bounds() const;  // of the display mesh
+
+  // Text as parse_material reads it, or a material. Throws InputError.
+  void set_material(std::string_view text);
+  void set_material(const gpu::Material& material);
+
+  // Throws InputError as check_light does.
+  void set_lights(std::vector<Light> lights);
+
+  // Irradiance given instead of computed from lights, as Simulation::set_irradiance; wanted for every level, and kept
+  // until set_lights.
+  void set_irradiance(std::uint32_t level, std::span<const glm::vec3> q);
+
+  // Shadow maps and q on every level from the present lights and material. Throws InputError without a material.
+  void update_irradiance();
+
+  // Calls update_irradiance if lights or material changed since, then solves. Throws as Simulation::solve.
+  SolveReport solve(const SolveOptions& options = {});
+
+  // Level 0 of the last solve.
+  SurfaceField surface_field() const;
+
+  // The last solve's exitance seen from `view`. Throws InputError before a solve or on an option out of range.
+  Picture render(const View& view, const RenderOptions& options = {});
+
+  // Passes of the last update_irradiance, solve and render, in this order.
+  std::vector<PassStats> passes() const;
+
+  // Device memory now and at most so far, bytes.
+  std::uint64_t device_bytes() const;
+  std::uint64_t peak_device_bytes() const;
+
+  // What the last picture was made with: source, material, lights, camera, method, solver, tolerance, units, device,
+  // iterations, residual, energy balance, error estimate.
+  Metadata metadata() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace quadgraph

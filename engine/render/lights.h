@@ -1,0 +1,31 @@
+// Lights: what a user states, in physical units.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <string>
+#include <string_view>
+
+namespace quadgraph {
+
+enum class LightKind { directional, point };
+
+struct Light {
+  LightKind kind = LightKind::directional;
+  glm::vec3 direction{0, 0, -1};  // directional: unit, the way the light travels
+  glm::vec3 position{0};          // point: mm
+  // Directional: irradiance on a plane perpendicular to the light, W/mm^2. Point: power, W, sent out evenly in all
+  // directions, so that the irradiance facing it at distance d is power / (4 pi d^2).
+  glm::vec3 power{0};
+};
+
+// Parses "directional:DX,DY,DZ:IRRADIANCE" or "point:X,Y,Z:POWER", the last one number or R/G/B. The direction need not
+// be of unit length. Throws InputError naming what was found and what is allowed.
+Light parse_light(std::string_view text);
+
+// The text that parse_light reads back as the same light.
+std::string to_string(const Light& light);
+
+// Throws InputError unless the numbers are finite, the power is >= 0 and a direction has unit length.
+void check_light(const Light& light);
+
+}  // namespace quadgraph

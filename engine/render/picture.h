@@ -1,0 +1,37 @@
+// A rendered picture in linear radiance, and its files.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/render/tone_map.h"
+
+namespace quadgraph {
+
+// Row after row, the top one first. Radiance is premultiplied by alpha, as in EXR.
+struct Picture {
+  std::uint32_t width = 0, height = 0;
+  std::vector<float> diffuse;  // RGB per pixel, W/(mm^2 sr): light that came through the body; may be slightly negative
+  std::vector<float> specular;  // RGB per pixel, W/(mm^2 sr): light reflected by the surface
+  std::vector<float> alpha;     // per pixel, share of the pixel that the object covers
+};
+
+// Name and value of everything needed to make the picture again and to judge it.
+using Metadata = std::vector<std::pair<std::string, std::string>>;
+
+// 8-bit sRGB RGB rows, tone mapped and laid over the background.
+std::vector<std::uint8_t> to_srgb8(const Picture& picture, const ToneOptions& options);
+
+// Both write a temporary file beside `path` and rename it. Throw InputError naming the file.
+// PNG: to_srgb8, metadata as tEXt.
+void write_png(const std::filesystem::path& path, const Picture& picture, const ToneOptions& options,
+               const Metadata& metadata);
+
+// EXR: float32 linear, channels R, G, B (diffuse + specular), A, diffuse.R/G/B, specular.R/G/B; metadata as string
+// attributes.
+void write_exr(const std::filesystem::path& path, const Picture& picture, const Metadata& metadata);
+
+}  // namespace quadgraph

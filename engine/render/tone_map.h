@@ -1,0 +1,38 @@
+// From linear radiance to what a screen shows.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string_view>
+
+namespace quadgraph {
+
+struct Picture;
+
+struct ToneOptions {
+  // Radiance is multiplied by 2^stops before the curve; empty: auto_exposure of the picture.
+  std::optional<float> exposure_stops;
+  // Linear display colour in [0, 1] behind the object at the top and at the bottom of the picture.
+  glm::vec3 background_top{0.012f, 0.013f, 0.015f};
+  glm::vec3 background_bottom{0.07f, 0.072f, 0.078f};
+};
+
+// Filmic curve per channel: K. Narkowicz, "ACES Filmic Tone Mapping Curve" (2015), a rational fit to the ACES reference
+// transform. 0 at 0, monotone, clamped to [0, 1].
+float filmic(float radiance);
+
+// sRGB transfer function (IEC 61966-2-1) of a linear value in [0, 1].
+float srgb_encode(float linear);
+
+// Stops that bring the 0.9 quantile of the luminance of the covered pixels to the curve's bright middle. Depends on
+// nothing but the picture; 0 for a black one.
+float auto_exposure(const Picture& picture);
+
+// Parses "auto" or a number of stops. Throws InputError.
+std::optional<float> parse_exposure(std::string_view text);
+
+// Parses "studio" (the default gradient), "black", "white", or a linear grey or R/G/B in [0, 1] into `options`. Throws
+// InputError.
+void parse_background(std::string_view text, ToneOptions& options);
+
+}  // namespace quadgraph
