@@ -15,3 +15,11 @@ class InputError(QuadGraphError):
 
 class ToolError(QuadGraphError):
     """A child program (TetGen, the CGAL mesher) that is missing, failed, or ran past its limit."""
+
+
+class SolverError(QuadGraphError):
+    """A linear solve that broke down or diverged."""
+
+
+class VulkanError(QuadGraphError):
+    """A Vulkan call that failed, or a device that lacks what the engine needs."""

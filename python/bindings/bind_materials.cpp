@@ -1,0 +1,28 @@
+// Materials and the Fresnel quantities of the boundary.
+#include <pybind11/stl.h>
+
+#include "engine/graph/fresnel.h"
+#include "engine/graph/material.h"
+#include "python/bindings/bindings.h"
+
+namespace py = pybind11;
+
+namespace quadgraph::python {
+
+void bind_materials(py::module_& module) {
+  py::class_<gpu::Material>(module, "Material", "A material field in object space; coefficients in 1/mm.")
+      .def(py::init([](const std::string& text) { return parse_material(text); }), py::arg("text"),
+           "From a name of material_names() or 'sigma_s_prime=2.0,sigma_a=0.01,eta=1.3' (one value or R/G/B each). "
+           "Raises InputError.")
+      .def_property_readonly("sigma_s_prime",
+                             [](const gpu::Material& m) { return as_tuple(glm::dvec3(m.sigma_s_prime)); })
+      .def_property_readonly("sigma_a", [](const gpu::Material& m) { return as_tuple(glm::dvec3(m.sigma_a)); })
+      .def_readonly("eta", &gpu::Material::eta);
+  module.def("material_names", &material_names);
+  module.def("fresnel_transmittance", &fresnel_transmittance, py::arg("cos_i"), py::arg("eta"),
+             "Unpolarised transmittance from outside at incidence cosine cos_i.");
+  module.def("internal_diffuse_reflectance", &internal_diffuse_reflectance, py::arg("eta"), "The published F_dr.");
+  module.def("mismatch", &mismatch, py::arg("eta"), "A = (1 + F_dr) / (1 - F_dr).");
+}
+
+}  // namespace quadgraph::python

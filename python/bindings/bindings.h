@@ -1,0 +1,59 @@
+// What the binding files share: one bind_* function per subsystem, and the gate between NumPy arrays and spans.
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <glm/vec3.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/graph/solution.h"
+#include "shaders/shared.h"
+
+namespace quadgraph::python {
+
+void bind_graph(pybind11::module_& module);
+void bind_materials(pybind11::module_& module);
+void bind_reference(pybind11::module_& module);
+void bind_engine(pybind11::module_& module);
+
+// Converted to C order and float32 if need be.
+using FloatArray = pybind11::array_t<float, pybind11::array::c_style | pybind11::array::forcecast>;
+
+// A read-only array over memory that `owner` keeps alive.
+template <typename Scalar>
+pybind11::array view(const Scalar* data, std::vector<pybind11::ssize_t> shape, pybind11::handle owner) {
+  pybind11::array_t<Scalar> array(std::move(shape), data, owner);
+  array.attr("setflags")(pybind11::arg("write") = false);
+  return array;
+}
+
+// Moves a vector into an array that owns it: (n,) for scalars, (n, 3) for vectors of three.
+template <typename Scalar>
+pybind11::array own(std::vector<Scalar>&& values) {
+  auto* kept = new std::vector<Scalar>(std::move(values));
+  const pybind11::capsule owner(kept, [](void* p) { delete static_cast<std::vector<Scalar>*>(p); });
+  const auto n = static_cast<pybind11::ssize_t>(kept->size());
+  if constexpr (std::is_arithmetic_v<Scalar>) {
+    return pybind11::array_t<Scalar>({n}, kept->data(), owner);
+  } else {
+    using Component = typename Scalar::value_type;
+    static_assert(sizeof(Scalar) == 3 * sizeof(Component));
+    return pybind11::array_t<Component>({n, pybind11::ssize_t{3}}, reinterpret_cast<const Component*>(kept->data()),
+                                        owner);
+  }
+}
+
+// `array` as vectors of three; InputError naming `what` unless its shape is (count, 3).
+std::span<const glm::vec3> vectors(const FloatArray& array, std::size_t count, const std::string& what);
+
+// Zips kappa (n, 3) in mm and sigma_a (n, 3) in 1/mm into one entry per node.
+std::vector<gpu::Optical> optical_from(const FloatArray& kappa, const FloatArray& sigma_a, std::size_t count);
+
+pybind11::tuple as_tuple(const glm::dvec3& v);
+pybind11::dict as_dict(const Energy& energy);
+pybind11::dict as_dict(const LevelReport& report);
+
+}  // namespace quadgraph::python

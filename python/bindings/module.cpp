@@ -1,0 +1,82 @@
+// quadgraph._core: the module, its errors, and the gate between NumPy arrays and spans.
+#include "engine/graph/error.h"
+#include "python/bindings/bindings.h"
+
+namespace py = pybind11;
+
+namespace quadgraph::python {
+
+std::span<const glm::vec3> vectors(const FloatArray& array, std::size_t count, const std::string& what) {
+  const bool fits = array.ndim() == 2 && array.shape(1) == 3 && static_cast<std::size_t>(array.shape(0)) == count;
+  if (!fits) {
+    std::string shape;
+    for (py::ssize_t d = 0; d < array.ndim(); ++d) shape += (d > 0 ? ", " : "") + std::to_string(array.shape(d));
+    throw InputError(what + ": shape (" + shape + "), expected (" + std::to_string(count) + ", 3)");
+  }
+  return {reinterpret_cast<const glm::vec3*>(array.data()), count};
+}
+
+std::vector<gpu::Optical> optical_from(const FloatArray& kappa, const FloatArray& sigma_a, std::size_t count) {
+  const auto kappas = vectors(kappa, count, "kappa");
+  const auto sigmas = vectors(sigma_a, count, "sigma_a");
+  std::vector<gpu::Optical> optical(count);
+  for (std::size_t i = 0; i < count; ++i) optical[i] = {kappas[i], sigmas[i]};
+  return optical;
+}
+
+py::tuple as_tuple(const glm::dvec3& v) {
+  return py::make_tuple(v.x, v.y, v.z);
+}
+
+py::dict as_dict(const Energy& energy) {
+  py::dict d;
+  d["entered"] = as_tuple(energy.entered);
+  d["exitance"] = as_tuple(energy.exitance);
+  d["absorbed"] = as_tuple(energy.absorbed);
+  d["balance"] = as_tuple(energy.balance());
+  return d;
+}
+
+py::dict as_dict(const LevelReport& report) {
+  py::dict d;
+  d["level"] = report.level;
+  d["unknowns"] = report.unknowns;
+  d["iterations"] = report.iterations;
+  d["residual"] = report.residual;
+  d["converged"] = report.converged;
+  return d;
+}
+
+namespace {
+
+// C++ errors arrive as the classes of quadgraph.errors, so that Python code catches one family.
+void register_errors() {
+  py::register_exception_translator([](std::exception_ptr error) {
+    const auto raise = [](const char* name, const std::exception& e) {
+      PyErr_SetString(py::module_::import("quadgraph.errors").attr(name).ptr(), e.what());
+    };
+    try {
+      if (error) std::rethrow_exception(error);
+    } catch (const FormatError& e) {
+      raise("FormatError", e);
+    } catch (const InputError& e) {
+      raise("InputError", e);
+    } catch (const SolverError& e) {
+      raise("SolverError", e);
+    } catch (const VulkanError& e) {
+      raise("VulkanError", e);
+    }
+  });
+}
+
+}  // namespace
+}  // namespace quadgraph::python
+
+PYBIND11_MODULE(_core, module) {
+  module.doc() = "The QuadGraph engine: .qgraph reader, CPU reference solver, GPU simulation and renderer.";
+  quadgraph::python::register_errors();
+  quadgraph::python::bind_graph(module);
+  quadgraph::python::bind_materials(module);
+  quadgraph::python::bind_reference(module);
+  quadgraph::python::bind_engine(module);
+}
