@@ -1,0 +1,192 @@
+// The engine: one object, its material, lights, solution and picture on one device.
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "engine/render/engine.h"
+#include "engine/vk/context.h"
+#include "python/bindings/bindings.h"
+
+namespace py = pybind11;
+
+namespace quadgraph::python {
+namespace {
+
+py::dict as_dict(const SolveReport& report) {
+  py::dict d;
+  d["method"] = std::string(name_of(report.method));
+  d["solver"] = std::string(name_of(report.solver));
+  py::list levels;
+  for (const LevelReport& level : report.levels) levels.append(as_dict(level));
+  d["levels"] = levels;
+  d["energy"] = as_dict(report.energy);
+  d["error"] = py::none();
+  if (report.error) {
+    py::dict error;
+    error["whole"] = report.error->whole;
+    error["unlit"] = report.error->unlit;
+    d["error"] = error;
+  }
+  return d;
+}
+
+py::dict as_dict(SurfaceField&& field) {
+  py::dict d;
+  d["position"] = own(std::move(field.position));
+  d["normal"] = own(std::move(field.normal));
+  d["area"] = own(std::move(field.area));
+  d["q"] = own(std::move(field.q));
+  d["phi"] = own(std::move(field.phi));
+  d["exitance"] = own(std::move(field.exitance));
+  return d;
+}
+
+py::list as_list(const std::vector<PassStats>& passes) {
+  py::list list;
+  for (const PassStats& pass : passes) {
+    py::dict d;
+    d["name"] = pass.name;
+    d["time_ms"] = pass.time_ms;
+    d["bytes"] = pass.bytes;
+    d["count"] = pass.count;
+    list.append(d);
+  }
+  return list;
+}
+
+ToneOptions tone_options(const std::string& exposure, const std::string& background) {
+  ToneOptions options;
+  options.exposure_stops = parse_exposure(exposure);
+  parse_background(background, options);
+  return options;
+}
+
+py::array pixels(const Picture& picture, const std::vector<float>& values, py::ssize_t channels, py::handle owner) {
+  std::vector<py::ssize_t> shape = {picture.height, picture.width};
+  if (channels > 1) shape.push_back(channels);
+  return view(values.data(), std::move(shape), owner);
+}
+
+void bind_picture(py::module_& module) {
+  py::class_<Picture>(module, "Picture", "Linear radiance in W/(mm^2 sr), premultiplied by alpha; top row first.")
+      .def_property_readonly(
+          "diffuse",
+          [](py::object self) {
+            const auto& picture = self.cast<const Picture&>();
+            return pixels(picture, picture.diffuse, 3, self);
+          },
+          "(h, w, 3): light that came through the body.")
+      .def_property_readonly(
+          "specular",
+          [](py::object self) {
+            const auto& picture = self.cast<const Picture&>();
+            return pixels(picture, picture.specular, 3, self);
+          },
+          "(h, w, 3): light reflected by the surface.")
+      .def_property_readonly(
+          "alpha",
+          [](py::object self) {
+            const auto& picture = self.cast<const Picture&>();
+            return pixels(picture, picture.alpha, 1, self);
+          },
+          "(h, w): share of the pixel that the object covers.")
+      .def(
+          "srgb",
+          [](const Picture& picture, const std::string& exposure, const std::string& background) {
+            const std::vector<std::uint8_t> rgb = to_srgb8(picture, tone_options(exposure, background));
+            py::array_t<std::uint8_t> array({py::ssize_t{picture.height}, py::ssize_t{picture.width}, py::ssize_t{3}});
+            std::copy(rgb.begin(), rgb.end(), array.mutable_data());
+            return array;
+          },
+          py::arg("exposure") = "auto", py::arg("background") = "studio", "Tone mapped, (h, w, 3) uint8 sRGB.")
+      .def(
+          "write_png",
+          [](const Picture& picture, const std::filesystem::path& path, const Metadata& metadata,
+             const std::string& exposure,
+             const std::string& background) { write_png(path, picture, tone_options(exposure, background), metadata); },
+          py::arg("path"), py::arg("metadata") = Metadata{}, py::arg("exposure") = "auto",
+          py::arg("background") = "studio")
+      .def(
+          "write_exr",
+          [](const Picture& picture, const std::filesystem::path& path, const Metadata& metadata) {
+            write_exr(path, picture, metadata);
+          },
+          py::arg("path"), py::arg("metadata") = Metadata{});
+}
+
+std::unique_ptr<Engine> make_engine(const std::filesystem::path& path, const std::string& device, bool validation) {
+  return std::make_unique<Engine>(path, vk::ContextOptions{validation, device});
+}
+
+void set_lights(Engine& engine, const std::vector<std::string>& texts) {
+  std::vector<Light> lights;
+  for (const std::string& text : texts) lights.push_back(parse_light(text));
+  engine.set_lights(std::move(lights));
+}
+
+SolveReport solve(Engine& engine, const std::string& method, const std::string& solver, double tolerance,
+                  std::uint32_t max_iterations) {
+  const SolveOptions options{method_from_name(method), solver_from_name(solver), tolerance, max_iterations};
+  const py::gil_scoped_release release;
+  return engine.solve(options);
+}
+
+Picture render(Engine& engine, const std::string& view_text, const std::string& up, float vertical_fov,
+               std::uint32_t width, std::uint32_t height, float roughness) {
+  View view;
+  view.up = up == "z" ? UpAxis::z : UpAxis::y;
+  view.vertical_fov = vertical_fov;
+  if (!view_text.empty()) view = parse_view(view_text, view);
+  const py::gil_scoped_release release;
+  return engine.render(view, {width, height, roughness});
+}
+
+}  // namespace
+
+void bind_engine(py::module_& module) {
+  bind_picture(module);
+  py::class_<Engine>(module, "Engine", "A .qgraph on a Vulkan device.")
+      .def(py::init(&make_engine), py::arg("path"), py::arg("device") = "", py::arg("validation") = false,
+           "device: part of its name. validation: load the validation layer. Raises FormatError, InputError, "
+           "VulkanError.")
+      .def_property_readonly("graph", &Engine::graph, py::return_value_policy::reference_internal)
+      .def("set_material", py::overload_cast<std::string_view>(&Engine::set_material), py::arg("text"))
+      .def("set_material", py::overload_cast<const gpu::Material&>(&Engine::set_material), py::arg("material"))
+      .def("set_lights", &set_lights, py::arg("lights"),
+           "'directional:DX,DY,DZ:IRRADIANCE' (W/mm^2) and 'point:X,Y,Z:POWER' (W); replaces all lights.")
+      .def(
+          "set_irradiance",
+          [](Engine& engine, std::uint32_t level, const FloatArray& q) {
+            if (level >= engine.graph().levels().size()) throw py::index_error("level " + std::to_string(level));
+            engine.set_irradiance(level, vectors(q, engine.graph().levels()[level].face_count(), "q"));
+          },
+          py::arg("level"), py::arg("q"), "q (n_f, 3) in W/mm^2 instead of lights; wanted for every level.")
+      .def("update_irradiance", &Engine::update_irradiance, py::call_guard<py::gil_scoped_release>())
+      .def(
+          "solve",
+          [](Engine& engine, const std::string& method, const std::string& solver, double tolerance,
+             std::uint32_t max_iterations) {
+            return as_dict(solve(engine, method, solver, tolerance, max_iterations));
+          },
+          py::arg("method") = "fem", py::arg("solver") = "dpcg", py::arg("tolerance") = 1e-3,
+          py::arg("max_iterations") = 5000, "Raises InputError, SolverError.")
+      .def(
+          "surface_field", [](const Engine& engine) { return as_dict(engine.surface_field()); },
+          "Per outside face of level 0: position, normal, area, q, phi, exitance (mm, mm^2, W/mm^2).")
+      .def(
+          "phi", [](Engine& engine) { return own(engine.simulation().phi()); }, "Per unknown of level 0, W/mm^2.")
+      .def("render", &render, py::arg("view") = "", py::arg("up") = "y", py::arg("vertical_fov") = 30.0f,
+           py::arg("width") = 1024, py::arg("height") = 1024, py::arg("roughness") = RenderOptions{}.roughness,
+           "The last solve seen from 'azimuth,elevation[,distance]' (degrees, mm).")
+      .def_property_readonly(
+          "passes", [](const Engine& engine) { return as_list(engine.passes()); },
+          "Device time and bytes per pass of the last frame.")
+      .def_property_readonly("metadata", &Engine::metadata)
+      .def_property_readonly("device_bytes", &Engine::device_bytes)
+      .def_property_readonly("peak_device_bytes", &Engine::peak_device_bytes)
+      .def_property_readonly("device_name", [](const Engine& engine) { return engine.context().info().name; })
+      .def_property_readonly("driver", [](const Engine& engine) { return engine.context().info().driver; })
+      .def_property_readonly("validation_messages",
+                             [](const Engine& engine) { return engine.context().validation_messages(); });
+}
+
+}  // namespace quadgraph::python
