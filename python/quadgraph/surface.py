@@ -1,0 +1,229 @@
+"""Closed triangle surfaces in millimetres: the data that passes between reading, repair, level of detail and mesher."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.csgraph import connected_components
+
+
+@dataclass(frozen=True)
+class EdgeTopology:
+    """Undirected edges of a surface and how many faces share each.
+
+    edges: (e, 2) int64, smaller index first, sorted; uses: (e,) faces per edge;
+    face_edges: (m, 3) edge index; entry k joins corners k and k+1;
+    balance: (e,) uses from small to large index minus uses from large to small (0 where two faces agree).
+    """
+
+    edges: np.ndarray
+    uses: np.ndarray
+    face_edges: np.ndarray
+    balance: np.ndarray
+
+    @property
+    def boundary(self) -> np.ndarray:
+        """(b, 2) edges with one face."""
+        return self.edges[self.uses == 1]
+
+    @property
+    def non_manifold(self) -> np.ndarray:
+        """(b, 2) edges with more than two faces."""
+        return self.edges[self.uses > 2]
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """Triangles, counter-clockwise seen from outside.
+
+    vertices: (n, 3) float64, mm; triangles: (m, 3) int64.
+    """
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+
+    @cached_property
+    def corners(self) -> np.ndarray:
+        """(m, 3, 3) corner positions of each triangle, mm."""
+        return self.vertices[self.triangles]
+
+    @cached_property
+    def doubled_normals(self) -> np.ndarray:
+        """(m, 3) outward normals, twice the triangle's area long, mm²."""
+        p = self.corners
+        return np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
+
+    @cached_property
+    def topology(self) -> EdgeTopology:
+        """Edges and their faces."""
+        t = self.triangles
+        directed = np.stack([t, np.roll(t, -1, axis=1)], axis=2).reshape(-1, 2)
+        forward = directed[:, 0] < directed[:, 1]
+        count = len(self.vertices)
+        keys = directed.min(axis=1) * count + directed.max(axis=1)
+        unique, inverse, uses = np.unique(keys, return_inverse=True, return_counts=True)
+        balance = np.bincount(inverse, weights=np.where(forward, 1, -1), minlength=len(unique)).astype(np.int64)
+        edges = np.stack([unique // max(count, 1), unique % max(count, 1)], axis=1)
+        return EdgeTopology(edges, uses, inverse.reshape(-1, 3), balance)
+
+    @property
+    def area(self) -> float:
+        """mm²."""
+        return float(0.5 * np.linalg.norm(self.doubled_normals, axis=1).sum())
+
+    @property
+    def volume(self) -> float:
+        """Signed enclosed volume, mm³ (divergence theorem, about the box centre); positive if faces look outward."""
+        if not len(self.triangles):
+            return 0.0
+        centre = 0.5 * (self.vertices.min(axis=0) + self.vertices.max(axis=0))
+        return float(np.einsum("ij,ij->", self.corners[:, 0] - centre, self.doubled_normals) / 6)
+
+    @property
+    def diagonal(self) -> float:
+        """Length of the bounding box's diagonal, mm."""
+        return float(np.linalg.norm(np.ptp(self.vertices, axis=0)))
+
+    @cached_property
+    def angles(self) -> np.ndarray:
+        """(m, 3) angles at the corners, degrees; 0 in degenerate triangles."""
+        p = self.corners
+        to_next = np.roll(p, -1, axis=1) - p
+        to_last = np.roll(p, 1, axis=1) - p
+        cross = np.linalg.norm(np.cross(to_next, to_last), axis=2)
+        return np.degrees(np.arctan2(cross, np.einsum("ijk,ijk->ij", to_next, to_last)))
+
+    @property
+    def min_angle(self) -> float:
+        """Smallest angle of all triangles, degrees."""
+        return float(self.angles.min()) if len(self.triangles) else 0.0
+
+    @cached_property
+    def vertex_components(self) -> tuple[int, np.ndarray]:
+        """Number of pieces connected through shared vertices, and (n,) labels; unreferenced vertices are pieces too."""
+        edges, n = self.topology.edges, len(self.vertices)
+        graph = sparse.coo_matrix((np.ones(len(edges), bool), (edges[:, 0], edges[:, 1])), shape=(n, n))
+        return connected_components(graph, directed=False)
+
+    @property
+    def components(self) -> int:
+        """Number of connected pieces with at least one triangle."""
+        return len(np.unique(self.vertex_components[1][self.triangles[:, 0]])) if len(self.triangles) else 0
+
+    @property
+    def euler(self) -> int:
+        """Euler characteristic, vertices - edges + faces, of the referenced vertices."""
+        return len(np.unique(self.triangles)) - len(self.topology.edges) + len(self.triangles)
+
+    @property
+    def genus(self) -> int:
+        """Handles of a closed 2-manifold, all components together."""
+        return self.components - self.euler // 2
+
+    @cached_property
+    def non_manifold_vertices(self) -> np.ndarray:
+        """Indices of vertices whose faces form more than one fan (counted through shared edges)."""
+        corner = np.arange(self.triangles.size).reshape(-1, 3)
+        # Two corners at one vertex are joined when their faces share an edge that ends there.
+        edge = self.topology.face_edges
+        ends = np.stack([edge, np.roll(edge, 1, axis=1)], axis=2)
+        vertex = np.repeat(self.triangles[:, :, None], 2, axis=2)
+        key = (ends * len(self.vertices) + vertex).ravel()
+        corner = np.repeat(corner[:, :, None], 2, axis=2).ravel()
+        order = np.argsort(key, kind="stable")
+        same = key[order][1:] == key[order][:-1]
+        a, b = corner[order][1:][same], corner[order][:-1][same]
+        size = self.triangles.size
+        graph = sparse.coo_matrix((np.ones(len(a), bool), (a, b)), shape=(size, size))
+        _, fan = connected_components(graph, directed=False)
+        pairs = np.unique(np.stack([self.triangles.ravel(), fan], axis=1), axis=0)
+        vertices, fans = np.unique(pairs[:, 0], return_counts=True)
+        return vertices[fans > 1]
+
+    @property
+    def is_closed_manifold(self) -> bool:
+        """Whether each edge has two faces of agreeing orientation and each vertex one fan."""
+        edges = self.topology
+        return bool(len(self.triangles) and (edges.uses == 2).all() and (edges.balance == 0).all()) and not len(
+            self.non_manifold_vertices
+        )
+
+    def compacted(self) -> Surface:
+        """The same surface without unreferenced vertices, in the order of the old indices."""
+        used, inverse = np.unique(self.triangles, return_inverse=True)
+        return Surface(self.vertices[used], inverse.reshape(-1, 3).astype(np.int64))
+
+    def rounded(self) -> Surface:
+        """The same surface with coordinates that float32 can hold exactly."""
+        return Surface(self.vertices.astype(np.float32).astype(np.float64), self.triangles)
+
+
+@dataclass(frozen=True)
+class SourceMesh:
+    """A surface as read from a file: `vertices` and `triangles` count what the file held.
+
+    unit_mm: length of one unit of the file, mm; sha256: of the file's bytes, hexadecimal.
+    """
+
+    surface: Surface
+    name: str
+    sha256: str
+    unit_mm: float
+    vertices: int
+    triangles: int
+
+
+@dataclass(frozen=True)
+class Repair:
+    """One kind of repair and how often it was done, as told in the bake's report and metadata."""
+
+    what: str
+    count: int
+
+
+@dataclass(frozen=True)
+class MesherInfo:
+    """Which program made the tetrahedra: `options` as given to it."""
+
+    name: str
+    version: str
+    options: str
+
+
+@dataclass(frozen=True, eq=False)
+class TetMesh:
+    """Tetrahedra of one closed surface.
+
+    vertices: (n, 3) float64, mm, exactly representable in float32;
+    tets: (m, 4) int64, det(v1-v0, v2-v0, v3-v0) > 0.
+    """
+
+    vertices: np.ndarray
+    tets: np.ndarray
+    mesher: MesherInfo
+
+    @cached_property
+    def determinants(self) -> np.ndarray:
+        """(m,) six times the volume of each tet, mm³."""
+        v = self.vertices[self.tets]
+        edges = v[:, 1:] - v[:, :1]
+        return np.einsum("ij,ij->i", edges[:, 0], np.cross(edges[:, 1], edges[:, 2]))
+
+    @property
+    def volume(self) -> float:
+        """mm³."""
+        return float(self.determinants.sum() / 6)
+
+    def boundary(self) -> Surface:
+        """Faces with one tet, counter-clockwise seen from outside; vertices keep their tet-mesh indices."""
+        # Face opposite to corner k of a positive tet, seen from outside.
+        faces = self.tets[:, [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]].reshape(-1, 3)
+        ordered = np.sort(faces, axis=1)
+        n = len(self.vertices)
+        _, first, uses = np.unique(
+            (ordered[:, 0] * n + ordered[:, 1]) * n + ordered[:, 2], return_index=True, return_counts=True
+        )
+        return Surface(self.vertices, faces[np.sort(first[uses == 1])])
