@@ -45,6 +45,9 @@ class Context {
   // Bytes of device memory allocated now, kept up to date by Allocation.
   std::uint64_t allocated_bytes() const { return allocated_bytes_; }
 
+  // The most there ever were at a time.
+  std::uint64_t peak_allocated_bytes() const { return peak_allocated_bytes_; }
+
   // Names an object for validation messages and debuggers; does nothing without the debug extension.
   void set_name(VkObjectType type, std::uint64_t handle, const std::string& name) const;
 
@@ -76,6 +79,7 @@ class Context {
   bool debug_utils_ = false;
   PFN_vkSetDebugUtilsObjectNameEXT set_object_name_ = nullptr;
   std::uint64_t allocated_bytes_ = 0;
+  std::uint64_t peak_allocated_bytes_ = 0;
   std::vector<std::string> validation_messages_;
 };
 

@@ -28,6 +28,7 @@ Allocation::Allocation(Context& context, const VkMemoryRequirements& requirement
         "vkAllocateMemory of " + std::to_string(requirements.size) + " bytes");
   memory_ = UniqueMemory(context.device(), memory);
   context.allocated_bytes_ += size_;
+  context.peak_allocated_bytes_ = std::max(context.peak_allocated_bytes_, context.allocated_bytes_);
 }
 
 Allocation::Allocation(Allocation&& other) noexcept {

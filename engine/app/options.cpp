@@ -1,0 +1,163 @@
+#include "engine/app/options.h"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <iostream>
+
+#include "engine/graph/error.h"
+#include "engine/graph/material.h"
+#include "engine/render/default_lights.h"
+#include "engine/render/text.h"
+
+namespace quadgraph {
+namespace {
+
+// What the user typed, before it is understood.
+struct Typed {
+  std::string file, output;
+  std::string material = "marble";
+  std::vector<std::string> lights;
+  std::string view = "0,10", up = "y";
+  float fov = 30;
+  std::string method = "fem", solver = "dpcg";
+  double tolerance = 1e-3;
+  std::uint32_t max_iterations = 5000;
+  std::string size = "1024x1024", exposure = "auto", background = "studio";
+  float roughness = 0.3f;
+  std::string device;
+  bool headless = false, validation = false, json = false;
+};
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+void declare_scene(CLI::App& app, Typed& typed) {
+  app.add_option("--material", typed.material,
+                 joined(material_names()) +
+                     "; or sigma_s_prime=2.0,sigma_a=0.01,eta=1.3 (1/mm; one value or R/G/B each); or NAME,key=value")
+      ->capture_default_str()
+      ->group("Scene");
+  app.add_option("--light", typed.lights,
+                 "directional:DX,DY,DZ:IRRADIANCE (the way the light travels; W/mm^2) or point:X,Y,Z:POWER (mm; W), "
+                 "the last one value or R/G/B; may be repeated. Default: one from behind, one from the side")
+      ->group("Scene");
+  app.add_option("--view", typed.view,
+                 "azimuth,elevation[,distance] in degrees and mm from the object's centre; azimuth 0 looks along -z, "
+                 "90 along -x; without a distance the object fits the picture")
+      ->capture_default_str()
+      ->group("Scene");
+  app.add_option("--up", typed.up, "y or z; with z, azimuth 0 looks along +y")
+      ->check(CLI::IsMember({"y", "z"}))
+      ->capture_default_str()
+      ->group("Scene");
+  app.add_option("--fov", typed.fov, "vertical field of view, degrees")->capture_default_str()->group("Scene");
+}
+
+void declare_solver(CLI::App& app, Typed& typed) {
+  app.add_option("--method", typed.method, "fem or quadgraph-fdm")->capture_default_str()->group("Solver");
+  app.add_option("--solver", typed.solver, "dpcg or cascade")->capture_default_str()->group("Solver");
+  app.add_option("--tolerance", typed.tolerance, "relative residual to stop at")
+      ->capture_default_str()
+      ->group("Solver");
+  app.add_option("--max-iterations", typed.max_iterations, "per level")->capture_default_str()->group("Solver");
+}
+
+void declare_picture(CLI::App& app, Typed& typed) {
+  app.add_option("-o,--output", typed.output, "picture to write: .png (sRGB) or .exr (linear, layers)")
+      ->group("Picture");
+  app.add_option("--size", typed.size, "WIDTHxHEIGHT in pixels")->capture_default_str()->group("Picture");
+  app.add_option("--exposure", typed.exposure, "auto, or stops: radiance times 2^stops")
+      ->capture_default_str()
+      ->group("Picture");
+  app.add_option("--background", typed.background, "studio, black, white, linear grey or R/G/B in [0, 1] (PNG)")
+      ->capture_default_str()
+      ->group("Picture");
+  app.add_option("--roughness", typed.roughness, "of the surface, GGX alpha, 0.02 to 1")
+      ->capture_default_str()
+      ->group("Picture");
+}
+
+void declare(CLI::App& app, Typed& typed) {
+  app.add_option("file", typed.file, "a baked object, FILE.qgraph")->required();
+  app.add_flag("--headless", typed.headless, "render a picture without a window (this version has no window)");
+  declare_scene(app, typed);
+  declare_solver(app, typed);
+  declare_picture(app, typed);
+  app.add_option("--device", typed.device, "part of the Vulkan device's name")->group("Run");
+  app.add_flag("--validation", typed.validation, "load the Vulkan validation layer; any message is an error")
+      ->group("Run");
+  app.add_flag("--json", typed.json, "print the report as JSON")->group("Run");
+}
+
+std::uint32_t parse_side(std::string_view text, const std::string& whole) {
+  const double side = parse_number(text, "size '" + whole + "'");
+  if (side < 1 || side > 65535 || side != std::floor(side)) {
+    throw InputError("size: found '" + whole + "', expected WIDTHxHEIGHT in whole pixels");
+  }
+  return static_cast<std::uint32_t>(side);
+}
+
+void parse_size(const std::string& text, RenderOptions& options) {
+  const auto sides = split(text, 'x');
+  if (sides.size() != 2) throw InputError("size: found '" + text + "', expected WIDTHxHEIGHT");
+  options.width = parse_side(sides[0], text);
+  options.height = parse_side(sides[1], text);
+}
+
+void check_output(const AppOptions& options) {
+  const auto extension = options.output.extension();
+  if (extension != ".png" && extension != ".exr") {
+    throw InputError("output: found '" + options.output.string() + "', expected a name ending in .png or .exr (-o)");
+  }
+}
+
+AppOptions understood(const Typed& typed) {
+  if (!typed.headless) {
+    throw InputError("this version has no window: use --headless -o PICTURE.png to render a picture");
+  }
+  AppOptions options;
+  options.file = typed.file;
+  options.output = typed.output;
+  check_output(options);
+  options.material = typed.material;
+  options.view.up = typed.up == "z" ? UpAxis::z : UpAxis::y;
+  options.view.vertical_fov = typed.fov;
+  options.view = parse_view(typed.view, options.view);
+  for (const std::string& light : typed.lights) options.lights.push_back(parse_light(light));
+  if (options.lights.empty()) options.lights = default_lights(options.view);
+  options.solve = {.method = method_from_name(typed.method),
+                   .solver = solver_from_name(typed.solver),
+                   .tolerance = typed.tolerance,
+                   .max_iterations = typed.max_iterations};
+  parse_size(typed.size, options.render);
+  options.render.roughness = typed.roughness;
+  options.tone.exposure_stops = parse_exposure(typed.exposure);
+  parse_background(typed.background, options.tone);
+  options.device = {.validation = typed.validation, .device = typed.device};
+  options.json = typed.json;
+  return options;
+}
+
+}  // namespace
+
+std::optional<AppOptions> parse_command_line(int argc, const char* const* argv, int& exit_code) {
+  CLI::App app("Renders a translucent object: light enters, diffuses through the body and leaves it.",
+               "quadgraph-engine");
+  app.set_version_flag("--version", QUADGRAPH_VERSION);
+  Typed typed;
+  declare(app, typed);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& success) {
+    exit_code = app.exit(success);
+    return std::nullopt;
+  } catch (const CLI::ParseError& error) {
+    throw InputError(std::string(error.what()) + " (--help lists the options)");
+  }
+  return understood(typed);
+}
+
+}  // namespace quadgraph

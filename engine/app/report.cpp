@@ -1,0 +1,90 @@
+#include "engine/app/report.h"
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace quadgraph {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json as_json(const glm::dvec3& rgb) {
+  return {rgb.x, rgb.y, rgb.z};
+}
+
+Json as_json(const SolveReport& report) {
+  Json json;
+  json["method"] = name_of(report.method);
+  json["solver"] = name_of(report.solver);
+  for (const LevelReport& level : report.levels) {
+    json["levels"].push_back({{"level", level.level},
+                              {"unknowns", level.unknowns},
+                              {"iterations", level.iterations},
+                              {"residual", level.residual},
+                              {"converged", level.converged}});
+  }
+  json["energy"] = {{"entered_W", as_json(report.energy.entered)},
+                    {"exitance_W", as_json(report.energy.exitance)},
+                    {"absorbed_W", as_json(report.energy.absorbed)},
+                    {"balance", as_json(report.energy.balance())}};
+  json["error"] = report.error ? Json{{"whole", report.error->whole}, {"unlit", report.error->unlit}} : Json(nullptr);
+  return json;
+}
+
+double total(const std::vector<std::pair<std::string, double>>& stages) {
+  double sum = 0;
+  for (const auto& stage : stages) sum += stage.second;
+  return sum;
+}
+
+std::string decimals(double value, int digits) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f", digits, value);
+  return text;
+}
+
+constexpr double mebibyte = 1024.0 * 1024.0;
+
+}  // namespace
+
+std::string json_report(const RunReport& report) {
+  Json json;
+  json["output"] = report.output;
+  for (const auto& [key, value] : report.metadata) json["metadata"][key] = value;
+  json["solve"] = as_json(report.solve);
+  for (const PassStats& pass : report.engine.passes()) {
+    json["passes"].push_back(
+        {{"name", pass.name}, {"time_ms", pass.time_ms}, {"bytes", pass.bytes}, {"count", pass.count}});
+  }
+  for (const auto& [stage, time_ms] : report.wall_ms) json["wall_ms"][stage] = time_ms;
+  json["wall_ms"]["total"] = total(report.wall_ms);
+  json["device_bytes"] = {{"now", report.engine.device_bytes()}, {"peak", report.engine.peak_device_bytes()}};
+  json["file_bytes"] = report.engine.graph().byte_size();
+  return json.dump(2);
+}
+
+std::string text_report(const RunReport& report) {
+  const Level& finest = report.engine.graph().levels().front();
+  const LevelReport& solved = report.solve.levels.back();
+  std::ostringstream out;
+  out << "device   " << report.engine.context().info().name << "\n"
+      << "object   " << report.engine.graph().levels().size() << " levels, finest " << finest.tet_count() << " tets, "
+      << finest.face_count() << " faces, " << finest.vertex_count() << " vertices\n"
+      << "solve    " << name_of(report.solve.method) << " with " << name_of(report.solve.solver) << ": "
+      << solved.iterations << " iterations on the finest level, residual " << solved.residual
+      << (solved.converged ? "" : " (not converged)") << "\n";
+  if (report.solve.error) {
+    out << "error    " << decimals(100 * report.solve.error->whole, 2) << "% over the surface, "
+        << decimals(100 * report.solve.error->unlit, 2) << "% over the unlit part (estimated)\n";
+  }
+  out << "memory   " << decimals(static_cast<double>(report.engine.peak_device_bytes()) / mebibyte, 0)
+      << " MiB on the device at most\n"
+      << "time     ";
+  for (const auto& [stage, time_ms] : report.wall_ms) out << stage << " " << decimals(time_ms, 0) << " ms, ";
+  out << "total " << decimals(total(report.wall_ms), 0) << " ms\n"
+      << "picture  " << report.output;
+  return out.str();
+}
+
+}  // namespace quadgraph

@@ -1,0 +1,22 @@
+// What a run did, for people and for programs.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/render/engine.h"
+
+namespace quadgraph {
+
+struct RunReport {
+  const Engine& engine;
+  const SolveReport& solve;
+  const Metadata& metadata;
+  std::string output;
+  std::vector<std::pair<std::string, double>> wall_ms;  // stages in order
+};
+
+std::string json_report(const RunReport& report);
+std::string text_report(const RunReport& report);
+
+}  // namespace quadgraph

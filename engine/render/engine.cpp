@@ -1,0 +1,188 @@
+#include "engine/render/engine.h"
+
+#include <algorithm>
+
+#include "engine/graph/error.h"
+#include "engine/graph/material.h"
+#include "engine/render/irradiance.h"
+#include "engine/render/metadata.h"
+#include "engine/render/rasteriser.h"
+#include "engine/render/text.h"
+
+namespace quadgraph {
+namespace {
+
+constexpr std::uint32_t largest_side = 16384;  // pixels
+constexpr float least_roughness = 0.02f;
+
+void check_options(const RenderOptions& options) {
+  for (std::uint32_t side : {options.width, options.height}) {
+    if (side < 1 || side > largest_side) {
+      throw InputError("size: found " + std::to_string(options.width) + "x" + std::to_string(options.height) +
+                       ", expected 1 to " + std::to_string(largest_side) + " pixels a side");
+    }
+  }
+  if (!(options.roughness >= least_roughness && options.roughness <= 1)) {
+    throw InputError("roughness: found " + number_text(options.roughness) + ", expected " +
+                     number_text(least_roughness) + " to 1");
+  }
+}
+
+// Adds to the entry of the same name.
+void add(std::vector<PassStats>& passes, const PassStats& more) {
+  auto same = std::find_if(passes.begin(), passes.end(), [&](const auto& p) { return p.name == more.name; });
+  if (same == passes.end()) same = passes.insert(passes.end(), {.name = more.name});
+  same->time_ms += more.time_ms;
+  same->bytes += more.bytes;
+  same->count += more.count;
+}
+
+}  // namespace
+
+struct Engine::Implementation {
+  Implementation(const std::filesystem::path& path, const vk::ContextOptions& device)
+      : source(path.filename().string()),
+        graph(QuadGraph::load(path)),
+        bounds(bounding_sphere(graph.display().vertices)),
+        context(device),
+        simulation(context, graph),
+        mesh(upload_display(context, graph.display())),
+        shadows(context),
+        irradiance(context),
+        rasteriser(context) {
+    shadows.update(mesh, bounds, {});
+  }
+
+  std::string source;
+  QuadGraph graph;
+  Sphere bounds;
+  vk::Context context;
+  Simulation simulation;
+  DisplayBuffers mesh;
+  ShadowMaps shadows;
+  IrradiancePass irradiance;
+  Rasteriser rasteriser;
+
+  std::string material;
+  std::vector<Light> lights;
+  bool irradiance_stale = false;
+  SolveOptions options;
+  std::optional<SolveReport> report;
+  std::optional<View> view;
+  std::vector<PassStats> irradiance_passes, render_passes;
+};
+
+Engine::Engine(const std::filesystem::path& path, const vk::ContextOptions& device)
+    : implementation_(std::make_unique<Implementation>(path, device)) {}
+
+Engine::~Engine() = default;
+
+const QuadGraph& Engine::graph() const {
+  return implementation_->graph;
+}
+
+const vk::Context& Engine::context() const {
+  return implementation_->context;
+}
+
+Simulation& Engine::simulation() {
+  return implementation_->simulation;
+}
+
+const Sphere& Engine::bounds() const {
+  return implementation_->bounds;
+}
+
+void Engine::set_material(std::string_view text) {
+  set_material(parse_material(text));
+  implementation_->material = text;
+}
+
+void Engine::set_material(const gpu::Material& material) {
+  auto& self = *implementation_;
+  self.simulation.set_material(material);
+  self.material = material_text(material);
+  self.irradiance_stale = self.irradiance_stale || !self.lights.empty();
+}
+
+void Engine::set_lights(std::vector<Light> lights) {
+  for (const Light& light : lights) check_light(light);
+  implementation_->lights = std::move(lights);
+  implementation_->irradiance_stale = true;
+}
+
+void Engine::set_irradiance(std::uint32_t level, std::span<const glm::vec3> q) {
+  auto& self = *implementation_;
+  self.simulation.set_irradiance(level, q);
+  if (!self.lights.empty()) self.shadows.update(self.mesh, self.bounds, {});
+  self.lights.clear();
+  self.irradiance_stale = false;
+}
+
+void Engine::update_irradiance() {
+  auto& self = *implementation_;
+  if (self.material.empty()) throw InputError("irradiance: set a material first; the light that enters depends on eta");
+  self.irradiance_passes = {self.shadows.update(self.mesh, self.bounds, self.lights)};
+  for (std::uint32_t level = 0; level < self.simulation.level_count(); ++level) {
+    add(self.irradiance_passes,
+        self.irradiance.run(self.simulation.level(level), level, self.shadows, self.simulation.material().eta));
+  }
+  self.simulation.irradiance_changed();
+  self.irradiance_stale = false;
+}
+
+SolveReport Engine::solve(const SolveOptions& options) {
+  auto& self = *implementation_;
+  if (self.irradiance_stale) update_irradiance();
+  self.report = self.simulation.solve(options);
+  self.options = options;
+  return *self.report;
+}
+
+SurfaceField Engine::surface_field() const {
+  return implementation_->simulation.surface_field();
+}
+
+Picture Engine::render(const View& view, const RenderOptions& options) {
+  auto& self = *implementation_;
+  check_options(options);
+  if (!self.report) throw InputError("render: solve first; there is no exitance to show");
+  const Camera camera =
+      place_camera(view, self.bounds, static_cast<float>(options.width) / static_cast<float>(options.height));
+  RasterResult result = self.rasteriser.run({.mesh = self.mesh,
+                                             .finest = self.simulation.level(0),
+                                             .vertex_exitance = self.simulation.vertex_exitance(),
+                                             .shadows = self.shadows,
+                                             .eta = self.simulation.material().eta,
+                                             .roughness = options.roughness},
+                                            camera, options.width, options.height);
+  self.view = view;
+  self.render_passes = std::move(result.passes);
+  return std::move(result.picture);
+}
+
+std::vector<PassStats> Engine::passes() const {
+  const auto& self = *implementation_;
+  std::vector<PassStats> all = self.irradiance_passes;
+  const auto& solve_passes = self.simulation.passes();
+  all.insert(all.end(), solve_passes.begin(), solve_passes.end());
+  all.insert(all.end(), self.render_passes.begin(), self.render_passes.end());
+  return all;
+}
+
+std::uint64_t Engine::device_bytes() const {
+  return implementation_->context.allocated_bytes();
+}
+
+std::uint64_t Engine::peak_device_bytes() const {
+  return implementation_->context.peak_allocated_bytes();
+}
+
+Metadata Engine::metadata() const {
+  const auto& self = *implementation_;
+  if (!self.report) return {};
+  return describe(
+      {self.source, self.material, self.lights, self.options, *self.report, self.view, self.context.info()});
+}
+
+}  // namespace quadgraph

@@ -1,0 +1,41 @@
+#include "engine/render/irradiance.h"
+
+#include <algorithm>
+
+#include "engine/vk/commands.h"
+#include "spirv/irradiance.comp.h"
+
+namespace quadgraph {
+namespace {
+
+// 16 samples on a face of the finest level; each level up its faces are about twice as long.
+constexpr std::uint32_t finest_subdivision = 4;
+constexpr std::uint32_t largest_subdivision = 32;
+
+}  // namespace
+
+IrradiancePass::IrradiancePass(vk::Context& context)
+    : context_(context), pass_(context, irradiance_comp, sizeof(gpu::IrradiancePush), "irradiance") {}
+
+PassStats IrradiancePass::run(const LevelBuffers& buffers, std::uint32_t level, const ShadowMaps& shadows, float eta) {
+  const std::uint32_t subdivision = std::min(finest_subdivision << std::min(level, 3u), largest_subdivision);
+  const gpu::IrradiancePush push{.vertices = buffers.vertices.address(),
+                                 .faces = buffers.faces.address(),
+                                 .q = buffers.q.address(),
+                                 .lights = shadows.lights().address(),
+                                 .views = shadows.views().address(),
+                                 .face_count = buffers.face_count,
+                                 .light_count = shadows.light_count(),
+                                 .subdivision = subdivision,
+                                 .eta = eta};
+  vk::Commands commands(context_, 1);
+  commands.begin_pass("irradiance");
+  commands.dispatch(pass_, push, buffers.face_count);
+  commands.end_pass();
+  const auto times = commands.submit_and_wait();
+  // Per face: three indices, three corners, q, and four texels per sample and light.
+  const std::uint64_t texels = 4ull * subdivision * subdivision * shadows.light_count();
+  return {times[0].name, times[0].time_ms, buffers.face_count * (12 + 36 + 12 + 4 * texels), 1};
+}
+
+}  // namespace quadgraph

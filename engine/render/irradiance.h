@@ -1,0 +1,26 @@
+// The light that enters the body: q at the outside faces of a level.
+#pragma once
+
+#include "engine/render/shadow_maps.h"
+#include "engine/solve/simulation.h"
+#include "engine/vk/pipeline.h"
+
+namespace quadgraph {
+
+// Writes level.q: per face the mean over the face of sum over lights of visibility * max(0, n.l) * E * F_t(n.l, eta),
+// n the face's normal, E the irradiance facing the light, F_t the exact Fresnel transmittance. The mean, and not the
+// value at the surface node, because the solvers take q as constant over a face; so no light is lost or won at shadow
+// edges, and a face of a coarse level sees the same light as its fine ones.
+class IrradiancePass {
+ public:
+  explicit IrradiancePass(vk::Context& context);
+
+  // `level` counts from the finest, 0; faces of coarser levels are sampled more finely.
+  PassStats run(const LevelBuffers& buffers, std::uint32_t level, const ShadowMaps& shadows, float eta);
+
+ private:
+  vk::Context& context_;
+  vk::ComputePass pass_;
+};
+
+}  // namespace quadgraph

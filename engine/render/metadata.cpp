@@ -1,0 +1,58 @@
+#include "engine/render/metadata.h"
+
+#include "engine/render/text.h"
+
+namespace quadgraph {
+namespace {
+
+std::string joined(std::span<const Light> lights) {
+  std::string text;
+  for (const Light& light : lights) text += (text.empty() ? "" : " ") + to_string(light);
+  return text.empty() ? "none" : text;
+}
+
+std::string camera_text(const View& view) {
+  return "view " + to_string(view) + ", vertical field of view " + number_text(view.vertical_fov) + " degrees, " +
+         (view.up == UpAxis::y ? "y" : "z") + " up";
+}
+
+std::string error_text(const std::optional<ErrorEstimate>& error) {
+  if (!error) return "unknown (single level)";
+  return "whole surface " + number_text(static_cast<float>(error->whole)) + ", unlit part " +
+         number_text(static_cast<float>(error->unlit));
+}
+
+}  // namespace
+
+std::string material_text(const gpu::Material& material) {
+  std::string text = "sigma_s_prime=" + rgb_text(material.sigma_s_prime) + ",sigma_a=" + rgb_text(material.sigma_a) +
+                     ",eta=" + number_text(material.eta);
+  if (material.kind == gpu::MATERIAL_MARBLE_VEINS) {
+    text += ",vein_sigma_s_prime=" + rgb_text(material.vein_sigma_s_prime) +
+            ",vein_sigma_a=" + rgb_text(material.vein_sigma_a) + ",vein_period=" + number_text(material.vein_period) +
+            ",vein_sharpness=" + number_text(material.vein_sharpness);
+  }
+  return text;
+}
+
+Metadata describe(const PictureFacts& facts) {
+  const LevelReport& finest = facts.report.levels.back();
+  Metadata metadata = {{"software", "quadgraph-engine"},
+                       {"source", facts.source},
+                       {"material", facts.material},
+                       {"lights", joined(facts.lights)},
+                       {"method", std::string(name_of(facts.report.method))},
+                       {"solver", std::string(name_of(facts.report.solver))},
+                       {"tolerance", number_text(facts.options.tolerance)},
+                       {"unknowns", std::to_string(finest.unknowns)},
+                       {"iterations", std::to_string(finest.iterations)},
+                       {"residual", number_text(static_cast<float>(finest.residual))},
+                       {"energy balance", rgb_text(glm::vec3(facts.report.energy.balance()))},
+                       {"error", error_text(facts.report.error)},
+                       {"units", "W/(mm^2 sr)"},
+                       {"device", facts.device.name + ", " + facts.device.driver}};
+  if (facts.view) metadata.emplace_back("camera", camera_text(*facts.view));
+  return metadata;
+}
+
+}  // namespace quadgraph

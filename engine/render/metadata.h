@@ -1,0 +1,32 @@
+// What a picture or a report says about how it was made.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "engine/graph/solution.h"
+#include "engine/render/camera.h"
+#include "engine/render/lights.h"
+#include "engine/render/picture.h"
+#include "engine/vk/context.h"
+#include "shaders/shared.h"
+
+namespace quadgraph {
+
+// `material` as parse_material reads it. Channels that differ are written R/G/B.
+std::string material_text(const gpu::Material& material);
+
+struct PictureFacts {
+  std::string source;    // file name of the .qgraph
+  std::string material;  // as the user named it, or material_text
+  std::span<const Light> lights;
+  const SolveOptions& options;
+  const SolveReport& report;
+  std::optional<View> view;
+  const vk::DeviceInfo& device;
+};
+
+Metadata describe(const PictureFacts& facts);
+
+}  // namespace quadgraph

@@ -1,0 +1,112 @@
+// Types of lights, shadow maps and the display that GLSL and C++ share, in scalar layout;
+// tests/cpp/render_layout_test.cpp compares them with the compiled shaders.
+#ifndef QUADGRAPH_RENDER_SHARED_H
+#define QUADGRAPH_RENDER_SHARED_H
+
+#include "shared.h"
+
+#ifdef __cplusplus
+namespace quadgraph::gpu {
+#endif
+
+const uint LIGHT_DIRECTIONAL = 0u;
+const uint LIGHT_POINT = 1u;
+
+// Texels along a side of a shadow map: of a single view, and of each of a point light's six.
+const uint SHADOW_SIZE = 2048u;
+const uint SHADOW_CUBE_SIZE = 1024u;
+
+// A shadow map holds the depth of the faces turned away from the light. On a closed body a lit point then lies a whole
+// thickness in front of its own depth, so that no bias is needed against self-shadowing but near the terminator, where
+// nearly no light arrives; and it also holds for points of coarser levels, which lie somewhat below the surface. What
+// remains is moved out by this many texels along the normal.
+const float SHADOW_NORMAL_OFFSET = 1.0f;
+
+// One view of one light's shadow map.
+struct ShadowView {
+  mat4 clip_from_world;
+  QG_REF(Floats) depth;  // `size` rows of `size` texels, top row first; 0 at `near` to 1 at `far`
+  uint size;             // texels
+  float near;            // mm
+  float far;             // mm
+  float texel;           // directional: mm; point: mm at 1 mm from the light
+};
+
+struct LightRecord {
+  uint kind;        // LIGHT_*
+  vec3 vector;      // directional: unit, towards the light; point: its position, mm
+  vec3 power;       // directional: irradiance, W/mm^2; point: intensity, W/sr
+  uint first_view;  // into the array of ShadowView
+  uint view_count;  // 1, or 6 in the order +x -x +y -y +z -z
+};
+
+#ifndef __cplusplus
+QG_ARRAY(ShadowViews, ShadowView);
+QG_ARRAY(LightRecords, LightRecord);
+#endif
+
+// shadow.vert: depth of the display mesh.
+struct ShadowPush {
+  mat4 clip_from_world;
+  QG_REF(Vec3s) vertices;  // mm
+};
+
+// irradiance.comp: q of every outside face of a level, the mean over the face.
+struct IrradiancePush {
+  QG_REF(Vec3s) vertices;  // mm
+  QG_REF(Uvec3s) faces;
+  QG_REF(Vec3s) q;  // W/mm^2, written
+  QG_REF(LightRecords) lights;
+  QG_REF(ShadowViews) views;
+  uint face_count;
+  uint light_count;
+  uint subdivision;  // the face is sampled at the centroids of subdivision^2 equal triangles
+  float eta;
+};
+
+// All that surface.vert and surface.frag read.
+struct SurfaceScene {
+  mat4 clip_from_world;
+  vec3 eye;  // mm
+  float eta;
+  float roughness;      // GGX alpha
+  float radiance_norm;  // integral of F_t cos over the hemisphere, sr
+  uint light_count;
+  QG_REF(Vec3s) vertices;       // display mesh, mm
+  QG_REF(Vec3s) normals;        // unit
+  QG_REF(Uints) face;           // per display vertex: outside face of level 0
+  QG_REF(Vec3s) barycentric;    // and where in it
+  QG_REF(Uvec3s) faces;         // level 0
+  QG_REF(Vec3s) exitance;       // per surface vertex of level 0, W/mm^2
+  QG_REF(LightRecords) lights;
+  QG_REF(ShadowViews) views;
+};
+
+#ifndef __cplusplus
+QG_ARRAY(SurfaceScenes, SurfaceScene);
+#endif
+
+// surface.vert, surface.frag: radiance of the display mesh.
+struct SurfacePush {
+  QG_REF(SurfaceScenes) scene;  // one
+};
+
+// resolve.comp: mean of 2 x 2 samples of a tile into the picture.
+struct ResolvePush {
+  QG_REF(Vec4s) diffuse_samples;   // RGB, coverage
+  QG_REF(Vec4s) specular_samples;  // RGB, unused
+  QG_REF(Floats) diffuse;          // RGB per pixel, written
+  QG_REF(Floats) specular;         // RGB per pixel, written
+  QG_REF(Floats) alpha;            // per pixel, written
+  uint tile_x;                     // first pixel of the tile in the picture
+  uint tile_y;
+  uint tile_width;  // pixels of the tile inside the picture
+  uint tile_height;
+  uint sample_stride;  // samples in a row of the tile
+  uint picture_width;  // pixels
+};
+
+#ifdef __cplusplus
+}  // namespace quadgraph::gpu
+#endif
+#endif

@@ -1,0 +1,9 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "render_shared.h"
+
+layout(push_constant, scalar) uniform Block { ShadowPush push; };
+
+void main() {
+  gl_Position = push.clip_from_world * vec4(push.vertices.at[gl_VertexIndex], 1.0);
+}
