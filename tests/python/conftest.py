@@ -1,0 +1,35 @@
+"""Shapes for the tests: the shared meshes where they are, pymeshlab's bunny, and generated ones."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+from quadgraph.surface import Surface
+from shapes import pymeshlab_samples, read_ply
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(scope="session")
+def shared() -> Path:
+    """The folder `shared` beside the repository, or the one that QUADGRAPH_SHARED names."""
+    folder = Path(os.environ.get("QUADGRAPH_SHARED", ROOT.parent / "shared"))
+    if not (folder / "meshes").is_dir():
+        pytest.skip(f"no shared meshes: {folder / 'meshes'} is not a folder (set QUADGRAPH_SHARED)")
+    return folder
+
+
+@pytest.fixture(scope="session")
+def bunny_path() -> Path:
+    """pymeshlab's bundled bunny: 28k vertices, watertight, 2-manifold."""
+    return pymeshlab_samples() / "bunny.obj"
+
+
+@pytest.fixture(scope="session")
+def bunny(bunny_path: Path) -> Surface:
+    """The bundled bunny, 100 mm high."""
+    surface = read_ply(bunny_path)
+    scale = 100 / (surface.vertices[:, 1].max() - surface.vertices[:, 1].min())
+    return Surface(surface.vertices * scale, surface.triangles).rounded()
