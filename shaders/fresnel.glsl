@@ -1,6 +1,7 @@
 // Unpolarised reflectance of a smooth boundary from outside at incidence cosine `cos_i` in [0, 1]; eta = inside over
 // outside >= 1. Exact, as engine/graph/fresnel.h.
 float fresnel_reflectance(float cos_i, float eta) {
+  if (eta == 1.0) return 0.0;
   float cos_t = sqrt(max(0.0, 1.0 - (1.0 - cos_i * cos_i) / (eta * eta)));
   float parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
   float perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
@@ -8,5 +9,5 @@ float fresnel_reflectance(float cos_i, float eta) {
 }
 
 float fresnel_transmittance(float cos_i, float eta) {
-  return eta == 1.0 ? 1.0 : 1.0 - fresnel_reflectance(cos_i, eta);
+  return 1.0 - fresnel_reflectance(cos_i, eta);
 }

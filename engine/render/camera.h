@@ -25,7 +25,7 @@ enum class UpAxis { y, z };
 struct View {
   float azimuth = 0;              // degrees
   float elevation = 10;           // degrees, -90 to 90
-  std::optional<float> distance;  // mm from the centre; without it the bounding sphere fits the picture
+  std::optional<float> distance{};  // mm from the centre; without it the bounding sphere fits the picture
   UpAxis up = UpAxis::y;
   float vertical_fov = 30;  // degrees, 1 to 150
 };

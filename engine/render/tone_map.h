@@ -11,7 +11,7 @@ struct Picture;
 
 struct ToneOptions {
   // Radiance is multiplied by 2^stops before the curve; empty: auto_exposure of the picture.
-  std::optional<float> exposure_stops;
+  std::optional<float> exposure_stops{};
   // Linear display colour in [0, 1] behind the object at the top and at the bottom of the picture.
   glm::vec3 background_top{0.012f, 0.013f, 0.015f};
   glm::vec3 background_bottom{0.07f, 0.072f, 0.078f};

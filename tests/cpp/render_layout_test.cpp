@@ -1,0 +1,79 @@
+// The structs of shaders/render_shared.h lie in memory as the compiled shaders read them.
+#include <doctest/doctest.h>
+
+#include <cstddef>
+
+#include "engine/vk/pipeline.h"
+#include "shaders/render_shared.h"
+#include "spirv/irradiance.comp.h"
+#include "spirv/resolve.comp.h"
+#include "spirv/shadow.vert.h"
+#include "spirv/surface.frag.h"
+#include "spirv/surface.vert.h"
+#include "tests/cpp/spirv_layout.h"
+
+using namespace quadgraph;
+
+namespace {
+
+struct Member {
+  const char* name;
+  std::size_t offset;
+};
+
+void compare(const SpirvLayout& layout, const std::string& type, const std::vector<Member>& members) {
+  INFO(type);
+  const auto found = layout.offset.find(type);
+  REQUIRE(found != layout.offset.end());
+  CHECK(found->second.size() == members.size());
+  for (const Member& member : members) {
+    INFO(member.name);
+    REQUIRE(found->second.count(member.name) == 1);
+    CHECK(found->second.at(member.name) == member.offset);
+  }
+}
+
+#define MEMBER(Type, name) {#name, offsetof(gpu::Type, name)}
+
+}  // namespace
+
+TEST_CASE("lights and shadow views") {
+  for (const vk::Spirv code : {vk::Spirv(irradiance_comp), vk::Spirv(surface_frag)}) {
+    const SpirvLayout layout(code);
+    compare(layout, "ShadowView",
+            {MEMBER(ShadowView, clip_from_world), MEMBER(ShadowView, depth), MEMBER(ShadowView, size),
+             MEMBER(ShadowView, near), MEMBER(ShadowView, far), MEMBER(ShadowView, texel)});
+    compare(layout, "LightRecord",
+            {MEMBER(LightRecord, kind), MEMBER(LightRecord, vector), MEMBER(LightRecord, power),
+             MEMBER(LightRecord, first_view), MEMBER(LightRecord, view_count)});
+    CHECK(layout.stride.at("ShadowView") == sizeof(gpu::ShadowView));
+    CHECK(layout.stride.at("LightRecord") == sizeof(gpu::LightRecord));
+  }
+}
+
+TEST_CASE("the scene of the display") {
+  for (const vk::Spirv code : {vk::Spirv(surface_vert), vk::Spirv(surface_frag)}) {
+    const SpirvLayout layout(code);
+    compare(layout, "SurfaceScene",
+            {MEMBER(SurfaceScene, clip_from_world), MEMBER(SurfaceScene, eye), MEMBER(SurfaceScene, eta),
+             MEMBER(SurfaceScene, roughness), MEMBER(SurfaceScene, radiance_norm), MEMBER(SurfaceScene, light_count),
+             MEMBER(SurfaceScene, vertices), MEMBER(SurfaceScene, normals), MEMBER(SurfaceScene, face),
+             MEMBER(SurfaceScene, barycentric), MEMBER(SurfaceScene, faces), MEMBER(SurfaceScene, exitance),
+             MEMBER(SurfaceScene, lights), MEMBER(SurfaceScene, views)});
+    CHECK(layout.stride.at("SurfaceScene") == sizeof(gpu::SurfaceScene));
+    compare(layout, "SurfacePush", {MEMBER(SurfacePush, scene)});
+  }
+}
+
+TEST_CASE("push constants") {
+  compare(SpirvLayout(shadow_vert), "ShadowPush", {MEMBER(ShadowPush, clip_from_world), MEMBER(ShadowPush, vertices)});
+  compare(SpirvLayout(irradiance_comp), "IrradiancePush",
+          {MEMBER(IrradiancePush, vertices), MEMBER(IrradiancePush, faces), MEMBER(IrradiancePush, q),
+           MEMBER(IrradiancePush, lights), MEMBER(IrradiancePush, views), MEMBER(IrradiancePush, face_count),
+           MEMBER(IrradiancePush, light_count), MEMBER(IrradiancePush, subdivision), MEMBER(IrradiancePush, eta)});
+  compare(SpirvLayout(resolve_comp), "ResolvePush",
+          {MEMBER(ResolvePush, diffuse_samples), MEMBER(ResolvePush, specular_samples), MEMBER(ResolvePush, diffuse),
+           MEMBER(ResolvePush, specular), MEMBER(ResolvePush, alpha), MEMBER(ResolvePush, tile_x),
+           MEMBER(ResolvePush, tile_y), MEMBER(ResolvePush, tile_width), MEMBER(ResolvePush, tile_height),
+           MEMBER(ResolvePush, sample_stride), MEMBER(ResolvePush, picture_width)});
+}
