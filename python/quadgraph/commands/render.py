@@ -1,0 +1,105 @@
+"""`quadgraph render`: a picture of a baked object."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from pathlib import Path
+
+from rich.console import Console
+
+from quadgraph.commands import report as text
+from quadgraph.commands import scene
+from quadgraph.errors import InputError
+
+WRITERS = (".png", ".exr")
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Register the subcommand."""
+    parser = subparsers.add_parser("render", help="a picture of a baked object", description=__doc__)
+    scene.add_scene_arguments(parser)
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        action="append",
+        required=True,
+        metavar="OUT",
+        help="out.png (8-bit sRGB, tone mapped) or out.exr (float32 linear, with layers); several allowed",
+    )
+    parser.add_argument(
+        "--view",
+        default="",
+        metavar="A,E[,D]",
+        help="azimuth and elevation in degrees, distance in mm (default: fitted)",
+    )
+    parser.add_argument("--up", choices=("y", "z"), default="y", help="axis that points up (default: %(default)s)")
+    parser.add_argument(
+        "--fov", type=scene.positive_float, default=30.0, help="vertical, degrees (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--size", type=image_size, default=(1024, 1024), metavar="WxH", help="pixels (default: 1024x1024)"
+    )
+    parser.add_argument(
+        "--roughness", type=scene.positive_float, default=0.3, help="of the surface, GGX alpha (default: %(default)s)"
+    )
+    parser.add_argument("--exposure", default="auto", help="auto, or stops (default: %(default)s)")
+    parser.add_argument("--background", default="studio", help="studio, black, white, or R/G/B (default: %(default)s)")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write the report here")
+
+
+def image_size(value: str) -> tuple[int, int]:
+    """Argument type: WIDTHxHEIGHT in pixels."""
+    try:
+        width, height = (int(part) for part in value.lower().split("x"))
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(f"{value}: expected WIDTHxHEIGHT, e.g. 1024x1024") from error
+    return width, height
+
+
+def run(args: argparse.Namespace) -> int:
+    """Render and write; 0 on success."""
+    for path in args.output:
+        if path.suffix.lower() not in WRITERS:
+            raise InputError(f"{path}: output must end in {' or '.join(WRITERS)}")
+    start = time.perf_counter()
+    engine = scene.make_engine(args)
+    report = scene.solve(engine, args)
+    picture = engine.render(
+        view=args.view,
+        up=args.up,
+        vertical_fov=args.fov,
+        width=args.size[0],
+        height=args.size[1],
+        roughness=args.roughness,
+    )
+    scene.check_validation(engine)
+    for path in args.output:
+        if path.suffix.lower() == ".png":
+            picture.write_png(path, engine.metadata, args.exposure, args.background)
+        else:
+            picture.write_exr(path, engine.metadata)
+    report |= {"passes": engine.passes, "device": engine.device_name, "driver": engine.driver}
+    report["seconds"] = time.perf_counter() - start
+    if args.json:
+        args.json.write_text(json.dumps(report, indent=1) + "\n")
+    print_summary(engine, report, args.output)
+    return 0
+
+
+def print_summary(engine, report: dict, outputs: list[Path]) -> None:
+    """Say what was made and what it took."""
+    console = Console(highlight=False, soft_wrap=True)
+    frame_ms = sum(entry["time_ms"] for entry in report["passes"])
+    worst = max(report["energy"]["balance"], key=abs)
+    console.print(text.size_text(engine))
+    console.print(
+        f"frame: {frame_ms:.0f} ms on the device, {report['seconds']:.1f} s all told with loading and start-up"
+    )
+    console.print(f"{text.error_text(report)}, energy balance {100 * worst:+.3f}%")
+    for sentence in scene.unconverged(report):
+        console.print(f"not converged: {sentence}")
+    for path in outputs:
+        console.print(f"picture: {path}")

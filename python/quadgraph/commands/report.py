@@ -1,0 +1,71 @@
+"""Tables for people: what a solve did, and where the time went."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rich.table import Table
+
+if TYPE_CHECKING:
+    from quadgraph._core import Engine
+
+
+def solve_table(report: dict) -> Table:
+    """Return one row per level: unknowns, iterations, residual, converged."""
+    table = Table(
+        "level", "unknowns", "iterations", "residual", "converged", title=f"{report['method']} / {report['solver']}"
+    )
+    for level in report["levels"]:
+        table.add_row(
+            str(level["level"]),
+            f"{level['unknowns']:,}",
+            str(level["iterations"]),
+            f"{level['residual']:.1e}",
+            "yes" if level["converged"] else "no",
+        )
+    return table
+
+
+def energy_table(energy: dict) -> Table:
+    """Return the power that entered, left and was absorbed, per channel."""
+    table = Table("W", "R", "G", "B", title="energy")
+    for name in ("entered", "exitance", "absorbed"):
+        table.add_row(name, *(f"{value:.5g}" for value in energy[name]))
+    table.add_row("balance", *(f"{100 * value:+.3f}%" for value in energy["balance"]))
+    return table
+
+
+def pass_table(passes: list[dict]) -> Table:
+    """Return ms, dispatches, bytes and GB/s per pass."""
+    table = Table("pass", "ms", "dispatches", "MB", "GB/s", title="passes")
+    for entry in passes:
+        table.add_row(
+            entry["name"],
+            f"{entry['time_ms']:.3f}",
+            str(entry["count"]),
+            f"{entry['bytes'] / 1e6:.2f}",
+            f"{bandwidth(entry):.2f}" if entry["bytes"] else "",
+        )
+    table.add_row("all", f"{sum(entry['time_ms'] for entry in passes):.3f}", end_section=True)
+    return table
+
+
+def bandwidth(entry: dict) -> float:
+    """GB/s of a pass; 0 if it took no measurable time."""
+    return entry["bytes"] / entry["time_ms"] * 1e-6 if entry["time_ms"] > 0 else 0.0
+
+
+def error_text(report: dict) -> str:
+    """Estimated discretisation error in words."""
+    if report["error"] is None:
+        return "error: not estimated (a single level)"
+    return f"error: {100 * report['error']['whole']:.2f}% whole, {100 * report['error']['unlit']:.2f}% unlit (estimate)"
+
+
+def size_text(engine: Engine) -> str:
+    """Nodes, levels and device memory in words."""
+    levels = engine.graph.levels
+    return (
+        f"nodes: {len(levels[0].nodes):,} (finest of {len(levels)} levels), tets: {len(levels[0].tets):,}, "
+        f"memory: {engine.peak_device_bytes / 1e6:.0f} MB on {engine.device_name}"
+    )

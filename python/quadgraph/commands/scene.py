@@ -1,0 +1,108 @@
+"""What `render`, `solve` and `bench` share: options that describe a scene, and the engine set up from them."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from quadgraph.errors import InputError
+
+if TYPE_CHECKING:
+    from quadgraph._core import Engine
+
+DEFAULT_LIGHTS = ("directional:0.35,-0.25,0.9:3.0", "directional:-0.9,-0.35,-0.3:1.0")
+
+
+def load_core():
+    """Import the compiled module, or say how to get it. Raises InputError."""
+    try:
+        from quadgraph import _core
+    except ImportError as error:
+        raise InputError(
+            f"the compiled engine quadgraph._core cannot be loaded ({error}); tools/setup builds it"
+        ) from error
+    return _core
+
+
+def positive_float(text: str) -> float:
+    """Argument type: a finite number above zero."""
+    value = float(text)
+    if not 0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"{text}: must be a positive number")
+    return value
+
+
+def positive_int(text: str) -> int:
+    """Argument type: an integer above zero."""
+    value = int(text)
+    if value <= 0:
+        raise argparse.ArgumentTypeError(f"{text}: must be a positive integer")
+    return value
+
+
+def add_scene_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add FILE, material, lights, method, solver and device options."""
+    parser.add_argument("file", metavar="FILE", type=Path, help="a baked .qgraph")
+    add_device_arguments(parser)
+    parser.add_argument(
+        "--material",
+        default="marble",
+        metavar="M",
+        help="a name (marble, skin1, wholemilk, ..., marble-veins) or sigma_s_prime=S,sigma_a=A,eta=E in 1/mm, "
+        "one value or R/G/B each (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--light",
+        action="append",
+        metavar="L",
+        help="directional:DX,DY,DZ:IRRADIANCE (the way the light travels; W/mm^2) or point:X,Y,Z:POWER (mm; W), "
+        "the last one number or R/G/B; several allowed (default: one from behind, one from the side)",
+    )
+    parser.add_argument("--method", choices=("fem", "quadgraph-fdm"), default="fem", help="default: %(default)s")
+    parser.add_argument("--solver", choices=("dpcg", "cascade"), default="dpcg", help="default: %(default)s")
+    parser.add_argument(
+        "--tolerance", type=positive_float, default=1e-3, help="relative residual (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--max-iterations", type=positive_int, default=5000, metavar="N", help="per level (default: %(default)s)"
+    )
+
+
+def add_device_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the choice of Vulkan device and the validation layer."""
+    parser.add_argument("--device", default="", metavar="NAME", help="part of the Vulkan device's name")
+    parser.add_argument(
+        "--validation", action="store_true", help="load the Vulkan validation layer, fail on any message"
+    )
+
+
+def make_engine(args: argparse.Namespace) -> Engine:
+    """Load `args.file` and set material and lights. Raises FormatError, InputError, VulkanError."""
+    engine = load_core().Engine(args.file, device=args.device, validation=args.validation)
+    engine.set_material(args.material)
+    engine.set_lights(list(args.light or DEFAULT_LIGHTS))
+    return engine
+
+
+def solve(engine: Engine, args: argparse.Namespace) -> dict:
+    """Solve as the options say; the report of `Engine.solve`."""
+    return engine.solve(
+        method=args.method, solver=args.solver, tolerance=args.tolerance, max_iterations=args.max_iterations
+    )
+
+
+def check_validation(engine: Engine) -> None:
+    """Raise InputError if the validation layer had anything to say."""
+    messages = engine.validation_messages
+    if messages:
+        raise InputError("Vulkan validation: " + " | ".join(messages))
+
+
+def unconverged(report: dict) -> list[str]:
+    """One sentence per level that stopped before the tolerance was met."""
+    return [
+        f"level {level['level']} stopped after {level['iterations']} iterations at residual {level['residual']:.2e}"
+        for level in report["levels"]
+        if not level["converged"]
+    ]

@@ -1,0 +1,67 @@
+"""`quadgraph solve`: fluence and exitance on the surface, as numbers."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import tempfile
+from pathlib import Path
+
+import numpy as np
+from rich.console import Console
+
+from quadgraph.commands import report as text
+from quadgraph.commands import scene
+from quadgraph.errors import InputError
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Register the subcommand."""
+    parser = subparsers.add_parser("solve", help="fluence and exitance as numbers", description=__doc__)
+    scene.add_scene_arguments(parser)
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write the report here")
+    parser.add_argument(
+        "--field",
+        type=Path,
+        metavar="FILE.npz",
+        help="write, per surface sample of the finest level: position (n,3) mm, normal (n,3), area (n,) mm^2, and "
+        "q, phi, exitance (n,3) W/mm^2",
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Solve and report; 3 if a level did not converge, else 0."""
+    if args.field and args.field.suffix != ".npz":
+        raise InputError(f"{args.field}: --field must end in .npz")
+    engine = scene.make_engine(args)
+    report = scene.solve(engine, args)
+    scene.check_validation(engine)
+    report |= {"passes": engine.passes, "device": engine.device_name, "driver": engine.driver}
+    if args.field:
+        write_npz(args.field, engine.surface_field())
+    if args.json:
+        args.json.write_text(json.dumps(report, indent=1) + "\n")
+    console = Console(highlight=False)
+    for table in (text.solve_table(report), text.energy_table(report["energy"]), text.pass_table(report["passes"])):
+        console.print(table)
+    console.print(text.error_text(report))
+    stopped = scene.unconverged(report)
+    for sentence in stopped:
+        console.print(f"not converged: {sentence}")
+    return 3 if stopped else 0
+
+
+def write_npz(path: Path, arrays: dict[str, np.ndarray]) -> None:
+    """Write `arrays` under a temporary name and rename, so that nothing half-written is left."""
+    try:
+        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written ({error.strerror})") from error
+    try:
+        with os.fdopen(handle, "wb") as stream:
+            np.savez(stream, **arrays)
+        Path(temporary).replace(path)
+    except BaseException:
+        Path(temporary).unlink(missing_ok=True)
+        raise
