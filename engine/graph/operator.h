@@ -4,8 +4,8 @@
 // Every discretisation is written as a symmetric system A x = b per channel, with phi = to_phi * x.
 //
 // fem: x = phi at the tet vertices; to_phi = 1. kappa and sigma_a are constant per tet (the value at its inner node).
-//   A = stiffness(kappa) + mass(sigma_a) + boundary mass / (2A);  b = integral of Q/(2A) against the basis, Q = 4q/(1-F_dr)
-//   with q constant per outside face.
+//   A = stiffness(kappa) + mass(sigma_a) + boundary mass / (2A);  b = integral of Q/(2A) against the basis, Q =
+//   4q/(1-F_dr) with q constant per outside face.
 //
 // quadgraph-fdm: x = u = kappa*phi at the nodes, to_phi = 1/kappa. In u the published rows (Eq. 5) have the purely
 //   geometric weights 1/d^2, and the surface rows (Eq. 6), multiplied by kappa_k / (2 A kappa_s d), get the same

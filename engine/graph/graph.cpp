@@ -1,0 +1,124 @@
+#include "engine/graph/graph.h"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <new>
+#include <nlohmann/json.hpp>
+
+#include "engine/graph/error.h"
+#include "engine/graph/section_table.h"
+#include "engine/graph/validate.h"
+
+namespace quadgraph {
+namespace {
+
+constexpr std::align_val_t block_alignment{qgraph_alignment};
+
+template <typename Vector>
+std::span<const Vector> vectors(const SectionTable& table, const std::string& name) {
+  using Scalar = typename Vector::value_type;
+  const auto flat = table.rows<Scalar>(name, static_cast<std::uint64_t>(Vector::length()));
+  return {reinterpret_cast<const Vector*>(flat.data()), flat.size() / static_cast<std::size_t>(Vector::length())};
+}
+
+Transfer read_transfer(const SectionTable& table, const std::string& prefix, std::uint32_t width) {
+  return {table.rows<std::uint32_t>(prefix + "_index", width), table.rows<float>(prefix + "_weight", width), width};
+}
+
+Level read_level(const SectionTable& table, std::uint32_t index, bool coarsest) {
+  const std::string prefix = "level" + std::to_string(index) + "/";
+  Level level;
+  level.vertices = vectors<glm::vec3>(table, prefix + "vertices");
+  level.tets = vectors<glm::uvec4>(table, prefix + "tets");
+  level.faces = vectors<glm::uvec3>(table, prefix + "faces");
+  level.face_tets = table.rows<std::uint32_t>(prefix + "face_tets", 1);
+  level.links = vectors<glm::uvec4>(table, prefix + "links");
+  level.nodes = vectors<glm::vec3>(table, prefix + "nodes");
+  if (!coarsest) {
+    level.inner = read_transfer(table, prefix + "inner", 8);
+    level.surface = read_transfer(table, prefix + "surface", 4);
+    level.barycentric = read_transfer(table, prefix + "barycentric", 4);
+  }
+  return level;
+}
+
+DisplayMesh read_display(const SectionTable& table) {
+  return {vectors<glm::vec3>(table, "display/vertices"), vectors<glm::vec3>(table, "display/normals"),
+          vectors<glm::uvec3>(table, "display/triangles"), table.rows<std::uint32_t>("display/face", 1),
+          vectors<glm::vec3>(table, "display/barycentric")};
+}
+
+std::uint32_t count_levels(const SectionTable& table) {
+  std::uint32_t count = 0;
+  while (count <= qgraph_max_levels && table.has("level" + std::to_string(count) + "/vertices")) ++count;
+  if (count == 0 || count > qgraph_max_levels) {
+    fail_format(table.file(), "levels", "found " + std::to_string(count) + ", allowed are 1 to 16");
+  }
+  // metadata + display (5) + 6 per level + 6 transfers per level but the coarsest: nothing else may be in the file.
+  const std::size_t expected = 1 + 5 + 6 * count + 6 * (count - 1);
+  if (table.size() != expected) {
+    fail_format(table.file(), "section table",
+                std::to_string(table.size()) + " sections, a file of " + std::to_string(count) + " levels has " +
+                    std::to_string(expected));
+  }
+  return count;
+}
+
+void check_metadata(const SectionTable& table, const std::string& text) {
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  if (!json.is_object()) fail_format(table.file(), "metadata", "not a JSON object in UTF-8");
+}
+
+std::string errno_text() {
+  return std::strerror(errno);
+}
+
+}  // namespace
+
+void QuadGraph::AlignedDelete::operator()(std::byte* p) const {
+  ::operator delete[](p, block_alignment);
+}
+
+QuadGraph QuadGraph::parse(std::span<const std::byte> bytes, const std::string& name) {
+  QuadGraph graph;
+  graph.allocate(bytes.size());
+  std::memcpy(graph.bytes_.get(), bytes.data(), bytes.size());
+  graph.read(name);
+  return graph;
+}
+
+QuadGraph QuadGraph::load(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error) throw InputError(path.string() + ": cannot be read (" + error.message() + ")");
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw InputError(path.string() + ": cannot be opened (" + errno_text() + ")");
+  QuadGraph graph;
+  graph.allocate(size);
+  stream.read(reinterpret_cast<char*>(graph.bytes_.get()), static_cast<std::streamsize>(size));
+  if (static_cast<std::uintmax_t>(stream.gcount()) != size) throw InputError(path.string() + ": short read");
+  graph.read(path.string());
+  return graph;
+}
+
+void QuadGraph::allocate(std::size_t size) {
+  bytes_.reset(static_cast<std::byte*>(::operator new[](size, block_alignment)));
+  byte_size_ = size;
+}
+
+void QuadGraph::read(const std::string& name) {
+  const SectionTable table({bytes_.get(), byte_size_}, name);
+  const std::uint32_t count = count_levels(table);
+  metadata_ = table.text("metadata");
+  check_metadata(table, metadata_);
+  for (std::uint32_t i = 0; i < count; ++i) levels_.push_back(read_level(table, i, i + 1 == count));
+  display_ = read_display(table);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    validate_level(levels_[i], i + 1 < count ? &levels_[i + 1] : nullptr, name, i);
+    levels_[i].surface_vertex_count = count_surface_vertices(levels_[i]);
+  }
+  validate_display(display_, levels_[0], name);
+}
+
+}  // namespace quadgraph

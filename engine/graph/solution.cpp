@@ -1,0 +1,57 @@
+#include "engine/graph/solution.h"
+
+#include <array>
+#include <utility>
+
+#include "engine/graph/error.h"
+
+namespace quadgraph {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, Method>, 2> methods = {
+    {{"quadgraph-fdm", Method::quadgraph_fdm}, {"fem", Method::fem}}};
+constexpr std::array<std::pair<std::string_view, SolverKind>, 2> solvers = {
+    {{"cascade", SolverKind::cascade}, {"dpcg", SolverKind::dpcg}}};
+
+template <typename Table>
+auto from_name(const Table& table, std::string_view what, std::string_view name) {
+  std::string allowed;
+  for (const auto& [known, value] : table) {
+    if (known == name) return value;
+    allowed += (allowed.empty() ? "" : ", ") + std::string(known);
+  }
+  throw InputError(std::string(what) + " '" + std::string(name) + "': allowed are " + allowed);
+}
+
+template <typename Table, typename Value>
+std::string_view to_name(const Table& table, Value wanted) {
+  for (const auto& [name, value] : table) {
+    if (value == wanted) return name;
+  }
+  return "unknown";
+}
+
+}  // namespace
+
+Method method_from_name(std::string_view name) {
+  return from_name(methods, "method", name);
+}
+SolverKind solver_from_name(std::string_view name) {
+  return from_name(solvers, "solver", name);
+}
+std::string_view name_of(Method method) {
+  return to_name(methods, method);
+}
+std::string_view name_of(SolverKind solver) {
+  return to_name(solvers, solver);
+}
+
+glm::dvec3 Energy::balance() const {
+  glm::dvec3 result{0};
+  for (int c = 0; c < 3; ++c) {
+    if (entered[c] > 0) result[c] = (entered[c] - exitance[c] - absorbed[c]) / entered[c];
+  }
+  return result;
+}
+
+}  // namespace quadgraph

@@ -1,0 +1,19 @@
+// The rules of docs/qgraph-format.md about what sections contain. All throw FormatError naming file and section.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "engine/graph/graph.h"
+
+namespace quadgraph {
+
+// Everything about level `index` alone and its transfers into `coarser` (null for the coarsest level).
+void validate_level(const Level& level, const Level* coarser, const std::string& file, std::uint32_t index);
+
+// Largest vertex index in `faces` plus one.
+std::uint32_t count_surface_vertices(const Level& level);
+
+void validate_display(const DisplayMesh& display, const Level& finest, const std::string& file);
+
+}  // namespace quadgraph
