@@ -1,0 +1,184 @@
+"""Sections of a `.qgraph` file: their names, types and shapes, and the rules between them (docs/qgraph-format.md)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from quadgraph.errors import FormatError
+
+MAX_LEVELS = 16
+MAX_NODES = 2**31
+SUM_TOLERANCE = 1e-5
+METADATA_KEYS = ("generator", "source", "unit_mm", "mesher", "repairs", "levels", "tools")
+
+# Vertices of the face opposite to vertex k of a positively oriented tet, counter-clockwise seen from outside.
+FACE_CORNERS = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])
+
+_U8, _U32, _F32 = np.dtype("u1"), np.dtype("<u4"), np.dtype("<f4")
+_LEVEL = {
+    "vertices": (_F32, ("n_v", 3)),
+    "tets": (_U32, ("n_t", 4)),
+    "faces": (_U32, ("n_f", 3)),
+    "face_tets": (_U32, ("n_f",)),
+    "links": (_U32, ("n_t", 4)),
+    "nodes": (_F32, ("n_n", 3)),
+}
+_TRANSFERS = {
+    "inner_index": (_U32, ("n_t", 8)),
+    "inner_weight": (_F32, ("n_t", 8)),
+    "surface_index": (_U32, ("n_f", 4)),
+    "surface_weight": (_F32, ("n_f", 4)),
+    "barycentric_index": (_U32, ("n_v", 4)),
+    "barycentric_weight": (_F32, ("n_v", 4)),
+}
+_DISPLAY = {
+    "vertices": (_F32, ("n_d", 3)),
+    "normals": (_F32, ("n_d", 3)),
+    "triangles": (_U32, ("n_p", 3)),
+    "face": (_U32, ("n_d",)),
+    "barycentric": (_F32, ("n_d", 3)),
+}
+
+
+def level_count(sections: dict[str, np.ndarray]) -> int:
+    """Number of levels, going by the section names."""
+    return sum(name.startswith("level") and name.endswith("/vertices") for name in sections)
+
+
+def section_names(levels: int) -> list[str]:
+    """Names of all sections of a file with that many levels, in file order."""
+    names = ["metadata"]
+    for i in range(levels):
+        fields = [*_LEVEL, *(_TRANSFERS if i + 1 < levels else ())]
+        names += [f"level{i}/{field}" for field in fields]
+    return names + [f"display/{field}" for field in _DISPLAY]
+
+
+def check(sections: dict[str, np.ndarray], metadata: dict[str, Any], name: str) -> None:
+    """Check all sections, 'metadata' first, against every rule of the document.
+
+    Raises FormatError that names the file (`name`), the section and the rule.
+    """
+    levels = level_count(sections)
+    _require(1 <= levels <= MAX_LEVELS, name, f"{levels} levels found, 1 to {MAX_LEVELS} allowed")
+    _check_names(list(sections), section_names(levels), name)
+    for i in range(levels):
+        counts = _level_counts(sections, i)
+        _check_fields(sections, f"level{i}/", _LEVEL, counts, name)
+        _check_level({field: sections[f"level{i}/{field}"] for field in _LEVEL}, counts, f"{name}: level{i}")
+    for i in range(levels - 1):
+        _check_fields(sections, f"level{i}/", _TRANSFERS, _level_counts(sections, i), name)
+        coarse = _level_counts(sections, i + 1)
+        for transfer, key in (("inner", "n_t"), ("surface", "n_f"), ("barycentric", "n_v")):
+            prefix = f"level{i}/{transfer}"
+            _check_range(sections[f"{prefix}_index"], coarse[key], f"{name}: {prefix}_index")
+            _check_weights(sections[f"{prefix}_weight"], f"{name}: {prefix}_weight")
+    _check_display(sections, _level_counts(sections, 0)["n_f"], name)
+    _check_metadata(metadata, levels, name)
+
+
+def _require(condition: bool, where: str, what: str) -> None:
+    if not condition:
+        raise FormatError(f"{where}: {what}")
+
+
+def _check_names(found: list[str], expected: list[str], name: str) -> None:
+    missing = [section for section in expected if section not in set(found)]
+    _require(not missing, name, f"section {missing[0] if missing else ''} is missing")
+    unknown = [section for section in found if section not in set(expected)]
+    _require(not unknown, name, f"section {unknown[0] if unknown else ''} is not known")
+    _require(found == expected, name, "sections are not in the order of the document")
+
+
+def _level_counts(sections: dict[str, np.ndarray], level: int) -> dict[str, int]:
+    n_v, n_t, n_f = (len(sections[f"level{level}/{field}"]) for field in ("vertices", "tets", "faces"))
+    return {"n_v": n_v, "n_t": n_t, "n_f": n_f, "n_n": n_t + n_f}
+
+
+def _check_fields(
+    sections: dict[str, np.ndarray], prefix: str, fields: dict, counts: dict[str, int], name: str
+) -> None:
+    for field, (dtype, dimensions) in fields.items():
+        array, where = sections[prefix + field], f"{name}: {prefix}{field}"
+        _require(array.dtype == dtype, where, f"type {array.dtype} found, {dtype} allowed")
+        shape = tuple(counts.get(n, n) for n in dimensions)
+        _require(array.shape == shape, where, f"shape {array.shape} found, {shape} allowed")
+        if dtype == _F32:
+            _require(bool(np.isfinite(array).all()), where, "a value is not finite")
+
+
+def _check_range(index: np.ndarray, limit: int, where: str) -> None:
+    largest = int(index.max())
+    _require(largest < limit, where, f"index {largest} found, 0 to {limit - 1} allowed")
+
+
+def _check_weights(weights: np.ndarray, where: str) -> None:
+    _require(bool((weights >= 0).all()), where, "a weight is negative")
+    sums = weights.sum(axis=1, dtype=np.float64)
+    worst = float(sums[np.abs(sums - 1).argmax()])
+    _require(abs(worst - 1) <= SUM_TOLERANCE, where, f"weights of a row sum to {worst:.8g}, 1 allowed")
+
+
+def determinants(vertices: np.ndarray, tets: np.ndarray) -> np.ndarray:
+    """Six times the volume of each tet, mm^3, (n_t,) in double precision from (n_v, 3) and (n_t, 4)."""
+    corners = np.asarray(vertices, np.float64)[tets]
+    a, b, c = (corners[:, k] - corners[:, 0] for k in (1, 2, 3))
+    return np.einsum("ij,ij->i", a, np.cross(b, c))
+
+
+def _check_level(level: dict[str, np.ndarray], counts: dict[str, int], where: str) -> None:
+    n_v, n_t, n_f, n_n = (counts[k] for k in ("n_v", "n_t", "n_f", "n_n"))
+    _require(n_n < MAX_NODES, where, f"{n_n} nodes found, fewer than {MAX_NODES} allowed")
+    _check_range(level["tets"], n_v, f"{where}/tets")
+    _check_range(level["faces"], n_v, f"{where}/faces")
+    _check_range(level["face_tets"], n_t, f"{where}/face_tets")
+    _check_range(level["links"], n_n, f"{where}/links")
+    wrong = np.flatnonzero(~(determinants(level["vertices"], level["tets"]) > 0))
+    _require(not len(wrong), f"{where}/tets", f"tet {wrong[0] if len(wrong) else ''} is not positively oriented")
+    used = np.unique(level["faces"])
+    _require(len(used) == used[-1] + 1, f"{where}/vertices", "the vertices on the surface do not come first")
+    _check_inner_links(level["links"], n_t, f"{where}/links")
+    _check_surface_links(level, n_t, n_f, where)
+
+
+def _check_inner_links(links: np.ndarray, n_t: int, where: str) -> None:
+    # Each directed link as one number; symmetric if the set equals that of the reversed links.
+    source, target = np.divmod(np.flatnonzero(links < n_t), 4)[0].astype(np.int64), links[links < n_t].astype(np.int64)
+    forward, backward = np.sort(source * n_t + target), np.sort(target * n_t + source)
+    _require(bool((forward == backward).all()), where, "inner links are not symmetric")
+    _require(bool((source != target).all()), where, "a node is linked to itself")
+
+
+def _check_surface_links(level: dict[str, np.ndarray], n_t: int, n_f: int, where: str) -> None:
+    links, faces, face_tets = level["links"], level["faces"], level["face_tets"]
+    tet, corner = np.nonzero(links >= n_t)
+    _require(len(tet) == len(np.unique(tet)), f"{where}/links", "a tet has more than one outside face")
+    surface = links[tet, corner].astype(np.int64) - n_t
+    once = len(surface) == n_f and bool((np.bincount(surface, minlength=n_f) == 1).all())
+    _require(once, f"{where}/links", "a surface node is not linked exactly once")
+    _require(bool((face_tets[surface] == tet).all()), f"{where}/face_tets", "a surface node's link is another tet")
+    outward = level["tets"][tet[:, None], FACE_CORNERS[corner]]
+    stored = faces[surface]
+    same = np.zeros(n_f, bool)
+    for shift in range(3):
+        same |= (np.roll(stored, shift, axis=1) == outward).all(axis=1)
+    _require(bool(same.all()), f"{where}/faces", "a face is not the outward face of its tet")
+
+
+def _check_display(sections: dict[str, np.ndarray], n_f: int, name: str) -> None:
+    counts = {"n_d": len(sections["display/vertices"]), "n_p": len(sections["display/triangles"])}
+    _check_fields(sections, "display/", _DISPLAY, counts, name)
+    _check_range(sections["display/triangles"], counts["n_d"], f"{name}: display/triangles")
+    _check_range(sections["display/face"], n_f, f"{name}: display/face")
+    _check_weights(sections["display/barycentric"], f"{name}: display/barycentric")
+
+
+def _check_metadata(metadata: dict[str, Any], levels: int, name: str) -> None:
+    missing = [key for key in METADATA_KEYS if key not in metadata]
+    _require(not missing, f"{name}: metadata", f"key {missing[0] if missing else ''!r} is missing")
+    stated = metadata["levels"]
+    _require(
+        isinstance(stated, list) and len(stated) == levels, f"{name}: metadata", f"'levels' must list {levels} levels"
+    )

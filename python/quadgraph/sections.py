@@ -1,0 +1,81 @@
+"""From graphs, transfers and the display surface to the named arrays of a `.qgraph` file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from quadgraph import display_map, transfer
+from quadgraph.graph import Graph
+from quadgraph.surface import Surface
+
+
+def _u32(array: np.ndarray) -> np.ndarray:
+    return np.ascontiguousarray(array, "<u4")
+
+
+def _f32(array: np.ndarray) -> np.ndarray:
+    return np.ascontiguousarray(array, "<f4")
+
+
+def level(number: int, graph: Graph) -> dict[str, np.ndarray]:
+    """Sections of one level, transfers excepted."""
+    return {
+        f"level{number}/vertices": _f32(graph.vertices),
+        f"level{number}/tets": _u32(graph.tets),
+        f"level{number}/faces": _u32(graph.faces),
+        f"level{number}/face_tets": _u32(graph.face_tets),
+        f"level{number}/links": _u32(graph.links),
+        f"level{number}/nodes": _f32(graph.nodes),
+    }
+
+
+def transfers(number: int, fine: Graph, coarse: Graph) -> dict[str, np.ndarray]:
+    """Sections that take values on level number + 1 (`coarse`) to level `number` (`fine`)."""
+    kinds = {
+        "inner": transfer.inverse_distance(fine.inner, coarse.inner, transfer.INNER_NODES),
+        "surface": transfer.inverse_distance(fine.surface, coarse.surface, transfer.SURFACE_NODES),
+        "barycentric": transfer.barycentric(fine.vertices, coarse),
+    }
+    sections = {}
+    for kind, rows in kinds.items():
+        sections[f"level{number}/{kind}_index"] = _u32(rows.index)
+        sections[f"level{number}/{kind}_weight"] = _f32(rows.weight)
+    return sections
+
+
+def display(surface: Surface, finest: Graph) -> dict[str, np.ndarray]:
+    """Sections of the display mesh, tied to the outside faces of the finest level."""
+    rounded = surface.rounded()
+    face, coordinates = display_map.nearest_faces(rounded.vertices, finest.boundary)
+    return {
+        "display/vertices": _f32(rounded.vertices),
+        "display/normals": _f32(display_map.vertex_normals(surface)),
+        "display/triangles": _u32(surface.triangles),
+        "display/face": _u32(face),
+        "display/barycentric": _f32(coordinates),
+    }
+
+
+def whole_file(graphs: Sequence[Graph], surface: Surface) -> dict[str, np.ndarray]:
+    """All sections but the metadata, in file order; `graphs` finest first, `surface` the display mesh."""
+    sections = {}
+    for number, graph in enumerate(graphs):
+        sections |= level(number, graph)
+        if number + 1 < len(graphs):
+            sections |= transfers(number, graph, graphs[number + 1])
+    return sections | display(surface, graphs[0])
+
+
+def level_metadata(graph: Graph) -> dict[str, Any]:
+    """What the metadata's `levels` tells about one level."""
+    return {
+        "vertices": len(graph.vertices),
+        "surface_vertices": graph.surface_vertex_count,
+        "tets": len(graph.tets),
+        "faces": len(graph.faces),
+        "volume_mm3": graph.volume,
+        "area_mm2": graph.boundary.area,
+    }
