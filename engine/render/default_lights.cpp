@@ -5,19 +5,20 @@
 namespace quadgraph {
 namespace {
 
-constexpr float key_irradiance = 1e-3f;   // W/mm^2, about the sun's
-constexpr float side_irradiance = 3e-4f;  // W/mm^2
+// W/mm^2; the key is about as strong as the sun. Warm against cool keeps transmitted and reflected light apart.
+constexpr glm::vec3 key_irradiance{1.0e-3f, 0.88e-3f, 0.72e-3f};
+constexpr glm::vec3 side_irradiance{0.12e-3f, 0.14e-3f, 0.17e-3f};
 
-Light from(const Camera& camera, const glm::vec3& source, float irradiance) {
+Light from(const Camera& camera, const glm::vec3& source, const glm::vec3& irradiance) {
   const glm::vec3 towards = source.x * camera.right + source.y * camera.up + source.z * camera.backward;
-  return {.kind = LightKind::directional, .direction = -glm::normalize(towards), .power = glm::vec3(irradiance)};
+  return {.kind = LightKind::directional, .direction = -glm::normalize(towards), .power = irradiance};
 }
 
 }  // namespace
 
 std::vector<Light> default_lights(const View& view) {
   const Camera camera = place_camera(view, {{0, 0, 0}, 1}, 1);
-  return {from(camera, {-0.5f, 0.45f, -1.0f}, key_irradiance), from(camera, {1.0f, 0.35f, 0.25f}, side_irradiance)};
+  return {from(camera, {-0.5f, 0.45f, -1.0f}, key_irradiance), from(camera, {1.0f, 0.35f, 0.2f}, side_irradiance)};
 }
 
 }  // namespace quadgraph

@@ -8,8 +8,8 @@
 
 namespace quadgraph {
 
-// Seen from `view`: a key light from behind, above and to the left, that shines through thin parts, and a third as
-// strong a fill from the right side, slightly to the front.
+// Seen from `view`: a warm key light from behind, above and to the left, that shines through thin parts, and a
+// cool one from the right side, about a seventh as strong.
 std::vector<Light> default_lights(const View& view);
 
 }  // namespace quadgraph

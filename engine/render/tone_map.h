@@ -13,8 +13,8 @@ struct ToneOptions {
   // Radiance is multiplied by 2^stops before the curve; empty: auto_exposure of the picture.
   std::optional<float> exposure_stops{};
   // Linear display colour in [0, 1] behind the object at the top and at the bottom of the picture.
-  glm::vec3 background_top{0.012f, 0.013f, 0.015f};
-  glm::vec3 background_bottom{0.07f, 0.072f, 0.078f};
+  glm::vec3 background_top{0.008f, 0.0085f, 0.01f};
+  glm::vec3 background_bottom{0.05f, 0.052f, 0.057f};
 };
 
 // Filmic curve per channel: K. Narkowicz, "ACES Filmic Tone Mapping Curve" (2015), a rational fit to the ACES reference

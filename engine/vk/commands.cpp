@@ -13,7 +13,8 @@ constexpr VkAccessFlags2 all_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_
 
 }  // namespace
 
-Commands::Commands(Context& context, std::uint32_t max_passes) : context_(context), max_passes_(max_passes) {
+Commands::Commands(Context& context, std::uint32_t max_passes)
+    : context_(context), max_passes_(max_passes), host_timed_(context.info().type == VK_PHYSICAL_DEVICE_TYPE_CPU) {
   VkCommandPoolCreateInfo pool_info{};
   pool_info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
   pool_info.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
@@ -29,7 +30,7 @@ Commands::Commands(Context& context, std::uint32_t max_passes) : context_(contex
   buffer_info.commandBufferCount = 1;
   check(vkAllocateCommandBuffers(context.device(), &buffer_info, &commands_), "vkAllocateCommandBuffers");
 
-  if (max_passes > 0) {
+  if (max_passes > 0 && !host_timed_) {
     VkQueryPoolCreateInfo query_info{};
     query_info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
     query_info.queryType = VK_QUERY_TYPE_TIMESTAMP;
@@ -40,10 +41,14 @@ Commands::Commands(Context& context, std::uint32_t max_passes) : context_(contex
     vkResetQueryPool(context.device(), queries, 0, 2 * max_passes);
   }
 
-  VkCommandBufferBeginInfo begin_info{};
-  begin_info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
-  begin_info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-  check(vkBeginCommandBuffer(commands_, &begin_info), "vkBeginCommandBuffer");
+  begin();
+}
+
+void Commands::begin() {
+  VkCommandBufferBeginInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+  info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+  check(vkBeginCommandBuffer(commands_, &info), "vkBeginCommandBuffer");
 }
 
 void Commands::barrier() {
@@ -126,18 +131,36 @@ void Commands::dispatch_indirect_bytes(const ComputePass& pass, const void* push
 }
 
 void Commands::begin_pass(const std::string& name) {
-  assert(pass_names_.size() < max_passes_);
-  const auto query = static_cast<std::uint32_t>(2 * pass_names_.size());
-  pass_names_.push_back(name);
-  vkCmdWriteTimestamp2(commands_, all_stages, queries_.get(), query);
+  assert(passes_.size() < max_passes_);
+  const auto query = static_cast<std::uint32_t>(2 * passes_.size());
+  passes_.push_back({name, 0});
+  if (host_timed_) {
+    flush();
+    pass_start_ = std::chrono::steady_clock::now();
+  } else {
+    vkCmdWriteTimestamp2(commands_, all_stages, queries_.get(), query);
+  }
 }
 
 void Commands::end_pass() {
-  const auto query = static_cast<std::uint32_t>(2 * pass_names_.size() - 1);
-  vkCmdWriteTimestamp2(commands_, all_stages, queries_.get(), query);
+  if (host_timed_) {
+    flush();
+    const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - pass_start_;
+    passes_.back().time_ms = elapsed.count();
+  } else {
+    const auto query = static_cast<std::uint32_t>(2 * passes_.size() - 1);
+    vkCmdWriteTimestamp2(commands_, all_stages, queries_.get(), query);
+  }
 }
 
-std::vector<PassTime> Commands::submit_and_wait() {
+// Runs what was recorded and records anew.
+void Commands::flush() {
+  end_and_run();
+  check(vkResetCommandPool(context_.device(), pool_.get(), 0), "vkResetCommandPool");
+  begin();
+}
+
+void Commands::end_and_run() {
   check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
   VkFenceCreateInfo fence_info{};
   fence_info.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
@@ -154,22 +177,25 @@ std::vector<PassTime> Commands::submit_and_wait() {
   submit.pCommandBufferInfos = &command_info;
   check(vkQueueSubmit2(context_.queue(), 1, &submit, fence), "vkQueueSubmit2");
   check(vkWaitForFences(context_.device(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+}
+
+std::vector<PassTime> Commands::submit_and_wait() {
+  end_and_run();
   return read_times();
 }
 
 std::vector<PassTime> Commands::read_times() {
-  if (pass_names_.empty()) return {};
-  std::vector<std::uint64_t> ticks(2 * pass_names_.size());
+  if (passes_.empty() || host_timed_) return passes_;
+  std::vector<std::uint64_t> ticks(2 * passes_.size());
   check(vkGetQueryPoolResults(context_.device(), queries_.get(), 0, static_cast<std::uint32_t>(ticks.size()),
                               ticks.size() * sizeof(std::uint64_t), ticks.data(), sizeof(std::uint64_t),
                               VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
         "vkGetQueryPoolResults");
-  std::vector<PassTime> times;
-  for (std::size_t i = 0; i < pass_names_.size(); ++i) {
+  for (std::size_t i = 0; i < passes_.size(); ++i) {
     const double elapsed = static_cast<double>(ticks[2 * i + 1] - ticks[2 * i]);
-    times.push_back({pass_names_[i], elapsed * context_.limits().timestampPeriod * 1e-6});
+    passes_[i].time_ms = elapsed * context_.limits().timestampPeriod * 1e-6;
   }
-  return times;
+  return passes_;
 }
 
 }  // namespace quadgraph::vk

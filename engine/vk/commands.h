@@ -1,6 +1,7 @@
 // Recording and submitting one command buffer, and timing what is recorded.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -49,10 +50,12 @@ class Commands {
     dispatch_indirect_bytes(pass, &push, sizeof(Push), arguments, offset);
   }
 
+  // Timed by the device's clock, except on a device of type CPU: lavapipe stamps when it closes a frame, not when the
+  // pass runs, so there what was recorded is run and waited for, and the host's clock is read.
   void begin_pass(const std::string& name);
   void end_pass();
 
-  // Ends recording, runs it, waits. Call once. Returns the device time of every pass, in order of recording.
+  // Ends recording, runs it, waits. Call once. Returns the time of every pass, in order of recording.
   std::vector<PassTime> submit_and_wait();
 
  private:
@@ -60,6 +63,9 @@ class Commands {
   void dispatch_indirect_bytes(const ComputePass& pass, const void* push, std::uint32_t size, const Buffer& arguments,
                                std::uint64_t offset);
   void bind(const ComputePass& pass, const void* push, std::uint32_t size);
+  void begin();
+  void end_and_run();
+  void flush();
   std::vector<PassTime> read_times();
 
   Context& context_;
@@ -67,7 +73,9 @@ class Commands {
   VkCommandBuffer commands_ = VK_NULL_HANDLE;
   UniqueQueryPool queries_;
   std::uint32_t max_passes_ = 0;
-  std::vector<std::string> pass_names_;
+  bool host_timed_ = false;
+  std::chrono::steady_clock::time_point pass_start_;
+  std::vector<PassTime> passes_;
 };
 
 }  // namespace quadgraph::vk

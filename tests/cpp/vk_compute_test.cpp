@@ -67,3 +67,24 @@ TEST_CASE("a device that does not exist is named in the error, with those that d
   CHECK_THROWS_WITH_AS(vk::Context({.validation = false, .device = "no such device"}),
                        doctest::Contains("no such device"), VulkanError);
 }
+
+TEST_CASE("a pass of many more elements takes longer") {
+  vk::Context context({.validation = true, .device = ""});
+  {
+    constexpr std::uint32_t few = 1000, many = 1000000;
+    const vk::Buffer nodes(context, many * sizeof(glm::vec3), vk::Place::device, "nodes");
+    const vk::Buffer optical(context, many * sizeof(gpu::Optical), vk::Place::device, "optical");
+    const vk::ComputePass pass(context, evaluate_material_comp, sizeof(gpu::EvaluateMaterialPush), "evaluate material");
+    vk::Commands commands(context, 2);
+    commands.fill(nodes, 0);
+    for (const std::uint32_t count : {few, many}) {
+      commands.begin_pass("material");
+      commands.dispatch(pass, gpu::EvaluateMaterialPush{veined(), nodes.address(), optical.address(), count}, count);
+      commands.end_pass();
+    }
+    const auto times = commands.submit_and_wait();
+    REQUIRE(times.size() == 2);
+    CHECK(times[1].time_ms > times[0].time_ms);
+  }
+  for (const auto& message : context.validation_messages()) FAIL_CHECK(message);
+}
