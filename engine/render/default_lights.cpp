@@ -7,7 +7,7 @@ namespace {
 
 // W/mm^2; the key is about as strong as the sun. Warm against cool keeps transmitted and reflected light apart.
 constexpr glm::vec3 key_irradiance{1.0e-3f, 0.88e-3f, 0.72e-3f};
-constexpr glm::vec3 side_irradiance{0.12e-3f, 0.14e-3f, 0.17e-3f};
+constexpr glm::vec3 side_irradiance{0.13e-3f, 0.14e-3f, 0.155e-3f};
 
 Light from(const Camera& camera, const glm::vec3& source, const glm::vec3& irradiance) {
   const glm::vec3 towards = source.x * camera.right + source.y * camera.up + source.z * camera.backward;

@@ -81,7 +81,7 @@ const QuadGraph& Engine::graph() const {
   return implementation_->graph;
 }
 
-const vk::Context& Engine::context() const {
+vk::Context& Engine::context() const {
   return implementation_->context;
 }
 

@@ -33,7 +33,7 @@ class Engine {
   Engine& operator=(const Engine&) = delete;
 
   const QuadGraph& graph() const;
-  const vk::Context& context() const;
+  vk::Context& context() const;
   Simulation& simulation();
   const Sphere& bounds() const;  // of the display mesh
 

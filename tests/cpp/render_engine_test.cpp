@@ -1,0 +1,147 @@
+// The facade on a small file (a cube of 2 mm, two levels), without a display.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <glm/geometric.hpp>
+
+#include "engine/graph/error.h"
+#include "engine/graph/fresnel.h"
+#include "engine/render/engine.h"
+
+using namespace quadgraph;
+
+namespace {
+
+const std::filesystem::path cube = std::filesystem::path(QUADGRAPH_TEST_DATA) / "tiny.qgraph";
+
+// An engine whose validation messages fail the test.
+struct Checked {
+  Engine engine{cube, {.validation = true, .device = ""}};
+
+  Checked() = default;
+  Checked(const Checked&) = delete;
+  Checked& operator=(const Checked&) = delete;
+  ~Checked() {
+    for (const auto& message : engine.context().validation_messages()) FAIL_CHECK(message);
+  }
+};
+
+double total(const std::vector<float>& values) {
+  double sum = 0;
+  for (const float value : values) sum += value;
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("a lit cube takes in the light of its face on every level, without a display") {
+  unsetenv("DISPLAY");
+  unsetenv("WAYLAND_DISPLAY");
+  Checked checked;
+  Engine& engine = checked.engine;
+  engine.set_material("sigma_s_prime=2,sigma_a=0.1,eta=1.4");
+  engine.set_lights({parse_light("directional:0,0,-1:1/2/3")});
+  const SolveReport report = engine.solve();
+  const double transmitted = fresnel_transmittance(1, 1.4);
+  for (int c = 0; c < 3; ++c) {
+    CHECK(report.energy.entered[c] == doctest::Approx(4.0 * (c + 1) * transmitted).epsilon(1e-4));
+  }
+  const SurfaceField field = engine.surface_field();
+  for (std::size_t f = 0; f < field.q.size(); ++f) {
+    CHECK(field.q[f].x == doctest::Approx(field.normal[f].z > 0.5f ? transmitted : 0).epsilon(1e-4));
+  }
+  for (std::uint32_t level = 0; level < engine.graph().levels().size(); ++level) {
+    const auto& faces = engine.graph().levels()[level].faces;
+    const auto& vertices = engine.graph().levels()[level].vertices;
+    const auto q = vk::download<glm::vec3>(engine.context(), engine.simulation().level(level).q);
+    double power = 0;
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      const glm::vec3 a = vertices[faces[f].x];
+      power += 0.5 * glm::length(glm::cross(vertices[faces[f].y] - a, vertices[faces[f].z] - a)) * q[f].y;
+    }
+    CHECK(power == doctest::Approx(8 * transmitted).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("irradiance follows light and material, and given irradiance replaces the lights") {
+  Checked checked;
+  Engine& engine = checked.engine;
+  engine.set_material("sigma_s_prime=2,sigma_a=0.1,eta=1");
+  engine.set_lights({parse_light("directional:0,0,-1:1")});
+  CHECK(engine.solve().energy.entered.x == doctest::Approx(4).epsilon(1e-4));
+  engine.set_material("sigma_s_prime=2,sigma_a=0.1,eta=1.5");
+  CHECK(engine.solve().energy.entered.x == doctest::Approx(4 * fresnel_transmittance(1, 1.5)).epsilon(1e-4));
+  engine.set_lights({});
+  CHECK(engine.solve().energy.entered.x == 0);
+  for (std::uint32_t level = 0; level < engine.graph().levels().size(); ++level) {
+    engine.set_irradiance(level, std::vector<glm::vec3>(engine.graph().levels()[level].face_count(), glm::vec3(0.5f)));
+  }
+  CHECK(engine.solve().energy.entered.x == doctest::Approx(12).epsilon(1e-4));
+}
+
+TEST_CASE("a picture shows what was solved, and says how it was made") {
+  Checked checked;
+  Engine& engine = checked.engine;
+  engine.set_material("marble");
+  engine.set_lights({parse_light("directional:0,0,-1:1")});
+  engine.solve();
+  const Picture lit = engine.render({.azimuth = 0, .elevation = 0}, {.width = 96, .height = 64, .roughness = 0.3f});
+  const Picture dark = engine.render({.azimuth = 180, .elevation = 0}, {.width = 96, .height = 64, .roughness = 0.3f});
+  REQUIRE(lit.width == 96);
+  REQUIRE(lit.height == 64);
+  REQUIRE(lit.diffuse.size() == 96 * 64 * 3);
+  CHECK(total(lit.alpha) > 500);
+  CHECK(total(dark.alpha) == doctest::Approx(total(lit.alpha)).epsilon(0.02));
+  CHECK(total(dark.diffuse) > 0);
+  CHECK(total(lit.diffuse) > 1.5 * total(dark.diffuse));
+  CHECK(total(lit.specular) > 0);
+  CHECK(total(dark.specular) == 0);
+
+  const Metadata metadata = engine.metadata();
+  const auto value = [&](const std::string& key) {
+    const auto entry = std::find_if(metadata.begin(), metadata.end(), [&](const auto& m) { return m.first == key; });
+    REQUIRE_MESSAGE(entry != metadata.end(), key);
+    return entry->second;
+  };
+  CHECK(value("material") == "marble");
+  CHECK(value("lights") == "directional:0,0,-1:1");
+  CHECK(value("method") == "fem");
+  CHECK(value("solver") == "dpcg");
+  CHECK(value("tolerance") == "0.001");
+  CHECK(value("units") == "W/(mm^2 sr)");
+  CHECK(value("source") == "tiny.qgraph");
+  CHECK(value("camera").find("view 180,0") == 0);
+  for (const char* key : {"device", "energy balance", "error", "iterations", "residual"}) CHECK(!value(key).empty());
+
+  const auto passes = engine.passes();
+  for (const char* name : {"shadow maps", "irradiance", "surface", "resolve"}) {
+    const auto pass = std::find_if(passes.begin(), passes.end(), [&](const auto& p) { return p.name == name; });
+    REQUIRE_MESSAGE(pass != passes.end(), name);
+    CHECK(pass->time_ms > 0);
+    CHECK(pass->bytes > 0);
+  }
+  CHECK(engine.device_bytes() > 0);
+  CHECK(engine.peak_device_bytes() > engine.device_bytes());
+}
+
+TEST_CASE("calls out of order and options out of range are refused") {
+  Checked checked;
+  Engine& engine = checked.engine;
+  CHECK_THROWS_WITH_AS(engine.update_irradiance(), doctest::Contains("material"), InputError);
+  CHECK_THROWS_WITH_AS(engine.render({}), doctest::Contains("solve first"), InputError);
+  CHECK_THROWS_AS(engine.set_material("jade?"), InputError);
+  CHECK_THROWS_AS(engine.set_lights({{.direction = {0, 0, 2}}}), InputError);
+  engine.set_material("marble");
+  engine.set_lights({parse_light("directional:0,0,-1:1")});
+  engine.solve();
+  CHECK_THROWS_WITH_AS(engine.render({}, {.width = 0}), doctest::Contains("0x1024"), InputError);
+  CHECK_THROWS_WITH_AS(engine.render({}, {.width = 20000}), doctest::Contains("16384"), InputError);
+  CHECK_THROWS_WITH_AS(engine.render({}, {.roughness = 0}), doctest::Contains("roughness"), InputError);
+  CHECK_THROWS_AS(engine.render({.elevation = 120}), InputError);
+}
+
+TEST_CASE("a file that is not there is named") {
+  CHECK_THROWS_WITH_AS(Engine("/no/such/file.qgraph"), doctest::Contains("/no/such/file.qgraph"), InputError);
+}
