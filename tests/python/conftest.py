@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 
 import pytest
+
 from quadgraph.surface import Surface
 from shapes import pymeshlab_samples, read_ply
 

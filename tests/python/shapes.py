@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pymeshlab
 import trimesh
+
 from quadgraph.surface import Surface
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
+
 from quadgraph.errors import InputError
 from quadgraph.mesh_io import read_surface
 from quadgraph.surface import Surface

@@ -7,6 +7,7 @@ import zlib
 
 import numpy as np
 import pytest
+
 import tiny
 from quadgraph import qgraph_file
 from quadgraph.errors import FormatError, InputError

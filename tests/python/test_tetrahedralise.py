@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from quadgraph.child_process import Program, run
 from quadgraph.errors import InputError, ToolError
 from quadgraph.surface import Surface

@@ -4,6 +4,7 @@ import itertools
 from pathlib import Path
 
 import numpy as np
+
 from quadgraph import graph, qgraph_file, sections
 from quadgraph.surface import MesherInfo, TetMesh
 
