@@ -68,6 +68,14 @@ bool write_all(PngWriter& writer, std::FILE* file, const Picture& picture, const
   return true;
 }
 
+// Threshold in [0, 1) at which a value between two 8-bit codes takes the upper one: spreads the steps of smooth
+// gradients evenly, the same in every run (interleaved gradient noise, Jimenez 2014).
+float dither(std::size_t x, std::size_t y) {
+  const float inner = 0.06711056f * static_cast<float>(x) + 0.00583715f * static_cast<float>(y);
+  const float outer = 52.9829189f * (inner - std::floor(inner));
+  return outer - std::floor(outer);
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> to_srgb8(const Picture& picture, const ToneOptions& options) {
@@ -79,12 +87,14 @@ std::vector<std::uint8_t> to_srgb8(const Picture& picture, const ToneOptions& op
     for (std::size_t x = 0; x < picture.width; ++x) {
       const std::size_t i = y * picture.width + x;
       const float alpha = picture.alpha[i];
+      const float threshold = dither(x, y);
       for (std::size_t c = 0; c < 3; ++c) {
         // The exitance of a diffuse source can be below zero at a shadow's edge, which no screen shows.
         const float radiance = std::max(picture.diffuse[3 * i + c], 0.0f) + picture.specular[3 * i + c];
         const float object = alpha > 0 ? alpha * filmic(scale * radiance / alpha) : 0.0f;
         const float shown = object + (1.0f - alpha) * background[static_cast<int>(c)];
-        bytes[3 * i + c] = static_cast<std::uint8_t>(std::lround(255.0f * srgb_encode(std::clamp(shown, 0.0f, 1.0f))));
+        const float code = 255.0f * srgb_encode(std::clamp(shown, 0.0f, 1.0f));
+        bytes[3 * i + c] = static_cast<std::uint8_t>(std::min(std::floor(code + threshold), 255.0f));
       }
     }
   }
