@@ -12,7 +12,8 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from contextvars import ContextVar
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from quadgraph.errors import ToolError
@@ -51,6 +52,34 @@ class Finished:
 
     status: int
     output: str
+
+
+@dataclass
+class _Family:
+    """The programs that run in one context, and whether it has ended."""
+
+    members: set[subprocess.Popen] = field(default_factory=set)
+    ended: bool = False
+
+
+_FAMILY: ContextVar[_Family | None] = ContextVar("family", default=None)
+
+
+@contextmanager
+def stopped_on_exit() -> Iterator[None]:
+    """Kill, at the block's end, programs started in it by threads that run in a copy of its context.
+
+    A main thread that is interrupted would otherwise wait for its workers, and they for their programs.
+    """
+    family = _Family()
+    token = _FAMILY.set(family)
+    try:
+        yield
+    finally:
+        _FAMILY.reset(token)
+        family.ended = True
+        for process in tuple(family.members):
+            _kill_group(process)
 
 
 @contextmanager
@@ -111,13 +140,19 @@ def run(
             start_new_session=True,
             preexec_fn=_child_setup(os.getpid(), memory_limit_bytes),
         )
+        family = _FAMILY.get() or _Family()
+        family.members.add(process)
         try:
+            # Joined first, asked second: stopped_on_exit does the opposite, so that no program is missed.
+            if family.ended:
+                raise ToolError(f"{program.name}: stopped, the work it belongs to has ended")
             status = process.wait(timeout=time_limit_s)
         except subprocess.TimeoutExpired:
             words = _last_words(log.read_text(errors="replace"))
             raise ToolError(f"{program.name}: stopped after {time_limit_s:g} s, its time limit: {words}") from None
         finally:
             _kill_group(process)
+            family.members.discard(process)
     output = log.read_text(errors="replace")
     if status not in accept:
         raise ToolError(_failure(program, status, output, memory_limit_bytes))

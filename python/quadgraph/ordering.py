@@ -107,14 +107,21 @@ def renumbered(graph: Graph, tet_order: np.ndarray, face_order: np.ndarray) -> G
     )
 
 
+def inner_locality(graph: Graph) -> dict[str, float]:
+    """`locality` of the links between inner nodes."""
+    inside = graph.links < len(graph.tets)
+    return locality(np.where(inside, graph.links, np.arange(len(graph.tets))[:, None]))
+
+
 def locality(links: np.ndarray, block: int = BLOCK) -> dict[str, float]:
     """How near linked numbers are: mean |i - j|, and 64-byte lines of a float array that `block` rows touch.
 
-    links: (n, width) indices into one array; returns {"mean_distance", "lines_per_block"}, the latter with the rows'
-    own lines, on average over the blocks.
+    links: (n, width) indices of rows; returns {"mean_distance", "lines_per_block"}, the latter with the rows' own
+    lines, on average over the blocks. A row's own index stands for no link.
     """
     rows = np.arange(len(links))[:, None]
     lines = np.concatenate([rows, links], axis=1) // _LINE
-    pairs = np.unique((rows // block) * (links.max() // _LINE + 1) + lines)
+    pairs = np.unique((rows // block) * (lines.max() + 1) + lines)
     blocks = -(-len(links) // block)
-    return {"mean_distance": float(np.abs(rows - links).mean()), "lines_per_block": len(pairs) / blocks}
+    distance = np.abs(rows - links)
+    return {"mean_distance": float(distance[distance > 0].mean()), "lines_per_block": len(pairs) / blocks}

@@ -1,0 +1,228 @@
+"""The whole way from a mesh file to a `.qgraph` file."""
+
+from __future__ import annotations
+
+import contextvars
+import importlib.metadata
+import platform
+import resource
+import sys
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from quadgraph import __version__, child_process, graph, lod, mesh_io, ordering, qgraph_file, relax, repair, sections
+from quadgraph.errors import InputError, QuadGraphError
+from quadgraph.surface import MesherInfo, Repair, SourceMesh, Surface
+from quadgraph.tetrahedralise import (
+    DEFAULT_GRADING,
+    DEFAULT_MEMORY_LIMIT_BYTES,
+    DEFAULT_TIME_LIMIT_S,
+    tetrahedralise,
+)
+
+ORDERS = {"blocks": ordering.in_blocks, "random": ordering.at_random}
+WORKERS = 2  # levels filled with tets at the same time
+_PACKAGES = ("numpy", "scipy", "pymeshlab", "trimesh")
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class BakeOptions:
+    """What a bake can be told. Exactly one of `unit` ("mm", "cm", "m") and `height_mm` must be given.
+
+    levels: None for as many as make sense; mesher: "tetgen" or "cgal"; grading: K of the paper's sizing field, for
+    cgal; relax_nodes: steps that spread the inner nodes; order: "blocks" or "random"; surface_vertices: about how
+    many the finest simulation surface has, None for all of the input's; limits hold for each run of the mesher.
+    """
+
+    unit: str | None = None
+    height_mm: float | None = None
+    levels: int | None = None
+    mesher: str = "tetgen"
+    grading: float | None = None
+    relax_nodes: int = relax.DEFAULT_STEPS
+    order: str = "blocks"
+    surface_vertices: int | None = None
+    time_limit_s: float = DEFAULT_TIME_LIMIT_S
+    memory_limit_bytes: int = DEFAULT_MEMORY_LIMIT_BYTES
+
+
+@dataclass
+class BakeReport:
+    """What a bake did. Times in s; of levels, `seconds` per step; memory in bytes, children apart."""
+
+    output: str
+    byte_size: int = 0
+    source: dict[str, Any] = field(default_factory=dict)
+    unit_mm: float = 0.0
+    repairs: list[dict[str, Any]] = field(default_factory=list)
+    levels: list[dict[str, Any]] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    seconds: dict[str, float] = field(default_factory=dict)
+    peak_memory: dict[str, int] = field(default_factory=dict)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Everything, ready for JSON."""
+        return asdict(self)
+
+    @contextmanager
+    def timed(self, stage: str) -> Iterator[None]:
+        """Book the time of the block under `stage`."""
+        start = time.perf_counter()
+        yield
+        self.seconds[stage] = self.seconds.get(stage, 0.0) + time.perf_counter() - start
+
+
+@dataclass(frozen=True)
+class _Level:
+    graph: graph.Graph
+    mesher: MesherInfo
+    report: dict[str, Any]
+
+
+def bake(mesh: Path, output: Path, options: BakeOptions, progress: Progress | None = None) -> BakeReport:
+    """Bake `mesh` into `output` and report.
+
+    The chain of levels ends where a coarser level cannot be made, which a note of the report tells. Raises InputError
+    for unusable input or options, ToolError if the finest level cannot be filled with tets. `output` is written last
+    and at once: whatever interrupts the bake, it is untouched, and no child program is left.
+    """
+    tell = progress or (lambda text: None)
+    _check_options(output, options)
+    report, start = BakeReport(str(output)), time.perf_counter()
+    with report.timed("read"):
+        source = mesh_io.read_surface(mesh, unit=options.unit, height_mm=options.height_mm)
+    tell(f"read {source.name}: {source.vertices:,} vertices, {source.triangles:,} triangles")
+    with report.timed("repair"):
+        surface, repairs = repair.repair(source.surface, source.name)
+    for entry in repairs:
+        tell(f"repaired: {entry.what}: {entry.count:,}")
+    levels = _make_levels(surface.rounded(), options, report, tell)
+    with report.timed("transfers"):
+        content = sections.whole_file([level.graph for level in levels], surface)
+    metadata = _metadata(source, repairs, levels, options)
+    with report.timed("write"):
+        report.byte_size = qgraph_file.write(output, metadata, content)
+    report.seconds["total"] = time.perf_counter() - start
+    return _complete(report, metadata, levels)
+
+
+def _check_options(output: Path, options: BakeOptions) -> None:
+    """Refuse at once what would otherwise be found out after the work."""
+    if options.order not in ORDERS:
+        raise InputError(f"order: {options.order!r} found, allowed are {', '.join(ORDERS)}")
+    if options.relax_nodes < 0:
+        raise InputError(f"relax_nodes: {options.relax_nodes} found, 0 or more allowed")
+    if not output.parent.is_dir():
+        raise InputError(f"{output}: the folder {output.parent} does not exist")
+    if output.is_dir():
+        raise InputError(f"{output}: is a folder, a file name is needed")
+
+
+def _make_levels(surface: Surface, options: BakeOptions, report: BakeReport, tell: Progress) -> list[_Level]:
+    with _workers() as submit:
+        with report.timed("simplify"):
+            finest = lod.simplify(surface, options.surface_vertices) if options.surface_vertices else surface
+        # The finest level takes longest: its tets are made while the chain below it is.
+        jobs = [submit(_make_level, finest, options)]
+        with report.timed("simplify"):
+            chain = lod.build_chain(finest, levels=options.levels, progress=tell)
+        report.notes.append(f"the chain ends after level {len(chain) - 1}: {chain.ended}")
+        jobs += [submit(_make_level, coarse, options) for coarse in chain[1:]]
+        with report.timed("tetrahedra and graphs"):
+            return _collect(jobs, report, tell)
+
+
+@contextmanager
+def _workers() -> Iterator[Callable[..., Future]]:
+    """Threads for the block's work; what has not begun at its end never does, and child programs are stopped."""
+    pool = ThreadPoolExecutor(WORKERS)
+    with child_process.stopped_on_exit():
+        try:
+            yield lambda *call: pool.submit(contextvars.copy_context().run, *call)
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _collect(jobs: list[Future[_Level]], report: BakeReport, tell: Progress) -> list[_Level]:
+    levels: list[_Level] = []
+    for number, job in enumerate(jobs):
+        try:
+            levels.append(job.result())
+        except QuadGraphError as error:
+            if not levels:
+                raise
+            report.notes.append(f"level {number} was left out, and all below it: {error}")
+            break
+        tell(f"level {number}: {len(levels[-1].graph.tets):,} tets")
+    return levels
+
+
+def _make_level(surface: Surface, options: BakeOptions) -> _Level:
+    """Tets, graph, even nodes, cache-local order."""
+    clock = [time.perf_counter()]
+    limits = {"time_limit_s": options.time_limit_s, "memory_limit_bytes": options.memory_limit_bytes}
+    mesh = tetrahedralise(surface, mesher=options.mesher, grading=options.grading, **limits)
+    clock.append(time.perf_counter())
+    built = graph.build(mesh)
+    clock.append(time.perf_counter())
+    relaxed = relax.relax(built, options.relax_nodes)
+    clock.append(time.perf_counter())
+    ordered = ORDERS[options.order](relaxed)
+    clock.append(time.perf_counter())
+    steps = ("tetrahedra", "graph", "relax", "order")
+    variation = {when: relax.link_length_variation(which) for when, which in (("before", built), ("after", relaxed))}
+    report = {
+        "mesher_tets": len(mesh.tets),
+        "seconds": {step: b - a for step, a, b in zip(steps, clock[:-1], clock[1:], strict=True)},
+        "link_length_variation": variation,
+        "locality": ordering.inner_locality(ordered),
+    }
+    return _Level(ordered, mesh.mesher, report)
+
+
+def _metadata(source: SourceMesh, repairs: list[Repair], levels: list[_Level], options: BakeOptions) -> dict[str, Any]:
+    mesher = levels[0].mesher
+    grading = None
+    if options.mesher == "cgal":
+        grading = DEFAULT_GRADING if options.grading is None else options.grading
+    return {
+        "generator": f"quadgraph {__version__}",
+        "source": {
+            "name": source.name,
+            "sha256": source.sha256,
+            "vertices": source.vertices,
+            "triangles": source.triangles,
+        },
+        "unit_mm": source.unit_mm,
+        "mesher": {"name": mesher.name, "version": mesher.version, "options": mesher.options, "grading": grading},
+        "repairs": [asdict(entry) for entry in repairs],
+        "levels": [sections.level_metadata(level.graph) for level in levels],
+        "tools": {
+            "python": platform.python_version(),
+            mesher.name: mesher.version,
+            **{package: importlib.metadata.version(package) for package in _PACKAGES},
+        },
+    }
+
+
+def _complete(report: BakeReport, metadata: dict[str, Any], levels: list[_Level]) -> BakeReport:
+    # Linux counts ru_maxrss in KiB, macOS in bytes.
+    unit = 1 if sys.platform == "darwin" else 1024
+    return replace(
+        report,
+        source=metadata["source"],
+        unit_mm=metadata["unit_mm"],
+        repairs=metadata["repairs"],
+        levels=[entry | level.report for entry, level in zip(metadata["levels"], levels, strict=True)],
+        peak_memory={
+            "self": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit,
+            "largest_child": resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * unit,
+        },
+    )

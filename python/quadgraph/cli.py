@@ -1,0 +1,46 @@
+"""The command line `quadgraph`. Each subcommand is a module of quadgraph.commands with add_parser and run."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import signal
+import sys
+from collections.abc import Sequence
+
+from quadgraph import __version__
+from quadgraph.errors import QuadGraphError
+
+# Modules that import nothing heavy: what a subcommand needs, it imports when it runs.
+SUBCOMMANDS = ("bake", "info", "render", "solve", "bench")
+INTERRUPTED = 128 + signal.SIGINT
+
+
+def build_parser() -> argparse.ArgumentParser:
+    """Return the parser of the whole command line."""
+    parser = argparse.ArgumentParser(
+        prog="quadgraph", description="Real-time rendering of heterogeneous translucent objects."
+    )
+    parser.add_argument("--version", action="version", version=f"%(prog)s {__version__}")
+    subparsers = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    for name in SUBCOMMANDS:
+        importlib.import_module(f"quadgraph.commands.{name}").add_parser(subparsers)
+    return parser
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a command line and return its exit status: 1 for an error, 2 for wrong usage, 130 for Ctrl-C."""
+    args = build_parser().parse_args(arguments)
+    command = importlib.import_module(f"quadgraph.commands.{args.command}")
+    try:
+        return command.run(args)
+    except QuadGraphError as error:
+        print(f"quadgraph: error: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print("quadgraph: interrupted", file=sys.stderr)
+        return INTERRUPTED
+
+
+if __name__ == "__main__":
+    sys.exit(main())

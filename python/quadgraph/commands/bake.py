@@ -1,0 +1,134 @@
+"""`quadgraph bake`: a mesh file into a .qgraph file."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+from rich.table import Table
+
+from quadgraph.commands.scene import positive_float, positive_int
+
+if TYPE_CHECKING:
+    from quadgraph.bake import BakeReport
+
+_UNITS_MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0}
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Register the subcommand."""
+    parser = subparsers.add_parser("bake", help="a mesh into a .qgraph file", description=__doc__)
+    parser.add_argument("mesh", metavar="MESH", type=Path, help="OBJ, PLY, STL, OFF, glTF or GLB")
+    parser.add_argument("-o", "--output", metavar="FILE", type=Path, required=True, help="the .qgraph to write")
+    size = parser.add_mutually_exclusive_group()
+    size.add_argument("--unit", choices=tuple(_UNITS_MM), help="unit of the mesh file's coordinates")
+    size.add_argument("--height", type=length_mm, metavar="L", help="height of the object along y, like 100mm or 1.8m")
+    _add_mesh_options(parser)
+    parser.add_argument(
+        "--time-limit", type=positive_float, metavar="S", help="seconds for each run of the mesher (default: 300)"
+    )
+    parser.add_argument(
+        "--memory-limit", type=positive_float, metavar="GB", help="memory for each run of the mesher (default: 4)"
+    )
+    parser.add_argument("--json", action="store_true", help="print the report as JSON on standard output")
+
+
+def _add_mesh_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--levels", type=positive_int, metavar="N", help="levels of detail (default: automatic)")
+    parser.add_argument(
+        "--surface-vertices",
+        type=positive_int,
+        metavar="N",
+        help="simplify the simulation surface to about N vertices first; the displayed surface keeps all of its own",
+    )
+    parser.add_argument("--mesher", choices=("tetgen", "cgal"), default="tetgen", help="default: %(default)s")
+    parser.add_argument(
+        "--grading", type=positive_float, metavar="K", help="growth of cgal's tets with depth (default: 1)"
+    )
+    parser.add_argument(
+        "--relax-nodes", type=steps, metavar="N", help="steps that spread the inner nodes evenly (default: 8; 0: none)"
+    )
+    parser.add_argument(
+        "--order", choices=("blocks", "random"), default="blocks", help="of nodes in memory (default: %(default)s)"
+    )
+
+
+def length_mm(text: str) -> float:
+    """Argument type: a positive length with its unit, in mm."""
+    found = re.fullmatch(r"\s*([0-9.eE+-]+)\s*(mm|cm|m)\s*", text)
+    if not found:
+        raise argparse.ArgumentTypeError(f"{text}: must be a number and mm, cm or m, like 100mm")
+    return positive_float(found.group(1)) * _UNITS_MM[found.group(2)]
+
+
+def steps(text: str) -> int:
+    """Argument type: an integer of at least zero."""
+    value = int(text)
+    if value < 0:
+        raise argparse.ArgumentTypeError(f"{text}: must be 0 or more")
+    return value
+
+
+def run(args: argparse.Namespace) -> int:
+    """Bake, telling the progress on standard error; 0 on success."""
+    errors = Console(stderr=True, highlight=False)
+    with errors.status(f"baking {args.mesh.name}"):
+        from quadgraph import bake
+
+        report = bake.bake(args.mesh, args.output, _options(args), lambda text: errors.print(text, markup=False))
+    if args.json:
+        print(json.dumps(report.as_dict(), indent=1))
+    else:
+        _print_report(report)
+    return 0
+
+
+def _options(args: argparse.Namespace):
+    from quadgraph.bake import BakeOptions
+
+    given = {
+        "unit": args.unit,
+        "height_mm": args.height,
+        "levels": args.levels,
+        "mesher": args.mesher,
+        "grading": args.grading,
+        "relax_nodes": args.relax_nodes,
+        "order": args.order,
+        "surface_vertices": args.surface_vertices,
+        "time_limit_s": args.time_limit,
+        "memory_limit_bytes": int(args.memory_limit * 1e9) if args.memory_limit else None,
+    }
+    return BakeOptions(**{name: value for name, value in given.items() if value is not None})
+
+
+def _print_report(report: BakeReport) -> None:
+    console = Console(highlight=False)
+    console.print(level_table(report.levels))
+    for entry in report.repairs:
+        console.print(f"repaired: {entry['what']}: {entry['count']:,}", markup=False)
+    for note in report.notes:
+        console.print(note, markup=False)
+    variation = report.levels[0]["link_length_variation"]
+    console.print(
+        f"link lengths vary by {100 * variation['before']['local']:.1f}% of their local mean, "
+        f"{100 * variation['after']['local']:.1f}% after relaxing"
+    )
+    console.print("time: " + ", ".join(f"{stage} {seconds:.1f} s" for stage, seconds in report.seconds.items()))
+    memory = report.peak_memory
+    console.print(f"memory: {memory['self'] / 1e6:.0f} MB, largest child {memory['largest_child'] / 1e6:.0f} MB")
+    console.print(f"wrote {report.output}: {report.byte_size / 1e6:.1f} MB", markup=False)
+
+
+def level_table(levels: list[dict]) -> Table:
+    """Return one row per level of the metadata's `levels`."""
+    table = Table("level", "vertices", "on surface", "tets", "faces", "volume, mm3", "area, mm2")
+    for number, level in enumerate(levels):
+        counts = (level[key] for key in ("vertices", "surface_vertices", "tets", "faces"))
+        table.add_row(
+            str(number), *(f"{n:,}" for n in counts), f"{level['volume_mm3']:,.1f}", f"{level['area_mm2']:,.1f}"
+        )
+    return table

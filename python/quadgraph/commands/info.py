@@ -1,0 +1,102 @@
+"""`quadgraph info`: everything a .qgraph file holds."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from quadgraph.commands.bake import level_table
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Register the subcommand."""
+    parser = subparsers.add_parser("info", help="what a .qgraph file holds", description=__doc__)
+    parser.add_argument("file", metavar="FILE", type=Path, help="a baked .qgraph")
+    parser.add_argument("--json", action="store_true", help="print JSON")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Read, validate and tell; 0 on success."""
+    from quadgraph import qgraph_file
+
+    file = qgraph_file.read(args.file)
+    facts = describe(file)
+    if args.json:
+        print(json.dumps(facts, indent=1))
+    else:
+        _print_facts(str(args.file), facts)
+    return 0
+
+
+def describe(file) -> dict[str, Any]:
+    """Return metadata, sections and mesh quality of a QGraphFile as plain values.
+
+    Angles in degrees, lengths in mm; node counts and dihedral angles per level.
+    """
+    from quadgraph import quality
+
+    return {
+        "byte_size": file.byte_size,
+        "metadata": file.metadata,
+        "sections": [
+            {"name": name, "type": array.dtype.name, "shape": list(array.shape), "bytes": array.nbytes}
+            for name, array in file.sections.items()
+        ],
+        "levels": [quality.of_level(file, number) for number in range(file.level_count)],
+        "display": {
+            "vertices": len(file.sections["display/vertices"]),
+            "triangles": len(file.sections["display/triangles"]),
+            "size_mm": np.ptp(file.sections["display/vertices"], axis=0).tolist(),
+        },
+    }
+
+
+def _print_facts(name: str, facts: dict[str, Any]) -> None:
+    console, metadata = Console(highlight=False), facts["metadata"]
+    source, mesher = metadata["source"], metadata["mesher"]
+    size = " x ".join(f"{extent:.4g}" for extent in facts["display"]["size_mm"])
+    grading = "" if mesher["grading"] is None else f", grading {mesher['grading']}"
+    repairs = ", ".join(f"{entry['what']}: {entry['count']}" for entry in metadata["repairs"]) or "none"
+    tools = ", ".join(f"{tool} {version}" for tool, version in metadata["tools"].items())
+    lines = [
+        f"{name}: {facts['byte_size'] / 1e6:.2f} MB, {size} mm, by {metadata['generator']}",
+        f"source: {source['name']}, {source['vertices']:,} vertices, {source['triangles']:,} triangles, "
+        f"unit {metadata['unit_mm']:g} mm",
+        f"sha256: {source['sha256']}",
+        f"mesher: {mesher['name']} {mesher['version']} {mesher['options']}{grading}",
+        f"repairs: {repairs}",
+        f"tools: {tools}",
+    ]
+    for line in lines:
+        console.print(line, markup=False, soft_wrap=True)
+    console.print(level_table(metadata["levels"]))
+    console.print(_quality_table(facts["levels"]))
+    console.print(_section_table(facts["sections"]))
+
+
+def _quality_table(levels: list[dict[str, Any]]) -> Table:
+    table = Table("level", "nodes", "smallest dihedral", "1st percentile", "largest", "mean link, mm", "cache lines")
+    for number, level in enumerate(levels):
+        low, percentile, high = (level["dihedral_degrees"][key] for key in ("min", "percentile_1", "max"))
+        table.add_row(
+            str(number),
+            f"{level['nodes']:,}",
+            *(f"{angle:.2f}\N{DEGREE SIGN}" for angle in (low, percentile, high)),
+            f"{level['mean_link_mm']:.3g}",
+            f"{level['locality']['lines_per_block']:.0f} per 1024 nodes",
+        )
+    return table
+
+
+def _section_table(entries: list[dict[str, Any]]) -> Table:
+    table = Table("section", "type", "shape", "bytes")
+    for entry in entries:
+        shape = " x ".join(f"{n:,}" for n in entry["shape"])
+        table.add_row(entry["name"], entry["type"], shape, f"{entry['bytes']:,}")
+    return table
