@@ -6,3 +6,9 @@
   layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Name { \
     Type at[];                                                               \
   }
+
+// Scratch of a reduction over a whole dispatch; see reduce.glsl.
+layout(buffer_reference, scalar, buffer_reference_align = 4) coherent buffer Reduction {
+  uint ticket;  // workgroups done; zero between dispatches
+  vec3 partials[];
+};

@@ -1,0 +1,31 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shared.h"
+#include "rows.glsl"
+#include "reduce.glsl"
+#include "convergence.glsl"
+
+layout(local_size_x = WORKGROUP_SIZE) in;
+layout(push_constant, scalar) uniform Block { CgMultiplyPush push; };
+
+void decide(vec3 energy) {
+  vec3 rz = push.state.at[0].rz;
+  bvec3 open = unconverged(rz, push.state.at[0].norm, push.tolerance);
+  bvec3 failed = bvec3(open.x && !(energy.x > 0.0), open.y && !(energy.y > 0.0), open.z && !(energy.z > 0.0));
+  if (any(failed)) stop(push.state, SOLVE_NOT_POSITIVE, first_channel(failed));
+  push.state.at[0].alpha = mix(vec3(0), rz / energy, open);
+}
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  vec3 energy = vec3(0);
+  if (i < push.count) {
+    vec3 p = push.p.at[i];
+    vec3 product = push.rows.diagonal.at[i] * p + off_diagonal(push.rows, push.p, i);
+    push.product.at[i] = product;
+    energy = p * product;
+  }
+  vec3 total;
+  if (!reduce_dispatch(push.reduction, energy, total)) return;
+  if (gl_LocalInvocationID.x == 0u) decide(total);
+}

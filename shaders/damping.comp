@@ -1,0 +1,27 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shared.h"
+#define REDUCE(a, b) max(a, b)
+#define REDUCE_ZERO vec3(0)
+#include "reduce.glsl"
+
+layout(local_size_x = WORKGROUP_SIZE) in;
+layout(push_constant, scalar) uniform Block { DampingPush push; };
+
+vec3 row_sum(uint i) {
+  uint slice = i / SLICE_ROWS;
+  uint end = push.rows.slice_offset.at[slice + 1u];
+  vec3 diagonal = push.rows.diagonal.at[i];
+  vec3 sum = diagonal;
+  for (uint e = push.rows.slice_offset.at[slice] + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
+    sum += abs(push.rows.weight.at[e]);
+  }
+  return sum / diagonal;
+}
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  vec3 largest;
+  if (!reduce_dispatch(push.reduction, i < push.count ? row_sum(i) : vec3(0), largest)) return;
+  if (gl_LocalInvocationID.x == 0u) push.damping.at[0] = 2.0 / min(vec3(4), largest);
+}

@@ -1,0 +1,45 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shared.h"
+#include "reduce.glsl"
+
+layout(local_size_x = WORKGROUP_SIZE) in;
+layout(push_constant, scalar) uniform Block { EnergyPush push; };
+
+vec3 absorbed(uint tet) {
+  uvec4 corners = push.tets.at[tet];
+  vec3 p = push.vertices.at[corners.x];
+  vec3 e1 = push.vertices.at[corners.y] - p, e2 = push.vertices.at[corners.z] - p, e3 = push.vertices.at[corners.w] - p;
+  float volume = abs(dot(e1, cross(e2, e3))) / 6.0;
+  vec3 phi;
+  if (push.fem == 1u) {
+    phi = 0.25 * (push.x.at[corners.x] + push.x.at[corners.y] + push.x.at[corners.z] + push.x.at[corners.w]);
+  } else {
+    phi = push.to_phi.at[tet] * push.x.at[tet];
+  }
+  return push.optical.at[tet].sigma_a * phi * push.scale.at[0].scale * volume;
+}
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  EnergySums sums = EnergySums(vec3(0), vec3(0), vec3(0), vec4(0));
+  if (i < push.tet_count) sums.absorbed = absorbed(i);
+  if (i < push.face_count) {
+    uvec3 corners = push.faces.at[i];
+    vec3 p = push.vertices.at[corners.x];
+    float area = 0.5 * length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));
+    vec3 q = push.q.at[i], exitance = push.exitance.at[i];
+    sums.entered = area * q;
+    sums.exitance = area * exitance;
+    vec3 scaled = exitance * push.scale.at[0].inverse;
+    vec3 difference = (exitance - push.coarse_exitance.at[i]) * push.scale.at[0].inverse;
+    vec2 squares = area * vec2(dot(difference, difference), dot(scaled, scaled));
+    sums.error = vec4(squares, q == vec3(0) ? squares : vec2(0));
+  }
+  sums.entered = reduce_workgroup(sums.entered);
+  sums.exitance = reduce_workgroup(sums.exitance);
+  sums.absorbed = reduce_workgroup(sums.absorbed);
+  sums.error.xyz = reduce_workgroup(sums.error.xyz);
+  sums.error.w = reduce_workgroup(vec3(sums.error.w)).x;
+  if (gl_LocalInvocationID.x == 0u) push.sums.at[gl_WorkGroupID.x] = sums;
+}

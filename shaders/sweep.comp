@@ -1,0 +1,42 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shared.h"
+#include "rows.glsl"
+#include "reduce.glsl"
+#include "convergence.glsl"
+
+layout(local_size_x = WORKGROUP_SIZE) in;
+layout(push_constant, scalar) uniform Block { SweepPush push; };
+
+// A relaxation that converges never exceeds its start by this much; one that diverges does at once.
+const float divergence = 1e3;
+
+void decide(vec3 rz) {
+  vec3 norm = push.state.at[0].norm;
+  float worst = worst_residual(rz, norm);
+  push.state.at[0].rz = rz;
+  push.state.at[0].residual = worst;
+  push.state.at[0].iterations += push.sweeps;
+  if (any(not_finite(rz))) {
+    stop(push.state, SOLVE_NOT_FINITE, first_channel(not_finite(rz)));
+  } else if (!any(unconverged(rz, norm, push.tolerance))) {
+    stop(push.state, SOLVE_CONVERGED, 0u);
+  } else if (worst > divergence * max(1.0, push.state.at[0].checked)) {
+    stop(push.state, SOLVE_DIVERGED, first_channel(greaterThanEqual(rz, vec3(worst * worst) * norm)));
+  }
+}
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  vec3 product = vec3(0);
+  if (i < push.count) {
+    vec3 diagonal = push.rows.diagonal.at[i];
+    vec3 r = residual(push.rows, push.b, push.from, i);
+    push.to.at[i] = push.from.at[i] + push.damping.at[0] * r / diagonal;
+    product = r * r / diagonal;
+  }
+  if (push.sweeps == 0u) return;
+  vec3 rz;
+  if (!reduce_dispatch(push.reduction, product, rz)) return;
+  if (gl_LocalInvocationID.x == 0u) decide(rz);
+}
