@@ -75,11 +75,11 @@ struct RowsRef {
 
 const uint SOLVE_RUNNING = 0u;
 const uint SOLVE_CONVERGED = 1u;
-const uint SOLVE_STAGNATED = 2u;      // single precision allows no smaller residual
-const uint SOLVE_EXHAUSTED = 3u;      // iteration limit reached
-const uint SOLVE_NOT_POSITIVE = 4u;   // p^T A p <= 0
-const uint SOLVE_NOT_FINITE = 5u;     // overflow or NaN
-const uint SOLVE_DIVERGED = 6u;       // relaxation grows
+const uint SOLVE_STAGNATED = 2u;     // single precision allows no smaller residual
+const uint SOLVE_EXHAUSTED = 3u;     // iteration limit reached
+const uint SOLVE_NOT_POSITIVE = 4u;  // p^T A p <= 0
+const uint SOLVE_NOT_FINITE = 5u;    // overflow or NaN
+const uint SOLVE_DIVERGED = 6u;      // relaxation grows
 
 // State of the solve of one level; the residual of a channel is sqrt(rz / norm).
 struct SolveState {
@@ -206,8 +206,8 @@ struct DampingPush {
   uint count;
 };
 
-// transfer.comp: x = sum of weight * to_phi_coarse * x_coarse / to_phi, for `count` rows from `first` on; 0 in a channel
-// without light.
+// transfer.comp: x = sum of weight * to_phi_coarse * x_coarse / to_phi, for `count` rows from `first` on; 0 in a
+// channel without light.
 struct TransferPush {
   QG_REF(Uints) index;
   QG_REF(Floats) weight;
@@ -302,8 +302,8 @@ struct ExitancePush {
   float mismatch;
 };
 
-// vertex_exitance.comp: M per surface vertex, from the area-weighted mean q of its faces and phi: at the vertex (fem) or
-// the area-weighted mean of its faces.
+// vertex_exitance.comp: M per surface vertex, from the area-weighted mean q of its faces and phi: at the vertex (fem)
+// or the area-weighted mean of its faces.
 struct VertexExitancePush {
   QG_REF(Vec3s) vertices;
   QG_REF(Uvec3s) faces;

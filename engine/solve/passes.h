@@ -1,0 +1,35 @@
+// The compute pipelines of the solve, created at first use: compiling takes long on lavapipe, and no solve needs all.
+#pragma once
+
+#include <optional>
+
+#include "engine/vk/pipeline.h"
+
+namespace quadgraph {
+
+// A pipeline that does not exist until it is wanted.
+class LazyPass {
+ public:
+  LazyPass(vk::Spirv code, std::uint32_t push_size, const char* name)
+      : code_(code), push_size_(push_size), name_(name) {}
+
+  const vk::ComputePass& get(vk::Context& context) {
+    if (!pass_) pass_.emplace(context, code_, push_size_, name_);
+    return *pass_;
+  }
+
+ private:
+  vk::Spirv code_;
+  std::uint32_t push_size_;
+  const char* name_;
+  std::optional<vk::ComputePass> pass_;
+};
+
+struct Passes {
+  Passes();
+
+  LazyPass evaluate_material, assemble_fdm, assemble_fem, irradiance_scale, right_hand_side_fdm, right_hand_side_fem,
+      damping, transfer, cg_start, cg_multiply, cg_update, cg_direction, sweep, exitance, vertex_exitance, energy;
+};
+
+}  // namespace quadgraph

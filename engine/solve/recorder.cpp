@@ -1,0 +1,55 @@
+#include "engine/solve/recorder.h"
+
+#include <algorithm>
+
+namespace quadgraph {
+namespace {
+
+// Timed dispatches per command buffer: a batch of iterations and some more. Beyond it, what is recorded is submitted.
+constexpr std::uint32_t max_timed = 512;
+
+}  // namespace
+
+vk::Commands& Recorder::commands() {
+  if (!commands_) commands_ = std::make_unique<vk::Commands>(context_, max_timed);
+  return *commands_;
+}
+
+PassStats& Recorder::stats(const std::string& name) {
+  const auto found = std::find_if(passes_.begin(), passes_.end(), [&](const PassStats& p) { return p.name == name; });
+  if (found != passes_.end()) return *found;
+  passes_.push_back({.name = name});
+  return passes_.back();
+}
+
+void Recorder::begin(const std::string& name, std::uint64_t bytes, bool counts) {
+  if (timed_ == max_timed) submit();
+  PassStats& pass = stats(name);
+  pass.bytes += bytes;
+  pass.count += counts ? 1 : 0;
+  commands().begin_pass(name);
+  ++timed_;
+}
+
+void Recorder::copy(const vk::Buffer& source, const vk::Buffer& target, std::uint64_t bytes) {
+  commands().copy(source, target, bytes);
+}
+
+void Recorder::fill(const vk::Buffer& target, std::uint32_t value) {
+  commands().fill(target, value);
+}
+
+void Recorder::submit() {
+  if (!commands_) return;
+  const std::unique_ptr<vk::Commands> running = std::move(commands_);
+  timed_ = 0;
+  for (const vk::PassTime& time : running->submit_and_wait()) stats(time.name).time_ms += time.time_ms;
+}
+
+void Recorder::did(const std::string& name, std::uint32_t count, std::uint64_t bytes_each) {
+  PassStats& pass = stats(name);
+  pass.count += count;
+  pass.bytes += count * bytes_each;
+}
+
+}  // namespace quadgraph

@@ -1,0 +1,65 @@
+// Records the dispatches of a solve and adds up what each kind of pass cost.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/solve/passes.h"
+#include "engine/solve/simulation.h"
+#include "engine/vk/commands.h"
+
+namespace quadgraph {
+
+class Recorder {
+ public:
+  explicit Recorder(vk::Context& context) : context_(context) {}
+
+  vk::Context& context() { return context_; }
+
+  // Forgets the passes counted so far.
+  void clear() { passes_.clear(); }
+  const std::vector<PassStats>& passes() const { return passes_; }
+
+  // One timed dispatch; `bytes` is what the algorithm reads and writes in it.
+  template <typename Push>
+  void dispatch(LazyPass& pass, const Push& push, std::uint64_t elements, const std::string& name,
+                std::uint64_t bytes) {
+    const vk::ComputePass& pipeline = pass.get(context_);
+    begin(name, bytes, true);
+    commands_->dispatch(pipeline, push, elements);
+    commands_->end_pass();
+  }
+
+  // The same with workgroup counts from the device. Bytes and count are added by `did`, once known.
+  template <typename Push>
+  void dispatch_indirect(LazyPass& pass, const Push& push, const vk::Buffer& arguments, std::uint64_t offset,
+                         const std::string& name) {
+    const vk::ComputePass& pipeline = pass.get(context_);
+    begin(name, 0, false);
+    commands_->dispatch_indirect(pipeline, push, arguments, offset);
+    commands_->end_pass();
+  }
+
+  void copy(const vk::Buffer& source, const vk::Buffer& target, std::uint64_t bytes);
+  void fill(const vk::Buffer& target, std::uint32_t value);
+
+  // Runs what is recorded and waits.
+  void submit();
+
+  // Counts `count` indirect dispatches that did work.
+  void did(const std::string& name, std::uint32_t count, std::uint64_t bytes_each);
+
+ private:
+  vk::Commands& commands();
+  void begin(const std::string& name, std::uint64_t bytes, bool counts);
+  PassStats& stats(const std::string& name);
+
+  vk::Context& context_;
+  std::unique_ptr<vk::Commands> commands_;
+  std::uint32_t timed_ = 0;
+  std::vector<PassStats> passes_;  // in order of first use
+};
+
+}  // namespace quadgraph
