@@ -2,6 +2,8 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include "engine/graph/error.h"
+#include "engine/render/default_lights.h"
 #include "engine/render/engine.h"
 #include "engine/vk/context.h"
 #include "python/bindings/bindings.h"
@@ -130,12 +132,23 @@ SolveReport solve(Engine& engine, const std::string& method, const std::string& 
   return engine.solve(options);
 }
 
-Picture render(Engine& engine, const std::string& view_text, const std::string& up, float vertical_fov,
-               std::uint32_t width, std::uint32_t height, float roughness) {
+View view_from(const std::string& text, const std::string& up, float vertical_fov) {
+  if (up != "y" && up != "z") throw InputError("up '" + up + "': allowed are y and z");
   View view;
   view.up = up == "z" ? UpAxis::z : UpAxis::y;
   view.vertical_fov = vertical_fov;
-  if (!view_text.empty()) view = parse_view(view_text, view);
+  return text.empty() ? view : parse_view(text, view);
+}
+
+std::vector<std::string> default_light_texts(const std::string& view, const std::string& up) {
+  std::vector<std::string> texts;
+  for (const Light& light : default_lights(view_from(view, up, View{}.vertical_fov))) texts.push_back(to_string(light));
+  return texts;
+}
+
+Picture render(Engine& engine, const std::string& view_text, const std::string& up, float vertical_fov,
+               std::uint32_t width, std::uint32_t height, float roughness) {
+  const View view = view_from(view_text, up, vertical_fov);
   const py::gil_scoped_release release;
   return engine.render(view, {width, height, roughness});
 }
@@ -144,6 +157,8 @@ Picture render(Engine& engine, const std::string& view_text, const std::string& 
 
 void bind_engine(py::module_& module) {
   bind_picture(module);
+  module.def("default_lights", &default_light_texts, py::arg("view") = "", py::arg("up") = "y",
+             "The lights a picture gets when nobody asks for others: warm from behind `view`, cool from the side.");
   py::class_<Engine>(module, "Engine", "A .qgraph on a Vulkan device.")
       .def(py::init(&make_engine), py::arg("path"), py::arg("device") = "", py::arg("validation") = false,
            "device: part of its name. validation: load the validation layer. Raises FormatError, InputError, "

@@ -71,7 +71,7 @@ def open_engine(args: argparse.Namespace, path: Path):
     """Load one file with the benchmark's material and lights."""
     engine = scene.load_core().Engine(path, device=args.device, validation=args.validation)
     engine.set_material(args.material)
-    engine.set_lights(list(scene.DEFAULT_LIGHTS))
+    engine.set_lights(scene.load_core().default_lights())
     return engine
 
 
@@ -82,7 +82,7 @@ def measure(engines: dict, material: str, method: str, solver: str, repeats: int
     for _ in range(repeats):
         for name, engine in engines.items():
             engine.set_material(material)
-            engine.set_lights(list(scene.DEFAULT_LIGHTS))
+            engine.set_lights(scene.load_core().default_lights())
             reports[name] = engine.solve(method=method, solver=solver, tolerance=1e-3)
             engine.render()
             frames[name].append(engine.passes)

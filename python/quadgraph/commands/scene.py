@@ -11,8 +11,6 @@ from quadgraph.errors import InputError
 if TYPE_CHECKING:
     from quadgraph._core import Engine
 
-DEFAULT_LIGHTS = ("directional:0.35,-0.25,0.9:3.0", "directional:-0.9,-0.35,-0.3:1.0")
-
 
 def load_core():
     """Import the compiled module, or say how to get it. Raises InputError."""
@@ -57,7 +55,7 @@ def add_scene_arguments(parser: argparse.ArgumentParser) -> None:
         action="append",
         metavar="L",
         help="directional:DX,DY,DZ:IRRADIANCE (the way the light travels; W/mm^2) or point:X,Y,Z:POWER (mm; W), "
-        "the last one number or R/G/B; several allowed (default: one from behind, one from the side)",
+        "the last one number or R/G/B; several allowed (default: warm from behind the view, cool from the side)",
     )
     parser.add_argument("--method", choices=("fem", "quadgraph-fdm"), default="fem", help="default: %(default)s")
     parser.add_argument("--solver", choices=("dpcg", "cascade"), default="dpcg", help="default: %(default)s")
@@ -79,9 +77,10 @@ def add_device_arguments(parser: argparse.ArgumentParser) -> None:
 
 def make_engine(args: argparse.Namespace) -> Engine:
     """Load `args.file` and set material and lights. Raises FormatError, InputError, VulkanError."""
-    engine = load_core().Engine(args.file, device=args.device, validation=args.validation)
+    core = load_core()
+    engine = core.Engine(args.file, device=args.device, validation=args.validation)
     engine.set_material(args.material)
-    engine.set_lights(list(args.light or DEFAULT_LIGHTS))
+    engine.set_lights(args.light or core.default_lights(getattr(args, "view", ""), getattr(args, "up", "y")))
     return engine
 
 
