@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 from baked import face_frames, write_levels
 from shapes import icosphere
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from quadgraph import qgraph_file
 from quadgraph.errors import FormatError, InputError
 
