@@ -13,7 +13,7 @@ namespace py = pybind11;
 namespace quadgraph::python {
 namespace {
 
-py::dict as_dict(const SolveReport& report) {
+py::dict report_dict(const SolveReport& report) {
   py::dict d;
   d["method"] = std::string(name_of(report.method));
   d["solver"] = std::string(name_of(report.solver));
@@ -31,7 +31,7 @@ py::dict as_dict(const SolveReport& report) {
   return d;
 }
 
-py::dict as_dict(SurfaceField&& field) {
+py::dict field_dict(SurfaceField&& field) {
   py::dict d;
   d["position"] = own(std::move(field.position));
   d["normal"] = own(std::move(field.normal));
@@ -180,12 +180,12 @@ void bind_engine(py::module_& module) {
           "solve",
           [](Engine& engine, const std::string& method, const std::string& solver, double tolerance,
              std::uint32_t max_iterations) {
-            return as_dict(solve(engine, method, solver, tolerance, max_iterations));
+            return report_dict(solve(engine, method, solver, tolerance, max_iterations));
           },
           py::arg("method") = "fem", py::arg("solver") = "dpcg", py::arg("tolerance") = 1e-3,
           py::arg("max_iterations") = 5000, "Raises InputError, SolverError.")
       .def(
-          "surface_field", [](const Engine& engine) { return as_dict(engine.surface_field()); },
+          "surface_field", [](const Engine& engine) { return field_dict(engine.surface_field()); },
           "Per outside face of level 0: position, normal, area, q, phi, exitance (mm, mm^2, W/mm^2).")
       .def(
           "phi", [](Engine& engine) { return own(engine.simulation().phi()); }, "Per unknown of level 0, W/mm^2.")
