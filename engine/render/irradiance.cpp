@@ -1,16 +1,15 @@
 #include "engine/render/irradiance.h"
 
-#include <algorithm>
-
 #include "engine/vk/commands.h"
 #include "spirv/irradiance.comp.h"
 
 namespace quadgraph {
 namespace {
 
-// 16 samples on a face of the finest level; each level up its faces are about twice as long.
+// 16 samples on a face of the finest level, and two more rows per level: faces get twice as long, but a coarse level
+// only starts the finer one and estimates its error.
 constexpr std::uint32_t finest_subdivision = 4;
-constexpr std::uint32_t largest_subdivision = 32;
+constexpr std::uint32_t more_per_level = 2;
 
 }  // namespace
 
@@ -18,7 +17,7 @@ IrradiancePass::IrradiancePass(vk::Context& context)
     : context_(context), pass_(context, irradiance_comp, sizeof(gpu::IrradiancePush), "irradiance") {}
 
 PassStats IrradiancePass::run(const LevelBuffers& buffers, std::uint32_t level, const ShadowMaps& shadows, float eta) {
-  const std::uint32_t subdivision = std::min(finest_subdivision << std::min(level, 3u), largest_subdivision);
+  const std::uint32_t subdivision = finest_subdivision + more_per_level * level;
   const gpu::IrradiancePush push{.vertices = buffers.vertices.address(),
                                  .faces = buffers.faces.address(),
                                  .q = buffers.q.address(),

@@ -13,10 +13,10 @@
 namespace quadgraph {
 namespace {
 
-// The quantile of the covered pixels' luminance that is brought to `bright`, which the curve shows at two thirds of
+// The quantile of the covered pixels' luminance that is brought to `bright`, which the curve shows at three quarters of
 // full sRGB: thin parts that glow then keep their shape above it.
-constexpr double exposure_quantile = 0.9;
-constexpr double bright = 0.28;
+constexpr double exposure_quantile = 0.95;
+constexpr double bright = 0.4;
 
 double luminance(const Picture& picture, std::size_t pixel) {
   constexpr double weight[3] = {0.2126, 0.7152, 0.0722};  // ITU-R BT.709

@@ -24,7 +24,7 @@ float filmic(float radiance);
 // sRGB transfer function (IEC 61966-2-1) of a linear value in [0, 1].
 float srgb_encode(float linear);
 
-// Stops that bring the 0.9 quantile of the luminance of the covered pixels to the curve's bright middle. Depends on
+// Stops that bring the 0.95 quantile of the luminance of the covered pixels to the curve's bright middle. Depends on
 // nothing but the picture; 0 for a black one.
 float auto_exposure(const Picture& picture);
 
