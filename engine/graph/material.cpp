@@ -46,8 +46,8 @@ gpu::Material homogeneous(const glm::vec3& sigma_s_prime, const glm::vec3& sigma
   material.kind = gpu::MATERIAL_HOMOGENEOUS;
   material.vein_sigma_s_prime = sigma_s_prime;
   material.vein_sigma_a = sigma_a;
-  material.vein_period = 25.0f;
-  material.vein_sharpness = 5.0f;
+  material.vein_period = 16.0f;
+  material.vein_sharpness = 14.0f;
   return material;
 }
 
@@ -59,8 +59,8 @@ std::optional<gpu::Material> named(std::string_view name) {
   gpu::Material material = homogeneous(row->sigma_s_prime, row->sigma_a, row->eta);
   if (veins) {
     material.kind = gpu::MATERIAL_MARBLE_VEINS;
-    material.vein_sigma_s_prime = {1.6f, 1.8f, 1.9f};
-    material.vein_sigma_a = {0.030f, 0.033f, 0.042f};
+    material.vein_sigma_s_prime = {1.2f, 1.2f, 1.2f};
+    material.vein_sigma_a = {0.85f, 0.78f, 0.74f};
   }
   return material;
 }
