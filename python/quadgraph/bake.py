@@ -202,6 +202,7 @@ def _metadata(source: SourceMesh, repairs: list[Repair], levels: list[_Level], o
         },
         "unit_mm": source.unit_mm,
         "mesher": {"name": mesher.name, "version": mesher.version, "options": mesher.options, "grading": grading},
+        "options": {key: getattr(options, key) for key in ("levels", "surface_vertices", "relax_nodes", "order")},
         "repairs": [asdict(entry) for entry in repairs],
         "levels": [sections.level_metadata(level.graph) for level in levels],
         "tools": {

@@ -50,7 +50,7 @@ def _add_mesh_options(parser: argparse.ArgumentParser) -> None:
         "--grading", type=positive_float, metavar="K", help="growth of cgal's tets with depth (default: 1)"
     )
     parser.add_argument(
-        "--relax-nodes", type=steps, metavar="N", help="steps that spread the inner nodes evenly (default: 8; 0: none)"
+        "--relax-nodes", type=steps, metavar="N", help="steps that spread the inner nodes evenly (default: 16; 0: none)"
     )
     parser.add_argument(
         "--order", choices=("blocks", "random"), default="blocks", help="of nodes in memory (default: %(default)s)"

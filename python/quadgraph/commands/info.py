@@ -64,12 +64,15 @@ def _print_facts(name: str, facts: dict[str, Any]) -> None:
     grading = "" if mesher["grading"] is None else f", grading {mesher['grading']}"
     repairs = ", ".join(f"{entry['what']}: {entry['count']}" for entry in metadata["repairs"]) or "none"
     tools = ", ".join(f"{tool} {version}" for tool, version in metadata["tools"].items())
+    given = {key: value for key, value in metadata.get("options", {}).items() if value is not None}
+    options = ", ".join(f"{key} {value}" for key, value in given.items()) or "unknown"
     lines = [
         f"{name}: {facts['byte_size'] / 1e6:.2f} MB, {size} mm, by {metadata['generator']}",
         f"source: {source['name']}, {source['vertices']:,} vertices, {source['triangles']:,} triangles, "
         f"unit {metadata['unit_mm']:g} mm",
         f"sha256: {source['sha256']}",
         f"mesher: {mesher['name']} {mesher['version']} {mesher['options']}{grading}",
+        f"options: {options}",
         f"repairs: {repairs}",
         f"tools: {tools}",
     ]
