@@ -67,6 +67,19 @@ def build_chain(
     return chain
 
 
+def simplify(surface: Surface, vertices: int, *, min_angle_degrees: float = DEFAULT_MIN_ANGLE_DEGREES) -> Surface:
+    """Simplify a closed 2-manifold (mm) to about `vertices` vertices, with the promises of a level of `build_chain`.
+
+    Raises InputError where no valid surface of that size is found or `vertices` is not below the surface's own.
+    """
+    if not 4 <= vertices < len(surface.vertices):
+        raise InputError(f"surface_vertices: {vertices} found, allowed are 4 to {len(surface.vertices) - 1}")
+    coarse, trouble = _next_level(surface, vertices, min_angle_degrees)
+    if coarse is None:
+        raise InputError(f"surface_vertices: no valid surface of {vertices} vertices: {trouble}")
+    return coarse
+
+
 def _summary(level: int, surface: Surface, bound: float) -> str:
     thin = int((surface.angles.min(axis=1) < bound).sum())
     left = f", {thin} triangles below {bound:g}" if thin else ""
