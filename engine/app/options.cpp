@@ -43,6 +43,7 @@ void declare_scene(CLI::App& app, Typed& typed) {
   app.add_option("--light", typed.lights,
                  "directional:DX,DY,DZ:IRRADIANCE (the way the light travels; W/mm^2) or point:X,Y,Z:POWER (mm; W), "
                  "the last one value or R/G/B; may be repeated. Default: one from behind, one from the side")
+      ->allow_extra_args(false)
       ->group("Scene");
   app.add_option("--view", typed.view,
                  "azimuth,elevation[,distance] in degrees and mm from the object's centre; azimuth 0 looks along -z, "
@@ -147,6 +148,7 @@ std::optional<AppOptions> parse_command_line(int argc, const char* const* argv, 
   CLI::App app("Renders a translucent object: light enters, diffuses through the body and leaves it.",
                "quadgraph-engine");
   app.set_version_flag("--version", QUADGRAPH_VERSION);
+  app.footer("Example: quadgraph-engine bunny.qgraph --headless -o bunny.png --material skin1 --view 20,15");
   Typed typed;
   declare(app, typed);
   try {

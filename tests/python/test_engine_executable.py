@@ -69,16 +69,16 @@ def test_exr_and_json(tmp_path: Path):
     path = tmp_path / "cube.exr"
     light = "directional:0,0,-1:1/2/3"
     result = run(
-        tiny.PATH, "--headless", "-o", path, "--json", "--light", light, "--method", "quadgraph-fdm",
-        "--material", "sigma_s_prime=1,sigma_a=0.1,eta=1", "--size", "64x64", "--view", "30,20,9",
+        "--headless", "-o", path, "--json", "--method", "quadgraph-fdm", "--material", "sigma_s_prime=1,sigma_a=0.1,eta=1",
+        "--size", "64x64", "--view", "-30,-20,9", "--light", light, "--light", "point:1,1,50:0", tiny.PATH,
     )  # fmt: skip
     assert result.returncode == 0, result.stderr
     assert struct.unpack("<I", path.read_bytes()[:4]) == (20000630,)  # OpenEXR's magic number
     report = json.loads(result.stdout)
     assert report["solve"]["method"] == "quadgraph-fdm"
     assert report["solve"]["energy"]["entered_W"] == pytest.approx([4, 8, 12], rel=1e-4)  # a face of 4 mm^2
-    assert report["metadata"]["lights"] == light
-    assert report["metadata"]["camera"].startswith("view 30,20,9,")
+    assert report["metadata"]["lights"] == light + " point:1,1,50:0"
+    assert report["metadata"]["camera"].startswith("view -30,-20,9,")
     assert {"shadow maps", "irradiance", "surface", "resolve"} <= {entry["name"] for entry in report["passes"]}
     assert report["device_bytes"]["peak"] >= report["device_bytes"]["now"] > 0
     assert report["wall_ms"]["total"] > 0
