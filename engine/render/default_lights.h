@@ -9,7 +9,7 @@
 namespace quadgraph {
 
 // Seen from `view`: a warm key light from behind, above and to the left, that shines through thin parts, and a
-// cool one from the right side, about a seventh as strong.
+// cool one from the right side, somewhat to the front, a fifth as strong.
 std::vector<Light> default_lights(const View& view);
 
 }  // namespace quadgraph
