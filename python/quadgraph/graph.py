@@ -142,3 +142,16 @@ def first_use(vertices: np.ndarray, leading: np.ndarray, *indices: np.ndarray) -
     number = np.empty(len(vertices), np.int64)
     number[order] = np.arange(len(order))
     return vertices[order], [number[index] for index in indices]
+
+
+def barycentric_gradients(corners: np.ndarray) -> np.ndarray:
+    """(n, 3, 3) gradients, 1/mm, of the barycentric coordinates 1, 2, 3 in positive tets with corners (n, 4, 3), mm."""
+    u, v, w = (corners[:, k] - corners[:, 0] for k in (1, 2, 3))
+    normals = np.stack([np.cross(v, w), np.cross(w, u), np.cross(u, v)], axis=1)
+    return normals / np.einsum("ij,ij->i", u, normals[:, 0])[:, None, None]
+
+
+def barycentric(gradients: np.ndarray, offsets: np.ndarray) -> np.ndarray:
+    """Coordinates (n, 4) of points at (n, 3) `offsets` from corner 0 of tets with these `barycentric_gradients`."""
+    last = np.einsum("ijk,ik->ij", gradients, offsets)
+    return np.concatenate([1 - last.sum(axis=1, keepdims=True), last], axis=1)

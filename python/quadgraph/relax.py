@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from quadgraph.graph import Graph
+from quadgraph.graph import Graph, barycentric, barycentric_gradients
 
 DEFAULT_STEPS = 16  # where the unlit side of a sphere is nearest to the closed form (quadgraph-fdm)
 _STRENGTH = 0.25  # share of the missing distance that one link makes up in one step
@@ -19,9 +19,12 @@ def relax(graph: Graph, steps: int) -> Graph:
     A link shorter than the mean of its two nodes' typical link lengths pushes them apart, as Turk's points do within
     their radius of repulsion; the typical length is local, since the tets are graded.
     """
+    corners = graph.vertices[graph.tets]
+    gradients = barycentric_gradients(corners)
     inner = graph.inner
     for _ in range(steps):
-        inner = _held_inside(graph, inner + _push(graph, inner))
+        target = inner + _push(graph, inner)
+        inner = _held_inside(corners.mean(axis=1), barycentric(gradients, target - corners[:, 0]), target)
     return replace(graph, inner=inner)
 
 
@@ -42,23 +45,10 @@ def _push(graph: Graph, inner: np.ndarray) -> np.ndarray:
     return _STRENGTH * np.einsum("ij,ijk->ik", missing, offset)
 
 
-def _held_inside(graph: Graph, target: np.ndarray) -> np.ndarray:
+def _held_inside(centroid: np.ndarray, coordinates: np.ndarray, target: np.ndarray) -> np.ndarray:
     """Shorten the way from the centroid to `target` so that no barycentric coordinate falls below the margin."""
-    corners = graph.vertices[graph.tets]
-    centroid = corners.mean(axis=1)
-    smallest = barycentric(corners, target).min(axis=1)
-    share = (0.25 - _MARGIN) / np.maximum(0.25 - smallest, np.finfo(float).tiny)
+    share = (0.25 - _MARGIN) / np.maximum(0.25 - coordinates.min(axis=1), np.finfo(float).tiny)
     return centroid + np.minimum(share, 1)[:, None] * (target - centroid)
-
-
-def barycentric(corners: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Coordinates (n, 4) of (n, 3) `points` in the tets (n, 4, 3)."""
-    origin = corners[:, 0]
-    u, v, w = (corners[:, k] - origin for k in (1, 2, 3))
-    offset = points - origin
-    volume = np.einsum("ij,ij->i", u, np.cross(v, w))
-    last = [np.einsum("ij,ij->i", offset, np.cross(*pair)) / volume for pair in ((v, w), (w, u), (u, v))]
-    return np.stack([1 - sum(last), *last], axis=1)
 
 
 def link_length_variation(graph: Graph) -> dict[str, float]:

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from quadgraph.graph import Graph
+from quadgraph.graph import Graph, barycentric_gradients
+from quadgraph.graph import barycentric as coordinates_of
 
 INNER_NODES = 8
 SURFACE_NODES = 4
@@ -72,19 +73,14 @@ class _Locator:
         self.points, self.graph = points, graph
         corners = graph.vertices[graph.tets]
         self.origin = corners[:, 0]
-        # Columns: edges from corner 0. Coordinates 1 to 3 of x solve  edges * c = x - origin.
-        self.inverse = np.linalg.inv((corners[:, 1:] - corners[:, :1]).transpose(0, 2, 1))
+        self.gradients = barycentric_gradients(corners)
         self.tet = np.zeros(len(points), np.int64)
         self.coordinates = np.zeros((len(points), 4))
         self.error = np.full(len(points), np.inf)  # mm^2
 
-    def coordinates_in(self, rows: np.ndarray, tets: np.ndarray) -> np.ndarray:
-        last = np.einsum("ijk,ik->ij", self.inverse[tets], self.points[rows] - self.origin[tets])
-        return np.concatenate([1 - last.sum(axis=1, keepdims=True), last], axis=1)
-
     def offer(self, rows: np.ndarray, tets: np.ndarray) -> np.ndarray:
         """Take `tets` for the points `rows` where they are better; returns the coordinates in them."""
-        coordinates = self.coordinates_in(rows, tets)
+        coordinates = coordinates_of(self.gradients[tets], self.points[rows] - self.origin[tets])
         reached = np.einsum("ij,ijk->ik", _clamped(coordinates), self.graph.vertices[self.graph.tets[tets]])
         error = ((reached - self.points[rows]) ** 2).sum(axis=1)
         error[coordinates.min(axis=1) >= -_INSIDE] = 0
