@@ -31,8 +31,11 @@ void main() {
     vec3 q = push.q.at[i], exitance = push.exitance.at[i];
     sums.entered = area * q;
     sums.exitance = area * exitance;
-    vec3 scaled = exitance * push.scale.at[0].inverse;
-    vec3 difference = (exitance - push.coarse_exitance.at[i]) * push.scale.at[0].inverse;
+    // One factor for all channels, which are weighed alike.
+    vec3 inverse = push.scale.at[0].inverse;
+    float factor = min(inverse.x, min(inverse.y, inverse.z));
+    vec3 scaled = exitance * factor;
+    vec3 difference = (exitance - push.coarse_exitance.at[i]) * factor;
     vec2 squares = area * vec2(dot(difference, difference), dot(scaled, scaled));
     sums.error = vec4(squares, q == vec3(0) ? squares : vec2(0));
   }

@@ -13,10 +13,11 @@ void main() {
   vec3 largest;
   if (!reduce_dispatch(push.reduction, i < push.count ? push.q.at[i] : vec3(0), largest)) return;
   if (gl_LocalInvocationID.x != 0u) return;
+  vec3 any_channel = vec3(max(largest.x, max(largest.y, largest.z)));
+  largest = mix(any_channel, largest, greaterThan(largest, vec3(0)));
   ivec3 exponent;
   frexp(largest, exponent);
   exponent = clamp(exponent, ivec3(-126), ivec3(126));
-  bvec3 lit = greaterThan(largest, vec3(0));
-  push.scale.at[0].scale = mix(vec3(1), ldexp(vec3(1), exponent), lit);
-  push.scale.at[0].inverse = mix(vec3(1), ldexp(vec3(1), -exponent), lit);
+  push.scale.at[0].scale = ldexp(vec3(1), exponent);
+  push.scale.at[0].inverse = ldexp(vec3(1), -exponent);
 }

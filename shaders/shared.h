@@ -1,4 +1,4 @@
-// Types that GLSL and C++ share, in scalar layout. tests/cpp/shared_layout_test.cpp compares every offset and array
+// Types that GLSL and C++ share, in scalar layout. tests/cpp/solve_layout_test.cpp compares every offset and array
 // stride in the compiled shaders with offsetof and sizeof.
 #ifndef QUADGRAPH_SHARED_H
 #define QUADGRAPH_SHARED_H
@@ -98,7 +98,7 @@ struct SolveState {
 
 // Powers of two that bring the irradiance near 1, so that squares neither overflow nor vanish.
 struct Scale {
-  vec3 scale;    // W/mm^2; 1 in a channel without light
+  vec3 scale;    // W/mm^2; in a channel without light that of the brightest, and 1 without any
   vec3 inverse;  // mm^2/W
 };
 

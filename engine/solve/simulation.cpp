@@ -9,56 +9,13 @@
 #include "engine/graph/material.h"
 #include "engine/solve/assembly.h"
 #include "engine/solve/level_solver.h"
+#include "engine/solve/level_upload.h"
 #include "engine/solve/surface_results.h"
 
 namespace quadgraph {
 namespace {
 
 constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
-
-LevelBuffers upload_level(vk::Context& context, const Level& level, std::uint32_t index) {
-  const std::string prefix = "level " + std::to_string(index) + " ";
-  LevelBuffers buffers;
-  buffers.vertex_count = level.vertex_count();
-  buffers.tet_count = level.tet_count();
-  buffers.face_count = level.face_count();
-  buffers.node_count = level.node_count();
-  buffers.surface_vertex_count = level.surface_vertex_count;
-  buffers.vertices = vk::upload(context, level.vertices, prefix + "vertices");
-  buffers.tets = vk::upload(context, level.tets, prefix + "tets");
-  buffers.faces = vk::upload(context, level.faces, prefix + "faces");
-  buffers.face_tets = vk::upload(context, level.face_tets, prefix + "face_tets");
-  buffers.links = vk::upload(context, level.links, prefix + "links");
-  buffers.nodes = vk::upload(context, level.nodes, prefix + "nodes");
-  buffers.optical =
-      vk::Buffer(context, level.nodes.size() * sizeof(gpu::Optical), vk::Place::device, prefix + "optical");
-  buffers.q = vk::Buffer(context, level.faces.size() * vec3_bytes, vk::Place::device, prefix + "q");
-  return buffers;
-}
-
-// The transfers of one level that a method needs, on the device.
-struct TransferBuffers {
-  struct Part {
-    vk::Buffer index, weight;
-    std::uint32_t width = 0, first = 0, coarse_first = 0, count = 0;
-  };
-  std::vector<Part> parts;
-
-  TransferBuffers(vk::Context& context, const Level& level, const Level& coarse, std::uint32_t number, Method method) {
-    const std::string prefix = "level " + std::to_string(number) + " ";
-    const auto add = [&](const Transfer& t, const std::string& name, std::uint32_t first, std::uint32_t coarse_first) {
-      parts.push_back({vk::upload(context, t.index, prefix + name + "_index"),
-                       vk::upload(context, t.weight, prefix + name + "_weight"), t.width, first, coarse_first,
-                       static_cast<std::uint32_t>(t.index.size() / t.width)});
-    };
-    if (method == Method::fem) {
-      add(level.barycentric, "barycentric", 0, 0);
-    } else {
-      add(level.inner, "inner", 0, 0);
-      add(level.surface, "surface", level.tet_count(), coarse.tet_count());
-    }
-  }
-};
 
 void check_irradiance(std::span<const glm::vec3> q, std::uint32_t level, std::uint32_t count) {
   if (q.size() != count) {
@@ -108,8 +65,6 @@ struct Simulation::Implementation {
         work(context_in, largest_dispatch()),
         results(context_in, levels[0]) {
     for (auto& method : methods) method.resize(levels.size());
-    for (const LevelBuffers& level : levels) work.recorder.fill(level.q, 0);
-    work.recorder.submit();
   }
 
   static std::vector<LevelBuffers> upload_levels(vk::Context& context, const QuadGraph& graph) {

@@ -1,0 +1,46 @@
+#include "engine/solve/level_upload.h"
+
+#include "engine/vk/commands.h"
+
+namespace quadgraph {
+
+LevelBuffers upload_level(vk::Context& context, const Level& level, std::uint32_t number) {
+  const std::string prefix = "level " + std::to_string(number) + " ";
+  LevelBuffers buffers;
+  buffers.vertex_count = level.vertex_count();
+  buffers.tet_count = level.tet_count();
+  buffers.face_count = level.face_count();
+  buffers.node_count = level.node_count();
+  buffers.surface_vertex_count = level.surface_vertex_count;
+  buffers.vertices = vk::upload(context, level.vertices, prefix + "vertices");
+  buffers.tets = vk::upload(context, level.tets, prefix + "tets");
+  buffers.faces = vk::upload(context, level.faces, prefix + "faces");
+  buffers.face_tets = vk::upload(context, level.face_tets, prefix + "face_tets");
+  buffers.links = vk::upload(context, level.links, prefix + "links");
+  buffers.nodes = vk::upload(context, level.nodes, prefix + "nodes");
+  buffers.optical =
+      vk::Buffer(context, level.nodes.size() * sizeof(gpu::Optical), vk::Place::device, prefix + "optical");
+  buffers.q = vk::Buffer(context, level.faces.size() * sizeof(glm::vec3), vk::Place::device, prefix + "q");
+  vk::Commands commands(context);
+  commands.fill(buffers.q, 0);
+  commands.submit_and_wait();
+  return buffers;
+}
+
+TransferBuffers::TransferBuffers(vk::Context& context, const Level& level, const Level& coarse, std::uint32_t number,
+                                 Method method) {
+  const std::string prefix = "level " + std::to_string(number) + " ";
+  const auto add = [&](const Transfer& t, const std::string& name, std::uint32_t first, std::uint32_t coarse_first) {
+    parts.push_back({vk::upload(context, t.index, prefix + name + "_index"),
+                     vk::upload(context, t.weight, prefix + name + "_weight"), t.width, first, coarse_first,
+                     static_cast<std::uint32_t>(t.index.size() / t.width)});
+  };
+  if (method == Method::fem) {
+    add(level.barycentric, "barycentric", 0, 0);
+  } else {
+    add(level.inner, "inner", 0, 0);
+    add(level.surface, "surface", level.tet_count(), coarse.tet_count());
+  }
+}
+
+}  // namespace quadgraph

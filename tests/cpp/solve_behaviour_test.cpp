@@ -1,0 +1,189 @@
+// What a solve does and says: iterations, limits, what is done again, and failures.
+#include <doctest/doctest.h>
+
+#include <limits>
+
+#include "engine/graph/error.h"
+#include "engine/solve/level_solver.h"
+#include "tests/cpp/solve_fixtures.h"
+
+using namespace quadgraph;
+
+TEST_CASE("a start from the coarser level saves iterations") {
+  Scene alone({8});
+  Scene chain({8, 4, 2});
+  for (Scene* scene : {&alone, &chain}) {
+    scene->simulation.set_material(homogeneous(0.01f));
+    scene->light(one_side);
+  }
+  for (Method method : both_methods) {
+    for (SolverKind solver : both_solvers) {
+      CAPTURE(name_of(method));
+      CAPTURE(name_of(solver));
+      const SolveReport from_zero = alone.simulation.solve(options(method, solver, 1e-3));
+      const SolveReport from_coarse = chain.simulation.solve(options(method, solver, 1e-3));
+      CHECK(from_coarse.levels.back().iterations < from_zero.levels.back().iterations);
+      CHECK(!from_zero.error);
+      CHECK(from_coarse.error);
+    }
+  }
+}
+
+TEST_CASE("iterations stop at the limit, with the reference's iterate") {
+  Scene scene({4});
+  scene.simulation.set_material(veined());
+  scene.light(one_side);
+  const Level& level = scene.graph.levels()[0];
+  const auto optical = evaluate_material(level, veined());
+  const auto q = scene.irradiance(0, one_side);
+  for (Method method : both_methods) {
+    for (SolverKind solver : both_solvers) {
+      for (const std::uint32_t limit : {1u, 5u, 8u, 35u}) {
+        CAPTURE(name_of(method));
+        CAPTURE(name_of(solver));
+        CAPTURE(limit);
+        const SolveOptions how = options(method, solver, 1e-7, limit);
+        const SolveReport report = scene.simulation.solve(how);
+        CHECK(report.levels[0].iterations == limit);
+        CHECK(!report.levels[0].converged);
+        CHECK(report.levels[0].residual > 1e-7);
+        const ReferenceSolution expected = solve_reference(level, optical, 1.3, q, how);
+        // The relaxation's step differs: the GPU bounds each channel, the CPU all together.
+        const bool same_step = solver == SolverKind::dpcg || method == Method::quadgraph_fdm;
+        if (same_step) CHECK(relative_difference(scene.simulation.phi(), expected.phi) < 1e-3);
+      }
+    }
+  }
+}
+
+TEST_CASE("what single precision cannot reach is said, not looped for") {
+  Scene scene({4, 2});
+  scene.simulation.set_material(homogeneous(0.001f));
+  scene.light(one_side);
+  for (Method method : both_methods) {
+    for (SolverKind solver : both_solvers) {
+      CAPTURE(name_of(method));
+      CAPTURE(name_of(solver));
+      const SolveReport report = scene.simulation.solve(options(method, solver, 1e-12, 100000));
+      CHECK(!report.levels.back().converged);
+      CHECK(report.levels.back().residual > 1e-12);
+      CHECK(report.levels.back().residual < 1e-5);
+      CHECK(report.levels.back().iterations < 20000);
+    }
+  }
+}
+
+TEST_CASE("only what changed is done again, and results repeat bit for bit") {
+  Scene scene({4, 2});
+  Simulation& simulation = scene.simulation;
+  simulation.set_material(homogeneous(0.1f));
+  scene.light(one_side);
+  for (Method method : both_methods) {
+    CAPTURE(name_of(method));
+    const SolveOptions how = options(method, SolverKind::dpcg, 1e-4);
+    simulation.solve(how);
+    CHECK(pass_count(simulation, "assembly") == 2);
+    CHECK(pass_count(simulation, "material") == (method == Method::fem ? 2 : 0));
+    const std::vector<glm::vec3> first = simulation.phi();
+
+    simulation.solve(how);
+    CHECK(pass_count(simulation, "assembly") == 0);
+    CHECK(pass_count(simulation, "right-hand side") == 0);
+    CHECK(pass_count(simulation, "cg-multiply") > 0);
+    CHECK(simulation.phi() == first);
+
+    scene.light([](const glm::vec3& p) { return 2.0f * one_side(p); });
+    simulation.solve(how);
+    CHECK(pass_count(simulation, "assembly") == 0);
+    CHECK(pass_count(simulation, "material") == 0);
+    CHECK(pass_count(simulation, "right-hand side") == 3);
+    CHECK(simulation.phi() != first);
+
+    scene.light(one_side);
+    simulation.solve(how);
+    CHECK(simulation.phi() == first);
+  }
+  simulation.set_material(homogeneous());
+  simulation.solve({});
+  CHECK(pass_count(simulation, "material") == 2);
+  CHECK(pass_count(simulation, "assembly") == 2);
+  for (const PassStats& pass : simulation.passes()) {
+    CAPTURE(pass.name);
+    CHECK(pass.time_ms > 0);
+    CHECK(pass.bytes > 0);
+    CHECK(pass.count > 0);
+  }
+}
+
+TEST_CASE("input that cannot be used is refused with what is allowed") {
+  Scene scene({3});
+  Simulation& simulation = scene.simulation;
+  CHECK_THROWS_AS(simulation.solve({}), InputError);
+  CHECK_THROWS_AS(simulation.material(), InputError);
+  CHECK_THROWS_AS(simulation.phi(), InputError);
+  CHECK_THROWS_AS(simulation.surface_field(), InputError);
+  gpu::Material bad = homogeneous();
+  bad.eta = 5.0f;
+  CHECK_THROWS_AS(simulation.set_material(bad), InputError);
+  simulation.set_material(homogeneous());
+  CHECK_THROWS_AS(simulation.solve(options(Method::fem, SolverKind::dpcg, 0)), InputError);
+  std::vector<glm::vec3> q = scene.irradiance(0, one_side);
+  CHECK_THROWS_AS(simulation.set_irradiance(1, q), InputError);
+  q[3].y = -1.0f;
+  CHECK_THROWS_WITH_AS(simulation.set_irradiance(0, q), doctest::Contains("surface node 3, channel 1"), InputError);
+  q.pop_back();
+  CHECK_THROWS_AS(simulation.set_irradiance(0, q), InputError);
+}
+
+TEST_CASE("light that is not finite is a solver error, and the next solve is sound") {
+  Scene scene({3});
+  scene.simulation.set_material(homogeneous());
+  std::vector<glm::vec3> q = scene.irradiance(0, one_side);
+  q[0].y = std::numeric_limits<float>::quiet_NaN();
+  vk::write_bytes(scene.device.context, scene.simulation.level(0).q, std::as_bytes(std::span(q)));
+  scene.simulation.irradiance_changed();
+  for (SolverKind solver : both_solvers) {
+    CHECK_THROWS_WITH_AS(scene.simulation.solve(options(Method::fem, solver, 1e-3)), doctest::Contains("channel 1"),
+                         SolverError);
+  }
+  CHECK_THROWS_AS(scene.simulation.phi(), InputError);
+  scene.light(one_side);
+  CHECK(scene.simulation.solve({}).levels[0].converged);
+}
+
+TEST_CASE("a matrix that is not positive definite breaks down by name") {
+  CheckedContext device;
+  vk::Context& context = device.context;
+  const OwnedLevel owned = split_at_centroids(box_level(2, 4.0f));
+  OperatorBuffers op(context, owned.view(), 3, Method::fem);
+  Workspace work(context, op.count);
+  const std::vector<glm::vec3> one(op.entries, glm::vec3(1)), minus(op.entries, glm::vec3(-1));
+  const auto write = [&](const vk::Buffer& buffer, const std::vector<glm::vec3>& values) {
+    vk::write_bytes(context, buffer, std::as_bytes(std::span(values)).first(buffer.size()));
+  };
+  gpu::SolveState state{};
+  state.norm = glm::vec3(static_cast<float>(op.count));
+  for (SolverKind solver : both_solvers) {
+    write(op.diagonal, one);
+    write(op.weight, minus);
+    write(op.b, one);
+    write(op.x, std::vector<glm::vec3>(op.entries, glm::vec3(0)));
+    write(op.damping, one);
+    vk::write_bytes(context, op.state, std::as_bytes(std::span(&state, 1)));
+    const char* expected = solver == SolverKind::dpcg ? "not positive definite" : "diverges";
+    CHECK_THROWS_WITH_AS(solve_level(work, op, 3, options(Method::fem, solver, 1e-3)), doctest::Contains(expected),
+                         SolverError);
+  }
+}
+
+// The published surface rows lose definiteness where kappa behind the surface falls below h / (1 + h) of that on it.
+TEST_CASE("published rows that are not positive definite fail on the GPU as in the reference") {
+  Scene scene({2});
+  scene.simulation.set_material(veined());
+  scene.light([](const glm::vec3& p) { return glm::vec3(p.x, p.y, 0.5f); });
+  const SolveOptions how = options(Method::quadgraph_fdm, SolverKind::dpcg, 1e-6);
+  CHECK_THROWS_WITH_AS(scene.simulation.solve(how), doctest::Contains("level 0: quadgraph-fdm"), SolverError);
+  const Level& level = scene.graph.levels()[0];
+  const auto q = scene.irradiance(0, [](const glm::vec3& p) { return glm::vec3(p.x, p.y, 0.5f); });
+  CHECK_THROWS_AS(solve_reference(level, evaluate_material(level, veined()), 1.3, q, how), SolverError);
+}
