@@ -9,13 +9,38 @@ import numpy as np
 from quadgraph.errors import ToolError
 from quadgraph.surface import Surface
 
+_HOLE_STEP = 1e-3  # of a triangle's size: how far before it a cavity is marked
+
+
+def _hole_points(surface: Surface) -> np.ndarray:
+    """(h, 3) a point in each cavity, mm: just before the largest triangle of each piece that encloses negative volume.
+
+    TetGen would fill a cavity that no point marks.
+    """
+    points = []
+    count, labels = surface.vertex_components
+    if count > 1:
+        piece_of = labels[surface.triangles[:, 0]]
+        for piece in np.unique(piece_of):
+            part = Surface(surface.vertices, surface.triangles[piece_of == piece])
+            if part.volume < 0:
+                size = np.linalg.norm(part.doubled_normals, axis=1)
+                largest = size.argmax()
+                step = _HOLE_STEP * part.doubled_normals[largest] / np.sqrt(size[largest])
+                points.append(part.corners[largest].mean(axis=0) + step)
+    return np.array(points).reshape(-1, 3)
+
 
 def write_smesh(surface: Surface, path: Path) -> None:
     """Write a closed surface as TetGen's .smesh with 17 digits, so that the program reads the very same doubles."""
     n, m = len(surface.vertices), len(surface.triangles)
-    points = "".join(f"{i} {x!r} {y!r} {z!r}\n" for i, (x, y, z) in enumerate(surface.vertices.tolist()))
+    found = _hole_points(surface)
+    points, holes = (
+        "".join(f"{i} {x!r} {y!r} {z!r}\n" for i, (x, y, z) in enumerate(rows.tolist()))
+        for rows in (surface.vertices, found)
+    )
     facets = "".join(f"3 {a} {b} {c}\n" for a, b, c in surface.triangles.tolist())
-    path.write_text(f"{n} 3 0 0\n{points}{m} 0\n{facets}0\n0\n")
+    path.write_text(f"{n} 3 0 0\n{points}{m} 0\n{facets}{len(found)}\n{holes}0\n")
 
 
 def write_off(surface: Surface, path: Path) -> None:

@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+
 from quadgraph.errors import InputError
 from quadgraph.local_mesh import LocalMesh
 from quadgraph.lod import build_chain

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from quadgraph.cgal_mesh import CGAL_MESH
 from quadgraph.child_process import Program, run
 from quadgraph.errors import InputError, ToolError
 from quadgraph.surface import Surface
@@ -82,6 +83,60 @@ def test_crossings_are_found_and_only_there() -> None:
     middle = crossing.corners[found].mean(axis=1)
     assert np.abs(np.linalg.norm(middle, axis=1) - np.linalg.norm(middle - (0.9, 0.1, 0.05), axis=1)).max() < 0.5
     assert not len(intersecting_triangles(join(icosphere(2), moved(icosphere(2), 2.5, 0, 0))))
+
+
+@pytest.fixture(scope="module")
+def cgal() -> None:
+    """The CGAL mesher's tests need the program, which is an option of the build."""
+    try:
+        CGAL_MESH.path()
+    except ToolError as missing:
+        pytest.skip(str(missing))
+
+
+@pytest.mark.usefixtures("cgal")
+def test_cgal_volume_converges_to_the_ball() -> None:
+    spheres = [icosphere(n, 10) for n in (1, 2, 3)]
+    meshes = [tetrahedralise(sphere, mesher="cgal", grading=1.0) for sphere in spheres]
+    for mesh in meshes:
+        assert mesh.determinants.min() > 0
+        assert mesh.boundary().compacted().is_closed_manifold
+        assert mesh.boundary().compacted().components == 1
+        assert np.linalg.norm(mesh.vertices, axis=1).max() < 10 * (1 + 1e-6)
+    error = [1 - mesh.volume / (4 / 3 * np.pi * 1000) for mesh in meshes]
+    assert np.polyfit(np.log([4, 2, 1]), np.log(error), 1)[0] > 1.5
+
+
+@pytest.mark.usefixtures("cgal")
+def test_cgal_grading_grows_tets_inside_and_keeps_the_surface() -> None:
+    sphere = icosphere(3, 10)
+    meshes = [tetrahedralise(sphere, mesher="cgal", grading=K) for K in (0.2, 0.5, 1.0, 2.0)]
+    tets = [len(mesh.tets) for mesh in meshes]
+    assert tets == sorted(tets, reverse=True)
+    assert tets[0] > 2 * tets[-1]
+    size = [np.cbrt(mesh.determinants).mean() for mesh in meshes]
+    assert size == sorted(size)
+    fine = meshes[0]
+    depth = 10 - np.linalg.norm(fine.vertices[fine.tets].mean(axis=1), axis=1)
+    edge = np.cbrt(fine.determinants * np.sqrt(2))  # of the regular tet of that volume
+    local = np.linalg.norm(np.diff(sphere.vertices[sphere.topology.edges], axis=1), axis=2).mean()
+    # The field bounds sizes from above: no tet is much larger than grading * distance + local size.
+    assert (edge < 1.3 * (0.2 * depth + local)).all()
+
+
+@pytest.mark.usefixtures("cgal")
+def test_cgal_is_the_same_every_time() -> None:
+    first, second = (tetrahedralise(torus(), mesher="cgal", grading=1.0) for _ in range(2))
+    assert np.array_equal(first.vertices, second.vertices)
+    assert np.array_equal(first.tets, second.tets)
+    assert first.boundary().compacted().genus == 1
+
+
+@pytest.mark.usefixtures("cgal")
+def test_cgal_refuses_crossing_surfaces() -> None:
+    crossing = join(icosphere(2), moved(icosphere(2), 0.9, 0.1, 0.05)).rounded()
+    with pytest.raises(ToolError, match="intersects itself"):
+        tetrahedralise(crossing, mesher="cgal")
 
 
 def test_rounding_keeps_tets_positive() -> None:
