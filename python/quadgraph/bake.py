@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextvars
 import importlib.metadata
-import importlib.util
 import platform
 import resource
 import sys
@@ -16,7 +15,7 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from quadgraph import __version__, child_process, graph, lod, mesh_io, ordering, qgraph_file, relax, sections
+from quadgraph import __version__, child_process, graph, lod, mesh_io, ordering, qgraph_file, relax, repair, sections
 from quadgraph.errors import InputError, QuadGraphError
 from quadgraph.surface import MesherInfo, Repair, SourceMesh, Surface
 from quadgraph.tetrahedralise import (
@@ -101,7 +100,7 @@ def bake(mesh: Path, output: Path, options: BakeOptions, progress: Progress | No
         source = mesh_io.read_surface(mesh, unit=options.unit, height_mm=options.height_mm)
     tell(f"read {source.name}: {source.vertices:,} vertices, {source.triangles:,} triangles")
     with report.timed("repair"):
-        surface, repairs = _repaired(source)
+        surface, repairs = repair.repair(source.surface, source.name)
     for entry in repairs:
         tell(f"repaired: {entry.what}: {entry.count:,}")
     levels = _make_levels(surface.rounded(), options, report, tell)
@@ -112,15 +111,6 @@ def bake(mesh: Path, output: Path, options: BakeOptions, progress: Progress | No
         report.byte_size = qgraph_file.write(output, metadata, content)
     report.seconds["total"] = time.perf_counter() - start
     return _complete(report, metadata, levels)
-
-
-def _repaired(source: SourceMesh) -> tuple[Surface, list[Repair]]:
-    """Repair with quadgraph.repair where this build has it; without it, only faultless surfaces pass."""
-    if importlib.util.find_spec("quadgraph.repair"):
-        return importlib.import_module("quadgraph.repair").repair(source.surface, source.name)
-    if not source.surface.is_closed_manifold or source.surface.volume <= 0:
-        raise InputError(f"{source.name}: not a closed, outward-facing 2-manifold")
-    return source.surface, []
 
 
 def _check_options(output: Path, options: BakeOptions) -> None:
