@@ -8,7 +8,7 @@
 #include "engine/app/options.h"
 #include "engine/app/report.h"
 #include "engine/graph/error.h"
-#include "engine/render/text.h"
+#include "engine/render/metadata.h"
 
 using namespace quadgraph;
 
@@ -29,16 +29,9 @@ class Stages {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-Metadata write_picture(const AppOptions& options, const Picture& picture, Metadata metadata) {
-  ToneOptions tone = options.tone;
-  tone.exposure_stops = tone.exposure_stops.value_or(auto_exposure(picture));
-  metadata.emplace_back("exposure", number_text(*tone.exposure_stops) + " stops");
-  if (options.output.extension() == ".exr") {
-    write_exr(options.output, picture, metadata);
-  } else {
-    write_png(options.output, picture, tone, metadata);
-  }
-  return metadata;
+void write_picture(const AppOptions& options, const Picture& picture, const Metadata& metadata) {
+  const auto write = options.output.extension() == ".exr" ? write_exr : write_png;
+  write(options.output, picture, options.tone, metadata);
 }
 
 void refuse_messages(const vk::Context& context) {
@@ -60,9 +53,10 @@ void run(const AppOptions& options) {
   stages.end("solve");
   const Picture picture = engine.render(options.view, options.render);
   stages.end("render");
-  const Metadata metadata = write_picture(options, picture, engine.metadata());
+  write_picture(options, picture, engine.metadata());
   stages.end("write");
   refuse_messages(engine.context());
+  const Metadata metadata = with_exposure(engine.metadata(), picture, options.tone);
   const RunReport report{engine, solve, metadata, options.output.string(), stages.wall_ms};
   std::cout << (options.json ? json_report(report) : text_report(report)) << "\n";
 }

@@ -23,8 +23,8 @@ enum class UpAxis { y, z };
 // A view of the object's centre. With y up, azimuth 0 looks along -z (from +z), azimuth 90 looks along -x (from +x).
 // With z up, azimuth 0 looks along +y (from -y), azimuth 90 along -x. Positive elevation looks from above.
 struct View {
-  float azimuth = 0;              // degrees
-  float elevation = 10;           // degrees, -90 to 90
+  float azimuth = 0;                // degrees
+  float elevation = 10;             // degrees, -90 to 90
   std::optional<float> distance{};  // mm from the centre; without it the bounding sphere fits the picture
   UpAxis up = UpAxis::y;
   float vertical_fov = 30;  // degrees, 1 to 150

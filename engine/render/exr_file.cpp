@@ -5,6 +5,7 @@
 #include <OpenEXR/ImfStringAttribute.h>
 
 #include "engine/render/atomic_file.h"
+#include "engine/render/metadata.h"
 #include "engine/render/picture.h"
 
 namespace quadgraph {
@@ -23,10 +24,12 @@ void add_rgb(Imf::Header& header, Imf::FrameBuffer& frame, const std::string& pr
 
 }  // namespace
 
-void write_exr(const std::filesystem::path& path, const Picture& picture, const Metadata& metadata) {
+void write_exr(const std::filesystem::path& path, const Picture& picture, const ToneOptions& options,
+               const Metadata& metadata) {
   Imf::Header header(static_cast<int>(picture.width), static_cast<int>(picture.height));
   header.compression() = Imf::ZIP_COMPRESSION;
-  for (const auto& [key, value] : metadata) header.insert(key, Imf::StringAttribute(value));
+  for (const auto& [key, value] : with_exposure(metadata, picture, options))
+    header.insert(key, Imf::StringAttribute(value));
 
   // OpenEXR's frame buffer wants non-const memory for reading and writing alike.
   std::vector<float> diffuse = picture.diffuse, specular = picture.specular, alpha = picture.alpha;

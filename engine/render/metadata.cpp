@@ -55,4 +55,9 @@ Metadata describe(const PictureFacts& facts) {
   return metadata;
 }
 
+Metadata with_exposure(Metadata metadata, const Picture& picture, const ToneOptions& options) {
+  metadata.emplace_back("exposure", number_text(exposure_of(picture, options)) + " stops");
+  return metadata;
+}
+
 }  // namespace quadgraph

@@ -29,4 +29,7 @@ struct PictureFacts {
 
 Metadata describe(const PictureFacts& facts);
 
+// The metadata and, last, the exposure.
+Metadata with_exposure(Metadata metadata, const Picture& picture, const ToneOptions& options);
+
 }  // namespace quadgraph

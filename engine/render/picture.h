@@ -25,13 +25,15 @@ using Metadata = std::vector<std::pair<std::string, std::string>>;
 // 8-bit sRGB RGB rows, tone mapped and laid over the background.
 std::vector<std::uint8_t> to_srgb8(const Picture& picture, const ToneOptions& options);
 
-// Both write a temporary file beside `path` and rename it. Throw InputError naming the file.
+// Both write a temporary file beside `path` and rename it, and add to the metadata "exposure": the stops that
+// to_srgb8 applies. Throw InputError naming the file.
 // PNG: to_srgb8, metadata as tEXt.
 void write_png(const std::filesystem::path& path, const Picture& picture, const ToneOptions& options,
                const Metadata& metadata);
 
-// EXR: float32 linear, channels R, G, B (diffuse + specular), A, diffuse.R/G/B, specular.R/G/B; metadata as string
-// attributes.
-void write_exr(const std::filesystem::path& path, const Picture& picture, const Metadata& metadata);
+// EXR: float32 linear and not exposed, channels R, G, B (diffuse + specular), A, diffuse.R/G/B, specular.R/G/B;
+// metadata as string attributes.
+void write_exr(const std::filesystem::path& path, const Picture& picture, const ToneOptions& options,
+               const Metadata& metadata);
 
 }  // namespace quadgraph

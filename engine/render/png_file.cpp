@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "engine/render/atomic_file.h"
+#include "engine/render/metadata.h"
 #include "engine/render/picture.h"
 
 namespace quadgraph {
@@ -79,7 +80,7 @@ float dither(std::size_t x, std::size_t y) {
 }  // namespace
 
 std::vector<std::uint8_t> to_srgb8(const Picture& picture, const ToneOptions& options) {
-  const float scale = std::exp2(options.exposure_stops.value_or(auto_exposure(picture)));
+  const float scale = std::exp2(exposure_of(picture, options));
   std::vector<std::uint8_t> bytes(std::size_t{3} * picture.width * picture.height);
   for (std::size_t y = 0; y < picture.height; ++y) {
     const float down = (static_cast<float>(y) + 0.5f) / static_cast<float>(picture.height);
@@ -104,11 +105,12 @@ std::vector<std::uint8_t> to_srgb8(const Picture& picture, const ToneOptions& op
 void write_png(const std::filesystem::path& path, const Picture& picture, const ToneOptions& options,
                const Metadata& metadata) {
   const auto rows = to_srgb8(picture, options);
+  const Metadata all = with_exposure(metadata, picture, options);
   write_atomically(path, [&](const std::filesystem::path& temporary) {
     File file(std::fopen(temporary.c_str(), "wb"), std::fclose);
     if (!file) throw std::runtime_error(std::strerror(errno));
     PngWriter writer;
-    const auto text = texts(metadata);
+    const auto text = texts(all);
     if (!write_all(writer, file.get(), picture, rows.data(), text.data(), static_cast<int>(text.size()))) {
       throw std::runtime_error(writer.error);
     }

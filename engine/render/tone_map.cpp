@@ -52,6 +52,10 @@ float auto_exposure(const Picture& picture) {
   return *middle > 0 ? static_cast<float>(std::log2(bright / *middle)) : 0.0f;
 }
 
+float exposure_of(const Picture& picture, const ToneOptions& options) {
+  return options.exposure_stops ? *options.exposure_stops : auto_exposure(picture);
+}
+
 std::optional<float> parse_exposure(std::string_view text) {
   if (text == "auto") return std::nullopt;
   return static_cast<float>(parse_number(text, "exposure (auto or stops)"));

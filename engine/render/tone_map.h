@@ -28,6 +28,9 @@ float srgb_encode(float linear);
 // nothing but the picture; 0 for a black one.
 float auto_exposure(const Picture& picture);
 
+// The stops of `options`, or else those of auto_exposure.
+float exposure_of(const Picture& picture, const ToneOptions& options);
+
 // Parses "auto" or a number of stops. Throws InputError.
 std::optional<float> parse_exposure(std::string_view text);
 

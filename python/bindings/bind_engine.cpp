@@ -109,10 +109,12 @@ void bind_picture(py::module_& module) {
           py::arg("background") = "studio")
       .def(
           "write_exr",
-          [](const Picture& picture, const std::filesystem::path& path, const Metadata& metadata) {
-            write_exr(path, picture, metadata);
+          [](const Picture& picture, const std::filesystem::path& path, const Metadata& metadata,
+             const std::string& exposure) {
+            write_exr(path, picture, {.exposure_stops = parse_exposure(exposure)}, metadata);
           },
-          py::arg("path"), py::arg("metadata") = Metadata{});
+          py::arg("path"), py::arg("metadata") = Metadata{}, py::arg("exposure") = "auto",
+          "Linear and not exposed; `exposure` is only noted in its attributes.");
 }
 
 std::unique_ptr<Engine> make_engine(const std::filesystem::path& path, const std::string& device, bool validation) {

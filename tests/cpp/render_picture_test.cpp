@@ -136,6 +136,7 @@ TEST_CASE("a PNG reads back as what is shown, with its metadata") {
   std::map<std::string, std::string> found;
   for (int i = 0; i < count; ++i) found[text[i].key] = text[i].text;
   for (const auto& [key, value] : metadata) CHECK(found[key] == value);
+  CHECK(std::stof(found["exposure"]) == doctest::Approx(auto_exposure(picture)));
   png_destroy_read_struct(&png, &info, nullptr);
   std::fclose(file);
 }
@@ -144,7 +145,7 @@ TEST_CASE("an EXR keeps the layers, their sum, negative values and its attribute
   const Folder folder;
   const auto path = folder.path / "picture.exr";
   const Picture picture = sample_picture();
-  write_exr(path, picture, metadata);
+  write_exr(path, picture, {}, metadata);
   CHECK(folder.file_count() == 1);
 
   Imf::InputFile file(path.c_str());
@@ -165,13 +166,14 @@ TEST_CASE("an EXR keeps the layers, their sum, negative values and its attribute
     REQUIRE(attribute != nullptr);
     CHECK(attribute->value() == value);
   }
+  CHECK(file.header().findTypedAttribute<Imf::StringAttribute>("exposure") != nullptr);
 }
 
 TEST_CASE("a picture that cannot be written leaves nothing and names the file") {
   const Folder folder;
   const auto missing = folder.path / "no such folder";
   CHECK_THROWS_WITH_AS(write_png(missing / "a.png", sample_picture(), {}, {}), doctest::Contains("a.png"), InputError);
-  CHECK_THROWS_WITH_AS(write_exr(missing / "a.exr", sample_picture(), {}), doctest::Contains("a.exr"), InputError);
+  CHECK_THROWS_WITH_AS(write_exr(missing / "a.exr", sample_picture(), {}, {}), doctest::Contains("a.exr"), InputError);
   // A directory in the way: the temporary file must not stay behind.
   std::filesystem::create_directories(folder.path / "b.png" / "full");
   CHECK_THROWS_AS(write_png(folder.path / "b.png", sample_picture(), {}, {}), InputError);

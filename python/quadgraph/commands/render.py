@@ -80,7 +80,7 @@ def run(args: argparse.Namespace) -> int:
         if path.suffix.lower() == ".png":
             picture.write_png(path, engine.metadata, args.exposure, args.background)
         else:
-            picture.write_exr(path, engine.metadata)
+            picture.write_exr(path, engine.metadata, args.exposure)
     report |= {"passes": engine.passes, "device": engine.device_name, "driver": engine.driver}
     report["seconds"] = time.perf_counter() - start
     if args.json:
