@@ -39,10 +39,9 @@ void main() {
     vec2 squares = area * vec2(dot(difference, difference), dot(scaled, scaled));
     sums.error = vec4(squares, q == vec3(0) ? squares : vec2(0));
   }
-  sums.entered = reduce_workgroup(sums.entered);
-  sums.exitance = reduce_workgroup(sums.exitance);
-  sums.absorbed = reduce_workgroup(sums.absorbed);
-  sums.error.xyz = reduce_workgroup(sums.error.xyz);
-  sums.error.w = reduce_workgroup(vec3(sums.error.w)).x;
-  if (gl_LocalInvocationID.x == 0u) push.sums.at[gl_WorkGroupID.x] = sums;
+  vec3 parts[5] = vec3[](sums.entered, sums.exitance, sums.absorbed, sums.error.xyz, vec3(sums.error.w));
+  [[dont_unroll]] for (int k = 0; k < 5; ++k) parts[k] = reduce_workgroup(parts[k]);
+  if (gl_LocalInvocationID.x == 0u) {
+    push.sums.at[gl_WorkGroupID.x] = EnergySums(parts[0], parts[1], parts[2], vec4(parts[3], parts[4].x));
+  }
 }

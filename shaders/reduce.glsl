@@ -6,23 +6,26 @@
 #define REDUCE_ZERO vec3(0)
 #endif
 
+#extension GL_EXT_control_flow_attributes : require
+
 shared vec3 reduce_scratch[WORKGROUP_SIZE];
 shared bool reduce_last;
 
-// Result in invocation 0. Two rounds of 16 need fewer barriers than a binary tree.
+// Result in invocation 0. Two rounds of 16 need fewer barriers than a binary tree. Loops stay loops: unrolled, every
+// invocation of lavapipe would walk through all of the body with nothing to do, and compile it for a second.
 vec3 reduce_workgroup(vec3 value) {
   uint lane = gl_LocalInvocationID.x;
   reduce_scratch[lane] = value;
   barrier();
   if (lane < 16u) {
-    vec3 part = reduce_scratch[lane];
-    for (uint k = 16u; k < WORKGROUP_SIZE; k += 16u) part = REDUCE(part, reduce_scratch[lane + k]);
+    vec3 part = value;
+    [[dont_unroll]] for (uint k = lane + 16u; k < WORKGROUP_SIZE; k += 16u) part = REDUCE(part, reduce_scratch[k]);
     reduce_scratch[lane] = part;
   }
   barrier();
   vec3 total = REDUCE_ZERO;
   if (lane == 0u) {
-    for (uint k = 0u; k < 16u; ++k) total = REDUCE(total, reduce_scratch[k]);
+    [[dont_unroll]] for (uint k = 0u; k < 16u; ++k) total = REDUCE(total, reduce_scratch[k]);
   }
   barrier();
   return total;

@@ -211,13 +211,20 @@ void Context::pick_device(const std::string& wanted) {
 }
 
 void Context::read_properties() {
+  VkPhysicalDeviceMaintenance4Properties maintenance4{};
+  maintenance4.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_PROPERTIES;
+  VkPhysicalDeviceMaintenance3Properties maintenance3{};
+  maintenance3.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES;
+  maintenance3.pNext = &maintenance4;
   VkPhysicalDeviceDriverProperties driver{};
   driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
+  driver.pNext = &maintenance3;
   VkPhysicalDeviceProperties2 properties{};
   properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
   properties.pNext = &driver;
   vkGetPhysicalDeviceProperties2(physical_device_, &properties);
   limits_ = properties.properties.limits;
+  max_buffer_bytes_ = std::min(maintenance3.maxMemoryAllocationSize, maintenance4.maxBufferSize);
   info_ = {properties.properties.deviceName, std::string(driver.driverName) + " " + driver.driverInfo,
            properties.properties.deviceType};
   vkGetPhysicalDeviceMemoryProperties(physical_device_, &memory_properties_);

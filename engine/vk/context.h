@@ -36,6 +36,7 @@ class Context {
   VkQueue queue() const { return queue_; }
   std::uint32_t queue_family() const { return queue_family_; }
   const VkPhysicalDeviceLimits& limits() const { return limits_; }
+  std::uint64_t max_buffer_bytes() const { return max_buffer_bytes_; }
   const DeviceInfo& info() const { return info_; }
 
   // Index of a memory type allowed by `type_bits` with all of `required`, preferring `preferred`. Throws VulkanError.
@@ -74,6 +75,7 @@ class Context {
   VkQueue queue_ = VK_NULL_HANDLE;
   std::uint32_t queue_family_ = 0;
   VkPhysicalDeviceLimits limits_{};
+  std::uint64_t max_buffer_bytes_ = 0;
   VkPhysicalDeviceMemoryProperties memory_properties_{};
   DeviceInfo info_;
   bool debug_utils_ = false;

@@ -47,6 +47,10 @@ Allocation::~Allocation() {
 }
 
 Buffer::Buffer(Context& context, std::uint64_t size, Place place, const std::string& name) : size_(size) {
+  if (size > context.max_buffer_bytes()) {
+    throw VulkanError("buffer '" + name + "' of " + std::to_string(size) + " bytes: " + context.info().name +
+                      " allows at most " + std::to_string(context.max_buffer_bytes()));
+  }
   VkBufferCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
   info.size = std::max<std::uint64_t>(size, 4);
@@ -60,7 +64,12 @@ Buffer::Buffer(Context& context, std::uint64_t size, Place place, const std::str
 
   VkMemoryRequirements requirements;
   vkGetBufferMemoryRequirements(context.device(), buffer, &requirements);
-  allocation_ = Allocation(context, requirements, place, true);
+  try {
+    allocation_ = Allocation(context, requirements, place, true);
+  } catch (const VulkanError& error) {
+    throw VulkanError("buffer '" + name + "': " + error.what() + "; " + std::to_string(context.allocated_bytes()) +
+                      " bytes are in use");
+  }
   check(vkBindBufferMemory(context.device(), buffer, allocation_.memory(), 0), "vkBindBufferMemory '" + name + "'");
   if (place == Place::host) {
     check(vkMapMemory(context.device(), allocation_.memory(), 0, VK_WHOLE_SIZE, 0, &mapped_),

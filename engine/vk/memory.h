@@ -34,7 +34,8 @@ class Allocation {
   UniqueMemory memory_;
 };
 
-// A storage buffer reached by its device address. `size` is in bytes and may be 0, which allocates the minimum.
+// A storage buffer reached by its device address. `size` is in bytes and may be 0, which allocates the minimum. Throws
+// VulkanError naming the buffer if the device allows no buffer of that size or has no memory left.
 class Buffer {
  public:
   Buffer() = default;

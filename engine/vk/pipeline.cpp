@@ -1,5 +1,7 @@
 #include "engine/vk/pipeline.h"
 
+#include <algorithm>
+
 #include "engine/graph/error.h"
 
 namespace quadgraph::vk {
@@ -104,6 +106,12 @@ ComputePass::ComputePass(Context& context, Spirv code, std::uint32_t push_size, 
       workgroup_size_(workgroup_size),
       name_(name),
       layout_(push_layout(context, push_size, VK_SHADER_STAGE_COMPUTE_BIT, name)) {
+  const VkPhysicalDeviceLimits& limits = context.limits();
+  const std::uint32_t largest = std::min(limits.maxComputeWorkGroupInvocations, limits.maxComputeWorkGroupSize[0]);
+  if (workgroup_size > largest) {
+    throw VulkanError(name + " needs workgroups of " + std::to_string(workgroup_size) + " invocations, " +
+                      context.info().name + " allows " + std::to_string(largest));
+  }
   const UniqueShaderModule module = shader_module(context, code, name);
   VkComputePipelineCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;

@@ -1,0 +1,59 @@
+// Buffers: contents, bookkeeping and limits.
+#include <doctest/doctest.h>
+
+#include <numeric>
+
+#include "engine/graph/error.h"
+#include "engine/vk/commands.h"
+
+using namespace quadgraph;
+
+TEST_CASE("a buffer larger than the device allows is refused by name, without allocating") {
+  vk::Context context({.validation = true, .device = ""});
+  const std::uint64_t size = context.max_buffer_bytes() + 4;
+  REQUIRE(context.max_buffer_bytes() > 0);
+  CHECK_THROWS_WITH_AS(vk::Buffer(context, size, vk::Place::device, "level 7 weight"),
+                       doctest::Contains("level 7 weight"), VulkanError);
+  CHECK(context.allocated_bytes() == 0);
+  for (const auto& message : context.validation_messages()) FAIL_CHECK(message);
+}
+
+TEST_CASE("contents survive a round trip, and reads and writes stay within a buffer") {
+  vk::Context context({.validation = true, .device = ""});
+  {
+    std::vector<std::uint32_t> values(1001);
+    std::iota(values.begin(), values.end(), 7u);
+    const auto buffer = vk::upload<std::uint32_t>(context, values, "values");
+    CHECK(vk::download<std::uint32_t>(context, buffer) == values);
+    const std::vector<std::uint32_t> front = {1, 2, 3};
+    vk::write_bytes(context, buffer, std::as_bytes(std::span(front)));
+    std::copy(front.begin(), front.end(), values.begin());
+    CHECK(vk::download<std::uint32_t>(context, buffer) == values);
+    values.push_back(0);
+    CHECK_THROWS_AS(vk::write_bytes(context, buffer, std::as_bytes(std::span(values))), InputError);
+    CHECK_THROWS_AS(vk::read_bytes(context, buffer, std::as_writable_bytes(std::span(values))), InputError);
+    const auto empty = vk::upload<std::uint32_t>(context, {}, "empty");
+    CHECK(empty.size() == 0);
+    CHECK(vk::download<std::uint32_t>(context, empty).empty());
+  }
+  CHECK(context.allocated_bytes() == 0);
+  for (const auto& message : context.validation_messages()) FAIL_CHECK(message);
+}
+
+TEST_CASE("moving a buffer moves its memory") {
+  vk::Context context({.validation = true, .device = ""});
+  {
+    vk::Buffer first(context, 256, vk::Place::device, "first");
+    vk::Buffer second(context, 1024, vk::Place::device, "second");
+    const std::uint64_t both = context.allocated_bytes();
+    const VkDeviceAddress address = second.address();
+    std::swap(first, second);
+    CHECK(first.address() == address);
+    CHECK(first.size() == 1024);
+    CHECK(context.allocated_bytes() == both);
+    second = vk::Buffer();
+    CHECK(context.allocated_bytes() < both);
+  }
+  CHECK(context.allocated_bytes() == 0);
+  for (const auto& message : context.validation_messages()) FAIL_CHECK(message);
+}
