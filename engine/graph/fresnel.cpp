@@ -5,6 +5,7 @@
 namespace quadgraph {
 
 double fresnel_transmittance(double cos_i, double eta) {
+  if (eta == 1.0) return 1.0;  // the quotients below are 0/0 at grazing incidence
   const double cos_t = std::sqrt(1.0 - (1.0 - cos_i * cos_i) / (eta * eta));
   const double parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
   const double perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);

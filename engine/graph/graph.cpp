@@ -1,5 +1,6 @@
 #include "engine/graph/graph.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -83,7 +84,7 @@ void QuadGraph::AlignedDelete::operator()(std::byte* p) const {
 QuadGraph QuadGraph::parse(std::span<const std::byte> bytes, const std::string& name) {
   QuadGraph graph;
   graph.allocate(bytes.size());
-  std::memcpy(graph.bytes_.get(), bytes.data(), bytes.size());
+  std::copy(bytes.begin(), bytes.end(), graph.bytes_.get());
   graph.read(name);
   return graph;
 }

@@ -26,11 +26,18 @@ glm::dvec3 scaled_norm(const Rows& rows, const Vector& r) {
   return sum;
 }
 
-// Worst channel of sqrt(r^T D^-1 r / b^T D^-1 b); channels without light count as solved.
+// Worst channel of sqrt(r^T D^-1 r / b^T D^-1 b); channels without light count as solved. Throws SolverError if it is
+// no number any more, which every comparison with a tolerance would let pass.
 double relative(const glm::dvec3& r, const glm::dvec3& b) {
   double worst = 0;
   for (int c = 0; c < 3; ++c) {
-    if (b[c] > 0) worst = std::max(worst, std::sqrt(r[c] / b[c]));
+    if (b[c] == 0) continue;
+    const double residual = std::sqrt(r[c] / b[c]);
+    if (!std::isfinite(residual)) {
+      throw SolverError("the residual in channel " + std::to_string(c) +
+                        " is not finite: the iteration diverged, or a tet or a link is too small for the operator");
+    }
+    worst = std::max(worst, residual);
   }
   return worst;
 }

@@ -23,7 +23,8 @@ struct ReferenceSolution {
 std::vector<gpu::Optical> evaluate_material(const Level& level, const gpu::Material& material);
 
 // Solves one level from zero to `options.tolerance` (cascade: plain relaxation on this level). Throws InputError as
-// `assemble` does, SolverError if conjugate gradients meet a direction of non-positive energy.
+// `assemble` does, SolverError if conjugate gradients meet a direction of non-positive energy or the residual is no
+// longer finite.
 ReferenceSolution solve_reference(const Level& level, std::span<const gpu::Optical> optical, double eta,
                                   std::span<const glm::vec3> q, const SolveOptions& options);
 

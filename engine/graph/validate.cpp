@@ -98,6 +98,18 @@ void check_orientation(const Place& place, const Level& level) {
   }
 }
 
+// The row of a vertex without a tet would be empty, and the fem system singular.
+void check_vertices_used(const Place& place, const Level& level) {
+  std::vector<bool> used(level.vertices.size(), false);
+  for (const glm::uvec4& tet : level.tets) {
+    for (int k = 0; k < 4; ++k) used[tet[k]] = true;
+  }
+  const auto lonely = std::find(used.begin(), used.end(), false);
+  if (lonely != used.end()) {
+    place.fail("vertices", static_cast<std::size_t>(lonely - used.begin()), "no tet uses this vertex");
+  }
+}
+
 // Vertices of the face opposite to vertex k of a positive tet, counter-clockwise seen from outside.
 glm::uvec3 outward_face(const glm::uvec4& tet, int k) {
   switch (k) {
@@ -187,6 +199,7 @@ void validate_level(const Level& level, const Level* coarser, const std::string&
     if (level.face_tets[f] >= level.tets.size()) place.fail("face_tets", f, "index out of range");
   }
   check_orientation(place, level);
+  check_vertices_used(place, level);
   check_links(place, level);
   check_surface_vertices(place, level);
   if (coarser == nullptr) return;

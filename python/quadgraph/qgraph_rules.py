@@ -137,6 +137,8 @@ def _check_level(level: dict[str, np.ndarray], counts: dict[str, int], where: st
     _check_range(level["links"], n_n, f"{where}/links")
     wrong = np.flatnonzero(~(determinants(level["vertices"], level["tets"]) > 0))
     _require(not len(wrong), f"{where}/tets", f"tet {wrong[0] if len(wrong) else ''} is not positively oriented")
+    orphans = np.setdiff1d(np.arange(n_v), level["tets"])
+    _require(not len(orphans), f"{where}/vertices", f"vertex {orphans[0] if len(orphans) else ''} is used by no tet")
     used = np.unique(level["faces"])
     _require(len(used) == used[-1] + 1, f"{where}/vertices", "the vertices on the surface do not come first")
     _check_inner_links(level["links"], n_t, f"{where}/links")
