@@ -4,7 +4,7 @@
 #include "engine/graph/graph.h"
 #include "engine/graph/solution.h"
 #include "engine/vk/memory.h"
-#include "shaders/shared.h"
+#include "shaders/solve_shared.h"
 
 namespace quadgraph {
 

@@ -1,6 +1,6 @@
 #include "engine/solve/passes.h"
 
-#include "shaders/shared.h"
+#include "shaders/solve_shared.h"
 #include "spirv/assemble_fdm.comp.h"
 #include "spirv/assemble_fem.comp.h"
 #include "spirv/cg_direction.comp.h"

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "engine/graph/error.h"
-#include "shaders/shared.h"
+#include "shaders/solve_shared.h"
 
 namespace quadgraph {
 namespace {

@@ -1,4 +1,4 @@
-// What an operator's rows look like on one level before any value is known: columns in slices (shaders/shared.h,
+// What an operator's rows look like on one level before any value is known: columns in slices (shaders/solve_shared.h,
 // RowsRef), and which tets and faces contribute to which row.
 #pragma once
 

@@ -1,6 +1,6 @@
 #include "engine/solve/workspace.h"
 
-#include "shaders/shared.h"
+#include "shaders/solve_shared.h"
 
 namespace quadgraph {
 

@@ -1,11 +1,11 @@
-// The structs of shaders/shared.h lie in memory as the compiled shaders read them: offsets of members, and strides of
+// The structs of shaders/shared.h and solve_shared.h lie in memory as the compiled shaders read them: offsets of members, and strides of
 // the arrays they form.
 #include <doctest/doctest.h>
 
 #include <cstddef>
 
 #include "engine/vk/pipeline.h"
-#include "shaders/shared.h"
+#include "shaders/solve_shared.h"
 #include "spirv/assemble_fdm.comp.h"
 #include "spirv/assemble_fem.comp.h"
 #include "spirv/cg_direction.comp.h"

@@ -1,0 +1,284 @@
+// What the passes of assembly and solve share with C++, in scalar layout; see shared.h.
+#ifndef QUADGRAPH_SOLVE_SHARED_H
+#define QUADGRAPH_SOLVE_SHARED_H
+
+#include "shared.h"
+
+// Rows per slice of an operator (sliced ELL): neighbouring invocations read neighbouring entries, and a row is padded
+// only to the longest of its slice. 32 is the width of the widest common subgroup.
+#define SLICE_ROWS 32
+
+#ifdef __cplusplus
+namespace quadgraph::gpu {
+#endif
+
+// Operator rows of one level and method, without the right-hand side: (A x)_i = diagonal_i x_i + sum_e weight_e
+// x_column_e over e = slice_offset[i / SLICE_ROWS] + i % SLICE_ROWS, in steps of SLICE_ROWS, to the next slice. Padding
+// entries name their own row with weight 0.
+struct RowsRef {
+  QG_REF(Uints) slice_offset;
+  QG_REF(Uints) column;
+  QG_REF(Vec3s) weight;
+  QG_REF(Vec3s) diagonal;
+};
+
+const uint SOLVE_RUNNING = 0u;
+const uint SOLVE_CONVERGED = 1u;
+const uint SOLVE_STAGNATED = 2u;     // single precision allows no smaller residual
+const uint SOLVE_EXHAUSTED = 3u;     // iteration limit reached
+const uint SOLVE_NOT_POSITIVE = 4u;  // p^T A p <= 0
+const uint SOLVE_NOT_FINITE = 5u;    // overflow or NaN
+const uint SOLVE_DIVERGED = 6u;      // relaxation grows
+
+// State of the solve of one level; the residual of a channel is sqrt(rz / norm).
+struct SolveState {
+  uvec3 iterate;    // indirect workgroup counts of the next iteration; zero when it is not wanted
+  uvec3 check;      // of the pass that computes the true residual
+  vec3 norm;        // b^T D^-1 b
+  vec3 rz;          // r^T D^-1 r
+  vec3 alpha;       // step along p; 0 in a channel that has converged
+  vec3 beta;        // share of the old direction
+  float residual;   // worst channel
+  float checked;    // worst channel, at the last computation of the true residual
+  uint iterations;  // done
+  uint status;      // SOLVE_*
+  uint channel;     // that failed
+};
+
+// Powers of two that bring the irradiance near 1, so that squares neither overflow nor vanish.
+struct Scale {
+  vec3 scale;    // W/mm^2; in a channel without light that of the brightest, and 1 without any
+  vec3 inverse;  // mm^2/W
+};
+
+// Sums of one workgroup of energy.comp.
+struct EnergySums {
+  vec3 entered;   // W
+  vec3 exitance;  // W
+  vec3 absorbed;  // W
+  // Area-weighted squares, scaled, channels together: (M - M_coarse)^2, M^2, and both over faces with q = 0.
+  vec4 error;
+};
+
+#ifndef __cplusplus
+QG_ARRAY(SolveStates, SolveState);
+QG_ARRAY(Scales, Scale);
+QG_ARRAY(EnergySumsArray, EnergySums);
+#endif
+
+// assemble_fdm.comp: weight, diagonal and to_phi of engine/graph/operator.h, one invocation per node.
+struct AssembleFdmPush {
+  RowsRef rows;
+  QG_REF(Vec3s) nodes;
+  QG_REF(Opticals) optical;
+  QG_REF(Vec3s) to_phi;
+  uint count;      // nodes
+  uint tet_count;  // inner nodes
+  float mismatch;
+};
+
+// assemble_fem.comp: weight and diagonal, one invocation per vertex. An incidence is (tet * 4 + own corner, places of
+// the other three corners in the row, 10 bits each, in ascending order of corner), or (face, places of the next two
+// corners).
+struct AssembleFemPush {
+  RowsRef rows;
+  QG_REF(Vec3s) vertices;
+  QG_REF(Uvec4s) tets;
+  QG_REF(Uvec3s) faces;
+  QG_REF(Opticals) optical;
+  QG_REF(Uints) tet_offset;
+  QG_REF(Uvec2s) tet_incidence;
+  QG_REF(Uints) face_offset;
+  QG_REF(Uvec2s) face_incidence;
+  uint count;
+  uint surface_count;
+  float mismatch;
+};
+
+// irradiance_scale.comp: `scale` from the largest q per channel.
+struct IrradianceScalePush {
+  QG_REF(Vec3s) q;
+  QG_REF(Scales) scale;
+  QG_REF(Reduction) reduction;
+  uint count;
+};
+
+// right_hand_side_fdm.comp: scaled b at every node, and its norm.
+struct RightHandSideFdmPush {
+  QG_REF(Vec3s) nodes;
+  QG_REF(Opticals) optical;
+  QG_REF(Uints) face_tets;
+  QG_REF(Vec3s) q;
+  QG_REF(Scales) scale;
+  QG_REF(Vec3s) diagonal;
+  QG_REF(Vec3s) b;
+  QG_REF(SolveStates) state;
+  QG_REF(Reduction) reduction;
+  uint count;
+  uint tet_count;
+  float mismatch;
+  float source;  // Q / q
+};
+
+// right_hand_side_fem.comp: scaled b at every vertex, and its norm.
+struct RightHandSideFemPush {
+  QG_REF(Vec3s) vertices;
+  QG_REF(Uvec3s) faces;
+  QG_REF(Uints) face_offset;
+  QG_REF(Uvec2s) face_incidence;
+  QG_REF(Vec3s) q;
+  QG_REF(Scales) scale;
+  QG_REF(Vec3s) diagonal;
+  QG_REF(Vec3s) b;
+  QG_REF(SolveStates) state;
+  QG_REF(Reduction) reduction;
+  uint count;
+  uint surface_count;
+  float mismatch;
+  float source;  // Q / q
+};
+
+// damping.comp: the largest step of a relaxation that cannot diverge, 2 / min(4, max row sum of D^-1 |A|), per channel.
+// 4 bounds linear tetrahedra: no eigenvalue of an element's D^-1 K exceeds its trace.
+struct DampingPush {
+  RowsRef rows;
+  QG_REF(Vec3s) damping;
+  QG_REF(Reduction) reduction;
+  uint count;
+};
+
+// transfer.comp: x = sum of weight * to_phi_coarse * x_coarse / to_phi, for `count` rows from `first` on; 0 in a
+// channel without light.
+struct TransferPush {
+  QG_REF(Uints) index;
+  QG_REF(Floats) weight;
+  QG_REF(Vec3s) coarse_x;
+  QG_REF(Vec3s) coarse_to_phi;
+  QG_REF(Vec3s) to_phi;
+  QG_REF(Vec3s) x;
+  QG_REF(SolveStates) state;
+  uint width;
+  uint first;
+  uint coarse_first;  // added to every index
+  uint count;
+};
+
+// cg_start.comp: r = b - A x, p = r / D; decides whether to iterate. `first` resets the state.
+struct CgStartPush {
+  RowsRef rows;
+  QG_REF(Vec3s) b;
+  QG_REF(Vec3s) x;
+  QG_REF(Vec3s) r;
+  QG_REF(Vec3s) p;
+  QG_REF(SolveStates) state;
+  QG_REF(Reduction) reduction;
+  uint count;
+  uint max_iterations;
+  float tolerance;
+  uint first;
+};
+
+// cg_multiply.comp: product = A p, alpha.
+struct CgMultiplyPush {
+  RowsRef rows;
+  QG_REF(Vec3s) p;
+  QG_REF(Vec3s) product;
+  QG_REF(SolveStates) state;
+  QG_REF(Reduction) reduction;
+  uint count;
+  float tolerance;
+};
+
+// cg_update.comp: x += alpha p, r -= alpha A p, beta; stops the iteration.
+struct CgUpdatePush {
+  QG_REF(Vec3s) diagonal;
+  QG_REF(Vec3s) p;
+  QG_REF(Vec3s) product;
+  QG_REF(Vec3s) x;
+  QG_REF(Vec3s) r;
+  QG_REF(SolveStates) state;
+  QG_REF(Reduction) reduction;
+  uint count;
+  uint max_iterations;
+  float tolerance;
+};
+
+// cg_direction.comp: p = r / D + beta p.
+struct CgDirectionPush {
+  QG_REF(Vec3s) diagonal;
+  QG_REF(Vec3s) r;
+  QG_REF(Vec3s) p;
+  QG_REF(SolveStates) state;
+  uint count;
+};
+
+// sweep.comp: to = from + damping (b - A from) / D. With `sweeps` > 0 it also takes the residual of `from`, counts that
+// many sweeps as done and stops the relaxation if it can.
+struct SweepPush {
+  RowsRef rows;
+  QG_REF(Vec3s) b;
+  QG_REF(Vec3s) from;
+  QG_REF(Vec3s) to;
+  QG_REF(Vec3s) damping;
+  QG_REF(SolveStates) state;
+  QG_REF(Reduction) reduction;
+  uint count;
+  uint sweeps;
+  float tolerance;
+};
+
+// exitance.comp: phi and M = (phi - 2q) / (2A) per outside face. fem: mean of the face's vertices; quadgraph-fdm: the
+// surface node, x at tet_count + face.
+struct ExitancePush {
+  QG_REF(Uvec3s) faces;
+  QG_REF(Vec3s) x;
+  QG_REF(Vec3s) to_phi;
+  QG_REF(Vec3s) q;
+  QG_REF(Scales) scale;
+  QG_REF(Vec3s) phi;
+  QG_REF(Vec3s) exitance;
+  uint count;
+  uint tet_count;
+  uint fem;  // 1: fem, 0: quadgraph-fdm
+  float mismatch;
+};
+
+// vertex_exitance.comp: M per surface vertex, from the area-weighted mean q of its faces and phi: at the vertex (fem)
+// or the area-weighted mean of its faces.
+struct VertexExitancePush {
+  QG_REF(Vec3s) vertices;
+  QG_REF(Uvec3s) faces;
+  QG_REF(Uints) face_offset;
+  QG_REF(Uvec2s) face_incidence;
+  QG_REF(Vec3s) x;
+  QG_REF(Vec3s) q;
+  QG_REF(Vec3s) phi_face;
+  QG_REF(Scales) scale;
+  QG_REF(Vec3s) exitance;
+  uint count;
+  uint fem;
+  float mismatch;
+};
+
+// energy.comp: sums per workgroup over faces and tets.
+struct EnergyPush {
+  QG_REF(Vec3s) vertices;
+  QG_REF(Uvec4s) tets;
+  QG_REF(Uvec3s) faces;
+  QG_REF(Opticals) optical;
+  QG_REF(Vec3s) x;
+  QG_REF(Vec3s) to_phi;
+  QG_REF(Vec3s) q;
+  QG_REF(Vec3s) exitance;
+  QG_REF(Vec3s) coarse_exitance;
+  QG_REF(Scales) scale;
+  QG_REF(EnergySumsArray) sums;
+  uint tet_count;
+  uint face_count;
+  uint fem;
+};
+
+#ifdef __cplusplus
+}  // namespace quadgraph::gpu
+#endif
+#endif
