@@ -146,7 +146,32 @@ TEST_CASE("furnace: the published differences miss it where kappa varies") {
   const auto solution = solve_reference(level, varying(level, 0.0f, 1.5f), 1.3, q, options);
   double worst = 0;
   for (const glm::dvec3& m : solution.exitance) worst = std::max(worst, std::abs(m.x - 1.0));
+  MESSAGE("published differences in the furnace, kappa varying: exitance off by up to " << 100 * worst << "%");
   CHECK(worst > 0.05);
+}
+
+TEST_CASE("furnace: what the published differences miss is Q times their Laplacian of kappa") {
+  const OwnedLevel owned = box_level(4, 5.0f, 0.2f);
+  const Level level = owned.view();
+  const auto optical = varying(level, 0.0f, 1.5f);
+  const std::vector<glm::vec3> q(level.faces.size(), glm::vec3(1.0f));
+  const Rows rows = assemble(level, Method::quadgraph_fdm, optical, 1.3);
+  const auto b = right_hand_side(level, Method::quadgraph_fdm, optical, 1.3, q);
+  const double source = 4.0 / (1.0 - internal_diffuse_reflectance(1.3));
+  std::vector<glm::dvec3> x;
+  for (const glm::dvec3& to_phi : rows.to_phi) x.push_back(source / to_phi);
+  const auto y = quadgraph::apply(rows, x);
+  double largest = 0;
+  for (std::uint32_t i = 0; i < rows.size(); ++i) {
+    glm::dvec3 laplacian(0);  // of kappa, by the weights of Eq. 5; the surface rows (Eq. 6) hold exactly
+    for (std::uint32_t k = rows.offset[i]; i < level.tet_count() && k < rows.offset[i + 1]; ++k) {
+      laplacian -= rows.weight[k] * (glm::dvec3(optical[rows.column[k]].kappa) - glm::dvec3(optical[i].kappa));
+    }
+    const glm::dvec3 missed = y[i] - b[i] + source * laplacian;
+    for (int c = 0; c < 3; ++c) CHECK(std::abs(missed[c]) <= 1e-12 * std::abs(rows.diagonal[i][c] * x[i][c]));
+    largest = std::max(largest, std::abs(laplacian.x));
+  }
+  CHECK(largest > 0.01);
 }
 
 TEST_CASE("fem: what enters leaves or is absorbed") {
@@ -189,6 +214,20 @@ TEST_CASE("fdm: strong contrast makes the published scheme indefinite, which is 
   options.method = Method::quadgraph_fdm;
   options.tolerance = 1e-12;
   CHECK_THROWS_AS(solve_reference(level, varying(level, 0.0f, 10.0f), 1.3, one_side(level), options), SolverError);
+}
+
+TEST_CASE("numbers that are lost are a solver error, not a converged answer") {
+  OwnedLevel owned = box_level(2, 1.0f);
+  owned.nodes[owned.tets.size()] = owned.nodes[owned.face_tets[0]];  // a link without length
+  const Level level = owned.view();
+  for (const SolverKind solver : {SolverKind::dpcg, SolverKind::cascade}) {
+    SolveOptions options;
+    options.method = Method::quadgraph_fdm;
+    options.solver = solver;
+    const std::vector<glm::vec3> q(level.faces.size(), glm::vec3(1.0f));
+    CHECK_THROWS_WITH_AS(solve_reference(level, uniform(level, 1.0f, 0.1f), 1.3, q, options),
+                         doctest::Contains("not finite"), SolverError);
+  }
 }
 
 TEST_CASE("no light, no answer but zero") {
