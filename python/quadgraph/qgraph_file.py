@@ -10,11 +10,8 @@ from __future__ import annotations
 
 import json
 import math
-import os
-import tempfile
 import zlib
 from collections.abc import Iterator
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -22,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from quadgraph import qgraph_rules
+from quadgraph.atomic_file import replacing
 from quadgraph.errors import FormatError, InputError
 
 MAGIC = b"\x89QGRAPH\n"
@@ -82,10 +80,10 @@ def write(path: Path, metadata: dict[str, Any], sections: dict[str, np.ndarray])
     everything = {"metadata": blob, **sections}
     qgraph_rules.check(everything, metadata, str(path))
     header, table = _head(everything)
-    try:
-        _write_atomically(path, [header.tobytes() + table.tobytes(), *everything.values()])
-    except OSError as error:
-        raise InputError(f"{path}: cannot be written ({error.strerror})") from error
+    with replacing(path) as stream:
+        for piece in (header.tobytes() + table.tobytes(), *everything.values()):
+            size = stream.write(np.ascontiguousarray(piece) if isinstance(piece, np.ndarray) else piece)
+            stream.write(b"\0" * (_aligned(size) - size))
     return int(header["file_size"])
 
 
@@ -134,29 +132,6 @@ def _head(sections: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     header["table_crc32"] = zlib.crc32(table.tobytes())
     header["file_size"] = _aligned(end)
     return header, table
-
-
-def _write_atomically(path: Path, pieces: list[bytes | np.ndarray]) -> None:
-    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".tmp")
-    try:
-        with os.fdopen(handle, "wb") as stream:
-            for piece in pieces:
-                size = stream.write(np.ascontiguousarray(piece) if isinstance(piece, np.ndarray) else piece)
-                stream.write(b"\0" * (_aligned(size) - size))
-            stream.flush()
-            os.fsync(stream.fileno())
-            os.fchmod(stream.fileno(), 0o666 & ~_umask())
-        Path(temporary).replace(path)
-    finally:
-        with suppress(FileNotFoundError):
-            Path(temporary).unlink()
-
-
-def _umask() -> int:
-    # mkstemp makes private files; the only portable way to read the mask is to set it.
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
 
 
 def _require(condition: bool, name: str, what: str) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import statistics
 import subprocess
 import tempfile
@@ -12,7 +11,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from quadgraph import __version__
+from quadgraph import __version__, atomic_file
 from quadgraph.commands import report as text
 from quadgraph.commands import scene
 from quadgraph.errors import InputError
@@ -94,7 +93,7 @@ def run_on(files: dict[str, Path], args: argparse.Namespace) -> int:
     if "random" in engines:
         console.print(order_table(record["methods"]))
     if args.json:
-        args.json.write_text(json.dumps(record, indent=1) + "\n")
+        atomic_file.write_json(args.json, record)
     return 0
 
 

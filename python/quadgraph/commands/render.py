@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import json
 import time
 from pathlib import Path
 
 from rich.console import Console
 
+from quadgraph import atomic_file
 from quadgraph.commands import report as text
 from quadgraph.commands import scene
 from quadgraph.errors import InputError
@@ -84,7 +84,7 @@ def run(args: argparse.Namespace) -> int:
     report |= {"passes": engine.passes, "device": engine.device_name, "driver": engine.driver}
     report["seconds"] = time.perf_counter() - start
     if args.json:
-        args.json.write_text(json.dumps(report, indent=1) + "\n")
+        atomic_file.write_json(args.json, report)
     print_summary(engine, report, args.output)
     return 0
 

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import json
-import os
-import tempfile
 from pathlib import Path
 
 import numpy as np
 from rich.console import Console
 
+from quadgraph import atomic_file
 from quadgraph.commands import report as text
 from quadgraph.commands import scene
 from quadgraph.errors import InputError
@@ -39,9 +37,10 @@ def run(args: argparse.Namespace) -> int:
     scene.check_validation(engine)
     report |= {"passes": engine.passes, "device": engine.device_name, "driver": engine.driver}
     if args.field:
-        write_npz(args.field, engine.surface_field())
+        with atomic_file.replacing(args.field) as stream:
+            np.savez(stream, **engine.surface_field())
     if args.json:
-        args.json.write_text(json.dumps(report, indent=1) + "\n")
+        atomic_file.write_json(args.json, report)
     console = Console(highlight=False)
     for table in (text.solve_table(report), text.energy_table(report["energy"]), text.pass_table(report["passes"])):
         console.print(table)
@@ -50,18 +49,3 @@ def run(args: argparse.Namespace) -> int:
     for sentence in stopped:
         console.print(f"not converged: {sentence}")
     return 3 if stopped else 0
-
-
-def write_npz(path: Path, arrays: dict[str, np.ndarray]) -> None:
-    """Write `arrays` under a temporary name and rename, so that nothing half-written is left."""
-    try:
-        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    except OSError as error:
-        raise InputError(f"{path}: cannot be written ({error.strerror})") from error
-    try:
-        with os.fdopen(handle, "wb") as stream:
-            np.savez(stream, **arrays)
-        Path(temporary).replace(path)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise

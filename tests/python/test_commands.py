@@ -1,0 +1,104 @@
+"""`quadgraph render`, `solve` and `bench` as a user runs them."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from baked import write_levels
+from quadgraph import cli
+from shapes import icosphere
+
+_core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
+
+
+@pytest.fixture(scope="module")
+def sphere(tmp_path_factory):
+    """A sphere of two levels, radius 10 mm."""
+    path = tmp_path_factory.mktemp("commands") / "sphere.qgraph"
+    return str(write_levels(path, [icosphere(3, 10), icosphere(2, 10)]))
+
+
+def test_render_writes_both_formats_and_a_report(sphere, tmp_path, capsys):
+    png, exr, report = tmp_path / "a.png", tmp_path / "a.exr", tmp_path / "a.json"
+    arguments = ["render", sphere, "-o", str(png), "-o", str(exr), "--size", "64x48", "--json", str(report)]
+    assert cli.main([*arguments, "--material", "wholemilk", "--light", "directional:0,0,-1:1", "--validation"]) == 0
+    with Image.open(png) as image:
+        assert image.size == (64, 48)
+        assert np.asarray(image).max() > 60
+    assert exr.stat().st_size > 64 * 48 * 4
+    assert json.loads(report.read_text())["levels"][-1]["converged"]
+    printed = capsys.readouterr().out
+    for word in ("nodes:", "levels", "ms", "error:", "memory:", str(png), str(exr)):
+        assert word in printed
+
+
+def test_solve_field_has_the_documented_arrays_and_balances(sphere, tmp_path, capsys):
+    field, report = tmp_path / "field.npz", tmp_path / "report.json"
+    light = ["--light", "directional:0,0,-1:1/0.5/0.25"]
+    assert cli.main(["solve", sphere, *light, "--tolerance", "1e-5", "--json", str(report), "--field", str(field)]) == 0
+    with np.load(field) as arrays:
+        n = len(arrays["area"])
+        assert set(arrays) == {"position", "normal", "area", "q", "phi", "exitance"}
+        assert all(arrays[name].shape == (n, 3) for name in arrays if name != "area")
+        entered = (arrays["q"] * arrays["area"][:, None]).sum(axis=0)
+        left = (arrays["exitance"] * arrays["area"][:, None]).sum(axis=0)
+        assert np.allclose(np.linalg.norm(arrays["normal"], axis=1), 1, atol=1e-5)
+        outward = (arrays["position"] * arrays["normal"]).sum(axis=1)
+    assert (outward > 9).all()
+    energy = json.loads(report.read_text())["energy"]
+    assert np.allclose(entered, energy["entered"], rtol=1e-4)
+    assert np.allclose(left + energy["absorbed"], entered, rtol=1e-3)
+    assert "dispatches" in capsys.readouterr().out
+
+
+def test_solve_says_so_when_it_stops_early(sphere, capsys):
+    arguments = ["solve", sphere, "--light", "directional:0,0,-1:1", "--max-iterations", "2", "--solver", "cascade"]
+    assert cli.main(arguments) == 3
+    assert "not converged" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["render", "{sphere}", "-o", "a.jpg"], ["a.jpg", ".png", ".exr"]),
+        (["render", "{sphere}", "-o", "{folder}/none/a.png"], ["none"]),
+        (["render", "{sphere}", "-o", "{folder}/a.png", "--material", "granite"], ["granite", "marble"]),
+        (["render", "{sphere}", "-o", "{folder}/a.png", "--light", "laser:1"], ["laser", "directional"]),
+        (["render", "{sphere}", "-o", "{folder}/a.png", "--view", "10"], ["10"]),
+        (["render", "{sphere}", "-o", "{folder}/a.png", "--size", "99999x4"], ["99999"]),
+        (["render", "{sphere}", "-o", "{folder}/a.png", "--device", "abacus"], ["abacus", "found"]),
+        (["solve", "{folder}/missing.qgraph"], ["missing.qgraph"]),
+        (["solve", "{sphere}", "--field", "field.txt"], ["field.txt", ".npz"]),
+        (["solve", "{sphere}", "--field", "{folder}/none/field.npz"], ["none"]),
+        (["solve", "{sphere}", "--json", "{folder}/none/report.json"], ["none"]),
+        (["bench", "--random-order", "{sphere}"], ["--random-order"]),
+    ],
+)
+def test_mistakes_are_one_line_and_exit_with_1(sphere, tmp_path, capsys, arguments, words):
+    arguments = [argument.format(sphere=sphere, folder=tmp_path) for argument in arguments]
+    assert cli.main(arguments) == 1
+    captured = capsys.readouterr()
+    assert captured.err.startswith("quadgraph: error: ")
+    assert captured.err.count("\n") == 1
+    for word in words:
+        assert word in captured.err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_bench_compares_two_orders_and_records(sphere, tmp_path, capsys):
+    record = tmp_path / "record.json"
+    assert cli.main(["bench", sphere, "--random-order", sphere, "--repeats", "1", "--json", str(record)]) == 0
+    entries = json.loads(record.read_text())
+    assert entries["device"]
+    assert entries["driver"]
+    assert entries["commit"]
+    assert len(entries["methods"]) == 4
+    for method in entries["methods"]:
+        names = [entry["name"] for entry in method["passes"]]
+        assert "assembly" in names
+        assert all(entry["time_ms"] >= 0 and entry["bytes"] > 0 for entry in method["passes"])
+    assert "random / blocks" in capsys.readouterr().out
