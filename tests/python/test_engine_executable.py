@@ -67,9 +67,9 @@ def test_same_input_same_bytes(tmp_path: Path):
 
 def test_exr_and_json(tmp_path: Path):
     path = tmp_path / "cube.exr"
-    light = "directional:0,0,-1:1/2/3"
+    light, material = "directional:0,0,-1:1/2/3", "sigma_s_prime=1,sigma_a=0.1,eta=1"
     result = run(
-        "--headless", "-o", path, "--json", "--method", "quadgraph-fdm", "--material", "sigma_s_prime=1,sigma_a=0.1,eta=1",
+        "--headless", "-o", path, "--json", "--method", "quadgraph-fdm", "--material", material,
         "--size", "64x64", "--view", "-30,-20,9", "--light", light, "--light", "point:1,1,50:0", tiny.PATH,
     )  # fmt: skip
     assert result.returncode == 0, result.stderr
