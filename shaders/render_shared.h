@@ -72,12 +72,12 @@ struct SurfaceScene {
   float roughness;      // GGX alpha
   float radiance_norm;  // integral of F_t cos over the hemisphere, sr
   uint light_count;
-  QG_REF(Vec3s) vertices;       // display mesh, mm
-  QG_REF(Vec3s) normals;        // unit
-  QG_REF(Uints) face;           // per display vertex: outside face of level 0
-  QG_REF(Vec3s) barycentric;    // and where in it
-  QG_REF(Uvec3s) faces;         // level 0
-  QG_REF(Vec3s) exitance;       // per surface vertex of level 0, W/mm^2
+  QG_REF(Vec3s) vertices;     // display mesh, mm
+  QG_REF(Vec3s) normals;      // unit
+  QG_REF(Uints) face;         // per display vertex: outside face of level 0
+  QG_REF(Vec3s) barycentric;  // and where in it
+  QG_REF(Uvec3s) faces;       // level 0
+  QG_REF(Vec3s) exitance;     // per surface vertex of level 0, W/mm^2
   QG_REF(LightRecords) lights;
   QG_REF(ShadowViews) views;
 };

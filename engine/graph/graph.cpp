@@ -1,6 +1,7 @@
 #include "engine/graph/graph.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -95,6 +96,11 @@ QuadGraph QuadGraph::load(const std::filesystem::path& path) {
   if (error) throw InputError(path.string() + ": cannot be read (" + error.message() + ")");
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw InputError(path.string() + ": cannot be opened (" + errno_text() + ")");
+  std::array<char, sizeof(QgraphHeader)> first{};
+  stream.read(first.data(), first.size());
+  checked_header(std::as_bytes(std::span(first.data(), static_cast<std::size_t>(stream.gcount()))), size,
+                 path.string());
+  stream.seekg(0);
   QuadGraph graph;
   graph.allocate(size);
   stream.read(reinterpret_cast<char*>(graph.bytes_.get()), static_cast<std::streamsize>(size));

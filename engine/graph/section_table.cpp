@@ -70,31 +70,34 @@ SectionTable::SectionTable(std::span<const std::byte> bytes, const std::string& 
   read_header();
 }
 
-void SectionTable::read_header() {
-  if (bytes_.size() < sizeof(QgraphHeader)) {
-    fail_format(file_, "header", std::to_string(bytes_.size()) + " bytes, a .qgraph file has at least 64");
+QgraphHeader checked_header(std::span<const std::byte> first_bytes, std::uint64_t file_size, const std::string& file) {
+  if (first_bytes.size() < sizeof(QgraphHeader)) {
+    fail_format(file, "header", std::to_string(first_bytes.size()) + " bytes, a .qgraph file has at least 64");
   }
   QgraphHeader header;
-  std::memcpy(&header, bytes_.data(), sizeof header);
-  if (header.magic != qgraph_magic) fail_format(file_, "header", "magic: this is not a .qgraph file");
+  std::memcpy(&header, first_bytes.data(), sizeof header);
+  if (header.magic != qgraph_magic) fail_format(file, "header", "magic: this is not a .qgraph file");
   if (header.version != qgraph_version) {
-    fail_format(file_, "header", "version " + std::to_string(header.version) + ", this engine reads version 1");
+    fail_format(file, "header", "version " + std::to_string(header.version) + ", this engine reads version 1");
   }
-  if (header.byte_order != qgraph_byte_order) fail_format(file_, "header", "byte_order: not little-endian");
-  if (header.file_size != bytes_.size()) {
-    fail_format(file_, "header",
-                "file_size " + std::to_string(header.file_size) + ", the file has " + std::to_string(bytes_.size()) +
+  if (header.byte_order != qgraph_byte_order) fail_format(file, "header", "byte_order: not little-endian");
+  if (header.file_size != file_size) {
+    fail_format(file, "header",
+                "file_size " + std::to_string(header.file_size) + ", the file has " + std::to_string(file_size) +
                     " bytes (truncated or extended)");
   }
-  if (!all_zero(header.reserved)) fail_format(file_, "header", "reserved bytes are not zero");
+  if (!all_zero(header.reserved)) fail_format(file, "header", "reserved bytes are not zero");
   const std::uint64_t count = header.section_count;
-  if (count == 0 || count > qgraph_max_sections ||
-      count * sizeof(QgraphSection) > bytes_.size() - sizeof(QgraphHeader)) {
-    fail_format(file_, "header", "section_count " + std::to_string(count) + ", allowed is 1 to 4096 within the file");
+  if (count == 0 || count > qgraph_max_sections || count * sizeof(QgraphSection) > file_size - sizeof(QgraphHeader)) {
+    fail_format(file, "header", "section_count " + std::to_string(count) + ", allowed is 1 to 4096 within the file");
   }
-  if (crc32_of(bytes_.subspan(sizeof(QgraphHeader), count * sizeof(QgraphSection))) != header.table_crc32) {
-    fail_format(file_, "section table", "checksum mismatch");
-  }
+  return header;
+}
+
+void SectionTable::read_header() {
+  const QgraphHeader header = checked_header(bytes_, bytes_.size(), file_);
+  const auto table = bytes_.subspan(sizeof header, std::size_t{header.section_count} * sizeof(QgraphSection));
+  if (crc32_of(table) != header.table_crc32) fail_format(file_, "section table", "checksum mismatch");
   read_entries(header.section_count);
 }
 

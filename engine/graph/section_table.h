@@ -15,6 +15,9 @@ namespace quadgraph {
 // Throws FormatError("<file>: <section>: <rule>").
 [[noreturn]] void fail_format(const std::string& file, std::string_view section, const std::string& rule);
 
+// The header of a file of `file_size` bytes from its first bytes, every rule checked. Throws FormatError naming `file`.
+QgraphHeader checked_header(std::span<const std::byte> first_bytes, std::uint64_t file_size, const std::string& file);
+
 class SectionTable {
  public:
   // Checks header, table, offsets, padding and every CRC-32 of `bytes` before anything is allocated that depends on a

@@ -1,5 +1,6 @@
 // The reader's rules one by one: what is broken is refused by section and rule.
 #include <doctest/doctest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -121,6 +122,14 @@ TEST_CASE("the golden file loads, from disk as from memory") {
 TEST_CASE("what cannot be read is an input error that names the path") {
   CHECK_THROWS_WITH_AS(QuadGraph::load("/nowhere/a.qgraph"), doctest::Contains("/nowhere/a.qgraph"), InputError);
   CHECK_THROWS_WITH_AS(QuadGraph::load(QUADGRAPH_TEST_DATA), doctest::Contains(QUADGRAPH_TEST_DATA), InputError);
+}
+
+TEST_CASE("a huge file that is none of ours is refused without being read") {
+  const auto path = std::filesystem::temp_directory_path() / ("quadgraph-sparse-" + std::to_string(::getpid()));
+  std::ofstream(path).put('x');
+  std::filesystem::resize_file(path, std::uintmax_t{1} << 40);
+  CHECK_THROWS_WITH_AS(QuadGraph::load(path), doctest::Contains("magic"), FormatError);
+  std::filesystem::remove(path);
 }
 
 TEST_CASE("header fields are checked") {

@@ -1,5 +1,5 @@
-// The structs of shaders/shared.h and solve_shared.h lie in memory as the compiled shaders read them: offsets of members, and strides of
-// the arrays they form.
+// The structs of shaders/shared.h and solve_shared.h lie in memory as the compiled shaders read them: offsets of
+// members, and strides of the arrays they form.
 #include <doctest/doctest.h>
 
 #include <cstddef>
