@@ -112,7 +112,7 @@ void SectionTable::read_entries(std::uint32_t count) {
     check_entry(section, name, align_up(end));
     check_padding(end, section.offset);
     if (!sections_.emplace(name, section).second) fail_format(file_, name, "the name occurs twice");
-    if ((i == 0) != (name == "metadata")) fail_format(file_, name, "'metadata' must be the first section");
+    names_.push_back(name);
     end = section.offset + section.size;
   }
   if (align_up(end) != bytes_.size()) {

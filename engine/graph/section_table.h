@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/graph/qgraph_layout.h"
 
@@ -26,7 +27,7 @@ class SectionTable {
 
   const std::string& file() const { return file_; }
   bool has(const std::string& name) const { return sections_.count(name) > 0; }
-  std::size_t size() const { return sections_.size(); }
+  const std::vector<std::string>& names() const { return names_; }  // in file order
 
   // The section as rows of `columns` values of T (u32 or f32; columns 1: rank 1). Throws FormatError if it is missing
   // or of another type or shape.
@@ -44,6 +45,7 @@ class SectionTable {
 
   std::span<const std::byte> bytes_;
   std::string file_;
+  std::vector<std::string> names_;
   std::map<std::string, QgraphSection> sections_;
 };
 

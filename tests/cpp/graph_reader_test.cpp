@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -159,7 +160,7 @@ TEST_CASE("table entries are checked before their sizes are believed") {
   check_says(say([](auto& s) { s.name.fill('x'); }), {"section", "name"});
   check_says(say([](auto& s) { s.name[0] = '\x07'; }), {"section", "name"});
   check_says(say([](auto& s) { s.name[40] = 'x'; }), {"section", "name"});
-  check_says(say([](auto& s) { s.name[0] = 'L'; }), {name, "missing"});
+  check_says(say([](auto& s) { s.name[0] = 'L'; }), {name, "expected 'level0/tets'"});
   check_says(say([](auto& s) { s.name[5] = '1'; }), {"level1/tets", "twice"});
   // Products that wrap round to the true size must not pass.
   check_says(say([](auto& s) { s.shape[0] += std::uint64_t{1} << 60; }), {name, "shape"});
@@ -288,4 +289,26 @@ TEST_CASE("metadata is a JSON object in UTF-8") {
     check_says(refusal_of_data<char>("metadata", put), {"metadata", "JSON"});
   }
   check_says(refusal_of_data<char>("metadata", [](auto& v) { std::fill(v.begin(), v.end(), '['); }), {"metadata"});
+}
+
+TEST_CASE("metadata tells what the document asks for") {
+  for (const std::string key : {"generator", "unit_mm", "tools"}) {
+    const auto rename = [&](std::vector<char>& v) {
+      const std::string quoted = "\"" + key + "\"";
+      *(std::search(v.begin(), v.end(), quoted.begin(), quoted.end()) + 1) = 'X';
+    };
+    check_says(refusal_of_data<char>("metadata", rename), {"metadata", key, "missing"});
+  }
+}
+
+TEST_CASE("sections stand in the order of the document") {
+  Bytes bytes = tiny();
+  const Found a = find(bytes, "level0/tets"), b = find(bytes, "level0/links");
+  QgraphSection renamed = a.section;
+  renamed.name = b.section.name;
+  write_at(bytes, a.entry, renamed);
+  renamed = b.section;
+  renamed.name = a.section.name;
+  write_at(bytes, b.entry, renamed);
+  check_says(refusal_sealed(bytes), {"section 2", "found 'level0/links'", "expected 'level0/tets'"});
 }

@@ -168,8 +168,11 @@ inline void write_level(GraphWriter& writer, const std::string& prefix, const Ow
 inline std::vector<std::byte> box_graph(const std::vector<std::uint32_t>& cells, float size) {
   std::vector<OwnedLevel> levels;
   for (const std::uint32_t n : cells) levels.push_back(split_at_centroids(box_level(n, size, 0.15f)));
+  std::string metadata = R"({"generator":"","source":{},"unit_mm":1,"mesher":{},"repairs":[],"tools":{},"levels":[)";
+  for (std::size_t i = 0; i < levels.size(); ++i) metadata += i > 0 ? ",{}" : "{}";
+  metadata += "]}";
   GraphWriter writer;
-  writer.add<char>("metadata", SectionType::u8, {2}, std::span("{}", 2));
+  writer.add<char>("metadata", SectionType::u8, {metadata.size()}, std::span<const char>(metadata));
   for (std::size_t i = 0; i < levels.size(); ++i) {
     write_level(writer, "level" + std::to_string(i) + "/", levels[i], i + 1 < levels.size() ? &levels[i + 1] : nullptr);
   }
