@@ -77,6 +77,20 @@ struct AssembleFdmPush {
   float mismatch;
 };
 
+// assemble_fv.comp: weight, diagonal and to_phi, one invocation per node.
+struct AssembleFvPush {
+  RowsRef rows;
+  QG_REF(Vec3s) vertices;
+  QG_REF(Uvec4s) tets;
+  QG_REF(Uvec4s) links;
+  QG_REF(Vec3s) nodes;
+  QG_REF(Opticals) optical;
+  QG_REF(Vec3s) to_phi;
+  uint count;      // nodes
+  uint tet_count;  // inner nodes
+  float mismatch;
+};
+
 // assemble_fem.comp: weight and diagonal, one invocation per vertex. An incidence is (tet * 4 + own corner, places of
 // the other three corners in the row, 10 bits each, in ascending order of corner), or (face, places of the next two
 // corners).
@@ -108,6 +122,22 @@ struct RightHandSideFdmPush {
   QG_REF(Vec3s) nodes;
   QG_REF(Opticals) optical;
   QG_REF(Uints) face_tets;
+  QG_REF(Vec3s) q;
+  QG_REF(Scales) scale;
+  QG_REF(Vec3s) diagonal;
+  QG_REF(Vec3s) b;
+  QG_REF(SolveStates) state;
+  QG_REF(Reduction) reduction;
+  uint count;
+  uint tet_count;
+  float mismatch;
+  float source;  // Q / q
+};
+
+// right_hand_side_fv.comp: scaled b at every node, and its norm.
+struct RightHandSideFvPush {
+  QG_REF(Vec3s) vertices;
+  QG_REF(Uvec3s) faces;
   QG_REF(Vec3s) q;
   QG_REF(Scales) scale;
   QG_REF(Vec3s) diagonal;

@@ -58,7 +58,9 @@ void declare_scene(CLI::App& app, Typed& typed) {
 }
 
 void declare_solver(CLI::App& app, Typed& typed) {
-  app.add_option("--method", typed.method, "fem or quadgraph-fdm")->capture_default_str()->group("Solver");
+  app.add_option("--method", typed.method, "fem, quadgraph-fv or quadgraph-fdm")
+      ->capture_default_str()
+      ->group("Solver");
   app.add_option("--solver", typed.solver, "dpcg or cascade")->capture_default_str()->group("Solver");
   app.add_option("--tolerance", typed.tolerance, "relative residual to stop at")
       ->capture_default_str()

@@ -14,6 +14,9 @@ Rows assemble_fdm(const Level& level, std::span<const gpu::Optical> optical, dou
 std::vector<glm::dvec3> load_fdm(const Level& level, std::span<const gpu::Optical> optical, double eta,
                                  std::span<const glm::vec3> q);
 
+Rows assemble_fv(const Level& level, std::span<const gpu::Optical> optical, double eta);
+std::vector<glm::dvec3> load_fv(const Level& level, double eta, std::span<const glm::vec3> q);
+
 Rows assemble_fem(const Level& level, std::span<const gpu::Optical> optical, double eta);
 std::vector<glm::dvec3> load_fem(const Level& level, double eta, std::span<const glm::vec3> q);
 

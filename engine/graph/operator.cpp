@@ -39,7 +39,15 @@ std::uint32_t unknown_count(const Level& level, Method method) {
 
 Rows assemble(const Level& level, Method method, std::span<const gpu::Optical> optical, double eta) {
   check_input(level, optical, eta);
-  return method == Method::fem ? assemble_fem(level, optical, eta) : assemble_fdm(level, optical, eta);
+  switch (method) {
+    case Method::quadgraph_fdm:
+      return assemble_fdm(level, optical, eta);
+    case Method::quadgraph_fv:
+      return assemble_fv(level, optical, eta);
+    case Method::fem:
+      return assemble_fem(level, optical, eta);
+  }
+  throw InputError("unknown method");
 }
 
 std::vector<glm::dvec3> right_hand_side(const Level& level, Method method, std::span<const gpu::Optical> optical,
@@ -56,7 +64,15 @@ std::vector<glm::dvec3> right_hand_side(const Level& level, Method method, std::
       }
     }
   }
-  return method == Method::fem ? load_fem(level, eta, q) : load_fdm(level, optical, eta, q);
+  switch (method) {
+    case Method::quadgraph_fdm:
+      return load_fdm(level, optical, eta, q);
+    case Method::quadgraph_fv:
+      return load_fv(level, eta, q);
+    case Method::fem:
+      return load_fem(level, eta, q);
+  }
+  throw InputError("unknown method");
 }
 
 std::vector<glm::dvec3> apply(const Rows& rows, std::span<const glm::dvec3> x) {

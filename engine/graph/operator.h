@@ -13,6 +13,12 @@
 //   relaxation (Eq. 8-9) unchanged.
 //     inner i:    (sum_j 1/d_ij^2 + sigma_a/kappa) u_i - sum_j u_j / d_ij^2 = 0
 //     surface s:  (1 + h) kappa_k / (kappa_s h d^2) u_s - u_k / d^2 = kappa_k Q / (2 A kappa_s d),  h = 2 A kappa_s / d
+//
+// quadgraph-fv: x = phi at the nodes, to_phi = 1. Two-point flux across every face, d measured along its normal; the
+//   Robin condition in series at the surface. An M-matrix: phi is never negative; conserves energy; exact in layers
+//   whose links cross the interfaces at right angles, not consistent on general tets (physics.md, "Discretisations").
+//     inner i:    sum_j g_ij (phi_i - phi_j) + sigma_a V phi_i = 0,   g_ij = area / (d_i/kappa_i + d_j/kappa_j)
+//     surface s:  (g + area/(2A)) phi_s - g phi_k = area Q / (2A),    g = area kappa_k / d_k
 #pragma once
 
 #include <cstdint>

@@ -125,13 +125,13 @@ double face_area(const Level& level, const glm::uvec3& face) {
 }
 
 glm::dvec3 face_phi(const Level& level, Method method, const Vector& phi, std::uint32_t f) {
-  if (method == Method::quadgraph_fdm) return phi[level.tet_count() + f];
+  if (method != Method::fem) return phi[level.tet_count() + f];
   const glm::uvec3& face = level.faces[f];
   return (phi[face[0]] + phi[face[1]] + phi[face[2]]) / 3.0;
 }
 
 glm::dvec3 tet_phi(const Level& level, Method method, const Vector& phi, std::uint32_t t) {
-  if (method == Method::quadgraph_fdm) return phi[t];
+  if (method != Method::fem) return phi[t];
   const glm::uvec4& tet = level.tets[t];
   return (phi[tet[0]] + phi[tet[1]] + phi[tet[2]] + phi[tet[3]]) / 4.0;
 }

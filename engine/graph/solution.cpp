@@ -8,8 +8,8 @@
 namespace quadgraph {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, Method>, 2> methods = {
-    {{"quadgraph-fdm", Method::quadgraph_fdm}, {"fem", Method::fem}}};
+constexpr std::array<std::pair<std::string_view, Method>, 3> methods = {
+    {{"quadgraph-fdm", Method::quadgraph_fdm}, {"quadgraph-fv", Method::quadgraph_fv}, {"fem", Method::fem}}};
 constexpr std::array<std::pair<std::string_view, SolverKind>, 2> solvers = {
     {{"cascade", SolverKind::cascade}, {"dpcg", SolverKind::dpcg}}};
 

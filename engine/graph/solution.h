@@ -12,6 +12,7 @@ namespace quadgraph {
 
 enum class Method {
   quadgraph_fdm,  // the published 1/d^2 differences on kappa*phi at the nodes of the QuadGraph [QG Eq. 5-6]
+  quadgraph_fv,   // two-point flux between the nodes of the QuadGraph, harmonic means of kappa
   fem,            // linear elements on the tet vertices, consistent mass
 };
 
@@ -20,7 +21,7 @@ enum class SolverKind {
   dpcg,     // conjugate gradients with diagonal preconditioning, started from the coarser level
 };
 
-// "quadgraph-fdm", "fem"; "cascade", "dpcg". Throw InputError listing the allowed names.
+// "quadgraph-fdm", "quadgraph-fv", "fem"; "cascade", "dpcg". Throw InputError listing the allowed names.
 Method method_from_name(std::string_view name);
 SolverKind solver_from_name(std::string_view name);
 std::string_view name_of(Method method);

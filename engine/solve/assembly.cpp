@@ -33,6 +33,23 @@ void record_assembly(Workspace& work, const LevelBuffers& level, Method method, 
     work.recorder.dispatch(work.passes.assemble_fdm, push, op.count, "assembly", bytes);
     return;
   }
+  if (method == Method::quadgraph_fv) {
+    const gpu::AssembleFvPush push{op.rows(),
+                                   level.vertices.address(),
+                                   level.tets.address(),
+                                   level.links.address(),
+                                   level.nodes.address(),
+                                   level.optical.address(),
+                                   op.to_phi.address(),
+                                   op.count,
+                                   level.tet_count,
+                                   a};
+    const std::uint64_t link_bytes = index_bytes + 2 * sizeof(glm::uvec4) + 6 * vec3_bytes + 2 * sizeof(gpu::Optical);
+    work.recorder.dispatch(work.passes.assemble_fv, push, op.count, "assembly",
+                           op.entries * link_bytes + op.count * (2 * vec3_bytes + sizeof(gpu::Optical)) +
+                               level.tet_count * (sizeof(glm::uvec4) + 4 * vec3_bytes));
+    return;
+  }
   const gpu::AssembleFemPush push{op.rows(),
                                   level.vertices.address(),
                                   level.tets.address(),
@@ -83,6 +100,24 @@ void record_right_hand_side(Workspace& work, const LevelBuffers& level, Method m
                            row_bytes + level.face_count * face_bytes);
     return;
   }
+  if (method == Method::quadgraph_fv) {
+    const gpu::RightHandSideFvPush push{level.vertices.address(),
+                                        level.faces.address(),
+                                        level.q.address(),
+                                        work.scale.address(),
+                                        op.diagonal.address(),
+                                        op.b.address(),
+                                        op.state.address(),
+                                        work.reduction.address(),
+                                        op.count,
+                                        level.tet_count,
+                                        a,
+                                        source(eta)};
+    const std::uint64_t face_bytes = sizeof(glm::uvec3) + 4 * vec3_bytes;
+    work.recorder.dispatch(work.passes.right_hand_side_fv, push, op.count, "right-hand side",
+                           row_bytes + level.face_count * face_bytes);
+    return;
+  }
   const gpu::RightHandSideFemPush push{level.vertices.address(),
                                        level.faces.address(),
                                        op.face_offset.address(),
@@ -103,7 +138,7 @@ void record_right_hand_side(Workspace& work, const LevelBuffers& level, Method m
 }
 
 void record_damping(Workspace& work, Method method, OperatorBuffers& op) {
-  if (method == Method::quadgraph_fdm) {
+  if (method != Method::fem) {
     work.recorder.fill(op.damping, std::bit_cast<std::uint32_t>(1.0f));
     return;
   }

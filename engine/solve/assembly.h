@@ -16,7 +16,7 @@ void record_scale(Workspace& work, const LevelBuffers& finest);
 
 void record_right_hand_side(Workspace& work, const LevelBuffers& level, Method method, double eta, OperatorBuffers& op);
 
-// The step of the relaxation: 1 for quadgraph-fdm, as published; for fem the largest that cannot diverge.
+// The step of the relaxation: 1 for the graph methods, as published; for fem the largest that cannot diverge.
 void record_damping(Workspace& work, Method method, OperatorBuffers& op);
 
 }  // namespace quadgraph

@@ -26,7 +26,7 @@ OperatorBuffers::OperatorBuffers(vk::Context& context, const Level& level, std::
     tet_incidence = upload(context, fem.tets.element, prefix + "tet_incidence");
     to_phi = upload(context, std::vector<glm::vec3>(count, glm::vec3(1)), prefix + "to_phi");
   } else {
-    fem.columns = fdm_columns(level);
+    fem.columns = node_columns(level);
     to_phi = vector(count, "to_phi");
   }
   if (method == Method::fem || index == 0) {

@@ -21,7 +21,7 @@ struct OperatorBuffers {
   vk::Buffer damping;  // vec3
 
   vk::Buffer tet_offset, tet_incidence;    // fem only
-  vk::Buffer face_offset, face_incidence;  // fem; quadgraph-fdm on the finest level only
+  vk::Buffer face_offset, face_incidence;  // fem; the graph methods on the finest level only
 
   bool assembled = false;  // for the present material
   bool damped = false;     // `damping` belongs to these rows

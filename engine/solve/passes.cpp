@@ -3,6 +3,7 @@
 #include "shaders/solve_shared.h"
 #include "spirv/assemble_fdm.comp.h"
 #include "spirv/assemble_fem.comp.h"
+#include "spirv/assemble_fv.comp.h"
 #include "spirv/cg_direction.comp.h"
 #include "spirv/cg_multiply.comp.h"
 #include "spirv/cg_start.comp.h"
@@ -14,6 +15,7 @@
 #include "spirv/irradiance_scale.comp.h"
 #include "spirv/right_hand_side_fdm.comp.h"
 #include "spirv/right_hand_side_fem.comp.h"
+#include "spirv/right_hand_side_fv.comp.h"
 #include "spirv/sweep.comp.h"
 #include "spirv/transfer.comp.h"
 #include "spirv/vertex_exitance.comp.h"
@@ -23,9 +25,11 @@ namespace quadgraph {
 Passes::Passes()
     : evaluate_material(evaluate_material_comp, sizeof(gpu::EvaluateMaterialPush), "evaluate material"),
       assemble_fdm(assemble_fdm_comp, sizeof(gpu::AssembleFdmPush), "assemble fdm"),
+      assemble_fv(assemble_fv_comp, sizeof(gpu::AssembleFvPush), "assemble fv"),
       assemble_fem(assemble_fem_comp, sizeof(gpu::AssembleFemPush), "assemble fem"),
       irradiance_scale(irradiance_scale_comp, sizeof(gpu::IrradianceScalePush), "irradiance scale"),
       right_hand_side_fdm(right_hand_side_fdm_comp, sizeof(gpu::RightHandSideFdmPush), "right hand side fdm"),
+      right_hand_side_fv(right_hand_side_fv_comp, sizeof(gpu::RightHandSideFvPush), "right hand side fv"),
       right_hand_side_fem(right_hand_side_fem_comp, sizeof(gpu::RightHandSideFemPush), "right hand side fem"),
       damping(damping_comp, sizeof(gpu::DampingPush), "damping"),
       transfer(transfer_comp, sizeof(gpu::TransferPush), "transfer"),

@@ -90,7 +90,7 @@ std::uint32_t place_of(const SlicedColumns& sliced, std::uint32_t row, std::uint
 
 }  // namespace
 
-SlicedColumns fdm_columns(const Level& level) {
+SlicedColumns node_columns(const Level& level) {
   Neighbours rows;
   rows.offset.push_back(0);
   for (const glm::uvec4& links : level.links) {

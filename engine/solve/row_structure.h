@@ -30,7 +30,7 @@ struct FemStructure {
 };
 
 // Rows of the nodes: the four links, or the one.
-SlicedColumns fdm_columns(const Level& level);
+SlicedColumns node_columns(const Level& level);
 
 // Rows of the vertices: their neighbours, ascending. Throws InputError if a vertex has more than 1024.
 FemStructure fem_structure(const Level& level);

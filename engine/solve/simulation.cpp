@@ -1,9 +1,9 @@
 #include "engine/solve/simulation.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <map>
 
 #include "engine/graph/error.h"
 #include "engine/graph/material.h"
@@ -50,7 +50,7 @@ struct Simulation::Implementation {
   vk::Context& context;
   const QuadGraph& graph;
   std::vector<LevelBuffers> levels;
-  std::array<std::vector<MethodLevel>, 2> methods;  // by Method
+  std::map<Method, std::vector<MethodLevel>> methods;  // those solved so far
   Workspace work;
   SurfaceResults results;
   std::optional<gpu::Material> material;
@@ -63,9 +63,7 @@ struct Simulation::Implementation {
         graph(graph_in),
         levels(upload_levels(context_in, graph_in)),
         work(context_in, largest_dispatch()),
-        results(context_in, levels[0]) {
-    for (auto& method : methods) method.resize(levels.size());
-  }
+        results(context_in, levels[0]) {}
 
   static std::vector<LevelBuffers> upload_levels(vk::Context& context, const QuadGraph& graph) {
     std::vector<LevelBuffers> levels;
@@ -81,9 +79,7 @@ struct Simulation::Implementation {
     return largest;
   }
 
-  OperatorBuffers& op(Method method, std::uint32_t level) {
-    return *methods[static_cast<std::size_t>(method)][level].op;
-  }
+  OperatorBuffers& op(Method method, std::uint32_t level) { return *methods.at(method)[level].op; }
 
   // Changed irradiance or material: right-hand sides are stale.
   void unload() {
@@ -93,15 +89,16 @@ struct Simulation::Implementation {
 
   template <typename Function>
   void for_each_operator(const Function& function) {
-    for (auto& method : methods) {
-      for (MethodLevel& level : method) {
+    for (auto& [method, of_method] : methods) {
+      for (MethodLevel& level : of_method) {
         if (level.op) function(*level.op);
       }
     }
   }
 
   void create_structures(Method method) {
-    auto& of_method = methods[static_cast<std::size_t>(method)];
+    auto& of_method = methods[method];
+    of_method.resize(levels.size());
     const std::vector<Level>& source = graph.levels();
     for (std::uint32_t i = 0; i < levels.size(); ++i) {
       if (of_method[i].op) continue;
@@ -136,7 +133,7 @@ struct Simulation::Implementation {
   void record_transfer(Method method, std::uint32_t level) {
     const OperatorBuffers& coarse = op(method, level + 1);
     const OperatorBuffers& fine = op(method, level);
-    for (const auto& part : methods[static_cast<std::size_t>(method)][level].transfer->parts) {
+    for (const auto& part : methods.at(method)[level].transfer->parts) {
       const gpu::TransferPush push{part.index.address(),
                                    part.weight.address(),
                                    coarse.x.address(),

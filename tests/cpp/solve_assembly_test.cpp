@@ -43,7 +43,7 @@ double largest(const glm::dvec3& v) {
 }  // namespace
 
 TEST_CASE("rows on the GPU equal those of the CPU in a heterogeneous material") {
-  for (Method method : both_methods) {
+  for (Method method : all_methods) {
     CAPTURE(name_of(method));
     Assembled gpu_side(method);
     const Rows rows = assemble(gpu_side.level, method, gpu_side.optical, veined().eta);
@@ -80,7 +80,7 @@ TEST_CASE("rows on the GPU equal those of the CPU in a heterogeneous material") 
 }
 
 TEST_CASE("right-hand sides on the GPU equal those of the CPU") {
-  for (Method method : both_methods) {
+  for (Method method : all_methods) {
     CAPTURE(name_of(method));
     Assembled gpu_side(method);
     std::vector<glm::vec3> q;

@@ -88,7 +88,7 @@ inline std::uint32_t pass_count(const Simulation& simulation, const std::string&
   return 0;
 }
 
-inline constexpr std::array<Method, 2> both_methods = {Method::fem, Method::quadgraph_fdm};
+inline constexpr std::array<Method, 3> all_methods = {Method::fem, Method::quadgraph_fv, Method::quadgraph_fdm};
 inline constexpr std::array<SolverKind, 2> both_solvers = {SolverKind::dpcg, SolverKind::cascade};
 
 inline SolveOptions options(Method method, SolverKind solver, double tolerance, std::uint32_t max_iterations = 5000) {

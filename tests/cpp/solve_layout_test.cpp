@@ -8,6 +8,7 @@
 #include "shaders/solve_shared.h"
 #include "spirv/assemble_fdm.comp.h"
 #include "spirv/assemble_fem.comp.h"
+#include "spirv/assemble_fv.comp.h"
 #include "spirv/cg_direction.comp.h"
 #include "spirv/cg_multiply.comp.h"
 #include "spirv/cg_start.comp.h"
@@ -19,6 +20,7 @@
 #include "spirv/irradiance_scale.comp.h"
 #include "spirv/right_hand_side_fdm.comp.h"
 #include "spirv/right_hand_side_fem.comp.h"
+#include "spirv/right_hand_side_fv.comp.h"
 #include "spirv/sweep.comp.h"
 #include "spirv/transfer.comp.h"
 #include "spirv/vertex_exitance.comp.h"
@@ -77,6 +79,17 @@ TEST_CASE("push constants") {
           {MEMBER(AssembleFdmPush, rows), MEMBER(AssembleFdmPush, nodes), MEMBER(AssembleFdmPush, optical),
            MEMBER(AssembleFdmPush, to_phi), MEMBER(AssembleFdmPush, count), MEMBER(AssembleFdmPush, tet_count),
            MEMBER(AssembleFdmPush, mismatch)});
+  compare(assemble_fv_comp, "AssembleFvPush",
+          {MEMBER(AssembleFvPush, rows), MEMBER(AssembleFvPush, vertices), MEMBER(AssembleFvPush, tets),
+           MEMBER(AssembleFvPush, links), MEMBER(AssembleFvPush, nodes), MEMBER(AssembleFvPush, optical),
+           MEMBER(AssembleFvPush, to_phi), MEMBER(AssembleFvPush, count), MEMBER(AssembleFvPush, tet_count),
+           MEMBER(AssembleFvPush, mismatch)});
+  compare(right_hand_side_fv_comp, "RightHandSideFvPush",
+          {MEMBER(RightHandSideFvPush, vertices), MEMBER(RightHandSideFvPush, faces), MEMBER(RightHandSideFvPush, q),
+           MEMBER(RightHandSideFvPush, scale), MEMBER(RightHandSideFvPush, diagonal), MEMBER(RightHandSideFvPush, b),
+           MEMBER(RightHandSideFvPush, state), MEMBER(RightHandSideFvPush, reduction),
+           MEMBER(RightHandSideFvPush, count), MEMBER(RightHandSideFvPush, tet_count),
+           MEMBER(RightHandSideFvPush, mismatch), MEMBER(RightHandSideFvPush, source)});
   compare(assemble_fem_comp, "AssembleFemPush",
           {MEMBER(AssembleFemPush, rows), MEMBER(AssembleFemPush, vertices), MEMBER(AssembleFemPush, tets),
            MEMBER(AssembleFemPush, faces), MEMBER(AssembleFemPush, optical), MEMBER(AssembleFemPush, tet_offset),
@@ -159,11 +172,12 @@ TEST_CASE("arrays in buffers have the stride of their C++ element") {
       {"Reduction", sizeof(glm::vec3)}};
   std::map<std::string, int> seen;
   for (const vk::Spirv code :
-       {vk::Spirv(evaluate_material_comp), vk::Spirv(assemble_fdm_comp), vk::Spirv(assemble_fem_comp),
-        vk::Spirv(irradiance_scale_comp), vk::Spirv(right_hand_side_fdm_comp), vk::Spirv(right_hand_side_fem_comp),
-        vk::Spirv(damping_comp), vk::Spirv(transfer_comp), vk::Spirv(cg_start_comp), vk::Spirv(cg_multiply_comp),
-        vk::Spirv(cg_update_comp), vk::Spirv(cg_direction_comp), vk::Spirv(sweep_comp), vk::Spirv(exitance_comp),
-        vk::Spirv(vertex_exitance_comp), vk::Spirv(energy_comp)}) {
+       {vk::Spirv(evaluate_material_comp), vk::Spirv(assemble_fdm_comp), vk::Spirv(assemble_fv_comp),
+        vk::Spirv(right_hand_side_fv_comp), vk::Spirv(assemble_fem_comp), vk::Spirv(irradiance_scale_comp),
+        vk::Spirv(right_hand_side_fdm_comp), vk::Spirv(right_hand_side_fem_comp), vk::Spirv(damping_comp),
+        vk::Spirv(transfer_comp), vk::Spirv(cg_start_comp), vk::Spirv(cg_multiply_comp), vk::Spirv(cg_update_comp),
+        vk::Spirv(cg_direction_comp), vk::Spirv(sweep_comp), vk::Spirv(exitance_comp), vk::Spirv(vertex_exitance_comp),
+        vk::Spirv(energy_comp)}) {
     const SpirvLayout layout(code);
     for (const auto& [block, bytes] : expected) {
       const auto found = layout.block_stride.find(block);

@@ -36,7 +36,7 @@ def lit_from_above(level) -> np.ndarray:
 
 
 @pytest.mark.parametrize("solver", ["dpcg", "cascade"])
-@pytest.mark.parametrize("method", ["fem", "quadgraph-fdm"])
+@pytest.mark.parametrize("method", ["fem", "quadgraph-fv", "quadgraph-fdm"])
 @pytest.mark.parametrize("material", [MATERIAL, "marble-veins,vein_period=6"])
 def test_gpu_equals_cpu_reference(engine, method, solver, material):
     engine.set_material(material)
@@ -62,7 +62,7 @@ def test_furnace_to_single_precision(engine):
     engine.set_material("sigma_s_prime=2/1/0.5,sigma_a=0,eta=1.3")
     for number, level in enumerate(engine.graph.levels):
         engine.set_irradiance(number, np.full((len(level.faces), 3), 0.7, np.float32))
-    for method in ("fem", "quadgraph-fdm"):
+    for method in ("fem", "quadgraph-fv", "quadgraph-fdm"):
         engine.solve(method=method, tolerance=1e-6)
         field = engine.surface_field()
         assert np.abs(field["exitance"] / 0.7 - 1).max() < 1e-4

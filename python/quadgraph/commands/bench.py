@@ -16,7 +16,9 @@ from quadgraph.commands import report as text
 from quadgraph.commands import scene
 from quadgraph.errors import InputError
 
-METHODS = (("fem", "dpcg"), ("fem", "cascade"), ("quadgraph-fdm", "cascade"), ("quadgraph-fdm", "dpcg"))
+METHODS = tuple(
+    (method, solver) for method in ("fem", "quadgraph-fv", "quadgraph-fdm") for solver in ("dpcg", "cascade")
+)
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:

@@ -57,7 +57,9 @@ def add_scene_arguments(parser: argparse.ArgumentParser) -> None:
         help="directional:DX,DY,DZ:IRRADIANCE (the way the light travels; W/mm^2) or point:X,Y,Z:POWER (mm; W), "
         "the last one number or R/G/B; several allowed (default: warm from behind the view, cool from the side)",
     )
-    parser.add_argument("--method", choices=("fem", "quadgraph-fdm"), default="fem", help="default: %(default)s")
+    parser.add_argument(
+        "--method", choices=("fem", "quadgraph-fv", "quadgraph-fdm"), default="fem", help="default: %(default)s"
+    )
     parser.add_argument("--solver", choices=("dpcg", "cascade"), default="dpcg", help="default: %(default)s")
     parser.add_argument(
         "--tolerance", type=positive_float, default=1e-3, help="relative residual (default: %(default)s)"

@@ -1,0 +1,100 @@
+// quadgraph-fv: two-point flux finite volumes on the tets, harmonic means across faces.
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "engine/graph/discretisation.h"
+#include "engine/graph/fresnel.h"
+
+namespace quadgraph {
+namespace {
+
+// Area (mm^2) and unit normal of the face of `tet` opposite to vertex k, and a point on it.
+struct Face {
+  glm::dvec3 point, normal;
+  double area;
+};
+
+Face face_opposite(const Level& level, const glm::uvec4& tet, int k) {
+  const glm::dvec3 p(level.vertices[tet[(k + 1) % 4]]);
+  const glm::dvec3 cross =
+      glm::cross(glm::dvec3(level.vertices[tet[(k + 2) % 4]]) - p, glm::dvec3(level.vertices[tet[(k + 3) % 4]]) - p);
+  const double length = glm::length(cross);
+  return {p, cross / length, 0.5 * length};
+}
+
+double distance_to(const Face& face, const glm::vec3& node) {
+  return std::abs(glm::dot(face.normal, glm::dvec3(node) - face.point));
+}
+
+// Flux per difference of phi, mm^2, across face k of tet t: area / (d_i/kappa_i + d_j/kappa_j), or area kappa_i / d_i
+// to a surface node, which lies in the face.
+glm::dvec3 conductance(const Level& level, std::span<const gpu::Optical> optical, std::uint32_t t, int k) {
+  const Face face = face_opposite(level, level.tets[t], k);
+  const std::uint32_t j = level.links[t][k];
+  glm::dvec3 resistance = distance_to(face, level.nodes[t]) / glm::dvec3(optical[t].kappa);
+  if (j < level.tet_count()) resistance += distance_to(face, level.nodes[j]) / glm::dvec3(optical[j].kappa);
+  return face.area / resistance;
+}
+
+double tet_volume(const Level& level, const glm::uvec4& tet) {
+  const glm::dvec3 p(level.vertices[tet[0]]);
+  const glm::dvec3 e1 = glm::dvec3(level.vertices[tet[1]]) - p;
+  const glm::dvec3 e2 = glm::dvec3(level.vertices[tet[2]]) - p;
+  const glm::dvec3 e3 = glm::dvec3(level.vertices[tet[3]]) - p;
+  return glm::dot(e1, glm::cross(e2, e3)) / 6.0;
+}
+
+// The face of tet t that links to `node`.
+int face_towards(const Level& level, std::uint32_t t, std::uint32_t node) {
+  int k = 0;
+  while (k < 3 && level.links[t][k] != node) ++k;
+  return k;
+}
+
+double outside_area(const Level& level, std::uint32_t f) {
+  const std::uint32_t t = level.face_tets[f];
+  return face_opposite(level, level.tets[t], face_towards(level, t, level.tet_count() + f)).area;
+}
+
+}  // namespace
+
+Rows assemble_fv(const Level& level, std::span<const gpu::Optical> optical, double eta) {
+  const double robin = 1.0 / (2.0 * mismatch(eta));
+  Rows rows;
+  rows.offset.push_back(0);
+  rows.to_phi.assign(level.nodes.size(), glm::dvec3(1));
+  for (std::uint32_t t = 0; t < level.tet_count(); ++t) {
+    std::array<int, 4> order = {0, 1, 2, 3};
+    std::sort(order.begin(), order.end(), [&](int a, int b) { return level.links[t][a] < level.links[t][b]; });
+    glm::dvec3 sum(0);
+    for (int k : order) {
+      const glm::dvec3 g = conductance(level, optical, t, k);
+      rows.column.push_back(level.links[t][k]);
+      rows.weight.push_back(-g);
+      sum += g;
+    }
+    rows.diagonal.push_back(sum + glm::dvec3(optical[t].sigma_a) * tet_volume(level, level.tets[t]));
+    rows.offset.push_back(static_cast<std::uint32_t>(rows.column.size()));
+  }
+  for (std::uint32_t f = 0; f < level.face_count(); ++f) {
+    const std::uint32_t t = level.face_tets[f];
+    const glm::dvec3 g = conductance(level, optical, t, face_towards(level, t, level.tet_count() + f));
+    rows.column.push_back(t);
+    rows.weight.push_back(-g);
+    rows.diagonal.push_back(g + robin * outside_area(level, f));
+    rows.offset.push_back(static_cast<std::uint32_t>(rows.column.size()));
+  }
+  return rows;
+}
+
+std::vector<glm::dvec3> load_fv(const Level& level, double eta, std::span<const glm::vec3> q) {
+  const double per_q = 4.0 / (1.0 - internal_diffuse_reflectance(eta)) / (2.0 * mismatch(eta));
+  std::vector<glm::dvec3> b(level.nodes.size(), glm::dvec3(0));
+  for (std::uint32_t f = 0; f < level.face_count(); ++f) {
+    b[level.tet_count() + f] = glm::dvec3(q[f]) * (per_q * outside_area(level, f));
+  }
+  return b;
+}
+
+}  // namespace quadgraph
