@@ -96,7 +96,7 @@ def test_bench_compares_two_orders_and_records(sphere, tmp_path, capsys):
     assert entries["device"]
     assert entries["driver"]
     assert entries["commit"]
-    assert len(entries["methods"]) == 6
+    assert len(entries["methods"]) == 5
     for method in entries["methods"]:
         names = [entry["name"] for entry in method["passes"]]
         assert "assembly" in names

@@ -16,8 +16,13 @@ from quadgraph.commands import report as text
 from quadgraph.commands import scene
 from quadgraph.errors import InputError
 
-METHODS = tuple(
-    (method, solver) for method in ("fem", "quadgraph-fv", "quadgraph-fdm") for solver in ("dpcg", "cascade")
+# Relaxation of quadgraph-fv is left out: its stiff surface links take it thousands of sweeps.
+METHODS = (
+    ("fem", "dpcg"),
+    ("fem", "cascade"),
+    ("quadgraph-fv", "dpcg"),
+    ("quadgraph-fdm", "dpcg"),
+    ("quadgraph-fdm", "cascade"),
 )
 
 
