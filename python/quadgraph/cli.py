@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import importlib
 import os
+import re
 import signal
 import sys
 from collections.abc import Sequence
@@ -29,9 +30,20 @@ def build_parser() -> argparse.ArgumentParser:
     return parser
 
 
+def join_negative_values(arguments: Sequence[str]) -> list[str]:
+    """Turn `--view -30,10` into `--view=-30,10`: argparse takes what starts with a minus for an option."""
+    joined: list[str] = []
+    for argument in arguments:
+        if joined and joined[-1].startswith("--") and re.match(r"-[0-9.]+,", argument):
+            joined[-1] += f"={argument}"
+        else:
+            joined.append(argument)
+    return joined
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command line and return its exit status: 1 for an error, 2 for wrong usage, 130 for Ctrl-C."""
-    args = build_parser().parse_args(arguments)
+    args = build_parser().parse_args(join_negative_values(sys.argv[1:] if arguments is None else arguments))
     command = importlib.import_module(f"quadgraph.commands.{args.command}")
     try:
         status = command.run(args)

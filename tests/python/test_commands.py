@@ -36,6 +36,13 @@ def test_render_writes_both_formats_and_a_report(sphere, tmp_path, capsys):
         assert word in printed
 
 
+def test_a_view_may_start_with_a_minus(sphere, tmp_path):
+    path = tmp_path / "a.json"
+    arguments = ["render", sphere, "-o", str(tmp_path / "a.png"), "--size", "16x16", "--view", "-30,-10.5,80"]
+    assert cli.main([*arguments, "--json", str(path)]) == 0
+    assert path.exists()
+
+
 def test_solve_field_has_the_documented_arrays_and_balances(sphere, tmp_path, capsys):
     field, report = tmp_path / "field.npz", tmp_path / "report.json"
     light = ["--light", "directional:0,0,-1:1/0.5/0.25"]

@@ -33,7 +33,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--view",
         default="",
         metavar="A,E[,D]",
-        help="azimuth, elevation (degrees), distance (mm); --view=-30,10 for a negative azimuth (default: fitted)",
+        help="azimuth and elevation in degrees, distance in mm (default: fitted)",
     )
     parser.add_argument("--up", choices=("y", "z"), default="y", help="axis that points up (default: %(default)s)")
     parser.add_argument(
