@@ -4,6 +4,7 @@
 
 #include "engine/graph/discretisation.h"
 #include "engine/graph/fresnel.h"
+#include "engine/graph/geometry.h"
 
 namespace quadgraph {
 namespace {
@@ -26,12 +27,6 @@ TetGeometry tet_geometry(const Level& level, const glm::uvec4& tet) {
   g.gradient[0] = -(g.gradient[1] + g.gradient[2] + g.gradient[3]);
   g.volume = determinant / 6.0;
   return g;
-}
-
-double face_area(const Level& level, const glm::uvec3& face) {
-  const glm::dvec3 p(level.vertices[face[0]]);
-  return 0.5 *
-         glm::length(glm::cross(glm::dvec3(level.vertices[face[1]]) - p, glm::dvec3(level.vertices[face[2]]) - p));
 }
 
 // Columns of every row, ascending, without the diagonal.

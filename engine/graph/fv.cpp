@@ -1,10 +1,12 @@
 // quadgraph-fv: two-point flux finite volumes on the tets, harmonic means across faces.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 
 #include "engine/graph/discretisation.h"
 #include "engine/graph/fresnel.h"
+#include "engine/graph/geometry.h"
 
 namespace quadgraph {
 namespace {
@@ -37,24 +39,11 @@ glm::dvec3 conductance(const Level& level, std::span<const gpu::Optical> optical
   return face.area / resistance;
 }
 
-double tet_volume(const Level& level, const glm::uvec4& tet) {
-  const glm::dvec3 p(level.vertices[tet[0]]);
-  const glm::dvec3 e1 = glm::dvec3(level.vertices[tet[1]]) - p;
-  const glm::dvec3 e2 = glm::dvec3(level.vertices[tet[2]]) - p;
-  const glm::dvec3 e3 = glm::dvec3(level.vertices[tet[3]]) - p;
-  return glm::dot(e1, glm::cross(e2, e3)) / 6.0;
-}
-
 // The face of tet t that links to `node`.
 int face_towards(const Level& level, std::uint32_t t, std::uint32_t node) {
   int k = 0;
   while (k < 3 && level.links[t][k] != node) ++k;
   return k;
-}
-
-double outside_area(const Level& level, std::uint32_t f) {
-  const std::uint32_t t = level.face_tets[f];
-  return face_opposite(level, level.tets[t], face_towards(level, t, level.tet_count() + f)).area;
 }
 
 }  // namespace
@@ -82,7 +71,7 @@ Rows assemble_fv(const Level& level, std::span<const gpu::Optical> optical, doub
     const glm::dvec3 g = conductance(level, optical, t, face_towards(level, t, level.tet_count() + f));
     rows.column.push_back(t);
     rows.weight.push_back(-g);
-    rows.diagonal.push_back(g + robin * outside_area(level, f));
+    rows.diagonal.push_back(g + robin * face_area(level, level.faces[f]));
     rows.offset.push_back(static_cast<std::uint32_t>(rows.column.size()));
   }
   return rows;
@@ -92,7 +81,7 @@ std::vector<glm::dvec3> load_fv(const Level& level, double eta, std::span<const 
   const double per_q = 4.0 / (1.0 - internal_diffuse_reflectance(eta)) / (2.0 * mismatch(eta));
   std::vector<glm::dvec3> b(level.nodes.size(), glm::dvec3(0));
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {
-    b[level.tet_count() + f] = glm::dvec3(q[f]) * (per_q * outside_area(level, f));
+    b[level.tet_count() + f] = glm::dvec3(q[f]) * (per_q * face_area(level, level.faces[f]));
   }
   return b;
 }

@@ -6,6 +6,7 @@
 
 #include "engine/graph/error.h"
 #include "engine/graph/fresnel.h"
+#include "engine/graph/geometry.h"
 #include "shaders/material.h"
 
 namespace quadgraph {
@@ -108,20 +109,6 @@ void conjugate_gradients(const Rows& rows, const Vector& b, const SolveOptions& 
     rz_before = rz;
     ++report.iterations;
   }
-}
-
-double tet_volume(const Level& level, const glm::uvec4& tet) {
-  const glm::dvec3 p(level.vertices[tet[0]]);
-  const glm::dvec3 e1 = glm::dvec3(level.vertices[tet[1]]) - p;
-  const glm::dvec3 e2 = glm::dvec3(level.vertices[tet[2]]) - p;
-  const glm::dvec3 e3 = glm::dvec3(level.vertices[tet[3]]) - p;
-  return glm::dot(e1, glm::cross(e2, e3)) / 6.0;
-}
-
-double face_area(const Level& level, const glm::uvec3& face) {
-  const glm::dvec3 p(level.vertices[face[0]]);
-  return 0.5 *
-         glm::length(glm::cross(glm::dvec3(level.vertices[face[1]]) - p, glm::dvec3(level.vertices[face[2]]) - p));
 }
 
 glm::dvec3 face_phi(const Level& level, Method method, const Vector& phi, std::uint32_t f) {

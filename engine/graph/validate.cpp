@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
+#include "engine/graph/geometry.h"
 #include "engine/graph/section_table.h"
 
 namespace quadgraph {
@@ -89,12 +90,7 @@ void check_shapes(const Place& place, const Level& level) {
 
 void check_orientation(const Place& place, const Level& level) {
   for (std::size_t t = 0; t < level.tets.size(); ++t) {
-    const glm::uvec4& tet = level.tets[t];
-    const glm::dvec3 p(level.vertices[tet[0]]);
-    const glm::dvec3 e1 = glm::dvec3(level.vertices[tet[1]]) - p;
-    const glm::dvec3 e2 = glm::dvec3(level.vertices[tet[2]]) - p;
-    const glm::dvec3 e3 = glm::dvec3(level.vertices[tet[3]]) - p;
-    if (!(glm::dot(e1, glm::cross(e2, e3)) > 0)) place.fail("tets", t, "not positively oriented");
+    if (!(tet_determinant(level, level.tets[t]) > 0)) place.fail("tets", t, "not positively oriented");
   }
 }
 

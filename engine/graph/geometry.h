@@ -1,0 +1,33 @@
+// Measures of a level's elements, in double precision.
+#pragma once
+
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include "engine/graph/graph.h"
+
+namespace quadgraph {
+
+// Six times the volume, mm^3; positive for a positively oriented tet.
+inline double tet_determinant(const Level& level, const glm::uvec4& tet) {
+  const glm::dvec3 p(level.vertices[tet[0]]);
+  const glm::dvec3 e1 = glm::dvec3(level.vertices[tet[1]]) - p;
+  const glm::dvec3 e2 = glm::dvec3(level.vertices[tet[2]]) - p;
+  const glm::dvec3 e3 = glm::dvec3(level.vertices[tet[3]]) - p;
+  return glm::dot(e1, glm::cross(e2, e3));
+}
+
+// mm^3.
+inline double tet_volume(const Level& level, const glm::uvec4& tet) {
+  return tet_determinant(level, tet) / 6.0;
+}
+
+// mm^2.
+inline double face_area(const Level& level, const glm::uvec3& face) {
+  const glm::dvec3 p(level.vertices[face[0]]);
+  return 0.5 *
+         glm::length(glm::cross(glm::dvec3(level.vertices[face[1]]) - p, glm::dvec3(level.vertices[face[2]]) - p));
+}
+
+}  // namespace quadgraph
