@@ -1,9 +1,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "optics.h"
 #include "solve_shared.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
-layout(push_constant, scalar) uniform Block { AssembleFdmPush push; };
+layout(push_constant, scalar) uniform Block {
+  AssembleFdmPush push;
+};
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
@@ -22,12 +25,12 @@ void main() {
   }
   Optical own = push.optical.at[i];
   if (i < push.tet_count) {
-    push.rows.diagonal.at[i] = vec3(sum) + own.sigma_a / own.kappa;
+    push.rows.diagonal.at[i] = vec3(sum) + own.sigma_a / kappa(own);
   } else {
     // (1 + h) kappa_k / (kappa_s h d^2) with h = 2 A kappa_s / d.
-    vec3 h = 2.0 * push.mismatch * own.kappa * sqrt(sum);
-    vec3 inner_kappa = push.optical.at[push.rows.column.at[begin]].kappa;
-    push.rows.diagonal.at[i] = (1.0 + h) / h * inner_kappa / own.kappa * sum;
+    vec3 h = 2.0 * push.mismatch * kappa(own) * sqrt(sum);
+    vec3 inner_kappa = kappa(push.optical.at[push.rows.column.at[begin]]);
+    push.rows.diagonal.at[i] = (1.0 + h) / h * inner_kappa / kappa(own) * sum;
   }
-  push.to_phi.at[i] = 1.0 / own.kappa;
+  push.to_phi.at[i] = 1.0 / kappa(own);
 }

@@ -1,9 +1,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "optics.h"
 #include "solve_shared.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
-layout(push_constant, scalar) uniform Block { AssembleFemPush push; };
+layout(push_constant, scalar) uniform Block {
+  AssembleFemPush push;
+};
 
 uint row_begin;
 
@@ -24,7 +27,7 @@ vec3 add_tet(uvec2 incidence) {
   vec3 n0 = -(n1 + n2 + n3);
   float six_volume = abs(dot(e1, n1));
   Optical optical = push.optical.at[tet];
-  vec3 stiffness = optical.kappa / (6.0 * six_volume);
+  vec3 stiffness = kappa(optical) / (6.0 * six_volume);
   vec3 mass = optical.sigma_a * (six_volume / 120.0);
   vec3 k1 = stiffness * dot(n0, n1), k2 = stiffness * dot(n0, n2), k3 = stiffness * dot(n0, n3);
   add(incidence.y & 1023u, k1 + mass);

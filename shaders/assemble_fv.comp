@@ -1,9 +1,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "optics.h"
 #include "solve_shared.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
-layout(push_constant, scalar) uniform Block { AssembleFvPush push; };
+layout(push_constant, scalar) uniform Block {
+  AssembleFvPush push;
+};
 
 vec3 vertex(uvec4 tet, uint k) {
   return push.vertices.at[tet[k & 3u]];
@@ -17,9 +20,9 @@ vec3 conductance(uint t, uint k, out float area) {
   vec3 twice_area = cross(vertex(tet, k + 2u) - point, vertex(tet, k + 3u) - point);
   float size = length(twice_area);
   area = 0.5 * size;
-  vec3 resistance = vec3(abs(dot(twice_area, push.nodes.at[t] - point))) / push.optical.at[t].kappa;
+  vec3 resistance = vec3(abs(dot(twice_area, push.nodes.at[t] - point))) / kappa(push.optical.at[t]);
   if (j < push.tet_count) {
-    resistance += vec3(abs(dot(twice_area, push.nodes.at[j] - point))) / push.optical.at[j].kappa;
+    resistance += vec3(abs(dot(twice_area, push.nodes.at[j] - point))) / kappa(push.optical.at[j]);
   }
   return vec3(area * size) / resistance;
 }

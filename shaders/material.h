@@ -59,15 +59,14 @@ QG_INLINE float vein_amount(Material m, vec3 position) {
 
 // Coefficients at `position` (mm, object space).
 QG_INLINE Optical material_at(Material m, vec3 position) {
-  vec3 sigma_s_prime = m.sigma_s_prime;
   Optical optical;
+  optical.sigma_s_prime = m.sigma_s_prime;
   optical.sigma_a = m.sigma_a;
   if (m.kind == MATERIAL_MARBLE_VEINS) {
     float t = vein_amount(m, position);
-    sigma_s_prime = mix(sigma_s_prime, m.vein_sigma_s_prime, t);
+    optical.sigma_s_prime = mix(m.sigma_s_prime, m.vein_sigma_s_prime, t);
     optical.sigma_a = mix(m.sigma_a, m.vein_sigma_a, t);
   }
-  optical.kappa = vec3(1.0f / 3.0f) / (optical.sigma_a + sigma_s_prime);
   return optical;
 }
 

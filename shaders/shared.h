@@ -36,8 +36,8 @@ QG_ARRAY(Uvec4s, uvec4);
 
 // Optical coefficients of a point, per RGB channel.
 struct Optical {
-  vec3 kappa;    // mm, 1 / (3 (sigma_a + sigma_s_prime))
-  vec3 sigma_a;  // 1/mm
+  vec3 sigma_s_prime;  // 1/mm, reduced scattering, >= 0; 0 where the body is clear
+  vec3 sigma_a;        // 1/mm, absorption, >= 0
 };
 
 const uint MATERIAL_HOMOGENEOUS = 0u;

@@ -25,8 +25,9 @@ Json as_json(const SolveReport& report) {
                               {"converged", level.converged}});
   }
   json["energy"] = {{"entered_W", as_json(report.energy.entered)},
-                    {"exitance_W", as_json(report.energy.exitance)},
+                    {"scattered_out_W", as_json(report.energy.scattered_out)},
                     {"absorbed_W", as_json(report.energy.absorbed)},
+                    {"unscattered_out_W", as_json(report.energy.unscattered_out)},
                     {"balance", as_json(report.energy.balance())}};
   json["error"] = report.error ? Json{{"whole", report.error->whole}, {"unlit", report.error->unlit}} : Json(nullptr);
   return json;

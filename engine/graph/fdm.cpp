@@ -4,6 +4,7 @@
 
 #include "engine/graph/discretisation.h"
 #include "engine/graph/fresnel.h"
+#include "shaders/optics.h"
 
 namespace quadgraph {
 namespace {
@@ -23,7 +24,7 @@ void assemble_inner(const Level& level, std::span<const gpu::Optical> optical, s
     rows.weight.emplace_back(-w);
     sum += w;
   }
-  rows.diagonal[t] = glm::dvec3(sum) + glm::dvec3(optical[t].sigma_a) / glm::dvec3(optical[t].kappa);
+  rows.diagonal[t] = glm::dvec3(sum) + glm::dvec3(optical[t].sigma_a) / glm::dvec3(gpu::kappa(optical[t]));
 }
 
 void assemble_surface(const Level& level, std::span<const gpu::Optical> optical, double a, std::uint32_t f,
@@ -31,11 +32,11 @@ void assemble_surface(const Level& level, std::span<const gpu::Optical> optical,
   const std::uint32_t s = level.tet_count() + f;
   const std::uint32_t k = level.face_tets[f];
   const double w = inverse_square_distance(level, s, k);
-  const glm::dvec3 kappa_s(optical[s].kappa);
+  const glm::dvec3 kappa_s(gpu::kappa(optical[s]));
   const glm::dvec3 h = 2.0 * a * kappa_s * std::sqrt(w);
   rows.column.push_back(k);
   rows.weight.emplace_back(-w);
-  rows.diagonal[s] = (1.0 + h) * glm::dvec3(optical[k].kappa) / (kappa_s * h) * w;
+  rows.diagonal[s] = (1.0 + h) * glm::dvec3(gpu::kappa(optical[k])) / (kappa_s * h) * w;
 }
 
 }  // namespace
@@ -53,7 +54,7 @@ Rows assemble_fdm(const Level& level, std::span<const gpu::Optical> optical, dou
     assemble_surface(level, optical, a, f, rows);
     rows.offset.push_back(static_cast<std::uint32_t>(rows.column.size()));
   }
-  for (const gpu::Optical& o : optical) rows.to_phi.push_back(1.0 / glm::dvec3(o.kappa));
+  for (const gpu::Optical& o : optical) rows.to_phi.push_back(1.0 / glm::dvec3(gpu::kappa(o)));
   return rows;
 }
 
@@ -66,7 +67,7 @@ std::vector<glm::dvec3> load_fdm(const Level& level, std::span<const gpu::Optica
     const std::uint32_t s = level.tet_count() + f;
     const std::uint32_t k = level.face_tets[f];
     const double inverse_distance = std::sqrt(inverse_square_distance(level, s, k));
-    b[s] = glm::dvec3(optical[k].kappa) / glm::dvec3(optical[s].kappa) * glm::dvec3(q[f]) * source_per_q *
+    b[s] = glm::dvec3(gpu::kappa(optical[k])) / glm::dvec3(gpu::kappa(optical[s])) * glm::dvec3(q[f]) * source_per_q *
            inverse_distance / (2.0 * a);
   }
   return b;

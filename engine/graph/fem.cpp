@@ -5,6 +5,7 @@
 #include "engine/graph/discretisation.h"
 #include "engine/graph/fresnel.h"
 #include "engine/graph/geometry.h"
+#include "shaders/optics.h"
 
 namespace quadgraph {
 namespace {
@@ -64,7 +65,8 @@ void add_tet(const TetGeometry& g, const glm::uvec4& tet, const gpu::Optical& op
     rows.diagonal[tet[i]] += 2.0 * mass;
     for (int j = 0; j < 4; ++j) {
       if (i == j) continue;
-      const glm::dvec3 stiffness = glm::dvec3(optical.kappa) * (glm::dot(g.gradient[i], g.gradient[j]) * g.volume);
+      const glm::dvec3 stiffness =
+          glm::dvec3(gpu::kappa(optical)) * (glm::dot(g.gradient[i], g.gradient[j]) * g.volume);
       entry(rows, tet[i], tet[j]) += stiffness + mass;
       rows.diagonal[tet[i]] -= stiffness;
     }

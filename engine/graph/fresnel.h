@@ -9,11 +9,17 @@ inline constexpr double max_eta = 3.0;
 // Unpolarised transmittance from outside at incidence cosine `cos_i` in [0, 1].
 double fresnel_transmittance(double cos_i, double eta);
 
+// Unpolarised reflectance from inside at the inside cosine `mu` in [0, 1]; 1 under total reflection.
+double internal_reflectance(double mu, double eta);
+
+// R_n, the integral of internal_reflectance mu^n over mu from 0 to 1; to 1e-10.
+double fresnel_moment(int n, double eta);
+
 // Internal diffuse reflectance by the published polynomial: -1.440/eta^2 + 0.710/eta + 0.668 + 0.0636 eta for eta > 1,
 // 0 for eta = 1 [QG, PG; Groenhuis et al. 1983].
 double internal_diffuse_reflectance(double eta);
 
-// Boundary mismatch A = (1 + F_dr) / (1 - F_dr).
+// Published boundary mismatch A = (1 + F_dr) / (1 - F_dr).
 double mismatch(double eta);
 
 }  // namespace quadgraph

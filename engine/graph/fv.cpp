@@ -7,6 +7,7 @@
 #include "engine/graph/discretisation.h"
 #include "engine/graph/fresnel.h"
 #include "engine/graph/geometry.h"
+#include "shaders/optics.h"
 
 namespace quadgraph {
 namespace {
@@ -34,8 +35,8 @@ double distance_to(const Face& face, const glm::vec3& node) {
 glm::dvec3 conductance(const Level& level, std::span<const gpu::Optical> optical, std::uint32_t t, int k) {
   const Face face = face_opposite(level, level.tets[t], k);
   const std::uint32_t j = level.links[t][k];
-  glm::dvec3 resistance = distance_to(face, level.nodes[t]) / glm::dvec3(optical[t].kappa);
-  if (j < level.tet_count()) resistance += distance_to(face, level.nodes[j]) / glm::dvec3(optical[j].kappa);
+  glm::dvec3 resistance = distance_to(face, level.nodes[t]) / glm::dvec3(gpu::kappa(optical[t]));
+  if (j < level.tet_count()) resistance += distance_to(face, level.nodes[j]) / glm::dvec3(gpu::kappa(optical[j]));
   return face.area / resistance;
 }
 

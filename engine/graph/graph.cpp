@@ -37,6 +37,7 @@ Level read_level(const SectionTable& table, std::uint32_t index, bool coarsest) 
   level.face_tets = table.rows<std::uint32_t>(prefix + "face_tets", 1);
   level.links = vectors<glm::uvec4>(table, prefix + "links");
   level.nodes = vectors<glm::vec3>(table, prefix + "nodes");
+  if (table.has(prefix + "face_kinds")) level.face_kinds = table.rows<std::uint32_t>(prefix + "face_kinds", 1);
   if (!coarsest) {
     level.inner = read_transfer(table, prefix + "inner", 8);
     level.surface = read_transfer(table, prefix + "surface", 4);
@@ -51,14 +52,15 @@ DisplayMesh read_display(const SectionTable& table) {
           vectors<glm::vec3>(table, "display/barycentric")};
 }
 
-// Names of all sections of a file with `levels` levels, in file order.
-std::vector<std::string> section_names(std::uint32_t levels) {
+// Names of all sections of a file with `levels` levels, in file order; those of `table` where they are optional.
+std::vector<std::string> section_names(const SectionTable& table, std::uint32_t levels) {
   std::vector<std::string> names = {"metadata"};
   for (std::uint32_t i = 0; i < levels; ++i) {
     const std::string prefix = "level" + std::to_string(i) + "/";
     for (const char* field : {"vertices", "tets", "faces", "face_tets", "links", "nodes"}) {
       names.push_back(prefix + field);
     }
+    if (table.has(prefix + "face_kinds")) names.push_back(prefix + "face_kinds");
     if (i + 1 == levels) continue;
     for (const char* field : {"inner", "surface", "barycentric"}) {
       names.push_back(prefix + field + "_index");
@@ -77,7 +79,7 @@ std::uint32_t count_levels(const SectionTable& table) {
   if (count == 0 || count > qgraph_max_levels) {
     fail_format(table.file(), "levels", "found " + std::to_string(count) + ", allowed are 1 to 16");
   }
-  const std::vector<std::string> expected = section_names(count);
+  const std::vector<std::string> expected = section_names(table, count);
   for (std::size_t i = 0; i < std::max(expected.size(), table.names().size()); ++i) {
     const std::string wanted = i < expected.size() ? "'" + expected[i] + "'" : "no more sections";
     const std::string found = i < table.names().size() ? "'" + table.names()[i] + "'" : "the end of the table";

@@ -20,19 +20,25 @@ struct Transfer {
   std::uint32_t width = 0;  // entries per row; 0 where there is no coarser level
 };
 
+// Kinds of outside faces: light passes an open one; a reflecting one is a wall of symmetry, a perfect mirror.
+inline constexpr std::uint32_t face_open = 0;
+inline constexpr std::uint32_t face_reflecting = 1;
+
 // One level of detail. The sections of docs/qgraph-format.md, all rules checked.
 struct Level {
-  std::span<const glm::vec3> vertices;       // mm; the first surface_vertex_count lie on the surface
-  std::span<const glm::uvec4> tets;          // positively oriented
-  std::span<const glm::uvec3> faces;         // outside triangles, counter-clockwise from outside
-  std::span<const std::uint32_t> face_tets;  // the tet behind each outside face
-  std::span<const glm::uvec4> links;         // entry k across the face opposite vertex k; >= n_t: surface node
-  std::span<const glm::vec3> nodes;          // mm; inner nodes, then surface nodes
-  Transfer inner;                            // inverse distance, inner nodes from inner nodes of the next level
-  Transfer surface;                          // inverse distance, surface nodes from surface nodes of the next level
-  Transfer barycentric;                      // clamped barycentric, vertices from vertices of the next level
+  std::span<const glm::vec3> vertices;        // mm; the first surface_vertex_count lie on the surface
+  std::span<const glm::uvec4> tets;           // positively oriented
+  std::span<const glm::uvec3> faces;          // outside triangles, counter-clockwise from outside
+  std::span<const std::uint32_t> face_tets;   // the tet behind each outside face
+  std::span<const glm::uvec4> links;          // entry k across the face opposite vertex k; >= n_t: surface node
+  std::span<const glm::vec3> nodes;           // mm; inner nodes, then surface nodes
+  std::span<const std::uint32_t> face_kinds;  // FaceKind of each outside face; empty: all are open
+  Transfer inner;                             // inverse distance, inner nodes from inner nodes of the next level
+  Transfer surface;                           // inverse distance, surface nodes from surface nodes of the next level
+  Transfer barycentric;                       // clamped barycentric, vertices from vertices of the next level
   std::uint32_t surface_vertex_count = 0;
 
+  bool reflecting(std::uint32_t face) const { return !face_kinds.empty() && face_kinds[face] == face_reflecting; }
   std::uint32_t vertex_count() const { return static_cast<std::uint32_t>(vertices.size()); }
   std::uint32_t tet_count() const { return static_cast<std::uint32_t>(tets.size()); }
   std::uint32_t face_count() const { return static_cast<std::uint32_t>(faces.size()); }

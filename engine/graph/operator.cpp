@@ -12,7 +12,7 @@ namespace {
 
 bool in_range(const gpu::Optical& optical) {
   for (int c = 0; c < 3; ++c) {
-    if (!(optical.kappa[c] > 0 && std::isfinite(optical.kappa[c]))) return false;
+    if (!(optical.sigma_s_prime[c] >= 0 && std::isfinite(optical.sigma_s_prime[c]))) return false;
     if (!(optical.sigma_a[c] >= 0 && std::isfinite(optical.sigma_a[c]))) return false;
   }
   return true;
@@ -25,7 +25,7 @@ void check_input(const Level& level, std::span<const gpu::Optical> optical, doub
   }
   for (std::size_t i = 0; i < optical.size(); ++i) {
     if (!in_range(optical[i])) {
-      throw InputError("optical[" + std::to_string(i) + "]: kappa must be > 0 and sigma_a >= 0, both finite");
+      throw InputError("optical[" + std::to_string(i) + "]: sigma_s_prime and sigma_a must be finite numbers >= 0");
     }
   }
   if (!(eta >= min_eta && eta <= max_eta)) throw InputError("eta " + std::to_string(eta) + ": allowed is 1 to 3");

@@ -47,7 +47,7 @@ struct Rows {
 std::uint32_t unknown_count(const Level& level, Method method);
 
 // `optical` has one entry per node of the level (inner, then surface). Throws InputError if sizes or values are out of
-// range (kappa > 0, sigma_a >= 0, all finite; eta in [min_eta, max_eta]).
+// range (sigma_s_prime, sigma_a >= 0 and finite; eta in [min_eta, max_eta]).
 Rows assemble(const Level& level, Method method, std::span<const gpu::Optical> optical, double eta);
 
 // b for irradiance `q` (one entry per surface node, >= 0).

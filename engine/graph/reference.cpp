@@ -133,7 +133,7 @@ void add_surface(const Level& level, Method method, double eta, std::span<const 
     solution.phi_face.push_back(phi);
     solution.exitance.push_back(exitance);
     solution.energy.entered += area * glm::dvec3(q[f]);
-    solution.energy.exitance += area * exitance;
+    solution.energy.scattered_out += area * exitance;
   }
 }
 

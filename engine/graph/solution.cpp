@@ -12,6 +12,10 @@ constexpr std::array<std::pair<std::string_view, Method>, 3> methods = {
     {{"quadgraph-fdm", Method::quadgraph_fdm}, {"quadgraph-fv", Method::quadgraph_fv}, {"fem", Method::fem}}};
 constexpr std::array<std::pair<std::string_view, SolverKind>, 2> solvers = {
     {{"cascade", SolverKind::cascade}, {"dpcg", SolverKind::dpcg}}};
+constexpr std::array<std::pair<std::string_view, Source>, 2> sources = {
+    {{"buried", Source::buried}, {"diffuse", Source::diffuse}}};
+constexpr std::array<std::pair<std::string_view, Model>, 3> models = {
+    {{"diffusion", Model::diffusion}, {"sp3", Model::sp3}, {"auto", Model::automatic}}};
 
 template <typename Table>
 auto from_name(const Table& table, std::string_view what, std::string_view name) {
@@ -39,17 +43,29 @@ Method method_from_name(std::string_view name) {
 SolverKind solver_from_name(std::string_view name) {
   return from_name(solvers, "solver", name);
 }
+Source source_from_name(std::string_view name) {
+  return from_name(sources, "source", name);
+}
+Model model_from_name(std::string_view name) {
+  return from_name(models, "model", name);
+}
 std::string_view name_of(Method method) {
   return to_name(methods, method);
 }
 std::string_view name_of(SolverKind solver) {
   return to_name(solvers, solver);
 }
+std::string_view name_of(Source source) {
+  return to_name(sources, source);
+}
+std::string_view name_of(Model model) {
+  return to_name(models, model);
+}
 
 glm::dvec3 Energy::balance() const {
   glm::dvec3 result{0};
   for (int c = 0; c < 3; ++c) {
-    if (entered[c] > 0) result[c] = (entered[c] - exitance[c] - absorbed[c]) / entered[c];
+    if (entered[c] > 0) result[c] = (entered[c] - scattered_out[c] - absorbed[c] - unscattered_out[c]) / entered[c];
   }
   return result;
 }

@@ -21,27 +21,47 @@ enum class SolverKind {
   dpcg,     // conjugate gradients with diagonal preconditioning, started from the coarser level
 };
 
-// "quadgraph-fdm", "quadgraph-fv", "fem"; "cascade", "dpcg". Throw InputError listing the allowed names.
+// How light enters the body.
+enum class Source {
+  buried,   // scattered along refracted rays inside; the surface only reflects and lets out
+  diffuse,  // at the surface, as published [QG Eq. 2, PG Eq. 4]
+};
+
+enum class Model {
+  diffusion,  // one unknown per carrier: fluence phi
+  sp3,        // simplified spherical harmonics: phi and its second moment phi2 (engine/graph/operator.h)
+  automatic,  // "auto": diffusion where its known error is small (engine/graph/model.h), else sp3
+};
+
+// "quadgraph-fdm", "quadgraph-fv", "fem"; "cascade", "dpcg"; "buried", "diffuse"; "diffusion", "sp3", "auto". Throw
+// InputError listing the allowed names.
 Method method_from_name(std::string_view name);
 SolverKind solver_from_name(std::string_view name);
+Source source_from_name(std::string_view name);
+Model model_from_name(std::string_view name);
 std::string_view name_of(Method method);
 std::string_view name_of(SolverKind solver);
+std::string_view name_of(Source source);
+std::string_view name_of(Model model);
 
 struct SolveOptions {
   Method method = Method::fem;
   SolverKind solver = SolverKind::dpcg;
+  Source source = Source::buried;
+  Model model = Model::automatic;
   // Stop when sqrt(r^T D^-1 r / b^T D^-1 b) <= tolerance in every channel that receives light.
   double tolerance = 1e-3;
   std::uint32_t max_iterations = 5000;  // per level
 };
 
-// Power per channel. q enters; M leaves; the rest is absorbed: entered = exitance + absorbed for a conservative method.
+// Power per channel. What enters is scattered out, absorbed, or leaves unscattered, for a conservative method.
 struct Energy {
-  glm::dvec3 entered{0};   // W, integral of q over the surface
-  glm::dvec3 exitance{0};  // W, integral of M over the surface
-  glm::dvec3 absorbed{0};  // W, integral of sigma_a * phi over the volume
+  glm::dvec3 entered{0};          // W, integral of q over the surface
+  glm::dvec3 scattered_out{0};    // W, integral of M over the surface
+  glm::dvec3 absorbed{0};         // W, integral of sigma_a times all fluence over the volume
+  glm::dvec3 unscattered_out{0};  // W, of the buried source's rays, where they meet the surface from inside
 
-  // (entered - exitance - absorbed) / entered; 0 in a channel without light.
+  // (entered - scattered_out - absorbed - unscattered_out) / entered; 0 in a channel without light.
   glm::dvec3 balance() const;
 };
 
@@ -63,19 +83,25 @@ struct ErrorEstimate {
 struct SolveReport {
   Method method = Method::fem;
   SolverKind solver = SolverKind::dpcg;
+  Source source = Source::buried;
+  Model model = Model::diffusion;   // the one that was solved, never `automatic`
   std::vector<LevelReport> levels;  // coarsest first, in the order solved
   Energy energy;                    // on the finest level
+  // Share of the exitance, per channel, that linear elements put below zero and that was taken from the rest instead;
+  // 0 with Source::diffuse, whose exitance stays as it is.
+  glm::dvec3 clipped{0};
   std::optional<ErrorEstimate> error;
 };
 
 // Surface samples of one level: one per outside face, at its surface node.
 struct SurfaceField {
-  std::vector<glm::vec3> position;  // mm
-  std::vector<glm::vec3> normal;    // unit, outward
-  std::vector<float> area;          // mm^2
-  std::vector<glm::vec3> q;         // W/mm^2
-  std::vector<glm::vec3> phi;       // W/mm^2
-  std::vector<glm::vec3> exitance;  // W/mm^2
+  std::vector<glm::vec3> position;     // mm
+  std::vector<glm::vec3> normal;       // unit, outward
+  std::vector<float> area;             // mm^2
+  std::vector<glm::vec3> q;            // W/mm^2
+  std::vector<glm::vec3> phi;          // W/mm^2
+  std::vector<glm::vec3> exitance;     // W/mm^2, of light that was scattered
+  std::vector<glm::vec3> unscattered;  // W/mm^2, of light that was not
 };
 
 }  // namespace quadgraph

@@ -106,6 +106,14 @@ void check_vertices_used(const Place& place, const Level& level) {
   }
 }
 
+void check_face_kinds(const Place& place, const Level& level) {
+  if (level.face_kinds.empty()) return;
+  expect_rows(place, "face_kinds", level.face_kinds.size(), level.faces.size());
+  for (std::size_t f = 0; f < level.face_kinds.size(); ++f) {
+    if (level.face_kinds[f] > face_reflecting) place.fail("face_kinds", f, "allowed are 0 (open) and 1 (reflecting)");
+  }
+}
+
 // Vertices of the face opposite to vertex k of a positive tet, counter-clockwise seen from outside.
 glm::uvec3 outward_face(const glm::uvec4& tet, int k) {
   switch (k) {
@@ -194,6 +202,7 @@ void validate_level(const Level& level, const Level* coarser, const std::string&
   for (std::size_t f = 0; f < level.face_tets.size(); ++f) {
     if (level.face_tets[f] >= level.tets.size()) place.fail("face_tets", f, "index out of range");
   }
+  check_face_kinds(place, level);
   check_orientation(place, level);
   check_vertices_used(place, level);
   check_links(place, level);

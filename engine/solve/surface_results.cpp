@@ -109,7 +109,7 @@ Energy SurfaceResults::energy() const {
   Energy energy;
   for (const gpu::EnergySums& sums : sums_on_host_.mapped_as<gpu::EnergySums>()) {
     energy.entered += glm::dvec3(sums.entered);
-    energy.exitance += glm::dvec3(sums.exitance);
+    energy.scattered_out += glm::dvec3(sums.exitance);
     energy.absorbed += glm::dvec3(sums.absorbed);
   }
   return energy;

@@ -129,7 +129,10 @@ void set_lights(Engine& engine, const std::vector<std::string>& texts) {
 
 SolveReport solve(Engine& engine, const std::string& method, const std::string& solver, double tolerance,
                   std::uint32_t max_iterations) {
-  const SolveOptions options{method_from_name(method), solver_from_name(solver), tolerance, max_iterations};
+  const SolveOptions options{.method = method_from_name(method),
+                             .solver = solver_from_name(solver),
+                             .tolerance = tolerance,
+                             .max_iterations = max_iterations};
   const py::gil_scoped_release release;
   return engine.solve(options);
 }

@@ -42,6 +42,9 @@ void bind_level(py::module_& module) {
       .def_property_readonly("tets", [](const LevelHandle& h) { return rows(h.level->tets, h.graph); })
       .def_property_readonly("faces", [](const LevelHandle& h) { return rows(h.level->faces, h.graph); })
       .def_property_readonly("face_tets", [](const LevelHandle& h) { return flat(h.level->face_tets, h.graph); })
+      .def_property_readonly(
+          "face_kinds", [](const LevelHandle& h) { return flat(h.level->face_kinds, h.graph); },
+          "0 open, 1 reflecting; empty if all are open.")
       .def_property_readonly("links", [](const LevelHandle& h) { return rows(h.level->links, h.graph); })
       .def_property_readonly("nodes", [](const LevelHandle& h) { return rows(h.level->nodes, h.graph); })
       .def_property_readonly(

@@ -33,42 +33,47 @@ void bind_reference(py::module_& module) {
       "evaluate_material",
       [](const QuadGraph& graph, std::uint32_t level, const gpu::Material& material) {
         const auto optical = evaluate_material(level_of(graph, level), material);
-        std::vector<glm::vec3> kappa, sigma_a;
+        std::vector<glm::vec3> sigma_s_prime, sigma_a;
         for (const gpu::Optical& o : optical) {
-          kappa.push_back(o.kappa);
+          sigma_s_prime.push_back(o.sigma_s_prime);
           sigma_a.push_back(o.sigma_a);
         }
-        return py::make_tuple(own(std::move(kappa)), own(std::move(sigma_a)));
+        return py::make_tuple(own(std::move(sigma_s_prime)), own(std::move(sigma_a)));
       },
-      py::arg("graph"), py::arg("level"), py::arg("material"), "kappa (n, 3) mm and sigma_a (n, 3) 1/mm at the nodes.");
+      py::arg("graph"), py::arg("level"), py::arg("material"),
+      "sigma_s_prime and sigma_a, (n, 3) in 1/mm, at the nodes.");
   module.def(
       "assemble",
-      [](const QuadGraph& graph, std::uint32_t index, const std::string& method, const FloatArray& kappa,
+      [](const QuadGraph& graph, std::uint32_t index, const std::string& method, const FloatArray& sigma_s_prime,
          const FloatArray& sigma_a, double eta) {
         const Level& level = level_of(graph, index);
         return rows_dict(
-            assemble(level, method_from_name(method), optical_from(kappa, sigma_a, level.node_count()), eta));
+            assemble(level, method_from_name(method), optical_from(sigma_s_prime, sigma_a, level.node_count()), eta));
       },
-      py::arg("graph"), py::arg("level"), py::arg("method"), py::arg("kappa"), py::arg("sigma_a"), py::arg("eta"),
-      "Rows of the symmetric system A x = b, phi = to_phi * x (engine/graph/operator.h).");
+      py::arg("graph"), py::arg("level"), py::arg("method"), py::arg("sigma_s_prime"), py::arg("sigma_a"),
+      py::arg("eta"), "Rows of the symmetric system A x = b, phi = to_phi * x (engine/graph/operator.h).");
   module.def(
       "right_hand_side",
-      [](const QuadGraph& graph, std::uint32_t index, const std::string& method, const FloatArray& kappa,
+      [](const QuadGraph& graph, std::uint32_t index, const std::string& method, const FloatArray& sigma_s_prime,
          const FloatArray& sigma_a, double eta, const FloatArray& q) {
         const Level& level = level_of(graph, index);
-        return own(right_hand_side(level, method_from_name(method), optical_from(kappa, sigma_a, level.node_count()),
-                                   eta, vectors(q, level.face_count(), "q")));
+        return own(right_hand_side(level, method_from_name(method),
+                                   optical_from(sigma_s_prime, sigma_a, level.node_count()), eta,
+                                   vectors(q, level.face_count(), "q")));
       },
-      py::arg("graph"), py::arg("level"), py::arg("method"), py::arg("kappa"), py::arg("sigma_a"), py::arg("eta"),
-      py::arg("q"), "b for irradiance q (n_f, 3) in W/mm^2.");
+      py::arg("graph"), py::arg("level"), py::arg("method"), py::arg("sigma_s_prime"), py::arg("sigma_a"),
+      py::arg("eta"), py::arg("q"), "b for irradiance q (n_f, 3) in W/mm^2.");
   module.def(
       "solve_reference",
-      [](const QuadGraph& graph, std::uint32_t index, const FloatArray& kappa, const FloatArray& sigma_a, double eta,
-         const FloatArray& q, const std::string& method, const std::string& solver, double tolerance,
+      [](const QuadGraph& graph, std::uint32_t index, const FloatArray& sigma_s_prime, const FloatArray& sigma_a,
+         double eta, const FloatArray& q, const std::string& method, const std::string& solver, double tolerance,
          std::uint32_t max_iterations) {
         const Level& level = level_of(graph, index);
-        const SolveOptions options{method_from_name(method), solver_from_name(solver), tolerance, max_iterations};
-        const auto optical = optical_from(kappa, sigma_a, level.node_count());
+        const SolveOptions options{.method = method_from_name(method),
+                                   .solver = solver_from_name(solver),
+                                   .tolerance = tolerance,
+                                   .max_iterations = max_iterations};
+        const auto optical = optical_from(sigma_s_prime, sigma_a, level.node_count());
         const auto irradiance = vectors(q, level.face_count(), "q");
         ReferenceSolution solution = [&] {
           const py::gil_scoped_release release;
@@ -82,10 +87,10 @@ void bind_reference(py::module_& module) {
         d["report"] = as_dict(solution.report);
         return d;
       },
-      py::arg("graph"), py::arg("level"), py::arg("kappa"), py::arg("sigma_a"), py::arg("eta"), py::arg("q"),
+      py::arg("graph"), py::arg("level"), py::arg("sigma_s_prime"), py::arg("sigma_a"), py::arg("eta"), py::arg("q"),
       py::arg("method") = "fem", py::arg("solver") = "dpcg", py::arg("tolerance") = 1e-10,
       py::arg("max_iterations") = 100000,
-      "Solve one level on the CPU. kappa (n, 3) mm and sigma_a (n, 3) 1/mm at the nodes, q (n_f, 3) W/mm^2. Returns "
+      "Solve one level on the CPU. sigma_s_prime and sigma_a (n, 3) 1/mm at the nodes, q (n_f, 3) W/mm^2. Returns "
       "phi per unknown, phi_face and exitance per outside face (W/mm^2), energy (W), report.");
 }
 

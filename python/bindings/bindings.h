@@ -49,8 +49,8 @@ pybind11::array own(std::vector<Scalar>&& values) {
 // `array` as vectors of three; InputError naming `what` unless its shape is (count, 3).
 std::span<const glm::vec3> vectors(const FloatArray& array, std::size_t count, const std::string& what);
 
-// Zips kappa (n, 3) in mm and sigma_a (n, 3) in 1/mm into one entry per node.
-std::vector<gpu::Optical> optical_from(const FloatArray& kappa, const FloatArray& sigma_a, std::size_t count);
+// Zips sigma_s_prime and sigma_a, (n, 3) in 1/mm, into one entry per node.
+std::vector<gpu::Optical> optical_from(const FloatArray& sigma_s_prime, const FloatArray& sigma_a, std::size_t count);
 
 pybind11::tuple as_tuple(const glm::dvec3& v);
 pybind11::dict as_dict(const Energy& energy);

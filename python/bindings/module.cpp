@@ -16,11 +16,11 @@ std::span<const glm::vec3> vectors(const FloatArray& array, std::size_t count, c
   return {reinterpret_cast<const glm::vec3*>(array.data()), count};
 }
 
-std::vector<gpu::Optical> optical_from(const FloatArray& kappa, const FloatArray& sigma_a, std::size_t count) {
-  const auto kappas = vectors(kappa, count, "kappa");
-  const auto sigmas = vectors(sigma_a, count, "sigma_a");
+std::vector<gpu::Optical> optical_from(const FloatArray& sigma_s_prime, const FloatArray& sigma_a, std::size_t count) {
+  const auto scattering = vectors(sigma_s_prime, count, "sigma_s_prime");
+  const auto absorption = vectors(sigma_a, count, "sigma_a");
   std::vector<gpu::Optical> optical(count);
-  for (std::size_t i = 0; i < count; ++i) optical[i] = {kappas[i], sigmas[i]};
+  for (std::size_t i = 0; i < count; ++i) optical[i] = {scattering[i], absorption[i]};
   return optical;
 }
 
@@ -31,8 +31,9 @@ py::tuple as_tuple(const glm::dvec3& v) {
 py::dict as_dict(const Energy& energy) {
   py::dict d;
   d["entered"] = as_tuple(energy.entered);
-  d["exitance"] = as_tuple(energy.exitance);
+  d["scattered_out"] = as_tuple(energy.scattered_out);
   d["absorbed"] = as_tuple(energy.absorbed);
+  d["unscattered_out"] = as_tuple(energy.unscattered_out);
   d["balance"] = as_tuple(energy.balance());
   return d;
 }

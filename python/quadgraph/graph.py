@@ -20,6 +20,9 @@ _SPLIT = np.array([[_POINT, 1, 2, 3], [0, _POINT, 2, 3], [0, 1, _POINT, 3], [0, 
 # Where to put the point when the centroid, rounded to float32, falls out of a very flat tet.
 _SPLIT_TRIALS = 64
 
+# Kinds of outside faces: light passes an open one, a reflecting one is a perfect mirror.
+OPEN, REFLECTING = 0, 1
+
 
 @dataclass(frozen=True, eq=False)
 class Graph:
@@ -28,7 +31,8 @@ class Graph:
     vertices: (n_v, 3) float64, exactly representable in float32, mm; those on the surface come first;
     tets: (n_t, 4) int64, positively oriented, at most one outside face each; faces: (n_f, 3) int64, counter-clockwise
     from outside; face_tets: (n_f,) int64; links: (n_t, 4) int64, entry k across the face opposite to vertex k, n_t + f
-    for outside face f; inner: (n_t, 3) and surface: (n_f, 3) float64, node positions, mm.
+    for outside face f; inner: (n_t, 3) and surface: (n_f, 3) float64, node positions, mm; face_kinds: (n_f,) int64 of
+    OPEN and REFLECTING, None if all faces are open.
     """
 
     vertices: np.ndarray
@@ -38,6 +42,7 @@ class Graph:
     links: np.ndarray
     inner: np.ndarray
     surface: np.ndarray
+    face_kinds: np.ndarray | None = None
 
     @property
     def nodes(self) -> np.ndarray:

@@ -86,6 +86,7 @@ def at_random(graph: Graph, seed: int = 0) -> Graph:
         shuffled.links,
         shuffled.inner,
         shuffled.surface,
+        shuffled.face_kinds,
     )
 
 
@@ -104,6 +105,7 @@ def renumbered(graph: Graph, tet_order: np.ndarray, face_order: np.ndarray) -> G
         number[graph.links[tet_order]],
         graph.inner[tet_order],
         graph.surface[face_order],
+        None if graph.face_kinds is None else graph.face_kinds[face_order],
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,7 @@ _LEVEL = {
     "links": (_U32, ("n_t", 4)),
     "nodes": (_F32, ("n_n", 3)),
 }
+_OPTIONAL = {"face_kinds": (_U32, ("n_f",))}
 _TRANSFERS = {
     "inner_index": (_U32, ("n_t", 8)),
     "inner_weight": (_F32, ("n_t", 8)),
@@ -47,11 +49,12 @@ def level_count(sections: dict[str, np.ndarray]) -> int:
     return sum(name.startswith("level") and name.endswith("/vertices") for name in sections)
 
 
-def section_names(levels: int) -> list[str]:
-    """Names of all sections of a file with that many levels, in file order."""
+def section_names(levels: int, present: Collection[str] = ()) -> list[str]:
+    """Names of all sections of a file with that many levels, in file order; optional ones where `present` has them."""
     names = ["metadata"]
     for i in range(levels):
-        fields = [*_LEVEL, *(_TRANSFERS if i + 1 < levels else ())]
+        optional = [field for field in _OPTIONAL if f"level{i}/{field}" in present]
+        fields = [*_LEVEL, *optional, *(_TRANSFERS if i + 1 < levels else ())]
         names += [f"level{i}/{field}" for field in fields]
     return names + [f"display/{field}" for field in _DISPLAY]
 
@@ -63,11 +66,14 @@ def check(sections: dict[str, np.ndarray], metadata: dict[str, Any], name: str) 
     """
     levels = level_count(sections)
     _require(1 <= levels <= MAX_LEVELS, name, f"{levels} levels found, 1 to {MAX_LEVELS} allowed")
-    _check_names(list(sections), section_names(levels), name)
+    _check_names(list(sections), section_names(levels, sections), name)
     for i in range(levels):
         counts = _level_counts(sections, i)
         _check_fields(sections, f"level{i}/", _LEVEL, counts, name)
         _check_level({field: sections[f"level{i}/{field}"] for field in _LEVEL}, counts, f"{name}: level{i}")
+        if f"level{i}/face_kinds" in sections:
+            _check_fields(sections, f"level{i}/", _OPTIONAL, counts, name)
+            _check_range(sections[f"level{i}/face_kinds"], 2, f"{name}: level{i}/face_kinds")
     for i in range(levels - 1):
         _check_fields(sections, f"level{i}/", _TRANSFERS, _level_counts(sections, i), name)
         coarse = _level_counts(sections, i + 1)

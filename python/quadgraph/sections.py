@@ -22,6 +22,7 @@ def _f32(array: np.ndarray) -> np.ndarray:
 
 def level(number: int, graph: Graph) -> dict[str, np.ndarray]:
     """Sections of one level, transfers excepted."""
+    kinds = {} if graph.face_kinds is None else {f"level{number}/face_kinds": _u32(graph.face_kinds)}
     return {
         f"level{number}/vertices": _f32(graph.vertices),
         f"level{number}/tets": _u32(graph.tets),
@@ -29,7 +30,7 @@ def level(number: int, graph: Graph) -> dict[str, np.ndarray]:
         f"level{number}/face_tets": _u32(graph.face_tets),
         f"level{number}/links": _u32(graph.links),
         f"level{number}/nodes": _f32(graph.nodes),
-    }
+    } | kinds
 
 
 def transfers(number: int, fine: Graph, coarse: Graph) -> dict[str, np.ndarray]:

@@ -6,14 +6,20 @@
 #include "engine/graph/error.h"
 #include "engine/graph/fresnel.h"
 #include "engine/graph/reference.h"
+#include "shaders/optics.h"
 #include "tests/cpp/test_levels.h"
 
 using namespace quadgraph;
 
 namespace {
 
+// The coefficients with diffusion coefficient kappa, mm, as far as sigma_a leaves room.
+gpu::Optical optical_at(const glm::vec3& kappa, const glm::vec3& sigma_a) {
+  return {glm::max(1.0f / (3.0f * kappa) - sigma_a, glm::vec3(0)), sigma_a};
+}
+
 std::vector<gpu::Optical> uniform(const Level& level, float kappa, float sigma_a) {
-  return std::vector<gpu::Optical>(level.nodes.size(), {glm::vec3(kappa), glm::vec3(sigma_a)});
+  return std::vector<gpu::Optical>(level.nodes.size(), optical_at(glm::vec3(kappa), glm::vec3(sigma_a)));
 }
 
 // kappa varies by a factor of `contrast` across the body.
@@ -21,7 +27,7 @@ std::vector<gpu::Optical> varying(const Level& level, float sigma_a, float contr
   std::vector<gpu::Optical> optical;
   for (const glm::vec3& p : level.nodes) {
     const float wave = std::pow(contrast, 0.5f * std::sin(1.3f * p.x + 0.7f * p.y - p.z));
-    optical.push_back({wave * glm::vec3(0.2f, 0.3f, 0.5f), sigma_a * glm::vec3(1.0f, 2.0f, 0.5f) / wave});
+    optical.push_back(optical_at(wave * glm::vec3(0.2f, 0.3f, 0.5f), sigma_a * glm::vec3(1.0f, 2.0f, 0.5f) / wave));
   }
   return optical;
 }
@@ -96,15 +102,15 @@ TEST_CASE("fdm: rows times the diagonal change of variables are the published Eq
     for (int k = 0; k < 4; ++k) {
       const std::uint32_t j = level.links[t][k];
       const double weight = 1.0 / (distance(t, j) * distance(t, j));
-      published += weight * glm::dvec3(optical[j].kappa) * phi[j];
+      published += weight * glm::dvec3(gpu::kappa(optical[j])) * phi[j];
       w += weight;
     }
-    published -= (w * glm::dvec3(optical[t].kappa) + glm::dvec3(optical[t].sigma_a)) * phi[t];
+    published -= (w * glm::dvec3(gpu::kappa(optical[t])) + glm::dvec3(optical[t].sigma_a)) * phi[t];
     for (int c = 0; c < 3; ++c) CHECK(-y[t][c] == doctest::Approx(published[c]).epsilon(1e-9));
   }
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {
     const std::uint32_t s = level.tet_count() + f, k = level.face_tets[f];
-    const glm::dvec3 kappa_s(optical[s].kappa), kappa_k(optical[k].kappa);
+    const glm::dvec3 kappa_s(gpu::kappa(optical[s])), kappa_k(gpu::kappa(optical[k]));
     const double a = mismatch(eta), d = distance(s, k);
     const glm::dvec3 published = phi[s] + 2.0 * a * kappa_s * (phi[s] - phi[k]) / d;  // Eq. 6, left side
     const glm::dvec3 row_factor = kappa_k / (2.0 * a * kappa_s * d);
@@ -165,7 +171,8 @@ TEST_CASE("furnace: what the published differences miss is Q times their Laplaci
   for (std::uint32_t i = 0; i < rows.size(); ++i) {
     glm::dvec3 laplacian(0);  // of kappa, by the weights of Eq. 5; the surface rows (Eq. 6) hold exactly
     for (std::uint32_t k = rows.offset[i]; i < level.tet_count() && k < rows.offset[i + 1]; ++k) {
-      laplacian -= rows.weight[k] * (glm::dvec3(optical[rows.column[k]].kappa) - glm::dvec3(optical[i].kappa));
+      laplacian -=
+          rows.weight[k] * (glm::dvec3(gpu::kappa(optical[rows.column[k]])) - glm::dvec3(gpu::kappa(optical[i])));
     }
     const glm::dvec3 missed = y[i] - b[i] + source * laplacian;
     for (int c = 0; c < 3; ++c) CHECK(std::abs(missed[c]) <= 1e-12 * std::abs(rows.diagonal[i][c] * x[i][c]));
@@ -257,7 +264,7 @@ TEST_CASE("coefficients out of range are refused by name") {
   const Level level = owned.view();
   auto optical = uniform(level, 1.0f, 0.1f);
   CHECK_THROWS_WITH_AS(assemble(level, Method::fem, optical, 0.5), doctest::Contains("eta"), InputError);
-  optical[3].kappa.y = 0;
+  optical[3].sigma_s_prime.y = -1;
   CHECK_THROWS_WITH_AS(assemble(level, Method::fem, optical, 1.3), doctest::Contains("optical[3]"), InputError);
   optical.pop_back();
   CHECK_THROWS_AS(assemble(level, Method::fem, optical, 1.3), InputError);

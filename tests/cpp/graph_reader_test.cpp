@@ -312,3 +312,17 @@ TEST_CASE("sections stand in the order of the document") {
   write_at(bytes, b.entry, renamed);
   check_says(refusal_sealed(bytes), {"section 2", "found 'level0/links'", "expected 'level0/tets'"});
 }
+
+TEST_CASE("kinds of faces are optional; unknown kinds and a wrong number of them are refused") {
+  OwnedLevel level = split_at_centroids(box_level(1, 1.0f));
+  CHECK_FALSE(QuadGraph::parse(graph_of(level), "open").levels()[0].reflecting(0));
+  level.face_kinds.assign(level.faces.size(), face_open);
+  level.face_kinds[1] = face_reflecting;
+  const QuadGraph graph = QuadGraph::parse(graph_of(level), "walls");
+  CHECK_FALSE(graph.levels()[0].reflecting(0));
+  CHECK(graph.levels()[0].reflecting(1));
+  level.face_kinds[2] = 2;
+  CHECK_THROWS_WITH_AS(QuadGraph::parse(graph_of(level), "kind"), doctest::Contains("face_kinds"), FormatError);
+  level.face_kinds.assign(3, face_open);
+  CHECK_THROWS_WITH_AS(QuadGraph::parse(graph_of(level), "rows"), doctest::Contains("face_kinds"), FormatError);
+}

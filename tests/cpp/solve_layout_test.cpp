@@ -53,7 +53,7 @@ void compare(vk::Spirv code, const std::string& type, const std::vector<Member>&
 }  // namespace
 
 TEST_CASE("structs in buffers") {
-  compare(assemble_fem_comp, "Optical", {MEMBER(Optical, kappa), MEMBER(Optical, sigma_a)});
+  compare(assemble_fem_comp, "Optical", {MEMBER(Optical, sigma_s_prime), MEMBER(Optical, sigma_a)});
   compare(evaluate_material_comp, "Material",
           {MEMBER(Material, sigma_s_prime), MEMBER(Material, sigma_a), MEMBER(Material, eta), MEMBER(Material, kind),
            MEMBER(Material, vein_sigma_s_prime), MEMBER(Material, vein_sigma_a), MEMBER(Material, vein_period),

@@ -85,7 +85,7 @@ TEST_CASE("the solution equals the CPU reference for every method and solver") {
       CHECK(field.q == q);
       for (int c = 0; c < 3; ++c) {
         CHECK(report.energy.entered[c] == doctest::Approx(expected.energy.entered[c]).epsilon(1e-5));
-        CHECK(report.energy.exitance[c] == doctest::Approx(expected.energy.exitance[c]).epsilon(1e-3));
+        CHECK(report.energy.scattered_out[c] == doctest::Approx(expected.energy.scattered_out[c]).epsilon(1e-3));
         CHECK(report.energy.absorbed[c] == doctest::Approx(expected.energy.absorbed[c]).epsilon(1e-3));
         if (method != Method::quadgraph_fdm) CHECK(std::abs(report.energy.balance()[c]) < 1e-4);
       }

@@ -155,6 +155,9 @@ inline void write_level(GraphWriter& writer, const std::string& prefix, const Ow
   writer.add<std::uint32_t>(prefix + "face_tets", SectionType::u32, {level.face_tets.size()}, level.face_tets);
   writer.add_vectors(prefix + "links", SectionType::u32, level.links);
   writer.add_vectors(prefix + "nodes", SectionType::f32, level.nodes);
+  if (!level.face_kinds.empty()) {
+    writer.add<std::uint32_t>(prefix + "face_kinds", SectionType::u32, {level.face_kinds.size()}, level.face_kinds);
+  }
   if (coarse == nullptr) return;
   const std::span<const glm::vec3> fine_nodes = level.nodes, coarse_nodes = coarse->nodes;
   write_nearest(writer, prefix + "inner", fine_nodes.first(level.tets.size()), coarse_nodes.first(coarse->tets.size()),
@@ -164,10 +167,8 @@ inline void write_level(GraphWriter& writer, const std::string& prefix, const Ow
   write_barycentric(writer, prefix + "barycentric", level, *coarse);
 }
 
-// Cubes of `size` mm with `cells` cells along each edge, finest first. The display mesh is one triangle.
-inline std::vector<std::byte> box_graph(const std::vector<std::uint32_t>& cells, float size) {
-  std::vector<OwnedLevel> levels;
-  for (const std::uint32_t n : cells) levels.push_back(split_at_centroids(box_level(n, size, 0.15f)));
+// A file of these levels, finest first. The display mesh is one triangle.
+inline std::vector<std::byte> graph_of(const std::vector<OwnedLevel>& levels) {
   std::string metadata = R"({"generator":"","source":{},"unit_mm":1,"mesher":{},"repairs":[],"tools":{},"levels":[)";
   for (std::size_t i = 0; i < levels.size(); ++i) metadata += i > 0 ? ",{}" : "{}";
   metadata += "]}";
@@ -185,6 +186,17 @@ inline std::vector<std::byte> box_graph(const std::vector<std::uint32_t>& cells,
   writer.add<std::uint32_t>("display/face", SectionType::u32, {3}, std::vector<std::uint32_t>(3, 0));
   writer.add_vectors("display/barycentric", SectionType::f32, std::vector<glm::vec3>{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
   return writer.bytes();
+}
+
+inline std::vector<std::byte> graph_of(const OwnedLevel& level) {
+  return graph_of(std::vector<OwnedLevel>{level});
+}
+
+// Cubes of `size` mm with `cells` cells along each edge, finest first.
+inline std::vector<std::byte> box_graph(const std::vector<std::uint32_t>& cells, float size) {
+  std::vector<OwnedLevel> levels;
+  for (const std::uint32_t n : cells) levels.push_back(split_at_centroids(box_level(n, size, 0.15f)));
+  return graph_of(levels);
 }
 
 }  // namespace quadgraph

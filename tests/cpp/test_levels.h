@@ -21,7 +21,7 @@ struct OwnedLevel {
   std::vector<glm::vec3> vertices, nodes;
   std::vector<glm::uvec4> tets, links;
   std::vector<glm::uvec3> faces;
-  std::vector<std::uint32_t> face_tets;
+  std::vector<std::uint32_t> face_tets, face_kinds;
   std::uint32_t surface_vertex_count = 0;
 
   Level view() const {
@@ -32,6 +32,7 @@ struct OwnedLevel {
     level.face_tets = face_tets;
     level.links = links;
     level.nodes = nodes;
+    level.face_kinds = face_kinds;
     level.surface_vertex_count = surface_vertex_count;
     return level;
   }

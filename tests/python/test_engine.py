@@ -44,10 +44,10 @@ def test_gpu_equals_cpu_reference(engine, method, solver, material):
     for number, level in enumerate(levels):
         engine.set_irradiance(number, lit_from_above(level))
     report = engine.solve(method=method, solver=solver, tolerance=1e-6, max_iterations=20000)
-    kappa, sigma_a = _core.evaluate_material(engine.graph, 0, _core.Material(material))
+    sigma_s_prime, sigma_a = _core.evaluate_material(engine.graph, 0, _core.Material(material))
     eta = _core.Material(material).eta
     expected = _core.solve_reference(
-        engine.graph, 0, kappa, sigma_a, eta, lit_from_above(levels[0]), method=method, tolerance=1e-11
+        engine.graph, 0, sigma_s_prime, sigma_a, eta, lit_from_above(levels[0]), method=method, tolerance=1e-11
     )
     field = engine.surface_field()
     scale = np.abs(expected["exitance"]).max(axis=0)

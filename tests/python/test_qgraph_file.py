@@ -1,5 +1,6 @@
 """The .qgraph container: golden bytes, atomic writing, and refusal of everything damaged."""
 
+import dataclasses
 import hashlib
 import os
 import stat
@@ -9,7 +10,7 @@ import numpy as np
 import pytest
 
 import tiny
-from quadgraph import qgraph_file
+from quadgraph import qgraph_file, sections
 from quadgraph.errors import FormatError, InputError
 
 GOLDEN = "72eadc34e1ce66a0a13c83f54f9df4a5acd91009760f54c981ff92b0184a5439"
@@ -46,6 +47,23 @@ def test_sections_are_aligned_views(data):
         assert (array.ctypes.data - start) % 64 == 0
         assert not array.flags.writeable
     assert file.level_count == 2
+
+
+def test_face_kinds_are_optional_and_checked(tmp_path):
+    core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
+    levels = tiny.graphs()
+    kinds = np.arange(len(levels[0].faces)) % 2
+    levels[0] = dataclasses.replace(levels[0], face_kinds=kinds)
+    sections_ = sections.whole_file(levels, tiny.six().boundary())
+    path = tmp_path / "walls.qgraph"
+    qgraph_file.write(path, tiny.metadata(levels), sections_)
+    finest, coarsest = core.load(path).levels
+    assert list(finest.face_kinds) == list(kinds)
+    assert len(coarsest.face_kinds) == 0
+    sections_["level0/face_kinds"] = np.full_like(sections_["level0/face_kinds"], 2)
+    with pytest.raises(FormatError, match="face_kinds"):
+        qgraph_file.write(path, tiny.metadata(levels), sections_)
+    assert list(core.load(path).levels[0].face_kinds) == list(kinds)
 
 
 def test_every_truncated_prefix_is_refused(data):

@@ -15,7 +15,8 @@ _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is no
 
 RADIUS = 10.0  # mm
 ETA = 1.3
-KAPPA, SIGMA_A = 0.2, 0.002  # mm, 1/mm: diffusion length 3.2 mm
+KAPPA, SIGMA_A = 0.2, 0.002  # mm, 1/mm: diffusion length 10 mm
+SIGMA_S_PRIME = 1 / (3 * KAPPA) - SIGMA_A  # 1/mm
 SOURCE = [0.5, 0.6, 0.4, 0.3]  # Legendre coefficients of Q, W/mm^2
 
 
@@ -39,7 +40,7 @@ def fluence_error(sphere, method: str) -> tuple[float, float]:
     q = np.repeat((source * (1 - f_dr) / 4)[:, None], 3, axis=1)
     nodes = len(level.nodes)
     solution = _core.solve_reference(
-        sphere, 0, np.full((nodes, 3), KAPPA), np.full((nodes, 3), SIGMA_A), ETA, q, method=method
+        sphere, 0, np.full((nodes, 3), SIGMA_S_PRIME), np.full((nodes, 3), SIGMA_A), ETA, q, method=method
     )
     assert solution["report"]["converged"]
     exact = sphere_surface_fluence(cos_theta, SOURCE, RADIUS, KAPPA, SIGMA_A, _core.mismatch(ETA))

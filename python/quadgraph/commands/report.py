@@ -29,8 +29,8 @@ def solve_table(report: dict) -> Table:
 def energy_table(energy: dict) -> Table:
     """Return the power that entered, left and was absorbed, per channel."""
     table = Table("W", "R", "G", "B", title="energy")
-    for name in ("entered", "exitance", "absorbed"):
-        table.add_row(name, *(f"{value:.5g}" for value in energy[name]))
+    for name in ("entered", "scattered_out", "absorbed", "unscattered_out"):
+        table.add_row(name.replace("_", " "), *(f"{value:.5g}" for value in energy[name]))
     table.add_row("balance", *(f"{100 * value:+.3f}%" for value in energy["balance"]))
     return table
 
