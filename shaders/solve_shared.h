@@ -22,6 +22,28 @@ struct RowsRef {
   QG_REF(Vec3s) diagonal;
 };
 
+const uint BEAM_DIRECTIONAL = 0u;
+const uint BEAM_POINT = 1u;
+const uint BEAM_LAMBERTIAN = 2u;
+
+// How the light of one source comes in, wherever it does.
+struct BeamRecord {
+  uint kind;    // BEAM_*
+  vec3 vector;  // directional: unit, the way the light travels; point: where it comes from, mm; Lambertian: unused
+};
+
+// Rays of a Lambertian beam from one origin: at outside cosine sqrt(u), u the four Gauss-Legendre nodes on [0, 1], two
+// antipodal azimuths each, turned by 90 degrees from node to node so that no direction is preferred. Each node has
+// weight w T(sqrt(u)), T the Fresnel transmittance, normalised to 1.
+const uint LAMBERTIAN_NODES = 4u;
+const float LAMBERTIAN_U[4] = {0.0694318442f, 0.3300094782f, 0.6699905218f, 0.9305681558f};
+const float LAMBERTIAN_W[4] = {0.1739274226f, 0.3260725774f, 0.3260725774f, 0.1739274226f};
+
+// A ray ends where each channel has kept less than this share of its power, and what is left stays there.
+const float WALK_END = 1e-3f;
+// Tets that a ray crosses at most: light trapped by total reflection in a clear body ends here.
+const uint MAX_WALK_STEPS = 16384u;
+
 const uint SOLVE_RUNNING = 0u;
 const uint SOLVE_CONVERGED = 1u;
 const uint SOLVE_STAGNATED = 2u;     // single precision allows no smaller residual
