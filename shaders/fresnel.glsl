@@ -11,3 +11,9 @@ float fresnel_reflectance(float cos_i, float eta) {
 float fresnel_transmittance(float cos_i, float eta) {
   return 1.0 - fresnel_reflectance(cos_i, eta);
 }
+
+// From inside at cosine `cosine`: 1 under total reflection.
+float internal_reflectance(float cosine, float eta) {
+  float sin_o_squared = eta * eta * (1.0 - cosine * cosine);
+  return sin_o_squared >= 1.0 ? 1.0 : fresnel_reflectance(sqrt(1.0 - max(sin_o_squared, 0.0)), eta);
+}

@@ -67,10 +67,11 @@ struct SolveState {
   uint channel;     // that failed
 };
 
-// Powers of two that bring the irradiance near 1, so that squares neither overflow nor vanish.
+// Powers of two, at least the power that enters: so squares neither overflow nor vanish, and shares of it fit in fixed
+// point.
 struct Scale {
-  vec3 scale;    // W/mm^2; in a channel without light that of the brightest, and 1 without any
-  vec3 inverse;  // mm^2/W
+  vec3 scale;    // W, or W/mm^2; in a channel without light that of the brightest, and 1 without any
+  vec3 inverse;  // 1/W, or mm^2/W
 };
 
 // Sums of one workgroup of energy.comp.
@@ -131,8 +132,10 @@ struct AssembleFemPush {
   float mismatch;
 };
 
-// irradiance_scale.comp: `scale` from the largest q per channel.
+// irradiance_scale.comp: `scale` from the power that enters, per channel.
 struct IrradianceScalePush {
+  QG_REF(Vec3s) vertices;
+  QG_REF(Uvec3s) faces;
   QG_REF(Vec3s) q;
   QG_REF(Scales) scale;
   QG_REF(Reduction) reduction;

@@ -16,6 +16,9 @@ LevelBuffers upload_level(vk::Context& context, const Level& level, std::uint32_
   buffers.tets = vk::upload(context, level.tets, prefix + "tets");
   buffers.faces = vk::upload(context, level.faces, prefix + "faces");
   buffers.face_tets = vk::upload(context, level.face_tets, prefix + "face_tets");
+  const std::vector<std::uint32_t> all_open(level.face_kinds.empty() ? level.faces.size() : 0, face_open);
+  const std::span<const std::uint32_t> kinds = level.face_kinds.empty() ? all_open : level.face_kinds;
+  buffers.face_kind = vk::upload(context, kinds, prefix + "face_kind");
   buffers.links = vk::upload(context, level.links, prefix + "links");
   buffers.nodes = vk::upload(context, level.nodes, prefix + "nodes");
   buffers.optical =

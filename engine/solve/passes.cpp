@@ -1,6 +1,6 @@
 #include "engine/solve/passes.h"
 
-#include "shaders/solve_shared.h"
+#include "shaders/walk_shared.h"
 #include "spirv/assemble_fdm.comp.h"
 #include "spirv/assemble_fem.comp.h"
 #include "spirv/assemble_fv.comp.h"
@@ -13,12 +13,15 @@
 #include "spirv/evaluate_material.comp.h"
 #include "spirv/exitance.comp.h"
 #include "spirv/irradiance_scale.comp.h"
+#include "spirv/right_hand_side_buried.comp.h"
 #include "spirv/right_hand_side_fdm.comp.h"
 #include "spirv/right_hand_side_fem.comp.h"
 #include "spirv/right_hand_side_fv.comp.h"
 #include "spirv/sweep.comp.h"
 #include "spirv/transfer.comp.h"
 #include "spirv/vertex_exitance.comp.h"
+#include "spirv/vertex_unscattered.comp.h"
+#include "spirv/walk_source.comp.h"
 
 namespace quadgraph {
 
@@ -31,6 +34,10 @@ Passes::Passes()
       right_hand_side_fdm(right_hand_side_fdm_comp, sizeof(gpu::RightHandSideFdmPush), "right hand side fdm"),
       right_hand_side_fv(right_hand_side_fv_comp, sizeof(gpu::RightHandSideFvPush), "right hand side fv"),
       right_hand_side_fem(right_hand_side_fem_comp, sizeof(gpu::RightHandSideFemPush), "right hand side fem"),
+      right_hand_side_buried(right_hand_side_buried_comp, sizeof(gpu::RightHandSideBuriedPush),
+                             "right hand side buried"),
+      walk_source(walk_source_comp, sizeof(gpu::WalkSourcePush), "walk source"),
+      vertex_unscattered(vertex_unscattered_comp, sizeof(gpu::VertexUnscatteredPush), "vertex unscattered"),
       damping(damping_comp, sizeof(gpu::DampingPush), "damping"),
       transfer(transfer_comp, sizeof(gpu::TransferPush), "transfer"),
       cg_start(cg_start_comp, sizeof(gpu::CgStartPush), "cg start"),

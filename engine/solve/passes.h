@@ -29,8 +29,8 @@ struct Passes {
   Passes();
 
   LazyPass evaluate_material, assemble_fdm, assemble_fv, assemble_fem, irradiance_scale, right_hand_side_fdm,
-      right_hand_side_fv, right_hand_side_fem, damping, transfer, cg_start, cg_multiply, cg_update, cg_direction, sweep,
-      exitance, vertex_exitance, energy;
+      right_hand_side_fv, right_hand_side_fem, right_hand_side_buried, walk_source, vertex_unscattered, damping,
+      transfer, cg_start, cg_multiply, cg_update, cg_direction, sweep, exitance, vertex_exitance, energy;
 };
 
 }  // namespace quadgraph

@@ -35,10 +35,12 @@ struct LevelBuffers {
   vk::Buffer tets;       // uvec4
   vk::Buffer faces;      // uvec3
   vk::Buffer face_tets;  // uint
+  vk::Buffer face_kind;  // uint; 0 open, 1 reflecting
   vk::Buffer links;      // uvec4
   vk::Buffer nodes;      // vec3, mm; inner nodes, then surface nodes
   vk::Buffer optical;    // Optical per node
   vk::Buffer q;          // vec3 per face, W/mm^2: written by the lights or by set_irradiance
+  vk::Buffer beam_q;     // vec3 per beam, face and quarter (FACE_QUARTERS), W/mm^2: what q is made of
 };
 
 class Simulation {

@@ -96,9 +96,10 @@ TEST_CASE("push constants") {
            MEMBER(AssembleFemPush, tet_incidence), MEMBER(AssembleFemPush, face_offset),
            MEMBER(AssembleFemPush, face_incidence), MEMBER(AssembleFemPush, count),
            MEMBER(AssembleFemPush, surface_count), MEMBER(AssembleFemPush, mismatch)});
-  compare(irradiance_scale_comp, "IrradianceScalePush",
-          {MEMBER(IrradianceScalePush, q), MEMBER(IrradianceScalePush, scale), MEMBER(IrradianceScalePush, reduction),
-           MEMBER(IrradianceScalePush, count)});
+  compare(
+      irradiance_scale_comp, "IrradianceScalePush",
+      {MEMBER(IrradianceScalePush, vertices), MEMBER(IrradianceScalePush, faces), MEMBER(IrradianceScalePush, q),
+       MEMBER(IrradianceScalePush, scale), MEMBER(IrradianceScalePush, reduction), MEMBER(IrradianceScalePush, count)});
   compare(right_hand_side_fdm_comp, "RightHandSideFdmPush",
           {MEMBER(RightHandSideFdmPush, nodes), MEMBER(RightHandSideFdmPush, optical),
            MEMBER(RightHandSideFdmPush, face_tets), MEMBER(RightHandSideFdmPush, q),

@@ -1,0 +1,58 @@
+// The buried source on one level: light that enters is followed along refracted rays, and what it scatters there for
+// the first time is the source of the solve.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "engine/graph/solution.h"
+#include "engine/solve/operator_buffers.h"
+#include "engine/solve/simulation.h"
+#include "engine/solve/workspace.h"
+#include "shaders/walk_shared.h"
+
+namespace quadgraph {
+
+// Where the power of the rays went, W. Together it is what entered, to rounding.
+struct WalkPower {
+  glm::dvec3 scattered{0}, absorbed{0}, unscattered{0};
+};
+
+// Beams of light on the device.
+struct BeamBuffers {
+  std::uint32_t count = 0;
+  vk::Buffer records;  // BeamRecord
+};
+
+class SourceWalk {
+ public:
+  SourceWalk(vk::Context& context, const LevelBuffers& level, std::uint32_t number);
+
+  // Light, material or shape have changed.
+  void invalidate() { walked_ = {false, false}; }
+
+  // Walks, unless that has been done for the present light: level.beam_q of every beam, scaled by work.scale. The
+  // graph methods share their deposits.
+  void record(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, Method method, double eta);
+
+  // b of the solve, and its norm, from the deposits of a walk recorded before.
+  void record_right_hand_side(Workspace& work, const LevelBuffers& level, Method method, OperatorBuffers& op) const;
+
+  // Fixed point (walk_shared.h): per vertex (fem) or tet what was scattered, and per face what left.
+  const vk::Buffer& deposit(Method method) const { return deposits_[carrier(method)]; }
+  const vk::Buffer& unscattered() const { return unscattered_; }
+
+  // Of the last walk that has run.
+  WalkPower power() const;
+
+ private:
+  static std::size_t carrier(Method method) { return method == Method::fem ? 0 : 1; }
+
+  std::string prefix_;
+  std::array<bool, 2> walked_ = {false, false};  // by carrier
+  std::array<vk::Buffer, 2> deposits_;           // by carrier, made at first use
+  vk::Buffer unscattered_;
+  vk::Buffer sums_, sums_on_host_;  // WalkSums per beam and workgroup
+};
+
+}  // namespace quadgraph

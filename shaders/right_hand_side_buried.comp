@@ -1,0 +1,29 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "walk_shared.h"
+#include "fixed_point.glsl"
+#include "reduce.glsl"
+
+layout(local_size_x = WORKGROUP_SIZE) in;
+layout(push_constant, scalar) uniform Block { RightHandSideBuriedPush push; };
+
+float volume_of(uint tet) {
+  uvec4 corners = push.tets.at[tet];
+  vec3 p = push.vertices.at[corners.x];
+  vec3 e1 = push.vertices.at[corners.y] - p, e2 = push.vertices.at[corners.z] - p, e3 = push.vertices.at[corners.w] - p;
+  return abs(dot(e1, cross(e2, e3))) / 6.0;
+}
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  vec3 square = vec3(0);
+  if (i < push.count) {
+    vec3 b = i < push.deposit_count ? power_at(push.deposit, i) : vec3(0);
+    if (push.per_volume == 1u && b != vec3(0)) b /= volume_of(i);
+    push.b.at[i] = b;
+    square = b * b / push.diagonal.at[i];
+  }
+  vec3 norm;
+  if (!reduce_dispatch(push.reduction, square, norm)) return;
+  if (gl_LocalInvocationID.x == 0u) push.state.at[0].norm = norm;
+}

@@ -1,0 +1,23 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "walk_shared.h"
+#include "fixed_point.glsl"
+
+layout(local_size_x = WORKGROUP_SIZE) in;
+layout(push_constant, scalar) uniform Block { VertexUnscatteredPush push; };
+
+// Power over area of the faces around: interpolated over the faces this carries the same power.
+void main() {
+  uint v = gl_GlobalInvocationID.x;
+  if (v >= push.count) return;
+  float area = 0.0;
+  vec3 power = vec3(0);
+  for (uint k = push.face_offset.at[v]; k < push.face_offset.at[v + 1u]; ++k) {
+    uint face = push.face_incidence.at[k].x;
+    uvec3 corners = push.faces.at[face];
+    vec3 p = push.vertices.at[corners.x];
+    area += 0.5 * length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));
+    power += power_at(push.unscattered, face);
+  }
+  if (area > 0.0) push.exitance.at[v] += power / area * push.scale.at[0].scale;
+}

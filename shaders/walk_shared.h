@@ -1,0 +1,81 @@
+// What the walk of the buried source shares with C++, in scalar layout; see shared.h.
+#ifndef QUADGRAPH_WALK_SHARED_H
+#define QUADGRAPH_WALK_SHARED_H
+
+#include "solve_shared.h"
+
+#ifdef __cplusplus
+namespace quadgraph::gpu {
+#endif
+
+// A face takes in light on four quarters: that of each corner, then the middle one.
+#define FACE_QUARTERS 4
+
+// Power is added up in fixed point, so that the order of additions does not matter: 64 bits in units of the scale times
+// this. Per element six u32: the low words of the channels, then the high ones.
+const float POWER_UNIT = 1.4210854715202004e-14f;  // 2^-46
+#define FIXED_WORDS 6
+
+// Sums of one workgroup of walk_source.comp.
+struct WalkSums {
+  vec3 scattered;    // W
+  vec3 absorbed;     // W
+  vec3 unscattered;  // W, left through the surface, or still under way at the end of the walk
+};
+
+#ifndef __cplusplus
+QG_ARRAY(BeamRecords, BeamRecord);
+QG_ARRAY(WalkSumsArray, WalkSums);
+#endif
+
+// walk_source.comp: follows the rays of one beam, one invocation per face.
+struct WalkSourcePush {
+  QG_REF(Vec3s) vertices;
+  QG_REF(Uvec4s) tets;
+  QG_REF(Uints) links;  // four per tet
+  QG_REF(Uvec3s) faces;
+  QG_REF(Uints) face_tets;
+  QG_REF(Uints) face_kinds;
+  QG_REF(Opticals) optical;
+  QG_REF(BeamRecords) beam;  // one
+  QG_REF(Vec3s) quarter_q;   // of this beam, FACE_QUARTERS per face
+  QG_REF(Scales) scale;
+  QG_REF(Uints) deposit;      // fixed point, per vertex (fem) or tet: power scattered for the first time
+  QG_REF(Uints) unscattered;  // fixed point, per face: power that leaves
+  QG_REF(WalkSumsArray) sums;
+  uint face_count;
+  uint tet_count;
+  uint fem;
+  float eta;
+};
+
+// right_hand_side_buried.comp: scaled b from the deposits, and its norm. Surface nodes of the graph methods have none.
+struct RightHandSideBuriedPush {
+  QG_REF(Uints) deposit;
+  QG_REF(Vec3s) vertices;  // those of the tets, where b is power per volume
+  QG_REF(Uvec4s) tets;
+  QG_REF(Vec3s) diagonal;
+  QG_REF(Vec3s) b;
+  QG_REF(SolveStates) state;
+  QG_REF(Reduction) reduction;
+  uint count;
+  uint deposit_count;  // elements with a deposit: the first ones
+  uint per_volume;     // 1: quadgraph-fdm
+};
+
+// vertex_unscattered.comp: adds the unscattered light to the exitance at surface vertices.
+struct VertexUnscatteredPush {
+  QG_REF(Vec3s) vertices;
+  QG_REF(Uvec3s) faces;
+  QG_REF(Uints) face_offset;
+  QG_REF(Uvec2s) face_incidence;
+  QG_REF(Uints) unscattered;
+  QG_REF(Scales) scale;
+  QG_REF(Vec3s) exitance;
+  uint count;
+};
+
+#ifdef __cplusplus
+}  // namespace quadgraph::gpu
+#endif
+#endif

@@ -1,0 +1,106 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "walk_shared.h"
+#include "fresnel.glsl"
+#include "fixed_point.glsl"
+#include "reduce.glsl"
+
+layout(local_size_x = WORKGROUP_SIZE) in;
+layout(push_constant, scalar) uniform Block { WalkSourcePush push; };
+
+#include "walk_ray.glsl"
+
+const uint FACE_CENTRE = 3u;  // the quarter in the middle
+
+// Barycentric coordinates of the centroid of a quarter.
+vec3 quarter_centre(uint quarter) {
+  vec3 l = vec3(quarter == FACE_CENTRE ? 1.0 / 3.0 : 1.0 / 6.0);
+  if (quarter != FACE_CENTRE) l[quarter] = 2.0 / 3.0;
+  return l;
+}
+
+// One ray stands for a face whose quarters are lit alike and that is compact.
+bool one_ray_does(vec3 least, vec3 largest, mat3 corners, float area) {
+  vec3 e_0 = corners[1] - corners[0], e_1 = corners[2] - corners[1], e_2 = corners[0] - corners[2];
+  float longest = max(dot(e_0, e_0), max(dot(e_1, e_1), dot(e_2, e_2)));
+  return longest <= 8.0 * area && all(lessThanEqual(largest - least, largest / 16.0));
+}
+
+// The way light travels outside, at a point of a face.
+vec3 incoming(uint ray, vec3 position, vec3 normal, vec3 edge) {
+  BeamRecord beam = push.beam.at[0];
+  if (beam.kind == BEAM_DIRECTIONAL) return beam.vector;
+  if (beam.kind == BEAM_POINT) return normalize(position - beam.vector);
+  uint node = ray / 2u;
+  float cos_i = sqrt(LAMBERTIAN_U[node]);
+  vec3 along = (node & 1u) == 0u ? normalize(edge) : cross(normal, normalize(edge));
+  return ((ray & 1u) == 0u ? 1.0 : -1.0) * sqrt(1.0 - LAMBERTIAN_U[node]) * along - cos_i * normal;
+}
+
+// Share of the power of a face that one ray takes, by its number.
+float share_of(uint ray, uint rays) {
+  if (rays == 1u) return 1.0;
+  float sum = 0.0, own = 0.0;
+  for (uint node = 0u; node < LAMBERTIAN_NODES; ++node) {
+    float weight = LAMBERTIAN_W[node] * fresnel_transmittance(sqrt(LAMBERTIAN_U[node]), push.eta);
+    sum += weight;
+    if (node == ray / 2u) own = weight;
+  }
+  return 0.5 * own / sum;
+}
+
+vec3 refracted(vec3 incoming, vec3 normal) {
+  float cos_i = -dot(incoming, normal);
+  float cos_t = sqrt(1.0 - (1.0 - min(cos_i * cos_i, 1.0)) / (push.eta * push.eta));
+  return incoming / push.eta + (cos_i / push.eta - cos_t) * normal;
+}
+
+void enter_face(uint face, uvec3 ids, mat3 corners, vec3 l) {
+  uint tet = push.face_tets.at[face];
+  tet_corners = push.tets.at[tet];
+  uint apex = tet_corners.x + tet_corners.y + tet_corners.z + tet_corners.w - ids.x - ids.y - ids.z;
+  corner_0 = Corner(ids.x, corners[0], l.x, vec3(0));
+  corner_1 = Corner(ids.y, corners[1], l.y, vec3(0));
+  corner_2 = Corner(ids.z, corners[2], l.z, vec3(0));
+  corner_3 = Corner(apex, push.vertices.at[apex], 0.0, vec3(0));
+}
+
+void walk_from(uint face) {
+  vec3 q[FACE_QUARTERS];
+  vec3 least = vec3(NEVER), largest = vec3(0), sum = vec3(0);
+  for (uint k = 0u; k < FACE_QUARTERS; ++k) {
+    q[k] = push.quarter_q.at[FACE_QUARTERS * face + k] * push.scale.at[0].inverse;
+    least = min(least, q[k]);
+    largest = max(largest, q[k]);
+    sum += q[k];
+  }
+  if (largest == vec3(0) || push.face_kinds.at[face] != 0u) return;
+  uvec3 ids = push.faces.at[face];
+  mat3 corners = mat3(push.vertices.at[ids.x], push.vertices.at[ids.y], push.vertices.at[ids.z]);
+  vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+  float area = 0.5 * length(normal);
+  normal /= 2.0 * area;
+  bool one = one_ray_does(least, largest, corners, area);
+  uint per_origin = push.beam.at[0].kind == BEAM_LAMBERTIAN ? 2u * LAMBERTIAN_NODES : 1u;
+  uint rays = (one ? 1u : FACE_QUARTERS) * per_origin;
+  for (uint r = 0u; r < rays; ++r) {
+    uint quarter = one ? FACE_CENTRE : r / per_origin, ray = r % per_origin;
+    vec3 power = (0.25 * area * share_of(ray, per_origin)) * (one ? sum : q[quarter]);
+    if (power == vec3(0)) continue;
+    vec3 l = quarter_centre(quarter);
+    vec3 direction = refracted(incoming(ray, corners * l, normal, corners[1] - corners[0]), normal);
+    enter_face(face, ids, corners, l);
+    walk(Ray(push.face_tets.at[face], direction, power, vec3(0)));
+  }
+}
+
+void main() {
+  uint face = gl_GlobalInvocationID.x;
+  sums = WalkSums(vec3(0), vec3(0), vec3(0));
+  if (face < push.face_count) walk_from(face);
+  vec3 parts[3] = vec3[](sums.scattered, sums.absorbed, sums.unscattered);
+  [[dont_unroll]] for (int k = 0; k < 3; ++k) parts[k] = reduce_workgroup(parts[k]);
+  if (gl_LocalInvocationID.x != 0u) return;
+  vec3 scale = push.scale.at[0].scale;
+  push.sums.at[gl_WorkGroupID.x] = WalkSums(scale * parts[0], scale * parts[1], scale * parts[2]);
+}
