@@ -10,14 +10,17 @@
 
 namespace quadgraph {
 
-Rows assemble_fdm(const Level& level, std::span<const gpu::Optical> optical, double eta);
-std::vector<glm::dvec3> load_fdm(const Level& level, std::span<const gpu::Optical> optical, double eta,
-                                 std::span<const glm::vec3> q);
+Rows assemble_fdm(const Level& level, const Problem& problem);
+Rows assemble_fv(const Level& level, const Problem& problem);
+Rows assemble_fem(const Level& level, const Problem& problem);
 
-Rows assemble_fv(const Level& level, std::span<const gpu::Optical> optical, double eta);
-std::vector<glm::dvec3> load_fv(const Level& level, double eta, std::span<const glm::vec3> q);
+// The measure that multiplies (k11, k12) source q in b: per carrier the sum over the open outside faces f of
+// factor_f q_f, in the units of the method's rows.
+std::vector<glm::dvec3> surface_load_fdm(const Level& level, const Problem& problem, std::span<const glm::vec3> q);
+std::vector<glm::dvec3> surface_load_fv(const Level& level, std::span<const glm::vec3> q);
+std::vector<glm::dvec3> surface_load_fem(const Level& level, std::span<const glm::vec3> q);
 
-Rows assemble_fem(const Level& level, std::span<const gpu::Optical> optical, double eta);
-std::vector<glm::dvec3> load_fem(const Level& level, double eta, std::span<const glm::vec3> q);
+// Mass of 5/9 sigma_t per unit of volume, 1/mm: what phi2 loses.
+glm::dvec3 relaxation_of(const gpu::Optical& optical);
 
 }  // namespace quadgraph

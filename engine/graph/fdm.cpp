@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "engine/graph/discretisation.h"
-#include "engine/graph/fresnel.h"
 #include "shaders/optics.h"
 
 namespace quadgraph {
@@ -14,63 +13,66 @@ double inverse_square_distance(const Level& level, std::uint32_t i, std::uint32_
   return 1.0 / glm::dot(d, d);
 }
 
-void assemble_inner(const Level& level, std::span<const gpu::Optical> optical, std::uint32_t t, Rows& rows) {
+void assemble_inner(const Level& level, const Problem& problem, std::uint32_t t, Rows& rows) {
   glm::uvec4 links = level.links[t];
   std::sort(&links[0], &links[0] + 4);
-  double sum = 0;
+  const gpu::Optical& optical = problem.optical[t];
+  const glm::dvec3 kappa(gpu::kappa(optical));
+  Terms own{.absorption = glm::dvec3(optical.sigma_a) / kappa, .relaxation = relaxation_of(optical) / kappa};
   for (int k = 0; k < 4; ++k) {
-    const double w = inverse_square_distance(level, t, links[k]);
+    const glm::dvec3 w(inverse_square_distance(level, t, links[k]));
     rows.column.push_back(links[k]);
-    rows.weight.emplace_back(-w);
-    sum += w;
+    rows.weight.push_back(block_of({.stiffness = -w}, problem.model, {}));
+    own.stiffness += w;
   }
-  rows.diagonal[t] = glm::dvec3(sum) + glm::dvec3(optical[t].sigma_a) / glm::dvec3(gpu::kappa(optical[t]));
+  rows.diagonal[t] = block_of(own, problem.model, {});
 }
 
-void assemble_surface(const Level& level, std::span<const gpu::Optical> optical, double a, std::uint32_t f,
+// kappa_k / (kappa_s d) at surface node s behind which lies inner node k: what the published row is multiplied with,
+// times 2A.
+glm::dvec3 row_factor(const Level& level, const Problem& problem, std::uint32_t f) {
+  const std::uint32_t s = level.tet_count() + f, k = level.face_tets[f];
+  const double inverse_distance = std::sqrt(inverse_square_distance(level, s, k));
+  return glm::dvec3(gpu::kappa(problem.optical[k])) / glm::dvec3(gpu::kappa(problem.optical[s])) * inverse_distance;
+}
+
+void assemble_surface(const Level& level, const Problem& problem, const Boundary& boundary, std::uint32_t f,
                       Rows& rows) {
-  const std::uint32_t s = level.tet_count() + f;
-  const std::uint32_t k = level.face_tets[f];
+  const std::uint32_t s = level.tet_count() + f, k = level.face_tets[f];
   const double w = inverse_square_distance(level, s, k);
-  const glm::dvec3 kappa_s(gpu::kappa(optical[s]));
-  const glm::dvec3 h = 2.0 * a * kappa_s * std::sqrt(w);
+  const glm::dvec3 factor = row_factor(level, problem, f);
   rows.column.push_back(k);
-  rows.weight.emplace_back(-w);
-  rows.diagonal[s] = (1.0 + h) * glm::dvec3(gpu::kappa(optical[k])) / (kappa_s * h) * w;
+  rows.weight.push_back(block_of({.stiffness = glm::dvec3(-w)}, problem.model, {}));
+  Terms own{.stiffness = factor * std::sqrt(w)};
+  if (!level.reflecting(f)) own.boundary = factor / glm::dvec3(gpu::kappa(problem.optical[s]));
+  rows.diagonal[s] = block_of(own, problem.model, boundary);
 }
 
 }  // namespace
 
-Rows assemble_fdm(const Level& level, std::span<const gpu::Optical> optical, double eta) {
-  const double a = mismatch(eta);
+Rows assemble_fdm(const Level& level, const Problem& problem) {
+  const Boundary boundary = problem.boundary();
   Rows rows;
   rows.diagonal.resize(level.nodes.size());
   rows.offset.push_back(0);
   for (std::uint32_t t = 0; t < level.tet_count(); ++t) {
-    assemble_inner(level, optical, t, rows);
+    assemble_inner(level, problem, t, rows);
     rows.offset.push_back(static_cast<std::uint32_t>(rows.column.size()));
   }
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {
-    assemble_surface(level, optical, a, f, rows);
+    assemble_surface(level, problem, boundary, f, rows);
     rows.offset.push_back(static_cast<std::uint32_t>(rows.column.size()));
   }
-  for (const gpu::Optical& o : optical) rows.to_phi.push_back(1.0 / glm::dvec3(gpu::kappa(o)));
+  for (const gpu::Optical& o : problem.optical) rows.to_phi.push_back(1.0 / glm::dvec3(gpu::kappa(o)));
   return rows;
 }
 
-std::vector<glm::dvec3> load_fdm(const Level& level, std::span<const gpu::Optical> optical, double eta,
-                                 std::span<const glm::vec3> q) {
-  const double a = mismatch(eta);
-  const double source_per_q = 4.0 / (1.0 - internal_diffuse_reflectance(eta));
-  std::vector<glm::dvec3> b(level.nodes.size(), glm::dvec3(0));
+std::vector<glm::dvec3> surface_load_fdm(const Level& level, const Problem& problem, std::span<const glm::vec3> q) {
+  std::vector<glm::dvec3> load(level.nodes.size(), glm::dvec3(0));
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {
-    const std::uint32_t s = level.tet_count() + f;
-    const std::uint32_t k = level.face_tets[f];
-    const double inverse_distance = std::sqrt(inverse_square_distance(level, s, k));
-    b[s] = glm::dvec3(gpu::kappa(optical[k])) / glm::dvec3(gpu::kappa(optical[s])) * glm::dvec3(q[f]) * source_per_q *
-           inverse_distance / (2.0 * a);
+    if (!level.reflecting(f)) load[level.tet_count() + f] = row_factor(level, problem, f) * glm::dvec3(q[f]);
   }
-  return b;
+  return load;
 }
 
 }  // namespace quadgraph

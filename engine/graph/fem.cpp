@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "engine/graph/discretisation.h"
-#include "engine/graph/fresnel.h"
 #include "engine/graph/geometry.h"
 #include "shaders/optics.h"
 
@@ -51,60 +50,72 @@ void build_pattern(const Level& level, Rows& rows) {
 }
 
 // The weight at (row, column), which the pattern holds.
-glm::dvec3& entry(Rows& rows, std::uint32_t row, std::uint32_t column) {
+Block& entry(Rows& rows, std::uint32_t row, std::uint32_t column) {
   const auto begin = rows.column.begin() + rows.offset[row];
   const auto end = rows.column.begin() + rows.offset[row + 1];
   return rows.weight[static_cast<std::size_t>(std::lower_bound(begin, end, column) - rows.column.begin())];
 }
 
-// Stiffness and consistent mass of one tet. The diagonal stiffness is minus the sum of the off-diagonals, so that
+// Stiffness and consistent masses of one tet. The diagonal stiffness is minus the sum of the off-diagonals, so that
 // constants are reproduced to rounding.
-void add_tet(const TetGeometry& g, const glm::uvec4& tet, const gpu::Optical& optical, Rows& rows) {
-  const glm::dvec3 mass = glm::dvec3(optical.sigma_a) * (g.volume / 20.0);
+void add_tet(const TetGeometry& g, const glm::uvec4& tet, const gpu::Optical& optical, const Problem& problem,
+             Rows& rows) {
+  const Boundary none;
+  const glm::dvec3 absorption = glm::dvec3(optical.sigma_a) * (g.volume / 20.0);
+  const glm::dvec3 relaxation = relaxation_of(optical) * (g.volume / 20.0);
   for (int i = 0; i < 4; ++i) {
-    rows.diagonal[tet[i]] += 2.0 * mass;
+    Terms own{.absorption = 2.0 * absorption, .relaxation = 2.0 * relaxation};
     for (int j = 0; j < 4; ++j) {
       if (i == j) continue;
-      const glm::dvec3 stiffness =
-          glm::dvec3(gpu::kappa(optical)) * (glm::dot(g.gradient[i], g.gradient[j]) * g.volume);
-      entry(rows, tet[i], tet[j]) += stiffness + mass;
-      rows.diagonal[tet[i]] -= stiffness;
+      const Terms terms{
+          .stiffness = glm::dvec3(gpu::kappa(optical)) * (glm::dot(g.gradient[i], g.gradient[j]) * g.volume),
+          .absorption = absorption,
+          .relaxation = relaxation};
+      entry(rows, tet[i], tet[j]) += block_of(terms, problem.model, none);
+      own.stiffness -= terms.stiffness;
     }
+    rows.diagonal[tet[i]] += block_of(own, problem.model, none);
+  }
+}
+
+void add_face(const Level& level, const glm::uvec3& face, const Problem& problem, const Boundary& boundary,
+              Rows& rows) {
+  const Block mass = block_of({.boundary = glm::dvec3(face_area(level, face) / 12.0)}, problem.model, boundary);
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      if (i != j) entry(rows, face[i], face[j]) += mass;
+    }
+    rows.diagonal[face[i]] += mass;
+    rows.diagonal[face[i]] += mass;
   }
 }
 
 }  // namespace
 
-Rows assemble_fem(const Level& level, std::span<const gpu::Optical> optical, double eta) {
+Rows assemble_fem(const Level& level, const Problem& problem) {
   Rows rows;
   build_pattern(level, rows);
-  rows.weight.assign(rows.column.size(), glm::dvec3(0));
-  rows.diagonal.assign(level.vertices.size(), glm::dvec3(0));
+  rows.weight.assign(rows.column.size(), Block{});
+  rows.diagonal.assign(level.vertices.size(), Block{});
   rows.to_phi.assign(level.vertices.size(), glm::dvec3(1));
   for (std::uint32_t t = 0; t < level.tet_count(); ++t) {
-    add_tet(tet_geometry(level, level.tets[t]), level.tets[t], optical[t], rows);
+    add_tet(tet_geometry(level, level.tets[t]), level.tets[t], problem.optical[t], problem, rows);
   }
-  const double robin = 1.0 / (2.0 * mismatch(eta));
-  for (const glm::uvec3& face : level.faces) {
-    const glm::dvec3 mass(robin * face_area(level, face) / 12.0);
-    for (int i = 0; i < 3; ++i) {
-      rows.diagonal[face[i]] += 2.0 * mass;
-      for (int j = 0; j < 3; ++j) {
-        if (i != j) entry(rows, face[i], face[j]) += mass;
-      }
-    }
+  const Boundary boundary = problem.boundary();
+  for (std::uint32_t f = 0; f < level.face_count(); ++f) {
+    if (!level.reflecting(f)) add_face(level, level.faces[f], problem, boundary, rows);
   }
   return rows;
 }
 
-std::vector<glm::dvec3> load_fem(const Level& level, double eta, std::span<const glm::vec3> q) {
-  const double per_q = 4.0 / (1.0 - internal_diffuse_reflectance(eta)) / (2.0 * mismatch(eta));
-  std::vector<glm::dvec3> b(level.vertices.size(), glm::dvec3(0));
+std::vector<glm::dvec3> surface_load_fem(const Level& level, std::span<const glm::vec3> q) {
+  std::vector<glm::dvec3> load(level.vertices.size(), glm::dvec3(0));
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {
-    const glm::dvec3 load = glm::dvec3(q[f]) * (per_q * face_area(level, level.faces[f]) / 3.0);
-    for (int i = 0; i < 3; ++i) b[level.faces[f][i]] += load;
+    if (level.reflecting(f)) continue;
+    const glm::dvec3 share = glm::dvec3(q[f]) * (face_area(level, level.faces[f]) / 3.0);
+    for (int i = 0; i < 3; ++i) load[level.faces[f][i]] += share;
   }
-  return b;
+  return load;
 }
 
 }  // namespace quadgraph

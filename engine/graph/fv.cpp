@@ -5,7 +5,6 @@
 #include <glm/geometric.hpp>
 
 #include "engine/graph/discretisation.h"
-#include "engine/graph/fresnel.h"
 #include "engine/graph/geometry.h"
 #include "shaders/optics.h"
 
@@ -49,42 +48,46 @@ int face_towards(const Level& level, std::uint32_t t, std::uint32_t node) {
 
 }  // namespace
 
-Rows assemble_fv(const Level& level, std::span<const gpu::Optical> optical, double eta) {
-  const double robin = 1.0 / (2.0 * mismatch(eta));
+Rows assemble_fv(const Level& level, const Problem& problem) {
+  const Boundary boundary = problem.boundary();
   Rows rows;
   rows.offset.push_back(0);
   rows.to_phi.assign(level.nodes.size(), glm::dvec3(1));
   for (std::uint32_t t = 0; t < level.tet_count(); ++t) {
     std::array<int, 4> order = {0, 1, 2, 3};
     std::sort(order.begin(), order.end(), [&](int a, int b) { return level.links[t][a] < level.links[t][b]; });
-    glm::dvec3 sum(0);
+    const double volume = tet_volume(level, level.tets[t]);
+    Terms own{.absorption = glm::dvec3(problem.optical[t].sigma_a) * volume,
+              .relaxation = relaxation_of(problem.optical[t]) * volume};
     for (int k : order) {
-      const glm::dvec3 g = conductance(level, optical, t, k);
+      const glm::dvec3 g = conductance(level, problem.optical, t, k);
       rows.column.push_back(level.links[t][k]);
-      rows.weight.push_back(-g);
-      sum += g;
+      rows.weight.push_back(block_of({.stiffness = -g}, problem.model, boundary));
+      own.stiffness += g;
     }
-    rows.diagonal.push_back(sum + glm::dvec3(optical[t].sigma_a) * tet_volume(level, level.tets[t]));
+    rows.diagonal.push_back(block_of(own, problem.model, boundary));
     rows.offset.push_back(static_cast<std::uint32_t>(rows.column.size()));
   }
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {
     const std::uint32_t t = level.face_tets[f];
-    const glm::dvec3 g = conductance(level, optical, t, face_towards(level, t, level.tet_count() + f));
+    const glm::dvec3 g = conductance(level, problem.optical, t, face_towards(level, t, level.tet_count() + f));
     rows.column.push_back(t);
-    rows.weight.push_back(-g);
-    rows.diagonal.push_back(g + robin * face_area(level, level.faces[f]));
+    rows.weight.push_back(block_of({.stiffness = -g}, problem.model, boundary));
+    Terms own{.stiffness = g};
+    if (!level.reflecting(f)) own.boundary = glm::dvec3(face_area(level, level.faces[f]));
+    rows.diagonal.push_back(block_of(own, problem.model, boundary));
     rows.offset.push_back(static_cast<std::uint32_t>(rows.column.size()));
   }
   return rows;
 }
 
-std::vector<glm::dvec3> load_fv(const Level& level, double eta, std::span<const glm::vec3> q) {
-  const double per_q = 4.0 / (1.0 - internal_diffuse_reflectance(eta)) / (2.0 * mismatch(eta));
-  std::vector<glm::dvec3> b(level.nodes.size(), glm::dvec3(0));
+std::vector<glm::dvec3> surface_load_fv(const Level& level, std::span<const glm::vec3> q) {
+  std::vector<glm::dvec3> load(level.nodes.size(), glm::dvec3(0));
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {
-    b[level.tet_count() + f] = glm::dvec3(q[f]) * (per_q * face_area(level, level.faces[f]));
+    if (level.reflecting(f)) continue;
+    load[level.tet_count() + f] = glm::dvec3(q[f]) * face_area(level, level.faces[f]);
   }
-  return b;
+  return load;
 }
 
 }  // namespace quadgraph

@@ -6,6 +6,8 @@
 #include "engine/graph/discretisation.h"
 #include "engine/graph/error.h"
 #include "engine/graph/fresnel.h"
+#include "engine/graph/geometry.h"
+#include "shaders/optics.h"
 
 namespace quadgraph {
 namespace {
@@ -18,41 +20,23 @@ bool in_range(const gpu::Optical& optical) {
   return true;
 }
 
-void check_input(const Level& level, std::span<const gpu::Optical> optical, double eta) {
-  if (optical.size() != level.nodes.size()) {
-    throw InputError("optical: " + std::to_string(optical.size()) + " entries, the level has " +
+void check_problem(const Level& level, const Problem& problem) {
+  if (problem.optical.size() != level.nodes.size()) {
+    throw InputError("optical: " + std::to_string(problem.optical.size()) + " entries, the level has " +
                      std::to_string(level.nodes.size()) + " nodes");
   }
-  for (std::size_t i = 0; i < optical.size(); ++i) {
-    if (!in_range(optical[i])) {
+  for (std::size_t i = 0; i < problem.optical.size(); ++i) {
+    if (!in_range(problem.optical[i])) {
       throw InputError("optical[" + std::to_string(i) + "]: sigma_s_prime and sigma_a must be finite numbers >= 0");
     }
   }
-  if (!(eta >= min_eta && eta <= max_eta)) throw InputError("eta " + std::to_string(eta) + ": allowed is 1 to 3");
-}
-
-}  // namespace
-
-std::uint32_t unknown_count(const Level& level, Method method) {
-  return method == Method::fem ? level.vertex_count() : level.node_count();
-}
-
-Rows assemble(const Level& level, Method method, std::span<const gpu::Optical> optical, double eta) {
-  check_input(level, optical, eta);
-  switch (method) {
-    case Method::quadgraph_fdm:
-      return assemble_fdm(level, optical, eta);
-    case Method::quadgraph_fv:
-      return assemble_fv(level, optical, eta);
-    case Method::fem:
-      return assemble_fem(level, optical, eta);
+  if (!(problem.eta >= min_eta && problem.eta <= max_eta)) {
+    throw InputError("eta " + std::to_string(problem.eta) + ": allowed is 1 to 3");
   }
-  throw InputError("unknown method");
+  if (problem.model == Model::automatic) throw InputError("model 'auto': resolve it before assembling");
 }
 
-std::vector<glm::dvec3> right_hand_side(const Level& level, Method method, std::span<const gpu::Optical> optical,
-                                        double eta, std::span<const glm::vec3> q) {
-  check_input(level, optical, eta);
+void check_irradiance(const Level& level, std::span<const glm::vec3> q) {
   if (q.size() != level.faces.size()) {
     throw InputError("q: " + std::to_string(q.size()) + " entries, the level has " +
                      std::to_string(level.faces.size()) + " surface nodes");
@@ -64,22 +48,69 @@ std::vector<glm::dvec3> right_hand_side(const Level& level, Method method, std::
       }
     }
   }
-  switch (method) {
+}
+
+std::vector<glm::dvec3> surface_load(const Level& level, const Problem& problem, std::span<const glm::vec3> q) {
+  switch (problem.method) {
     case Method::quadgraph_fdm:
-      return load_fdm(level, optical, eta, q);
+      return surface_load_fdm(level, problem, q);
     case Method::quadgraph_fv:
-      return load_fv(level, eta, q);
+      return surface_load_fv(level, q);
     case Method::fem:
-      return load_fem(level, eta, q);
+      return surface_load_fem(level, q);
   }
   throw InputError("unknown method");
 }
 
-std::vector<glm::dvec3> apply(const Rows& rows, std::span<const glm::dvec3> x) {
-  std::vector<glm::dvec3> y(rows.size());
+}  // namespace
+
+glm::dvec3 relaxation_of(const gpu::Optical& optical) {
+  return 5.0 / 9.0 * glm::dvec3(gpu::sigma_t(optical));
+}
+
+std::uint32_t carrier_count(const Level& level, Method method) {
+  return method == Method::fem ? level.vertex_count() : level.node_count();
+}
+
+Rows assemble(const Level& level, const Problem& problem) {
+  check_problem(level, problem);
+  switch (problem.method) {
+    case Method::quadgraph_fdm:
+      return assemble_fdm(level, problem);
+    case Method::quadgraph_fv:
+      return assemble_fv(level, problem);
+    case Method::fem:
+      return assemble_fem(level, problem);
+  }
+  throw InputError("unknown method");
+}
+
+std::vector<Field> diffuse_load(const Level& level, const Problem& problem, std::span<const glm::vec3> q) {
+  check_problem(level, problem);
+  check_irradiance(level, q);
+  const Boundary boundary = problem.boundary();
+  std::vector<Field> b;
+  for (const glm::dvec3& load : surface_load(level, problem, q)) {
+    b.push_back({boundary.k11 * boundary.source * load, boundary.k12 * boundary.source * load});
+  }
+  return b;
+}
+
+std::vector<Field> buried_load(const Level& level, const Problem& problem, std::span<const glm::dvec3> scattered) {
+  std::vector<Field> b(carrier_count(level, problem.method));
+  for (std::size_t i = 0; i < scattered.size(); ++i) {
+    // The published rows are per volume (operator.h), all others integrals.
+    const bool density = problem.method == Method::quadgraph_fdm && i < level.tets.size();
+    b[i].phi = density ? scattered[i] / tet_volume(level, level.tets[i]) : scattered[i];
+  }
+  return b;
+}
+
+std::vector<Field> apply(const Rows& rows, std::span<const Field> x) {
+  std::vector<Field> y(rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    glm::dvec3 sum = rows.diagonal[i] * x[i];
-    for (std::uint32_t k = rows.offset[i]; k < rows.offset[i + 1]; ++k) sum += rows.weight[k] * x[rows.column[k]];
+    Field sum = rows.diagonal[i] * x[i];
+    for (std::uint32_t k = rows.offset[i]; k < rows.offset[i + 1]; ++k) sum = sum + rows.weight[k] * x[rows.column[k]];
     y[i] = sum;
   }
   return y;

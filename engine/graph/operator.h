@@ -1,24 +1,31 @@
-// The one operator format, in double precision, and the two discretisations assembled on the CPU. The GPU assembles
-// the same rows in single precision (shaders/assemble_*.comp).
+// The one operator format, in double precision, and the discretisations assembled on the CPU. The GPU assembles the
+// same rows in single precision (shaders/assemble_*.comp).
 //
-// Every discretisation is written as a symmetric system A x = b per channel, with phi = to_phi * x.
+// Every discretisation is a symmetric system A x = b per channel, (phi, phi2) = to_phi * x, whose entries are blocks.
 //
-// fem: x = phi at the tet vertices; to_phi = 1. kappa and sigma_a are constant per tet (the value at its inner node).
-//   A = stiffness(kappa) + mass(sigma_a) + boundary mass / (2A);  b = integral of Q/(2A) against the basis, Q =
-//   4q/(1-F_dr) with q constant per outside face.
+// SP3 (Klose and Larsen 2006; physics.md, "SP3"), written for phi = phi1 - 2/3 phi2, the fluence of scattered light,
+// and phi2, is: stiffness of kappa times G = [[1, 2/3], [2/3, 55/63]], mass of diag(sigma_a, 5/9 sigma_t), boundary
+// matrix K, source (S, 0). So a method only says four scalars per pair of carriers (Terms, engine/graph/block.h), and
+// diffusion is the corner a11 of the same block.
 //
-// quadgraph-fdm: x = u = kappa*phi at the nodes, to_phi = 1/kappa. In u the published rows (Eq. 5) have the purely
-//   geometric weights 1/d^2, and the surface rows (Eq. 6), multiplied by kappa_k / (2 A kappa_s d), get the same
-//   weight, so the matrix is symmetric. Multiplying rows and changing variables by a diagonal leaves the published
-//   relaxation (Eq. 8-9) unchanged.
-//     inner i:    (sum_j 1/d_ij^2 + sigma_a/kappa) u_i - sum_j u_j / d_ij^2 = 0
-//     surface s:  (1 + h) kappa_k / (kappa_s h d^2) u_s - u_k / d^2 = kappa_k Q / (2 A kappa_s d),  h = 2 A kappa_s / d
+// fem: carriers are the tet vertices; to_phi = 1. Coefficients are constant per tet (the value at its inner node);
+//   consistent masses. b of the diffuse source = integral of (k11, k12) source q against the basis, q constant per
+//   face.
 //
-// quadgraph-fv: x = phi at the nodes, to_phi = 1. Two-point flux across every face, d measured along its normal; the
-//   Robin condition in series at the surface. An M-matrix: phi is never negative; conserves energy; exact in layers
-//   whose links cross the interfaces at right angles, not consistent on general tets (physics.md, "Discretisations").
-//     inner i:    sum_j g_ij (phi_i - phi_j) + sigma_a V phi_i = 0,   g_ij = area / (d_i/kappa_i + d_j/kappa_j)
-//     surface s:  (g + area/(2A)) phi_s - g phi_k = area Q / (2A),    g = area kappa_k / d_k
+// quadgraph-fdm: carriers are the nodes, x = kappa * (phi, phi2), to_phi = 1/kappa. So written the published rows
+//   (Eq. 5) have the purely geometric weights 1/d^2, and the surface rows (Eq. 6), multiplied by
+//   kappa_k / (2 A kappa_s d), get the same weight, so the matrix is symmetric. Multiplying rows and changing variables
+//   by a diagonal leaves the published relaxation (Eq. 8-9) unchanged. With diffusion:
+//     inner i:    (sum_j 1/d_ij^2 + sigma_a/kappa) u_i - sum_j u_j / d_ij^2 = S
+//     surface s:  kappa_k / (kappa_s d) (1/d + 1/(2 A kappa_s)) u_s - u_k / d^2 = kappa_k Q / (2 A kappa_s d)
+//
+// quadgraph-fv: carriers are the nodes; to_phi = 1. Two-point flux across every face, d measured along its normal; the
+//   boundary condition in series at the surface. With diffusion an M-matrix: phi is never negative. Conserves energy;
+//   exact in layers whose links cross the interfaces at right angles, not consistent on general tets (physics.md).
+//     inner i:    sum_j g_ij (phi_i - phi_j) + sigma_a V phi_i = integral of S,   g_ij = area / (d_i/kappa_i +
+//     d_j/kappa_j) surface s:  (g + area/(2A)) phi_s - g phi_k = area Q / (2A),                g = area kappa_k / d_k
+//
+// At a reflecting face nothing passes: K = 0 there, and q is ignored.
 #pragma once
 
 #include <cstdint>
@@ -26,35 +33,49 @@
 #include <span>
 #include <vector>
 
+#include "engine/graph/block.h"
 #include "engine/graph/graph.h"
 #include "engine/graph/solution.h"
 #include "shaders/shared.h"
 
 namespace quadgraph {
 
+// What is discretised. `model` is never `automatic`.
+struct Problem {
+  Method method = Method::fem;
+  Source source = Source::buried;
+  Model model = Model::diffusion;
+  std::span<const gpu::Optical> optical;  // one per node of the level (inner, then surface)
+  double eta = 1;
+
+  Boundary boundary() const { return boundary_of(method, source, model, eta); }
+};
+
 // Compressed rows without the diagonal. (A x)_i = diagonal_i x_i + sum_k weight_k x_column_k, per channel.
 struct Rows {
   std::vector<std::uint32_t> offset;  // n + 1
   std::vector<std::uint32_t> column;  // ascending within a row
-  std::vector<glm::dvec3> weight;
-  std::vector<glm::dvec3> diagonal;  // n
-  std::vector<glm::dvec3> to_phi;    // n
+  std::vector<Block> weight;
+  std::vector<Block> diagonal;     // n, positive definite
+  std::vector<glm::dvec3> to_phi;  // n
 
   std::size_t size() const { return diagonal.size(); }
 };
 
-// Unknowns of a method on a level.
-std::uint32_t unknown_count(const Level& level, Method method);
+// Carriers of a method on a level: rows of its operator, each with one unknown (diffusion) or two (sp3).
+std::uint32_t carrier_count(const Level& level, Method method);
 
-// `optical` has one entry per node of the level (inner, then surface). Throws InputError if sizes or values are out of
-// range (sigma_s_prime, sigma_a >= 0 and finite; eta in [min_eta, max_eta]).
-Rows assemble(const Level& level, Method method, std::span<const gpu::Optical> optical, double eta);
+// Throws InputError if sizes or values are out of range (sigma_s_prime, sigma_a >= 0 and finite; eta in [min_eta,
+// max_eta]) or if the model is `automatic`.
+Rows assemble(const Level& level, const Problem& problem);
 
-// b for irradiance `q` (one entry per surface node, >= 0).
-std::vector<glm::dvec3> right_hand_side(const Level& level, Method method, std::span<const gpu::Optical> optical,
-                                        double eta, std::span<const glm::vec3> q);
+// b of the diffuse source for irradiance `q` (one entry per outside face, >= 0).
+std::vector<Field> diffuse_load(const Level& level, const Problem& problem, std::span<const glm::vec3> q);
+
+// b of the buried source for `scattered` (W per carrier, as engine/graph/source_walk.h gives it).
+std::vector<Field> buried_load(const Level& level, const Problem& problem, std::span<const glm::dvec3> scattered);
 
 // y = A x.
-std::vector<glm::dvec3> apply(const Rows& rows, std::span<const glm::dvec3> x);
+std::vector<Field> apply(const Rows& rows, std::span<const Field> x);
 
 }  // namespace quadgraph

@@ -5,25 +5,25 @@
 #include <string>
 
 #include "engine/graph/error.h"
-#include "engine/graph/fresnel.h"
 #include "engine/graph/geometry.h"
+#include "engine/graph/source_walk.h"
 #include "shaders/material.h"
 
 namespace quadgraph {
 namespace {
 
-using Vector = std::vector<glm::dvec3>;
+using Vector = std::vector<Field>;
 
 glm::dvec3 dot(const Vector& a, const Vector& b) {
   glm::dvec3 sum{0};
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  for (std::size_t i = 0; i < a.size(); ++i) sum += quadgraph::dot(a[i], b[i]);
   return sum;
 }
 
-// r^T D^-1 r.
+// r^T D^-1 r, D the diagonal blocks.
 glm::dvec3 scaled_norm(const Rows& rows, const Vector& r) {
   glm::dvec3 sum{0};
-  for (std::size_t i = 0; i < r.size(); ++i) sum += r[i] * r[i] / rows.diagonal[i];
+  for (std::size_t i = 0; i < r.size(); ++i) sum += quadgraph::dot(r[i], solve(rows.diagonal[i], r[i]));
   return sum;
 }
 
@@ -51,18 +51,9 @@ glm::dvec3 safe_ratio(const glm::dvec3& a, const glm::dvec3& b) {
   return result;
 }
 
-// Guaranteed bound of the spectrum of D^-1 A of fem over all channels: Gershgorin, and 4 for linear tets,
-// because a sum of element matrices has no larger quotient than its worst element, whose trace after scaling is 4.
-double spectral_bound(const Rows& rows) {
-  double bound = 0;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    glm::dvec3 sum = rows.diagonal[i];
-    for (std::uint32_t k = rows.offset[i]; k < rows.offset[i + 1]; ++k) sum += glm::abs(rows.weight[k]);
-    const glm::dvec3 ratio = sum / rows.diagonal[i];
-    bound = std::max({bound, ratio[0], ratio[1], ratio[2]});
-  }
-  return std::min(bound, 4.0);
-}
+// The largest eigenvalue of D^-1 A of linear tets is at most 4: a sum of positive semidefinite matrices has no larger
+// quotient than its worst term, and an element of four blocks has none above 4.
+constexpr double fem_bound = 4.0;
 
 // Relaxation x += damping D^-1 (b - A x) from x = 0. Damping 1 is the published scheme.
 void relax(const Rows& rows, const Vector& b, double damping, const SolveOptions& options, Vector& x,
@@ -73,20 +64,20 @@ void relax(const Rows& rows, const Vector& b, double damping, const SolveOptions
     for (std::size_t i = 0; i < r.size(); ++i) r[i] = b[i] - r[i];
     report.residual = relative(scaled_norm(rows, r), reference);
     if (report.residual <= options.tolerance || report.iterations == options.max_iterations) return;
-    for (std::size_t i = 0; i < r.size(); ++i) x[i] += damping * r[i] / rows.diagonal[i];
+    for (std::size_t i = 0; i < r.size(); ++i) x[i] = x[i] + glm::dvec3(damping) * solve(rows.diagonal[i], r[i]);
     ++report.iterations;
   }
 }
 
-// Conjugate gradients with diagonal preconditioning, every channel with its own step lengths.
+// Conjugate gradients preconditioned by the diagonal blocks, every channel with its own step lengths.
 void conjugate_gradients(const Rows& rows, const Vector& b, const SolveOptions& options, Vector& x,
                          LevelReport& report) {
   const glm::dvec3 reference = scaled_norm(rows, b);
   Vector r = b;
-  Vector z(r.size()), p(r.size(), glm::dvec3(0));
+  Vector z(r.size()), p(r.size());
   glm::dvec3 rz_before{0};
   for (;;) {
-    for (std::size_t i = 0; i < r.size(); ++i) z[i] = r[i] / rows.diagonal[i];
+    for (std::size_t i = 0; i < r.size(); ++i) z[i] = solve(rows.diagonal[i], r[i]);
     const glm::dvec3 rz = dot(r, z);
     report.residual = relative(rz, reference);
     if (report.residual <= options.tolerance || report.iterations == options.max_iterations) return;
@@ -103,46 +94,101 @@ void conjugate_gradients(const Rows& rows, const Vector& b, const SolveOptions& 
     }
     const glm::dvec3 alpha = safe_ratio(rz, curvature);
     for (std::size_t i = 0; i < x.size(); ++i) {
-      x[i] += alpha * p[i];
-      r[i] -= alpha * ap[i];
+      x[i] = x[i] + alpha * p[i];
+      r[i] = r[i] - alpha * ap[i];
     }
     rz_before = rz;
     ++report.iterations;
   }
 }
 
-glm::dvec3 face_phi(const Level& level, Method method, const Vector& phi, std::uint32_t f) {
-  if (method != Method::fem) return phi[level.tet_count() + f];
+// The mean of `values` (per carrier) over outside face f.
+glm::dvec3 at_face(const Level& level, Method method, std::span<const glm::dvec3> values, std::uint32_t f) {
+  if (method != Method::fem) return values[level.tet_count() + f];
   const glm::uvec3& face = level.faces[f];
-  return (phi[face[0]] + phi[face[1]] + phi[face[2]]) / 3.0;
+  return (values[face[0]] + values[face[1]] + values[face[2]]) / 3.0;
 }
 
-glm::dvec3 tet_phi(const Level& level, Method method, const Vector& phi, std::uint32_t t) {
-  if (method != Method::fem) return phi[t];
+glm::dvec3 in_tet(const Level& level, Method method, std::span<const glm::dvec3> values, std::uint32_t t) {
+  if (method != Method::fem) return values[t];
   const glm::uvec4& tet = level.tets[t];
-  return (phi[tet[0]] + phi[tet[1]] + phi[tet[2]] + phi[tet[3]]) / 4.0;
+  return (values[tet[0]] + values[tet[1]] + values[tet[2]] + values[tet[3]]) / 4.0;
 }
 
-void add_surface(const Level& level, Method method, double eta, std::span<const glm::vec3> q,
-                 ReferenceSolution& solution) {
-  const double a = mismatch(eta);
+glm::dvec3 surface_integral(const Level& level, std::span<const glm::dvec3> faces) {
+  glm::dvec3 sum{0};
+  for (std::uint32_t f = 0; f < level.face_count(); ++f) sum += face_area(level, level.faces[f]) * faces[f];
+  return sum;
+}
+
+std::vector<glm::dvec3> over_faces(const Level& level, Method method, std::span<const glm::dvec3> values) {
+  std::vector<glm::dvec3> faces(level.faces.size(), glm::dvec3(0));
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {
-    const double area = face_area(level, level.faces[f]);
-    const glm::dvec3 phi = face_phi(level, method, solution.phi, f);
-    const glm::dvec3 exitance = (phi - 2.0 * glm::dvec3(q[f])) / (2.0 * a);
-    solution.phi_face.push_back(phi);
-    solution.exitance.push_back(exitance);
-    solution.energy.entered += area * glm::dvec3(q[f]);
-    solution.energy.scattered_out += area * exitance;
+    if (!level.reflecting(f)) faces[f] = at_face(level, method, values, f);
+  }
+  return faces;
+}
+
+// M >= 0 at the faces for the buried source: negative values at the carriers become 0, the others pay for them.
+std::vector<glm::dvec3> clipped_exitance(const Level& level, Method method, std::vector<glm::dvec3> carriers,
+                                         glm::dvec3& clipped_share) {
+  const glm::dvec3 raw = surface_integral(level, over_faces(level, method, carriers));
+  for (glm::dvec3& m : carriers) m = glm::max(m, glm::dvec3(0));
+  std::vector<glm::dvec3> faces = over_faces(level, method, carriers);
+  const glm::dvec3 clipped = surface_integral(level, faces);
+  const glm::dvec3 factor = safe_ratio(glm::max(raw, glm::dvec3(0)), clipped);
+  for (glm::dvec3& m : faces) m *= factor;
+  clipped_share = safe_ratio(clipped - raw, clipped);
+  return faces;
+}
+
+void add_surface(const Level& level, const Problem& problem, std::span<const glm::vec3> q,
+                 ReferenceSolution& solution) {
+  const Boundary boundary = problem.boundary();
+  std::vector<glm::dvec3> flux;
+  for (std::size_t i = 0; i < solution.phi.size(); ++i) {
+    flux.push_back(boundary.k11 * solution.phi[i] + boundary.k12 * solution.phi2[i]);
+  }
+  solution.phi_face = over_faces(level, problem.method, solution.phi);
+  if (problem.source == Source::buried) {
+    solution.exitance = clipped_exitance(level, problem.method, std::move(flux), solution.clipped);
+  } else {
+    solution.exitance = over_faces(level, problem.method, flux);
+    for (std::uint32_t f = 0; f < level.face_count(); ++f) {
+      if (!level.reflecting(f)) solution.exitance[f] -= boundary.reflected * glm::dvec3(q[f]);
+    }
+  }
+  solution.energy.scattered_out = surface_integral(level, solution.exitance);
+}
+
+void add_absorbed(const Level& level, const Problem& problem, ReferenceSolution& solution) {
+  for (std::uint32_t t = 0; t < level.tet_count(); ++t) {
+    solution.energy.absorbed += tet_volume(level, level.tets[t]) * glm::dvec3(problem.optical[t].sigma_a) *
+                                in_tet(level, problem.method, solution.phi, t);
   }
 }
 
-void add_absorbed(const Level& level, Method method, std::span<const gpu::Optical> optical,
-                  ReferenceSolution& solution) {
-  for (std::uint32_t t = 0; t < level.tet_count(); ++t) {
-    solution.energy.absorbed +=
-        tet_volume(level, level.tets[t]) * glm::dvec3(optical[t].sigma_a) * tet_phi(level, method, solution.phi, t);
+// b, and what the light does before it scatters.
+Vector load(const Level& level, const Problem& problem, const EnteringLight& light, ReferenceSolution& solution) {
+  solution.unscattered.assign(level.faces.size(), glm::dvec3(0));
+  Vector b = diffuse_load(level, problem, light.q);  // zero with the buried source, whose boundary.source is
+  if (problem.source == Source::diffuse) {
+    for (std::uint32_t f = 0; f < level.face_count(); ++f) {
+      if (level.reflecting(f)) continue;
+      solution.energy.entered += face_area(level, level.faces[f]) * glm::dvec3(light.q[f]);
+    }
+    return b;
   }
+  std::vector<Quarters> quarters;
+  for (const glm::vec3& q : light.q) quarters.push_back({q, q, q, q});
+  const WalkResult walk = walk_source(level, problem, light.beam, quarters);
+  for (std::uint32_t f = 0; f < level.face_count(); ++f) {
+    solution.unscattered[f] = walk.unscattered[f] / face_area(level, level.faces[f]);
+  }
+  solution.energy.entered = walk.entered;
+  solution.energy.absorbed = walk.absorbed;
+  solution.energy.unscattered_out = walk.unscattered_out;
+  return buried_load(level, problem, walk.scattered);
 }
 
 }  // namespace
@@ -155,23 +201,26 @@ std::vector<gpu::Optical> evaluate_material(const Level& level, const gpu::Mater
 }
 
 ReferenceSolution solve_reference(const Level& level, std::span<const gpu::Optical> optical, double eta,
-                                  std::span<const glm::vec3> q, const SolveOptions& options) {
-  const Rows rows = assemble(level, options.method, optical, eta);
-  const Vector b = right_hand_side(level, options.method, optical, eta, q);
+                                  const EnteringLight& light, const SolveOptions& options) {
+  const Problem problem{options.method, options.source, options.model, optical, eta};
+  const Rows rows = assemble(level, problem);
   ReferenceSolution solution;
-  solution.report.unknowns = static_cast<std::uint32_t>(rows.size());
-  Vector x(rows.size(), glm::dvec3(0));
+  const Vector b = load(level, problem, light, solution);
+  solution.report.unknowns = static_cast<std::uint32_t>(rows.size()) * (options.model == Model::sp3 ? 2 : 1);
+  Vector x(rows.size());
   if (options.solver == SolverKind::dpcg) {
     conjugate_gradients(rows, b, options, x, solution.report);
   } else {
-    const double damping = options.method == Method::fem ? 2.0 / spectral_bound(rows) : 1.0;
+    const double damping = options.method == Method::fem ? 2.0 / fem_bound : 1.0;
     relax(rows, b, damping, options, x, solution.report);
   }
   solution.report.converged = solution.report.residual <= options.tolerance;
-  solution.phi.reserve(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) solution.phi.push_back(rows.to_phi[i] * x[i]);
-  add_surface(level, options.method, eta, q, solution);
-  add_absorbed(level, options.method, optical, solution);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    solution.phi.push_back(rows.to_phi[i] * x[i].phi);
+    solution.phi2.push_back(rows.to_phi[i] * x[i].phi2);
+  }
+  add_surface(level, problem, light.q, solution);
+  add_absorbed(level, problem, solution);
   return solution;
 }
 

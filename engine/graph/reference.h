@@ -8,24 +8,34 @@
 #include "engine/graph/graph.h"
 #include "engine/graph/operator.h"
 #include "engine/graph/solution.h"
+#include "shaders/solve_shared.h"
 
 namespace quadgraph {
 
 struct ReferenceSolution {
-  std::vector<glm::dvec3> phi;       // W/mm^2 per unknown of the method
-  std::vector<glm::dvec3> phi_face;  // W/mm^2 per surface node (fem: mean of the face's vertices)
-  std::vector<glm::dvec3> exitance;  // W/mm^2 per surface node, M = (phi - 2q) / (2A)
+  std::vector<glm::dvec3> phi;          // W/mm^2 per carrier of the method
+  std::vector<glm::dvec3> phi2;         // the same; 0 with diffusion
+  std::vector<glm::dvec3> phi_face;     // W/mm^2 per surface node (fem: mean of the face's vertices)
+  std::vector<glm::dvec3> exitance;     // W/mm^2 per surface node, M of operator.h
+  std::vector<glm::dvec3> unscattered;  // W/mm^2 per surface node
   Energy energy;
+  glm::dvec3 clipped{0};  // as in SolveReport
   LevelReport report;
 };
 
 // Evaluates a material at every node of a level.
 std::vector<gpu::Optical> evaluate_material(const Level& level, const gpu::Material& material);
 
-// Solves one level from zero to `options.tolerance` (cascade: plain relaxation on this level). Throws InputError as
-// `assemble` does, SolverError if conjugate gradients meet a direction of non-positive energy or the residual is no
-// longer finite.
+// Light as it enters: a beam and what of it every outside face lets in.
+struct EnteringLight {
+  gpu::BeamRecord beam{};
+  std::span<const glm::vec3> q;  // W/mm^2, one per outside face, even over the face; ignored at reflecting faces
+};
+
+// Solves one level from zero to `options.tolerance` (cascade: plain relaxation on this level). `options.model` must not
+// be `automatic`. Throws InputError as `assemble` does, SolverError if conjugate gradients meet a direction of
+// non-positive energy or the residual is no longer finite.
 ReferenceSolution solve_reference(const Level& level, std::span<const gpu::Optical> optical, double eta,
-                                  std::span<const glm::vec3> q, const SolveOptions& options);
+                                  const EnteringLight& light, const SolveOptions& options);
 
 }  // namespace quadgraph

@@ -14,7 +14,7 @@ vk::Buffer upload(vk::Context& context, const std::vector<T>& values, const std:
 }  // namespace
 
 OperatorBuffers::OperatorBuffers(vk::Context& context, const Level& level, std::uint32_t index, Method method)
-    : count(unknown_count(level, method)) {
+    : count(carrier_count(level, method)) {
   const std::string prefix = "level " + std::to_string(index) + " " + std::string(name_of(method)) + " ";
   const auto vector = [&](std::uint64_t elements, const char* name) {
     return vk::Buffer(context, elements * sizeof(glm::vec3), vk::Place::device, prefix + name);

@@ -1,6 +1,11 @@
 // The operators and the CPU reference solver, double precision.
 #include <pybind11/stl.h>
 
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "engine/graph/error.h"
+#include "engine/graph/fresnel.h"
 #include "engine/graph/reference.h"
 #include "python/bindings/bindings.h"
 
@@ -16,17 +21,122 @@ const Level& level_of(const QuadGraph& graph, std::uint32_t index) {
   return graph.levels()[index];
 }
 
-py::dict rows_dict(Rows&& rows) {
+// (n, 3) of phi alone with diffusion, (n, 2, 3) of phi and phi2 with sp3.
+py::array fields(const std::vector<Field>& values, Model model) {
+  const auto n = static_cast<py::ssize_t>(values.size());
+  const py::ssize_t moments = model == Model::sp3 ? 2 : 1;
+  py::array_t<double> array({n, moments, py::ssize_t{3}});
+  double* to = array.mutable_data();
+  for (const Field& field : values) {
+    for (py::ssize_t m = 0; m < moments; ++m) {
+      for (int c = 0; c < 3; ++c) *to++ = (m == 0 ? field.phi : field.phi2)[c];
+    }
+  }
+  return model == Model::sp3 ? py::array(array) : py::array(array.reshape({n, py::ssize_t{3}}));
+}
+
+// (n, 3) of a11 with diffusion, (n, 3, 3) of a11, a12, a22 with sp3.
+py::array blocks(const std::vector<Block>& values, Model model) {
+  const auto n = static_cast<py::ssize_t>(values.size());
+  const py::ssize_t entries = model == Model::sp3 ? 3 : 1;
+  py::array_t<double> array({n, entries, py::ssize_t{3}});
+  double* to = array.mutable_data();
+  for (const Block& block : values) {
+    for (py::ssize_t m = 0; m < entries; ++m) {
+      for (int c = 0; c < 3; ++c) *to++ = (m == 0 ? block.a11 : m == 1 ? block.a12 : block.a22)[c];
+    }
+  }
+  return model == Model::sp3 ? py::array(array) : py::array(array.reshape({n, py::ssize_t{3}}));
+}
+
+py::dict rows_dict(Rows&& rows, Model model) {
   py::dict d;
+  d["weight"] = blocks(rows.weight, model);
+  d["diagonal"] = blocks(rows.diagonal, model);
   d["offset"] = own(std::move(rows.offset));
   d["column"] = own(std::move(rows.column));
-  d["weight"] = own(std::move(rows.weight));
-  d["diagonal"] = own(std::move(rows.diagonal));
   d["to_phi"] = own(std::move(rows.to_phi));
   return d;
 }
 
+Problem problem_of(const std::string& method, const std::string& source, const std::string& model,
+                   std::span<const gpu::Optical> optical, double eta) {
+  return {method_from_name(method), source_from_name(source), model_from_name(model), optical, eta};
+}
+
+py::dict assemble_dict(const QuadGraph& graph, std::uint32_t index, const std::string& method,
+                       const FloatArray& sigma_s_prime, const FloatArray& sigma_a, double eta,
+                       const std::string& source, const std::string& model) {
+  const Level& level = level_of(graph, index);
+  const auto optical = optical_from(sigma_s_prime, sigma_a, level.node_count());
+  const Problem problem = problem_of(method, source, model, optical, eta);
+  return rows_dict(assemble(level, problem), problem.model);
+}
+
+py::array diffuse_load_array(const QuadGraph& graph, std::uint32_t index, const std::string& method,
+                             const FloatArray& sigma_s_prime, const FloatArray& sigma_a, double eta,
+                             const FloatArray& q, const std::string& model) {
+  const Level& level = level_of(graph, index);
+  const auto optical = optical_from(sigma_s_prime, sigma_a, level.node_count());
+  const Problem problem = problem_of(method, "diffuse", model, optical, eta);
+  return fields(diffuse_load(level, problem, vectors(q, level.face_count(), "q")), problem.model);
+}
+
+py::dict solution_dict(ReferenceSolution&& solution) {
+  py::dict d;
+  d["phi"] = own(std::move(solution.phi));
+  d["phi2"] = own(std::move(solution.phi2));
+  d["phi_face"] = own(std::move(solution.phi_face));
+  d["exitance"] = own(std::move(solution.exitance));
+  d["unscattered"] = own(std::move(solution.unscattered));
+  d["energy"] = as_dict(solution.energy);
+  d["clipped"] = as_tuple(solution.clipped);
+  d["report"] = as_dict(solution.report);
+  return d;
+}
+
+py::dict reference(const QuadGraph& graph, std::uint32_t index, const FloatArray& sigma_s_prime,
+                   const FloatArray& sigma_a, double eta, const FloatArray& q,
+                   const std::optional<std::array<float, 3>>& direction, const std::string& method,
+                   const std::string& solver, const std::string& source, const std::string& model, double tolerance,
+                   std::uint32_t max_iterations) {
+  const Level& level = level_of(graph, index);
+  const SolveOptions options{.method = method_from_name(method),
+                             .solver = solver_from_name(solver),
+                             .source = source_from_name(source),
+                             .model = model_from_name(model),
+                             .tolerance = tolerance,
+                             .max_iterations = max_iterations};
+  const auto optical = optical_from(sigma_s_prime, sigma_a, level.node_count());
+  const EnteringLight light{beam_from(direction), vectors(q, level.face_count(), "q")};
+  ReferenceSolution solution = [&] {
+    const py::gil_scoped_release release;
+    return solve_reference(level, optical, eta, light, options);
+  }();
+  return solution_dict(std::move(solution));
+}
+
+py::dict boundary_dict(const std::string& method, const std::string& source, const std::string& model, double eta) {
+  const Boundary boundary =
+      boundary_of(method_from_name(method), source_from_name(source), model_from_name(model), eta);
+  py::dict d;
+  d["k11"] = boundary.k11;
+  d["k12"] = boundary.k12;
+  d["k22"] = boundary.k22;
+  d["source"] = boundary.source;
+  d["reflected"] = boundary.reflected;
+  return d;
+}
+
 }  // namespace
+
+gpu::BeamRecord beam_from(const std::optional<std::array<float, 3>>& direction) {
+  if (!direction) return {gpu::BEAM_LAMBERTIAN, glm::vec3(0)};
+  const glm::dvec3 vector((*direction)[0], (*direction)[1], (*direction)[2]);
+  const double length = glm::length(vector);
+  if (!(length > 0 && std::isfinite(length))) throw InputError("direction: found no finite vector other than zero");
+  return {gpu::BEAM_DIRECTIONAL, glm::vec3(vector / length)};
+}
 
 void bind_reference(py::module_& module) {
   module.def(
@@ -42,56 +152,27 @@ void bind_reference(py::module_& module) {
       },
       py::arg("graph"), py::arg("level"), py::arg("material"),
       "sigma_s_prime and sigma_a, (n, 3) in 1/mm, at the nodes.");
-  module.def(
-      "assemble",
-      [](const QuadGraph& graph, std::uint32_t index, const std::string& method, const FloatArray& sigma_s_prime,
-         const FloatArray& sigma_a, double eta) {
-        const Level& level = level_of(graph, index);
-        return rows_dict(
-            assemble(level, method_from_name(method), optical_from(sigma_s_prime, sigma_a, level.node_count()), eta));
-      },
-      py::arg("graph"), py::arg("level"), py::arg("method"), py::arg("sigma_s_prime"), py::arg("sigma_a"),
-      py::arg("eta"), "Rows of the symmetric system A x = b, phi = to_phi * x (engine/graph/operator.h).");
-  module.def(
-      "right_hand_side",
-      [](const QuadGraph& graph, std::uint32_t index, const std::string& method, const FloatArray& sigma_s_prime,
-         const FloatArray& sigma_a, double eta, const FloatArray& q) {
-        const Level& level = level_of(graph, index);
-        return own(right_hand_side(level, method_from_name(method),
-                                   optical_from(sigma_s_prime, sigma_a, level.node_count()), eta,
-                                   vectors(q, level.face_count(), "q")));
-      },
-      py::arg("graph"), py::arg("level"), py::arg("method"), py::arg("sigma_s_prime"), py::arg("sigma_a"),
-      py::arg("eta"), py::arg("q"), "b for irradiance q (n_f, 3) in W/mm^2.");
-  module.def(
-      "solve_reference",
-      [](const QuadGraph& graph, std::uint32_t index, const FloatArray& sigma_s_prime, const FloatArray& sigma_a,
-         double eta, const FloatArray& q, const std::string& method, const std::string& solver, double tolerance,
-         std::uint32_t max_iterations) {
-        const Level& level = level_of(graph, index);
-        const SolveOptions options{.method = method_from_name(method),
-                                   .solver = solver_from_name(solver),
-                                   .tolerance = tolerance,
-                                   .max_iterations = max_iterations};
-        const auto optical = optical_from(sigma_s_prime, sigma_a, level.node_count());
-        const auto irradiance = vectors(q, level.face_count(), "q");
-        ReferenceSolution solution = [&] {
-          const py::gil_scoped_release release;
-          return solve_reference(level, optical, eta, irradiance, options);
-        }();
-        py::dict d;
-        d["phi"] = own(std::move(solution.phi));
-        d["phi_face"] = own(std::move(solution.phi_face));
-        d["exitance"] = own(std::move(solution.exitance));
-        d["energy"] = as_dict(solution.energy);
-        d["report"] = as_dict(solution.report);
-        return d;
-      },
-      py::arg("graph"), py::arg("level"), py::arg("sigma_s_prime"), py::arg("sigma_a"), py::arg("eta"), py::arg("q"),
-      py::arg("method") = "fem", py::arg("solver") = "dpcg", py::arg("tolerance") = 1e-10,
-      py::arg("max_iterations") = 100000,
-      "Solve one level on the CPU. sigma_s_prime and sigma_a (n, 3) 1/mm at the nodes, q (n_f, 3) W/mm^2. Returns "
-      "phi per unknown, phi_face and exitance per outside face (W/mm^2), energy (W), report.");
+  module.def("assemble", &assemble_dict, py::arg("graph"), py::arg("level"), py::arg("method"),
+             py::arg("sigma_s_prime"), py::arg("sigma_a"), py::arg("eta"), py::arg("source") = "buried",
+             py::arg("model") = "diffusion",
+             "Rows of the symmetric system A x = b, (phi, phi2) = to_phi * x (engine/graph/operator.h): offset, "
+             "column, to_phi (n, 3), and weight and diagonal, (m, 3) with diffusion, (m, 3, 3) of a11, a12, a22 with "
+             "sp3.");
+  module.def("diffuse_load", &diffuse_load_array, py::arg("graph"), py::arg("level"), py::arg("method"),
+             py::arg("sigma_s_prime"), py::arg("sigma_a"), py::arg("eta"), py::arg("q"), py::arg("model") = "diffusion",
+             "b of the diffuse source for irradiance q (n_f, 3) in W/mm^2: (n, 3), or (n, 2, 3) with sp3.");
+  module.def("solve_reference", &reference, py::arg("graph"), py::arg("level"), py::arg("sigma_s_prime"),
+             py::arg("sigma_a"), py::arg("eta"), py::arg("q"), py::arg("direction") = py::none(),
+             py::arg("method") = "fem", py::arg("solver") = "dpcg", py::arg("source") = "buried",
+             py::arg("model") = "sp3", py::arg("tolerance") = 1e-10, py::arg("max_iterations") = 100000,
+             "Solve one level on the CPU. sigma_s_prime and sigma_a (n, 3) 1/mm at the nodes; q (n_f, 3) W/mm^2, the "
+             "irradiance that the surface lets in; direction (3,) in which it travels outside, None: Lambertian. "
+             "Returns phi and phi2 per carrier, phi_face, exitance and unscattered per outside face (W/mm^2), energy "
+             "(W), clipped, report. Raises InputError, SolverError.");
+  module.def("boundary", &boundary_dict, py::arg("method"), py::arg("source"), py::arg("model"), py::arg("eta"),
+             "k11, k12, k22, source, reflected (engine/graph/boundary.h).");
+  module.def("fresnel_moment", &fresnel_moment, py::arg("n"), py::arg("eta"),
+             "R_n: integral of the internal reflectance times mu^n over the inside cosine.");
 }
 
 }  // namespace quadgraph::python

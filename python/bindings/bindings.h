@@ -4,13 +4,15 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <array>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "engine/graph/solution.h"
-#include "shaders/shared.h"
+#include "shaders/solve_shared.h"
 
 namespace quadgraph::python {
 
@@ -51,6 +53,9 @@ std::span<const glm::vec3> vectors(const FloatArray& array, std::size_t count, c
 
 // Zips sigma_s_prime and sigma_a, (n, 3) in 1/mm, into one entry per node.
 std::vector<gpu::Optical> optical_from(const FloatArray& sigma_s_prime, const FloatArray& sigma_a, std::size_t count);
+
+// A beam along `direction` (the way the light travels outside, any length); Lambertian without. Throws InputError.
+gpu::BeamRecord beam_from(const std::optional<std::array<float, 3>>& direction);
 
 pybind11::tuple as_tuple(const glm::dvec3& v);
 pybind11::dict as_dict(const Energy& energy);

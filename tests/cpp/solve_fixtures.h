@@ -92,7 +92,12 @@ inline constexpr std::array<Method, 3> all_methods = {Method::fem, Method::quadg
 inline constexpr std::array<SolverKind, 2> both_solvers = {SolverKind::dpcg, SolverKind::cascade};
 
 inline SolveOptions options(Method method, SolverKind solver, double tolerance, std::uint32_t max_iterations = 5000) {
-  return {.method = method, .solver = solver, .tolerance = tolerance, .max_iterations = max_iterations};
+  return {.method = method,
+          .solver = solver,
+          .source = Source::diffuse,
+          .model = Model::diffusion,
+          .tolerance = tolerance,
+          .max_iterations = max_iterations};
 }
 
 }  // namespace quadgraph

@@ -11,7 +11,8 @@ namespace {
 ReferenceSolution reference(const Scene& scene, const gpu::Material& material, const std::vector<glm::vec3>& q,
                             const SolveOptions& how) {
   const Level& level = scene.graph.levels()[0];
-  return solve_reference(level, evaluate_material(level, material), material.eta, q, how);
+  return solve_reference(level, evaluate_material(level, material), material.eta,
+                         {{gpu::BEAM_LAMBERTIAN, glm::vec3(0)}, q}, how);
 }
 
 // phi at the faces of level 0, interpolated from a solution of level 1.
@@ -42,8 +43,9 @@ TEST_CASE("the error estimate compares the exitance with that of the coarser lev
     const SolveReport report = scene.simulation.solve(how);
     const SurfaceField field = scene.simulation.surface_field();
     const auto optical = evaluate_material(coarse, homogeneous());
-    const std::vector<glm::dvec3> phi =
-        phi_from_coarse(scene, method, solve_reference(coarse, optical, 1.3f, coarse_q, how).phi);
+    const std::vector<glm::dvec3> phi = phi_from_coarse(
+        scene, method,
+        solve_reference(coarse, optical, 1.3f, {{gpu::BEAM_LAMBERTIAN, glm::vec3(0)}, coarse_q}, how).phi);
     glm::dvec2 difference{0}, norm{0};
     for (std::size_t f = 0; f < phi.size(); ++f) {
       const glm::dvec3 exitance = (phi[f] - 2.0 * glm::dvec3(field.q[f])) / (2.0 * mismatch(1.3f));
@@ -76,7 +78,7 @@ TEST_CASE("the solution equals the CPU reference for every method and solver") {
         CHECK(level.iterations > 0);
       }
       CHECK(report.levels[1].level == 0);
-      CHECK(report.levels[1].unknowns == unknown_count(scene.graph.levels()[0], method));
+      CHECK(report.levels[1].unknowns == carrier_count(scene.graph.levels()[0], method));
       // A residual of 1e-5 allows this much error at the condition number of this box.
       CHECK(relative_difference(scene.simulation.phi(), expected.phi) < 2e-4);
       const SurfaceField field = scene.simulation.surface_field();

@@ -15,12 +15,14 @@ void use(const quadgraph::QuadGraph& graph) {
   for (const quadgraph::Level& level : graph.levels()) {
     const std::vector<quadgraph::gpu::Optical> optical(level.node_count(), {glm::vec3(0.1f), glm::vec3(0.01f)});
     const std::vector<glm::vec3> q(level.face_count(), glm::vec3(1));
+    const quadgraph::EnteringLight light{{quadgraph::gpu::BEAM_LAMBERTIAN, glm::vec3(0)}, q};
     for (const auto method : {quadgraph::Method::fem, quadgraph::Method::quadgraph_fdm}) {
       quadgraph::SolveOptions options;
       options.method = method;
+      options.model = quadgraph::Model::sp3;
       options.max_iterations = 3;
       try {
-        quadgraph::solve_reference(level, optical, 1.3, q, options);
+        quadgraph::solve_reference(level, optical, 1.3, light, options);
       } catch (const quadgraph::SolverError&) {  // legal but degenerate geometry
       }
     }

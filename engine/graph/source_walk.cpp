@@ -1,0 +1,132 @@
+#include "engine/graph/source_walk.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "engine/graph/fresnel.h"
+#include "engine/graph/ray.h"
+
+namespace quadgraph {
+namespace {
+
+struct FaceFrame {
+  std::array<glm::dvec3, 3> corners;
+  glm::dvec3 normal;  // unit, outward
+  double area;        // mm^2
+};
+
+FaceFrame frame_of(const Level& level, std::uint32_t f) {
+  FaceFrame frame;
+  for (int k = 0; k < 3; ++k)
+    frame.corners[static_cast<std::size_t>(k)] = glm::dvec3(level.vertices[level.faces[f][k]]);
+  const glm::dvec3 n = glm::cross(frame.corners[1] - frame.corners[0], frame.corners[2] - frame.corners[0]);
+  frame.normal = glm::normalize(n);
+  frame.area = 0.5 * glm::length(n);
+  return frame;
+}
+
+glm::dvec3 point_at(const FaceFrame& frame, const glm::dvec3& barycentric) {
+  return barycentric[0] * frame.corners[0] + barycentric[1] * frame.corners[1] + barycentric[2] * frame.corners[2];
+}
+
+// Refraction of `outside` (unit, towards the surface) at outward normal n. At grazing incidence it still goes in.
+glm::dvec3 refract(const glm::dvec3& outside, const glm::dvec3& n, double eta) {
+  const double cos_i = std::max(-glm::dot(outside, n), 0.0);
+  const double cos_t = std::sqrt(1.0 - (1.0 - cos_i * cos_i) / (eta * eta));
+  return glm::normalize(outside / eta + (cos_i / eta - cos_t) * n);
+}
+
+// Two unit vectors that make a frame with n, by the branchless construction of Duff et al. 2017.
+std::pair<glm::dvec3, glm::dvec3> tangents(const glm::dvec3& n) {
+  const double sign = n.z < 0 ? -1.0 : 1.0;
+  const double a = -1.0 / (sign + n.z), b = n.x * n.y * a;
+  return {{1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}};
+}
+
+class Beam {
+ public:
+  Beam(const Level& level, const Problem& problem, const gpu::BeamRecord& beam, WalkResult& result)
+      : level_(level), problem_(problem), beam_(beam), ray_(level, problem, result), result_(result) {}
+
+  void light(std::uint32_t f, const Quarters& quarters) {
+    const FaceFrame frame = frame_of(level_, f);
+    if (even(frame, quarters)) {
+      const glm::dvec3 q =
+          (glm::dvec3(quarters[0]) + glm::dvec3(quarters[1]) + glm::dvec3(quarters[2]) + glm::dvec3(quarters[3])) / 4.0;
+      return from(f, frame, glm::dvec3(1.0 / 3), q * frame.area);
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      glm::dvec3 centre(1.0 / 3);
+      if (k < 3) {
+        centre = glm::dvec3(1.0 / 6);
+        centre[static_cast<int>(k)] = 2.0 / 3;
+      }
+      from(f, frame, centre, glm::dvec3(quarters[k]) * (frame.area / 4));
+    }
+  }
+
+ private:
+  static bool even(const FaceFrame& frame, const Quarters& quarters) {
+    const glm::vec3 low = glm::min(glm::min(quarters[0], quarters[1]), glm::min(quarters[2], quarters[3]));
+    const glm::vec3 high = glm::max(glm::max(quarters[0], quarters[1]), glm::max(quarters[2], quarters[3]));
+    double longest = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const glm::dvec3 edge = frame.corners[(k + 1) % 3] - frame.corners[k];
+      longest = std::max(longest, glm::dot(edge, edge));
+    }
+    return glm::all(glm::lessThanEqual(high - low, high / 16.0f)) && longest <= 8 * frame.area;
+  }
+
+  void from(std::uint32_t f, const FaceFrame& frame, const glm::dvec3& barycentric, const glm::dvec3& power) {
+    if (power == glm::dvec3(0)) return;
+    result_.entered += power;
+    if (beam_.kind == gpu::BEAM_LAMBERTIAN) return lambertian(f, frame, barycentric, power);
+    const glm::dvec3 vector(beam_.vector);
+    const glm::dvec3 outside =
+        beam_.kind == gpu::BEAM_DIRECTIONAL ? vector : glm::normalize(point_at(frame, barycentric) - vector);
+    ray_.run(f, barycentric, refract(outside, frame.normal, problem_.eta), power);
+  }
+
+  void lambertian(std::uint32_t f, const FaceFrame& frame, const glm::dvec3& barycentric, const glm::dvec3& power) {
+    const auto [t1, t2] = tangents(frame.normal);
+    std::array<double, gpu::LAMBERTIAN_NODES> weight;
+    double sum = 0;
+    for (std::size_t k = 0; k < weight.size(); ++k) {
+      const double mu = std::sqrt(static_cast<double>(gpu::LAMBERTIAN_U[k]));
+      weight[k] = static_cast<double>(gpu::LAMBERTIAN_W[k]) * fresnel_transmittance(mu, problem_.eta);
+      sum += weight[k];
+    }
+    for (std::size_t k = 0; k < weight.size(); ++k) {
+      const double u = static_cast<double>(gpu::LAMBERTIAN_U[k]);
+      const glm::dvec3 across = std::sqrt(1.0 - u) * (k % 2 == 0 ? t1 : t2);
+      for (const double side : {1.0, -1.0}) {
+        const glm::dvec3 outside = side * across - std::sqrt(u) * frame.normal;
+        ray_.run(f, barycentric, refract(outside, frame.normal, problem_.eta), power * (0.5 * weight[k] / sum));
+      }
+    }
+  }
+
+  const Level& level_;
+  const Problem& problem_;
+  const gpu::BeamRecord& beam_;
+  Ray ray_;
+  WalkResult& result_;
+};
+
+}  // namespace
+
+WalkResult walk_source(const Level& level, const Problem& problem, const gpu::BeamRecord& beam,
+                       std::span<const Quarters> quarters) {
+  WalkResult result;
+  result.scattered.assign(carrier_count(level, problem.method), glm::dvec3(0));
+  result.unscattered.assign(level.faces.size(), glm::dvec3(0));
+  Beam source(level, problem, beam, result);
+  for (std::uint32_t f = 0; f < level.face_count(); ++f) {
+    if (!level.reflecting(f)) source.light(f, quarters[f]);
+  }
+  return result;
+}
+
+}  // namespace quadgraph
