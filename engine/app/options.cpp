@@ -19,7 +19,7 @@ struct Typed {
   std::vector<std::string> lights;
   std::string view = "0,10", up = "y";
   float fov = 30;
-  std::string method = "fem", solver = "dpcg";
+  std::string method = "fem", solver = "dpcg", source = "buried", model = "auto";
   double tolerance = 1e-3;
   std::uint32_t max_iterations = 5000;
   std::string size = "1024x1024", exposure = "auto", background = "studio";
@@ -62,6 +62,13 @@ void declare_solver(CLI::App& app, Typed& typed) {
       ->capture_default_str()
       ->group("Solver");
   app.add_option("--solver", typed.solver, "dpcg or cascade")->capture_default_str()->group("Solver");
+  app.add_option("--source", typed.source,
+                 "buried (light scatters inside) or diffuse (enters at the surface, as published)")
+      ->capture_default_str()
+      ->group("Solver");
+  app.add_option("--model", typed.model, "diffusion, sp3, or auto: diffusion where it is within 1% of sp3")
+      ->capture_default_str()
+      ->group("Solver");
   app.add_option("--tolerance", typed.tolerance, "relative residual to stop at")
       ->capture_default_str()
       ->group("Solver");
@@ -133,6 +140,8 @@ AppOptions understood(const Typed& typed) {
   if (options.lights.empty()) options.lights = default_lights(options.view);
   options.solve = {.method = method_from_name(typed.method),
                    .solver = solver_from_name(typed.solver),
+                   .source = source_from_name(typed.source),
+                   .model = model_from_name(typed.model),
                    .tolerance = typed.tolerance,
                    .max_iterations = typed.max_iterations};
   parse_size(typed.size, options.render);

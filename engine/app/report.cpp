@@ -17,6 +17,8 @@ Json as_json(const SolveReport& report) {
   Json json;
   json["method"] = name_of(report.method);
   json["solver"] = name_of(report.solver);
+  json["source"] = name_of(report.source);
+  json["model"] = name_of(report.model);
   for (const LevelReport& level : report.levels) {
     json["levels"].push_back({{"level", level.level},
                               {"unknowns", level.unknowns},
@@ -29,6 +31,7 @@ Json as_json(const SolveReport& report) {
                     {"absorbed_W", as_json(report.energy.absorbed)},
                     {"unscattered_out_W", as_json(report.energy.unscattered_out)},
                     {"balance", as_json(report.energy.balance())}};
+  json["clipped"] = as_json(report.clipped);
   json["error"] = report.error ? Json{{"whole", report.error->whole}, {"unlit", report.error->unlit}} : Json(nullptr);
   return json;
 }
@@ -72,9 +75,10 @@ std::string text_report(const RunReport& report) {
   out << "device   " << report.engine.context().info().name << "\n"
       << "object   " << report.engine.graph().levels().size() << " levels, finest " << finest.tet_count() << " tets, "
       << finest.face_count() << " faces, " << finest.vertex_count() << " vertices\n"
-      << "solve    " << name_of(report.solve.method) << " with " << name_of(report.solve.solver) << ": "
-      << solved.iterations << " iterations on the finest level, residual " << solved.residual
-      << (solved.converged ? "" : " (not converged)") << "\n";
+      << "solve    " << name_of(report.solve.method) << ", " << name_of(report.solve.model) << ", "
+      << name_of(report.solve.source) << " source, with " << name_of(report.solve.solver) << ": " << solved.iterations
+      << " iterations on the finest level, residual " << solved.residual << (solved.converged ? "" : " (not converged)")
+      << "\n";
   if (report.solve.error) {
     out << "error    " << decimals(100 * report.solve.error->whole, 2) << "% over the surface, "
         << decimals(100 * report.solve.error->unlit, 2) << "% over the unlit part (estimated)\n";

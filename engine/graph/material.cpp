@@ -134,10 +134,10 @@ std::string allowed_keys(const gpu::Material& material) {
   return keys;
 }
 
-void check_colour(std::string_view key, const glm::vec3& value, bool zero_allowed) {
+void check_colour(std::string_view key, const glm::vec3& value) {
   for (int c = 0; c < 3; ++c) {
-    const bool fits = std::isfinite(value[c]) && (zero_allowed ? value[c] >= 0 : value[c] > 0);
-    if (!fits) bad_field(key, std::to_string(value[c]), zero_allowed ? "a number >= 0 (1/mm)" : "a number > 0 (1/mm)");
+    const bool fits = std::isfinite(value[c]) && value[c] >= 0;
+    if (!fits) bad_field(key, std::to_string(value[c]), "a number >= 0 (1/mm)");
   }
 }
 
@@ -188,13 +188,13 @@ gpu::Material parse_material(std::string_view text) {
 }
 
 void check_material(const gpu::Material& material) {
-  check_colour("sigma_s_prime", material.sigma_s_prime, false);
-  check_colour("sigma_a", material.sigma_a, true);
+  check_colour("sigma_s_prime", material.sigma_s_prime);
+  check_colour("sigma_a", material.sigma_a);
   check_range("eta", material.eta, static_cast<float>(min_eta), static_cast<float>(max_eta), "1 to 3");
   if (material.kind == gpu::MATERIAL_HOMOGENEOUS) return;
   if (material.kind != gpu::MATERIAL_MARBLE_VEINS) bad_field("kind", std::to_string(material.kind), "0 or 1");
-  check_colour("vein_sigma_s_prime", material.vein_sigma_s_prime, false);
-  check_colour("vein_sigma_a", material.vein_sigma_a, true);
+  check_colour("vein_sigma_s_prime", material.vein_sigma_s_prime);
+  check_colour("vein_sigma_a", material.vein_sigma_a);
   check_range("vein_period", material.vein_period, 1e-3f, 1e6f, "0.001 to 1000000 (mm)");
   check_range("vein_sharpness", material.vein_sharpness, 1.0f, 1000.0f, "1 to 1000");
 }

@@ -42,6 +42,8 @@ Metadata describe(const PictureFacts& facts) {
                        {"material", facts.material},
                        {"lights", joined(facts.lights)},
                        {"method", std::string(name_of(facts.report.method))},
+                       {"model", std::string(name_of(facts.report.model))},
+                       {"light enters", std::string(name_of(facts.report.source))},
                        {"solver", std::string(name_of(facts.report.solver))},
                        {"tolerance", number_text(facts.options.tolerance)},
                        {"unknowns", std::to_string(finest.unknowns)},

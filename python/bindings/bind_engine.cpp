@@ -17,10 +17,13 @@ py::dict report_dict(const SolveReport& report) {
   py::dict d;
   d["method"] = std::string(name_of(report.method));
   d["solver"] = std::string(name_of(report.solver));
+  d["source"] = std::string(name_of(report.source));
+  d["model"] = std::string(name_of(report.model));
   py::list levels;
   for (const LevelReport& level : report.levels) levels.append(as_dict(level));
   d["levels"] = levels;
   d["energy"] = as_dict(report.energy);
+  d["clipped"] = as_tuple(report.clipped);
   d["error"] = py::none();
   if (report.error) {
     py::dict error;
@@ -39,6 +42,7 @@ py::dict field_dict(SurfaceField&& field) {
   d["q"] = own(std::move(field.q));
   d["phi"] = own(std::move(field.phi));
   d["exitance"] = own(std::move(field.exitance));
+  d["unscattered"] = own(std::move(field.unscattered));
   return d;
 }
 
@@ -127,14 +131,19 @@ void set_lights(Engine& engine, const std::vector<std::string>& texts) {
   engine.set_lights(std::move(lights));
 }
 
-SolveReport solve(Engine& engine, const std::string& method, const std::string& solver, double tolerance,
-                  std::uint32_t max_iterations) {
+py::dict solve(Engine& engine, const std::string& method, const std::string& solver, const std::string& source,
+               const std::string& model, double tolerance, std::uint32_t max_iterations) {
   const SolveOptions options{.method = method_from_name(method),
                              .solver = solver_from_name(solver),
+                             .source = source_from_name(source),
+                             .model = model_from_name(model),
                              .tolerance = tolerance,
                              .max_iterations = max_iterations};
-  const py::gil_scoped_release release;
-  return engine.solve(options);
+  const SolveReport report = [&] {
+    const py::gil_scoped_release release;
+    return engine.solve(options);
+  }();
+  return report_dict(report);
 }
 
 View view_from(const std::string& text, const std::string& up, float vertical_fov) {
@@ -181,17 +190,13 @@ void bind_engine(py::module_& module) {
           },
           py::arg("level"), py::arg("q"), "q (n_f, 3) in W/mm^2 instead of lights; wanted for every level.")
       .def("update_irradiance", &Engine::update_irradiance, py::call_guard<py::gil_scoped_release>())
-      .def(
-          "solve",
-          [](Engine& engine, const std::string& method, const std::string& solver, double tolerance,
-             std::uint32_t max_iterations) {
-            return report_dict(solve(engine, method, solver, tolerance, max_iterations));
-          },
-          py::arg("method") = "fem", py::arg("solver") = "dpcg", py::arg("tolerance") = 1e-3,
-          py::arg("max_iterations") = 5000, "Raises InputError, SolverError.")
+      .def("solve", &solve, py::arg("method") = "fem", py::arg("solver") = "dpcg", py::arg("source") = "buried",
+           py::arg("model") = "auto", py::arg("tolerance") = 1e-3, py::arg("max_iterations") = 5000,
+           "Solves for the present material and light; a report. Raises InputError, SolverError.")
       .def(
           "surface_field", [](const Engine& engine) { return field_dict(engine.surface_field()); },
-          "Per outside face of level 0: position, normal, area, q, phi, exitance (mm, mm^2, W/mm^2).")
+          "Per outside face of level 0: position, normal, area, q, phi, exitance of scattered and of unscattered light "
+          "(mm, mm^2, W/mm^2).")
       .def(
           "phi", [](Engine& engine) { return own(engine.simulation().phi()); }, "Per unknown of level 0, W/mm^2.")
       .def("render", &render, py::arg("view") = "", py::arg("up") = "y", py::arg("vertical_fov") = 30.0f,

@@ -65,7 +65,8 @@ TEST_CASE("what cannot be a material is refused by the field") {
   check_refused("granite", "granite");
   check_refused("sigma_a=0.1", "sigma_s_prime");
   check_refused("sigma_s_prime=1", "sigma_a");
-  check_refused("sigma_s_prime=0,sigma_a=0", "sigma_s_prime");
+  check_refused("sigma_s_prime=-1,sigma_a=0", "sigma_s_prime");
+  CHECK(parse_material("sigma_s_prime=0,sigma_a=0").sigma_s_prime == glm::vec3(0));  // clear
   check_refused("sigma_s_prime=1,sigma_a=-0.1", "sigma_a");
   check_refused("sigma_s_prime=1/2,sigma_a=0", "sigma_s_prime");
   check_refused("sigma_s_prime=1,sigma_a=nan", "sigma_a");

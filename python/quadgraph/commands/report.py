@@ -13,7 +13,12 @@ if TYPE_CHECKING:
 def solve_table(report: dict) -> Table:
     """Return one row per level: unknowns, iterations, residual, converged."""
     table = Table(
-        "level", "unknowns", "iterations", "residual", "converged", title=f"{report['method']} / {report['solver']}"
+        "level",
+        "unknowns",
+        "iterations",
+        "residual",
+        "converged",
+        title=f"{report['method']} / {report['model']} / {report['source']} / {report['solver']}",
     )
     for level in report["levels"]:
         table.add_row(

@@ -62,6 +62,19 @@ def add_scene_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--solver", choices=("dpcg", "cascade"), default="dpcg", help="default: %(default)s")
     parser.add_argument(
+        "--source",
+        choices=("buried", "diffuse"),
+        default="buried",
+        help="buried: light scatters along refracted rays inside; diffuse: it enters at the surface, as published "
+        "(default: %(default)s)",
+    )
+    parser.add_argument(
+        "--model",
+        choices=("diffusion", "sp3", "auto"),
+        default="auto",
+        help="auto: diffusion where it is within 1%% of sp3 (default: %(default)s)",
+    )
+    parser.add_argument(
         "--tolerance", type=positive_float, default=1e-3, help="relative residual (default: %(default)s)"
     )
     parser.add_argument(
@@ -89,7 +102,12 @@ def make_engine(args: argparse.Namespace) -> Engine:
 def solve(engine: Engine, args: argparse.Namespace) -> dict:
     """Solve as the options say; the report of `Engine.solve`."""
     return engine.solve(
-        method=args.method, solver=args.solver, tolerance=args.tolerance, max_iterations=args.max_iterations
+        method=args.method,
+        solver=args.solver,
+        source=args.source,
+        model=args.model,
+        tolerance=args.tolerance,
+        max_iterations=args.max_iterations,
     )
 
 
