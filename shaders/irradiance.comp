@@ -6,18 +6,18 @@
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { IrradiancePush push; };
 
-// q at one point: sum over the lights of visibility * cos * E * F_t(cos, eta).
-vec3 irradiance_at(vec3 position, vec3 normal) {
-  vec3 q = vec3(0.0);
-  for (uint i = 0u; i < push.light_count; ++i) {
-    LightRecord light = push.lights.at[i];
-    Incident incident = incident_light(light, position);
-    float cos_i = min(dot(normal, incident.direction), 1.0);
-    if (cos_i <= 0.0) continue;
-    float visibility = light_visibility(light, push.views, position, normal, 0);
-    q += visibility * cos_i * fresnel_transmittance(cos_i, push.eta) * incident.irradiance;
-  }
-  return q;
+// q of one light at one point: visibility * cos * E * F_t(cos, eta).
+vec3 irradiance_at(LightRecord light, vec3 position, vec3 normal) {
+  Incident incident = incident_light(light, position);
+  float cos_i = min(dot(normal, incident.direction), 1.0);
+  if (cos_i <= 0.0) return vec3(0);
+  float visibility = light_visibility(light, push.views, position, normal, 0);
+  return visibility * cos_i * fresnel_transmittance(cos_i, push.eta) * incident.irradiance;
+}
+
+// The quarter of a face that its point a + u ab + v ac lies in, away from their boundaries.
+uint quarter_of(float u, float v) {
+  return u + v < 0.5 ? 0u : u > 0.5 ? 1u : v > 0.5 ? 2u : 3u;
 }
 
 void main() {
@@ -29,16 +29,26 @@ void main() {
   vec3 ac = push.vertices.at[face.z] - a;
   vec3 normal = normalize(cross(ab, ac));
 
-  // Row i, column j: an upright triangle, and beside it an inverted one where the row has room.
   uint n = push.subdivision;
   float h = 1.0 / float(n);
-  vec3 sum = vec3(0.0);
-  for (uint i = 0u; i < n; ++i) {
-    for (uint j = 0u; i + j < n; ++j) {
-      vec3 corner = a + h * (float(i) * ab + float(j) * ac);
-      sum += irradiance_at(corner + h / 3.0 * (ab + ac), normal);
-      if (i + j + 1u < n) sum += irradiance_at(corner + 2.0 * h / 3.0 * (ab + ac), normal);
+  vec3 q = vec3(0);
+  for (uint light = 0u; light < push.light_count; ++light) {
+    vec3 quarter[FACE_QUARTERS] = vec3[](vec3(0), vec3(0), vec3(0), vec3(0));
+    // Row i, column j: an upright triangle, and beside it an inverted one where the row has room.
+    for (uint i = 0u; i < n; ++i) {
+      for (uint j = 0u; i + j < n; ++j) {
+        for (uint inverted = 0u; inverted < (i + j + 1u < n ? 2u : 1u); ++inverted) {
+          float u = h * (float(i) + (inverted == 1u ? 2.0 : 1.0) / 3.0);
+          float v = h * (float(j) + (inverted == 1u ? 2.0 : 1.0) / 3.0);
+          quarter[quarter_of(u, v)] += irradiance_at(push.lights.at[light], a + u * ab + v * ac, normal);
+        }
+      }
+    }
+    for (uint k = 0u; k < FACE_QUARTERS; ++k) {
+      vec3 mean = quarter[k] * (float(FACE_QUARTERS) * h * h);
+      push.beam_q.at[(light * push.face_count + f) * FACE_QUARTERS + k] = mean;
+      q += mean / float(FACE_QUARTERS);
     }
   }
-  push.q.at[f] = sum * (h * h);
+  push.q.at[f] = q;
 }

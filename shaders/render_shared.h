@@ -51,16 +51,18 @@ struct ShadowPush {
   QG_REF(Vec3s) vertices;  // mm
 };
 
-// irradiance.comp: q of every outside face of a level, the mean over the face.
+// irradiance.comp: q of every outside face of a level, the mean over the face, and what each light brings to each of
+// its quarters.
 struct IrradiancePush {
   QG_REF(Vec3s) vertices;  // mm
   QG_REF(Uvec3s) faces;
-  QG_REF(Vec3s) q;  // W/mm^2, written
+  QG_REF(Vec3s) q;       // W/mm^2, written
+  QG_REF(Vec3s) beam_q;  // W/mm^2 per light, face and quarter, written
   QG_REF(LightRecords) lights;
   QG_REF(ShadowViews) views;
   uint face_count;
   uint light_count;
-  uint subdivision;  // the face is sampled at the centroids of subdivision^2 equal triangles
+  uint subdivision;  // even: the face is sampled at the centroids of subdivision^2 equal triangles
   float eta;
 };
 

@@ -34,6 +34,9 @@ QG_ARRAY(Uvec4s, uvec4);
 // Invocations per compute workgroup. Every device of Vulkan 1.3 offers at least 128; GPUs and lavapipe offer 1024.
 #define WORKGROUP_SIZE 256
 
+// A face takes in light on four quarters: that of each corner, then the middle one.
+#define FACE_QUARTERS 4
+
 // Optical coefficients of a point, per RGB channel.
 struct Optical {
   vec3 sigma_s_prime;  // 1/mm, reduced scattering, >= 0; 0 where the body is clear

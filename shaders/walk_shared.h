@@ -8,9 +8,6 @@
 namespace quadgraph::gpu {
 #endif
 
-// A face takes in light on four quarters: that of each corner, then the middle one.
-#define FACE_QUARTERS 4
-
 // Power is added up in fixed point, so that the order of additions does not matter: 64 bits in units of the scale times
 // this. Per element six u32: the low words of the channels, then the high ones.
 const float POWER_UNIT = 1.4210854715202004e-14f;  // 2^-46

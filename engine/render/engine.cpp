@@ -37,6 +37,15 @@ void add(std::vector<PassStats>& passes, const PassStats& more) {
   same->count += more.count;
 }
 
+std::vector<gpu::BeamRecord> beams_of(const std::vector<Light>& lights) {
+  std::vector<gpu::BeamRecord> beams;
+  for (const Light& light : lights) {
+    const bool point = light.kind == LightKind::point;
+    beams.push_back({point ? gpu::BEAM_POINT : gpu::BEAM_DIRECTIONAL, point ? light.position : light.direction});
+  }
+  return beams;
+}
+
 }  // namespace
 
 struct Engine::Implementation {
@@ -111,9 +120,10 @@ void Engine::set_lights(std::vector<Light> lights) {
   implementation_->irradiance_stale = true;
 }
 
-void Engine::set_irradiance(std::uint32_t level, std::span<const glm::vec3> q) {
+void Engine::set_irradiance(std::uint32_t level, std::span<const glm::vec3> q,
+                            const std::optional<glm::vec3>& direction) {
   auto& self = *implementation_;
-  self.simulation.set_irradiance(level, q);
+  self.simulation.set_irradiance(level, q, direction);
   if (!self.lights.empty()) self.shadows.update(self.mesh, self.bounds, {});
   self.lights.clear();
   self.irradiance_stale = false;
@@ -123,6 +133,7 @@ void Engine::update_irradiance() {
   auto& self = *implementation_;
   if (self.material.empty()) throw InputError("irradiance: set a material first; the light that enters depends on eta");
   self.irradiance_passes = {self.shadows.update(self.mesh, self.bounds, self.lights)};
+  self.simulation.set_beams(beams_of(self.lights));
   for (std::uint32_t level = 0; level < self.simulation.level_count(); ++level) {
     add(self.irradiance_passes,
         self.irradiance.run(self.simulation.level(level), level, self.shadows, self.simulation.material().eta));

@@ -46,7 +46,8 @@ class Engine {
 
   // Irradiance given instead of computed from lights, as Simulation::set_irradiance; wanted for every level, and kept
   // until set_lights.
-  void set_irradiance(std::uint32_t level, std::span<const glm::vec3> q);
+  void set_irradiance(std::uint32_t level, std::span<const glm::vec3> q,
+                      const std::optional<glm::vec3>& direction = std::nullopt);
 
   // Shadow maps and q on every level from the present lights and material. Throws InputError without a material.
   void update_irradiance();

@@ -10,6 +10,7 @@ namespace {
 // only starts the finer one and estimates its error.
 constexpr std::uint32_t finest_subdivision = 4;
 constexpr std::uint32_t more_per_level = 2;
+static_assert(finest_subdivision % 2 == 0 && more_per_level % 2 == 0, "a sample lies in one quarter of its face");
 
 }  // namespace
 
@@ -21,6 +22,7 @@ PassStats IrradiancePass::run(const LevelBuffers& buffers, std::uint32_t level, 
   const gpu::IrradiancePush push{.vertices = buffers.vertices.address(),
                                  .faces = buffers.faces.address(),
                                  .q = buffers.q.address(),
+                                 .beam_q = buffers.beam_q.address(),
                                  .lights = shadows.lights().address(),
                                  .views = shadows.views().address(),
                                  .face_count = buffers.face_count,
@@ -32,9 +34,10 @@ PassStats IrradiancePass::run(const LevelBuffers& buffers, std::uint32_t level, 
   commands.dispatch(pass_, push, buffers.face_count);
   commands.end_pass();
   const auto times = commands.submit_and_wait();
-  // Per face: three indices, three corners, q, and four texels per sample and light.
-  const std::uint64_t texels = 4ull * subdivision * subdivision * shadows.light_count();
-  return {times[0].name, times[0].time_ms, buffers.face_count * (12 + 36 + 12 + 4 * texels), 1};
+  // Per face: three indices, three corners, q; per light its quarters, and four texels per sample.
+  const std::uint64_t light_bytes = 12ull * FACE_QUARTERS + 16ull * subdivision * subdivision;
+  return {times[0].name, times[0].time_ms, buffers.face_count * (12 + 36 + 12 + shadows.light_count() * light_bytes),
+          1};
 }
 
 }  // namespace quadgraph

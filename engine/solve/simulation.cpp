@@ -8,6 +8,7 @@
 #include "engine/graph/error.h"
 #include "engine/graph/material.h"
 #include "engine/solve/assembly.h"
+#include "engine/solve/beams.h"
 #include "engine/solve/level_solver.h"
 #include "engine/solve/level_upload.h"
 #include "engine/solve/surface_results.h"
@@ -16,21 +17,6 @@ namespace quadgraph {
 namespace {
 
 constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
-
-void check_irradiance(std::span<const glm::vec3> q, std::uint32_t level, std::uint32_t count) {
-  if (q.size() != count) {
-    throw InputError("irradiance of level " + std::to_string(level) + ": " + std::to_string(q.size()) +
-                     " values, one for each of the " + std::to_string(count) + " surface nodes is wanted");
-  }
-  for (std::size_t i = 0; i < q.size(); ++i) {
-    for (int c = 0; c < 3; ++c) {
-      if (std::isfinite(q[i][c]) && q[i][c] >= 0) continue;
-      throw InputError("irradiance of level " + std::to_string(level) + ", surface node " + std::to_string(i) +
-                       ", channel " + std::to_string(c) + ": " + std::to_string(q[i][c]) +
-                       ", a finite number >= 0 is wanted");
-    }
-  }
-}
 
 void check_options(const SolveOptions& options) {
   if (!(options.tolerance > 0) || !(options.tolerance < 1)) {
@@ -50,6 +36,7 @@ struct Simulation::Implementation {
   vk::Context& context;
   const QuadGraph& graph;
   std::vector<LevelBuffers> levels;
+  BeamBuffers beams;
   std::map<Method, std::vector<MethodLevel>> methods;  // those solved so far
   Workspace work;
   SurfaceResults results;
@@ -63,7 +50,12 @@ struct Simulation::Implementation {
         graph(graph_in),
         levels(upload_levels(context_in, graph_in)),
         work(context_in, largest_dispatch()),
-        results(context_in, levels[0]) {}
+        results(context_in, levels[0]) {
+    const gpu::BeamRecord lambertian = beam_along(std::nullopt);
+    light({&lambertian, 1});
+  }
+
+  void light(std::span<const gpu::BeamRecord> records) { replace_beams(context, records, beams, levels); }
 
   static std::vector<LevelBuffers> upload_levels(vk::Context& context, const QuadGraph& graph) {
     std::vector<LevelBuffers> levels;
@@ -216,12 +208,19 @@ const gpu::Material& Simulation::material() const {
   return *implementation_->material;
 }
 
-void Simulation::set_irradiance(std::uint32_t level, std::span<const glm::vec3> q) {
+void Simulation::set_beams(std::span<const gpu::BeamRecord> beams) {
+  implementation_->light(beams);
+  irradiance_changed();
+}
+
+void Simulation::set_irradiance(std::uint32_t level, std::span<const glm::vec3> q,
+                                const std::optional<glm::vec3>& direction) {
   if (level >= level_count()) {
     throw InputError("level " + std::to_string(level) + " of irradiance: there are " + std::to_string(level_count()));
   }
-  check_irradiance(q, level, implementation_->levels[level].face_count);
-  vk::write_bytes(implementation_->context, implementation_->levels[level].q, std::as_bytes(q));
+  const gpu::BeamRecord beam = beam_along(direction);
+  implementation_->light({&beam, 1});
+  write_irradiance(implementation_->context, q, level, implementation_->levels[level]);
   irradiance_changed();
 }
 

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,7 +17,7 @@
 #include "engine/graph/solution.h"
 #include "engine/vk/context.h"
 #include "engine/vk/memory.h"
-#include "shaders/shared.h"
+#include "shaders/solve_shared.h"
 
 namespace quadgraph {
 
@@ -58,11 +59,18 @@ class Simulation {
   void set_material(const gpu::Material& material);
   const gpu::Material& material() const;
 
-  // Irradiance q >= 0, one per surface node of `level`. Throws InputError on a wrong size or value.
-  void set_irradiance(std::uint32_t level, std::span<const glm::vec3> q);
+  // The beams that light is made of. level.beam_q then has room for as many; whoever fills beam_q and q on the device
+  // calls irradiance_changed. Both are zero after a change of their number.
+  void set_beams(std::span<const gpu::BeamRecord> beams);
 
-  // To be called by whoever wrote the q buffers of all levels on the device.
+  // To be called by whoever wrote q and beam_q of all levels on the device.
   void irradiance_changed();
+
+  // Transmitted irradiance q >= 0, one per surface node of `level`, as the only beam: along `direction`, the way light
+  // travels outside, or, without it, Lambertian. The direction given last holds for all levels. Throws InputError on a
+  // wrong size or value.
+  void set_irradiance(std::uint32_t level, std::span<const glm::vec3> q,
+                      const std::optional<glm::vec3>& direction = std::nullopt);
 
   // Solves for the present material and q, all levels. Throws InputError before set_material, SolverError when
   // conjugate gradients break down or a value is not finite.

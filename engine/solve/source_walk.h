@@ -6,6 +6,7 @@
 #include <string>
 
 #include "engine/graph/solution.h"
+#include "engine/solve/beams.h"
 #include "engine/solve/operator_buffers.h"
 #include "engine/solve/simulation.h"
 #include "engine/solve/workspace.h"
@@ -16,12 +17,6 @@ namespace quadgraph {
 // Where the power of the rays went, W. Together it is what entered, to rounding.
 struct WalkPower {
   glm::dvec3 scattered{0}, absorbed{0}, unscattered{0};
-};
-
-// Beams of light on the device.
-struct BeamBuffers {
-  std::uint32_t count = 0;
-  vk::Buffer records;  // BeamRecord
 };
 
 class SourceWalk {

@@ -22,7 +22,7 @@ struct Stage {
   vk::Buffer exitance;
 
   Stage(Shape body, const glm::vec3& uniform_exitance)
-      : shape(std::move(body)), mesh(upload_as_display(context, shape)), level(upload_as_level(context, shape)) {
+      : shape(std::move(body)), mesh(upload_as_display(context, shape)), level(upload_as_level(context, shape, 0)) {
     set_exitance(std::vector<glm::vec3>(shape.vertices.size(), uniform_exitance));
   }
   Stage(const Stage&) = delete;

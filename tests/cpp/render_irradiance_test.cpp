@@ -17,7 +17,7 @@ constexpr float pi = std::numbers::pi_v<float>;
 std::vector<glm::vec3> irradiance(vk::Context& context, const Shape& shape, const std::vector<Light>& lights,
                                   float eta) {
   const DisplayBuffers mesh = upload_as_display(context, shape);
-  const LevelBuffers level = upload_as_level(context, shape);
+  const LevelBuffers level = upload_as_level(context, shape, lights.size());
   ShadowMaps shadows(context);
   shadows.update(mesh, bounding_sphere(shape.vertices), lights);
   IrradiancePass(context).run(level, 0, shadows, eta);

@@ -72,13 +72,15 @@ inline DisplayBuffers upload_as_display(vk::Context& context, const Shape& shape
 }
 
 // The buffers of a level that lights and display use.
-inline LevelBuffers upload_as_level(vk::Context& context, const Shape& shape) {
+inline LevelBuffers upload_as_level(vk::Context& context, const Shape& shape, std::size_t light_count) {
   LevelBuffers level;
   level.vertex_count = level.surface_vertex_count = static_cast<std::uint32_t>(shape.vertices.size());
   level.face_count = static_cast<std::uint32_t>(shape.faces.size());
   level.vertices = vk::upload<glm::vec3>(context, shape.vertices, "vertices");
   level.faces = vk::upload<glm::uvec3>(context, shape.faces, "faces");
   level.q = vk::Buffer(context, 12 * shape.faces.size(), vk::Place::device, "q");
+  level.beam_q =
+      vk::Buffer(context, 12 * FACE_QUARTERS * light_count * shape.faces.size(), vk::Place::device, "beam q");
   return level;
 }
 

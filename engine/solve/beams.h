@@ -1,0 +1,29 @@
+// Beams of light: what enters each face, by where it comes from.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/solve/simulation.h"
+#include "shaders/solve_shared.h"
+
+namespace quadgraph {
+
+struct BeamBuffers {
+  std::uint32_t count = 0;
+  vk::Buffer records;  // BeamRecord
+};
+
+// A beam along `direction`, of any length, or a Lambertian one. Throws InputError unless it is finite and not zero.
+gpu::BeamRecord beam_along(const std::optional<glm::vec3>& direction);
+
+// Replaces the beams. If their number changes, every level gets room for their quarters, without light.
+void replace_beams(vk::Context& context, std::span<const gpu::BeamRecord> beams, BeamBuffers& buffers,
+                   std::vector<LevelBuffers>& levels);
+
+// Light of the only beam, W/mm^2 per face, even over each. Throws InputError unless there is one value >= 0 for each
+// face of level `number`.
+void write_irradiance(vk::Context& context, std::span<const glm::vec3> q, std::uint32_t number, LevelBuffers& level);
+
+}  // namespace quadgraph
