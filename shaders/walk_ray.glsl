@@ -168,7 +168,7 @@ void meet_surface(inout Ray ray, uint face, vec3 outward) {
   ray.direction = normalize(ray.direction - 2.0 * cosine * n);
 }
 
-// Follows a ray that enters where the corners say, until its light is spent.
+// Follows a ray from the point that the corners hold, until its light is spent.
 void walk(Ray ray) {
   vec3 end = WALK_END * ray.power;
   for (uint step = 0u; step < MAX_WALK_STEPS; ++step) {
@@ -178,13 +178,14 @@ void walk(Ray ray) {
     Optical optical = push.optical.at[ray.tet];
     cross_tet(ray, optical, exit.path, l);
     move_to(l);
-    bvec3 clear = equal(optical.sigma_s_prime + optical.sigma_a, vec3(0));
-    if (all(lessThanEqual(ray.power, mix(end, vec3(0), clear)))) break;
+    bool spent = all(lessThanEqual(ray.power, end));
+    if (spent && optical.sigma_s_prime + optical.sigma_a != vec3(0)) break;
     uint across = turn(ray, exit.slot);
     if (across < push.tet_count) {
       enter(ray, across);
     } else {
       meet_surface(ray, across - push.tet_count, exit.outward);
+      if (ray.power == vec3(0)) break;
     }
   }
   end_here(ray);

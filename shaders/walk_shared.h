@@ -13,6 +13,9 @@ namespace quadgraph::gpu {
 const float POWER_UNIT = 1.4210854715202004e-14f;  // 2^-46
 #define FIXED_WORDS 6
 
+// Per origin of a Lambertian beam.
+const uint LAMBERTIAN_RAYS = 2u * LAMBERTIAN_NODES;
+
 // Sums of one workgroup of walk_source.comp.
 struct WalkSums {
   vec3 scattered;    // W
@@ -25,7 +28,9 @@ QG_ARRAY(BeamRecords, BeamRecord);
 QG_ARRAY(WalkSumsArray, WalkSums);
 #endif
 
-// walk_source.comp: follows the rays of one beam, one invocation per face.
+// walk_source.comp: follows the rays of one beam, one invocation per ray that a face may send: those of one slot of all
+// faces, then those of the next. No invocation follows two, because lavapipe ends all loops of an invocation after
+// 65535 turns.
 struct WalkSourcePush {
   QG_REF(Vec3s) vertices;
   QG_REF(Uvec4s) tets;
@@ -41,6 +46,7 @@ struct WalkSourcePush {
   QG_REF(Uints) unscattered;  // fixed point, per face: power that leaves
   QG_REF(WalkSumsArray) sums;
   uint face_count;
+  uint slots;  // per face: FACE_QUARTERS, times LAMBERTIAN_RAYS for a Lambertian beam
   uint tet_count;
   uint fem;
   float eta;

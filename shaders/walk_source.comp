@@ -26,15 +26,21 @@ bool one_ray_does(vec3 least, vec3 largest, mat3 corners, float area) {
   return longest <= 8.0 * area && all(lessThanEqual(largest - least, largest / 16.0));
 }
 
+// A unit vector across n, the first or the second of a frame; the construction of Duff et al. 2017.
+vec3 tangent(vec3 n, bool second) {
+  float side = n.z < 0.0 ? -1.0 : 1.0;
+  float a = -1.0 / (side + n.z), b = n.x * n.y * a;
+  return second ? vec3(b, side + n.y * n.y * a, -n.y) : vec3(1.0 + side * n.x * n.x * a, side * b, -side * n.x);
+}
+
 // The way light travels outside, at a point of a face.
-vec3 incoming(uint ray, vec3 position, vec3 normal, vec3 edge) {
+vec3 incoming(uint ray, vec3 position, vec3 normal) {
   BeamRecord beam = push.beam.at[0];
   if (beam.kind == BEAM_DIRECTIONAL) return beam.vector;
   if (beam.kind == BEAM_POINT) return normalize(position - beam.vector);
   uint node = ray / 2u;
-  float cos_i = sqrt(LAMBERTIAN_U[node]);
-  vec3 along = (node & 1u) == 0u ? normalize(edge) : cross(normal, normalize(edge));
-  return ((ray & 1u) == 0u ? 1.0 : -1.0) * sqrt(1.0 - LAMBERTIAN_U[node]) * along - cos_i * normal;
+  float u = LAMBERTIAN_U[node];
+  return ((ray & 1u) == 0u ? 1.0 : -1.0) * sqrt(1.0 - u) * tangent(normal, (node & 1u) == 1u) - sqrt(u) * normal;
 }
 
 // Share of the power of a face that one ray takes, by its number.
@@ -49,10 +55,11 @@ float share_of(uint ray, uint rays) {
   return 0.5 * own / sum;
 }
 
+// Light at grazing incidence, or even from behind by rounding, still goes in.
 vec3 refracted(vec3 incoming, vec3 normal) {
-  float cos_i = -dot(incoming, normal);
-  float cos_t = sqrt(1.0 - (1.0 - min(cos_i * cos_i, 1.0)) / (push.eta * push.eta));
-  return incoming / push.eta + (cos_i / push.eta - cos_t) * normal;
+  float cos_i = max(-dot(incoming, normal), 0.0);
+  float cos_t = sqrt(max(1.0 - (1.0 - cos_i * cos_i) / (push.eta * push.eta), 0.0));
+  return normalize(incoming / push.eta + (cos_i / push.eta - cos_t) * normal);
 }
 
 void enter_face(uint face, uvec3 ids, mat3 corners, vec3 l) {
@@ -65,7 +72,8 @@ void enter_face(uint face, uvec3 ids, mat3 corners, vec3 l) {
   corner_3 = Corner(apex, push.vertices.at[apex], 0.0, vec3(0));
 }
 
-void walk_from(uint face) {
+// Ray `slot` of a face, if it has one: per origin one, or a bundle for Lambertian light.
+void walk_from(uint face, uint slot) {
   vec3 q[FACE_QUARTERS];
   vec3 least = vec3(NEVER), largest = vec3(0), sum = vec3(0);
   for (uint k = 0u; k < FACE_QUARTERS; ++k) {
@@ -75,29 +83,26 @@ void walk_from(uint face) {
     sum += q[k];
   }
   if (largest == vec3(0) || push.face_kinds.at[face] != 0u) return;
+  uint per_origin = push.beam.at[0].kind == BEAM_LAMBERTIAN ? LAMBERTIAN_RAYS : 1u;
+  uint quarter = slot / per_origin, ray = slot % per_origin;
   uvec3 ids = push.faces.at[face];
   mat3 corners = mat3(push.vertices.at[ids.x], push.vertices.at[ids.y], push.vertices.at[ids.z]);
   vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
   float area = 0.5 * length(normal);
-  normal /= 2.0 * area;
   bool one = one_ray_does(least, largest, corners, area);
-  uint per_origin = push.beam.at[0].kind == BEAM_LAMBERTIAN ? 2u * LAMBERTIAN_NODES : 1u;
-  uint rays = (one ? 1u : FACE_QUARTERS) * per_origin;
-  for (uint r = 0u; r < rays; ++r) {
-    uint quarter = one ? FACE_CENTRE : r / per_origin, ray = r % per_origin;
-    vec3 power = (0.25 * area * share_of(ray, per_origin)) * (one ? sum : q[quarter]);
-    if (power == vec3(0)) continue;
-    vec3 l = quarter_centre(quarter);
-    vec3 direction = refracted(incoming(ray, corners * l, normal, corners[1] - corners[0]), normal);
-    enter_face(face, ids, corners, l);
-    walk(Ray(push.face_tets.at[face], direction, power, vec3(0)));
-  }
+  vec3 lit = one && quarter == FACE_CENTRE ? sum : one ? vec3(0) : q[quarter];
+  vec3 power = (0.25 * area * share_of(ray, per_origin)) * lit;
+  if (power == vec3(0)) return;
+  normal /= 2.0 * area;
+  vec3 l = quarter_centre(quarter);
+  enter_face(face, ids, corners, l);
+  walk(Ray(push.face_tets.at[face], refracted(incoming(ray, corners * l, normal), normal), power, vec3(0)));
 }
 
 void main() {
-  uint face = gl_GlobalInvocationID.x;
+  uint i = gl_GlobalInvocationID.x;
   sums = WalkSums(vec3(0), vec3(0), vec3(0));
-  if (face < push.face_count) walk_from(face);
+  if (i < push.face_count * push.slots) walk_from(i % push.face_count, i / push.face_count);
   vec3 parts[3] = vec3[](sums.scattered, sums.absorbed, sums.unscattered);
   [[dont_unroll]] for (int k = 0; k < 3; ++k) parts[k] = reduce_workgroup(parts[k]);
   if (gl_LocalInvocationID.x != 0u) return;

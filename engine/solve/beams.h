@@ -11,7 +11,7 @@
 namespace quadgraph {
 
 struct BeamBuffers {
-  std::uint32_t count = 0;
+  std::vector<std::uint32_t> kinds;
   vk::Buffer records;  // BeamRecord
 };
 

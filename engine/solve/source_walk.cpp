@@ -10,16 +10,21 @@ std::uint32_t carriers(const LevelBuffers& level, Method method) {
   return method == Method::fem ? level.vertex_count : level.tet_count;
 }
 
-std::uint64_t groups(const LevelBuffers& level) {
-  return (level.face_count + WORKGROUP_SIZE - 1) / WORKGROUP_SIZE;
+std::uint32_t slots(std::uint32_t beam_kind) {
+  return FACE_QUARTERS * (beam_kind == gpu::BEAM_LAMBERTIAN ? gpu::LAMBERTIAN_RAYS : 1);
 }
 
-// Of one beam, if every face is lit and a ray crosses ten tets, about as many as in marble at the finest level.
-std::uint64_t walk_bytes(const LevelBuffers& level) {
+std::uint64_t groups(const LevelBuffers& level, std::uint32_t beam_kind) {
+  return (std::uint64_t{level.face_count} * slots(beam_kind) + WORKGROUP_SIZE - 1) / WORKGROUP_SIZE;
+}
+
+// Of one beam: every slot looks at its face; half the faces are lit, evenly, and a ray crosses ten tets, about as many
+// as in marble at the finest level.
+std::uint64_t walk_bytes(const LevelBuffers& level, std::uint32_t slot_count) {
   constexpr std::uint64_t tet_bytes =
       sizeof(glm::uvec4) + sizeof(std::uint32_t) + vec3_bytes + sizeof(gpu::Optical) + 2 * power_bytes;
-  const std::uint64_t face_bytes = (FACE_QUARTERS + 4) * vec3_bytes + 3 * sizeof(std::uint32_t);
-  return level.face_count * (face_bytes + 10 * tet_bytes);
+  const std::uint64_t rays = slot_count / FACE_QUARTERS;
+  return level.face_count * (slot_count * FACE_QUARTERS * vec3_bytes + rays * 10 * tet_bytes / 2);
 }
 
 }  // namespace
@@ -35,14 +40,16 @@ void SourceWalk::record(Workspace& work, const LevelBuffers& level, const BeamBu
   vk::Buffer& deposit = deposits_[carrier(method)];
   const std::uint64_t deposit_bytes = carriers(level, method) * power_bytes;
   if (deposit.size() != deposit_bytes) deposit = {context, deposit_bytes, vk::Place::device, prefix_ + "deposit"};
-  const std::uint64_t sums_bytes = beams.count * groups(level) * sizeof(gpu::WalkSums);
+  std::uint64_t sums_bytes = 0;
+  for (const std::uint32_t kind : beams.kinds) sums_bytes += groups(level, kind) * sizeof(gpu::WalkSums);
   if (sums_.size() != sums_bytes) {
     sums_ = {context, sums_bytes, vk::Place::device, prefix_ + "walk sums"};
     sums_on_host_ = {context, sums_bytes, vk::Place::host, prefix_ + "walk sums, read back"};
   }
   work.recorder.fill(deposit, 0);
   work.recorder.fill(unscattered_, 0);
-  for (std::uint32_t beam = 0; beam < beams.count; ++beam) {
+  std::uint64_t sums_offset = 0;
+  for (std::size_t beam = 0; beam < beams.kinds.size(); ++beam) {
     const gpu::WalkSourcePush push{
         .vertices = level.vertices.address(),
         .tets = level.tets.address(),
@@ -56,12 +63,15 @@ void SourceWalk::record(Workspace& work, const LevelBuffers& level, const BeamBu
         .scale = work.scale.address(),
         .deposit = deposit.address(),
         .unscattered = unscattered_.address(),
-        .sums = sums_.address() + beam * groups(level) * sizeof(gpu::WalkSums),
+        .sums = sums_.address() + sums_offset,
         .face_count = level.face_count,
+        .slots = slots(beams.kinds[beam]),
         .tet_count = level.tet_count,
         .fem = method == Method::fem ? 1u : 0u,
         .eta = static_cast<float>(eta)};
-    work.recorder.dispatch(work.passes.walk_source, push, level.face_count, "source walk", walk_bytes(level));
+    work.recorder.dispatch(work.passes.walk_source, push, std::uint64_t{level.face_count} * push.slots, "source walk",
+                           walk_bytes(level, push.slots));
+    sums_offset += groups(level, beams.kinds[beam]) * sizeof(gpu::WalkSums);
   }
   work.recorder.copy(sums_, sums_on_host_, sums_bytes);
   walked_[carrier(method)] = true;

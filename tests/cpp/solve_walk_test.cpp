@@ -1,5 +1,6 @@
 // The walk of the buried source: closed forms along rays, refraction and reflection, conservation of power.
 #include "engine/graph/fresnel.h"
+#include "engine/graph/source_walk.h"
 #include "tests/cpp/walk_fixtures.h"
 
 using namespace quadgraph;
@@ -33,7 +34,7 @@ double refracted_cosine(double cos_i, double eta) {
   return std::sqrt(1 - (1 - cos_i * cos_i) / (eta * eta));
 }
 
-void check_balance(const WalkResult& result, double tolerance) {
+void check_balance(const GpuWalk& result, double tolerance) {
   const glm::dvec3 deposited = total(result.deposit), left = total(result.unscattered);
   for (int c = 0; c < 3; ++c) {
     CAPTURE(c);
@@ -57,11 +58,11 @@ TEST_CASE("what rays scatter in a slab is the exact integral against the hat fun
     for (const double eta : {1.0, 1.4}) {
       CAPTURE(sine);
       CAPTURE(eta);
-      const WalkResult result = walk(device.context, {.level = level,
-                                                      .optical = uniform(sigma_s_prime, sigma_a),
-                                                      .quarter_q = lit_side({-1, 0, 0}),
-                                                      .beam = {gpu::BEAM_DIRECTIONAL, direction},
-                                                      .eta = eta});
+      const GpuWalk result = walk(device.context, {.level = level,
+                                                   .optical = uniform(sigma_s_prime, sigma_a),
+                                                   .quarter_q = lit_side({-1, 0, 0}),
+                                                   .beam = {gpu::BEAM_DIRECTIONAL, direction},
+                                                   .eta = eta});
       check_balance(result, 1e-6);
       const double cosine = refracted_cosine(cos_i, eta), r = internal_reflectance(cosine, eta);
       const auto planes = by_plane(level, result.deposit, h, n);
@@ -79,6 +80,273 @@ TEST_CASE("what rays scatter in a slab is the exact integral against the hat fun
           CHECK(std::abs(found - expected) < (eta == 1.0 ? 2e-6 : double{gpu::WALK_END}));
         }
       }
+    }
+  }
+}
+
+TEST_CASE("no power is lost or won, for any element size against the mean free path, beam and method") {
+  CheckedContext device;
+  const OwnedLevel level = box_level(4, 4.0f, 0.3f);
+  const std::array<gpu::BeamRecord, 3> beams = {{{gpu::BEAM_DIRECTIONAL, glm::normalize(glm::vec3(1, -0.4f, 0.3f))},
+                                                 {gpu::BEAM_POINT, {-3.0f, 1.0f, 2.5f}},
+                                                 {gpu::BEAM_LAMBERTIAN, {}}}};
+  for (const float path : mean_free_paths) {
+    for (const gpu::BeamRecord& beam : beams) {
+      for (const Method method : all_methods) {
+        CAPTURE(path);
+        CAPTURE(beam.kind);
+        CAPTURE(name_of(method));
+        const auto optical = [&](const glm::vec3& p) {
+          // Channels: even, with a contrast of 10^4 between neighbours, and clear in one half.
+          const float contrast = p.y + p.z > 4.0f ? 100.0f : 0.01f;
+          const glm::vec3 sigma = glm::vec3(1, contrast, p.x < 2.0f ? 1.0f : 0.0f) / path;
+          return optical_of(sigma * glm::vec3(0.9f, 0.5f, 1.0f), sigma * glm::vec3(0.1f, 0.5f, 0.0f));
+        };
+        const GpuWalk result = walk(device.context, {.level = level,
+                                                     .optical = optical,
+                                                     .quarter_q = lit_side({-1, 0, 0}),
+                                                     .beam = beam,
+                                                     .method = method,
+                                                     .eta = 1.3});
+        check_balance(result, 1e-6);
+        CHECK(result.power.scattered.x > 0.02 * result.entered.x);
+      }
+    }
+  }
+}
+
+TEST_CASE("the walk repeats bit for bit") {
+  CheckedContext device;
+  const WalkInput input{.level = box_level(6, 6.0f, 0.3f),
+                        .optical = uniform({1.0f, 0.2f, 0.01f}, {0.1f, 0.0f, 0.001f}),
+                        .quarter_q = [](const Lit& lit, std::uint32_t k) { return lit.centre * static_cast<float>(k); },
+                        .beam = {gpu::BEAM_LAMBERTIAN, {}},
+                        .eta = 1.4};
+  const GpuWalk first = walk(device.context, input);
+  CHECK(first.entered.x > 0);
+  for (int repeat = 0; repeat < 3; ++repeat) CHECK(walk(device.context, input).words == first.words);
+}
+
+TEST_CASE("a clear slab passes and reflects light as Fresnel says, none of it scattered") {
+  CheckedContext device;
+  const OwnedLevel level = slab_level(3, 3.0f, 0.2f);
+  for (const double eta : {1.0, 1.3, 2.5}) {
+    for (const float sine : {0.0f, 0.7f, 0.95f}) {
+      CAPTURE(eta);
+      CAPTURE(sine);
+      const GpuWalk result =
+          walk(device.context, {.level = level,
+                                .optical = uniform(glm::vec3(0), glm::vec3(0)),
+                                .quarter_q = lit_side({-1, 0, 0}),
+                                .beam = {gpu::BEAM_DIRECTIONAL, {std::sqrt(1 - sine * sine), 0, sine}},
+                                .eta = eta});
+      check_balance(result, 1e-6);
+      CHECK(result.power.scattered == glm::dvec3(0));
+      CHECK(result.power.absorbed == glm::dvec3(0));
+      // What enters meets the far face first: 1 - R passes, R comes back, and so on.
+      const double r = internal_reflectance(refracted_cosine(std::sqrt(1 - double{sine} * sine), eta), eta);
+      glm::dvec3 far(0), near(0);
+      for (std::uint32_t f = 0; f < level.faces.size(); ++f) {
+        const float x = lit_face(level, f).normal.x;
+        if (x > 0.999f) far += result.unscattered[f];
+        if (x < -0.999f) near += result.unscattered[f];
+        if (std::abs(x) <= 0.999f) CHECK(result.unscattered[f] == glm::dvec3(0));
+      }
+      for (int c = 0; c < 3; ++c) {
+        CHECK(far[c] / result.entered[c] == doctest::Approx(1 / (1 + r)).epsilon(2e-6));
+        CHECK(near[c] / result.entered[c] == doctest::Approx(r / (1 + r)).epsilon(2e-6));
+      }
+    }
+  }
+}
+
+TEST_CASE("light comes out where Snell's law takes it") {
+  CheckedContext device;
+  const OwnedLevel level = box_level(8, 8.0f);
+  for (const double eta : {1.0, 1.5, 2.0}) {
+    std::uint32_t entry = 0;
+    const glm::vec3 wanted(0, 2.3f, 1.6f);
+    for (std::uint32_t f = 0; f < level.faces.size(); ++f) {
+      if (glm::distance(lit_face(level, f).centre, wanted) < glm::distance(lit_face(level, entry).centre, wanted))
+        entry = f;
+    }
+    const Lit at = lit_face(level, entry);
+    REQUIRE(at.normal.x < -0.999f);
+    const glm::dvec3 outside = glm::normalize(glm::dvec3(1, 0.1, 0.6));
+    const GpuWalk result =
+        walk(device.context, {.level = level,
+                              .optical = uniform(glm::vec3(0), glm::vec3(0)),
+                              .quarter_q = [&](const Lit& lit, std::uint32_t) { return glm::vec3(lit.face == entry); },
+                              .beam = {gpu::BEAM_DIRECTIONAL, glm::vec3(outside)},
+                              .eta = eta});
+    const double sine_over_cosine =
+        std::sqrt(1 / (refracted_cosine(outside.x, eta) * refracted_cosine(outside.x, eta)) - 1);
+    const glm::dvec3 sideways = glm::normalize(glm::dvec3(0, outside.y, outside.z));
+    const glm::dvec3 expected = glm::dvec3(8, at.centre.y, at.centre.z) + 8 * sine_over_cosine * sideways;
+    REQUIRE(expected.z < 8);
+    std::uint32_t brightest = 0;
+    for (std::uint32_t f = 0; f < level.faces.size(); ++f) {
+      if (result.unscattered[f].x > result.unscattered[brightest].x) brightest = f;
+    }
+    const Lit out = lit_face(level, brightest);
+    CAPTURE(eta);
+    CHECK(out.normal.x > 0.999f);
+    // Inside the triangle that lights up: within its longest distance from centroid to corner, 1 mm cells.
+    CHECK(glm::distance(glm::dvec3(out.centre), expected) < std::sqrt(5.0) / 3);
+    CHECK(result.unscattered[brightest].x / result.entered.x ==
+          doctest::Approx(1 - internal_reflectance(refracted_cosine(outside.x, eta), eta)).epsilon(1e-5));
+  }
+}
+
+TEST_CASE("nothing leaves beyond the critical angle") {
+  CheckedContext device;
+  const OwnedLevel level = box_level(4, 4.0f, 0.2f);
+  // What came in through x = 0 is at most asin(1/1.5) = 41.8 degrees from x, so 48.2 degrees or more from y and z.
+  const GpuWalk result = walk(device.context, {.level = level,
+                                               .optical = uniform(glm::vec3(0), glm::vec3(0)),
+                                               .quarter_q = lit_side({-1, 0, 0}),
+                                               .beam = {gpu::BEAM_LAMBERTIAN, {}},
+                                               .eta = 1.5});
+  check_balance(result, 1e-6);
+  for (std::uint32_t f = 0; f < level.faces.size(); ++f) {
+    if (std::abs(lit_face(level, f).normal.x) < 0.5f) CHECK(result.unscattered[f] == glm::dvec3(0));
+  }
+  CHECK(total(result.unscattered).x == doctest::Approx(result.entered.x).epsilon(1e-6));
+}
+
+TEST_CASE("Lambertian light falls off with depth as the average over all angles") {
+  CheckedContext device;
+  constexpr int n = 8;
+  constexpr double h = 0.25, eta = 1.3;
+  const OwnedLevel level = slab_level(n, static_cast<float>(n * h));
+  const GpuWalk result = walk(device.context, {.level = level,
+                                               .optical = uniform({3.0f, 1.5f, 0.7f}, glm::vec3(0)),
+                                               .quarter_q = lit_side({-1, 0, 0}),
+                                               .beam = {gpu::BEAM_LAMBERTIAN, {}},
+                                               .eta = eta});
+  check_balance(result, 1e-6);
+  const auto planes = by_plane(level, result.deposit, h, n);
+  constexpr int steps = 2000;
+  for (int i = 0; i < n; ++i) {
+    CAPTURE(i);
+    double expected = 0, norm = 0;
+    for (int k = 0; k < steps; ++k) {
+      const double cos_i = (k + 0.5) / steps, weight = cos_i * fresnel_transmittance(cos_i, eta);
+      expected += weight * hat_integral(3.0 / refracted_cosine(cos_i, eta), h, i, n);
+      norm += weight;
+    }
+    CHECK(planes[static_cast<std::size_t>(i)].x / result.entered.x ==
+          doctest::Approx(expected / norm).epsilon(0.01).scale(0.01));
+  }
+}
+
+TEST_CASE("a face that is lit in part sends its light from the lit quarters") {
+  CheckedContext device;
+  const OwnedLevel level = box_level(1, 1.0f);
+  for (std::uint32_t lit = 0; lit < FACE_QUARTERS; ++lit) {
+    // All is scattered at once: the deposit is the origin's barycentric coordinates.
+    const GpuWalk result =
+        walk(device.context,
+             {.level = level,
+              .optical = uniform(glm::vec3(1e5f), glm::vec3(0)),
+              .quarter_q = [&](const Lit& face,
+                               std::uint32_t quarter) { return glm::vec3(face.face == 0 && quarter == lit); },
+              .beam = {gpu::BEAM_DIRECTIONAL, -lit_face(level, 0).normal}});
+    CHECK(result.entered.x == doctest::Approx(0.5 / FACE_QUARTERS));
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const double expected = lit == 3 ? 1.0 / 3 : k == lit ? 2.0 / 3 : 1.0 / 6;
+      CHECK(result.deposit[level.faces[0][static_cast<int>(k)]].x / result.entered.x ==
+            doctest::Approx(expected).epsilon(1e-4));
+    }
+  }
+}
+
+TEST_CASE("one tet, slivers and needles keep the power") {
+  CheckedContext device;
+  std::vector<OwnedLevel> levels;
+  levels.push_back(level_from_tets({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}));
+  for (const glm::vec3& stretch : {glm::vec3(1, 1, 0.001f), glm::vec3(0.001f, 1, 1), glm::vec3(1, 0.001f, 0.001f)}) {
+    OwnedLevel box = box_level(3, 3.0f, 0.2f);
+    for (auto* points : {&box.vertices, &box.nodes}) {
+      for (glm::vec3& p : *points) p *= stretch;
+    }
+    levels.push_back(box);
+  }
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    for (const float path : {0.01f, 1.0f}) {
+      for (const Method method : {Method::fem, Method::quadgraph_fv}) {
+        CAPTURE(i);
+        CAPTURE(path);
+        const GpuWalk result =
+            walk(device.context, {.level = levels[i],
+                                  .optical = uniform(glm::vec3(0.7f, 1, 0.1f) / path, glm::vec3(0.3f, 0, 0) / path),
+                                  .quarter_q = [](const Lit&, std::uint32_t) { return glm::vec3(1); },
+                                  .beam = {gpu::BEAM_LAMBERTIAN, {}},
+                                  .method = method,
+                                  .eta = 1.4});
+        check_balance(result, 1e-6);
+        for (const glm::dvec3& d : result.deposit) CHECK(std::isfinite(d.x + d.y + d.z));
+      }
+    }
+  }
+}
+
+TEST_CASE("light that a clear body traps ends as unscattered, in finite time") {
+  CheckedContext device;
+  const OwnedLevel level = level_from_tets({{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}, {{0, 1, 2, 3}});
+  const GpuWalk result = walk(device.context, {.level = level,
+                                               .optical = uniform(glm::vec3(0), glm::vec3(0)),
+                                               .quarter_q = [](const Lit&, std::uint32_t) { return glm::vec3(1); },
+                                               .beam = {gpu::BEAM_LAMBERTIAN, {}},
+                                               .eta = 3});
+  check_balance(result, 1e-6);
+  CHECK(result.power.unscattered.x == doctest::Approx(result.entered.x).epsilon(1e-6));
+  CHECK(total(result.unscattered).x < 0.9 * result.entered.x);
+}
+
+TEST_CASE("the walk is that of the CPU, ray by ray") {
+  CheckedContext device;
+  WalkInput input{.level = slab_level(5, 5.0f, 0.3f),
+                  .optical =
+                      [](const glm::vec3& p) {
+                        const float wave = 1.0f + std::sin(p.x + 2 * p.y - p.z);
+                        return optical_of({wave, 0.2f, p.z > 3 ? 0.0f : 3.0f}, {0.1f, 0.1f * wave, 0});
+                      },
+                  .quarter_q =
+                      [](const Lit& lit, std::uint32_t k) {
+                        return lit.normal.x < -0.9f ? glm::vec3(1, lit.centre.y, lit.face % 3 == k) : glm::vec3(0);
+                      },
+                  .eta = 1.35};
+  std::vector<Quarters> quarters;
+  for (std::uint32_t f = 0; f < input.level.faces.size(); ++f) {
+    quarters.emplace_back();
+    for (std::uint32_t k = 0; k < FACE_QUARTERS; ++k) quarters[f][k] = input.quarter_q(lit_face(input.level, f), k);
+  }
+  std::vector<gpu::Optical> optical;
+  for (const glm::vec3& node : input.level.nodes) optical.push_back(input.optical(node));
+  const std::array<gpu::BeamRecord, 3> beams = {{{gpu::BEAM_DIRECTIONAL, glm::normalize(glm::vec3(1, -0.4f, 0.3f))},
+                                                 {gpu::BEAM_POINT, {-3.0f, 1.0f, 2.5f}},
+                                                 {gpu::BEAM_LAMBERTIAN, {}}}};
+  for (const gpu::BeamRecord& beam : beams) {
+    for (const Method method : all_methods) {
+      CAPTURE(beam.kind);
+      CAPTURE(name_of(method));
+      input.beam = beam;
+      input.method = method;
+      const GpuWalk found = walk(device.context, input);
+      const Level level = input.level.view();
+      const Problem problem{.method = method, .optical = optical, .eta = input.eta};
+      const WalkResult expected = walk_source(level, problem, beam, quarters);
+      for (int c = 0; c < 3; ++c) {
+        CHECK(found.power.scattered[c] == doctest::Approx(total(expected.scattered)[c]).epsilon(1e-5));
+        CHECK(found.power.absorbed[c] == doctest::Approx(expected.absorbed[c]).epsilon(1e-5));
+        CHECK(found.power.unscattered[c] == doctest::Approx(expected.unscattered_out[c]).epsilon(1e-5));
+      }
+      CHECK(relative_difference(
+                std::vector(found.deposit.begin(), found.deposit.end()),
+                std::vector(expected.scattered.begin(),
+                            expected.scattered.begin() + static_cast<std::ptrdiff_t>(found.deposit.size()))) < 1e-5);
+      CHECK(relative_difference(found.unscattered, expected.unscattered) < 1e-4);
     }
   }
 }

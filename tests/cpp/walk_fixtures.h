@@ -27,7 +27,7 @@ struct WalkInput {
   double eta = 1;
 };
 
-struct WalkResult {
+struct GpuWalk {
   std::vector<std::uint32_t> words;              // of the deposits, then of what left
   std::vector<glm::dvec3> deposit, unscattered;  // W, per vertex or tet, and per face
   glm::dvec3 entered{0};                         // W
@@ -69,13 +69,13 @@ inline Lit lit_face(const OwnedLevel& level, std::uint32_t face) {
   return {face, glm::normalize(glm::cross(b - a, c - a)), (a + b + c) / 3.0f};
 }
 
-inline WalkResult walk(vk::Context& context, const WalkInput& input) {
+inline GpuWalk walk(vk::Context& context, const WalkInput& input) {
   const OwnedLevel& level = input.level;
   LevelBuffers buffers = upload_level(context, level.view(), 0);
   std::vector<gpu::Optical> optical;
   for (const glm::vec3& node : level.nodes) optical.push_back(input.optical(node));
   std::vector<glm::vec3> q, beam_q;
-  WalkResult result;
+  GpuWalk result;
   for (std::uint32_t f = 0; f < level.faces.size(); ++f) {
     glm::dvec3 sum{0};
     for (std::uint32_t k = 0; k < FACE_QUARTERS; ++k) {
@@ -88,7 +88,7 @@ inline WalkResult walk(vk::Context& context, const WalkInput& input) {
   vk::write_bytes(context, buffers.optical, std::as_bytes(std::span(optical)));
   vk::write_bytes(context, buffers.q, std::as_bytes(std::span(q)));
   buffers.beam_q = vk::upload<glm::vec3>(context, beam_q, "beam q");
-  const BeamBuffers beams{1, vk::upload<gpu::BeamRecord>(context, std::span(&input.beam, 1), "beams")};
+  const BeamBuffers beams{{input.beam.kind}, vk::upload<gpu::BeamRecord>(context, std::span(&input.beam, 1), "beams")};
 
   Workspace work(context, buffers.node_count);
   SourceWalk walk(context, buffers, 0);
