@@ -41,8 +41,9 @@ const float LAMBERTIAN_W[4] = {0.1739274226f, 0.3260725774f, 0.3260725774f, 0.17
 
 // A ray ends where each channel has kept less than this share of its power, and what is left stays there.
 const float WALK_END = 1e-3f;
-// Tets that a ray crosses at most: light trapped by total reflection in a clear body ends here.
-const uint MAX_WALK_STEPS = 16384u;
+// Tets that a ray crosses at most: light trapped by total reflection in a clear body ends here. Four such rays of one
+// invocation stay below the 65535 turns after which lavapipe leaves all loops.
+const uint MAX_WALK_STEPS = 12288u;
 
 const uint SOLVE_RUNNING = 0u;
 const uint SOLVE_CONVERGED = 1u;

@@ -30,7 +30,8 @@ struct Exit {
 
 Corner corner_0, corner_1, corner_2, corner_3;
 uvec4 tet_corners;  // of the present tet, in the order of `links`
-WalkSums sums;      // of this invocation
+vec3 absorbed;      // by this invocation's rays
+vec3 unscattered;   // of them: left through the surface, or still under way at the end
 
 const float NEVER = 1e37;
 
@@ -42,6 +43,11 @@ void attenuate(vec3 tau, out vec3 lost, out vec3 place) {
   vec3 series = t * (1.0 - t / 2.0 * (1.0 - t / 3.0 * (1.0 - t / 4.0 * (1.0 - t / 5.0 * (1.0 - t / 6.0)))));
   lost = mix(1.0 - exp(-tau), series, small);
   place = mix(1.0 / tau - (1.0 - lost) / lost, 0.5 - t / 12.0 * (1.0 - t * t / 60.0), small);
+}
+
+// Share of the loss that is scattered: never above 1, even where division rounds up.
+vec3 albedo(Optical optical) {
+  return min(optical.sigma_s_prime / max(optical.sigma_s_prime + optical.sigma_a, vec3(1e-30)), vec3(1));
 }
 
 Exit find_exit(vec3 direction) {
@@ -92,13 +98,12 @@ void cross_tet(inout Ray ray, Optical optical, float length, vec4 l) {
   attenuate(extinction * length, lost, place);
   // The power that is taken is what its float loses, and the difference is carried: the sum over many tets is then exact.
   precise vec3 wanted = ray.power * lost + ray.carry;
-  precise vec3 remaining = max(ray.power - wanted, vec3(0));
+  precise vec3 remaining = ray.power - clamp(wanted, vec3(0), ray.power);
   precise vec3 taken = ray.power - remaining;
   ray.carry = wanted - taken;
   ray.power = remaining;
-  vec3 scattered = taken * (optical.sigma_s_prime / max(extinction, vec3(1e-30)));
-  sums.scattered += scattered;
-  sums.absorbed += taken - scattered;
+  vec3 scattered = taken * albedo(optical);
+  absorbed += taken - scattered;
   scatter(ray.tet, scattered, l, place);
 }
 
@@ -115,10 +120,9 @@ void end_here(Ray ray) {
   vec3 extinction = optical.sigma_s_prime + optical.sigma_a;
   bvec3 clear = equal(extinction, vec3(0));
   vec3 kept = mix(ray.power, vec3(0), clear);
-  vec3 scattered = kept * (optical.sigma_s_prime / max(extinction, vec3(1e-30)));
-  sums.scattered += scattered;
-  sums.absorbed += kept - scattered;
-  sums.unscattered += ray.power - kept;
+  vec3 scattered = kept * albedo(optical);
+  absorbed += kept - scattered;
+  unscattered += ray.power - kept;
   scatter(ray.tet, scattered, vec4(corner_0.l, corner_1.l, corner_2.l, corner_3.l), vec3(0));
 }
 
@@ -161,7 +165,7 @@ void meet_surface(inout Ray ray, uint face, vec3 outward) {
   if (push.face_kinds.at[face] == 0u) {
     vec3 reflected = ray.power * internal_reflectance(cosine, push.eta);
     vec3 leaving = ray.power - reflected;
-    sums.unscattered += leaving;
+    unscattered += leaving;
     add_power(push.unscattered, face, leaving);
     ray.power = reflected;
   }

@@ -16,21 +16,12 @@ const float POWER_UNIT = 1.4210854715202004e-14f;  // 2^-46
 // Per origin of a Lambertian beam.
 const uint LAMBERTIAN_RAYS = 2u * LAMBERTIAN_NODES;
 
-// Sums of one workgroup of walk_source.comp.
-struct WalkSums {
-  vec3 scattered;    // W
-  vec3 absorbed;     // W
-  vec3 unscattered;  // W, left through the surface, or still under way at the end of the walk
-};
-
 #ifndef __cplusplus
 QG_ARRAY(BeamRecords, BeamRecord);
-QG_ARRAY(WalkSumsArray, WalkSums);
 #endif
 
-// walk_source.comp: follows the rays of one beam, one invocation per ray that a face may send: those of one slot of all
-// faces, then those of the next. No invocation follows two, because lavapipe ends all loops of an invocation after
-// 65535 turns.
+// walk_source.comp: follows the rays of one beam. One invocation per face; of a Lambertian beam, one per face and ray
+// of the bundle.
 struct WalkSourcePush {
   QG_REF(Vec3s) vertices;
   QG_REF(Uvec4s) tets;
@@ -44,9 +35,9 @@ struct WalkSourcePush {
   QG_REF(Scales) scale;
   QG_REF(Uints) deposit;      // fixed point, per vertex (fem) or tet: power scattered for the first time
   QG_REF(Uints) unscattered;  // fixed point, per face: power that leaves
-  QG_REF(WalkSumsArray) sums;
+  QG_REF(Uints) sums;         // fixed point, two per workgroup: absorbed; left, or still under way at the end
   uint face_count;
-  uint slots;  // per face: FACE_QUARTERS, times LAMBERTIAN_RAYS for a Lambertian beam
+  uint rays;  // per origin: 1, or LAMBERTIAN_RAYS
   uint tet_count;
   uint fem;
   float eta;

@@ -3,7 +3,6 @@
 #include "walk_shared.h"
 #include "fresnel.glsl"
 #include "fixed_point.glsl"
-#include "reduce.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { WalkSourcePush push; };
@@ -72,8 +71,8 @@ void enter_face(uint face, uvec3 ids, mat3 corners, vec3 l) {
   corner_3 = Corner(apex, push.vertices.at[apex], 0.0, vec3(0));
 }
 
-// Ray `slot` of a face, if it has one: per origin one, or a bundle for Lambertian light.
-void walk_from(uint face, uint slot) {
+// Ray `ray` of every origin on a face.
+void walk_from(uint face, uint ray) {
   vec3 q[FACE_QUARTERS];
   vec3 least = vec3(NEVER), largest = vec3(0), sum = vec3(0);
   for (uint k = 0u; k < FACE_QUARTERS; ++k) {
@@ -83,29 +82,29 @@ void walk_from(uint face, uint slot) {
     sum += q[k];
   }
   if (largest == vec3(0) || push.face_kinds.at[face] != 0u) return;
-  uint per_origin = push.beam.at[0].kind == BEAM_LAMBERTIAN ? LAMBERTIAN_RAYS : 1u;
-  uint quarter = slot / per_origin, ray = slot % per_origin;
   uvec3 ids = push.faces.at[face];
   mat3 corners = mat3(push.vertices.at[ids.x], push.vertices.at[ids.y], push.vertices.at[ids.z]);
   vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
   float area = 0.5 * length(normal);
-  bool one = one_ray_does(least, largest, corners, area);
-  vec3 lit = one && quarter == FACE_CENTRE ? sum : one ? vec3(0) : q[quarter];
-  vec3 power = (0.25 * area * share_of(ray, per_origin)) * lit;
-  if (power == vec3(0)) return;
   normal /= 2.0 * area;
-  vec3 l = quarter_centre(quarter);
-  enter_face(face, ids, corners, l);
-  walk(Ray(push.face_tets.at[face], refracted(incoming(ray, corners * l, normal), normal), power, vec3(0)));
+  bool one = one_ray_does(least, largest, corners, area);
+  float share = 0.25 * area * share_of(ray, push.rays);
+  for (uint k = one ? FACE_CENTRE : 0u; k < FACE_QUARTERS; ++k) {
+    vec3 power = share * (one ? sum : q[k]);
+    if (power == vec3(0)) continue;
+    vec3 l = quarter_centre(k);
+    enter_face(face, ids, corners, l);
+    walk(Ray(push.face_tets.at[face], refracted(incoming(ray, corners * l, normal), normal), power, vec3(0)));
+  }
 }
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
-  sums = WalkSums(vec3(0), vec3(0), vec3(0));
-  if (i < push.face_count * push.slots) walk_from(i % push.face_count, i / push.face_count);
-  vec3 parts[3] = vec3[](sums.scattered, sums.absorbed, sums.unscattered);
-  [[dont_unroll]] for (int k = 0; k < 3; ++k) parts[k] = reduce_workgroup(parts[k]);
-  if (gl_LocalInvocationID.x != 0u) return;
-  vec3 scale = push.scale.at[0].scale;
-  push.sums.at[gl_WorkGroupID.x] = WalkSums(scale * parts[0], scale * parts[1], scale * parts[2]);
+  absorbed = vec3(0);
+  unscattered = vec3(0);
+  if (i >= push.face_count * push.rays) return;
+  walk_from(i % push.face_count, i / push.face_count);
+  // Per workgroup, so that invocations seldom wait for each other.
+  add_power(push.sums, 2u * gl_WorkGroupID.x, absorbed);
+  add_power(push.sums, 2u * gl_WorkGroupID.x + 1u, unscattered);
 }

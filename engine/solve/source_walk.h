@@ -3,7 +3,9 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "engine/graph/solution.h"
 #include "engine/solve/beams.h"
@@ -14,10 +16,15 @@
 
 namespace quadgraph {
 
-// Where the power of the rays went, W. Together it is what entered, to rounding.
+// Where the power went that the rays did not scatter, W. Together with the deposits it is what entered, to rounding.
 struct WalkPower {
-  glm::dvec3 scattered{0}, absorbed{0}, unscattered{0};
+  glm::dvec3 absorbed{0};
+  glm::dvec3 unscattered{
+      0};  // left through the surface, or trapped in a clear region for longer than any ray is followed
 };
+
+// Sums in fixed point (walk_shared.h) as numbers, W.
+std::vector<glm::dvec3> powers(std::span<const std::uint32_t> words, const glm::dvec3& scale);
 
 class SourceWalk {
  public:
@@ -47,7 +54,8 @@ class SourceWalk {
   std::array<bool, 2> walked_ = {false, false};  // by carrier
   std::array<vk::Buffer, 2> deposits_;           // by carrier, made at first use
   vk::Buffer unscattered_;
-  vk::Buffer sums_, sums_on_host_;  // WalkSums per beam and workgroup
+  vk::Buffer sums_, sums_on_host_;  // fixed point, per beam and workgroup absorbed and unscattered
+  vk::Buffer scale_on_host_;
 };
 
 }  // namespace quadgraph

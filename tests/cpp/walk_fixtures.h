@@ -13,6 +13,12 @@
 
 namespace quadgraph {
 
+inline glm::dvec3 total(const std::vector<glm::dvec3>& values) {
+  glm::dvec3 sum{0};
+  for (const glm::dvec3& value : values) sum += value;
+  return sum;
+}
+
 struct Lit {
   std::uint32_t face = 0;
   glm::vec3 normal{0}, centre{0};
@@ -34,28 +40,12 @@ struct GpuWalk {
   WalkPower power;
 
   glm::dvec3 balance() const {
-    return (power.scattered + power.absorbed + power.unscattered - entered) / glm::max(entered, glm::dvec3(1e-300));
+    return (total(deposit) + power.absorbed + power.unscattered - entered) / glm::max(entered, glm::dvec3(1e-300));
   }
 };
 
 inline gpu::Optical optical_of(const glm::vec3& sigma_s_prime, const glm::vec3& sigma_a) {
   return {sigma_s_prime, sigma_a};
-}
-
-inline std::vector<glm::dvec3> powers(const std::vector<std::uint32_t>& words, const glm::dvec3& scale) {
-  std::vector<glm::dvec3> result(words.size() / FIXED_WORDS);
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    const double word = std::ldexp(words[i], i % FIXED_WORDS < 3 ? -46 : -14);
-    const int c = static_cast<int>(i % 3);
-    result[i / FIXED_WORDS][c] += word * scale[c];
-  }
-  return result;
-}
-
-inline glm::dvec3 total(const std::vector<glm::dvec3>& values) {
-  glm::dvec3 sum{0};
-  for (const glm::dvec3& value : values) sum += value;
-  return sum;
 }
 
 inline double area_of(const OwnedLevel& level, const glm::uvec3& f) {
