@@ -1,0 +1,178 @@
+"""Test geometries as QuadGraphs: columns, blocks, balls and cylinders, with walls of symmetry where they stand in."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import permutations
+from pathlib import Path
+
+import numpy as np
+import trimesh
+
+from quadgraph import graph, qgraph_file, sections
+from quadgraph.graph import Graph
+from quadgraph.qgraph_rules import determinants
+from quadgraph.surface import Surface, TetMesh
+from quadgraph.tetrahedralise import tetrahedralise
+
+OPEN, REFLECTING = 0, 1
+
+# The two triangles of a prism's side and its inside: tets through corners in order of their number.
+_PRISM = np.array([[0, 1, 2, 5], [0, 1, 4, 5], [0, 3, 4, 5]])
+
+
+def box(x: np.ndarray, y: np.ndarray, z: np.ndarray, is_wall: Callable[[np.ndarray], np.ndarray]) -> Graph:
+    """Cells between the given coordinates, mm, cut into six tets each around the same diagonal.
+
+    is_wall: from outward unit normals (n, 3) of the outside faces to (n,) bool: those that reflect.
+    """
+    shape = len(x), len(y), len(z)
+    grid = np.stack(np.meshgrid(x, y, z, indexing="ij"), axis=-1).reshape(-1, 3)
+    cells = np.stack(np.meshgrid(*(np.arange(n - 1) for n in shape), indexing="ij"), axis=-1).reshape(-1, 3)
+    tets = []
+    for axes in permutations(range(3)):
+        corner = cells.copy()
+        path = [np.ravel_multi_index(corner.T, shape)]
+        for axis in axes:
+            corner[:, axis] += 1
+            path.append(np.ravel_multi_index(corner.T, shape))
+        tets.append(np.column_stack(path))
+    return with_walls(_built(grid, np.concatenate(tets)), is_wall)
+
+
+def column(thicknesses: np.ndarray, width: float, across: int = 2) -> Graph:
+    """A slab's stand-in: layers of (n,) `thicknesses` mm from z = 0, width x width mm, side walls reflecting.
+
+    across: cells along the width.
+    """
+    z = np.concatenate([[0.0], np.cumsum(thicknesses)])
+    side = np.linspace(0, width, across + 1)
+    return box(side, side, z, lambda normal: np.abs(normal[:, 2]) < 0.5)
+
+
+def half_period(wavelength: float, across: int, thicknesses: np.ndarray) -> Graph:
+    """A half-space's stand-in under q = cos(2 pi x / wavelength): x from 0 to half of it, all but z = 0 reflecting.
+
+    across: cells along x; one cell deep in y, as wide as along x; layers of (n,) `thicknesses` mm from z = 0.
+    """
+    x = np.linspace(0, wavelength / 2, across + 1)
+    z = np.concatenate([[0.0], np.cumsum(thicknesses)])
+    return box(x, x[:2], z, lambda normal: normal[:, 2] > -0.5)
+
+
+def graded(first: float, ratio: float, total: float) -> np.ndarray:
+    """Thicknesses, mm, that grow by `ratio` from about `first` and sum to `total`."""
+    count = 1
+    while first * (ratio**count - 1) / (ratio - 1) < total:
+        count += 1
+    layers = first * ratio ** np.arange(count)
+    return layers * total / layers.sum()
+
+
+def ball(radius: float, refinements: int, subdivisions: int = 3) -> Graph:
+    """A ball about the origin: an icosphere of 20 * 4^subdivisions triangles filled by TetGen, each tet cut into eight
+    `refinements` times.
+    """
+    surface = trimesh.creation.icosphere(subdivisions=subdivisions, radius=radius)
+    shape = Surface(np.array(surface.vertices, np.float64), np.array(surface.faces, np.int64)).rounded()
+    mesh = graph.build(tetrahedralise(shape, mesher="tetgen"))
+    for _ in range(refinements):
+        mesh = refined_sphere(mesh, radius)
+    return mesh
+
+
+def cylinder(radius: float, rings: int) -> Graph:
+    """A segment of an infinite cylinder about z, as high as a ring is wide, its end caps reflecting."""
+    points, triangles = _disc(radius, rings)
+    heights = np.array([0.0, radius / rings])
+    vertices = np.concatenate([np.column_stack([points, np.full(len(points), z)]) for z in heights])
+    # Cut through corners in order of their number, so that neighbouring prisms agree on the diagonal between them.
+    triangles = np.sort(triangles, axis=1)
+    prisms = np.hstack([triangles, triangles + len(points)])
+    tets = prisms[:, _PRISM].reshape(-1, 4)
+    return with_walls(_built(vertices, tets), lambda normal: np.abs(normal[:, 2]) > 0.99)
+
+
+def with_walls(mesh: Graph, is_wall: Callable[[np.ndarray], np.ndarray]) -> Graph:
+    """The graph with those outside faces reflecting whose outward unit normals (n, 3) `is_wall` picks."""
+    _, normal, _ = face_frames(mesh)
+    return replace(mesh, face_kinds=np.where(is_wall(normal), REFLECTING, OPEN).astype(np.int64))
+
+
+def face_frames(level: Graph) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Centroid (n, 3) mm, outward unit normal (n, 3) and area (n,) mm^2 of a level's outside faces."""
+    corners = np.asarray(level.vertices, np.float64)[level.faces]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    length = np.linalg.norm(normal, axis=1)
+    return corners.mean(axis=1), normal / length[:, None], length / 2
+
+
+def refined_sphere(mesh: Graph, radius: float) -> Graph:
+    """Cut every tet into eight and put new surface vertices on the sphere: the edge length halves everywhere."""
+    vertices, tets = mesh.vertices, mesh.tets
+    pairs = np.array([(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)])
+    edges = np.sort(tets[:, pairs].reshape(-1, 2), axis=1)
+    unique, inverse = np.unique(edges, axis=0, return_inverse=True)
+    middles = vertices[unique].mean(axis=1)
+    outside = np.sort(mesh.faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    on_surface = np.isin(unique @ [len(vertices), 1], outside @ [len(vertices), 1])
+    middles[on_surface] *= radius / np.linalg.norm(middles[on_surface], axis=1)[:, None]
+    middle = len(vertices) + inverse.reshape(-1, 6)
+    points = np.concatenate([vertices, middles])
+    corners = [np.column_stack([tets[:, k], middle[:, (pairs == k).any(axis=1)]]) for k in range(4)]
+    return _built(points, np.concatenate([*corners, *_octahedron(points, middle)]))
+
+
+def write(path: Path, graphs: list[Graph]) -> Path:
+    """Write levels, finest first, as a .qgraph with the finest boundary as the display mesh."""
+    boundary = graphs[0].boundary
+    used = int(boundary.triangles.max()) + 1
+    display = Surface(boundary.vertices[:used], boundary.triangles)
+    metadata = {
+        "generator": "quadgraph.reference.meshes",
+        "source": {"name": "generated", "sha256": "", "vertices": 0, "triangles": 0},
+        "unit_mm": 1.0,
+        "mesher": {"name": "generated", "version": "", "options": "", "grading": None},
+        "repairs": [],
+        "levels": [sections.level_metadata(g) for g in graphs],
+        "tools": {},
+    }
+    qgraph_file.write(path, metadata, sections.whole_file(graphs, display))
+    return path
+
+
+def _built(points: np.ndarray, tets: np.ndarray) -> Graph:
+    """Round to what a file holds, turn every tet positive, link."""
+    points = points.astype(np.float32).astype(np.float64)
+    flipped = determinants(points, tets) < 0
+    tets[flipped] = tets[flipped][:, [0, 1, 3, 2]]
+    return graph.build(TetMesh(points, tets, mesher=None))
+
+
+def _octahedron(points: np.ndarray, middle: np.ndarray) -> list[np.ndarray]:
+    """Four tets around the shortest diagonal of the octahedron between the edge middles; others would degenerate."""
+    rings = np.array([[0, 5, 1, 2, 4, 3], [1, 4, 0, 2, 5, 3], [2, 3, 0, 1, 5, 4]])  # diagonal, then the ring around it
+    ends = points[middle[:, rings[:, :2]]]
+    choice = rings[np.linalg.norm(ends[:, :, 0] - ends[:, :, 1], axis=2).argmin(axis=1)]
+    ordered = np.take_along_axis(middle, choice, axis=1)
+    return [ordered[:, [0, 1, 2 + k, 2 + (k + 1) % 4]] for k in range(4)]
+
+
+def _disc(radius: float, rings: int) -> tuple[np.ndarray, np.ndarray]:
+    """Points (n, 2) and triangles (m, 3) of a disc: ring i holds 6 i points."""
+    points = [np.zeros((1, 2))]
+    triangles = []
+    start = np.array([0] + [1 + 3 * i * (i - 1) for i in range(1, rings + 1)])
+    for i in range(1, rings + 1):
+        angle = np.arange(6 * i) * np.pi / (3 * i)
+        points.append(radius * i / rings * np.column_stack([np.cos(angle), np.sin(angle)]))
+        sector, step = np.divmod(np.arange(6 * i), i)
+        outer = start[i] + np.arange(6 * i)
+        following = start[i] + (np.arange(6 * i) + 1) % (6 * i)
+        inner = start[i - 1] + (sector * (i - 1) + step) % max(6 * (i - 1), 1)
+        triangles.append(np.column_stack([inner, outer, following]))
+        between = step < i - 1
+        next_inner = start[i - 1] + (sector * (i - 1) + step + 1) % max(6 * (i - 1), 1)
+        triangles.append(np.column_stack([inner, following, next_inner])[between])
+    return np.concatenate(points), np.concatenate(triangles)
