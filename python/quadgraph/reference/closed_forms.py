@@ -51,9 +51,7 @@ def layered_slab(
     """
     if light is None:
         return _Slab(layers, model, boundary).solve(None, eta)
-    parts = [
-        (share, _Slab(layers, model, boundary).solve(float(mu), eta)) for mu, share in zip(*light, strict=True)
-    ]
+    parts = [(share, _Slab(layers, model, boundary).solve(float(mu), eta)) for mu, share in zip(*light, strict=True)]
     names = ("reflectance", "transmittance", "absorbed", "unscattered")
     return SlabLight(*(float(sum(share * getattr(part, name) for share, part in parts)) for name in names))
 

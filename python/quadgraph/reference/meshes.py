@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from itertools import permutations
+from itertools import pairwise, permutations
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +18,7 @@ from quadgraph.tetrahedralise import tetrahedralise
 
 OPEN, REFLECTING = 0, 1
 
-# The two triangles of a prism's side and its inside: tets through corners in order of their number.
+# Three tets of a prism with corners 0 1 2 below and 3 4 5 above them.
 _PRISM = np.array([[0, 1, 2, 5], [0, 1, 4, 5], [0, 3, 4, 5]])
 
 
@@ -82,15 +82,29 @@ def ball(radius: float, refinements: int, subdivisions: int = 3) -> Graph:
     return mesh
 
 
+def two_layer_ball(core_radius: float, radius: float, refinements: int, layers: int = 4) -> Graph:
+    """A ball whose tets respect a concentric sphere of `core_radius`: a ball of that size in prisms cut into tets.
+
+    layers: of prisms before refinement; the element size halves with every refinement.
+    """
+    core = ball(core_radius, refinements, subdivisions=2)
+    used = core.surface_vertex_count
+    steps = np.linspace(1, radius / core_radius, layers * 2**refinements + 1)
+    shells = [core.vertices[:used] * step for step in steps[1:]]
+    vertices = np.concatenate([core.vertices, *shells])
+    starts = [0, *(len(core.vertices) + used * np.arange(len(shells)))]
+    triangles = np.sort(core.faces, axis=1)
+    tets = [_prisms(triangles + low, triangles + high) for low, high in pairwise(starts)]
+    return _built(vertices, np.concatenate([core.tets, *tets]))
+
+
 def cylinder(radius: float, rings: int) -> Graph:
     """A segment of an infinite cylinder about z, as high as a ring is wide, its end caps reflecting."""
     points, triangles = _disc(radius, rings)
     heights = np.array([0.0, radius / rings])
     vertices = np.concatenate([np.column_stack([points, np.full(len(points), z)]) for z in heights])
-    # Cut through corners in order of their number, so that neighbouring prisms agree on the diagonal between them.
     triangles = np.sort(triangles, axis=1)
-    prisms = np.hstack([triangles, triangles + len(points)])
-    tets = prisms[:, _PRISM].reshape(-1, 4)
+    tets = _prisms(triangles, triangles + len(points))
     return with_walls(_built(vertices, tets), lambda normal: np.abs(normal[:, 2]) > 0.99)
 
 
@@ -148,6 +162,14 @@ def _built(points: np.ndarray, tets: np.ndarray) -> Graph:
     flipped = determinants(points, tets) < 0
     tets[flipped] = tets[flipped][:, [0, 1, 3, 2]]
     return graph.build(TetMesh(points, tets, mesher=None))
+
+
+def _prisms(lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
+    """Three tets (3 n, 4) per prism between triangles (n, 3), each row in ascending order.
+
+    The order makes neighbouring prisms agree on the diagonal of the side between them.
+    """
+    return np.hstack([lower, upper])[:, _PRISM].reshape(-1, 4)
 
 
 def _octahedron(points: np.ndarray, middle: np.ndarray) -> list[np.ndarray]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.special import eval_legendre, ive, kve
@@ -100,7 +101,7 @@ def _amplitudes(
     matrix[-moments:, starts[-2] :] = flux + boundary.matrix @ value
     right[-moments:] = boundary.matrix[:, 0] * boundary.source
     solution = np.linalg.solve(matrix, right)
-    return [solution[a:b] for a, b in zip(starts, starts[1:], strict=False)]
+    return [solution[a:b] for a, b in pairwise(starts)]
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import linalg
 
 from quadgraph.reference.fresnel import inside_cosines, lambertian_entry, reflectance_from_inside
 from quadgraph.reference.media import Medium
@@ -87,6 +88,10 @@ class _Modes:
         self.rate = np.sqrt(np.clip(squared, 0, None))
         self.shape = vectors / (self.mu * root)[:, None]  # p of each mode, (angles, modes)
         self.slope = self.mu[:, None] * self.shape * self.rate  # psi(mu) - psi(-mu) of a falling mode
+        keep, lose = 1 - self.reflectance[:, None], 1 + self.reflectance[:, None]
+        near, far = keep * self.shape + lose * self.slope, keep * self.shape - lose * self.slope
+        end = np.exp(-self.rate * depth)
+        self.conditions = linalg.lu_factor(np.block([[near, far * end], [far * end, near]]))
 
     def collided(self, light: Beam) -> tuple[float, float, float]:
         """Shares reflected, transmitted and absorbed of the light that entered as `light`."""
@@ -115,10 +120,6 @@ class _Modes:
     def _amplitudes(self, p: np.ndarray, m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Amplitudes of the falling and rising modes that meet both boundary conditions beside (p, m)."""
         keep, lose = 1 - self.reflectance, 1 + self.reflectance
-        near = keep[:, None] * self.shape + lose[:, None] * self.slope
-        far = keep[:, None] * self.shape - lose[:, None] * self.slope
-        end = np.exp(-self.rate * self.depth)
-        matrix = np.block([[near, far * end], [far * end, near]])
         right = np.concatenate([-(keep * p[0] + lose * m[0]), -(keep * p[1] - lose * m[1])])
-        falling, rising = np.split(np.linalg.solve(matrix, right), 2)
+        falling, rising = np.split(linalg.lu_solve(self.conditions, right), 2)
         return falling, rising

@@ -1,0 +1,152 @@
+"""Meshes that the engine, or its CPU reference, solves for a study."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from quadgraph.commands.scene import load_core
+from quadgraph.graph import Graph
+from quadgraph.reference import boundary, meshes, moments
+from quadgraph.reference.boundary import Boundary
+from quadgraph.reference.media import Medium
+
+_TOLERANCE = 1e-6  # of the engine's solver, single precision
+
+
+@dataclass(frozen=True)
+class Scheme:
+    """What is compared: a method, a source and a model of the engine, by the names it uses."""
+
+    method: str
+    source: str
+    model: str
+
+    @property
+    def name(self) -> str:
+        """All three in one."""
+        return f"{self.method} / {self.source} / {self.model}"
+
+    @property
+    def model_of(self) -> moments.ModelOf:
+        """The same model for the closed forms."""
+        return {"diffusion": moments.diffusion, "sp3": moments.sp3}[self.model]
+
+    def boundary(self, eta: float) -> Boundary:
+        """The same boundary condition for the closed forms."""
+        if self == PUBLISHED:
+            return boundary.published(eta)
+        return {"diffusion": boundary.diffusion, "sp3": boundary.sp3}[self.model](eta, self.source == "diffuse")
+
+
+PUBLISHED = Scheme("quadgraph-fdm", "diffuse", "diffusion")
+DIFFUSION = Scheme("fem", "buried", "diffusion")
+SP3 = Scheme("fem", "buried", "sp3")
+
+
+@dataclass(frozen=True)
+class Light:
+    """Irradiance that the surface lets in, (n_f, 3) W/mm^2, and the way it travels outside; None: Lambertian."""
+
+    q: np.ndarray
+    direction: tuple[float, float, float] | None
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Per outside face, in W/mm^2, (n_f, 3); power in W, (3,), under the names of the engine's report."""
+
+    phi: np.ndarray
+    exitance: np.ndarray
+    unscattered: np.ndarray
+    energy: dict[str, np.ndarray]
+    clipped: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A mesh with the centroids (n_f, 3) mm, outward unit normals and areas (n_f,) mm^2 of its outside faces."""
+
+    mesh: Graph
+    centre: np.ndarray
+    normal: np.ndarray
+    area: np.ndarray
+    solve: Callable[[np.ndarray, np.ndarray, float, Light, Scheme], Answer]
+
+    def homogeneous(self, media: list[Medium], eta: float, light: Light, scheme: Scheme) -> Answer:
+        """Solve with one medium per channel everywhere."""
+        return self.piecewise([media], np.zeros(len(self.mesh.nodes), np.int64), eta, light, scheme)
+
+    def piecewise(
+        self, regions: list[list[Medium]], region: np.ndarray, eta: float, light: Light, scheme: Scheme
+    ) -> Answer:
+        """Solve with the media of regions[region[i]] at node i."""
+        sigma_s_prime = np.array([[m.sigma_s_prime for m in channels] for channels in regions])[region]
+        sigma_a = np.array([[m.sigma_a for m in channels] for channels in regions])[region]
+        return self.solve(sigma_s_prime, sigma_a, eta, light, scheme)
+
+    def mean(self, values: np.ndarray, faces: np.ndarray) -> np.ndarray:
+        """Area-weighted mean (3,) of values (n_f, 3) over the chosen faces (n_f,) bool."""
+        return self.area[faces] @ values[faces] / self.area[faces].sum()
+
+
+# Makes a body of a mesh; which of the two solvers stands behind it is the caller's choice.
+BodyOf = Callable[[Graph], Body]
+
+
+def on_reference(mesh: Graph) -> Body:
+    """A body that the CPU reference solves, in double precision."""
+    core = load_core()
+    with tempfile.TemporaryDirectory(prefix="quadgraph-study-") as folder:
+        loaded = core.load(meshes.write(Path(folder) / "study.qgraph", [mesh]))
+
+    def solve(sigma_s_prime: np.ndarray, sigma_a: np.ndarray, eta: float, light: Light, scheme: Scheme) -> Answer:
+        result = core.solve_reference(
+            loaded,
+            0,
+            sigma_s_prime,
+            sigma_a,
+            eta,
+            light.q,
+            direction=light.direction,
+            method=scheme.method,
+            source=scheme.source,
+            model=scheme.model,
+        )
+        return _answer(result["phi_face"], result, result["energy"], result["clipped"])
+
+    return Body(mesh, *meshes.face_frames(mesh), solve)
+
+
+def on_engine(device: str = "") -> BodyOf:
+    """Bodies that the engine solves on the Vulkan device whose name contains `device`."""
+
+    def body_of(mesh: Graph) -> Body:
+        with tempfile.TemporaryDirectory(prefix="quadgraph-study-") as folder:
+            engine = load_core().Engine(meshes.write(Path(folder) / "study.qgraph", [mesh]), device=device)
+
+        def solve(sigma_s_prime: np.ndarray, sigma_a: np.ndarray, eta: float, light: Light, scheme: Scheme) -> Answer:
+            engine.set_optical(0, sigma_s_prime, sigma_a, eta)
+            engine.set_irradiance(0, light.q, light.direction)
+            report = engine.solve(
+                method=scheme.method,
+                source=scheme.source,
+                model=scheme.model,
+                tolerance=_TOLERANCE,
+                max_iterations=100_000,
+            )
+            field = engine.surface_field()
+            return _answer(field["phi"], field, report["energy"], report["clipped"])
+
+        return Body(mesh, *meshes.face_frames(mesh), solve)
+
+    return body_of
+
+
+def _answer(phi: np.ndarray, field: dict, energy: dict, clipped: np.ndarray) -> Answer:
+    values = (np.asarray(array, np.float64) for array in (phi, field["exitance"], field["unscattered"]))
+    return Answer(*values, {name: np.array(value) for name, value in energy.items()}, np.asarray(clipped, np.float64))
