@@ -1,4 +1,6 @@
 // One ray of the buried source through the tets; include after the push constants of walk_source.comp.
+// Nearly all of its time goes to loads (lavapipe: some 3 loads cost as much as all arithmetic of a tet), so that a tet is
+// read only as far as it is new: two words of its crossing, one vertex and, in a varied material, its coefficients.
 //
 // The ray is carried in barycentric coordinates, which pass from tet to tet with the shared corners: a point then never
 // leaves the mesh by rounding. The corner that the next tet does not share always sits in slot 3, opposite the face
@@ -6,6 +8,7 @@
 
 struct Corner {
   uint id;
+  uint place;      // among the corners of the present tet
   vec3 position;   // mm
   float l;         // barycentric coordinate of the ray's point
   vec3 scattered;  // towards this vertex, not yet added to its deposit
@@ -29,7 +32,7 @@ struct Exit {
 };
 
 Corner corner_0, corner_1, corner_2, corner_3;
-uvec4 tet_corners;  // of the present tet, in the order of `links`
+Optical optical;    // of the present tet
 vec3 absorbed;      // by this invocation's rays
 vec3 unscattered;   // of them: left through the surface, or still under way at the end
 
@@ -46,7 +49,7 @@ void attenuate(vec3 tau, out vec3 lost, out vec3 place) {
 }
 
 // Share of the loss that is scattered: never above 1, even where division rounds up.
-vec3 albedo(Optical optical) {
+vec3 albedo() {
   return min(optical.sigma_s_prime / max(optical.sigma_s_prime + optical.sigma_a, vec3(1e-30)), vec3(1));
 }
 
@@ -92,7 +95,7 @@ void scatter(uint tet, vec3 scattered, vec4 l, vec3 place) {
 
 // What the present tet takes from the ray: the exact integral of sigma_s' e^-tau against the basis functions along the
 // way to `l`, the rest absorbed.
-void cross_tet(inout Ray ray, Optical optical, float length, vec4 l) {
+void cross_tet(inout Ray ray, float length, vec4 l) {
   vec3 extinction = optical.sigma_s_prime + optical.sigma_a;
   vec3 lost, place;
   attenuate(extinction * length, lost, place);
@@ -102,7 +105,7 @@ void cross_tet(inout Ray ray, Optical optical, float length, vec4 l) {
   precise vec3 taken = ray.power - remaining;
   ray.carry = wanted - taken;
   ray.power = remaining;
-  vec3 scattered = taken * albedo(optical);
+  vec3 scattered = taken * albedo();
   absorbed += taken - scattered;
   scatter(ray.tet, scattered, l, place);
 }
@@ -116,11 +119,10 @@ void move_to(vec4 l) {
 
 // Leaves all power at the ray's point; in a clear channel it counts as unscattered.
 void end_here(Ray ray) {
-  Optical optical = push.optical.at[ray.tet];
   vec3 extinction = optical.sigma_s_prime + optical.sigma_a;
   bvec3 clear = equal(extinction, vec3(0));
   vec3 kept = mix(ray.power, vec3(0), clear);
-  vec3 scattered = kept * albedo(optical);
+  vec3 scattered = kept * albedo();
   absorbed += kept - scattered;
   unscattered += ray.power - kept;
   scatter(ray.tet, scattered, vec4(corner_0.l, corner_1.l, corner_2.l, corner_3.l), vec3(0));
@@ -137,7 +139,7 @@ void swap_with_3(inout Corner corner) {
 }
 
 // Puts the corner opposite the exit into slot 3 and returns what lies across.
-uint turn(Ray ray, uint slot) {
+uvec2 turn(Ray ray, uint slot) {
   if (slot == 0u) {
     swap_with_3(corner_0);
   } else if (slot == 1u) {
@@ -145,17 +147,18 @@ uint turn(Ray ray, uint slot) {
   } else {
     swap_with_3(corner_2);
   }
-  uint id = corner_3.id;
-  uint k = id == tet_corners.x ? 0u : id == tet_corners.y ? 1u : id == tet_corners.z ? 2u : 3u;
-  return push.links.at[4u * ray.tet + k];
+  return push.crossings.at[4u * ray.tet + corner_3.place];
 }
 
-void enter(inout Ray ray, uint tet) {
+void enter(inout Ray ray, uvec2 crossing) {
   flush(corner_3);
-  ray.tet = tet;
-  tet_corners = push.tets.at[tet];
-  uint id = tet_corners.x + tet_corners.y + tet_corners.z + tet_corners.w - corner_0.id - corner_1.id - corner_2.id;
-  corner_3 = Corner(id, push.vertices.at[id], 0.0, vec3(0));
+  ray.tet = crossing.x;
+  if (push.even == 0u) optical = push.optical.at[ray.tet];
+  uint id = crossing.y >> 8u;
+  corner_0.place = crossing.y >> 2u * corner_0.place & 3u;
+  corner_1.place = crossing.y >> 2u * corner_1.place & 3u;
+  corner_2.place = crossing.y >> 2u * corner_2.place & 3u;
+  corner_3 = Corner(id, crossing.y >> 2u * corner_3.place & 3u, push.vertices.at[id], 0.0, vec3(0));
 }
 
 // At an outside face from inside: part leaves, the rest goes on mirrored.
@@ -179,16 +182,15 @@ void walk(Ray ray) {
     Exit exit = find_exit(ray.direction);
     if (!exit.found) break;
     vec4 l = exit_point(exit);
-    Optical optical = push.optical.at[ray.tet];
-    cross_tet(ray, optical, exit.path, l);
+    cross_tet(ray, exit.path, l);
     move_to(l);
     bool spent = all(lessThanEqual(ray.power, end));
     if (spent && optical.sigma_s_prime + optical.sigma_a != vec3(0)) break;
-    uint across = turn(ray, exit.slot);
-    if (across < push.tet_count) {
-      enter(ray, across);
+    uvec2 crossing = turn(ray, exit.slot);
+    if (crossing.x < push.tet_count) {
+      enter(ray, crossing);
     } else {
-      meet_surface(ray, across - push.tet_count, exit.outward);
+      meet_surface(ray, crossing.x - push.tet_count, exit.outward);
       if (ray.power == vec3(0)) break;
     }
   }

@@ -20,12 +20,16 @@ const uint LAMBERTIAN_RAYS = 2u * LAMBERTIAN_NODES;
 QG_ARRAY(BeamRecords, BeamRecord);
 #endif
 
+// A crossing, out of the face opposite corner k of a tet: (the tet across, or tet_count + face; its new vertex << 8 |
+// for each corner j two bits from 2 j on: its place in the tet across, for k that of the new vertex).
+#define CROSSING_VERTICES 16777216
+
 // walk_source.comp: follows the rays of one beam. One invocation per face; of a Lambertian beam, one per face and ray
 // of the bundle.
 struct WalkSourcePush {
   QG_REF(Vec3s) vertices;
   QG_REF(Uvec4s) tets;
-  QG_REF(Uints) links;  // four per tet
+  QG_REF(Uvec2s) crossings;  // four per tet
   QG_REF(Uvec3s) faces;
   QG_REF(Uints) face_tets;
   QG_REF(Uints) face_kinds;
@@ -40,6 +44,7 @@ struct WalkSourcePush {
   uint rays;  // per origin: 1, or LAMBERTIAN_RAYS
   uint tet_count;
   uint fem;
+  uint even;  // 1: the same coefficients everywhere
   float eta;
 };
 

@@ -61,22 +61,27 @@ vec3 refracted(vec3 incoming, vec3 normal) {
   return normalize(incoming / push.eta + (cos_i / push.eta - cos_t) * normal);
 }
 
-void enter_face(uint face, uvec3 ids, mat3 corners, vec3 l) {
-  uint tet = push.face_tets.at[face];
-  tet_corners = push.tets.at[tet];
-  uint apex = tet_corners.x + tet_corners.y + tet_corners.z + tet_corners.w - ids.x - ids.y - ids.z;
-  corner_0 = Corner(ids.x, corners[0], l.x, vec3(0));
-  corner_1 = Corner(ids.y, corners[1], l.y, vec3(0));
-  corner_2 = Corner(ids.z, corners[2], l.z, vec3(0));
-  corner_3 = Corner(apex, push.vertices.at[apex], 0.0, vec3(0));
+uint place_of(uint id, uvec4 tet) {
+  return id == tet.x ? 0u : id == tet.y ? 1u : id == tet.z ? 2u : 3u;
+}
+
+void enter_face(uint tet, uvec3 ids, mat3 corners, vec3 l) {
+  uvec4 all = push.tets.at[tet];
+  uint apex = all.x + all.y + all.z + all.w - ids.x - ids.y - ids.z;
+  optical = push.optical.at[tet];
+  corner_0 = Corner(ids.x, place_of(ids.x, all), corners[0], l.x, vec3(0));
+  corner_1 = Corner(ids.y, place_of(ids.y, all), corners[1], l.y, vec3(0));
+  corner_2 = Corner(ids.z, place_of(ids.z, all), corners[2], l.z, vec3(0));
+  corner_3 = Corner(apex, place_of(apex, all), push.vertices.at[apex], 0.0, vec3(0));
 }
 
 // Ray `ray` of every origin on a face.
 void walk_from(uint face, uint ray) {
   vec3 q[FACE_QUARTERS];
+  vec3 inverse = push.scale.at[0].inverse;
   vec3 least = vec3(NEVER), largest = vec3(0), sum = vec3(0);
   for (uint k = 0u; k < FACE_QUARTERS; ++k) {
-    q[k] = push.quarter_q.at[FACE_QUARTERS * face + k] * push.scale.at[0].inverse;
+    q[k] = push.quarter_q.at[FACE_QUARTERS * face + k] * inverse;
     least = min(least, q[k]);
     largest = max(largest, q[k]);
     sum += q[k];
@@ -88,13 +93,14 @@ void walk_from(uint face, uint ray) {
   float area = 0.5 * length(normal);
   normal /= 2.0 * area;
   bool one = one_ray_does(least, largest, corners, area);
+  uint tet = push.face_tets.at[face];
   float share = 0.25 * area * share_of(ray, push.rays);
   for (uint k = one ? FACE_CENTRE : 0u; k < FACE_QUARTERS; ++k) {
     vec3 power = share * (one ? sum : q[k]);
     if (power == vec3(0)) continue;
     vec3 l = quarter_centre(k);
-    enter_face(face, ids, corners, l);
-    walk(Ray(push.face_tets.at[face], refracted(incoming(ray, corners * l, normal), normal), power, vec3(0)));
+    enter_face(tet, ids, corners, l);
+    walk(Ray(tet, refracted(incoming(ray, corners * l, normal), normal), power, vec3(0)));
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "engine/graph/error.h"
+
 namespace quadgraph {
 namespace {
 
@@ -26,19 +28,51 @@ std::uint64_t sums_bytes(const LevelBuffers& level, std::uint32_t beam_kind) {
 // Of one beam: every invocation looks at its face; half the faces are lit, evenly, and a ray crosses ten tets, about as
 // many as in marble at the finest level.
 std::uint64_t walk_bytes(const LevelBuffers& level, std::uint32_t ray_count) {
-  constexpr std::uint64_t tet_bytes =
-      sizeof(glm::uvec4) + sizeof(std::uint32_t) + vec3_bytes + sizeof(gpu::Optical) + 2 * power_bytes;
+  constexpr std::uint64_t tet_bytes = sizeof(glm::uvec2) + vec3_bytes + sizeof(gpu::Optical) + 2 * power_bytes;
   return std::uint64_t{level.face_count} * ray_count * (FACE_QUARTERS * vec3_bytes + 10 * tet_bytes / 2);
+}
+
+int place_of(std::uint32_t vertex, const glm::uvec4& tet) {
+  int k = 0;
+  while (k < 3 && tet[k] != vertex) ++k;
+  return k;
+}
+
+// From `tet` out of the face opposite corner k into the tet `across`.
+glm::uvec2 crossing(const Level& level, const glm::uvec4& tet, int k, std::uint32_t across) {
+  if (across >= level.tet_count()) return {across, 0};
+  const glm::uvec4& next = level.tets[across];
+  const std::uint32_t fresh = next[0] + next[1] + next[2] + next[3] - tet[0] - tet[1] - tet[2] - tet[3] + tet[k];
+  std::uint32_t packed = fresh << 8;
+  for (int j = 0; j < 4; ++j) {
+    packed |= static_cast<std::uint32_t>(place_of(j == k ? fresh : tet[j], next)) << 2 * j;
+  }
+  return {across, packed};
+}
+
+std::vector<glm::uvec2> crossings(const Level& level) {
+  std::vector<glm::uvec2> result;
+  result.reserve(4 * level.tets.size());
+  for (std::size_t t = 0; t < level.tets.size(); ++t) {
+    for (int k = 0; k < 4; ++k) result.push_back(crossing(level, level.tets[t], k, level.links[t][k]));
+  }
+  return result;
 }
 
 }  // namespace
 
-SourceWalk::SourceWalk(vk::Context& context, const LevelBuffers& level, std::uint32_t number)
+SourceWalk::SourceWalk(vk::Context& context, const Level& level, std::uint32_t number)
     : prefix_("level " + std::to_string(number) + " "),
-      unscattered_(context, level.face_count * power_bytes, vk::Place::device, prefix_ + "unscattered") {}
+      unscattered_(context, level.face_count() * power_bytes, vk::Place::device, prefix_ + "unscattered") {
+  if (level.vertex_count() > CROSSING_VERTICES) {
+    throw InputError(prefix_ + "has " + std::to_string(level.vertex_count()) +
+                     " vertices; the buried source takes up to " + std::to_string(CROSSING_VERTICES));
+  }
+  crossings_ = vk::upload<glm::uvec2>(context, crossings(level), prefix_ + "crossings");
+}
 
-void SourceWalk::record(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, Method method,
-                        double eta) {
+void SourceWalk::record(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, Method method, double eta,
+                        bool even) {
   if (walked_[carrier(method)]) return;
   vk::Context& context = work.recorder.context();
   vk::Buffer& deposit = deposits_[carrier(method)];
@@ -59,7 +93,7 @@ void SourceWalk::record(Workspace& work, const LevelBuffers& level, const BeamBu
     const gpu::WalkSourcePush push{
         .vertices = level.vertices.address(),
         .tets = level.tets.address(),
-        .links = level.links.address(),
+        .crossings = crossings_.address(),
         .faces = level.faces.address(),
         .face_tets = level.face_tets.address(),
         .face_kinds = level.face_kind.address(),
@@ -74,6 +108,7 @@ void SourceWalk::record(Workspace& work, const LevelBuffers& level, const BeamBu
         .rays = rays(beams.kinds[beam]),
         .tet_count = level.tet_count,
         .fem = method == Method::fem ? 1u : 0u,
+        .even = even ? 1u : 0u,
         .eta = static_cast<float>(eta)};
     work.recorder.dispatch(work.passes.walk_source, push, std::uint64_t{level.face_count} * push.rays, "source walk",
                            walk_bytes(level, push.rays));

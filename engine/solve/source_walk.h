@@ -28,14 +28,16 @@ std::vector<glm::dvec3> powers(std::span<const std::uint32_t> words, const glm::
 
 class SourceWalk {
  public:
-  SourceWalk(vk::Context& context, const LevelBuffers& level, std::uint32_t number);
+  // Throws InputError if the level has too many vertices.
+  SourceWalk(vk::Context& context, const Level& level, std::uint32_t number);
 
   // Light, material or shape have changed.
   void invalidate() { walked_ = {false, false}; }
 
   // Walks, unless that has been done for the present light: level.beam_q of every beam, scaled by work.scale. The
-  // graph methods share their deposits.
-  void record(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, Method method, double eta);
+  // graph methods share their deposits. `even`: level.optical is the same everywhere, which takes a third less time.
+  void record(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, Method method, double eta,
+              bool even);
 
   // b of the solve, and its norm, from the deposits of a walk recorded before.
   void record_right_hand_side(Workspace& work, const LevelBuffers& level, Method method, OperatorBuffers& op) const;
@@ -53,6 +55,7 @@ class SourceWalk {
   std::string prefix_;
   std::array<bool, 2> walked_ = {false, false};  // by carrier
   std::array<vk::Buffer, 2> deposits_;           // by carrier, made at first use
+  vk::Buffer crossings_;                         // walk_shared.h
   vk::Buffer unscattered_;
   vk::Buffer sums_, sums_on_host_;  // fixed point, per beam and workgroup absorbed and unscattered
   vk::Buffer scale_on_host_;

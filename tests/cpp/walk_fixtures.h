@@ -31,6 +31,7 @@ struct WalkInput {
   gpu::BeamRecord beam{gpu::BEAM_DIRECTIONAL, {1, 0, 0}};
   Method method = Method::fem;
   double eta = 1;
+  bool even = false;  // `optical` is constant
 };
 
 struct GpuWalk {
@@ -81,9 +82,9 @@ inline GpuWalk walk(vk::Context& context, const WalkInput& input) {
   const BeamBuffers beams{{input.beam.kind}, vk::upload<gpu::BeamRecord>(context, std::span(&input.beam, 1), "beams")};
 
   Workspace work(context, buffers.node_count);
-  SourceWalk walk(context, buffers, 0);
+  SourceWalk walk(context, level.view(), 0);
   record_scale(work, buffers);
-  walk.record(work, buffers, beams, input.method, input.eta);
+  walk.record(work, buffers, beams, input.method, input.eta, input.even);
   work.recorder.submit();
   const glm::dvec3 scale(vk::download<gpu::Scale>(context, work.scale)[0].scale);
   const auto deposit = vk::download<std::uint32_t>(context, walk.deposit(input.method));
