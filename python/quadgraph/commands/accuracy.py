@@ -14,6 +14,8 @@ from quadgraph.commands import scene
 # Study to its module of quadgraph.reference.studies.
 STUDIES = {
     "slab": "slab",
+    "sphere": "sphere",
+    "half-space": "half_space",
     "orders": "orders",
     "coarse": "coarse",
 }
