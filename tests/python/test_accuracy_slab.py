@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
-from quadgraph.reference import bodies
-from quadgraph.reference.bodies import DIFFUSION, SP3
-from quadgraph.reference.media import media
-from quadgraph.reference.slab import discrete_ordinates
+from quadgraph.reference import bodies, closed_forms, meshes
+from quadgraph.reference.bodies import DIFFUSION, SP3, Light, Scheme
+from quadgraph.reference.closed_forms import Layer
+from quadgraph.reference.media import Medium, media
+from quadgraph.reference.slab import COLLIMATED, discrete_ordinates
 from quadgraph.reference.studies import coarse, slab
 
 pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
@@ -52,6 +54,29 @@ def test_energy_is_conserved_from_dense_to_thin_bodies(column):
         for light in slab.solved(column, media(name), 1.3, False, SP3):
             total = light.reflectance + light.transmittance + light.absorbed + light.unscattered
             assert total == pytest.approx(1, abs=1e-5)
+
+
+LAYERS = [Layer(Medium(3.0, 0.01), 1.0), Layer(Medium(0.3, 0.002), 2.0), Layer(Medium(1.0, 0.05), 1.0)]
+
+
+@pytest.mark.parametrize("model", ["diffusion", "sp3"])
+@pytest.mark.parametrize("source", ["diffuse", "buried"])
+def test_layers_are_joined_as_the_closed_form_joins_them(source, model):
+    """Contrast of ten between neighbours, at element boundaries: nothing may leak there."""
+    scheme = Scheme("fem", source, model)
+    step, eta = 0.05, 1.3
+    count = round(sum(layer.thickness for layer in LAYERS) / step)
+    body = bodies.on_reference(meshes.column(np.full(count, step), 2 * step))
+    depth = np.concatenate([body.mesh.inner, body.centre])[:, 2]
+    region = np.minimum(np.searchsorted(np.cumsum([layer.thickness for layer in LAYERS]), depth), len(LAYERS) - 1)
+    lit, unlit = body.normal[:, 2] < -0.5, body.normal[:, 2] > 0.5
+    light = Light(np.outer(lit, np.ones(3)), (0.0, 0.0, 1.0))
+    answer = body.piecewise([[layer.medium] * 3 for layer in LAYERS], region, eta, light, scheme)
+    beam = COLLIMATED if source == "buried" else None
+    exact = closed_forms.layered_slab(LAYERS, scheme.model_of, scheme.boundary(eta), eta, beam)
+    found = [body.mean(answer.exitance, faces)[0] for faces in (lit, unlit)]
+    print(f"{scheme.name}: R {found[0]:.5f} of {exact.reflectance:.5f}, T {found[1]:.5f} of {exact.transmittance:.5f}")
+    assert found == pytest.approx([exact.reflectance, exact.transmittance], rel=0.003)
 
 
 # Errors in % of R and T from physics.md, per row of coarse.LAYERS and column of coarse.CASES. Its truncation of R and
