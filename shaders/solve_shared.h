@@ -43,7 +43,7 @@ const float LAMBERTIAN_W[4] = {0.1739274226f, 0.3260725774f, 0.3260725774f, 0.17
 const float WALK_END = 1e-3f;
 // Tets that a ray crosses at most: light trapped by total reflection in a clear body ends here. Four such rays of one
 // invocation stay below the 65535 turns after which lavapipe leaves all loops.
-const uint MAX_WALK_STEPS = 12288u;
+const uint MAX_WALK_STEPS = 4096u;
 
 const uint SOLVE_RUNNING = 0u;
 const uint SOLVE_CONVERGED = 1u;

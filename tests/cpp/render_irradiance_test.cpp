@@ -126,6 +126,55 @@ TEST_CASE("q follows the cosine and the exact Fresnel transmittance, and lights 
   check_silent(context);
 }
 
+TEST_CASE("every light has its own quarters, which make up q") {
+  vk::Context context({.validation = true, .device = ""});
+  const Shape shape = sphere({0, 0, 0}, 10, 1);
+  const std::vector<Light> lights = {parse_light("point:0,0,14:5000/100/0"), parse_light("directional:0,-1,0:0/1/3")};
+  const LevelBuffers level = upload_as_level(context, shape, lights.size());
+  ShadowMaps shadows(context);
+  shadows.update(upload_as_display(context, shape), bounding_sphere(shape.vertices), lights);
+  IrradiancePass(context).run(level, 0, shadows, 1.0f);
+  const auto q = vk::download<glm::vec3>(context, level.q);
+  const auto quarters = vk::download<glm::vec3>(context, level.beam_q);
+  REQUIRE(quarters.size() == lights.size() * FACE_QUARTERS * shape.faces.size());
+  std::size_t lit = 0;
+  for (std::size_t f = 0; f < shape.faces.size(); ++f) {
+    glm::vec3 sum(0);
+    for (std::size_t light = 0; light < lights.size(); ++light) {
+      for (std::size_t k = 0; k < FACE_QUARTERS; ++k) {
+        sum += quarters[(light * shape.faces.size() + f) * FACE_QUARTERS + k];
+      }
+    }
+    for (int c = 0; c < 3; ++c) CHECK(sum[c] / FACE_QUARTERS == doctest::Approx(q[f][c]).epsilon(1e-6));
+    // The point light falls off over the face: the mean over a quarter of its four parts' centroids.
+    const glm::vec3 n = glm::normalize(face_normal(shape, f));
+    std::array<glm::vec3, 3> corner;
+    for (int k = 0; k < 3; ++k) corner[static_cast<std::size_t>(k)] = shape.vertices[shape.faces[f][k]];
+    const glm::vec3 centre = (corner[0] + corner[1] + corner[2]) / 3.0f;
+    if (glm::dot(glm::normalize(glm::vec3(0, 0, 14) - centre), n) < 0.5f) continue;
+    ++lit;
+    const auto middle = [](const std::array<glm::vec3, 3>& t, std::size_t k) {
+      return std::array<glm::vec3, 3>{t[k], (t[k] + t[(k + 1) % 3]) / 2.0f, (t[k] + t[(k + 2) % 3]) / 2.0f};
+    };
+    const auto inner = [](const std::array<glm::vec3, 3>& t) {
+      return std::array<glm::vec3, 3>{(t[0] + t[1]) / 2.0f, (t[1] + t[2]) / 2.0f, (t[2] + t[0]) / 2.0f};
+    };
+    for (std::size_t k = 0; k < FACE_QUARTERS; ++k) {
+      const auto quarter = k < 3 ? middle(corner, k) : inner(corner);
+      double expected = 0;
+      for (std::size_t part = 0; part < 4; ++part) {
+        const auto t = part < 3 ? middle(quarter, part) : inner(quarter);
+        const glm::vec3 to_light = glm::vec3(0, 0, 14) - (t[0] + t[1] + t[2]) / 3.0f;
+        const double d = glm::length(to_light);
+        expected += 5000 / (4 * pi) * glm::dot(n, to_light) / (d * d * d) / 4;
+      }
+      CHECK(quarters[f * FACE_QUARTERS + k].r == doctest::Approx(expected).epsilon(1e-4));
+    }
+  }
+  CHECK(lit > 0);
+  check_silent(context);
+}
+
 TEST_CASE("without lights no light enters") {
   vk::Context context({.validation = true, .device = ""});
   for (const glm::vec3& q : irradiance(context, sphere({0, 0, 0}, 1, 2), {}, 1.3f)) CHECK(q == glm::vec3(0));

@@ -1,0 +1,41 @@
+// The structs of shaders/walk_shared.h lie in memory as the compiled shaders read them.
+#include <doctest/doctest.h>
+
+#include <cstddef>
+
+#include "engine/vk/pipeline.h"
+#include "shaders/walk_shared.h"
+#include "spirv/vertex_unscattered.comp.h"
+#include "spirv/walk_source.comp.h"
+#include "tests/cpp/spirv_layout.h"
+
+using namespace quadgraph;
+
+namespace {
+
+using Members = std::map<std::string, std::uint32_t>;
+
+#define MEMBER(Type, name) {#name, static_cast<std::uint32_t>(offsetof(gpu::Type, name))}
+
+}  // namespace
+
+TEST_CASE("the walk and C++ agree on their structs") {
+  const SpirvLayout walk((vk::Spirv(walk_source_comp)));
+  CHECK(walk.offset.at("BeamRecord") == Members{MEMBER(BeamRecord, kind), MEMBER(BeamRecord, vector)});
+  CHECK(walk.block_stride.at("BeamRecords") == sizeof(gpu::BeamRecord));
+  CHECK(walk.offset.at("WalkSourcePush") ==
+        Members{MEMBER(WalkSourcePush, vertices), MEMBER(WalkSourcePush, tets), MEMBER(WalkSourcePush, crossings),
+                MEMBER(WalkSourcePush, faces), MEMBER(WalkSourcePush, face_tets), MEMBER(WalkSourcePush, face_kinds),
+                MEMBER(WalkSourcePush, optical), MEMBER(WalkSourcePush, beam), MEMBER(WalkSourcePush, quarter_q),
+                MEMBER(WalkSourcePush, scale), MEMBER(WalkSourcePush, deposit), MEMBER(WalkSourcePush, unscattered),
+                MEMBER(WalkSourcePush, sums), MEMBER(WalkSourcePush, face_count), MEMBER(WalkSourcePush, rays),
+                MEMBER(WalkSourcePush, tet_count), MEMBER(WalkSourcePush, fem), MEMBER(WalkSourcePush, even),
+                MEMBER(WalkSourcePush, eta)});
+  CHECK(sizeof(gpu::WalkSourcePush) <= 128);  // what every device of Vulkan 1.3 has room for
+  const SpirvLayout vertex((vk::Spirv(vertex_unscattered_comp)));
+  CHECK(vertex.offset.at("VertexUnscatteredPush") ==
+        Members{MEMBER(VertexUnscatteredPush, vertices), MEMBER(VertexUnscatteredPush, faces),
+                MEMBER(VertexUnscatteredPush, face_offset), MEMBER(VertexUnscatteredPush, face_incidence),
+                MEMBER(VertexUnscatteredPush, unscattered), MEMBER(VertexUnscatteredPush, scale),
+                MEMBER(VertexUnscatteredPush, exitance), MEMBER(VertexUnscatteredPush, count)});
+}
