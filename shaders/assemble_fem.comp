@@ -1,67 +1,57 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "optics.h"
 #include "solve_shared.h"
+#include "optics.h"
+#include "entries.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
-layout(push_constant, scalar) uniform Block {
-  AssembleFemPush push;
+layout(push_constant, scalar) uniform Block { AssembleFemPush push; };
+
+// Sums over the elements around an edge, or over all edges of a row.
+struct Sums {
+  vec3 stiffness, absorption, relaxation;
+  float area;
 };
 
-uint row_begin;
-
-void add(uint place, vec3 value) {
-  push.rows.weight.at[row_begin + place * SLICE_ROWS] += value;
-}
-
-// Adds one tet to the row of its corner `own`; returns what belongs on the diagonal.
-vec3 add_tet(uvec2 incidence) {
-  uint tet = incidence.x >> 2u, own = incidence.x & 3u;
-  uvec4 corners = push.tets.at[tet];
-  vec3 p = push.vertices.at[corners[own]];
-  vec3 e1 = push.vertices.at[corners[own == 0u ? 1u : 0u]] - p;
-  vec3 e2 = push.vertices.at[corners[own <= 1u ? 2u : 1u]] - p;
-  vec3 e3 = push.vertices.at[corners[own <= 2u ? 3u : 2u]] - p;
-  // The gradient of corner k is n_k / (6 V), up to an orientation that cancels in products.
-  vec3 n1 = cross(e2, e3), n2 = cross(e3, e1), n3 = cross(e1, e2);
-  vec3 n0 = -(n1 + n2 + n3);
-  float six_volume = abs(dot(e1, n1));
-  Optical optical = push.optical.at[tet];
-  vec3 stiffness = kappa(optical) / (6.0 * six_volume);
-  vec3 mass = optical.sigma_a * (six_volume / 120.0);
-  vec3 k1 = stiffness * dot(n0, n1), k2 = stiffness * dot(n0, n2), k3 = stiffness * dot(n0, n3);
-  add(incidence.y & 1023u, k1 + mass);
-  add(incidence.y >> 10u & 1023u, k2 + mass);
-  add(incidence.y >> 20u, k3 + mass);
-  // Minus the sum of the other entries, not n0.n0: constants then carry no flux, to rounding.
-  return 2.0 * mass - (k1 + k2 + k3);
-}
-
-vec3 add_face(uvec2 incidence) {
-  uvec3 corners = push.faces.at[incidence.x];
-  vec3 p = push.vertices.at[corners.x];
-  float area = 0.5 * length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));
-  vec3 mass = vec3(area / (24.0 * push.mismatch));
-  add(incidence.y & 1023u, mass);
-  add(incidence.y >> 10u & 1023u, mass);
-  return 2.0 * mass;
+// Everything at the edge of an entry: the tets around it and, on the surface, two faces.
+Sums around_edge(uint entry) {
+  Sums sums = Sums(vec3(0), vec3(0), vec3(0), 0.0);
+  for (uint k = push.ring_offset.at[entry]; k < push.ring_offset.at[entry + 1u]; ++k) {
+    uint element = push.ring.at[k];
+    uint index = element >> 3u, edge = element & 7u;
+    if (edge == RING_FACE) {
+      sums.area += push.face_area.at[index] / 12.0;
+      continue;
+    }
+    Optical optical = push.optical.at[index];
+    float mass = push.tet_shape.at[TET_SHAPE * index + 6u] / 20.0;
+    sums.stiffness += kappa(optical) * push.tet_shape.at[TET_SHAPE * index + edge];
+    sums.absorption += optical.sigma_a * mass;
+    sums.relaxation += relaxation_of(optical) * mass;
+  }
+  return sums;
 }
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= push.count) return;
   uint slice = i / SLICE_ROWS;
-  row_begin = push.rows.slice_offset.at[slice] + i % SLICE_ROWS;
   uint end = push.rows.slice_offset.at[slice + 1u];
-  for (uint e = row_begin; e < end; e += SLICE_ROWS) push.rows.weight.at[e] = vec3(0);
-  vec3 diagonal = vec3(0);
-  for (uint k = push.tet_offset.at[i]; k < push.tet_offset.at[i + 1u]; ++k) {
-    diagonal += add_tet(push.tet_incidence.at[k]);
+  Sums row = Sums(vec3(0), vec3(0), vec3(0), 0.0);
+  for (uint e = push.rows.slice_offset.at[slice] + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
+    Sums edge = around_edge(e);
+    push.rows.weight.at[e] = sum_of(entry_of(edge.stiffness, edge.absorption, edge.relaxation),
+                                    boundary_entry(push.boundary, vec3(edge.area)));
+    row.stiffness += edge.stiffness;
+    row.absorption += edge.absorption;
+    row.relaxation += edge.relaxation;
+    row.area += edge.area;
   }
-  if (i < push.surface_count) {
-    for (uint k = push.face_offset.at[i]; k < push.face_offset.at[i + 1u]; ++k) {
-      diagonal += add_face(push.face_incidence.at[k]);
-    }
-  }
-  push.rows.diagonal.at[i] = diagonal;
+  // A vertex meets every tet around it along three edges and every face along two; consistent masses have twice the
+  // weight on the diagonal. Constants carry no flux: the stiffness there is minus the sum of the others.
+  push.rows.diagonal.at[i] =
+      sum_of(entry_of(-row.stiffness, 2.0 / 3.0 * row.absorption, 2.0 / 3.0 * row.relaxation),
+             boundary_entry(push.boundary, vec3(row.area)));
+  push.rows.row_sum.at[i] = sum_of(entry_of(vec3(0), 5.0 / 3.0 * row.absorption, 5.0 / 3.0 * row.relaxation),
+                                   boundary_entry(push.boundary, vec3(2.0 * row.area)));
 }

@@ -1,12 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "optics.h"
 #include "solve_shared.h"
+#include "optics.h"
+#include "entries.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
-layout(push_constant, scalar) uniform Block {
-  AssembleFvPush push;
-};
+layout(push_constant, scalar) uniform Block { AssembleFvPush push; };
 
 vec3 vertex(uvec4 tet, uint k) {
   return push.vertices.at[tet[k & 3u]];
@@ -54,10 +53,17 @@ void main() {
       uint tet = i < push.tet_count ? i : j;
       g = conductance(tet, face_towards(tet, i < push.tet_count ? j : i), area);
     }
-    push.rows.weight.at[e] = -g;
+    push.rows.weight.at[e] = entry_of(-g, vec3(0), vec3(0));
     sum += g;
   }
-  push.rows.diagonal.at[i] =
-      sum + (i < push.tet_count ? push.optical.at[i].sigma_a * volume(i) : vec3(area / (2.0 * push.mismatch)));
   push.to_phi.at[i] = vec3(1);
+  if (i < push.tet_count) {
+    Optical optical = push.optical.at[i];
+    float size = volume(i);
+    push.rows.row_sum.at[i] = entry_of(vec3(0), optical.sigma_a * size, relaxation_of(optical) * size);
+  } else {
+    bool open = push.face_kinds.at[i - push.tet_count] == FACE_OPEN;
+    push.rows.row_sum.at[i] = boundary_entry(push.boundary, vec3(open ? area : 0.0));
+  }
+  push.rows.diagonal.at[i] = sum_of(push.rows.row_sum.at[i], entry_of(sum, vec3(0), vec3(0)));
 }

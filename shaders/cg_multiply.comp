@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "solve_shared.h"
+#include "fields.glsl"
 #include "rows.glsl"
 #include "reduce.glsl"
 #include "convergence.glsl"
@@ -20,10 +21,9 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   vec3 energy = vec3(0);
   if (i < push.count) {
-    vec3 p = push.p.at[i];
-    vec3 product = push.rows.diagonal.at[i] * p + off_diagonal(push.rows, push.p, i);
-    push.product.at[i] = product;
-    energy = p * product;
+    Field result = row_times(push.rows, push.p, i);
+    push.product.at[i] = result;
+    energy = product(push.p.at[i], result);
   }
   vec3 total;
   if (!reduce_dispatch(push.reduction, energy, total)) return;

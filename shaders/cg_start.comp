@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "solve_shared.h"
+#include "fields.glsl"
 #include "rows.glsl"
 #include "reduce.glsl"
 #include "convergence.glsl"
@@ -35,15 +36,15 @@ void decide(vec3 rz) {
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
-  vec3 product = vec3(0);
+  vec3 square = vec3(0);
   if (i < push.count) {
-    vec3 r = residual(push.rows, push.b, push.x, i);
-    vec3 z = r / push.rows.diagonal.at[i];
+    Field r = residual(push.rows, push.b, push.x, i);
+    Field z = solved(push.rows.diagonal.at[i], r);
     push.r.at[i] = r;
     push.p.at[i] = z;
-    product = r * z;
+    square = product(r, z);
   }
   vec3 rz;
-  if (!reduce_dispatch(push.reduction, product, rz)) return;
+  if (!reduce_dispatch(push.reduction, square, rz)) return;
   if (gl_LocalInvocationID.x == 0u) decide(rz);
 }

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "solve_shared.h"
+#include "fields.glsl"
 #include "reduce.glsl"
 #include "convergence.glsl"
 
@@ -25,15 +26,15 @@ void decide(vec3 rz) {
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
-  vec3 product = vec3(0);
+  vec3 square = vec3(0);
   if (i < push.count) {
     vec3 alpha = push.state.at[0].alpha;
-    push.x.at[i] += alpha * push.p.at[i];
-    vec3 r = push.r.at[i] - alpha * push.product.at[i];
+    push.x.at[i] = add_scaled(push.x.at[i], alpha, push.p.at[i]);
+    Field r = add_scaled(push.r.at[i], -alpha, push.product.at[i]);
     push.r.at[i] = r;
-    product = r * r / push.diagonal.at[i];
+    square = product(r, solved(push.diagonal.at[i], r));
   }
   vec3 rz;
-  if (!reduce_dispatch(push.reduction, product, rz)) return;
+  if (!reduce_dispatch(push.reduction, square, rz)) return;
   if (gl_LocalInvocationID.x == 0u) decide(rz);
 }

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "solve_shared.h"
+#include "fields.glsl"
 #include "reduce.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
@@ -13,9 +14,10 @@ vec3 absorbed(uint tet) {
   float volume = abs(dot(e1, cross(e2, e3))) / 6.0;
   vec3 phi;
   if (push.fem == 1u) {
-    phi = 0.25 * (push.x.at[corners.x] + push.x.at[corners.y] + push.x.at[corners.z] + push.x.at[corners.w]);
+    phi = 0.25 * (push.x.at[corners.x].phi + push.x.at[corners.y].phi + push.x.at[corners.z].phi +
+                  push.x.at[corners.w].phi);
   } else {
-    phi = push.to_phi.at[tet] * push.x.at[tet];
+    phi = push.to_phi.at[tet] * push.x.at[tet].phi;
   }
   return push.optical.at[tet].sigma_a * phi * push.scale.at[0].scale * volume;
 }
@@ -28,7 +30,9 @@ void main() {
     uvec3 corners = push.faces.at[i];
     vec3 p = push.vertices.at[corners.x];
     float area = 0.5 * length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));
-    vec3 q = push.q.at[i], exitance = push.exitance.at[i];
+    vec3 q = push.face_kinds.at[i] == FACE_OPEN ? push.q.at[i] : vec3(0);
+    vec3 exitance = push.exitance.at[i] * push.clip.at[0].factor;
+    push.exitance.at[i] = exitance;
     sums.entered = area * q;
     sums.exitance = area * exitance;
     // One factor for all channels, which are weighed alike.

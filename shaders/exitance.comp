@@ -1,22 +1,64 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "solve_shared.h"
+#include "fields.glsl"
+#include "reduce.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { ExitancePush push; };
 
+// phi, and the outward flux as it is and without what is negative at the carriers, in units of the scale.
+struct Surface {
+  vec3 phi, raw, positive;
+};
+
+Surface at_face(uint f) {
+  if (push.fem == 0u) {
+    uint node = push.tet_count + f;
+    Field x = scaled(push.to_phi.at[node], push.x.at[node]);
+    vec3 flux = outward_flux(push.boundary, x);
+    return Surface(x.phi, flux, max(flux, vec3(0)));
+  }
+  Surface mean = Surface(vec3(0), vec3(0), vec3(0));
+  uvec3 corners = push.faces.at[f];
+  for (int k = 0; k < 3; ++k) {
+    Field x = push.x.at[corners[k]];
+    vec3 flux = outward_flux(push.boundary, x);
+    mean.phi += x.phi / 3.0;
+    mean.raw += flux / 3.0;
+    mean.positive += max(flux, vec3(0)) / 3.0;
+  }
+  return mean;
+}
+
+float area_of(uint f) {
+  uvec3 corners = push.faces.at[f];
+  vec3 p = push.vertices.at[corners.x];
+  return 0.5 * length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));
+}
+
 void main() {
   uint f = gl_GlobalInvocationID.x;
-  if (f >= push.count) return;
-  vec3 phi;
-  if (push.fem == 1u) {
-    uvec3 corners = push.faces.at[f];
-    phi = (push.x.at[corners.x] + push.x.at[corners.y] + push.x.at[corners.z]) / 3.0;
-  } else {
-    uint node = push.tet_count + f;
-    phi = push.to_phi.at[node] * push.x.at[node];
+  vec3 negative = vec3(0), positive = vec3(0);  // integrals over the face
+  if (f < push.count) {
+    Surface surface = Surface(vec3(0), vec3(0), vec3(0));
+    if (push.face_kinds.at[f] == FACE_OPEN) surface = at_face(f);
+    vec3 scale = push.scale.at[0].scale;
+    push.phi.at[f] = surface.phi * scale;
+    if (push.clipped == 1u) {
+      float area = area_of(f);
+      negative = area * (surface.positive - surface.raw);
+      positive = area * surface.positive;
+      push.exitance.at[f] = surface.positive * scale;
+    } else {
+      vec3 reflected = push.face_kinds.at[f] == FACE_OPEN ? push.boundary.reflected * push.q.at[f] : vec3(0);
+      push.exitance.at[f] = surface.raw * scale - reflected;
+    }
   }
-  phi *= push.scale.at[0].scale;
-  push.phi.at[f] = phi;
-  push.exitance.at[f] = (phi - 2.0 * push.q.at[f]) / (2.0 * push.mismatch);
+  vec3 total_negative, total_positive;
+  if (!reduce_dispatch_pair(push.reduction, negative, positive, total_negative, total_positive)) return;
+  if (gl_LocalInvocationID.x != 0u) return;
+  // What linear elements put below zero is taken from all that is above, so that the power stays what was solved for.
+  vec3 share = mix(vec3(0), min(total_negative / total_positive, vec3(1)), greaterThan(total_positive, vec3(0)));
+  push.clip.at[0] = Clip(1.0 - share, share);
 }

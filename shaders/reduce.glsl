@@ -50,3 +50,28 @@ bool reduce_dispatch(Reduction reduction, vec3 value, out vec3 total) {
   if (lane == 0u) reduction.ticket = 0u;
   return true;
 }
+
+// The same for two sums at once.
+bool reduce_dispatch_pair(Reduction reduction, vec3 a, vec3 b, out vec3 total_a, out vec3 total_b) {
+  uint lane = gl_LocalInvocationID.x;
+  vec3 partial_a = reduce_workgroup(a), partial_b = reduce_workgroup(b);
+  if (lane == 0u) {
+    reduction.partials[2u * gl_WorkGroupID.x] = partial_a;
+    reduction.partials[2u * gl_WorkGroupID.x + 1u] = partial_b;
+    memoryBarrierBuffer();
+    reduce_last = atomicAdd(reduction.ticket, 1u) == gl_NumWorkGroups.x - 1u;
+  }
+  barrier();
+  total_a = total_b = REDUCE_ZERO;
+  if (!reduce_last) return false;
+  memoryBarrierBuffer();
+  vec3 mine_a = REDUCE_ZERO, mine_b = REDUCE_ZERO;
+  for (uint k = lane; k < gl_NumWorkGroups.x; k += WORKGROUP_SIZE) {
+    mine_a = REDUCE(mine_a, reduction.partials[2u * k]);
+    mine_b = REDUCE(mine_b, reduction.partials[2u * k + 1u]);
+  }
+  total_a = reduce_workgroup(mine_a);
+  total_b = reduce_workgroup(mine_b);
+  if (lane == 0u) reduction.ticket = 0u;
+  return true;
+}

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "walk_shared.h"
+#include "fields.glsl"
 #include "fixed_point.glsl"
 #include "reduce.glsl"
 
@@ -18,10 +19,11 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   vec3 square = vec3(0);
   if (i < push.count) {
-    vec3 b = i < push.deposit_count ? power_at(push.deposit, i) : vec3(0);
-    if (push.per_volume == 1u && b != vec3(0)) b /= volume_of(i);
+    vec3 power = i < push.deposit_count ? power_at(push.deposit, i) : vec3(0);
+    if (push.per_volume == 1u && power != vec3(0)) power /= volume_of(i);
+    Field b = lit(power);
     push.b.at[i] = b;
-    square = b * b / push.diagonal.at[i];
+    square = product(b, solved(push.diagonal.at[i], b));
   }
   vec3 norm;
   if (!reduce_dispatch(push.reduction, square, norm)) return;

@@ -1,27 +1,28 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "solve_shared.h"
+#include "fields.glsl"
 #include "reduce.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { RightHandSideFvPush push; };
 
-// area Q / (2A) at surface node `face`.
-vec3 surface_value(uint face) {
+// area q at surface node `face`.
+vec3 surface_load(uint face) {
+  if (push.face_kinds.at[face] != FACE_OPEN) return vec3(0);
   uvec3 corners = push.faces.at[face];
   vec3 p = push.vertices.at[corners.x];
   float area = 0.5 * length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));
-  vec3 q = push.q.at[face] * push.scale.at[0].inverse;
-  return q * (area * push.source / (2.0 * push.mismatch));
+  return area * push.q.at[face] * push.scale.at[0].inverse;
 }
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
   vec3 square = vec3(0);
   if (i < push.count) {
-    vec3 b = i < push.tet_count ? vec3(0) : surface_value(i - push.tet_count);
+    Field b = diffuse_source(push.boundary, i < push.tet_count ? vec3(0) : surface_load(i - push.tet_count));
     push.b.at[i] = b;
-    square = b * b / push.diagonal.at[i];
+    square = product(b, solved(push.diagonal.at[i], b));
   }
   vec3 norm;
   if (!reduce_dispatch(push.reduction, square, norm)) return;

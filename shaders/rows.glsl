@@ -1,17 +1,18 @@
-// Products with operator rows.
+// Products with operator rows; include after fields.glsl.
 
-// sum_k weight_k x_column_k of row i, without the diagonal.
-vec3 off_diagonal(RowsRef rows, Vec3s x, uint i) {
+// (A x)_i.
+Field row_times(RowsRef rows, Fields x, uint i) {
   uint slice = i / SLICE_ROWS;
   uint end = rows.slice_offset.at[slice + 1u];
-  vec3 sum = vec3(0);
+  Field own = x.at[i];
+  Field sum = times(rows.row_sum.at[i], own);
   for (uint e = rows.slice_offset.at[slice] + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
-    sum += rows.weight.at[e] * x.at[rows.column.at[e]];
+    sum = add(sum, times(rows.weight.at[e], difference(x.at[rows.column.at[e]], own)));
   }
   return sum;
 }
 
 // (b - A x)_i.
-vec3 residual(RowsRef rows, Vec3s b, Vec3s x, uint i) {
-  return b.at[i] - rows.diagonal.at[i] * x.at[i] - off_diagonal(rows, x, i);
+Field residual(RowsRef rows, Fields b, Fields x, uint i) {
+  return difference(b.at[i], row_times(rows, x, i));
 }

@@ -12,15 +12,52 @@
 namespace quadgraph::gpu {
 #endif
 
-// Operator rows of one level and method, without the right-hand side: (A x)_i = diagonal_i x_i + sum_e weight_e
-// x_column_e over e = slice_offset[i / SLICE_ROWS] + i % SLICE_ROWS, in steps of SLICE_ROWS, to the next slice. Padding
-// entries name their own row with weight 0.
+// Unknowns of one carrier and entries of an operator (engine/graph/block.h). Every pass that touches them is compiled
+// twice: with MOMENTS 1 for diffusion, which has phi and a11 alone, and with MOMENTS 2 for SP3.
+#ifndef __cplusplus
+#ifndef MOMENTS
+#define MOMENTS 1
+#endif
+struct Field {
+  vec3 phi;
+#if MOMENTS == 2
+  vec3 phi2;
+#endif
+};
+struct Entry {
+  vec3 a11;
+#if MOMENTS == 2
+  vec3 a12;
+  vec3 a22;
+#endif
+};
+QG_ARRAY(Fields, Field);
+QG_ARRAY(Entries, Entry);
+#endif
+
+// K of engine/graph/boundary.h, and what the diffuse source needs.
+struct Boundary {
+  float k11, k12, k22;
+  float source, reflected;
+};
+
+// Operator rows of one level, method and model, without the right-hand side: with a_e = weight_e and j_e = column_e,
+//   (A x)_i = row_sum_i x_i + sum_e a_e (x_j_e - x_i)
+// over e = slice_offset[i / SLICE_ROWS] + i % SLICE_ROWS, in steps of SLICE_ROWS, to the next slice. Padding entries name
+// their own row with weight 0. Taking differences, the stiffness, which is all that a fine mesh's large entries consist
+// of, cancels before it is rounded: the flux from i to j is that from j to i, and energy is kept in single precision.
+// `diagonal` = row_sum - sum of the weights is for preconditioning.
 struct RowsRef {
   QG_REF(Uints) slice_offset;
   QG_REF(Uints) column;
-  QG_REF(Vec3s) weight;
-  QG_REF(Vec3s) diagonal;
+  QG_REF(Entries) weight;
+  QG_REF(Entries) row_sum;
+  QG_REF(Entries) diagonal;
 };
+
+// Kinds of outside faces (engine/graph/graph.h).
+const uint FACE_OPEN = 0u;
+const uint FACE_REFLECTING = 1u;
 
 const uint BEAM_DIRECTIONAL = 0u;
 const uint BEAM_POINT = 1u;
@@ -96,9 +133,10 @@ struct AssembleFdmPush {
   QG_REF(Vec3s) nodes;
   QG_REF(Opticals) optical;
   QG_REF(Vec3s) to_phi;
+  QG_REF(Uints) face_kinds;
   uint count;      // nodes
   uint tet_count;  // inner nodes
-  float mismatch;
+  Boundary boundary;
 };
 
 // assemble_fv.comp: weight, diagonal and to_phi, one invocation per node.
@@ -110,27 +148,40 @@ struct AssembleFvPush {
   QG_REF(Vec3s) nodes;
   QG_REF(Opticals) optical;
   QG_REF(Vec3s) to_phi;
+  QG_REF(Uints) face_kinds;
   uint count;      // nodes
   uint tet_count;  // inner nodes
-  float mismatch;
+  Boundary boundary;
 };
 
-// assemble_fem.comp: weight and diagonal, one invocation per vertex. An incidence is (tet * 4 + own corner, places of
-// the other three corners in the row, 10 bits each, in ascending order of corner), or (face, places of the next two
-// corners).
-struct AssembleFemPush {
-  RowsRef rows;
+// Floats of a tet's shape: grad l_i . grad l_j V of its edges 01, 02, 03, 12, 13, 23 (mm), and its volume (mm^3).
+const uint TET_SHAPE = 7u;
+
+// shape.comp: measures every tet and outside face.
+struct ShapePush {
   QG_REF(Vec3s) vertices;
   QG_REF(Uvec4s) tets;
   QG_REF(Uvec3s) faces;
+  QG_REF(Floats) tet_shape;
+  QG_REF(Floats) face_area;  // mm^2
+  uint tet_count;
+  uint face_count;
+};
+
+// The elements around the edge of an entry of a fem row: tet * 8 + edge of the tet, or face * 8 + RING_FACE.
+const uint RING_FACE = 7u;
+
+// assemble_fem.comp: weight and diagonal, one invocation per vertex. The elements around entry e are ring[k], k from
+// ring_offset[e] to ring_offset[e + 1]; padding has none, reflecting faces are left out.
+struct AssembleFemPush {
+  RowsRef rows;
   QG_REF(Opticals) optical;
-  QG_REF(Uints) tet_offset;
-  QG_REF(Uvec2s) tet_incidence;
-  QG_REF(Uints) face_offset;
-  QG_REF(Uvec2s) face_incidence;
+  QG_REF(Floats) tet_shape;
+  QG_REF(Floats) face_area;
+  QG_REF(Uints) ring_offset;
+  QG_REF(Uints) ring;
   uint count;
-  uint surface_count;
-  float mismatch;
+  Boundary boundary;
 };
 
 // irradiance_scale.comp: `scale` from the power that enters, per channel.
@@ -148,32 +199,32 @@ struct RightHandSideFdmPush {
   QG_REF(Vec3s) nodes;
   QG_REF(Opticals) optical;
   QG_REF(Uints) face_tets;
+  QG_REF(Uints) face_kinds;
   QG_REF(Vec3s) q;
   QG_REF(Scales) scale;
-  QG_REF(Vec3s) diagonal;
-  QG_REF(Vec3s) b;
+  QG_REF(Entries) diagonal;
+  QG_REF(Fields) b;
   QG_REF(SolveStates) state;
   QG_REF(Reduction) reduction;
   uint count;
   uint tet_count;
-  float mismatch;
-  float source;  // Q / q
+  Boundary boundary;
 };
 
 // right_hand_side_fv.comp: scaled b at every node, and its norm.
 struct RightHandSideFvPush {
   QG_REF(Vec3s) vertices;
   QG_REF(Uvec3s) faces;
+  QG_REF(Uints) face_kinds;
   QG_REF(Vec3s) q;
   QG_REF(Scales) scale;
-  QG_REF(Vec3s) diagonal;
-  QG_REF(Vec3s) b;
+  QG_REF(Entries) diagonal;
+  QG_REF(Fields) b;
   QG_REF(SolveStates) state;
   QG_REF(Reduction) reduction;
   uint count;
   uint tet_count;
-  float mismatch;
-  float source;  // Q / q
+  Boundary boundary;
 };
 
 // right_hand_side_fem.comp: scaled b at every vertex, and its norm.
@@ -181,17 +232,16 @@ struct RightHandSideFemPush {
   QG_REF(Vec3s) vertices;
   QG_REF(Uvec3s) faces;
   QG_REF(Uints) face_offset;
-  QG_REF(Uvec2s) face_incidence;
+  QG_REF(Uints) face_incidence;
   QG_REF(Vec3s) q;
   QG_REF(Scales) scale;
-  QG_REF(Vec3s) diagonal;
-  QG_REF(Vec3s) b;
+  QG_REF(Entries) diagonal;
+  QG_REF(Fields) b;
   QG_REF(SolveStates) state;
   QG_REF(Reduction) reduction;
   uint count;
   uint surface_count;
-  float mismatch;
-  float source;  // Q / q
+  Boundary boundary;
 };
 
 // damping.comp: the largest step of a relaxation that cannot diverge, 2 / min(4, max row sum of D^-1 |A|), per channel.
@@ -208,10 +258,10 @@ struct DampingPush {
 struct TransferPush {
   QG_REF(Uints) index;
   QG_REF(Floats) weight;
-  QG_REF(Vec3s) coarse_x;
+  QG_REF(Fields) coarse_x;
   QG_REF(Vec3s) coarse_to_phi;
   QG_REF(Vec3s) to_phi;
-  QG_REF(Vec3s) x;
+  QG_REF(Fields) x;
   QG_REF(SolveStates) state;
   uint width;
   uint first;
@@ -222,10 +272,10 @@ struct TransferPush {
 // cg_start.comp: r = b - A x, p = r / D; decides whether to iterate. `first` resets the state.
 struct CgStartPush {
   RowsRef rows;
-  QG_REF(Vec3s) b;
-  QG_REF(Vec3s) x;
-  QG_REF(Vec3s) r;
-  QG_REF(Vec3s) p;
+  QG_REF(Fields) b;
+  QG_REF(Fields) x;
+  QG_REF(Fields) r;
+  QG_REF(Fields) p;
   QG_REF(SolveStates) state;
   QG_REF(Reduction) reduction;
   uint count;
@@ -237,8 +287,8 @@ struct CgStartPush {
 // cg_multiply.comp: product = A p, alpha.
 struct CgMultiplyPush {
   RowsRef rows;
-  QG_REF(Vec3s) p;
-  QG_REF(Vec3s) product;
+  QG_REF(Fields) p;
+  QG_REF(Fields) product;
   QG_REF(SolveStates) state;
   QG_REF(Reduction) reduction;
   uint count;
@@ -247,11 +297,11 @@ struct CgMultiplyPush {
 
 // cg_update.comp: x += alpha p, r -= alpha A p, beta; stops the iteration.
 struct CgUpdatePush {
-  QG_REF(Vec3s) diagonal;
-  QG_REF(Vec3s) p;
-  QG_REF(Vec3s) product;
-  QG_REF(Vec3s) x;
-  QG_REF(Vec3s) r;
+  QG_REF(Entries) diagonal;
+  QG_REF(Fields) p;
+  QG_REF(Fields) product;
+  QG_REF(Fields) x;
+  QG_REF(Fields) r;
   QG_REF(SolveStates) state;
   QG_REF(Reduction) reduction;
   uint count;
@@ -261,9 +311,9 @@ struct CgUpdatePush {
 
 // cg_direction.comp: p = r / D + beta p.
 struct CgDirectionPush {
-  QG_REF(Vec3s) diagonal;
-  QG_REF(Vec3s) r;
-  QG_REF(Vec3s) p;
+  QG_REF(Entries) diagonal;
+  QG_REF(Fields) r;
+  QG_REF(Fields) p;
   QG_REF(SolveStates) state;
   uint count;
 };
@@ -272,9 +322,9 @@ struct CgDirectionPush {
 // many sweeps as done and stops the relaxation if it can.
 struct SweepPush {
   RowsRef rows;
-  QG_REF(Vec3s) b;
-  QG_REF(Vec3s) from;
-  QG_REF(Vec3s) to;
+  QG_REF(Fields) b;
+  QG_REF(Fields) from;
+  QG_REF(Fields) to;
   QG_REF(Vec3s) damping;
   QG_REF(SolveStates) state;
   QG_REF(Reduction) reduction;
@@ -283,51 +333,72 @@ struct SweepPush {
   float tolerance;
 };
 
-// exitance.comp: phi and M = (phi - 2q) / (2A) per outside face. fem: mean of the face's vertices; quadgraph-fdm: the
-// surface node, x at tet_count + face.
+// What makes the exitance of the buried source positive: see clipping in exitance.comp.
+struct Clip {
+  vec3 factor;  // of all that is positive
+  vec3 share;   // of the positive exitance that it gave up
+};
+
+#ifndef __cplusplus
+QG_ARRAY(Clips, Clip);
+#endif
+
+// exitance.comp: phi and M = k11 phi + k12 phi2 - reflected q per outside face, 0 at reflecting ones. fem: the mean
+// over the face's vertices; graph methods: the surface node, x at tet_count + face. With `clip` 1 negative values at
+// vertices or nodes count as 0, and the factor is found that restores the power; energy.comp applies it.
 struct ExitancePush {
+  QG_REF(Vec3s) vertices;
   QG_REF(Uvec3s) faces;
-  QG_REF(Vec3s) x;
+  QG_REF(Uints) face_kinds;
+  QG_REF(Fields) x;
   QG_REF(Vec3s) to_phi;
   QG_REF(Vec3s) q;
   QG_REF(Scales) scale;
   QG_REF(Vec3s) phi;
   QG_REF(Vec3s) exitance;
+  QG_REF(Clips) clip;
+  QG_REF(Reduction) reduction;
   uint count;
   uint tet_count;
-  uint fem;  // 1: fem, 0: quadgraph-fdm
-  float mismatch;
+  uint fem;  // 1: fem, 0: graph methods
+  uint clipped;
+  Boundary boundary;
 };
 
-// vertex_exitance.comp: M per surface vertex, from the area-weighted mean q of its faces and phi: at the vertex (fem)
-// or the area-weighted mean of its faces.
+// vertex_exitance.comp: M per surface vertex, clipped like that of the faces, for display. fem: from x at the vertex
+// and the area-weighted mean q of its open faces; graph methods: the area-weighted mean M of its open faces. 0 without
+// any.
 struct VertexExitancePush {
   QG_REF(Vec3s) vertices;
   QG_REF(Uvec3s) faces;
   QG_REF(Uints) face_offset;
-  QG_REF(Uvec2s) face_incidence;
-  QG_REF(Vec3s) x;
+  QG_REF(Uints) face_incidence;
+  QG_REF(Fields) x;
   QG_REF(Vec3s) q;
-  QG_REF(Vec3s) phi_face;
+  QG_REF(Vec3s) face_exitance;
   QG_REF(Scales) scale;
+  QG_REF(Clips) clip;
   QG_REF(Vec3s) exitance;
   uint count;
   uint fem;
-  float mismatch;
+  uint clipped;
+  Boundary boundary;
 };
 
-// energy.comp: sums per workgroup over faces and tets.
+// energy.comp: sums per workgroup over faces and tets; applies the factor of the clip to the exitance of the faces.
 struct EnergyPush {
   QG_REF(Vec3s) vertices;
   QG_REF(Uvec4s) tets;
   QG_REF(Uvec3s) faces;
+  QG_REF(Uints) face_kinds;
   QG_REF(Opticals) optical;
-  QG_REF(Vec3s) x;
+  QG_REF(Fields) x;
   QG_REF(Vec3s) to_phi;
   QG_REF(Vec3s) q;
   QG_REF(Vec3s) exitance;
   QG_REF(Vec3s) coarse_exitance;
   QG_REF(Scales) scale;
+  QG_REF(Clips) clip;
   QG_REF(EnergySumsArray) sums;
   uint tet_count;
   uint face_count;

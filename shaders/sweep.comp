@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "solve_shared.h"
+#include "fields.glsl"
 #include "rows.glsl"
 #include "reduce.glsl"
 #include "convergence.glsl"
@@ -28,15 +29,15 @@ void decide(vec3 rz) {
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
-  vec3 product = vec3(0);
+  vec3 square = vec3(0);
   if (i < push.count) {
-    vec3 diagonal = push.rows.diagonal.at[i];
-    vec3 r = residual(push.rows, push.b, push.from, i);
-    push.to.at[i] = push.from.at[i] + push.damping.at[0] * r / diagonal;
-    product = r * r / diagonal;
+    Field r = residual(push.rows, push.b, push.from, i);
+    Field z = solved(push.rows.diagonal.at[i], r);
+    push.to.at[i] = add_scaled(push.from.at[i], push.damping.at[0], z);
+    square = product(r, z);
   }
   if (push.sweeps == 0u) return;
   vec3 rz;
-  if (!reduce_dispatch(push.reduction, product, rz)) return;
+  if (!reduce_dispatch(push.reduction, square, rz)) return;
   if (gl_LocalInvocationID.x == 0u) decide(rz);
 }

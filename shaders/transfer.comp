@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "solve_shared.h"
+#include "fields.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { TransferPush push; };
@@ -8,11 +9,13 @@ layout(push_constant, scalar) uniform Block { TransferPush push; };
 void main() {
   uint row = gl_GlobalInvocationID.x;
   if (row >= push.count) return;
-  vec3 phi = vec3(0);
+  Field value = no_field();
   for (uint k = 0u; k < push.width; ++k) {
     uint j = push.coarse_first + push.index.at[row * push.width + k];
-    phi += push.weight.at[row * push.width + k] * push.coarse_to_phi.at[j] * push.coarse_x.at[j];
+    vec3 factor = push.weight.at[row * push.width + k] * push.coarse_to_phi.at[j];
+    value = add_scaled(value, factor, push.coarse_x.at[j]);
   }
   uint i = push.first + row;
-  push.x.at[i] = mix(vec3(0), phi / push.to_phi.at[i], greaterThan(push.state.at[0].norm, vec3(0)));
+  vec3 factor = mix(vec3(0), 1.0 / push.to_phi.at[i], greaterThan(push.state.at[0].norm, vec3(0)));
+  push.x.at[i] = scaled(factor, value);
 }

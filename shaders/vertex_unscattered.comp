@@ -13,7 +13,7 @@ void main() {
   float area = 0.0;
   vec3 power = vec3(0);
   for (uint k = push.face_offset.at[v]; k < push.face_offset.at[v + 1u]; ++k) {
-    uint face = push.face_incidence.at[k].x;
+    uint face = push.face_incidence.at[k];
     uvec3 corners = push.faces.at[face];
     vec3 p = push.vertices.at[corners.x];
     area += 0.5 * length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));

@@ -53,8 +53,8 @@ struct RightHandSideBuriedPush {
   QG_REF(Uints) deposit;
   QG_REF(Vec3s) vertices;  // those of the tets, where b is power per volume
   QG_REF(Uvec4s) tets;
-  QG_REF(Vec3s) diagonal;
-  QG_REF(Vec3s) b;
+  QG_REF(Entries) diagonal;
+  QG_REF(Fields) b;
   QG_REF(SolveStates) state;
   QG_REF(Reduction) reduction;
   uint count;
@@ -67,7 +67,7 @@ struct VertexUnscatteredPush {
   QG_REF(Vec3s) vertices;
   QG_REF(Uvec3s) faces;
   QG_REF(Uints) face_offset;
-  QG_REF(Uvec2s) face_incidence;
+  QG_REF(Uints) face_incidence;
   QG_REF(Uints) unscattered;
   QG_REF(Scales) scale;
   QG_REF(Vec3s) exitance;

@@ -21,18 +21,8 @@ bool in_range(const gpu::Optical& optical) {
 }
 
 void check_problem(const Level& level, const Problem& problem) {
-  if (problem.optical.size() != level.nodes.size()) {
-    throw InputError("optical: " + std::to_string(problem.optical.size()) + " entries, the level has " +
-                     std::to_string(level.nodes.size()) + " nodes");
-  }
-  for (std::size_t i = 0; i < problem.optical.size(); ++i) {
-    if (!in_range(problem.optical[i])) {
-      throw InputError("optical[" + std::to_string(i) + "]: sigma_s_prime and sigma_a must be finite numbers >= 0");
-    }
-  }
-  if (!(problem.eta >= min_eta && problem.eta <= max_eta)) {
-    throw InputError("eta " + std::to_string(problem.eta) + ": allowed is 1 to 3");
-  }
+  check_optical(problem.optical, level.nodes.size());
+  check_eta(problem.eta);
   if (problem.model == Model::automatic) throw InputError("model 'auto': resolve it before assembling");
 }
 
@@ -63,6 +53,22 @@ std::vector<glm::dvec3> surface_load(const Level& level, const Problem& problem,
 }
 
 }  // namespace
+
+void check_optical(std::span<const gpu::Optical> optical, std::size_t count) {
+  if (optical.size() != count) {
+    throw InputError("optical: " + std::to_string(optical.size()) + " entries, the level has " + std::to_string(count) +
+                     " nodes");
+  }
+  for (std::size_t i = 0; i < optical.size(); ++i) {
+    if (!in_range(optical[i])) {
+      throw InputError("optical[" + std::to_string(i) + "]: sigma_s_prime and sigma_a must be finite numbers >= 0");
+    }
+  }
+}
+
+void check_eta(double eta) {
+  if (!(eta >= min_eta && eta <= max_eta)) throw InputError("eta " + std::to_string(eta) + ": allowed is 1 to 3");
+}
 
 glm::dvec3 relaxation_of(const gpu::Optical& optical) {
   return 5.0 / 9.0 * glm::dvec3(gpu::sigma_t(optical));

@@ -65,6 +65,10 @@ struct Rows {
 // Carriers of a method on a level: rows of its operator, each with one unknown (diffusion) or two (sp3).
 std::uint32_t carrier_count(const Level& level, Method method);
 
+// Throw InputError unless there are `count` coefficients, all finite and >= 0; unless eta is in [min_eta, max_eta].
+void check_optical(std::span<const gpu::Optical> optical, std::size_t count);
+void check_eta(double eta);
+
 // Throws InputError if sizes or values are out of range (sigma_s_prime, sigma_a >= 0 and finite; eta in [min_eta,
 // max_eta]) or if the model is `automatic`.
 Rows assemble(const Level& level, const Problem& problem);

@@ -114,6 +114,13 @@ void Engine::set_material(const gpu::Material& material) {
   self.irradiance_stale = self.irradiance_stale || !self.lights.empty();
 }
 
+void Engine::set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta) {
+  auto& self = *implementation_;
+  self.simulation.set_optical(level, optical, eta);
+  self.material = "coefficients per node, eta=" + number_text(eta);
+  self.irradiance_stale = self.irradiance_stale || !self.lights.empty();
+}
+
 void Engine::set_lights(std::vector<Light> lights) {
   for (const Light& light : lights) check_light(light);
   implementation_->lights = std::move(lights);
@@ -136,7 +143,7 @@ void Engine::update_irradiance() {
   self.simulation.set_beams(beams_of(self.lights));
   for (std::uint32_t level = 0; level < self.simulation.level_count(); ++level) {
     add(self.irradiance_passes,
-        self.irradiance.run(self.simulation.level(level), level, self.shadows, self.simulation.material().eta));
+        self.irradiance.run(self.simulation.level(level), level, self.shadows, self.simulation.eta()));
   }
   self.simulation.irradiance_changed();
   self.irradiance_stale = false;
@@ -164,7 +171,7 @@ Picture Engine::render(const View& view, const RenderOptions& options) {
                                              .finest = self.simulation.level(0),
                                              .vertex_exitance = self.simulation.vertex_exitance(),
                                              .shadows = self.shadows,
-                                             .eta = self.simulation.material().eta,
+                                             .eta = self.simulation.eta(),
                                              .roughness = options.roughness},
                                             camera, options.width, options.height);
   self.view = view;

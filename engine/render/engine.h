@@ -41,6 +41,9 @@ class Engine {
   void set_material(std::string_view text);
   void set_material(const gpu::Material& material);
 
+  // Coefficients instead of a material, as Simulation::set_optical.
+  void set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta);
+
   // Throws InputError as check_light does.
   void set_lights(std::vector<Light> lights);
 

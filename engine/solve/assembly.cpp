@@ -1,8 +1,7 @@
 #include "engine/solve/assembly.h"
 
+#include <algorithm>
 #include <bit>
-
-#include "engine/graph/fresnel.h"
 
 namespace quadgraph {
 namespace {
@@ -10,115 +9,137 @@ namespace {
 constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
 constexpr std::uint64_t index_bytes = sizeof(std::uint32_t);
 
-// Every right-hand side reads the diagonal and writes b.
-std::uint64_t row_bytes(const OperatorBuffers& op) {
-  return 2 * vec3_bytes * op.count;
+void assemble_fdm(Workspace& work, const LevelBuffers& level, const Boundary& boundary, OperatorBuffers& op) {
+  const gpu::AssembleFdmPush push{.rows = op.rows(),
+                                  .nodes = level.nodes.address(),
+                                  .optical = level.optical.address(),
+                                  .to_phi = op.to_phi.address(),
+                                  .face_kinds = level.face_kind.address(),
+                                  .count = op.count,
+                                  .tet_count = level.tet_count,
+                                  .boundary = on_device(boundary)};
+  const std::uint64_t bytes = op.entries * (index_bytes + vec3_bytes + op.entry_bytes()) +
+                              op.count * (2 * vec3_bytes + sizeof(gpu::Optical) + op.entry_bytes());
+  work.recorder.dispatch(work.passes.assemble_fdm.of(op.model), push, op.count, "assembly", bytes);
 }
 
-void assemble_fdm(Workspace& work, const LevelBuffers& level, float a, OperatorBuffers& op) {
-  const gpu::AssembleFdmPush push{
-      op.rows(), level.nodes.address(), level.optical.address(), op.to_phi.address(), op.count, level.tet_count, a};
-  const std::uint64_t bytes =
-      op.entries * (index_bytes + 2 * vec3_bytes) + op.count * (3 * vec3_bytes + sizeof(gpu::Optical));
-  work.recorder.dispatch(work.passes.assemble_fdm, push, op.count, "assembly", bytes);
-}
-
-void assemble_fv(Workspace& work, const LevelBuffers& level, float a, OperatorBuffers& op) {
-  const gpu::AssembleFvPush push{op.rows(),
-                                 level.vertices.address(),
-                                 level.tets.address(),
-                                 level.links.address(),
-                                 level.nodes.address(),
-                                 level.optical.address(),
-                                 op.to_phi.address(),
-                                 op.count,
-                                 level.tet_count,
-                                 a};
-  const std::uint64_t link_bytes = index_bytes + 2 * sizeof(glm::uvec4) + 6 * vec3_bytes + 2 * sizeof(gpu::Optical);
-  work.recorder.dispatch(work.passes.assemble_fv, push, op.count, "assembly",
-                         op.entries * link_bytes + op.count * (2 * vec3_bytes + sizeof(gpu::Optical)) +
+void assemble_fv(Workspace& work, const LevelBuffers& level, const Boundary& boundary, OperatorBuffers& op) {
+  const gpu::AssembleFvPush push{.rows = op.rows(),
+                                 .vertices = level.vertices.address(),
+                                 .tets = level.tets.address(),
+                                 .links = level.links.address(),
+                                 .nodes = level.nodes.address(),
+                                 .optical = level.optical.address(),
+                                 .to_phi = op.to_phi.address(),
+                                 .face_kinds = level.face_kind.address(),
+                                 .count = op.count,
+                                 .tet_count = level.tet_count,
+                                 .boundary = on_device(boundary)};
+  const std::uint64_t link_bytes =
+      index_bytes + 2 * sizeof(glm::uvec4) + 5 * vec3_bytes + 2 * sizeof(gpu::Optical) + op.entry_bytes();
+  work.recorder.dispatch(work.passes.assemble_fv.of(op.model), push, op.count, "assembly",
+                         op.entries * link_bytes + op.count * (vec3_bytes + sizeof(gpu::Optical) + op.entry_bytes()) +
                              level.tet_count * (sizeof(glm::uvec4) + 4 * vec3_bytes));
 }
 
-void assemble_fem(Workspace& work, const LevelBuffers& level, float a, OperatorBuffers& op) {
-  const gpu::AssembleFemPush push{op.rows(),
-                                  level.vertices.address(),
-                                  level.tets.address(),
-                                  level.faces.address(),
-                                  level.optical.address(),
-                                  op.tet_offset.address(),
-                                  op.tet_incidence.address(),
-                                  op.face_offset.address(),
-                                  op.face_incidence.address(),
-                                  op.count,
-                                  level.surface_vertex_count,
-                                  a};
-  // Every tet is read from its four corners, every face from its three; an incidence adds to each other corner.
-  const std::uint64_t tet_bytes = sizeof(glm::uvec2) + sizeof(glm::uvec4) + sizeof(gpu::Optical) + 10 * vec3_bytes;
-  const std::uint64_t face_bytes = sizeof(glm::uvec2) + sizeof(glm::uvec3) + 7 * vec3_bytes;
-  const std::uint64_t bytes = 4 * level.tet_count * tet_bytes + 3 * level.face_count * face_bytes +
-                              op.entries * vec3_bytes + op.count * vec3_bytes;
-  work.recorder.dispatch(work.passes.assemble_fem, push, op.count, "assembly", bytes);
+void measure(Workspace& work, const LevelBuffers& level, OperatorBuffers& op) {
+  const gpu::ShapePush push{.vertices = level.vertices.address(),
+                            .tets = level.tets.address(),
+                            .faces = level.faces.address(),
+                            .tet_shape = op.tet_shape.address(),
+                            .face_area = op.face_area.address(),
+                            .tet_count = level.tet_count,
+                            .face_count = level.face_count};
+  const std::uint64_t bytes = level.tet_count * (sizeof(glm::uvec4) + 4 * vec3_bytes + gpu::TET_SHAPE * sizeof(float)) +
+                              level.face_count * (sizeof(glm::uvec3) + 3 * vec3_bytes + sizeof(float));
+  work.recorder.dispatch(work.passes.shape, push, std::max(level.tet_count, level.face_count), "shape", bytes);
+  op.measured = true;
 }
 
-void load_fdm(Workspace& work, const LevelBuffers& level, float a, float source, OperatorBuffers& op) {
-  const gpu::RightHandSideFdmPush push{level.nodes.address(),
-                                       level.optical.address(),
-                                       level.face_tets.address(),
-                                       level.q.address(),
-                                       work.scale.address(),
-                                       op.diagonal.address(),
-                                       op.b.address(),
-                                       op.state.address(),
-                                       work.reduction.address(),
-                                       op.count,
-                                       level.tet_count,
-                                       a,
-                                       source};
-  const std::uint64_t face_bytes = index_bytes + 3 * vec3_bytes + 2 * sizeof(gpu::Optical);
-  work.recorder.dispatch(work.passes.right_hand_side_fdm, push, op.count, "right-hand side",
+void assemble_fem(Workspace& work, const LevelBuffers& level, const Boundary& boundary, OperatorBuffers& op) {
+  if (!op.measured) measure(work, level, op);
+  const gpu::AssembleFemPush push{.rows = op.rows(),
+                                  .optical = level.optical.address(),
+                                  .tet_shape = op.tet_shape.address(),
+                                  .face_area = op.face_area.address(),
+                                  .ring_offset = op.ring_offset.address(),
+                                  .ring = op.ring.address(),
+                                  .count = op.count,
+                                  .boundary = on_device(boundary)};
+  // Every tet is met from both ends of its six edges.
+  const std::uint64_t tet_bytes = index_bytes + sizeof(gpu::Optical) + 2 * sizeof(float);
+  const std::uint64_t bytes = 12 * level.tet_count * tet_bytes + 6 * level.face_count * (index_bytes + sizeof(float)) +
+                              (op.entries + op.count) * op.entry_bytes() + op.entries * index_bytes;
+  work.recorder.dispatch(work.passes.assemble_fem.of(op.model), push, op.count, "assembly", bytes);
+}
+
+// Every right-hand side reads the diagonal and writes b.
+std::uint64_t row_bytes(const OperatorBuffers& op) {
+  return (op.entry_bytes() + op.field_bytes()) * op.count;
+}
+
+void load_fdm(Workspace& work, const LevelBuffers& level, const Boundary& boundary, OperatorBuffers& op) {
+  const gpu::RightHandSideFdmPush push{.nodes = level.nodes.address(),
+                                       .optical = level.optical.address(),
+                                       .face_tets = level.face_tets.address(),
+                                       .face_kinds = level.face_kind.address(),
+                                       .q = level.q.address(),
+                                       .scale = work.scale.address(),
+                                       .diagonal = op.diagonal.address(),
+                                       .b = op.b.address(),
+                                       .state = op.state.address(),
+                                       .reduction = work.reduction.address(),
+                                       .count = op.count,
+                                       .tet_count = level.tet_count,
+                                       .boundary = on_device(boundary)};
+  const std::uint64_t face_bytes = 2 * index_bytes + 3 * vec3_bytes + 2 * sizeof(gpu::Optical);
+  work.recorder.dispatch(work.passes.right_hand_side_fdm.of(op.model), push, op.count, "right-hand side",
                          row_bytes(op) + level.face_count * face_bytes);
 }
 
-void load_fv(Workspace& work, const LevelBuffers& level, float a, float source, OperatorBuffers& op) {
-  const gpu::RightHandSideFvPush push{level.vertices.address(),
-                                      level.faces.address(),
-                                      level.q.address(),
-                                      work.scale.address(),
-                                      op.diagonal.address(),
-                                      op.b.address(),
-                                      op.state.address(),
-                                      work.reduction.address(),
-                                      op.count,
-                                      level.tet_count,
-                                      a,
-                                      source};
-  const std::uint64_t face_bytes = sizeof(glm::uvec3) + 4 * vec3_bytes;
-  work.recorder.dispatch(work.passes.right_hand_side_fv, push, op.count, "right-hand side",
+void load_fv(Workspace& work, const LevelBuffers& level, const Boundary& boundary, OperatorBuffers& op) {
+  const gpu::RightHandSideFvPush push{.vertices = level.vertices.address(),
+                                      .faces = level.faces.address(),
+                                      .face_kinds = level.face_kind.address(),
+                                      .q = level.q.address(),
+                                      .scale = work.scale.address(),
+                                      .diagonal = op.diagonal.address(),
+                                      .b = op.b.address(),
+                                      .state = op.state.address(),
+                                      .reduction = work.reduction.address(),
+                                      .count = op.count,
+                                      .tet_count = level.tet_count,
+                                      .boundary = on_device(boundary)};
+  const std::uint64_t face_bytes = sizeof(glm::uvec3) + 4 * vec3_bytes + index_bytes;
+  work.recorder.dispatch(work.passes.right_hand_side_fv.of(op.model), push, op.count, "right-hand side",
                          row_bytes(op) + level.face_count * face_bytes);
 }
 
-void load_fem(Workspace& work, const LevelBuffers& level, float a, float source, OperatorBuffers& op) {
-  const gpu::RightHandSideFemPush push{level.vertices.address(),
-                                       level.faces.address(),
-                                       op.face_offset.address(),
-                                       op.face_incidence.address(),
-                                       level.q.address(),
-                                       work.scale.address(),
-                                       op.diagonal.address(),
-                                       op.b.address(),
-                                       op.state.address(),
-                                       work.reduction.address(),
-                                       op.count,
-                                       level.surface_vertex_count,
-                                       a,
-                                       source};
-  const std::uint64_t face_bytes = sizeof(glm::uvec2) + sizeof(glm::uvec3) + 4 * vec3_bytes;
-  work.recorder.dispatch(work.passes.right_hand_side_fem, push, op.count, "right-hand side",
+void load_fem(Workspace& work, const LevelBuffers& level, const Boundary& boundary, OperatorBuffers& op) {
+  const gpu::RightHandSideFemPush push{.vertices = level.vertices.address(),
+                                       .faces = level.faces.address(),
+                                       .face_offset = level.face_offset.address(),
+                                       .face_incidence = level.face_incidence.address(),
+                                       .q = level.q.address(),
+                                       .scale = work.scale.address(),
+                                       .diagonal = op.diagonal.address(),
+                                       .b = op.b.address(),
+                                       .state = op.state.address(),
+                                       .reduction = work.reduction.address(),
+                                       .count = op.count,
+                                       .surface_count = level.surface_vertex_count,
+                                       .boundary = on_device(boundary)};
+  const std::uint64_t face_bytes = index_bytes + sizeof(glm::uvec3) + 4 * vec3_bytes;
+  work.recorder.dispatch(work.passes.right_hand_side_fem.of(op.model), push, op.count, "right-hand side",
                          row_bytes(op) + 3 * level.face_count * face_bytes);
 }
 
 }  // namespace
+
+gpu::Boundary on_device(const Boundary& boundary) {
+  return {static_cast<float>(boundary.k11), static_cast<float>(boundary.k12), static_cast<float>(boundary.k22),
+          static_cast<float>(boundary.source), static_cast<float>(boundary.reflected)};
+}
 
 void record_material(Workspace& work, const LevelBuffers& level, const gpu::Material& material) {
   const gpu::EvaluateMaterialPush push{material, level.nodes.address(), level.optical.address(), level.node_count};
@@ -126,15 +147,15 @@ void record_material(Workspace& work, const LevelBuffers& level, const gpu::Mate
                          level.node_count * (vec3_bytes + sizeof(gpu::Optical)));
 }
 
-void record_assembly(Workspace& work, const LevelBuffers& level, Method method, double eta, OperatorBuffers& op) {
-  const auto a = static_cast<float>(mismatch(eta));
+void record_assembly(Workspace& work, const LevelBuffers& level, Method method, const Boundary& boundary,
+                     OperatorBuffers& op) {
   switch (method) {
     case Method::quadgraph_fdm:
-      return assemble_fdm(work, level, a, op);
+      return assemble_fdm(work, level, boundary, op);
     case Method::quadgraph_fv:
-      return assemble_fv(work, level, a, op);
+      return assemble_fv(work, level, boundary, op);
     case Method::fem:
-      return assemble_fem(work, level, a, op);
+      return assemble_fem(work, level, boundary, op);
   }
 }
 
@@ -145,17 +166,15 @@ void record_scale(Workspace& work, const LevelBuffers& finest) {
                          finest.face_count * (sizeof(glm::uvec3) + 4 * vec3_bytes));
 }
 
-void record_right_hand_side(Workspace& work, const LevelBuffers& level, Method method, double eta,
-                            OperatorBuffers& op) {
-  const auto a = static_cast<float>(mismatch(eta));
-  const auto source = static_cast<float>(4.0 / (1.0 - internal_diffuse_reflectance(eta)));  // Q / q
+void record_diffuse_load(Workspace& work, const LevelBuffers& level, Method method, const Boundary& boundary,
+                         OperatorBuffers& op) {
   switch (method) {
     case Method::quadgraph_fdm:
-      return load_fdm(work, level, a, source, op);
+      return load_fdm(work, level, boundary, op);
     case Method::quadgraph_fv:
-      return load_fv(work, level, a, source, op);
+      return load_fv(work, level, boundary, op);
     case Method::fem:
-      return load_fem(work, level, a, source, op);
+      return load_fem(work, level, boundary, op);
   }
 }
 
@@ -165,8 +184,8 @@ void record_damping(Workspace& work, Method method, OperatorBuffers& op) {
     return;
   }
   const gpu::DampingPush push{op.rows(), op.damping.address(), work.reduction.address(), op.count};
-  work.recorder.dispatch(work.passes.damping, push, op.count, "assembly",
-                         op.entries * vec3_bytes + op.count * vec3_bytes);
+  work.recorder.dispatch(work.passes.damping.of(op.model), push, op.count, "assembly",
+                         (op.entries + op.count) * op.entry_bytes());
 }
 
 }  // namespace quadgraph

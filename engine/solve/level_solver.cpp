@@ -18,8 +18,6 @@ constexpr std::uint32_t sweep_batch = 64;
 // A batch of sweeps that lowers the residual by less than this share of it has met the limit of single precision.
 constexpr double least_progress = 1e-4;
 
-constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
-
 class LevelSolver {
  public:
   LevelSolver(Workspace& work, OperatorBuffers& op, std::uint32_t level, const SolveOptions& options)
@@ -36,7 +34,7 @@ class LevelSolver {
     }
     throw_on_failure();
     return {.level = level_,
-            .unknowns = op_.count,
+            .unknowns = op_.count * (op_.model == Model::sp3 ? 2 : 1),
             .iterations = state_.iterations,
             .residual = state_.residual,
             .converged = state_.status == gpu::SOLVE_CONVERGED};
@@ -49,14 +47,14 @@ class LevelSolver {
         op_.state.address(), work_.reduction.address(), op_.count,       options_.max_iterations, tolerance_,
         first ? 1u : 0u};
     if (first) {
-      work_.recorder.dispatch(work_.passes.cg_start, push, op_.count, "residual", start_bytes());
+      work_.recorder.dispatch(work_.passes.cg_start.of(op_.model), push, op_.count, "residual", start_bytes());
     } else {
-      work_.recorder.dispatch_indirect(work_.passes.cg_start, push, op_.state, offsetof(gpu::SolveState, check),
-                                       "residual");
+      work_.recorder.dispatch_indirect(work_.passes.cg_start.of(op_.model), push, op_.state,
+                                       offsetof(gpu::SolveState, check), "residual");
     }
   }
 
-  std::uint64_t start_bytes() const { return op_.product_bytes() + 5 * vec3_bytes * op_.count; }
+  std::uint64_t start_bytes() const { return op_.product_bytes() + 5 * op_.field_bytes() * op_.count; }
 
   void read_state() {
     work_.recorder.copy(op_.state, work_.state_on_host, sizeof(gpu::SolveState));
@@ -77,9 +75,11 @@ class LevelSolver {
     const gpu::CgDirectionPush direction{op_.diagonal.address(), op_.r.address(), op_.p.address(), op_.state.address(),
                                          op_.count};
     constexpr std::uint64_t offset = offsetof(gpu::SolveState, iterate);
-    work_.recorder.dispatch_indirect(work_.passes.cg_multiply, multiply, op_.state, offset, "cg-multiply");
-    work_.recorder.dispatch_indirect(work_.passes.cg_update, update, op_.state, offset, "cg-update");
-    work_.recorder.dispatch_indirect(work_.passes.cg_direction, direction, op_.state, offset, "cg-direction");
+    work_.recorder.dispatch_indirect(work_.passes.cg_multiply.of(op_.model), multiply, op_.state, offset,
+                                     "cg-multiply");
+    work_.recorder.dispatch_indirect(work_.passes.cg_update.of(op_.model), update, op_.state, offset, "cg-update");
+    work_.recorder.dispatch_indirect(work_.passes.cg_direction.of(op_.model), direction, op_.state, offset,
+                                     "cg-direction");
   }
 
   void conjugate_gradients() {
@@ -89,9 +89,9 @@ class LevelSolver {
       record_start(false);
       read_state();
       const std::uint32_t done = state_.iterations - before;
-      work_.recorder.did("cg-multiply", done, op_.product_bytes() + 3 * vec3_bytes * op_.count);
-      work_.recorder.did("cg-update", done, 7 * vec3_bytes * op_.count);
-      work_.recorder.did("cg-direction", done, 4 * vec3_bytes * op_.count);
+      work_.recorder.did("cg-multiply", done, op_.product_bytes() + 3 * op_.field_bytes() * op_.count);
+      work_.recorder.did("cg-update", done, 7 * op_.field_bytes() * op_.count);
+      work_.recorder.did("cg-direction", done, 4 * op_.field_bytes() * op_.count);
       if (!running() && done > 0) work_.recorder.did("residual", 1, start_bytes());
     } while (running());
   }
@@ -100,7 +100,8 @@ class LevelSolver {
     const gpu::SweepPush push{
         op_.rows(),          op_.b.address(),           from.address(), to.address(), op_.damping.address(),
         op_.state.address(), work_.reduction.address(), op_.count,      sweeps,       tolerance_};
-    work_.recorder.dispatch_indirect(work_.passes.sweep, push, op_.state, offsetof(gpu::SolveState, iterate), "sweep");
+    work_.recorder.dispatch_indirect(work_.passes.sweep.of(op_.model), push, op_.state,
+                                     offsetof(gpu::SolveState, iterate), "sweep");
   }
 
   void relax() {
@@ -119,7 +120,7 @@ class LevelSolver {
       read_state();
       const std::uint32_t done = state_.iterations - before;
       if (done % 2 == 1) std::swap(op_.x, op_.product);
-      work_.recorder.did("sweep", done, op_.product_bytes() + 4 * vec3_bytes * op_.count);
+      work_.recorder.did("sweep", done, op_.product_bytes() + 4 * op_.field_bytes() * op_.count);
       if (!running()) return;
       if (state_.iterations >= options_.max_iterations) {
         state_.status = gpu::SOLVE_EXHAUSTED;
@@ -138,9 +139,10 @@ class LevelSolver {
     if (state_.status == gpu::SOLVE_NOT_FINITE) what = "met a value that is not finite";
     if (state_.status == gpu::SOLVE_DIVERGED) what = "diverges";
     if (what == nullptr) return;
-    throw SolverError("level " + std::to_string(level_) + ": " + std::string(name_of(options_.method)) + " with " +
-                      std::string(name_of(options_.solver)) + " " + what + " (iteration " +
-                      std::to_string(state_.iterations) + ", channel " + std::to_string(state_.channel) + ")");
+    throw SolverError("level " + std::to_string(level_) + ": " + std::string(name_of(options_.method)) + " (" +
+                      std::string(name_of(op_.model)) + ") with " + std::string(name_of(options_.solver)) + " " + what +
+                      " (iteration " + std::to_string(state_.iterations) + ", channel " +
+                      std::to_string(state_.channel) + ")");
   }
 
   Workspace& work_;

@@ -1,5 +1,6 @@
 #include "engine/solve/level_upload.h"
 
+#include "engine/solve/row_structure.h"
 #include "engine/vk/commands.h"
 
 namespace quadgraph {
@@ -19,6 +20,9 @@ LevelBuffers upload_level(vk::Context& context, const Level& level, std::uint32_
   const std::vector<std::uint32_t> all_open(level.face_kinds.empty() ? level.faces.size() : 0, face_open);
   const std::span<const std::uint32_t> kinds = level.face_kinds.empty() ? all_open : level.face_kinds;
   buffers.face_kind = vk::upload(context, kinds, prefix + "face_kind");
+  const FaceIncidence incidence = face_incidence(level);
+  buffers.face_offset = vk::upload<std::uint32_t>(context, incidence.offset, prefix + "face_offset");
+  buffers.face_incidence = vk::upload<std::uint32_t>(context, incidence.face, prefix + "face_incidence");
   buffers.links = vk::upload(context, level.links, prefix + "links");
   buffers.nodes = vk::upload(context, level.nodes, prefix + "nodes");
   buffers.optical =

@@ -13,48 +13,49 @@ vk::Buffer upload(vk::Context& context, const std::vector<T>& values, const std:
 
 }  // namespace
 
-OperatorBuffers::OperatorBuffers(vk::Context& context, const Level& level, std::uint32_t index, Method method)
-    : count(carrier_count(level, method)) {
-  const std::string prefix = "level " + std::to_string(index) + " " + std::string(name_of(method)) + " ";
-  const auto vector = [&](std::uint64_t elements, const char* name) {
-    return vk::Buffer(context, elements * sizeof(glm::vec3), vk::Place::device, prefix + name);
+OperatorBuffers::OperatorBuffers(vk::Context& context, const Level& level, std::uint32_t index, Method method,
+                                 Model model_in)
+    : model(model_in), count(carrier_count(level, method)) {
+  const std::string prefix =
+      "level " + std::to_string(index) + " " + std::string(name_of(method)) + " " + std::string(name_of(model)) + " ";
+  const auto buffer = [&](std::uint64_t bytes, const char* name) {
+    return vk::Buffer(context, bytes, vk::Place::device, prefix + name);
   };
-  FemStructure fem;
+  SlicedColumns columns;
   if (method == Method::fem) {
-    fem = fem_structure(level);
-    tet_offset = upload(context, fem.tets.offset, prefix + "tet_offset");
-    tet_incidence = upload(context, fem.tets.element, prefix + "tet_incidence");
+    FemStructure fem = fem_structure(level);
+    columns = std::move(fem.columns);
+    ring_offset = upload(context, fem.ring_offset, prefix + "ring_offset");
+    ring = upload(context, fem.ring, prefix + "ring");
+    tet_shape = buffer(std::uint64_t{gpu::TET_SHAPE} * level.tet_count() * sizeof(float), "tet_shape");
+    face_area = buffer(level.face_count() * sizeof(float), "face_area");
     to_phi = upload(context, std::vector<glm::vec3>(count, glm::vec3(1)), prefix + "to_phi");
   } else {
-    fem.columns = node_columns(level);
-    to_phi = vector(count, "to_phi");
+    columns = node_columns(level);
+    to_phi = buffer(count * sizeof(glm::vec3), "to_phi");
   }
-  if (method == Method::fem || index == 0) {
-    const Incidence faces = quadgraph::face_incidence(level, method == Method::fem ? &fem.columns : nullptr);
-    face_offset = upload(context, faces.offset, prefix + "face_offset");
-    face_incidence = upload(context, faces.element, prefix + "face_incidence");
-  }
-  entries = static_cast<std::uint32_t>(fem.columns.column.size());
-  slices = static_cast<std::uint32_t>(fem.columns.slice_offset.size() - 1);
-  slice_offset = upload(context, fem.columns.slice_offset, prefix + "slice_offset");
-  column = upload(context, fem.columns.column, prefix + "column");
-  weight = vector(entries, "weight");
-  diagonal = vector(count, "diagonal");
-  b = vector(count, "b");
-  x = vector(count, "x");
-  r = vector(count, "r");
-  p = vector(count, "p");
-  product = vector(count, "product");
-  state = vk::Buffer(context, sizeof(gpu::SolveState), vk::Place::device, prefix + "state");
-  damping = vector(1, "damping");
+  entries = static_cast<std::uint32_t>(columns.column.size());
+  slices = static_cast<std::uint32_t>(columns.slice_offset.size() - 1);
+  slice_offset = upload(context, columns.slice_offset, prefix + "slice_offset");
+  column = upload(context, columns.column, prefix + "column");
+  weight = buffer(entries * entry_bytes(), "weight");
+  row_sum = buffer(count * entry_bytes(), "row_sum");
+  diagonal = buffer(count * entry_bytes(), "diagonal");
+  b = buffer(count * field_bytes(), "b");
+  x = buffer(count * field_bytes(), "x");
+  r = buffer(count * field_bytes(), "r");
+  p = buffer(count * field_bytes(), "p");
+  product = buffer(count * field_bytes(), "product");
+  state = buffer(sizeof(gpu::SolveState), "state");
+  damping = buffer(sizeof(glm::vec3), "damping");
 }
 
 gpu::RowsRef OperatorBuffers::rows() const {
-  return {slice_offset.address(), column.address(), weight.address(), diagonal.address()};
+  return {slice_offset.address(), column.address(), weight.address(), row_sum.address(), diagonal.address()};
 }
 
 std::uint64_t OperatorBuffers::product_bytes() const {
-  return std::uint64_t{entries} * (sizeof(std::uint32_t) + 2 * sizeof(glm::vec3)) +
+  return std::uint64_t{entries} * (sizeof(std::uint32_t) + entry_bytes() + field_bytes()) +
          (slices + 1) * sizeof(std::uint32_t);
 }
 

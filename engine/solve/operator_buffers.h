@@ -1,6 +1,9 @@
-// The operator of one level and method on the device, with its solution and the vectors of the solvers.
+// The operator of one level, method and model on the device, with its solution and the vectors of the solvers.
 #pragma once
 
+#include <optional>
+
+#include "engine/graph/boundary.h"
 #include "engine/graph/graph.h"
 #include "engine/graph/solution.h"
 #include "engine/vk/memory.h"
@@ -9,10 +12,11 @@
 namespace quadgraph {
 
 struct OperatorBuffers {
-  std::uint32_t count = 0;    // rows
+  Model model = Model::diffusion;
+  std::uint32_t count = 0;    // rows: carriers, each with one unknown or, in SP3, two
   std::uint32_t entries = 0;  // off the diagonal, padding included
   std::uint32_t slices = 0;
-  vk::Buffer slice_offset, column, weight, diagonal;  // RowsRef
+  vk::Buffer slice_offset, column, weight, row_sum, diagonal;  // RowsRef
   vk::Buffer to_phi;
   vk::Buffer b, x;     // scaled (gpu::Scale)
   vk::Buffer r, p;     // residual, direction
@@ -20,15 +24,19 @@ struct OperatorBuffers {
   vk::Buffer state;    // SolveState
   vk::Buffer damping;  // vec3
 
-  vk::Buffer tet_offset, tet_incidence;    // fem only
-  vk::Buffer face_offset, face_incidence;  // fem; the graph methods on the finest level only
+  vk::Buffer ring_offset, ring;     // fem only: the elements around every entry's edge (AssembleFemPush)
+  vk::Buffer tet_shape, face_area;  // fem only: ShapePush
+  bool measured = false;            // they belong to the present vertices
 
-  bool assembled = false;  // for the present material
-  bool damped = false;     // `damping` belongs to these rows
-  bool loaded = false;     // b is that of the present q and rows
+  std::optional<Boundary> assembled;  // for the present material, with this boundary
+  bool damped = false;                // `damping` belongs to these rows
+  std::optional<Source> loaded;       // b is that of the present light and rows, with this source
 
   // Uploads the structure; values are undefined until assembled.
-  OperatorBuffers(vk::Context& context, const Level& level, std::uint32_t index, Method method);
+  OperatorBuffers(vk::Context& context, const Level& level, std::uint32_t index, Method method, Model model);
+
+  std::uint64_t field_bytes() const { return (model == Model::sp3 ? 2 : 1) * sizeof(glm::vec3); }
+  std::uint64_t entry_bytes() const { return (model == Model::sp3 ? 3 : 1) * sizeof(glm::vec3); }
 
   gpu::RowsRef rows() const;
   std::uint64_t product_bytes() const;  // read by one product with the rows, diagonal left out

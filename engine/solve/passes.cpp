@@ -2,51 +2,76 @@
 
 #include "shaders/walk_shared.h"
 #include "spirv/assemble_fdm.comp.h"
+#include "spirv/assemble_fdm_sp3.comp.h"
 #include "spirv/assemble_fem.comp.h"
+#include "spirv/assemble_fem_sp3.comp.h"
 #include "spirv/assemble_fv.comp.h"
+#include "spirv/assemble_fv_sp3.comp.h"
 #include "spirv/cg_direction.comp.h"
+#include "spirv/cg_direction_sp3.comp.h"
 #include "spirv/cg_multiply.comp.h"
+#include "spirv/cg_multiply_sp3.comp.h"
 #include "spirv/cg_start.comp.h"
+#include "spirv/cg_start_sp3.comp.h"
 #include "spirv/cg_update.comp.h"
+#include "spirv/cg_update_sp3.comp.h"
 #include "spirv/damping.comp.h"
+#include "spirv/damping_sp3.comp.h"
 #include "spirv/energy.comp.h"
+#include "spirv/energy_sp3.comp.h"
 #include "spirv/evaluate_material.comp.h"
 #include "spirv/exitance.comp.h"
+#include "spirv/exitance_sp3.comp.h"
 #include "spirv/irradiance_scale.comp.h"
 #include "spirv/right_hand_side_buried.comp.h"
+#include "spirv/right_hand_side_buried_sp3.comp.h"
 #include "spirv/right_hand_side_fdm.comp.h"
+#include "spirv/right_hand_side_fdm_sp3.comp.h"
 #include "spirv/right_hand_side_fem.comp.h"
+#include "spirv/right_hand_side_fem_sp3.comp.h"
 #include "spirv/right_hand_side_fv.comp.h"
+#include "spirv/right_hand_side_fv_sp3.comp.h"
+#include "spirv/shape.comp.h"
 #include "spirv/sweep.comp.h"
+#include "spirv/sweep_sp3.comp.h"
 #include "spirv/transfer.comp.h"
+#include "spirv/transfer_sp3.comp.h"
 #include "spirv/vertex_exitance.comp.h"
+#include "spirv/vertex_exitance_sp3.comp.h"
 #include "spirv/vertex_unscattered.comp.h"
 #include "spirv/walk_source.comp.h"
 
 namespace quadgraph {
 
+// SPIR-V of both variants, the size of their push constants, and a name.
+#define MODEL_PASS(pass, Push)                                                                  \
+  pass {                                                                                        \
+    {pass##_comp, sizeof(gpu::Push), #pass}, {pass##_sp3_comp, sizeof(gpu::Push), #pass " sp3"} \
+  }
+#define ONE_PASS(pass, Push) pass(pass##_comp, sizeof(gpu::Push), #pass)
+
 Passes::Passes()
-    : evaluate_material(evaluate_material_comp, sizeof(gpu::EvaluateMaterialPush), "evaluate material"),
-      assemble_fdm(assemble_fdm_comp, sizeof(gpu::AssembleFdmPush), "assemble fdm"),
-      assemble_fv(assemble_fv_comp, sizeof(gpu::AssembleFvPush), "assemble fv"),
-      assemble_fem(assemble_fem_comp, sizeof(gpu::AssembleFemPush), "assemble fem"),
-      irradiance_scale(irradiance_scale_comp, sizeof(gpu::IrradianceScalePush), "irradiance scale"),
-      right_hand_side_fdm(right_hand_side_fdm_comp, sizeof(gpu::RightHandSideFdmPush), "right hand side fdm"),
-      right_hand_side_fv(right_hand_side_fv_comp, sizeof(gpu::RightHandSideFvPush), "right hand side fv"),
-      right_hand_side_fem(right_hand_side_fem_comp, sizeof(gpu::RightHandSideFemPush), "right hand side fem"),
-      right_hand_side_buried(right_hand_side_buried_comp, sizeof(gpu::RightHandSideBuriedPush),
-                             "right hand side buried"),
-      walk_source(walk_source_comp, sizeof(gpu::WalkSourcePush), "walk source"),
-      vertex_unscattered(vertex_unscattered_comp, sizeof(gpu::VertexUnscatteredPush), "vertex unscattered"),
-      damping(damping_comp, sizeof(gpu::DampingPush), "damping"),
-      transfer(transfer_comp, sizeof(gpu::TransferPush), "transfer"),
-      cg_start(cg_start_comp, sizeof(gpu::CgStartPush), "cg start"),
-      cg_multiply(cg_multiply_comp, sizeof(gpu::CgMultiplyPush), "cg multiply"),
-      cg_update(cg_update_comp, sizeof(gpu::CgUpdatePush), "cg update"),
-      cg_direction(cg_direction_comp, sizeof(gpu::CgDirectionPush), "cg direction"),
-      sweep(sweep_comp, sizeof(gpu::SweepPush), "sweep"),
-      exitance(exitance_comp, sizeof(gpu::ExitancePush), "exitance"),
-      vertex_exitance(vertex_exitance_comp, sizeof(gpu::VertexExitancePush), "vertex exitance"),
-      energy(energy_comp, sizeof(gpu::EnergyPush), "energy") {}
+    : ONE_PASS(evaluate_material, EvaluateMaterialPush),
+      ONE_PASS(shape, ShapePush),
+      ONE_PASS(irradiance_scale, IrradianceScalePush),
+      ONE_PASS(walk_source, WalkSourcePush),
+      ONE_PASS(vertex_unscattered, VertexUnscatteredPush),
+      MODEL_PASS(assemble_fdm, AssembleFdmPush),
+      MODEL_PASS(assemble_fv, AssembleFvPush),
+      MODEL_PASS(assemble_fem, AssembleFemPush),
+      MODEL_PASS(right_hand_side_fdm, RightHandSideFdmPush),
+      MODEL_PASS(right_hand_side_fv, RightHandSideFvPush),
+      MODEL_PASS(right_hand_side_fem, RightHandSideFemPush),
+      MODEL_PASS(right_hand_side_buried, RightHandSideBuriedPush),
+      MODEL_PASS(damping, DampingPush),
+      MODEL_PASS(transfer, TransferPush),
+      MODEL_PASS(cg_start, CgStartPush),
+      MODEL_PASS(cg_multiply, CgMultiplyPush),
+      MODEL_PASS(cg_update, CgUpdatePush),
+      MODEL_PASS(cg_direction, CgDirectionPush),
+      MODEL_PASS(sweep, SweepPush),
+      MODEL_PASS(exitance, ExitancePush),
+      MODEL_PASS(vertex_exitance, VertexExitancePush),
+      MODEL_PASS(energy, EnergyPush) {}
 
 }  // namespace quadgraph

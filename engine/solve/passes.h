@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "engine/graph/solution.h"
 #include "engine/vk/pipeline.h"
 
 namespace quadgraph {
@@ -25,12 +26,20 @@ class LazyPass {
   std::optional<vk::ComputePass> pass_;
 };
 
+// The two variants of a pass that touches fields.
+struct ModelPass {
+  LazyPass diffusion, sp3;
+
+  LazyPass& of(Model model) { return model == Model::sp3 ? sp3 : diffusion; }
+};
+
 struct Passes {
   Passes();
 
-  LazyPass evaluate_material, assemble_fdm, assemble_fv, assemble_fem, irradiance_scale, right_hand_side_fdm,
-      right_hand_side_fv, right_hand_side_fem, right_hand_side_buried, walk_source, vertex_unscattered, damping,
-      transfer, cg_start, cg_multiply, cg_update, cg_direction, sweep, exitance, vertex_exitance, energy;
+  LazyPass evaluate_material, shape, irradiance_scale, walk_source, vertex_unscattered;
+  ModelPass assemble_fdm, assemble_fv, assemble_fem, right_hand_side_fdm, right_hand_side_fv, right_hand_side_fem,
+      right_hand_side_buried, damping, transfer, cg_start, cg_multiply, cg_update, cg_direction, sweep, exitance,
+      vertex_exitance, energy;
 };
 
 }  // namespace quadgraph

@@ -2,16 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
-#include <string>
+#include <utility>
 
-#include "engine/graph/error.h"
 #include "shaders/solve_shared.h"
 
 namespace quadgraph {
 namespace {
-
-constexpr std::uint32_t max_neighbours = 1024;  // a place has 10 bits
 
 // Neighbours of every row, in compressed rows.
 struct Neighbours {
@@ -39,53 +35,52 @@ SlicedColumns slice(const Neighbours& rows) {
   return sliced;
 }
 
-// (tet * 4 + corner, 0) at every vertex.
-Incidence tets_at_vertices(const Level& level) {
-  Incidence at;
-  at.offset.assign(level.vertices.size() + 1, 0);
-  at.element.resize(4 * level.tets.size());
-  for (const glm::uvec4& tet : level.tets) {
-    for (int k = 0; k < 4; ++k) ++at.offset[tet[k] + 1];
-  }
-  for (std::size_t v = 0; v < level.vertices.size(); ++v) at.offset[v + 1] += at.offset[v];
-  std::vector<std::uint32_t> next(at.offset.begin(), at.offset.end() - 1);
-  for (std::uint32_t t = 0; t < level.tet_count(); ++t) {
-    for (std::uint32_t k = 0; k < 4; ++k) at.element[next[level.tets[t][static_cast<int>(k)]]++] = {4 * t + k, 0};
-  }
-  return at;
-}
+// Pairs of corners of a tet, in the order of TET_SHAPE.
+constexpr std::array<std::array<int, 2>, 6> tet_edges = {{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
 
-Neighbours vertex_neighbours(const Level& level, const Incidence& tets) {
+// Neighbours of every vertex, each once, ascending.
+Neighbours vertex_neighbours(const Level& level) {
+  std::vector<std::vector<std::uint32_t>> lists(level.vertices.size());
+  for (const glm::uvec4& tet : level.tets) {
+    for (const auto& [a, b] : tet_edges) {
+      lists[tet[a]].push_back(tet[b]);
+      lists[tet[b]].push_back(tet[a]);
+    }
+  }
   Neighbours rows;
   rows.offset.push_back(0);
-  std::vector<std::uint32_t> seen(level.vertices.size(), std::numeric_limits<std::uint32_t>::max());
-  for (std::uint32_t v = 0; v < level.vertex_count(); ++v) {
-    seen[v] = v;
-    for (std::uint32_t i = tets.offset[v]; i < tets.offset[v + 1]; ++i) {
-      const glm::uvec4& tet = level.tets[tets.element[i].x / 4];
-      for (int k = 0; k < 4; ++k) {
-        if (seen[tet[k]] == v) continue;
-        seen[tet[k]] = v;
-        rows.column.push_back(tet[k]);
-      }
-    }
-    std::sort(rows.column.begin() + rows.offset.back(), rows.column.end());
+  for (auto& list : lists) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    rows.column.insert(rows.column.end(), list.begin(), list.end());
     rows.offset.push_back(static_cast<std::uint32_t>(rows.column.size()));
-    const std::uint32_t count = rows.offset[v + 1] - rows.offset[v];
-    if (count > max_neighbours) {
-      throw InputError("vertex " + std::to_string(v) + " has " + std::to_string(count) + " neighbours, at most " +
-                       std::to_string(max_neighbours) + " are allowed");
-    }
   }
   return rows;
 }
 
-// Place of `column` in row `row`, which holds it.
-std::uint32_t place_of(const SlicedColumns& sliced, std::uint32_t row, std::uint32_t column) {
-  std::uint32_t entry = sliced.slice_offset[row / SLICE_ROWS] + row % SLICE_ROWS;
-  std::uint32_t place = 0;
-  while (sliced.column[entry + place * SLICE_ROWS] != column) ++place;
-  return place;
+// The place of `column` in row `row`, which holds it.
+std::uint32_t place_of(const Neighbours& rows, std::uint32_t row, std::uint32_t column) {
+  const auto begin = rows.column.begin() + rows.offset[row], end = rows.column.begin() + rows.offset[row + 1];
+  return static_cast<std::uint32_t>(std::lower_bound(begin, end, column) - begin);
+}
+
+// Calls add(entry, element) for both entries of every edge of every tet and open face.
+template <typename Function>
+void for_each_element(const Level& level, const Neighbours& rows, const SlicedColumns& sliced, const Function& add) {
+  const auto at_edge = [&](std::uint32_t a, std::uint32_t b, std::uint32_t element) {
+    for (const auto& [row, column] : {std::pair(a, b), std::pair(b, a)}) {
+      add(sliced.slice_offset[row / SLICE_ROWS] + row % SLICE_ROWS + place_of(rows, row, column) * SLICE_ROWS, element);
+    }
+  };
+  for (std::uint32_t t = 0; t < level.tet_count(); ++t) {
+    for (std::uint32_t e = 0; e < tet_edges.size(); ++e) {
+      at_edge(level.tets[t][tet_edges[e][0]], level.tets[t][tet_edges[e][1]], 8 * t + e);
+    }
+  }
+  for (std::uint32_t f = 0; f < level.face_count(); ++f) {
+    if (level.reflecting(f)) continue;
+    for (int k = 0; k < 3; ++k) at_edge(level.faces[f][k], level.faces[f][(k + 1) % 3], 8 * f + gpu::RING_FACE);
+  }
 }
 
 }  // namespace
@@ -105,47 +100,33 @@ SlicedColumns node_columns(const Level& level) {
 }
 
 FemStructure fem_structure(const Level& level) {
+  const Neighbours rows = vertex_neighbours(level);
   FemStructure structure;
-  structure.tets = tets_at_vertices(level);
-  const Neighbours rows = vertex_neighbours(level, structure.tets);
   structure.columns = slice(rows);
-  std::vector<std::uint32_t> place(level.vertices.size());
-  for (std::uint32_t v = 0; v < level.vertex_count(); ++v) {
-    for (std::uint32_t e = rows.offset[v]; e < rows.offset[v + 1]; ++e) place[rows.column[e]] = e - rows.offset[v];
-    for (std::uint32_t i = structure.tets.offset[v]; i < structure.tets.offset[v + 1]; ++i) {
-      glm::uvec2& element = structure.tets.element[i];
-      const glm::uvec4& tet = level.tets[element.x / 4];
-      std::uint32_t shift = 0;
-      for (std::uint32_t k = 0; k < 4; ++k) {
-        if (k == element.x % 4) continue;
-        element.y |= place[tet[static_cast<int>(k)]] << shift;
-        shift += 10;
-      }
-    }
-  }
+  std::vector<std::uint32_t>& offset = structure.ring_offset;
+  offset.assign(structure.columns.column.size() + 1, 0);
+  for_each_element(level, rows, structure.columns, [&](std::uint32_t entry, std::uint32_t) { ++offset[entry + 1]; });
+  for (std::size_t e = 1; e < offset.size(); ++e) offset[e] += offset[e - 1];
+  structure.ring.resize(offset.back());
+  std::vector<std::uint32_t> next(offset.begin(), offset.end() - 1);
+  for_each_element(level, rows, structure.columns,
+                   [&](std::uint32_t entry, std::uint32_t element) { structure.ring[next[entry]++] = element; });
   return structure;
 }
 
-Incidence face_incidence(const Level& level, const SlicedColumns* columns) {
-  Incidence at;
+FaceIncidence face_incidence(const Level& level) {
+  FaceIncidence at;
   at.offset.assign(level.surface_vertex_count + 1, 0);
-  at.element.resize(3 * level.faces.size());
-  for (const glm::uvec3& face : level.faces) {
-    for (int k = 0; k < 3; ++k) ++at.offset[face[k] + 1];
-  }
-  for (std::size_t v = 0; v < level.surface_vertex_count; ++v) at.offset[v + 1] += at.offset[v];
-  std::vector<std::uint32_t> next(at.offset.begin(), at.offset.end() - 1);
-  for (std::uint32_t f = 0; f < level.face_count(); ++f) {
-    const glm::uvec3& face = level.faces[f];
-    for (int k = 0; k < 3; ++k) {
-      const std::uint32_t row = face[k];
-      std::uint32_t places = 0;
-      if (columns != nullptr) {
-        places = place_of(*columns, row, face[(k + 1) % 3]) | place_of(*columns, row, face[(k + 2) % 3]) << 10;
-      }
-      at.element[next[row]++] = {f, places};
+  const auto for_each_corner = [&](const auto& visit) {
+    for (std::uint32_t f = 0; f < level.face_count(); ++f) {
+      for (int k = 0; k < 3 && !level.reflecting(f); ++k) visit(level.faces[f][k], f);
     }
-  }
+  };
+  for_each_corner([&](std::uint32_t v, std::uint32_t) { ++at.offset[v + 1]; });
+  for (std::size_t v = 0; v < level.surface_vertex_count; ++v) at.offset[v + 1] += at.offset[v];
+  at.face.resize(at.offset.back());
+  std::vector<std::uint32_t> next(at.offset.begin(), at.offset.end() - 1);
+  for_each_corner([&](std::uint32_t v, std::uint32_t f) { at.face[next[v]++] = f; });
   return at;
 }
 

@@ -1,5 +1,5 @@
 // What an operator's rows look like on one level before any value is known: columns in slices (shaders/solve_shared.h,
-// RowsRef), and which tets and faces contribute to which row.
+// RowsRef), and which tets and faces contribute to which entry.
 #pragma once
 
 #include <cstdint>
@@ -18,24 +18,25 @@ struct SlicedColumns {
   std::vector<std::uint32_t> column;
 };
 
-// For every row, (element, places) as in AssembleFemPush.
-struct Incidence {
-  std::vector<std::uint32_t> offset;  // rows + 1
-  std::vector<glm::uvec2> element;
-};
-
+// Columns of fem rows, and what lies around the edge that every entry stands for (AssembleFemPush).
 struct FemStructure {
   SlicedColumns columns;
-  Incidence tets;
+  std::vector<std::uint32_t> ring_offset;  // entries + 1, padding included
+  std::vector<std::uint32_t> ring;
+};
+
+// The open outside faces at every surface vertex.
+struct FaceIncidence {
+  std::vector<std::uint32_t> offset;  // surface vertices + 1
+  std::vector<std::uint32_t> face;
 };
 
 // Rows of the nodes: the four links, or the one.
 SlicedColumns node_columns(const Level& level);
 
-// Rows of the vertices: their neighbours, ascending. Throws InputError if a vertex has more than 1024.
+// Rows of the vertices: their neighbours, ascending.
 FemStructure fem_structure(const Level& level);
 
-// The faces at every surface vertex, with places in the rows of `columns`; places are 0 without columns.
-Incidence face_incidence(const Level& level, const SlicedColumns* columns);
+FaceIncidence face_incidence(const Level& level);
 
 }  // namespace quadgraph

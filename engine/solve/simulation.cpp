@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <compare>
 #include <glm/geometric.hpp>
 #include <map>
 
 #include "engine/graph/error.h"
-#include "engine/graph/material.h"
 #include "engine/solve/assembly.h"
 #include "engine/solve/beams.h"
+#include "engine/solve/coefficients.h"
 #include "engine/solve/level_solver.h"
 #include "engine/solve/level_upload.h"
 #include "engine/solve/surface_results.h"
@@ -24,11 +25,23 @@ void check_options(const SolveOptions& options) {
   }
 }
 
+// What an operator is made for.
+struct OperatorKey {
+  Method method;
+  Model model;
+
+  auto operator<=>(const OperatorKey&) const = default;
+};
+
+bool same(const Boundary& a, const Boundary& b) {
+  return a.k11 == b.k11 && a.k12 == b.k12 && a.k22 == b.k22;
+}
+
 }  // namespace
 
 struct Simulation::Implementation {
-  // Everything one method needs on one level.
-  struct MethodLevel {
+  // What one method and model need on one level.
+  struct OperatorLevel {
     std::optional<OperatorBuffers> op;
     std::optional<TransferBuffers> transfer;
   };
@@ -37,20 +50,23 @@ struct Simulation::Implementation {
   const QuadGraph& graph;
   std::vector<LevelBuffers> levels;
   BeamBuffers beams;
-  std::map<Method, std::vector<MethodLevel>> methods;  // those solved so far
+  std::vector<SourceWalk> walks;                                // one per level
+  std::map<OperatorKey, std::vector<OperatorLevel>> operators;  // those solved so far
   Workspace work;
   SurfaceResults results;
-  std::optional<gpu::Material> material;
-  bool material_evaluated = false;
-  bool scaled = false;           // the scale is that of the present q
-  std::optional<Method> solved;  // method of the last solve
+  Coefficients coefficients;
+  bool scaled = false;                // the scale is that of the present q
+  std::optional<OperatorKey> solved;  // by the last solve
+  Source solved_source = Source::buried;
 
   Implementation(vk::Context& context_in, const QuadGraph& graph_in)
       : context(context_in),
         graph(graph_in),
         levels(upload_levels(context_in, graph_in)),
         work(context_in, largest_dispatch()),
-        results(context_in, levels[0]) {
+        results(context_in, levels[0]),
+        coefficients(levels.size()) {
+    for (std::uint32_t i = 0; i < levels.size(); ++i) walks.emplace_back(context, graph.levels()[i], i);
     const gpu::BeamRecord lambertian = beam_along(std::nullopt);
     light({&lambertian, 1});
   }
@@ -71,86 +87,102 @@ struct Simulation::Implementation {
     return largest;
   }
 
-  OperatorBuffers& op(Method method, std::uint32_t level) { return *methods.at(method)[level].op; }
+  OperatorBuffers& op(const OperatorKey& key, std::uint32_t level) { return *operators.at(key)[level].op; }
 
-  // Changed irradiance or material: right-hand sides are stale.
+  // Changed light: right-hand sides are stale.
   void unload() {
     scaled = false;
-    for_each_operator([](OperatorBuffers& op) { op.loaded = false; });
+    for (SourceWalk& walk : walks) walk.invalidate();
+    for_each_operator([](OperatorBuffers& op) { op.loaded.reset(); });
+  }
+
+  // Changed coefficients: everything is.
+  void disassemble() {
+    for_each_operator([](OperatorBuffers& op) { op.assembled.reset(); });
+    unload();
   }
 
   template <typename Function>
   void for_each_operator(const Function& function) {
-    for (auto& [method, of_method] : methods) {
-      for (MethodLevel& level : of_method) {
+    for (auto& [key, of_key] : operators) {
+      for (OperatorLevel& level : of_key) {
         if (level.op) function(*level.op);
       }
     }
   }
 
-  void create_structures(Method method) {
-    auto& of_method = methods[method];
-    of_method.resize(levels.size());
+  void create_structures(const OperatorKey& key) {
+    auto& of_key = operators[key];
+    of_key.resize(levels.size());
     const std::vector<Level>& source = graph.levels();
     for (std::uint32_t i = 0; i < levels.size(); ++i) {
-      if (of_method[i].op) continue;
-      of_method[i].op.emplace(context, source[i], i, method);
-      if (i + 1 < levels.size()) of_method[i].transfer.emplace(context, source[i], source[i + 1], i, method);
+      if (of_key[i].op) continue;
+      of_key[i].op.emplace(context, source[i], i, key.method, key.model);
+      if (i + 1 < levels.size()) of_key[i].transfer.emplace(context, source[i], source[i + 1], i, key.method);
     }
   }
 
-  void record_setup(const SolveOptions& options) {
-    if (!material_evaluated) {
-      for (const LevelBuffers& level : levels) record_material(work, level, *material);
-      material_evaluated = true;
+  void record_load(std::uint32_t level, const OperatorKey& key, const Boundary& boundary, Source source,
+                   OperatorBuffers& rows) {
+    if (rows.loaded == source) return;
+    if (source == Source::buried) {
+      walks[level].record(work, levels[level], beams, key.method, coefficients.eta(), coefficients.even());
+      walks[level].record_right_hand_side(work, levels[level], key.method, rows);
+    } else {
+      record_diffuse_load(work, levels[level], key.method, boundary, rows);
     }
+    rows.loaded = source;
+  }
+
+  void record_setup(const OperatorKey& key, const Boundary& boundary, const SolveOptions& options) {
+    coefficients.record(work, levels);
     if (!scaled) record_scale(work, levels[0]);
     scaled = true;
     for (std::uint32_t i = 0; i < levels.size(); ++i) {
-      OperatorBuffers& rows = op(options.method, i);
-      if (!rows.assembled) {
-        record_assembly(work, levels[i], options.method, material->eta, rows);
-        rows.assembled = true;
+      OperatorBuffers& rows = op(key, i);
+      if (!rows.assembled || !same(*rows.assembled, boundary)) {
+        record_assembly(work, levels[i], key.method, boundary, rows);
+        rows.assembled = boundary;
         rows.damped = false;
+        rows.loaded.reset();
       }
       if (!rows.damped && options.solver == SolverKind::cascade) {
-        record_damping(work, options.method, rows);
+        record_damping(work, key.method, rows);
         rows.damped = true;
       }
-      if (!rows.loaded) record_right_hand_side(work, levels[i], options.method, material->eta, rows);
-      rows.loaded = true;
+      record_load(i, key, boundary, options.source, rows);
     }
   }
 
-  void record_transfer(Method method, std::uint32_t level) {
-    const OperatorBuffers& coarse = op(method, level + 1);
-    const OperatorBuffers& fine = op(method, level);
-    for (const auto& part : methods.at(method)[level].transfer->parts) {
-      const gpu::TransferPush push{part.index.address(),
-                                   part.weight.address(),
-                                   coarse.x.address(),
-                                   coarse.to_phi.address(),
-                                   fine.to_phi.address(),
-                                   fine.x.address(),
-                                   fine.state.address(),
-                                   part.width,
-                                   part.first,
-                                   part.coarse_first,
-                                   part.count};
-      work.recorder.dispatch(work.passes.transfer, push, part.count, "transfer",
-                             part.count * (part.width * (8 + 2 * vec3_bytes) + 2 * vec3_bytes));
+  void record_transfer(const OperatorKey& key, std::uint32_t level) {
+    const OperatorBuffers& coarse = op(key, level + 1);
+    const OperatorBuffers& fine = op(key, level);
+    for (const auto& part : operators.at(key)[level].transfer->parts) {
+      const gpu::TransferPush push{.index = part.index.address(),
+                                   .weight = part.weight.address(),
+                                   .coarse_x = coarse.x.address(),
+                                   .coarse_to_phi = coarse.to_phi.address(),
+                                   .to_phi = fine.to_phi.address(),
+                                   .x = fine.x.address(),
+                                   .state = fine.state.address(),
+                                   .width = part.width,
+                                   .first = part.first,
+                                   .coarse_first = part.coarse_first,
+                                   .count = part.count};
+      work.recorder.dispatch(work.passes.transfer.of(key.model), push, part.count, "transfer",
+                             part.count * (part.width * (8 + vec3_bytes + fine.field_bytes()) + 2 * vec3_bytes));
     }
   }
 
-  std::vector<LevelReport> solve_levels(const SolveOptions& options) {
+  std::vector<LevelReport> solve_levels(const OperatorKey& key, const Solved& finest, const SolveOptions& options) {
     std::vector<LevelReport> reports;
     for (auto i = static_cast<std::uint32_t>(levels.size()); i-- > 0;) {
-      OperatorBuffers& rows = op(options.method, i);
+      OperatorBuffers& rows = op(key, i);
       if (i + 1 == levels.size()) {
         work.recorder.fill(rows.x, 0);
       } else {
-        record_transfer(options.method, i);
-        if (i == 0) results.record_coarse(work, levels[0], options.method, material->eta, rows);
+        record_transfer(key, i);
+        if (i == 0) results.record_coarse(work, finest);
       }
       reports.push_back(solve_level(work, rows, i, options));
     }
@@ -159,26 +191,55 @@ struct Simulation::Implementation {
 
   SolveReport solve(const SolveOptions& options) {
     check_options(options);
-    if (!material) throw InputError("solve: no material has been set");
+    coefficients.check();
     solved.reset();
     work.recorder.clear();
-    create_structures(options.method);
-    record_setup(options);
+    const OperatorKey key{options.method, coefficients.resolve(options.model)};
+    const Boundary boundary = boundary_of(key.method, options.source, key.model, coefficients.eta());
+    create_structures(key);
+    record_setup(key, boundary, options);
+    const bool buried = options.source == Source::buried;
+    const Solved finest{levels[0], op(key, 0), key.method, boundary, buried ? &walks[0] : nullptr};
     SolveReport report;
-    report.method = options.method;
+    report.method = key.method;
     report.solver = options.solver;
-    report.levels = solve_levels(options);
-    results.record(work, levels[0], options.method, material->eta, op(options.method, 0));
+    report.source = options.source;
+    report.model = key.model;
+    report.levels = solve_levels(key, finest, options);
+    results.record(work, finest);
     work.recorder.submit();
-    report.energy = results.energy();
+    report.energy = energy_of(options.source);
+    report.clipped = results.clipped();
     if (levels.size() > 1) report.error = results.error();
-    solved = options.method;
+    solved = key;
+    solved_source = options.source;
     return report;
   }
 
-  Method solved_method() const {
+  Energy energy_of(Source source) const {
+    Energy energy = results.energy();
+    if (source == Source::buried) {
+      const WalkPower power = walks[0].power();
+      energy.absorbed += power.absorbed;
+      energy.unscattered_out = power.unscattered;
+    }
+    return energy;
+  }
+
+  const OperatorKey& solved_key() const {
     if (!solved) throw InputError("no solution: solve has not succeeded yet");
     return *solved;
+  }
+
+  glm::vec3 scale() const { return vk::download<gpu::Scale>(context, work.scale)[0].scale; }
+
+  // W/mm^2 per face.
+  std::vector<glm::vec3> unscattered(std::span<const float> area) const {
+    std::vector<glm::vec3> field(area.size(), glm::vec3(0));
+    if (solved_source == Source::diffuse) return field;
+    const std::vector<glm::dvec3> power = walks[0].unscattered_power(context, glm::dvec3(scale()));
+    for (std::size_t f = 0; f < area.size(); ++f) field[f] = glm::vec3(power[f] / static_cast<double>(area[f]));
+    return field;
   }
 };
 
@@ -196,16 +257,21 @@ const LevelBuffers& Simulation::level(std::uint32_t level) const {
 }
 
 void Simulation::set_material(const gpu::Material& material) {
-  check_material(material);
-  implementation_->material = material;
-  implementation_->material_evaluated = false;
-  implementation_->for_each_operator([](OperatorBuffers& op) { op.assembled = false; });
-  implementation_->unload();
+  implementation_->coefficients.set(material);
+  implementation_->disassemble();
 }
 
-const gpu::Material& Simulation::material() const {
-  if (!implementation_->material) throw InputError("no material has been set");
-  return *implementation_->material;
+void Simulation::set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta) {
+  if (level >= level_count()) {
+    throw InputError("level " + std::to_string(level) + " of optical: there are " + std::to_string(level_count()));
+  }
+  implementation_->coefficients.set(implementation_->context, level, optical, eta, implementation_->levels[level]);
+  implementation_->disassemble();
+}
+
+float Simulation::eta() const {
+  implementation_->coefficients.check();
+  return implementation_->coefficients.eta();
 }
 
 void Simulation::set_beams(std::span<const gpu::BeamRecord> beams) {
@@ -238,7 +304,7 @@ const std::vector<PassStats>& Simulation::passes() const {
 
 SurfaceField Simulation::surface_field() const {
   const Implementation& self = *implementation_;
-  self.solved_method();
+  self.solved_key();
   const Level& level = self.graph.levels()[0];
   SurfaceField field;
   field.q = vk::download<glm::vec3>(self.context, self.levels[0].q);
@@ -253,16 +319,18 @@ SurfaceField Simulation::surface_field() const {
     field.normal.push_back(glm::vec3(glm::normalize(normal)));
     field.area.push_back(static_cast<float>(0.5 * glm::length(normal)));
   }
+  field.unscattered = self.unscattered(field.area);
   return field;
 }
 
 std::vector<glm::vec3> Simulation::phi() const {
   const Implementation& self = *implementation_;
-  const OperatorBuffers& rows = implementation_->op(self.solved_method(), 0);
-  std::vector<glm::vec3> phi = vk::download<glm::vec3>(self.context, rows.x);
-  const auto to_phi = vk::download<glm::vec3>(self.context, rows.to_phi);
-  const glm::vec3 scale = vk::download<gpu::Scale>(self.context, self.work.scale)[0].scale;
-  for (std::size_t i = 0; i < phi.size(); ++i) phi[i] *= to_phi[i] * scale;
+  const OperatorBuffers& rows = implementation_->op(self.solved_key(), 0);
+  const std::size_t moments = rows.model == Model::sp3 ? 2 : 1;
+  const auto x = vk::download<glm::vec3>(self.context, rows.x);
+  std::vector<glm::vec3> phi = vk::download<glm::vec3>(self.context, rows.to_phi);
+  const glm::vec3 scale = self.scale();
+  for (std::size_t i = 0; i < phi.size(); ++i) phi[i] *= x[moments * i] * scale;
   return phi;
 }
 

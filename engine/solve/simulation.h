@@ -1,8 +1,8 @@
 // The diffusion solve on the GPU: every level's geometry, material, operator and solution as storage buffers.
 //
-// Per frame: (material) -> optical coefficients at the nodes -> operator rows on every level -> right-hand side from q
+// Per frame: (material) -> coefficients at the nodes -> operator rows on every level -> right-hand side from the light
 // -> solve, coarsest level first -> exitance. Only what changed since the last solve is done again: a new material
-// re-assembles, a new q only rebuilds the right-hand side.
+// re-assembles and walks the source anew, new light only walks it.
 #pragma once
 
 #include <cstdint>
@@ -37,11 +37,13 @@ struct LevelBuffers {
   vk::Buffer faces;      // uvec3
   vk::Buffer face_tets;  // uint
   vk::Buffer face_kind;  // uint; 0 open, 1 reflecting
-  vk::Buffer links;      // uvec4
-  vk::Buffer nodes;      // vec3, mm; inner nodes, then surface nodes
-  vk::Buffer optical;    // Optical per node
-  vk::Buffer q;          // vec3 per face, W/mm^2: written by the lights or by set_irradiance
-  vk::Buffer beam_q;     // vec3 per beam, face and quarter (FACE_QUARTERS), W/mm^2: what q is made of
+  // The open faces at surface vertex v: face_incidence[k], k from face_offset[v] to face_offset[v + 1].
+  vk::Buffer face_offset, face_incidence;
+  vk::Buffer links;    // uvec4
+  vk::Buffer nodes;    // vec3, mm; inner nodes, then surface nodes
+  vk::Buffer optical;  // Optical per node
+  vk::Buffer q;        // vec3 per face, W/mm^2: written by the lights or by set_irradiance
+  vk::Buffer beam_q;   // vec3 per beam, face and quarter (FACE_QUARTERS), W/mm^2: what q is made of
 };
 
 class Simulation {
@@ -57,7 +59,13 @@ class Simulation {
 
   // Throws InputError as check_material does.
   void set_material(const gpu::Material& material);
-  const gpu::Material& material() const;
+
+  // Coefficients instead of a material, one per node of `level` (inner, then surface); wanted for every level, and kept
+  // until set_material. Throws InputError on a wrong size or value.
+  void set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta);
+
+  // Index of refraction of what was set. Throws InputError before that, or if a level of set_optical is missing.
+  float eta() const;
 
   // The beams that light is made of. level.beam_q then has room for as many; whoever fills beam_q and q on the device
   // calls irradiance_changed. Both are zero after a change of their number.
@@ -72,7 +80,7 @@ class Simulation {
   void set_irradiance(std::uint32_t level, std::span<const glm::vec3> q,
                       const std::optional<glm::vec3>& direction = std::nullopt);
 
-  // Solves for the present material and q, all levels. Throws InputError before set_material, SolverError when
+  // Solves for the present coefficients and light, all levels. Throws InputError before they are set, SolverError when
   // conjugate gradients break down or a value is not finite.
   SolveReport solve(const SolveOptions& options);
 
@@ -81,7 +89,7 @@ class Simulation {
 
   // Results of the last solve, level 0.
   SurfaceField surface_field() const;
-  std::vector<glm::vec3> phi() const;         // per unknown of the method
+  std::vector<glm::vec3> phi() const;         // per carrier of the method
   const vk::Buffer& vertex_exitance() const;  // vec3 per surface vertex of level 0, W/mm^2, for display
 
  private:

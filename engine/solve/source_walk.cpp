@@ -87,7 +87,7 @@ void SourceWalk::record(Workspace& work, const LevelBuffers& level, const BeamBu
   }
   work.recorder.fill(deposit, 0);
   work.recorder.fill(unscattered_, 0);
-  work.recorder.fill(sums_, 0);
+  if (all_sums > 0) work.recorder.fill(sums_, 0);
   std::uint64_t sums_offset = 0;
   for (std::size_t beam = 0; beam < beams.kinds.size(); ++beam) {
     const gpu::WalkSourcePush push{
@@ -114,8 +114,10 @@ void SourceWalk::record(Workspace& work, const LevelBuffers& level, const BeamBu
                            walk_bytes(level, push.rays));
     sums_offset += sums_bytes(level, beams.kinds[beam]);
   }
-  work.recorder.copy(sums_, sums_on_host_, all_sums);
-  work.recorder.copy(work.scale, scale_on_host_, sizeof(gpu::Scale));
+  if (all_sums > 0) {
+    work.recorder.copy(sums_, sums_on_host_, all_sums);
+    work.recorder.copy(work.scale, scale_on_host_, sizeof(gpu::Scale));
+  }
   walked_[carrier(method)] = true;
 }
 
@@ -131,11 +133,16 @@ void SourceWalk::record_right_hand_side(Workspace& work, const LevelBuffers& lev
                                           .count = op.count,
                                           .deposit_count = carriers(level, method),
                                           .per_volume = method == Method::quadgraph_fdm ? 1u : 0u};
-  work.recorder.dispatch(work.passes.right_hand_side_buried, push, op.count, "right-hand side",
-                         op.count * 2 * vec3_bytes + carriers(level, method) * power_bytes);
+  work.recorder.dispatch(work.passes.right_hand_side_buried.of(op.model), push, op.count, "right-hand side",
+                         op.count * (op.entry_bytes() + op.field_bytes()) + carriers(level, method) * power_bytes);
+}
+
+std::vector<glm::dvec3> SourceWalk::unscattered_power(vk::Context& context, const glm::dvec3& scale) const {
+  return powers(vk::download<std::uint32_t>(context, unscattered_), scale);
 }
 
 WalkPower SourceWalk::power() const {
+  if (sums_.size() == 0) return {};  // no beams, no light
   const glm::dvec3 scale(scale_on_host_.mapped_as<gpu::Scale>()[0].scale);
   const std::vector<glm::dvec3> sums = powers(sums_on_host_.mapped_as<std::uint32_t>(), scale);
   WalkPower power;

@@ -46,6 +46,9 @@ class SourceWalk {
   const vk::Buffer& deposit(Method method) const { return deposits_[carrier(method)]; }
   const vk::Buffer& unscattered() const { return unscattered_; }
 
+  // W per face of what left unscattered, in the last walk that has run; `scale` as on the device.
+  std::vector<glm::dvec3> unscattered_power(vk::Context& context, const glm::dvec3& scale) const;
+
   // Of the last walk that has run.
   WalkPower power() const;
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/graph/fresnel.h"
+#include "engine/solve/assembly.h"
 
 namespace quadgraph {
 namespace {
@@ -39,70 +39,105 @@ SurfaceResults::SurfaceResults(vk::Context& context, const LevelBuffers& level) 
   exitance_ = vector(level.face_count, "exitance");
   coarse_exitance_ = vector(level.face_count, "exitance of the coarser level");
   vertex_exitance_ = vector(level.surface_vertex_count, "exitance at vertices");
+  clip_ = vk::Buffer(context, sizeof(gpu::Clip), vk::Place::device, "clip");
+  clip_on_host_ = vk::Buffer(context, sizeof(gpu::Clip), vk::Place::host, "clip, read back");
   const std::uint64_t sums_bytes = energy_groups(level) * sizeof(gpu::EnergySums);
   sums_ = vk::Buffer(context, sums_bytes, vk::Place::device, "energy sums");
   sums_on_host_ = vk::Buffer(context, sums_bytes, vk::Place::host, "energy sums, read back");
 }
 
-void SurfaceResults::record_exitance(Workspace& work, const LevelBuffers& level, Method method, double eta,
-                                     const OperatorBuffers& op, const vk::Buffer& exitance) {
-  const gpu::ExitancePush push{level.faces.address(),
-                               op.x.address(),
-                               op.to_phi.address(),
-                               level.q.address(),
-                               work.scale.address(),
-                               phi_.address(),
-                               exitance.address(),
-                               level.face_count,
-                               level.tet_count,
-                               is_fem(method),
-                               static_cast<float>(mismatch(eta))};
-  work.recorder.dispatch(work.passes.exitance, push, level.face_count, "exitance",
-                         level.face_count * (sizeof(glm::uvec3) + 6 * vec3_bytes));
+void SurfaceResults::record_exitance(Workspace& work, const Solved& solved, const vk::Buffer& exitance) {
+  const LevelBuffers& level = solved.level;
+  const gpu::ExitancePush push{.vertices = level.vertices.address(),
+                               .faces = level.faces.address(),
+                               .face_kinds = level.face_kind.address(),
+                               .x = solved.op.x.address(),
+                               .to_phi = solved.op.to_phi.address(),
+                               .q = level.q.address(),
+                               .scale = work.scale.address(),
+                               .phi = phi_.address(),
+                               .exitance = exitance.address(),
+                               .clip = clip_.address(),
+                               .reduction = work.reduction.address(),
+                               .count = level.face_count,
+                               .tet_count = level.tet_count,
+                               .fem = is_fem(solved.method),
+                               .clipped = solved.walk != nullptr ? 1u : 0u,
+                               .boundary = on_device(solved.boundary)};
+  work.recorder.dispatch(work.passes.exitance.of(solved.op.model), push, level.face_count, "exitance",
+                         level.face_count * (sizeof(glm::uvec3) + 6 * vec3_bytes + 3 * solved.op.field_bytes()));
 }
 
-void SurfaceResults::record_coarse(Workspace& work, const LevelBuffers& level, Method method, double eta,
-                                   const OperatorBuffers& op) {
-  record_exitance(work, level, method, eta, op, coarse_exitance_);
+void SurfaceResults::record_coarse(Workspace& work, const Solved& solved) {
+  record_exitance(work, solved, coarse_exitance_);
 }
 
-void SurfaceResults::record_vertex_exitance(Workspace& work, const LevelBuffers& level, Method method, double eta,
-                                            const OperatorBuffers& op) {
-  const gpu::VertexExitancePush push{level.vertices.address(),
-                                     level.faces.address(),
-                                     op.face_offset.address(),
-                                     op.face_incidence.address(),
-                                     op.x.address(),
-                                     level.q.address(),
-                                     phi_.address(),
-                                     work.scale.address(),
-                                     vertex_exitance_.address(),
-                                     level.surface_vertex_count,
-                                     is_fem(method),
-                                     static_cast<float>(mismatch(eta))};
-  const std::uint64_t face_bytes = sizeof(glm::uvec2) + sizeof(glm::uvec3) + 5 * vec3_bytes;
-  work.recorder.dispatch(work.passes.vertex_exitance, push, level.surface_vertex_count, "exitance",
+void SurfaceResults::record_vertex_exitance(Workspace& work, const Solved& solved) {
+  const LevelBuffers& level = solved.level;
+  const gpu::VertexExitancePush push{.vertices = level.vertices.address(),
+                                     .faces = level.faces.address(),
+                                     .face_offset = level.face_offset.address(),
+                                     .face_incidence = level.face_incidence.address(),
+                                     .x = solved.op.x.address(),
+                                     .q = level.q.address(),
+                                     .face_exitance = exitance_.address(),
+                                     .scale = work.scale.address(),
+                                     .clip = clip_.address(),
+                                     .exitance = vertex_exitance_.address(),
+                                     .count = level.surface_vertex_count,
+                                     .fem = is_fem(solved.method),
+                                     .clipped = solved.walk != nullptr ? 1u : 0u,
+                                     .boundary = on_device(solved.boundary)};
+  const std::uint64_t face_bytes = sizeof(std::uint32_t) + sizeof(glm::uvec3) + 5 * vec3_bytes;
+  work.recorder.dispatch(work.passes.vertex_exitance.of(solved.op.model), push, level.surface_vertex_count, "exitance",
                          3 * level.face_count * face_bytes + 2 * vec3_bytes * level.surface_vertex_count);
 }
 
-void SurfaceResults::record_energy(Workspace& work, const LevelBuffers& level, Method method,
-                                   const OperatorBuffers& op) {
-  const gpu::EnergyPush push{level.vertices.address(), level.tets.address(), level.faces.address(),
-                             level.optical.address(),  op.x.address(),       op.to_phi.address(),
-                             level.q.address(),        exitance_.address(),  coarse_exitance_.address(),
-                             work.scale.address(),     sums_.address(),      level.tet_count,
-                             level.face_count,         is_fem(method)};
-  const std::uint64_t bytes = level.tet_count * (sizeof(glm::uvec4) + 9 * vec3_bytes) +
-                              level.face_count * (sizeof(glm::uvec3) + 6 * vec3_bytes) + sums_.size();
-  work.recorder.dispatch(work.passes.energy, push, energy_elements(level), "energy", bytes);
-  work.recorder.copy(sums_, sums_on_host_, sums_.size());
+void SurfaceResults::record_vertex_unscattered(Workspace& work, const Solved& solved) {
+  const LevelBuffers& level = solved.level;
+  const gpu::VertexUnscatteredPush push{.vertices = level.vertices.address(),
+                                        .faces = level.faces.address(),
+                                        .face_offset = level.face_offset.address(),
+                                        .face_incidence = level.face_incidence.address(),
+                                        .unscattered = solved.walk->unscattered().address(),
+                                        .scale = work.scale.address(),
+                                        .exitance = vertex_exitance_.address(),
+                                        .count = level.surface_vertex_count};
+  const std::uint64_t face_bytes = sizeof(std::uint32_t) * (1 + FIXED_WORDS) + sizeof(glm::uvec3) + 3 * vec3_bytes;
+  work.recorder.dispatch(work.passes.vertex_unscattered, push, level.surface_vertex_count, "exitance",
+                         3 * level.face_count * face_bytes + 2 * vec3_bytes * level.surface_vertex_count);
 }
 
-void SurfaceResults::record(Workspace& work, const LevelBuffers& level, Method method, double eta,
-                            const OperatorBuffers& op) {
-  record_exitance(work, level, method, eta, op, exitance_);
-  record_vertex_exitance(work, level, method, eta, op);
-  record_energy(work, level, method, op);
+void SurfaceResults::record_energy(Workspace& work, const Solved& solved) {
+  const LevelBuffers& level = solved.level;
+  const gpu::EnergyPush push{.vertices = level.vertices.address(),
+                             .tets = level.tets.address(),
+                             .faces = level.faces.address(),
+                             .face_kinds = level.face_kind.address(),
+                             .optical = level.optical.address(),
+                             .x = solved.op.x.address(),
+                             .to_phi = solved.op.to_phi.address(),
+                             .q = level.q.address(),
+                             .exitance = exitance_.address(),
+                             .coarse_exitance = coarse_exitance_.address(),
+                             .scale = work.scale.address(),
+                             .clip = clip_.address(),
+                             .sums = sums_.address(),
+                             .tet_count = level.tet_count,
+                             .face_count = level.face_count,
+                             .fem = is_fem(solved.method)};
+  const std::uint64_t bytes = level.tet_count * (sizeof(glm::uvec4) + 5 * vec3_bytes + 4 * solved.op.field_bytes()) +
+                              level.face_count * (sizeof(glm::uvec3) + 7 * vec3_bytes) + sums_.size();
+  work.recorder.dispatch(work.passes.energy.of(solved.op.model), push, energy_elements(level), "energy", bytes);
+  work.recorder.copy(sums_, sums_on_host_, sums_.size());
+  work.recorder.copy(clip_, clip_on_host_, clip_.size());
+}
+
+void SurfaceResults::record(Workspace& work, const Solved& solved) {
+  record_exitance(work, solved, exitance_);
+  record_energy(work, solved);
+  record_vertex_exitance(work, solved);
+  if (solved.walk != nullptr) record_vertex_unscattered(work, solved);
 }
 
 Energy SurfaceResults::energy() const {
@@ -119,6 +154,10 @@ ErrorEstimate SurfaceResults::error() const {
   glm::dvec4 total{0};
   for (const gpu::EnergySums& sums : sums_on_host_.mapped_as<gpu::EnergySums>()) total += glm::dvec4(sums.error);
   return {.whole = relative(total.x, total.y), .unlit = relative(total.z, total.w)};
+}
+
+glm::dvec3 SurfaceResults::clipped() const {
+  return glm::dvec3(clip_on_host_.mapped_as<gpu::Clip>()[0].share);
 }
 
 }  // namespace quadgraph

@@ -3,38 +3,51 @@
 
 #include <optional>
 
+#include "engine/graph/boundary.h"
 #include "engine/solve/operator_buffers.h"
 #include "engine/solve/simulation.h"
+#include "engine/solve/source_walk.h"
 #include "engine/solve/workspace.h"
 
 namespace quadgraph {
+
+// What was solved, as the passes over the surface need it.
+struct Solved {
+  const LevelBuffers& level;
+  const OperatorBuffers& op;
+  Method method;
+  Boundary boundary;
+  const SourceWalk* walk;  // of the buried source, whose exitance is clipped; null for the diffuse one
+};
 
 class SurfaceResults {
  public:
   SurfaceResults(vk::Context& context, const LevelBuffers& level);
 
   const vk::Buffer& phi() const { return phi_; }                          // vec3 per outside face, W/mm^2
-  const vk::Buffer& exitance() const { return exitance_; }                // vec3 per outside face, W/mm^2
-  const vk::Buffer& vertex_exitance() const { return vertex_exitance_; }  // vec3 per surface vertex, W/mm^2
+  const vk::Buffer& exitance() const { return exitance_; }                // vec3 per outside face, W/mm^2, scattered
+  const vk::Buffer& vertex_exitance() const { return vertex_exitance_; }  // vec3 per surface vertex, W/mm^2, all light
 
   // Exitance of the solution transferred from the coarser level, to be compared with the final one.
-  void record_coarse(Workspace& work, const LevelBuffers& level, Method method, double eta, const OperatorBuffers& op);
+  void record_coarse(Workspace& work, const Solved& solved);
 
   // Exitance and energy of the final solution.
-  void record(Workspace& work, const LevelBuffers& level, Method method, double eta, const OperatorBuffers& op);
+  void record(Workspace& work, const Solved& solved);
 
-  // Of what was recorded last and has run.
+  // Of what was recorded last and has run; the walk's share is not in it.
   Energy energy() const;
   ErrorEstimate error() const;
+  glm::dvec3 clipped() const;
 
  private:
-  void record_exitance(Workspace& work, const LevelBuffers& level, Method method, double eta, const OperatorBuffers& op,
-                       const vk::Buffer& exitance);
-  void record_vertex_exitance(Workspace& work, const LevelBuffers& level, Method method, double eta,
-                              const OperatorBuffers& op);
-  void record_energy(Workspace& work, const LevelBuffers& level, Method method, const OperatorBuffers& op);
+  void record_exitance(Workspace& work, const Solved& solved, const vk::Buffer& exitance);
+  void record_vertex_exitance(Workspace& work, const Solved& solved);
+  void record_vertex_unscattered(Workspace& work, const Solved& solved);
+  void record_energy(Workspace& work, const Solved& solved);
 
   vk::Buffer phi_, exitance_, coarse_exitance_, vertex_exitance_;
+  vk::Buffer clip_;          // Clip
+  vk::Buffer clip_on_host_;  // the same, mapped
   vk::Buffer sums_;          // EnergySums per workgroup
   vk::Buffer sums_on_host_;  // the same, mapped
 };

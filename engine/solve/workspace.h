@@ -10,7 +10,7 @@ namespace quadgraph {
 struct Workspace {
   Recorder recorder;
   Passes passes;
-  vk::Buffer reduction;      // Reduction, for the largest dispatch
+  vk::Buffer reduction;      // Reduction of pairs, for the largest dispatch
   vk::Buffer scale;          // Scale
   vk::Buffer state_on_host;  // SolveState, mapped
 

@@ -184,11 +184,23 @@ void bind_engine(py::module_& module) {
            "'directional:DX,DY,DZ:IRRADIANCE' (W/mm^2) and 'point:X,Y,Z:POWER' (W); replaces all lights.")
       .def(
           "set_irradiance",
-          [](Engine& engine, std::uint32_t level, const FloatArray& q) {
-            if (level >= engine.graph().levels().size()) throw py::index_error("level " + std::to_string(level));
-            engine.set_irradiance(level, vectors(q, engine.graph().levels()[level].face_count(), "q"));
+          [](Engine& engine, std::uint32_t level, const FloatArray& q,
+             const std::optional<std::array<float, 3>>& direction) {
+            const Level& of = level_of(engine.graph(), level);
+            engine.set_irradiance(level, vectors(q, of.face_count(), "q"), as_vector(direction));
           },
-          py::arg("level"), py::arg("q"), "q (n_f, 3) in W/mm^2 instead of lights; wanted for every level.")
+          py::arg("level"), py::arg("q"), py::arg("direction") = py::none(),
+          "q (n_f, 3) in W/mm^2, the irradiance that the surface lets in, instead of lights; wanted for every level. "
+          "direction (3,): the way it travels outside; None: Lambertian.")
+      .def(
+          "set_optical",
+          [](Engine& engine, std::uint32_t level, const FloatArray& sigma_s_prime, const FloatArray& sigma_a,
+             float eta) {
+            const Level& of = level_of(engine.graph(), level);
+            engine.set_optical(level, optical_from(sigma_s_prime, sigma_a, of.node_count()), eta);
+          },
+          py::arg("level"), py::arg("sigma_s_prime"), py::arg("sigma_a"), py::arg("eta"),
+          "Coefficients per node, (n, 3) in 1/mm, instead of a material; wanted for every level.")
       .def("update_irradiance", &Engine::update_irradiance, py::call_guard<py::gil_scoped_release>())
       .def("solve", &solve, py::arg("method") = "fem", py::arg("solver") = "dpcg", py::arg("source") = "buried",
            py::arg("model") = "auto", py::arg("tolerance") = 1e-3, py::arg("max_iterations") = 5000,
@@ -198,7 +210,7 @@ void bind_engine(py::module_& module) {
           "Per outside face of level 0: position, normal, area, q, phi, exitance of scattered and of unscattered light "
           "(mm, mm^2, W/mm^2).")
       .def(
-          "phi", [](Engine& engine) { return own(engine.simulation().phi()); }, "Per unknown of level 0, W/mm^2.")
+          "phi", [](Engine& engine) { return own(engine.simulation().phi()); }, "Per carrier of level 0, W/mm^2.")
       .def("render", &render, py::arg("view") = "", py::arg("up") = "y", py::arg("vertical_fov") = 30.0f,
            py::arg("width") = 1024, py::arg("height") = 1024, py::arg("roughness") = RenderOptions{}.roughness,
            "The last solve seen from 'azimuth,elevation[,distance]' (degrees, mm).")

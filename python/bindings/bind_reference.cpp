@@ -1,25 +1,15 @@
 // The operators and the CPU reference solver, double precision.
 #include <pybind11/stl.h>
 
-#include <cmath>
-#include <glm/geometric.hpp>
-
-#include "engine/graph/error.h"
 #include "engine/graph/fresnel.h"
 #include "engine/graph/reference.h"
+#include "engine/solve/beams.h"
 #include "python/bindings/bindings.h"
 
 namespace py = pybind11;
 
 namespace quadgraph::python {
 namespace {
-
-const Level& level_of(const QuadGraph& graph, std::uint32_t index) {
-  if (index >= graph.levels().size()) {
-    throw py::index_error("level " + std::to_string(index) + ": the file has " + std::to_string(graph.levels().size()));
-  }
-  return graph.levels()[index];
-}
 
 // (n, 3) of phi alone with diffusion, (n, 2, 3) of phi and phi2 with sp3.
 py::array fields(const std::vector<Field>& values, Model model) {
@@ -108,7 +98,7 @@ py::dict reference(const QuadGraph& graph, std::uint32_t index, const FloatArray
                              .tolerance = tolerance,
                              .max_iterations = max_iterations};
   const auto optical = optical_from(sigma_s_prime, sigma_a, level.node_count());
-  const EnteringLight light{beam_from(direction), vectors(q, level.face_count(), "q")};
+  const EnteringLight light{beam_along(as_vector(direction)), vectors(q, level.face_count(), "q")};
   ReferenceSolution solution = [&] {
     const py::gil_scoped_release release;
     return solve_reference(level, optical, eta, light, options);
@@ -129,14 +119,6 @@ py::dict boundary_dict(const std::string& method, const std::string& source, con
 }
 
 }  // namespace
-
-gpu::BeamRecord beam_from(const std::optional<std::array<float, 3>>& direction) {
-  if (!direction) return {gpu::BEAM_LAMBERTIAN, glm::vec3(0)};
-  const glm::dvec3 vector((*direction)[0], (*direction)[1], (*direction)[2]);
-  const double length = glm::length(vector);
-  if (!(length > 0 && std::isfinite(length))) throw InputError("direction: found no finite vector other than zero");
-  return {gpu::BEAM_DIRECTIONAL, glm::vec3(vector / length)};
-}
 
 void bind_reference(py::module_& module) {
   module.def(

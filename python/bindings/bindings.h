@@ -11,8 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "engine/graph/graph.h"
 #include "engine/graph/solution.h"
-#include "shaders/solve_shared.h"
+#include "shaders/shared.h"
 
 namespace quadgraph::python {
 
@@ -54,8 +55,10 @@ std::span<const glm::vec3> vectors(const FloatArray& array, std::size_t count, c
 // Zips sigma_s_prime and sigma_a, (n, 3) in 1/mm, into one entry per node.
 std::vector<gpu::Optical> optical_from(const FloatArray& sigma_s_prime, const FloatArray& sigma_a, std::size_t count);
 
-// A beam along `direction` (the way the light travels outside, any length); Lambertian without. Throws InputError.
-gpu::BeamRecord beam_from(const std::optional<std::array<float, 3>>& direction);
+// Level `index`; IndexError if the file has fewer.
+const Level& level_of(const QuadGraph& graph, std::uint32_t index);
+
+std::optional<glm::vec3> as_vector(const std::optional<std::array<float, 3>>& components);
 
 pybind11::tuple as_tuple(const glm::dvec3& v);
 pybind11::dict as_dict(const Energy& energy);

@@ -24,6 +24,18 @@ std::vector<gpu::Optical> optical_from(const FloatArray& sigma_s_prime, const Fl
   return optical;
 }
 
+const Level& level_of(const QuadGraph& graph, std::uint32_t index) {
+  if (index >= graph.levels().size()) {
+    throw py::index_error("level " + std::to_string(index) + ": the file has " + std::to_string(graph.levels().size()));
+  }
+  return graph.levels()[index];
+}
+
+std::optional<glm::vec3> as_vector(const std::optional<std::array<float, 3>>& components) {
+  if (!components) return std::nullopt;
+  return glm::vec3((*components)[0], (*components)[1], (*components)[2]);
+}
+
 py::tuple as_tuple(const glm::dvec3& v) {
   return py::make_tuple(v.x, v.y, v.z);
 }

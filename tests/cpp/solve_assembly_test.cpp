@@ -16,24 +16,62 @@ namespace {
 // quotient of products; measured against the diagonal of its row.
 constexpr double row_tolerance = 2e-6;
 
+// The veined material, with every seventh face a wall.
 struct Assembled {
   CheckedContext device;
   OwnedLevel owned = split_at_centroids(box_level(3, 6.0f, 0.15f));
-  Level level = owned.view();
-  std::vector<gpu::Optical> optical = evaluate_material(level, veined());
-  LevelBuffers buffers = upload_level(device.context, level, 0);
+  Level level;
+  std::vector<gpu::Optical> optical;
+  Problem problem;
+  LevelBuffers buffers;
   OperatorBuffers op;
   Workspace work;
 
-  explicit Assembled(Method method) : op(device.context, level, 0, method), work(device.context, level.node_count()) {
+  Assembled(Method method, Model model)
+      : level(with_walls(owned)),
+        optical(evaluate_material(level, veined())),
+        problem{method, Source::diffuse, model, optical, veined().eta},
+        buffers(upload_level(device.context, level, 0)),
+        op(device.context, level, 0, method, model),
+        work(device.context, level.node_count()) {
     vk::write_bytes(device.context, buffers.optical, std::as_bytes(std::span(optical)));
-    record_assembly(work, buffers, method, veined().eta, op);
+    record_assembly(work, buffers, method, problem.boundary(), op);
     work.recorder.submit();
+  }
+
+  static Level with_walls(OwnedLevel& owned) {
+    for (std::size_t f = 0; f < owned.faces.size(); ++f) {
+      owned.face_kinds.push_back(f % 7 == 0 ? face_reflecting : face_open);
+    }
+    return owned.view();
   }
 
   template <typename T>
   std::vector<T> get(const vk::Buffer& buffer) {
     return vk::download<T>(device.context, buffer);
+  }
+
+  // Entries as the CPU has them, and the same for fields.
+  std::vector<Block> blocks(const vk::Buffer& buffer) {
+    const auto values = get<glm::vec3>(buffer);
+    std::vector<Block> result;
+    const std::size_t size = op.entry_bytes() / sizeof(glm::vec3);
+    for (std::size_t i = 0; i < values.size(); i += size) {
+      Block block{glm::dvec3(values[i])};
+      if (size == 3) block = {glm::dvec3(values[i]), glm::dvec3(values[i + 1]), glm::dvec3(values[i + 2])};
+      result.push_back(block);
+    }
+    return result;
+  }
+
+  std::vector<Field> fields(const vk::Buffer& buffer) {
+    const auto values = get<glm::vec3>(buffer);
+    std::vector<Field> result;
+    const std::size_t size = op.field_bytes() / sizeof(glm::vec3);
+    for (std::size_t i = 0; i < values.size(); i += size) {
+      result.push_back({glm::dvec3(values[i]), size == 2 ? glm::dvec3(values[i + 1]) : glm::dvec3(0)});
+    }
+    return result;
   }
 };
 
@@ -41,117 +79,162 @@ double largest(const glm::dvec3& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
+double largest_difference(const Block& a, const Block& b) {
+  return std::max({largest(a.a11 - b.a11), largest(a.a12 - b.a12), largest(a.a22 - b.a22)});
+}
+
+bool is_zero(const Block& block) {
+  return largest_difference(block, {}) == 0;
+}
+
+constexpr std::array<Model, 2> both_models = {Model::diffusion, Model::sp3};
+
 }  // namespace
 
-TEST_CASE("rows on the GPU equal those of the CPU in a heterogeneous material") {
+TEST_CASE("rows on the GPU equal those of the CPU in a heterogeneous material with walls") {
   for (Method method : all_methods) {
-    CAPTURE(name_of(method));
-    Assembled gpu_side(method);
-    const Rows rows =
-        assemble(gpu_side.level, {method, Source::diffuse, Model::diffusion, gpu_side.optical, veined().eta});
-    const auto slice_offset = gpu_side.get<std::uint32_t>(gpu_side.op.slice_offset);
-    const auto column = gpu_side.get<std::uint32_t>(gpu_side.op.column);
-    const auto weight = gpu_side.get<glm::vec3>(gpu_side.op.weight);
-    const auto diagonal = gpu_side.get<glm::vec3>(gpu_side.op.diagonal);
-    const auto to_phi = gpu_side.get<glm::vec3>(gpu_side.op.to_phi);
-    REQUIRE(diagonal.size() == rows.size());
-    double worst = 0;
-    for (std::uint32_t i = 0; i < rows.size(); ++i) {
-      std::map<std::uint32_t, glm::dvec3> expected;
-      for (std::uint32_t k = rows.offset[i]; k < rows.offset[i + 1]; ++k) expected[rows.column[k]] = rows.weight[k].a11;
-      const double scale = largest(rows.diagonal[i].a11);
-      worst = std::max(worst, largest(glm::dvec3(diagonal[i]) - rows.diagonal[i].a11) / scale);
-      worst = std::max(worst, largest(glm::dvec3(to_phi[i]) / rows.to_phi[i] - 1.0));
-      std::size_t found = 0;
-      for (std::uint32_t e = slice_offset[i / SLICE_ROWS] + i % SLICE_ROWS; e < slice_offset[i / SLICE_ROWS + 1];
-           e += SLICE_ROWS) {
-        if (column[e] == i) {
-          CHECK(weight[e] == glm::vec3(0));
-          continue;
+    for (Model model : both_models) {
+      CAPTURE(name_of(method));
+      CAPTURE(name_of(model));
+      Assembled gpu_side(method, model);
+      const Rows rows = assemble(gpu_side.level, gpu_side.problem);
+      const auto slice_offset = gpu_side.get<std::uint32_t>(gpu_side.op.slice_offset);
+      const auto column = gpu_side.get<std::uint32_t>(gpu_side.op.column);
+      const auto weight = gpu_side.blocks(gpu_side.op.weight);
+      const auto diagonal = gpu_side.blocks(gpu_side.op.diagonal);
+      const auto row_sum = gpu_side.blocks(gpu_side.op.row_sum);
+      const auto to_phi = gpu_side.get<glm::vec3>(gpu_side.op.to_phi);
+      REQUIRE(diagonal.size() == rows.size());
+      double worst = 0;
+      for (std::uint32_t i = 0; i < rows.size(); ++i) {
+        std::map<std::uint32_t, Block> expected;
+        Block sum = rows.diagonal[i];
+        for (std::uint32_t k = rows.offset[i]; k < rows.offset[i + 1]; ++k) {
+          expected[rows.column[k]] = rows.weight[k];
+          sum += rows.weight[k];
         }
-        ++found;
-        REQUIRE(expected.count(column[e]) == 1);
-        worst = std::max(worst, largest(glm::dvec3(weight[e]) - expected[column[e]]) / scale);
+        const double scale = largest(rows.diagonal[i].a11);
+        worst = std::max(worst, largest_difference(diagonal[i], rows.diagonal[i]) / scale);
+        worst = std::max(worst, largest_difference(row_sum[i], sum) / scale);
+        worst = std::max(worst, largest(glm::dvec3(to_phi[i]) / rows.to_phi[i] - 1.0));
+        std::size_t found = 0;
+        for (std::uint32_t e = slice_offset[i / SLICE_ROWS] + i % SLICE_ROWS; e < slice_offset[i / SLICE_ROWS + 1];
+             e += SLICE_ROWS) {
+          if (column[e] == i) {
+            CHECK(is_zero(weight[e]));
+            continue;
+          }
+          ++found;
+          REQUIRE(expected.count(column[e]) == 1);
+          worst = std::max(worst, largest_difference(weight[e], expected[column[e]]) / scale);
+        }
+        REQUIRE(found == expected.size());
       }
-      REQUIRE(found == expected.size());
+      CAPTURE(worst);
+      CHECK(worst < row_tolerance);
+      CHECK(worst > 0);
     }
-    CAPTURE(worst);
-    CHECK(worst < row_tolerance);
-    CHECK(worst > 0);
   }
 }
 
-TEST_CASE("right-hand sides on the GPU equal those of the CPU") {
+TEST_CASE("weights are symmetric bit for bit, so that the flux from i to j is that from j to i") {
+  for (Method method : {Method::fem, Method::quadgraph_fdm}) {
+    for (Model model : both_models) {
+      Assembled gpu_side(method, model);
+      const auto slice_offset = gpu_side.get<std::uint32_t>(gpu_side.op.slice_offset);
+      const auto column = gpu_side.get<std::uint32_t>(gpu_side.op.column);
+      const auto weight = gpu_side.blocks(gpu_side.op.weight);
+      std::map<std::pair<std::uint32_t, std::uint32_t>, Block> at;
+      for (std::uint32_t i = 0; i < gpu_side.op.count; ++i) {
+        for (std::uint32_t e = slice_offset[i / SLICE_ROWS] + i % SLICE_ROWS; e < slice_offset[i / SLICE_ROWS + 1];
+             e += SLICE_ROWS) {
+          if (column[e] != i) at[{i, column[e]}] = weight[e];
+        }
+      }
+      for (const auto& [place, block] : at) {
+        REQUIRE(at.count({place.second, place.first}) == 1);
+        CHECK(largest_difference(block, at[{place.second, place.first}]) == 0);
+      }
+    }
+  }
+}
+
+TEST_CASE("right-hand sides of the diffuse source on the GPU equal those of the CPU") {
   for (Method method : all_methods) {
-    CAPTURE(name_of(method));
-    Assembled gpu_side(method);
-    std::vector<glm::vec3> q;
-    for (std::uint32_t f = 0; f < gpu_side.level.face_count(); ++f) {
-      q.push_back(glm::vec3(0.001f, 0.3f, 70.0f) * static_cast<float>(f % 5));
-    }
-    vk::write_bytes(gpu_side.device.context, gpu_side.buffers.q, std::as_bytes(std::span(q)));
-    record_scale(gpu_side.work, gpu_side.buffers);
-    record_right_hand_side(gpu_side.work, gpu_side.buffers, method, veined().eta, gpu_side.op);
-    gpu_side.work.recorder.submit();
-    const auto b = gpu_side.get<glm::vec3>(gpu_side.op.b);
-    const auto scale = gpu_side.get<gpu::Scale>(gpu_side.work.scale)[0];
-    const auto state = gpu_side.get<gpu::SolveState>(gpu_side.op.state)[0];
-    const auto expected =
-        diffuse_load(gpu_side.level, {method, Source::diffuse, Model::diffusion, gpu_side.optical, veined().eta}, q);
-    const Rows rows =
-        assemble(gpu_side.level, {method, Source::diffuse, Model::diffusion, gpu_side.optical, veined().eta});
-    glm::dvec3 norm{0}, peak{0};
-    for (std::size_t i = 0; i < b.size(); ++i) peak = glm::max(peak, expected[i].phi);
-    for (std::size_t i = 0; i < b.size(); ++i) {
-      CHECK(largest((glm::dvec3(b[i]) * glm::dvec3(scale.scale) - expected[i].phi) / peak) < 1e-6);
-      const glm::dvec3 scaled = expected[i].phi / glm::dvec3(scale.scale);
-      norm += scaled * scaled / rows.diagonal[i].a11;
-    }
-    for (int c = 0; c < 3; ++c) {
-      CHECK(state.norm[c] == doctest::Approx(norm[c]).epsilon(1e-5));
-      CHECK(scale.scale[c] * scale.inverse[c] == 1.0f);
-      double power = 0;
+    for (Model model : both_models) {
+      CAPTURE(name_of(method));
+      CAPTURE(name_of(model));
+      Assembled gpu_side(method, model);
+      std::vector<glm::vec3> q;
       for (std::uint32_t f = 0; f < gpu_side.level.face_count(); ++f) {
-        power += face_area(gpu_side.level, gpu_side.level.faces[f]) * q[f][c];
+        q.push_back(glm::vec3(0.001f, 0.3f, 70.0f) * static_cast<float>(f % 5));
       }
-      CHECK(power <= scale.scale[c]);
-      CHECK(power > 0.5 * scale.scale[c]);
+      vk::write_bytes(gpu_side.device.context, gpu_side.buffers.q, std::as_bytes(std::span(q)));
+      record_scale(gpu_side.work, gpu_side.buffers);
+      record_diffuse_load(gpu_side.work, gpu_side.buffers, method, gpu_side.problem.boundary(), gpu_side.op);
+      gpu_side.work.recorder.submit();
+      const std::vector<Field> b = gpu_side.fields(gpu_side.op.b);
+      const glm::dvec3 scale(gpu_side.get<gpu::Scale>(gpu_side.work.scale)[0].scale);
+      const auto state = gpu_side.get<gpu::SolveState>(gpu_side.op.state)[0];
+      const auto expected = diffuse_load(gpu_side.level, gpu_side.problem, q);
+      const Rows rows = assemble(gpu_side.level, gpu_side.problem);
+      glm::dvec3 norm{0}, peak{0};
+      for (const Field& field : expected) peak = glm::max(peak, field.phi);
+      for (std::size_t i = 0; i < b.size(); ++i) {
+        CHECK(largest((b[i].phi * scale - expected[i].phi) / peak) < 1e-6);
+        CHECK(largest((b[i].phi2 * scale - expected[i].phi2) / peak) < 1e-6);
+        const Field scaled = 1.0 / scale * expected[i];
+        norm += dot(scaled, solve(rows.diagonal[i], scaled));
+      }
+      for (int c = 0; c < 3; ++c) CHECK(state.norm[c] == doctest::Approx(norm[c]).epsilon(1e-5));
     }
   }
 }
 
-TEST_CASE("the structure has each neighbour once and every incidence in its place") {
-  const OwnedLevel owned = split_at_centroids(box_level(3, 6.0f));
+TEST_CASE("the structure has each neighbour once, and around every edge its tets and open faces") {
+  OwnedLevel owned = split_at_centroids(box_level(3, 6.0f));
+  owned.face_kinds.assign(owned.faces.size(), face_open);
+  owned.face_kinds[4] = face_reflecting;
   const Level level = owned.view();
   const FemStructure fem = fem_structure(level);
-  const Incidence faces = face_incidence(level, &fem.columns);
-  const auto column = [&](std::uint32_t row, std::uint32_t place) {
-    return fem.columns.column[fem.columns.slice_offset[row / SLICE_ROWS] + row % SLICE_ROWS + place * SLICE_ROWS];
-  };
-  std::size_t tet_corners = 0;
+  constexpr std::array<std::array<int, 2>, 6> edges = {{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
+  std::size_t tet_edges = 0, face_edges = 0;
   for (std::uint32_t v = 0; v < level.vertex_count(); ++v) {
-    for (std::uint32_t i = fem.tets.offset[v]; i < fem.tets.offset[v + 1]; ++i, ++tet_corners) {
-      const glm::uvec4& tet = level.tets[fem.tets.element[i].x / 4];
-      const auto own = static_cast<int>(fem.tets.element[i].x % 4);
-      REQUIRE(tet[own] == v);
-      std::uint32_t places = fem.tets.element[i].y;
-      for (int k = 0; k < 4; ++k) {
-        if (k == own) continue;
-        CHECK(column(v, places & 1023u) == tet[k]);
-        places >>= 10;
+    std::uint32_t before = 0;
+    const std::uint32_t slice = v / SLICE_ROWS, begin = fem.columns.slice_offset[slice] + v % SLICE_ROWS;
+    for (std::uint32_t e = begin; e < fem.columns.slice_offset[slice + 1]; e += SLICE_ROWS) {
+      const std::uint32_t j = fem.columns.column[e];
+      if (j == v) {
+        CHECK(fem.ring_offset[e] == fem.ring_offset[e + 1]);
+        continue;
+      }
+      CHECK((e == begin || j > before));
+      before = j;
+      for (std::uint32_t k = fem.ring_offset[e]; k < fem.ring_offset[e + 1]; ++k) {
+        const std::uint32_t index = fem.ring[k] / 8, edge = fem.ring[k] % 8;
+        if (edge == gpu::RING_FACE) {
+          const glm::uvec3& f = level.faces[index];
+          CHECK((f[0] == v || f[1] == v || f[2] == v));
+          CHECK((f[0] == j || f[1] == j || f[2] == j));
+          CHECK(index != 4);
+          ++face_edges;
+        } else {
+          const auto [a, b] = edges[edge];
+          const std::uint32_t p = level.tets[index][a], q = level.tets[index][b];
+          CHECK(((p == v && q == j) || (p == j && q == v)));
+          ++tet_edges;
+        }
       }
     }
   }
-  CHECK(tet_corners == 4 * level.tets.size());
-  std::size_t face_corners = 0;
+  CHECK(tet_edges == 12 * level.tets.size());
+  CHECK(face_edges == 6 * (level.faces.size() - 1));
+  const FaceIncidence faces = face_incidence(level);
+  CHECK(faces.face.size() == 3 * (level.faces.size() - 1));
   for (std::uint32_t v = 0; v < level.surface_vertex_count; ++v) {
-    for (std::uint32_t i = faces.offset[v]; i < faces.offset[v + 1]; ++i, ++face_corners) {
-      const glm::uvec3& face = level.faces[faces.element[i].x];
-      const int own = face[0] == v ? 0 : face[1] == v ? 1 : 2;
-      REQUIRE(face[own] == v);
-      CHECK(column(v, faces.element[i].y & 1023u) == face[(own + 1) % 3]);
-      CHECK(column(v, faces.element[i].y >> 10) == face[(own + 2) % 3]);
+    for (std::uint32_t k = faces.offset[v]; k < faces.offset[v + 1]; ++k) {
+      const glm::uvec3& f = level.faces[faces.face[k]];
+      CHECK((f[0] == v || f[1] == v || f[2] == v));
     }
   }
-  CHECK(face_corners == 3 * level.faces.size());
 }

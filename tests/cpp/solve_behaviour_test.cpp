@@ -98,6 +98,7 @@ TEST_CASE("only what changed is done again, and results repeat bit for bit") {
     CHECK(pass_count(simulation, "assembly") == 0);
     CHECK(pass_count(simulation, "material") == 0);
     CHECK(pass_count(simulation, "right-hand side") == 3);
+    CHECK(pass_count(simulation, "source walk") == 0);
     CHECK(simulation.phi() != first);
 
     scene.light(one_side);
@@ -108,6 +109,7 @@ TEST_CASE("only what changed is done again, and results repeat bit for bit") {
   simulation.solve({});
   CHECK(pass_count(simulation, "material") == 2);
   CHECK(pass_count(simulation, "assembly") == 2);
+  CHECK(pass_count(simulation, "source walk") == 2);
   for (const PassStats& pass : simulation.passes()) {
     CAPTURE(pass.name);
     CHECK(pass.time_ms > 0);
@@ -120,7 +122,7 @@ TEST_CASE("input that cannot be used is refused with what is allowed") {
   Scene scene({3});
   Simulation& simulation = scene.simulation;
   CHECK_THROWS_AS(simulation.solve({}), InputError);
-  CHECK_THROWS_AS(simulation.material(), InputError);
+  CHECK_THROWS_AS(simulation.eta(), InputError);
   CHECK_THROWS_AS(simulation.phi(), InputError);
   CHECK_THROWS_AS(simulation.surface_field(), InputError);
   gpu::Material bad = homogeneous();
@@ -156,7 +158,7 @@ TEST_CASE("a matrix that is not positive definite breaks down by name") {
   CheckedContext device;
   vk::Context& context = device.context;
   const OwnedLevel owned = split_at_centroids(box_level(2, 4.0f));
-  OperatorBuffers op(context, owned.view(), 3, Method::fem);
+  OperatorBuffers op(context, owned.view(), 3, Method::fem, Model::diffusion);
   Workspace work(context, op.count);
   const std::vector<glm::vec3> one(op.entries, glm::vec3(1)), minus(op.entries, glm::vec3(-1));
   const auto write = [&](const vk::Buffer& buffer, const std::vector<glm::vec3>& values) {
@@ -166,6 +168,7 @@ TEST_CASE("a matrix that is not positive definite breaks down by name") {
   state.norm = glm::vec3(static_cast<float>(op.count));
   for (SolverKind solver : both_solvers) {
     write(op.diagonal, one);
+    write(op.row_sum, minus);
     write(op.weight, minus);
     write(op.b, one);
     write(op.x, std::vector<glm::vec3>(op.entries, glm::vec3(0)));

@@ -100,4 +100,36 @@ inline SolveOptions options(Method method, SolverKind solver, double tolerance, 
           .max_iterations = max_iterations};
 }
 
+// One way to solve.
+struct Case {
+  Method method;
+  Model model;
+  Source source;
+
+  SolveOptions options(SolverKind solver, double tolerance) const {
+    return {.method = method,
+            .solver = solver,
+            .source = source,
+            .model = model,
+            .tolerance = tolerance,
+            .max_iterations = 20000};
+  }
+};
+
+inline doctest::String toString(const Case& what) {
+  return (std::string(name_of(what.method)) + " " + std::string(name_of(what.model)) + " " +
+          std::string(name_of(what.source)))
+      .c_str();
+}
+
+inline std::vector<Case> all_cases() {
+  std::vector<Case> cases;
+  for (Method method : all_methods) {
+    for (Model model : {Model::diffusion, Model::sp3}) {
+      for (Source source : {Source::buried, Source::diffuse}) cases.push_back({method, model, source});
+    }
+  }
+  return cases;
+}
+
 }  // namespace quadgraph

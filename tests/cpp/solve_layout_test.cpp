@@ -7,23 +7,40 @@
 #include "engine/vk/pipeline.h"
 #include "shaders/solve_shared.h"
 #include "spirv/assemble_fdm.comp.h"
+#include "spirv/assemble_fdm_sp3.comp.h"
 #include "spirv/assemble_fem.comp.h"
+#include "spirv/assemble_fem_sp3.comp.h"
 #include "spirv/assemble_fv.comp.h"
+#include "spirv/assemble_fv_sp3.comp.h"
 #include "spirv/cg_direction.comp.h"
+#include "spirv/cg_direction_sp3.comp.h"
 #include "spirv/cg_multiply.comp.h"
+#include "spirv/cg_multiply_sp3.comp.h"
 #include "spirv/cg_start.comp.h"
+#include "spirv/cg_start_sp3.comp.h"
 #include "spirv/cg_update.comp.h"
+#include "spirv/cg_update_sp3.comp.h"
 #include "spirv/damping.comp.h"
+#include "spirv/damping_sp3.comp.h"
 #include "spirv/energy.comp.h"
+#include "spirv/energy_sp3.comp.h"
 #include "spirv/evaluate_material.comp.h"
 #include "spirv/exitance.comp.h"
+#include "spirv/exitance_sp3.comp.h"
 #include "spirv/irradiance_scale.comp.h"
 #include "spirv/right_hand_side_fdm.comp.h"
+#include "spirv/right_hand_side_fdm_sp3.comp.h"
 #include "spirv/right_hand_side_fem.comp.h"
+#include "spirv/right_hand_side_fem_sp3.comp.h"
 #include "spirv/right_hand_side_fv.comp.h"
+#include "spirv/right_hand_side_fv_sp3.comp.h"
+#include "spirv/shape.comp.h"
 #include "spirv/sweep.comp.h"
+#include "spirv/sweep_sp3.comp.h"
 #include "spirv/transfer.comp.h"
+#include "spirv/transfer_sp3.comp.h"
 #include "spirv/vertex_exitance.comp.h"
+#include "spirv/vertex_exitance_sp3.comp.h"
 #include "tests/cpp/spirv_layout.h"
 
 using namespace quadgraph;
@@ -59,12 +76,17 @@ TEST_CASE("structs in buffers") {
            MEMBER(Material, vein_sigma_s_prime), MEMBER(Material, vein_sigma_a), MEMBER(Material, vein_period),
            MEMBER(Material, vein_sharpness)});
   compare(cg_start_comp, "RowsRef",
-          {MEMBER(RowsRef, slice_offset), MEMBER(RowsRef, column), MEMBER(RowsRef, weight), MEMBER(RowsRef, diagonal)});
+          {MEMBER(RowsRef, slice_offset), MEMBER(RowsRef, column), MEMBER(RowsRef, weight), MEMBER(RowsRef, row_sum),
+           MEMBER(RowsRef, diagonal)});
   compare(
       cg_start_comp, "SolveState",
       {MEMBER(SolveState, iterate), MEMBER(SolveState, check), MEMBER(SolveState, norm), MEMBER(SolveState, rz),
        MEMBER(SolveState, alpha), MEMBER(SolveState, beta), MEMBER(SolveState, residual), MEMBER(SolveState, checked),
        MEMBER(SolveState, iterations), MEMBER(SolveState, status), MEMBER(SolveState, channel)});
+  compare(exitance_comp, "Boundary",
+          {MEMBER(Boundary, k11), MEMBER(Boundary, k12), MEMBER(Boundary, k22), MEMBER(Boundary, source),
+           MEMBER(Boundary, reflected)});
+  compare(exitance_comp, "Clip", {MEMBER(Clip, factor), MEMBER(Clip, share)});
   compare(exitance_comp, "Scale", {MEMBER(Scale, scale), MEMBER(Scale, inverse)});
   compare(energy_comp, "EnergySums",
           {MEMBER(EnergySums, entered), MEMBER(EnergySums, exitance), MEMBER(EnergySums, absorbed),
@@ -75,122 +97,201 @@ TEST_CASE("push constants") {
   compare(evaluate_material_comp, "EvaluateMaterialPush",
           {MEMBER(EvaluateMaterialPush, material), MEMBER(EvaluateMaterialPush, nodes),
            MEMBER(EvaluateMaterialPush, optical), MEMBER(EvaluateMaterialPush, count)});
-  compare(assemble_fdm_comp, "AssembleFdmPush",
-          {MEMBER(AssembleFdmPush, rows), MEMBER(AssembleFdmPush, nodes), MEMBER(AssembleFdmPush, optical),
-           MEMBER(AssembleFdmPush, to_phi), MEMBER(AssembleFdmPush, count), MEMBER(AssembleFdmPush, tet_count),
-           MEMBER(AssembleFdmPush, mismatch)});
-  compare(assemble_fv_comp, "AssembleFvPush",
-          {MEMBER(AssembleFvPush, rows), MEMBER(AssembleFvPush, vertices), MEMBER(AssembleFvPush, tets),
-           MEMBER(AssembleFvPush, links), MEMBER(AssembleFvPush, nodes), MEMBER(AssembleFvPush, optical),
-           MEMBER(AssembleFvPush, to_phi), MEMBER(AssembleFvPush, count), MEMBER(AssembleFvPush, tet_count),
-           MEMBER(AssembleFvPush, mismatch)});
-  compare(right_hand_side_fv_comp, "RightHandSideFvPush",
-          {MEMBER(RightHandSideFvPush, vertices), MEMBER(RightHandSideFvPush, faces), MEMBER(RightHandSideFvPush, q),
-           MEMBER(RightHandSideFvPush, scale), MEMBER(RightHandSideFvPush, diagonal), MEMBER(RightHandSideFvPush, b),
-           MEMBER(RightHandSideFvPush, state), MEMBER(RightHandSideFvPush, reduction),
-           MEMBER(RightHandSideFvPush, count), MEMBER(RightHandSideFvPush, tet_count),
-           MEMBER(RightHandSideFvPush, mismatch), MEMBER(RightHandSideFvPush, source)});
-  compare(assemble_fem_comp, "AssembleFemPush",
-          {MEMBER(AssembleFemPush, rows), MEMBER(AssembleFemPush, vertices), MEMBER(AssembleFemPush, tets),
-           MEMBER(AssembleFemPush, faces), MEMBER(AssembleFemPush, optical), MEMBER(AssembleFemPush, tet_offset),
-           MEMBER(AssembleFemPush, tet_incidence), MEMBER(AssembleFemPush, face_offset),
-           MEMBER(AssembleFemPush, face_incidence), MEMBER(AssembleFemPush, count),
-           MEMBER(AssembleFemPush, surface_count), MEMBER(AssembleFemPush, mismatch)});
+  compare(shape_comp, "ShapePush",
+          {MEMBER(ShapePush, vertices), MEMBER(ShapePush, tets), MEMBER(ShapePush, faces), MEMBER(ShapePush, tet_shape),
+           MEMBER(ShapePush, face_area), MEMBER(ShapePush, tet_count), MEMBER(ShapePush, face_count)});
   compare(
       irradiance_scale_comp, "IrradianceScalePush",
       {MEMBER(IrradianceScalePush, vertices), MEMBER(IrradianceScalePush, faces), MEMBER(IrradianceScalePush, q),
        MEMBER(IrradianceScalePush, scale), MEMBER(IrradianceScalePush, reduction), MEMBER(IrradianceScalePush, count)});
-  compare(right_hand_side_fdm_comp, "RightHandSideFdmPush",
-          {MEMBER(RightHandSideFdmPush, nodes), MEMBER(RightHandSideFdmPush, optical),
-           MEMBER(RightHandSideFdmPush, face_tets), MEMBER(RightHandSideFdmPush, q),
-           MEMBER(RightHandSideFdmPush, scale), MEMBER(RightHandSideFdmPush, diagonal), MEMBER(RightHandSideFdmPush, b),
-           MEMBER(RightHandSideFdmPush, state), MEMBER(RightHandSideFdmPush, reduction),
-           MEMBER(RightHandSideFdmPush, count), MEMBER(RightHandSideFdmPush, tet_count),
-           MEMBER(RightHandSideFdmPush, mismatch), MEMBER(RightHandSideFdmPush, source)});
-  compare(
-      right_hand_side_fem_comp, "RightHandSideFemPush",
-      {MEMBER(RightHandSideFemPush, vertices), MEMBER(RightHandSideFemPush, faces),
-       MEMBER(RightHandSideFemPush, face_offset), MEMBER(RightHandSideFemPush, face_incidence),
-       MEMBER(RightHandSideFemPush, q), MEMBER(RightHandSideFemPush, scale), MEMBER(RightHandSideFemPush, diagonal),
-       MEMBER(RightHandSideFemPush, b), MEMBER(RightHandSideFemPush, state), MEMBER(RightHandSideFemPush, reduction),
-       MEMBER(RightHandSideFemPush, count), MEMBER(RightHandSideFemPush, surface_count),
-       MEMBER(RightHandSideFemPush, mismatch), MEMBER(RightHandSideFemPush, source)});
-  compare(damping_comp, "DampingPush",
-          {MEMBER(DampingPush, rows), MEMBER(DampingPush, damping), MEMBER(DampingPush, reduction),
-           MEMBER(DampingPush, count)});
-  compare(transfer_comp, "TransferPush",
-          {MEMBER(TransferPush, index), MEMBER(TransferPush, weight), MEMBER(TransferPush, coarse_x),
-           MEMBER(TransferPush, coarse_to_phi), MEMBER(TransferPush, to_phi), MEMBER(TransferPush, x),
-           MEMBER(TransferPush, state), MEMBER(TransferPush, width), MEMBER(TransferPush, first),
-           MEMBER(TransferPush, coarse_first), MEMBER(TransferPush, count)});
-  compare(
-      cg_start_comp, "CgStartPush",
-      {MEMBER(CgStartPush, rows), MEMBER(CgStartPush, b), MEMBER(CgStartPush, x), MEMBER(CgStartPush, r),
-       MEMBER(CgStartPush, p), MEMBER(CgStartPush, state), MEMBER(CgStartPush, reduction), MEMBER(CgStartPush, count),
-       MEMBER(CgStartPush, max_iterations), MEMBER(CgStartPush, tolerance), MEMBER(CgStartPush, first)});
-  compare(cg_multiply_comp, "CgMultiplyPush",
-          {MEMBER(CgMultiplyPush, rows), MEMBER(CgMultiplyPush, p), MEMBER(CgMultiplyPush, product),
-           MEMBER(CgMultiplyPush, state), MEMBER(CgMultiplyPush, reduction), MEMBER(CgMultiplyPush, count),
-           MEMBER(CgMultiplyPush, tolerance)});
-  compare(
-      cg_update_comp, "CgUpdatePush",
-      {MEMBER(CgUpdatePush, diagonal), MEMBER(CgUpdatePush, p), MEMBER(CgUpdatePush, product), MEMBER(CgUpdatePush, x),
-       MEMBER(CgUpdatePush, r), MEMBER(CgUpdatePush, state), MEMBER(CgUpdatePush, reduction),
-       MEMBER(CgUpdatePush, count), MEMBER(CgUpdatePush, max_iterations), MEMBER(CgUpdatePush, tolerance)});
-  compare(cg_direction_comp, "CgDirectionPush",
-          {MEMBER(CgDirectionPush, diagonal), MEMBER(CgDirectionPush, r), MEMBER(CgDirectionPush, p),
-           MEMBER(CgDirectionPush, state), MEMBER(CgDirectionPush, count)});
-  compare(sweep_comp, "SweepPush",
-          {MEMBER(SweepPush, rows), MEMBER(SweepPush, b), MEMBER(SweepPush, from), MEMBER(SweepPush, to),
-           MEMBER(SweepPush, damping), MEMBER(SweepPush, state), MEMBER(SweepPush, reduction), MEMBER(SweepPush, count),
-           MEMBER(SweepPush, sweeps), MEMBER(SweepPush, tolerance)});
-  compare(exitance_comp, "ExitancePush",
-          {MEMBER(ExitancePush, faces), MEMBER(ExitancePush, x), MEMBER(ExitancePush, to_phi), MEMBER(ExitancePush, q),
-           MEMBER(ExitancePush, scale), MEMBER(ExitancePush, phi), MEMBER(ExitancePush, exitance),
-           MEMBER(ExitancePush, count), MEMBER(ExitancePush, tet_count), MEMBER(ExitancePush, fem),
-           MEMBER(ExitancePush, mismatch)});
-  compare(
-      vertex_exitance_comp, "VertexExitancePush",
-      {MEMBER(VertexExitancePush, vertices), MEMBER(VertexExitancePush, faces), MEMBER(VertexExitancePush, face_offset),
-       MEMBER(VertexExitancePush, face_incidence), MEMBER(VertexExitancePush, x), MEMBER(VertexExitancePush, q),
-       MEMBER(VertexExitancePush, phi_face), MEMBER(VertexExitancePush, scale), MEMBER(VertexExitancePush, exitance),
-       MEMBER(VertexExitancePush, count), MEMBER(VertexExitancePush, fem), MEMBER(VertexExitancePush, mismatch)});
-  compare(
-      energy_comp, "EnergyPush",
-      {MEMBER(EnergyPush, vertices), MEMBER(EnergyPush, tets), MEMBER(EnergyPush, faces), MEMBER(EnergyPush, optical),
-       MEMBER(EnergyPush, x), MEMBER(EnergyPush, to_phi), MEMBER(EnergyPush, q), MEMBER(EnergyPush, exitance),
-       MEMBER(EnergyPush, coarse_exitance), MEMBER(EnergyPush, scale), MEMBER(EnergyPush, sums),
-       MEMBER(EnergyPush, tet_count), MEMBER(EnergyPush, face_count), MEMBER(EnergyPush, fem)});
+  // Both variants of a pass read the same block.
+  for (const vk::Spirv code : {vk::Spirv(assemble_fdm_comp), vk::Spirv(assemble_fdm_sp3_comp)}) {
+    compare(code, "AssembleFdmPush",
+            {MEMBER(AssembleFdmPush, rows), MEMBER(AssembleFdmPush, nodes), MEMBER(AssembleFdmPush, optical),
+             MEMBER(AssembleFdmPush, to_phi), MEMBER(AssembleFdmPush, face_kinds), MEMBER(AssembleFdmPush, count),
+             MEMBER(AssembleFdmPush, tet_count), MEMBER(AssembleFdmPush, boundary)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(assemble_fv_comp), vk::Spirv(assemble_fv_sp3_comp)}) {
+    compare(code, "AssembleFvPush",
+            {MEMBER(AssembleFvPush, rows), MEMBER(AssembleFvPush, vertices), MEMBER(AssembleFvPush, tets),
+             MEMBER(AssembleFvPush, links), MEMBER(AssembleFvPush, nodes), MEMBER(AssembleFvPush, optical),
+             MEMBER(AssembleFvPush, to_phi), MEMBER(AssembleFvPush, face_kinds), MEMBER(AssembleFvPush, count),
+             MEMBER(AssembleFvPush, tet_count), MEMBER(AssembleFvPush, boundary)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(assemble_fem_comp), vk::Spirv(assemble_fem_sp3_comp)}) {
+    compare(code, "AssembleFemPush",
+            {MEMBER(AssembleFemPush, rows), MEMBER(AssembleFemPush, optical), MEMBER(AssembleFemPush, tet_shape),
+             MEMBER(AssembleFemPush, face_area), MEMBER(AssembleFemPush, ring_offset), MEMBER(AssembleFemPush, ring),
+             MEMBER(AssembleFemPush, count), MEMBER(AssembleFemPush, boundary)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(right_hand_side_fdm_comp), vk::Spirv(right_hand_side_fdm_sp3_comp)}) {
+    compare(
+        code, "RightHandSideFdmPush",
+        {MEMBER(RightHandSideFdmPush, nodes), MEMBER(RightHandSideFdmPush, optical),
+         MEMBER(RightHandSideFdmPush, face_tets), MEMBER(RightHandSideFdmPush, face_kinds),
+         MEMBER(RightHandSideFdmPush, q), MEMBER(RightHandSideFdmPush, scale), MEMBER(RightHandSideFdmPush, diagonal),
+         MEMBER(RightHandSideFdmPush, b), MEMBER(RightHandSideFdmPush, state), MEMBER(RightHandSideFdmPush, reduction),
+         MEMBER(RightHandSideFdmPush, count), MEMBER(RightHandSideFdmPush, tet_count),
+         MEMBER(RightHandSideFdmPush, boundary)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(right_hand_side_fv_comp), vk::Spirv(right_hand_side_fv_sp3_comp)}) {
+    compare(
+        code, "RightHandSideFvPush",
+        {MEMBER(RightHandSideFvPush, vertices), MEMBER(RightHandSideFvPush, faces),
+         MEMBER(RightHandSideFvPush, face_kinds), MEMBER(RightHandSideFvPush, q), MEMBER(RightHandSideFvPush, scale),
+         MEMBER(RightHandSideFvPush, diagonal), MEMBER(RightHandSideFvPush, b), MEMBER(RightHandSideFvPush, state),
+         MEMBER(RightHandSideFvPush, reduction), MEMBER(RightHandSideFvPush, count),
+         MEMBER(RightHandSideFvPush, tet_count), MEMBER(RightHandSideFvPush, boundary)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(right_hand_side_fem_comp), vk::Spirv(right_hand_side_fem_sp3_comp)}) {
+    compare(
+        code, "RightHandSideFemPush",
+        {MEMBER(RightHandSideFemPush, vertices), MEMBER(RightHandSideFemPush, faces),
+         MEMBER(RightHandSideFemPush, face_offset), MEMBER(RightHandSideFemPush, face_incidence),
+         MEMBER(RightHandSideFemPush, q), MEMBER(RightHandSideFemPush, scale), MEMBER(RightHandSideFemPush, diagonal),
+         MEMBER(RightHandSideFemPush, b), MEMBER(RightHandSideFemPush, state), MEMBER(RightHandSideFemPush, reduction),
+         MEMBER(RightHandSideFemPush, count), MEMBER(RightHandSideFemPush, surface_count),
+         MEMBER(RightHandSideFemPush, boundary)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(damping_comp), vk::Spirv(damping_sp3_comp)}) {
+    compare(code, "DampingPush",
+            {MEMBER(DampingPush, rows), MEMBER(DampingPush, damping), MEMBER(DampingPush, reduction),
+             MEMBER(DampingPush, count)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(transfer_comp), vk::Spirv(transfer_sp3_comp)}) {
+    compare(code, "TransferPush",
+            {MEMBER(TransferPush, index), MEMBER(TransferPush, weight), MEMBER(TransferPush, coarse_x),
+             MEMBER(TransferPush, coarse_to_phi), MEMBER(TransferPush, to_phi), MEMBER(TransferPush, x),
+             MEMBER(TransferPush, state), MEMBER(TransferPush, width), MEMBER(TransferPush, first),
+             MEMBER(TransferPush, coarse_first), MEMBER(TransferPush, count)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(cg_start_comp), vk::Spirv(cg_start_sp3_comp)}) {
+    compare(
+        code, "CgStartPush",
+        {MEMBER(CgStartPush, rows), MEMBER(CgStartPush, b), MEMBER(CgStartPush, x), MEMBER(CgStartPush, r),
+         MEMBER(CgStartPush, p), MEMBER(CgStartPush, state), MEMBER(CgStartPush, reduction), MEMBER(CgStartPush, count),
+         MEMBER(CgStartPush, max_iterations), MEMBER(CgStartPush, tolerance), MEMBER(CgStartPush, first)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(cg_multiply_comp), vk::Spirv(cg_multiply_sp3_comp)}) {
+    compare(code, "CgMultiplyPush",
+            {MEMBER(CgMultiplyPush, rows), MEMBER(CgMultiplyPush, p), MEMBER(CgMultiplyPush, product),
+             MEMBER(CgMultiplyPush, state), MEMBER(CgMultiplyPush, reduction), MEMBER(CgMultiplyPush, count),
+             MEMBER(CgMultiplyPush, tolerance)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(cg_update_comp), vk::Spirv(cg_update_sp3_comp)}) {
+    compare(
+        code, "CgUpdatePush",
+        {MEMBER(CgUpdatePush, diagonal), MEMBER(CgUpdatePush, p), MEMBER(CgUpdatePush, product),
+         MEMBER(CgUpdatePush, x), MEMBER(CgUpdatePush, r), MEMBER(CgUpdatePush, state), MEMBER(CgUpdatePush, reduction),
+         MEMBER(CgUpdatePush, count), MEMBER(CgUpdatePush, max_iterations), MEMBER(CgUpdatePush, tolerance)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(cg_direction_comp), vk::Spirv(cg_direction_sp3_comp)}) {
+    compare(code, "CgDirectionPush",
+            {MEMBER(CgDirectionPush, diagonal), MEMBER(CgDirectionPush, r), MEMBER(CgDirectionPush, p),
+             MEMBER(CgDirectionPush, state), MEMBER(CgDirectionPush, count)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(sweep_comp), vk::Spirv(sweep_sp3_comp)}) {
+    compare(code, "SweepPush",
+            {MEMBER(SweepPush, rows), MEMBER(SweepPush, b), MEMBER(SweepPush, from), MEMBER(SweepPush, to),
+             MEMBER(SweepPush, damping), MEMBER(SweepPush, state), MEMBER(SweepPush, reduction),
+             MEMBER(SweepPush, count), MEMBER(SweepPush, sweeps), MEMBER(SweepPush, tolerance)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(exitance_comp), vk::Spirv(exitance_sp3_comp)}) {
+    compare(
+        code, "ExitancePush",
+        {MEMBER(ExitancePush, vertices), MEMBER(ExitancePush, faces), MEMBER(ExitancePush, face_kinds),
+         MEMBER(ExitancePush, x), MEMBER(ExitancePush, to_phi), MEMBER(ExitancePush, q), MEMBER(ExitancePush, scale),
+         MEMBER(ExitancePush, phi), MEMBER(ExitancePush, exitance), MEMBER(ExitancePush, clip),
+         MEMBER(ExitancePush, reduction), MEMBER(ExitancePush, count), MEMBER(ExitancePush, tet_count),
+         MEMBER(ExitancePush, fem), MEMBER(ExitancePush, clipped), MEMBER(ExitancePush, boundary)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(vertex_exitance_comp), vk::Spirv(vertex_exitance_sp3_comp)}) {
+    compare(code, "VertexExitancePush",
+            {MEMBER(VertexExitancePush, vertices), MEMBER(VertexExitancePush, faces),
+             MEMBER(VertexExitancePush, face_offset), MEMBER(VertexExitancePush, face_incidence),
+             MEMBER(VertexExitancePush, x), MEMBER(VertexExitancePush, q), MEMBER(VertexExitancePush, face_exitance),
+             MEMBER(VertexExitancePush, scale), MEMBER(VertexExitancePush, clip), MEMBER(VertexExitancePush, exitance),
+             MEMBER(VertexExitancePush, count), MEMBER(VertexExitancePush, fem), MEMBER(VertexExitancePush, clipped),
+             MEMBER(VertexExitancePush, boundary)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(energy_comp), vk::Spirv(energy_sp3_comp)}) {
+    compare(
+        code, "EnergyPush",
+        {MEMBER(EnergyPush, vertices), MEMBER(EnergyPush, tets), MEMBER(EnergyPush, faces),
+         MEMBER(EnergyPush, face_kinds), MEMBER(EnergyPush, optical), MEMBER(EnergyPush, x), MEMBER(EnergyPush, to_phi),
+         MEMBER(EnergyPush, q), MEMBER(EnergyPush, exitance), MEMBER(EnergyPush, coarse_exitance),
+         MEMBER(EnergyPush, scale), MEMBER(EnergyPush, clip), MEMBER(EnergyPush, sums), MEMBER(EnergyPush, tet_count),
+         MEMBER(EnergyPush, face_count), MEMBER(EnergyPush, fem)});
+  }
 }
 
 TEST_CASE("arrays in buffers have the stride of their C++ element") {
-  const std::vector<std::pair<std::string, std::size_t>> expected = {
-      {"Floats", sizeof(float)},          {"Uints", sizeof(std::uint32_t)},
-      {"Vec3s", sizeof(glm::vec3)},       {"Uvec2s", sizeof(glm::uvec2)},
-      {"Uvec3s", sizeof(glm::uvec3)},     {"Uvec4s", sizeof(glm::uvec4)},
-      {"Opticals", sizeof(gpu::Optical)}, {"SolveStates", sizeof(gpu::SolveState)},
-      {"Scales", sizeof(gpu::Scale)},     {"EnergySumsArray", sizeof(gpu::EnergySums)},
-      {"Reduction", sizeof(glm::vec3)}};
-  std::map<std::string, int> seen;
-  for (const vk::Spirv code :
-       {vk::Spirv(evaluate_material_comp), vk::Spirv(assemble_fdm_comp), vk::Spirv(assemble_fv_comp),
-        vk::Spirv(right_hand_side_fv_comp), vk::Spirv(assemble_fem_comp), vk::Spirv(irradiance_scale_comp),
-        vk::Spirv(right_hand_side_fdm_comp), vk::Spirv(right_hand_side_fem_comp), vk::Spirv(damping_comp),
-        vk::Spirv(transfer_comp), vk::Spirv(cg_start_comp), vk::Spirv(cg_multiply_comp), vk::Spirv(cg_update_comp),
-        vk::Spirv(cg_direction_comp), vk::Spirv(sweep_comp), vk::Spirv(exitance_comp), vk::Spirv(vertex_exitance_comp),
-        vk::Spirv(energy_comp)}) {
-    const SpirvLayout layout(code);
-    for (const auto& [block, bytes] : expected) {
-      const auto found = layout.block_stride.find(block);
-      if (found == layout.block_stride.end()) continue;
-      CAPTURE(block);
-      CHECK(found->second == bytes);
-      ++seen[block];
+  // What both variants see alike, then what a carrier and an entry take in each.
+  const std::vector<std::pair<std::string, std::size_t>> common = {{"Floats", sizeof(float)},
+                                                                   {"Uints", sizeof(std::uint32_t)},
+                                                                   {"Vec3s", sizeof(glm::vec3)},
+                                                                   {"Uvec3s", sizeof(glm::uvec3)},
+                                                                   {"Uvec4s", sizeof(glm::uvec4)},
+                                                                   {"Opticals", sizeof(gpu::Optical)},
+                                                                   {"SolveStates", sizeof(gpu::SolveState)},
+                                                                   {"Scales", sizeof(gpu::Scale)},
+                                                                   {"Clips", sizeof(gpu::Clip)},
+                                                                   {"EnergySumsArray", sizeof(gpu::EnergySums)},
+                                                                   {"Reduction", sizeof(glm::vec3)}};
+  const std::vector<vk::Spirv> diffusion = {vk::Spirv(evaluate_material_comp),
+                                            vk::Spirv(shape_comp),
+                                            vk::Spirv(irradiance_scale_comp),
+                                            vk::Spirv(assemble_fdm_comp),
+                                            vk::Spirv(assemble_fv_comp),
+                                            vk::Spirv(assemble_fem_comp),
+                                            vk::Spirv(right_hand_side_fdm_comp),
+                                            vk::Spirv(right_hand_side_fv_comp),
+                                            vk::Spirv(right_hand_side_fem_comp),
+                                            vk::Spirv(damping_comp),
+                                            vk::Spirv(transfer_comp),
+                                            vk::Spirv(cg_start_comp),
+                                            vk::Spirv(cg_multiply_comp),
+                                            vk::Spirv(cg_update_comp),
+                                            vk::Spirv(cg_direction_comp),
+                                            vk::Spirv(sweep_comp),
+                                            vk::Spirv(exitance_comp),
+                                            vk::Spirv(vertex_exitance_comp),
+                                            vk::Spirv(energy_comp)};
+  const std::vector<vk::Spirv> sp3 = {vk::Spirv(assemble_fdm_sp3_comp),
+                                      vk::Spirv(assemble_fv_sp3_comp),
+                                      vk::Spirv(assemble_fem_sp3_comp),
+                                      vk::Spirv(right_hand_side_fdm_sp3_comp),
+                                      vk::Spirv(right_hand_side_fv_sp3_comp),
+                                      vk::Spirv(right_hand_side_fem_sp3_comp),
+                                      vk::Spirv(damping_sp3_comp),
+                                      vk::Spirv(transfer_sp3_comp),
+                                      vk::Spirv(cg_start_sp3_comp),
+                                      vk::Spirv(cg_multiply_sp3_comp),
+                                      vk::Spirv(cg_update_sp3_comp),
+                                      vk::Spirv(cg_direction_sp3_comp),
+                                      vk::Spirv(sweep_sp3_comp),
+                                      vk::Spirv(exitance_sp3_comp),
+                                      vk::Spirv(vertex_exitance_sp3_comp),
+                                      vk::Spirv(energy_sp3_comp)};
+  for (const std::size_t moments : {1, 2}) {
+    auto expected = common;
+    expected.emplace_back("Fields", moments * sizeof(glm::vec3));
+    expected.emplace_back("Entries", (moments == 2 ? 3 : 1) * sizeof(glm::vec3));
+    std::map<std::string, int> seen;
+    for (const vk::Spirv code : moments == 2 ? sp3 : diffusion) {
+      const SpirvLayout layout(code);
+      for (const auto& [block, bytes] : expected) {
+        const auto found = layout.block_stride.find(block);
+        if (found == layout.block_stride.end()) continue;
+        CAPTURE(block);
+        CHECK(found->second == bytes);
+        ++seen[block];
+      }
     }
-  }
-  for (const auto& [block, bytes] : expected) {
-    CAPTURE(block);
-    CHECK(seen[block] > 0);
+    for (const auto& [block, bytes] : expected) {
+      CAPTURE(block);
+      CHECK(seen[block] > 0);
+    }
   }
 }
 

@@ -1,7 +1,8 @@
 // Solutions of the GPU: against the CPU reference, closed forms and conservation.
 #include <doctest/doctest.h>
 
-#include "engine/graph/fresnel.h"
+#include "engine/graph/boundary.h"
+#include "engine/graph/error.h"
 #include "tests/cpp/solve_fixtures.h"
 
 using namespace quadgraph;
@@ -9,10 +10,10 @@ using namespace quadgraph;
 namespace {
 
 ReferenceSolution reference(const Scene& scene, const gpu::Material& material, const std::vector<glm::vec3>& q,
-                            const SolveOptions& how) {
+                            const SolveOptions& how, const glm::vec3& direction) {
   const Level& level = scene.graph.levels()[0];
   return solve_reference(level, evaluate_material(level, material), material.eta,
-                         {{gpu::BEAM_LAMBERTIAN, glm::vec3(0)}, q}, how);
+                         {{gpu::BEAM_DIRECTIONAL, glm::normalize(direction)}, q}, how);
 }
 
 // phi at the faces of level 0, interpolated from a solution of level 1.
@@ -40,6 +41,7 @@ TEST_CASE("the error estimate compares the exitance with that of the coarser lev
   const auto coarse_q = scene.irradiance(1, one_side);
   for (Method method : all_methods) {
     const SolveOptions how = options(method, SolverKind::dpcg, 1e-6);
+    const Boundary boundary = boundary_of(method, Source::diffuse, Model::diffusion, 1.3);
     const SolveReport report = scene.simulation.solve(how);
     const SurfaceField field = scene.simulation.surface_field();
     const auto optical = evaluate_material(coarse, homogeneous());
@@ -48,7 +50,7 @@ TEST_CASE("the error estimate compares the exitance with that of the coarser lev
         solve_reference(coarse, optical, 1.3f, {{gpu::BEAM_LAMBERTIAN, glm::vec3(0)}, coarse_q}, how).phi);
     glm::dvec2 difference{0}, norm{0};
     for (std::size_t f = 0; f < phi.size(); ++f) {
-      const glm::dvec3 exitance = (phi[f] - 2.0 * glm::dvec3(field.q[f])) / (2.0 * mismatch(1.3f));
+      const glm::dvec3 exitance = boundary.k11 * phi[f] - boundary.reflected * glm::dvec3(field.q[f]);
       const glm::dvec3 d = glm::dvec3(field.exitance[f]) - exitance, m(field.exitance[f]);
       const glm::dvec2 where(1.0, field.q[f] == glm::vec3(0) ? 1.0 : 0.0);
       difference += where * (field.area[f] * glm::dot(d, d));
@@ -60,17 +62,20 @@ TEST_CASE("the error estimate compares the exitance with that of the coarser lev
   }
 }
 
-TEST_CASE("the solution equals the CPU reference for every method and solver") {
+TEST_CASE("the solution equals the CPU reference for every method, model, source and solver") {
   Scene scene({6, 3});
   scene.simulation.set_material(veined());
-  scene.light(one_side);
+  const glm::vec3 slanted(1.0f, 0.4f, -0.2f);
+  for (std::uint32_t i = 0; i < 2; ++i) scene.simulation.set_irradiance(i, scene.irradiance(i, one_side), slanted);
   const std::vector<glm::vec3> q = scene.irradiance(0, one_side);
-  for (Method method : all_methods) {
-    const ReferenceSolution expected = reference(scene, veined(), q, options(method, SolverKind::dpcg, 1e-10));
+  for (const Case& what : all_cases()) {
+    CAPTURE(what);
+    const ReferenceSolution expected = reference(scene, veined(), q, what.options(SolverKind::dpcg, 1e-10), slanted);
     for (SolverKind solver : both_solvers) {
-      CAPTURE(name_of(method));
       CAPTURE(name_of(solver));
-      const SolveReport report = scene.simulation.solve(options(method, solver, 1e-5));
+      const SolveReport report = scene.simulation.solve(what.options(solver, 1e-5));
+      CHECK(report.source == what.source);
+      CHECK(report.model == what.model);
       REQUIRE(report.levels.size() == 2);
       for (const LevelReport& level : report.levels) {
         CHECK(level.converged);
@@ -78,7 +83,7 @@ TEST_CASE("the solution equals the CPU reference for every method and solver") {
         CHECK(level.iterations > 0);
       }
       CHECK(report.levels[1].level == 0);
-      CHECK(report.levels[1].unknowns == carrier_count(scene.graph.levels()[0], method));
+      CHECK(report.levels[1].unknowns == expected.report.unknowns);
       // A residual of 1e-5 allows this much error at the condition number of this box.
       CHECK(relative_difference(scene.simulation.phi(), expected.phi) < 2e-4);
       const SurfaceField field = scene.simulation.surface_field();
@@ -89,30 +94,92 @@ TEST_CASE("the solution equals the CPU reference for every method and solver") {
         CHECK(report.energy.entered[c] == doctest::Approx(expected.energy.entered[c]).epsilon(1e-5));
         CHECK(report.energy.scattered_out[c] == doctest::Approx(expected.energy.scattered_out[c]).epsilon(1e-3));
         CHECK(report.energy.absorbed[c] == doctest::Approx(expected.energy.absorbed[c]).epsilon(1e-3));
-        if (method != Method::quadgraph_fdm) CHECK(std::abs(report.energy.balance()[c]) < 1e-4);
+        CHECK(report.energy.unscattered_out[c] == doctest::Approx(expected.energy.unscattered_out[c]).epsilon(1e-5));
+        CHECK(report.clipped[c] == doctest::Approx(expected.clipped[c]).epsilon(1e-2));
+        // A relaxation stops with smooth errors, which the balance sees and the residual hardly does.
+        const double balance = solver == SolverKind::dpcg ? 5e-5 : 5e-4;
+        if (what.method != Method::quadgraph_fdm) CHECK(std::abs(report.energy.balance()[c]) < balance);
       }
     }
   }
 }
 
-TEST_CASE("a furnace is uniform to rounding") {
+TEST_CASE("changing method, model and source back and forth gives the first answer again") {
+  Scene scene({4, 2});
+  scene.simulation.set_material(homogeneous());
+  scene.light(one_side);
+  std::vector<std::vector<glm::vec3>> first;
+  for (const Case& what : all_cases()) {
+    scene.simulation.solve(what.options(SolverKind::dpcg, 1e-4));
+    first.push_back(scene.simulation.surface_field().exitance);
+  }
+  std::size_t k = 0;
+  for (const Case& what : all_cases()) {
+    CAPTURE(what);
+    scene.simulation.solve(what.options(SolverKind::dpcg, 1e-4));
+    CHECK(scene.simulation.surface_field().exitance == first[k++]);
+  }
+}
+
+TEST_CASE("the balance closes in single precision to 1e-5, however fine the mesh, and the exitance is never negative") {
+  for (const float size : {0.5f, 50.0f}) {
+    Scene scene({6, 3}, size);
+    scene.simulation.set_material(veined());
+    scene.light(one_side);
+    for (Method method : {Method::fem, Method::quadgraph_fv}) {
+      for (Model model : {Model::diffusion, Model::sp3}) {
+        CAPTURE(size);
+        const Case what{method, model, Source::buried};
+        CAPTURE(what);
+        const SolveReport report = scene.simulation.solve(what.options(SolverKind::dpcg, 1e-6));
+        for (int c = 0; c < 3; ++c) CHECK(std::abs(report.energy.balance()[c]) < 1e-5);
+        for (const glm::vec3& m : scene.simulation.surface_field().exitance) CHECK(std::min({m.x, m.y, m.z}) >= 0);
+        for (const glm::vec3& m : vk::download<glm::vec3>(scene.device.context, scene.simulation.vertex_exitance())) {
+          CHECK(std::min({m.x, m.y, m.z}) >= 0);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("coefficients per node are those of the material they are taken from") {
+  Scene scene({4, 2});
+  scene.light(one_side);
+  scene.simulation.set_material(veined());
+  const SolveReport report = scene.simulation.solve({});
+  CHECK(report.model == Model::sp3);  // the veins are too dark for diffusion
+  const std::vector<glm::vec3> expected = scene.simulation.surface_field().exitance;
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    const auto optical = evaluate_material(scene.graph.levels()[i], veined());
+    scene.simulation.set_optical(i, optical, veined().eta);
+    if (i == 0) CHECK_THROWS_WITH_AS(scene.simulation.solve({}), doctest::Contains("level 1"), InputError);
+  }
+  CHECK(scene.simulation.solve({}).model == Model::sp3);
+  CHECK(relative_difference(scene.simulation.surface_field().exitance, expected) < 1e-4);
+  const std::vector<gpu::Optical> short_by_one(scene.graph.levels()[0].node_count() - 1, {glm::vec3(1), glm::vec3(0)});
+  CHECK_THROWS_WITH_AS(scene.simulation.set_optical(0, short_by_one, 1.3f), doctest::Contains("optical"), InputError);
+}
+
+TEST_CASE("a furnace with the diffuse source is uniform to rounding, in both models") {
   Scene scene({6, 3});
   scene.light([](const glm::vec3&) { return glm::vec3(0.1f, 1.0f, 3.0f); });
-  const double a = mismatch(1.3);
-  for (Method method : all_methods) {
+  for (const Case& what : all_cases()) {
+    if (what.source == Source::buried) continue;
+    CAPTURE(what);
     // The published differences keep constants of kappa * phi, not of phi: it alone is wrong where kappa varies.
-    gpu::Material material = method == Method::quadgraph_fdm ? homogeneous() : veined();
+    gpu::Material material = what.method == Method::quadgraph_fdm ? homogeneous() : veined();
     material.sigma_a = material.vein_sigma_a = glm::vec3(0);
     scene.simulation.set_material(material);
-    const SolveReport report = scene.simulation.solve(options(method, SolverKind::dpcg, 3e-7));
-    const double per_q = 4.0 / (1.0 - internal_diffuse_reflectance(1.3));
+    const SolveReport report = scene.simulation.solve(what.options(SolverKind::dpcg, 3e-7));
+    const Boundary boundary = boundary_of(what.method, what.source, what.model, 1.3);
     for (const glm::vec3& phi : scene.simulation.phi()) {
-      CHECK(phi.x == doctest::Approx(0.1 * per_q).epsilon(1e-5));
-      CHECK(phi.z == doctest::Approx(3.0 * per_q).epsilon(1e-5));
+      CHECK(phi.x == doctest::Approx(0.1 * boundary.source).epsilon(1e-5));
+      CHECK(phi.z == doctest::Approx(3.0 * boundary.source).epsilon(1e-5));
     }
-    // M is a difference: its error is that of phi, (1 + A) / A * 2 times larger here.
+    // M is a difference: its error is that of phi, so many times larger.
+    const double tolerance = 1e-5 * (1 + 2 * boundary.reflected);
     for (const glm::vec3& m : scene.simulation.surface_field().exitance) {
-      CHECK(m.y == doctest::Approx(1.0).epsilon(1e-5 * 2 * (1 + a) / a));
+      CHECK(m.y == doctest::Approx(1.0).epsilon(tolerance));
     }
     const auto vertex_exitance = vk::download<glm::vec3>(scene.device.context, scene.simulation.vertex_exitance());
     REQUIRE(vertex_exitance.size() == scene.graph.levels()[0].surface_vertex_count);
@@ -168,31 +235,45 @@ TEST_CASE("the solution scales with the light, bit for bit, far beyond the range
   }
 }
 
-TEST_CASE("exitance at vertices is that of phi and the area-weighted light around them") {
+TEST_CASE("exitance at vertices interpolates to the power of the faces") {
   Scene scene({3, 2});
   scene.simulation.set_material(homogeneous());
   scene.light([](const glm::vec3& p) { return glm::vec3(p.x, p.y, 0.5f); });
   const Level& level = scene.graph.levels()[0];
-  for (Method method : all_methods) {
-    scene.simulation.solve(options(method, SolverKind::dpcg, 1e-4));
-    const std::vector<glm::vec3> phi = scene.simulation.phi();
+  for (const Case& what : all_cases()) {
+    CAPTURE(what);
+    scene.simulation.solve(what.options(SolverKind::dpcg, 1e-4));
     const SurfaceField field = scene.simulation.surface_field();
-    std::vector<glm::dvec3> q(level.surface_vertex_count, glm::dvec3(0)), mean_phi(q);
-    std::vector<double> area(level.surface_vertex_count, 0);
+    const auto at_vertices = vk::download<glm::vec3>(scene.device.context, scene.simulation.vertex_exitance());
+    glm::dvec3 of_vertices{0}, of_faces{0};
     for (std::uint32_t f = 0; f < level.face_count(); ++f) {
-      for (int k = 0; k < 3; ++k) {
-        const std::uint32_t v = level.faces[f][k];
-        q[v] += glm::dvec3(field.q[f]) * double{field.area[f]};
-        mean_phi[v] += glm::dvec3(field.phi[f]) * double{field.area[f]};
-        area[v] += field.area[f];
-      }
+      const double area = field.area[f];
+      for (int k = 0; k < 3; ++k) of_vertices += area / 3 * glm::dvec3(at_vertices[level.faces[f][k]]);
+      of_faces += area * (glm::dvec3(field.exitance[f]) + glm::dvec3(field.unscattered[f]));
     }
-    std::vector<glm::dvec3> expected;
-    for (std::uint32_t v = 0; v < level.surface_vertex_count; ++v) {
-      const glm::dvec3 at = method == Method::fem ? glm::dvec3(phi[v]) : mean_phi[v] / area[v];
-      expected.push_back((at - 2.0 * q[v] / area[v]) / (2.0 * mismatch(1.3f)));
+    // The mean over the faces around a vertex weighs a face by its neighbours' areas too.
+    const double tolerance = what.method == Method::fem && what.source == Source::buried ? 1e-4 : 0.05;
+    for (int c = 0; c < 3; ++c) CHECK(of_vertices[c] == doctest::Approx(of_faces[c]).epsilon(tolerance));
+  }
+}
+
+TEST_CASE("exitance at vertices, linear elements: the outward flux of the fields there") {
+  Scene scene({3, 2});
+  scene.simulation.set_material(homogeneous());
+  scene.light([](const glm::vec3& p) { return glm::vec3(p.x, p.y, 0.5f); });
+  const SolveReport report =
+      scene.simulation.solve(Case{Method::fem, Model::diffusion, Source::buried}.options(SolverKind::dpcg, 1e-4));
+  const double k11 = boundary_of(Method::fem, Source::buried, Model::diffusion, 1.3).k11;
+  const auto phi = scene.simulation.phi();
+  const auto found = vk::download<glm::vec3>(scene.device.context, scene.simulation.vertex_exitance());
+  const SurfaceField field = scene.simulation.surface_field();
+  glm::vec3 most_unscattered(0);
+  for (const glm::vec3& u : field.unscattered) most_unscattered = glm::max(most_unscattered, u);
+  for (std::size_t v = 0; v < found.size(); ++v) {
+    for (int c = 0; c < 3; ++c) {
+      const double scattered = k11 * phi[v][c] * (1 - report.clipped[c]);
+      CHECK(found[v][c] >= scattered * (1 - 1e-5));
+      CHECK(found[v][c] <= scattered * (1 + 1e-5) + 1.01 * most_unscattered[c]);
     }
-    const auto found = vk::download<glm::vec3>(scene.device.context, scene.simulation.vertex_exitance());
-    CHECK(relative_difference(found, expected) < 1e-5);
   }
 }

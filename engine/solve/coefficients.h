@@ -1,0 +1,46 @@
+// Where the coefficients at the nodes of all levels come from: a material, or arrays.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/graph/solution.h"
+#include "engine/solve/simulation.h"
+#include "engine/solve/workspace.h"
+
+namespace quadgraph {
+
+class Coefficients {
+ public:
+  explicit Coefficients(std::size_t levels) : albedo_(levels) {}
+
+  // Throws InputError as check_material does.
+  void set(const gpu::Material& material);
+
+  // Writes the coefficients of level `number`. Throws InputError on a wrong size or value.
+  void set(vk::Context& context, std::uint32_t number, std::span<const gpu::Optical> optical, float eta,
+           LevelBuffers& level);
+
+  // Throws InputError if there are none, or not for every level.
+  void check() const;
+
+  float eta() const { return eta_; }
+
+  // The same everywhere.
+  bool even() const { return material_ && material_->kind == gpu::MATERIAL_HOMOGENEOUS; }
+
+  // The model that is meant where `wanted` is automatic.
+  Model resolve(Model wanted) const;
+
+  // Evaluates the material on all levels, unless that has been done.
+  void record(Workspace& work, const std::vector<LevelBuffers>& levels);
+
+ private:
+  std::optional<gpu::Material> material_;
+  bool evaluated_ = false;
+  float eta_ = 1;
+  std::vector<std::optional<double>> albedo_;  // the least one of every level
+};
+
+}  // namespace quadgraph
