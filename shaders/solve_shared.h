@@ -43,10 +43,10 @@ struct Boundary {
 
 // Operator rows of one level, method and model, without the right-hand side: with a_e = weight_e and j_e = column_e,
 //   (A x)_i = row_sum_i x_i + sum_e a_e (x_j_e - x_i)
-// over e = slice_offset[i / SLICE_ROWS] + i % SLICE_ROWS, in steps of SLICE_ROWS, to the next slice. Padding entries name
-// their own row with weight 0. Taking differences, the stiffness, which is all that a fine mesh's large entries consist
-// of, cancels before it is rounded: the flux from i to j is that from j to i, and energy is kept in single precision.
-// `diagonal` = row_sum - sum of the weights is for preconditioning.
+// over e = slice_offset[i / SLICE_ROWS] + i % SLICE_ROWS, in steps of SLICE_ROWS, to the next slice. Padding entries
+// name their own row with weight 0. Taking differences, the stiffness, which is all that a fine mesh's large entries
+// consist of, cancels before it is rounded: the flux from i to j is that from j to i, and energy is kept in single
+// precision. `diagonal` = row_sum - sum of the weights is for preconditioning.
 struct RowsRef {
   QG_REF(Uints) slice_offset;
   QG_REF(Uints) column;
@@ -344,8 +344,8 @@ QG_ARRAY(Clips, Clip);
 #endif
 
 // exitance.comp: phi and M = k11 phi + k12 phi2 - reflected q per outside face, 0 at reflecting ones. fem: the mean
-// over the face's vertices; graph methods: the surface node, x at tet_count + face. With `clip` 1 negative values at
-// vertices or nodes count as 0, and the factor is found that restores the power; energy.comp applies it.
+// over the face's vertices; graph methods: the surface node, x at tet_count + face. With `clipped` 1 negative values at
+// vertices or nodes count as 0, and the factor is found that restores the power.
 struct ExitancePush {
   QG_REF(Vec3s) vertices;
   QG_REF(Uvec3s) faces;
@@ -365,27 +365,30 @@ struct ExitancePush {
   Boundary boundary;
 };
 
-// vertex_exitance.comp: M per surface vertex, clipped like that of the faces, for display. fem: from x at the vertex
-// and the area-weighted mean q of its open faces; graph methods: the area-weighted mean M of its open faces. 0 without
-// any.
+// vertex_exitance.comp: the area-weighted mean over the open faces around every surface vertex, 0 without any. Taken as
+// linear over the faces it carries the same power.
 struct VertexExitancePush {
   QG_REF(Vec3s) vertices;
   QG_REF(Uvec3s) faces;
   QG_REF(Uints) face_offset;
   QG_REF(Uints) face_incidence;
-  QG_REF(Fields) x;
-  QG_REF(Vec3s) q;
   QG_REF(Vec3s) face_exitance;
-  QG_REF(Scales) scale;
   QG_REF(Clips) clip;
   QG_REF(Vec3s) exitance;
   uint count;
-  uint fem;
-  uint clipped;
-  Boundary boundary;
+  uint clip_factor;  // 1: times the factor of `clip`
 };
 
-// energy.comp: sums per workgroup over faces and tets; applies the factor of the clip to the exitance of the faces.
+// face_exitance.comp: the mean over the vertices of every open face.
+struct FaceExitancePush {
+  QG_REF(Uvec3s) faces;
+  QG_REF(Uints) face_kinds;
+  QG_REF(Vec3s) vertex_exitance;
+  QG_REF(Vec3s) exitance;
+  uint count;
+};
+
+// energy.comp: sums per workgroup over faces and tets.
 struct EnergyPush {
   QG_REF(Vec3s) vertices;
   QG_REF(Uvec4s) tets;
@@ -398,7 +401,6 @@ struct EnergyPush {
   QG_REF(Vec3s) exitance;
   QG_REF(Vec3s) coarse_exitance;
   QG_REF(Scales) scale;
-  QG_REF(Clips) clip;
   QG_REF(EnergySumsArray) sums;
   uint tet_count;
   uint face_count;

@@ -22,6 +22,7 @@
 #include "spirv/evaluate_material.comp.h"
 #include "spirv/exitance.comp.h"
 #include "spirv/exitance_sp3.comp.h"
+#include "spirv/face_exitance.comp.h"
 #include "spirv/irradiance_scale.comp.h"
 #include "spirv/right_hand_side_buried.comp.h"
 #include "spirv/right_hand_side_buried_sp3.comp.h"
@@ -37,7 +38,6 @@
 #include "spirv/transfer.comp.h"
 #include "spirv/transfer_sp3.comp.h"
 #include "spirv/vertex_exitance.comp.h"
-#include "spirv/vertex_exitance_sp3.comp.h"
 #include "spirv/vertex_unscattered.comp.h"
 #include "spirv/walk_source.comp.h"
 
@@ -55,6 +55,8 @@ Passes::Passes()
       ONE_PASS(shape, ShapePush),
       ONE_PASS(irradiance_scale, IrradianceScalePush),
       ONE_PASS(walk_source, WalkSourcePush),
+      ONE_PASS(vertex_exitance, VertexExitancePush),
+      ONE_PASS(face_exitance, FaceExitancePush),
       ONE_PASS(vertex_unscattered, VertexUnscatteredPush),
       MODEL_PASS(assemble_fdm, AssembleFdmPush),
       MODEL_PASS(assemble_fv, AssembleFvPush),
@@ -71,7 +73,6 @@ Passes::Passes()
       MODEL_PASS(cg_direction, CgDirectionPush),
       MODEL_PASS(sweep, SweepPush),
       MODEL_PASS(exitance, ExitancePush),
-      MODEL_PASS(vertex_exitance, VertexExitancePush),
       MODEL_PASS(energy, EnergyPush) {}
 
 }  // namespace quadgraph

@@ -41,7 +41,10 @@ class SurfaceResults {
 
  private:
   void record_exitance(Workspace& work, const Solved& solved, const vk::Buffer& exitance);
-  void record_vertex_exitance(Workspace& work, const Solved& solved);
+  void record_vertex_exitance(Workspace& work, const LevelBuffers& level, const vk::Buffer& exitance, bool clip_factor);
+  void record_face_exitance(Workspace& work, const LevelBuffers& level, const vk::Buffer& exitance);
+  void record_means(Workspace& work, const LevelBuffers& level, const vk::Buffer& exitance);
+  void record_surface(Workspace& work, const Solved& solved, const vk::Buffer& exitance);
   void record_vertex_unscattered(Workspace& work, const Solved& solved);
   void record_energy(Workspace& work, const Solved& solved);
 

@@ -27,6 +27,7 @@
 #include "spirv/evaluate_material.comp.h"
 #include "spirv/exitance.comp.h"
 #include "spirv/exitance_sp3.comp.h"
+#include "spirv/face_exitance.comp.h"
 #include "spirv/irradiance_scale.comp.h"
 #include "spirv/right_hand_side_fdm.comp.h"
 #include "spirv/right_hand_side_fdm_sp3.comp.h"
@@ -40,7 +41,6 @@
 #include "spirv/transfer.comp.h"
 #include "spirv/transfer_sp3.comp.h"
 #include "spirv/vertex_exitance.comp.h"
-#include "spirv/vertex_exitance_sp3.comp.h"
 #include "tests/cpp/spirv_layout.h"
 
 using namespace quadgraph;
@@ -104,6 +104,16 @@ TEST_CASE("push constants") {
       irradiance_scale_comp, "IrradianceScalePush",
       {MEMBER(IrradianceScalePush, vertices), MEMBER(IrradianceScalePush, faces), MEMBER(IrradianceScalePush, q),
        MEMBER(IrradianceScalePush, scale), MEMBER(IrradianceScalePush, reduction), MEMBER(IrradianceScalePush, count)});
+  compare(
+      vertex_exitance_comp, "VertexExitancePush",
+      {MEMBER(VertexExitancePush, vertices), MEMBER(VertexExitancePush, faces), MEMBER(VertexExitancePush, face_offset),
+       MEMBER(VertexExitancePush, face_incidence), MEMBER(VertexExitancePush, face_exitance),
+       MEMBER(VertexExitancePush, clip), MEMBER(VertexExitancePush, exitance), MEMBER(VertexExitancePush, count),
+       MEMBER(VertexExitancePush, clip_factor)});
+  compare(
+      face_exitance_comp, "FaceExitancePush",
+      {MEMBER(FaceExitancePush, faces), MEMBER(FaceExitancePush, face_kinds), MEMBER(FaceExitancePush, vertex_exitance),
+       MEMBER(FaceExitancePush, exitance), MEMBER(FaceExitancePush, count)});
   // Both variants of a pass read the same block.
   for (const vk::Spirv code : {vk::Spirv(assemble_fdm_comp), vk::Spirv(assemble_fdm_sp3_comp)}) {
     compare(code, "AssembleFdmPush",
@@ -205,23 +215,13 @@ TEST_CASE("push constants") {
          MEMBER(ExitancePush, reduction), MEMBER(ExitancePush, count), MEMBER(ExitancePush, tet_count),
          MEMBER(ExitancePush, fem), MEMBER(ExitancePush, clipped), MEMBER(ExitancePush, boundary)});
   }
-  for (const vk::Spirv code : {vk::Spirv(vertex_exitance_comp), vk::Spirv(vertex_exitance_sp3_comp)}) {
-    compare(code, "VertexExitancePush",
-            {MEMBER(VertexExitancePush, vertices), MEMBER(VertexExitancePush, faces),
-             MEMBER(VertexExitancePush, face_offset), MEMBER(VertexExitancePush, face_incidence),
-             MEMBER(VertexExitancePush, x), MEMBER(VertexExitancePush, q), MEMBER(VertexExitancePush, face_exitance),
-             MEMBER(VertexExitancePush, scale), MEMBER(VertexExitancePush, clip), MEMBER(VertexExitancePush, exitance),
-             MEMBER(VertexExitancePush, count), MEMBER(VertexExitancePush, fem), MEMBER(VertexExitancePush, clipped),
-             MEMBER(VertexExitancePush, boundary)});
-  }
   for (const vk::Spirv code : {vk::Spirv(energy_comp), vk::Spirv(energy_sp3_comp)}) {
-    compare(
-        code, "EnergyPush",
-        {MEMBER(EnergyPush, vertices), MEMBER(EnergyPush, tets), MEMBER(EnergyPush, faces),
-         MEMBER(EnergyPush, face_kinds), MEMBER(EnergyPush, optical), MEMBER(EnergyPush, x), MEMBER(EnergyPush, to_phi),
-         MEMBER(EnergyPush, q), MEMBER(EnergyPush, exitance), MEMBER(EnergyPush, coarse_exitance),
-         MEMBER(EnergyPush, scale), MEMBER(EnergyPush, clip), MEMBER(EnergyPush, sums), MEMBER(EnergyPush, tet_count),
-         MEMBER(EnergyPush, face_count), MEMBER(EnergyPush, fem)});
+    compare(code, "EnergyPush",
+            {MEMBER(EnergyPush, vertices), MEMBER(EnergyPush, tets), MEMBER(EnergyPush, faces),
+             MEMBER(EnergyPush, face_kinds), MEMBER(EnergyPush, optical), MEMBER(EnergyPush, x),
+             MEMBER(EnergyPush, to_phi), MEMBER(EnergyPush, q), MEMBER(EnergyPush, exitance),
+             MEMBER(EnergyPush, coarse_exitance), MEMBER(EnergyPush, scale), MEMBER(EnergyPush, sums),
+             MEMBER(EnergyPush, tet_count), MEMBER(EnergyPush, face_count), MEMBER(EnergyPush, fem)});
   }
 }
 
@@ -241,6 +241,7 @@ TEST_CASE("arrays in buffers have the stride of their C++ element") {
   const std::vector<vk::Spirv> diffusion = {vk::Spirv(evaluate_material_comp),
                                             vk::Spirv(shape_comp),
                                             vk::Spirv(irradiance_scale_comp),
+                                            vk::Spirv(face_exitance_comp),
                                             vk::Spirv(assemble_fdm_comp),
                                             vk::Spirv(assemble_fv_comp),
                                             vk::Spirv(assemble_fem_comp),
@@ -271,7 +272,6 @@ TEST_CASE("arrays in buffers have the stride of their C++ element") {
                                       vk::Spirv(cg_direction_sp3_comp),
                                       vk::Spirv(sweep_sp3_comp),
                                       vk::Spirv(exitance_sp3_comp),
-                                      vk::Spirv(vertex_exitance_sp3_comp),
                                       vk::Spirv(energy_sp3_comp)};
   for (const std::size_t moments : {1, 2}) {
     auto expected = common;
