@@ -260,11 +260,12 @@ TEST_CASE("a face that is lit in part sends its light from the lit quarters") {
   }
 }
 
-TEST_CASE("one tet, slivers and needles keep the power") {
+TEST_CASE("one tet, slivers, needles and flat tets keep the power") {
   CheckedContext device;
   std::vector<OwnedLevel> levels;
   levels.push_back(level_from_tets({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}));
-  for (const glm::vec3& stretch : {glm::vec3(1, 1, 0.001f), glm::vec3(0.001f, 1, 1), glm::vec3(1, 0.001f, 0.001f)}) {
+  for (const glm::vec3& stretch :
+       {glm::vec3(1, 1, 0.001f), glm::vec3(0.001f, 1, 1), glm::vec3(1, 0.001f, 0.001f), glm::vec3(1, 1, 0)}) {
     OwnedLevel box = box_level(3, 3.0f, 0.2f);
     for (auto* points : {&box.vertices, &box.nodes}) {
       for (glm::vec3& p : *points) p *= stretch;
