@@ -35,7 +35,7 @@ class SourceWalk {
   void invalidate() { walked_ = {false, false}; }
 
   // Walks, unless that has been done for the present light: level.beam_q of every beam, scaled by work.scale. The
-  // graph methods share their deposits. `even`: level.optical is the same everywhere, which takes a third less time.
+  // graph methods share their deposits. `even`: level.optical is the same everywhere, which saves its reading.
   void record(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, Method method, double eta,
               bool even);
 
