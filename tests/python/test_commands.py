@@ -49,10 +49,10 @@ def test_solve_field_has_the_documented_arrays_and_balances(sphere, tmp_path, ca
     assert cli.main(["solve", sphere, *light, "--tolerance", "1e-5", "--json", str(report), "--field", str(field)]) == 0
     with np.load(field) as arrays:
         n = len(arrays["area"])
-        assert set(arrays) == {"position", "normal", "area", "q", "phi", "exitance"}
+        assert set(arrays) == {"position", "normal", "area", "q", "phi", "exitance", "unscattered"}
         assert all(arrays[name].shape == (n, 3) for name in arrays if name != "area")
         entered = (arrays["q"] * arrays["area"][:, None]).sum(axis=0)
-        left = (arrays["exitance"] * arrays["area"][:, None]).sum(axis=0)
+        left = ((arrays["exitance"] + arrays["unscattered"]) * arrays["area"][:, None]).sum(axis=0)
         assert np.allclose(np.linalg.norm(arrays["normal"], axis=1), 1, atol=1e-5)
         outward = (arrays["position"] * arrays["normal"]).sum(axis=1)
     assert (outward > 9).all()
@@ -60,6 +60,20 @@ def test_solve_field_has_the_documented_arrays_and_balances(sphere, tmp_path, ca
     assert np.allclose(entered, energy["entered"], rtol=1e-4)
     assert np.allclose(left + energy["absorbed"], entered, rtol=1e-3)
     assert "dispatches" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("method", ["fem", "quadgraph-fv", "quadgraph-fdm"])
+def test_solve_answers_with_every_method_model_and_source(sphere, tmp_path, capsys, method):
+    for source in ("buried", "diffuse"):
+        for model in ("diffusion", "sp3", "auto"):
+            path = tmp_path / f"{source}-{model}.json"
+            way = ["--method", method, "--source", source, "--model", model]
+            assert cli.main(["solve", sphere, "--material", "skin1", *way, "--json", str(path)]) == 0
+            report = json.loads(path.read_text())
+            assert (report["method"], report["source"]) == (method, source)
+            assert report["model"] == ("sp3" if model == "auto" else model)
+            assert set(report["energy"]) == {"entered", "scattered_out", "absorbed", "unscattered_out", "balance"}
+            assert f"{method} / {report['model']} / {source}" in capsys.readouterr().out
 
 
 def test_solve_says_so_when_it_stops_early(sphere, capsys):
