@@ -71,54 +71,56 @@ SourceWalk::SourceWalk(vk::Context& context, const Level& level, std::uint32_t n
   crossings_ = vk::upload<glm::uvec2>(context, crossings(level), prefix_ + "crossings");
 }
 
-void SourceWalk::record(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, Method method, double eta,
-                        bool even) {
-  if (walked_[carrier(method)]) return;
-  vk::Context& context = work.recorder.context();
+void SourceWalk::make_room(vk::Context& context, const LevelBuffers& level, const BeamBuffers& beams, Method method) {
   vk::Buffer& deposit = deposits_[carrier(method)];
   const std::uint64_t deposit_bytes = carriers(level, method) * power_bytes;
   if (deposit.size() != deposit_bytes) deposit = {context, deposit_bytes, vk::Place::device, prefix_ + "deposit"};
   std::uint64_t all_sums = 0;
   for (const std::uint32_t kind : beams.kinds) all_sums += sums_bytes(level, kind);
-  if (sums_.size() != all_sums) {
-    sums_ = {context, all_sums, vk::Place::device, prefix_ + "walk sums"};
-    sums_on_host_ = {context, all_sums, vk::Place::host, prefix_ + "walk sums, read back"};
-    scale_on_host_ = {context, sizeof(gpu::Scale), vk::Place::host, prefix_ + "scale, read back"};
-  }
-  work.recorder.fill(deposit, 0);
+  if (sums_.size() == all_sums) return;
+  sums_ = {context, all_sums, vk::Place::device, prefix_ + "walk sums"};
+  sums_on_host_ = {context, all_sums, vk::Place::host, prefix_ + "walk sums, read back"};
+  scale_on_host_ = {context, sizeof(gpu::Scale), vk::Place::host, prefix_ + "scale, read back"};
+}
+
+void SourceWalk::record(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, Method method, double eta,
+                        bool even) {
+  if (walked_[carrier(method)]) return;
+  walked_[carrier(method)] = true;
+  make_room(work.recorder.context(), level, beams, method);
+  work.recorder.fill(deposits_[carrier(method)], 0);
   work.recorder.fill(unscattered_, 0);
-  if (all_sums > 0) work.recorder.fill(sums_, 0);
-  std::uint64_t sums_offset = 0;
-  for (std::size_t beam = 0; beam < beams.kinds.size(); ++beam) {
-    const gpu::WalkSourcePush push{
-        .vertices = level.vertices.address(),
-        .tets = level.tets.address(),
-        .crossings = crossings_.address(),
-        .faces = level.faces.address(),
-        .face_tets = level.face_tets.address(),
-        .face_kinds = level.face_kind.address(),
-        .optical = level.optical.address(),
-        .beam = beams.records.address() + beam * sizeof(gpu::BeamRecord),
-        .quarter_q = level.beam_q.address() + beam * level.face_count * FACE_QUARTERS * vec3_bytes,
-        .scale = work.scale.address(),
-        .deposit = deposit.address(),
-        .unscattered = unscattered_.address(),
-        .sums = sums_.address() + sums_offset,
-        .face_count = level.face_count,
-        .rays = rays(beams.kinds[beam]),
-        .tet_count = level.tet_count,
-        .fem = method == Method::fem ? 1u : 0u,
-        .even = even ? 1u : 0u,
-        .eta = static_cast<float>(eta)};
+  if (beams.kinds.empty()) return;
+  work.recorder.fill(sums_, 0);
+  gpu::WalkSourcePush push{.vertices = level.vertices.address(),
+                           .tets = level.tets.address(),
+                           .crossings = crossings_.address(),
+                           .faces = level.faces.address(),
+                           .face_tets = level.face_tets.address(),
+                           .face_kinds = level.face_kind.address(),
+                           .optical = level.optical.address(),
+                           .beam = beams.records.address(),
+                           .quarter_q = level.beam_q.address(),
+                           .scale = work.scale.address(),
+                           .deposit = deposits_[carrier(method)].address(),
+                           .unscattered = unscattered_.address(),
+                           .sums = sums_.address(),
+                           .face_count = level.face_count,
+                           .rays = 1,
+                           .tet_count = level.tet_count,
+                           .fem = method == Method::fem ? 1u : 0u,
+                           .even = even ? 1u : 0u,
+                           .eta = static_cast<float>(eta)};
+  for (const std::uint32_t kind : beams.kinds) {
+    push.rays = rays(kind);
     work.recorder.dispatch(work.passes.walk_source, push, std::uint64_t{level.face_count} * push.rays, "source walk",
                            walk_bytes(level, push.rays));
-    sums_offset += sums_bytes(level, beams.kinds[beam]);
+    push.beam += sizeof(gpu::BeamRecord);
+    push.quarter_q += std::uint64_t{level.face_count} * FACE_QUARTERS * vec3_bytes;
+    push.sums += sums_bytes(level, kind);
   }
-  if (all_sums > 0) {
-    work.recorder.copy(sums_, sums_on_host_, all_sums);
-    work.recorder.copy(work.scale, scale_on_host_, sizeof(gpu::Scale));
-  }
-  walked_[carrier(method)] = true;
+  work.recorder.copy(sums_, sums_on_host_, sums_.size());
+  work.recorder.copy(work.scale, scale_on_host_, sizeof(gpu::Scale));
 }
 
 void SourceWalk::record_right_hand_side(Workspace& work, const LevelBuffers& level, Method method,

@@ -55,6 +55,8 @@ class SourceWalk {
  private:
   static std::size_t carrier(Method method) { return method == Method::fem ? 0 : 1; }
 
+  void make_room(vk::Context& context, const LevelBuffers& level, const BeamBuffers& beams, Method method);
+
   std::string prefix_;
   std::array<bool, 2> walked_ = {false, false};  // by carrier
   std::array<vk::Buffer, 2> deposits_;           // by carrier, made at first use

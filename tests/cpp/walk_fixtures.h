@@ -115,4 +115,18 @@ inline auto uniform(const glm::vec3& sigma_s_prime, const glm::vec3& sigma_a) {
   return [=](const glm::vec3&) { return optical_of(sigma_s_prime, sigma_a); };
 }
 
+// Cosine inside of light that comes in along (cos, sin).
+inline double refracted_cosine(double cos_i, double eta) {
+  return std::sqrt(1 - (1 - cos_i * cos_i) / (eta * eta));
+}
+
+inline void check_balance(const GpuWalk& result, double tolerance) {
+  const glm::dvec3 left = total(result.unscattered);
+  for (int c = 0; c < 3; ++c) {
+    CAPTURE(c);
+    CHECK(std::abs(result.balance()[c]) < tolerance);
+    CHECK(left[c] <= result.power.unscattered[c] * (1 + tolerance) + tolerance * result.entered[c]);
+  }
+}
+
 }  // namespace quadgraph
