@@ -7,51 +7,38 @@
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { AssembleFemPush push; };
 
-// Sums over the elements around an edge, or over all edges of a row.
-struct Sums {
-  vec3 stiffness, absorption, relaxation;
-  float area;
-};
-
-// Everything at the edge of an entry: the tets around it and, on the surface, two faces.
-Sums around_edge(uint entry) {
-  Sums sums = Sums(vec3(0), vec3(0), vec3(0), 0.0);
-  for (uint k = push.ring_offset.at[entry]; k < push.ring_offset.at[entry + 1u]; ++k) {
-    uint element = push.ring.at[k];
-    uint index = element >> 3u, edge = element & 7u;
-    if (edge == RING_FACE) {
-      sums.area += push.face_area.at[index] / 12.0;
-      continue;
-    }
-    Optical optical = push.optical.at[index];
-    float mass = push.tet_shape.at[TET_SHAPE * index + 6u] / 20.0;
-    sums.stiffness += kappa(optical) * push.tet_shape.at[TET_SHAPE * index + edge];
-    sums.absorption += optical.sigma_a * mass;
-    sums.relaxation += relaxation_of(optical) * mass;
+Entry off_diagonal_sum(uint i) {
+  uint slice = i / SLICE_ROWS;
+  uint end = push.rows.slice_offset.at[slice + 1u];
+  Entry sum = entry_of(vec3(0), vec3(0), vec3(0));
+  for (uint e = push.rows.slice_offset.at[slice] + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
+    sum = sum_of(sum, push.rows.weight.at[e]);
   }
-  return sums;
+  return sum;
 }
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= push.count) return;
-  uint slice = i / SLICE_ROWS;
-  uint end = push.rows.slice_offset.at[slice + 1u];
-  Sums row = Sums(vec3(0), vec3(0), vec3(0), 0.0);
-  for (uint e = push.rows.slice_offset.at[slice] + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
-    Sums edge = around_edge(e);
-    push.rows.weight.at[e] = sum_of(entry_of(edge.stiffness, edge.absorption, edge.relaxation),
-                                    boundary_entry(push.boundary, vec3(edge.area)));
-    row.stiffness += edge.stiffness;
-    row.absorption += edge.absorption;
-    row.relaxation += edge.relaxation;
-    row.area += edge.area;
+  vec3 absorption = vec3(0), relaxation = vec3(0);
+  uint end = push.tet_offset.at[i + 1u];
+  for (uint k = push.tet_offset.at[i]; k < end; ++k) {
+    uint tet = push.tet_incidence.at[k];
+    Optical optical = push.optical.at[tet];
+    float mass = push.tet_shape.at[TET_SHAPE * tet + 6u] / 20.0;
+    absorption += optical.sigma_a * mass;
+    relaxation += relaxation_of(optical) * mass;
   }
-  // A vertex meets every tet around it along three edges and every face along two; consistent masses have twice the
-  // weight on the diagonal. Constants carry no flux: the stiffness there is minus the sum of the others.
-  push.rows.diagonal.at[i] =
-      sum_of(entry_of(-row.stiffness, 2.0 / 3.0 * row.absorption, 2.0 / 3.0 * row.relaxation),
-             boundary_entry(push.boundary, vec3(row.area)));
-  push.rows.row_sum.at[i] = sum_of(entry_of(vec3(0), 5.0 / 3.0 * row.absorption, 5.0 / 3.0 * row.relaxation),
-                                   boundary_entry(push.boundary, vec3(2.0 * row.area)));
+  float area = 0.0;
+  if (i < push.surface_count) {
+    end = push.face_offset.at[i + 1u];
+    for (uint k = push.face_offset.at[i]; k < end; ++k) {
+      area += push.face_area.at[push.face_incidence.at[k]] / 12.0;
+    }
+  }
+  // Consistent masses: of a tet's twenty parts five belong to each of its vertices, of a face's twelve four.
+  Entry row_sum = sum_of(entry_of(vec3(0), 5.0 * absorption, 5.0 * relaxation),
+                         boundary_entry(push.boundary, vec3(4.0 * area)));
+  push.rows.row_sum.at[i] = row_sum;
+  push.rows.diagonal.at[i] = difference_of(row_sum, off_diagonal_sum(i));
 }

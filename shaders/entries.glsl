@@ -26,6 +26,14 @@ Entry sum_of(Entry a, Entry b) {
 #endif
 }
 
+Entry difference_of(Entry a, Entry b) {
+#if MOMENTS == 1
+  return Entry(a.a11 - b.a11);
+#else
+  return Entry(a.a11 - b.a11, a.a12 - b.a12, a.a22 - b.a22);
+#endif
+}
+
 // What phi2 loses per volume, 1/mm.
 vec3 relaxation_of(Optical optical) {
   return (5.0 / 9.0) * sigma_t(optical);

@@ -168,19 +168,36 @@ struct ShapePush {
   uint face_count;
 };
 
-// The elements around the edge of an entry of a fem row: tet * 8 + edge of the tet, or face * 8 + RING_FACE.
+// The elements around an edge: tet * 8 + edge of the tet, or face * 8 + RING_FACE.
 const uint RING_FACE = 7u;
 
-// assemble_fem.comp: weight and diagonal, one invocation per vertex. The elements around entry e are ring[k], k from
-// ring_offset[e] to ring_offset[e + 1]; padding has none, reflecting faces are left out.
+// assemble_edges.comp: weight, one invocation per edge, which has two entries. The elements around edge e are ring[k],
+// k from ring_offset[e] to ring_offset[e + 1], tets first; reflecting faces are left out.
+struct AssembleEdgesPush {
+  RowsRef rows;
+  QG_REF(Opticals) optical;
+  QG_REF(Floats) tet_shape;
+  QG_REF(Floats) face_area;
+  QG_REF(Uvec2s) edge_entry;
+  QG_REF(Uints) ring_offset;
+  QG_REF(Uints) ring;
+  uint count;
+  Boundary boundary;
+};
+
+// assemble_fem.comp: diagonal from the weights, one invocation per vertex. Its tets and open faces are incidence[k], k
+// from offset[v] to offset[v + 1].
 struct AssembleFemPush {
   RowsRef rows;
   QG_REF(Opticals) optical;
   QG_REF(Floats) tet_shape;
   QG_REF(Floats) face_area;
-  QG_REF(Uints) ring_offset;
-  QG_REF(Uints) ring;
+  QG_REF(Uints) tet_offset;
+  QG_REF(Uints) tet_incidence;
+  QG_REF(Uints) face_offset;
+  QG_REF(Uints) face_incidence;
   uint count;
+  uint surface_count;
   Boundary boundary;
 };
 

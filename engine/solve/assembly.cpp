@@ -53,24 +53,41 @@ void measure(Workspace& work, const LevelBuffers& level, OperatorBuffers& op) {
   const std::uint64_t bytes = level.tet_count * (sizeof(glm::uvec4) + 4 * vec3_bytes + gpu::TET_SHAPE * sizeof(float)) +
                               level.face_count * (sizeof(glm::uvec3) + 3 * vec3_bytes + sizeof(float));
   work.recorder.dispatch(work.passes.shape, push, std::max(level.tet_count, level.face_count), "shape", bytes);
+  work.recorder.fill(op.weight, 0);  // padding stays so: no edge writes it
   op.measured = true;
 }
 
 void assemble_fem(Workspace& work, const LevelBuffers& level, const Boundary& boundary, OperatorBuffers& op) {
   if (!op.measured) measure(work, level, op);
+  const gpu::AssembleEdgesPush edges{.rows = op.rows(),
+                                     .optical = level.optical.address(),
+                                     .tet_shape = op.tet_shape.address(),
+                                     .face_area = op.face_area.address(),
+                                     .edge_entry = op.edge_entry.address(),
+                                     .ring_offset = op.ring_offset.address(),
+                                     .ring = op.ring.address(),
+                                     .count = op.edge_count,
+                                     .boundary = on_device(boundary)};
+  // Every tet is met at its six edges, then at its four corners.
+  const std::uint64_t tet_bytes = index_bytes + sizeof(gpu::Optical) + sizeof(float);
+  const std::uint64_t face_bytes = index_bytes + sizeof(float);
+  work.recorder.dispatch(work.passes.assemble_edges.of(op.model), edges, op.edge_count, "assembly",
+                         6 * level.tet_count * (tet_bytes + sizeof(float)) + 3 * level.face_count * face_bytes +
+                             op.edge_count * (3 * index_bytes + 2 * op.entry_bytes()));
   const gpu::AssembleFemPush push{.rows = op.rows(),
                                   .optical = level.optical.address(),
                                   .tet_shape = op.tet_shape.address(),
                                   .face_area = op.face_area.address(),
-                                  .ring_offset = op.ring_offset.address(),
-                                  .ring = op.ring.address(),
+                                  .tet_offset = op.tet_offset.address(),
+                                  .tet_incidence = op.tet_incidence.address(),
+                                  .face_offset = level.face_offset.address(),
+                                  .face_incidence = level.face_incidence.address(),
                                   .count = op.count,
+                                  .surface_count = level.surface_vertex_count,
                                   .boundary = on_device(boundary)};
-  // Every tet is met from both ends of its six edges.
-  const std::uint64_t tet_bytes = index_bytes + sizeof(gpu::Optical) + 2 * sizeof(float);
-  const std::uint64_t bytes = 12 * level.tet_count * tet_bytes + 6 * level.face_count * (index_bytes + sizeof(float)) +
-                              (op.entries + op.count) * op.entry_bytes() + op.entries * index_bytes;
-  work.recorder.dispatch(work.passes.assemble_fem.of(op.model), push, op.count, "assembly", bytes);
+  work.recorder.dispatch(work.passes.assemble_fem.of(op.model), push, op.count, "assembly",
+                         4 * level.tet_count * tet_bytes + 3 * level.face_count * face_bytes +
+                             (op.entries + 2 * op.count) * op.entry_bytes());
 }
 
 // Every right-hand side reads the diagonal and writes b.

@@ -25,8 +25,12 @@ OperatorBuffers::OperatorBuffers(vk::Context& context, const Level& level, std::
   if (method == Method::fem) {
     FemStructure fem = fem_structure(level);
     columns = std::move(fem.columns);
+    edge_count = static_cast<std::uint32_t>(fem.edge_entry.size());
+    edge_entry = upload(context, fem.edge_entry, prefix + "edge_entry");
     ring_offset = upload(context, fem.ring_offset, prefix + "ring_offset");
     ring = upload(context, fem.ring, prefix + "ring");
+    tet_offset = upload(context, fem.tet_offset, prefix + "tet_offset");
+    tet_incidence = upload(context, fem.tet_incidence, prefix + "tet_incidence");
     tet_shape = buffer(std::uint64_t{gpu::TET_SHAPE} * level.tet_count() * sizeof(float), "tet_shape");
     face_area = buffer(level.face_count() * sizeof(float), "face_area");
     to_phi = upload(context, std::vector<glm::vec3>(count, glm::vec3(1)), prefix + "to_phi");

@@ -24,9 +24,11 @@ struct OperatorBuffers {
   vk::Buffer state;    // SolveState
   vk::Buffer damping;  // vec3
 
-  vk::Buffer ring_offset, ring;     // fem only: the elements around every entry's edge (AssembleFemPush)
-  vk::Buffer tet_shape, face_area;  // fem only: ShapePush
-  bool measured = false;            // they belong to the present vertices
+  std::uint32_t edge_count = 0;              // fem only, like all that follow
+  vk::Buffer edge_entry, ring_offset, ring;  // AssembleEdgesPush
+  vk::Buffer tet_offset, tet_incidence;      // AssembleFemPush
+  vk::Buffer tet_shape, face_area;           // ShapePush
+  bool measured = false;                     // they belong to the present vertices
 
   std::optional<Boundary> assembled;  // for the present material, with this boundary
   bool damped = false;                // `damping` belongs to these rows

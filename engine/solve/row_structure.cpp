@@ -64,23 +64,74 @@ std::uint32_t place_of(const Neighbours& rows, std::uint32_t row, std::uint32_t 
   return static_cast<std::uint32_t>(std::lower_bound(begin, end, column) - begin);
 }
 
-// Calls add(entry, element) for both entries of every edge of every tet and open face.
-template <typename Function>
-void for_each_element(const Level& level, const Neighbours& rows, const SlicedColumns& sliced, const Function& add) {
-  const auto at_edge = [&](std::uint32_t a, std::uint32_t b, std::uint32_t element) {
-    for (const auto& [row, column] : {std::pair(a, b), std::pair(b, a)}) {
-      add(sliced.slice_offset[row / SLICE_ROWS] + row % SLICE_ROWS + place_of(rows, row, column) * SLICE_ROWS, element);
-    }
-  };
-  for (std::uint32_t t = 0; t < level.tet_count(); ++t) {
-    for (std::uint32_t e = 0; e < tet_edges.size(); ++e) {
-      at_edge(level.tets[t][tet_edges[e][0]], level.tets[t][tet_edges[e][1]], 8 * t + e);
+std::uint32_t entry_of(const Neighbours& rows, const SlicedColumns& sliced, std::uint32_t row, std::uint32_t column) {
+  return sliced.slice_offset[row / SLICE_ROWS] + row % SLICE_ROWS + place_of(rows, row, column) * SLICE_ROWS;
+}
+
+// Lists of elements, one after the other.
+struct Lists {
+  std::vector<std::uint32_t> offset, element;
+};
+
+// for_each(add) calls add(list, element) for everything, in order; twice.
+template <typename ForEach>
+Lists gather(std::size_t count, const ForEach& for_each) {
+  Lists lists;
+  lists.offset.assign(count + 1, 0);
+  for_each([&](std::uint32_t list, std::uint32_t) { ++lists.offset[list + 1]; });
+  for (std::size_t i = 0; i < count; ++i) lists.offset[i + 1] += lists.offset[i];
+  lists.element.resize(lists.offset.back());
+  std::vector<std::uint32_t> next(lists.offset.begin(), lists.offset.end() - 1);
+  for_each([&](std::uint32_t list, std::uint32_t element) { lists.element[next[list]++] = element; });
+  return lists;
+}
+
+// Edges by their lower end, then by the other.
+class Edges {
+ public:
+  explicit Edges(const Neighbours& rows) : rows_(rows) {
+    first_.push_back(0);
+    for (std::uint32_t i = 0; i + 1 < rows.offset.size(); ++i) {
+      below_.push_back(place_of(rows, i, i));
+      first_.push_back(first_.back() + rows.offset[i + 1] - rows.offset[i] - below_.back());
     }
   }
-  for (std::uint32_t f = 0; f < level.face_count(); ++f) {
-    if (level.reflecting(f)) continue;
-    for (int k = 0; k < 3; ++k) at_edge(level.faces[f][k], level.faces[f][(k + 1) % 3], 8 * f + gpu::RING_FACE);
+
+  std::uint32_t count() const { return first_.back(); }
+
+  std::uint32_t between(std::uint32_t a, std::uint32_t b) const {
+    if (a > b) std::swap(a, b);
+    return first_[a] + place_of(rows_, a, b) - below_[a];
   }
+
+  // Calls visit(lower end, other end), in order.
+  template <typename Function>
+  void for_each(const Function& visit) const {
+    for (std::uint32_t i = 0; i < below_.size(); ++i) {
+      for (std::uint32_t k = rows_.offset[i] + below_[i]; k < rows_.offset[i + 1]; ++k) visit(i, rows_.column[k]);
+    }
+  }
+
+ private:
+  const Neighbours& rows_;
+  std::vector<std::uint32_t> below_;  // neighbours before the vertex itself
+  std::vector<std::uint32_t> first_;  // edge of every vertex, with the end
+};
+
+// What lies around every edge: tets, then open faces.
+Lists rings_of(const Level& level, const Edges& edges) {
+  return gather(edges.count(), [&](const auto& add) {
+    for (std::uint32_t t = 0; t < level.tet_count(); ++t) {
+      for (std::uint32_t e = 0; e < tet_edges.size(); ++e) {
+        add(edges.between(level.tets[t][tet_edges[e][0]], level.tets[t][tet_edges[e][1]]), 8 * t + e);
+      }
+    }
+    for (std::uint32_t f = 0; f < level.face_count(); ++f) {
+      for (int k = 0; k < 3 && !level.reflecting(f); ++k) {
+        add(edges.between(level.faces[f][k], level.faces[f][(k + 1) % 3]), 8 * f + gpu::RING_FACE);
+      }
+    }
+  });
 }
 
 }  // namespace
@@ -101,33 +152,32 @@ SlicedColumns node_columns(const Level& level) {
 
 FemStructure fem_structure(const Level& level) {
   const Neighbours rows = vertex_neighbours(level);
+  const Edges edges(rows);
   FemStructure structure;
   structure.columns = slice(rows);
-  std::vector<std::uint32_t>& offset = structure.ring_offset;
-  offset.assign(structure.columns.column.size() + 1, 0);
-  for_each_element(level, rows, structure.columns, [&](std::uint32_t entry, std::uint32_t) { ++offset[entry + 1]; });
-  for (std::size_t e = 1; e < offset.size(); ++e) offset[e] += offset[e - 1];
-  structure.ring.resize(offset.back());
-  std::vector<std::uint32_t> next(offset.begin(), offset.end() - 1);
-  for_each_element(level, rows, structure.columns,
-                   [&](std::uint32_t entry, std::uint32_t element) { structure.ring[next[entry]++] = element; });
+  edges.for_each([&](std::uint32_t a, std::uint32_t b) {
+    structure.edge_entry.emplace_back(entry_of(rows, structure.columns, a, b), entry_of(rows, structure.columns, b, a));
+  });
+  Lists rings = rings_of(level, edges);
+  structure.ring_offset = std::move(rings.offset);
+  structure.ring = std::move(rings.element);
+  Lists tets = gather(level.vertices.size(), [&](const auto& add) {
+    for (std::uint32_t t = 0; t < level.tet_count(); ++t) {
+      for (int k = 0; k < 4; ++k) add(level.tets[t][k], t);
+    }
+  });
+  structure.tet_offset = std::move(tets.offset);
+  structure.tet_incidence = std::move(tets.element);
   return structure;
 }
 
 FaceIncidence face_incidence(const Level& level) {
-  FaceIncidence at;
-  at.offset.assign(level.surface_vertex_count + 1, 0);
-  const auto for_each_corner = [&](const auto& visit) {
+  Lists faces = gather(level.surface_vertex_count, [&](const auto& add) {
     for (std::uint32_t f = 0; f < level.face_count(); ++f) {
-      for (int k = 0; k < 3 && !level.reflecting(f); ++k) visit(level.faces[f][k], f);
+      for (int k = 0; k < 3 && !level.reflecting(f); ++k) add(level.faces[f][k], f);
     }
-  };
-  for_each_corner([&](std::uint32_t v, std::uint32_t) { ++at.offset[v + 1]; });
-  for (std::size_t v = 0; v < level.surface_vertex_count; ++v) at.offset[v + 1] += at.offset[v];
-  at.face.resize(at.offset.back());
-  std::vector<std::uint32_t> next(at.offset.begin(), at.offset.end() - 1);
-  for_each_corner([&](std::uint32_t v, std::uint32_t f) { at.face[next[v]++] = f; });
-  return at;
+  });
+  return {std::move(faces.offset), std::move(faces.element)};
 }
 
 }  // namespace quadgraph

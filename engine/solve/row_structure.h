@@ -18,11 +18,12 @@ struct SlicedColumns {
   std::vector<std::uint32_t> column;
 };
 
-// Columns of fem rows, and what lies around the edge that every entry stands for (AssembleFemPush).
+// Columns of fem rows, and which elements make their entries (AssembleEdgesPush, AssembleFemPush).
 struct FemStructure {
   SlicedColumns columns;
-  std::vector<std::uint32_t> ring_offset;  // entries + 1, padding included
-  std::vector<std::uint32_t> ring;
+  std::vector<glm::uvec2> edge_entry;  // the two entries of every edge
+  std::vector<std::uint32_t> ring_offset, ring;
+  std::vector<std::uint32_t> tet_offset, tet_incidence;
 };
 
 // The open outside faces at every surface vertex.

@@ -1,6 +1,9 @@
 // The rows and right-hand sides that the shaders assemble are those of the CPU.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <set>
+
 #include "engine/graph/geometry.h"
 #include "engine/graph/operator.h"
 #include "engine/solve/assembly.h"
@@ -191,50 +194,88 @@ TEST_CASE("right-hand sides of the diffuse source on the GPU equal those of the 
   }
 }
 
-TEST_CASE("the structure has each neighbour once, and around every edge its tets and open faces") {
+namespace {
+
+using EdgeEnds = std::pair<std::uint32_t, std::uint32_t>;
+
+// The vertices that an entry couples: row and column.
+EdgeEnds ends_of(const SlicedColumns& columns, std::uint32_t entry) {
+  const auto after = std::upper_bound(columns.slice_offset.begin(), columns.slice_offset.end(), entry) - 1;
+  const auto slice = static_cast<std::uint32_t>(after - columns.slice_offset.begin());
+  return {slice * SLICE_ROWS + (entry - *after) % SLICE_ROWS, columns.column[entry]};
+}
+
+template <typename Corners>
+bool has(const Corners& corners, std::uint32_t v) {
+  for (int k = 0; k < corners.length(); ++k) {
+    if (corners[k] == v) return true;
+  }
+  return false;
+}
+
+OwnedLevel with_a_wall(std::uint32_t wall) {
   OwnedLevel owned = split_at_centroids(box_level(3, 6.0f));
   owned.face_kinds.assign(owned.faces.size(), face_open);
-  owned.face_kinds[4] = face_reflecting;
+  owned.face_kinds[wall] = face_reflecting;
+  return owned;
+}
+
+}  // namespace
+
+TEST_CASE("every row has each neighbour once, and every entry belongs to one edge") {
+  const OwnedLevel owned = with_a_wall(4);
+  const FemStructure fem = fem_structure(owned.view());
+  std::size_t entries = 0;
+  for (std::uint32_t e = 0; e < fem.columns.column.size(); ++e) {
+    const auto [row, column] = ends_of(fem.columns, e);
+    if (row < owned.vertices.size() && row != column) ++entries;
+  }
+  CHECK(entries == 2 * fem.edge_entry.size());
+  std::set<EdgeEnds> seen;
+  for (const glm::uvec2& both : fem.edge_entry) {
+    const auto [a, b] = ends_of(fem.columns, both.x);
+    CHECK(a != b);
+    CHECK(ends_of(fem.columns, both.y) == EdgeEnds(b, a));
+    CHECK(seen.insert({std::min(a, b), std::max(a, b)}).second);
+  }
+}
+
+TEST_CASE("around every edge lie its tets, then its open faces, and at every vertex its own") {
+  constexpr std::uint32_t wall = 4;
+  const OwnedLevel owned = with_a_wall(wall);
   const Level level = owned.view();
   const FemStructure fem = fem_structure(level);
   constexpr std::array<std::array<int, 2>, 6> edges = {{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
   std::size_t tet_edges = 0, face_edges = 0;
-  for (std::uint32_t v = 0; v < level.vertex_count(); ++v) {
-    std::uint32_t before = 0;
-    const std::uint32_t slice = v / SLICE_ROWS, begin = fem.columns.slice_offset[slice] + v % SLICE_ROWS;
-    for (std::uint32_t e = begin; e < fem.columns.slice_offset[slice + 1]; e += SLICE_ROWS) {
-      const std::uint32_t j = fem.columns.column[e];
-      if (j == v) {
-        CHECK(fem.ring_offset[e] == fem.ring_offset[e + 1]);
-        continue;
-      }
-      CHECK((e == begin || j > before));
-      before = j;
-      for (std::uint32_t k = fem.ring_offset[e]; k < fem.ring_offset[e + 1]; ++k) {
-        const std::uint32_t index = fem.ring[k] / 8, edge = fem.ring[k] % 8;
-        if (edge == gpu::RING_FACE) {
-          const glm::uvec3& f = level.faces[index];
-          CHECK((f[0] == v || f[1] == v || f[2] == v));
-          CHECK((f[0] == j || f[1] == j || f[2] == j));
-          CHECK(index != 4);
-          ++face_edges;
-        } else {
-          const auto [a, b] = edges[edge];
-          const std::uint32_t p = level.tets[index][a], q = level.tets[index][b];
-          CHECK(((p == v && q == j) || (p == j && q == v)));
-          ++tet_edges;
-        }
+  for (std::uint32_t i = 0; i < fem.edge_entry.size(); ++i) {
+    const auto [a, b] = ends_of(fem.columns, fem.edge_entry[i].x);
+    bool faces_began = false;
+    for (std::uint32_t k = fem.ring_offset[i]; k < fem.ring_offset[i + 1]; ++k) {
+      const std::uint32_t index = fem.ring[k] / 8, edge = fem.ring[k] % 8;
+      if (edge == gpu::RING_FACE) {
+        CHECK(index != wall);
+        CHECK((has(level.faces[index], a) && has(level.faces[index], b)));
+        faces_began = true;
+        ++face_edges;
+      } else {
+        const EdgeEnds ends(level.tets[index][edges[edge][0]], level.tets[index][edges[edge][1]]);
+        CHECK((ends == EdgeEnds(a, b) || ends == EdgeEnds(b, a)));
+        CHECK(!faces_began);
+        ++tet_edges;
       }
     }
   }
-  CHECK(tet_edges == 12 * level.tets.size());
-  CHECK(face_edges == 6 * (level.faces.size() - 1));
+  CHECK(tet_edges == 6 * level.tets.size());
+  CHECK(face_edges == 3 * (level.faces.size() - 1));
+  CHECK(fem.tet_incidence.size() == 4 * level.tets.size());
+  for (std::uint32_t v = 0; v < level.vertex_count(); ++v) {
+    for (std::uint32_t k = fem.tet_offset[v]; k < fem.tet_offset[v + 1]; ++k) {
+      CHECK(has(level.tets[fem.tet_incidence[k]], v));
+    }
+  }
   const FaceIncidence faces = face_incidence(level);
   CHECK(faces.face.size() == 3 * (level.faces.size() - 1));
   for (std::uint32_t v = 0; v < level.surface_vertex_count; ++v) {
-    for (std::uint32_t k = faces.offset[v]; k < faces.offset[v + 1]; ++k) {
-      const glm::uvec3& f = level.faces[faces.face[k]];
-      CHECK((f[0] == v || f[1] == v || f[2] == v));
-    }
+    for (std::uint32_t k = faces.offset[v]; k < faces.offset[v + 1]; ++k) CHECK(has(level.faces[faces.face[k]], v));
   }
 }

@@ -6,6 +6,8 @@
 
 #include "engine/vk/pipeline.h"
 #include "shaders/solve_shared.h"
+#include "spirv/assemble_edges.comp.h"
+#include "spirv/assemble_edges_sp3.comp.h"
 #include "spirv/assemble_fdm.comp.h"
 #include "spirv/assemble_fdm_sp3.comp.h"
 #include "spirv/assemble_fem.comp.h"
@@ -128,11 +130,20 @@ TEST_CASE("push constants") {
              MEMBER(AssembleFvPush, to_phi), MEMBER(AssembleFvPush, face_kinds), MEMBER(AssembleFvPush, count),
              MEMBER(AssembleFvPush, tet_count), MEMBER(AssembleFvPush, boundary)});
   }
+  for (const vk::Spirv code : {vk::Spirv(assemble_edges_comp), vk::Spirv(assemble_edges_sp3_comp)}) {
+    compare(code, "AssembleEdgesPush",
+            {MEMBER(AssembleEdgesPush, rows), MEMBER(AssembleEdgesPush, optical), MEMBER(AssembleEdgesPush, tet_shape),
+             MEMBER(AssembleEdgesPush, face_area), MEMBER(AssembleEdgesPush, edge_entry),
+             MEMBER(AssembleEdgesPush, ring_offset), MEMBER(AssembleEdgesPush, ring), MEMBER(AssembleEdgesPush, count),
+             MEMBER(AssembleEdgesPush, boundary)});
+  }
   for (const vk::Spirv code : {vk::Spirv(assemble_fem_comp), vk::Spirv(assemble_fem_sp3_comp)}) {
     compare(code, "AssembleFemPush",
             {MEMBER(AssembleFemPush, rows), MEMBER(AssembleFemPush, optical), MEMBER(AssembleFemPush, tet_shape),
-             MEMBER(AssembleFemPush, face_area), MEMBER(AssembleFemPush, ring_offset), MEMBER(AssembleFemPush, ring),
-             MEMBER(AssembleFemPush, count), MEMBER(AssembleFemPush, boundary)});
+             MEMBER(AssembleFemPush, face_area), MEMBER(AssembleFemPush, tet_offset),
+             MEMBER(AssembleFemPush, tet_incidence), MEMBER(AssembleFemPush, face_offset),
+             MEMBER(AssembleFemPush, face_incidence), MEMBER(AssembleFemPush, count),
+             MEMBER(AssembleFemPush, surface_count), MEMBER(AssembleFemPush, boundary)});
   }
   for (const vk::Spirv code : {vk::Spirv(right_hand_side_fdm_comp), vk::Spirv(right_hand_side_fdm_sp3_comp)}) {
     compare(
@@ -230,6 +241,7 @@ TEST_CASE("arrays in buffers have the stride of their C++ element") {
   const std::vector<std::pair<std::string, std::size_t>> common = {{"Floats", sizeof(float)},
                                                                    {"Uints", sizeof(std::uint32_t)},
                                                                    {"Vec3s", sizeof(glm::vec3)},
+                                                                   {"Uvec2s", sizeof(glm::uvec2)},
                                                                    {"Uvec3s", sizeof(glm::uvec3)},
                                                                    {"Uvec4s", sizeof(glm::uvec4)},
                                                                    {"Opticals", sizeof(gpu::Optical)},
@@ -244,6 +256,7 @@ TEST_CASE("arrays in buffers have the stride of their C++ element") {
                                             vk::Spirv(face_exitance_comp),
                                             vk::Spirv(assemble_fdm_comp),
                                             vk::Spirv(assemble_fv_comp),
+                                            vk::Spirv(assemble_edges_comp),
                                             vk::Spirv(assemble_fem_comp),
                                             vk::Spirv(right_hand_side_fdm_comp),
                                             vk::Spirv(right_hand_side_fv_comp),
@@ -260,6 +273,7 @@ TEST_CASE("arrays in buffers have the stride of their C++ element") {
                                             vk::Spirv(energy_comp)};
   const std::vector<vk::Spirv> sp3 = {vk::Spirv(assemble_fdm_sp3_comp),
                                       vk::Spirv(assemble_fv_sp3_comp),
+                                      vk::Spirv(assemble_edges_sp3_comp),
                                       vk::Spirv(assemble_fem_sp3_comp),
                                       vk::Spirv(right_hand_side_fdm_sp3_comp),
                                       vk::Spirv(right_hand_side_fv_sp3_comp),
