@@ -29,7 +29,7 @@ def test_fem_is_of_second_order_where_coefficients_vary():
 
 @pytest.fixture(scope="module")
 def sphere():
-    return orders.study(bodies.on_reference, orders.CASES[0], 2, orders.SCHEMES)["errors"]
+    return orders.study(bodies.on_reference, orders.CASES[0], 2, (*orders.FEM, *orders.GRAPH_METHODS))["errors"]
 
 
 def test_fv_is_between_fem_and_the_published_differences(sphere):

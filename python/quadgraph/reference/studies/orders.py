@@ -22,7 +22,7 @@ SOFT = Medium(0.2, 0.02)  # mean free path 4.5 mm: what even the coarsest mesh r
 DENSE = Medium(0.5, 0.01)
 FEM = (Scheme("fem", "diffuse", "diffusion"), Scheme("fem", "diffuse", "sp3"))
 FV = (Scheme("quadgraph-fv", "diffuse", "diffusion"), Scheme("quadgraph-fv", "diffuse", "sp3"))
-SCHEMES = (*FEM, *FV, PUBLISHED)
+GRAPH_METHODS = (*FV, PUBLISHED)
 
 
 @dataclass(frozen=True)
@@ -95,8 +95,15 @@ def study(body_of: BodyOf, case: Case, refinements: int, schemes: Sequence[Schem
 
 
 def run(body_of: BodyOf) -> dict[str, Any]:
-    """Every case with every scheme; the manufactured solution on the CPU, whose rows alone take a volume source."""
-    cases = [study(body_of, case, 4 if case.name == "cylinder" else 3, SCHEMES) for case in CASES]
+    """Every case with every scheme; the manufactured solution on the CPU, whose rows alone take a volume source.
+
+    The graph methods, which do not converge and whose systems are slow to solve, do without the finest mesh.
+    """
+    cases = []
+    for case in CASES:
+        refinements = 4 if case.name == "cylinder" else 3
+        cases.append(study(body_of, case, refinements, FEM))
+        cases.append(study(body_of, case, refinements - 1, GRAPH_METHODS))
     return {"eta": ETA, "cases": [*cases, manufactured_study(3)]}
 
 
