@@ -117,7 +117,8 @@ def test_bench_compares_two_orders_and_records(sphere, tmp_path, capsys):
     assert entries["device"]
     assert entries["driver"]
     assert entries["commit"]
-    assert len(entries["methods"]) == 5
+    assert len(entries["methods"]) == 6
+    assert {entry["model"] for entry in entries["methods"]} == {"diffusion", "sp3"}
     for method in entries["methods"]:
         names = [entry["name"] for entry in method["passes"]]
         assert "assembly" in names

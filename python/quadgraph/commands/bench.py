@@ -18,11 +18,12 @@ from quadgraph.errors import InputError
 
 # Relaxation of quadgraph-fv is left out: its stiff surface links take it thousands of sweeps.
 METHODS = (
-    ("fem", "dpcg"),
-    ("fem", "cascade"),
-    ("quadgraph-fv", "dpcg"),
-    ("quadgraph-fdm", "dpcg"),
-    ("quadgraph-fdm", "cascade"),
+    {"method": "fem", "model": "diffusion", "source": "buried", "solver": "dpcg"},
+    {"method": "fem", "model": "sp3", "source": "buried", "solver": "dpcg"},
+    {"method": "fem", "model": "diffusion", "source": "buried", "solver": "cascade"},
+    {"method": "quadgraph-fv", "model": "diffusion", "source": "buried", "solver": "dpcg"},
+    {"method": "quadgraph-fdm", "model": "diffusion", "source": "diffuse", "solver": "dpcg"},
+    {"method": "quadgraph-fdm", "model": "diffusion", "source": "diffuse", "solver": "cascade"},
 )
 
 
@@ -89,14 +90,15 @@ def run_on(files: dict[str, Path], args: argparse.Namespace) -> int:
         "levels": len(first.graph.levels),
         "material": args.material,
         "repeats": args.repeats,
-        "methods": [measure(engines, args.material, method, solver, args.repeats) for method, solver in METHODS],
+        "methods": [measure(engines, args.material, way, args.repeats) for way in METHODS],
     }
     console.print(f"device: {record['device']}, driver: {record['driver']}, commit: {record['commit']}")
     console.print(text.size_text(first))
     for entry in record["methods"]:
         table = text.pass_table(entry["passes"])
-        table.title = f"{entry['method']} / {entry['solver']}, {entry['iterations']} iterations (coarsest to finest)"
+        table.title = f"{name_of(entry)}, {entry['iterations']} iterations (coarsest to finest)"
         console.print(table)
+    console.print(cost_table(record["methods"]))
     if "random" in engines:
         console.print(order_table(record["methods"]))
     if args.json:
@@ -112,21 +114,28 @@ def open_engine(args: argparse.Namespace, path: Path):
     return engine
 
 
-def measure(engines: dict, material: str, method: str, solver: str, repeats: int) -> dict:
+def name_of(entry: dict) -> str:
+    """One way to solve in words."""
+    return " / ".join(entry[key] for key in ("method", "model", "source", "solver"))
+
+
+def measure(engines: dict, material: str, way: dict, repeats: int) -> dict:
     """Whole frames, alternating between the engines; the median time of every pass."""
     frames: dict[str, list[list[dict]]] = {name: [] for name in engines}
     reports = {}
+    before = engines["blocks"].device_bytes
     for _ in range(repeats):
         for name, engine in engines.items():
             engine.set_material(material)
             engine.set_lights(scene.load_core().default_lights())
-            reports[name] = engine.solve(method=method, solver=solver, tolerance=1e-3)
+            reports[name] = engine.solve(**way, tolerance=1e-3)
             engine.render()
             frames[name].append(engine.passes)
-    entry = {
-        "method": method,
-        "solver": solver,
-        "iterations": [level["iterations"] for level in reports["blocks"]["levels"]],
+    levels = reports["blocks"]["levels"]
+    entry = way | {
+        "iterations": [level["iterations"] for level in levels],
+        "unknowns": [level["unknowns"] for level in levels],
+        "added_bytes": engines["blocks"].device_bytes - before,
         "error": reports["blocks"]["error"],
         "passes": median_passes(frames["blocks"]),
     }
@@ -136,13 +145,44 @@ def measure(engines: dict, material: str, method: str, solver: str, repeats: int
 
 
 def median_passes(frames: list[list[dict]]) -> list[dict]:
-    """Median time of each pass over the frames, with GB/s from it."""
+    """Median time over the frames of each pass of the last one, with GB/s from it; what only the first needs is out."""
     passes = []
-    for position, entry in enumerate(frames[0]):
-        time_ms = statistics.median(frame[position]["time_ms"] for frame in frames)
+    for entry in frames[-1]:
+        same = [p for frame in frames for p in frame if p["name"] == entry["name"]]
+        time_ms = statistics.median(p["time_ms"] for p in same)
         merged = entry | {"time_ms": time_ms}
         passes.append(merged | {"gb_per_s": text.bandwidth(merged)})
     return passes
+
+
+# What a frame does for the picture, not for the solution.
+PICTURE_PASSES = ("shadow maps", "irradiance", "surface", "resolve")
+
+
+def application_ms(entry: dict) -> float:
+    """Time of one application of the finest operator: that of all of them, shared out by unknowns."""
+    spent = sum(p["time_ms"] for p in entry["passes"] if p["name"] in ("cg-multiply", "sweep"))
+    finest = entry["unknowns"][-1]
+    return spent / sum(n * size / finest for n, size in zip(entry["iterations"], entry["unknowns"], strict=True))
+
+
+def cost_table(methods: list[dict]) -> Table:
+    """Return assembly, source walk and solve in applications of the finest operator, and times against the first."""
+    table = Table("", "assembly", "source walk", "assembly + solve / first", "memory added, MB", title="cost")
+    table.columns[0].no_wrap = True
+    table.caption = "assembly and walk on all levels, in applications of the way's own operator on the finest level"
+    solve = [sum(p["time_ms"] for p in e["passes"] if p["name"] not in PICTURE_PASSES) for e in methods]
+    for entry, spent in zip(methods, solve, strict=True):
+        of = {p["name"]: p["time_ms"] for p in entry["passes"]}
+        unit = application_ms(entry)
+        table.add_row(
+            name_of(entry),
+            f"{of['assembly'] / unit:.1f}",
+            f"{of.get('source walk', 0.0) / unit:.1f}",
+            f"{spent / solve[0]:.2f}",
+            f"{entry['added_bytes'] / 1e6:.0f}",
+        )
+    return table
 
 
 def order_table(methods: list[dict]) -> Table:
@@ -153,7 +193,7 @@ def order_table(methods: list[dict]) -> Table:
         for ours, theirs in zip(entry["passes"], entry["random_order_passes"], strict=True):
             if ours["time_ms"] > 0.1 * sum(p["time_ms"] for p in entry["passes"]):
                 table.add_row(
-                    f"{entry['method']} / {entry['solver']}",
+                    name_of(entry),
                     ours["name"],
                     f"{ours['time_ms']:.2f}",
                     f"{theirs['time_ms']:.2f}",
