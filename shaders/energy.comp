@@ -31,7 +31,8 @@ void main() {
     vec3 p = push.vertices.at[corners.x];
     float area = 0.5 * length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));
     vec3 q = push.face_kinds.at[i] == FACE_OPEN ? push.q.at[i] : vec3(0);
-    vec3 exitance = push.exitance.at[i];
+    vec3 exitance = push.exitance.at[i] * push.clip.at[0].factor;
+    push.exitance.at[i] = exitance;
     sums.entered = area * q;
     sums.exitance = area * exitance;
     // One factor for all channels, which are weighed alike.

@@ -382,21 +382,19 @@ struct ExitancePush {
   Boundary boundary;
 };
 
-// vertex_exitance.comp: the area-weighted mean over the open faces around every surface vertex, 0 without any. Taken as
-// linear over the faces it carries the same power.
+// vertex_exitance.comp: the area-weighted mean over the open faces around every surface vertex, 0 without any.
 struct VertexExitancePush {
   QG_REF(Vec3s) vertices;
   QG_REF(Uvec3s) faces;
   QG_REF(Uints) face_offset;
   QG_REF(Uints) face_incidence;
   QG_REF(Vec3s) face_exitance;
-  QG_REF(Clips) clip;
   QG_REF(Vec3s) exitance;
   uint count;
-  uint clip_factor;  // 1: times the factor of `clip`
+  uint geometric;  // 1: geometric mean, 0: arithmetic
 };
 
-// face_exitance.comp: the mean over the vertices of every open face.
+// face_exitance.comp: the geometric mean over the vertices of every open face.
 struct FaceExitancePush {
   QG_REF(Uvec3s) faces;
   QG_REF(Uints) face_kinds;
@@ -405,7 +403,20 @@ struct FaceExitancePush {
   uint count;
 };
 
-// energy.comp: sums per workgroup over faces and tets.
+// display_scale.comp: the factor that gives the exitance at vertices, linear over the faces, the power of the faces.
+struct DisplayScalePush {
+  QG_REF(Vec3s) vertices;
+  QG_REF(Uvec3s) faces;
+  QG_REF(Uints) face_kinds;
+  QG_REF(Vec3s) exitance;
+  QG_REF(Vec3s) vertex_exitance;
+  QG_REF(Scales) scale;
+  QG_REF(Vec3s) factor;
+  QG_REF(Reduction) reduction;
+  uint count;
+};
+
+// energy.comp: sums per workgroup over faces and tets; applies the factor of the clip to the exitance of the faces.
 struct EnergyPush {
   QG_REF(Vec3s) vertices;
   QG_REF(Uvec4s) tets;
@@ -418,6 +429,7 @@ struct EnergyPush {
   QG_REF(Vec3s) exitance;
   QG_REF(Vec3s) coarse_exitance;
   QG_REF(Scales) scale;
+  QG_REF(Clips) clip;
   QG_REF(EnergySumsArray) sums;
   uint tet_count;
   uint face_count;

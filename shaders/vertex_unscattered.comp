@@ -19,5 +19,6 @@ void main() {
     area += 0.5 * length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));
     power += power_at(push.unscattered, face);
   }
-  if (area > 0.0) push.exitance.at[v] += power / area * push.scale.at[0].scale;
+  if (area == 0.0) return;
+  push.exitance.at[v] = push.exitance.at[v] * push.factor.at[0] + power / area * push.scale.at[0].scale;
 }

@@ -62,7 +62,7 @@ struct RightHandSideBuriedPush {
   uint per_volume;     // 1: quadgraph-fdm
 };
 
-// vertex_unscattered.comp: adds the unscattered light to the exitance at surface vertices.
+// vertex_unscattered.comp: multiplies the exitance at surface vertices by a factor and adds the unscattered light.
 struct VertexUnscatteredPush {
   QG_REF(Vec3s) vertices;
   QG_REF(Uvec3s) faces;
@@ -70,6 +70,7 @@ struct VertexUnscatteredPush {
   QG_REF(Uints) face_incidence;
   QG_REF(Uints) unscattered;
   QG_REF(Scales) scale;
+  QG_REF(Vec3s) factor;  // one
   QG_REF(Vec3s) exitance;
   uint count;
 };

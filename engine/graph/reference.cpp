@@ -129,24 +129,6 @@ std::vector<glm::dvec3> over_faces(const Level& level, Method method, std::span<
   return faces;
 }
 
-// Means over the open faces around every vertex, by area, then over the vertices of every face. The power stays the
-// same.
-std::vector<glm::dvec3> local_means(const Level& level, std::span<const glm::dvec3> faces) {
-  std::vector<glm::dvec3> vertices(level.surface_vertex_count, glm::dvec3(0));
-  std::vector<double> area(level.surface_vertex_count, 0);
-  for (std::uint32_t f = 0; f < level.face_count(); ++f) {
-    const double size = face_area(level, level.faces[f]);
-    for (int k = 0; k < 3 && !level.reflecting(f); ++k) {
-      vertices[level.faces[f][k]] += size * faces[f];
-      area[level.faces[f][k]] += size;
-    }
-  }
-  for (std::size_t v = 0; v < vertices.size(); ++v) {
-    if (area[v] > 0) vertices[v] /= area[v];
-  }
-  return over_faces(level, Method::fem, vertices);
-}
-
 // M >= 0 at the faces for the buried source: negative values at the carriers become 0, the others pay for them.
 std::vector<glm::dvec3> clipped_exitance(const Level& level, Method method, std::vector<glm::dvec3> carriers,
                                          glm::dvec3& clipped_share) {
@@ -157,7 +139,6 @@ std::vector<glm::dvec3> clipped_exitance(const Level& level, Method method, std:
   const glm::dvec3 factor = safe_ratio(glm::max(raw, glm::dvec3(0)), clipped);
   for (glm::dvec3& m : faces) m *= factor;
   clipped_share = safe_ratio(clipped - raw, clipped);
-  for (int round = 0; round < 2; ++round) faces = local_means(level, faces);
   return faces;
 }
 

@@ -16,9 +16,7 @@ struct ReferenceSolution {
   std::vector<glm::dvec3> phi;       // W/mm^2 per carrier of the method
   std::vector<glm::dvec3> phi2;      // the same; 0 with diffusion
   std::vector<glm::dvec3> phi_face;  // W/mm^2 per surface node (fem: mean of the face's vertices)
-  // W/mm^2 per surface node: M of operator.h; for the buried source never negative, and a local mean: of the carriers
-  // over the face, then twice over the open faces around a vertex (weighted by area) and over the vertices of a face.
-  std::vector<glm::dvec3> exitance;
+  std::vector<glm::dvec3> exitance;  // W/mm^2 per surface node, M of operator.h; never negative with the buried source
   std::vector<glm::dvec3> unscattered;  // W/mm^2 per surface node
   Energy energy;
   glm::dvec3 clipped{0};  // as in SolveReport

@@ -19,6 +19,7 @@
 #include "spirv/cg_update_sp3.comp.h"
 #include "spirv/damping.comp.h"
 #include "spirv/damping_sp3.comp.h"
+#include "spirv/display_scale.comp.h"
 #include "spirv/energy.comp.h"
 #include "spirv/energy_sp3.comp.h"
 #include "spirv/evaluate_material.comp.h"
@@ -59,6 +60,7 @@ Passes::Passes()
       ONE_PASS(walk_source, WalkSourcePush),
       ONE_PASS(vertex_exitance, VertexExitancePush),
       ONE_PASS(face_exitance, FaceExitancePush),
+      ONE_PASS(display_scale, DisplayScalePush),
       ONE_PASS(vertex_unscattered, VertexUnscatteredPush),
       MODEL_PASS(assemble_fdm, AssembleFdmPush),
       MODEL_PASS(assemble_fv, AssembleFvPush),

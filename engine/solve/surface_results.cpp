@@ -38,7 +38,9 @@ SurfaceResults::SurfaceResults(vk::Context& context, const LevelBuffers& level) 
   phi_ = vector(level.face_count, "phi at faces");
   exitance_ = vector(level.face_count, "exitance");
   coarse_exitance_ = vector(level.face_count, "exitance of the coarser level");
+  smooth_exitance_ = vector(level.face_count, "exitance, local means");
   vertex_exitance_ = vector(level.surface_vertex_count, "exitance at vertices");
+  display_factor_ = vector(1, "display factor");
   clip_ = vk::Buffer(context, sizeof(gpu::Clip), vk::Place::device, "clip");
   clip_on_host_ = vk::Buffer(context, sizeof(gpu::Clip), vk::Place::host, "clip, read back");
   const std::uint64_t sums_bytes = energy_groups(level) * sizeof(gpu::EnergySums);
@@ -68,53 +70,60 @@ void SurfaceResults::record_exitance(Workspace& work, const Solved& solved, cons
                          level.face_count * (sizeof(glm::uvec3) + 6 * vec3_bytes + 3 * solved.op.field_bytes()));
 }
 
-void SurfaceResults::record_vertex_exitance(Workspace& work, const LevelBuffers& level, const vk::Buffer& exitance,
-                                            bool clip_factor) {
+void SurfaceResults::record_coarse(Workspace& work, const Solved& solved) {
+  record_exitance(work, solved, coarse_exitance_);
+}
+
+void SurfaceResults::record_vertex_exitance(Workspace& work, const LevelBuffers& level, const vk::Buffer& faces,
+                                            bool geometric) {
   const gpu::VertexExitancePush push{.vertices = level.vertices.address(),
                                      .faces = level.faces.address(),
                                      .face_offset = level.face_offset.address(),
                                      .face_incidence = level.face_incidence.address(),
-                                     .face_exitance = exitance.address(),
-                                     .clip = clip_.address(),
+                                     .face_exitance = faces.address(),
                                      .exitance = vertex_exitance_.address(),
                                      .count = level.surface_vertex_count,
-                                     .clip_factor = clip_factor ? 1u : 0u};
+                                     .geometric = geometric ? 1u : 0u};
   const std::uint64_t face_bytes = sizeof(std::uint32_t) + sizeof(glm::uvec3) + 4 * vec3_bytes;
   work.recorder.dispatch(work.passes.vertex_exitance, push, level.surface_vertex_count, "exitance",
                          3 * level.face_count * face_bytes + vec3_bytes * level.surface_vertex_count);
 }
 
-void SurfaceResults::record_face_exitance(Workspace& work, const LevelBuffers& level, const vk::Buffer& exitance) {
+void SurfaceResults::record_face_exitance(Workspace& work, const LevelBuffers& level) {
   const gpu::FaceExitancePush push{.faces = level.faces.address(),
                                    .face_kinds = level.face_kind.address(),
                                    .vertex_exitance = vertex_exitance_.address(),
-                                   .exitance = exitance.address(),
+                                   .exitance = smooth_exitance_.address(),
                                    .count = level.face_count};
   work.recorder.dispatch(work.passes.face_exitance, push, level.face_count, "exitance",
                          level.face_count * (sizeof(glm::uvec3) + sizeof(std::uint32_t) + 4 * vec3_bytes));
 }
 
-// Local means of a Galerkin solution are far better than its values: where elements are two mean free paths long, those
-// at the vertices of irregular tets scatter by 5 to 9%. Two rounds of means over the faces around a vertex and the
-// vertices around a face leave 1%, and the power everywhere (engine/graph/reference.h does the same).
-void SurfaceResults::record_means(Workspace& work, const LevelBuffers& level, const vk::Buffer& exitance) {
-  for (const bool first : {true, false}) {
-    record_vertex_exitance(work, level, exitance, first);
-    record_face_exitance(work, level, exitance);
-  }
+void SurfaceResults::record_display_scale(Workspace& work, const LevelBuffers& level) {
+  const gpu::DisplayScalePush push{.vertices = level.vertices.address(),
+                                   .faces = level.faces.address(),
+                                   .face_kinds = level.face_kind.address(),
+                                   .exitance = exitance_.address(),
+                                   .vertex_exitance = vertex_exitance_.address(),
+                                   .scale = work.scale.address(),
+                                   .factor = display_factor_.address(),
+                                   .reduction = work.reduction.address(),
+                                   .count = level.face_count};
+  work.recorder.dispatch(work.passes.display_scale, push, level.face_count, "exitance",
+                         level.face_count * (sizeof(glm::uvec3) + sizeof(std::uint32_t) + 7 * vec3_bytes));
 }
 
-void SurfaceResults::record_surface(Workspace& work, const Solved& solved, const vk::Buffer& exitance) {
-  record_exitance(work, solved, exitance);
-  if (solved.walk != nullptr) {
-    record_means(work, solved.level, exitance);
-  } else {
-    record_vertex_exitance(work, solved.level, exitance, false);
-  }
-}
-
-void SurfaceResults::record_coarse(Workspace& work, const Solved& solved) {
-  record_surface(work, solved, coarse_exitance_);
+// For the picture: local means of a Galerkin solution are far better than its values, which on irregular tets two mean
+// free paths long scatter by 5 to 9% from vertex to vertex. Two rounds over the faces around a vertex and the vertices
+// of a face leave 1%. Geometric means, because arithmetic ones carry light across the terminator, where exitance falls
+// by an order of magnitude within a few elements.
+void SurfaceResults::record_display(Workspace& work, const Solved& solved) {
+  if (solved.walk == nullptr) return record_vertex_exitance(work, solved.level, exitance_, false);
+  record_vertex_exitance(work, solved.level, exitance_, true);
+  record_face_exitance(work, solved.level);
+  record_vertex_exitance(work, solved.level, smooth_exitance_, true);
+  record_display_scale(work, solved.level);
+  record_vertex_unscattered(work, solved);
 }
 
 void SurfaceResults::record_vertex_unscattered(Workspace& work, const Solved& solved) {
@@ -125,6 +134,7 @@ void SurfaceResults::record_vertex_unscattered(Workspace& work, const Solved& so
                                         .face_incidence = level.face_incidence.address(),
                                         .unscattered = solved.walk->unscattered().address(),
                                         .scale = work.scale.address(),
+                                        .factor = display_factor_.address(),
                                         .exitance = vertex_exitance_.address(),
                                         .count = level.surface_vertex_count};
   const std::uint64_t face_bytes = sizeof(std::uint32_t) * (1 + FIXED_WORDS) + sizeof(glm::uvec3) + 3 * vec3_bytes;
@@ -145,6 +155,7 @@ void SurfaceResults::record_energy(Workspace& work, const Solved& solved) {
                              .exitance = exitance_.address(),
                              .coarse_exitance = coarse_exitance_.address(),
                              .scale = work.scale.address(),
+                             .clip = clip_.address(),
                              .sums = sums_.address(),
                              .tet_count = level.tet_count,
                              .face_count = level.face_count,
@@ -157,9 +168,9 @@ void SurfaceResults::record_energy(Workspace& work, const Solved& solved) {
 }
 
 void SurfaceResults::record(Workspace& work, const Solved& solved) {
-  record_surface(work, solved, exitance_);
+  record_exitance(work, solved, exitance_);
   record_energy(work, solved);
-  if (solved.walk != nullptr) record_vertex_unscattered(work, solved);
+  record_display(work, solved);
 }
 
 Energy SurfaceResults::energy() const {

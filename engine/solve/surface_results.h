@@ -24,9 +24,11 @@ class SurfaceResults {
  public:
   SurfaceResults(vk::Context& context, const LevelBuffers& level);
 
-  const vk::Buffer& phi() const { return phi_; }                          // vec3 per outside face, W/mm^2
-  const vk::Buffer& exitance() const { return exitance_; }                // vec3 per outside face, W/mm^2, scattered
-  const vk::Buffer& vertex_exitance() const { return vertex_exitance_; }  // vec3 per surface vertex, W/mm^2, all light
+  const vk::Buffer& phi() const { return phi_; }            // vec3 per outside face, W/mm^2
+  const vk::Buffer& exitance() const { return exitance_; }  // vec3 per outside face, W/mm^2, scattered
+  const vk::Buffer& vertex_exitance() const {
+    return vertex_exitance_;
+  }  // vec3 per surface vertex, W/mm^2: for display
 
   // Exitance of the solution transferred from the coarser level, to be compared with the final one.
   void record_coarse(Workspace& work, const Solved& solved);
@@ -41,18 +43,19 @@ class SurfaceResults {
 
  private:
   void record_exitance(Workspace& work, const Solved& solved, const vk::Buffer& exitance);
-  void record_vertex_exitance(Workspace& work, const LevelBuffers& level, const vk::Buffer& exitance, bool clip_factor);
-  void record_face_exitance(Workspace& work, const LevelBuffers& level, const vk::Buffer& exitance);
-  void record_means(Workspace& work, const LevelBuffers& level, const vk::Buffer& exitance);
-  void record_surface(Workspace& work, const Solved& solved, const vk::Buffer& exitance);
+  void record_vertex_exitance(Workspace& work, const LevelBuffers& level, const vk::Buffer& faces, bool geometric);
+  void record_face_exitance(Workspace& work, const LevelBuffers& level);
+  void record_display_scale(Workspace& work, const LevelBuffers& level);
+  void record_display(Workspace& work, const Solved& solved);
   void record_vertex_unscattered(Workspace& work, const Solved& solved);
   void record_energy(Workspace& work, const Solved& solved);
 
-  vk::Buffer phi_, exitance_, coarse_exitance_, vertex_exitance_;
-  vk::Buffer clip_;          // Clip
-  vk::Buffer clip_on_host_;  // the same, mapped
-  vk::Buffer sums_;          // EnergySums per workgroup
-  vk::Buffer sums_on_host_;  // the same, mapped
+  vk::Buffer phi_, exitance_, coarse_exitance_, smooth_exitance_, vertex_exitance_;
+  vk::Buffer display_factor_;  // vec3
+  vk::Buffer clip_;            // Clip
+  vk::Buffer clip_on_host_;    // the same, mapped
+  vk::Buffer sums_;            // EnergySums per workgroup
+  vk::Buffer sums_on_host_;    // the same, mapped
 };
 
 }  // namespace quadgraph

@@ -6,6 +6,7 @@
 #include "engine/render/default_lights.h"
 #include "engine/render/engine.h"
 #include "engine/vk/context.h"
+#include "engine/vk/memory.h"
 #include "python/bindings/bindings.h"
 
 namespace py = pybind11;
@@ -209,6 +210,12 @@ void bind_engine(py::module_& module) {
           "surface_field", [](const Engine& engine) { return field_dict(engine.surface_field()); },
           "Per outside face of level 0: position, normal, area, q, phi, exitance of scattered and of unscattered light "
           "(mm, mm^2, W/mm^2).")
+      .def(
+          "vertex_exitance",
+          [](Engine& engine) {
+            return own(vk::download<glm::vec3>(engine.context(), engine.simulation().vertex_exitance()));
+          },
+          "Per surface vertex of level 0, W/mm^2: what a picture shows, local means and the unscattered light with it.")
       .def(
           "phi", [](Engine& engine) { return own(engine.simulation().phi()); }, "Per carrier of level 0, W/mm^2.")
       .def("render", &render, py::arg("view") = "", py::arg("up") = "y", py::arg("vertical_fov") = 30.0f,

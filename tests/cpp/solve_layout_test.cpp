@@ -24,6 +24,7 @@
 #include "spirv/cg_update_sp3.comp.h"
 #include "spirv/damping.comp.h"
 #include "spirv/damping_sp3.comp.h"
+#include "spirv/display_scale.comp.h"
 #include "spirv/energy.comp.h"
 #include "spirv/energy_sp3.comp.h"
 #include "spirv/evaluate_material.comp.h"
@@ -110,8 +111,12 @@ TEST_CASE("push constants") {
       vertex_exitance_comp, "VertexExitancePush",
       {MEMBER(VertexExitancePush, vertices), MEMBER(VertexExitancePush, faces), MEMBER(VertexExitancePush, face_offset),
        MEMBER(VertexExitancePush, face_incidence), MEMBER(VertexExitancePush, face_exitance),
-       MEMBER(VertexExitancePush, clip), MEMBER(VertexExitancePush, exitance), MEMBER(VertexExitancePush, count),
-       MEMBER(VertexExitancePush, clip_factor)});
+       MEMBER(VertexExitancePush, exitance), MEMBER(VertexExitancePush, count), MEMBER(VertexExitancePush, geometric)});
+  compare(
+      display_scale_comp, "DisplayScalePush",
+      {MEMBER(DisplayScalePush, vertices), MEMBER(DisplayScalePush, faces), MEMBER(DisplayScalePush, face_kinds),
+       MEMBER(DisplayScalePush, exitance), MEMBER(DisplayScalePush, vertex_exitance), MEMBER(DisplayScalePush, scale),
+       MEMBER(DisplayScalePush, factor), MEMBER(DisplayScalePush, reduction), MEMBER(DisplayScalePush, count)});
   compare(
       face_exitance_comp, "FaceExitancePush",
       {MEMBER(FaceExitancePush, faces), MEMBER(FaceExitancePush, face_kinds), MEMBER(FaceExitancePush, vertex_exitance),
@@ -227,12 +232,13 @@ TEST_CASE("push constants") {
          MEMBER(ExitancePush, fem), MEMBER(ExitancePush, clipped), MEMBER(ExitancePush, boundary)});
   }
   for (const vk::Spirv code : {vk::Spirv(energy_comp), vk::Spirv(energy_sp3_comp)}) {
-    compare(code, "EnergyPush",
-            {MEMBER(EnergyPush, vertices), MEMBER(EnergyPush, tets), MEMBER(EnergyPush, faces),
-             MEMBER(EnergyPush, face_kinds), MEMBER(EnergyPush, optical), MEMBER(EnergyPush, x),
-             MEMBER(EnergyPush, to_phi), MEMBER(EnergyPush, q), MEMBER(EnergyPush, exitance),
-             MEMBER(EnergyPush, coarse_exitance), MEMBER(EnergyPush, scale), MEMBER(EnergyPush, sums),
-             MEMBER(EnergyPush, tet_count), MEMBER(EnergyPush, face_count), MEMBER(EnergyPush, fem)});
+    compare(
+        code, "EnergyPush",
+        {MEMBER(EnergyPush, vertices), MEMBER(EnergyPush, tets), MEMBER(EnergyPush, faces),
+         MEMBER(EnergyPush, face_kinds), MEMBER(EnergyPush, optical), MEMBER(EnergyPush, x), MEMBER(EnergyPush, to_phi),
+         MEMBER(EnergyPush, q), MEMBER(EnergyPush, exitance), MEMBER(EnergyPush, coarse_exitance),
+         MEMBER(EnergyPush, scale), MEMBER(EnergyPush, clip), MEMBER(EnergyPush, sums), MEMBER(EnergyPush, tet_count),
+         MEMBER(EnergyPush, face_count), MEMBER(EnergyPush, fem)});
   }
 }
 
@@ -254,6 +260,7 @@ TEST_CASE("arrays in buffers have the stride of their C++ element") {
                                             vk::Spirv(shape_comp),
                                             vk::Spirv(irradiance_scale_comp),
                                             vk::Spirv(face_exitance_comp),
+                                            vk::Spirv(display_scale_comp),
                                             vk::Spirv(assemble_fdm_comp),
                                             vk::Spirv(assemble_fv_comp),
                                             vk::Spirv(assemble_edges_comp),

@@ -37,5 +37,6 @@ TEST_CASE("the walk and C++ agree on their structs") {
         Members{MEMBER(VertexUnscatteredPush, vertices), MEMBER(VertexUnscatteredPush, faces),
                 MEMBER(VertexUnscatteredPush, face_offset), MEMBER(VertexUnscatteredPush, face_incidence),
                 MEMBER(VertexUnscatteredPush, unscattered), MEMBER(VertexUnscatteredPush, scale),
-                MEMBER(VertexUnscatteredPush, exitance), MEMBER(VertexUnscatteredPush, count)});
+                MEMBER(VertexUnscatteredPush, factor), MEMBER(VertexUnscatteredPush, exitance),
+                MEMBER(VertexUnscatteredPush, count)});
 }
