@@ -11,12 +11,13 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= push.count) return;
   vec3 stiffness = vec3(0), absorption = vec3(0), relaxation = vec3(0);
+  Optical optical = push.optical.at[0];
   uint k = push.ring_offset.at[i], end = push.ring_offset.at[i + 1u];
   for (; k < end; ++k) {
     uint element = push.ring.at[k];
     uint index = element >> 3u, edge = element & 7u;
     if (edge == RING_FACE) break;
-    Optical optical = push.optical.at[index];
+    if (push.even == 0u) optical = push.optical.at[index];
     float mass = push.tet_shape.at[TET_SHAPE * index + 6u] / 20.0;
     stiffness += kappa(optical) * push.tet_shape.at[TET_SHAPE * index + edge];
     absorption += optical.sigma_a * mass;

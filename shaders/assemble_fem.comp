@@ -21,10 +21,11 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= push.count) return;
   vec3 absorption = vec3(0), relaxation = vec3(0);
+  Optical optical = push.optical.at[0];
   uint end = push.tet_offset.at[i + 1u];
   for (uint k = push.tet_offset.at[i]; k < end; ++k) {
     uint tet = push.tet_incidence.at[k];
-    Optical optical = push.optical.at[tet];
+    if (push.even == 0u) optical = push.optical.at[tet];
     float mass = push.tet_shape.at[TET_SHAPE * tet + 6u] / 20.0;
     absorption += optical.sigma_a * mass;
     relaxation += relaxation_of(optical) * mass;

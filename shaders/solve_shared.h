@@ -182,6 +182,7 @@ struct AssembleEdgesPush {
   QG_REF(Uints) ring_offset;
   QG_REF(Uints) ring;
   uint count;
+  uint even;  // 1: the coefficients are the same everywhere
   Boundary boundary;
 };
 
@@ -198,6 +199,7 @@ struct AssembleFemPush {
   QG_REF(Uints) face_incidence;
   uint count;
   uint surface_count;
+  uint even;  // 1: the coefficients are the same everywhere
   Boundary boundary;
 };
 

@@ -57,7 +57,8 @@ void measure(Workspace& work, const LevelBuffers& level, OperatorBuffers& op) {
   op.measured = true;
 }
 
-void assemble_fem(Workspace& work, const LevelBuffers& level, const Boundary& boundary, OperatorBuffers& op) {
+void assemble_fem(Workspace& work, const LevelBuffers& level, const Boundary& boundary, bool even,
+                  OperatorBuffers& op) {
   if (!op.measured) measure(work, level, op);
   const gpu::AssembleEdgesPush edges{.rows = op.rows(),
                                      .optical = level.optical.address(),
@@ -67,9 +68,10 @@ void assemble_fem(Workspace& work, const LevelBuffers& level, const Boundary& bo
                                      .ring_offset = op.ring_offset.address(),
                                      .ring = op.ring.address(),
                                      .count = op.edge_count,
+                                     .even = even ? 1u : 0u,
                                      .boundary = on_device(boundary)};
   // Every tet is met at its six edges, then at its four corners.
-  const std::uint64_t tet_bytes = index_bytes + sizeof(gpu::Optical) + sizeof(float);
+  const std::uint64_t tet_bytes = index_bytes + (even ? 0 : sizeof(gpu::Optical)) + sizeof(float);
   const std::uint64_t face_bytes = index_bytes + sizeof(float);
   work.recorder.dispatch(work.passes.assemble_edges.of(op.model), edges, op.edge_count, "assembly",
                          6 * level.tet_count * (tet_bytes + sizeof(float)) + 3 * level.face_count * face_bytes +
@@ -84,6 +86,7 @@ void assemble_fem(Workspace& work, const LevelBuffers& level, const Boundary& bo
                                   .face_incidence = level.face_incidence.address(),
                                   .count = op.count,
                                   .surface_count = level.surface_vertex_count,
+                                  .even = even ? 1u : 0u,
                                   .boundary = on_device(boundary)};
   work.recorder.dispatch(work.passes.assemble_fem.of(op.model), push, op.count, "assembly",
                          4 * level.tet_count * tet_bytes + 3 * level.face_count * face_bytes +
@@ -164,7 +167,7 @@ void record_material(Workspace& work, const LevelBuffers& level, const gpu::Mate
                          level.node_count * (vec3_bytes + sizeof(gpu::Optical)));
 }
 
-void record_assembly(Workspace& work, const LevelBuffers& level, Method method, const Boundary& boundary,
+void record_assembly(Workspace& work, const LevelBuffers& level, Method method, const Boundary& boundary, bool even,
                      OperatorBuffers& op) {
   switch (method) {
     case Method::quadgraph_fdm:
@@ -172,7 +175,7 @@ void record_assembly(Workspace& work, const LevelBuffers& level, Method method, 
     case Method::quadgraph_fv:
       return assemble_fv(work, level, boundary, op);
     case Method::fem:
-      return assemble_fem(work, level, boundary, op);
+      return assemble_fem(work, level, boundary, even, op);
   }
 }
 

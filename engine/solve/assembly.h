@@ -10,7 +10,8 @@ namespace quadgraph {
 
 void record_material(Workspace& work, const LevelBuffers& level, const gpu::Material& material);
 
-void record_assembly(Workspace& work, const LevelBuffers& level, Method method, const Boundary& boundary,
+// `even`: level.optical is the same everywhere, which takes less time.
+void record_assembly(Workspace& work, const LevelBuffers& level, Method method, const Boundary& boundary, bool even,
                      OperatorBuffers& op);
 
 // The scale of the whole solve, from q of the finest level.

@@ -141,7 +141,7 @@ struct Simulation::Implementation {
     for (std::uint32_t i = 0; i < levels.size(); ++i) {
       OperatorBuffers& rows = op(key, i);
       if (!rows.assembled || !same(*rows.assembled, boundary)) {
-        record_assembly(work, levels[i], key.method, boundary, rows);
+        record_assembly(work, levels[i], key.method, boundary, coefficients.even(), rows);
         rows.assembled = boundary;
         rows.damped = false;
         rows.loaded.reset();

@@ -38,7 +38,7 @@ struct Assembled {
         op(device.context, level, 0, method, model),
         work(device.context, level.node_count()) {
     vk::write_bytes(device.context, buffers.optical, std::as_bytes(std::span(optical)));
-    record_assembly(work, buffers, method, problem.boundary(), op);
+    record_assembly(work, buffers, method, problem.boundary(), false, op);
     work.recorder.submit();
   }
 

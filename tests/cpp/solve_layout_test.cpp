@@ -140,7 +140,7 @@ TEST_CASE("push constants") {
             {MEMBER(AssembleEdgesPush, rows), MEMBER(AssembleEdgesPush, optical), MEMBER(AssembleEdgesPush, tet_shape),
              MEMBER(AssembleEdgesPush, face_area), MEMBER(AssembleEdgesPush, edge_entry),
              MEMBER(AssembleEdgesPush, ring_offset), MEMBER(AssembleEdgesPush, ring), MEMBER(AssembleEdgesPush, count),
-             MEMBER(AssembleEdgesPush, boundary)});
+             MEMBER(AssembleEdgesPush, even), MEMBER(AssembleEdgesPush, boundary)});
   }
   for (const vk::Spirv code : {vk::Spirv(assemble_fem_comp), vk::Spirv(assemble_fem_sp3_comp)}) {
     compare(code, "AssembleFemPush",
@@ -148,7 +148,7 @@ TEST_CASE("push constants") {
              MEMBER(AssembleFemPush, face_area), MEMBER(AssembleFemPush, tet_offset),
              MEMBER(AssembleFemPush, tet_incidence), MEMBER(AssembleFemPush, face_offset),
              MEMBER(AssembleFemPush, face_incidence), MEMBER(AssembleFemPush, count),
-             MEMBER(AssembleFemPush, surface_count), MEMBER(AssembleFemPush, boundary)});
+             MEMBER(AssembleFemPush, surface_count), MEMBER(AssembleFemPush, even), MEMBER(AssembleFemPush, boundary)});
   }
   for (const vk::Spirv code : {vk::Spirv(right_hand_side_fdm_comp), vk::Spirv(right_hand_side_fdm_sp3_comp)}) {
     compare(
