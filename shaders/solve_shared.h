@@ -396,15 +396,6 @@ struct VertexExitancePush {
   uint geometric;  // 1: geometric mean, 0: arithmetic
 };
 
-// face_exitance.comp: the geometric mean over the vertices of every open face.
-struct FaceExitancePush {
-  QG_REF(Uvec3s) faces;
-  QG_REF(Uints) face_kinds;
-  QG_REF(Vec3s) vertex_exitance;
-  QG_REF(Vec3s) exitance;
-  uint count;
-};
-
 // display_scale.comp: the factor that gives the exitance at vertices, linear over the faces, the power of the faces.
 struct DisplayScalePush {
   QG_REF(Vec3s) vertices;

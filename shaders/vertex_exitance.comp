@@ -1,7 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "solve_shared.h"
-#include "geometric_mean.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { VertexExitancePush push; };
@@ -12,12 +11,27 @@ float twice_area_of(uint face) {
   return length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));
 }
 
+// A value far below the arithmetic mean, or none at all, counts as this share of it: one clipped vertex must not darken
+// all around it.
+const float LEAST_SHARE = 1.0 / 16.0;
+
+// exp of the mean of the logarithms.
+vec3 geometric_mean(uint begin, uint end, float area, vec3 mean) {
+  vec3 logarithm = vec3(0);
+  for (uint k = begin; k < end; ++k) {
+    uint face = push.face_incidence.at[k];
+    vec3 value = max(max(push.face_exitance.at[face], LEAST_SHARE * mean), vec3(1e-37));
+    logarithm += twice_area_of(face) / area * log(value);
+  }
+  return mix(vec3(0), exp(logarithm), greaterThan(mean, vec3(0)));
+}
+
 void main() {
   uint v = gl_GlobalInvocationID.x;
   if (v >= push.count) return;
   uint begin = push.face_offset.at[v], end = push.face_offset.at[v + 1u];
   float area = 0.0;
-  vec3 mean = vec3(0), logarithm = vec3(0);
+  vec3 mean = vec3(0);
   for (uint k = begin; k < end; ++k) {
     uint face = push.face_incidence.at[k];
     float size = twice_area_of(face);
@@ -25,12 +39,5 @@ void main() {
     mean += size * push.face_exitance.at[face];
   }
   mean = area > 0.0 ? mean / area : vec3(0);
-  if (push.geometric == 1u) {
-    for (uint k = begin; k < end; ++k) {
-      uint face = push.face_incidence.at[k];
-      logarithm += twice_area_of(face) / area * floored_log(push.face_exitance.at[face], mean);
-    }
-    mean = from_log(logarithm, mean);
-  }
-  push.exitance.at[v] = mean;
+  push.exitance.at[v] = push.geometric == 1u ? geometric_mean(begin, end, area, mean) : mean;
 }

@@ -25,7 +25,6 @@
 #include "spirv/evaluate_material.comp.h"
 #include "spirv/exitance.comp.h"
 #include "spirv/exitance_sp3.comp.h"
-#include "spirv/face_exitance.comp.h"
 #include "spirv/irradiance_scale.comp.h"
 #include "spirv/right_hand_side_buried.comp.h"
 #include "spirv/right_hand_side_buried_sp3.comp.h"
@@ -59,7 +58,6 @@ Passes::Passes()
       ONE_PASS(irradiance_scale, IrradianceScalePush),
       ONE_PASS(walk_source, WalkSourcePush),
       ONE_PASS(vertex_exitance, VertexExitancePush),
-      ONE_PASS(face_exitance, FaceExitancePush),
       ONE_PASS(display_scale, DisplayScalePush),
       ONE_PASS(vertex_unscattered, VertexUnscatteredPush),
       MODEL_PASS(assemble_fdm, AssembleFdmPush),

@@ -38,7 +38,6 @@ SurfaceResults::SurfaceResults(vk::Context& context, const LevelBuffers& level) 
   phi_ = vector(level.face_count, "phi at faces");
   exitance_ = vector(level.face_count, "exitance");
   coarse_exitance_ = vector(level.face_count, "exitance of the coarser level");
-  smooth_exitance_ = vector(level.face_count, "exitance, local means");
   vertex_exitance_ = vector(level.surface_vertex_count, "exitance at vertices");
   display_factor_ = vector(1, "display factor");
   clip_ = vk::Buffer(context, sizeof(gpu::Clip), vk::Place::device, "clip");
@@ -89,16 +88,6 @@ void SurfaceResults::record_vertex_exitance(Workspace& work, const LevelBuffers&
                          3 * level.face_count * face_bytes + vec3_bytes * level.surface_vertex_count);
 }
 
-void SurfaceResults::record_face_exitance(Workspace& work, const LevelBuffers& level) {
-  const gpu::FaceExitancePush push{.faces = level.faces.address(),
-                                   .face_kinds = level.face_kind.address(),
-                                   .vertex_exitance = vertex_exitance_.address(),
-                                   .exitance = smooth_exitance_.address(),
-                                   .count = level.face_count};
-  work.recorder.dispatch(work.passes.face_exitance, push, level.face_count, "exitance",
-                         level.face_count * (sizeof(glm::uvec3) + sizeof(std::uint32_t) + 4 * vec3_bytes));
-}
-
 void SurfaceResults::record_display_scale(Workspace& work, const LevelBuffers& level) {
   const gpu::DisplayScalePush push{.vertices = level.vertices.address(),
                                    .faces = level.faces.address(),
@@ -114,14 +103,12 @@ void SurfaceResults::record_display_scale(Workspace& work, const LevelBuffers& l
 }
 
 // For the picture: local means of a Galerkin solution are far better than its values, which on irregular tets two mean
-// free paths long scatter by 5 to 9% from vertex to vertex. Two rounds over the faces around a vertex and the vertices
-// of a face leave 1%. Geometric means, because arithmetic ones carry light across the terminator, where exitance falls
-// by an order of magnitude within a few elements.
+// free paths long scatter by 5 to 7% from vertex to vertex. The mean over the faces around a vertex leaves 2%; a second
+// round would leave 1%, and blur veins of a few elements. A geometric mean, because an arithmetic one carries light
+// across the terminator, where exitance falls by an order of magnitude within a few elements.
 void SurfaceResults::record_display(Workspace& work, const Solved& solved) {
   if (solved.walk == nullptr) return record_vertex_exitance(work, solved.level, exitance_, false);
   record_vertex_exitance(work, solved.level, exitance_, true);
-  record_face_exitance(work, solved.level);
-  record_vertex_exitance(work, solved.level, smooth_exitance_, true);
   record_display_scale(work, solved.level);
   record_vertex_unscattered(work, solved);
 }

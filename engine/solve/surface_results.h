@@ -44,13 +44,12 @@ class SurfaceResults {
  private:
   void record_exitance(Workspace& work, const Solved& solved, const vk::Buffer& exitance);
   void record_vertex_exitance(Workspace& work, const LevelBuffers& level, const vk::Buffer& faces, bool geometric);
-  void record_face_exitance(Workspace& work, const LevelBuffers& level);
   void record_display_scale(Workspace& work, const LevelBuffers& level);
   void record_display(Workspace& work, const Solved& solved);
   void record_vertex_unscattered(Workspace& work, const Solved& solved);
   void record_energy(Workspace& work, const Solved& solved);
 
-  vk::Buffer phi_, exitance_, coarse_exitance_, smooth_exitance_, vertex_exitance_;
+  vk::Buffer phi_, exitance_, coarse_exitance_, vertex_exitance_;
   vk::Buffer display_factor_;  // vec3
   vk::Buffer clip_;            // Clip
   vk::Buffer clip_on_host_;    // the same, mapped

@@ -30,7 +30,6 @@
 #include "spirv/evaluate_material.comp.h"
 #include "spirv/exitance.comp.h"
 #include "spirv/exitance_sp3.comp.h"
-#include "spirv/face_exitance.comp.h"
 #include "spirv/irradiance_scale.comp.h"
 #include "spirv/right_hand_side_fdm.comp.h"
 #include "spirv/right_hand_side_fdm_sp3.comp.h"
@@ -117,10 +116,6 @@ TEST_CASE("push constants") {
       {MEMBER(DisplayScalePush, vertices), MEMBER(DisplayScalePush, faces), MEMBER(DisplayScalePush, face_kinds),
        MEMBER(DisplayScalePush, exitance), MEMBER(DisplayScalePush, vertex_exitance), MEMBER(DisplayScalePush, scale),
        MEMBER(DisplayScalePush, factor), MEMBER(DisplayScalePush, reduction), MEMBER(DisplayScalePush, count)});
-  compare(
-      face_exitance_comp, "FaceExitancePush",
-      {MEMBER(FaceExitancePush, faces), MEMBER(FaceExitancePush, face_kinds), MEMBER(FaceExitancePush, vertex_exitance),
-       MEMBER(FaceExitancePush, exitance), MEMBER(FaceExitancePush, count)});
   // Both variants of a pass read the same block.
   for (const vk::Spirv code : {vk::Spirv(assemble_fdm_comp), vk::Spirv(assemble_fdm_sp3_comp)}) {
     compare(code, "AssembleFdmPush",
@@ -259,7 +254,6 @@ TEST_CASE("arrays in buffers have the stride of their C++ element") {
   const std::vector<vk::Spirv> diffusion = {vk::Spirv(evaluate_material_comp),
                                             vk::Spirv(shape_comp),
                                             vk::Spirv(irradiance_scale_comp),
-                                            vk::Spirv(face_exitance_comp),
                                             vk::Spirv(display_scale_comp),
                                             vk::Spirv(assemble_fdm_comp),
                                             vk::Spirv(assemble_fv_comp),

@@ -105,7 +105,7 @@ def test_pictures_are_smooth_where_elements_are_longer_than_the_mean_free_path(e
     of_faces = scatter(field["normal"][:, 2], field["exitance"][:, 0])
     of_vertices = scatter(level.vertices[: len(shown), 2] / RADIUS, shown[:, 0])
     print(f"{model}: scatter of the exitance of faces {of_faces:.2%}, of the vertices shown {of_vertices:.2%}")
-    assert of_vertices < 0.02
+    assert of_vertices < 0.025
     power = (shown[level.faces].mean(axis=1) * field["area"][:, None]).sum(axis=0)
     energy = report["energy"]
     assert np.allclose(power, np.add(energy["scattered_out"], energy["unscattered_out"]), rtol=1e-4)
