@@ -123,4 +123,4 @@ def test_bench_compares_two_orders_and_records(sphere, tmp_path, capsys):
         names = [entry["name"] for entry in method["passes"]]
         assert "assembly" in names
         assert all(entry["time_ms"] >= 0 and entry["bytes"] > 0 for entry in method["passes"])
-    assert "random / blocks" in capsys.readouterr().out
+    assert "in blocks, and at random" in capsys.readouterr().out

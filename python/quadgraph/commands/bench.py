@@ -116,7 +116,7 @@ def open_engine(args: argparse.Namespace, path: Path):
 
 def name_of(entry: dict) -> str:
     """One way to solve in words."""
-    return " / ".join(entry[key] for key in ("method", "model", "source", "solver"))
+    return " ".join(entry[key] for key in ("method", "model", "source", "solver"))
 
 
 def measure(engines: dict, material: str, way: dict, repeats: int) -> dict:
@@ -168,9 +168,12 @@ def application_ms(entry: dict) -> float:
 
 def cost_table(methods: list[dict]) -> Table:
     """Return assembly, source walk and solve in applications of the finest operator, and times against the first."""
-    table = Table("", "assembly", "source walk", "assembly + solve / first", "memory added, MB", title="cost")
+    table = Table("", "assembly", "walk", "all / first", "MB", title="cost of a solution")
     table.columns[0].no_wrap = True
-    table.caption = "assembly and walk on all levels, in applications of the way's own operator on the finest level"
+    table.caption = (
+        "assembly and source walk on all levels, in applications of the same operator on the finest level; all passes of "
+        "the solution against the first row; memory that it adds"
+    )
     solve = [sum(p["time_ms"] for p in e["passes"] if p["name"] not in PICTURE_PASSES) for e in methods]
     for entry, spent in zip(methods, solve, strict=True):
         of = {p["name"]: p["time_ms"] for p in entry["passes"]}
@@ -187,7 +190,7 @@ def cost_table(methods: list[dict]) -> Table:
 
 def order_table(methods: list[dict]) -> Table:
     """Return time in random order over time in blocks, for passes of at least a tenth of the frame."""
-    table = Table("method", "pass", "blocks ms", "random ms", "random / blocks", title="order of the nodes")
+    table = Table("", "pass", "ms", "random ms", "ratio", title="order of the nodes: in blocks, and at random")
     table.columns[0].no_wrap = True
     for entry in methods:
         for ours, theirs in zip(entry["passes"], entry["random_order_passes"], strict=True):
