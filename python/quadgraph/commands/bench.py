@@ -171,8 +171,8 @@ def cost_table(methods: list[dict]) -> Table:
     table = Table("", "assembly", "walk", "all / first", "MB", title="cost of a solution")
     table.columns[0].no_wrap = True
     table.caption = (
-        "assembly and source walk on all levels, in applications of the same operator on the finest level; all passes of "
-        "the solution against the first row; memory that it adds"
+        "assembly and source walk on all levels, in applications of the same operator on the finest level; all passes "
+        "of the solution against the first row; memory that it adds"
     )
     solve = [sum(p["time_ms"] for p in e["passes"] if p["name"] not in PICTURE_PASSES) for e in methods]
     for entry, spent in zip(methods, solve, strict=True):
