@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "solve_shared.h"
+#include "assembly_shared.h"
 #include "optics.h"
 #include "entries.glsl"
 

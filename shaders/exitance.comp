@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "solve_shared.h"
+#include "surface_shared.h"
 #include "fields.glsl"
 #include "reduce.glsl"
 

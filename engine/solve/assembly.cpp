@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "shaders/assembly_shared.h"
+
 namespace quadgraph {
 namespace {
 

@@ -2,6 +2,7 @@
 
 #include "engine/graph/operator.h"
 #include "engine/solve/row_structure.h"
+#include "shaders/assembly_shared.h"
 
 namespace quadgraph {
 namespace {

@@ -1,5 +1,7 @@
 #include "engine/solve/passes.h"
 
+#include "shaders/assembly_shared.h"
+#include "shaders/surface_shared.h"
 #include "shaders/walk_shared.h"
 #include "spirv/assemble_edges.comp.h"
 #include "spirv/assemble_edges_sp3.comp.h"

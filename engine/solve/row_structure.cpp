@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "shaders/solve_shared.h"
+#include "shaders/assembly_shared.h"
 
 namespace quadgraph {
 namespace {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/solve/assembly.h"
+#include "shaders/surface_shared.h"
 
 namespace quadgraph {
 namespace {

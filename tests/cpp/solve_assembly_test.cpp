@@ -9,6 +9,7 @@
 #include "engine/solve/assembly.h"
 #include "engine/solve/level_upload.h"
 #include "engine/solve/row_structure.h"
+#include "shaders/assembly_shared.h"
 #include "tests/cpp/solve_fixtures.h"
 
 using namespace quadgraph;

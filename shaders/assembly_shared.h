@@ -1,0 +1,159 @@
+// What the passes that fill an operator and its right-hand side share with C++, in scalar layout; see shared.h.
+#ifndef QUADGRAPH_ASSEMBLY_SHARED_H
+#define QUADGRAPH_ASSEMBLY_SHARED_H
+
+#include "solve_shared.h"
+
+#ifdef __cplusplus
+namespace quadgraph::gpu {
+#endif
+
+// assemble_fdm.comp: weight, diagonal and to_phi of engine/graph/operator.h, one invocation per node.
+struct AssembleFdmPush {
+  RowsRef rows;
+  QG_REF(Vec3s) nodes;
+  QG_REF(Opticals) optical;
+  QG_REF(Vec3s) to_phi;
+  QG_REF(Uints) face_kinds;
+  uint count;      // nodes
+  uint tet_count;  // inner nodes
+  Boundary boundary;
+};
+
+// assemble_fv.comp: weight, diagonal and to_phi, one invocation per node.
+struct AssembleFvPush {
+  RowsRef rows;
+  QG_REF(Vec3s) vertices;
+  QG_REF(Uvec4s) tets;
+  QG_REF(Uvec4s) links;
+  QG_REF(Vec3s) nodes;
+  QG_REF(Opticals) optical;
+  QG_REF(Vec3s) to_phi;
+  QG_REF(Uints) face_kinds;
+  uint count;      // nodes
+  uint tet_count;  // inner nodes
+  Boundary boundary;
+};
+
+// Floats of a tet's shape: grad l_i . grad l_j V of its edges 01, 02, 03, 12, 13, 23 (mm), and its volume (mm^3).
+const uint TET_SHAPE = 7u;
+
+// shape.comp: measures every tet and outside face.
+struct ShapePush {
+  QG_REF(Vec3s) vertices;
+  QG_REF(Uvec4s) tets;
+  QG_REF(Uvec3s) faces;
+  QG_REF(Floats) tet_shape;
+  QG_REF(Floats) face_area;  // mm^2
+  uint tet_count;
+  uint face_count;
+};
+
+// The elements around an edge: tet * 8 + edge of the tet, or face * 8 + RING_FACE.
+const uint RING_FACE = 7u;
+
+// assemble_edges.comp: weight, one invocation per edge, which has two entries. The elements around edge e are ring[k],
+// k from ring_offset[e] to ring_offset[e + 1], tets first; reflecting faces are left out.
+struct AssembleEdgesPush {
+  RowsRef rows;
+  QG_REF(Opticals) optical;
+  QG_REF(Floats) tet_shape;
+  QG_REF(Floats) face_area;
+  QG_REF(Uvec2s) edge_entry;
+  QG_REF(Uints) ring_offset;
+  QG_REF(Uints) ring;
+  uint count;
+  uint even;  // 1: the coefficients are the same everywhere
+  Boundary boundary;
+};
+
+// assemble_fem.comp: diagonal from the weights, one invocation per vertex. Its tets and open faces are incidence[k], k
+// from offset[v] to offset[v + 1].
+struct AssembleFemPush {
+  RowsRef rows;
+  QG_REF(Opticals) optical;
+  QG_REF(Floats) tet_shape;
+  QG_REF(Floats) face_area;
+  QG_REF(Uints) tet_offset;
+  QG_REF(Uints) tet_incidence;
+  QG_REF(Uints) face_offset;
+  QG_REF(Uints) face_incidence;
+  uint count;
+  uint surface_count;
+  uint even;  // 1: the coefficients are the same everywhere
+  Boundary boundary;
+};
+
+// irradiance_scale.comp: `scale` from the power that enters, per channel.
+struct IrradianceScalePush {
+  QG_REF(Vec3s) vertices;
+  QG_REF(Uvec3s) faces;
+  QG_REF(Vec3s) q;
+  QG_REF(Scales) scale;
+  QG_REF(Reduction) reduction;
+  uint count;
+};
+
+// right_hand_side_fdm.comp: scaled b at every node, and its norm.
+struct RightHandSideFdmPush {
+  QG_REF(Vec3s) nodes;
+  QG_REF(Opticals) optical;
+  QG_REF(Uints) face_tets;
+  QG_REF(Uints) face_kinds;
+  QG_REF(Vec3s) q;
+  QG_REF(Scales) scale;
+  QG_REF(Entries) diagonal;
+  QG_REF(Fields) b;
+  QG_REF(SolveStates) state;
+  QG_REF(Reduction) reduction;
+  uint count;
+  uint tet_count;
+  Boundary boundary;
+};
+
+// right_hand_side_fv.comp: scaled b at every node, and its norm.
+struct RightHandSideFvPush {
+  QG_REF(Vec3s) vertices;
+  QG_REF(Uvec3s) faces;
+  QG_REF(Uints) face_kinds;
+  QG_REF(Vec3s) q;
+  QG_REF(Scales) scale;
+  QG_REF(Entries) diagonal;
+  QG_REF(Fields) b;
+  QG_REF(SolveStates) state;
+  QG_REF(Reduction) reduction;
+  uint count;
+  uint tet_count;
+  Boundary boundary;
+};
+
+// right_hand_side_fem.comp: scaled b at every vertex, and its norm.
+struct RightHandSideFemPush {
+  QG_REF(Vec3s) vertices;
+  QG_REF(Uvec3s) faces;
+  QG_REF(Uints) face_offset;
+  QG_REF(Uints) face_incidence;
+  QG_REF(Vec3s) q;
+  QG_REF(Scales) scale;
+  QG_REF(Entries) diagonal;
+  QG_REF(Fields) b;
+  QG_REF(SolveStates) state;
+  QG_REF(Reduction) reduction;
+  uint count;
+  uint surface_count;
+  Boundary boundary;
+};
+
+// damping.comp: the largest step of a relaxation that cannot diverge, 2 / min(4, max row sum of D^-1 |A|), per channel.
+// 4 bounds linear tetrahedra: no eigenvalue of an element's D^-1 K exceeds its trace.
+struct DampingPush {
+  RowsRef rows;
+  QG_REF(Vec3s) damping;
+  QG_REF(Reduction) reduction;
+  uint count;
+};
+
+#ifdef __cplusplus
+}  // namespace quadgraph::gpu
+#endif
+#endif

@@ -1,0 +1,185 @@
+// The push constants of the passes of the solve are those of C++, in every variant.
+#include "shaders/assembly_shared.h"
+#include "shaders/surface_shared.h"
+#include "spirv/assemble_edges.comp.h"
+#include "spirv/assemble_edges_sp3.comp.h"
+#include "spirv/assemble_fdm.comp.h"
+#include "spirv/assemble_fdm_sp3.comp.h"
+#include "spirv/assemble_fem.comp.h"
+#include "spirv/assemble_fem_sp3.comp.h"
+#include "spirv/assemble_fv.comp.h"
+#include "spirv/assemble_fv_sp3.comp.h"
+#include "spirv/cg_direction.comp.h"
+#include "spirv/cg_direction_sp3.comp.h"
+#include "spirv/cg_multiply.comp.h"
+#include "spirv/cg_multiply_sp3.comp.h"
+#include "spirv/cg_start.comp.h"
+#include "spirv/cg_start_sp3.comp.h"
+#include "spirv/cg_update.comp.h"
+#include "spirv/cg_update_sp3.comp.h"
+#include "spirv/damping.comp.h"
+#include "spirv/damping_sp3.comp.h"
+#include "spirv/display_scale.comp.h"
+#include "spirv/energy.comp.h"
+#include "spirv/energy_sp3.comp.h"
+#include "spirv/evaluate_material.comp.h"
+#include "spirv/exitance.comp.h"
+#include "spirv/exitance_sp3.comp.h"
+#include "spirv/irradiance_scale.comp.h"
+#include "spirv/right_hand_side_fdm.comp.h"
+#include "spirv/right_hand_side_fdm_sp3.comp.h"
+#include "spirv/right_hand_side_fem.comp.h"
+#include "spirv/right_hand_side_fem_sp3.comp.h"
+#include "spirv/right_hand_side_fv.comp.h"
+#include "spirv/right_hand_side_fv_sp3.comp.h"
+#include "spirv/shape.comp.h"
+#include "spirv/sweep.comp.h"
+#include "spirv/sweep_sp3.comp.h"
+#include "spirv/transfer.comp.h"
+#include "spirv/transfer_sp3.comp.h"
+#include "spirv/vertex_exitance.comp.h"
+#include "tests/cpp/layout_compare.h"
+
+using namespace quadgraph;
+
+TEST_CASE("push constants") {
+  compare(evaluate_material_comp, "EvaluateMaterialPush",
+          {MEMBER(EvaluateMaterialPush, material), MEMBER(EvaluateMaterialPush, nodes),
+           MEMBER(EvaluateMaterialPush, optical), MEMBER(EvaluateMaterialPush, count)});
+  compare(shape_comp, "ShapePush",
+          {MEMBER(ShapePush, vertices), MEMBER(ShapePush, tets), MEMBER(ShapePush, faces), MEMBER(ShapePush, tet_shape),
+           MEMBER(ShapePush, face_area), MEMBER(ShapePush, tet_count), MEMBER(ShapePush, face_count)});
+  compare(
+      irradiance_scale_comp, "IrradianceScalePush",
+      {MEMBER(IrradianceScalePush, vertices), MEMBER(IrradianceScalePush, faces), MEMBER(IrradianceScalePush, q),
+       MEMBER(IrradianceScalePush, scale), MEMBER(IrradianceScalePush, reduction), MEMBER(IrradianceScalePush, count)});
+  compare(
+      vertex_exitance_comp, "VertexExitancePush",
+      {MEMBER(VertexExitancePush, vertices), MEMBER(VertexExitancePush, faces), MEMBER(VertexExitancePush, face_offset),
+       MEMBER(VertexExitancePush, face_incidence), MEMBER(VertexExitancePush, face_exitance),
+       MEMBER(VertexExitancePush, exitance), MEMBER(VertexExitancePush, count), MEMBER(VertexExitancePush, geometric)});
+  compare(
+      display_scale_comp, "DisplayScalePush",
+      {MEMBER(DisplayScalePush, vertices), MEMBER(DisplayScalePush, faces), MEMBER(DisplayScalePush, face_kinds),
+       MEMBER(DisplayScalePush, exitance), MEMBER(DisplayScalePush, vertex_exitance), MEMBER(DisplayScalePush, scale),
+       MEMBER(DisplayScalePush, factor), MEMBER(DisplayScalePush, reduction), MEMBER(DisplayScalePush, count)});
+  // Both variants of a pass read the same block.
+  for (const vk::Spirv code : {vk::Spirv(assemble_fdm_comp), vk::Spirv(assemble_fdm_sp3_comp)}) {
+    compare(code, "AssembleFdmPush",
+            {MEMBER(AssembleFdmPush, rows), MEMBER(AssembleFdmPush, nodes), MEMBER(AssembleFdmPush, optical),
+             MEMBER(AssembleFdmPush, to_phi), MEMBER(AssembleFdmPush, face_kinds), MEMBER(AssembleFdmPush, count),
+             MEMBER(AssembleFdmPush, tet_count), MEMBER(AssembleFdmPush, boundary)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(assemble_fv_comp), vk::Spirv(assemble_fv_sp3_comp)}) {
+    compare(code, "AssembleFvPush",
+            {MEMBER(AssembleFvPush, rows), MEMBER(AssembleFvPush, vertices), MEMBER(AssembleFvPush, tets),
+             MEMBER(AssembleFvPush, links), MEMBER(AssembleFvPush, nodes), MEMBER(AssembleFvPush, optical),
+             MEMBER(AssembleFvPush, to_phi), MEMBER(AssembleFvPush, face_kinds), MEMBER(AssembleFvPush, count),
+             MEMBER(AssembleFvPush, tet_count), MEMBER(AssembleFvPush, boundary)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(assemble_edges_comp), vk::Spirv(assemble_edges_sp3_comp)}) {
+    compare(code, "AssembleEdgesPush",
+            {MEMBER(AssembleEdgesPush, rows), MEMBER(AssembleEdgesPush, optical), MEMBER(AssembleEdgesPush, tet_shape),
+             MEMBER(AssembleEdgesPush, face_area), MEMBER(AssembleEdgesPush, edge_entry),
+             MEMBER(AssembleEdgesPush, ring_offset), MEMBER(AssembleEdgesPush, ring), MEMBER(AssembleEdgesPush, count),
+             MEMBER(AssembleEdgesPush, even), MEMBER(AssembleEdgesPush, boundary)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(assemble_fem_comp), vk::Spirv(assemble_fem_sp3_comp)}) {
+    compare(code, "AssembleFemPush",
+            {MEMBER(AssembleFemPush, rows), MEMBER(AssembleFemPush, optical), MEMBER(AssembleFemPush, tet_shape),
+             MEMBER(AssembleFemPush, face_area), MEMBER(AssembleFemPush, tet_offset),
+             MEMBER(AssembleFemPush, tet_incidence), MEMBER(AssembleFemPush, face_offset),
+             MEMBER(AssembleFemPush, face_incidence), MEMBER(AssembleFemPush, count),
+             MEMBER(AssembleFemPush, surface_count), MEMBER(AssembleFemPush, even), MEMBER(AssembleFemPush, boundary)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(right_hand_side_fdm_comp), vk::Spirv(right_hand_side_fdm_sp3_comp)}) {
+    compare(
+        code, "RightHandSideFdmPush",
+        {MEMBER(RightHandSideFdmPush, nodes), MEMBER(RightHandSideFdmPush, optical),
+         MEMBER(RightHandSideFdmPush, face_tets), MEMBER(RightHandSideFdmPush, face_kinds),
+         MEMBER(RightHandSideFdmPush, q), MEMBER(RightHandSideFdmPush, scale), MEMBER(RightHandSideFdmPush, diagonal),
+         MEMBER(RightHandSideFdmPush, b), MEMBER(RightHandSideFdmPush, state), MEMBER(RightHandSideFdmPush, reduction),
+         MEMBER(RightHandSideFdmPush, count), MEMBER(RightHandSideFdmPush, tet_count),
+         MEMBER(RightHandSideFdmPush, boundary)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(right_hand_side_fv_comp), vk::Spirv(right_hand_side_fv_sp3_comp)}) {
+    compare(
+        code, "RightHandSideFvPush",
+        {MEMBER(RightHandSideFvPush, vertices), MEMBER(RightHandSideFvPush, faces),
+         MEMBER(RightHandSideFvPush, face_kinds), MEMBER(RightHandSideFvPush, q), MEMBER(RightHandSideFvPush, scale),
+         MEMBER(RightHandSideFvPush, diagonal), MEMBER(RightHandSideFvPush, b), MEMBER(RightHandSideFvPush, state),
+         MEMBER(RightHandSideFvPush, reduction), MEMBER(RightHandSideFvPush, count),
+         MEMBER(RightHandSideFvPush, tet_count), MEMBER(RightHandSideFvPush, boundary)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(right_hand_side_fem_comp), vk::Spirv(right_hand_side_fem_sp3_comp)}) {
+    compare(
+        code, "RightHandSideFemPush",
+        {MEMBER(RightHandSideFemPush, vertices), MEMBER(RightHandSideFemPush, faces),
+         MEMBER(RightHandSideFemPush, face_offset), MEMBER(RightHandSideFemPush, face_incidence),
+         MEMBER(RightHandSideFemPush, q), MEMBER(RightHandSideFemPush, scale), MEMBER(RightHandSideFemPush, diagonal),
+         MEMBER(RightHandSideFemPush, b), MEMBER(RightHandSideFemPush, state), MEMBER(RightHandSideFemPush, reduction),
+         MEMBER(RightHandSideFemPush, count), MEMBER(RightHandSideFemPush, surface_count),
+         MEMBER(RightHandSideFemPush, boundary)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(damping_comp), vk::Spirv(damping_sp3_comp)}) {
+    compare(code, "DampingPush",
+            {MEMBER(DampingPush, rows), MEMBER(DampingPush, damping), MEMBER(DampingPush, reduction),
+             MEMBER(DampingPush, count)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(transfer_comp), vk::Spirv(transfer_sp3_comp)}) {
+    compare(code, "TransferPush",
+            {MEMBER(TransferPush, index), MEMBER(TransferPush, weight), MEMBER(TransferPush, coarse_x),
+             MEMBER(TransferPush, coarse_to_phi), MEMBER(TransferPush, to_phi), MEMBER(TransferPush, x),
+             MEMBER(TransferPush, state), MEMBER(TransferPush, width), MEMBER(TransferPush, first),
+             MEMBER(TransferPush, coarse_first), MEMBER(TransferPush, count)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(cg_start_comp), vk::Spirv(cg_start_sp3_comp)}) {
+    compare(
+        code, "CgStartPush",
+        {MEMBER(CgStartPush, rows), MEMBER(CgStartPush, b), MEMBER(CgStartPush, x), MEMBER(CgStartPush, r),
+         MEMBER(CgStartPush, p), MEMBER(CgStartPush, state), MEMBER(CgStartPush, reduction), MEMBER(CgStartPush, count),
+         MEMBER(CgStartPush, max_iterations), MEMBER(CgStartPush, tolerance), MEMBER(CgStartPush, first)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(cg_multiply_comp), vk::Spirv(cg_multiply_sp3_comp)}) {
+    compare(code, "CgMultiplyPush",
+            {MEMBER(CgMultiplyPush, rows), MEMBER(CgMultiplyPush, p), MEMBER(CgMultiplyPush, product),
+             MEMBER(CgMultiplyPush, state), MEMBER(CgMultiplyPush, reduction), MEMBER(CgMultiplyPush, count),
+             MEMBER(CgMultiplyPush, tolerance)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(cg_update_comp), vk::Spirv(cg_update_sp3_comp)}) {
+    compare(
+        code, "CgUpdatePush",
+        {MEMBER(CgUpdatePush, diagonal), MEMBER(CgUpdatePush, p), MEMBER(CgUpdatePush, product),
+         MEMBER(CgUpdatePush, x), MEMBER(CgUpdatePush, r), MEMBER(CgUpdatePush, state), MEMBER(CgUpdatePush, reduction),
+         MEMBER(CgUpdatePush, count), MEMBER(CgUpdatePush, max_iterations), MEMBER(CgUpdatePush, tolerance)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(cg_direction_comp), vk::Spirv(cg_direction_sp3_comp)}) {
+    compare(code, "CgDirectionPush",
+            {MEMBER(CgDirectionPush, diagonal), MEMBER(CgDirectionPush, r), MEMBER(CgDirectionPush, p),
+             MEMBER(CgDirectionPush, state), MEMBER(CgDirectionPush, count)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(sweep_comp), vk::Spirv(sweep_sp3_comp)}) {
+    compare(code, "SweepPush",
+            {MEMBER(SweepPush, rows), MEMBER(SweepPush, b), MEMBER(SweepPush, from), MEMBER(SweepPush, to),
+             MEMBER(SweepPush, damping), MEMBER(SweepPush, state), MEMBER(SweepPush, reduction),
+             MEMBER(SweepPush, count), MEMBER(SweepPush, sweeps), MEMBER(SweepPush, tolerance)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(exitance_comp), vk::Spirv(exitance_sp3_comp)}) {
+    compare(
+        code, "ExitancePush",
+        {MEMBER(ExitancePush, vertices), MEMBER(ExitancePush, faces), MEMBER(ExitancePush, face_kinds),
+         MEMBER(ExitancePush, x), MEMBER(ExitancePush, to_phi), MEMBER(ExitancePush, q), MEMBER(ExitancePush, scale),
+         MEMBER(ExitancePush, phi), MEMBER(ExitancePush, exitance), MEMBER(ExitancePush, clip),
+         MEMBER(ExitancePush, reduction), MEMBER(ExitancePush, count), MEMBER(ExitancePush, tet_count),
+         MEMBER(ExitancePush, fem), MEMBER(ExitancePush, clipped), MEMBER(ExitancePush, boundary)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(energy_comp), vk::Spirv(energy_sp3_comp)}) {
+    compare(
+        code, "EnergyPush",
+        {MEMBER(EnergyPush, vertices), MEMBER(EnergyPush, tets), MEMBER(EnergyPush, faces),
+         MEMBER(EnergyPush, face_kinds), MEMBER(EnergyPush, optical), MEMBER(EnergyPush, x), MEMBER(EnergyPush, to_phi),
+         MEMBER(EnergyPush, q), MEMBER(EnergyPush, exitance), MEMBER(EnergyPush, coarse_exitance),
+         MEMBER(EnergyPush, scale), MEMBER(EnergyPush, clip), MEMBER(EnergyPush, sums), MEMBER(EnergyPush, tet_count),
+         MEMBER(EnergyPush, face_count), MEMBER(EnergyPush, fem)});
+  }
+}
