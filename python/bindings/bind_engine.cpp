@@ -134,12 +134,7 @@ void set_lights(Engine& engine, const std::vector<std::string>& texts) {
 
 py::dict solve(Engine& engine, const std::string& method, const std::string& solver, const std::string& source,
                const std::string& model, double tolerance, std::uint32_t max_iterations) {
-  const SolveOptions options{.method = method_from_name(method),
-                             .solver = solver_from_name(solver),
-                             .source = source_from_name(source),
-                             .model = model_from_name(model),
-                             .tolerance = tolerance,
-                             .max_iterations = max_iterations};
+  const SolveOptions options = options_from(method, solver, source, model, tolerance, max_iterations);
   const SolveReport report = [&] {
     const py::gil_scoped_release release;
     return engine.solve(options);

@@ -91,12 +91,7 @@ py::dict reference(const QuadGraph& graph, std::uint32_t index, const FloatArray
                    const std::string& solver, const std::string& source, const std::string& model, double tolerance,
                    std::uint32_t max_iterations) {
   const Level& level = level_of(graph, index);
-  const SolveOptions options{.method = method_from_name(method),
-                             .solver = solver_from_name(solver),
-                             .source = source_from_name(source),
-                             .model = model_from_name(model),
-                             .tolerance = tolerance,
-                             .max_iterations = max_iterations};
+  const SolveOptions options = options_from(method, solver, source, model, tolerance, max_iterations);
   const auto optical = optical_from(sigma_s_prime, sigma_a, level.node_count());
   const EnteringLight light{beam_along(as_vector(direction)), vectors(q, level.face_count(), "q")};
   ReferenceSolution solution = [&] {

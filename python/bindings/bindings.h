@@ -58,6 +58,10 @@ std::vector<gpu::Optical> optical_from(const FloatArray& sigma_s_prime, const Fl
 // Level `index`; IndexError if the file has fewer.
 const Level& level_of(const QuadGraph& graph, std::uint32_t index);
 
+// Throws InputError naming an option that is not allowed.
+SolveOptions options_from(const std::string& method, const std::string& solver, const std::string& source,
+                          const std::string& model, double tolerance, std::uint32_t max_iterations);
+
 std::optional<glm::vec3> as_vector(const std::optional<std::array<float, 3>>& components);
 
 pybind11::tuple as_tuple(const glm::dvec3& v);

@@ -31,6 +31,16 @@ const Level& level_of(const QuadGraph& graph, std::uint32_t index) {
   return graph.levels()[index];
 }
 
+SolveOptions options_from(const std::string& method, const std::string& solver, const std::string& source,
+                          const std::string& model, double tolerance, std::uint32_t max_iterations) {
+  return {.method = method_from_name(method),
+          .solver = solver_from_name(solver),
+          .source = source_from_name(source),
+          .model = model_from_name(model),
+          .tolerance = tolerance,
+          .max_iterations = max_iterations};
+}
+
 std::optional<glm::vec3> as_vector(const std::optional<std::array<float, 3>>& components) {
   if (!components) return std::nullopt;
   return glm::vec3((*components)[0], (*components)[1], (*components)[2]);
