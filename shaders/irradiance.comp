@@ -6,7 +6,7 @@
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { IrradiancePush push; };
 
-// q of one light at one point: visibility * cos * E * F_t(cos, eta).
+// q of one light with a direction at one point: visibility * cos * E * F_t(cos, eta).
 vec3 irradiance_at(LightRecord light, vec3 position, vec3 normal) {
   Incident incident = incident_light(light, position);
   float cos_i = min(dot(normal, incident.direction), 1.0);
@@ -20,6 +20,27 @@ uint quarter_of(float u, float v) {
   return u + v < 0.5 ? 0u : u > 0.5 ? 1u : v > 0.5 ? 2u : 3u;
 }
 
+// q of one light on the quarters of the face a, a + ab, a + ac.
+vec3[FACE_QUARTERS] quarters_of(LightRecord light, vec3 a, vec3 ab, vec3 ac, vec3 normal) {
+  vec3 even = light.kind == LIGHT_AMBIENT ? push.diffuse_transmittance * light.power : vec3(0);
+  vec3 quarter[FACE_QUARTERS] = vec3[](even, even, even, even);
+  if (light.kind == LIGHT_AMBIENT) return quarter;
+  uint n = push.subdivision;
+  float h = 1.0 / float(n);
+  // Row i, column j: an upright triangle, and beside it an inverted one where the row has room.
+  for (uint i = 0u; i < n; ++i) {
+    for (uint j = 0u; i + j < n; ++j) {
+      for (uint inverted = 0u; inverted < (i + j + 1u < n ? 2u : 1u); ++inverted) {
+        float u = h * (float(i) + (inverted == 1u ? 2.0 : 1.0) / 3.0);
+        float v = h * (float(j) + (inverted == 1u ? 2.0 : 1.0) / 3.0);
+        quarter[quarter_of(u, v)] +=
+            float(FACE_QUARTERS) * h * h * irradiance_at(light, a + u * ab + v * ac, normal);
+      }
+    }
+  }
+  return quarter;
+}
+
 void main() {
   uint f = gl_GlobalInvocationID.x;
   if (f >= push.face_count) return;
@@ -29,25 +50,12 @@ void main() {
   vec3 ac = push.vertices.at[face.z] - a;
   vec3 normal = normalize(cross(ab, ac));
 
-  uint n = push.subdivision;
-  float h = 1.0 / float(n);
   vec3 q = vec3(0);
   for (uint light = 0u; light < push.light_count; ++light) {
-    vec3 quarter[FACE_QUARTERS] = vec3[](vec3(0), vec3(0), vec3(0), vec3(0));
-    // Row i, column j: an upright triangle, and beside it an inverted one where the row has room.
-    for (uint i = 0u; i < n; ++i) {
-      for (uint j = 0u; i + j < n; ++j) {
-        for (uint inverted = 0u; inverted < (i + j + 1u < n ? 2u : 1u); ++inverted) {
-          float u = h * (float(i) + (inverted == 1u ? 2.0 : 1.0) / 3.0);
-          float v = h * (float(j) + (inverted == 1u ? 2.0 : 1.0) / 3.0);
-          quarter[quarter_of(u, v)] += irradiance_at(push.lights.at[light], a + u * ab + v * ac, normal);
-        }
-      }
-    }
+    vec3 quarter[FACE_QUARTERS] = quarters_of(push.lights.at[light], a, ab, ac, normal);
     for (uint k = 0u; k < FACE_QUARTERS; ++k) {
-      vec3 mean = quarter[k] * (float(FACE_QUARTERS) * h * h);
-      push.beam_q.at[(light * push.face_count + f) * FACE_QUARTERS + k] = mean;
-      q += mean / float(FACE_QUARTERS);
+      push.beam_q.at[(light * push.face_count + f) * FACE_QUARTERS + k] = quarter[k];
+      q += quarter[k] / float(FACE_QUARTERS);
     }
   }
   push.q.at[f] = q;

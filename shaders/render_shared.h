@@ -11,6 +11,7 @@ namespace quadgraph::gpu {
 
 const uint LIGHT_DIRECTIONAL = 0u;
 const uint LIGHT_POINT = 1u;
+const uint LIGHT_AMBIENT = 2u;
 
 // Texels along a side of a shadow map: of a single view, and of each of a point light's six.
 const uint SHADOW_SIZE = 2048u;
@@ -34,10 +35,10 @@ struct ShadowView {
 
 struct LightRecord {
   uint kind;        // LIGHT_*
-  vec3 vector;      // directional: unit, towards the light; point: its position, mm
-  vec3 power;       // directional: irradiance, W/mm^2; point: intensity, W/sr
+  vec3 vector;      // directional: unit, towards the light; point: its position, mm; ambient: unused
+  vec3 power;       // directional: irradiance, W/mm^2; point: intensity, W/sr; ambient: irradiance
   uint first_view;  // into the array of ShadowView
-  uint view_count;  // 1, or 6 in the order +x -x +y -y +z -z
+  uint view_count;  // 0 (ambient), 1, or 6 in the order +x -x +y -y +z -z
 };
 
 #ifndef __cplusplus
@@ -64,6 +65,7 @@ struct IrradiancePush {
   uint light_count;
   uint subdivision;  // even: the face is sampled at the centroids of subdivision^2 equal triangles
   float eta;
+  float diffuse_transmittance;  // of a smooth surface under even light from outside
 };
 
 // All that surface.vert and surface.frag read.

@@ -37,6 +37,10 @@ void main() {
   vec3 sum = vec3(0.0);
   for (uint i = 0u; i < scene.at[0].light_count; ++i) {
     LightRecord light = scene.at[0].lights.at[i];
+    if (light.kind == LIGHT_AMBIENT) {
+      sum += fresnel_reflectance(cos_o, scene.at[0].eta) / PI * light.power;  // as of a smooth surface
+      continue;
+    }
     Incident incident = incident_light(light, position);
     float reflected = cook_torrance(n, v, incident.direction);
     if (reflected == 0.0) continue;

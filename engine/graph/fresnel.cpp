@@ -33,6 +33,10 @@ double fresnel_moment(int n, double eta) {
   return std::pow(critical, n + 1) / (n + 1) + (1.0 - critical) * sum / (3.0 * intervals);
 }
 
+double diffuse_transmittance(double eta) {
+  return eta * eta * (1.0 - 2.0 * fresnel_moment(1, eta));
+}
+
 double internal_diffuse_reflectance(double eta) {
   if (eta <= 1.0) return 0.0;
   return -1.440 / (eta * eta) + 0.710 / eta + 0.668 + 0.0636 * eta;

@@ -40,6 +40,10 @@ void add(std::vector<PassStats>& passes, const PassStats& more) {
 std::vector<gpu::BeamRecord> beams_of(const std::vector<Light>& lights) {
   std::vector<gpu::BeamRecord> beams;
   for (const Light& light : lights) {
+    if (light.kind == LightKind::ambient) {
+      beams.push_back({gpu::BEAM_LAMBERTIAN, glm::vec3(0)});
+      continue;
+    }
     const bool point = light.kind == LightKind::point;
     beams.push_back({point ? gpu::BEAM_POINT : gpu::BEAM_DIRECTIONAL, point ? light.position : light.direction});
   }

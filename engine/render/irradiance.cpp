@@ -1,5 +1,6 @@
 #include "engine/render/irradiance.h"
 
+#include "engine/graph/fresnel.h"
 #include "engine/vk/commands.h"
 #include "spirv/irradiance.comp.h"
 
@@ -28,7 +29,8 @@ PassStats IrradiancePass::run(const LevelBuffers& buffers, std::uint32_t level, 
                                  .face_count = buffers.face_count,
                                  .light_count = shadows.light_count(),
                                  .subdivision = subdivision,
-                                 .eta = eta};
+                                 .eta = eta,
+                                 .diffuse_transmittance = static_cast<float>(diffuse_transmittance(eta))};
   vk::Commands commands(context_, 1);
   commands.begin_pass("irradiance");
   commands.dispatch(pass_, push, buffers.face_count);

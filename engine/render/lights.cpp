@@ -11,7 +11,8 @@ namespace quadgraph {
 namespace {
 
 constexpr const char* allowed =
-    "expected directional:DX,DY,DZ:IRRADIANCE (W/mm^2) or point:X,Y,Z:POWER (mm, W), the last one number or R/G/B";
+    "expected directional:DX,DY,DZ:IRRADIANCE (W/mm^2), point:X,Y,Z:POWER (mm, W) or ambient:IRRADIANCE (W/mm^2), the "
+    "last one number or R/G/B";
 
 bool finite(const glm::vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -22,12 +23,14 @@ bool finite(const glm::vec3& v) {
 Light parse_light(std::string_view text) {
   const auto parts = split(text, ':');
   const std::string where = "light '" + std::string(text) + "'";
-  if (parts.size() != 3 || (parts[0] != "directional" && parts[0] != "point")) {
-    throw InputError(where + ": " + allowed);
-  }
+  const bool ambient = parts[0] == "ambient";
+  const bool known = ambient || parts[0] == "directional" || parts[0] == "point";
+  if (!known || parts.size() != (ambient ? 2 : 3)) throw InputError(where + ": " + allowed);
   Light light;
-  light.power = parse_rgb(parts[2], where + ", power");
-  if (parts[0] == "point") {
+  light.power = parse_rgb(parts.back(), where + ", power");
+  if (ambient) {
+    light.kind = LightKind::ambient;
+  } else if (parts[0] == "point") {
     light.kind = LightKind::point;
     light.position = parse_triple(parts[1], ',', where + ", position");
   } else {
@@ -41,6 +44,7 @@ Light parse_light(std::string_view text) {
 }
 
 std::string to_string(const Light& light) {
+  if (light.kind == LightKind::ambient) return "ambient:" + rgb_text(light.power);
   return (light.kind == LightKind::point ? "point:" + triple_text(light.position, ',')
                                          : "directional:" + triple_text(light.direction, ',')) +
          ":" + rgb_text(light.power);

@@ -7,19 +7,20 @@
 
 namespace quadgraph {
 
-enum class LightKind { directional, point };
+enum class LightKind { directional, point, ambient };
 
 struct Light {
   LightKind kind = LightKind::directional;
   glm::vec3 direction{0, 0, -1};  // directional: unit, the way the light travels
   glm::vec3 position{0};          // point: mm
   // Directional: irradiance on a plane perpendicular to the light, W/mm^2. Point: power, W, sent out evenly in all
-  // directions, so that the irradiance facing it at distance d is power / (4 pi d^2).
+  // directions, so that the irradiance facing it at distance d is power / (4 pi d^2). Ambient: irradiance, W/mm^2, of
+  // light that comes evenly from all sides, and is not shadowed by the body itself.
   glm::vec3 power{0};
 };
 
-// Parses "directional:DX,DY,DZ:IRRADIANCE" or "point:X,Y,Z:POWER", the last one number or R/G/B. The direction need not
-// be of unit length. Throws InputError naming what was found and what is allowed.
+// Parses "directional:DX,DY,DZ:IRRADIANCE", "point:X,Y,Z:POWER" or "ambient:IRRADIANCE", the last one number or R/G/B.
+// The direction need not be of unit length. Throws InputError naming what was found and what is allowed.
 Light parse_light(std::string_view text);
 
 // The text that parse_light reads back as the same light.

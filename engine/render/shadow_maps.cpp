@@ -70,6 +70,7 @@ std::vector<gpu::ShadowView> point_views(const Light& light, const Sphere& bound
 
 gpu::LightRecord record(const Light& light, std::size_t first_view, std::size_t view_count) {
   const bool point = light.kind == LightKind::point;
+  if (light.kind == LightKind::ambient) return {gpu::LIGHT_AMBIENT, glm::vec3(0), light.power, 0, 0};
   return {point ? gpu::LIGHT_POINT : gpu::LIGHT_DIRECTIONAL, point ? light.position : -light.direction,
           point ? light.power / four_pi : light.power, static_cast<std::uint32_t>(first_view),
           static_cast<std::uint32_t>(view_count)};
@@ -82,6 +83,7 @@ vk::Image depth_image(vk::Context& context, std::uint32_t size) {
 }  // namespace
 
 std::vector<gpu::ShadowView> shadow_views(const Light& light, const Sphere& bounds) {
+  if (light.kind == LightKind::ambient) return {};
   if (light.kind == LightKind::directional) return {directional_view(light, bounds)};
   return point_views(light, bounds);
 }

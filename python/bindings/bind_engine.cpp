@@ -177,7 +177,8 @@ void bind_engine(py::module_& module) {
       .def("set_material", py::overload_cast<std::string_view>(&Engine::set_material), py::arg("text"))
       .def("set_material", py::overload_cast<const gpu::Material&>(&Engine::set_material), py::arg("material"))
       .def("set_lights", &set_lights, py::arg("lights"),
-           "'directional:DX,DY,DZ:IRRADIANCE' (W/mm^2) and 'point:X,Y,Z:POWER' (W); replaces all lights.")
+           "'directional:DX,DY,DZ:IRRADIANCE' and 'ambient:IRRADIANCE' (W/mm^2), 'point:X,Y,Z:POWER' (W); replaces all "
+           "lights.")
       .def(
           "set_irradiance",
           [](Engine& engine, std::uint32_t level, const FloatArray& q,

@@ -81,6 +81,22 @@ TEST_CASE("irradiance follows light and material, and given irradiance replaces 
   CHECK(engine.solve().energy.entered.x == doctest::Approx(12).epsilon(1e-4));
 }
 
+TEST_CASE("ambient light enters everywhere, and as much of it as a smooth surface lets in") {
+  Checked checked;
+  Engine& engine = checked.engine;
+  engine.set_material("sigma_s_prime=5/3/1,sigma_a=0.1,eta=1.4");
+  engine.set_lights({parse_light("ambient:2"), parse_light("directional:0,0,-1:1")});
+  const SolveReport report = engine.solve({.tolerance = 1e-6});
+  const double entered = 2 * 24 * diffuse_transmittance(1.4) + 4 * fresnel_transmittance(1, 1.4);  // a cube of 2 mm
+  for (int c = 0; c < 3; ++c) {
+    CHECK(report.energy.entered[c] == doctest::Approx(entered).epsilon(1e-4));
+    CHECK(std::abs(report.energy.balance()[c]) < 1e-5);
+  }
+  for (const glm::vec3& m : engine.surface_field().exitance) CHECK(std::min({m.x, m.y, m.z}) > 0);
+  const Picture picture = engine.render({.azimuth = 180, .elevation = 0}, {.width = 32, .height = 32});
+  CHECK(total(picture.specular) > 0);  // the directional light is behind: this is the sky in the surface
+}
+
 TEST_CASE("a picture shows what was solved, and says how it was made") {
   Checked checked;
   Engine& engine = checked.engine;

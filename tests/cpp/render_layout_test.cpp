@@ -71,7 +71,7 @@ TEST_CASE("push constants") {
           {MEMBER(IrradiancePush, vertices), MEMBER(IrradiancePush, faces), MEMBER(IrradiancePush, q),
            MEMBER(IrradiancePush, beam_q), MEMBER(IrradiancePush, lights), MEMBER(IrradiancePush, views),
            MEMBER(IrradiancePush, face_count), MEMBER(IrradiancePush, light_count), MEMBER(IrradiancePush, subdivision),
-           MEMBER(IrradiancePush, eta)});
+           MEMBER(IrradiancePush, eta), MEMBER(IrradiancePush, diffuse_transmittance)});
   compare(SpirvLayout(resolve_comp), "ResolvePush",
           {MEMBER(ResolvePush, diffuse_samples), MEMBER(ResolvePush, specular_samples), MEMBER(ResolvePush, diffuse),
            MEMBER(ResolvePush, specular), MEMBER(ResolvePush, alpha), MEMBER(ResolvePush, tile_x),

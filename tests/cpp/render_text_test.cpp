@@ -25,6 +25,15 @@ TEST_CASE("a point light keeps position and power") {
   CHECK(light.power == glm::vec3(0.5f));
 }
 
+TEST_CASE("ambient light has an irradiance and nothing else") {
+  const Light light = parse_light("ambient:0.5/1/2");
+  CHECK(light.kind == LightKind::ambient);
+  CHECK(light.power == glm::vec3(0.5f, 1, 2));
+  CHECK(to_string(light) == "ambient:0.5/1/2");
+  CHECK_THROWS_WITH_AS(parse_light("ambient:1,2,3:4"), doctest::Contains("ambient:IRRADIANCE"), InputError);
+  CHECK_THROWS_WITH_AS(parse_light("ambient:-1"), doctest::Contains(">= 0"), InputError);
+}
+
 TEST_CASE("the text of a light reads back as the same light") {
   for (const char* text : {"directional:1,2,-3:0.1/0.2/0.3", "point:1e-3,7,123456:4"}) {
     const Light light = parse_light(text), again = parse_light(to_string(light));
