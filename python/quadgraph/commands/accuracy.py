@@ -10,6 +10,7 @@ from rich.console import Console
 
 from quadgraph import atomic_file
 from quadgraph.commands import scene
+from quadgraph.commands.bench import commit
 
 # Study to its module of quadgraph.reference.studies.
 STUDIES = {
@@ -45,5 +46,5 @@ def run(args: argparse.Namespace) -> int:
     for table in study.tables(record):
         console.print(table)
     if args.json:
-        atomic_file.write_json(args.json, {"study": args.study} | record)
+        atomic_file.write_json(args.json, {"study": args.study, "commit": commit()} | record)
     return 0
