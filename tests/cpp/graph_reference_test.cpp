@@ -191,3 +191,36 @@ TEST_CASE("no light, no answer but zero") {
     for (const glm::dvec3& m : solution.exitance) CHECK(m == glm::dvec3(0));
   }
 }
+
+TEST_CASE("turned and moved with its light, a body answers the same") {
+  const OwnedLevel owned = box_level(4, 4.0f, 0.2f);
+  const glm::vec3 axis = glm::normalize(glm::vec3(1.0f, -2.0f, 0.5f));
+  const auto turned = [&](const glm::vec3& v) {  // Rodrigues, by 1 radian
+    return v * std::cos(1.0f) + glm::cross(axis, v) * std::sin(1.0f) + axis * glm::dot(axis, v) * (1 - std::cos(1.0f));
+  };
+  OwnedLevel other = owned;
+  for (auto* points : {&other.vertices, &other.nodes}) {
+    for (glm::vec3& p : *points) p = turned(p) + glm::vec3(10.0f, -20.0f, 5.0f);
+  }
+  const Level here = owned.view(), there = other.view();
+  const Opticals optical = varying(here, 0.05f, 1.5f);  // per node, so it moves with the body
+  const auto q = one_side(here);
+  const glm::vec3 direction = glm::normalize(glm::vec3(1.0f, 0.3f, 0.2f));
+  for (Method method : all_methods) {
+    for (Model model : both_models) {
+      for (Source source : both_sources) {
+        const SolveOptions how = solving(method, source, model);
+        const auto a = solve_reference(here, optical, 1.3, {{gpu::BEAM_DIRECTIONAL, direction}, q}, how);
+        const auto b = solve_reference(there, optical, 1.3, {{gpu::BEAM_DIRECTIONAL, turned(direction)}, q}, how);
+        double largest = 0, worst = 0;
+        for (std::size_t f = 0; f < a.exitance.size(); ++f) {
+          for (int c = 0; c < 3; ++c) {
+            largest = std::max(largest, std::abs(a.exitance[f][c]));
+            worst = std::max(worst, std::abs(a.exitance[f][c] - b.exitance[f][c]));
+          }
+        }
+        CHECK(worst < 2e-5 * largest);  // positions are floats
+      }
+    }
+  }
+}
