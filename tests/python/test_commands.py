@@ -73,7 +73,9 @@ def test_solve_answers_with_every_method_model_and_source(sphere, tmp_path, caps
             assert (report["method"], report["source"]) == (method, source)
             assert report["model"] == ("sp3" if model == "auto" else model)
             assert set(report["energy"]) == {"entered", "scattered_out", "absorbed", "unscattered_out", "balance"}
-            assert f"{method} / {report['model']} / {source}" in capsys.readouterr().out
+            printed = capsys.readouterr().out
+            assert f"{method} / {report['model']} / {source}" in printed
+            assert "clipped" in printed
 
 
 def test_solve_says_so_when_it_stops_early(sphere, capsys):

@@ -31,12 +31,13 @@ def solve_table(report: dict) -> Table:
     return table
 
 
-def energy_table(energy: dict) -> Table:
-    """Return the power that entered, left and was absorbed, per channel."""
+def energy_table(energy: dict, clipped: tuple[float, float, float]) -> Table:
+    """Return the power that entered, left and was absorbed, per channel, and the share of exitance that was clipped."""
     table = Table("W", "R", "G", "B", title="energy")
     for name in ("entered", "scattered_out", "absorbed", "unscattered_out"):
         table.add_row(name.replace("_", " "), *(f"{value:.5g}" for value in energy[name]))
     table.add_row("balance", *(f"{100 * value:+.3f}%" for value in energy["balance"]))
+    table.add_row("below zero, clipped", *(f"{100 * value:.3f}%" for value in clipped))
     return table
 
 

@@ -42,7 +42,11 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         atomic_file.write_json(args.json, report)
     console = Console(highlight=False)
-    for table in (text.solve_table(report), text.energy_table(report["energy"]), text.pass_table(report["passes"])):
+    for table in (
+        text.solve_table(report),
+        text.energy_table(report["energy"], report["clipped"]),
+        text.pass_table(report["passes"]),
+    ):
         console.print(table)
     console.print(text.error_text(report))
     stopped = scene.unconverged(report)
