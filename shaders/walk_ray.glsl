@@ -165,7 +165,7 @@ void enter(inout Ray ray, uvec2 crossing) {
 void meet_surface(inout Ray ray, uint face, vec3 outward) {
   vec3 n = outward / length(outward);
   float cosine = dot(ray.direction, n);
-  if (push.face_kinds.at[face] == 0u) {
+  if (push.face_kinds.at[face] == FACE_OPEN) {
     vec3 reflected = ray.power * internal_reflectance(cosine, push.eta);
     vec3 leaving = ray.power - reflected;
     unscattered += leaving;

@@ -86,7 +86,7 @@ void walk_from(uint face, uint ray) {
     largest = max(largest, q[k]);
     sum += q[k];
   }
-  if (largest == vec3(0) || push.face_kinds.at[face] != 0u) return;
+  if (largest == vec3(0) || push.face_kinds.at[face] != FACE_OPEN) return;
   uvec3 ids = push.faces.at[face];
   mat3 corners = mat3(push.vertices.at[ids.x], push.vertices.at[ids.y], push.vertices.at[ids.z]);
   vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);

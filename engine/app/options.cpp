@@ -67,7 +67,8 @@ void declare_solver(CLI::App& app, Typed& typed) {
                  "buried (light scatters inside) or diffuse (enters at the surface, as published)")
       ->capture_default_str()
       ->group("Solver");
-  app.add_option("--model", typed.model, "diffusion, sp3, or auto: diffusion where it is within 1% of sp3")
+  app.add_option("--model", typed.model,
+                 "diffusion, sp3, or auto: diffusion where it is within 1% of sp3, and for the published baseline")
       ->capture_default_str()
       ->group("Solver");
   app.add_option("--tolerance", typed.tolerance, "relative residual to stop at")

@@ -21,7 +21,8 @@ double diffusion_error(double albedo, double eta);
 double least_albedo(const gpu::Material& material);
 double least_albedo(std::span<const gpu::Optical> optical);
 
-// `wanted`, or for `automatic` diffusion if its error at `albedo` is at most model_tolerance, else sp3.
-Model resolve_model(Model wanted, double albedo, double eta);
+// `wanted`; for `automatic` diffusion where it was published (quadgraph-fdm with the diffuse source knows no other
+// model) and where its error at `albedo` is at most model_tolerance, else sp3.
+Model resolve_model(Model wanted, Method method, Source source, double albedo, double eta);
 
 }  // namespace quadgraph

@@ -42,10 +42,10 @@ void Coefficients::check() const {
   throw InputError("optical: set for some levels, but not for level " + std::to_string(missing - albedo_.begin()));
 }
 
-Model Coefficients::resolve(Model wanted) const {
+Model Coefficients::resolve(Model wanted, Method method, Source source) const {
   double least = 1;
   for (const auto& albedo : albedo_) least = std::min(least, *albedo);
-  return resolve_model(wanted, least, static_cast<double>(eta_));
+  return resolve_model(wanted, method, source, least, static_cast<double>(eta_));
 }
 
 void Coefficients::record(Workspace& work, const std::vector<LevelBuffers>& levels) {

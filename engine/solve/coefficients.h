@@ -31,7 +31,7 @@ class Coefficients {
   bool even() const { return material_ && material_->kind == gpu::MATERIAL_HOMOGENEOUS; }
 
   // The model that is meant where `wanted` is automatic.
-  Model resolve(Model wanted) const;
+  Model resolve(Model wanted, Method method, Source source) const;
 
   // Evaluates the material on all levels, unless that has been done.
   void record(Workspace& work, const std::vector<LevelBuffers>& levels);

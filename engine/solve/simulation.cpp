@@ -194,7 +194,7 @@ struct Simulation::Implementation {
     coefficients.check();
     solved.reset();
     work.recorder.clear();
-    const OperatorKey key{options.method, coefficients.resolve(options.model)};
+    const OperatorKey key{options.method, coefficients.resolve(options.model, options.method, options.source)};
     const Boundary boundary = boundary_of(key.method, options.source, key.model, coefficients.eta());
     create_structures(key);
     record_setup(key, boundary, options);

@@ -10,7 +10,7 @@ namespace {
 
 Model automatic(const char* material) {
   const gpu::Material m = parse_material(material);
-  return resolve_model(Model::automatic, least_albedo(m), m.eta);
+  return resolve_model(Model::automatic, Method::fem, Source::buried, least_albedo(m), m.eta);
 }
 
 }  // namespace
@@ -24,8 +24,15 @@ TEST_CASE("diffusion is taken where it is within 1%, SP3 elsewhere") {
     CAPTURE(name);
     CHECK(automatic(name) == Model::sp3);
   }
-  CHECK(resolve_model(Model::sp3, 1.0, 1.3) == Model::sp3);
-  CHECK(resolve_model(Model::diffusion, 0.1, 1.3) == Model::diffusion);
+  CHECK(resolve_model(Model::sp3, Method::fem, Source::buried, 1.0, 1.3) == Model::sp3);
+  CHECK(resolve_model(Model::diffusion, Method::fem, Source::buried, 0.1, 1.3) == Model::diffusion);
+}
+
+TEST_CASE("the published baseline is diffusion, whatever the material") {
+  CHECK(resolve_model(Model::automatic, Method::quadgraph_fdm, Source::diffuse, 0.1, 1.3) == Model::diffusion);
+  CHECK(resolve_model(Model::automatic, Method::quadgraph_fdm, Source::buried, 0.1, 1.3) == Model::sp3);
+  CHECK(resolve_model(Model::automatic, Method::fem, Source::diffuse, 0.1, 1.3) == Model::sp3);
+  CHECK(resolve_model(Model::sp3, Method::quadgraph_fdm, Source::diffuse, 0.1, 1.3) == Model::sp3);
 }
 
 TEST_CASE("the error of diffusion grows as the albedo falls, without a break at 2/3") {

@@ -71,7 +71,9 @@ def test_solve_answers_with_every_method_model_and_source(sphere, tmp_path, caps
             assert cli.main(["solve", sphere, "--material", "skin1", *way, "--json", str(path)]) == 0
             report = json.loads(path.read_text())
             assert (report["method"], report["source"]) == (method, source)
-            assert report["model"] == ("sp3" if model == "auto" else model)
+            published = (method, source) == ("quadgraph-fdm", "diffuse")
+            automatic = "diffusion" if published else "sp3"
+            assert report["model"] == (automatic if model == "auto" else model)
             assert set(report["energy"]) == {"entered", "scattered_out", "absorbed", "unscattered_out", "balance"}
             printed = capsys.readouterr().out
             assert f"{method} / {report['model']} / {source}" in printed

@@ -73,7 +73,7 @@ def add_scene_arguments(parser: argparse.ArgumentParser) -> None:
         "--model",
         choices=("diffusion", "sp3", "auto"),
         default="auto",
-        help="auto: diffusion where it is within 1%% of sp3 (default: %(default)s)",
+        help="auto: diffusion where it is within 1%% of sp3, and for the published baseline (default: %(default)s)",
     )
     parser.add_argument(
         "--tolerance", type=positive_float, default=1e-3, help="relative residual (default: %(default)s)"
