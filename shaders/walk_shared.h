@@ -2,6 +2,7 @@
 #ifndef QUADGRAPH_WALK_SHARED_H
 #define QUADGRAPH_WALK_SHARED_H
 
+#include "body_shared.h"
 #include "solve_shared.h"
 
 #ifdef __cplusplus
@@ -20,32 +21,18 @@ const uint LAMBERTIAN_RAYS = 2u * LAMBERTIAN_NODES;
 QG_ARRAY(BeamRecords, BeamRecord);
 #endif
 
-// A crossing, out of the face opposite corner k of a tet: (the tet across, or tet_count + face; its new vertex << 8 |
-// for each corner j two bits from 2 j on: its place in the tet across, for k that of the new vertex).
-#define CROSSING_VERTICES 16777216
-
 // walk_source.comp: follows the rays of one beam. One invocation per face; of a Lambertian beam, one per face and ray
 // of the bundle.
 struct WalkSourcePush {
-  QG_REF(Vec3s) vertices;
-  QG_REF(Uvec4s) tets;
-  QG_REF(Uvec2s) crossings;  // four per tet
-  QG_REF(Uvec3s) faces;
-  QG_REF(Uints) face_tets;
-  QG_REF(Uints) face_kinds;
-  QG_REF(Opticals) optical;
+  BodyRef body;
   QG_REF(BeamRecords) beam;  // one
   QG_REF(Vec3s) quarter_q;   // of this beam, FACE_QUARTERS per face
   QG_REF(Scales) scale;
   QG_REF(Uints) deposit;      // fixed point, per vertex (fem) or tet: power scattered for the first time
   QG_REF(Uints) unscattered;  // fixed point, per face: power that leaves
   QG_REF(Uints) sums;         // fixed point, two per workgroup: absorbed; left, or still under way at the end
-  uint face_count;
-  uint rays;  // per origin: 1, or LAMBERTIAN_RAYS
-  uint tet_count;
+  uint rays;                  // per origin: 1, or LAMBERTIAN_RAYS
   uint fem;
-  uint even;  // 1: the same coefficients everywhere
-  float eta;
 };
 
 // right_hand_side_buried.comp: scaled b from the deposits, and its norm. Surface nodes of the graph methods have none.

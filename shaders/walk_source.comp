@@ -47,7 +47,7 @@ float share_of(uint ray, uint rays) {
   if (rays == 1u) return 1.0;
   float sum = 0.0, own = 0.0;
   for (uint node = 0u; node < LAMBERTIAN_NODES; ++node) {
-    float weight = LAMBERTIAN_W[node] * fresnel_transmittance(sqrt(LAMBERTIAN_U[node]), push.eta);
+    float weight = LAMBERTIAN_W[node] * fresnel_transmittance(sqrt(LAMBERTIAN_U[node]), push.body.eta);
     sum += weight;
     if (node == ray / 2u) own = weight;
   }
@@ -57,22 +57,8 @@ float share_of(uint ray, uint rays) {
 // Light at grazing incidence, or even from behind by rounding, still goes in.
 vec3 refracted(vec3 incoming, vec3 normal) {
   float cos_i = max(-dot(incoming, normal), 0.0);
-  float cos_t = sqrt(max(1.0 - (1.0 - cos_i * cos_i) / (push.eta * push.eta), 0.0));
-  return normalize(incoming / push.eta + (cos_i / push.eta - cos_t) * normal);
-}
-
-uint place_of(uint id, uvec4 tet) {
-  return id == tet.x ? 0u : id == tet.y ? 1u : id == tet.z ? 2u : 3u;
-}
-
-void enter_face(uint tet, uvec3 ids, mat3 corners, vec3 l) {
-  uvec4 all = push.tets.at[tet];
-  uint apex = all.x + all.y + all.z + all.w - ids.x - ids.y - ids.z;
-  optical = push.optical.at[tet];
-  corner_0 = Corner(ids.x, place_of(ids.x, all), corners[0], l.x, vec3(0));
-  corner_1 = Corner(ids.y, place_of(ids.y, all), corners[1], l.y, vec3(0));
-  corner_2 = Corner(ids.z, place_of(ids.z, all), corners[2], l.z, vec3(0));
-  corner_3 = Corner(apex, place_of(apex, all), push.vertices.at[apex], 0.0, vec3(0));
+  float cos_t = sqrt(max(1.0 - (1.0 - cos_i * cos_i) / (push.body.eta * push.body.eta), 0.0));
+  return normalize(incoming / push.body.eta + (cos_i / push.body.eta - cos_t) * normal);
 }
 
 // Ray `ray` of every origin on a face.
@@ -86,20 +72,20 @@ void walk_from(uint face, uint ray) {
     largest = max(largest, q[k]);
     sum += q[k];
   }
-  if (largest == vec3(0) || push.face_kinds.at[face] != FACE_OPEN) return;
-  uvec3 ids = push.faces.at[face];
-  mat3 corners = mat3(push.vertices.at[ids.x], push.vertices.at[ids.y], push.vertices.at[ids.z]);
+  if (largest == vec3(0) || push.body.face_kinds.at[face] != FACE_OPEN) return;
+  uvec3 ids = push.body.faces.at[face];
+  mat3 corners = mat3(push.body.vertices.at[ids.x], push.body.vertices.at[ids.y], push.body.vertices.at[ids.z]);
   vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
   float area = 0.5 * length(normal);
   normal /= 2.0 * area;
   bool one = one_ray_does(least, largest, corners, area);
-  uint tet = push.face_tets.at[face];
+  uint tet = push.body.face_tets.at[face];
   float share = 0.25 * area * share_of(ray, push.rays);
   for (uint k = one ? FACE_CENTRE : 0u; k < FACE_QUARTERS; ++k) {
     vec3 power = share * (one ? sum : q[k]);
     if (power == vec3(0)) continue;
     vec3 l = quarter_centre(k);
-    enter_face(tet, ids, corners, l);
+    start_on_face(tet, ids, corners, l);
     walk(Ray(tet, refracted(incoming(ray, corners * l, normal), normal), power, vec3(0)));
   }
 }
@@ -108,8 +94,8 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   absorbed = vec3(0);
   unscattered = vec3(0);
-  if (i >= push.face_count * push.rays) return;
-  walk_from(i % push.face_count, i / push.face_count);
+  if (i >= push.body.face_count * push.rays) return;
+  walk_from(i % push.body.face_count, i / push.body.face_count);
   // Per workgroup, so that invocations seldom wait for each other.
   add_power(push.sums, 2u * gl_WorkGroupID.x, absorbed);
   add_power(push.sums, 2u * gl_WorkGroupID.x + 1u, unscattered);

@@ -71,6 +71,20 @@ SourceWalk::SourceWalk(vk::Context& context, const Level& level, std::uint32_t n
   crossings_ = vk::upload<glm::uvec2>(context, crossings(level), prefix_ + "crossings");
 }
 
+gpu::BodyRef SourceWalk::body(const LevelBuffers& level, double eta, bool even) const {
+  return {.vertices = level.vertices.address(),
+          .tets = level.tets.address(),
+          .crossings = crossings_.address(),
+          .faces = level.faces.address(),
+          .face_tets = level.face_tets.address(),
+          .face_kinds = level.face_kind.address(),
+          .optical = level.optical.address(),
+          .tet_count = level.tet_count,
+          .face_count = level.face_count,
+          .even = even ? 1u : 0u,
+          .eta = static_cast<float>(eta)};
+}
+
 void SourceWalk::make_room(vk::Context& context, const LevelBuffers& level, const BeamBuffers& beams, Method method) {
   vk::Buffer& deposit = deposits_[carrier(method)];
   const std::uint64_t deposit_bytes = carriers(level, method) * power_bytes;
@@ -92,25 +106,15 @@ void SourceWalk::record(Workspace& work, const LevelBuffers& level, const BeamBu
   work.recorder.fill(unscattered_, 0);
   if (beams.kinds.empty()) return;
   work.recorder.fill(sums_, 0);
-  gpu::WalkSourcePush push{.vertices = level.vertices.address(),
-                           .tets = level.tets.address(),
-                           .crossings = crossings_.address(),
-                           .faces = level.faces.address(),
-                           .face_tets = level.face_tets.address(),
-                           .face_kinds = level.face_kind.address(),
-                           .optical = level.optical.address(),
+  gpu::WalkSourcePush push{.body = body(level, eta, even),
                            .beam = beams.records.address(),
                            .quarter_q = level.beam_q.address(),
                            .scale = work.scale.address(),
                            .deposit = deposits_[carrier(method)].address(),
                            .unscattered = unscattered_.address(),
                            .sums = sums_.address(),
-                           .face_count = level.face_count,
                            .rays = 1,
-                           .tet_count = level.tet_count,
-                           .fem = method == Method::fem ? 1u : 0u,
-                           .even = even ? 1u : 0u,
-                           .eta = static_cast<float>(eta)};
+                           .fem = method == Method::fem ? 1u : 0u};
   for (const std::uint32_t kind : beams.kinds) {
     push.rays = rays(kind);
     work.recorder.dispatch(work.passes.walk_source, push, std::uint64_t{level.face_count} * push.rays, "source walk",

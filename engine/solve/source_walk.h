@@ -31,11 +31,14 @@ class SourceWalk {
   // Throws InputError if the level has too many vertices.
   SourceWalk(vk::Context& context, const Level& level, std::uint32_t number);
 
+  // What rays need of the level. `even`: level.optical is the same everywhere, which saves its reading.
+  gpu::BodyRef body(const LevelBuffers& level, double eta, bool even) const;
+
   // Light, material or shape have changed.
   void invalidate() { walked_ = {false, false}; }
 
   // Walks, unless that has been done for the present light: level.beam_q of every beam, scaled by work.scale. The
-  // graph methods share their deposits. `even`: level.optical is the same everywhere, which saves its reading.
+  // graph methods share their deposits.
   void record(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, Method method, double eta,
               bool even);
 

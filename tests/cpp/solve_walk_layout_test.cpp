@@ -23,14 +23,14 @@ TEST_CASE("the walk and C++ agree on their structs") {
   const SpirvLayout walk((vk::Spirv(walk_source_comp)));
   CHECK(walk.offset.at("BeamRecord") == Members{MEMBER(BeamRecord, kind), MEMBER(BeamRecord, vector)});
   CHECK(walk.block_stride.at("BeamRecords") == sizeof(gpu::BeamRecord));
+  CHECK(walk.offset.at("BodyRef") ==
+        Members{MEMBER(BodyRef, vertices), MEMBER(BodyRef, tets), MEMBER(BodyRef, crossings), MEMBER(BodyRef, faces),
+                MEMBER(BodyRef, face_tets), MEMBER(BodyRef, face_kinds), MEMBER(BodyRef, optical),
+                MEMBER(BodyRef, tet_count), MEMBER(BodyRef, face_count), MEMBER(BodyRef, even), MEMBER(BodyRef, eta)});
   CHECK(walk.offset.at("WalkSourcePush") ==
-        Members{MEMBER(WalkSourcePush, vertices), MEMBER(WalkSourcePush, tets), MEMBER(WalkSourcePush, crossings),
-                MEMBER(WalkSourcePush, faces), MEMBER(WalkSourcePush, face_tets), MEMBER(WalkSourcePush, face_kinds),
-                MEMBER(WalkSourcePush, optical), MEMBER(WalkSourcePush, beam), MEMBER(WalkSourcePush, quarter_q),
+        Members{MEMBER(WalkSourcePush, body), MEMBER(WalkSourcePush, beam), MEMBER(WalkSourcePush, quarter_q),
                 MEMBER(WalkSourcePush, scale), MEMBER(WalkSourcePush, deposit), MEMBER(WalkSourcePush, unscattered),
-                MEMBER(WalkSourcePush, sums), MEMBER(WalkSourcePush, face_count), MEMBER(WalkSourcePush, rays),
-                MEMBER(WalkSourcePush, tet_count), MEMBER(WalkSourcePush, fem), MEMBER(WalkSourcePush, even),
-                MEMBER(WalkSourcePush, eta)});
+                MEMBER(WalkSourcePush, sums), MEMBER(WalkSourcePush, rays), MEMBER(WalkSourcePush, fem)});
   CHECK(sizeof(gpu::WalkSourcePush) <= 128);  // what every device of Vulkan 1.3 has room for
   const SpirvLayout vertex((vk::Spirv(vertex_unscattered_comp)));
   CHECK(vertex.offset.at("VertexUnscatteredPush") ==

@@ -1,0 +1,32 @@
+// The tets of a level as rays see them (tet_ray.glsl), shared with C++ in scalar layout; see shared.h.
+#ifndef QUADGRAPH_BODY_SHARED_H
+#define QUADGRAPH_BODY_SHARED_H
+
+#include "shared.h"
+
+#ifdef __cplusplus
+namespace quadgraph::gpu {
+#endif
+
+// A crossing, out of the face opposite corner k of a tet: (the tet across, or tet_count + face; its new vertex << 8 |
+// for each corner j two bits from 2 j on: its place in the tet across, for k that of the new vertex).
+#define CROSSING_VERTICES 16777216
+
+struct BodyRef {
+  QG_REF(Vec3s) vertices;  // mm
+  QG_REF(Uvec4s) tets;
+  QG_REF(Uvec2s) crossings;  // four per tet
+  QG_REF(Uvec3s) faces;
+  QG_REF(Uints) face_tets;
+  QG_REF(Uints) face_kinds;
+  QG_REF(Opticals) optical;  // per tet
+  uint tet_count;
+  uint face_count;
+  uint even;  // 1: the same coefficients everywhere
+  float eta;
+};
+
+#ifdef __cplusplus
+}  // namespace quadgraph::gpu
+#endif
+#endif
