@@ -33,9 +33,13 @@ struct Level {
   std::span<const glm::uvec4> links;          // entry k across the face opposite vertex k; >= n_t: surface node
   std::span<const glm::vec3> nodes;           // mm; inner nodes, then surface nodes
   std::span<const std::uint32_t> face_kinds;  // FaceKind of each outside face; empty: all are open
-  Transfer inner;                             // inverse distance, inner nodes from inner nodes of the next level
-  Transfer surface;                           // inverse distance, surface nodes from surface nodes of the next level
-  Transfer barycentric;                       // clamped barycentric, vertices from vertices of the next level
+  // Where light that leaves one part enters another; at most one level has it. Rays that met face g of those sent out
+  // from face f: entries g in seen[seen[f]] ... seen[seen[f + 1] - 1], ascending, one for each ray. Empty: not baked.
+  std::span<const std::uint32_t> seen;
+  std::uint32_t seen_rays = 0;  // rays from each face; those without an entry met the sky
+  Transfer inner;               // inverse distance, inner nodes from inner nodes of the next level
+  Transfer surface;             // inverse distance, surface nodes from surface nodes of the next level
+  Transfer barycentric;         // clamped barycentric, vertices from vertices of the next level
   std::uint32_t surface_vertex_count = 0;
 
   bool reflecting(std::uint32_t face) const { return !face_kinds.empty() && face_kinds[face] == face_reflecting; }

@@ -65,7 +65,9 @@ std::string_view name_of(Model model) {
 glm::dvec3 Energy::balance() const {
   glm::dvec3 result{0};
   for (int c = 0; c < 3; ++c) {
-    if (entered[c] > 0) result[c] = (entered[c] - scattered_out[c] - absorbed[c] - unscattered_out[c]) / entered[c];
+    if (!(entered[c] > 0)) continue;
+    const double out = scattered_out[c] + absorbed[c] + unscattered_out[c];
+    result[c] = (entered[c] + re_entered[c] - out) / entered[c];
   }
   return result;
 }

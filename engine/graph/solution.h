@@ -52,16 +52,22 @@ struct SolveOptions {
   // Stop when sqrt(r^T D^-1 r / b^T D^-1 b) <= tolerance in every channel that receives light.
   double tolerance = 1e-3;
   std::uint32_t max_iterations = 5000;  // per level
+  // Light that leaves one part of the body and enters another, bounce by bounce (engine/graph/exchange.h). Only with
+  // Source::buried and a file that has `seen`.
+  bool inter_reflection = true;
+  std::uint32_t bounces = 0;  // 0: from none until converged, at most 64; n: n more from the last state, for motion
 };
 
-// Power per channel. What enters is scattered out, absorbed, or leaves unscattered, for a conservative method.
+// Power per channel. What enters, of the scene's light or again after leaving, is scattered out, absorbed, or leaves
+// unscattered, for a conservative method.
 struct Energy {
-  glm::dvec3 entered{0};          // W, integral of q over the surface
+  glm::dvec3 entered{0};          // W, integral of the scene's q over the surface
+  glm::dvec3 re_entered{0};       // W, of light that had left another part of the body
   glm::dvec3 scattered_out{0};    // W, integral of M over the surface
   glm::dvec3 absorbed{0};         // W, integral of sigma_a times all fluence over the volume
   glm::dvec3 unscattered_out{0};  // W, of the buried source's rays, where they meet the surface from inside
 
-  // (entered - scattered_out - absorbed - unscattered_out) / entered; 0 in a channel without light.
+  // (entered + re_entered - scattered_out - absorbed - unscattered_out) / entered; 0 in a channel without light.
   glm::dvec3 balance() const;
 };
 
@@ -91,6 +97,8 @@ struct SolveReport {
   // 0 with Source::diffuse, whose exitance stays as it is.
   glm::dvec3 clipped{0};
   std::optional<ErrorEstimate> error;
+  bool inter_reflection = false;    // whether light from part to part was followed
+  std::vector<glm::dvec3> bounces;  // W per channel that each bounce brought in
 };
 
 // Surface samples of one level: one per outside face, at its surface node.

@@ -114,6 +114,40 @@ void check_face_kinds(const Place& place, const Level& level) {
   }
 }
 
+// Rows begin one after the other, behind their own n_f + 1 beginnings, and end where the section does.
+void check_seen_rows(const Place& place, const Level& level) {
+  const std::size_t faces = level.faces.size();
+  if (level.seen.size() < faces + 1) {
+    place.fail("seen", std::to_string(level.seen.size()) + " values, expected at least " + std::to_string(faces + 1));
+  }
+  if (level.seen[0] != faces + 1) place.fail("seen", 0, "must begin at " + std::to_string(faces + 1));
+  if (level.seen[faces] != level.seen.size()) {
+    place.fail("seen", "the last row ends at " + std::to_string(level.seen[faces]) + ", the section at " +
+                           std::to_string(level.seen.size()));
+  }
+  for (std::size_t f = 0; f < faces; ++f) {
+    if (level.seen[f + 1] < level.seen[f]) place.fail("seen", f, "ends before it begins");
+    if (level.seen[f + 1] - level.seen[f] > level.seen_rays) place.fail("seen", f, "more entries than seen_rays");
+  }
+}
+
+void check_seen(const Place& place, const Level& level) {
+  if (level.seen.empty()) return;
+  if (level.seen_rays == 0) place.fail("seen_rays", "0 found, 1 or more allowed");
+  check_seen_rows(place, level);
+  for (std::size_t f = 0; f < level.faces.size(); ++f) {
+    const auto row = level.seen.subspan(level.seen[f], level.seen[f + 1] - level.seen[f]);
+    if (!std::is_sorted(row.begin(), row.end())) place.fail("seen", f, "faces are not in ascending order");
+    for (const std::uint32_t face : row) {
+      if (face >= level.faces.size()) {
+        place.fail("seen", f,
+                   "face " + std::to_string(face) + ", allowed is below " + std::to_string(level.faces.size()));
+      }
+      if (face == f) place.fail("seen", f, "a face does not see itself");
+    }
+  }
+}
+
 // Vertices of the face opposite to vertex k of a positive tet, counter-clockwise seen from outside.
 glm::uvec3 outward_face(const glm::uvec4& tet, int k) {
   switch (k) {
@@ -203,6 +237,7 @@ void validate_level(const Level& level, const Level* coarser, const std::string&
     if (level.face_tets[f] >= level.tets.size()) place.fail("face_tets", f, "index out of range");
   }
   check_face_kinds(place, level);
+  check_seen(place, level);
   check_orientation(place, level);
   check_vertices_used(place, level);
   check_links(place, level);
@@ -211,6 +246,15 @@ void validate_level(const Level& level, const Level* coarser, const std::string&
   check_transfer(place, "inner", level.inner, level.tets.size(), coarser->tets.size());
   check_transfer(place, "surface", level.surface, level.faces.size(), coarser->faces.size());
   check_transfer(place, "barycentric", level.barycentric, level.vertices.size(), coarser->vertices.size());
+}
+
+void validate_seen_once(std::span<const Level> levels, const std::string& file) {
+  bool found = false;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    if (levels[i].seen.empty()) continue;
+    if (found) fail_format(file, "level" + std::to_string(i) + "/seen", "only one level may have it");
+    found = true;
+  }
 }
 
 void validate_display(const DisplayMesh& display, const Level& finest, const std::string& file) {

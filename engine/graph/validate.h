@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include "engine/graph/graph.h"
@@ -10,6 +11,9 @@ namespace quadgraph {
 
 // Everything about level `index` alone and its transfers into `coarser` (null for the coarsest level).
 void validate_level(const Level& level, const Level* coarser, const std::string& file, std::uint32_t index);
+
+// At most one level has rows of what its faces see.
+void validate_seen_once(std::span<const Level> levels, const std::string& file);
 
 // Largest vertex index in `faces` plus one.
 std::uint32_t count_surface_vertices(const Level& level);

@@ -45,6 +45,11 @@ void bind_level(py::module_& module) {
       .def_property_readonly(
           "face_kinds", [](const LevelHandle& h) { return flat(h.level->face_kinds, h.graph); },
           "0 open, 1 reflecting; empty if all are open.")
+      .def_property_readonly(
+          "seen", [](const LevelHandle& h) { return flat(h.level->seen, h.graph); },
+          "What faces see: beginnings of rows, then faces met; empty if this level has none.")
+      .def_property_readonly(
+          "seen_rays", [](const LevelHandle& h) { return h.level->seen_rays; }, "Rays from each face behind `seen`.")
       .def_property_readonly("links", [](const LevelHandle& h) { return rows(h.level->links, h.graph); })
       .def_property_readonly("nodes", [](const LevelHandle& h) { return rows(h.level->nodes, h.graph); })
       .def_property_readonly(

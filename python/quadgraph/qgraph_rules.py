@@ -26,7 +26,9 @@ _LEVEL = {
     "links": (_U32, ("n_t", 4)),
     "nodes": (_F32, ("n_n", 3)),
 }
-_OPTIONAL = {"face_kinds": (_U32, ("n_f",))}
+_KINDS = {"face_kinds": (_U32, ("n_f",))}
+_SEEN = {"seen_rays": (_U32, (1,)), "seen": (_U32, ("n_s",))}
+_OPTIONAL = (_KINDS, _SEEN)
 _TRANSFERS = {
     "inner_index": (_U32, ("n_t", 8)),
     "inner_weight": (_F32, ("n_t", 8)),
@@ -53,8 +55,8 @@ def section_names(levels: int, present: Collection[str] = ()) -> list[str]:
     """Names of all sections of a file with that many levels, in file order; optional ones where `present` has them."""
     names = ["metadata"]
     for i in range(levels):
-        optional = [field for field in _OPTIONAL if f"level{i}/{field}" in present]
-        fields = [*_LEVEL, *optional, *(_TRANSFERS if i + 1 < levels else ())]
+        optional = [group for group in _OPTIONAL if any(f"level{i}/{field}" in present for field in group)]
+        fields = [*_LEVEL, *(field for group in optional for field in group), *(_TRANSFERS if i + 1 < levels else ())]
         names += [f"level{i}/{field}" for field in fields]
     return names + [f"display/{field}" for field in _DISPLAY]
 
@@ -72,8 +74,9 @@ def check(sections: dict[str, np.ndarray], metadata: dict[str, Any], name: str) 
         _check_fields(sections, f"level{i}/", _LEVEL, counts, name)
         _check_level({field: sections[f"level{i}/{field}"] for field in _LEVEL}, counts, f"{name}: level{i}")
         if f"level{i}/face_kinds" in sections:
-            _check_fields(sections, f"level{i}/", _OPTIONAL, counts, name)
+            _check_fields(sections, f"level{i}/", _KINDS, counts, name)
             _check_range(sections[f"level{i}/face_kinds"], 2, f"{name}: level{i}/face_kinds")
+    _check_seen(sections, levels, name)
     for i in range(levels - 1):
         _check_fields(sections, f"level{i}/", _TRANSFERS, _level_counts(sections, i), name)
         coarse = _level_counts(sections, i + 1)
@@ -173,6 +176,34 @@ def _check_surface_links(level: dict[str, np.ndarray], n_t: int, n_f: int, where
     for shift in range(3):
         same |= (np.roll(stored, shift, axis=1) == outward).all(axis=1)
     _require(bool(same.all()), f"{where}/faces", "a face is not the outward face of its tet")
+
+
+def _check_seen(sections: dict[str, np.ndarray], levels: int, name: str) -> None:
+    found = [i for i in range(levels) if f"level{i}/seen" in sections]
+    _require(len(found) <= 1, f"{name}: level{found[-1] if found else ''}/seen", "only one level may have it")
+    for i in found:
+        counts = _level_counts(sections, i) | {"n_s": sections[f"level{i}/seen"].size}
+        _check_fields(sections, f"level{i}/", _SEEN, counts, name)
+        rays = int(sections[f"level{i}/seen_rays"][0])
+        _require(rays >= 1, f"{name}: level{i}/seen_rays", "0 found, 1 or more allowed")
+        _check_seen_rows(sections[f"level{i}/seen"].astype(np.int64), rays, counts["n_f"], f"{name}: level{i}/seen")
+
+
+def _check_seen_rows(seen: np.ndarray, rays: int, n_f: int, where: str) -> None:
+    _require(len(seen) >= n_f + 1, where, f"{len(seen)} values found, at least {n_f + 1} needed")
+    begins, faces = seen[: n_f + 1], seen[n_f + 1 :]
+    _require(int(begins[0]) == n_f + 1, where, f"the first row begins at {begins[0]}, {n_f + 1} allowed")
+    _require(int(begins[-1]) == len(seen), where, f"the last row ends at {begins[-1]}, the section at {len(seen)}")
+    lengths = np.diff(begins)
+    _require(bool((lengths >= 0).all()), where, "a row ends before it begins")
+    _require(int(lengths.max()) <= rays, where, f"a row has {lengths.max()} entries, at most {rays} allowed")
+    if not len(faces):
+        return
+    _check_range(faces, n_f, where)
+    rows = np.repeat(np.arange(n_f), lengths)
+    _require(bool((faces != rows).all()), where, "a face does not see itself")
+    # Rows follow each other, so that one ascending key means ascending faces in each.
+    _require(bool((np.diff(rows * n_f + faces) >= 0).all()), where, "faces of a row are not in ascending order")
 
 
 def _check_display(sections: dict[str, np.ndarray], n_f: int, name: str) -> None:

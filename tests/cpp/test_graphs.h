@@ -158,6 +158,10 @@ inline void write_level(GraphWriter& writer, const std::string& prefix, const Ow
   if (!level.face_kinds.empty()) {
     writer.add<std::uint32_t>(prefix + "face_kinds", SectionType::u32, {level.face_kinds.size()}, level.face_kinds);
   }
+  if (!level.seen.empty()) {
+    writer.add<std::uint32_t>(prefix + "seen_rays", SectionType::u32, {1}, std::span(&level.seen_rays, 1));
+    writer.add<std::uint32_t>(prefix + "seen", SectionType::u32, {level.seen.size()}, level.seen);
+  }
   if (coarse == nullptr) return;
   const std::span<const glm::vec3> fine_nodes = level.nodes, coarse_nodes = coarse->nodes;
   write_nearest(writer, prefix + "inner", fine_nodes.first(level.tets.size()), coarse_nodes.first(coarse->tets.size()),

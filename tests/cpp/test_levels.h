@@ -21,7 +21,8 @@ struct OwnedLevel {
   std::vector<glm::vec3> vertices, nodes;
   std::vector<glm::uvec4> tets, links;
   std::vector<glm::uvec3> faces;
-  std::vector<std::uint32_t> face_tets, face_kinds;
+  std::vector<std::uint32_t> face_tets, face_kinds, seen;
+  std::uint32_t seen_rays = 0;
   std::uint32_t surface_vertex_count = 0;
 
   Level view() const {
@@ -33,6 +34,8 @@ struct OwnedLevel {
     level.links = links;
     level.nodes = nodes;
     level.face_kinds = face_kinds;
+    level.seen = seen;
+    level.seen_rays = seen_rays;
     level.surface_vertex_count = surface_vertex_count;
     return level;
   }

@@ -66,6 +66,65 @@ def test_face_kinds_are_optional_and_checked(tmp_path):
     assert list(core.load(path).levels[0].face_kinds) == list(kinds)
 
 
+def _with_seen(parts: tuple[dict, dict[str, np.ndarray]], level: int = 0) -> dict[str, np.ndarray]:
+    """Sections with what the faces of a level see: face 2 sees 5 twice and 7, the last one sees 0."""
+    n_f = len(parts[1][f"level{level}/faces"])
+    begins = np.full(n_f + 1, n_f + 1)
+    begins[3:], begins[-1] = n_f + 4, n_f + 5
+    seen = np.concatenate([begins, [5, 5, 7, 0]]).astype("<u4")
+    result = {}
+    for name, array in parts[1].items():
+        result[name] = array
+        if name == f"level{level}/nodes":
+            result |= {f"level{level}/seen_rays": np.array([3], "<u4"), f"level{level}/seen": seen}
+    return result
+
+
+def test_what_faces_see_is_optional_and_read_as_written(parts, data, tmp_path):
+    core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
+    path, written = tmp_path / "seen.qgraph", _with_seen(parts)
+    qgraph_file.write(path, parts[0], written)
+    finest, coarsest = core.load(path).levels
+    assert list(finest.seen) == list(written["level0/seen"])
+    assert finest.seen_rays == 3
+    assert (len(coarsest.seen), coarsest.seen_rays) == (0, 0)
+    assert qgraph_file.read(path).sections["level0/seen"].tolist() == list(finest.seen)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda s: s.update({"level0/seen_rays": np.zeros(1, "<u4")}), r"level0/seen_rays: 0 found"),
+        (
+            lambda s: s.update({"level0/seen_rays": np.array([2], "<u4")}),
+            r"level0/seen: a row has 3 entries, at most 2",
+        ),
+        (lambda s: s.update({"level0/seen_rays": np.array([2, 2], "<u4")}), r"level0/seen_rays: shape \(2,\)"),
+        (lambda s: s.update({"level0/seen": s["level0/seen"][:12]}), r"level0/seen: 12 values found, at least 13"),
+        (lambda s: s.update({"level0/seen": s["level0/seen"][:-1]}), r"level0/seen: the last row ends at 17"),
+        (lambda s: s["level0/seen"].__setitem__(0, 12), r"level0/seen: the first row begins at 12, 13 allowed"),
+        (lambda s: s["level0/seen"].__setitem__(4, 15), r"level0/seen: a row ends before it begins"),
+        (lambda s: s["level0/seen"].__setitem__(16, 12), r"level0/seen: index 12 found, 0 to 11 allowed"),
+        (lambda s: s["level0/seen"].__setitem__(16, 11), r"level0/seen: a face does not see itself"),
+        (lambda s: s["level0/seen"].__setitem__(14, 8), r"level0/seen: faces of a row are not in ascending order"),
+        (lambda s: s.pop("level0/seen"), r"section level0/seen is missing"),
+        (lambda s: s.pop("level0/seen_rays"), r"section level0/seen_rays is missing"),
+    ],
+)
+def test_broken_rules_of_what_faces_see_are_named(parts, change, message, tmp_path):
+    sections_ = _with_seen(parts)
+    change(sections_)
+    with pytest.raises(FormatError, match=message):
+        qgraph_file.write(tmp_path / "bad.qgraph", parts[0], sections_)
+    assert not list(tmp_path.iterdir())
+
+
+def test_only_one_level_tells_what_its_faces_see(parts, tmp_path):
+    both = _with_seen((parts[0], _with_seen(parts, 0)), 1)
+    with pytest.raises(FormatError, match="level1/seen: only one level may have it"):
+        qgraph_file.write(tmp_path / "bad.qgraph", parts[0], both)
+
+
 def test_every_truncated_prefix_is_refused(data):
     for length in range(len(data)):
         with pytest.raises(FormatError):
