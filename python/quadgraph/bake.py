@@ -15,7 +15,19 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from quadgraph import __version__, child_process, graph, lod, mesh_io, ordering, qgraph_file, relax, repair, sections
+from quadgraph import (
+    __version__,
+    child_process,
+    exchange,
+    graph,
+    lod,
+    mesh_io,
+    ordering,
+    qgraph_file,
+    relax,
+    repair,
+    sections,
+)
 from quadgraph.errors import InputError, QuadGraphError
 from quadgraph.surface import MesherInfo, Repair, SourceMesh, Surface
 from quadgraph.tetrahedralise import (
@@ -28,6 +40,7 @@ from quadgraph.tetrahedralise import (
 ORDERS = {"blocks": ordering.in_blocks, "random": ordering.at_random}
 WORKERS = 2  # levels filled with tets at the same time
 _PACKAGES = ("numpy", "scipy", "pymeshlab", "trimesh")
+_OPTIONS = ("levels", "surface_vertices", "relax_nodes", "order", "visibility_rays")
 
 Progress = Callable[[str], None]
 
@@ -38,7 +51,8 @@ class BakeOptions:
 
     levels: None for as many as make sense; mesher: "tetgen" or "cgal"; grading: K of the paper's sizing field, for
     cgal; relax_nodes: steps that spread the inner nodes; order: "blocks" or "random"; surface_vertices: about how
-    many the finest simulation surface has, None for all of the input's; limits hold for each run of the mesher.
+    many the finest simulation surface has, None for all of the input's; visibility_rays: from each face of one level,
+    to find what sees what, 0 for none; limits hold for each run of the mesher.
     """
 
     unit: str | None = None
@@ -49,13 +63,17 @@ class BakeOptions:
     relax_nodes: int = relax.DEFAULT_STEPS
     order: str = "blocks"
     surface_vertices: int | None = None
+    visibility_rays: int = exchange.DEFAULT_RAYS
     time_limit_s: float = DEFAULT_TIME_LIMIT_S
     memory_limit_bytes: int = DEFAULT_MEMORY_LIMIT_BYTES
 
 
 @dataclass
 class BakeReport:
-    """What a bake did. Times in s; of levels, `seconds` per step; memory in bytes, children apart."""
+    """What a bake did. Times in s; of levels, `seconds` per step; memory in bytes, children apart.
+
+    exchange: what faces see of each other, as `exchange.summary` tells; None if left out.
+    """
 
     output: str
     byte_size: int = 0
@@ -63,6 +81,7 @@ class BakeReport:
     unit_mm: float = 0.0
     repairs: list[dict[str, Any]] = field(default_factory=list)
     levels: list[dict[str, Any]] = field(default_factory=list)
+    exchange: dict[str, Any] | None = None
     notes: list[str] = field(default_factory=list)
     seconds: dict[str, float] = field(default_factory=dict)
     peak_memory: dict[str, int] = field(default_factory=dict)
@@ -104,8 +123,13 @@ def bake(mesh: Path, output: Path, options: BakeOptions, progress: Progress | No
     for entry in repairs:
         tell(f"repaired: {entry.what}: {entry.count:,}")
     levels = _make_levels(surface.rounded(), options, report, tell)
+    graphs = [level.graph for level in levels]
+    with report.timed("exchange"):
+        seen = exchange.bake(graphs, options.visibility_rays)
+    if seen is not None:
+        report.exchange = exchange.summary(seen, graphs[seen.level].boundary)
     with report.timed("transfers"):
-        content = sections.whole_file([level.graph for level in levels], surface)
+        content = sections.whole_file(graphs, surface, seen)
     metadata = _metadata(source, repairs, levels, options)
     with report.timed("write"):
         report.byte_size = qgraph_file.write(output, metadata, content)
@@ -119,6 +143,7 @@ def _check_options(output: Path, options: BakeOptions) -> None:
         raise InputError(f"order: {options.order!r} found, allowed are {', '.join(ORDERS)}")
     if options.relax_nodes < 0:
         raise InputError(f"relax_nodes: {options.relax_nodes} found, 0 or more allowed")
+    exchange.check_rays(options.visibility_rays)
     if not output.parent.is_dir():
         raise InputError(f"{output}: the folder {output.parent} does not exist")
     if output.is_dir():
@@ -189,6 +214,7 @@ def _make_level(surface: Surface, options: BakeOptions) -> _Level:
 
 def _metadata(source: SourceMesh, repairs: list[Repair], levels: list[_Level], options: BakeOptions) -> dict[str, Any]:
     mesher = levels[0].mesher
+    packages = (*_PACKAGES, "embreex") if options.visibility_rays else _PACKAGES
     grading = None
     if options.mesher == "cgal":
         grading = DEFAULT_GRADING if options.grading is None else options.grading
@@ -202,13 +228,13 @@ def _metadata(source: SourceMesh, repairs: list[Repair], levels: list[_Level], o
         },
         "unit_mm": source.unit_mm,
         "mesher": {"name": mesher.name, "version": mesher.version, "options": mesher.options, "grading": grading},
-        "options": {key: getattr(options, key) for key in ("levels", "surface_vertices", "relax_nodes", "order")},
+        "options": {key: getattr(options, key) for key in _OPTIONS},
         "repairs": [asdict(entry) for entry in repairs],
         "levels": [sections.level_metadata(level.graph) for level in levels],
         "tools": {
             "python": platform.python_version(),
             mesher.name: mesher.version,
-            **{package: importlib.metadata.version(package) for package in _PACKAGES},
+            **{package: importlib.metadata.version(package) for package in packages},
         },
     }
 

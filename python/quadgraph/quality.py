@@ -8,6 +8,7 @@ import numpy as np
 
 from quadgraph.ordering import locality
 from quadgraph.qgraph_file import QGraphFile
+from quadgraph.surface import Surface
 
 _EDGES = np.array([[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]])
 _OPPOSITE = np.array([[2, 3], [1, 3], [1, 2], [0, 3], [0, 2], [0, 1]])
@@ -23,6 +24,11 @@ def dihedral_angles(vertices: np.ndarray, tets: np.ndarray) -> np.ndarray:
         sine = np.linalg.norm(np.cross(one, other), axis=1)
         angles.append(np.degrees(np.arctan2(sine, np.einsum("ij,ij->i", one, other))))
     return np.stack(angles, axis=1)
+
+
+def boundary(file: QGraphFile, number: int) -> Surface:
+    """The outside faces of one level, mm."""
+    return Surface(file.sections[f"level{number}/vertices"].astype(np.float64), file.sections[f"level{number}/faces"])
 
 
 def of_level(file: QGraphFile, number: int) -> dict[str, Any]:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from quadgraph import display_map, transfer
+from quadgraph.exchange import Seen
 from quadgraph.graph import Graph
 from quadgraph.surface import Surface
 
@@ -60,11 +61,22 @@ def display(surface: Surface, finest: Graph) -> dict[str, np.ndarray]:
     }
 
 
-def whole_file(graphs: Sequence[Graph], surface: Surface) -> dict[str, np.ndarray]:
-    """All sections but the metadata, in file order; `graphs` finest first, `surface` the display mesh."""
+def exchange(seen: Seen) -> dict[str, np.ndarray]:
+    """Sections of what the faces of one level see of each other."""
+    prefix = f"level{seen.level}/seen"
+    return {f"{prefix}_rays": _u32(np.array([seen.rays])), prefix: _u32(seen.table)}
+
+
+def whole_file(graphs: Sequence[Graph], surface: Surface, seen: Seen | None = None) -> dict[str, np.ndarray]:
+    """All sections but the metadata, in file order.
+
+    graphs: finest first; surface: the display mesh; seen: what the faces of one of them see, None to leave it out.
+    """
     sections = {}
     for number, graph in enumerate(graphs):
         sections |= level(number, graph)
+        if seen is not None and seen.level == number:
+            sections |= exchange(seen)
         if number + 1 < len(graphs):
             sections |= transfers(number, graph, graphs[number + 1])
     return sections | display(surface, graphs[0])

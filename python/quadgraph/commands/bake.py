@@ -53,6 +53,13 @@ def _add_mesh_options(parser: argparse.ArgumentParser) -> None:
         "--relax-nodes", type=steps, metavar="N", help="steps that spread the inner nodes evenly (default: 16; 0: none)"
     )
     parser.add_argument(
+        "--visibility-rays",
+        type=steps,
+        metavar="N",
+        help="rays from each face of one level that find which parts of the body see each other, so that light that "
+        "leaves one enters another (default: 256; 0: none)",
+    )
+    parser.add_argument(
         "--order", choices=("blocks", "random"), default="blocks", help="of nodes in memory (default: %(default)s)"
     )
 
@@ -99,6 +106,7 @@ def _options(args: argparse.Namespace):
         "relax_nodes": args.relax_nodes,
         "order": args.order,
         "surface_vertices": args.surface_vertices,
+        "visibility_rays": args.visibility_rays,
         "time_limit_s": args.time_limit,
         "memory_limit_bytes": int(args.memory_limit * 1e9) if args.memory_limit else None,
     }
@@ -117,10 +125,21 @@ def _print_report(report: BakeReport) -> None:
         f"link lengths vary by {100 * variation['before']['local']:.1f}% of their local mean, "
         f"{100 * variation['after']['local']:.1f}% after relaxing"
     )
+    console.print(exchange_line(report.exchange))
     console.print("time: " + ", ".join(f"{stage} {seconds:.1f} s" for stage, seconds in report.seconds.items()))
     memory = report.peak_memory
     console.print(f"memory: {memory['self'] / 1e6:.0f} MB, largest child {memory['largest_child'] / 1e6:.0f} MB")
     console.print(f"wrote {report.output}: {report.byte_size / 1e6:.1f} MB", markup=False)
+
+
+def exchange_line(summary: dict | None) -> str:
+    """One line about which parts see each other: `exchange.summary`, None where that was left out."""
+    if summary is None:
+        return "exchange: none, light that leaves the body does not enter it again"
+    return (
+        f"exchange: the body sees itself in {100 * summary['share']:.1f}% of all directions, "
+        f"by {summary['rays']:,} rays a face on level {summary['level']}, {summary['bytes'] / 1e6:.2f} MB"
+    )
 
 
 def level_table(levels: list[dict]) -> Table:

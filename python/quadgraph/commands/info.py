@@ -11,7 +11,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from quadgraph.commands.bake import level_table
+from quadgraph.commands.bake import exchange_line, level_table
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -37,9 +37,11 @@ def run(args: argparse.Namespace) -> int:
 def describe(file) -> dict[str, Any]:
     """Return metadata, sections and mesh quality of a QGraphFile as plain values.
 
-    Angles in degrees, lengths in mm; node counts and dihedral angles per level.
+    Angles in degrees, lengths in mm; node counts and dihedral angles per level; `exchange.summary` or None.
     """
-    from quadgraph import quality
+    from quadgraph import exchange, quality
+
+    seen = exchange.from_file(file)
 
     return {
         "byte_size": file.byte_size,
@@ -49,6 +51,7 @@ def describe(file) -> dict[str, Any]:
             for name, array in file.sections.items()
         ],
         "levels": [quality.of_level(file, number) for number in range(file.level_count)],
+        "exchange": None if seen is None else exchange.summary(seen, quality.boundary(file, seen.level)),
         "display": {
             "vertices": len(file.sections["display/vertices"]),
             "triangles": len(file.sections["display/triangles"]),
@@ -78,6 +81,7 @@ def _print_facts(name: str, facts: dict[str, Any]) -> None:
     ]
     for line in lines:
         console.print(line, markup=False, soft_wrap=True)
+    console.print(exchange_line(facts["exchange"]), soft_wrap=True)
     console.print(level_table(metadata["levels"]))
     console.print(_quality_table(facts["levels"]))
     console.print(_section_table(facts["sections"]))

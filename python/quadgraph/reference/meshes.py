@@ -98,6 +98,27 @@ def two_layer_ball(core_radius: float, radius: float, refinements: int, layers: 
     return _built(vertices, np.concatenate([core.tets, *tets]))
 
 
+def shell(inner: float, outer: float, layers: int, subdivisions: int = 2) -> Graph:
+    """The body between two concentric spheres, mm: icospheres of 20 * 4^subdivisions triangles with prisms between."""
+    sphere = trimesh.creation.icosphere(subdivisions=subdivisions, radius=1)
+    triangles = np.sort(np.array(sphere.faces, np.int64), axis=1)
+    radii = np.linspace(inner, outer, layers + 1)
+    vertices = np.concatenate([radius * np.array(sphere.vertices) for radius in radii])
+    starts = len(sphere.vertices) * np.arange(layers + 1)
+    return _built(vertices, np.concatenate([_prisms(triangles + a, triangles + b) for a, b in pairwise(starts)]))
+
+
+def facing_plates(edge: float, thickness: float, gap: float, across: int) -> Graph:
+    """Two square plates, edge x edge x thickness mm, that face each other across `gap` mm in z; `across` cells along x
+    and y.
+    """
+    side = np.linspace(-edge / 2, edge / 2, across + 1)
+    plates = [box(side, side, z + np.array([0, thickness]), _no_wall) for z in (gap / 2, -gap / 2 - thickness)]
+    start = len(plates[0].vertices)
+    vertices = np.concatenate([plate.vertices for plate in plates])
+    return _built(vertices, np.concatenate([plates[0].tets, plates[1].tets + start]))
+
+
 def cylinder(radius: float, rings: int) -> Graph:
     """A segment of an infinite cylinder about z, as high as a ring is wide, its end caps reflecting."""
     points, triangles = _disc(radius, rings)
@@ -154,6 +175,10 @@ def write(path: Path, graphs: list[Graph]) -> Path:
     }
     qgraph_file.write(path, metadata, sections.whole_file(graphs, display))
     return path
+
+
+def _no_wall(normal: np.ndarray) -> np.ndarray:
+    return np.zeros(len(normal), bool)
 
 
 def _built(points: np.ndarray, tets: np.ndarray) -> Graph:
