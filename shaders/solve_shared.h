@@ -62,11 +62,12 @@ const uint FACE_REFLECTING = 1u;
 const uint BEAM_DIRECTIONAL = 0u;
 const uint BEAM_POINT = 1u;
 const uint BEAM_LAMBERTIAN = 2u;
+const uint BEAM_MEAN = 3u;
 
 // How the light of one source comes in, wherever it does.
 struct BeamRecord {
   uint kind;    // BEAM_*
-  vec3 vector;  // directional: unit, the way the light travels; point: where it comes from, mm; Lambertian: unused
+  vec3 vector;  // directional: unit, the way the light travels; point: where it comes from, mm; others: unused
 };
 
 // Rays of a Lambertian beam from one origin: at outside cosine sqrt(u), u the four Gauss-Legendre nodes on [0, 1], two
@@ -75,6 +76,12 @@ struct BeamRecord {
 const uint LAMBERTIAN_NODES = 4u;
 const float LAMBERTIAN_U[4] = {0.0694318442f, 0.3300094782f, 0.6699905218f, 0.9305681558f};
 const float LAMBERTIAN_W[4] = {0.1739274226f, 0.3260725774f, 0.3260725774f, 0.1739274226f};
+
+// BEAM_MEAN is even light by one ray from an origin, at the mean inside cosine of those of a Lambertian beam: for light
+// that re-enters, bounce after bounce. On face f it has the azimuth (f GOLDEN_TURN mod 2^32) / 2^32 turns, from the
+// face's first edge t1 towards normal x t1. The golden ratio's fraction in units of 2^-32: integers turn alike on CPU
+// and GPU.
+const uint GOLDEN_TURN = 2654435769u;
 
 // A ray ends where each channel has kept less than this share of its power, and what is left stays there.
 const float WALK_END = 1e-3f;

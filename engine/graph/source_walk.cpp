@@ -5,38 +5,11 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "engine/graph/fresnel.h"
+#include "engine/graph/entering.h"
 #include "engine/graph/ray.h"
 
 namespace quadgraph {
 namespace {
-
-struct FaceFrame {
-  std::array<glm::dvec3, 3> corners;
-  glm::dvec3 normal;  // unit, outward
-  double area;        // mm^2
-};
-
-FaceFrame frame_of(const Level& level, std::uint32_t f) {
-  FaceFrame frame;
-  for (int k = 0; k < 3; ++k)
-    frame.corners[static_cast<std::size_t>(k)] = glm::dvec3(level.vertices[level.faces[f][k]]);
-  const glm::dvec3 n = glm::cross(frame.corners[1] - frame.corners[0], frame.corners[2] - frame.corners[0]);
-  frame.normal = glm::normalize(n);
-  frame.area = 0.5 * glm::length(n);
-  return frame;
-}
-
-glm::dvec3 point_at(const FaceFrame& frame, const glm::dvec3& barycentric) {
-  return barycentric[0] * frame.corners[0] + barycentric[1] * frame.corners[1] + barycentric[2] * frame.corners[2];
-}
-
-// Refraction of `outside` (unit, towards the surface) at outward normal n. At grazing incidence it still goes in.
-glm::dvec3 refract(const glm::dvec3& outside, const glm::dvec3& n, double eta) {
-  const double cos_i = std::max(-glm::dot(outside, n), 0.0);
-  const double cos_t = std::sqrt(1.0 - (1.0 - cos_i * cos_i) / (eta * eta));
-  return glm::normalize(outside / eta + (cos_i / eta - cos_t) * n);
-}
 
 // Two unit vectors that make a frame with n, by the branchless construction of Duff et al. 2017.
 std::pair<glm::dvec3, glm::dvec3> tangents(const glm::dvec3& n) {
@@ -83,6 +56,7 @@ class Beam {
     if (power == glm::dvec3(0)) return;
     result_.entered += power;
     if (beam_.kind == gpu::BEAM_LAMBERTIAN) return lambertian(f, frame, barycentric, power);
+    if (beam_.kind == gpu::BEAM_MEAN) return ray_.run(f, barycentric, mean_direction(frame, f, problem_.eta), power);
     const glm::dvec3 vector(beam_.vector);
     const glm::dvec3 outside =
         beam_.kind == gpu::BEAM_DIRECTIONAL ? vector : glm::normalize(point_at(frame, barycentric) - vector);
@@ -91,19 +65,13 @@ class Beam {
 
   void lambertian(std::uint32_t f, const FaceFrame& frame, const glm::dvec3& barycentric, const glm::dvec3& power) {
     const auto [t1, t2] = tangents(frame.normal);
-    std::array<double, gpu::LAMBERTIAN_NODES> weight;
-    double sum = 0;
-    for (std::size_t k = 0; k < weight.size(); ++k) {
-      const double mu = std::sqrt(static_cast<double>(gpu::LAMBERTIAN_U[k]));
-      weight[k] = static_cast<double>(gpu::LAMBERTIAN_W[k]) * fresnel_transmittance(mu, problem_.eta);
-      sum += weight[k];
-    }
-    for (std::size_t k = 0; k < weight.size(); ++k) {
+    const LambertianBundle bundle = lambertian_bundle(problem_.eta);
+    for (std::size_t k = 0; k < bundle.mu.size(); ++k) {
       const double u = static_cast<double>(gpu::LAMBERTIAN_U[k]);
       const glm::dvec3 across = std::sqrt(1.0 - u) * (k % 2 == 0 ? t1 : t2);
       for (const double side : {1.0, -1.0}) {
         const glm::dvec3 outside = side * across - std::sqrt(u) * frame.normal;
-        ray_.run(f, barycentric, refract(outside, frame.normal, problem_.eta), power * (0.5 * weight[k] / sum));
+        ray_.run(f, barycentric, refract(outside, frame.normal, problem_.eta), power * (0.5 * bundle.share[k]));
       }
     }
   }
