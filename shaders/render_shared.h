@@ -3,7 +3,7 @@
 #ifndef QUADGRAPH_RENDER_SHARED_H
 #define QUADGRAPH_RENDER_SHARED_H
 
-#include "shared.h"
+#include "gather_shared.h"
 
 #ifdef __cplusplus
 namespace quadgraph::gpu {
@@ -82,26 +82,32 @@ struct SurfaceScene {
   QG_REF(Vec3s) barycentric;  // and where in it
   QG_REF(Uvec3s) faces;       // level 0
   QG_REF(Vec3s) exitance;     // per surface vertex of level 0, W/mm^2
+  QG_REF(Vec3s) unscattered;  // the same
   QG_REF(LightRecords) lights;
   QG_REF(ShadowViews) views;
+  QG_REF(Uints) triangle_face;  // per display triangle: outside face of level 0
+  QG_REF(GatherPoints) points;
+  QG_REF(GatherScales) scale;
+  BodyRef body;
 };
 
 #ifndef __cplusplus
 QG_ARRAY(SurfaceScenes, SurfaceScene);
 #endif
 
-// surface.vert, surface.frag: radiance of the display mesh.
+// surface.vert, surface.frag, surface_gathered.frag: radiance of the display mesh.
 struct SurfacePush {
   QG_REF(SurfaceScenes) scene;  // one
 };
 
+// Layers of a picture: scattered, specular and unscattered radiance, and transmittance.
+#define PICTURE_LAYERS 4
+
 // resolve.comp: mean of 2 x 2 samples of a tile into the picture.
 struct ResolvePush {
-  QG_REF(Vec4s) diffuse_samples;   // RGB, coverage
-  QG_REF(Vec4s) specular_samples;  // RGB, unused
-  QG_REF(Floats) diffuse;          // RGB per pixel, written
-  QG_REF(Floats) specular;         // RGB per pixel, written
-  QG_REF(Floats) alpha;            // per pixel, written
+  QG_REF(Vec4s) samples[PICTURE_LAYERS];  // RGB and, of the first, coverage
+  QG_REF(Floats) layers[PICTURE_LAYERS];  // RGB per pixel, written
+  QG_REF(Floats) alpha;                   // per pixel, written
   uint tile_x;                     // first pixel of the tile in the picture
   uint tile_y;
   uint tile_width;  // pixels of the tile inside the picture

@@ -11,14 +11,11 @@ void main() {
   uint x = i % push.tile_width, y = i / push.tile_width;
   uint s = 2u * y * push.sample_stride + 2u * x;
   uint below = s + push.sample_stride;
-  vec4 diffuse = 0.25 * (push.diffuse_samples.at[s] + push.diffuse_samples.at[s + 1u] +
-                         push.diffuse_samples.at[below] + push.diffuse_samples.at[below + 1u]);
-  vec4 specular = 0.25 * (push.specular_samples.at[s] + push.specular_samples.at[s + 1u] +
-                          push.specular_samples.at[below] + push.specular_samples.at[below + 1u]);
   uint pixel = (push.tile_y + y) * push.picture_width + push.tile_x + x;
-  for (uint c = 0u; c < 3u; ++c) {
-    push.diffuse.at[3u * pixel + c] = diffuse[c];
-    push.specular.at[3u * pixel + c] = specular[c];
+  for (uint layer = 0u; layer < PICTURE_LAYERS; ++layer) {
+    Vec4s samples = push.samples[layer];
+    vec4 mean = 0.25 * (samples.at[s] + samples.at[s + 1u] + samples.at[below] + samples.at[below + 1u]);
+    for (uint c = 0u; c < 3u; ++c) push.layers[layer].at[3u * pixel + c] = mean[c];
+    if (layer == 0u) push.alpha.at[pixel] = mean.a;
   }
-  push.alpha.at[pixel] = diffuse.a;
 }

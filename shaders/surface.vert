@@ -5,7 +5,8 @@
 layout(push_constant, scalar) uniform Block { SurfacePush push; };
 layout(location = 0) out vec3 position;  // mm
 layout(location = 1) out vec3 normal;
-layout(location = 2) out vec3 exitance;  // W/mm^2
+layout(location = 2) out vec3 exitance;              // W/mm^2
+layout(location = 3) out vec3 unscattered_exitance;  // W/mm^2
 
 void main() {
   SurfaceScenes scene = push.scene;
@@ -13,7 +14,10 @@ void main() {
   normal = scene.at[0].normals.at[gl_VertexIndex];
   uvec3 face = scene.at[0].faces.at[scene.at[0].face.at[gl_VertexIndex]];
   vec3 weight = scene.at[0].barycentric.at[gl_VertexIndex];
-  exitance = vec3(0.0);
-  for (int k = 0; k < 3; ++k) exitance += weight[k] * scene.at[0].exitance.at[face[k]];
+  exitance = unscattered_exitance = vec3(0.0);
+  for (int k = 0; k < 3; ++k) {
+    exitance += weight[k] * scene.at[0].exitance.at[face[k]];
+    unscattered_exitance += weight[k] * scene.at[0].unscattered.at[face[k]];
+  }
   gl_Position = scene.at[0].clip_from_world * vec4(position, 1.0);
 }

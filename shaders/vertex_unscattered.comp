@@ -19,6 +19,6 @@ void main() {
     area += 0.5 * length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));
     power += power_at(push.unscattered, face);
   }
-  if (area == 0.0) return;
-  push.exitance.at[v] = push.exitance.at[v] * push.factor.at[0] + power / area * push.scale.at[0].scale;
+  push.vertex_unscattered.at[v] = area > 0.0 ? power / area * push.scale.at[0].scale : vec3(0);
+  push.exitance.at[v] *= push.factor.at[0];
 }

@@ -49,7 +49,7 @@ struct RightHandSideBuriedPush {
   uint per_volume;     // 1: quadgraph-fdm
 };
 
-// vertex_unscattered.comp: multiplies the exitance at surface vertices by a factor and adds the unscattered light.
+// vertex_unscattered.comp: multiplies the exitance at surface vertices by a factor, and gives that of unscattered light.
 struct VertexUnscatteredPush {
   QG_REF(Vec3s) vertices;
   QG_REF(Uvec3s) faces;
@@ -59,6 +59,7 @@ struct VertexUnscatteredPush {
   QG_REF(Scales) scale;
   QG_REF(Vec3s) factor;  // one
   QG_REF(Vec3s) exitance;
+  QG_REF(Vec3s) vertex_unscattered;  // W/mm^2, written
   uint count;
 };
 

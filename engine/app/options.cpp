@@ -24,6 +24,7 @@ struct Typed {
   std::uint32_t max_iterations = 5000;
   std::string size = "1024x1024", exposure = "auto", background = "studio";
   float roughness = 0.3f;
+  std::string radiance = "auto";
   std::string device;
   bool headless = false, validation = false, json = false;
 };
@@ -81,6 +82,11 @@ void declare_picture(CLI::App& app, Typed& typed) {
   app.add_option("-o,--output", typed.output, "picture to write: .png (sRGB) or .exr (linear, layers)")
       ->group("Picture");
   app.add_option("--size", typed.size, "WIDTHxHEIGHT in pixels")->capture_default_str()->group("Picture");
+  app.add_option("--radiance", typed.radiance,
+                 "gathered (one more step of transport along every view ray), lambertian (the same from every side but "
+                 "for Fresnel), or auto: gathered where it can be (fem, buried)")
+      ->capture_default_str()
+      ->group("Picture");
   app.add_option("--exposure", typed.exposure, "auto, or stops: radiance times 2^stops")
       ->capture_default_str()
       ->group("Picture");
@@ -148,6 +154,7 @@ AppOptions understood(const Typed& typed) {
                    .max_iterations = typed.max_iterations};
   parse_size(typed.size, options.render);
   options.render.roughness = typed.roughness;
+  options.render.radiance = radiance_from_name(typed.radiance);
   options.tone.exposure_stops = parse_exposure(typed.exposure);
   parse_background(typed.background, options.tone);
   options.device = {.validation = typed.validation, .device = typed.device};

@@ -4,6 +4,7 @@
 
 #include "engine/graph/error.h"
 #include "engine/graph/material.h"
+#include "engine/render/display_faces.h"
 #include "engine/render/irradiance.h"
 #include "engine/render/metadata.h"
 #include "engine/render/rasteriser.h"
@@ -36,6 +37,9 @@ void add(std::vector<PassStats>& passes, const PassStats& more) {
   same->bytes += more.bytes;
   same->count += more.count;
 }
+
+constexpr std::pair<Radiance, std::string_view> radiance_names[] = {
+    {Radiance::gathered, "gathered"}, {Radiance::lambertian, "lambertian"}, {Radiance::automatic, "auto"}};
 
 std::vector<gpu::BeamRecord> beams_of(const std::vector<Light>& lights) {
   std::vector<gpu::BeamRecord> beams;
@@ -82,8 +86,35 @@ struct Engine::Implementation {
   SolveOptions options;
   std::optional<SolveReport> report;
   std::optional<View> view;
-  std::vector<PassStats> irradiance_passes, render_passes;
+  Radiance radiance = Radiance::automatic;  // of the last picture
+  std::optional<RadianceProbe> probe;       // made at first use
+  vk::Buffer triangle_face;                 // display_faces.h, made at first use
+  std::vector<PassStats> irradiance_passes, gather_passes, render_passes;
+
+  const GatherField& gather() {
+    std::vector<PassStats> passes;
+    const GatherField& field = simulation.gather(passes);
+    if (!passes.empty()) gather_passes = std::move(passes);
+    if (triangle_face.size() == 0) {
+      triangle_face = vk::upload<std::uint32_t>(context, display_faces(graph.display(), graph.levels()[0]),
+                                                "faces of display triangles");
+    }
+    return field;
+  }
 };
+
+Radiance radiance_from_name(std::string_view name) {
+  for (const auto& [radiance, text] : radiance_names) {
+    if (text == name) return radiance;
+  }
+  throw InputError("radiance '" + std::string(name) + "': allowed are gathered, lambertian, auto");
+}
+
+std::string_view name_of(Radiance radiance) {
+  return std::find_if(std::begin(radiance_names), std::end(radiance_names),
+                      [&](const auto& entry) { return entry.first == radiance; })
+      ->second;
+}
 
 Engine::Engine(const std::filesystem::path& path, const vk::ContextOptions& device)
     : implementation_(std::make_unique<Implementation>(path, device)) {}
@@ -156,6 +187,7 @@ void Engine::update_irradiance() {
 SolveReport Engine::solve(const SolveOptions& options) {
   auto& self = *implementation_;
   if (self.irradiance_stale) update_irradiance();
+  self.gather_passes.clear();
   self.report = self.simulation.solve(options);
   self.options = options;
   return *self.report;
@@ -171,24 +203,42 @@ Picture Engine::render(const View& view, const RenderOptions& options) {
   if (!self.report) throw InputError("render: solve first; there is no exitance to show");
   const Camera camera =
       place_camera(view, self.bounds, static_cast<float>(options.width) / static_cast<float>(options.height));
+  std::optional<GatherView> gather;
+  if (options.radiance == Radiance::gathered ||
+      (options.radiance == Radiance::automatic && self.simulation.can_gather())) {
+    const GatherField& field = self.gather();
+    gather.emplace(field, self.triangle_face);
+  }
   RasterResult result = self.rasteriser.run({.mesh = self.mesh,
                                              .finest = self.simulation.level(0),
                                              .vertex_exitance = self.simulation.vertex_exitance(),
+                                             .vertex_unscattered = self.simulation.vertex_unscattered(),
                                              .shadows = self.shadows,
                                              .eta = self.simulation.eta(),
-                                             .roughness = options.roughness},
+                                             .roughness = options.roughness,
+                                             .gather = gather ? &*gather : nullptr},
                                             camera, options.width, options.height);
   self.view = view;
+  self.radiance = gather ? Radiance::gathered : Radiance::lambertian;
   self.render_passes = std::move(result.passes);
   return std::move(result.picture);
 }
 
+Leaving Engine::leaving(std::span<const std::uint32_t> face, std::span<const glm::vec3> direction) {
+  auto& self = *implementation_;
+  if (!self.report) throw InputError("radiance: solve first");
+  const GatherField& field = self.gather();
+  if (!self.probe) self.probe.emplace(self.context);
+  return self.probe->run(self.graph.levels()[0], field, self.simulation.eta(), face, direction);
+}
+
 std::vector<PassStats> Engine::passes() const {
   const auto& self = *implementation_;
-  std::vector<PassStats> all = self.irradiance_passes;
-  const auto& solve_passes = self.simulation.passes();
-  all.insert(all.end(), solve_passes.begin(), solve_passes.end());
-  all.insert(all.end(), self.render_passes.begin(), self.render_passes.end());
+  std::vector<PassStats> all;
+  for (const auto* passes :
+       {&self.irradiance_passes, &self.simulation.passes(), &self.gather_passes, &self.render_passes}) {
+    all.insert(all.end(), passes->begin(), passes->end());
+  }
   return all;
 }
 
@@ -203,8 +253,8 @@ std::uint64_t Engine::peak_device_bytes() const {
 Metadata Engine::metadata() const {
   const auto& self = *implementation_;
   if (!self.report) return {};
-  return describe(
-      {self.source, self.material, self.lights, self.options, *self.report, self.view, self.context.info()});
+  return describe({self.source, self.material, self.lights, self.options, *self.report, self.view,
+                   name_of(self.radiance), self.context.info()});
 }
 
 }  // namespace quadgraph

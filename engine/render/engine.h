@@ -14,14 +14,27 @@
 #include "engine/render/camera.h"
 #include "engine/render/lights.h"
 #include "engine/render/picture.h"
+#include "engine/render/radiance_probe.h"
 #include "engine/solve/simulation.h"
 #include "engine/vk/context.h"
 
 namespace quadgraph {
 
+// How radiance leaves the surface.
+enum class Radiance {
+  gathered,    // one more step of transport along every view ray, scaled to the exitance; fem with the buried source
+  lambertian,  // the same from every side but for Fresnel
+  automatic,   // "auto": gathered where that is possible
+};
+
+// "gathered", "lambertian", "auto". Throws InputError listing the allowed names.
+Radiance radiance_from_name(std::string_view name);
+std::string_view name_of(Radiance radiance);
+
 struct RenderOptions {
   std::uint32_t width = 1024, height = 1024;  // pixels, 1 to 16384 each; every pixel is the mean of 2 x 2 samples
   float roughness = 0.3f;                     // alpha of the GGX distribution of the surface, 0.02 to 1
+  Radiance radiance = Radiance::automatic;
 };
 
 class Engine {
@@ -61,8 +74,13 @@ class Engine {
   // Level 0 of the last solve.
   SurfaceField surface_field() const;
 
-  // The last solve's exitance seen from `view`. Throws InputError before a solve or on an option out of range.
+  // The last solve seen from `view`. Throws InputError before a solve, on an option out of range, or if radiance is to
+  // be gathered and cannot be.
   Picture render(const View& view, const RenderOptions& options = {});
+
+  // Gathered radiance of the last solve that leaves the centroids of outside faces of level 0 along unit directions.
+  // Throws InputError as `render` and as RadianceProbe::run.
+  Leaving leaving(std::span<const std::uint32_t> face, std::span<const glm::vec3> direction);
 
   // Passes of the last update_irradiance, solve and render, in this order.
   std::vector<PassStats> passes() const;

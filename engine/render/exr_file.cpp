@@ -32,13 +32,17 @@ void write_exr(const std::filesystem::path& path, const Picture& picture, const 
     header.insert(key, Imf::StringAttribute(value));
 
   // OpenEXR's frame buffer wants non-const memory for reading and writing alike.
-  std::vector<float> diffuse = picture.diffuse, specular = picture.specular, alpha = picture.alpha;
-  std::vector<float> sum(diffuse.size());
-  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = diffuse[i] + specular[i];
+  Picture layers = picture;
+  std::vector<float>& alpha = layers.alpha;
+  std::vector<float> sum(layers.scattered.size());
+  for (std::size_t i = 0; i < sum.size(); ++i)
+    sum[i] = layers.scattered[i] + layers.specular[i] + layers.unscattered[i];
   Imf::FrameBuffer frame;
   add_rgb(header, frame, "", sum, picture.width);
-  add_rgb(header, frame, "diffuse.", diffuse, picture.width);
-  add_rgb(header, frame, "specular.", specular, picture.width);
+  add_rgb(header, frame, "scattered.", layers.scattered, picture.width);
+  add_rgb(header, frame, "specular.", layers.specular, picture.width);
+  add_rgb(header, frame, "unscattered.", layers.unscattered, picture.width);
+  add_rgb(header, frame, "transmittance.", layers.transmittance, picture.width);
   header.channels().insert("A", Imf::Channel(Imf::FLOAT));
   frame.insert(
       "A", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(alpha.data()), sizeof(float), sizeof(float) * picture.width));

@@ -53,7 +53,10 @@ Metadata describe(const PictureFacts& facts) {
                        {"error", error_text(facts.report.error)},
                        {"units", "W/(mm^2 sr)"},
                        {"device", facts.device.name + ", " + facts.device.driver}};
-  if (facts.view) metadata.emplace_back("camera", camera_text(*facts.view));
+  if (facts.view) {
+    metadata.emplace_back("camera", camera_text(*facts.view));
+    metadata.emplace_back("radiance", std::string(facts.radiance));
+  }
   return metadata;
 }
 

@@ -24,6 +24,7 @@ struct PictureFacts {
   const SolveOptions& options;
   const SolveReport& report;
   std::optional<View> view;
+  std::string_view radiance;  // of the picture
   const vk::DeviceInfo& device;
 };
 

@@ -1,6 +1,7 @@
 // A rendered picture in linear radiance, and its files.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -14,9 +15,17 @@ namespace quadgraph {
 // Row after row, the top one first. Radiance is premultiplied by alpha, as in EXR.
 struct Picture {
   std::uint32_t width = 0, height = 0;
-  std::vector<float> diffuse;  // RGB per pixel, W/(mm^2 sr): light that came through the body; may be slightly negative
-  std::vector<float> specular;  // RGB per pixel, W/(mm^2 sr): light reflected by the surface
-  std::vector<float> alpha;     // per pixel, share of the pixel that the object covers
+  // RGB per pixel, W/(mm^2 sr): light that was scattered in the body (the published source may leave it slightly
+  // negative), that the surface reflected, and that crossed the body without being scattered. They add up to the
+  // picture.
+  std::vector<float> scattered, specular, unscattered;
+  std::vector<float> transmittance;  // RGB per pixel: share of what is behind the body that is seen through it
+  std::vector<float> alpha;          // per pixel, share of the pixel that the object covers
+
+  // The sum of the three layers at a value (pixel and channel), what is negative counting as none.
+  float radiance(std::size_t value) const {
+    return std::max(scattered[value], 0.0f) + specular[value] + unscattered[value];
+  }
 };
 
 // Name and value of everything needed to make the picture again and to judge it.
@@ -31,8 +40,8 @@ std::vector<std::uint8_t> to_srgb8(const Picture& picture, const ToneOptions& op
 void write_png(const std::filesystem::path& path, const Picture& picture, const ToneOptions& options,
                const Metadata& metadata);
 
-// EXR: float32 linear and not exposed, channels R, G, B (diffuse + specular), A, diffuse.R/G/B, specular.R/G/B;
-// metadata as string attributes.
+// EXR: float32 linear and not exposed, channels R, G, B (the sum of the layers), A, and R, G, B of the layers
+// scattered, specular, unscattered and transmittance; metadata as string attributes.
 void write_exr(const std::filesystem::path& path, const Picture& picture, const ToneOptions& options,
                const Metadata& metadata);
 

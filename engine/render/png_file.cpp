@@ -90,10 +90,10 @@ std::vector<std::uint8_t> to_srgb8(const Picture& picture, const ToneOptions& op
       const float alpha = picture.alpha[i];
       const float threshold = dither(x, y);
       for (std::size_t c = 0; c < 3; ++c) {
-        // The exitance of a diffuse source can be below zero at a shadow's edge, which no screen shows.
-        const float radiance = std::max(picture.diffuse[3 * i + c], 0.0f) + picture.specular[3 * i + c];
+        const float radiance = picture.radiance(3 * i + c);
         const float object = alpha > 0 ? alpha * filmic(scale * radiance / alpha) : 0.0f;
-        const float shown = object + (1.0f - alpha) * background[static_cast<int>(c)];
+        const float behind = 1.0f - alpha + picture.transmittance[3 * i + c];
+        const float shown = object + behind * background[static_cast<int>(c)];
         const float code = 255.0f * srgb_encode(std::clamp(shown, 0.0f, 1.0f));
         bytes[3 * i + c] = static_cast<std::uint8_t>(std::min(std::floor(code + threshold), 255.0f));
       }

@@ -9,12 +9,15 @@
 #include "spirv/resolve.comp.h"
 #include "spirv/surface.frag.h"
 #include "spirv/surface.vert.h"
+#include "spirv/surface_gathered.frag.h"
 
 namespace quadgraph {
 namespace {
 
-constexpr std::uint32_t tile_pixels = 512;  // per side; 64 MiB of samples
+constexpr std::uint32_t tile_pixels = 512;  // per side; 128 MiB of samples
 constexpr VkFormat sample_format = VK_FORMAT_R32G32B32A32_SFLOAT;
+constexpr std::array<const char*, PICTURE_LAYERS> layer_names = {"scattered", "specular", "unscattered",
+                                                                 "transmittance"};
 
 std::vector<float> floats(const vk::Buffer& buffer) {
   const auto mapped = buffer.mapped_as<float>();
@@ -22,20 +25,39 @@ std::vector<float> floats(const vk::Buffer& buffer) {
 }
 
 gpu::SurfaceScene scene(const RasterInput& input, const Camera& camera) {
-  return {.clip_from_world = camera.clip_from_world,
-          .eye = camera.eye,
-          .eta = input.eta,
-          .roughness = input.roughness,
-          .radiance_norm = static_cast<float>(radiance_norm(input.eta)),
-          .light_count = input.shadows.light_count(),
-          .vertices = input.mesh.vertices.address(),
-          .normals = input.mesh.normals.address(),
-          .face = input.mesh.face.address(),
-          .barycentric = input.mesh.barycentric.address(),
-          .faces = input.finest.faces.address(),
-          .exitance = input.vertex_exitance.address(),
-          .lights = input.shadows.lights().address(),
-          .views = input.shadows.views().address()};
+  gpu::SurfaceScene scene{.clip_from_world = camera.clip_from_world,
+                          .eye = camera.eye,
+                          .eta = input.eta,
+                          .roughness = input.roughness,
+                          .radiance_norm = static_cast<float>(radiance_norm(input.eta)),
+                          .light_count = input.shadows.light_count(),
+                          .vertices = input.mesh.vertices.address(),
+                          .normals = input.mesh.normals.address(),
+                          .face = input.mesh.face.address(),
+                          .barycentric = input.mesh.barycentric.address(),
+                          .faces = input.finest.faces.address(),
+                          .exitance = input.vertex_exitance.address(),
+                          .unscattered = input.vertex_unscattered.address(),
+                          .lights = input.shadows.lights().address(),
+                          .views = input.shadows.views().address(),
+                          .triangle_face = 0,
+                          .points = 0,
+                          .scale = 0,
+                          .body = {}};
+  if (input.gather != nullptr) {
+    scene.triangle_face = input.gather->triangle_face.address();
+    scene.points = input.gather->field.points().address();
+    scene.scale = input.gather->field.scale().address();
+    scene.body = input.gather->field.body().mapped_as<gpu::BodyRef>()[0];
+  }
+  return scene;
+}
+
+vk::GraphicsOptions pass_options(vk::Spirv fragment) {
+  return {.vertex = surface_vert,
+          .fragment = fragment,
+          .push_size = sizeof(gpu::SurfacePush),
+          .colour_formats = std::vector<VkFormat>(PICTURE_LAYERS, sample_format)};
 }
 
 }  // namespace
@@ -50,14 +72,14 @@ struct Rasteriser::Targets {
         height(picture_height),
         samples_x(2 * std::min(width, tile_pixels)),
         samples_y(2 * std::min(height, tile_pixels)),
-        diffuse_image(context, image_options(sample_format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT), "diffuse samples"),
-        specular_image(context, image_options(sample_format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT), "specular samples"),
-        depth_image(context, image_options(VK_FORMAT_D32_SFLOAT, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT), "depth"),
-        diffuse_samples(context, sample_bytes(), vk::Place::device, "diffuse samples"),
-        specular_samples(context, sample_bytes(), vk::Place::device, "specular samples"),
-        diffuse(context, 12 * pixels(), vk::Place::host, "diffuse"),
-        specular(context, 12 * pixels(), vk::Place::host, "specular"),
-        alpha(context, 4 * pixels(), vk::Place::host, "alpha") {}
+        depth(context, image_options(VK_FORMAT_D32_SFLOAT, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT), "depth"),
+        alpha(context, 4 * pixels(), vk::Place::host, "alpha") {
+    for (const std::string name : layer_names) {
+      images.emplace_back(context, image_options(sample_format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT), name);
+      samples.emplace_back(context, sample_bytes(), vk::Place::device, name + " samples");
+      layers.emplace_back(context, 12 * pixels(), vk::Place::host, name);
+    }
+  }
 
   std::uint64_t pixels() const { return std::uint64_t{width} * height; }
   std::uint64_t sample_bytes() const { return 16ull * samples_x * samples_y; }
@@ -67,9 +89,11 @@ struct Rasteriser::Targets {
 
   std::uint32_t width, height;         // pixels of the picture
   std::uint32_t samples_x, samples_y;  // of a tile
-  vk::Image diffuse_image, specular_image, depth_image;
-  vk::Buffer diffuse_samples, specular_samples;
-  vk::Buffer diffuse, specular, alpha;
+  std::vector<vk::Image> images;       // by layer, of a tile
+  vk::Image depth;
+  std::vector<vk::Buffer> samples;  // by layer, of a tile
+  std::vector<vk::Buffer> layers;   // of the picture
+  vk::Buffer alpha;
 };
 
 double radiance_norm(double eta) {
@@ -84,38 +108,37 @@ double radiance_norm(double eta) {
 
 Rasteriser::Rasteriser(vk::Context& context)
     : context_(context),
-      surface_(context,
-               {.vertex = surface_vert,
-                .fragment = surface_frag,
-                .push_size = sizeof(gpu::SurfacePush),
-                .colour_formats = {sample_format, sample_format}},
-               "surface"),
+      surface_(context, pass_options(surface_frag), "surface"),
+      gathered_(context, pass_options(surface_gathered_frag), "surface gathered"),
       resolve_(context, resolve_comp, sizeof(gpu::ResolvePush), "resolve") {}
 
 void Rasteriser::record(vk::Commands& commands, const RasterInput& input, const gpu::SurfacePush& push,
                         const Targets& targets, const Tile& tile) {
-  commands.begin_pass("surface");
-  draw(commands, {{&targets.diffuse_image, &targets.specular_image}, &targets.depth_image},
+  DrawTarget target{{}, &targets.depth};
+  for (const vk::Image& image : targets.images) target.colours.push_back(&image);
+  commands.begin_pass(input.gather != nullptr ? "surface gathered" : "surface");
+  draw(commands, target,
        {-2.0f * static_cast<float>(tile.x), -2.0f * static_cast<float>(tile.y),
         2.0f * static_cast<float>(targets.width), 2.0f * static_cast<float>(targets.height)},
-       surface_, push, input.mesh.triangles, 3 * input.mesh.triangle_count);
+       input.gather != nullptr ? gathered_ : surface_, push, input.mesh.triangles, 3 * input.mesh.triangle_count);
   commands.end_pass();
+  gpu::ResolvePush resolve{.samples = {},
+                           .layers = {},
+                           .alpha = targets.alpha.address(),
+                           .tile_x = tile.x,
+                           .tile_y = tile.y,
+                           .tile_width = tile.width,
+                           .tile_height = tile.height,
+                           .sample_stride = targets.samples_x,
+                           .picture_width = targets.width};
   commands.begin_pass("resolve");
-  commands.copy(targets.diffuse_image, targets.diffuse_samples);
-  commands.copy(targets.specular_image, targets.specular_samples);
-  commands.dispatch(resolve_,
-                    gpu::ResolvePush{.diffuse_samples = targets.diffuse_samples.address(),
-                                     .specular_samples = targets.specular_samples.address(),
-                                     .diffuse = targets.diffuse.address(),
-                                     .specular = targets.specular.address(),
-                                     .alpha = targets.alpha.address(),
-                                     .tile_x = tile.x,
-                                     .tile_y = tile.y,
-                                     .tile_width = tile.width,
-                                     .tile_height = tile.height,
-                                     .sample_stride = targets.samples_x,
-                                     .picture_width = targets.width},
-                    std::uint64_t{tile.width} * tile.height);
+  for (std::size_t k = 0; k < PICTURE_LAYERS; ++k) {
+    commands.copy(targets.images[k], targets.samples[k]);
+    resolve.samples[k] = targets.samples[k].address();
+    resolve.layers[k] = targets.layers[k].address();
+  }
+  commands.barrier();
+  commands.dispatch(resolve_, resolve, std::uint64_t{tile.width} * tile.height);
   commands.end_pass();
 }
 
@@ -124,24 +147,29 @@ RasterResult Rasteriser::run(const RasterInput& input, const Camera& camera, std
   const Targets targets(context_, width, height);
   const gpu::SurfaceScene constants = scene(input, camera);
   const auto scene_buffer = vk::upload<gpu::SurfaceScene>(context_, std::span(&constants, 1), "surface scene");
-  PassStats surface{.name = "surface"}, resolve{.name = "resolve"};
+  std::vector<PassStats> passes(2);
+  // Read once and written once per sample and layer, and the depth; of the gather only the vertices are counted.
+  const std::uint64_t surface_bytes = 64ull * input.mesh.vertex_count + input.mesh.triangles.size() +
+                                      (input.gather != nullptr ? input.gather->field.points().size() : 0) +
+                                      9 * targets.sample_bytes() / 2;
   for (std::uint32_t y = 0; y < height; y += tile_pixels) {
     for (std::uint32_t x = 0; x < width; x += tile_pixels) {
       vk::Commands commands(context_, 2);
       record(commands, input, {scene_buffer.address()}, targets,
              {x, y, std::min(tile_pixels, width - x), std::min(tile_pixels, height - y)});
       const auto times = commands.submit_and_wait();
-      surface.time_ms += times[0].time_ms;
-      resolve.time_ms += times[1].time_ms;
-      surface.bytes += 52ull * input.mesh.vertex_count + input.mesh.triangles.size() + 5 * targets.sample_bytes() / 2;
-      resolve.bytes += 6 * targets.sample_bytes();
-      ++surface.count;
-      ++resolve.count;
+      for (std::size_t k = 0; k < passes.size(); ++k) {
+        passes[k].name = times[k].name;
+        passes[k].time_ms += times[k].time_ms;
+        passes[k].bytes += k == 0 ? surface_bytes : 3 * PICTURE_LAYERS * targets.sample_bytes();
+        ++passes[k].count;
+      }
     }
   }
-  resolve.bytes += 28 * targets.pixels();
-  return {{width, height, floats(targets.diffuse), floats(targets.specular), floats(targets.alpha)},
-          {surface, resolve}};
+  passes[1].bytes += (12 * PICTURE_LAYERS + 4) * targets.pixels();
+  return {{width, height, floats(targets.layers[0]), floats(targets.layers[1]), floats(targets.layers[2]),
+           floats(targets.layers[3]), floats(targets.alpha)},
+          passes};
 }
 
 }  // namespace quadgraph

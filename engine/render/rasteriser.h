@@ -1,12 +1,16 @@
 // The display mesh as a picture.
 #pragma once
 
+#include <array>
+
 #include "engine/render/camera.h"
 #include "engine/render/display_buffers.h"
 #include "engine/render/picture.h"
 #include "engine/render/shadow_maps.h"
+#include "engine/solve/gather_field.h"
 #include "engine/solve/simulation.h"
 #include "engine/vk/pipeline.h"
+#include "shaders/render_shared.h"
 
 namespace quadgraph {
 
@@ -14,13 +18,21 @@ namespace quadgraph {
 // that it integrates back to the exitance (physics.md). pi for eta = 1.
 double radiance_norm(double eta);
 
+// For radiance gathered along view rays.
+struct GatherView {
+  const GatherField& field;
+  const vk::Buffer& triangle_face;  // display_faces.h
+};
+
 struct RasterInput {
   const DisplayBuffers& mesh;
   const LevelBuffers& finest;
-  const vk::Buffer& vertex_exitance;  // vec3 per surface vertex of the finest level, W/mm^2
+  const vk::Buffer& vertex_exitance;     // vec3 per surface vertex of the finest level, W/mm^2
+  const vk::Buffer& vertex_unscattered;  // the same
   const ShadowMaps& shadows;
   float eta = 1;
-  float roughness = 0.3f;  // alpha of GGX
+  float roughness = 0.3f;              // alpha of GGX
+  const GatherView* gather = nullptr;  // null: radiance as of a diffuser
 };
 
 struct RasterResult {
@@ -43,7 +55,7 @@ class Rasteriser {
               const Tile& tile);
 
   vk::Context& context_;
-  vk::GraphicsPass surface_;
+  vk::GraphicsPass surface_, gathered_;
   vk::ComputePass resolve_;
 };
 

@@ -22,7 +22,7 @@ double luminance(const Picture& picture, std::size_t pixel) {
   constexpr double weight[3] = {0.2126, 0.7152, 0.0722};  // ITU-R BT.709
   double sum = 0;
   for (std::size_t c = 0; c < 3; ++c) {
-    sum += weight[c] * (std::max(picture.diffuse[3 * pixel + c], 0.0f) + picture.specular[3 * pixel + c]);
+    sum += weight[c] * static_cast<double>(picture.radiance(3 * pixel + c));
   }
   return sum;
 }

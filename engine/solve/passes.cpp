@@ -1,6 +1,7 @@
 #include "engine/solve/passes.h"
 
 #include "shaders/assembly_shared.h"
+#include "shaders/gather_shared.h"
 #include "shaders/surface_shared.h"
 #include "shaders/walk_shared.h"
 #include "spirv/assemble_edges.comp.h"
@@ -27,7 +28,12 @@
 #include "spirv/evaluate_material.comp.h"
 #include "spirv/exitance.comp.h"
 #include "spirv/exitance_sp3.comp.h"
+#include "spirv/gather_exitance.comp.h"
+#include "spirv/gather_phi.comp.h"
+#include "spirv/gather_phi_sp3.comp.h"
+#include "spirv/gather_scale.comp.h"
 #include "spirv/irradiance_scale.comp.h"
+#include "spirv/radiance_probe.comp.h"
 #include "spirv/right_hand_side_buried.comp.h"
 #include "spirv/right_hand_side_buried_sp3.comp.h"
 #include "spirv/right_hand_side_fdm.comp.h"
@@ -41,6 +47,7 @@
 #include "spirv/sweep_sp3.comp.h"
 #include "spirv/transfer.comp.h"
 #include "spirv/transfer_sp3.comp.h"
+#include "spirv/uncollided.comp.h"
 #include "spirv/vertex_exitance.comp.h"
 #include "spirv/vertex_unscattered.comp.h"
 #include "spirv/walk_source.comp.h"
@@ -62,6 +69,10 @@ Passes::Passes()
       ONE_PASS(vertex_exitance, VertexExitancePush),
       ONE_PASS(display_scale, DisplayScalePush),
       ONE_PASS(vertex_unscattered, VertexUnscatteredPush),
+      ONE_PASS(uncollided, UncollidedPush),
+      ONE_PASS(gather_exitance, GatherExitancePush),
+      ONE_PASS(gather_scale, GatherScalePush),
+      ONE_PASS(radiance_probe, RadianceProbePush),
       MODEL_PASS(assemble_fdm, AssembleFdmPush),
       MODEL_PASS(assemble_fv, AssembleFvPush),
       MODEL_PASS(assemble_edges, AssembleEdgesPush),
@@ -78,6 +89,7 @@ Passes::Passes()
       MODEL_PASS(cg_direction, CgDirectionPush),
       MODEL_PASS(sweep, SweepPush),
       MODEL_PASS(exitance, ExitancePush),
-      MODEL_PASS(energy, EnergyPush) {}
+      MODEL_PASS(energy, EnergyPush),
+      MODEL_PASS(gather_phi, GatherPhiPush) {}
 
 }  // namespace quadgraph

@@ -10,6 +10,7 @@
 #include "engine/solve/assembly.h"
 #include "engine/solve/beams.h"
 #include "engine/solve/coefficients.h"
+#include "engine/solve/gather_field.h"
 #include "engine/solve/level_solver.h"
 #include "engine/solve/level_upload.h"
 #include "engine/solve/surface_results.h"
@@ -55,6 +56,9 @@ struct Simulation::Implementation {
   Workspace work;
   SurfaceResults results;
   Coefficients coefficients;
+  std::optional<GatherField> gather;  // made at first use
+  bool gather_stale = true;
+  std::vector<PassStats> passes;      // of the last solve
   bool scaled = false;                // the scale is that of the present q
   std::optional<OperatorKey> solved;  // by the last solve
   Source solved_source = Source::buried;
@@ -208,9 +212,11 @@ struct Simulation::Implementation {
     report.levels = solve_levels(key, finest, options);
     results.record(work, finest);
     work.recorder.submit();
+    passes = work.recorder.passes();
     report.energy = energy_of(options.source);
     report.clipped = results.clipped();
     if (levels.size() > 1) report.error = results.error();
+    gather_stale = true;
     solved = key;
     solved_source = options.source;
     return report;
@@ -229,6 +235,19 @@ struct Simulation::Implementation {
   const OperatorKey& solved_key() const {
     if (!solved) throw InputError("no solution: solve has not succeeded yet");
     return *solved;
+  }
+
+  const GatherField& gathered(std::vector<PassStats>& gather_passes) {
+    gather_passes.clear();
+    if (!gather) gather.emplace(context, graph.levels()[0]);
+    if (!gather_stale) return *gather;
+    work.recorder.clear();
+    gather->record(work, {levels[0], op(*solved, 0), beams, results.vertex_exitance(),
+                          walks[0].body(levels[0], coefficients.eta(), coefficients.even())});
+    work.recorder.submit();
+    gather_passes = work.recorder.passes();
+    gather_stale = false;
+    return *gather;
   }
 
   glm::vec3 scale() const { return vk::download<gpu::Scale>(context, work.scale)[0].scale; }
@@ -299,7 +318,7 @@ SolveReport Simulation::solve(const SolveOptions& options) {
 }
 
 const std::vector<PassStats>& Simulation::passes() const {
-  return implementation_->work.recorder.passes();
+  return implementation_->passes;
 }
 
 SurfaceField Simulation::surface_field() const {
@@ -336,6 +355,22 @@ std::vector<glm::vec3> Simulation::phi() const {
 
 const vk::Buffer& Simulation::vertex_exitance() const {
   return implementation_->results.vertex_exitance();
+}
+
+const vk::Buffer& Simulation::vertex_unscattered() const {
+  return implementation_->results.vertex_unscattered();
+}
+
+bool Simulation::can_gather() const {
+  return implementation_->solved_key().method == Method::fem && implementation_->solved_source == Source::buried;
+}
+
+const GatherField& Simulation::gather(std::vector<PassStats>& passes) {
+  if (!can_gather()) {
+    throw InputError(
+        "radiance: gathering needs --method fem and --source buried; 'lambertian' is there for every method");
+  }
+  return implementation_->gathered(passes);
 }
 
 }  // namespace quadgraph

@@ -46,6 +46,8 @@ struct LevelBuffers {
   vk::Buffer beam_q;   // vec3 per beam, face and quarter (FACE_QUARTERS), W/mm^2: what q is made of
 };
 
+class GatherField;
+
 class Simulation {
  public:
   // `graph` is copied to the device; it must stay alive (its spans are used to set up row structures lazily).
@@ -89,8 +91,18 @@ class Simulation {
 
   // Results of the last solve, level 0.
   SurfaceField surface_field() const;
-  std::vector<glm::vec3> phi() const;         // per carrier of the method
-  const vk::Buffer& vertex_exitance() const;  // vec3 per surface vertex of level 0, W/mm^2, for display
+  std::vector<glm::vec3> phi() const;  // per carrier of the method
+
+  // vec3 per surface vertex of level 0, W/mm^2, for display: of scattered light, and of light that was not.
+  const vk::Buffer& vertex_exitance() const;
+  const vk::Buffer& vertex_unscattered() const;
+
+  // Whether the last solve's radiance can be gathered along view rays: linear elements and the buried source.
+  bool can_gather() const;
+
+  // What view rays gather in the last solve, computed at the first call after it; `passes` gets what that took. Throws
+  // InputError unless can_gather.
+  const GatherField& gather(std::vector<PassStats>& passes);
 
  private:
   struct Implementation;

@@ -40,6 +40,7 @@ SurfaceResults::SurfaceResults(vk::Context& context, const LevelBuffers& level) 
   exitance_ = vector(level.face_count, "exitance");
   coarse_exitance_ = vector(level.face_count, "exitance of the coarser level");
   vertex_exitance_ = vector(level.surface_vertex_count, "exitance at vertices");
+  vertex_unscattered_ = vector(level.surface_vertex_count, "unscattered light at vertices");
   display_factor_ = vector(1, "display factor");
   clip_ = vk::Buffer(context, sizeof(gpu::Clip), vk::Place::device, "clip");
   clip_on_host_ = vk::Buffer(context, sizeof(gpu::Clip), vk::Place::host, "clip, read back");
@@ -108,7 +109,10 @@ void SurfaceResults::record_display_scale(Workspace& work, const LevelBuffers& l
 // round would leave 1%, and blur veins of a few elements. A geometric mean, because an arithmetic one carries light
 // across the terminator, where exitance falls by an order of magnitude within a few elements.
 void SurfaceResults::record_display(Workspace& work, const Solved& solved) {
-  if (solved.walk == nullptr) return record_vertex_exitance(work, solved.level, exitance_, false);
+  if (solved.walk == nullptr) {
+    work.recorder.fill(vertex_unscattered_, 0);
+    return record_vertex_exitance(work, solved.level, exitance_, false);
+  }
   record_vertex_exitance(work, solved.level, exitance_, true);
   record_display_scale(work, solved.level);
   record_vertex_unscattered(work, solved);
@@ -124,10 +128,11 @@ void SurfaceResults::record_vertex_unscattered(Workspace& work, const Solved& so
                                         .scale = work.scale.address(),
                                         .factor = display_factor_.address(),
                                         .exitance = vertex_exitance_.address(),
+                                        .vertex_unscattered = vertex_unscattered_.address(),
                                         .count = level.surface_vertex_count};
   const std::uint64_t face_bytes = sizeof(std::uint32_t) * (1 + FIXED_WORDS) + sizeof(glm::uvec3) + 3 * vec3_bytes;
   work.recorder.dispatch(work.passes.vertex_unscattered, push, level.surface_vertex_count, "exitance",
-                         3 * level.face_count * face_bytes + 2 * vec3_bytes * level.surface_vertex_count);
+                         3 * level.face_count * face_bytes + 3 * vec3_bytes * level.surface_vertex_count);
 }
 
 void SurfaceResults::record_energy(Workspace& work, const Solved& solved) {

@@ -26,9 +26,10 @@ class SurfaceResults {
 
   const vk::Buffer& phi() const { return phi_; }            // vec3 per outside face, W/mm^2
   const vk::Buffer& exitance() const { return exitance_; }  // vec3 per outside face, W/mm^2, scattered
-  const vk::Buffer& vertex_exitance() const {
-    return vertex_exitance_;
-  }  // vec3 per surface vertex, W/mm^2: for display
+
+  // vec3 per surface vertex, W/mm^2, for display: of scattered light, and of light that was not.
+  const vk::Buffer& vertex_exitance() const { return vertex_exitance_; }
+  const vk::Buffer& vertex_unscattered() const { return vertex_unscattered_; }
 
   // Exitance of the solution transferred from the coarser level, to be compared with the final one.
   void record_coarse(Workspace& work, const Solved& solved);
@@ -49,7 +50,7 @@ class SurfaceResults {
   void record_vertex_unscattered(Workspace& work, const Solved& solved);
   void record_energy(Workspace& work, const Solved& solved);
 
-  vk::Buffer phi_, exitance_, coarse_exitance_, vertex_exitance_;
+  vk::Buffer phi_, exitance_, coarse_exitance_, vertex_exitance_, vertex_unscattered_;
   vk::Buffer display_factor_;  // vec3
   vk::Buffer clip_;            // Clip
   vk::Buffer clip_on_host_;    // the same, mapped

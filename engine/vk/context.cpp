@@ -52,10 +52,15 @@ struct Features {
   Features& operator=(const Features&) = delete;
 
   std::vector<std::pair<const char*, VkBool32*>> required() {
-    return {{"bufferDeviceAddress", &v12.bufferDeviceAddress}, {"scalarBlockLayout", &v12.scalarBlockLayout},
-            {"dynamicRendering", &v13.dynamicRendering},       {"synchronization2", &v13.synchronization2},
-            {"hostQueryReset", &v12.hostQueryReset},           {"maintenance4", &v13.maintenance4},
-            {"shaderInt64", &base.features.shaderInt64}};
+    return {{"bufferDeviceAddress", &v12.bufferDeviceAddress},
+            {"scalarBlockLayout", &v12.scalarBlockLayout},
+            {"dynamicRendering", &v13.dynamicRendering},
+            {"synchronization2", &v13.synchronization2},
+            {"hostQueryReset", &v12.hostQueryReset},
+            {"maintenance4", &v13.maintenance4},
+            {"shaderInt64", &base.features.shaderInt64},
+            // gl_PrimitiveID in fragment shaders
+            {"geometryShader", &base.features.geometryShader}};
   }
 };
 

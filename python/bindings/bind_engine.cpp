@@ -73,22 +73,22 @@ py::array pixels(const Picture& picture, const std::vector<float>& values, py::s
   return view(values.data(), std::move(shape), owner);
 }
 
+// One of the RGB layers of a picture.
+template <std::vector<float> Picture::* layer>
+py::array rgb_layer(py::object self) {
+  const auto& picture = self.cast<const Picture&>();
+  return pixels(picture, picture.*layer, 3, self);
+}
+
 void bind_picture(py::module_& module) {
   py::class_<Picture>(module, "Picture", "Linear radiance in W/(mm^2 sr), premultiplied by alpha; top row first.")
-      .def_property_readonly(
-          "diffuse",
-          [](py::object self) {
-            const auto& picture = self.cast<const Picture&>();
-            return pixels(picture, picture.diffuse, 3, self);
-          },
-          "(h, w, 3): light that came through the body.")
-      .def_property_readonly(
-          "specular",
-          [](py::object self) {
-            const auto& picture = self.cast<const Picture&>();
-            return pixels(picture, picture.specular, 3, self);
-          },
-          "(h, w, 3): light reflected by the surface.")
+      .def_property_readonly("scattered", &rgb_layer<&Picture::scattered>,
+                             "(h, w, 3): light that was scattered in the body.")
+      .def_property_readonly("specular", &rgb_layer<&Picture::specular>, "(h, w, 3): light reflected by the surface.")
+      .def_property_readonly("unscattered", &rgb_layer<&Picture::unscattered>,
+                             "(h, w, 3): light that crossed the body without being scattered.")
+      .def_property_readonly("transmittance", &rgb_layer<&Picture::transmittance>,
+                             "(h, w, 3): share of what is behind the body that is seen through it.")
       .def_property_readonly(
           "alpha",
           [](py::object self) {
@@ -157,10 +157,20 @@ std::vector<std::string> default_light_texts(const std::string& view, const std:
 }
 
 Picture render(Engine& engine, const std::string& view_text, const std::string& up, float vertical_fov,
-               std::uint32_t width, std::uint32_t height, float roughness) {
+               std::uint32_t width, std::uint32_t height, float roughness, const std::string& radiance) {
   const View view = view_from(view_text, up, vertical_fov);
+  const RenderOptions options{width, height, roughness, radiance_from_name(radiance)};
   const py::gil_scoped_release release;
-  return engine.render(view, {width, height, roughness});
+  return engine.render(view, options);
+}
+
+py::dict leaving(Engine& engine, const IndexArray& face, const FloatArray& direction) {
+  const auto count = static_cast<std::size_t>(face.size());
+  Leaving light = engine.leaving({face.data(), count}, vectors(direction, count, "direction"));
+  py::dict result;
+  result["radiance"] = own(std::move(light.radiance));
+  result["transmittance"] = own(std::move(light.transmittance));
+  return result;
 }
 
 }  // namespace
@@ -211,12 +221,23 @@ void bind_engine(py::module_& module) {
           [](Engine& engine) {
             return own(vk::download<glm::vec3>(engine.context(), engine.simulation().vertex_exitance()));
           },
-          "Per surface vertex of level 0, W/mm^2: what a picture shows, local means and the unscattered light with it.")
+          "Per surface vertex of level 0, W/mm^2: what a picture shows, local means of the scattered light.")
+      .def(
+          "vertex_unscattered",
+          [](Engine& engine) {
+            return own(vk::download<glm::vec3>(engine.context(), engine.simulation().vertex_unscattered()));
+          },
+          "The same of light that left without having scattered.")
+      .def("leaving", &leaving, py::arg("face"), py::arg("direction"),
+           "Gathered radiance, W/(mm^2 sr), that leaves the centroids of outside faces (n,) of level 0 along unit "
+           "outward directions (n, 3): radiance (n, 3) of scattered light, transmittance (n, 3) of the body.")
       .def(
           "phi", [](Engine& engine) { return own(engine.simulation().phi()); }, "Per carrier of level 0, W/mm^2.")
       .def("render", &render, py::arg("view") = "", py::arg("up") = "y", py::arg("vertical_fov") = 30.0f,
            py::arg("width") = 1024, py::arg("height") = 1024, py::arg("roughness") = RenderOptions{}.roughness,
-           "The last solve seen from 'azimuth,elevation[,distance]' (degrees, mm).")
+           py::arg("radiance") = "auto",
+           "radiance: gathered, lambertian, auto. The last solve seen from 'azimuth,elevation[,distance]' (degrees, "
+           "mm).")
       .def_property_readonly(
           "passes", [](const Engine& engine) { return as_list(engine.passes()); },
           "Device time and bytes per pass of the last frame.")

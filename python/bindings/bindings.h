@@ -23,6 +23,7 @@ void bind_reference(pybind11::module_& module);
 void bind_engine(pybind11::module_& module);
 
 // Converted to C order and float32 if need be.
+using IndexArray = pybind11::array_t<std::uint32_t, pybind11::array::c_style | pybind11::array::forcecast>;
 using FloatArray = pybind11::array_t<float, pybind11::array::c_style | pybind11::array::forcecast>;
 
 // A read-only array over memory that `owner` keeps alive.

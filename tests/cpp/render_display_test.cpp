@@ -19,7 +19,7 @@ struct Stage {
   LevelBuffers level;
   ShadowMaps shadows{context};
   Rasteriser rasteriser{context};
-  vk::Buffer exitance;
+  vk::Buffer exitance, unscattered;
 
   Stage(Shape body, const glm::vec3& uniform_exitance)
       : shape(std::move(body)), mesh(upload_as_display(context, shape)), level(upload_as_level(context, shape, 0)) {
@@ -33,6 +33,7 @@ struct Stage {
 
   void set_exitance(const std::vector<glm::vec3>& values) {
     exitance = vk::upload<glm::vec3>(context, values, "exitance");
+    unscattered = vk::upload<glm::vec3>(context, std::vector<glm::vec3>(values.size(), glm::vec3(0)), "unscattered");
   }
 
   Picture picture(const std::vector<Light>& lights, float eta, const View& view, std::uint32_t width,
@@ -44,6 +45,7 @@ struct Stage {
         .run({.mesh = mesh,
               .finest = level,
               .vertex_exitance = exitance,
+              .vertex_unscattered = unscattered,
               .shadows = shadows,
               .eta = eta,
               .roughness = roughness},
@@ -74,7 +76,7 @@ TEST_CASE("without a boundary uniform exitance M is a flat picture of M / pi") {
     covered += picture.alpha[i] == 1 ? 1 : 0;
     for (std::size_t c = 0; c < 3; ++c) {
       const double expected = picture.alpha[i] * exitance[static_cast<int>(c)] / std::numbers::pi;
-      worst = std::max(worst, std::abs(picture.diffuse[3 * i + c] - expected));
+      worst = std::max(worst, std::abs(picture.scattered[3 * i + c] - expected));
     }
   }
   CHECK(worst < 1e-6);
@@ -98,7 +100,7 @@ TEST_CASE("with a boundary radiance is M F_t(cos) / norm at every pixel") {
       const double off = (u * u + v * v) / (radius * radius);
       if (off > 0.9) continue;
       const double expected = fresnel_transmittance(std::sqrt(1 - off), 1.5) / radiance_norm(1.5);
-      worst = std::max(worst, std::abs(picture.diffuse[3 * (y * side + x)] / expected - 1));
+      worst = std::max(worst, std::abs(picture.scattered[3 * (y * side + x)] / expected - 1));
     }
   }
   MESSAGE("worst relative error of the displayed radiance ", worst);
@@ -123,9 +125,9 @@ TEST_CASE("a picture of several tiles is the one of a single tile, finer") {
       if (small.alpha[i] != 1 || covered != 4) continue;
       ++compared;
       for (std::size_t c = 0; c < 3; ++c) {
-        const double mean = 0.25 * (large.diffuse[3 * above + c] + large.diffuse[3 * above + 3 + c] +
-                                    large.diffuse[3 * below + c] + large.diffuse[3 * below + 3 + c]);
-        worst = std::max(worst, std::abs(small.diffuse[3 * i + c] - mean));
+        const double mean = 0.25 * (large.scattered[3 * above + c] + large.scattered[3 * above + 3 + c] +
+                                    large.scattered[3 * below + c] + large.scattered[3 * below + 3 + c]);
+        worst = std::max(worst, std::abs(small.scattered[3 * i + c] - mean));
       }
     }
   }

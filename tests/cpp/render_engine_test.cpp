@@ -109,11 +109,11 @@ TEST_CASE("a picture shows what was solved, and says how it was made") {
   const Picture dark = engine.render({.azimuth = 180, .elevation = 0}, {.width = 96, .height = 64, .roughness = 0.3f});
   REQUIRE(lit.width == 96);
   REQUIRE(lit.height == 64);
-  REQUIRE(lit.diffuse.size() == 96 * 64 * 3);
+  REQUIRE(lit.scattered.size() == 96 * 64 * 3);
   CHECK(total(lit.alpha) > 500);
   CHECK(total(dark.alpha) == doctest::Approx(total(lit.alpha)).epsilon(0.02));
-  CHECK(total(dark.diffuse) > 0);
-  CHECK(total(lit.diffuse) > total(dark.diffuse));
+  CHECK(total(dark.scattered) > 0);
+  CHECK(total(lit.scattered) > total(dark.scattered));
   CHECK(total(lit.specular) > 0);
   CHECK(total(dark.specular) == 0);
 
@@ -131,10 +131,12 @@ TEST_CASE("a picture shows what was solved, and says how it was made") {
   CHECK(value("units") == "W/(mm^2 sr)");
   CHECK(value("source") == "tiny.qgraph");
   CHECK(value("camera").find("view 180,0") == 0);
+  CHECK(value("radiance") == "gathered");
   for (const char* key : {"device", "energy balance", "error", "iterations", "residual"}) CHECK(!value(key).empty());
 
   const auto passes = engine.passes();
-  for (const char* name : {"shadow maps", "irradiance", "surface", "resolve"}) {
+  for (const char* name :
+       {"shadow maps", "irradiance", "uncollided", "gathered exitance", "surface gathered", "resolve"}) {
     const auto pass = std::find_if(passes.begin(), passes.end(), [&](const auto& p) { return p.name == name; });
     REQUIRE_MESSAGE(pass != passes.end(), name);
     CHECK(pass->time_ms > 0);

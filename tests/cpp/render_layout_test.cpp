@@ -10,6 +10,7 @@
 #include "spirv/shadow.vert.h"
 #include "spirv/surface.frag.h"
 #include "spirv/surface.vert.h"
+#include "spirv/surface_gathered.frag.h"
 #include "tests/cpp/spirv_layout.h"
 
 using namespace quadgraph;
@@ -52,14 +53,16 @@ TEST_CASE("lights and shadow views") {
 }
 
 TEST_CASE("the scene of the display") {
-  for (const vk::Spirv code : {vk::Spirv(surface_vert), vk::Spirv(surface_frag)}) {
+  for (const vk::Spirv code : {vk::Spirv(surface_vert), vk::Spirv(surface_frag), vk::Spirv(surface_gathered_frag)}) {
     const SpirvLayout layout(code);
     compare(layout, "SurfaceScene",
             {MEMBER(SurfaceScene, clip_from_world), MEMBER(SurfaceScene, eye), MEMBER(SurfaceScene, eta),
              MEMBER(SurfaceScene, roughness), MEMBER(SurfaceScene, radiance_norm), MEMBER(SurfaceScene, light_count),
              MEMBER(SurfaceScene, vertices), MEMBER(SurfaceScene, normals), MEMBER(SurfaceScene, face),
              MEMBER(SurfaceScene, barycentric), MEMBER(SurfaceScene, faces), MEMBER(SurfaceScene, exitance),
-             MEMBER(SurfaceScene, lights), MEMBER(SurfaceScene, views)});
+             MEMBER(SurfaceScene, unscattered), MEMBER(SurfaceScene, lights), MEMBER(SurfaceScene, views),
+             MEMBER(SurfaceScene, triangle_face), MEMBER(SurfaceScene, points), MEMBER(SurfaceScene, scale),
+             MEMBER(SurfaceScene, body)});
     CHECK(layout.stride.at("SurfaceScene") == sizeof(gpu::SurfaceScene));
     compare(layout, "SurfacePush", {MEMBER(SurfacePush, scene)});
   }
@@ -73,8 +76,7 @@ TEST_CASE("push constants") {
            MEMBER(IrradiancePush, face_count), MEMBER(IrradiancePush, light_count), MEMBER(IrradiancePush, subdivision),
            MEMBER(IrradiancePush, eta), MEMBER(IrradiancePush, diffuse_transmittance)});
   compare(SpirvLayout(resolve_comp), "ResolvePush",
-          {MEMBER(ResolvePush, diffuse_samples), MEMBER(ResolvePush, specular_samples), MEMBER(ResolvePush, diffuse),
-           MEMBER(ResolvePush, specular), MEMBER(ResolvePush, alpha), MEMBER(ResolvePush, tile_x),
-           MEMBER(ResolvePush, tile_y), MEMBER(ResolvePush, tile_width), MEMBER(ResolvePush, tile_height),
-           MEMBER(ResolvePush, sample_stride), MEMBER(ResolvePush, picture_width)});
+          {MEMBER(ResolvePush, samples), MEMBER(ResolvePush, layers), MEMBER(ResolvePush, alpha),
+           MEMBER(ResolvePush, tile_x), MEMBER(ResolvePush, tile_y), MEMBER(ResolvePush, tile_width),
+           MEMBER(ResolvePush, tile_height), MEMBER(ResolvePush, sample_stride), MEMBER(ResolvePush, picture_width)});
 }

@@ -34,14 +34,17 @@ struct Folder {
   }
 };
 
-// Every value different, some diffuse ones negative; the last column is not covered.
+// Every value of a layer different, some scattered ones negative; the last column is not covered.
 Picture sample_picture() {
-  Picture picture{.width = 5, .height = 3, .diffuse = {}, .specular = {}, .alpha = {}};
+  Picture picture{
+      .width = 5, .height = 3, .scattered = {}, .specular = {}, .unscattered = {}, .transmittance = {}, .alpha = {}};
   for (int i = 0; i < 15; ++i) {
     const bool covered = i % 5 != 4;
     for (int c = 0; c < 3; ++c) {
-      picture.diffuse.push_back(covered ? 0.01f * static_cast<float>(3 * i + c) - 0.02f : 0.0f);
+      picture.scattered.push_back(covered ? 0.01f * static_cast<float>(3 * i + c) - 0.02f : 0.0f);
       picture.specular.push_back(covered ? 1e-4f * static_cast<float>(i * i + c) : 0.0f);
+      picture.unscattered.push_back(covered ? 1e-5f * static_cast<float>(i + 5 * c) : 0.0f);
+      picture.transmittance.push_back(covered ? 0.01f * static_cast<float>(i + c) : 0.0f);
     }
     picture.alpha.push_back(covered ? 1.0f : 0.0f);
   }
@@ -89,7 +92,7 @@ TEST_CASE("automatic exposure follows the light, so that the shown picture does 
   Picture picture = sample_picture();
   const auto shown = to_srgb8(picture, {});
   const float stops = auto_exposure(picture);
-  for (auto* layer : {&picture.diffuse, &picture.specular}) {
+  for (auto* layer : {&picture.scattered, &picture.specular, &picture.unscattered}) {
     for (float& value : *layer) value *= 8;
   }
   CHECK(auto_exposure(picture) == doctest::Approx(stops - 3));
@@ -97,15 +100,20 @@ TEST_CASE("automatic exposure follows the light, so that the shown picture does 
   CHECK(to_srgb8(picture, {.exposure_stops = stops - 4}) != shown);
 }
 
-TEST_CASE("a black picture is shown black on its background") {
+TEST_CASE("a black picture is shown black on its background, which is seen through it as it lets light through") {
   Picture picture = sample_picture();
-  picture.diffuse.assign(picture.diffuse.size(), 0);
-  picture.specular.assign(picture.specular.size(), 0);
+  for (auto* layer : {&picture.scattered, &picture.specular, &picture.unscattered}) layer->assign(layer->size(), 0);
   CHECK(auto_exposure(picture) == 0);
-  const auto bytes = to_srgb8(picture, {.background_top = glm::vec3(1), .background_bottom = glm::vec3(1)});
-  for (std::size_t i = 0; i < 15; ++i) {
-    for (std::size_t c = 0; c < 3; ++c) CHECK(bytes[3 * i + c] == (i % 5 == 4 ? 255 : 0));
+  const ToneOptions white{.background_top = glm::vec3(1), .background_bottom = glm::vec3(1)};
+  const auto seen = to_srgb8(picture, white);
+  for (std::size_t value = 0; value < seen.size(); ++value) {
+    const bool covered = value / 3 % 5 != 4;
+    const float through = 255 * srgb_encode(covered ? picture.transmittance[value] : 1.0f);
+    CHECK(std::abs(static_cast<float>(seen[value]) - through) <= 1);
   }
+  picture.transmittance.assign(picture.transmittance.size(), 0);
+  const auto bytes = to_srgb8(picture, white);
+  for (std::size_t value = 0; value < bytes.size(); ++value) CHECK(bytes[value] == (value / 3 % 5 == 4 ? 255 : 0));
 }
 
 TEST_CASE("a PNG reads back as what is shown, with its metadata") {
@@ -152,12 +160,16 @@ TEST_CASE("an EXR keeps the layers, their sum, negative values and its attribute
   for (std::size_t c = 0; c < 3; ++c) {
     const std::string channel(1, "RGB"[c]);
     const auto sum = read_channel(file, channel, 5, 3);
-    const auto diffuse = read_channel(file, "diffuse." + channel, 5, 3);
+    const auto scattered = read_channel(file, "scattered." + channel, 5, 3);
     const auto specular = read_channel(file, "specular." + channel, 5, 3);
+    const auto unscattered = read_channel(file, "unscattered." + channel, 5, 3);
+    const auto transmittance = read_channel(file, "transmittance." + channel, 5, 3);
     for (std::size_t i = 0; i < 15; ++i) {
-      CHECK(diffuse[i] == picture.diffuse[3 * i + c]);
+      CHECK(scattered[i] == picture.scattered[3 * i + c]);
       CHECK(specular[i] == picture.specular[3 * i + c]);
-      CHECK(sum[i] == diffuse[i] + specular[i]);
+      CHECK(unscattered[i] == picture.unscattered[3 * i + c]);
+      CHECK(transmittance[i] == picture.transmittance[3 * i + c]);
+      CHECK(sum[i] == scattered[i] + specular[i] + unscattered[i]);
     }
   }
   CHECK(read_channel(file, "A", 5, 3) == picture.alpha);

@@ -245,10 +245,14 @@ TEST_CASE("exitance at vertices interpolates to the power of the faces") {
     scene.simulation.solve(what.options(SolverKind::dpcg, 1e-4));
     const SurfaceField field = scene.simulation.surface_field();
     const auto at_vertices = vk::download<glm::vec3>(scene.device.context, scene.simulation.vertex_exitance());
+    const auto unscattered = vk::download<glm::vec3>(scene.device.context, scene.simulation.vertex_unscattered());
     glm::dvec3 of_vertices{0}, of_faces{0};
     for (std::uint32_t f = 0; f < level.face_count(); ++f) {
       const double area = field.area[f];
-      for (int k = 0; k < 3; ++k) of_vertices += area / 3 * glm::dvec3(at_vertices[level.faces[f][k]]);
+      for (int k = 0; k < 3; ++k) {
+        const std::uint32_t v = level.faces[f][k];
+        of_vertices += area / 3 * (glm::dvec3(at_vertices[v]) + glm::dvec3(unscattered[v]));
+      }
       of_faces += area * (glm::dvec3(field.exitance[f]) + glm::dvec3(field.unscattered[f]));
     }
     for (int c = 0; c < 3; ++c) CHECK(of_vertices[c] == doctest::Approx(of_faces[c]).epsilon(1e-5));

@@ -38,5 +38,5 @@ TEST_CASE("the walk and C++ agree on their structs") {
                 MEMBER(VertexUnscatteredPush, face_offset), MEMBER(VertexUnscatteredPush, face_incidence),
                 MEMBER(VertexUnscatteredPush, unscattered), MEMBER(VertexUnscatteredPush, scale),
                 MEMBER(VertexUnscatteredPush, factor), MEMBER(VertexUnscatteredPush, exitance),
-                MEMBER(VertexUnscatteredPush, count)});
+                MEMBER(VertexUnscatteredPush, vertex_unscattered), MEMBER(VertexUnscatteredPush, count)});
 }

@@ -22,9 +22,9 @@ def bunny_engine(bunny_path, tmp_path_factory):
 
 
 def luminance(picture) -> np.ndarray:
-    """Mean of the diffuse channels, NaN where the object does not cover the pixel."""
+    """Mean of the scattered channels, NaN where the object does not cover the pixel."""
     covered = picture.alpha > 0.99
-    return np.where(covered, picture.diffuse.mean(axis=2), np.nan)
+    return np.where(covered, picture.scattered.mean(axis=2), np.nan)
 
 
 def test_the_demo_picture_is_not_black_and_has_contrast(bunny_engine):

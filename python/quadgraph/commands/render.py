@@ -45,6 +45,13 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--roughness", type=scene.positive_float, default=0.3, help="of the surface, GGX alpha (default: %(default)s)"
     )
+    parser.add_argument(
+        "--radiance",
+        choices=("gathered", "lambertian", "auto"),
+        default="auto",
+        help="gathered: one more step of transport along every view ray, scaled to the exitance; lambertian: the same "
+        "from every side but for Fresnel; auto: gathered where it can be (fem, buried) (default: %(default)s)",
+    )
     parser.add_argument("--exposure", default="auto", help="auto, or stops (default: %(default)s)")
     parser.add_argument("--background", default="studio", help="studio, black, white, or R/G/B (default: %(default)s)")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the report here")
@@ -74,6 +81,7 @@ def run(args: argparse.Namespace) -> int:
         width=args.size[0],
         height=args.size[1],
         roughness=args.roughness,
+        radiance=args.radiance,
     )
     scene.check_validation(engine)
     for path in args.output:

@@ -1,0 +1,32 @@
+// Gathered radiance at single points, as numbers.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "engine/solve/gather_field.h"
+#include "engine/vk/pipeline.h"
+
+namespace quadgraph {
+
+// Of light that leaves points of the surface: W/(mm^2 sr), and the share of what is behind the body that is seen.
+struct Leaving {
+  std::vector<glm::vec3> radiance, transmittance;
+};
+
+class RadianceProbe {
+ public:
+  explicit RadianceProbe(vk::Context& context);
+
+  // At the centroids of outside faces along unit directions. Throws InputError for a face that is not there or a
+  // direction that is not unit and outward.
+  Leaving run(const Level& level, const GatherField& field, float eta, std::span<const std::uint32_t> face,
+              std::span<const glm::vec3> direction);
+
+ private:
+  vk::Context& context_;
+  vk::ComputePass pass_;
+};
+
+}  // namespace quadgraph

@@ -1,0 +1,46 @@
+// What view rays gather on the finest level: fluence at its vertices, and the scale that makes the gathered radiance
+// integrate to the exitance.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/graph/graph.h"
+#include "engine/solve/beams.h"
+#include "engine/solve/operator_buffers.h"
+#include "engine/solve/simulation.h"
+#include "engine/solve/workspace.h"
+#include "shaders/gather_shared.h"
+
+namespace quadgraph {
+
+// A solved buried source by linear elements, on the finest level.
+struct GatherInput {
+  const LevelBuffers& level;
+  const OperatorBuffers& op;
+  const BeamBuffers& beams;
+  const vk::Buffer& vertex_exitance;  // vec3 per surface vertex, W/mm^2
+  gpu::BodyRef body;
+};
+
+class GatherField {
+ public:
+  GatherField(vk::Context& context, const Level& level);
+
+  // Fluence of both kinds at the vertices, exitance of what is gathered, and their scale.
+  void record(Workspace& work, const GatherInput& input);
+
+  const vk::Buffer& body() const { return body_; }          // BodyRef, one
+  const vk::Buffer& points() const { return points_; }      // GatherPoint per vertex
+  const vk::Buffer& gathered() const { return gathered_; }  // vec3 per face, W/mm^2: exitance of what is gathered
+  const vk::Buffer& scale() const { return scale_; }        // GatherScale per surface vertex
+
+ private:
+  void record_points(Workspace& work, const GatherInput& input);
+  void record_scale(Workspace& work, const GatherInput& input);
+
+  vk::Buffer start_, nearest_;  // engine/graph/vertex_starts.h
+  vk::Buffer body_, points_, gathered_, scale_;
+};
+
+}  // namespace quadgraph

@@ -1,0 +1,83 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "gather_shared.h"
+#include "fresnel.glsl"
+#include "lambertian.glsl"
+
+layout(local_size_x = WORKGROUP_SIZE) in;
+layout(push_constant, scalar) uniform Block { GatherExitancePush push; };
+
+BodyRef body;
+#define BODY body
+#define POINTS push.points
+#include "gather_fields.glsl"
+
+const float PI = 3.14159265;
+
+// Radiance at the Gauss nodes of the outside cosine. The body is taken as layered along the ray that goes straight in:
+// there a slanted ray sees the same at 1 / cosine times the depth.
+vec3 radiance[LAMBERTIAN_NODES];
+vec3 left[LAMBERTIAN_NODES];
+
+// Adds what lies between two points of the present tet. Returns whether any ray goes on.
+bool cross_tet(Lambertian nodes, GatherPoint from, GatherPoint to, float path) {
+  bool on = false;
+  for (uint k = 0u; k < LAMBERTIAN_NODES; ++k) {
+    float length = path / nodes.cosine[k];
+    vec3 tau = extinction() * length;
+    radiance[k] += left[k] * optical.sigma_s_prime * (length / FOUR_PI) * fluence_along(from, to, tau);
+    left[k] *= exp(-tau);
+    on = on || any(greaterThan(left[k], vec3(GATHER_END)));
+  }
+  return on;
+}
+
+void gather_straight(uint tet, vec3 direction, Lambertian nodes) {
+  GatherPoint here = fields_here();
+  for (uint step = 0u; step < GATHER_STEPS; ++step) {
+    Exit exit = find_exit(direction);
+    if (!exit.found) break;
+    vec4 l = exit_point(exit);
+    GatherPoint there = fields_at(l);
+    bool on = cross_tet(nodes, here, there, exit.path);
+    here = there;
+    move_to(l);
+    if (!on) break;
+    uvec2 crossing = turn(tet, exit.slot);
+    if (crossing.x < BODY.tet_count) {
+      tet = crossing.x;
+      enter(crossing);
+      continue;
+    }
+    vec3 n = exit.outward / length(exit.outward);
+    if (BODY.face_kinds.at[crossing.x - BODY.tet_count] == FACE_OPEN) {
+      for (uint k = 0u; k < LAMBERTIAN_NODES; ++k) left[k] *= internal_reflectance(nodes.cosine[k], BODY.eta);
+      if (BODY.eta == 1.0) break;
+    }
+    direction = normalize(direction - 2.0 * dot(direction, n) * n);
+  }
+  for (uint k = 0u; k < LAMBERTIAN_NODES; ++k) radiance[k] += left[k] * even_radiance(here);
+}
+
+void main() {
+  uint face = gl_GlobalInvocationID.x;
+  body = push.body.at[0];
+  if (face >= BODY.face_count) return;
+  push.exitance.at[face] = vec3(0);
+  if (BODY.face_kinds.at[face] != FACE_OPEN) return;
+  for (uint k = 0u; k < LAMBERTIAN_NODES; ++k) {
+    radiance[k] = vec3(0);
+    left[k] = vec3(1);
+  }
+  uvec3 ids = BODY.faces.at[face];
+  mat3 corners = mat3(BODY.vertices.at[ids.x], BODY.vertices.at[ids.y], BODY.vertices.at[ids.z]);
+  vec3 normal = normalize(cross(corners[1] - corners[0], corners[2] - corners[0]));
+  uint tet = BODY.face_tets.at[face];
+  start_on_face(tet, ids, corners, vec3(1.0 / 3.0));
+  gather_straight(tet, -normal, lambertian(BODY.eta));
+  vec3 exitance = vec3(0);
+  for (uint k = 0u; k < LAMBERTIAN_NODES; ++k) {
+    exitance += LAMBERTIAN_W[k] * fresnel_transmittance(sqrt(LAMBERTIAN_U[k]), BODY.eta) * radiance[k];
+  }
+  push.exitance.at[face] = PI / (BODY.eta * BODY.eta) * exitance;
+}

@@ -1,0 +1,13 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "gather_shared.h"
+#include "fields.glsl"
+
+layout(local_size_x = WORKGROUP_SIZE) in;
+layout(push_constant, scalar) uniform Block { GatherPhiPush push; };
+
+void main() {
+  uint v = gl_GlobalInvocationID.x;
+  if (v >= push.count) return;
+  push.points.at[v].phi = push.x.at[v].phi * push.scale.at[0].scale;
+}

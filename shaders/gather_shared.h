@@ -1,0 +1,107 @@
+// What the passes of gathered radiance share with C++, in scalar layout; see shared.h. Equations: docs/accuracy.md.
+#ifndef QUADGRAPH_GATHER_SHARED_H
+#define QUADGRAPH_GATHER_SHARED_H
+
+#include "body_shared.h"
+#include "solve_shared.h"
+
+#ifdef __cplusplus
+namespace quadgraph::gpu {
+#endif
+
+// Light at a vertex. All three are linear between vertices; uncollided fluence is entry exp(-depth), which is exact for
+// a beam behind a flat face.
+struct GatherPoint {
+  vec3 phi;    // W/mm^2, fluence of light that has scattered
+  vec3 entry;  // W/mm^2, fluence of light that has not, as if nothing had been lost on its way
+  vec3 depth;  // optical depth of that way
+};
+
+// At a surface vertex: radiance is `factor` times what is gathered, and a Lambertian exitance `rest`.
+struct GatherScale {
+  vec3 factor;
+  vec3 rest;  // W/mm^2
+};
+
+// The largest factor: where the fluence of a coarse mesh is far too low, gathering has nothing to scale.
+const float GATHER_FACTOR_MAX = 4.0f;
+// A view ray ends where no channel keeps more than this share; what lies behind counts as even.
+const float GATHER_END = 1e-2f;
+// Tets that a view ray crosses at most.
+const uint GATHER_STEPS = 256u;
+// Optical depth from which on light that has not scattered counts as none, and tets on the way back to where it
+// entered.
+const float UNCOLLIDED_DEPTH = 16.0f;
+const uint UNCOLLIDED_STEPS = 512u;
+// Least inside cosine of light at the face where it enters.
+const float LEAST_COSINE = 0.02f;
+// A refracted view ray keeps at least this cosine with the face that it enters, whose normal is not that of the
+// display.
+const float LEAST_VIEW_COSINE = 0.02f;
+
+#ifndef __cplusplus
+QG_ARRAY(BodyRefs, BodyRef);
+QG_ARRAY(BeamRecords, BeamRecord);
+QG_ARRAY(GatherPoints, GatherPoint);
+QG_ARRAY(GatherScales, GatherScale);
+#endif
+
+// gather_phi.comp: phi of the points from the solution of linear elements.
+struct GatherPhiPush {
+  QG_REF(Fields) x;
+  QG_REF(Scales) scale;
+  QG_REF(GatherPoints) points;
+  uint count;
+};
+
+// uncollided.comp: entry and depth of the points.
+struct UncollidedPush {
+  QG_REF(BodyRefs) body;      // one
+  QG_REF(Uints) start;        // a tet at each vertex
+  QG_REF(Uints) nearest;      // surface vertex
+  QG_REF(Uints) face_offset;  // faces around each surface vertex
+  QG_REF(Uints) face_incidence;
+  QG_REF(BeamRecords) beams;
+  QG_REF(Vec3s) quarter_q;  // W/mm^2 per beam, face and quarter
+  QG_REF(GatherPoints) points;
+  uint beam_count;
+  uint vertex_count;
+  uint surface_vertex_count;
+};
+
+// gather_exitance.comp: exitance of what is gathered, per face.
+struct GatherExitancePush {
+  QG_REF(BodyRefs) body;  // one
+  QG_REF(GatherPoints) points;
+  QG_REF(Vec3s) exitance;  // W/mm^2, written
+};
+
+// gather_scale.comp: scale at surface vertices.
+struct GatherScalePush {
+  QG_REF(Vec3s) vertices;
+  QG_REF(Uvec3s) faces;
+  QG_REF(Uints) face_offset;
+  QG_REF(Uints) face_incidence;
+  QG_REF(Vec3s) gathered;  // W/mm^2 per face
+  QG_REF(Vec3s) exitance;  // W/mm^2 per surface vertex
+  QG_REF(GatherScales) scale;
+  uint count;
+};
+
+// radiance_probe.comp: radiance that leaves the centroids of faces.
+struct RadianceProbePush {
+  QG_REF(BodyRefs) body;  // one
+  QG_REF(GatherPoints) points;
+  QG_REF(GatherScales) scale;
+  QG_REF(Uints) face;
+  QG_REF(Vec3s) direction;      // unit, outward
+  QG_REF(Vec3s) radiance;       // W/(mm^2 sr), written: scattered
+  QG_REF(Vec3s) transmittance;  // written
+  uint count;
+  float radiance_norm;  // integral of F_t cos over the hemisphere, sr
+};
+
+#ifdef __cplusplus
+}  // namespace quadgraph::gpu
+#endif
+#endif
