@@ -1,7 +1,9 @@
 // The operators and the CPU reference solver, double precision.
 #include <pybind11/stl.h>
 
+#include "engine/graph/error.h"
 #include "engine/graph/fresnel.h"
+#include "engine/graph/radiance.h"
 #include "engine/graph/reference.h"
 #include "engine/solve/beams.h"
 #include "python/bindings/bindings.h"
@@ -101,6 +103,48 @@ py::dict reference(const QuadGraph& graph, std::uint32_t index, const FloatArray
   return solution_dict(std::move(solution));
 }
 
+using DoubleArray = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+std::vector<glm::dvec3> double_vectors(const DoubleArray& array, std::size_t count, const std::string& what) {
+  if (array.ndim() != 2 || static_cast<std::size_t>(array.shape(0)) != count || array.shape(1) != 3) {
+    throw InputError(what + ": expected shape (" + std::to_string(count) + ", 3)");
+  }
+  std::vector<glm::dvec3> values;
+  for (py::ssize_t i = 0; i < array.shape(0); ++i) values.emplace_back(array.at(i, 0), array.at(i, 1), array.at(i, 2));
+  return values;
+}
+
+py::dict radiance_dict(const QuadGraph& graph, std::uint32_t index, const FloatArray& sigma_s_prime,
+                       const FloatArray& sigma_a, double eta, const FloatArray& q,
+                       const std::optional<std::array<float, 3>>& direction, const DoubleArray& phi,
+                       const std::vector<std::uint32_t>& faces, const DoubleArray& outside) {
+  const Level& level = level_of(graph, index);
+  const auto optical = optical_from(sigma_s_prime, sigma_a, level.node_count());
+  check_optical(optical, level.node_count());
+  check_eta(eta);
+  const std::vector<glm::dvec3> fluence = double_vectors(phi, level.vertex_count(), "phi");
+  const std::vector<glm::dvec3> ways = double_vectors(outside, faces.size(), "outside");
+  for (const std::uint32_t f : faces) {
+    if (f >= level.face_count()) throw InputError("faces: " + std::to_string(f) + " is not a face of the level");
+  }
+  std::vector<Quarters> quarters;
+  for (const glm::vec3& value : vectors(q, level.face_count(), "q")) quarters.push_back({value, value, value, value});
+  const BeamLight beam{beam_along(as_vector(direction)), quarters};
+  const Problem problem{Method::fem, Source::buried, Model::sp3, optical, eta};
+  Uncollided fields = uncollided(level, problem, std::span(&beam, 1), vertex_starts(level));
+  const InsideLight light{fluence, fields};
+  std::vector<glm::dvec3> radiance;
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    radiance.push_back(gathered_radiance(level, problem, light, faces[i], glm::dvec3(1.0 / 3), ways[i]));
+  }
+  py::dict d;
+  d["radiance"] = own(std::move(radiance));
+  d["exitance"] = own(gathered_exitance(level, problem, light));
+  d["entry"] = own(std::move(fields.entry));
+  d["depth"] = own(std::move(fields.depth));
+  return d;
+}
+
 py::dict boundary_dict(const std::string& method, const std::string& source, const std::string& model, double eta) {
   const Boundary boundary =
       boundary_of(method_from_name(method), source_from_name(source), model_from_name(model), eta);
@@ -146,6 +190,13 @@ void bind_reference(py::module_& module) {
              "irradiance that the surface lets in; direction (3,) in which it travels outside, None: Lambertian. "
              "Returns phi and phi2 per carrier, phi_face, exitance and unscattered per outside face (W/mm^2), energy "
              "(W), clipped, report. Raises InputError, SolverError.");
+  module.def("radiance_reference", &radiance_dict, py::arg("graph"), py::arg("level"), py::arg("sigma_s_prime"),
+             py::arg("sigma_a"), py::arg("eta"), py::arg("q"), py::arg("direction"), py::arg("phi"), py::arg("faces"),
+             py::arg("outside"),
+             "Gathered radiance on the CPU (engine/graph/radiance.h), unscaled. sigma_s_prime, sigma_a, eta, q and "
+             "direction as for solve_reference; phi (n_v, 3) of its solution with fem; faces (n,) and outside (n, 3), "
+             "the unit directions into which light leaves their centroids. Returns radiance (n, 3) in W/(mm^2 sr), "
+             "exitance (n_f, 3), entry (n_v, 3) in W/mm^2 and depth (n_v, 3). Raises InputError.");
   module.def("boundary", &boundary_dict, py::arg("method"), py::arg("source"), py::arg("model"), py::arg("eta"),
              "k11, k12, k22, source, reflected (engine/graph/boundary.h).");
   module.def("fresnel_moment", &fresnel_moment, py::arg("n"), py::arg("eta"),
