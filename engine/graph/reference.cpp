@@ -142,7 +142,7 @@ std::vector<glm::dvec3> clipped_exitance(const Level& level, Method method, std:
   return faces;
 }
 
-void add_surface(const Level& level, const Problem& problem, std::span<const glm::vec3> q,
+void add_surface(const Level& level, const Problem& problem, std::span<const EnteringLight> lights,
                  ReferenceSolution& solution) {
   const Boundary boundary = problem.boundary();
   std::vector<glm::dvec3> flux;
@@ -155,7 +155,8 @@ void add_surface(const Level& level, const Problem& problem, std::span<const glm
   } else {
     solution.exitance = over_faces(level, problem.method, flux);
     for (std::uint32_t f = 0; f < level.face_count(); ++f) {
-      if (!level.reflecting(f)) solution.exitance[f] -= boundary.reflected * glm::dvec3(q[f]);
+      if (level.reflecting(f)) continue;
+      for (const EnteringLight& light : lights) solution.exitance[f] -= boundary.reflected * glm::dvec3(light.q[f]);
     }
   }
   solution.energy.scattered_out = surface_integral(level, solution.exitance);
@@ -168,27 +169,44 @@ void add_absorbed(const Level& level, const Problem& problem, ReferenceSolution&
   }
 }
 
-// b, and what the light does before it scatters.
-Vector load(const Level& level, const Problem& problem, const EnteringLight& light, ReferenceSolution& solution) {
-  solution.unscattered.assign(level.faces.size(), glm::dvec3(0));
-  Vector b = diffuse_load(level, problem, light.q);  // zero with the buried source, whose boundary.source is
-  if (problem.source == Source::diffuse) {
-    for (std::uint32_t f = 0; f < level.face_count(); ++f) {
-      if (level.reflecting(f)) continue;
-      solution.energy.entered += face_area(level, level.faces[f]) * glm::dvec3(light.q[f]);
-    }
-    return b;
+void add(std::vector<Field>& sum, const std::vector<Field>& part) {
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = sum[i] + part[i];
+}
+
+// What one light adds to b of the diffuse source.
+Vector surface_load(const Level& level, const Problem& problem, const EnteringLight& light,
+                    ReferenceSolution& solution) {
+  for (std::uint32_t f = 0; f < level.face_count(); ++f) {
+    if (level.reflecting(f)) continue;
+    solution.energy.entered += face_area(level, level.faces[f]) * glm::dvec3(light.q[f]);
   }
+  return diffuse_load(level, problem, light.q);
+}
+
+// What one light adds to b of the buried source, and what it does before it scatters.
+Vector walked_load(const Level& level, const Problem& problem, const EnteringLight& light,
+                   ReferenceSolution& solution) {
   std::vector<Quarters> quarters;
   for (const glm::vec3& q : light.q) quarters.push_back({q, q, q, q});
   const WalkResult walk = walk_source(level, problem, light.beam, quarters);
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {
-    solution.unscattered[f] = walk.unscattered[f] / face_area(level, level.faces[f]);
+    solution.unscattered[f] += walk.unscattered[f] / face_area(level, level.faces[f]);
   }
-  solution.energy.entered = walk.entered;
-  solution.energy.absorbed = walk.absorbed;
-  solution.energy.unscattered_out = walk.unscattered_out;
+  solution.energy.entered += walk.entered;
+  solution.energy.absorbed += walk.absorbed;
+  solution.energy.unscattered_out += walk.unscattered_out;
   return buried_load(level, problem, walk.scattered);
+}
+
+Vector load(const Level& level, const Problem& problem, std::span<const EnteringLight> lights,
+            ReferenceSolution& solution) {
+  solution.unscattered.assign(level.faces.size(), glm::dvec3(0));
+  Vector b(carrier_count(level, problem.method));
+  for (const EnteringLight& light : lights) {
+    const bool buried = problem.source == Source::buried;
+    add(b, buried ? walked_load(level, problem, light, solution) : surface_load(level, problem, light, solution));
+  }
+  return b;
 }
 
 }  // namespace
@@ -201,11 +219,11 @@ std::vector<gpu::Optical> evaluate_material(const Level& level, const gpu::Mater
 }
 
 ReferenceSolution solve_reference(const Level& level, std::span<const gpu::Optical> optical, double eta,
-                                  const EnteringLight& light, const SolveOptions& options) {
+                                  std::span<const EnteringLight> lights, const SolveOptions& options) {
   const Problem problem{options.method, options.source, options.model, optical, eta};
   const Rows rows = assemble(level, problem);
   ReferenceSolution solution;
-  const Vector b = load(level, problem, light, solution);
+  const Vector b = load(level, problem, lights, solution);
   solution.report.unknowns = static_cast<std::uint32_t>(rows.size()) * (options.model == Model::sp3 ? 2 : 1);
   Vector x(rows.size());
   if (options.solver == SolverKind::dpcg) {
@@ -219,7 +237,7 @@ ReferenceSolution solve_reference(const Level& level, std::span<const gpu::Optic
     solution.phi.push_back(rows.to_phi[i] * x[i].phi);
     solution.phi2.push_back(rows.to_phi[i] * x[i].phi2);
   }
-  add_surface(level, problem, light.q, solution);
+  add_surface(level, problem, lights, solution);
   add_absorbed(level, problem, solution);
   return solution;
 }

@@ -32,10 +32,16 @@ struct EnteringLight {
   std::span<const glm::vec3> q;  // W/mm^2, one per outside face, even over the face; ignored at reflecting faces
 };
 
-// Solves one level from zero to `options.tolerance` (cascade: plain relaxation on this level). `options.model` must not
-// be `automatic`. Throws InputError as `assemble` does, SolverError if conjugate gradients meet a direction of
-// non-positive energy or the residual is no longer finite.
+// Solves one level from zero to `options.tolerance` (cascade: plain relaxation on this level) under all `lights`
+// together. `options.model` must not be `automatic`; bounces are those of exchange.h, not of this. Throws InputError as
+// `assemble` does, SolverError if conjugate gradients meet a direction of non-positive energy or the residual is no
+// longer finite.
 ReferenceSolution solve_reference(const Level& level, std::span<const gpu::Optical> optical, double eta,
-                                  const EnteringLight& light, const SolveOptions& options);
+                                  std::span<const EnteringLight> lights, const SolveOptions& options);
+
+inline ReferenceSolution solve_reference(const Level& level, std::span<const gpu::Optical> optical, double eta,
+                                         const EnteringLight& light, const SolveOptions& options) {
+  return solve_reference(level, optical, eta, std::span(&light, 1), options);
+}
 
 }  // namespace quadgraph

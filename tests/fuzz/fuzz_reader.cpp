@@ -3,6 +3,7 @@
 #include <span>
 
 #include "engine/graph/error.h"
+#include "engine/graph/exchange.h"
 #include "engine/graph/graph.h"
 #include "engine/graph/reference.h"
 #include "tests/cpp/qgraph_bytes.h"
@@ -15,6 +16,9 @@ void use(const quadgraph::QuadGraph& graph) {
   for (const quadgraph::Level& level : graph.levels()) {
     const std::vector<quadgraph::gpu::Optical> optical(level.node_count(), {glm::vec3(0.1f), glm::vec3(0.01f)});
     const std::vector<glm::vec3> q(level.face_count(), glm::vec3(1));
+    if (!level.seen.empty()) {
+      quadgraph::received_irradiance(level, std::vector<glm::dvec3>(level.face_count(), glm::dvec3(1)));
+    }
     const quadgraph::EnteringLight light{{quadgraph::gpu::BEAM_LAMBERTIAN, glm::vec3(0)}, q};
     for (const auto method : {quadgraph::Method::fem, quadgraph::Method::quadgraph_fdm}) {
       quadgraph::SolveOptions options;
