@@ -36,8 +36,17 @@ def test_bake_prints_json_on_standard_output_alone(sphere, tmp_path, capsys):
 def test_bake_reports_to_people(sphere, tmp_path, capsys):
     assert cli.main(["bake", str(sphere), "-o", str(tmp_path / "a.qgraph"), "--unit", "mm"]) == 0
     text = capsys.readouterr().out
-    for word in ("tets", "time:", "memory:", "after relaxing", "wrote"):
+    for word in ("tets", "time:", "memory:", "after relaxing", "sees itself in 0.0%", "wrote"):
         assert word in text
+
+
+def test_bake_and_info_tell_that_rays_were_left_out(sphere, tmp_path, capsys):
+    output = str(tmp_path / "a.qgraph")
+    assert cli.main(["bake", str(sphere), "-o", output, "--unit", "mm", "--visibility-rays", "0"]) == 0
+    assert cli.main(["info", output]) == 0
+    text = capsys.readouterr().out
+    assert text.count("exchange: none") == 2
+    assert "visibility_rays 0" in text
 
 
 def test_info_json_tells_everything(capsys):
@@ -88,6 +97,7 @@ def test_a_reader_that_leaves_causes_no_traceback():
         ["bake", "a.obj", "-o", "a.qgraph", "--height", "-1mm"],
         ["bake", "a.obj", "-o", "a.qgraph", "--levels", "0"],
         ["bake", "a.obj", "-o", "a.qgraph", "--relax-nodes", "-1"],
+        ["bake", "a.obj", "-o", "a.qgraph", "--visibility-rays", "-1"],
         ["bake", "a.obj", "-o", "a.qgraph", "--order", "sideways"],
         ["bake", "a.obj", "-o", "a.qgraph", "--time-limit", "nan"],
         ["info"],

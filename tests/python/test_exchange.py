@@ -16,7 +16,7 @@ from quadgraph import bake, exchange, qgraph_file
 from quadgraph.commands.info import describe
 from quadgraph.errors import InputError, ToolError
 from quadgraph.reference import meshes
-from shapes import torus
+from shapes import pymeshlab_samples, torus
 
 EDGE, THICKNESS, GAP = 10.0, 1.0, 4.0
 
@@ -217,6 +217,16 @@ def test_the_bake_stores_it_once_and_the_same_every_time(ring, tmp_path):
     assert reports[0].exchange["entries"] == seen.entries > 0
     assert 0 < reports[0].exchange["share"] < 1
     assert reports[0].seconds["exchange"] > 0
+
+
+def test_the_bunny_sees_itself_at_little_cost(tmp_path):
+    """9% of all directions (physics.md, on a finer surface); within 10 s and 8 MB."""
+    options = bake.BakeOptions(height_mm=100.0, surface_vertices=3000)
+    report = bake.bake(pymeshlab_samples() / "bunny.obj", tmp_path / "bunny.qgraph", options)
+    print(report.exchange, report.seconds)
+    assert report.exchange["share"] == pytest.approx(0.09, abs=0.015)
+    assert report.exchange["bytes"] < 8e6
+    assert report.seconds["exchange"] < 10
 
 
 def test_the_bake_can_leave_it_out(ring, tmp_path):
