@@ -25,9 +25,9 @@ struct InsideLight {
 // at most gather_end to what is gathered; or keeps at most gather_least. What lies behind then counts as even. Seen
 // from the unlit side the fluence grows inwards almost as fast as it is attenuated: the first condition alone loses 5%.
 inline constexpr double gather_end = 0.01;
-inline constexpr double gather_least = 1e-4;
+inline constexpr double gather_least = 1e-6;
 // Tets that a view ray crosses at most.
-inline constexpr std::uint32_t gather_steps = 256;
+inline constexpr std::uint32_t gather_steps = 1024;
 
 struct Gathered {
   glm::dvec3 radiance{0};  // W/(mm^2 sr), inside
