@@ -3,6 +3,7 @@
 #include "walk_shared.h"
 #include "fresnel.glsl"
 #include "fixed_point.glsl"
+#include "face_azimuth.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { WalkSourcePush push; };
@@ -42,16 +43,32 @@ vec3 incoming(uint ray, vec3 position, vec3 normal) {
   return ((ray & 1u) == 0u ? 1.0 : -1.0) * sqrt(1.0 - u) * tangent(normal, (node & 1u) == 1u) - sqrt(u) * normal;
 }
 
+// Power that enters at a node of the Lambertian bundle, not normalised.
+float node_weight(uint node) {
+  return LAMBERTIAN_W[node] * fresnel_transmittance(sqrt(LAMBERTIAN_U[node]), push.body.eta);
+}
+
 // Share of the power of a face that one ray takes, by its number.
 float share_of(uint ray, uint rays) {
   if (rays == 1u) return 1.0;
-  float sum = 0.0, own = 0.0;
+  float sum = 0.0;
+  for (uint node = 0u; node < LAMBERTIAN_NODES; ++node) sum += node_weight(node);
+  return 0.5 * node_weight(ray / 2u) / sum;
+}
+
+// Inside, of light from everywhere: at the mean cosine, with an azimuth that differs from face to face and moves with
+// the body.
+vec3 mean_direction(uint face, vec3 edge, vec3 normal) {
+  float sum = 0.0, cosine = 0.0;
   for (uint node = 0u; node < LAMBERTIAN_NODES; ++node) {
-    float weight = LAMBERTIAN_W[node] * fresnel_transmittance(sqrt(LAMBERTIAN_U[node]), push.body.eta);
+    float weight = node_weight(node);
     sum += weight;
-    if (node == ray / 2u) own = weight;
+    cosine += weight * sqrt(1.0 - (1.0 - LAMBERTIAN_U[node]) / (push.body.eta * push.body.eta));
   }
-  return 0.5 * own / sum;
+  cosine /= sum;
+  float azimuth = face_azimuth(face, 0u);
+  vec3 t = normalize(edge);
+  return normalize(sqrt(1.0 - cosine * cosine) * (cos(azimuth) * t + sin(azimuth) * cross(normal, t)) - cosine * normal);
 }
 
 // Light at grazing incidence, or even from behind by rounding, still goes in.
@@ -86,7 +103,9 @@ void walk_from(uint face, uint ray) {
     if (power == vec3(0)) continue;
     vec3 l = quarter_centre(k);
     start_on_face(tet, ids, corners, l);
-    walk(Ray(tet, refracted(incoming(ray, corners * l, normal), normal), power, vec3(0)));
+    vec3 inside = push.beam.at[0].kind == BEAM_MEAN ? mean_direction(face, corners[1] - corners[0], normal)
+                                                    : refracted(incoming(ray, corners * l, normal), normal);
+    walk(Ray(tet, inside, power, vec3(0)));
   }
 }
 

@@ -80,7 +80,8 @@ struct LevelReport {
 };
 
 // Relative RMS difference of the exitance between the two finest levels, times the share that is the finer level's own
-// error (1/3: second order, spacing halved). Empty with a single level.
+// error (1/3: second order, spacing halved). Empty with a single level; where the finest level itself has the bounces,
+// that of the light before them, and empty if they go on from a state.
 struct ErrorEstimate {
   double whole = 0;  // over the whole surface
   double unlit = 0;  // over the part where q = 0; 0 if there is none

@@ -39,14 +39,16 @@ gpu::BeamRecord beam_along(const std::optional<glm::vec3>& direction) {
 
 void replace_beams(vk::Context& context, std::span<const gpu::BeamRecord> beams, BeamBuffers& buffers,
                    std::vector<LevelBuffers>& levels) {
-  buffers.records = vk::upload(context, beams, "beams");
-  const bool fits = beams.size() == buffers.kinds.size();
+  std::vector<gpu::BeamRecord> all(beams.begin(), beams.end());
+  all.push_back({gpu::BEAM_MEAN, glm::vec3(0)});
+  buffers.records = vk::upload<gpu::BeamRecord>(context, all, "beams");
+  const bool fits = all.size() == buffers.kinds.size();
   buffers.kinds.clear();
-  for (const gpu::BeamRecord& beam : beams) buffers.kinds.push_back(beam.kind);
+  for (const gpu::BeamRecord& beam : all) buffers.kinds.push_back(beam.kind);
   if (fits) return;
   vk::Commands commands(context);
   for (LevelBuffers& level : levels) {
-    const std::uint64_t bytes = beams.size() * level.face_count * FACE_QUARTERS * sizeof(glm::vec3);
+    const std::uint64_t bytes = all.size() * level.face_count * FACE_QUARTERS * sizeof(glm::vec3);
     level.beam_q = vk::Buffer(context, bytes, vk::Place::device, "quarters of the beams");
     commands.fill(level.beam_q, 0);
     commands.fill(level.q, 0);

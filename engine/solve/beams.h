@@ -10,6 +10,8 @@
 
 namespace quadgraph {
 
+// The beams of the scene's light, and last one of kind BEAM_MEAN for light that leaves the body and enters it again. It
+// is in no LevelBuffers::q, and zero while there is none.
 struct BeamBuffers {
   std::vector<std::uint32_t> kinds;
   vk::Buffer records;  // BeamRecord
@@ -18,7 +20,8 @@ struct BeamBuffers {
 // A beam along `direction`, of any length, or a Lambertian one. Throws InputError unless it is finite and not zero.
 gpu::BeamRecord beam_along(const std::optional<glm::vec3>& direction);
 
-// Replaces the beams. If their number changes, every level gets room for their quarters, without light.
+// Replaces the beams by those of the scene's light and the one for light that enters again. If their number changes,
+// every level gets room for their quarters, without light.
 void replace_beams(vk::Context& context, std::span<const gpu::BeamRecord> beams, BeamBuffers& buffers,
                    std::vector<LevelBuffers>& levels);
 

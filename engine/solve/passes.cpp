@@ -1,6 +1,7 @@
 #include "engine/solve/passes.h"
 
 #include "shaders/assembly_shared.h"
+#include "shaders/exchange_shared.h"
 #include "shaders/gather_shared.h"
 #include "shaders/surface_shared.h"
 #include "shaders/walk_shared.h"
@@ -26,6 +27,9 @@
 #include "spirv/energy.comp.h"
 #include "spirv/energy_sp3.comp.h"
 #include "spirv/evaluate_material.comp.h"
+#include "spirv/exchange.comp.h"
+#include "spirv/exchange_enter.comp.h"
+#include "spirv/exchange_finer.comp.h"
 #include "spirv/exitance.comp.h"
 #include "spirv/exitance_sp3.comp.h"
 #include "spirv/gather_exitance.comp.h"
@@ -73,6 +77,9 @@ Passes::Passes()
       ONE_PASS(gather_exitance, GatherExitancePush),
       ONE_PASS(gather_scale, GatherScalePush),
       ONE_PASS(radiance_probe, RadianceProbePush),
+      ONE_PASS(exchange, ExchangePush),
+      ONE_PASS(exchange_finer, ExchangeFinerPush),
+      ONE_PASS(exchange_enter, ExchangeEnterPush),
       MODEL_PASS(assemble_fdm, AssembleFdmPush),
       MODEL_PASS(assemble_fv, AssembleFvPush),
       MODEL_PASS(assemble_edges, AssembleEdgesPush),

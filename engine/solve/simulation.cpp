@@ -11,6 +11,7 @@
 #include "engine/solve/beams.h"
 #include "engine/solve/coefficients.h"
 #include "engine/solve/gather_field.h"
+#include "engine/solve/inter_reflection.h"
 #include "engine/solve/level_solver.h"
 #include "engine/solve/level_upload.h"
 #include "engine/solve/surface_results.h"
@@ -19,6 +20,9 @@ namespace quadgraph {
 namespace {
 
 constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
+
+// Of a still: each brings in at most the share of light that meets the body again, of what the one before did.
+constexpr std::uint32_t most_bounces = 64;
 
 void check_options(const SolveOptions& options) {
   if (!(options.tolerance > 0) || !(options.tolerance < 1)) {
@@ -56,6 +60,7 @@ struct Simulation::Implementation {
   Workspace work;
   SurfaceResults results;
   Coefficients coefficients;
+  InterReflection exchange;
   std::optional<GatherField> gather;  // made at first use
   bool gather_stale = true;
   std::vector<PassStats> passes;      // of the last solve
@@ -69,7 +74,8 @@ struct Simulation::Implementation {
         levels(upload_levels(context_in, graph_in)),
         work(context_in, largest_dispatch()),
         results(context_in, levels[0]),
-        coefficients(levels.size()) {
+        coefficients(levels.size()),
+        exchange(graph_in) {
     for (std::uint32_t i = 0; i < levels.size(); ++i) walks.emplace_back(context, graph.levels()[i], i);
     const gpu::BeamRecord lambertian = beam_along(std::nullopt);
     light({&lambertian, 1});
@@ -178,19 +184,65 @@ struct Simulation::Implementation {
     }
   }
 
-  std::vector<LevelReport> solve_levels(const OperatorKey& key, const Solved& finest, const SolveOptions& options) {
-    std::vector<LevelReport> reports;
+  Solved solved_level(const OperatorKey& key, const Boundary& boundary, Source source, std::uint32_t level) {
+    return {levels[level], op(key, level), key.method, boundary, source == Source::buried ? &walks[level] : nullptr};
+  }
+
+  // b with the light that enters again.
+  void record_load_again(const OperatorKey& key, std::uint32_t level) {
+    walks[level].record_again(work, levels[level], beams, key.method, coefficients.eta(), coefficients.even());
+    walks[level].record_right_hand_side(work, levels[level], key.method, op(key, level));
+    op(key, level).loaded.reset();
+  }
+
+  void solve_levels(const OperatorKey& key, const Boundary& boundary, const SolveOptions& options,
+                    SolveReport& report) {
     for (auto i = static_cast<std::uint32_t>(levels.size()); i-- > 0;) {
       OperatorBuffers& rows = op(key, i);
+      if (report.inter_reflection && i <= *exchange.level()) {
+        exchange.record_beam(work, levels, i, coefficients.eta());
+        if (exchange.any()) record_load_again(key, i);
+      }
       if (i + 1 == levels.size()) {
         work.recorder.fill(rows.x, 0);
       } else {
         record_transfer(key, i);
-        if (i == 0) results.record_coarse(work, finest);
+        if (i == 0) results.record_coarse(work, solved_level(key, boundary, options.source, i));
       }
-      reports.push_back(solve_level(work, rows, i, options));
+      report.levels.push_back(solve_level(work, rows, i, options));
+      if (!report.inter_reflection || i != *exchange.level()) continue;
+      if (i == 0 && !exchange.any()) estimate_error(key, boundary, options.source, report);
+      bounce(key, boundary, options, report);
     }
-    return reports;
+    const bool finest_alone = report.inter_reflection && *exchange.level() == 0;
+    results.record(work, solved_level(key, boundary, options.source, 0));
+    work.recorder.submit();
+    if (levels.size() > 1 && !finest_alone) report.error = results.error();
+  }
+
+  // Of the finest level before it has bounces that the coarser ones do not have.
+  void estimate_error(const OperatorKey& key, const Boundary& boundary, Source source, SolveReport& report) {
+    if (levels.size() == 1) return;
+    results.record(work, solved_level(key, boundary, source, 0));
+    work.recorder.submit();
+    report.error = results.error();
+  }
+
+  // On the level with the exchange, from the solution it has.
+  void bounce(const OperatorKey& key, const Boundary& boundary, const SolveOptions& options, SolveReport& report) {
+    const std::uint32_t level = *exchange.level();
+    const Solved here = solved_level(key, boundary, options.source, level);
+    LevelReport& total = report.levels.back();
+    for (std::uint32_t left = options.bounces > 0 ? options.bounces : most_bounces; left > 0; --left) {
+      const glm::dvec3 before = exchange.power();
+      exchange.record_bounce(work, here, coefficients.eta());
+      record_load_again(key, level);
+      const std::uint32_t iterations = total.iterations;
+      total = solve_level(work, op(key, level), level, options);
+      total.iterations += iterations;
+      report.bounces.push_back(exchange.power() - before);
+      if (options.bounces == 0 && exchange.converged(options.tolerance / 10)) return;
+    }
   }
 
   SolveReport solve(const SolveOptions& options) {
@@ -201,21 +253,20 @@ struct Simulation::Implementation {
     const OperatorKey key{options.method, coefficients.resolve(options.model, options.method, options.source)};
     const Boundary boundary = boundary_of(key.method, options.source, key.model, coefficients.eta());
     create_structures(key);
+    for (SourceWalk& walk : walks) walk.forget_again();
     record_setup(key, boundary, options);
-    const bool buried = options.source == Source::buried;
-    const Solved finest{levels[0], op(key, 0), key.method, boundary, buried ? &walks[0] : nullptr};
     SolveReport report;
     report.method = key.method;
     report.solver = options.solver;
     report.source = options.source;
     report.model = key.model;
-    report.levels = solve_levels(key, finest, options);
-    results.record(work, finest);
-    work.recorder.submit();
+    report.inter_reflection = options.inter_reflection && options.source == Source::buried && exchange.level();
+    if (!report.inter_reflection || options.bounces == 0) exchange.record_none(work, levels);
+    solve_levels(key, boundary, options, report);
     passes = work.recorder.passes();
     report.energy = energy_of(options.source);
+    if (report.inter_reflection) report.energy.re_entered = exchange.power();
     report.clipped = results.clipped();
-    if (levels.size() > 1) report.error = results.error();
     gather_stale = true;
     solved = key;
     solved_source = options.source;

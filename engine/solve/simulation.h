@@ -43,7 +43,11 @@ struct LevelBuffers {
   vk::Buffer nodes;    // vec3, mm; inner nodes, then surface nodes
   vk::Buffer optical;  // Optical per node
   vk::Buffer q;        // vec3 per face, W/mm^2: written by the lights or by set_irradiance
-  vk::Buffer beam_q;   // vec3 per beam, face and quarter (FACE_QUARTERS), W/mm^2: what q is made of
+  vk::Buffer beam_q;   // vec3 per beam (BeamBuffers), face and quarter (FACE_QUARTERS), W/mm^2: what q is made of
+  vk::Buffer sky;      // float per face: share of even light from outside that no other part of the body hides
+
+  // Where light that enters again begins in beam_q, bytes.
+  std::uint64_t quarters_again() const { return beam_q.size() - face_count * FACE_QUARTERS * sizeof(glm::vec3); }
 };
 
 class GatherField;

@@ -85,16 +85,50 @@ gpu::BodyRef SourceWalk::body(const LevelBuffers& level, double eta, bool even) 
           .eta = static_cast<float>(eta)};
 }
 
+void SourceWalk::Sums::make_room(vk::Context& context, std::uint64_t bytes, const std::string& prefix) {
+  if (device.size() == bytes) return;
+  device = {context, bytes, vk::Place::device, prefix + "walk sums"};
+  host = {context, bytes, vk::Place::host, prefix + "walk sums, read back"};
+  scale = {context, sizeof(gpu::Scale), vk::Place::host, prefix + "scale, read back"};
+}
+
+void SourceWalk::Sums::read_back(Workspace& work) const {
+  work.recorder.copy(device, host, device.size());
+  work.recorder.copy(work.scale, scale, sizeof(gpu::Scale));
+}
+
+WalkPower SourceWalk::Sums::power() const {
+  if (device.size() == 0) return {};  // no beams, no light
+  const std::vector<glm::dvec3> sums =
+      powers(host.mapped_as<std::uint32_t>(), glm::dvec3(scale.mapped_as<gpu::Scale>()[0].scale));
+  WalkPower power;
+  for (std::size_t i = 0; i < sums.size(); i += 2) {
+    power.absorbed += sums[i];
+    power.unscattered += sums[i + 1];
+  }
+  return power;
+}
+
 void SourceWalk::make_room(vk::Context& context, const LevelBuffers& level, const BeamBuffers& beams, Method method) {
   vk::Buffer& deposit = deposits_[carrier(method)];
   const std::uint64_t deposit_bytes = carriers(level, method) * power_bytes;
   if (deposit.size() != deposit_bytes) deposit = {context, deposit_bytes, vk::Place::device, prefix_ + "deposit"};
   std::uint64_t all_sums = 0;
-  for (const std::uint32_t kind : beams.kinds) all_sums += sums_bytes(level, kind);
-  if (sums_.size() == all_sums) return;
-  sums_ = {context, all_sums, vk::Place::device, prefix_ + "walk sums"};
-  sums_on_host_ = {context, all_sums, vk::Place::host, prefix_ + "walk sums, read back"};
-  scale_on_host_ = {context, sizeof(gpu::Scale), vk::Place::host, prefix_ + "scale, read back"};
+  for (const std::uint32_t kind : beams.kinds) all_sums += kind == gpu::BEAM_MEAN ? 0 : sums_bytes(level, kind);
+  sums_.make_room(context, all_sums, prefix_);
+}
+
+gpu::WalkSourcePush SourceWalk::push(const Workspace& work, const LevelBuffers& level, const BeamBuffers& beams,
+                                     Method method, double eta, bool even) const {
+  return {.body = body(level, eta, even),
+          .beam = beams.records.address(),
+          .quarter_q = level.beam_q.address(),
+          .scale = work.scale.address(),
+          .deposit = deposit(method).address(),
+          .unscattered = unscattered().address(),
+          .sums = sums_.device.address(),
+          .rays = 1,
+          .fem = method == Method::fem ? 1u : 0u};
 }
 
 void SourceWalk::record(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, Method method, double eta,
@@ -104,18 +138,11 @@ void SourceWalk::record(Workspace& work, const LevelBuffers& level, const BeamBu
   make_room(work.recorder.context(), level, beams, method);
   work.recorder.fill(deposits_[carrier(method)], 0);
   work.recorder.fill(unscattered_, 0);
-  if (beams.kinds.empty()) return;
-  work.recorder.fill(sums_, 0);
-  gpu::WalkSourcePush push{.body = body(level, eta, even),
-                           .beam = beams.records.address(),
-                           .quarter_q = level.beam_q.address(),
-                           .scale = work.scale.address(),
-                           .deposit = deposits_[carrier(method)].address(),
-                           .unscattered = unscattered_.address(),
-                           .sums = sums_.address(),
-                           .rays = 1,
-                           .fem = method == Method::fem ? 1u : 0u};
+  if (sums_.device.size() == 0) return;
+  work.recorder.fill(sums_.device, 0);
+  gpu::WalkSourcePush push = this->push(work, level, beams, method, eta, even);
   for (const std::uint32_t kind : beams.kinds) {
+    if (kind == gpu::BEAM_MEAN) continue;
     push.rays = rays(kind);
     work.recorder.dispatch(work.passes.walk_source, push, std::uint64_t{level.face_count} * push.rays, "source walk",
                            walk_bytes(level, push.rays));
@@ -123,8 +150,27 @@ void SourceWalk::record(Workspace& work, const LevelBuffers& level, const BeamBu
     push.quarter_q += std::uint64_t{level.face_count} * FACE_QUARTERS * vec3_bytes;
     push.sums += sums_bytes(level, kind);
   }
-  work.recorder.copy(sums_, sums_on_host_, sums_.size());
-  work.recorder.copy(work.scale, scale_on_host_, sizeof(gpu::Scale));
+  sums_.read_back(work);
+}
+
+void SourceWalk::record_again(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, Method method,
+                              double eta, bool even) {
+  vk::Context& context = work.recorder.context();
+  const auto like = [&](vk::Buffer& buffer, const vk::Buffer& model, const char* name) {
+    if (buffer.size() != model.size()) buffer = {context, model.size(), vk::Place::device, prefix_ + name};
+    work.recorder.copy(model, buffer, model.size());
+  };
+  like(all_deposits_[carrier(method)], deposits_[carrier(method)], "deposit with light that entered again");
+  like(all_unscattered_, unscattered_, "unscattered with light that entered again");
+  sums_again_.make_room(context, sums_bytes(level, gpu::BEAM_MEAN), prefix_);
+  work.recorder.fill(sums_again_.device, 0);
+  again_ = true;
+  gpu::WalkSourcePush push = this->push(work, level, beams, method, eta, even);
+  push.beam += (beams.kinds.size() - 1) * sizeof(gpu::BeamRecord);
+  push.quarter_q += level.quarters_again();
+  push.sums = sums_again_.device.address();
+  work.recorder.dispatch(work.passes.walk_source, push, level.face_count, "source walk", walk_bytes(level, 1));
+  sums_again_.read_back(work);
 }
 
 void SourceWalk::record_right_hand_side(Workspace& work, const LevelBuffers& level, Method method,
@@ -144,19 +190,14 @@ void SourceWalk::record_right_hand_side(Workspace& work, const LevelBuffers& lev
 }
 
 std::vector<glm::dvec3> SourceWalk::unscattered_power(vk::Context& context, const glm::dvec3& scale) const {
-  return powers(vk::download<std::uint32_t>(context, unscattered_), scale);
+  return powers(vk::download<std::uint32_t>(context, unscattered()), scale);
 }
 
 WalkPower SourceWalk::power() const {
-  if (sums_.size() == 0) return {};  // no beams, no light
-  const glm::dvec3 scale(scale_on_host_.mapped_as<gpu::Scale>()[0].scale);
-  const std::vector<glm::dvec3> sums = powers(sums_on_host_.mapped_as<std::uint32_t>(), scale);
-  WalkPower power;
-  for (std::size_t i = 0; i < sums.size(); i += 2) {
-    power.absorbed += sums[i];
-    power.unscattered += sums[i + 1];
-  }
-  return power;
+  WalkPower power = sums_.power();
+  if (!again_) return power;
+  const WalkPower more = sums_again_.power();
+  return {power.absorbed + more.absorbed, power.unscattered + more.unscattered};
 }
 
 std::vector<glm::dvec3> powers(std::span<const std::uint32_t> words, const glm::dvec3& scale) {

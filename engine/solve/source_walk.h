@@ -37,17 +37,24 @@ class SourceWalk {
   // Light, material or shape have changed.
   void invalidate() { walked_ = {false, false}; }
 
-  // Walks, unless that has been done for the present light: level.beam_q of every beam, scaled by work.scale. The
-  // graph methods share their deposits.
+  // Walks, unless that has been done for the present light: level.beam_q of every beam of the scene, scaled by
+  // work.scale. The graph methods share their deposits.
   void record(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, Method method, double eta,
               bool even);
+
+  // The results are without light that entered again, until record_again.
+  void forget_again() { again_ = false; }
+
+  // Adds the beam of light that enters again to the deposits of a walk recorded before; every call anew.
+  void record_again(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, Method method, double eta,
+                    bool even);
 
   // b of the solve, and its norm, from the deposits of a walk recorded before.
   void record_right_hand_side(Workspace& work, const LevelBuffers& level, Method method, OperatorBuffers& op) const;
 
   // Fixed point (walk_shared.h): per vertex (fem) or tet what was scattered, and per face what left.
-  const vk::Buffer& deposit(Method method) const { return deposits_[carrier(method)]; }
-  const vk::Buffer& unscattered() const { return unscattered_; }
+  const vk::Buffer& deposit(Method method) const { return (again_ ? all_deposits_ : deposits_)[carrier(method)]; }
+  const vk::Buffer& unscattered() const { return again_ ? all_unscattered_ : unscattered_; }
 
   // W per face of what left unscattered, in the last walk that has run; `scale` as on the device.
   std::vector<glm::dvec3> unscattered_power(vk::Context& context, const glm::dvec3& scale) const;
@@ -56,17 +63,33 @@ class SourceWalk {
   WalkPower power() const;
 
  private:
+  // Fixed point, per beam and workgroup absorbed and unscattered.
+  struct Sums {
+    vk::Buffer device, host, scale;
+
+    void make_room(vk::Context& context, std::uint64_t bytes, const std::string& prefix);
+    void read_back(Workspace& work) const;
+    WalkPower power() const;
+  };
+
   static std::size_t carrier(Method method) { return method == Method::fem ? 0 : 1; }
 
   void make_room(vk::Context& context, const LevelBuffers& level, const BeamBuffers& beams, Method method);
+  gpu::WalkSourcePush push(const Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, Method method,
+                           double eta, bool even) const;
 
   std::string prefix_;
   std::array<bool, 2> walked_ = {false, false};  // by carrier
-  std::array<vk::Buffer, 2> deposits_;           // by carrier, made at first use
+  bool again_ = false;                           // light that entered again is in the results
   vk::Buffer crossings_;                         // walk_shared.h
+  // Of the scene's light; by carrier, made at first use.
+  std::array<vk::Buffer, 2> deposits_;
   vk::Buffer unscattered_;
-  vk::Buffer sums_, sums_on_host_;  // fixed point, per beam and workgroup absorbed and unscattered
-  vk::Buffer scale_on_host_;
+  Sums sums_;
+  // With what entered again; made at first use.
+  std::array<vk::Buffer, 2> all_deposits_;
+  vk::Buffer all_unscattered_;
+  Sums sums_again_;
 };
 
 }  // namespace quadgraph

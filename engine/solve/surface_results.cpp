@@ -49,7 +49,8 @@ SurfaceResults::SurfaceResults(vk::Context& context, const LevelBuffers& level) 
   sums_on_host_ = vk::Buffer(context, sums_bytes, vk::Place::host, "energy sums, read back");
 }
 
-void SurfaceResults::record_exitance(Workspace& work, const Solved& solved, const vk::Buffer& exitance) {
+void record_exitance(Workspace& work, const Solved& solved, const vk::Buffer& phi, const vk::Buffer& exitance,
+                     const vk::Buffer& clip) {
   const LevelBuffers& level = solved.level;
   const gpu::ExitancePush push{.vertices = level.vertices.address(),
                                .faces = level.faces.address(),
@@ -58,9 +59,9 @@ void SurfaceResults::record_exitance(Workspace& work, const Solved& solved, cons
                                .to_phi = solved.op.to_phi.address(),
                                .q = level.q.address(),
                                .scale = work.scale.address(),
-                               .phi = phi_.address(),
+                               .phi = phi.address(),
                                .exitance = exitance.address(),
-                               .clip = clip_.address(),
+                               .clip = clip.address(),
                                .reduction = work.reduction.address(),
                                .count = level.face_count,
                                .tet_count = level.tet_count,
@@ -72,7 +73,7 @@ void SurfaceResults::record_exitance(Workspace& work, const Solved& solved, cons
 }
 
 void SurfaceResults::record_coarse(Workspace& work, const Solved& solved) {
-  record_exitance(work, solved, coarse_exitance_);
+  record_exitance(work, solved, phi_, coarse_exitance_, clip_);
 }
 
 void SurfaceResults::record_vertex_exitance(Workspace& work, const LevelBuffers& level, const vk::Buffer& faces,
@@ -161,7 +162,7 @@ void SurfaceResults::record_energy(Workspace& work, const Solved& solved) {
 }
 
 void SurfaceResults::record(Workspace& work, const Solved& solved) {
-  record_exitance(work, solved, exitance_);
+  record_exitance(work, solved, phi_, exitance_, clip_);
   record_energy(work, solved);
   record_display(work, solved);
 }

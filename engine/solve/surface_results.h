@@ -20,6 +20,10 @@ struct Solved {
   const SourceWalk* walk;  // of the buried source, whose exitance is clipped; null for the diffuse one
 };
 
+// phi and M (vec3 per outside face, W/mm^2) and the Clip, whose factor is left to be applied to M.
+void record_exitance(Workspace& work, const Solved& solved, const vk::Buffer& phi, const vk::Buffer& exitance,
+                     const vk::Buffer& clip);
+
 class SurfaceResults {
  public:
   SurfaceResults(vk::Context& context, const LevelBuffers& level);
@@ -43,7 +47,6 @@ class SurfaceResults {
   glm::dvec3 clipped() const;
 
  private:
-  void record_exitance(Workspace& work, const Solved& solved, const vk::Buffer& exitance);
   void record_vertex_exitance(Workspace& work, const LevelBuffers& level, const vk::Buffer& faces, bool geometric);
   void record_display_scale(Workspace& work, const LevelBuffers& level);
   void record_display(Workspace& work, const Solved& solved);

@@ -1,0 +1,148 @@
+#include "engine/solve/inter_reflection.h"
+
+#include <bit>
+
+#include "engine/graph/fresnel.h"
+#include "shaders/exchange_shared.h"
+
+namespace quadgraph {
+namespace {
+
+constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
+constexpr std::uint64_t face_bytes = sizeof(glm::uvec3) + 3 * vec3_bytes;  // its area
+
+std::vector<glm::uvec2> rows_of(const Level& level) {
+  std::vector<glm::uvec2> rows;
+  for (std::uint32_t f = 0; f < level.face_count(); ++f) rows.emplace_back(level.seen[f], level.seen[f + 1]);
+  return rows;
+}
+
+}  // namespace
+
+InterReflection::InterReflection(const QuadGraph& graph) : graph_(graph) {
+  for (std::uint32_t i = 0; i < graph.levels().size(); ++i) {
+    if (!graph.levels()[i].seen.empty()) level_ = i;
+  }
+}
+
+void InterReflection::make_room(Workspace& work, const std::vector<LevelBuffers>& levels) {
+  if (!irradiance_.empty()) return;
+  vk::Context& context = work.recorder.context();
+  const auto room = [&](std::uint64_t bytes, const char* name) {
+    return vk::Buffer(context, bytes, vk::Place::device, name);
+  };
+  const Level& level = graph_.levels()[*level_];
+  rows_ = vk::upload<glm::uvec2>(context, rows_of(level), "rows of the exchange");
+  entries_ = vk::upload(context, level.seen, "exchange");
+  phi_ = room(level.face_count() * vec3_bytes, "phi at faces of the exchange");
+  exitance_ = room(level.face_count() * vec3_bytes, "exitance of the exchange");
+  before_ = room(level.face_count() * vec3_bytes, "irradiance before the bounce");
+  clip_ = room(sizeof(gpu::Clip), "clip of the exchange");
+  factor_ = room(vec3_bytes, "factor of the exchange");
+  state_ = room(sizeof(gpu::ExchangeState), "state of the exchange");
+  state_on_host_ = {context, sizeof(gpu::ExchangeState), vk::Place::host, "state of the exchange, read back"};
+  work.recorder.fill(state_, 0);
+  for (std::uint32_t i = 0; i <= *level_; ++i) {
+    irradiance_.push_back(room(levels[i].face_count * vec3_bytes, "irradiance from other parts"));
+    work.recorder.fill(irradiance_.back(), 0);
+    if (i == *level_) break;
+    const Transfer& surface = graph_.levels()[i].surface;
+    finer_.push_back({vk::upload(context, surface.index, "surface_index"),
+                      vk::upload(context, surface.weight, "surface_weight"), surface.width});
+  }
+}
+
+void InterReflection::record_enter(Workspace& work, const LevelBuffers& level, const vk::Buffer& irradiance,
+                                   double transmitted) {
+  const gpu::ExchangeEnterPush push{.vertices = level.vertices.address(),
+                                    .faces = level.faces.address(),
+                                    .q = level.q.address(),
+                                    .irradiance = irradiance.address(),
+                                    .beam_q = level.beam_q.address() + level.quarters_again(),
+                                    .factor = factor_.address(),
+                                    .state = state_.address(),
+                                    .reduction = work.reduction.address(),
+                                    .count = level.face_count,
+                                    .transmitted = static_cast<float>(transmitted)};
+  work.recorder.dispatch(work.passes.exchange_enter, push, level.face_count, "exchange",
+                         level.face_count * (face_bytes + (4 + FACE_QUARTERS) * vec3_bytes));
+}
+
+void InterReflection::record_none(Workspace& work, const std::vector<LevelBuffers>& levels) {
+  if (!any_) return;
+  any_ = false;
+  for (std::uint32_t i = 0; i <= *level_; ++i) {
+    work.recorder.fill(irradiance_[i], 0);
+    record_enter(work, levels[i], irradiance_[i], 1);
+  }
+  work.recorder.fill(state_, 0);
+}
+
+void InterReflection::record_bounce(Workspace& work, const Solved& solved, double eta) {
+  const LevelBuffers& level = solved.level;
+  std::swap(before_, irradiance_.back());
+  record_exitance(work, solved, phi_, exitance_, clip_);
+  const auto transmitted = static_cast<float>(diffuse_transmittance(eta));
+  const gpu::ExchangePush push{.vertices = level.vertices.address(),
+                               .faces = level.faces.address(),
+                               .face_kinds = level.face_kind.address(),
+                               .rows = rows_.address(),
+                               .entries = entries_.address(),
+                               .exitance = exitance_.address(),
+                               .clip = clip_.address(),
+                               .before = before_.address(),
+                               .irradiance = irradiance_.back().address(),
+                               .factor = factor_.address(),
+                               .state = state_.address(),
+                               .reduction = work.reduction.address(),
+                               .count = level.face_count,
+                               .rays = static_cast<float>(graph_.levels()[*level_].seen_rays),
+                               .transmitted = transmitted};
+  const std::uint64_t entries = entries_.size() / sizeof(std::uint32_t) - level.face_count - 1;
+  work.recorder.dispatch(work.passes.exchange, push, level.face_count, "exchange",
+                         level.face_count * (face_bytes + sizeof(glm::uvec2) + 3 * vec3_bytes) +
+                             entries * (sizeof(std::uint32_t) + 2 * vec3_bytes));
+  record_enter(work, level, irradiance_.back(), transmitted);
+  work.recorder.copy(state_, state_on_host_, sizeof(gpu::ExchangeState));
+  any_ = true;
+}
+
+void InterReflection::record_beam(Workspace& work, const std::vector<LevelBuffers>& levels, std::uint32_t number,
+                                  double eta) {
+  make_room(work, levels);
+  const LevelBuffers& level = levels[number];
+  const double transmitted = diffuse_transmittance(eta);
+  if (number == *level_) {
+    work.recorder.fill(factor_, std::bit_cast<std::uint32_t>(1.0f));
+    return record_enter(work, level, irradiance_[number], transmitted);
+  }
+  const Finer& finer = finer_[number];
+  const gpu::ExchangeFinerPush push{.vertices = level.vertices.address(),
+                                    .faces = level.faces.address(),
+                                    .face_kinds = level.face_kind.address(),
+                                    .index = finer.index.address(),
+                                    .weight = finer.weight.address(),
+                                    .coarse = irradiance_[number + 1].address(),
+                                    .irradiance = irradiance_[number].address(),
+                                    .factor = factor_.address(),
+                                    .state = state_.address(),
+                                    .reduction = work.reduction.address(),
+                                    .count = level.face_count,
+                                    .width = finer.width,
+                                    .transmitted = static_cast<float>(transmitted)};
+  work.recorder.dispatch(work.passes.exchange_finer, push, level.face_count, "exchange",
+                         level.face_count * (face_bytes + finer.width * (8 + vec3_bytes) + vec3_bytes));
+  record_enter(work, level, irradiance_[number], transmitted);
+}
+
+glm::dvec3 InterReflection::power() const {
+  if (!any_) return glm::dvec3(0);
+  return glm::dvec3(state_on_host_.mapped_as<gpu::ExchangeState>()[0].power);
+}
+
+bool InterReflection::converged(double tolerance) const {
+  const gpu::ExchangeState& state = state_on_host_.mapped_as<gpu::ExchangeState>()[0];
+  return glm::all(glm::lessThanEqual(glm::dvec3(state.change), tolerance * glm::dvec3(state.entered)));
+}
+
+}  // namespace quadgraph

@@ -1,0 +1,62 @@
+// Light from part to part: what leaves the body and meets it again enters it again, bounce by bounce, on the level
+// whose file says what its faces see of each other (Level::seen).
+//
+// One bounce: E_f = 1/N sum over entries of J, J = M + (1 - T_d) E, scaled by one factor per channel so that all that
+// is sent towards the body arrives. T_d E enters, as one beam (BeamBuffers) along one ray per face. Finer levels get E
+// by the surface transfers, with the same power; coarser ones have none.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/solve/surface_results.h"
+
+namespace quadgraph {
+
+class InterReflection {
+ public:
+  // `graph` must stay alive. Buffers are made at first use.
+  explicit InterReflection(const QuadGraph& graph);
+
+  // The level with the exchange, or none.
+  const std::optional<std::uint32_t>& level() const { return level_; }
+
+  // No light has entered again, on any level.
+  void record_none(Workspace& work, const std::vector<LevelBuffers>& levels);
+
+  // One bounce, from M of `solved` on the level with the exchange, and from what entered again so far.
+  void record_bounce(Workspace& work, const Solved& solved, double eta);
+
+  // The beam of level `number`: on the level with the exchange what entered again so far; on finer ones the same, from
+  // the next coarser level, whose beam comes first.
+  void record_beam(Workspace& work, const std::vector<LevelBuffers>& levels, std::uint32_t number, double eta);
+
+  // Whether light may have entered again since record_none.
+  bool any() const { return any_; }
+
+  // Of the last bounce that has run; 0 without any.
+  glm::dvec3 power() const;  // W, that enters again
+  bool converged(double tolerance) const;
+
+ private:
+  struct Finer {
+    vk::Buffer index, weight;
+    std::uint32_t width = 0;
+  };
+
+  void make_room(Workspace& work, const std::vector<LevelBuffers>& levels);
+  void record_enter(Workspace& work, const LevelBuffers& level, const vk::Buffer& irradiance, double transmitted);
+
+  const QuadGraph& graph_;
+  std::optional<std::uint32_t> level_;
+  bool any_ = false;                    // some beam may not be zero
+  vk::Buffer rows_, entries_;           // ExchangePush
+  vk::Buffer phi_, exitance_, clip_;    // exitance.comp
+  std::vector<vk::Buffer> irradiance_;  // vec3 per face, W/mm^2; finest level first, the last that with the exchange
+  vk::Buffer before_;                   // that of the bounce before
+  std::vector<Finer> finer_;            // transfers, finest first
+  vk::Buffer factor_;                   // vec3
+  vk::Buffer state_, state_on_host_;    // ExchangeState
+};
+
+}  // namespace quadgraph

@@ -1,0 +1,28 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "exchange_shared.h"
+#include "reduce.glsl"
+
+layout(local_size_x = WORKGROUP_SIZE) in;
+layout(push_constant, scalar) uniform Block { ExchangeEnterPush push; };
+
+#include "face_area.glsl"
+
+void main() {
+  uint f = gl_GlobalInvocationID.x;
+  vec3 change = vec3(0), entered = vec3(0);
+  if (f < push.count) {
+    vec3 irradiance = push.factor.at[0] * push.irradiance.at[f];
+    push.irradiance.at[f] = irradiance;
+    vec3 q = push.transmitted * irradiance;
+    float area = area_of(f);
+    entered = area * push.q.at[f];
+    change = area * abs(q - push.beam_q.at[FACE_QUARTERS * f]);
+    for (uint k = 0u; k < FACE_QUARTERS; ++k) push.beam_q.at[FACE_QUARTERS * f + k] = q;
+  }
+  vec3 total_change, total_entered;
+  if (!reduce_dispatch_pair(push.reduction, change, entered, total_change, total_entered)) return;
+  if (gl_LocalInvocationID.x != 0u) return;
+  push.state.at[0].change = total_change;
+  push.state.at[0].entered = total_entered;
+}
