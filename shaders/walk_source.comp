@@ -56,8 +56,7 @@ float share_of(uint ray, uint rays) {
   return 0.5 * node_weight(ray / 2u) / sum;
 }
 
-// Inside, of light from everywhere: at the mean cosine, with an azimuth that differs from face to face and moves with
-// the body.
+// Inside direction of BEAM_MEAN.
 vec3 mean_direction(uint face, vec3 edge, vec3 normal) {
   float sum = 0.0, cosine = 0.0;
   for (uint node = 0u; node < LAMBERTIAN_NODES; ++node) {

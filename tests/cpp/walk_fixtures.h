@@ -85,6 +85,9 @@ inline GpuWalk walk(vk::Context& context, const WalkInput& input) {
   SourceWalk walk(context, level.view(), 0);
   record_scale(work, buffers);
   walk.record(work, buffers, beams, input.method, input.eta, input.even);
+  if (input.beam.kind == gpu::BEAM_MEAN) {
+    walk.record_again(work, buffers, beams, input.method, input.eta, input.even);
+  }
   work.recorder.submit();
   const glm::dvec3 scale(vk::download<gpu::Scale>(context, work.scale)[0].scale);
   const auto deposit = vk::download<std::uint32_t>(context, walk.deposit(input.method));
