@@ -96,7 +96,7 @@ BouncedSolution solve_with_bounces(const Level& level, std::span<const gpu::Opti
                                    std::span<const EnteringLight> lights, const SolveOptions& options) {
   BouncedSolution result;
   result.solution = solve_reference(level, optical, eta, lights, options);
-  if (!options.inter_reflection || options.source != Source::buried || !sees_itself(level)) return result;
+  if (!bounces_wanted(options) || !sees_itself(level)) return result;
   const glm::dvec3 entered = result.solution.energy.entered;
   Bounces bounces(level, eta, lights, result);
   const std::uint32_t most = options.bounces > 0 ? options.bounces : max_bounces;

@@ -36,7 +36,7 @@ inline constexpr std::uint32_t max_bounces = 64;
 // solve_reference on one level, and again with what re-enters as a beam of BEAM_MEAN, until a bounce changes it by no
 // more than a tenth of options.tolerance of what entered in every channel, or max_bounces are done; with
 // options.bounces > 0 so many bounces from none. Each takes M of the solve and E of the bounce before. None where
-// options.inter_reflection is false, the source is not buried, or the level sees nothing of itself.
+// bounces_wanted is false or the level sees nothing of itself.
 BouncedSolution solve_with_bounces(const Level& level, std::span<const gpu::Optical> optical, double eta,
                                    std::span<const EnteringLight> lights, const SolveOptions& options);
 

@@ -62,6 +62,10 @@ std::string_view name_of(Model model) {
   return to_name(models, model);
 }
 
+bool bounces_wanted(const SolveOptions& options) {
+  return options.inter_reflection && options.source == Source::buried && options.method != Method::quadgraph_fdm;
+}
+
 glm::dvec3 Energy::balance() const {
   glm::dvec3 result{0};
   for (int c = 0; c < 3; ++c) {

@@ -53,10 +53,14 @@ struct SolveOptions {
   double tolerance = 1e-3;
   std::uint32_t max_iterations = 5000;  // per level
   // Light that leaves one part of the body and enters another, bounce by bounce (engine/graph/exchange.h). Only with
-  // Source::buried and a file that has `seen`.
+  // Source::buried, a file that has `seen`, and a method that conserves energy: of what quadgraph-fdm makes of light,
+  // bounces can grow without end.
   bool inter_reflection = true;
   std::uint32_t bounces = 0;  // 0: from none until converged, at most 64; n: n more from the last state, for motion
 };
+
+// inter_reflection, where source and method allow it.
+bool bounces_wanted(const SolveOptions& options);
 
 // Power per channel. What enters, of the scene's light or again after leaving, is scattered out, absorbed, or leaves
 // unscattered, for a conservative method.

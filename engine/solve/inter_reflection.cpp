@@ -21,7 +21,9 @@ std::vector<glm::uvec2> rows_of(const Level& level) {
 
 InterReflection::InterReflection(const QuadGraph& graph) : graph_(graph) {
   for (std::uint32_t i = 0; i < graph.levels().size(); ++i) {
-    if (!graph.levels()[i].seen.empty()) level_ = i;
+    const Level& level = graph.levels()[i];
+    baked_ = baked_ || !level.seen.empty();
+    if (level.seen.size() > level.faces.size() + 1) level_ = i;
   }
 }
 

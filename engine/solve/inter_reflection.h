@@ -18,7 +18,10 @@ class InterReflection {
   // `graph` must stay alive. Buffers are made at first use.
   explicit InterReflection(const QuadGraph& graph);
 
-  // The level with the exchange, or none.
+  // Whether the file says what the faces of some level see.
+  bool baked() const { return baked_; }
+
+  // That level, if they see anything; no light enters again elsewhere.
   const std::optional<std::uint32_t>& level() const { return level_; }
 
   // No light has entered again, on any level.
@@ -49,6 +52,7 @@ class InterReflection {
 
   const QuadGraph& graph_;
   std::optional<std::uint32_t> level_;
+  bool baked_ = false;
   bool any_ = false;                    // some beam may not be zero
   vk::Buffer rows_, entries_;           // ExchangePush
   vk::Buffer phi_, exitance_, clip_;    // exitance.comp

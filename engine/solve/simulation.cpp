@@ -7,6 +7,7 @@
 #include <map>
 
 #include "engine/graph/error.h"
+#include "engine/graph/exchange.h"
 #include "engine/solve/assembly.h"
 #include "engine/solve/beams.h"
 #include "engine/solve/coefficients.h"
@@ -20,9 +21,6 @@ namespace quadgraph {
 namespace {
 
 constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
-
-// Of a still: each brings in at most the share of light that meets the body again, of what the one before did.
-constexpr std::uint32_t most_bounces = 64;
 
 void check_options(const SolveOptions& options) {
   if (!(options.tolerance > 0) || !(options.tolerance < 1)) {
@@ -199,7 +197,7 @@ struct Simulation::Implementation {
                     SolveReport& report) {
     for (auto i = static_cast<std::uint32_t>(levels.size()); i-- > 0;) {
       OperatorBuffers& rows = op(key, i);
-      if (report.inter_reflection && i <= *exchange.level()) {
+      if (report.inter_reflection && i <= exchange.level()) {
         exchange.record_beam(work, levels, i, coefficients.eta());
         if (exchange.any()) record_load_again(key, i);
       }
@@ -210,11 +208,11 @@ struct Simulation::Implementation {
         if (i == 0) results.record_coarse(work, solved_level(key, boundary, options.source, i));
       }
       report.levels.push_back(solve_level(work, rows, i, options));
-      if (!report.inter_reflection || i != *exchange.level()) continue;
+      if (!report.inter_reflection || i != exchange.level()) continue;
       if (i == 0 && !exchange.any()) estimate_error(key, boundary, options.source, report);
       bounce(key, boundary, options, report);
     }
-    const bool finest_alone = report.inter_reflection && *exchange.level() == 0;
+    const bool finest_alone = report.inter_reflection && exchange.level() == 0u;
     results.record(work, solved_level(key, boundary, options.source, 0));
     work.recorder.submit();
     if (levels.size() > 1 && !finest_alone) report.error = results.error();
@@ -233,7 +231,7 @@ struct Simulation::Implementation {
     const std::uint32_t level = *exchange.level();
     const Solved here = solved_level(key, boundary, options.source, level);
     LevelReport& total = report.levels.back();
-    for (std::uint32_t left = options.bounces > 0 ? options.bounces : most_bounces; left > 0; --left) {
+    for (std::uint32_t left = options.bounces > 0 ? options.bounces : max_bounces; left > 0; --left) {
       const glm::dvec3 before = exchange.power();
       exchange.record_bounce(work, here, coefficients.eta());
       record_load_again(key, level);
@@ -260,7 +258,7 @@ struct Simulation::Implementation {
     report.solver = options.solver;
     report.source = options.source;
     report.model = key.model;
-    report.inter_reflection = options.inter_reflection && options.source == Source::buried && exchange.level();
+    report.inter_reflection = bounces_wanted(options) && exchange.baked();
     if (!report.inter_reflection || options.bounces == 0) exchange.record_none(work, levels);
     solve_levels(key, boundary, options, report);
     passes = work.recorder.passes();
