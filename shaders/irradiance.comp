@@ -20,9 +20,9 @@ uint quarter_of(float u, float v) {
   return u + v < 0.5 ? 0u : u > 0.5 ? 1u : v > 0.5 ? 2u : 3u;
 }
 
-// q of one light on the quarters of the face a, a + ab, a + ac.
-vec3[FACE_QUARTERS] quarters_of(LightRecord light, vec3 a, vec3 ab, vec3 ac, vec3 normal) {
-  vec3 even = light.kind == LIGHT_AMBIENT ? push.diffuse_transmittance * light.power : vec3(0);
+// q of one light on the quarters of the face a, a + ab, a + ac, that sees the share `sky` of the sky.
+vec3[FACE_QUARTERS] quarters_of(LightRecord light, vec3 a, vec3 ab, vec3 ac, vec3 normal, float sky) {
+  vec3 even = light.kind == LIGHT_AMBIENT ? sky * push.diffuse_transmittance * light.power : vec3(0);
   vec3 quarter[FACE_QUARTERS] = vec3[](even, even, even, even);
   if (light.kind == LIGHT_AMBIENT) return quarter;
   uint n = push.subdivision;
@@ -52,7 +52,7 @@ void main() {
 
   vec3 q = vec3(0);
   for (uint light = 0u; light < push.light_count; ++light) {
-    vec3 quarter[FACE_QUARTERS] = quarters_of(push.lights.at[light], a, ab, ac, normal);
+    vec3 quarter[FACE_QUARTERS] = quarters_of(push.lights.at[light], a, ab, ac, normal, push.sky.at[f]);
     for (uint k = 0u; k < FACE_QUARTERS; ++k) {
       push.beam_q.at[(light * push.face_count + f) * FACE_QUARTERS + k] = quarter[k];
       q += quarter[k] / float(FACE_QUARTERS);

@@ -59,6 +59,7 @@ struct IrradiancePush {
   QG_REF(Uvec3s) faces;
   QG_REF(Vec3s) q;       // W/mm^2, written
   QG_REF(Vec3s) beam_q;  // W/mm^2 per light, face and quarter, written
+  QG_REF(Floats) sky;    // per face: share of ambient light that other parts of the body do not hide
   QG_REF(LightRecords) lights;
   QG_REF(ShadowViews) views;
   uint face_count;

@@ -21,12 +21,12 @@ struct Typed {
   float fov = 30;
   std::string method = "fem", solver = "dpcg", source = "buried", model = "auto";
   double tolerance = 1e-3;
-  std::uint32_t max_iterations = 5000;
+  std::uint32_t max_iterations = 5000, bounces = 0;
   std::string size = "1024x1024", exposure = "auto", background = "studio";
   float roughness = 0.3f;
   std::string radiance = "auto";
   std::string device;
-  bool headless = false, validation = false, json = false;
+  bool no_inter_reflection = false, headless = false, validation = false, json = false;
 };
 
 std::string joined(const std::vector<std::string>& names) {
@@ -76,6 +76,12 @@ void declare_solver(CLI::App& app, Typed& typed) {
       ->capture_default_str()
       ->group("Solver");
   app.add_option("--max-iterations", typed.max_iterations, "per level")->capture_default_str()->group("Solver");
+  app.add_flag("--no-inter-reflection", typed.no_inter_reflection,
+               "leave out light that leaves one part of the object and enters another")
+      ->group("Solver");
+  app.add_option("--bounces", typed.bounces, "of that light; 0: until they change nothing")
+      ->capture_default_str()
+      ->group("Solver");
 }
 
 void declare_picture(CLI::App& app, Typed& typed) {
@@ -151,7 +157,9 @@ AppOptions understood(const Typed& typed) {
                    .source = source_from_name(typed.source),
                    .model = model_from_name(typed.model),
                    .tolerance = typed.tolerance,
-                   .max_iterations = typed.max_iterations};
+                   .max_iterations = typed.max_iterations,
+                   .inter_reflection = !typed.no_inter_reflection,
+                   .bounces = typed.bounces};
   parse_size(typed.size, options.render);
   options.render.roughness = typed.roughness;
   options.render.radiance = radiance_from_name(typed.radiance);

@@ -1,5 +1,6 @@
 #include "engine/app/report.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -27,10 +28,14 @@ Json as_json(const SolveReport& report) {
                               {"converged", level.converged}});
   }
   json["energy"] = {{"entered_W", as_json(report.energy.entered)},
+                    {"re_entered_W", as_json(report.energy.re_entered)},
                     {"scattered_out_W", as_json(report.energy.scattered_out)},
                     {"absorbed_W", as_json(report.energy.absorbed)},
                     {"unscattered_out_W", as_json(report.energy.unscattered_out)},
                     {"balance", as_json(report.energy.balance())}};
+  json["inter_reflection"] = report.inter_reflection;
+  json["bounces_W"] = Json::array();
+  for (const glm::dvec3& bounce : report.bounces) json["bounces_W"].push_back(as_json(bounce));
   json["clipped"] = as_json(report.clipped);
   json["error"] = report.error ? Json{{"whole", report.error->whole}, {"unlit", report.error->unlit}} : Json(nullptr);
   return json;
@@ -46,6 +51,12 @@ std::string decimals(double value, int digits) {
   char text[64];
   std::snprintf(text, sizeof text, "%.*f", digits, value);
   return text;
+}
+
+std::string value_of(const Metadata& metadata, std::string_view key) {
+  const auto found =
+      std::find_if(metadata.begin(), metadata.end(), [&](const auto& entry) { return entry.first == key; });
+  return found == metadata.end() ? "" : found->second;
 }
 
 constexpr double mebibyte = 1024.0 * 1024.0;
@@ -79,6 +90,7 @@ std::string text_report(const RunReport& report) {
       << name_of(report.solve.source) << " source, with " << name_of(report.solve.solver) << ": " << solved.iterations
       << " iterations on the finest level, residual " << solved.residual << (solved.converged ? "" : " (not converged)")
       << "\n";
+  out << "bounces  " << value_of(report.metadata, "inter-reflection") << "\n";
   if (report.solve.error) {
     out << "error    " << decimals(100 * report.solve.error->whole, 2) << "% over the surface, "
         << decimals(100 * report.solve.error->unlit, 2) << "% over the unlit part (estimated)\n";

@@ -24,6 +24,7 @@ PassStats IrradiancePass::run(const LevelBuffers& buffers, std::uint32_t level, 
                                  .faces = buffers.faces.address(),
                                  .q = buffers.q.address(),
                                  .beam_q = buffers.beam_q.address(),
+                                 .sky = buffers.sky.address(),
                                  .lights = shadows.lights().address(),
                                  .views = shadows.views().address(),
                                  .face_count = buffers.face_count,
@@ -38,8 +39,8 @@ PassStats IrradiancePass::run(const LevelBuffers& buffers, std::uint32_t level, 
   const auto times = commands.submit_and_wait();
   // Per face: three indices, three corners, q; per light its quarters, and four texels per sample.
   const std::uint64_t light_bytes = 12ull * FACE_QUARTERS + 16ull * subdivision * subdivision;
-  return {times[0].name, times[0].time_ms, buffers.face_count * (12 + 36 + 12 + shadows.light_count() * light_bytes),
-          1};
+  return {times[0].name, times[0].time_ms,
+          buffers.face_count * (12 + 36 + 12 + 4 + shadows.light_count() * light_bytes), 1};
 }
 
 }  // namespace quadgraph

@@ -15,7 +15,8 @@ struct Light {
   glm::vec3 position{0};          // point: mm
   // Directional: irradiance on a plane perpendicular to the light, W/mm^2. Point: power, W, sent out evenly in all
   // directions, so that the irradiance facing it at distance d is power / (4 pi d^2). Ambient: irradiance, W/mm^2, of
-  // light that comes evenly from all sides, and is not shadowed by the body itself.
+  // light that comes evenly from all sides; where the file says what the faces see, from where the body does not hide
+  // it.
   glm::vec3 power{0};
 };
 

@@ -22,6 +22,15 @@ std::string error_text(const std::optional<ErrorEstimate>& error) {
          number_text(static_cast<float>(error->unlit));
 }
 
+std::string inter_reflection_text(const SolveOptions& options, const SolveReport& report) {
+  if (!report.inter_reflection) {
+    return bounces_wanted(options) ? "left out, the file does not say what the faces see (bake it again)" : "left out";
+  }
+  const glm::dvec3 share = report.energy.re_entered / glm::max(report.energy.entered, glm::dvec3(1e-300));
+  return std::to_string(report.bounces.size()) + " bounces bring in " + rgb_text(glm::vec3(share)) +
+         " of the light again";
+}
+
 }  // namespace
 
 std::string material_text(const gpu::Material& material) {
@@ -50,6 +59,7 @@ Metadata describe(const PictureFacts& facts) {
                        {"iterations", std::to_string(finest.iterations)},
                        {"residual", number_text(static_cast<float>(finest.residual))},
                        {"energy balance", rgb_text(glm::vec3(facts.report.energy.balance()))},
+                       {"inter-reflection", inter_reflection_text(facts.options, facts.report)},
                        {"error", error_text(facts.report.error)},
                        {"units", "W/(mm^2 sr)"},
                        {"device", facts.device.name + ", " + facts.device.driver}};

@@ -8,6 +8,7 @@
 
 #include "engine/graph/error.h"
 #include "engine/graph/exchange.h"
+#include "engine/graph/sky.h"
 #include "engine/solve/assembly.h"
 #include "engine/solve/beams.h"
 #include "engine/solve/coefficients.h"
@@ -86,6 +87,8 @@ struct Simulation::Implementation {
     for (const Level& level : graph.levels()) {
       levels.push_back(upload_level(context, level, static_cast<std::uint32_t>(levels.size())));
     }
+    const auto sky = sky_of_levels(graph.levels());
+    for (std::size_t i = 0; i < levels.size(); ++i) levels[i].sky = vk::upload<float>(context, sky[i], "sky");
     return levels;
   }
 

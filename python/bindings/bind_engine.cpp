@@ -25,6 +25,10 @@ py::dict report_dict(const SolveReport& report) {
   d["levels"] = levels;
   d["energy"] = as_dict(report.energy);
   d["clipped"] = as_tuple(report.clipped);
+  d["inter_reflection"] = report.inter_reflection;
+  py::list bounces;
+  for (const glm::dvec3& bounce : report.bounces) bounces.append(as_tuple(bounce));
+  d["bounces"] = bounces;
   d["error"] = py::none();
   if (report.error) {
     py::dict error;
@@ -133,8 +137,11 @@ void set_lights(Engine& engine, const std::vector<std::string>& texts) {
 }
 
 py::dict solve(Engine& engine, const std::string& method, const std::string& solver, const std::string& source,
-               const std::string& model, double tolerance, std::uint32_t max_iterations) {
-  const SolveOptions options = options_from(method, solver, source, model, tolerance, max_iterations);
+               const std::string& model, double tolerance, std::uint32_t max_iterations, bool inter_reflection,
+               std::uint32_t bounces) {
+  SolveOptions options = options_from(method, solver, source, model, tolerance, max_iterations);
+  options.inter_reflection = inter_reflection;
+  options.bounces = bounces;
   const SolveReport report = [&] {
     const py::gil_scoped_release release;
     return engine.solve(options);
@@ -211,6 +218,7 @@ void bind_engine(py::module_& module) {
       .def("update_irradiance", &Engine::update_irradiance, py::call_guard<py::gil_scoped_release>())
       .def("solve", &solve, py::arg("method") = "fem", py::arg("solver") = "dpcg", py::arg("source") = "buried",
            py::arg("model") = "auto", py::arg("tolerance") = 1e-3, py::arg("max_iterations") = 5000,
+           py::arg("inter_reflection") = true, py::arg("bounces") = 0,
            "Solves for the present material and light; a report. Raises InputError, SolverError.")
       .def(
           "surface_field", [](const Engine& engine) { return field_dict(engine.surface_field()); },

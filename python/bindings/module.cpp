@@ -53,6 +53,7 @@ py::tuple as_tuple(const glm::dvec3& v) {
 py::dict as_dict(const Energy& energy) {
   py::dict d;
   d["entered"] = as_tuple(energy.entered);
+  d["re_entered"] = as_tuple(energy.re_entered);
   d["scattered_out"] = as_tuple(energy.scattered_out);
   d["absorbed"] = as_tuple(energy.absorbed);
   d["unscattered_out"] = as_tuple(energy.unscattered_out);

@@ -216,3 +216,25 @@ TEST_CASE("a sphere shadows another as traced rays say, also through a thin plat
   CHECK(entered(shape, q).x == doctest::Approx(traced_power).epsilon(5e-3));
   check_silent(context);
 }
+
+TEST_CASE("ambient light comes from the share of the sky that a face sees") {
+  vk::Context context({.validation = true, .device = ""});
+  const Shape shape = sphere(glm::vec3(0), 5.0f, 2);
+  const DisplayBuffers mesh = upload_as_display(context, shape);
+  Light ambient;
+  ambient.kind = LightKind::ambient;
+  ambient.power = {1, 2, 3};
+  LevelBuffers level = upload_as_level(context, shape, 1);
+  std::vector<float> sky;
+  for (std::size_t f = 0; f < shape.faces.size(); ++f) sky.push_back(static_cast<float>(f % 5) / 4.0f);
+  level.sky = vk::upload<float>(context, sky, "sky");
+  ShadowMaps shadows(context);
+  shadows.update(mesh, bounding_sphere(shape.vertices), {&ambient, 1});
+  IrradiancePass(context).run(level, 0, shadows, 1.3f);
+  const auto q = vk::download<glm::vec3>(context, level.q);
+  const auto entering = static_cast<float>(diffuse_transmittance(1.3));
+  for (std::size_t f = 0; f < q.size(); ++f) {
+    for (int c = 0; c < 3; ++c) CHECK(q[f][c] == doctest::Approx(entering * sky[f] * static_cast<float>(c + 1)));
+  }
+  check_silent(context);
+}

@@ -81,6 +81,8 @@ inline LevelBuffers upload_as_level(vk::Context& context, const Shape& shape, st
   level.q = vk::Buffer(context, 12 * shape.faces.size(), vk::Place::device, "q");
   level.beam_q =
       vk::Buffer(context, 12 * FACE_QUARTERS * light_count * shape.faces.size(), vk::Place::device, "beam q");
+  const std::vector<float> sky(shape.faces.size(), 1.0f);
+  level.sky = vk::upload<float>(context, sky, "sky");
   return level;
 }
 

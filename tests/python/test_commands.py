@@ -74,7 +74,14 @@ def test_solve_answers_with_every_method_model_and_source(sphere, tmp_path, caps
             published = (method, source) == ("quadgraph-fdm", "diffuse")
             automatic = "diffusion" if published else "sp3"
             assert report["model"] == (automatic if model == "auto" else model)
-            assert set(report["energy"]) == {"entered", "scattered_out", "absorbed", "unscattered_out", "balance"}
+            assert set(report["energy"]) == {
+                "entered",
+                "re_entered",
+                "scattered_out",
+                "absorbed",
+                "unscattered_out",
+                "balance",
+            }
             printed = capsys.readouterr().out
             assert f"{method} / {report['model']} / {source}" in printed
             assert "clipped" in printed

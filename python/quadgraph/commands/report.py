@@ -31,14 +31,36 @@ def solve_table(report: dict) -> Table:
     return table
 
 
-def energy_table(energy: dict, clipped: tuple[float, float, float]) -> Table:
-    """Return the power that entered, left and was absorbed, per channel, and the share of exitance that was clipped."""
+def energy_table(report: dict) -> Table:
+    """Return the power that entered, entered again with each bounce, left and was absorbed, per channel.
+
+    Last the share of exitance that was clipped.
+    """
+    energy = report["energy"]
     table = Table("W", "R", "G", "B", title="energy")
-    for name in ("entered", "scattered_out", "absorbed", "unscattered_out"):
-        table.add_row(name.replace("_", " "), *(f"{value:.5g}" for value in energy[name]))
+
+    def add(name: str, power: tuple[float, float, float]) -> None:
+        table.add_row(name, *(f"{value:.5g}" for value in power))
+
+    add("entered", energy["entered"])
+    if report["inter_reflection"]:
+        add("entered again", energy["re_entered"])
+    for number, bounce in enumerate(report["bounces"], 1):
+        add(f"  bounce {number}", bounce)
+    for name in ("scattered_out", "absorbed", "unscattered_out"):
+        add(name.replace("_", " "), energy[name])
     table.add_row("balance", *(f"{100 * value:+.3f}%" for value in energy["balance"]))
-    table.add_row("below zero, clipped", *(f"{100 * value:.3f}%" for value in clipped))
+    table.add_row("below zero, clipped", *(f"{100 * value:.3f}%" for value in report["clipped"]))
     return table
+
+
+def inter_reflection_text(report: dict, wanted: bool) -> str:
+    """Say whether light from part to part was followed, and if not, why."""
+    if report["inter_reflection"]:
+        return f"inter-reflection: {len(report['bounces'])} bounces"
+    if not wanted or report["source"] != "buried" or report["method"] == "quadgraph-fdm":
+        return "inter-reflection: left out"
+    return "inter-reflection: left out, the file does not say what the faces see (bake it again)"
 
 
 def pass_table(passes: list[dict]) -> Table:

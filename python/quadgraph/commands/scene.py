@@ -81,6 +81,18 @@ def add_scene_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--max-iterations", type=positive_int, default=5000, metavar="N", help="per level (default: %(default)s)"
     )
+    parser.add_argument(
+        "--no-inter-reflection",
+        action="store_true",
+        help="leave out light that leaves one part of the object and enters another",
+    )
+    parser.add_argument(
+        "--bounces",
+        type=positive_int,
+        default=0,
+        metavar="N",
+        help="of that light (default: until they change nothing)",
+    )
 
 
 def add_device_arguments(parser: argparse.ArgumentParser) -> None:
@@ -109,6 +121,8 @@ def solve(engine: Engine, args: argparse.Namespace) -> dict:
         model=args.model,
         tolerance=args.tolerance,
         max_iterations=args.max_iterations,
+        inter_reflection=not args.no_inter_reflection,
+        bounces=args.bounces,
     )
 
 

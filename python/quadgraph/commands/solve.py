@@ -44,10 +44,11 @@ def run(args: argparse.Namespace) -> int:
     console = Console(highlight=False)
     for table in (
         text.solve_table(report),
-        text.energy_table(report["energy"], report["clipped"]),
+        text.energy_table(report),
         text.pass_table(report["passes"]),
     ):
         console.print(table)
+    console.print(text.inter_reflection_text(report, not args.no_inter_reflection))
     console.print(text.error_text(report))
     stopped = scene.unconverged(report)
     for sentence in stopped:
