@@ -42,18 +42,25 @@ def gauss(count: int, low: float = 0.0, high: float = 1.0) -> tuple[np.ndarray, 
     return low + (high - low) * (nodes + 1) / 2, (high - low) / 2 * weights
 
 
-def inside_cosines(count: int, eta: float) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes and weights over the inside cosine in [0, 1], split at the critical angle; `count` in either part.
+def composite_gauss(count: int, parts: int) -> tuple[np.ndarray, np.ndarray]:
+    """Gauss-Legendre nodes and weights on [0, 1], `count` in each of `parts` equal parts."""
+    pieces = [gauss(count, part / parts, (part + 1) / parts) for part in range(parts)]
+    return np.concatenate([nodes for nodes, _ in pieces]), np.concatenate([weights for _, weights in pieces])
 
-    Beyond the critical angle the outside cosine is the variable: R(mu) is smooth in it, and has a root in mu.
+
+def inside_cosines(count: int, eta: float, parts: int = 1) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes and weights over the inside cosine in [0, 1], split at the critical angle; count * parts in either piece.
+
+    Beyond the critical angle the outside cosine is the variable: R(mu) is smooth in it, and has a root in mu. Those
+    nodes come last, `count` to each of `parts` equal ranges of the outside cosine.
     """
     critical = critical_cosine(eta)
-    outside, weights = gauss(count)
+    outside, weights = composite_gauss(count, parts)
     inside = refracted(outside, 1 / eta)
     weights = weights * outside / (eta**2 * inside)
     if critical == 0:
         return inside, weights
-    trapped, trapped_weights = gauss(count, 0, critical)
+    trapped, trapped_weights = gauss(count * parts, 0, critical)
     return np.concatenate([trapped, inside]), np.concatenate([trapped_weights, weights])
 
 

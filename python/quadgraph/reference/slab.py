@@ -13,11 +13,18 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import linalg
 
-from quadgraph.reference.fresnel import inside_cosines, lambertian_entry, reflectance_from_inside
+from quadgraph.reference.fresnel import (
+    composite_gauss,
+    inside_cosines,
+    lambertian_entry,
+    reflectance_from_inside,
+    refracted,
+)
 from quadgraph.reference.media import Medium
 
 COLLIMATED = (np.array([1.0]), np.array([1.0]))
 _ANGLES = 40  # per part of the hemisphere
+_ANGLES_PER_BIN = 6
 _ENTRY_ANGLES = 33
 # A mode with zero decay has another form; this albedo differs from 1 by less than anything asked for.
 _LARGEST_ALBEDO = 1 - 1e-11
@@ -66,7 +73,7 @@ def discrete_ordinates(
 ) -> SlabLight:
     """Transport through `thickness` mm, exact but for the number of angles (40: about 1e-6 of the light)."""
     depth = medium.sigma_t * thickness
-    modes = _Modes(min(medium.albedo, _LARGEST_ALBEDO), depth, eta, angles)
+    modes = _Modes(min(medium.albedo, _LARGEST_ALBEDO), depth, eta, inside_cosines(angles, eta))
     parts = []
     for mu, weight in zip(*entry(lambertian, eta), strict=True):
         light = beam(float(mu), depth, eta)
@@ -75,12 +82,28 @@ def discrete_ordinates(
     return SlabLight(*(float(x) for x in np.sum(parts, axis=0)))
 
 
+def radiance_by_angle(medium: Medium, thickness: float, eta: float, cosine: float, bins: int = 10) -> np.ndarray:
+    """Radiance of scattered light that leaves by the lit and the unlit side, (2, bins).
+
+    In 1/(mm^2 sr) per 1/mm^2 that entered, collimated, at outside cosine `cosine`; cosine-weighted means over equal
+    ranges of the outside cosine.
+    """
+    depth = medium.sigma_t * thickness
+    modes = _Modes(min(medium.albedo, _LARGEST_ALBEDO), depth, eta, inside_cosines(_ANGLES_PER_BIN, eta, parts=bins))
+    outside, weight = (x.reshape(bins, -1) for x in composite_gauss(_ANGLES_PER_BIN, bins))
+    means = []
+    for psi in modes.arriving(beam(float(refracted(cosine, 1 / eta)), depth, eta)):
+        leaving = ((1 - modes.reflectance) * psi)[-outside.size :].reshape(bins, -1) / (2 * np.pi * eta**2)
+        means.append((leaving * outside * weight).sum(axis=1) / (outside * weight).sum(axis=1))
+    return np.array(means)
+
+
 class _Modes:
     """Decay rates and angular shapes of collided light, and the boundary conditions at both surfaces."""
 
-    def __init__(self, albedo: float, depth: float, eta: float, angles: int) -> None:
+    def __init__(self, albedo: float, depth: float, eta: float, cosines: tuple[np.ndarray, np.ndarray]) -> None:
         self.albedo, self.depth = albedo, depth
-        self.mu, self.weight = inside_cosines(angles, eta)
+        self.mu, self.weight = cosines
         self.reflectance = reflectance_from_inside(self.mu, eta)
         root = np.sqrt(self.weight)
         matrix = (np.eye(len(root)) - albedo * np.outer(root, root)) / np.outer(self.mu, self.mu)
@@ -96,6 +119,20 @@ class _Modes:
     def collided(self, light: Beam) -> tuple[float, float, float]:
         """Shares reflected, transmitted and absorbed of the light that entered as `light`."""
         own = self._particular(light.mu)
+        up, down, (falling, rising) = self._surfaces(light, own)
+        leaving = self.weight * self.mu * (1 - self.reflectance)
+        modes = (self.weight @ self.shape) * (falling + rising) * -np.expm1(-self.rate * self.depth) / self.rate
+        uncollided = (light.down + light.up) * light.mu * -np.expm1(-self.depth / light.mu)
+        absorbed = (1 - self.albedo) * (modes.sum() + (1 + self.weight @ own) * uncollided)
+        return float(leaving @ up), float(leaving @ down), float(absorbed)
+
+    def arriving(self, light: Beam) -> tuple[np.ndarray, np.ndarray]:
+        """psi of collided light that meets the lit and the unlit surface from inside, by angle."""
+        up, down, _ = self._surfaces(light, self._particular(light.mu))
+        return up, down
+
+    def _surfaces(self, light: Beam, own: np.ndarray) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, np.ndarray]]:
+        """psi towards the lit surface there and towards the unlit one there, and the modes' amplitudes."""
         once = np.exp(-self.depth / light.mu)
         p = own * np.array([light.down + light.up * once, light.down * once + light.up])[:, None]
         m = own * (self.mu / light.mu) * np.array([light.down - light.up * once, light.down * once - light.up])[:, None]
@@ -105,11 +142,7 @@ class _Modes:
         p[1] += self.shape @ (falling * end + rising)
         m[0] += self.slope @ (falling - rising * end)
         m[1] += self.slope @ (falling * end - rising)
-        leaving = self.weight * self.mu * (1 - self.reflectance)
-        modes = (self.weight @ self.shape) * (falling + rising) * -np.expm1(-self.rate * self.depth) / self.rate
-        uncollided = (light.down + light.up) * light.mu * (1 - once)
-        absorbed = (1 - self.albedo) * (modes.sum() + (1 + self.weight @ own) * uncollided)
-        return float(leaving @ (p[0] - m[0]) / 2), float(leaving @ (p[1] + m[1]) / 2), float(absorbed)
+        return (p[0] - m[0]) / 2, (p[1] + m[1]) / 2, (falling, rising)
 
     def _particular(self, mu: float) -> np.ndarray:
         """P with p = P e^(-tau/mu) for the fluence phi_u = e^(-tau/mu)."""
