@@ -16,9 +16,9 @@ Gathered gather(uint tet, vec3 direction) {
     if (!exit.found) break;
     vec4 l = exit_point(exit);
     GatherPoint there = fields_at(l);
-    vec3 tau = extinction() * exit.path;
-    sum.radiance += left * optical.sigma_s_prime * (exit.path / FOUR_PI) * fluence_along(here, there, tau);
-    left *= exp(-tau);
+    vec3 lost, fluence = fluence_along(here, there, extinction() * exit.path, lost);
+    sum.radiance += left * optical.sigma_s_prime * (exit.path / FOUR_PI) * fluence;
+    left -= left * lost;
     here = there;
     move_to(l);
     if (all(lessThanEqual(left, vec3(GATHER_END)))) break;

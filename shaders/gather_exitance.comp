@@ -24,9 +24,9 @@ bool cross_tet(Lambertian nodes, GatherPoint from, GatherPoint to, float path) {
   bool on = false;
   for (uint k = 0u; k < LAMBERTIAN_NODES; ++k) {
     float length = path / nodes.cosine[k];
-    vec3 tau = extinction() * length;
-    radiance[k] += left[k] * optical.sigma_s_prime * (length / FOUR_PI) * fluence_along(from, to, tau);
-    left[k] *= exp(-tau);
+    vec3 lost, fluence = fluence_along(from, to, extinction() * length, lost);
+    radiance[k] += left[k] * optical.sigma_s_prime * (length / FOUR_PI) * fluence;
+    left[k] -= left[k] * lost;
     on = on || any(greaterThan(left[k], vec3(GATHER_END)));
   }
   return on;

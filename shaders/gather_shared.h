@@ -26,7 +26,7 @@ struct GatherScale {
 // The largest factor: where the fluence of a coarse mesh is far too low, gathering has nothing to scale.
 const float GATHER_FACTOR_MAX = 4.0f;
 // A view ray ends where no channel keeps more than this share; what lies behind counts as even.
-const float GATHER_END = 1e-2f;
+const float GATHER_END = 2e-2f;
 // Tets that a view ray crosses at most.
 const uint GATHER_STEPS = 256u;
 // Optical depth from which on light that has not scattered counts as none, and tets on the way back to where it

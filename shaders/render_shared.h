@@ -96,17 +96,22 @@ struct SurfaceScene {
 QG_ARRAY(SurfaceScenes, SurfaceScene);
 #endif
 
-// surface.vert, surface.frag, surface_gathered.frag: radiance of the display mesh.
+// surface.vert, surface.frag: radiance of the display mesh. surface_gathered.frag: what is needed to gather it.
 struct SurfacePush {
   QG_REF(SurfaceScenes) scene;  // one
 };
 
 // Layers of a picture: scattered, specular and unscattered radiance, and transmittance.
 #define PICTURE_LAYERS 4
+// Images of samples. surface.frag: scattered radiance and coverage, specular, unscattered. surface_gathered.frag: position
+// and coverage; specular and the high half of the face; normal and its low half.
+#define SAMPLE_LAYERS 3
+#define FACE_HALF 65536
 
-// resolve.comp: mean of 2 x 2 samples of a tile into the picture.
+// resolve.comp, gather.comp: mean of 2 x 2 samples of a tile into the picture.
 struct ResolvePush {
-  QG_REF(Vec4s) samples[PICTURE_LAYERS];  // RGB and, of the first, coverage
+  QG_REF(SurfaceScenes) scene;  // one
+  QG_REF(Vec4s) samples[SAMPLE_LAYERS];
   QG_REF(Floats) layers[PICTURE_LAYERS];  // RGB per pixel, written
   QG_REF(Floats) alpha;                   // per pixel, written
   uint tile_x;                     // first pixel of the tile in the picture

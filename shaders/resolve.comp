@@ -5,17 +5,19 @@
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { ResolvePush push; };
 
+#include "pixel.glsl"
+
+vec4 mean_of(Vec4s samples, Pixel pixel) {
+  vec4 sum = vec4(0);
+  for (uint k = 0u; k < 4u; ++k) sum += samples.at[sample_of(pixel, k)];
+  return 0.25 * sum;
+}
+
 void main() {
-  uint i = gl_GlobalInvocationID.x;
-  if (i >= push.tile_width * push.tile_height) return;
-  uint x = i % push.tile_width, y = i / push.tile_width;
-  uint s = 2u * y * push.sample_stride + 2u * x;
-  uint below = s + push.sample_stride;
-  uint pixel = (push.tile_y + y) * push.picture_width + push.tile_x + x;
-  for (uint layer = 0u; layer < PICTURE_LAYERS; ++layer) {
-    Vec4s samples = push.samples[layer];
-    vec4 mean = 0.25 * (samples.at[s] + samples.at[s + 1u] + samples.at[below] + samples.at[below + 1u]);
-    for (uint c = 0u; c < 3u; ++c) push.layers[layer].at[3u * pixel + c] = mean[c];
-    if (layer == 0u) push.alpha.at[pixel] = mean.a;
-  }
+  Pixel pixel;
+  if (!find_pixel(pixel)) return;
+  vec4 scattered = mean_of(push.samples[0], pixel);
+  vec3 layers[PICTURE_LAYERS] = vec3[](scattered.rgb, mean_of(push.samples[1], pixel).rgb,
+                                       mean_of(push.samples[2], pixel).rgb, vec3(0));
+  write_pixel(pixel, layers, scattered.a);
 }

@@ -11,7 +11,6 @@ layout(location = 3) in vec3 unscattered_exitance;  // W/mm^2
 layout(location = 0) out vec4 scattered_coverage;  // W/(mm^2 sr), 1
 layout(location = 1) out vec4 specular;            // W/(mm^2 sr), 1
 layout(location = 2) out vec4 unscattered;         // W/(mm^2 sr), 1
-layout(location = 3) out vec4 transmittance;       // share of what is behind, 1
 
 #include "specular.glsl"
 
@@ -24,5 +23,4 @@ void main() {
   scattered_coverage = vec4(exitance * share, 1.0);
   specular = vec4(specular_radiance(position, n, v), 1.0);
   unscattered = vec4(unscattered_exitance * share, 1.0);
-  transmittance = vec4(0.0, 0.0, 0.0, 1.0);
 }

@@ -6,6 +6,7 @@
 
 #include "engine/graph/fresnel.h"
 #include "engine/render/draw.h"
+#include "spirv/gather.comp.h"
 #include "spirv/resolve.comp.h"
 #include "spirv/surface.frag.h"
 #include "spirv/surface.vert.h"
@@ -14,7 +15,7 @@
 namespace quadgraph {
 namespace {
 
-constexpr std::uint32_t tile_pixels = 512;  // per side; 128 MiB of samples
+constexpr std::uint32_t tile_pixels = 512;  // per side; 96 MiB of samples
 constexpr VkFormat sample_format = VK_FORMAT_R32G32B32A32_SFLOAT;
 constexpr std::array<const char*, PICTURE_LAYERS> layer_names = {"scattered", "specular", "unscattered",
                                                                  "transmittance"};
@@ -57,7 +58,7 @@ vk::GraphicsOptions pass_options(vk::Spirv fragment) {
   return {.vertex = surface_vert,
           .fragment = fragment,
           .push_size = sizeof(gpu::SurfacePush),
-          .colour_formats = std::vector<VkFormat>(PICTURE_LAYERS, sample_format)};
+          .colour_formats = std::vector<VkFormat>(SAMPLE_LAYERS, sample_format)};
 }
 
 }  // namespace
@@ -74,11 +75,11 @@ struct Rasteriser::Targets {
         samples_y(2 * std::min(height, tile_pixels)),
         depth(context, image_options(VK_FORMAT_D32_SFLOAT, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT), "depth"),
         alpha(context, 4 * pixels(), vk::Place::host, "alpha") {
-    for (const std::string name : layer_names) {
-      images.emplace_back(context, image_options(sample_format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT), name);
-      samples.emplace_back(context, sample_bytes(), vk::Place::device, name + " samples");
-      layers.emplace_back(context, 12 * pixels(), vk::Place::host, name);
+    for (int k = 0; k < SAMPLE_LAYERS; ++k) {
+      images.emplace_back(context, image_options(sample_format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT), "samples");
+      samples.emplace_back(context, sample_bytes(), vk::Place::device, "samples");
     }
+    for (const char* name : layer_names) layers.emplace_back(context, 12 * pixels(), vk::Place::host, name);
   }
 
   std::uint64_t pixels() const { return std::uint64_t{width} * height; }
@@ -89,9 +90,9 @@ struct Rasteriser::Targets {
 
   std::uint32_t width, height;         // pixels of the picture
   std::uint32_t samples_x, samples_y;  // of a tile
-  std::vector<vk::Image> images;       // by layer, of a tile
+  std::vector<vk::Image> images;       // of a tile
   vk::Image depth;
-  std::vector<vk::Buffer> samples;  // by layer, of a tile
+  std::vector<vk::Buffer> samples;  // the same
   std::vector<vk::Buffer> layers;   // of the picture
   vk::Buffer alpha;
 };
@@ -110,19 +111,26 @@ Rasteriser::Rasteriser(vk::Context& context)
     : context_(context),
       surface_(context, pass_options(surface_frag), "surface"),
       gathered_(context, pass_options(surface_gathered_frag), "surface gathered"),
-      resolve_(context, resolve_comp, sizeof(gpu::ResolvePush), "resolve") {}
+      resolve_(context, resolve_comp, sizeof(gpu::ResolvePush), "resolve"),
+      gather_(context, gather_comp, sizeof(gpu::ResolvePush), "gather") {}
 
 void Rasteriser::record(vk::Commands& commands, const RasterInput& input, const gpu::SurfacePush& push,
                         const Targets& targets, const Tile& tile) {
   DrawTarget target{{}, &targets.depth};
   for (const vk::Image& image : targets.images) target.colours.push_back(&image);
-  commands.begin_pass(input.gather != nullptr ? "surface gathered" : "surface");
+  commands.begin_pass("surface");
   draw(commands, target,
        {-2.0f * static_cast<float>(tile.x), -2.0f * static_cast<float>(tile.y),
         2.0f * static_cast<float>(targets.width), 2.0f * static_cast<float>(targets.height)},
        input.gather != nullptr ? gathered_ : surface_, push, input.mesh.triangles, 3 * input.mesh.triangle_count);
   commands.end_pass();
-  gpu::ResolvePush resolve{.samples = {},
+  record_resolve(commands, input, push, targets, tile);
+}
+
+void Rasteriser::record_resolve(vk::Commands& commands, const RasterInput& input, const gpu::SurfacePush& push,
+                                const Targets& targets, const Tile& tile) {
+  gpu::ResolvePush resolve{.scene = push.scene,
+                           .samples = {},
                            .layers = {},
                            .alpha = targets.alpha.address(),
                            .tile_x = tile.x,
@@ -131,14 +139,13 @@ void Rasteriser::record(vk::Commands& commands, const RasterInput& input, const 
                            .tile_height = tile.height,
                            .sample_stride = targets.samples_x,
                            .picture_width = targets.width};
-  commands.begin_pass("resolve");
-  for (std::size_t k = 0; k < PICTURE_LAYERS; ++k) {
+  for (std::size_t k = 0; k < PICTURE_LAYERS; ++k) resolve.layers[k] = targets.layers[k].address();
+  commands.begin_pass(input.gather != nullptr ? "gather" : "resolve");
+  for (std::size_t k = 0; k < SAMPLE_LAYERS; ++k) {
     commands.copy(targets.images[k], targets.samples[k]);
     resolve.samples[k] = targets.samples[k].address();
-    resolve.layers[k] = targets.layers[k].address();
   }
-  commands.barrier();
-  commands.dispatch(resolve_, resolve, std::uint64_t{tile.width} * tile.height);
+  commands.dispatch(input.gather != nullptr ? gather_ : resolve_, resolve, std::uint64_t{tile.width} * tile.height);
   commands.end_pass();
 }
 
@@ -148,10 +155,11 @@ RasterResult Rasteriser::run(const RasterInput& input, const Camera& camera, std
   const gpu::SurfaceScene constants = scene(input, camera);
   const auto scene_buffer = vk::upload<gpu::SurfaceScene>(context_, std::span(&constants, 1), "surface scene");
   std::vector<PassStats> passes(2);
-  // Read once and written once per sample and layer, and the depth; of the gather only the vertices are counted.
   const std::uint64_t surface_bytes = 64ull * input.mesh.vertex_count + input.mesh.triangles.size() +
-                                      (input.gather != nullptr ? input.gather->field.points().size() : 0) +
-                                      9 * targets.sample_bytes() / 2;
+                                      (2 * SAMPLE_LAYERS + 1) * targets.sample_bytes() / 2;
+  // Copied, then read. Of the body, as if every vertex were read once.
+  const std::uint64_t resolve_bytes =
+      3 * SAMPLE_LAYERS * targets.sample_bytes() + (input.gather != nullptr ? input.gather->field.points().size() : 0);
   for (std::uint32_t y = 0; y < height; y += tile_pixels) {
     for (std::uint32_t x = 0; x < width; x += tile_pixels) {
       vk::Commands commands(context_, 2);
@@ -161,7 +169,7 @@ RasterResult Rasteriser::run(const RasterInput& input, const Camera& camera, std
       for (std::size_t k = 0; k < passes.size(); ++k) {
         passes[k].name = times[k].name;
         passes[k].time_ms += times[k].time_ms;
-        passes[k].bytes += k == 0 ? surface_bytes : 3 * PICTURE_LAYERS * targets.sample_bytes();
+        passes[k].bytes += k == 0 ? surface_bytes : resolve_bytes;
         ++passes[k].count;
       }
     }

@@ -53,10 +53,12 @@ class Rasteriser {
 
   void record(vk::Commands& commands, const RasterInput& input, const gpu::SurfacePush& push, const Targets& targets,
               const Tile& tile);
+  void record_resolve(vk::Commands& commands, const RasterInput& input, const gpu::SurfacePush& push,
+                      const Targets& targets, const Tile& tile);
 
   vk::Context& context_;
   vk::GraphicsPass surface_, gathered_;
-  vk::ComputePass resolve_;
+  vk::ComputePass resolve_, gather_;
 };
 
 }  // namespace quadgraph

@@ -77,7 +77,8 @@ TEST_CASE("push constants") {
            MEMBER(IrradiancePush, subdivision), MEMBER(IrradiancePush, eta),
            MEMBER(IrradiancePush, diffuse_transmittance)});
   compare(SpirvLayout(resolve_comp), "ResolvePush",
-          {MEMBER(ResolvePush, samples), MEMBER(ResolvePush, layers), MEMBER(ResolvePush, alpha),
-           MEMBER(ResolvePush, tile_x), MEMBER(ResolvePush, tile_y), MEMBER(ResolvePush, tile_width),
-           MEMBER(ResolvePush, tile_height), MEMBER(ResolvePush, sample_stride), MEMBER(ResolvePush, picture_width)});
+          {MEMBER(ResolvePush, scene), MEMBER(ResolvePush, samples), MEMBER(ResolvePush, layers),
+           MEMBER(ResolvePush, alpha), MEMBER(ResolvePush, tile_x), MEMBER(ResolvePush, tile_y),
+           MEMBER(ResolvePush, tile_width), MEMBER(ResolvePush, tile_height), MEMBER(ResolvePush, sample_stride),
+           MEMBER(ResolvePush, picture_width)});
 }

@@ -1,0 +1,93 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "render_shared.h"
+#include "fresnel.glsl"
+
+layout(local_size_x = WORKGROUP_SIZE) in;
+layout(push_constant, scalar) uniform Block { ResolvePush push; };
+
+BodyRef body;
+#define BODY body
+#define POINTS push.scene.at[0].points
+#include "gather.glsl"
+#include "pixel.glsl"
+
+const float PI = 3.14159265;
+
+struct Sample {
+  uint face;
+  vec3 position, normal, specular;
+};
+
+Sample sample_at(uint i) {
+  vec4 specular = push.samples[1].at[i], normal = push.samples[2].at[i];
+  return Sample(uint(specular.w) * FACE_HALF + uint(normal.w), push.samples[0].at[i].xyz, normal.xyz, specular.rgb);
+}
+
+// Whether two samples of a pixel lie on one piece of surface, so that one ray does for both.
+bool together(Sample a, Sample b) {
+  vec3 way = b.position - a.position;
+  float off = dot(a.normal, way);
+  return dot(a.normal, b.normal) > 0.5 && 4.0 * off * off <= dot(way, way);
+}
+
+// Barycentric coordinates of the point of a face that lies below or above `point`.
+vec3 coordinates_in(uint face, vec3 point) {
+  uvec3 ids = BODY.faces.at[face];
+  vec3 a = BODY.vertices.at[ids.x];
+  vec3 u = BODY.vertices.at[ids.y] - a, v = BODY.vertices.at[ids.z] - a, offset = point - a;
+  vec3 normal = cross(u, v);
+  float area = max(dot(normal, normal), 1e-30);
+  float second = dot(cross(offset, v), normal) / area, third = dot(cross(u, offset), normal) / area;
+  vec3 l = max(vec3(1.0 - second - third, second, third), vec3(0));
+  return l / (l.x + l.y + l.z);
+}
+
+// Radiance of even light from all sides, W/(mm^2 sr).
+vec3 ambient_radiance(SurfaceScenes scene) {
+  vec3 sum = vec3(0);
+  for (uint i = 0u; i < scene.at[0].light_count; ++i) {
+    LightRecord light = scene.at[0].lights.at[i];
+    if (light.kind == LIGHT_AMBIENT) sum += light.power / PI;
+  }
+  return sum;
+}
+
+Gathered towards_eye(SurfaceScenes scene, uint face, vec3 position, vec3 normal) {
+  vec3 v = normalize(scene.at[0].eye - position);
+  return leaving(face, coordinates_in(face, position), v, normalize(normal), scene.at[0].scale,
+                 scene.at[0].radiance_norm);
+}
+
+// One view ray for all samples that lie together: in a smooth place one per pixel. Samples are read again where they are
+// needed: an array of them would be slow to index.
+void main() {
+  Pixel pixel;
+  if (!find_pixel(pixel)) return;
+  SurfaceScenes scene = push.scene;
+  body = scene.at[0].body;
+  uint waiting = 0u;
+  for (uint k = 0u; k < 4u; ++k) waiting |= push.samples[0].at[sample_of(pixel, k)].w > 0.0 ? 1u << k : 0u;
+  vec3 scattered = vec3(0), specular = vec3(0), seen = vec3(0);
+  float alpha = 0.0;
+  while (waiting != 0u) {
+    Sample first = sample_at(sample_of(pixel, findLSB(waiting)));
+    float share = 0.0;
+    vec3 position = vec3(0), normal = vec3(0);
+    for (uint k = 0u; k < 4u; ++k) {
+      Sample other = sample_at(sample_of(pixel, k));
+      bool taken = (waiting >> k & 1u) == 1u && together(first, other);
+      if (!taken) continue;
+      waiting &= ~(1u << k);
+      share += 0.25;
+      position += other.position;
+      normal += other.normal;
+      specular += 0.25 * other.specular;
+    }
+    Gathered light = towards_eye(scene, first.face, 0.25 / share * position, normal);
+    scattered += share * light.radiance;
+    seen += share * light.seen;
+    alpha += share;
+  }
+  write_pixel(pixel, vec3[](scattered, specular, seen * ambient_radiance(scene), seen), alpha);
+}
