@@ -17,11 +17,12 @@ Gathered gather(uint tet, vec3 direction) {
     vec4 l = exit_point(exit);
     GatherPoint there = fields_at(l);
     vec3 lost, fluence = fluence_along(here, there, extinction() * exit.path, lost);
-    sum.radiance += left * optical.sigma_s_prime * (exit.path / FOUR_PI) * fluence;
+    vec3 last = left * optical.sigma_s_prime * (exit.path / FOUR_PI) * fluence;
+    sum.radiance += last;
     left -= left * lost;
     here = there;
     move_to(l);
-    if (all(lessThanEqual(left, vec3(GATHER_END)))) break;
+    if (ends(left, sum.radiance, last, lost)) break;
     uvec2 crossing = turn(tet, exit.slot);
     if (crossing.x < BODY.tet_count) {
       tet = crossing.x;
@@ -34,7 +35,7 @@ Gathered gather(uint tet, vec3 direction) {
       float reflected = internal_reflectance(cosine, BODY.eta);
       sum.seen += left * (1.0 - reflected);
       left *= reflected;
-      if (reflected <= GATHER_END) break;
+      if (reflected == 0.0) break;
     }
     direction = normalize(direction - 2.0 * cosine * n);
   }

@@ -25,9 +25,10 @@ bool cross_tet(Lambertian nodes, GatherPoint from, GatherPoint to, float path) {
   for (uint k = 0u; k < LAMBERTIAN_NODES; ++k) {
     float length = path / nodes.cosine[k];
     vec3 lost, fluence = fluence_along(from, to, extinction() * length, lost);
-    radiance[k] += left[k] * optical.sigma_s_prime * (length / FOUR_PI) * fluence;
+    vec3 last = left[k] * optical.sigma_s_prime * (length / FOUR_PI) * fluence;
+    radiance[k] += last;
     left[k] -= left[k] * lost;
-    on = on || any(greaterThan(left[k], vec3(GATHER_END)));
+    on = on || !ends(left[k], radiance[k], last, lost);
   }
   return on;
 }

@@ -44,6 +44,13 @@ vec3 fluence_along(GatherPoint from, GatherPoint to, vec3 tau, out vec3 lost) {
   return attenuated_mean(from.phi, to.phi, tau, lost) + uncollided * exp(max(-growth, vec3(0)) - from.depth);
 }
 
+// Whether a ray may end that keeps `left` and has gathered `radiance`, of it `last` where it lost the share `lost`.
+bool ends(vec3 left, vec3 radiance, vec3 last, vec3 lost) {
+  vec3 behind = last * (1.0 - lost);
+  return all(lessThanEqual(
+      left, mix(vec3(GATHER_LEAST), vec3(GATHER_END), lessThanEqual(behind, GATHER_END * radiance * lost))));
+}
+
 // Radiance of a body that is everywhere as at a point.
 vec3 even_radiance(GatherPoint here) {
   vec3 albedo = min(optical.sigma_s_prime / max(extinction(), vec3(1e-30)), vec3(1));
