@@ -84,6 +84,7 @@ struct SurfaceScene {
   QG_REF(Uvec3s) faces;       // level 0
   QG_REF(Vec3s) exitance;     // per surface vertex of level 0, W/mm^2
   QG_REF(Vec3s) unscattered;  // the same
+  QG_REF(Floats) sky;         // per face of level 0: share of even light from outside that the body does not hide
   QG_REF(LightRecords) lights;
   QG_REF(ShadowViews) views;
   QG_REF(Uints) triangle_face;  // per display triangle: outside face of level 0

@@ -84,7 +84,7 @@ const float LAMBERTIAN_W[4] = {0.1739274226f, 0.3260725774f, 0.3260725774f, 0.17
 const uint GOLDEN_TURN = 2654435769u;
 
 // A ray ends where each channel has kept less than this share of its power, and what is left stays there.
-const float WALK_END = 1e-3f;
+const float WALK_END = 1e-4f;
 // Tets that a ray crosses at most: light trapped by total reflection in a clear body ends here. Four such rays of one
 // invocation stay below the 65535 turns after which lavapipe leaves all loops.
 const uint MAX_WALK_STEPS = 4096u;

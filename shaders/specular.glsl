@@ -16,15 +16,15 @@ float cook_torrance(vec3 n, vec3 v, vec3 l) {
   return distribution * fresnel_reflectance(min(dot(v, h), 1.0), push.scene.at[0].eta) * 0.5 * n_l / mask;
 }
 
-// Towards v at a point of unit normal n, W/(mm^2 sr).
-vec3 specular_radiance(vec3 position, vec3 n, vec3 v) {
+// Towards v at a point of unit normal n that sees the share `sky` of its surroundings, W/(mm^2 sr).
+vec3 specular_radiance(vec3 position, vec3 n, vec3 v, float sky) {
   SurfaceScenes scene = push.scene;
   vec3 sum = vec3(0.0);
   for (uint i = 0u; i < scene.at[0].light_count; ++i) {
     LightRecord light = scene.at[0].lights.at[i];
     if (light.kind == LIGHT_AMBIENT) {
       // As of a smooth surface.
-      sum += fresnel_reflectance(clamp(dot(n, v), 0.0, 1.0), scene.at[0].eta) / PI * light.power;
+      sum += fresnel_reflectance(clamp(dot(n, v), 0.0, 1.0), scene.at[0].eta) / PI * sky * light.power;
       continue;
     }
     Incident incident = incident_light(light, position);

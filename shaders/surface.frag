@@ -6,6 +6,7 @@
 layout(push_constant, scalar) uniform Block { SurfacePush push; };
 layout(location = 0) in vec3 position;  // mm
 layout(location = 1) in vec3 normal;
+layout(location = 4) in float sky;  // share that is not hidden by the body
 layout(location = 2) in vec3 exitance;             // W/mm^2
 layout(location = 3) in vec3 unscattered_exitance;  // W/mm^2
 layout(location = 0) out vec4 scattered_coverage;  // W/(mm^2 sr), 1
@@ -21,6 +22,6 @@ void main() {
   vec3 v = normalize(scene.at[0].eye - position);
   float share = fresnel_transmittance(clamp(dot(n, v), 0.0, 1.0), scene.at[0].eta) / scene.at[0].radiance_norm;
   scattered_coverage = vec4(exitance * share, 1.0);
-  specular = vec4(specular_radiance(position, n, v), 1.0);
+  specular = vec4(specular_radiance(position, n, v, sky), 1.0);
   unscattered = vec4(unscattered_exitance * share, 1.0);
 }

@@ -6,6 +6,7 @@
 layout(push_constant, scalar) uniform Block { SurfacePush push; };
 layout(location = 0) in vec3 position;  // mm
 layout(location = 1) in vec3 normal;
+layout(location = 4) in float sky;  // share that is not hidden by the body
 layout(location = 0) out vec4 position_coverage;  // mm, 1
 layout(location = 1) out vec4 specular_face;      // W/(mm^2 sr), high half of the face
 layout(location = 2) out vec4 normal_face;        // unit, low half of the face
@@ -16,6 +17,6 @@ void main() {
   vec3 n = normalize(normal);
   uint face = push.scene.at[0].triangle_face.at[gl_PrimitiveID];
   position_coverage = vec4(position, 1.0);
-  specular_face = vec4(specular_radiance(position, n, normalize(push.scene.at[0].eye - position)), face / FACE_HALF);
+  specular_face = vec4(specular_radiance(position, n, normalize(push.scene.at[0].eye - position), sky), face / FACE_HALF);
   normal_face = vec4(n, face % FACE_HALF);
 }

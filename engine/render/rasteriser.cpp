@@ -39,6 +39,7 @@ gpu::SurfaceScene scene(const RasterInput& input, const Camera& camera) {
                           .faces = input.finest.faces.address(),
                           .exitance = input.vertex_exitance.address(),
                           .unscattered = input.vertex_unscattered.address(),
+                          .sky = input.finest.sky.address(),
                           .lights = input.shadows.lights().address(),
                           .views = input.shadows.views().address(),
                           .triangle_face = 0,

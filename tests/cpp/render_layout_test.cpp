@@ -55,14 +55,15 @@ TEST_CASE("lights and shadow views") {
 TEST_CASE("the scene of the display") {
   for (const vk::Spirv code : {vk::Spirv(surface_vert), vk::Spirv(surface_frag), vk::Spirv(surface_gathered_frag)}) {
     const SpirvLayout layout(code);
-    compare(layout, "SurfaceScene",
-            {MEMBER(SurfaceScene, clip_from_world), MEMBER(SurfaceScene, eye), MEMBER(SurfaceScene, eta),
-             MEMBER(SurfaceScene, roughness), MEMBER(SurfaceScene, radiance_norm), MEMBER(SurfaceScene, light_count),
-             MEMBER(SurfaceScene, vertices), MEMBER(SurfaceScene, normals), MEMBER(SurfaceScene, face),
-             MEMBER(SurfaceScene, barycentric), MEMBER(SurfaceScene, faces), MEMBER(SurfaceScene, exitance),
-             MEMBER(SurfaceScene, unscattered), MEMBER(SurfaceScene, lights), MEMBER(SurfaceScene, views),
-             MEMBER(SurfaceScene, triangle_face), MEMBER(SurfaceScene, points), MEMBER(SurfaceScene, scale),
-             MEMBER(SurfaceScene, body)});
+    compare(
+        layout, "SurfaceScene",
+        {MEMBER(SurfaceScene, clip_from_world), MEMBER(SurfaceScene, eye),           MEMBER(SurfaceScene, eta),
+         MEMBER(SurfaceScene, roughness),       MEMBER(SurfaceScene, radiance_norm), MEMBER(SurfaceScene, light_count),
+         MEMBER(SurfaceScene, vertices),        MEMBER(SurfaceScene, normals),       MEMBER(SurfaceScene, face),
+         MEMBER(SurfaceScene, barycentric),     MEMBER(SurfaceScene, faces),         MEMBER(SurfaceScene, exitance),
+         MEMBER(SurfaceScene, unscattered),     MEMBER(SurfaceScene, sky),           MEMBER(SurfaceScene, lights),
+         MEMBER(SurfaceScene, views),           MEMBER(SurfaceScene, triangle_face), MEMBER(SurfaceScene, points),
+         MEMBER(SurfaceScene, scale),           MEMBER(SurfaceScene, body)});
     CHECK(layout.stride.at("SurfaceScene") == sizeof(gpu::SurfaceScene));
     compare(layout, "SurfacePush", {MEMBER(SurfacePush, scene)});
   }
