@@ -8,11 +8,18 @@ import pytest
 
 from quadgraph import cli
 from quadgraph.commands.accuracy import STUDIES
-from quadgraph.reference.studies import coarse, half_space, orders, slab, sphere
+from quadgraph.reference.studies import coarse, half_space, orders, radiance, slab, sphere
 
 pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 
-MODULES = {"slab": slab, "sphere": sphere, "half-space": half_space, "orders": orders, "coarse": coarse}
+MODULES = {
+    "slab": slab,
+    "sphere": sphere,
+    "half-space": half_space,
+    "orders": orders,
+    "coarse": coarse,
+    "radiance": radiance,
+}
 
 
 def test_a_study_prints_its_table_and_records_it(tmp_path, capsys):

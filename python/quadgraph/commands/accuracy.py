@@ -19,6 +19,7 @@ STUDIES = {
     "half-space": "half_space",
     "orders": "orders",
     "coarse": "coarse",
+    "radiance": "radiance",
 }
 
 

@@ -13,9 +13,11 @@ from quadgraph.commands.scene import load_core
 from quadgraph.graph import Graph
 from quadgraph.reference import boundary, meshes, moments
 from quadgraph.reference.boundary import Boundary
+from quadgraph.reference.fresnel import entering_share, transmittance_from_outside
 from quadgraph.reference.media import Medium
 
 _TOLERANCE = 1e-6  # of the engine's solver, single precision
+_LARGEST_FACTOR = 4.0  # by which gathered radiance is scaled
 
 
 @dataclass(frozen=True)
@@ -58,13 +60,18 @@ class Light:
 
 @dataclass(frozen=True)
 class Answer:
-    """Per outside face, in W/mm^2, (n_f, 3); power in W, (3,), under the names of the engine's report."""
+    """Per outside face, in W/mm^2, (n_f, 3); power in W, (3,), under the names of the engine's report.
+
+    leaving: from faces (n,) and unit outward directions (n, 3) to gathered and scaled radiance of scattered light,
+    (n, 3) in W/(mm^2 sr), at their centroids (only fem with the buried source; only until the body's next solve).
+    """
 
     phi: np.ndarray
     exitance: np.ndarray
     unscattered: np.ndarray
     energy: dict[str, np.ndarray]
     clipped: np.ndarray
+    leaving: Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,9 +124,17 @@ def on_reference(mesh: Graph) -> Body:
             source=scheme.source,
             model=scheme.model,
         )
-        return _answer(result["phi_face"], result, result["energy"], result["clipped"])
 
-    return Body(mesh, *meshes.face_frames(mesh), solve)
+        def leaving(faces: np.ndarray, outward: np.ndarray) -> np.ndarray:
+            light_inside = (sigma_s_prime, sigma_a, eta, light.q, light.direction, result["phi"])
+            gathered = core.radiance_reference(loaded, 0, *light_inside, faces, outward)
+            cosine = np.einsum("ij,ij->i", frames[1][faces], outward)
+            return _scaled(mesh, faces, cosine, eta, gathered, result["exitance"])
+
+        return _answer(result["phi_face"], result, result["energy"], result["clipped"], leaving)
+
+    frames = meshes.face_frames(mesh)
+    return Body(mesh, *frames, solve)
 
 
 def on_engine(device: str = "") -> BodyOf:
@@ -140,13 +155,43 @@ def on_engine(device: str = "") -> BodyOf:
                 max_iterations=100_000,
             )
             field = engine.surface_field()
-            return _answer(field["phi"], field, report["energy"], report["clipped"])
+
+            def leaving(faces: np.ndarray, outward: np.ndarray) -> np.ndarray:
+                return engine.leaving(faces, outward)["radiance"]
+
+            return _answer(field["phi"], field, report["energy"], report["clipped"], leaving)
 
         return Body(mesh, *meshes.face_frames(mesh), solve)
 
     return body_of
 
 
-def _answer(phi: np.ndarray, field: dict, energy: dict, clipped: np.ndarray) -> Answer:
+def _answer(
+    phi: np.ndarray,
+    field: dict,
+    energy: dict,
+    clipped: np.ndarray,
+    leaving: Callable[[np.ndarray, np.ndarray], np.ndarray],
+) -> Answer:
     values = (np.asarray(array, np.float64) for array in (phi, field["exitance"], field["unscattered"]))
-    return Answer(*values, {name: np.array(value) for name, value in energy.items()}, np.asarray(clipped, np.float64))
+    power = {name: np.array(value) for name, value in energy.items()}
+    return Answer(*values, power, np.asarray(clipped, np.float64), leaving)
+
+
+def _scaled(
+    mesh: Graph, faces: np.ndarray, cosine: np.ndarray, eta: float, gathered: dict, exitance: np.ndarray
+) -> np.ndarray:
+    """Gathered radiance times M / M_gathered at the vertices, at most 4, and what is then missing of M as even."""
+    area = meshes.face_frames(mesh)[2] * (mesh.face_kinds == meshes.OPEN)
+    corners = mesh.faces.ravel()
+    around = np.maximum(np.bincount(corners, np.repeat(area, 3), len(mesh.vertices)), 1e-300)
+
+    def at_vertices(values: np.ndarray) -> np.ndarray:
+        sums = [np.bincount(corners, np.repeat(area * column, 3), len(mesh.vertices)) for column in values.T]
+        return np.column_stack(sums) / around[:, None]
+
+    wanted, found = at_vertices(exitance), at_vertices(gathered["exitance"])
+    factor = np.clip(wanted / np.maximum(found, 1e-300), 0, _LARGEST_FACTOR)
+    rest = np.maximum(wanted - factor * found, 0)[mesh.faces[faces]].mean(axis=1)
+    even = transmittance_from_outside(cosine, eta) / (np.pi * entering_share(True, eta))
+    return factor[mesh.faces[faces]].mean(axis=1) * gathered["radiance"] + rest * even[:, None]
