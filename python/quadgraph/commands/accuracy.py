@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import os
 from pathlib import Path
+from types import ModuleType
 
 from rich.console import Console
 
 from quadgraph import atomic_file
 from quadgraph.commands import scene
 from quadgraph.commands.bench import commit
+from quadgraph.errors import InputError
 
 # Study to its module of quadgraph.reference.studies.
 STUDIES = {
@@ -20,6 +23,7 @@ STUDIES = {
     "orders": "orders",
     "coarse": "coarse",
     "radiance": "radiance",
+    "scenes": "scenes",
 }
 
 
@@ -32,6 +36,32 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--reference", action="store_true", help="solve with the CPU reference in double precision instead of the GPU"
     )
     parser.add_argument("--device", default="", metavar="NAME", help="part of the Vulkan device's name")
+    _add_scenes_options(parser.add_argument_group("scenes"))
+
+
+def _add_scenes_options(group: argparse._ArgumentGroup) -> None:
+    group.add_argument("--scene", action="append", default=[], metavar="NAME", help="only this one; several allowed")
+    group.add_argument(
+        "--meshes", type=Path, default=_meshes(), metavar="FOLDER", help="of the scenes' meshes (default: %(default)s)"
+    )
+    group.add_argument(
+        "--truth",
+        type=Path,
+        default=Path("docs/benchmarks/truth"),
+        metavar="FOLDER",
+        help="of the path-traced pictures (default: %(default)s)",
+    )
+    group.add_argument(
+        "--samples",
+        type=scene.positive_int,
+        metavar="N",
+        help="bring the path-traced pictures to N samples a pixel first, with Mitsuba; Ctrl-C keeps what is there",
+    )
+    group.add_argument("--images", type=Path, metavar="FOLDER", help="draw figures there, with matplotlib")
+
+
+def _meshes() -> Path:
+    return Path(os.environ.get("QUADGRAPH_SHARED", "../shared")) / "meshes"
 
 
 def run(args: argparse.Namespace) -> int:
@@ -41,11 +71,20 @@ def run(args: argparse.Namespace) -> int:
     scene.load_core()
     study = importlib.import_module(f"quadgraph.reference.studies.{STUDIES[args.study]}")
     body_of = bodies.on_reference if args.reference else bodies.on_engine(args.device)
-    with Console(stderr=True).status(f"study: {args.study}"):
-        record = study.run(body_of)
+    if args.study == "scenes":
+        record = _run_scenes(study, args)
+    else:
+        with Console(stderr=True).status(f"study: {args.study}"):
+            record = study.run(body_of)
     console = Console(highlight=False)
     for table in study.tables(record):
         console.print(table)
     if args.json:
         atomic_file.write_json(args.json, {"study": args.study, "commit": commit()} | record)
     return 0
+
+
+def _run_scenes(study: ModuleType, args: argparse.Namespace) -> dict:
+    if args.reference:
+        raise InputError("scenes: --reference found, but only the engine makes pictures")
+    return study.run(args.device, args.meshes, args.truth, args.scene, args.samples, args.images)
