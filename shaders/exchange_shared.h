@@ -69,6 +69,43 @@ struct ExchangeEnterPush {
   float transmitted;  // share of even light
 };
 
+// Around the faces of a node of the tree (engine/graph/face_tree.h), mm.
+struct Box {
+  vec3 low, high;
+};
+
+#ifndef __cplusplus
+QG_ARRAY(Boxes, Box);
+#endif
+
+// exchange_boxes.comp: boxes of the nodes `first` to `first` + `count` - 1 of the tree, leaves before their parents.
+struct ExchangeBoxesPush {
+  QG_REF(Vec3s) vertices;
+  QG_REF(Uvec3s) faces;
+  QG_REF(Uints) order;
+  QG_REF(Uints) leaf_begin;
+  QG_REF(Boxes) boxes;  // by node
+  uint first;
+  uint count;
+  uint leaf_count;
+};
+
+// exchange_rays.comp: rows of the faces `first` to `first` + `count` - 1 modulo `face_count`, one workgroup each, of at
+// most `rays` entries from face * rays on.
+struct ExchangeRaysPush {
+  QG_REF(Vec3s) vertices;
+  QG_REF(Uvec3s) faces;
+  QG_REF(Uints) order;
+  QG_REF(Uints) leaf_begin;
+  QG_REF(Boxes) boxes;
+  QG_REF(Uvec2s) rows;    // written
+  QG_REF(Uints) entries;  // written
+  uint first;
+  uint face_count;
+  uint leaf_count;
+  uint rays;
+};
+
 #ifdef __cplusplus
 }  // namespace quadgraph::gpu
 #endif

@@ -57,6 +57,9 @@ struct SolveOptions {
   // bounces can grow without end.
   bool inter_reflection = true;
   std::uint32_t bounces = 0;  // 0: from none until converged, at most 64; n: n more from the last state, for motion
+  // Where the shape has changed: what the faces see of each other is found anew, for as many of them in each solve, in
+  // turn; 0: for all.
+  std::uint32_t exchange_rows = 0;
 };
 
 // inter_reflection, where source and method allow it.
@@ -104,6 +107,7 @@ struct SolveReport {
   std::optional<ErrorEstimate> error;
   bool inter_reflection = false;    // whether light from part to part was followed
   std::vector<glm::dvec3> bounces;  // W per channel that each bounce brought in
+  std::uint32_t exchange_age = 0;   // solves that what some face sees has been behind the shape; 0: nothing is
 };
 
 // Surface samples of one level: one per outside face, at its surface node.

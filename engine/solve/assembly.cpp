@@ -164,7 +164,8 @@ gpu::Boundary on_device(const Boundary& boundary) {
 }
 
 void record_material(Workspace& work, const LevelBuffers& level, const gpu::Material& material) {
-  const gpu::EvaluateMaterialPush push{material, level.nodes.address(), level.optical.address(), level.node_count};
+  const vk::Buffer& nodes = level.rest.size() > 0 ? level.rest : level.nodes;
+  const gpu::EvaluateMaterialPush push{material, nodes.address(), level.optical.address(), level.node_count};
   work.recorder.dispatch(work.passes.evaluate_material, push, level.node_count, "material",
                          level.node_count * (vec3_bytes + sizeof(gpu::Optical)));
 }

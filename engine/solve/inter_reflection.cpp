@@ -3,6 +3,7 @@
 #include <bit>
 
 #include "engine/graph/fresnel.h"
+#include "engine/graph/sky.h"
 #include "shaders/exchange_shared.h"
 
 namespace quadgraph {
@@ -11,19 +12,28 @@ namespace {
 constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
 constexpr std::uint64_t face_bytes = sizeof(glm::uvec3) + 3 * vec3_bytes;  // its area
 
-std::vector<glm::uvec2> rows_of(const Level& level) {
-  std::vector<glm::uvec2> rows;
-  for (std::uint32_t f = 0; f < level.face_count(); ++f) rows.emplace_back(level.seen[f], level.seen[f + 1]);
-  return rows;
-}
-
 }  // namespace
 
 InterReflection::InterReflection(const QuadGraph& graph) : graph_(graph) {
   for (std::uint32_t i = 0; i < graph.levels().size(); ++i) {
-    const Level& level = graph.levels()[i];
-    baked_ = baked_ || !level.seen.empty();
-    if (level.seen.size() > level.faces.size() + 1) level_ = i;
+    if (graph.levels()[i].seen.empty()) continue;
+    level_ = i;
+    matrix_.emplace(graph.levels()[i]);
+  }
+}
+
+void InterReflection::moved(std::uint32_t number) {
+  if (number == level_) matrix_->moved();
+}
+
+void InterReflection::refresh(Workspace& work, std::span<const Level> shape, std::vector<LevelBuffers>& levels,
+                              std::uint32_t rows) {
+  if (!matrix_ || matrix_->record_refresh(work, levels[*level_], rows) == 0) return;
+  work.recorder.submit();
+  vk::Context& context = work.recorder.context();
+  const auto sky = sky_of_levels(shape, *level_, matrix_->sky(context));
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    vk::write_bytes(context, levels[i].sky, std::as_bytes(std::span(sky[i])));
   }
 }
 
@@ -34,8 +44,7 @@ void InterReflection::make_room(Workspace& work, const std::vector<LevelBuffers>
     return vk::Buffer(context, bytes, vk::Place::device, name);
   };
   const Level& level = graph_.levels()[*level_];
-  rows_ = vk::upload<glm::uvec2>(context, rows_of(level), "rows of the exchange");
-  entries_ = vk::upload(context, level.seen, "exchange");
+  matrix_->make_room(context);
   phi_ = room(level.face_count() * vec3_bytes, "phi at faces of the exchange");
   exitance_ = room(level.face_count() * vec3_bytes, "exitance of the exchange");
   before_ = room(level.face_count() * vec3_bytes, "irradiance before the bounce");
@@ -88,8 +97,8 @@ void InterReflection::record_bounce(Workspace& work, const Solved& solved, doubl
   const gpu::ExchangePush push{.vertices = level.vertices.address(),
                                .faces = level.faces.address(),
                                .face_kinds = level.face_kind.address(),
-                               .rows = rows_.address(),
-                               .entries = entries_.address(),
+                               .rows = matrix_->rows().address(),
+                               .entries = matrix_->entries().address(),
                                .exitance = exitance_.address(),
                                .clip = clip_.address(),
                                .before = before_.address(),
@@ -98,9 +107,9 @@ void InterReflection::record_bounce(Workspace& work, const Solved& solved, doubl
                                .state = state_.address(),
                                .reduction = work.reduction.address(),
                                .count = level.face_count,
-                               .rays = static_cast<float>(graph_.levels()[*level_].seen_rays),
+                               .rays = static_cast<float>(matrix_->rays()),
                                .transmitted = transmitted};
-  const std::uint64_t entries = entries_.size() / sizeof(std::uint32_t) - level.face_count - 1;
+  const std::uint64_t entries = graph_.levels()[*level_].seen.size() - level.face_count - 1;
   work.recorder.dispatch(work.passes.exchange, push, level.face_count, "exchange",
                          level.face_count * (face_bytes + sizeof(glm::uvec2) + 3 * vec3_bytes) +
                              entries * (sizeof(std::uint32_t) + 2 * vec3_bytes));

@@ -7,8 +7,10 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "engine/solve/exchange_matrix.h"
 #include "engine/solve/surface_results.h"
 
 namespace quadgraph {
@@ -19,10 +21,20 @@ class InterReflection {
   explicit InterReflection(const QuadGraph& graph);
 
   // Whether the file says what the faces of some level see.
-  bool baked() const { return baked_; }
+  bool baked() const { return matrix_.has_value(); }
 
   // That level, if they see anything; no light enters again elsewhere.
-  const std::optional<std::uint32_t>& level() const { return level_; }
+  std::optional<std::uint32_t> level() const { return matrix_ && !matrix_->empty() ? level_ : std::nullopt; }
+
+  // The vertices of level `number` have moved.
+  void moved(std::uint32_t number);
+
+  // Brings up to `rows` rows that are behind the shape up to date, all with 0; then the view of the sky on every level.
+  // To be called once in a solve.
+  void refresh(Workspace& work, std::span<const Level> shape, std::vector<LevelBuffers>& levels, std::uint32_t rows);
+
+  // As ExchangeMatrix::age; 0 without one.
+  std::uint32_t age() const { return matrix_ ? matrix_->age() : 0; }
 
   // No light has entered again, on any level.
   void record_none(Workspace& work, const std::vector<LevelBuffers>& levels);
@@ -52,9 +64,8 @@ class InterReflection {
 
   const QuadGraph& graph_;
   std::optional<std::uint32_t> level_;
-  bool baked_ = false;
+  std::optional<ExchangeMatrix> matrix_;
   bool any_ = false;                    // some beam may not be zero
-  vk::Buffer rows_, entries_;           // ExchangePush
   vk::Buffer phi_, exitance_, clip_;    // exitance.comp
   std::vector<vk::Buffer> irradiance_;  // vec3 per face, W/mm^2; finest level first, the last that with the exchange
   vk::Buffer before_;                   // that of the bounce before

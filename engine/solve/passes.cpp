@@ -28,8 +28,10 @@
 #include "spirv/energy_sp3.comp.h"
 #include "spirv/evaluate_material.comp.h"
 #include "spirv/exchange.comp.h"
+#include "spirv/exchange_boxes.comp.h"
 #include "spirv/exchange_enter.comp.h"
 #include "spirv/exchange_finer.comp.h"
+#include "spirv/exchange_rays.comp.h"
 #include "spirv/exitance.comp.h"
 #include "spirv/exitance_sp3.comp.h"
 #include "spirv/gather_exitance.comp.h"
@@ -80,6 +82,8 @@ Passes::Passes()
       ONE_PASS(exchange, ExchangePush),
       ONE_PASS(exchange_finer, ExchangeFinerPush),
       ONE_PASS(exchange_enter, ExchangeEnterPush),
+      ONE_PASS(exchange_boxes, ExchangeBoxesPush),
+      ONE_PASS(exchange_rays, ExchangeRaysPush),
       MODEL_PASS(assemble_fdm, AssembleFdmPush),
       MODEL_PASS(assemble_fv, AssembleFvPush),
       MODEL_PASS(assemble_edges, AssembleEdgesPush),

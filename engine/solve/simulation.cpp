@@ -8,6 +8,7 @@
 
 #include "engine/graph/error.h"
 #include "engine/graph/exchange.h"
+#include "engine/graph/moved_levels.h"
 #include "engine/graph/sky.h"
 #include "engine/solve/assembly.h"
 #include "engine/solve/beams.h"
@@ -51,7 +52,7 @@ struct Simulation::Implementation {
   };
 
   vk::Context& context;
-  const QuadGraph& graph;
+  MovedLevels shape;
   std::vector<LevelBuffers> levels;
   BeamBuffers beams;
   std::vector<SourceWalk> walks;                                // one per level
@@ -69,13 +70,13 @@ struct Simulation::Implementation {
 
   Implementation(vk::Context& context_in, const QuadGraph& graph_in)
       : context(context_in),
-        graph(graph_in),
+        shape(graph_in),
         levels(upload_levels(context_in, graph_in)),
         work(context_in, largest_dispatch()),
         results(context_in, levels[0]),
         coefficients(levels.size()),
         exchange(graph_in) {
-    for (std::uint32_t i = 0; i < levels.size(); ++i) walks.emplace_back(context, graph.levels()[i], i);
+    for (std::uint32_t i = 0; i < levels.size(); ++i) walks.emplace_back(context, shape.levels()[i], i);
     const gpu::BeamRecord lambertian = beam_along(std::nullopt);
     light({&lambertian, 1});
   }
@@ -113,6 +114,26 @@ struct Simulation::Implementation {
     unload();
   }
 
+  void move(std::uint32_t number, std::span<const glm::vec3> positions) {
+    shape.move(number, positions);
+    LevelBuffers& level = levels[number];
+    if (level.rest.size() == 0) {
+      level.rest = std::move(level.nodes);
+      level.nodes = {context, level.rest.size(), vk::Place::device, "moved nodes"};
+    }
+    vk::write_bytes(context, level.vertices, std::as_bytes(shape.levels()[number].vertices));
+    vk::write_bytes(context, level.nodes, std::as_bytes(shape.levels()[number].nodes));
+    for (auto& [key, of_key] : operators) {
+      if (!of_key[number].op) continue;
+      of_key[number].op->measured = false;
+      of_key[number].op->assembled.reset();
+    }
+    exchange.moved(number);
+    if (number == 0) gather.reset();
+    solved.reset();
+    unload();
+  }
+
   template <typename Function>
   void for_each_operator(const Function& function) {
     for (auto& [key, of_key] : operators) {
@@ -125,7 +146,7 @@ struct Simulation::Implementation {
   void create_structures(const OperatorKey& key) {
     auto& of_key = operators[key];
     of_key.resize(levels.size());
-    const std::vector<Level>& source = graph.levels();
+    const std::vector<Level>& source = shape.levels();
     for (std::uint32_t i = 0; i < levels.size(); ++i) {
       if (of_key[i].op) continue;
       of_key[i].op.emplace(context, source[i], i, key.method, key.model);
@@ -254,6 +275,7 @@ struct Simulation::Implementation {
     const OperatorKey key{options.method, coefficients.resolve(options.model, options.method, options.source)};
     const Boundary boundary = boundary_of(key.method, options.source, key.model, coefficients.eta());
     create_structures(key);
+    exchange.refresh(work, shape.levels(), levels, options.exchange_rows);
     for (SourceWalk& walk : walks) walk.forget_again();
     record_setup(key, boundary, options);
     SolveReport report;
@@ -261,6 +283,7 @@ struct Simulation::Implementation {
     report.solver = options.solver;
     report.source = options.source;
     report.model = key.model;
+    report.exchange_age = exchange.age();
     report.inter_reflection = bounces_wanted(options) && exchange.baked();
     if (!report.inter_reflection || options.bounces == 0) exchange.record_none(work, levels);
     solve_levels(key, boundary, options, report);
@@ -291,7 +314,7 @@ struct Simulation::Implementation {
 
   const GatherField& gathered(std::vector<PassStats>& gather_passes) {
     gather_passes.clear();
-    if (!gather) gather.emplace(context, graph.levels()[0]);
+    if (!gather) gather.emplace(context, shape.levels()[0]);
     if (!gather_stale) return *gather;
     work.recorder.clear();
     gather->record(work, {levels[0], op(*solved, 0), beams, results.vertex_exitance(),
@@ -365,6 +388,10 @@ void Simulation::irradiance_changed() {
   implementation_->unload();
 }
 
+void Simulation::set_vertices(std::uint32_t level, std::span<const glm::vec3> positions) {
+  implementation_->move(level, positions);
+}
+
 SolveReport Simulation::solve(const SolveOptions& options) {
   return implementation_->solve(options);
 }
@@ -376,7 +403,7 @@ const std::vector<PassStats>& Simulation::passes() const {
 SurfaceField Simulation::surface_field() const {
   const Implementation& self = *implementation_;
   self.solved_key();
-  const Level& level = self.graph.levels()[0];
+  const Level& level = self.shape.levels()[0];
   SurfaceField field;
   field.q = vk::download<glm::vec3>(self.context, self.levels[0].q);
   field.phi = vk::download<glm::vec3>(self.context, self.results.phi());

@@ -41,6 +41,7 @@ struct LevelBuffers {
   vk::Buffer face_offset, face_incidence;
   vk::Buffer links;    // uvec4
   vk::Buffer nodes;    // vec3, mm; inner nodes, then surface nodes
+  vk::Buffer rest;     // the same where the file has them, once they have moved: the material moves with the body
   vk::Buffer optical;  // Optical per node
   vk::Buffer q;        // vec3 per face, W/mm^2: written by the lights or by set_irradiance
   vk::Buffer beam_q;   // vec3 per beam (BeamBuffers), face and quarter (FACE_QUARTERS), W/mm^2: what q is made of
@@ -85,6 +86,11 @@ class Simulation {
   // wrong size or value.
   void set_irradiance(std::uint32_t level, std::span<const glm::vec3> q,
                       const std::optional<glm::vec3>& direction = std::nullopt);
+
+  // Moves the vertices of `level`, mm, one per vertex; the material moves with the body. Lights see the new shape when
+  // they are evaluated next. There is no solution until the next solve. Throws InputError, and moves nothing, on a
+  // wrong size or value or where a tet would be turned inside out.
+  void set_vertices(std::uint32_t level, std::span<const glm::vec3> positions);
 
   // Solves for the present coefficients and light, all levels. Throws InputError before they are set, SolverError when
   // conjugate gradients break down or a value is not finite.

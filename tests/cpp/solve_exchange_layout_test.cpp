@@ -6,8 +6,10 @@
 #include "engine/vk/pipeline.h"
 #include "shaders/exchange_shared.h"
 #include "spirv/exchange.comp.h"
+#include "spirv/exchange_boxes.comp.h"
 #include "spirv/exchange_enter.comp.h"
 #include "spirv/exchange_finer.comp.h"
+#include "spirv/exchange_rays.comp.h"
 #include "tests/cpp/spirv_layout.h"
 
 using namespace quadgraph;
@@ -47,4 +49,20 @@ TEST_CASE("the exchange and C++ agree on their structs") {
                 MEMBER(ExchangeEnterPush, reduction), MEMBER(ExchangeEnterPush, count),
                 MEMBER(ExchangeEnterPush, transmitted)});
   CHECK(sizeof(gpu::ExchangeEnterPush) <= 128);  // what every device of Vulkan 1.3 has room for
+  CHECK(SpirvLayout((vk::Spirv(exchange_boxes_comp))).offset.at("ExchangeBoxesPush") ==
+        Members{MEMBER(ExchangeBoxesPush, vertices), MEMBER(ExchangeBoxesPush, faces), MEMBER(ExchangeBoxesPush, order),
+                MEMBER(ExchangeBoxesPush, leaf_begin), MEMBER(ExchangeBoxesPush, boxes),
+                MEMBER(ExchangeBoxesPush, first), MEMBER(ExchangeBoxesPush, count),
+                MEMBER(ExchangeBoxesPush, leaf_count)});
+  CHECK(sizeof(gpu::ExchangeBoxesPush) <= 128);  // what every device of Vulkan 1.3 has room for
+  CHECK(SpirvLayout((vk::Spirv(exchange_rays_comp))).offset.at("ExchangeRaysPush") ==
+        Members{MEMBER(ExchangeRaysPush, vertices), MEMBER(ExchangeRaysPush, faces), MEMBER(ExchangeRaysPush, order),
+                MEMBER(ExchangeRaysPush, leaf_begin), MEMBER(ExchangeRaysPush, boxes), MEMBER(ExchangeRaysPush, rows),
+                MEMBER(ExchangeRaysPush, entries), MEMBER(ExchangeRaysPush, first),
+                MEMBER(ExchangeRaysPush, face_count), MEMBER(ExchangeRaysPush, leaf_count),
+                MEMBER(ExchangeRaysPush, rays)});
+  CHECK(sizeof(gpu::ExchangeRaysPush) <= 128);  // what every device of Vulkan 1.3 has room for
+  const SpirvLayout boxes((vk::Spirv(exchange_boxes_comp)));
+  CHECK(boxes.offset.at("Box") == Members{MEMBER(Box, low), MEMBER(Box, high)});
+  CHECK(boxes.block_stride.at("Boxes") == sizeof(gpu::Box));
 }

@@ -1,0 +1,125 @@
+#include "engine/solve/exchange_matrix.h"
+
+#include <algorithm>
+
+#include "engine/graph/face_tree.h"
+#include "shaders/exchange_shared.h"
+
+namespace quadgraph {
+namespace {
+
+constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
+constexpr std::uint64_t index_bytes = sizeof(std::uint32_t);
+
+// Workgroups of one dispatch; every device takes 65535.
+constexpr std::uint32_t most_rows = 32768;
+
+// Nodes and faces that a ray looks at, about as many as on the bunny; for the bytes.
+constexpr std::uint64_t nodes_per_ray = 60, faces_per_ray = 12;
+
+// With room for all rays of every row.
+std::vector<glm::uvec2> wide_rows(const Level& level) {
+  std::vector<glm::uvec2> rows;
+  for (std::uint32_t f = 0; f < level.face_count(); ++f) {
+    const std::uint32_t begin = f * level.seen_rays;
+    rows.emplace_back(begin, begin + level.seen[f + 1] - level.seen[f]);
+  }
+  return rows;
+}
+
+std::vector<std::uint32_t> wide_entries(const Level& level) {
+  std::vector<std::uint32_t> entries(level.faces.size() * level.seen_rays, 0);
+  for (std::size_t f = 0; f < level.faces.size(); ++f) {
+    std::copy(level.seen.begin() + level.seen[f], level.seen.begin() + level.seen[f + 1],
+              entries.begin() + static_cast<std::ptrdiff_t>(f * level.seen_rays));
+  }
+  return entries;
+}
+
+}  // namespace
+
+void ExchangeMatrix::make_room(vk::Context& context) {
+  if (rows_.size() > 0) return;
+  std::vector<glm::uvec2> rows;
+  for (std::size_t f = 0; f < level_.faces.size(); ++f) rows.emplace_back(level_.seen[f], level_.seen[f + 1]);
+  rows_ = vk::upload<glm::uvec2>(context, rows, "rows of the exchange");
+  entries_ = vk::upload(context, level_.seen, "exchange");
+}
+
+void ExchangeMatrix::make_room_for_rays(vk::Context& context) {
+  if (cast_) return;
+  cast_ = true;
+  rows_ = vk::upload<glm::uvec2>(context, wide_rows(level_), "rows of the exchange");
+  entries_ = vk::upload<std::uint32_t>(context, wide_entries(level_), "exchange");
+  const FaceTree tree = face_tree(level_);
+  leaves_ = tree.leaves();
+  order_ = vk::upload<std::uint32_t>(context, tree.order, "faces of the tree");
+  leaf_begin_ = vk::upload<std::uint32_t>(context, tree.leaf_begin, "leaves of the tree");
+  boxes_ = {context, 2ull * leaves_ * sizeof(gpu::Box), vk::Place::device, "boxes of the tree"};
+}
+
+void ExchangeMatrix::moved() {
+  for (std::uint32_t k = behind_; k < behind_since_.size(); ++k) {
+    behind_since_[(next_ + k) % behind_since_.size()] = now_;
+  }
+  behind_ = static_cast<std::uint32_t>(behind_since_.size());
+}
+
+std::uint32_t ExchangeMatrix::record_refresh(Workspace& work, const LevelBuffers& level, std::uint32_t count) {
+  ++now_;
+  const std::uint32_t wanted = count == 0 ? behind_ : std::min(count, behind_);
+  if (wanted == 0) return 0;
+  make_room_for_rays(work.recorder.context());
+  record_boxes(work, level);
+  for (std::uint32_t done = 0; done < wanted; done += most_rows) {
+    record_rays(work, level, (next_ + done) % level.face_count, std::min(wanted - done, most_rows));
+  }
+  next_ = (next_ + wanted) % level.face_count;
+  behind_ -= wanted;
+  return wanted;
+}
+
+void ExchangeMatrix::record_boxes(Workspace& work, const LevelBuffers& level) {
+  gpu::ExchangeBoxesPush push{.vertices = level.vertices.address(),
+                              .faces = level.faces.address(),
+                              .order = order_.address(),
+                              .leaf_begin = leaf_begin_.address(),
+                              .boxes = boxes_.address(),
+                              .first = leaves_,
+                              .count = leaves_,
+                              .leaf_count = leaves_};
+  std::uint64_t bytes = level.face_count * (index_bytes + sizeof(glm::uvec3) + 3 * vec3_bytes);
+  for (; push.first > 0; push.first /= 2, push.count /= 2) {
+    work.recorder.dispatch(work.passes.exchange_boxes, push, push.count, "exchange boxes",
+                           bytes + push.count * sizeof(gpu::Box));
+    bytes = push.count * sizeof(gpu::Box);  // children
+  }
+}
+
+void ExchangeMatrix::record_rays(Workspace& work, const LevelBuffers& level, std::uint32_t first, std::uint32_t count) {
+  const gpu::ExchangeRaysPush push{.vertices = level.vertices.address(),
+                                   .faces = level.faces.address(),
+                                   .order = order_.address(),
+                                   .leaf_begin = leaf_begin_.address(),
+                                   .boxes = boxes_.address(),
+                                   .rows = rows_.address(),
+                                   .entries = entries_.address(),
+                                   .first = first,
+                                   .face_count = level.face_count,
+                                   .leaf_count = leaves_,
+                                   .rays = rays()};
+  constexpr std::uint64_t face_bytes = index_bytes + sizeof(glm::uvec3) + 3 * vec3_bytes;
+  work.recorder.dispatch(
+      work.passes.exchange_rays, push, std::uint64_t{count} * WORKGROUP_SIZE, "exchange rays",
+      std::uint64_t{count} * rays() * (nodes_per_ray * sizeof(gpu::Box) + faces_per_ray * face_bytes));
+}
+
+std::vector<float> ExchangeMatrix::sky(vk::Context& context) const {
+  std::vector<float> sky;
+  for (const glm::uvec2& row : vk::download<glm::uvec2>(context, rows_)) {
+    sky.push_back(1.0f - static_cast<float>(row.y - row.x) / static_cast<float>(rays()));
+  }
+  return sky;
+}
+
+}  // namespace quadgraph
