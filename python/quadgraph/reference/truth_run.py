@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import signal
-from contextlib import ExitStack
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 from rich.console import Console
-from rich.progress import Progress
+from rich.progress import Progress, TaskID
 
 from quadgraph import mesh_io
 from quadgraph.reference import path_tracing, scenes, truth
-from quadgraph.reference.path_tracing import BATCH
+from quadgraph.reference.path_tracing import BATCH, Tracer
 from quadgraph.reference.scenes import HEIGHT_MM, PIXELS, Grid, Scene
 from quadgraph.reference.truth import Truth
 from quadgraph.surface import Surface
@@ -57,31 +58,56 @@ def render(subjects: list[Subject], folder: Path, samples: int, console: Console
     Saved after every round of a view; KeyboardInterrupt passes through with every finished batch kept. Raises
     InputError if a stored image is stale or Mitsuba is absent.
     """
-    # Interrupted, Mitsuba hands over half a picture, and without Python's handler (none in the background) it counts.
-    signal.signal(signal.SIGINT, signal.default_int_handler)
     folder.mkdir(parents=True, exist_ok=True)
     rounds = -(-samples // BATCH)
-    todo = [(found, name, stored(found, folder, name)) for found in subjects for name in found.scene.views]
-    with ExitStack() as stack, Progress(console=console) as progress:
-        tracers = [
-            stack.enter_context(path_tracing.tracer(found.scene, found.surface, found.grid, name))
-            for found, name, _ in todo
-        ]
-        bars = [
-            progress.add_task(
-                f"{found.scene.name} {name}", total=rounds * found.scene.views[name].effort, completed=image.batches
-            )
-            for found, name, image in todo
-        ]
+    with ExitStack() as stack:
+        stack.enter_context(_interruptible())
+        progress = stack.enter_context(Progress(console=console))
+        jobs = [_job(stack, progress, found, folder, name, rounds) for found in subjects for name in found.scene.views]
         for number in range(2, rounds + 1):
-            for (found, name, image), tracer, bar in zip(todo, tracers, bars, strict=True):
-                goal = number * found.scene.views[name].effort
-                if image.batches >= goal:
-                    continue
-                try:
-                    while image.batches < goal:
-                        image.add(tracer.batch(image.batches))
-                        progress.update(bar, completed=image.batches)
-                finally:
-                    if image.batches > 1:
-                        truth.save(found.path(folder, name), image)
+            for job in jobs:
+                job.advance(number)
+
+
+@dataclass(frozen=True)
+class _Job:
+    """One view at work."""
+
+    image: Truth
+    path: Path
+    tracer: Tracer
+    effort: int
+    progress: Progress
+    bar: TaskID
+
+    def advance(self, rounds: int) -> None:
+        """Go on until so many rounds are done, and save."""
+        goal = rounds * self.effort
+        if self.image.batches >= goal:
+            return
+        try:
+            while self.image.batches < goal:
+                self.image.add(self.tracer.batch(self.image.batches))
+                self.progress.update(self.bar, completed=self.image.batches)
+        finally:
+            if self.image.batches > 1:
+                truth.save(self.path, self.image)
+
+
+def _job(stack: ExitStack, progress: Progress, found: Subject, folder: Path, name: str, rounds: int) -> _Job:
+    image, effort = stored(found, folder, name), found.scene.views[name].effort
+    tracer = stack.enter_context(path_tracing.tracer(found.scene, found.surface, found.grid, name))
+    bar = progress.add_task(f"{found.scene.name} {name}", total=rounds * effort, completed=image.batches)
+    return _Job(image, found.path(folder, name), tracer, effort, progress, bar)
+
+
+@contextmanager
+def _interruptible() -> Iterator[None]:
+    """Have Python's handler of Ctrl-C: Mitsuba hands over half a picture, and without it, as in the background, that
+    would count.
+    """
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
