@@ -10,6 +10,7 @@
 #include "engine/graph/entering.h"
 #include "engine/graph/fresnel.h"
 #include "engine/graph/tet_ray.h"
+#include "shaders/gather_shared.h"
 
 namespace quadgraph {
 namespace {
@@ -47,7 +48,7 @@ class View {
 
   void run(std::uint32_t f, const glm::dvec3& barycentric, glm::dvec3 direction, std::span<Strand> strands) {
     ray_.start_on_face(f, barycentric);
-    for (std::uint32_t step = 0; step < gather_steps; ++step) {
+    for (std::uint32_t step = 0; step < gpu::GATHER_STEPS; ++step) {
       const TetRay::Exit exit = ray_.find_exit(direction);
       if (!exit.found) break;
       cross(exit, strands);
@@ -94,8 +95,10 @@ class View {
     for (const Strand& strand : strands) {
       for (int c = 0; c < 3; ++c) {
         const double kept = strand.transmitted[c];
-        if (kept > gather_end) return false;
-        if (kept > gather_least && kept * even[c] > gather_end * strand.gathered.radiance[c]) return false;
+        if (kept > static_cast<double>(gpu::GATHER_END)) return false;
+        if (kept > static_cast<double>(gpu::GATHER_LEAST) &&
+            kept * even[c] > static_cast<double>(gpu::GATHER_END) * strand.gathered.radiance[c])
+          return false;
       }
     }
     return true;

@@ -21,14 +21,6 @@ struct InsideLight {
   const Uncollided& uncollided;
 };
 
-// A view ray ends where every channel keeps at most gather_end, and what lies behind, if it is as bright as here, adds
-// at most gather_end to what is gathered; or keeps at most gather_least. What lies behind then counts as even. Seen
-// from the unlit side the fluence grows inwards almost as fast as it is attenuated: the first condition alone loses 5%.
-inline constexpr double gather_end = 0.01;
-inline constexpr double gather_least = 1e-6;
-// Tets that a view ray crosses at most.
-inline constexpr std::uint32_t gather_steps = 1024;
-
 struct Gathered {
   glm::dvec3 radiance{0};  // W/(mm^2 sr), inside
   glm::dvec3 seen{0};      // share of the radiance behind the body that comes straight through, before the last face

@@ -7,6 +7,7 @@
 
 #include "engine/graph/entering.h"
 #include "engine/graph/tet_ray.h"
+#include "shaders/gather_shared.h"
 
 namespace quadgraph {
 namespace {
@@ -40,7 +41,7 @@ struct Arrival {
 
 // Uncollided light of one beam at one vertex.
 struct Light {
-  glm::dvec3 entry{0}, depth{uncollided_depth};
+  glm::dvec3 entry{0}, depth{static_cast<double>(gpu::UNCOLLIDED_DEPTH)};
 };
 
 class Follower {
@@ -65,12 +66,13 @@ class Follower {
     TetRay ray(level_);
     ray.start_at_vertex(v, starts_.start[v]);
     Arrival arrival;
-    for (std::uint32_t step = 0; step < uncollided_steps; ++step) {
+    for (std::uint32_t step = 0; step < gpu::UNCOLLIDED_STEPS; ++step) {
       const TetRay::Exit exit = ray.find_exit(direction);
       if (!exit.found) return std::nullopt;
       const gpu::Optical& optical = problem_.optical[ray.tet()];
       arrival.depth += (glm::dvec3(optical.sigma_s_prime) + glm::dvec3(optical.sigma_a)) * exit.length;
-      if (std::min({arrival.depth.x, arrival.depth.y, arrival.depth.z}) > uncollided_depth) return std::nullopt;
+      if (std::min({arrival.depth.x, arrival.depth.y, arrival.depth.z}) > static_cast<double>(gpu::UNCOLLIDED_DEPTH))
+        return std::nullopt;
       const std::uint32_t next = ray.leave(exit);
       if (next < level_.tet_count()) {
         ray.enter(next);
@@ -89,7 +91,9 @@ class Follower {
   }
 
   // Inside cosine of light that meets the surface from outside at cosine c.
-  double entering(double c) const { return std::max(refracted_cosine(std::max(c, 0.0), problem_.eta), least_cosine); }
+  double entering(double c) const {
+    return std::max(refracted_cosine(std::max(c, 0.0), problem_.eta), static_cast<double>(gpu::LEAST_COSINE));
+  }
 
   Light directed(std::uint32_t v, const BeamLight& light) const {
     const glm::dvec3 vector(light.beam.vector);

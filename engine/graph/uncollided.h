@@ -19,14 +19,6 @@ struct Uncollided {
   std::vector<glm::dvec3> depth;  // optical depth, >= 0
 };
 
-// Light by which a vertex sees a beam that came in elsewhere, or by what it lost on the way, counts as none from this
-// optical depth on.
-inline constexpr double uncollided_depth = 16;
-// Tets crossed at most on the way back to where the light came in.
-inline constexpr std::uint32_t uncollided_steps = 512;
-// Least inside cosine at which light enters.
-inline constexpr double least_cosine = 0.02;
-
 // One beam and what of it the surface lets in, one entry per outside face.
 struct BeamLight {
   gpu::BeamRecord beam{};
