@@ -2,27 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <compare>
 #include <glm/geometric.hpp>
-#include <map>
 
 #include "engine/graph/error.h"
-#include "engine/graph/exchange.h"
 #include "engine/graph/moved_levels.h"
 #include "engine/graph/sky.h"
-#include "engine/solve/assembly.h"
 #include "engine/solve/beams.h"
 #include "engine/solve/coefficients.h"
 #include "engine/solve/gather_field.h"
 #include "engine/solve/inter_reflection.h"
-#include "engine/solve/level_solver.h"
 #include "engine/solve/level_upload.h"
+#include "engine/solve/levels_solver.h"
 #include "engine/solve/surface_results.h"
 
 namespace quadgraph {
 namespace {
-
-constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
 
 void check_options(const SolveOptions& options) {
   if (!(options.tolerance > 0) || !(options.tolerance < 1)) {
@@ -30,33 +24,15 @@ void check_options(const SolveOptions& options) {
   }
 }
 
-// What an operator is made for.
-struct OperatorKey {
-  Method method;
-  Model model;
-
-  auto operator<=>(const OperatorKey&) const = default;
-};
-
-bool same(const Boundary& a, const Boundary& b) {
-  return a.k11 == b.k11 && a.k12 == b.k12 && a.k22 == b.k22;
-}
-
 }  // namespace
 
 struct Simulation::Implementation {
-  // What one method and model need on one level.
-  struct OperatorLevel {
-    std::optional<OperatorBuffers> op;
-    std::optional<TransferBuffers> transfer;
-  };
-
   vk::Context& context;
   MovedLevels shape;
   std::vector<LevelBuffers> levels;
   BeamBuffers beams;
-  std::vector<SourceWalk> walks;                                // one per level
-  std::map<OperatorKey, std::vector<OperatorLevel>> operators;  // those solved so far
+  std::vector<SourceWalk> walks;  // one per level
+  Operators operators;
   Workspace work;
   SurfaceResults results;
   Coefficients coefficients;
@@ -99,18 +75,16 @@ struct Simulation::Implementation {
     return largest;
   }
 
-  OperatorBuffers& op(const OperatorKey& key, std::uint32_t level) { return *operators.at(key)[level].op; }
-
   // Changed light: right-hand sides are stale.
   void unload() {
     scaled = false;
     for (SourceWalk& walk : walks) walk.invalidate();
-    for_each_operator([](OperatorBuffers& op) { op.loaded.reset(); });
+    operators.unload();
   }
 
   // Changed coefficients: everything is.
   void disassemble() {
-    for_each_operator([](OperatorBuffers& op) { op.assembled.reset(); });
+    operators.disassemble();
     unload();
   }
 
@@ -123,148 +97,11 @@ struct Simulation::Implementation {
     }
     vk::write_bytes(context, level.vertices, std::as_bytes(shape.levels()[number].vertices));
     vk::write_bytes(context, level.nodes, std::as_bytes(shape.levels()[number].nodes));
-    for (auto& [key, of_key] : operators) {
-      if (!of_key[number].op) continue;
-      of_key[number].op->measured = false;
-      of_key[number].op->assembled.reset();
-    }
+    operators.remeasure(number);
     exchange.moved(number);
     if (number == 0) gather.reset();
     solved.reset();
     unload();
-  }
-
-  template <typename Function>
-  void for_each_operator(const Function& function) {
-    for (auto& [key, of_key] : operators) {
-      for (OperatorLevel& level : of_key) {
-        if (level.op) function(*level.op);
-      }
-    }
-  }
-
-  void create_structures(const OperatorKey& key) {
-    auto& of_key = operators[key];
-    of_key.resize(levels.size());
-    const std::vector<Level>& source = shape.levels();
-    for (std::uint32_t i = 0; i < levels.size(); ++i) {
-      if (of_key[i].op) continue;
-      of_key[i].op.emplace(context, source[i], i, key.method, key.model);
-      if (i + 1 < levels.size()) of_key[i].transfer.emplace(context, source[i], source[i + 1], i, key.method);
-    }
-  }
-
-  void record_load(std::uint32_t level, const OperatorKey& key, const Boundary& boundary, Source source,
-                   OperatorBuffers& rows) {
-    if (rows.loaded == source) return;
-    if (source == Source::buried) {
-      walks[level].record(work, levels[level], beams, key.method, coefficients.eta(), coefficients.even());
-      walks[level].record_right_hand_side(work, levels[level], key.method, rows);
-    } else {
-      record_diffuse_load(work, levels[level], key.method, boundary, rows);
-    }
-    rows.loaded = source;
-  }
-
-  void record_setup(const OperatorKey& key, const Boundary& boundary, const SolveOptions& options) {
-    coefficients.record(work, levels);
-    if (!scaled) record_scale(work, levels[0]);
-    scaled = true;
-    for (std::uint32_t i = 0; i < levels.size(); ++i) {
-      OperatorBuffers& rows = op(key, i);
-      if (!rows.assembled || !same(*rows.assembled, boundary)) {
-        record_assembly(work, levels[i], key.method, boundary, coefficients.even(), rows);
-        rows.assembled = boundary;
-        rows.damped = false;
-        rows.loaded.reset();
-      }
-      if (!rows.damped && options.solver == SolverKind::cascade) {
-        record_damping(work, key.method, rows);
-        rows.damped = true;
-      }
-      record_load(i, key, boundary, options.source, rows);
-    }
-  }
-
-  void record_transfer(const OperatorKey& key, std::uint32_t level) {
-    const OperatorBuffers& coarse = op(key, level + 1);
-    const OperatorBuffers& fine = op(key, level);
-    for (const auto& part : operators.at(key)[level].transfer->parts) {
-      const gpu::TransferPush push{.index = part.index.address(),
-                                   .weight = part.weight.address(),
-                                   .coarse_x = coarse.x.address(),
-                                   .coarse_to_phi = coarse.to_phi.address(),
-                                   .to_phi = fine.to_phi.address(),
-                                   .x = fine.x.address(),
-                                   .state = fine.state.address(),
-                                   .width = part.width,
-                                   .first = part.first,
-                                   .coarse_first = part.coarse_first,
-                                   .count = part.count};
-      work.recorder.dispatch(work.passes.transfer.of(key.model), push, part.count, "transfer",
-                             part.count * (part.width * (8 + vec3_bytes + fine.field_bytes()) + 2 * vec3_bytes));
-    }
-  }
-
-  Solved solved_level(const OperatorKey& key, const Boundary& boundary, Source source, std::uint32_t level) {
-    return {levels[level], op(key, level), key.method, boundary, source == Source::buried ? &walks[level] : nullptr};
-  }
-
-  // b with the light that enters again.
-  void record_load_again(const OperatorKey& key, std::uint32_t level) {
-    walks[level].record_again(work, levels[level], beams, key.method, coefficients.eta(), coefficients.even());
-    walks[level].record_right_hand_side(work, levels[level], key.method, op(key, level));
-    op(key, level).loaded.reset();
-  }
-
-  void solve_levels(const OperatorKey& key, const Boundary& boundary, const SolveOptions& options,
-                    SolveReport& report) {
-    for (auto i = static_cast<std::uint32_t>(levels.size()); i-- > 0;) {
-      OperatorBuffers& rows = op(key, i);
-      if (report.inter_reflection && i <= exchange.level()) {
-        exchange.record_beam(work, levels, i, coefficients.eta());
-        if (exchange.any()) record_load_again(key, i);
-      }
-      if (i + 1 == levels.size()) {
-        work.recorder.fill(rows.x, 0);
-      } else {
-        record_transfer(key, i);
-        if (i == 0) results.record_coarse(work, solved_level(key, boundary, options.source, i));
-      }
-      report.levels.push_back(solve_level(work, rows, i, options));
-      if (!report.inter_reflection || i != exchange.level()) continue;
-      if (i == 0 && !exchange.any()) estimate_error(key, boundary, options.source, report);
-      bounce(key, boundary, options, report);
-    }
-    const bool finest_alone = report.inter_reflection && exchange.level() == 0u;
-    results.record(work, solved_level(key, boundary, options.source, 0));
-    work.recorder.submit();
-    if (levels.size() > 1 && !finest_alone) report.error = results.error();
-  }
-
-  // Of the finest level before it has bounces that the coarser ones do not have.
-  void estimate_error(const OperatorKey& key, const Boundary& boundary, Source source, SolveReport& report) {
-    if (levels.size() == 1) return;
-    results.record(work, solved_level(key, boundary, source, 0));
-    work.recorder.submit();
-    report.error = results.error();
-  }
-
-  // On the level with the exchange, from the solution it has.
-  void bounce(const OperatorKey& key, const Boundary& boundary, const SolveOptions& options, SolveReport& report) {
-    const std::uint32_t level = *exchange.level();
-    const Solved here = solved_level(key, boundary, options.source, level);
-    LevelReport& total = report.levels.back();
-    for (std::uint32_t left = options.bounces > 0 ? options.bounces : max_bounces; left > 0; --left) {
-      const glm::dvec3 before = exchange.power();
-      exchange.record_bounce(work, here, coefficients.eta());
-      record_load_again(key, level);
-      const std::uint32_t iterations = total.iterations;
-      total = solve_level(work, op(key, level), level, options);
-      total.iterations += iterations;
-      report.bounces.push_back(exchange.power() - before);
-      if (options.bounces == 0 && exchange.converged(options.tolerance / 10)) return;
-    }
   }
 
   SolveReport solve(const SolveOptions& options) {
@@ -273,38 +110,15 @@ struct Simulation::Implementation {
     solved.reset();
     work.recorder.clear();
     const OperatorKey key{options.method, coefficients.resolve(options.model, options.method, options.source)};
-    const Boundary boundary = boundary_of(key.method, options.source, key.model, coefficients.eta());
-    create_structures(key);
+    operators.create(context, shape.levels(), key);
     exchange.refresh(work, shape.levels(), levels, options.exchange_rows);
-    for (SourceWalk& walk : walks) walk.forget_again();
-    record_setup(key, boundary, options);
-    SolveReport report;
-    report.method = key.method;
-    report.solver = options.solver;
-    report.source = options.source;
-    report.model = key.model;
-    report.exchange_age = exchange.age();
-    report.inter_reflection = bounces_wanted(options) && exchange.baked();
-    if (!report.inter_reflection || options.bounces == 0) exchange.record_none(work, levels);
-    solve_levels(key, boundary, options, report);
+    const SolveParts parts{work, levels, beams, walks, operators, results, coefficients, exchange, scaled};
+    const SolveReport report = LevelsSolver(parts, key, options).run();
     passes = work.recorder.passes();
-    report.energy = energy_of(options.source);
-    if (report.inter_reflection) report.energy.re_entered = exchange.power();
-    report.clipped = results.clipped();
     gather_stale = true;
     solved = key;
     solved_source = options.source;
     return report;
-  }
-
-  Energy energy_of(Source source) const {
-    Energy energy = results.energy();
-    if (source == Source::buried) {
-      const WalkPower power = walks[0].power();
-      energy.absorbed += power.absorbed;
-      energy.unscattered_out = power.unscattered;
-    }
-    return energy;
   }
 
   const OperatorKey& solved_key() const {
@@ -317,7 +131,7 @@ struct Simulation::Implementation {
     if (!gather) gather.emplace(context, shape.levels()[0]);
     if (!gather_stale) return *gather;
     work.recorder.clear();
-    gather->record(work, {levels[0], op(*solved, 0), beams, results.vertex_exitance(),
+    gather->record(work, {levels[0], operators.at(*solved, 0), beams, results.vertex_exitance(),
                           walks[0].body(levels[0], coefficients.eta(), coefficients.even())});
     work.recorder.submit();
     gather_passes = work.recorder.passes();
@@ -423,7 +237,7 @@ SurfaceField Simulation::surface_field() const {
 
 std::vector<glm::vec3> Simulation::phi() const {
   const Implementation& self = *implementation_;
-  const OperatorBuffers& rows = implementation_->op(self.solved_key(), 0);
+  const OperatorBuffers& rows = implementation_->operators.at(self.solved_key(), 0);
   const std::size_t moments = rows.model == Model::sp3 ? 2 : 1;
   const auto x = vk::download<glm::vec3>(self.context, rows.x);
   std::vector<glm::vec3> phi = vk::download<glm::vec3>(self.context, rows.to_phi);

@@ -251,3 +251,25 @@ TEST_CASE(
                       [](const glm::vec3& value) { return value == glm::vec3(0); }));
   }
 }
+
+TEST_CASE("bounces repeat bit for bit, and relaxation comes to what conjugate gradients do") {
+  Body body({facing_slabs(3, 10.0f, 2.0f, 2.0f), baked(facing_slabs(2, 10.0f, 2.0f, 2.0f))});
+  body.light([](const glm::vec3& p) { return p.y > 2.99f ? glm::vec3(1, 0.5f, 0.25f) : glm::vec3(0); });
+  body.simulation.set_material(material(1.3f));
+  for (const Model model : {Model::diffusion, Model::sp3}) {
+    SolveOptions options = accurate();
+    options.model = model;
+    const SolveReport report = body.simulation.solve(options);
+    const std::vector<glm::vec3> first = body.simulation.surface_field().exitance;
+    CHECK(body.simulation.solve(options).bounces == report.bounces);
+    CHECK(body.simulation.surface_field().exitance == first);
+    options.solver = SolverKind::cascade;
+    options.max_iterations = 20000;
+    const SolveReport relaxed = body.simulation.solve(options);
+    check_energy(relaxed, 1e-4);
+    CHECK(relative_difference(body.simulation.surface_field().exitance, first) < 1e-4);
+    for (int c = 0; c < 3; ++c) {
+      CHECK(relaxed.energy.re_entered[c] == doctest::Approx(report.energy.re_entered[c]).epsilon(1e-4));
+    }
+  }
+}
