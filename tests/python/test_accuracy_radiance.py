@@ -7,6 +7,7 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
+from quadgraph.errors import InputError
 from quadgraph.reference import bodies, exit_angles
 from quadgraph.reference.bodies import DIFFUSION, SP3
 from quadgraph.reference.exit_angles import BIN_AREA, Estimate
@@ -102,3 +103,12 @@ def test_elements_of_a_mean_free_path_keep_bright_media_within_four_percent(case
     for side in range(2):
         error = sides(case, "reference", COARSE)[side].radiance[:, 0] / exact(case)[0][side] - 1
         assert np.abs(error[JUDGED]).max() < TOLERANCE
+
+
+def test_the_reference_refuses_what_does_not_fit():
+    body = radiance.column(bodies.on_reference, 2.0, COARSE)
+    answer = radiance.solved(body, CASES[0], SP3)
+    with pytest.raises(InputError, match="999999 is not a face"):
+        answer.leaving(np.array([0, 999999]), np.array([[0.0, 0.0, -1.0]] * 2))
+    with pytest.raises(InputError, match=r"outside: expected shape \(2, 3\)"):
+        answer.leaving(np.array([0, 1]), np.array([[0.0, 0.0, -1.0]]))
