@@ -67,7 +67,8 @@ vec3 mean_direction(uint face, vec3 edge, vec3 normal) {
   cosine /= sum;
   float azimuth = face_azimuth(face, 0u);
   vec3 t = normalize(edge);
-  return normalize(sqrt(1.0 - cosine * cosine) * (cos(azimuth) * t + sin(azimuth) * cross(normal, t)) - cosine * normal);
+  vec3 across = cos(azimuth) * t + sin(azimuth) * cross(normal, t);
+  return normalize(sqrt(1.0 - cosine * cosine) * across - cosine * normal);
 }
 
 // Light at grazing incidence, or even from behind by rounding, still goes in.

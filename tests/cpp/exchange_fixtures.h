@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -169,6 +170,29 @@ inline OwnedLevel shell_level(int n, int layers, double inner, double outer) {
     if (glm::dot(vertices[t[1]] - a, glm::cross(vertices[t[2]] - a, vertices[t[3]] - a)) < 0) std::swap(t[2], t[3]);
   }
   return level_from_tets(std::move(vertices), std::move(tets));
+}
+
+using Motion = std::function<glm::vec3(const glm::vec3&)>;
+
+inline glm::vec3 turned(const glm::vec3& p) {
+  const float c = std::cos(0.7f), s = std::sin(0.7f);
+  const glm::vec3 q(c * p.x - s * p.y, s * p.x + c * p.y, p.z);
+  return glm::vec3(q.x, c * q.y - s * q.z, s * q.y + c * q.z) + glm::vec3(3, -7, 20);
+}
+
+// Bends two slabs towards each other at their ends.
+inline glm::vec3 bent(const glm::vec3& p) {
+  const float x = p.x - 5.0f;
+  return p + glm::vec3(0, -(p.y > 0 ? 1.0f : -1.0f) * 0.03f * x * x, 0);
+}
+
+inline OwnedLevel moved(OwnedLevel level, const Motion& motion) {
+  for (glm::vec3& p : level.vertices) p = motion(p);
+  const auto& v = level.vertices;
+  level.nodes.clear();
+  for (const glm::uvec4& t : level.tets) level.nodes.push_back((v[t[0]] + v[t[1]] + v[t[2]] + v[t[3]]) / 4.0f);
+  for (const glm::uvec3& f : level.faces) level.nodes.push_back((v[f.x] + v[f.y] + v[f.z]) / 3.0f);
+  return level;
 }
 
 }  // namespace quadgraph
