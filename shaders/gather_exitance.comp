@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "gather_shared.h"
 #include "fresnel.glsl"
+#include "face_azimuth.glsl"
 #include "lambertian.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
@@ -10,7 +11,7 @@ layout(push_constant, scalar) uniform Block { GatherExitancePush push; };
 BodyRef body;
 #define BODY body
 #define POINTS push.points
-#include "gather_fields.glsl"
+#include "gather.glsl"
 
 const float PI = 3.14159265;
 
@@ -33,7 +34,9 @@ bool cross_tet(Lambertian nodes, GatherPoint from, GatherPoint to, float path) {
   return on;
 }
 
-void gather_straight(uint tet, vec3 direction, Lambertian nodes) {
+// Returns whether light comes straight through the body.
+bool gather_straight(uint tet, vec3 direction, Lambertian nodes) {
+  bool thin = false;
   GatherPoint here = fields_here();
   for (uint step = 0u; step < GATHER_STEPS; ++step) {
     Exit exit = find_exit(direction);
@@ -52,12 +55,24 @@ void gather_straight(uint tet, vec3 direction, Lambertian nodes) {
     }
     vec3 n = exit.outward / length(exit.outward);
     if (BODY.face_kinds.at[crossing.x - BODY.tet_count] == FACE_OPEN) {
+      thin = thin || any(greaterThan(left[LAMBERTIAN_NODES - 1u], vec3(GATHER_END)));
       for (uint k = 0u; k < LAMBERTIAN_NODES; ++k) left[k] *= internal_reflectance(nodes.cosine[k], BODY.eta);
       if (BODY.eta == 1.0) break;
     }
     direction = normalize(direction - 2.0 * dot(direction, n) * n);
   }
   for (uint k = 0u; k < LAMBERTIAN_NODES; ++k) radiance[k] += left[k] * even_radiance(here);
+  return thin;
+}
+
+// Where a body is so thin that its other side counts, slanted rays go where they go.
+void gather_slanted(uint tet, uvec3 ids, mat3 corners, vec3 normal, vec3 tangent) {
+  for (uint k = 0u; k < LAMBERTIAN_NODES; ++k) radiance[k] = vec3(0);
+  for (uint ray = 0u; ray < 2u * LAMBERTIAN_NODES; ++ray) {
+    start_on_face(tet, ids, corners, vec3(1.0 / 3.0));
+    vec3 incoming = lambertian_incoming(ray, normal, tangent);
+    radiance[ray / 2u] += 0.5 * gather(tet, refracted(incoming, normal, BODY.eta)).radiance;
+  }
 }
 
 void main() {
@@ -75,7 +90,9 @@ void main() {
   vec3 normal = normalize(cross(corners[1] - corners[0], corners[2] - corners[0]));
   uint tet = BODY.face_tets.at[face];
   start_on_face(tet, ids, corners, vec3(1.0 / 3.0));
-  gather_straight(tet, -normal, lambertian(BODY.eta));
+  if (gather_straight(tet, -normal, lambertian(BODY.eta))) {
+    gather_slanted(tet, ids, corners, normal, face_tangent(face, normal, corners[1] - corners[0]));
+  }
   vec3 exitance = vec3(0);
   for (uint k = 0u; k < LAMBERTIAN_NODES; ++k) {
     exitance += LAMBERTIAN_W[k] * fresnel_transmittance(sqrt(LAMBERTIAN_U[k]), BODY.eta) * radiance[k];

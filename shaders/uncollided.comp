@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "gather_shared.h"
 #include "fresnel.glsl"
+#include "face_azimuth.glsl"
 #include "lambertian.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
@@ -129,19 +130,13 @@ bool lit_at_surface(uint beam, uint v, vec3 incoming, bool directed, out vec3 en
   return area > 0.0;
 }
 
-vec3 refracted(vec3 incoming, vec3 normal) {
-  float cos_i = clamp(-dot(incoming, normal), 0.0, 1.0);
-  float cos_t = sqrt(max(1.0 - (1.0 - cos_i * cos_i) / (BODY.eta * BODY.eta), 0.0));
-  return normalize(incoming / BODY.eta + (cos_i / BODY.eta - cos_t) * normal);
-}
-
 Light directed_light(uint beam, uint v, vec3 incoming) {
   vec3 entry;
   if (v < push.surface_vertex_count && lit_at_surface(beam, v, incoming, true, entry)) return Light(entry, vec3(0));
   Met met = back_to_surface(v, -incoming);
   if (met.found && BODY.eta > 1.0) {
     // By the normal where the straight way ends one knows how the light was bent.
-    met = back_to_surface(v, -refracted(incoming, normalize(doubled_normal(met.face))));
+    met = back_to_surface(v, -refracted(incoming, normalize(doubled_normal(met.face)), BODY.eta));
   }
   if (!met.found) return NO_LIGHT;
   vec3 q = q_at(beam, met.face, met.quarter);

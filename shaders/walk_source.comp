@@ -4,6 +4,7 @@
 #include "fresnel.glsl"
 #include "fixed_point.glsl"
 #include "face_azimuth.glsl"
+#include "lambertian.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { WalkSourcePush push; };
@@ -26,56 +27,24 @@ bool one_ray_does(vec3 least, vec3 largest, mat3 corners, float area) {
   return longest <= 8.0 * area && all(lessThanEqual(largest - least, largest / 16.0));
 }
 
-// A unit vector across n, the first or the second of a frame; the construction of Duff et al. 2017.
-vec3 tangent(vec3 n, bool second) {
-  float side = n.z < 0.0 ? -1.0 : 1.0;
-  float a = -1.0 / (side + n.z), b = n.x * n.y * a;
-  return second ? vec3(b, side + n.y * n.y * a, -n.y) : vec3(1.0 + side * n.x * n.x * a, side * b, -side * n.x);
-}
-
 // The way light travels outside, at a point of a face.
-vec3 incoming(uint ray, vec3 position, vec3 normal) {
+vec3 incoming(uint ray, vec3 position, vec3 normal, vec3 tangent) {
   BeamRecord beam = push.beam.at[0];
   if (beam.kind == BEAM_DIRECTIONAL) return beam.vector;
   if (beam.kind == BEAM_POINT) return normalize(position - beam.vector);
-  uint node = ray / 2u;
-  float u = LAMBERTIAN_U[node];
-  return ((ray & 1u) == 0u ? 1.0 : -1.0) * sqrt(1.0 - u) * tangent(normal, (node & 1u) == 1u) - sqrt(u) * normal;
-}
-
-// Power that enters at a node of the Lambertian bundle, not normalised.
-float node_weight(uint node) {
-  return LAMBERTIAN_W[node] * fresnel_transmittance(sqrt(LAMBERTIAN_U[node]), push.body.eta);
+  return lambertian_incoming(ray, normal, tangent);
 }
 
 // Share of the power of a face that one ray takes, by its number.
 float share_of(uint ray, uint rays) {
-  if (rays == 1u) return 1.0;
-  float sum = 0.0;
-  for (uint node = 0u; node < LAMBERTIAN_NODES; ++node) sum += node_weight(node);
-  return 0.5 * node_weight(ray / 2u) / sum;
+  return rays == 1u ? 1.0 : 0.5 * lambertian(push.body.eta).share[ray / 2u];
 }
 
 // Inside direction of BEAM_MEAN.
-vec3 mean_direction(uint face, vec3 edge, vec3 normal) {
-  float sum = 0.0, cosine = 0.0;
-  for (uint node = 0u; node < LAMBERTIAN_NODES; ++node) {
-    float weight = node_weight(node);
-    sum += weight;
-    cosine += weight * sqrt(1.0 - (1.0 - LAMBERTIAN_U[node]) / (push.body.eta * push.body.eta));
-  }
-  cosine /= sum;
-  float azimuth = face_azimuth(face, 0u);
-  vec3 t = normalize(edge);
-  vec3 across = cos(azimuth) * t + sin(azimuth) * cross(normal, t);
-  return normalize(sqrt(1.0 - cosine * cosine) * across - cosine * normal);
-}
-
-// Light at grazing incidence, or even from behind by rounding, still goes in.
-vec3 refracted(vec3 incoming, vec3 normal) {
-  float cos_i = max(-dot(incoming, normal), 0.0);
-  float cos_t = sqrt(max(1.0 - (1.0 - cos_i * cos_i) / (push.body.eta * push.body.eta), 0.0));
-  return normalize(incoming / push.body.eta + (cos_i / push.body.eta - cos_t) * normal);
+vec3 mean_direction(vec3 normal, vec3 tangent) {
+  Lambertian light = lambertian(push.body.eta);
+  float cosine = dot(light.share, light.cosine);
+  return normalize(sqrt(1.0 - cosine * cosine) * tangent - cosine * normal);
 }
 
 // Ray `ray` of every origin on a face.
@@ -95,6 +64,7 @@ void walk_from(uint face, uint ray) {
   vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
   float area = 0.5 * length(normal);
   normal /= 2.0 * area;
+  vec3 tangent = face_tangent(face, normal, corners[1] - corners[0]);
   bool one = one_ray_does(least, largest, corners, area);
   uint tet = push.body.face_tets.at[face];
   float share = 0.25 * area * share_of(ray, push.rays);
@@ -103,8 +73,9 @@ void walk_from(uint face, uint ray) {
     if (power == vec3(0)) continue;
     vec3 l = quarter_centre(k);
     start_on_face(tet, ids, corners, l);
-    vec3 inside = push.beam.at[0].kind == BEAM_MEAN ? mean_direction(face, corners[1] - corners[0], normal)
-                                                    : refracted(incoming(ray, corners * l, normal), normal);
+    vec3 inside = push.beam.at[0].kind == BEAM_MEAN
+                      ? mean_direction(normal, tangent)
+                      : refracted(incoming(ray, corners * l, normal, tangent), normal, push.body.eta);
     walk(Ray(tet, inside, power, vec3(0)));
   }
 }

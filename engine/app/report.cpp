@@ -92,8 +92,9 @@ std::string text_report(const RunReport& report) {
       << "\n";
   out << "bounces  " << value_of(report.metadata, "inter-reflection") << "\n";
   if (report.solve.error) {
+    const double unlit = report.solve.error->unlit;
     out << "error    " << decimals(100 * report.solve.error->whole, 2) << "% over the surface, "
-        << decimals(100 * report.solve.error->unlit, 2) << "% over the unlit part (estimated)\n";
+        << (unlit > 0 ? decimals(100 * unlit, 2) + "% over the unlit part" : "nothing unlit") << " (estimated)\n";
   }
   out << "memory   " << decimals(static_cast<double>(report.engine.peak_device_bytes()) / mebibyte, 0)
       << " MiB on the device at most\n"

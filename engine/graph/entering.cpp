@@ -8,6 +8,17 @@
 #include "engine/graph/fresnel.h"
 
 namespace quadgraph {
+namespace {
+
+// A unit vector in face f whose angle with its first edge is GOLDEN_TURN times f.
+glm::dvec3 tangent_of(const FaceFrame& frame, std::uint32_t f) {
+  const glm::dvec3 t1 = glm::normalize(frame.corners[1] - frame.corners[0]), t2 = glm::cross(frame.normal, t1);
+  const std::uint32_t turn = f * gpu::GOLDEN_TURN;
+  const double azimuth = glm::two_pi<double>() * turn / 4294967296.0;
+  return std::cos(azimuth) * t1 + std::sin(azimuth) * t2;
+}
+
+}  // namespace
 
 FaceFrame frame_of(const Level& level, std::uint32_t f) {
   FaceFrame frame;
@@ -51,12 +62,22 @@ LambertianBundle lambertian_bundle(double eta) {
   return bundle;
 }
 
+std::array<glm::dvec3, 2 * gpu::LAMBERTIAN_NODES> lambertian_directions(const FaceFrame& frame, std::uint32_t f,
+                                                                        double eta) {
+  const glm::dvec3 t1 = tangent_of(frame, f), t2 = glm::cross(frame.normal, t1);
+  std::array<glm::dvec3, 2 * gpu::LAMBERTIAN_NODES> directions;
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    const std::size_t k = i / 2;
+    const double u = static_cast<double>(gpu::LAMBERTIAN_U[k]);
+    const glm::dvec3 across = std::sqrt(1.0 - u) * (k % 2 == 0 ? t1 : t2);
+    directions[i] = refract((i % 2 == 0 ? 1.0 : -1.0) * across - std::sqrt(u) * frame.normal, frame.normal, eta);
+  }
+  return directions;
+}
+
 glm::dvec3 mean_direction(const FaceFrame& frame, std::uint32_t f, double eta) {
   const double mu = lambertian_bundle(eta).mean_cosine();
-  const glm::dvec3 t1 = glm::normalize(frame.corners[1] - frame.corners[0]), t2 = glm::cross(frame.normal, t1);
-  const std::uint32_t turn = f * gpu::GOLDEN_TURN;
-  const double azimuth = glm::two_pi<double>() * turn / 4294967296.0;
-  return std::sqrt(1.0 - mu * mu) * (std::cos(azimuth) * t1 + std::sin(azimuth) * t2) - mu * frame.normal;
+  return std::sqrt(1.0 - mu * mu) * tangent_of(frame, f) - mu * frame.normal;
 }
 
 }  // namespace quadgraph

@@ -35,6 +35,11 @@ struct LambertianBundle {
 
 LambertianBundle lambertian_bundle(double eta);
 
+// Inside directions of rays for the bundle, two on opposite sides per cosine, turned by 90 degrees from one to the
+// next; they move with the body.
+std::array<glm::dvec3, 2 * gpu::LAMBERTIAN_NODES> lambertian_directions(const FaceFrame& frame, std::uint32_t f,
+                                                                        double eta);
+
 // Inside direction of the one ray by which BEAM_MEAN enters face f: the mean cosine of the bundle, and an azimuth that
 // moves with the body and differs from face to face without order (GOLDEN_TURN).
 glm::dvec3 mean_direction(const FaceFrame& frame, std::uint32_t f, double eta);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
+#include <glm/vector_relational.hpp>
 #include <optional>
 
 #include "engine/graph/entering.h"
@@ -48,6 +49,7 @@ class View {
 
   void run(std::uint32_t f, const glm::dvec3& barycentric, glm::dvec3 direction, std::span<Strand> strands) {
     ray_.start_on_face(f, barycentric);
+    thin_ = false;
     for (std::uint32_t step = 0; step < gpu::GATHER_STEPS; ++step) {
       const TetRay::Exit exit = ray_.find_exit(direction);
       if (!exit.found) break;
@@ -62,6 +64,9 @@ class View {
     }
     for (Strand& strand : strands) strand.gathered.radiance += strand.transmitted * even_radiance();
   }
+
+  // Whether the last run saw through the body.
+  bool thin() const { return thin_; }
 
  private:
   const gpu::Optical& optical() const { return problem_.optical[ray_.tet()]; }
@@ -105,10 +110,11 @@ class View {
   }
 
   // Mirrors the ray, by the share that stays inside.
-  glm::dvec3 meet_surface(std::uint32_t f, const glm::dvec3& direction, std::span<Strand> strands) const {
+  glm::dvec3 meet_surface(std::uint32_t f, const glm::dvec3& direction, std::span<Strand> strands) {
     const glm::dvec3 normal = ray_.face_normal();
     for (Strand& strand : strands) {
       if (level_.reflecting(f)) break;
+      thin_ = thin_ || glm::any(glm::greaterThan(strand.transmitted, glm::dvec3(gpu::GATHER_END)));
       const double cosine = std::clamp(glm::dot(direction, normal), 0.0, 1.0);
       const double kept = strand.reflectance.value_or(internal_reflectance(cosine, problem_.eta));
       strand.gathered.seen += (1 - kept) * strand.transmitted;
@@ -133,6 +139,7 @@ class View {
   const Problem& problem_;
   const InsideLight& light_;
   TetRay ray_;
+  bool thin_ = false;
 };
 
 }  // namespace
@@ -168,7 +175,16 @@ std::vector<glm::dvec3> gathered_exitance(const Level& level, const Problem& pro
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {
     if (level.reflecting(f)) continue;
     auto strands = fresh;
-    view.run(f, glm::dvec3(1.0 / 3), -frame_of(level, f).normal, strands);
+    const FaceFrame frame = frame_of(level, f);
+    view.run(f, glm::dvec3(1.0 / 3), -frame.normal, strands);
+    if (view.thin()) {
+      const auto directions = lambertian_directions(frame, f, problem.eta);
+      for (Strand& strand : strands) strand.gathered.radiance = glm::dvec3(0);
+      for (std::size_t i = 0; i < directions.size(); ++i) {
+        strands[i / 2].gathered.radiance +=
+            0.5 * gather(level, problem, light, f, glm::dvec3(1.0 / 3), directions[i]).radiance;
+      }
+    }
     for (std::size_t k = 0; k < strands.size(); ++k) exitance[f] += weight[k] * strands[k].gathered.radiance;
   }
   return exitance;

@@ -36,7 +36,8 @@ glm::dvec3 gathered_radiance(const Level& level, const Problem& problem, const I
                              const glm::dvec3& barycentric, const glm::dvec3& outside);
 
 // W/mm^2 per outside face, 0 at reflecting ones: the exitance of the gathered radiance above the centroid of a face,
-// with the fields there taken to vary along its normal only, by four cosines.
+// with the fields there taken to vary along its normal only, by four cosines; where a ray along the normal sees through
+// the body, by eight rays that go where they go.
 std::vector<glm::dvec3> gathered_exitance(const Level& level, const Problem& problem, const InsideLight& light);
 
 }  // namespace quadgraph

@@ -3,20 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <utility>
 
 #include "engine/graph/entering.h"
 #include "engine/graph/ray.h"
 
 namespace quadgraph {
 namespace {
-
-// Two unit vectors that make a frame with n, by the branchless construction of Duff et al. 2017.
-std::pair<glm::dvec3, glm::dvec3> tangents(const glm::dvec3& n) {
-  const double sign = n.z < 0 ? -1.0 : 1.0;
-  const double a = -1.0 / (sign + n.z), b = n.x * n.y * a;
-  return {{1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}};
-}
 
 class Beam {
  public:
@@ -64,15 +56,10 @@ class Beam {
   }
 
   void lambertian(std::uint32_t f, const FaceFrame& frame, const glm::dvec3& barycentric, const glm::dvec3& power) {
-    const auto [t1, t2] = tangents(frame.normal);
     const LambertianBundle bundle = lambertian_bundle(problem_.eta);
-    for (std::size_t k = 0; k < bundle.mu.size(); ++k) {
-      const double u = static_cast<double>(gpu::LAMBERTIAN_U[k]);
-      const glm::dvec3 across = std::sqrt(1.0 - u) * (k % 2 == 0 ? t1 : t2);
-      for (const double side : {1.0, -1.0}) {
-        const glm::dvec3 outside = side * across - std::sqrt(u) * frame.normal;
-        ray_.run(f, barycentric, refract(outside, frame.normal, problem_.eta), power * (0.5 * bundle.share[k]));
-      }
+    const auto directions = lambertian_directions(frame, f, problem_.eta);
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+      ray_.run(f, barycentric, directions[i], power * (0.5 * bundle.share[i / 2]));
     }
   }
 

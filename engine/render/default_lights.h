@@ -9,7 +9,8 @@
 namespace quadgraph {
 
 // Seen from `view`: a warm key light from behind, above and to the left, that shines through thin parts, and a
-// cool one from the right side, somewhat to the front, a fifth as strong.
+// cool one from the right side, somewhat to the front, a fifth as strong; and a fiftieth from all around, so that no
+// part is black.
 std::vector<Light> default_lights(const View& view);
 
 }  // namespace quadgraph

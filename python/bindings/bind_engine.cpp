@@ -184,8 +184,10 @@ py::dict leaving(Engine& engine, const IndexArray& face, const FloatArray& direc
 
 void bind_engine(py::module_& module) {
   bind_picture(module);
-  module.def("default_lights", &default_light_texts, py::arg("view") = "", py::arg("up") = "y",
-             "The lights a picture gets when nobody asks for others: warm from behind `view`, cool from the side.");
+  module.def(
+      "default_lights", &default_light_texts, py::arg("view") = "", py::arg("up") = "y",
+      "The lights a picture gets when nobody asks for others: warm from behind `view`, cool from the side, a little "
+      "from all around.");
   py::class_<Engine>(module, "Engine", "A .qgraph on a Vulkan device.")
       .def(py::init(&make_engine), py::arg("path"), py::arg("device") = "", py::arg("validation") = false,
            "device: part of its name. validation: load the validation layer. Raises FormatError, InputError, "

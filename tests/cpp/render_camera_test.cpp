@@ -87,13 +87,15 @@ TEST_CASE("without a distance the whole sphere is seen and nearly fills the narr
   }
 }
 
-TEST_CASE("the default key light shines from behind the object, the other from the side") {
+TEST_CASE("the default key light shines from behind the object, the second from the side, a little from everywhere") {
   for (const float azimuth : {0.0f, 75.0f, 200.0f}) {
     const auto lights = default_lights(view(azimuth, 10));
     const Camera camera = place_camera(view(azimuth, 10), bounds, 1);
-    REQUIRE(lights.size() == 2);
+    REQUIRE(lights.size() == 3);
     CHECK(glm::dot(lights[0].direction, camera.backward) > 0.5f);
     CHECK(std::abs(glm::dot(lights[1].direction, camera.right)) > 0.8f);
+    CHECK(lights[2].kind == LightKind::ambient);
     CHECK(lights[0].power.x > lights[1].power.x);
+    CHECK(lights[1].power.x > lights[2].power.x);
   }
 }

@@ -87,7 +87,9 @@ def error_text(report: dict) -> str:
     """Estimated discretisation error in words."""
     if report["error"] is None:
         return "error: not estimated (a single level)"
-    return f"error: {100 * report['error']['whole']:.2f}% whole, {100 * report['error']['unlit']:.2f}% unlit (estimate)"
+    unlit = report["error"]["unlit"]
+    of_unlit = f"{100 * unlit:.2f}% unlit" if unlit > 0 else "nothing unlit"
+    return f"error: {100 * report['error']['whole']:.2f}% whole, {of_unlit} (estimate)"
 
 
 def size_text(engine: Engine) -> str:

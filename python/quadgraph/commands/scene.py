@@ -56,7 +56,7 @@ def add_scene_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="L",
         help="directional:DX,DY,DZ:IRRADIANCE (the way the light travels; W/mm^2), point:X,Y,Z:POWER (mm; W) or "
         "ambient:IRRADIANCE, the last one number or R/G/B; several allowed (default: warm from behind the view, cool "
-        "from the side)",
+        "from the side, a little from all around)",
     )
     parser.add_argument(
         "--method", choices=("fem", "quadgraph-fv", "quadgraph-fdm"), default="fem", help="default: %(default)s"
