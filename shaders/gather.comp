@@ -24,11 +24,9 @@ Sample sample_at(uint i) {
   return Sample(uint(specular.w) * FACE_HALF + uint(normal.w), push.samples[0].at[i].xyz, normal.xyz, specular.rgb);
 }
 
-// Whether two samples of a pixel lie on one piece of surface, so that one ray does for both.
+// Whether one ray does for two samples of a pixel. Between faces what is seen can change too much.
 bool together(Sample a, Sample b) {
-  vec3 way = b.position - a.position;
-  float off = dot(a.normal, way);
-  return dot(a.normal, b.normal) > 0.5 && 4.0 * off * off <= dot(way, way);
+  return a.face == b.face;
 }
 
 // Barycentric coordinates of the point of a face that lies below or above `point`.
@@ -59,7 +57,7 @@ Gathered towards_eye(SurfaceScenes scene, uint face, vec3 position, vec3 normal)
                  scene.at[0].radiance_norm);
 }
 
-// One view ray for all samples that lie together: in a smooth place one per pixel. Samples are read again where they are
+// One view ray for all samples that lie together: where faces are larger than pixels, one per pixel. Samples are read again where they are
 // needed: an array of them would be slow to index.
 void main() {
   Pixel pixel;

@@ -96,7 +96,7 @@ def test_radiance_at_points_is_that_of_the_picture(engine):
     picture = engine.render(**FAR)
     level = engine.graph.levels[0]
     centre = np.asarray(level.vertices, np.float64)[level.faces].mean(axis=1)
-    seen = np.flatnonzero((centre[:, 2] > 0.6 * RADIUS))
+    seen = np.flatnonzero(centre[:, 2] > 0.6 * RADIUS)
     towards = np.array([0.0, 0.0, 600.0]) - centre[seen]
     towards /= np.linalg.norm(towards, axis=1)[:, None]
     light = engine.leaving(seen.astype(np.uint32), towards.astype(np.float32))
