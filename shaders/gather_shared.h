@@ -25,9 +25,10 @@ struct GatherScale {
 
 // The largest factor: where the fluence of a coarse mesh is far too low, gathering has nothing to scale.
 const float GATHER_FACTOR_MAX = 4.0f;
-// A view ray ends where every channel keeps at most GATHER_END, and what lies behind, if it is as bright as the last tet,
-// adds at most GATHER_END to what is gathered; or keeps at most GATHER_LEAST. What lies behind then counts as even. Seen
-// from the unlit side the fluence grows inwards almost as fast as it is attenuated: the first condition alone loses 5%.
+// A view ray ends where every channel keeps at most GATHER_END, and what lies behind, if it is as bright as the last
+// tet, adds at most GATHER_END to what is gathered; or keeps at most GATHER_LEAST. What lies behind then counts as
+// even. Seen from the unlit side the fluence grows inwards almost as fast as it is attenuated: the first condition
+// alone loses 5%.
 const float GATHER_END = 1e-2f;
 const float GATHER_LEAST = 1e-6f;
 // Tets that a view ray crosses at most.

@@ -104,8 +104,8 @@ struct SurfacePush {
 
 // Layers of a picture: scattered, specular and unscattered radiance, and transmittance.
 #define PICTURE_LAYERS 4
-// Images of samples. surface.frag: scattered radiance and coverage, specular, unscattered. surface_gathered.frag: position
-// and coverage; specular and the high half of the face; normal and its low half.
+// Images of samples. surface.frag: scattered radiance and coverage, specular, unscattered. surface_gathered.frag:
+// position and coverage; specular and the high half of the face; normal and its low half.
 #define SAMPLE_LAYERS 3
 #define FACE_HALF 65536
 
@@ -115,7 +115,7 @@ struct ResolvePush {
   QG_REF(Vec4s) samples[SAMPLE_LAYERS];
   QG_REF(Floats) layers[PICTURE_LAYERS];  // RGB per pixel, written
   QG_REF(Floats) alpha;                   // per pixel, written
-  uint tile_x;                     // first pixel of the tile in the picture
+  uint tile_x;                            // first pixel of the tile in the picture
   uint tile_y;
   uint tile_width;  // pixels of the tile inside the picture
   uint tile_height;

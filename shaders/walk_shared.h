@@ -49,7 +49,8 @@ struct RightHandSideBuriedPush {
   uint per_volume;     // 1: quadgraph-fdm
 };
 
-// vertex_unscattered.comp: multiplies the exitance at surface vertices by a factor, and gives that of unscattered light.
+// vertex_unscattered.comp: multiplies the exitance at surface vertices by a factor, and gives that of unscattered
+// light.
 struct VertexUnscatteredPush {
   QG_REF(Vec3s) vertices;
   QG_REF(Uvec3s) faces;
