@@ -57,8 +57,8 @@ Gathered towards_eye(SurfaceScenes scene, uint face, vec3 position, vec3 normal)
                  scene.at[0].radiance_norm);
 }
 
-// One view ray for all samples that lie together: where faces are larger than pixels, one per pixel. Samples are read again where they are
-// needed: an array of them would be slow to index.
+// One view ray for all samples that lie together: where faces are larger than pixels, one per pixel. Samples are read
+// again where they are needed: an array of them would be slow to index.
 void main() {
   Pixel pixel;
   if (!find_pixel(pixel)) return;

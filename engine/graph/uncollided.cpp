@@ -34,9 +34,8 @@ OpenFaces open_faces(const Level& level) {
 // Where a ray from inside meets an open face.
 struct Arrival {
   std::uint32_t face = 0, quarter = 0;
-  glm::dvec3 normal{0};     // of the face, outward
-  glm::dvec3 direction{0};  // of the ray there
-  glm::dvec3 depth{0};      // optical, of its way
+  glm::dvec3 normal{0};  // of the face, outward
+  glm::dvec3 depth{0};   // optical, of its way
 };
 
 // Uncollided light of one beam at one vertex.
@@ -82,7 +81,6 @@ class Follower {
       arrival.normal = ray.face_normal();
       if (!level_.reflecting(arrival.face)) {
         arrival.quarter = ray.quarter_of(arrival.face);
-        arrival.direction = direction;
         return arrival;
       }
       direction = mirrored(direction, arrival.normal);
@@ -103,13 +101,8 @@ class Follower {
     std::optional<Arrival> arrival = arrive(v, -omega);
     if (arrival && problem_.eta > 1) arrival = arrive(v, -refract(omega, arrival->normal, problem_.eta));
     if (!arrival) return {};
-    const double c = outside_cosine(omega, *arrival);
+    const double c = -glm::dot(omega, arrival->normal);
     return {glm::dvec3(light.quarters[arrival->face][arrival->quarter]) / entering(c), arrival->depth};
-  }
-
-  // Cosine outside of the light that came in along the ray back from a vertex.
-  double outside_cosine(const glm::dvec3& omega, const Arrival& arrival) const {
-    return -glm::dot(omega, arrival.normal);
   }
 
   // At a vertex of faces that the light falls on: the mean over them.

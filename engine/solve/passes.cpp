@@ -39,7 +39,6 @@
 #include "spirv/gather_phi_sp3.comp.h"
 #include "spirv/gather_scale.comp.h"
 #include "spirv/irradiance_scale.comp.h"
-#include "spirv/radiance_probe.comp.h"
 #include "spirv/right_hand_side_buried.comp.h"
 #include "spirv/right_hand_side_buried_sp3.comp.h"
 #include "spirv/right_hand_side_fdm.comp.h"
@@ -78,7 +77,6 @@ Passes::Passes()
       ONE_PASS(uncollided, UncollidedPush),
       ONE_PASS(gather_exitance, GatherExitancePush),
       ONE_PASS(gather_scale, GatherScalePush),
-      ONE_PASS(radiance_probe, RadianceProbePush),
       ONE_PASS(exchange, ExchangePush),
       ONE_PASS(exchange_finer, ExchangeFinerPush),
       ONE_PASS(exchange_enter, ExchangeEnterPush),

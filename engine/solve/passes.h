@@ -37,8 +37,8 @@ struct Passes {
   Passes();
 
   LazyPass evaluate_material, shape, irradiance_scale, walk_source, vertex_exitance, display_scale, vertex_unscattered,
-      uncollided, gather_exitance, gather_scale, radiance_probe, exchange, exchange_finer, exchange_enter,
-      exchange_boxes, exchange_rays;
+      uncollided, gather_exitance, gather_scale, exchange, exchange_finer, exchange_enter, exchange_boxes,
+      exchange_rays;
   ModelPass assemble_fdm, assemble_fv, assemble_edges, assemble_fem, right_hand_side_fdm, right_hand_side_fv,
       right_hand_side_fem, right_hand_side_buried, damping, transfer, cg_start, cg_multiply, cg_update, cg_direction,
       sweep, exitance, energy, gather_phi;

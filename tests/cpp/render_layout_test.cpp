@@ -1,9 +1,4 @@
 // The structs of shaders/render_shared.h lie in memory as the compiled shaders read them.
-#include <doctest/doctest.h>
-
-#include <cstddef>
-
-#include "engine/vk/pipeline.h"
 #include "shaders/render_shared.h"
 #include "spirv/irradiance.comp.h"
 #include "spirv/resolve.comp.h"
@@ -11,40 +6,17 @@
 #include "spirv/surface.frag.h"
 #include "spirv/surface.vert.h"
 #include "spirv/surface_gathered.frag.h"
-#include "tests/cpp/spirv_layout.h"
+#include "tests/cpp/layout_compare.h"
 
 using namespace quadgraph;
-
-namespace {
-
-struct Member {
-  const char* name;
-  std::size_t offset;
-};
-
-void compare(const SpirvLayout& layout, const std::string& type, const std::vector<Member>& members) {
-  INFO(type);
-  const auto found = layout.offset.find(type);
-  REQUIRE(found != layout.offset.end());
-  CHECK(found->second.size() == members.size());
-  for (const Member& member : members) {
-    INFO(member.name);
-    REQUIRE(found->second.count(member.name) == 1);
-    CHECK(found->second.at(member.name) == member.offset);
-  }
-}
-
-#define MEMBER(Type, name) {#name, offsetof(gpu::Type, name)}
-
-}  // namespace
 
 TEST_CASE("lights and shadow views") {
   for (const vk::Spirv code : {vk::Spirv(irradiance_comp), vk::Spirv(surface_frag)}) {
     const SpirvLayout layout(code);
-    compare(layout, "ShadowView",
+    compare(code, "ShadowView",
             {MEMBER(ShadowView, clip_from_world), MEMBER(ShadowView, depth), MEMBER(ShadowView, size),
              MEMBER(ShadowView, near), MEMBER(ShadowView, far), MEMBER(ShadowView, texel)});
-    compare(layout, "LightRecord",
+    compare(code, "LightRecord",
             {MEMBER(LightRecord, kind), MEMBER(LightRecord, vector), MEMBER(LightRecord, power),
              MEMBER(LightRecord, first_view), MEMBER(LightRecord, view_count)});
     CHECK(layout.stride.at("ShadowView") == sizeof(gpu::ShadowView));
@@ -56,7 +28,7 @@ TEST_CASE("the scene of the display") {
   for (const vk::Spirv code : {vk::Spirv(surface_vert), vk::Spirv(surface_frag), vk::Spirv(surface_gathered_frag)}) {
     const SpirvLayout layout(code);
     compare(
-        layout, "SurfaceScene",
+        code, "SurfaceScene",
         {MEMBER(SurfaceScene, clip_from_world), MEMBER(SurfaceScene, eye),           MEMBER(SurfaceScene, eta),
          MEMBER(SurfaceScene, roughness),       MEMBER(SurfaceScene, radiance_norm), MEMBER(SurfaceScene, light_count),
          MEMBER(SurfaceScene, vertices),        MEMBER(SurfaceScene, normals),       MEMBER(SurfaceScene, face),
@@ -65,19 +37,19 @@ TEST_CASE("the scene of the display") {
          MEMBER(SurfaceScene, views),           MEMBER(SurfaceScene, triangle_face), MEMBER(SurfaceScene, points),
          MEMBER(SurfaceScene, scale),           MEMBER(SurfaceScene, body)});
     CHECK(layout.stride.at("SurfaceScene") == sizeof(gpu::SurfaceScene));
-    compare(layout, "SurfacePush", {MEMBER(SurfacePush, scene)});
+    compare(code, "SurfacePush", {MEMBER(SurfacePush, scene)});
   }
 }
 
 TEST_CASE("push constants") {
-  compare(SpirvLayout(shadow_vert), "ShadowPush", {MEMBER(ShadowPush, clip_from_world), MEMBER(ShadowPush, vertices)});
-  compare(SpirvLayout(irradiance_comp), "IrradiancePush",
+  compare(shadow_vert, "ShadowPush", {MEMBER(ShadowPush, clip_from_world), MEMBER(ShadowPush, vertices)});
+  compare(irradiance_comp, "IrradiancePush",
           {MEMBER(IrradiancePush, vertices), MEMBER(IrradiancePush, faces), MEMBER(IrradiancePush, q),
            MEMBER(IrradiancePush, beam_q), MEMBER(IrradiancePush, sky), MEMBER(IrradiancePush, lights),
            MEMBER(IrradiancePush, views), MEMBER(IrradiancePush, face_count), MEMBER(IrradiancePush, light_count),
            MEMBER(IrradiancePush, subdivision), MEMBER(IrradiancePush, eta),
            MEMBER(IrradiancePush, diffuse_transmittance)});
-  compare(SpirvLayout(resolve_comp), "ResolvePush",
+  compare(resolve_comp, "ResolvePush",
           {MEMBER(ResolvePush, scene), MEMBER(ResolvePush, samples), MEMBER(ResolvePush, layers),
            MEMBER(ResolvePush, alpha), MEMBER(ResolvePush, tile_x), MEMBER(ResolvePush, tile_y),
            MEMBER(ResolvePush, tile_width), MEMBER(ResolvePush, tile_height), MEMBER(ResolvePush, sample_stride),
