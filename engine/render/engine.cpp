@@ -97,7 +97,7 @@ struct Engine::Implementation {
     if (!passes.empty()) gather_passes = std::move(passes);
     if (triangle_face.size() == 0) {
       triangle_face = vk::upload<std::uint32_t>(context, display_faces(graph.display(), graph.levels()[0]),
-                                                "faces of display triangles");
+                                                "display/faces of triangles");
     }
     return field;
   }
@@ -244,6 +244,10 @@ std::vector<PassStats> Engine::passes() const {
 
 std::uint64_t Engine::device_bytes() const {
   return implementation_->context.allocated_bytes();
+}
+
+const std::map<std::string, std::uint64_t>& Engine::memory() const {
+  return implementation_->context.allocated_by_purpose();
 }
 
 std::uint64_t Engine::peak_device_bytes() const {

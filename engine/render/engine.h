@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -85,8 +86,9 @@ class Engine {
   // Passes of the last update_irradiance, solve and render, in this order.
   std::vector<PassStats> passes() const;
 
-  // Device memory now and at most so far, bytes.
+  // Device memory now and at most so far, bytes, and the present one by purpose (engine/vk/memory.h).
   std::uint64_t device_bytes() const;
+  const std::map<std::string, std::uint64_t>& memory() const;
   std::uint64_t peak_device_bytes() const;
 
   // What the last picture was made with: source, material, lights, camera, method, solver, tolerance, units, device,

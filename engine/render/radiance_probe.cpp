@@ -40,10 +40,10 @@ RadianceProbe::RadianceProbe(vk::Context& context)
 Leaving RadianceProbe::run(const Level& level, const GatherField& field, float eta, std::span<const std::uint32_t> face,
                            std::span<const glm::vec3> direction) {
   check(level, face, direction);
-  const vk::Buffer faces = vk::upload(context_, face, "probed faces");
-  const vk::Buffer directions = vk::upload(context_, direction, "probed directions");
-  const vk::Buffer radiance(context_, direction.size_bytes(), vk::Place::device, "probed radiance");
-  const vk::Buffer transmittance(context_, direction.size_bytes(), vk::Place::device, "probed transmittance");
+  const vk::Buffer faces = vk::upload(context_, face, "probe/faces");
+  const vk::Buffer directions = vk::upload(context_, direction, "probe/directions");
+  const vk::Buffer radiance(context_, direction.size_bytes(), vk::Place::device, "probe/radiance");
+  const vk::Buffer transmittance(context_, direction.size_bytes(), vk::Place::device, "probe/transmittance");
   const gpu::RadianceProbePush push{.body = field.body().address(),
                                     .points = field.points().address(),
                                     .scale = field.scale().address(),

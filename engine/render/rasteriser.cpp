@@ -74,13 +74,16 @@ struct Rasteriser::Targets {
         height(picture_height),
         samples_x(2 * std::min(width, tile_pixels)),
         samples_y(2 * std::min(height, tile_pixels)),
-        depth(context, image_options(VK_FORMAT_D32_SFLOAT, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT), "depth"),
-        alpha(context, 4 * pixels(), vk::Place::host, "alpha") {
+        depth(context, image_options(VK_FORMAT_D32_SFLOAT, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT),
+              "picture/depth"),
+        alpha(context, 4 * pixels(), vk::Place::host, "picture/alpha") {
     for (int k = 0; k < SAMPLE_LAYERS; ++k) {
-      images.emplace_back(context, image_options(sample_format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT), "samples");
-      samples.emplace_back(context, sample_bytes(), vk::Place::device, "samples");
+      images.emplace_back(context, image_options(sample_format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT),
+                          "picture/samples");
+      samples.emplace_back(context, sample_bytes(), vk::Place::device, "picture/samples");
     }
-    for (const char* name : layer_names) layers.emplace_back(context, 12 * pixels(), vk::Place::host, name);
+    for (const char* name : layer_names)
+      layers.emplace_back(context, 12 * pixels(), vk::Place::host, std::string("picture/") + name);
   }
 
   std::uint64_t pixels() const { return std::uint64_t{width} * height; }
@@ -154,7 +157,7 @@ RasterResult Rasteriser::run(const RasterInput& input, const Camera& camera, std
                              std::uint32_t height) {
   const Targets targets(context_, width, height);
   const gpu::SurfaceScene constants = scene(input, camera);
-  const auto scene_buffer = vk::upload<gpu::SurfaceScene>(context_, std::span(&constants, 1), "surface scene");
+  const auto scene_buffer = vk::upload<gpu::SurfaceScene>(context_, std::span(&constants, 1), "picture/scene");
   std::vector<PassStats> passes(2);
   const std::uint64_t surface_bytes = 64ull * input.mesh.vertex_count + input.mesh.triangles.size() +
                                       (2 * SAMPLE_LAYERS + 1) * targets.sample_bytes() / 2;

@@ -77,7 +77,7 @@ gpu::LightRecord record(const Light& light, std::size_t first_view, std::size_t 
 }
 
 vk::Image depth_image(vk::Context& context, std::uint32_t size) {
-  return {context, {VK_FORMAT_D32_SFLOAT, size, size, 1, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT}, "shadow depth"};
+  return {context, {VK_FORMAT_D32_SFLOAT, size, size, 1, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT}, "shadows/depth"};
 }
 
 }  // namespace
@@ -119,7 +119,7 @@ PassStats ShadowMaps::update(const DisplayBuffers& mesh, const Sphere& bounds, s
     const auto size = static_cast<float>(view.size);
     draw(commands, {{}, &image->second}, {0, 0, size, size}, pass_,
          gpu::ShadowPush{view.clip_from_world, mesh.vertices.address()}, mesh.triangles, 3 * mesh.triangle_count);
-    view.depth = depths_.emplace_back(context_, map_bytes, vk::Place::device, "shadow map").address();
+    view.depth = depths_.emplace_back(context_, map_bytes, vk::Place::device, "shadows/map").address();
     commands.copy(image->second, depths_.back());
     stats.bytes += mesh.vertices.size() + mesh.triangles.size() + 3 * map_bytes;
     ++stats.count;
@@ -128,8 +128,8 @@ PassStats ShadowMaps::update(const DisplayBuffers& mesh, const Sphere& bounds, s
   stats.time_ms = commands.submit_and_wait()[0].time_ms;
 
   light_count_ = static_cast<std::uint32_t>(records.size());
-  lights_ = vk::upload<gpu::LightRecord>(context_, records, "lights");
-  views_ = vk::upload<gpu::ShadowView>(context_, views, "shadow views");
+  lights_ = vk::upload<gpu::LightRecord>(context_, records, "shadows/lights");
+  views_ = vk::upload<gpu::ShadowView>(context_, views, "shadows/views");
   return stats;
 }
 

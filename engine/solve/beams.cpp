@@ -41,7 +41,7 @@ void replace_beams(vk::Context& context, std::span<const gpu::BeamRecord> beams,
                    std::vector<LevelBuffers>& levels) {
   std::vector<gpu::BeamRecord> all(beams.begin(), beams.end());
   all.push_back({gpu::BEAM_MEAN, glm::vec3(0)});
-  buffers.records = vk::upload<gpu::BeamRecord>(context, all, "beams");
+  buffers.records = vk::upload<gpu::BeamRecord>(context, all, "light/beams");
   const bool fits = all.size() == buffers.kinds.size();
   buffers.kinds.clear();
   for (const gpu::BeamRecord& beam : all) buffers.kinds.push_back(beam.kind);
@@ -49,7 +49,7 @@ void replace_beams(vk::Context& context, std::span<const gpu::BeamRecord> beams,
   vk::Commands commands(context);
   for (LevelBuffers& level : levels) {
     const std::uint64_t bytes = all.size() * level.face_count * FACE_QUARTERS * sizeof(glm::vec3);
-    level.beam_q = vk::Buffer(context, bytes, vk::Place::device, "quarters of the beams");
+    level.beam_q = vk::Buffer(context, bytes, vk::Place::device, "light/quarters of the beams");
     commands.fill(level.beam_q, 0);
     commands.fill(level.q, 0);
   }

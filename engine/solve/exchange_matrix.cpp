@@ -42,20 +42,20 @@ void ExchangeMatrix::make_room(vk::Context& context) {
   if (rows_.size() > 0) return;
   std::vector<glm::uvec2> rows;
   for (std::size_t f = 0; f < level_.faces.size(); ++f) rows.emplace_back(level_.seen[f], level_.seen[f + 1]);
-  rows_ = vk::upload<glm::uvec2>(context, rows, "rows of the exchange");
-  entries_ = vk::upload(context, level_.seen, "exchange");
+  rows_ = vk::upload<glm::uvec2>(context, rows, "exchange/rows");
+  entries_ = vk::upload(context, level_.seen, "exchange/entries");
 }
 
 void ExchangeMatrix::make_room_for_rays(vk::Context& context) {
   if (cast_) return;
   cast_ = true;
-  rows_ = vk::upload<glm::uvec2>(context, wide_rows(level_), "rows of the exchange");
-  entries_ = vk::upload<std::uint32_t>(context, wide_entries(level_), "exchange");
+  rows_ = vk::upload<glm::uvec2>(context, wide_rows(level_), "exchange/rows");
+  entries_ = vk::upload<std::uint32_t>(context, wide_entries(level_), "exchange/entries");
   const FaceTree tree = face_tree(level_);
   leaves_ = tree.leaves();
-  order_ = vk::upload<std::uint32_t>(context, tree.order, "faces of the tree");
-  leaf_begin_ = vk::upload<std::uint32_t>(context, tree.leaf_begin, "leaves of the tree");
-  boxes_ = {context, 2ull * leaves_ * sizeof(gpu::Box), vk::Place::device, "boxes of the tree"};
+  order_ = vk::upload<std::uint32_t>(context, tree.order, "exchange/faces of the tree");
+  leaf_begin_ = vk::upload<std::uint32_t>(context, tree.leaf_begin, "exchange/leaves of the tree");
+  boxes_ = {context, 2ull * leaves_ * sizeof(gpu::Box), vk::Place::device, "exchange/boxes of the tree"};
 }
 
 void ExchangeMatrix::moved() {

@@ -15,15 +15,15 @@ constexpr std::uint64_t tet_bytes = sizeof(glm::uvec2) + vec3_bytes + sizeof(gpu
 
 GatherField::GatherField(vk::Context& context, const Level& level) {
   const VertexStarts starts = vertex_starts(level);
-  start_ = vk::upload<std::uint32_t>(context, starts.start, "a tet at each vertex");
-  nearest_ = vk::upload<std::uint32_t>(context, starts.nearest, "nearest surface vertex");
-  body_ = vk::Buffer(context, sizeof(gpu::BodyRef), vk::Place::host, "body");
+  start_ = vk::upload<std::uint32_t>(context, starts.start, "gather/a tet at each vertex");
+  nearest_ = vk::upload<std::uint32_t>(context, starts.nearest, "gather/nearest surface vertex");
+  body_ = vk::Buffer(context, sizeof(gpu::BodyRef), vk::Place::host, "gather/body");
   const auto room = [&](std::uint64_t bytes, const char* name) {
     return vk::Buffer(context, bytes, vk::Place::device, name);
   };
-  points_ = room(level.vertex_count() * sizeof(gpu::GatherPoint), "gather points");
-  gathered_ = room(level.face_count() * vec3_bytes, "gathered exitance");
-  scale_ = room(level.surface_vertex_count * sizeof(gpu::GatherScale), "gather scale");
+  points_ = room(level.vertex_count() * sizeof(gpu::GatherPoint), "gather/points");
+  gathered_ = room(level.face_count() * vec3_bytes, "gather/gathered exitance");
+  scale_ = room(level.surface_vertex_count * sizeof(gpu::GatherScale), "gather/scale");
 }
 
 void GatherField::record(Workspace& work, const GatherInput& input) {

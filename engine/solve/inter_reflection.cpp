@@ -45,21 +45,21 @@ void InterReflection::make_room(Workspace& work, const std::vector<LevelBuffers>
   };
   const Level& level = graph_.levels()[*level_];
   matrix_->make_room(context);
-  phi_ = room(level.face_count() * vec3_bytes, "phi at faces of the exchange");
-  exitance_ = room(level.face_count() * vec3_bytes, "exitance of the exchange");
-  before_ = room(level.face_count() * vec3_bytes, "irradiance before the bounce");
-  clip_ = room(sizeof(gpu::Clip), "clip of the exchange");
-  factor_ = room(vec3_bytes, "factor of the exchange");
-  state_ = room(sizeof(gpu::ExchangeState), "state of the exchange");
-  state_on_host_ = {context, sizeof(gpu::ExchangeState), vk::Place::host, "state of the exchange, read back"};
+  phi_ = room(level.face_count() * vec3_bytes, "exchange/phi at faces");
+  exitance_ = room(level.face_count() * vec3_bytes, "exchange/exitance");
+  before_ = room(level.face_count() * vec3_bytes, "exchange/irradiance before the bounce");
+  clip_ = room(sizeof(gpu::Clip), "exchange/clip");
+  factor_ = room(vec3_bytes, "exchange/factor");
+  state_ = room(sizeof(gpu::ExchangeState), "exchange/state");
+  state_on_host_ = {context, sizeof(gpu::ExchangeState), vk::Place::host, "exchange/state, read back"};
   work.recorder.fill(state_, 0);
   for (std::uint32_t i = 0; i <= *level_; ++i) {
-    irradiance_.push_back(room(levels[i].face_count * vec3_bytes, "irradiance from other parts"));
+    irradiance_.push_back(room(levels[i].face_count * vec3_bytes, "exchange/irradiance from other parts"));
     work.recorder.fill(irradiance_.back(), 0);
     if (i == *level_) break;
     const Transfer& surface = graph_.levels()[i].surface;
-    finer_.push_back({vk::upload(context, surface.index, "surface_index"),
-                      vk::upload(context, surface.weight, "surface_weight"), surface.width});
+    finer_.push_back({vk::upload(context, surface.index, "exchange/surface_index"),
+                      vk::upload(context, surface.weight, "exchange/surface_weight"), surface.width});
   }
 }
 

@@ -6,7 +6,7 @@
 namespace quadgraph {
 
 LevelBuffers upload_level(vk::Context& context, const Level& level, std::uint32_t number) {
-  const std::string prefix = "level " + std::to_string(number) + " ";
+  const std::string prefix = "geometry/level " + std::to_string(number) + " ";
   LevelBuffers buffers;
   buffers.vertex_count = level.vertex_count();
   buffers.tet_count = level.tet_count();
@@ -25,9 +25,10 @@ LevelBuffers upload_level(vk::Context& context, const Level& level, std::uint32_
   buffers.face_incidence = vk::upload<std::uint32_t>(context, incidence.face, prefix + "face_incidence");
   buffers.links = vk::upload(context, level.links, prefix + "links");
   buffers.nodes = vk::upload(context, level.nodes, prefix + "nodes");
-  buffers.optical =
-      vk::Buffer(context, level.nodes.size() * sizeof(gpu::Optical), vk::Place::device, prefix + "optical");
-  buffers.q = vk::Buffer(context, level.faces.size() * sizeof(glm::vec3), vk::Place::device, prefix + "q");
+  buffers.optical = vk::Buffer(context, level.nodes.size() * sizeof(gpu::Optical), vk::Place::device,
+                               "material/level " + std::to_string(number) + " optical");
+  buffers.q = vk::Buffer(context, level.faces.size() * sizeof(glm::vec3), vk::Place::device,
+                         "light/level " + std::to_string(number) + " q");
   vk::Commands commands(context);
   commands.fill(buffers.q, 0);
   commands.submit_and_wait();
@@ -36,7 +37,7 @@ LevelBuffers upload_level(vk::Context& context, const Level& level, std::uint32_
 
 TransferBuffers::TransferBuffers(vk::Context& context, const Level& level, const Level& coarse, std::uint32_t number,
                                  Method method) {
-  const std::string prefix = "level " + std::to_string(number) + " ";
+  const std::string prefix = "transfers/level " + std::to_string(number) + " ";
   const auto add = [&](const Transfer& t, const std::string& name, std::uint32_t first, std::uint32_t coarse_first) {
     parts.push_back({vk::upload(context, t.index, prefix + name + "_index"),
                      vk::upload(context, t.weight, prefix + name + "_weight"), t.width, first, coarse_first,

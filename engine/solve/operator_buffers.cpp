@@ -19,40 +19,41 @@ OperatorBuffers::OperatorBuffers(vk::Context& context, const Level& level, std::
     : model(model_in), count(carrier_count(level, method)) {
   const std::string prefix =
       "level " + std::to_string(index) + " " + std::string(name_of(method)) + " " + std::string(name_of(model)) + " ";
-  const auto buffer = [&](std::uint64_t bytes, const char* name) {
-    return vk::Buffer(context, bytes, vk::Place::device, prefix + name);
+  const auto buffer = [&](std::uint64_t bytes, const std::string& purpose, const char* name) {
+    return vk::Buffer(context, bytes, vk::Place::device, purpose + prefix + name);
   };
+  const std::string rows = "operator/", vectors = "solver/", structure = "assembly/";
   SlicedColumns columns;
   if (method == Method::fem) {
     FemStructure fem = fem_structure(level);
     columns = std::move(fem.columns);
     edge_count = static_cast<std::uint32_t>(fem.edge_entry.size());
-    edge_entry = upload(context, fem.edge_entry, prefix + "edge_entry");
-    ring_offset = upload(context, fem.ring_offset, prefix + "ring_offset");
-    ring = upload(context, fem.ring, prefix + "ring");
-    tet_offset = upload(context, fem.tet_offset, prefix + "tet_offset");
-    tet_incidence = upload(context, fem.tet_incidence, prefix + "tet_incidence");
-    tet_shape = buffer(std::uint64_t{gpu::TET_SHAPE} * level.tet_count() * sizeof(float), "tet_shape");
-    face_area = buffer(level.face_count() * sizeof(float), "face_area");
-    to_phi = upload(context, std::vector<glm::vec3>(count, glm::vec3(1)), prefix + "to_phi");
+    edge_entry = upload(context, fem.edge_entry, structure + prefix + "edge_entry");
+    ring_offset = upload(context, fem.ring_offset, structure + prefix + "ring_offset");
+    ring = upload(context, fem.ring, structure + prefix + "ring");
+    tet_offset = upload(context, fem.tet_offset, structure + prefix + "tet_offset");
+    tet_incidence = upload(context, fem.tet_incidence, structure + prefix + "tet_incidence");
+    tet_shape = buffer(std::uint64_t{gpu::TET_SHAPE} * level.tet_count() * sizeof(float), structure, "tet_shape");
+    face_area = buffer(level.face_count() * sizeof(float), structure, "face_area");
+    to_phi = upload(context, std::vector<glm::vec3>(count, glm::vec3(1)), rows + prefix + "to_phi");
   } else {
     columns = node_columns(level);
-    to_phi = buffer(count * sizeof(glm::vec3), "to_phi");
+    to_phi = buffer(count * sizeof(glm::vec3), rows, "to_phi");
   }
   entries = static_cast<std::uint32_t>(columns.column.size());
   slices = static_cast<std::uint32_t>(columns.slice_offset.size() - 1);
-  slice_offset = upload(context, columns.slice_offset, prefix + "slice_offset");
-  column = upload(context, columns.column, prefix + "column");
-  weight = buffer(entries * entry_bytes(), "weight");
-  row_sum = buffer(count * entry_bytes(), "row_sum");
-  diagonal = buffer(count * entry_bytes(), "diagonal");
-  b = buffer(count * field_bytes(), "b");
-  x = buffer(count * field_bytes(), "x");
-  r = buffer(count * field_bytes(), "r");
-  p = buffer(count * field_bytes(), "p");
-  product = buffer(count * field_bytes(), "product");
-  state = buffer(sizeof(gpu::SolveState), "state");
-  damping = buffer(sizeof(glm::vec3), "damping");
+  slice_offset = upload(context, columns.slice_offset, rows + prefix + "slice_offset");
+  column = upload(context, columns.column, rows + prefix + "column");
+  weight = buffer(entries * entry_bytes(), rows, "weight");
+  row_sum = buffer(count * entry_bytes(), rows, "row_sum");
+  diagonal = buffer(count * entry_bytes(), rows, "diagonal");
+  b = buffer(count * field_bytes(), vectors, "b");
+  x = buffer(count * field_bytes(), vectors, "x");
+  r = buffer(count * field_bytes(), vectors, "r");
+  p = buffer(count * field_bytes(), vectors, "p");
+  product = buffer(count * field_bytes(), vectors, "product");
+  state = buffer(sizeof(gpu::SolveState), vectors, "state");
+  damping = buffer(sizeof(glm::vec3), vectors, "damping");
 }
 
 gpu::RowsRef OperatorBuffers::rows() const {

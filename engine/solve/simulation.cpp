@@ -65,7 +65,7 @@ struct Simulation::Implementation {
       levels.push_back(upload_level(context, level, static_cast<std::uint32_t>(levels.size())));
     }
     const auto sky = sky_of_levels(graph.levels());
-    for (std::size_t i = 0; i < levels.size(); ++i) levels[i].sky = vk::upload<float>(context, sky[i], "sky");
+    for (std::size_t i = 0; i < levels.size(); ++i) levels[i].sky = vk::upload<float>(context, sky[i], "geometry/sky");
     return levels;
   }
 
@@ -93,7 +93,7 @@ struct Simulation::Implementation {
     LevelBuffers& level = levels[number];
     if (level.rest.size() == 0) {
       level.rest = std::move(level.nodes);
-      level.nodes = {context, level.rest.size(), vk::Place::device, "moved nodes"};
+      level.nodes = {context, level.rest.size(), vk::Place::device, "geometry/moved nodes"};
     }
     vk::write_bytes(context, level.vertices, std::as_bytes(shape.levels()[number].vertices));
     vk::write_bytes(context, level.nodes, std::as_bytes(shape.levels()[number].nodes));

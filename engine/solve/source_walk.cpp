@@ -63,12 +63,12 @@ std::vector<glm::uvec2> crossings(const Level& level) {
 
 SourceWalk::SourceWalk(vk::Context& context, const Level& level, std::uint32_t number)
     : prefix_("level " + std::to_string(number) + " "),
-      unscattered_(context, level.face_count() * power_bytes, vk::Place::device, prefix_ + "unscattered") {
+      unscattered_(context, level.face_count() * power_bytes, vk::Place::device, "walk/" + prefix_ + "unscattered") {
   if (level.vertex_count() > CROSSING_VERTICES) {
     throw InputError(prefix_ + "has " + std::to_string(level.vertex_count()) +
                      " vertices; the buried source takes up to " + std::to_string(CROSSING_VERTICES));
   }
-  crossings_ = vk::upload<glm::uvec2>(context, crossings(level), prefix_ + "crossings");
+  crossings_ = vk::upload<glm::uvec2>(context, crossings(level), "geometry/" + prefix_ + "crossings");
 }
 
 gpu::BodyRef SourceWalk::body(const LevelBuffers& level, double eta, bool even) const {
@@ -87,9 +87,9 @@ gpu::BodyRef SourceWalk::body(const LevelBuffers& level, double eta, bool even) 
 
 void SourceWalk::Sums::make_room(vk::Context& context, std::uint64_t bytes, const std::string& prefix) {
   if (device.size() == bytes) return;
-  device = {context, bytes, vk::Place::device, prefix + "walk sums"};
-  host = {context, bytes, vk::Place::host, prefix + "walk sums, read back"};
-  scale = {context, sizeof(gpu::Scale), vk::Place::host, prefix + "scale, read back"};
+  device = {context, bytes, vk::Place::device, "walk/" + prefix + "sums"};
+  host = {context, bytes, vk::Place::host, "walk/" + prefix + "sums, read back"};
+  scale = {context, sizeof(gpu::Scale), vk::Place::host, "walk/" + prefix + "scale, read back"};
 }
 
 void SourceWalk::Sums::read_back(Workspace& work) const {
@@ -112,7 +112,8 @@ WalkPower SourceWalk::Sums::power() const {
 void SourceWalk::make_room(vk::Context& context, const LevelBuffers& level, const BeamBuffers& beams, Method method) {
   vk::Buffer& deposit = deposits_[carrier(method)];
   const std::uint64_t deposit_bytes = carriers(level, method) * power_bytes;
-  if (deposit.size() != deposit_bytes) deposit = {context, deposit_bytes, vk::Place::device, prefix_ + "deposit"};
+  if (deposit.size() != deposit_bytes)
+    deposit = {context, deposit_bytes, vk::Place::device, "walk/" + prefix_ + "deposit"};
   std::uint64_t all_sums = 0;
   for (const std::uint32_t kind : beams.kinds) all_sums += kind == gpu::BEAM_MEAN ? 0 : sums_bytes(level, kind);
   sums_.make_room(context, all_sums, prefix_);
@@ -157,7 +158,7 @@ void SourceWalk::record_again(Workspace& work, const LevelBuffers& level, const 
                               double eta, bool even) {
   vk::Context& context = work.recorder.context();
   const auto like = [&](vk::Buffer& buffer, const vk::Buffer& model, const char* name) {
-    if (buffer.size() != model.size()) buffer = {context, model.size(), vk::Place::device, prefix_ + name};
+    if (buffer.size() != model.size()) buffer = {context, model.size(), vk::Place::device, "walk/" + prefix_ + name};
     work.recorder.copy(model, buffer, model.size());
   };
   like(all_deposits_[carrier(method)], deposits_[carrier(method)], "deposit with light that entered again");

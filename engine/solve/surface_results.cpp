@@ -36,17 +36,17 @@ SurfaceResults::SurfaceResults(vk::Context& context, const LevelBuffers& level) 
   const auto vector = [&](std::uint64_t count, const char* name) {
     return vk::Buffer(context, count * vec3_bytes, vk::Place::device, name);
   };
-  phi_ = vector(level.face_count, "phi at faces");
-  exitance_ = vector(level.face_count, "exitance");
-  coarse_exitance_ = vector(level.face_count, "exitance of the coarser level");
-  vertex_exitance_ = vector(level.surface_vertex_count, "exitance at vertices");
-  vertex_unscattered_ = vector(level.surface_vertex_count, "unscattered light at vertices");
-  display_factor_ = vector(1, "display factor");
-  clip_ = vk::Buffer(context, sizeof(gpu::Clip), vk::Place::device, "clip");
-  clip_on_host_ = vk::Buffer(context, sizeof(gpu::Clip), vk::Place::host, "clip, read back");
+  phi_ = vector(level.face_count, "results/phi at faces");
+  exitance_ = vector(level.face_count, "results/exitance");
+  coarse_exitance_ = vector(level.face_count, "results/exitance of the coarser level");
+  vertex_exitance_ = vector(level.surface_vertex_count, "results/exitance at vertices");
+  vertex_unscattered_ = vector(level.surface_vertex_count, "results/unscattered light at vertices");
+  display_factor_ = vector(1, "results/display factor");
+  clip_ = vk::Buffer(context, sizeof(gpu::Clip), vk::Place::device, "results/clip");
+  clip_on_host_ = vk::Buffer(context, sizeof(gpu::Clip), vk::Place::host, "results/clip, read back");
   const std::uint64_t sums_bytes = energy_groups(level) * sizeof(gpu::EnergySums);
-  sums_ = vk::Buffer(context, sums_bytes, vk::Place::device, "energy sums");
-  sums_on_host_ = vk::Buffer(context, sums_bytes, vk::Place::host, "energy sums, read back");
+  sums_ = vk::Buffer(context, sums_bytes, vk::Place::device, "results/energy sums");
+  sums_on_host_ = vk::Buffer(context, sums_bytes, vk::Place::host, "results/energy sums, read back");
 }
 
 void record_exitance(Workspace& work, const Solved& solved, const vk::Buffer& phi, const vk::Buffer& exitance,

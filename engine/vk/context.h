@@ -5,6 +5,7 @@
 #include <vulkan/vulkan.h>
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -43,8 +44,14 @@ class Context {
   std::uint32_t memory_type(std::uint32_t type_bits, VkMemoryPropertyFlags required,
                             VkMemoryPropertyFlags preferred) const;
 
-  // Bytes of device memory allocated now, kept up to date by Allocation.
+  // Bytes of memory allocated now, kept up to date by Allocation.
   std::uint64_t allocated_bytes() const { return allocated_bytes_; }
+
+  // The same by purpose (memory.h), without those that have none.
+  const std::map<std::string, std::uint64_t>& allocated_by_purpose() const { return allocated_by_purpose_; }
+
+  // Allocations ever made.
+  std::uint64_t allocation_count() const { return allocation_count_; }
 
   // The most there ever were at a time.
   std::uint64_t peak_allocated_bytes() const { return peak_allocated_bytes_; }
@@ -82,6 +89,8 @@ class Context {
   PFN_vkSetDebugUtilsObjectNameEXT set_object_name_ = nullptr;
   std::uint64_t allocated_bytes_ = 0;
   std::uint64_t peak_allocated_bytes_ = 0;
+  std::uint64_t allocation_count_ = 0;
+  std::map<std::string, std::uint64_t> allocated_by_purpose_;
   std::vector<std::string> validation_messages_;
 };
 

@@ -8,8 +8,9 @@
 
 namespace quadgraph::vk {
 
-Allocation::Allocation(Context& context, const VkMemoryRequirements& requirements, Place place, bool device_address)
-    : context_(&context), size_(requirements.size) {
+Allocation::Allocation(Context& context, const VkMemoryRequirements& requirements, Place place, bool device_address,
+                       const std::string& name)
+    : context_(&context), size_(requirements.size), purpose_(name.substr(0, name.find('/'))) {
   VkMemoryAllocateFlagsInfo flags{};
   flags.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO;
   flags.flags = device_address ? VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT : 0;
@@ -28,6 +29,8 @@ Allocation::Allocation(Context& context, const VkMemoryRequirements& requirement
         "vkAllocateMemory of " + std::to_string(requirements.size) + " bytes");
   memory_ = UniqueMemory(context.device(), memory);
   context.allocated_bytes_ += size_;
+  context.allocated_by_purpose_[purpose_] += size_;
+  ++context.allocation_count_;
   context.peak_allocated_bytes_ = std::max(context.peak_allocated_bytes_, context.allocated_bytes_);
 }
 
@@ -38,12 +41,17 @@ Allocation::Allocation(Allocation&& other) noexcept {
 Allocation& Allocation::operator=(Allocation&& other) noexcept {
   std::swap(context_, other.context_);
   std::swap(size_, other.size_);
+  std::swap(purpose_, other.purpose_);
   std::swap(memory_, other.memory_);
   return *this;
 }
 
 Allocation::~Allocation() {
-  if (context_ != nullptr && memory_.get() != VK_NULL_HANDLE) context_->allocated_bytes_ -= size_;
+  if (context_ == nullptr || memory_.get() == VK_NULL_HANDLE) return;
+  context_->allocated_bytes_ -= size_;
+  const auto of_purpose = context_->allocated_by_purpose_.find(purpose_);
+  of_purpose->second -= size_;
+  if (of_purpose->second == 0) context_->allocated_by_purpose_.erase(of_purpose);
 }
 
 Buffer::Buffer(Context& context, std::uint64_t size, Place place, const std::string& name) : size_(size) {
@@ -65,7 +73,7 @@ Buffer::Buffer(Context& context, std::uint64_t size, Place place, const std::str
   VkMemoryRequirements requirements;
   vkGetBufferMemoryRequirements(context.device(), buffer, &requirements);
   try {
-    allocation_ = Allocation(context, requirements, place, true);
+    allocation_ = Allocation(context, requirements, place, true, name);
   } catch (const VulkanError& error) {
     throw VulkanError("buffer '" + name + "': " + error.what() + "; " + std::to_string(context.allocated_bytes()) +
                       " bytes are in use");
@@ -92,7 +100,7 @@ void write_bytes(Context& context, const Buffer& target, std::span<const std::by
     throw InputError("buffer holds " + std::to_string(target.size()) + " bytes, got " + std::to_string(data.size()));
   }
   if (data.empty()) return;
-  const Buffer staging(context, data.size(), Place::host, "staging");
+  const Buffer staging(context, data.size(), Place::host, "staging/upload");
   std::memcpy(staging.mapped(), data.data(), data.size());
   Commands commands(context);
   commands.copy(staging, target, data.size());
@@ -105,7 +113,7 @@ void read_bytes(Context& context, const Buffer& source, std::span<std::byte> tar
                      std::to_string(target.size()));
   }
   if (target.empty()) return;
-  const Buffer staging(context, target.size(), Place::host, "read-back");
+  const Buffer staging(context, target.size(), Place::host, "staging/read-back");
   Commands commands(context);
   commands.barrier();
   commands.copy(source, staging, target.size());
@@ -141,7 +149,7 @@ Image::Image(Context& context, const ImageOptions& options, const std::string& n
 
   VkMemoryRequirements requirements;
   vkGetImageMemoryRequirements(context.device(), image, &requirements);
-  allocation_ = Allocation(context, requirements, Place::device, false);
+  allocation_ = Allocation(context, requirements, Place::device, false, name);
   check(vkBindImageMemory(context.device(), image, allocation_.memory(), 0), "vkBindImageMemory '" + name + "'");
 
   for (std::uint32_t layer = 0; layer < options.layers; ++layer) {

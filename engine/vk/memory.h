@@ -1,4 +1,7 @@
 // Device memory, buffers and images: each owns its handle and its memory together.
+//
+// The name of a buffer or image is "purpose/what it is", like "operator/level 0 weight"; Context adds up memory by
+// purpose.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +24,8 @@ enum class Place {
 class Allocation {
  public:
   Allocation() = default;
-  Allocation(Context& context, const VkMemoryRequirements& requirements, Place place, bool device_address);
+  Allocation(Context& context, const VkMemoryRequirements& requirements, Place place, bool device_address,
+             const std::string& name);
   Allocation(Allocation&& other) noexcept;
   Allocation& operator=(Allocation&& other) noexcept;
   ~Allocation();
@@ -31,6 +35,7 @@ class Allocation {
  private:
   Context* context_ = nullptr;
   std::uint64_t size_ = 0;
+  std::string purpose_;
   UniqueMemory memory_;
 };
 

@@ -2,6 +2,8 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
+
 #include "engine/graph/error.h"
 #include "engine/render/default_lights.h"
 #include "engine/render/engine.h"
@@ -49,6 +51,19 @@ py::dict field_dict(SurfaceField&& field) {
   d["exitance"] = own(std::move(field.exitance));
   d["unscattered"] = own(std::move(field.unscattered));
   return d;
+}
+
+py::list memory_list(const Engine& engine) {
+  std::vector<std::pair<std::string, std::uint64_t>> uses(engine.memory().begin(), engine.memory().end());
+  std::stable_sort(uses.begin(), uses.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  py::list list;
+  for (const auto& [purpose, bytes] : uses) {
+    py::dict d;
+    d["purpose"] = purpose;
+    d["bytes"] = bytes;
+    list.append(d);
+  }
+  return list;
 }
 
 py::list as_list(const std::vector<PassStats>& passes) {
@@ -253,6 +268,7 @@ void bind_engine(py::module_& module) {
           "Device time and bytes per pass of the last frame.")
       .def_property_readonly("metadata", &Engine::metadata)
       .def_property_readonly("device_bytes", &Engine::device_bytes)
+      .def("memory", &memory_list, "What device_bytes consists of: {purpose, bytes}, largest first.")
       .def_property_readonly("peak_device_bytes", &Engine::peak_device_bytes)
       .def_property_readonly("device_name", [](const Engine& engine) { return engine.context().info().name; })
       .def_property_readonly("driver", [](const Engine& engine) { return engine.context().info().driver; })

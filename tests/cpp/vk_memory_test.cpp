@@ -57,3 +57,23 @@ TEST_CASE("moving a buffer moves its memory") {
   CHECK(context.allocated_bytes() == 0);
   for (const auto& message : context.validation_messages()) FAIL_CHECK(message);
 }
+
+TEST_CASE("memory is counted by purpose, and every allocation") {
+  vk::Context context({.validation = true, .device = ""});
+  {
+    const vk::Buffer first(context, 4096, vk::Place::device, "operator/level 0 weight");
+    vk::Buffer second(context, 8192, vk::Place::device, "operator/level 1 weight");
+    const vk::Image image(context, {.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT}, "picture/samples");
+    CHECK(context.allocation_count() == 3);
+    const auto& uses = context.allocated_by_purpose();
+    REQUIRE(uses.size() == 2);
+    CHECK(uses.at("operator") >= 4096 + 8192);
+    CHECK(uses.at("operator") + uses.at("picture") == context.allocated_bytes());
+    const std::uint64_t both = uses.at("operator");
+    second = vk::Buffer();
+    CHECK(uses.at("operator") <= both - 8192);
+  }
+  CHECK(context.allocated_by_purpose().empty());
+  CHECK(context.allocation_count() == 3);
+  for (const auto& message : context.validation_messages()) FAIL_CHECK(message);
+}
