@@ -19,7 +19,7 @@ vec3 absorbed(uint tet) {
   } else {
     phi = push.to_phi.at[tet] * push.x.at[tet].phi;
   }
-  return push.optical.at[tet].sigma_a * phi * push.scale.at[0].scale * volume;
+  return push.optical.at[push.even == 1u ? 0u : tet].sigma_a * phi * push.scale.at[0].scale * volume;
 }
 
 void main() {

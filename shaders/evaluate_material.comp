@@ -8,5 +8,6 @@ layout(push_constant, scalar) uniform Block { EvaluateMaterialPush push; };
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= push.count) return;
-  push.optical.at[i] = material_at(push.material, push.nodes.at[i]);
+  vec3 position = push.material.kind == MATERIAL_HOMOGENEOUS ? vec3(0) : push.nodes.at[i];
+  push.optical.at[i] = material_at(push.material, position);
 }

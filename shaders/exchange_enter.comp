@@ -17,8 +17,8 @@ void main() {
     vec3 q = push.transmitted * irradiance;
     float area = area_of(f);
     entered = area * push.q.at[f];
-    change = area * abs(q - push.beam_q.at[FACE_QUARTERS * f]);
-    for (uint k = 0u; k < FACE_QUARTERS; ++k) push.beam_q.at[FACE_QUARTERS * f + k] = q;
+    change = area * abs(q - push.beam_q.at[f]);
+    push.beam_q.at[f] = q;
   }
   vec3 total_change, total_entered;
   if (!reduce_dispatch_pair(push.reduction, change, entered, total_change, total_entered)) return;

@@ -61,7 +61,7 @@ struct ExchangeEnterPush {
   QG_REF(Uvec3s) faces;
   QG_REF(Vec3s) q;  // W/mm^2, of the scene's light
   QG_REF(Vec3s) irradiance;
-  QG_REF(Vec3s) beam_q;  // FACE_QUARTERS per face, written
+  QG_REF(Vec3s) beam_q;  // of that beam, written
   QG_REF(Vec3s) factor;  // one
   QG_REF(ExchangeStates) state;
   QG_REF(Reduction) reduction;

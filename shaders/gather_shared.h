@@ -45,7 +45,6 @@ const float LEAST_VIEW_COSINE = 0.02f;
 
 #ifndef __cplusplus
 QG_ARRAY(BodyRefs, BodyRef);
-QG_ARRAY(BeamRecords, BeamRecord);
 QG_ARRAY(GatherPoints, GatherPoint);
 QG_ARRAY(GatherScales, GatherScale);
 #endif
@@ -65,8 +64,8 @@ struct UncollidedPush {
   QG_REF(Uints) nearest;      // surface vertex
   QG_REF(Uints) face_offset;  // faces around each surface vertex
   QG_REF(Uints) face_incidence;
-  QG_REF(BeamRecords) beams;
-  QG_REF(Vec3s) quarter_q;  // W/mm^2 per beam, face and quarter
+  QG_REF(Beams) beams;
+  QG_REF(Floats) beam_q;
   QG_REF(GatherPoints) points;
   uint beam_count;
   uint vertex_count;

@@ -6,13 +6,13 @@
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { IrradiancePush push; };
 
-// q of one light with a direction at one point: visibility * cos * E * F_t(cos, eta).
-vec3 irradiance_at(LightRecord light, vec3 position, vec3 normal) {
+// q of one light with a direction at one point, over its power: visibility * cos * E * F_t(cos, eta).
+float share_at(LightRecord light, vec3 position, vec3 normal) {
   Incident incident = incident_light(light, position);
   float cos_i = min(dot(normal, incident.direction), 1.0);
-  if (cos_i <= 0.0) return vec3(0);
+  if (cos_i <= 0.0) return 0.0;
   float visibility = light_visibility(light, push.views, position, normal, 0);
-  return visibility * cos_i * fresnel_transmittance(cos_i, push.eta) * incident.irradiance;
+  return visibility * cos_i * fresnel_transmittance(cos_i, push.eta) * incident.share;
 }
 
 // The quarter of a face that its point a + u ab + v ac lies in, away from their boundaries.
@@ -20,11 +20,9 @@ uint quarter_of(float u, float v) {
   return u + v < 0.5 ? 0u : u > 0.5 ? 1u : v > 0.5 ? 2u : 3u;
 }
 
-// q of one light on the quarters of the face a, a + ab, a + ac, that sees the share `sky` of the sky.
-vec3[FACE_QUARTERS] quarters_of(LightRecord light, vec3 a, vec3 ab, vec3 ac, vec3 normal, float sky) {
-  vec3 even = light.kind == LIGHT_AMBIENT ? sky * push.diffuse_transmittance * light.power : vec3(0);
-  vec3 quarter[FACE_QUARTERS] = vec3[](even, even, even, even);
-  if (light.kind == LIGHT_AMBIENT) return quarter;
+// The same on the quarters of the face a, a + ab, a + ac.
+vec4 quarters_of(LightRecord light, vec3 a, vec3 ab, vec3 ac, vec3 normal) {
+  vec4 quarter = vec4(0);
   uint n = push.subdivision;
   float h = 1.0 / float(n);
   // Row i, column j: an upright triangle, and beside it an inverted one where the row has room.
@@ -34,7 +32,7 @@ vec3[FACE_QUARTERS] quarters_of(LightRecord light, vec3 a, vec3 ab, vec3 ac, vec
         float u = h * (float(i) + (inverted == 1u ? 2.0 : 1.0) / 3.0);
         float v = h * (float(j) + (inverted == 1u ? 2.0 : 1.0) / 3.0);
         quarter[quarter_of(u, v)] +=
-            float(FACE_QUARTERS) * h * h * irradiance_at(light, a + u * ab + v * ac, normal);
+            float(FACE_QUARTERS) * h * h * share_at(light, a + u * ab + v * ac, normal);
       }
     }
   }
@@ -51,12 +49,20 @@ void main() {
   vec3 normal = normalize(cross(ab, ac));
 
   vec3 q = vec3(0);
-  for (uint light = 0u; light < push.light_count; ++light) {
-    vec3 quarter[FACE_QUARTERS] = quarters_of(push.lights.at[light], a, ab, ac, normal, push.sky.at[f]);
-    for (uint k = 0u; k < FACE_QUARTERS; ++k) {
-      push.beam_q.at[(light * push.face_count + f) * FACE_QUARTERS + k] = quarter[k];
-      q += quarter[k] / float(FACE_QUARTERS);
+  uint beam = 0u;  // of the light
+  for (uint i = 0u; i < push.light_count; ++i) {
+    LightRecord light = push.lights.at[i];
+    if (light.kind == LIGHT_AMBIENT) {
+      float share = push.sky.at[f] * push.diffuse_transmittance;
+      push.beam_q.at[beam + f] = share;
+      q += share * light.power;
+      beam += BEAM_FACE * push.face_count;
+      continue;
     }
+    vec4 quarter = quarters_of(light, a, ab, ac, normal);
+    for (uint k = 0u; k < FACE_QUARTERS; ++k) push.beam_q.at[beam + FACE_QUARTERS * f + k] = quarter[k];
+    q += dot(quarter, vec4(0.25)) * light.power;
+    beam += BEAM_QUARTERS * push.face_count;
   }
   push.q.at[f] = q;
 }

@@ -2,15 +2,15 @@
 #include "render_shared.h"
 
 struct Incident {
-  vec3 direction;   // unit, towards the light
-  vec3 irradiance;  // W/mm^2 on a plane facing the light
+  vec3 direction;  // unit, towards the light
+  float share;     // irradiance on a plane facing the light, over its power; point: 1/mm^2
 };
 
 Incident incident_light(LightRecord light, vec3 position) {
-  if (light.kind == LIGHT_DIRECTIONAL) return Incident(light.vector, light.power);
+  if (light.kind == LIGHT_DIRECTIONAL) return Incident(light.vector, 1.0);
   vec3 to_light = light.vector - position;
   float distance_squared = max(dot(to_light, to_light), 1e-12);
-  return Incident(to_light * inversesqrt(distance_squared), light.power / distance_squared);
+  return Incident(to_light * inversesqrt(distance_squared), 1.0 / distance_squared);
 }
 
 // Index among the six views of the one that `away`, pointing from the light, falls into.

@@ -52,14 +52,14 @@ struct ShadowPush {
   QG_REF(Vec3s) vertices;  // mm
 };
 
-// irradiance.comp: q of every outside face of a level, the mean over the face, and what each light brings to each of
-// its quarters.
+// irradiance.comp: q of every outside face of a level, the mean over the face, and what each light brings to its
+// quarters.
 struct IrradiancePush {
   QG_REF(Vec3s) vertices;  // mm
   QG_REF(Uvec3s) faces;
-  QG_REF(Vec3s) q;       // W/mm^2, written
-  QG_REF(Vec3s) beam_q;  // W/mm^2 per light, face and quarter, written
-  QG_REF(Floats) sky;    // per face: share of ambient light that other parts of the body do not hide
+  QG_REF(Vec3s) q;        // W/mm^2, written
+  QG_REF(Floats) beam_q;  // per light BEAM_QUARTERS per face, of ambient light BEAM_FACE: share of its power; written
+  QG_REF(Floats) sky;     // per face: share of ambient light that other parts of the body do not hide
   QG_REF(LightRecords) lights;
   QG_REF(ShadowViews) views;
   uint face_count;

@@ -65,7 +65,7 @@ QG_ARRAY(Opticals, Optical);
 // evaluate_material.comp: optical[i] = material_at(nodes[i]).
 struct EvaluateMaterialPush {
   Material material;
-  QG_REF(Vec3s) nodes;
+  QG_REF(Vec3s) nodes;  // not read for a homogeneous material
   QG_REF(Opticals) optical;
   uint count;
 };

@@ -70,6 +70,19 @@ struct BeamRecord {
   vec3 vector;  // directional: unit, the way the light travels; point: where it comes from, mm; others: unused
 };
 
+// How much of a beam is stored per face, floats: one or one per quarter, to be multiplied by its colour; or q itself.
+const uint BEAM_FACE = 1u;
+const uint BEAM_QUARTERS = FACE_QUARTERS;
+const uint BEAM_RGB = 3u;
+
+// A beam as the faces of all levels see it (beam_light.glsl).
+struct Beam {
+  BeamRecord way;
+  vec3 colour;  // W/mm^2 of what is stored as 1
+  uint floats;  // BEAM_FACE, BEAM_QUARTERS or BEAM_RGB
+  uint offset;  // floats of the beams before it, per face
+};
+
 // Rays of a Lambertian beam from one origin: at outside cosine sqrt(u), u the four Gauss-Legendre nodes on [0, 1], two
 // antipodal azimuths each, turned by 90 degrees from node to node so that no direction is preferred. Each node has
 // weight w T(sqrt(u)), T the Fresnel transmittance, normalised to 1.
@@ -120,6 +133,7 @@ struct Scale {
 };
 
 #ifndef __cplusplus
+QG_ARRAY(Beams, Beam);
 QG_ARRAY(SolveStates, SolveState);
 QG_ARRAY(Scales, Scale);
 #endif

@@ -30,7 +30,7 @@ vec3 specular_radiance(vec3 position, vec3 n, vec3 v, float sky) {
     Incident incident = incident_light(light, position);
     float reflected = cook_torrance(n, v, incident.direction);
     if (reflected == 0.0) continue;
-    sum += reflected * light_visibility(light, scene.at[0].views, position, n, 1) * incident.irradiance;
+    sum += reflected * light_visibility(light, scene.at[0].views, position, n, 1) * incident.share * light.power;
   }
   return sum;
 }

@@ -93,6 +93,7 @@ struct EnergyPush {
   uint tet_count;
   uint face_count;
   uint fem;
+  uint even;  // 1: optical is the same everywhere
 };
 
 #ifdef __cplusplus

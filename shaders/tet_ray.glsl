@@ -54,7 +54,7 @@ uint place_of(uint id, uvec4 tet) {
 void start_on_face(uint tet, uvec3 ids, mat3 corners, vec3 l) {
   uvec4 all = BODY.tets.at[tet];
   uint apex = all.x + all.y + all.z + all.w - ids.x - ids.y - ids.z;
-  optical = BODY.optical.at[tet];
+  optical = BODY.optical.at[BODY.even == 1u ? 0u : tet];
   corner_0 = Corner(ids.x, place_of(ids.x, all), corners[0], l.x, payload(ids.x));
   corner_1 = Corner(ids.y, place_of(ids.y, all), corners[1], l.y, payload(ids.y));
   corner_2 = Corner(ids.z, place_of(ids.z, all), corners[2], l.z, payload(ids.z));

@@ -4,6 +4,7 @@
 #include "fresnel.glsl"
 #include "face_azimuth.glsl"
 #include "lambertian.glsl"
+#include "beam_light.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { UncollidedPush push; };
@@ -40,7 +41,7 @@ struct Met {
 // opposite of.
 void start_at_vertex(uint v, uint tet, vec3 direction) {
   uvec4 ids = BODY.tets.at[tet];
-  optical = BODY.optical.at[tet];
+  optical = BODY.optical.at[BODY.even == 1u ? 0u : tet];
   corner_0 = Corner(ids.x, 0u, BODY.vertices.at[ids.x], float(ids.x == v), Payload(0u));
   corner_1 = Corner(ids.y, 1u, BODY.vertices.at[ids.y], float(ids.y == v), Payload(0u));
   corner_2 = Corner(ids.z, 2u, BODY.vertices.at[ids.z], float(ids.z == v), Payload(0u));
@@ -95,7 +96,7 @@ vec3 doubled_normal(uint face) {
 }
 
 vec3 q_at(uint beam, uint face, uint quarter) {
-  return push.quarter_q.at[(beam * BODY.face_count + face) * FACE_QUARTERS + quarter];
+  return beam_light(push.beams.at[beam], push.beam_q, BODY.face_count, face, quarter);
 }
 
 // The quarter of face `face` at its corner v.
@@ -160,7 +161,7 @@ vec3 fluence_below(Lambertian light, vec3 tau) {
 
 Light lambertian_light(uint beam, uint v) {
   Lambertian light = lambertian(BODY.eta);
-  if (push.beams.at[beam].kind == BEAM_MEAN) light = Lambertian(vec4(0.25), vec4(dot(light.share, light.cosine)));
+  if (push.beams.at[beam].way.kind == BEAM_MEAN) light = Lambertian(vec4(0.25), vec4(dot(light.share, light.cosine)));
   vec3 whole = fluence_below(light, vec3(0)), entry;
   if (v < push.surface_vertex_count && lit_at_surface(beam, v, vec3(0), false, entry)) {
     return Light(whole * entry, vec3(0));
@@ -171,7 +172,7 @@ Light lambertian_light(uint beam, uint v) {
 }
 
 Light light_of(uint beam, uint v) {
-  BeamRecord record = push.beams.at[beam];
+  BeamRecord record = push.beams.at[beam].way;
   if (record.kind == BEAM_DIRECTIONAL) return directed_light(beam, v, record.vector);
   if (record.kind == BEAM_POINT) return directed_light(beam, v, normalize(BODY.vertices.at[v] - record.vector));
   return lambertian_light(beam, v);

@@ -17,16 +17,12 @@ const float POWER_UNIT = 1.4210854715202004e-14f;  // 2^-46
 // Per origin of a Lambertian beam.
 const uint LAMBERTIAN_RAYS = 2u * LAMBERTIAN_NODES;
 
-#ifndef __cplusplus
-QG_ARRAY(BeamRecords, BeamRecord);
-#endif
-
 // walk_source.comp: follows the rays of one beam. One invocation per face; of a Lambertian beam, one per face and ray
 // of the bundle.
 struct WalkSourcePush {
   BodyRef body;
-  QG_REF(BeamRecords) beam;  // one
-  QG_REF(Vec3s) quarter_q;   // of this beam, FACE_QUARTERS per face
+  QG_REF(Beams) beam;     // one
+  QG_REF(Floats) beam_q;  // of all
   QG_REF(Scales) scale;
   QG_REF(Uints) deposit;      // fixed point, per vertex (fem) or tet: power scattered for the first time
   QG_REF(Uints) unscattered;  // fixed point, per face: power that leaves

@@ -5,6 +5,7 @@
 #include "fixed_point.glsl"
 #include "face_azimuth.glsl"
 #include "lambertian.glsl"
+#include "beam_light.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { WalkSourcePush push; };
@@ -29,7 +30,7 @@ bool one_ray_does(vec3 least, vec3 largest, mat3 corners, float area) {
 
 // The way light travels outside, at a point of a face.
 vec3 incoming(uint ray, vec3 position, vec3 normal, vec3 tangent) {
-  BeamRecord beam = push.beam.at[0];
+  BeamRecord beam = push.beam.at[0].way;
   if (beam.kind == BEAM_DIRECTIONAL) return beam.vector;
   if (beam.kind == BEAM_POINT) return normalize(position - beam.vector);
   return lambertian_incoming(ray, normal, tangent);
@@ -49,11 +50,12 @@ vec3 mean_direction(vec3 normal, vec3 tangent) {
 
 // Ray `ray` of every origin on a face.
 void walk_from(uint face, uint ray) {
+  Beam beam = push.beam.at[0];
   vec3 q[FACE_QUARTERS];
   vec3 inverse = push.scale.at[0].inverse;
   vec3 least = vec3(NEVER), largest = vec3(0), sum = vec3(0);
   for (uint k = 0u; k < FACE_QUARTERS; ++k) {
-    q[k] = push.quarter_q.at[FACE_QUARTERS * face + k] * inverse;
+    q[k] = beam_light(beam, push.beam_q, push.body.face_count, face, k) * inverse;
     least = min(least, q[k]);
     largest = max(largest, q[k]);
     sum += q[k];
@@ -73,7 +75,7 @@ void walk_from(uint face, uint ray) {
     if (power == vec3(0)) continue;
     vec3 l = quarter_centre(k);
     start_on_face(tet, ids, corners, l);
-    vec3 inside = push.beam.at[0].kind == BEAM_MEAN
+    vec3 inside = beam.way.kind == BEAM_MEAN
                       ? mean_direction(normal, tangent)
                       : refracted(incoming(ray, corners * l, normal, tangent), normal, push.body.eta);
     walk(Ray(tet, inside, power, vec3(0)));

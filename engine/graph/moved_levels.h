@@ -17,6 +17,9 @@ class MovedLevels {
     nodes_.resize(rest_.size());
   }
 
+  // The levels as the file has them.
+  const std::vector<Level>& rest() const { return rest_; }
+
   // The levels with their present vertices and nodes.
   const std::vector<Level>& levels() const { return levels_; }
 

@@ -41,15 +41,20 @@ void add(std::vector<PassStats>& passes, const PassStats& more) {
 constexpr std::pair<Radiance, std::string_view> radiance_names[] = {
     {Radiance::gathered, "gathered"}, {Radiance::lambertian, "lambertian"}, {Radiance::automatic, "auto"}};
 
-std::vector<gpu::BeamRecord> beams_of(const std::vector<Light>& lights) {
-  std::vector<gpu::BeamRecord> beams;
+// What IrradiancePass stores of them.
+std::vector<gpu::Beam> beams_of(const std::vector<Light>& lights) {
+  std::vector<gpu::Beam> beams;
   for (const Light& light : lights) {
+    const glm::vec3 colour = light_record(light).power;
     if (light.kind == LightKind::ambient) {
-      beams.push_back({gpu::BEAM_LAMBERTIAN, glm::vec3(0)});
+      beams.push_back({{gpu::BEAM_LAMBERTIAN, glm::vec3(0)}, colour, gpu::BEAM_FACE, 0});
       continue;
     }
     const bool point = light.kind == LightKind::point;
-    beams.push_back({point ? gpu::BEAM_POINT : gpu::BEAM_DIRECTIONAL, point ? light.position : light.direction});
+    beams.push_back({{point ? gpu::BEAM_POINT : gpu::BEAM_DIRECTIONAL, point ? light.position : light.direction},
+                     colour,
+                     gpu::BEAM_QUARTERS,
+                     0});
   }
   return beams;
 }

@@ -38,7 +38,7 @@ PassStats IrradiancePass::run(const LevelBuffers& buffers, std::uint32_t level, 
   commands.end_pass();
   const auto times = commands.submit_and_wait();
   // Per face: three indices, three corners, q; per light its quarters, and four texels per sample.
-  const std::uint64_t light_bytes = 12ull * FACE_QUARTERS + 16ull * subdivision * subdivision;
+  const std::uint64_t light_bytes = sizeof(float) * FACE_QUARTERS + 16ull * subdivision * subdivision;
   return {times[0].name, times[0].time_ms,
           buffers.face_count * (12 + 36 + 12 + 4 + shadows.light_count() * light_bytes), 1};
 }

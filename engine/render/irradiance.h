@@ -7,7 +7,7 @@
 
 namespace quadgraph {
 
-// Writes level.beam_q, per light, face and quarter, and from it level.q: the mean over the face of the sum over lights
+// Writes level.beam_q, as far as the lights go, and from it level.q: the mean over the face of the sum over lights
 // of visibility * max(0, n.l) * E * F_t(n.l, eta), n the face's normal, E the irradiance facing the light, F_t the
 // exact Fresnel transmittance; for ambient light of the share of the sky that the face sees (LevelBuffers::sky). The
 // mean, and not the value at the surface node, because the solvers take q as constant over a face; so no light is lost

@@ -68,19 +68,18 @@ std::vector<gpu::ShadowView> point_views(const Light& light, const Sphere& bound
   return views;
 }
 
-gpu::LightRecord record(const Light& light, std::size_t first_view, std::size_t view_count) {
-  const bool point = light.kind == LightKind::point;
-  if (light.kind == LightKind::ambient) return {gpu::LIGHT_AMBIENT, glm::vec3(0), light.power, 0, 0};
-  return {point ? gpu::LIGHT_POINT : gpu::LIGHT_DIRECTIONAL, point ? light.position : -light.direction,
-          point ? light.power / four_pi : light.power, static_cast<std::uint32_t>(first_view),
-          static_cast<std::uint32_t>(view_count)};
-}
-
 vk::Image depth_image(vk::Context& context, std::uint32_t size) {
   return {context, {VK_FORMAT_D32_SFLOAT, size, size, 1, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT}, "shadows/depth"};
 }
 
 }  // namespace
+
+gpu::LightRecord light_record(const Light& light) {
+  if (light.kind == LightKind::ambient) return {gpu::LIGHT_AMBIENT, glm::vec3(0), light.power, 0, 0};
+  const bool point = light.kind == LightKind::point;
+  return {point ? gpu::LIGHT_POINT : gpu::LIGHT_DIRECTIONAL, point ? light.position : -light.direction,
+          point ? light.power / four_pi : light.power, 0, 0};
+}
 
 std::vector<gpu::ShadowView> shadow_views(const Light& light, const Sphere& bounds) {
   if (light.kind == LightKind::ambient) return {};
@@ -104,7 +103,9 @@ PassStats ShadowMaps::update(const DisplayBuffers& mesh, const Sphere& bounds, s
   depths_.clear();
   for (const Light& light : lights) {
     const auto own = shadow_views(light, bounds);
-    records.push_back(record(light, views.size(), own.size()));
+    records.push_back(light_record(light));
+    records.back().first_view = static_cast<std::uint32_t>(views.size());
+    records.back().view_count = static_cast<std::uint32_t>(own.size());
     views.insert(views.end(), own.begin(), own.end());
   }
 

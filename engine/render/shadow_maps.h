@@ -18,6 +18,9 @@ namespace quadgraph {
 // directional light, one perspective view of a point light outside 1.1 times the sphere, else six of 90 degrees.
 std::vector<gpu::ShadowView> shadow_views(const Light& light, const Sphere& bounds);
 
+// As shaders take it, without views.
+gpu::LightRecord light_record(const Light& light);
+
 class ShadowMaps {
  public:
   explicit ShadowMaps(vk::Context& context);

@@ -163,11 +163,10 @@ gpu::Boundary on_device(const Boundary& boundary) {
           static_cast<float>(boundary.source), static_cast<float>(boundary.reflected)};
 }
 
-void record_material(Workspace& work, const LevelBuffers& level, const gpu::Material& material) {
-  const vk::Buffer& nodes = level.rest.size() > 0 ? level.rest : level.nodes;
-  const gpu::EvaluateMaterialPush push{material, nodes.address(), level.optical.address(), level.node_count};
-  work.recorder.dispatch(work.passes.evaluate_material, push, level.node_count, "material",
-                         level.node_count * (vec3_bytes + sizeof(gpu::Optical)));
+void record_material(Workspace& work, const LevelBuffers& level, const gpu::Material& material, std::uint32_t count) {
+  const gpu::EvaluateMaterialPush push{material, level.rest.address(), level.optical.address(), count};
+  work.recorder.dispatch(work.passes.evaluate_material, push, count, "material",
+                         count * (vec3_bytes + sizeof(gpu::Optical)));
 }
 
 void record_assembly(Workspace& work, const LevelBuffers& level, Method method, const Boundary& boundary, bool even,

@@ -8,7 +8,8 @@
 
 namespace quadgraph {
 
-void record_material(Workspace& work, const LevelBuffers& level, const gpu::Material& material);
+// The coefficients of the first `count` nodes; a material that varies is evaluated at level.rest.
+void record_material(Workspace& work, const LevelBuffers& level, const gpu::Material& material, std::uint32_t count);
 
 // `even`: level.optical is the same everywhere, which takes less time.
 void record_assembly(Workspace& work, const LevelBuffers& level, Method method, const Boundary& boundary, bool even,

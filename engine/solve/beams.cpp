@@ -1,5 +1,6 @@
 #include "engine/solve/beams.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <string>
@@ -25,31 +26,46 @@ void check_irradiance(std::span<const glm::vec3> q, std::uint32_t level, std::ui
   }
 }
 
+gpu::Beam rgb_beam(const gpu::BeamRecord& way) {
+  return {way, glm::vec3(0), gpu::BEAM_RGB, 0};
+}
+
+// Both store the same per face, one after the other.
+bool alike(std::span<const gpu::Beam> a, std::span<const gpu::Beam> b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const gpu::Beam& x, const gpu::Beam& y) { return x.floats == y.floats; });
+}
+
 }  // namespace
 
-gpu::BeamRecord beam_along(const std::optional<glm::vec3>& direction) {
-  if (!direction) return {gpu::BEAM_LAMBERTIAN, glm::vec3(0)};
+gpu::Beam beam_along(const std::optional<glm::vec3>& direction) {
+  if (!direction) return rgb_beam({gpu::BEAM_LAMBERTIAN, glm::vec3(0)});
   const double length = glm::length(glm::dvec3(*direction));
   if (!std::isfinite(length) || length == 0) {
     throw InputError("direction of the light: " + std::to_string(direction->x) + ", " + std::to_string(direction->y) +
                      ", " + std::to_string(direction->z) + ", finite numbers that are not all zero are wanted");
   }
-  return {gpu::BEAM_DIRECTIONAL, glm::vec3(glm::dvec3(*direction) / length)};
+  return rgb_beam({gpu::BEAM_DIRECTIONAL, glm::vec3(glm::dvec3(*direction) / length)});
 }
 
-void replace_beams(vk::Context& context, std::span<const gpu::BeamRecord> beams, BeamBuffers& buffers,
+void replace_beams(vk::Context& context, std::span<const gpu::Beam> beams, BeamBuffers& buffers,
                    std::vector<LevelBuffers>& levels) {
-  std::vector<gpu::BeamRecord> all(beams.begin(), beams.end());
-  all.push_back({gpu::BEAM_MEAN, glm::vec3(0)});
-  buffers.records = vk::upload<gpu::BeamRecord>(context, all, "light/beams");
-  const bool fits = all.size() == buffers.kinds.size();
-  buffers.kinds.clear();
-  for (const gpu::BeamRecord& beam : all) buffers.kinds.push_back(beam.kind);
-  if (fits) return;
+  std::vector<gpu::Beam> all(beams.begin(), beams.end());
+  all.push_back(rgb_beam({gpu::BEAM_MEAN, glm::vec3(0)}));
+  std::uint32_t floats = 0;
+  for (gpu::Beam& beam : all) {
+    beam.offset = floats;
+    floats += beam.floats;
+  }
+  const bool fits = alike(all, buffers.beams);
+  buffers.beams = std::move(all);
+  const std::span<const gpu::Beam> records(buffers.beams);
+  if (fits) return vk::write_bytes(context, buffers.on_device, std::as_bytes(records));
+  buffers.on_device = vk::upload(context, records, "light/beams");
   vk::Commands commands(context);
   for (LevelBuffers& level : levels) {
-    const std::uint64_t bytes = all.size() * level.face_count * FACE_QUARTERS * sizeof(glm::vec3);
-    level.beam_q = vk::Buffer(context, bytes, vk::Place::device, "light/quarters of the beams");
+    const std::uint64_t bytes = std::uint64_t{floats} * level.face_count * sizeof(float);
+    if (level.beam_q.size() != bytes) level.beam_q = {context, bytes, vk::Place::device, "light/beams on faces"};
     commands.fill(level.beam_q, 0);
     commands.fill(level.q, 0);
   }
@@ -58,11 +74,8 @@ void replace_beams(vk::Context& context, std::span<const gpu::BeamRecord> beams,
 
 void write_irradiance(vk::Context& context, std::span<const glm::vec3> q, std::uint32_t number, LevelBuffers& level) {
   check_irradiance(q, number, level.face_count);
-  std::vector<glm::vec3> quarters;
-  quarters.reserve(FACE_QUARTERS * q.size());
-  for (const glm::vec3& value : q) quarters.insert(quarters.end(), FACE_QUARTERS, value);
   vk::write_bytes(context, level.q, std::as_bytes(q));
-  vk::write_bytes(context, level.beam_q, std::as_bytes(std::span(quarters)));
+  vk::write_bytes(context, level.beam_q, std::as_bytes(q));
 }
 
 }  // namespace quadgraph

@@ -13,16 +13,17 @@ namespace quadgraph {
 // The beams of the scene's light, and last one of kind BEAM_MEAN for light that leaves the body and enters it again. It
 // is in no LevelBuffers::q, and zero while there is none.
 struct BeamBuffers {
-  std::vector<std::uint32_t> kinds;
-  vk::Buffer records;  // BeamRecord
+  std::vector<gpu::Beam> beams;
+  vk::Buffer on_device;  // the same
 };
 
-// A beam along `direction`, of any length, or a Lambertian one. Throws InputError unless it is finite and not zero.
-gpu::BeamRecord beam_along(const std::optional<glm::vec3>& direction);
+// A beam of given q along `direction`, of any length, or a Lambertian one. Throws InputError unless it is finite and
+// not zero.
+gpu::Beam beam_along(const std::optional<glm::vec3>& direction);
 
-// Replaces the beams by those of the scene's light and the one for light that enters again. If their number changes,
-// every level gets room for their quarters, without light.
-void replace_beams(vk::Context& context, std::span<const gpu::BeamRecord> beams, BeamBuffers& buffers,
+// Replaces the beams by those of the scene's light and the one for light that enters again. If they need other room
+// than the present ones, every level gets it, without light.
+void replace_beams(vk::Context& context, std::span<const gpu::Beam> beams, BeamBuffers& buffers,
                    std::vector<LevelBuffers>& levels);
 
 // Light of the only beam, W/mm^2 per face, even over each. Throws InputError unless there is one value >= 0 for each

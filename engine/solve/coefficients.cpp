@@ -13,10 +13,19 @@
 
 namespace quadgraph {
 
+namespace {
+
+vk::Buffer room(vk::Context& context, std::uint32_t number, std::uint64_t count) {
+  return {context, count * sizeof(gpu::Optical), vk::Place::device,
+          "material/level " + std::to_string(number) + " optical"};
+}
+
+}  // namespace
+
 void Coefficients::set(const gpu::Material& material) {
   check_material(material);
   material_ = material;
-  evaluated_ = false;
+  evaluated_.reset();
   eta_ = material.eta;
   std::fill(albedo_.begin(), albedo_.end(), least_albedo(material));
 }
@@ -27,6 +36,7 @@ void Coefficients::set(vk::Context& context, std::uint32_t number, std::span<con
   check_eta(static_cast<double>(eta));
   if (material_) std::fill(albedo_.begin(), albedo_.end(), std::nullopt);
   material_.reset();
+  if (level.optical.size() < optical.size_bytes()) level.optical = room(context, number, optical.size());
   vk::write_bytes(context, level.optical, std::as_bytes(optical));
   eta_ = eta;
   albedo_[number] = least_albedo(optical);
@@ -48,10 +58,30 @@ Model Coefficients::resolve(Model wanted, Method method, Source source) const {
   return resolve_model(wanted, method, source, least, static_cast<double>(eta_));
 }
 
+std::uint32_t Coefficients::count(const LevelBuffers& level, Extent extent) {
+  return extent == Extent::nodes ? level.node_count : extent == Extent::tets ? level.tet_count : 1;
+}
+
+void Coefficients::make_room(vk::Context& context, std::span<const Level> rest, Method method,
+                             std::vector<LevelBuffers>& levels) {
+  extent_ = method != Method::fem ? Extent::nodes : even() ? Extent::one : Extent::tets;
+  for (std::uint32_t i = 0; i < levels.size(); ++i) {
+    LevelBuffers& level = levels[i];
+    level.even = even();
+    const std::uint32_t wanted = count(level, extent_);
+    if (level.optical.size() < wanted * sizeof(gpu::Optical)) {
+      level.optical = room(context, i, wanted);
+      evaluated_.reset();
+    }
+    if (!material_ || even() || level.rest.size() >= wanted * sizeof(glm::vec3)) continue;
+    level.rest = vk::upload(context, rest[i].nodes.first(wanted), "material/level " + std::to_string(i) + " rest");
+  }
+}
+
 void Coefficients::record(Workspace& work, const std::vector<LevelBuffers>& levels) {
-  if (!material_ || evaluated_) return;
-  for (const LevelBuffers& level : levels) record_material(work, level, *material_);
-  evaluated_ = true;
+  if (!material_ || (evaluated_ && *evaluated_ >= extent_)) return;
+  for (const LevelBuffers& level : levels) record_material(work, level, *material_, count(level, extent_));
+  evaluated_ = extent_;
 }
 
 }  // namespace quadgraph

@@ -18,7 +18,7 @@ class Coefficients {
   // Throws InputError as check_material does.
   void set(const gpu::Material& material);
 
-  // Writes the coefficients of level `number`. Throws InputError on a wrong size or value.
+  // Takes the coefficients of level `number`. Throws InputError on a wrong size or value.
   void set(vk::Context& context, std::uint32_t number, std::span<const gpu::Optical> optical, float eta,
            LevelBuffers& level);
 
@@ -33,12 +33,22 @@ class Coefficients {
   // The model that is meant where `wanted` is automatic.
   Model resolve(Model wanted, Method method, Source source) const;
 
+  // Room in `levels` for the coefficients that a method needs, and what they are evaluated at. `rest` are the levels of
+  // the file. To be called before a solve.
+  void make_room(vk::Context& context, std::span<const Level> rest, Method method, std::vector<LevelBuffers>& levels);
+
   // Evaluates the material on all levels, unless that has been done.
   void record(Workspace& work, const std::vector<LevelBuffers>& levels);
 
  private:
+  // Where coefficients are wanted: linear elements take those of the tets, and where these are all the same, of one.
+  enum class Extent { one, tets, nodes };
+
+  static std::uint32_t count(const LevelBuffers& level, Extent extent);
+
   std::optional<gpu::Material> material_;
-  bool evaluated_ = false;
+  Extent extent_ = Extent::one;
+  std::optional<Extent> evaluated_;  // material_, there
   float eta_ = 1;
   std::vector<std::optional<double>> albedo_;  // the least one of every level
 };

@@ -45,14 +45,14 @@ void GatherField::record_points(Workspace& work, const GatherInput& input) {
                                        .nearest = nearest_.address(),
                                        .face_offset = level.face_offset.address(),
                                        .face_incidence = level.face_incidence.address(),
-                                       .beams = input.beams.records.address(),
-                                       .quarter_q = level.beam_q.address(),
+                                       .beams = input.beams.on_device.address(),
+                                       .beam_q = level.beam_q.address(),
                                        .points = points_.address(),
-                                       .beam_count = static_cast<std::uint32_t>(input.beams.kinds.size()),
+                                       .beam_count = static_cast<std::uint32_t>(input.beams.beams.size()),
                                        .vertex_count = level.vertex_count,
                                        .surface_vertex_count = level.surface_vertex_count};
   work.recorder.dispatch(work.passes.uncollided, uncollided, level.vertex_count, "uncollided",
-                         level.vertex_count * input.beams.kinds.size() * (tets_per_ray * tet_bytes + 2 * vec3_bytes));
+                         level.vertex_count * input.beams.beams.size() * (tets_per_ray * tet_bytes + 2 * vec3_bytes));
 }
 
 void GatherField::record_scale(Workspace& work, const GatherInput& input) {

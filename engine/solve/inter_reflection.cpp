@@ -69,14 +69,14 @@ void InterReflection::record_enter(Workspace& work, const LevelBuffers& level, c
                                     .faces = level.faces.address(),
                                     .q = level.q.address(),
                                     .irradiance = irradiance.address(),
-                                    .beam_q = level.beam_q.address() + level.quarters_again(),
+                                    .beam_q = level.beam_q.address() + level.beam_again(),
                                     .factor = factor_.address(),
                                     .state = state_.address(),
                                     .reduction = work.reduction.address(),
                                     .count = level.face_count,
                                     .transmitted = static_cast<float>(transmitted)};
   work.recorder.dispatch(work.passes.exchange_enter, push, level.face_count, "exchange",
-                         level.face_count * (face_bytes + (4 + FACE_QUARTERS) * vec3_bytes));
+                         level.face_count * (face_bytes + 5 * vec3_bytes));
 }
 
 void InterReflection::record_none(Workspace& work, const std::vector<LevelBuffers>& levels) {

@@ -23,16 +23,19 @@ LevelBuffers upload_level(vk::Context& context, const Level& level, std::uint32_
   const FaceIncidence incidence = face_incidence(level);
   buffers.face_offset = vk::upload<std::uint32_t>(context, incidence.offset, prefix + "face_offset");
   buffers.face_incidence = vk::upload<std::uint32_t>(context, incidence.face, prefix + "face_incidence");
-  buffers.links = vk::upload(context, level.links, prefix + "links");
-  buffers.nodes = vk::upload(context, level.nodes, prefix + "nodes");
-  buffers.optical = vk::Buffer(context, level.nodes.size() * sizeof(gpu::Optical), vk::Place::device,
-                               "material/level " + std::to_string(number) + " optical");
   buffers.q = vk::Buffer(context, level.faces.size() * sizeof(glm::vec3), vk::Place::device,
                          "light/level " + std::to_string(number) + " q");
   vk::Commands commands(context);
   commands.fill(buffers.q, 0);
   commands.submit_and_wait();
   return buffers;
+}
+
+void upload_graph(vk::Context& context, const Level& level, std::uint32_t number, LevelBuffers& buffers) {
+  if (buffers.nodes.size() > 0) return;
+  const std::string prefix = "geometry/level " + std::to_string(number) + " ";
+  buffers.links = vk::upload(context, level.links, prefix + "links");
+  buffers.nodes = vk::upload(context, level.nodes, prefix + "nodes");
 }
 
 TransferBuffers::TransferBuffers(vk::Context& context, const Level& level, const Level& coarse, std::uint32_t number,

@@ -7,8 +7,11 @@
 
 namespace quadgraph {
 
-// Geometry of level `number`; optical is undefined, q zero.
+// Geometry of level `number` without what is made at first use; q is zero.
 LevelBuffers upload_level(vk::Context& context, const Level& level, std::uint32_t number);
+
+// Links and nodes, unless they are there.
+void upload_graph(vk::Context& context, const Level& level, std::uint32_t number, LevelBuffers& buffers);
 
 // The transfers of one level that a method needs: phi at `count` unknowns from `first` on, from those of the coarser
 // level from `coarse_first` on.

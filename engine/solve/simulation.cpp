@@ -53,11 +53,11 @@ struct Simulation::Implementation {
         coefficients(levels.size()),
         exchange(graph_in) {
     for (std::uint32_t i = 0; i < levels.size(); ++i) walks.emplace_back(context, shape.levels()[i], i);
-    const gpu::BeamRecord lambertian = beam_along(std::nullopt);
+    const gpu::Beam lambertian = beam_along(std::nullopt);
     light({&lambertian, 1});
   }
 
-  void light(std::span<const gpu::BeamRecord> records) { replace_beams(context, records, beams, levels); }
+  void light(std::span<const gpu::Beam> records) { replace_beams(context, records, beams, levels); }
 
   static std::vector<LevelBuffers> upload_levels(vk::Context& context, const QuadGraph& graph) {
     std::vector<LevelBuffers> levels;
@@ -90,13 +90,11 @@ struct Simulation::Implementation {
 
   void move(std::uint32_t number, std::span<const glm::vec3> positions) {
     shape.move(number, positions);
-    LevelBuffers& level = levels[number];
-    if (level.rest.size() == 0) {
-      level.rest = std::move(level.nodes);
-      level.nodes = {context, level.rest.size(), vk::Place::device, "geometry/moved nodes"};
-    }
+    const LevelBuffers& level = levels[number];
     vk::write_bytes(context, level.vertices, std::as_bytes(shape.levels()[number].vertices));
-    vk::write_bytes(context, level.nodes, std::as_bytes(shape.levels()[number].nodes));
+    if (level.nodes.size() > 0) {
+      vk::write_bytes(context, level.nodes, std::as_bytes(shape.levels()[number].nodes));
+    }
     operators.remeasure(number);
     exchange.moved(number);
     if (number == 0) gather.reset();
@@ -110,7 +108,7 @@ struct Simulation::Implementation {
     solved.reset();
     work.recorder.clear();
     const OperatorKey key{options.method, coefficients.resolve(options.model, options.method, options.source)};
-    operators.create(context, shape.levels(), key);
+    make_room(key);
     exchange.refresh(work, shape.levels(), levels, options.exchange_rows);
     const SolveParts parts{work, levels, beams, walks, operators, results, coefficients, exchange, scaled};
     const SolveReport report = LevelsSolver(parts, key, options).run();
@@ -119,6 +117,14 @@ struct Simulation::Implementation {
     solved = key;
     solved_source = options.source;
     return report;
+  }
+
+  void make_room(const OperatorKey& key) {
+    coefficients.make_room(context, shape.rest(), key.method, levels);
+    for (std::uint32_t i = 0; i < levels.size() && key.method != Method::fem; ++i) {
+      upload_graph(context, shape.levels()[i], i, levels[i]);
+    }
+    operators.create(context, shape.levels(), key);
   }
 
   const OperatorKey& solved_key() const {
@@ -182,7 +188,7 @@ float Simulation::eta() const {
   return implementation_->coefficients.eta();
 }
 
-void Simulation::set_beams(std::span<const gpu::BeamRecord> beams) {
+void Simulation::set_beams(std::span<const gpu::Beam> beams) {
   implementation_->light(beams);
   irradiance_changed();
 }
@@ -192,7 +198,7 @@ void Simulation::set_irradiance(std::uint32_t level, std::span<const glm::vec3> 
   if (level >= level_count()) {
     throw InputError("level " + std::to_string(level) + " of irradiance: there are " + std::to_string(level_count()));
   }
-  const gpu::BeamRecord beam = beam_along(direction);
+  const gpu::Beam beam = beam_along(direction);
   implementation_->light({&beam, 1});
   write_irradiance(implementation_->context, q, level, implementation_->levels[level]);
   irradiance_changed();

@@ -39,16 +39,17 @@ struct LevelBuffers {
   vk::Buffer face_kind;  // uint; 0 open, 1 reflecting
   // The open faces at surface vertex v: face_incidence[k], k from face_offset[v] to face_offset[v + 1].
   vk::Buffer face_offset, face_incidence;
-  vk::Buffer links;    // uvec4
-  vk::Buffer nodes;    // vec3, mm; inner nodes, then surface nodes
-  vk::Buffer rest;     // the same where the file has them, once they have moved: the material moves with the body
-  vk::Buffer optical;  // Optical per node
+  vk::Buffer links;    // uvec4; for the graph methods, made at first use
+  vk::Buffer nodes;    // vec3, mm; inner nodes, then surface nodes; for the graph methods, made at first use
+  vk::Buffer rest;     // the same where the file has them, as far as optical goes: the material moves with the body
+  vk::Buffer optical;  // Optical per node; of the tets alone, or one for all (Coefficients), where that is enough
+  bool even = false;   // optical is the same everywhere, and read from the first
   vk::Buffer q;        // vec3 per face, W/mm^2: written by the lights or by set_irradiance
-  vk::Buffer beam_q;   // vec3 per beam (BeamBuffers), face and quarter (FACE_QUARTERS), W/mm^2: what q is made of
+  vk::Buffer beam_q;   // float, per beam (BeamBuffers) gpu::Beam::floats per face: what q is made of
   vk::Buffer sky;      // float per face: share of even light from outside that no other part of the body hides
 
-  // Where light that enters again begins in beam_q, bytes.
-  std::uint64_t quarters_again() const { return beam_q.size() - face_count * FACE_QUARTERS * sizeof(glm::vec3); }
+  // Where the last beam begins in beam_q, that of light that enters again, bytes.
+  std::uint64_t beam_again() const { return beam_q.size() - face_count * gpu::BEAM_RGB * sizeof(float); }
 };
 
 class GatherField;
@@ -74,9 +75,9 @@ class Simulation {
   // Index of refraction of what was set. Throws InputError before that, or if a level of set_optical is missing.
   float eta() const;
 
-  // The beams that light is made of. level.beam_q then has room for as many; whoever fills beam_q and q on the device
-  // calls irradiance_changed. Both are zero after a change of their number.
-  void set_beams(std::span<const gpu::BeamRecord> beams);
+  // The beams that light is made of, whose offsets need not be set. level.beam_q then has room for what they store;
+  // whoever fills beam_q and q on the device calls irradiance_changed. Both are zero after a change of that room.
+  void set_beams(std::span<const gpu::Beam> beams);
 
   // To be called by whoever wrote q and beam_q of all levels on the device.
   void irradiance_changed();

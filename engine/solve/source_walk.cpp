@@ -29,7 +29,7 @@ std::uint64_t sums_bytes(const LevelBuffers& level, std::uint32_t beam_kind) {
 // many as in marble at the finest level.
 std::uint64_t walk_bytes(const LevelBuffers& level, std::uint32_t ray_count) {
   constexpr std::uint64_t tet_bytes = sizeof(glm::uvec2) + vec3_bytes + sizeof(gpu::Optical) + 2 * power_bytes;
-  return std::uint64_t{level.face_count} * ray_count * (FACE_QUARTERS * vec3_bytes + 10 * tet_bytes / 2);
+  return std::uint64_t{level.face_count} * ray_count * (FACE_QUARTERS * sizeof(float) + 10 * tet_bytes / 2);
 }
 
 int place_of(std::uint32_t vertex, const glm::uvec4& tet) {
@@ -115,15 +115,17 @@ void SourceWalk::make_room(vk::Context& context, const LevelBuffers& level, cons
   if (deposit.size() != deposit_bytes)
     deposit = {context, deposit_bytes, vk::Place::device, "walk/" + prefix_ + "deposit"};
   std::uint64_t all_sums = 0;
-  for (const std::uint32_t kind : beams.kinds) all_sums += kind == gpu::BEAM_MEAN ? 0 : sums_bytes(level, kind);
+  for (const gpu::Beam& beam : beams.beams) {
+    if (beam.way.kind != gpu::BEAM_MEAN) all_sums += sums_bytes(level, beam.way.kind);
+  }
   sums_.make_room(context, all_sums, prefix_);
 }
 
 gpu::WalkSourcePush SourceWalk::push(const Workspace& work, const LevelBuffers& level, const BeamBuffers& beams,
                                      Method method, double eta, bool even) const {
   return {.body = body(level, eta, even),
-          .beam = beams.records.address(),
-          .quarter_q = level.beam_q.address(),
+          .beam = beams.on_device.address(),
+          .beam_q = level.beam_q.address(),
           .scale = work.scale.address(),
           .deposit = deposit(method).address(),
           .unscattered = unscattered().address(),
@@ -142,13 +144,13 @@ void SourceWalk::record(Workspace& work, const LevelBuffers& level, const BeamBu
   if (sums_.device.size() == 0) return;
   work.recorder.fill(sums_.device, 0);
   gpu::WalkSourcePush push = this->push(work, level, beams, method, eta, even);
-  for (const std::uint32_t kind : beams.kinds) {
+  for (const gpu::Beam& beam : beams.beams) {
+    const std::uint32_t kind = beam.way.kind;
     if (kind == gpu::BEAM_MEAN) continue;
     push.rays = rays(kind);
     work.recorder.dispatch(work.passes.walk_source, push, std::uint64_t{level.face_count} * push.rays, "source walk",
                            walk_bytes(level, push.rays));
-    push.beam += sizeof(gpu::BeamRecord);
-    push.quarter_q += std::uint64_t{level.face_count} * FACE_QUARTERS * vec3_bytes;
+    push.beam += sizeof(gpu::Beam);
     push.sums += sums_bytes(level, kind);
   }
   sums_.read_back(work);
@@ -167,8 +169,7 @@ void SourceWalk::record_again(Workspace& work, const LevelBuffers& level, const 
   work.recorder.fill(sums_again_.device, 0);
   again_ = true;
   gpu::WalkSourcePush push = this->push(work, level, beams, method, eta, even);
-  push.beam += (beams.kinds.size() - 1) * sizeof(gpu::BeamRecord);
-  push.quarter_q += level.quarters_again();
+  push.beam += (beams.beams.size() - 1) * sizeof(gpu::Beam);
   push.sums = sums_again_.device.address();
   work.recorder.dispatch(work.passes.walk_source, push, level.face_count, "source walk", walk_bytes(level, 1));
   sums_again_.read_back(work);

@@ -95,7 +95,7 @@ py::dict reference(const QuadGraph& graph, std::uint32_t index, const FloatArray
   const Level& level = level_of(graph, index);
   const SolveOptions options = options_from(method, solver, source, model, tolerance, max_iterations);
   const auto optical = optical_from(sigma_s_prime, sigma_a, level.node_count());
-  const EnteringLight light{beam_along(as_vector(direction)), vectors(q, level.face_count(), "q")};
+  const EnteringLight light{beam_along(as_vector(direction)).way, vectors(q, level.face_count(), "q")};
   ReferenceSolution solution = [&] {
     const py::gil_scoped_release release;
     return solve_reference(level, optical, eta, light, options);
@@ -129,7 +129,7 @@ py::dict radiance_dict(const QuadGraph& graph, std::uint32_t index, const FloatA
   }
   std::vector<Quarters> quarters;
   for (const glm::vec3& value : vectors(q, level.face_count(), "q")) quarters.push_back({value, value, value, value});
-  const BeamLight beam{beam_along(as_vector(direction)), quarters};
+  const BeamLight beam{beam_along(as_vector(direction)).way, quarters};
   const Problem problem{Method::fem, Source::buried, Model::sp3, optical, eta};
   Uncollided fields = uncollided(level, problem, std::span(&beam, 1), vertex_starts(level));
   const InsideLight light{fluence, fields};

@@ -38,7 +38,8 @@ struct Assembled {
         buffers(upload_level(device.context, level, 0)),
         op(device.context, level, 0, method, model),
         work(device.context, level.node_count()) {
-    vk::write_bytes(device.context, buffers.optical, std::as_bytes(std::span(optical)));
+    upload_graph(device.context, level, 0, buffers);
+    buffers.optical = vk::upload<gpu::Optical>(device.context, optical, "optical");
     record_assembly(work, buffers, method, problem.boundary(), false, op);
     work.recorder.submit();
   }

@@ -29,7 +29,7 @@ TEST_CASE("push constants of the gather") {
   compare(uncollided_comp, "UncollidedPush",
           {MEMBER(UncollidedPush, body), MEMBER(UncollidedPush, start), MEMBER(UncollidedPush, nearest),
            MEMBER(UncollidedPush, face_offset), MEMBER(UncollidedPush, face_incidence), MEMBER(UncollidedPush, beams),
-           MEMBER(UncollidedPush, quarter_q), MEMBER(UncollidedPush, points), MEMBER(UncollidedPush, beam_count),
+           MEMBER(UncollidedPush, beam_q), MEMBER(UncollidedPush, points), MEMBER(UncollidedPush, beam_count),
            MEMBER(UncollidedPush, vertex_count), MEMBER(UncollidedPush, surface_vertex_count)});
   compare(gather_exitance_comp, "GatherExitancePush",
           {MEMBER(GatherExitancePush, body), MEMBER(GatherExitancePush, points), MEMBER(GatherExitancePush, exitance)});

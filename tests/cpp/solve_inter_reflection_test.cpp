@@ -90,11 +90,11 @@ TEST_CASE("what leaves a closed cavity enters it again, all of it, and evenly wh
     const SurfaceField field = body.simulation.surface_field();
     const LevelBuffers& level = body.simulation.level(0);
     const auto beams = vk::download<glm::vec3>(body.device.context, level.beam_q);
-    const std::size_t again = beams.size() - FACE_QUARTERS * level.face_count;
+    const std::size_t again = beams.size() - level.face_count;
     glm::dvec3 left{0}, enters{0};
     double least = 1e30, most = 0;
     for (std::size_t f = 0; f < field.area.size(); ++f) {
-      const glm::vec3 q = beams[again + FACE_QUARTERS * f];
+      const glm::vec3 q = beams[again + f];
       if (glm::length(field.position[f]) > 4) {
         CHECK(q == glm::vec3(0));
         continue;
@@ -247,7 +247,7 @@ TEST_CASE(
     CHECK(found.exitance == wanted.exitance);
     CHECK(found.unscattered == wanted.unscattered);
     const auto beams = vk::download<glm::vec3>(seeing.device.context, seeing.simulation.level(0).beam_q);
-    CHECK(std::all_of(beams.end() - FACE_QUARTERS * static_cast<std::ptrdiff_t>(shape.faces.size()), beams.end(),
+    CHECK(std::all_of(beams.end() - static_cast<std::ptrdiff_t>(shape.faces.size()), beams.end(),
                       [](const glm::vec3& value) { return value == glm::vec3(0); }));
   }
 }

@@ -180,6 +180,6 @@ TEST_CASE("push constants") {
          MEMBER(EnergyPush, face_kinds), MEMBER(EnergyPush, optical), MEMBER(EnergyPush, x), MEMBER(EnergyPush, to_phi),
          MEMBER(EnergyPush, q), MEMBER(EnergyPush, exitance), MEMBER(EnergyPush, coarse_exitance),
          MEMBER(EnergyPush, scale), MEMBER(EnergyPush, clip), MEMBER(EnergyPush, sums), MEMBER(EnergyPush, tet_count),
-         MEMBER(EnergyPush, face_count), MEMBER(EnergyPush, fem)});
+         MEMBER(EnergyPush, face_count), MEMBER(EnergyPush, fem), MEMBER(EnergyPush, even)});
   }
 }

@@ -22,13 +22,15 @@ using Members = std::map<std::string, std::uint32_t>;
 TEST_CASE("the walk and C++ agree on their structs") {
   const SpirvLayout walk((vk::Spirv(walk_source_comp)));
   CHECK(walk.offset.at("BeamRecord") == Members{MEMBER(BeamRecord, kind), MEMBER(BeamRecord, vector)});
-  CHECK(walk.block_stride.at("BeamRecords") == sizeof(gpu::BeamRecord));
+  CHECK(walk.offset.at("Beam") ==
+        Members{MEMBER(Beam, way), MEMBER(Beam, colour), MEMBER(Beam, floats), MEMBER(Beam, offset)});
+  CHECK(walk.block_stride.at("Beams") == sizeof(gpu::Beam));
   CHECK(walk.offset.at("BodyRef") ==
         Members{MEMBER(BodyRef, vertices), MEMBER(BodyRef, tets), MEMBER(BodyRef, crossings), MEMBER(BodyRef, faces),
                 MEMBER(BodyRef, face_tets), MEMBER(BodyRef, face_kinds), MEMBER(BodyRef, optical),
                 MEMBER(BodyRef, tet_count), MEMBER(BodyRef, face_count), MEMBER(BodyRef, even), MEMBER(BodyRef, eta)});
   CHECK(walk.offset.at("WalkSourcePush") ==
-        Members{MEMBER(WalkSourcePush, body), MEMBER(WalkSourcePush, beam), MEMBER(WalkSourcePush, quarter_q),
+        Members{MEMBER(WalkSourcePush, body), MEMBER(WalkSourcePush, beam), MEMBER(WalkSourcePush, beam_q),
                 MEMBER(WalkSourcePush, scale), MEMBER(WalkSourcePush, deposit), MEMBER(WalkSourcePush, unscattered),
                 MEMBER(WalkSourcePush, sums), MEMBER(WalkSourcePush, rays), MEMBER(WalkSourcePush, fem)});
   CHECK(sizeof(gpu::WalkSourcePush) <= 128);  // what every device of Vulkan 1.3 has room for

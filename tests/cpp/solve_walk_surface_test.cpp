@@ -50,12 +50,12 @@ TEST_CASE("light comes out where Snell's law takes it") {
     const Lit at = lit_face(level, entry);
     REQUIRE(at.normal.x < -0.999f);
     const glm::dvec3 outside = glm::normalize(glm::dvec3(1, 0.1, 0.6));
-    const GpuWalk result =
-        walk(device.context, {.level = level,
-                              .optical = uniform(glm::vec3(0), glm::vec3(0)),
-                              .quarter_q = [&](const Lit& lit, std::uint32_t) { return glm::vec3(lit.face == entry); },
-                              .beam = {gpu::BEAM_DIRECTIONAL, glm::vec3(outside)},
-                              .eta = eta});
+    const GpuWalk result = walk(
+        device.context, {.level = level,
+                         .optical = uniform(glm::vec3(0), glm::vec3(0)),
+                         .quarter_q = [&](const Lit& lit, std::uint32_t) { return lit.face == entry ? 1.0f : 0.0f; },
+                         .beam = {gpu::BEAM_DIRECTIONAL, glm::vec3(outside)},
+                         .eta = eta});
     const double sine_over_cosine =
         std::sqrt(1 / (refracted_cosine(outside.x, eta) * refracted_cosine(outside.x, eta)) - 1);
     const glm::dvec3 sideways = glm::normalize(glm::dvec3(0, outside.y, outside.z));
@@ -96,7 +96,7 @@ TEST_CASE("light that a clear body traps ends as unscattered, in finite time") {
   const OwnedLevel level = level_from_tets({{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}, {{0, 1, 2, 3}});
   const GpuWalk result = walk(device.context, {.level = level,
                                                .optical = uniform(glm::vec3(0), glm::vec3(0)),
-                                               .quarter_q = [](const Lit&, std::uint32_t) { return glm::vec3(1); },
+                                               .quarter_q = [](const Lit&, std::uint32_t) { return 1.0f; },
                                                .beam = {gpu::BEAM_LAMBERTIAN, {}},
                                                .eta = 3});
   check_balance(result, 1e-6);

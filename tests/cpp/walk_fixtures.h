@@ -26,8 +26,9 @@ struct Lit {
 
 struct WalkInput {
   OwnedLevel level;
-  std::function<gpu::Optical(const glm::vec3&)> optical;                  // at the centroid of a tet
-  std::function<glm::vec3(const Lit&, std::uint32_t quarter)> quarter_q;  // W/mm^2
+  std::function<gpu::Optical(const glm::vec3&)> optical;              // at the centroid of a tet
+  std::function<float(const Lit&, std::uint32_t quarter)> quarter_q;  // times `colour`
+  glm::vec3 colour{1.0f, 0.8f, 0.6f};                                 // W/mm^2
   gpu::BeamRecord beam{gpu::BEAM_DIRECTIONAL, {1, 0, 0}};
   Method method = Method::fem;
   double eta = 1;
@@ -65,27 +66,31 @@ inline GpuWalk walk(vk::Context& context, const WalkInput& input) {
   LevelBuffers buffers = upload_level(context, level.view(), 0);
   std::vector<gpu::Optical> optical;
   for (const glm::vec3& node : level.nodes) optical.push_back(input.optical(node));
-  std::vector<glm::vec3> q, beam_q;
+  // Light that enters again is even over a face.
+  const bool again = input.beam.kind == gpu::BEAM_MEAN;
+  std::vector<glm::vec3> q;
+  std::vector<float> quarters;
   GpuWalk result;
   for (std::uint32_t f = 0; f < level.faces.size(); ++f) {
     glm::dvec3 sum{0};
     for (std::uint32_t k = 0; k < FACE_QUARTERS; ++k) {
-      beam_q.push_back(input.quarter_q(lit_face(level, f), k));
-      sum += glm::dvec3(beam_q.back()) / double{FACE_QUARTERS};
+      quarters.push_back(input.quarter_q(lit_face(level, f), again ? 0 : k));
+      sum += double{quarters.back()} * glm::dvec3(input.colour) / double{FACE_QUARTERS};
     }
     q.emplace_back(sum);
     result.entered += area_of(level, level.faces[f]) * sum;
   }
-  vk::write_bytes(context, buffers.optical, std::as_bytes(std::span(optical)));
+  buffers.optical = vk::upload<gpu::Optical>(context, optical, "optical");
   vk::write_bytes(context, buffers.q, std::as_bytes(std::span(q)));
-  buffers.beam_q = vk::upload<glm::vec3>(context, beam_q, "beam q");
-  const BeamBuffers beams{{input.beam.kind}, vk::upload<gpu::BeamRecord>(context, std::span(&input.beam, 1), "beams")};
+  buffers.beam_q = again ? vk::upload<glm::vec3>(context, q, "beam q") : vk::upload<float>(context, quarters, "beam q");
+  const gpu::Beam beam{input.beam, input.colour, again ? gpu::BEAM_RGB : gpu::BEAM_QUARTERS, 0};
+  const BeamBuffers beams{{beam}, vk::upload<gpu::Beam>(context, std::span(&beam, 1), "beams")};
 
   Workspace work(context, buffers.node_count);
   SourceWalk walk(context, level.view(), 0);
   record_scale(work, buffers);
   walk.record(work, buffers, beams, input.method, input.eta, input.even);
-  if (input.beam.kind == gpu::BEAM_MEAN) {
+  if (again) {
     walk.record_again(work, buffers, beams, input.method, input.eta, input.even);
   }
   work.recorder.submit();
@@ -101,8 +106,8 @@ inline GpuWalk walk(vk::Context& context, const WalkInput& input) {
 }
 
 // Quarters of every face whose outward normal is `normal`.
-inline auto lit_side(const glm::vec3& normal, const glm::vec3& q = {1.0f, 0.8f, 0.6f}) {
-  return [=](const Lit& lit, std::uint32_t) { return glm::dot(lit.normal, normal) > 0.999f ? q : glm::vec3(0); };
+inline auto lit_side(const glm::vec3& normal) {
+  return [=](const Lit& lit, std::uint32_t) { return glm::dot(lit.normal, normal) > 0.999f ? 1.0f : 0.0f; };
 }
 
 // Every outside face but those across x becomes a mirror: a piece of an infinite slab.
