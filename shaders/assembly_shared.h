@@ -144,13 +144,17 @@ struct RightHandSideFemPush {
   Boundary boundary;
 };
 
-// damping.comp: the largest step of a relaxation that cannot diverge, 2 / min(4, max row sum of D^-1 |A|), per channel.
-// 4 bounds linear tetrahedra: no eigenvalue of an element's D^-1 K exceeds its trace.
-struct DampingPush {
+// eigenvalue_bound.comp: damping = 2 / bound of the eigenvalues of D^-1 A, per channel: the largest step of a
+// relaxation that cannot diverge. With N = |D^-1 A| entry by entry and any y > 0, z = N y, the largest z_i / y_i is
+// such a bound (Collatz and Wielandt); z as the next y gives a better one. `first`: y = 1, without reading it.
+struct EigenvalueBoundPush {
   RowsRef rows;
+  QG_REF(Fields) y;
+  QG_REF(Fields) z;
   QG_REF(Vec3s) damping;
   QG_REF(Reduction) reduction;
   uint count;
+  uint first;
 };
 
 #ifdef __cplusplus

@@ -10,11 +10,10 @@ layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { CgMultiplyPush push; };
 
 void decide(vec3 energy) {
-  vec3 rz = push.state.at[0].rz;
-  bvec3 open = unconverged(rz, push.state.at[0].norm, push.tolerance);
+  bvec3 open = unsolved(push.state.at[0].square, push.state.at[0].norm);
   bvec3 failed = bvec3(open.x && !(energy.x > 0.0), open.y && !(energy.y > 0.0), open.z && !(energy.z > 0.0));
   if (any(failed)) stop(push.state, SOLVE_NOT_POSITIVE, first_channel(failed));
-  push.state.at[0].alpha = mix(vec3(0), rz / energy, open);
+  push.state.at[0].alpha = mix(vec3(0), push.state.at[0].rz / energy, open);
 }
 
 void main() {

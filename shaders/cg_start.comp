@@ -9,42 +9,64 @@
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { CgStartPush push; };
 
-void decide(vec3 rz) {
-  vec3 norm = push.state.at[0].norm;
-  float worst = worst_residual(rz, norm);
-  bool falls = push.first == 1u || worst <= 0.5 * push.state.at[0].checked;
-  uint iterations = push.first == 1u ? 0u : push.state.at[0].iterations;
-  push.state.at[0].rz = rz;
-  push.state.at[0].residual = worst;
-  push.state.at[0].checked = worst;
-  push.state.at[0].iterations = iterations;
-  if (any(not_finite(rz + norm))) {
-    stop(push.state, SOLVE_NOT_FINITE, first_channel(not_finite(rz + norm)));
-  } else if (!any(unconverged(rz, norm, push.tolerance))) {
+// A true residual up to this many times the recursive one confirms it.
+const float confirmed = 2.0;
+
+// After the surface had met the tolerance: is the residual what the recursion said?
+void check(float worst) {
+  float before = push.state.at[0].checked;
+  if (worst <= max(confirmed * push.state.at[0].residual, push.tolerance)) {
     stop(push.state, SOLVE_CONVERGED, 0u);
-  } else if (!falls) {
-    // The recursive residual had met the tolerance, but the true one no longer falls.
+  } else if (worst > 0.5 * before) {
     stop(push.state, SOLVE_STAGNATED, 0u);
-  } else if (iterations >= push.max_iterations) {
-    stop(push.state, SOLVE_EXHAUSTED, 0u);
   } else {
-    push.state.at[0].iterate = uvec3(gl_NumWorkGroups.x, 1u, 1u);
-    push.state.at[0].check = uvec3(0);
-    push.state.at[0].status = SOLVE_RUNNING;
+    open(push.state);
   }
+}
+
+void start(float worst) {
+  push.state.at[0].iterations = 0u;
+  push.state.at[0].slow = 0u;
+  push.state.at[0].looks = 0u;
+  push.state.at[0].change = vec2(0);
+  push.state.at[0].algebraic = vec2(-1);
+  if (worst > 0.0) {
+    open(push.state);
+  } else {
+    push.state.at[0].algebraic = vec2(0);
+    stop(push.state, SOLVE_CONVERGED, 0u);
+  }
+}
+
+void decide(vec3 square) {
+  vec3 norm = push.state.at[0].norm;
+  float worst = worst_residual(square, norm);
+  if (any(not_finite(square + norm))) {
+    stop(push.state, SOLVE_NOT_FINITE, first_channel(not_finite(square + norm)));
+  } else if (push.what == START_FIRST) {
+    start(worst);
+  } else if (push.what == START_CHECK) {
+    check(worst);
+  }
+  push.state.at[0].square = square;
+  push.state.at[0].residual = worst;
+  if (push.what == START_RESIDUAL) return;
+  push.state.at[0].rz = push.multigrid == 1u ? vec3(0) : square;
+  push.state.at[0].looked = worst;
+  push.state.at[0].checked = worst;
 }
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
-  vec3 square = vec3(0);
+  vec3 own = vec3(0);
   if (i < push.count) {
     Field r = residual(push.rows, push.b, push.x, i);
     Field z = solved(push.rows.diagonal.at[i], r);
     push.r.at[i] = r;
-    push.p.at[i] = z;
-    square = product(r, z);
+    if (push.multigrid == 0u) push.p.at[i] = z;
+    own = product(r, z);
   }
-  vec3 rz;
-  if (!reduce_dispatch(push.reduction, square, rz)) return;
-  if (gl_LocalInvocationID.x == 0u) decide(rz);
+  vec3 square;
+  if (!reduce_dispatch(push.reduction, own, square)) return;
+  if (gl_LocalInvocationID.x == 0u) decide(square);
 }

@@ -24,7 +24,7 @@ vec3 absorbed(uint tet) {
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
-  EnergySums sums = EnergySums(vec3(0), vec3(0), vec3(0), vec4(0));
+  EnergySums sums = EnergySums(vec3(0), vec3(0), vec3(0));
   if (i < push.tet_count) sums.absorbed = absorbed(i);
   if (i < push.face_count) {
     uvec3 corners = push.faces.at[i];
@@ -35,17 +35,8 @@ void main() {
     push.exitance.at[i] = exitance;
     sums.entered = area * q;
     sums.exitance = area * exitance;
-    // One factor for all channels, which are weighed alike.
-    vec3 inverse = push.scale.at[0].inverse;
-    float factor = min(inverse.x, min(inverse.y, inverse.z));
-    vec3 scaled = exitance * factor;
-    vec3 difference = (exitance - push.coarse_exitance.at[i]) * factor;
-    vec2 squares = area * vec2(dot(difference, difference), dot(scaled, scaled));
-    sums.error = vec4(squares, q == vec3(0) ? squares : vec2(0));
   }
-  vec3 parts[5] = vec3[](sums.entered, sums.exitance, sums.absorbed, sums.error.xyz, vec3(sums.error.w));
-  [[dont_unroll]] for (int k = 0; k < 5; ++k) parts[k] = reduce_workgroup(parts[k]);
-  if (gl_LocalInvocationID.x == 0u) {
-    push.sums.at[gl_WorkGroupID.x] = EnergySums(parts[0], parts[1], parts[2], vec4(parts[3], parts[4].x));
-  }
+  vec3 parts[3] = vec3[](sums.entered, sums.exitance, sums.absorbed);
+  [[dont_unroll]] for (int k = 0; k < 3; ++k) parts[k] = reduce_workgroup(parts[k]);
+  if (gl_LocalInvocationID.x == 0u) push.sums.at[gl_WorkGroupID.x] = EnergySums(parts[0], parts[1], parts[2]);
 }

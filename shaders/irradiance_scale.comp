@@ -12,11 +12,18 @@ float area_of(uint face) {
   return 0.5 * length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));
 }
 
+// Faces with less than this share of the mean irradiance count as unlit.
+const float UNLIT = 0.1;
+
 void main() {
   uint i = gl_GlobalInvocationID.x;
-  vec3 power;
-  if (!reduce_dispatch(push.reduction, i < push.count ? area_of(i) * push.q.at[i] : vec3(0), power)) return;
+  float own = i < push.count ? area_of(i) : 0.0;
+  vec3 power, area;
+  if (!reduce_dispatch_pair(push.reduction, i < push.count ? own * push.q.at[i] : vec3(0), vec3(own), power, area)) {
+    return;
+  }
   if (gl_LocalInvocationID.x != 0u) return;
+  push.scale.at[0].unlit = UNLIT * (power.x + power.y + power.z) / area.x;
   vec3 any_channel = vec3(max(power.x, max(power.y, power.z)));
   power = mix(any_channel, power, greaterThan(power, vec3(0)));
   ivec3 exponent;

@@ -25,6 +25,7 @@ using uint = std::uint32_t;
 QG_ARRAY(Floats, float);
 QG_ARRAY(Uints, uint);
 QG_ARRAY(Uvec2s, uvec2);
+QG_ARRAY(Vec2s, vec2);
 QG_ARRAY(Vec3s, vec3);
 QG_ARRAY(Vec4s, vec4);
 QG_ARRAY(Uvec3s, uvec3);

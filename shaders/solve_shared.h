@@ -33,6 +33,10 @@ struct Entry {
 };
 QG_ARRAY(Fields, Field);
 QG_ARRAY(Entries, Entry);
+// Written by some invocations of a workgroup and read by others, in one dispatch.
+layout(buffer_reference, scalar, buffer_reference_align = 4) coherent buffer CoherentFields {
+  Field at[];
+};
 #endif
 
 // K of engine/graph/boundary.h, and what the diffuse source needs.
@@ -106,16 +110,26 @@ const uint SOLVE_RUNNING = 0u;
 const uint SOLVE_CONVERGED = 1u;
 const uint SOLVE_STAGNATED = 2u;     // single precision allows no smaller residual
 const uint SOLVE_EXHAUSTED = 3u;     // iteration limit reached
-const uint SOLVE_NOT_POSITIVE = 4u;  // p^T A p <= 0
+const uint SOLVE_NOT_POSITIVE = 4u;  // p^T A p <= 0, or r^T B r <= 0 with the preconditioner B
 const uint SOLVE_NOT_FINITE = 5u;    // overflow or NaN
 const uint SOLVE_DIVERGED = 6u;      // relaxation grows
+const uint SOLVE_STALLED = 7u;       // the residual hardly falls for too many cycles
 
-// State of the solve of one level; the residual of a channel is sqrt(rz / norm).
+// Levels that one solve works on at most; coarser ones of a file are left out.
+#define MAX_LEVELS 12
+
+// State of the solve of one level. `size` and `difference`, `change` and `algebraic` are of the exitance, as area-
+// weighted RMS over the whole surface (x) and over its unlit part (y), channels together.
 struct SolveState {
-  uvec3 iterate;    // indirect workgroup counts of the next iteration; zero when it is not wanted
-  uvec3 check;      // of the pass that computes the true residual
+  uvec3 gate[MAX_LEVELS];   // indirect workgroup counts of the iteration's passes on each level; zero when not wanted
+  uvec3 coarse;             // of its pass on the coarsest level, which is one workgroup
+  uvec3 surface;            // of its pass over the surface
+  uvec3 check;              // of the pass that computes the true residual
+  uint groups[MAX_LEVELS];  // gates when open, x; 0 on levels finer than this one
+  uint surface_groups;
   vec3 norm;        // b^T D^-1 b
-  vec3 rz;          // r^T D^-1 r
+  vec3 square;      // r^T D^-1 r; the residual of a channel is sqrt(square / norm)
+  vec3 rz;          // r^T B r with the preconditioner B; 0 before the first iteration
   vec3 alpha;       // step along p; 0 in a channel that has converged
   vec3 beta;        // share of the old direction
   float residual;   // worst channel
@@ -123,6 +137,13 @@ struct SolveState {
   uint iterations;  // done
   uint status;      // SOLVE_*
   uint channel;     // that failed
+  vec2 size;        // of the exitance, scaled
+  vec2 change;      // of the last iterations, relative
+  vec2 algebraic;   // estimated error that is left, relative; below 0: not known yet
+  vec2 difference;  // from the exitance of the start, relative
+  float looked;     // residual at the last look at the surface
+  uint looks;       // so far
+  uint slow;        // of them in a row at which the residual had hardly fallen
 };
 
 // Powers of two, at least the power that enters: so squares neither overflow nor vanish, and shares of it fit in fixed
@@ -130,6 +151,7 @@ struct SolveState {
 struct Scale {
   vec3 scale;    // W, or W/mm^2; in a channel without light that of the brightest, and 1 without any
   vec3 inverse;  // 1/W, or mm^2/W
+  float unlit;   // W/mm^2, sum of the channels: faces with less q count as unlit
 };
 
 #ifndef __cplusplus
@@ -154,7 +176,11 @@ struct TransferPush {
   uint count;
 };
 
-// cg_start.comp: r = b - A x, p = r / D; decides whether to iterate. `first` resets the state.
+const uint START_FIRST = 0u;     // resets the state, opens the gates
+const uint START_CHECK = 1u;     // after the surface has met the tolerance: does the residual agree?
+const uint START_RESIDUAL = 2u;  // no decision
+
+// cg_start.comp: r = b - A x and its norm; decides whether to iterate. Without multigrid also p = r / D.
 struct CgStartPush {
   RowsRef rows;
   QG_REF(Fields) b;
@@ -164,9 +190,9 @@ struct CgStartPush {
   QG_REF(SolveStates) state;
   QG_REF(Reduction) reduction;
   uint count;
-  uint max_iterations;
   float tolerance;
-  uint first;
+  uint what;  // START_*
+  uint multigrid;
 };
 
 // cg_multiply.comp: product = A p, alpha.
@@ -177,10 +203,9 @@ struct CgMultiplyPush {
   QG_REF(SolveStates) state;
   QG_REF(Reduction) reduction;
   uint count;
-  float tolerance;
 };
 
-// cg_update.comp: x += alpha p, r -= alpha A p, beta; stops the iteration.
+// cg_update.comp: x += alpha p, r -= alpha A p; without multigrid also beta.
 struct CgUpdatePush {
   QG_REF(Entries) diagonal;
   QG_REF(Fields) p;
@@ -190,21 +215,30 @@ struct CgUpdatePush {
   QG_REF(SolveStates) state;
   QG_REF(Reduction) reduction;
   uint count;
-  uint max_iterations;
-  float tolerance;
+  uint multigrid;
 };
 
-// cg_direction.comp: p = r / D + beta p.
+// cg_direction.comp: p = z + beta p; without multigrid z = r / D.
 struct CgDirectionPush {
   QG_REF(Entries) diagonal;
   QG_REF(Fields) r;
+  QG_REF(Fields) z;
   QG_REF(Fields) p;
+  QG_REF(SolveStates) state;
+  uint count;
+  uint multigrid;
+};
+
+// correct.comp: x += z, and counts the iteration.
+struct CorrectPush {
+  QG_REF(Fields) z;
+  QG_REF(Fields) x;
   QG_REF(SolveStates) state;
   uint count;
 };
 
 // sweep.comp: to = from + damping (b - A from) / D. With `sweeps` > 0 it also takes the residual of `from`, counts that
-// many sweeps as done and stops the relaxation if it can.
+// many sweeps as done and stops a relaxation that grows.
 struct SweepPush {
   RowsRef rows;
   QG_REF(Fields) b;
@@ -215,7 +249,70 @@ struct SweepPush {
   QG_REF(Reduction) reduction;
   uint count;
   uint sweeps;
-  float tolerance;
+};
+
+// residual.comp: r = f - A x.
+struct ResidualPush {
+  RowsRef rows;
+  QG_REF(Fields) f;
+  QG_REF(Fields) x;
+  QG_REF(Fields) r;
+  uint count;
+};
+
+// chebyshev.comp: one step of Chebyshev's iteration for A x = f, preconditioned by D:
+//   d <- keep d + add damping/2 D^-1 (f - A from),  to = from + d.
+// `first`: d is not read. `zero`: from is 0 and not read. `last`: d is not written. With `zero` and without `last`, to
+// is not written either: it would be d. `reduce`: also f^T to, for the direction.
+struct ChebyshevPush {
+  RowsRef rows;
+  QG_REF(Fields) f;
+  QG_REF(Fields) from;
+  QG_REF(Fields) to;
+  QG_REF(Fields) d;
+  QG_REF(Vec3s) damping;
+  QG_REF(SolveStates) state;
+  QG_REF(Reduction) reduction;
+  uint count;
+  uint first, zero, last, reduce;
+  float keep;
+  float add;
+};
+
+// coarse_solve.comp: `steps` of Chebyshev's iteration for A z = f from 0 on [ratio lambda, lambda], lambda = 2/damping,
+// by one workgroup. Even `steps`: z ends in z. `reduce` as above.
+struct CoarseSolvePush {
+  RowsRef rows;
+  QG_REF(Fields) f;
+  QG_REF(CoherentFields) z;
+  QG_REF(CoherentFields) other;
+  QG_REF(CoherentFields) d;
+  QG_REF(Vec3s) damping;
+  QG_REF(SolveStates) state;
+  uint count;
+  uint steps;
+  uint reduce;
+  float ratio;
+};
+
+// restrict.comp: f_i = sum of weight_k r_index_k, k from offset[i] to offset[i + 1]: the transpose of a transfer.
+struct RestrictPush {
+  QG_REF(Uints) offset;
+  QG_REF(Uints) index;
+  QG_REF(Floats) weight;
+  QG_REF(Fields) r;
+  QG_REF(Fields) f;
+  uint count;
+};
+
+// prolong.comp: x += transfer of the coarse x.
+struct ProlongPush {
+  QG_REF(Uints) index;
+  QG_REF(Floats) weight;
+  QG_REF(Fields) coarse_x;
+  QG_REF(Fields) x;
+  uint width;
+  uint count;
 };
 
 #ifdef __cplusplus

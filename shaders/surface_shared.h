@@ -14,13 +14,11 @@ struct Clip {
   vec3 share;   // of the positive exitance that it gave up
 };
 
-// Sums of one workgroup of energy.comp.
+// Sums of one workgroup of energy.comp, and of energy_total.comp those of every WORKGROUP_SIZE-th of them.
 struct EnergySums {
   vec3 entered;   // W
   vec3 exitance;  // W
   vec3 absorbed;  // W
-  // Area-weighted squares, scaled, channels together: (M - M_coarse)^2, M^2, and both over faces with q = 0.
-  vec4 error;
 };
 
 #ifndef __cplusplus
@@ -86,7 +84,6 @@ struct EnergyPush {
   QG_REF(Vec3s) to_phi;
   QG_REF(Vec3s) q;
   QG_REF(Vec3s) exitance;
-  QG_REF(Vec3s) coarse_exitance;
   QG_REF(Scales) scale;
   QG_REF(Clips) clip;
   QG_REF(EnergySumsArray) sums;
@@ -94,6 +91,66 @@ struct EnergyPush {
   uint face_count;
   uint fem;
   uint even;  // 1: optical is the same everywhere
+};
+
+// energy_total.comp: one workgroup; total[i] = sum of sums[i], sums[i + WORKGROUP_SIZE], ...
+struct EnergyTotalPush {
+  QG_REF(EnergySumsArray) sums;
+  QG_REF(EnergySumsArray) total;
+  uint count;
+};
+
+// What a carrier on the surface stands for.
+struct SurfaceShare {
+  vec2 area;       // mm^2: all of it, and what is unlit
+  vec3 reflected;  // W/mm^2: what the diffuse source reflects there, which is no part of the exitance
+};
+#ifndef __cplusplus
+QG_ARRAY(SurfaceShares, SurfaceShare);
+#endif
+
+// surface_share.comp: fem: the first `count` vertices, each with a third of its open faces; graph methods: the surface
+// nodes.
+struct SurfaceSharePush {
+  QG_REF(Vec3s) vertices;
+  QG_REF(Uvec3s) faces;
+  QG_REF(Uints) face_kinds;
+  QG_REF(Uints) face_offset;
+  QG_REF(Uints) face_incidence;
+  QG_REF(Vec3s) q;
+  QG_REF(Scales) scale;
+  QG_REF(SurfaceShares) share;
+  uint count;
+  uint fem;
+  float reflected;  // of q
+};
+
+const uint SURFACE_STORE = 0u;       // before = M
+const uint SURFACE_CHANGE = 1u;      // change of M since `before`, then before = M; decides whether to go on
+const uint SURFACE_DIFFERENCE = 2u;  // difference of M from `before`
+
+// surface_change.comp: M of the carriers on the surface, `count` from `first` on, in units of the scale.
+struct SurfaceChangePush {
+  QG_REF(Fields) x;
+  QG_REF(Vec3s) to_phi;
+  QG_REF(SurfaceShares) share;
+  QG_REF(Vec3s) before;
+  QG_REF(Scales) scale;
+  QG_REF(SolveStates) state;
+  QG_REF(Reduction) reduction;
+  uint first;
+  uint count;
+  uint what;         // SURFACE_*
+  uint level;        // whose gate opens the check
+  uint verify;       // 1: the true residual has the last word
+  uint stall_limit;  // looks in a row at which the residual has hardly fallen; 0: any number
+  uint max_iterations;
+  uint looks;        // from this one on the estimate counts
+  uint by_change;    // 1: the rate is that of the changes where it is the larger one
+  float least_rate;  // by which a residual is taken to fall from look to look
+  float slow_rate;   // at which it has hardly fallen
+  float tolerance;
+  Boundary boundary;
 };
 
 #ifdef __cplusplus

@@ -12,18 +12,16 @@ layout(push_constant, scalar) uniform Block { SweepPush push; };
 // A relaxation that converges never exceeds its start by this much; one that diverges does at once.
 const float divergence = 1e3;
 
-void decide(vec3 rz) {
+void decide(vec3 square) {
   vec3 norm = push.state.at[0].norm;
-  float worst = worst_residual(rz, norm);
-  push.state.at[0].rz = rz;
+  float worst = worst_residual(square, norm);
+  push.state.at[0].square = square;
   push.state.at[0].residual = worst;
   push.state.at[0].iterations += push.sweeps;
-  if (any(not_finite(rz))) {
-    stop(push.state, SOLVE_NOT_FINITE, first_channel(not_finite(rz)));
-  } else if (!any(unconverged(rz, norm, push.tolerance))) {
-    stop(push.state, SOLVE_CONVERGED, 0u);
+  if (any(not_finite(square))) {
+    stop(push.state, SOLVE_NOT_FINITE, first_channel(not_finite(square)));
   } else if (worst > divergence * max(1.0, push.state.at[0].checked)) {
-    stop(push.state, SOLVE_DIVERGED, first_channel(greaterThanEqual(rz, vec3(worst * worst) * norm)));
+    stop(push.state, SOLVE_DIVERGED, first_channel(greaterThanEqual(square, vec3(worst * worst) * norm)));
   }
 }
 

@@ -226,7 +226,7 @@ ReferenceSolution solve_reference(const Level& level, std::span<const gpu::Optic
   const Vector b = load(level, problem, lights, solution);
   solution.report.unknowns = static_cast<std::uint32_t>(rows.size()) * (options.model == Model::sp3 ? 2 : 1);
   Vector x(rows.size());
-  if (options.solver == SolverKind::dpcg) {
+  if (options.solver != SolverKind::cascade && options.solver != SolverKind::jacobi) {
     conjugate_gradients(rows, b, options, x, solution.report);
   } else {
     const double damping = options.method == Method::fem ? 2.0 / fem_bound : 1.0;

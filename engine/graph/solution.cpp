@@ -10,8 +10,12 @@ namespace {
 
 constexpr std::array<std::pair<std::string_view, Method>, 3> methods = {
     {{"quadgraph-fdm", Method::quadgraph_fdm}, {"quadgraph-fv", Method::quadgraph_fv}, {"fem", Method::fem}}};
-constexpr std::array<std::pair<std::string_view, SolverKind>, 2> solvers = {
-    {{"cascade", SolverKind::cascade}, {"dpcg", SolverKind::dpcg}}};
+constexpr std::array<std::pair<std::string_view, SolverKind>, 6> solvers = {{{"fmg-pcg", SolverKind::fmg_pcg},
+                                                                             {"vcycle", SolverKind::vcycle},
+                                                                             {"dpcg", SolverKind::dpcg},
+                                                                             {"cascade", SolverKind::cascade},
+                                                                             {"jacobi", SolverKind::jacobi},
+                                                                             {"auto", SolverKind::automatic}}};
 constexpr std::array<std::pair<std::string_view, Source>, 2> sources = {
     {{"buried", Source::buried}, {"diffuse", Source::diffuse}}};
 constexpr std::array<std::pair<std::string_view, Model>, 3> models = {

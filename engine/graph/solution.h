@@ -17,8 +17,12 @@ enum class Method {
 };
 
 enum class SolverKind {
-  cascade,  // relaxation from the coarsest level to the finest [QG Eq. 8-10, Fig. 9]
-  dpcg,     // conjugate gradients with diagonal preconditioning, started from the coarser level
+  fmg_pcg,    // full-multigrid start, then conjugate gradients preconditioned by a V-cycle; fem only
+  vcycle,     // full-multigrid start, then V-cycles; fem only
+  dpcg,       // conjugate gradients with diagonal preconditioning, started from the coarser level
+  cascade,    // relaxation from the coarsest level to the finest [QG Eq. 8-10, Fig. 9]
+  jacobi,     // relaxation on the finest level alone
+  automatic,  // "auto": fmg_pcg or dpcg, whichever took less time on this body and material
 };
 
 // How light enters the body.
@@ -33,8 +37,8 @@ enum class Model {
   automatic,  // "auto": diffusion where its known error is small (engine/graph/model.h), else sp3
 };
 
-// "quadgraph-fdm", "quadgraph-fv", "fem"; "cascade", "dpcg"; "buried", "diffuse"; "diffusion", "sp3", "auto". Throw
-// InputError listing the allowed names.
+// "quadgraph-fdm", "quadgraph-fv", "fem"; "fmg-pcg", "vcycle", "dpcg", "cascade", "jacobi", "auto"; "buried",
+// "diffuse"; "diffusion", "sp3", "auto". Throw InputError listing the allowed names.
 Method method_from_name(std::string_view name);
 SolverKind solver_from_name(std::string_view name);
 Source source_from_name(std::string_view name);
@@ -46,12 +50,22 @@ std::string_view name_of(Model model);
 
 struct SolveOptions {
   Method method = Method::fem;
-  SolverKind solver = SolverKind::dpcg;
+  SolverKind solver = SolverKind::fmg_pcg;
   Source source = Source::buried;
   Model model = Model::automatic;
-  // Stop when sqrt(r^T D^-1 r / b^T D^-1 b) <= tolerance in every channel that receives light.
+  // Stop when the estimated algebraic error of the exitance, as in ErrorEstimate, is no larger. The CPU reference stops
+  // when sqrt(r^T D^-1 r / b^T D^-1 b) is no larger in any channel.
   double tolerance = 1e-3;
   std::uint32_t max_iterations = 5000;  // per level
+  // n > 0: exactly n iterations (cycles, steps of conjugate gradients, sweeps) on the finest level, whatever is left.
+  std::uint32_t cycles = 0;
+  // Smoothing steps of a cycle before and after its correction, 1 or 2; 0: what is cheapest, 1 with conjugate gradients
+  // and 2 without.
+  std::uint32_t smoothing = 0;
+  // From the last solution of the same method and model, where there is one, instead of from nothing.
+  bool warm = false;
+  // > 0: stop as soon as ErrorEstimate is no larger in both parts, on a level as coarse as that allows.
+  double error = 0;
   // Light that leaves one part of the body and enters another, bounce by bounce (engine/graph/exchange.h). Only with
   // Source::buried, a file that has `seen`, and a method that conserves energy: of what quadgraph-fdm makes of light,
   // bounces can grow without end.
@@ -82,28 +96,32 @@ struct LevelReport {
   std::uint32_t level = 0;  // 0 is the finest
   std::uint32_t unknowns = 0;
   std::uint32_t iterations = 0;
-  double residual = 0;  // as in SolveOptions::tolerance, worst channel
+  double residual = 0;  // sqrt(r^T D^-1 r / b^T D^-1 b), worst channel
   bool converged = false;
 };
 
-// Relative RMS difference of the exitance between the two finest levels, times the share that is the finer level's own
-// error (1/3: second order, spacing halved). Empty with a single level; where the finest level itself has the bounces,
-// that of the light before them, and empty if they go on from a state.
+// Relative RMS error of the exitance, weighted by area, channels together.
 struct ErrorEstimate {
   double whole = 0;  // over the whole surface
-  double unlit = 0;  // over the part where q = 0; 0 if there is none
+  double unlit = 0;  // over the faces with less than a tenth of the mean q; 0 if there are none
 };
 
 struct SolveReport {
   Method method = Method::fem;
-  SolverKind solver = SolverKind::dpcg;
+  SolverKind solver = SolverKind::fmg_pcg;  // the one that was used, never `automatic`
+  std::string replaced;                     // why it is not the one that was asked for; empty if it is
   Source source = Source::buried;
   Model model = Model::diffusion;   // the one that was solved, never `automatic`
   std::vector<LevelReport> levels;  // coarsest first, in the order solved
+  std::uint32_t finest = 0;         // the level that was solved last; what leaves level 0 is carried there
+  double work = 0;                  // products of all levels, in products of level 0
   Energy energy;                    // on the finest level
   // Share of the exitance, per channel, that linear elements put below zero and that was taken from the rest instead;
   // 0 with Source::diffuse, whose exitance stays as it is.
   glm::dvec3 clipped{0};
+  std::optional<ErrorEstimate> algebraic;  // what further iterations would change; empty if that cannot be told yet
+  // The algebraic error and that of the mesh: the difference between the exitance of the two finest levels, times the
+  // share of it that is the finer one's own. Empty with a single level.
   std::optional<ErrorEstimate> error;
   bool inter_reflection = false;    // whether light from part to part was followed
   std::vector<glm::dvec3> bounces;  // W per channel that each bounce brought in

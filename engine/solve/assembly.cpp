@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include "shaders/assembly_shared.h"
 
@@ -10,6 +11,9 @@ namespace {
 
 constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
 constexpr std::uint64_t index_bytes = sizeof(std::uint32_t);
+
+// More would gain less than they cost: the bound goes from 3.1 to 2.6 in five steps, and to 2.55 in ten.
+constexpr std::uint32_t bound_steps = 5;
 
 void assemble_fdm(Workspace& work, const LevelBuffers& level, const Boundary& boundary, OperatorBuffers& op) {
   const gpu::AssembleFdmPush push{.rows = op.rows(),
@@ -205,9 +209,20 @@ void record_damping(Workspace& work, Method method, OperatorBuffers& op) {
     work.recorder.fill(op.damping, std::bit_cast<std::uint32_t>(1.0f));
     return;
   }
-  const gpu::DampingPush push{op.rows(), op.damping.address(), work.reduction.address(), op.count};
-  work.recorder.dispatch(work.passes.damping.of(op.model), push, op.count, "assembly",
-                         (op.entries + op.count) * op.entry_bytes());
+  const vk::Buffer* y = &op.z;
+  const vk::Buffer* z = &op.other;
+  for (std::uint32_t step = 0; step < bound_steps; ++step) {
+    const gpu::EigenvalueBoundPush push{.rows = op.rows(),
+                                        .y = y->address(),
+                                        .z = z->address(),
+                                        .damping = op.damping.address(),
+                                        .reduction = work.reduction.address(),
+                                        .count = op.count,
+                                        .first = step == 0 ? 1u : 0u};
+    work.recorder.dispatch(work.passes.eigenvalue_bound.of(op.model), push, op.count, "eigenvalue bound",
+                           op.product_bytes() + op.count * (op.entry_bytes() + 2 * op.field_bytes()));
+    std::swap(y, z);
+  }
 }
 
 }  // namespace quadgraph

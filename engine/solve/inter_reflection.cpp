@@ -1,7 +1,9 @@
 #include "engine/solve/inter_reflection.h"
 
+#include <algorithm>
 #include <bit>
 
+#include "engine/graph/exchange.h"
 #include "engine/graph/fresnel.h"
 #include "engine/graph/sky.h"
 #include "shaders/exchange_shared.h"
@@ -51,7 +53,8 @@ void InterReflection::make_room(Workspace& work, const std::vector<LevelBuffers>
   clip_ = room(sizeof(gpu::Clip), "exchange/clip");
   factor_ = room(vec3_bytes, "exchange/factor");
   state_ = room(sizeof(gpu::ExchangeState), "exchange/state");
-  state_on_host_ = {context, sizeof(gpu::ExchangeState), vk::Place::host, "exchange/state, read back"};
+  states_on_host_ = {context, (max_bounces + 1) * sizeof(gpu::ExchangeState), vk::Place::host,
+                     "exchange/states, read back"};
   work.recorder.fill(state_, 0);
   for (std::uint32_t i = 0; i <= *level_; ++i) {
     irradiance_.push_back(room(levels[i].face_count * vec3_bytes, "exchange/irradiance from other parts"));
@@ -114,7 +117,8 @@ void InterReflection::record_bounce(Workspace& work, const Solved& solved, doubl
                          level.face_count * (face_bytes + sizeof(glm::uvec2) + 3 * vec3_bytes) +
                              entries * (sizeof(std::uint32_t) + 2 * vec3_bytes));
   record_enter(work, level, irradiance_.back(), transmitted);
-  work.recorder.copy(state_, state_on_host_, sizeof(gpu::ExchangeState));
+  count_ = std::min(count_ + 1, max_bounces);
+  work.recorder.copy(state_, states_on_host_, sizeof(gpu::ExchangeState), count_ * sizeof(gpu::ExchangeState));
   any_ = true;
 }
 
@@ -146,14 +150,35 @@ void InterReflection::record_beam(Workspace& work, const std::vector<LevelBuffer
   record_enter(work, level, irradiance_[number], transmitted);
 }
 
+void InterReflection::begin() {
+  begun_with_ = power();
+  if (any_ && count_ > 0) {
+    const auto states = states_on_host_.mapped_as<gpu::ExchangeState>();
+    states[0] = states[count_];
+  }
+  count_ = 0;
+}
+
 glm::dvec3 InterReflection::power() const {
   if (!any_) return glm::dvec3(0);
-  return glm::dvec3(state_on_host_.mapped_as<gpu::ExchangeState>()[0].power);
+  return glm::dvec3(states_on_host_.mapped_as<gpu::ExchangeState>()[count_].power);
 }
 
 bool InterReflection::converged(double tolerance) const {
-  const gpu::ExchangeState& state = state_on_host_.mapped_as<gpu::ExchangeState>()[0];
+  if (!any_) return false;
+  const gpu::ExchangeState& state = states_on_host_.mapped_as<gpu::ExchangeState>()[count_];
   return glm::all(glm::lessThanEqual(glm::dvec3(state.change), tolerance * glm::dvec3(state.entered)));
+}
+
+std::vector<glm::dvec3> InterReflection::bounces() const {
+  std::vector<glm::dvec3> gains;
+  glm::dvec3 before = begun_with_;
+  for (std::uint32_t i = 1; i <= count_; ++i) {
+    const glm::dvec3 power(states_on_host_.mapped_as<gpu::ExchangeState>()[i].power);
+    gains.push_back(power - before);
+    before = power;
+  }
+  return gains;
 }
 
 }  // namespace quadgraph

@@ -49,9 +49,16 @@ class InterReflection {
   // Whether light may have entered again since record_none.
   bool any() const { return any_; }
 
+  // From here on bounces count as those of a new solve.
+  void begin();
+  std::uint32_t count() const { return count_; }
+
   // Of the last bounce that has run; 0 without any.
   glm::dvec3 power() const;  // W, that enters again
   bool converged(double tolerance) const;
+
+  // W, what every bounce since `begin` brought in.
+  std::vector<glm::dvec3> bounces() const;
 
  private:
   struct Finer {
@@ -71,7 +78,10 @@ class InterReflection {
   vk::Buffer before_;                   // that of the bounce before
   std::vector<Finer> finer_;            // transfers, finest first
   vk::Buffer factor_;                   // vec3
-  vk::Buffer state_, state_on_host_;    // ExchangeState
+  vk::Buffer state_;                    // ExchangeState
+  vk::Buffer states_on_host_;           // of every bounce of a solve, mapped
+  std::uint32_t count_ = 0;             // of bounces in this solve
+  glm::dvec3 begun_with_{0};            // W, before them
 };
 
 }  // namespace quadgraph

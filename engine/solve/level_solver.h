@@ -1,14 +1,98 @@
-// Solves one level on the device from the x it holds.
+// Solves one level on the device from the x it holds: records the passes of any solver, each behind a gate that closes
+// on the device once the surface has met the tolerance, so that a whole solve fits in one submission.
 #pragma once
 
-#include "engine/solve/operator_buffers.h"
+#include <optional>
+
+#include "engine/graph/boundary.h"
+#include "engine/solve/multigrid.h"
+#include "engine/solve/operators.h"
 #include "engine/solve/workspace.h"
 
 namespace quadgraph {
 
-// Runs what is recorded, then iterates until the tolerance or the limit of `options` is reached, or until single
-// precision allows no more (converged = false). b and its norm must be in place. Throws SolverError naming level,
-// iteration and channel.
-LevelReport solve_level(Workspace& work, OperatorBuffers& op, std::uint32_t level, const SolveOptions& options);
+// What a solve of one level is to do.
+struct LevelTask {
+  SolverKind solver = SolverKind::fmg_pcg;  // never automatic; in one with cycles, the level may be any
+  Boundary boundary{};
+  double tolerance = 1e-3;           // of the algebraic error; 0: none is small enough
+  std::uint32_t max_iterations = 0;  // in all
+  std::uint32_t smoothing = 1;       // of a cycle
+};
+
+bool uses_cycles(SolverKind solver);
+
+class LevelSolver {
+ public:
+  // The operators of `key` have been created; rows, b and its norm are in place when what is recorded runs.
+  LevelSolver(Workspace& work, Operators& operators, const OperatorKey& key, std::uint32_t level,
+              const LevelTask& task);
+
+  // Notes the exitance of `x` as that of the start, for record_difference.
+  void record_origin(const vk::Buffer& x);
+
+  // The residual of x, and the gates.
+  void record_start();
+
+  // `iterations` more, looking at the surface every so often.
+  void record(std::uint32_t iterations);
+
+  // Where the surface has met a tight tolerance: does the true residual agree?
+  void record_check();
+
+  // The difference of the exitance from that of the start.
+  void record_difference();
+
+  // To be read by `take` after the next submission.
+  void record_state();
+
+  // Adds what has been done since the last call to the passes' counts. Throws SolverError naming level, iteration and
+  // channel where conjugate gradients or a relaxation break down.
+  void take();
+
+  // Of the last `take`.
+  const gpu::SolveState& state() const { return state_; }
+  bool running() const { return state_.status == gpu::SOLVE_RUNNING && state_.iterations < task_.max_iterations; }
+
+  // Cycles that stall or grow, or meet what is not a number.
+  bool failed() const;
+  std::string failure() const;
+
+  std::uint32_t max_iterations() const { return task_.max_iterations; }
+
+  // Start, iterations in batches, to the end.
+  void run();
+
+  LevelReport report() const;
+  std::optional<ErrorEstimate> algebraic() const;
+
+  // Entries multiplied so far, as far as `take` knows.
+  double entries() const { return entries_; }
+
+ private:
+  const OperatorBuffers& op() const { return operators_.at(key_, level_); }
+  template <typename Push>
+  void dispatch(ModelPass& pass, const Push& push, std::uint64_t gate, const char* name);
+  void dispatch_start(std::uint32_t what);
+  void record_surface(const vk::Buffer& x, const vk::Buffer& before, std::uint32_t what);
+  void record_cg();
+  void record_cycle();
+  void record_sweeps(std::uint32_t sweeps);
+  void did(std::uint32_t iterations);
+  std::uint64_t start_bytes() const;
+
+  Workspace& work_;
+  Operators& operators_;
+  OperatorKey key_;
+  std::uint32_t level_;
+  LevelTask task_;
+  std::optional<Multigrid> multigrid_;
+  std::uint32_t unlooked_ = 0;  // iterations recorded since the last look at the surface
+  std::uint32_t recorded_ = 0;  // since the start
+  std::uint32_t taken_ = 0;     // of them, counted
+  std::uint32_t total_ = 0;     // counted in all, over all starts
+  double entries_ = 0;
+  gpu::SolveState state_{};
+};
 
 }  // namespace quadgraph

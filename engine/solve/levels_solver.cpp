@@ -1,11 +1,25 @@
 #include "engine/solve/levels_solver.h"
 
+#include <algorithm>
+
 #include "engine/graph/exchange.h"
 #include "engine/solve/assembly.h"
-#include "engine/solve/level_solver.h"
+#include "engine/solve/surface_share.h"
 
 namespace quadgraph {
 namespace {
+
+// Iterations on a level that only starts the next finer one, and on the finest in the first submission.
+constexpr std::uint32_t coarse_cycles = 1, first_cycles = 6;
+
+// Bounces in the first submission: each brings in about an eighth of the one before.
+constexpr std::uint32_t first_bounces = 4;
+
+// Share of the difference between two levels that is the finer one's own error: second order, spacing halved.
+constexpr double fine_share = 1.0 / 3.0;
+
+// Share of a target for the whole error that is left to the algebraic one.
+constexpr double algebraic_share = 0.25;
 
 bool same(const Boundary& a, const Boundary& b) {
   return a.k11 == b.k11 && a.k12 == b.k12 && a.k22 == b.k22;
@@ -13,26 +27,72 @@ bool same(const Boundary& a, const Boundary& b) {
 
 }  // namespace
 
-LevelsSolver::LevelsSolver(const SolveParts& parts, const OperatorKey& key, const SolveOptions& options)
+LevelsSolver::LevelsSolver(const SolveParts& parts, const OperatorKey& key, const SolveOptions& options,
+                           SolverKind solver)
     : parts_(parts),
       key_(key),
       options_(options),
-      boundary_(boundary_of(key.method, options.source, key.model, parts.coefficients.eta())) {
+      boundary_(boundary_of(key.method, options.source, key.model, parts.coefficients.eta())),
+      solvers_(parts.operators.count(key)) {
   report_.method = key.method;
-  report_.solver = options.solver;
+  report_.solver = solver;
   report_.source = options.source;
   report_.model = key.model;
   report_.exchange_age = parts.exchange.age();
   report_.inter_reflection = bounces_wanted(options) && parts.exchange.baked();
+  if (cycles() && !Multigrid::possible(parts.operators, key)) {
+    report_.solver = SolverKind::dpcg;
+    report_.replaced = std::string(name_of(solver)) + " by dpcg: " +
+                       (key.method == Method::fem ? "there is no coarser level that is small enough"
+                                                  : std::string(name_of(key.method)) + " has no cycles");
+  }
 }
 
 SolveReport LevelsSolver::run() {
   for (SourceWalk& walk : parts_.walks) walk.forget_again();
-  record_setup();
-  if (!report_.inter_reflection || options_.bounces == 0) parts_.exchange.record_none(parts_.work, parts_.levels);
-  solve_levels();
+  parts_.coefficients.record(parts_.work, parts_.levels);
+  if (!parts_.scaled) record_scale(parts_.work, parts_.levels[0]);
+  parts_.scaled = true;
+  const auto coarsest = static_cast<std::uint32_t>(solvers_.size()) - 1;
+  const bool choose = options_.error > 0 && key_.method == Method::fem;
+  finest_ = choose && coarsest > 0 ? coarsest - 1 : 0;
+  start_over();
+  if (!report_.inter_reflection || (options_.bounces == 0 && !warm_)) {
+    parts_.exchange.record_none(parts_.work, parts_.levels);
+  }
+  parts_.exchange.begin();
+  while (true) {
+    solve_down_to(finest_);
+    settle();
+    if (finest_ == 0 ||
+        (report_.error && report_.error->whole <= options_.error && report_.error->unlit <= options_.error)) {
+      break;
+    }
+    --finest_;
+  }
   finish();
   return report_;
+}
+
+// Where the levels to be solved begin.
+void LevelsSolver::start_over() {
+  const auto coarsest = static_cast<std::uint32_t>(solvers_.size()) - 1;
+  const std::uint32_t exchange = report_.inter_reflection ? parts_.exchange.level().value_or(0) : 0;
+  // In motion the next coarser level comes along, for the error, and that of the bounces.
+  next_ = std::min(coarsest, std::max(finest_ + 1, exchange));
+  warm_ = options_.warm;
+  for (std::uint32_t level = finest_; level <= next_; ++level) warm_ = warm_ && op(level).solved;
+  if (report_.solver == SolverKind::jacobi) {
+    next_ = std::max(finest_, exchange);
+  } else if (!warm_) {
+    next_ = coarsest;
+  }
+  if (!cycles()) return;
+  for (std::uint32_t level = coarsest; level > next_; --level) record_setup(level);
+}
+
+bool LevelsSolver::bounces_on(std::uint32_t level) const {
+  return report_.inter_reflection && level == parts_.exchange.level();
 }
 
 Solved LevelsSolver::solved(std::uint32_t level) {
@@ -64,78 +124,200 @@ void LevelsSolver::record_load_again(std::uint32_t level) {
   op(level).loaded.reset();
 }
 
-void LevelsSolver::record_setup() {
-  parts_.coefficients.record(parts_.work, parts_.levels);
-  if (!parts_.scaled) record_scale(parts_.work, parts_.levels[0]);
-  parts_.scaled = true;
-  for (std::uint32_t i = 0; i < parts_.levels.size(); ++i) {
-    OperatorBuffers& rows = op(i);
-    if (!rows.assembled || !same(*rows.assembled, boundary_)) {
-      record_assembly(parts_.work, parts_.levels[i], key_.method, boundary_, parts_.coefficients.even(), rows);
-      rows.assembled = boundary_;
-      rows.damped = false;
-      rows.loaded.reset();
-    }
-    if (!rows.damped && options_.solver == SolverKind::cascade) {
-      record_damping(parts_.work, key_.method, rows);
-      rows.damped = true;
-    }
-    record_load(i);
+void LevelsSolver::record_setup(std::uint32_t level) {
+  OperatorBuffers& rows = op(level);
+  if (!rows.assembled || !same(*rows.assembled, boundary_)) {
+    record_assembly(parts_.work, parts_.levels[level], key_.method, boundary_, parts_.coefficients.even(), rows);
+    rows.assembled = boundary_;
+    rows.damped = false;
+    rows.weighed = false;
+    rows.loaded.reset();
+  }
+  if (!rows.damped && report_.solver != SolverKind::dpcg) {
+    record_damping(parts_.work, key_.method, rows);
+    rows.damped = true;
   }
 }
 
-void LevelsSolver::solve_levels() {
-  for (auto i = static_cast<std::uint32_t>(parts_.levels.size()); i-- > 0;) {
-    if (report_.inter_reflection && i <= parts_.exchange.level()) {
-      parts_.exchange.record_beam(parts_.work, parts_.levels, i, parts_.coefficients.eta());
-      if (parts_.exchange.any()) record_load_again(i);
-    }
-    solve(i);
-    if (report_.inter_reflection && i == parts_.exchange.level()) bounce();
-  }
+void LevelsSolver::record_light(std::uint32_t level) {
+  if (!op(level).weighed) record_surface_share(parts_.work, parts_.levels[level], key_.method, boundary_, op(level));
+  op(level).weighed = true;
+  record_load(level);
+  if (!report_.inter_reflection || !parts_.exchange.level() || level > *parts_.exchange.level()) return;
+  parts_.exchange.record_beam(parts_.work, parts_.levels, level, parts_.coefficients.eta());
+  if (parts_.exchange.any()) record_load_again(level);
 }
 
-// From the solution of the next coarser level.
+// x before the first iteration, and the exitance of what comes from the coarser level.
+void LevelsSolver::record_first(std::uint32_t level) {
+  const bool alone = report_.solver == SolverKind::jacobi || level + 1 == solvers_.size() || !solvers_[level + 1];
+  if (alone) {
+    if (!warm_) parts_.work.recorder.fill(op(level).x, 0);
+    return;
+  }
+  const vk::Buffer& target = warm_ ? op(level).p : op(level).x;
+  parts_.operators.record_transfer(parts_.work, key_, level, target);
+  solvers_[level]->record_origin(target);
+}
+
+void LevelsSolver::approach(std::uint32_t level) {
+  record_setup(level);
+  record_light(level);
+  const bool last = level == finest_;
+  LevelTask task{.solver = report_.solver, .boundary = boundary_, .max_iterations = options_.max_iterations};
+  task.tolerance = options_.error > 0 ? algebraic_share * options_.error : options_.tolerance;
+  task.smoothing = options_.smoothing > 0 ? options_.smoothing : report_.solver == SolverKind::vcycle ? 2 : 1;
+  if (last && options_.cycles > 0) {
+    task.tolerance = 0;
+    task.max_iterations = options_.cycles;
+  }
+  if (!last && cycles()) {
+    task.tolerance = 0;
+    task.max_iterations = coarse_cycles;
+  }
+  solvers_[level].emplace(parts_.work, parts_.operators, key_, level, task);
+  record_first(level);
+}
+
+// Iterations behind the present b.
+void LevelsSolver::iterate(std::uint32_t level) {
+  LevelSolver& solver = *solvers_[level];
+  if (!cycles()) return solver.run();
+  solver.record_start();
+  solver.record(std::min(first_cycles, solver.max_iterations()));
+  solver.record_check();
+}
+
 void LevelsSolver::solve(std::uint32_t level) {
-  if (level + 1 == parts_.levels.size()) {
-    parts_.work.recorder.fill(op(level).x, 0);
-  } else {
-    parts_.operators.record_transfer(parts_.work, key_, level);
-    if (level == 0) parts_.results.record_coarse(parts_.work, solved(0));
+  approach(level);
+  iterate(level);
+  op(level).solved = true;
+  // A level's own error is that of the light before it bounces, which the coarser ones do not have.
+  record_difference(level);
+  if (bounces_on(level)) bounce(options_.bounces > 0 ? options_.bounces : first_bounces);
+}
+
+void LevelsSolver::record_difference(std::uint32_t level) {
+  if (level + 1 < solvers_.size() && solvers_[level + 1]) solvers_[level]->record_difference();
+}
+
+void LevelsSolver::solve_down_to(std::uint32_t finest) {
+  while (true) {
+    solve(next_);
+    if (next_ == finest) return;
+    --next_;
   }
-  report_.levels.push_back(solve_level(parts_.work, op(level), level, options_));
+}
+
+bool LevelsSolver::bounced_enough() const {
+  return options_.bounces > 0 || parts_.exchange.count() >= max_bounces ||
+         parts_.exchange.converged((options_.error > 0 ? options_.error : options_.tolerance) / 10);
 }
 
 // On the level with the exchange, from the solution it has.
-void LevelsSolver::bounce() {
-  InterReflection& exchange = parts_.exchange;
-  const std::uint32_t level = *exchange.level();
-  if (level == 0 && parts_.levels.size() > 1 && !exchange.any()) {
-    // The finest level's own error, before it has bounces that the coarser ones do not have.
-    parts_.results.record(parts_.work, solved(0));
-    parts_.work.recorder.submit();
-    report_.error = parts_.results.error();
-  }
-  LevelReport& total = report_.levels.back();
-  for (std::uint32_t left = options_.bounces > 0 ? options_.bounces : max_bounces; left > 0; --left) {
-    const glm::dvec3 before = exchange.power();
-    exchange.record_bounce(parts_.work, solved(level), parts_.coefficients.eta());
+void LevelsSolver::bounce(std::uint32_t bounces) {
+  const std::uint32_t level = *parts_.exchange.level();
+  for (std::uint32_t left = bounces; left > 0; --left) {
+    parts_.exchange.record_bounce(parts_.work, solved(level), parts_.coefficients.eta());
     record_load_again(level);
-    const std::uint32_t iterations = total.iterations;
-    total = solve_level(parts_.work, op(level), level, options_);
-    total.iterations += iterations;
-    report_.bounces.push_back(exchange.power() - before);
-    if (options_.bounces == 0 && exchange.converged(options_.tolerance / 10)) return;
+    iterate(level);
+    if (!cycles() && bounced_enough()) return;
   }
 }
 
-void LevelsSolver::finish() {
+void LevelsSolver::bounce_more() {
+  const std::uint32_t exchange = *parts_.exchange.level();
+  bounce(first_bounces);
+  for (std::uint32_t level = exchange; level-- > finest_;) {
+    record_light(level);
+    iterate(level);
+    record_difference(level);
+  }
+}
+
+// Until the finest level and the bounces are what was asked for.
+void LevelsSolver::settle() {
+  submit();
+  while (true) {
+    LevelSolver& solver = *solvers_[finest_];
+    if (solver.failed()) {
+      replace();
+    } else if (report_.inter_reflection && parts_.exchange.level() && !bounced_enough()) {
+      bounce_more();
+    } else if (solver.running()) {
+      solver.record(first_cycles);
+      solver.record_check();
+      if (!bounces_on(finest_)) record_difference(finest_);
+    } else {
+      return;
+    }
+    submit();
+  }
+}
+
+// Conjugate gradients with the diagonal, from what there is, or from nothing if that is no solution.
+void LevelsSolver::replace() {
+  const LevelSolver& failed = *solvers_[finest_];
+  report_.replaced = std::string(name_of(report_.solver)) + " by dpcg: " + failed.failure();
+  report_.solver = SolverKind::dpcg;
+  const bool usable = failed.state().status != gpu::SOLVE_NOT_FINITE && failed.state().status != gpu::SOLVE_DIVERGED;
+  if (usable) {
+    warm_ = true;
+    next_ = finest_;
+  } else {
+    for (std::uint32_t level = 0; level < solvers_.size(); ++level) op(level).solved = false;
+    start_over();
+  }
+  solve_down_to(finest_);
+}
+
+// What leaves level 0, of the solution carried there.
+void LevelsSolver::record_results() {
+  for (std::uint32_t level = finest_; level-- > 0;) {
+    parts_.operators.record_transfer(parts_.work, key_, level, op(level).x);
+    op(level).solved = true;
+  }
+  if (finest_ > 0 && options_.source == Source::buried) {
+    parts_.walks[0].record(parts_.work, parts_.levels[0], parts_.beams, key_.method, parts_.coefficients.eta(),
+                           parts_.coefficients.even());
+  }
   parts_.results.record(parts_.work, solved(0));
+}
+
+void LevelsSolver::submit() {
+  record_results();
+  for (auto& solver : solvers_) {
+    if (solver) solver->record_state();
+  }
   parts_.work.recorder.submit();
+  for (auto& solver : solvers_) {
+    if (solver) solver->take();
+  }
+  take_error();
+}
+
+void LevelsSolver::take_error() {
+  const LevelSolver& solver = *solvers_[finest_];
+  report_.algebraic = solver.algebraic();
+  report_.error.reset();
+  if (finest_ + 1 == solvers_.size() || !solvers_[finest_ + 1]) return;
+  const glm::dvec2 mesh = fine_share * glm::dvec2(solver.state().difference);
+  const ErrorEstimate left = report_.algebraic.value_or(ErrorEstimate{});
+  report_.error = ErrorEstimate{mesh.x + left.whole, mesh.y + left.unlit};
+}
+
+void LevelsSolver::finish() {
+  double entries = 0;
+  for (auto i = static_cast<std::uint32_t>(solvers_.size()); i-- > 0;) {
+    if (!solvers_[i]) continue;
+    report_.levels.push_back(solvers_[i]->report());
+    entries += solvers_[i]->entries();
+  }
+  report_.finest = finest_;
+  report_.work = entries / op(0).entries;
+  report_.bounces = parts_.exchange.bounces();
   report_.energy = energy();
   report_.clipped = parts_.results.clipped();
-  const bool bounced_on_finest = report_.inter_reflection && parts_.exchange.level() == 0u;
-  if (parts_.levels.size() > 1 && !bounced_on_finest) report_.error = parts_.results.error();
 }
 
 Energy LevelsSolver::energy() const {

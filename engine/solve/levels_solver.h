@@ -1,11 +1,14 @@
 // One solve: from coefficients and light over all levels, coarsest first, with the bounces on their level, to what
-// leaves the surface of the finest.
+// leaves the surface. Solvers with cycles take one submission, unless what they are asked for needs more cycles or
+// bounces than that holds; the others look at the state of every level from the host.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "engine/solve/coefficients.h"
 #include "engine/solve/inter_reflection.h"
+#include "engine/solve/level_solver.h"
 #include "engine/solve/operators.h"
 #include "engine/solve/source_walk.h"
 #include "engine/solve/surface_results.h"
@@ -27,22 +30,38 @@ struct SolveParts {
 
 class LevelsSolver {
  public:
-  // The operators of `key` have been created.
-  LevelsSolver(const SolveParts& parts, const OperatorKey& key, const SolveOptions& options);
+  // The operators of `key` have been created. `solver` instead of that of the options, never automatic.
+  LevelsSolver(const SolveParts& parts, const OperatorKey& key, const SolveOptions& options, SolverKind solver);
 
   // Throws as Simulation::solve.
   SolveReport run();
 
  private:
   OperatorBuffers& op(std::uint32_t level) { return parts_.operators.at(key_, level); }
+  bool bounces_on(std::uint32_t level) const;
+  bool cycles() const { return uses_cycles(report_.solver); }
   Solved solved(std::uint32_t level);
   Energy energy() const;
+
+  void start_over();
+  void record_setup(std::uint32_t level);
   void record_load(std::uint32_t level);
   void record_load_again(std::uint32_t level);
-  void record_setup();
-  void solve_levels();
+  void record_light(std::uint32_t level);
+  void record_first(std::uint32_t level);
+  void record_difference(std::uint32_t level);
+  void approach(std::uint32_t level);
+  void iterate(std::uint32_t level);
   void solve(std::uint32_t level);
-  void bounce();
+  void solve_down_to(std::uint32_t finest);
+  bool bounced_enough() const;
+  void bounce(std::uint32_t bounces);
+  void bounce_more();
+  void settle();
+  void replace();
+  void record_results();
+  void submit();
+  void take_error();
   void finish();
 
   SolveParts parts_;
@@ -50,6 +69,10 @@ class LevelsSolver {
   const SolveOptions& options_;
   Boundary boundary_;
   SolveReport report_;
+  std::uint32_t finest_ = 0;  // level that is solved last, as far as is known
+  std::uint32_t next_ = 0;    // level to be solved next; all coarser ones have been
+  bool warm_ = false;
+  std::vector<std::optional<LevelSolver>> solvers_;  // per level
 };
 
 }  // namespace quadgraph

@@ -3,6 +3,7 @@
 #include "engine/graph/operator.h"
 #include "engine/solve/row_structure.h"
 #include "shaders/assembly_shared.h"
+#include "shaders/surface_shared.h"
 
 namespace quadgraph {
 namespace {
@@ -52,7 +53,17 @@ OperatorBuffers::OperatorBuffers(vk::Context& context, const Level& level, std::
   r = buffer(count * field_bytes(), vectors, "r");
   p = buffer(count * field_bytes(), vectors, "p");
   product = buffer(count * field_bytes(), vectors, "product");
+  if (method == Method::fem) {
+    z = buffer(count * field_bytes(), vectors, "z");
+    other = buffer(count * field_bytes(), vectors, "other z");
+  }
+  surface_first = method == Method::fem ? 0 : level.tet_count();
+  surface_count = method == Method::fem ? level.surface_vertex_count : level.face_count();
+  surface_share = buffer(surface_count * sizeof(gpu::SurfaceShare), vectors, "surface share");
+  surface_before = buffer(surface_count * sizeof(glm::vec3), vectors, "exitance before");
+  surface_start = buffer(surface_count * sizeof(glm::vec3), vectors, "exitance of the start");
   state = buffer(sizeof(gpu::SolveState), vectors, "state");
+  state_on_host = {context, sizeof(gpu::SolveState), vk::Place::host, vectors + prefix + "state, read back"};
   damping = buffer(sizeof(glm::vec3), vectors, "damping");
 }
 

@@ -18,11 +18,16 @@ struct OperatorBuffers {
   std::uint32_t slices = 0;
   vk::Buffer slice_offset, column, weight, row_sum, diagonal;  // RowsRef
   vk::Buffer to_phi;
-  vk::Buffer b, x;     // scaled (gpu::Scale)
-  vk::Buffer r, p;     // residual, direction
-  vk::Buffer product;  // A p; in a relaxation, the other x
-  vk::Buffer state;    // SolveState
-  vk::Buffer damping;  // vec3
+  vk::Buffer b, x;                  // scaled (gpu::Scale)
+  vk::Buffer r, p;                  // residual, direction
+  vk::Buffer product;               // A p; in a relaxation, the other x; in a cycle, the direction, then the residual
+  vk::Buffer z, other;              // correction of a cycle, and its second buffer; fem only
+  vk::Buffer state, state_on_host;  // SolveState, and the same, mapped
+  vk::Buffer damping;               // vec3
+
+  std::uint32_t surface_first = 0, surface_count = 0;  // carriers on the surface
+  vk::Buffer surface_share;                            // SurfaceShare of each
+  vk::Buffer surface_before, surface_start;            // vec3 of each: exitance at the last look, and at the start
 
   std::uint32_t edge_count = 0;              // fem only, like all that follow
   vk::Buffer edge_entry, ring_offset, ring;  // AssembleEdgesPush
@@ -33,6 +38,8 @@ struct OperatorBuffers {
   std::optional<Boundary> assembled;  // for the present material, with this boundary
   bool damped = false;                // `damping` belongs to these rows
   std::optional<Source> loaded;       // b is that of the present light and rows, with this source
+  bool weighed = false;               // surface_share belongs to the present light and vertices
+  bool solved = false;                // x has been solved for, if for other light or coefficients
 
   // Uploads the structure; values are undefined until assembled.
   OperatorBuffers(vk::Context& context, const Level& level, std::uint32_t index, Method method, Model model);

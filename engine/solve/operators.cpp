@@ -1,21 +1,35 @@
 #include "engine/solve/operators.h"
 
+#include <algorithm>
+
 namespace quadgraph {
 
 void Operators::create(vk::Context& context, std::span<const Level> levels, const OperatorKey& key) {
-  std::vector<OfLevel>& of_key = levels_[key];
-  of_key.resize(levels.size());
-  for (std::uint32_t i = 0; i < levels.size(); ++i) {
-    if (of_key[i].op) continue;
+  if (levels_.contains(key)) return;
+  const std::size_t count = std::min<std::size_t>(levels.size(), MAX_LEVELS);
+  std::vector<OfLevel> of_key(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
     of_key[i].op.emplace(context, levels[i], i, key.method, key.model);
-    if (i + 1 < levels.size()) of_key[i].transfer.emplace(context, levels[i], levels[i + 1], i, key.method);
+    if (i + 1 < count) of_key[i].transfer.emplace(context, levels[i], levels[i + 1], i, key.method);
   }
+  for (std::uint32_t i = 0; i < count; ++i) write_gates(context, of_key, i);
+  levels_.emplace(key, std::move(of_key));
+}
+
+// What opens the gates of the level's state.
+void Operators::write_gates(vk::Context& context, const std::vector<OfLevel>& levels, std::uint32_t number) {
+  const auto groups = [](std::uint32_t count) { return (count + WORKGROUP_SIZE - 1) / WORKGROUP_SIZE; };
+  gpu::SolveState state{};
+  for (std::size_t i = number; i < levels.size(); ++i) state.groups[i] = groups(levels[i].op->count);
+  state.surface_groups = groups(levels[number].op->surface_count);
+  vk::write_bytes(context, levels[number].op->state, std::as_bytes(std::span(&state, 1)));
 }
 
 void Operators::unload() {
   for (auto& [key, of_key] : levels_) {
     for (OfLevel& level : of_key) {
-      if (level.op) level.op->loaded.reset();
+      level.op->loaded.reset();
+      level.op->weighed = false;
     }
   }
 }
@@ -23,7 +37,7 @@ void Operators::unload() {
 void Operators::disassemble() {
   for (auto& [key, of_key] : levels_) {
     for (OfLevel& level : of_key) {
-      if (level.op) level.op->assembled.reset();
+      level.op->assembled.reset();
     }
   }
   unload();
@@ -31,13 +45,14 @@ void Operators::disassemble() {
 
 void Operators::remeasure(std::uint32_t number) {
   for (auto& [key, of_key] : levels_) {
-    if (!of_key[number].op) continue;
+    if (number >= of_key.size()) continue;
     of_key[number].op->measured = false;
     of_key[number].op->assembled.reset();
   }
 }
 
-void Operators::record_transfer(Workspace& work, const OperatorKey& key, std::uint32_t level) {
+void Operators::record_transfer(Workspace& work, const OperatorKey& key, std::uint32_t level,
+                                const vk::Buffer& target) {
   const OperatorBuffers& coarse = at(key, level + 1);
   const OperatorBuffers& fine = at(key, level);
   for (const auto& part : levels_.at(key)[level].transfer->parts) {
@@ -46,7 +61,7 @@ void Operators::record_transfer(Workspace& work, const OperatorKey& key, std::ui
                                  .coarse_x = coarse.x.address(),
                                  .coarse_to_phi = coarse.to_phi.address(),
                                  .to_phi = fine.to_phi.address(),
-                                 .x = fine.x.address(),
+                                 .x = target.address(),
                                  .state = fine.state.address(),
                                  .width = part.width,
                                  .first = part.first,

@@ -29,18 +29,26 @@ class Operators {
   // Of a key that has been created.
   OperatorBuffers& at(const OperatorKey& key, std::uint32_t level) { return *levels_.at(key)[level].op; }
 
+  // Of a key that has been created: levels, at most MAX_LEVELS; the way from level `level` + 1 to it.
+  std::uint32_t count(const OperatorKey& key) const { return static_cast<std::uint32_t>(levels_.at(key).size()); }
+  const TransferBuffers& transfer(const OperatorKey& key, std::uint32_t level) const {
+    return *levels_.at(key)[level].transfer;
+  }
+
   void unload();                         // light has changed: every b is stale
   void disassemble();                    // coefficients have changed: every operator is
   void remeasure(std::uint32_t number);  // vertices of a level have moved: its elements have, too
 
-  // x of `level` from that of the next coarser one.
-  void record_transfer(Workspace& work, const OperatorKey& key, std::uint32_t level);
+  // `target`, as x of `level`, from x of the next coarser one.
+  void record_transfer(Workspace& work, const OperatorKey& key, std::uint32_t level, const vk::Buffer& target);
 
  private:
   struct OfLevel {
     std::optional<OperatorBuffers> op;
     std::optional<TransferBuffers> transfer;
   };
+
+  static void write_gates(vk::Context& context, const std::vector<OfLevel>& levels, std::uint32_t number);
 
   std::map<OperatorKey, std::vector<OfLevel>> levels_;
 };

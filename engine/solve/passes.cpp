@@ -21,11 +21,18 @@
 #include "spirv/cg_start_sp3.comp.h"
 #include "spirv/cg_update.comp.h"
 #include "spirv/cg_update_sp3.comp.h"
-#include "spirv/damping.comp.h"
-#include "spirv/damping_sp3.comp.h"
+#include "spirv/chebyshev.comp.h"
+#include "spirv/chebyshev_sp3.comp.h"
+#include "spirv/coarse_solve.comp.h"
+#include "spirv/coarse_solve_sp3.comp.h"
+#include "spirv/correct.comp.h"
+#include "spirv/correct_sp3.comp.h"
 #include "spirv/display_scale.comp.h"
+#include "spirv/eigenvalue_bound.comp.h"
+#include "spirv/eigenvalue_bound_sp3.comp.h"
 #include "spirv/energy.comp.h"
 #include "spirv/energy_sp3.comp.h"
+#include "spirv/energy_total.comp.h"
 #include "spirv/evaluate_material.comp.h"
 #include "spirv/exchange.comp.h"
 #include "spirv/exchange_boxes.comp.h"
@@ -39,6 +46,12 @@
 #include "spirv/gather_phi_sp3.comp.h"
 #include "spirv/gather_scale.comp.h"
 #include "spirv/irradiance_scale.comp.h"
+#include "spirv/prolong.comp.h"
+#include "spirv/prolong_sp3.comp.h"
+#include "spirv/residual.comp.h"
+#include "spirv/residual_sp3.comp.h"
+#include "spirv/restrict.comp.h"
+#include "spirv/restrict_sp3.comp.h"
 #include "spirv/right_hand_side_buried.comp.h"
 #include "spirv/right_hand_side_buried_sp3.comp.h"
 #include "spirv/right_hand_side_fdm.comp.h"
@@ -48,6 +61,9 @@
 #include "spirv/right_hand_side_fv.comp.h"
 #include "spirv/right_hand_side_fv_sp3.comp.h"
 #include "spirv/shape.comp.h"
+#include "spirv/surface_change.comp.h"
+#include "spirv/surface_change_sp3.comp.h"
+#include "spirv/surface_share.comp.h"
 #include "spirv/sweep.comp.h"
 #include "spirv/sweep_sp3.comp.h"
 #include "spirv/transfer.comp.h"
@@ -74,6 +90,8 @@ Passes::Passes()
       ONE_PASS(vertex_exitance, VertexExitancePush),
       ONE_PASS(display_scale, DisplayScalePush),
       ONE_PASS(vertex_unscattered, VertexUnscatteredPush),
+      ONE_PASS(energy_total, EnergyTotalPush),
+      ONE_PASS(surface_share, SurfaceSharePush),
       ONE_PASS(uncollided, UncollidedPush),
       ONE_PASS(gather_exitance, GatherExitancePush),
       ONE_PASS(gather_scale, GatherScalePush),
@@ -90,13 +108,20 @@ Passes::Passes()
       MODEL_PASS(right_hand_side_fv, RightHandSideFvPush),
       MODEL_PASS(right_hand_side_fem, RightHandSideFemPush),
       MODEL_PASS(right_hand_side_buried, RightHandSideBuriedPush),
-      MODEL_PASS(damping, DampingPush),
+      MODEL_PASS(eigenvalue_bound, EigenvalueBoundPush),
       MODEL_PASS(transfer, TransferPush),
       MODEL_PASS(cg_start, CgStartPush),
       MODEL_PASS(cg_multiply, CgMultiplyPush),
       MODEL_PASS(cg_update, CgUpdatePush),
       MODEL_PASS(cg_direction, CgDirectionPush),
+      MODEL_PASS(correct, CorrectPush),
       MODEL_PASS(sweep, SweepPush),
+      MODEL_PASS(residual, ResidualPush),
+      MODEL_PASS(chebyshev, ChebyshevPush),
+      MODEL_PASS(coarse_solve, CoarseSolvePush),
+      MODEL_PASS(restrict, RestrictPush),
+      MODEL_PASS(prolong, ProlongPush),
+      MODEL_PASS(surface_change, SurfaceChangePush),
       MODEL_PASS(exitance, ExitancePush),
       MODEL_PASS(energy, EnergyPush),
       MODEL_PASS(gather_phi, GatherPhiPush) {}

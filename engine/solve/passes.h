@@ -37,11 +37,12 @@ struct Passes {
   Passes();
 
   LazyPass evaluate_material, shape, irradiance_scale, walk_source, vertex_exitance, display_scale, vertex_unscattered,
-      uncollided, gather_exitance, gather_scale, exchange, exchange_finer, exchange_enter, exchange_boxes,
-      exchange_rays;
+      energy_total, surface_share, uncollided, gather_exitance, gather_scale, exchange, exchange_finer, exchange_enter,
+      exchange_boxes, exchange_rays;
   ModelPass assemble_fdm, assemble_fv, assemble_edges, assemble_fem, right_hand_side_fdm, right_hand_side_fv,
-      right_hand_side_fem, right_hand_side_buried, damping, transfer, cg_start, cg_multiply, cg_update, cg_direction,
-      sweep, exitance, energy, gather_phi;
+      right_hand_side_fem, right_hand_side_buried, eigenvalue_bound, transfer, cg_start, cg_multiply, cg_update,
+      cg_direction, correct, sweep, residual, chebyshev, coarse_solve, restrict, prolong, surface_change, exitance,
+      energy, gather_phi;
 };
 
 }  // namespace quadgraph

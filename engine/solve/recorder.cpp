@@ -5,8 +5,8 @@
 namespace quadgraph {
 namespace {
 
-// Timed dispatches per command buffer: a batch of iterations and some more. Beyond it, what is recorded is submitted.
-constexpr std::uint32_t max_timed = 512;
+// Timed dispatches per command buffer, more than a frame has. Beyond it, what is recorded is submitted.
+constexpr std::uint32_t max_timed = 4096;
 
 }  // namespace
 
@@ -31,8 +31,9 @@ void Recorder::begin(const std::string& name, std::uint64_t bytes, bool counts) 
   ++timed_;
 }
 
-void Recorder::copy(const vk::Buffer& source, const vk::Buffer& target, std::uint64_t bytes) {
-  commands().copy(source, target, bytes);
+void Recorder::copy(const vk::Buffer& source, const vk::Buffer& target, std::uint64_t bytes,
+                    std::uint64_t target_offset) {
+  commands().copy(source, target, bytes, target_offset);
 }
 
 void Recorder::fill(const vk::Buffer& target, std::uint32_t value) {

@@ -42,7 +42,7 @@ class Recorder {
     commands_->end_pass();
   }
 
-  void copy(const vk::Buffer& source, const vk::Buffer& target, std::uint64_t bytes);
+  void copy(const vk::Buffer& source, const vk::Buffer& target, std::uint64_t bytes, std::uint64_t target_offset = 0);
   void fill(const vk::Buffer& target, std::uint32_t value);
 
   // Runs what is recorded and waits.

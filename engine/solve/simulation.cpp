@@ -1,8 +1,11 @@
 #include "engine/solve/simulation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <glm/geometric.hpp>
+#include <map>
 
 #include "engine/graph/error.h"
 #include "engine/graph/moved_levels.h"
@@ -22,6 +25,32 @@ void check_options(const SolveOptions& options) {
   if (!(options.tolerance > 0) || !(options.tolerance < 1)) {
     throw InputError("tolerance: " + std::to_string(options.tolerance) + ", a number between 0 and 1 is wanted");
   }
+  if (!(options.error >= 0) || !(options.error < 1)) {
+    throw InputError("error: " + std::to_string(options.error) + ", a number from 0 (no target) to below 1 is wanted");
+  }
+  if (options.smoothing > 2) {
+    throw InputError("smoothing: " + std::to_string(options.smoothing) +
+                     " steps, allowed are 1 and 2, and 0 for either");
+  }
+}
+
+// Passes that one solver has and the other has not, or more often.
+double solver_ms(const std::vector<PassStats>& passes) {
+  constexpr std::array names = {"residual",     "cg-multiply",     "cg-update",   "cg-direction",
+                                "smoothing",    "coarse residual", "restriction", "coarse solve",
+                                "prolongation", "surface change",  "transfer",    "eigenvalue bound"};
+  double spent = 0;
+  for (const PassStats& pass : passes) {
+    if (std::find(names.begin(), names.end(), pass.name) != names.end()) spent += pass.time_ms;
+  }
+  return spent;
+}
+
+// As a number with two digits after the point.
+std::string ratio_text(double ratio) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.2f", ratio);
+  return text;
 }
 
 }  // namespace
@@ -43,6 +72,7 @@ struct Simulation::Implementation {
   bool scaled = false;                // the scale is that of the present q
   std::optional<OperatorKey> solved;  // by the last solve
   Source solved_source = Source::buried;
+  std::map<OperatorKey, SolverKind> quicker;  // where both have been tried, on the present material and shape
 
   Implementation(vk::Context& context_in, const QuadGraph& graph_in)
       : context(context_in),
@@ -84,6 +114,7 @@ struct Simulation::Implementation {
 
   // Changed coefficients: everything is.
   void disassemble() {
+    quicker.clear();
     operators.disassemble();
     unload();
   }
@@ -96,6 +127,7 @@ struct Simulation::Implementation {
       vk::write_bytes(context, level.nodes, std::as_bytes(shape.levels()[number].nodes));
     }
     operators.remeasure(number);
+    quicker.clear();
     exchange.moved(number);
     if (number == 0) gather.reset();
     solved.reset();
@@ -110,8 +142,8 @@ struct Simulation::Implementation {
     const OperatorKey key{options.method, coefficients.resolve(options.model, options.method, options.source)};
     make_room(key);
     exchange.refresh(work, shape.levels(), levels, options.exchange_rows);
-    const SolveParts parts{work, levels, beams, walks, operators, results, coefficients, exchange, scaled};
-    const SolveReport report = LevelsSolver(parts, key, options).run();
+    const SolveReport report =
+        options.solver == SolverKind::automatic ? solve_quickly(key, options) : run(key, options, options.solver);
     passes = work.recorder.passes();
     gather_stale = true;
     solved = key;
@@ -125,6 +157,31 @@ struct Simulation::Implementation {
       upload_graph(context, shape.levels()[i], i, levels[i]);
     }
     operators.create(context, shape.levels(), key);
+  }
+
+  SolveReport run(const OperatorKey& key, const SolveOptions& options, SolverKind solver) {
+    const SolveParts parts{work, levels, beams, walks, operators, results, coefficients, exchange, scaled};
+    return LevelsSolver(parts, key, options, solver).run();
+  }
+
+  // With the solver that took less time when both were tried, which the first solve from nothing does.
+  SolveReport solve_quickly(const OperatorKey& key, const SolveOptions& options) {
+    if (!Multigrid::possible(operators, key)) return run(key, options, SolverKind::dpcg);
+    const auto found = quicker.find(key);
+    if (found != quicker.end()) return run(key, options, found->second);
+    if (options.warm || options.cycles > 0 || options.error > 0) return run(key, options, SolverKind::fmg_pcg);
+    const SolveReport cycles = run(key, options, SolverKind::fmg_pcg);
+    const double cycles_ms = solver_ms(work.recorder.passes());
+    if (!cycles.replaced.empty()) {
+      quicker[key] = SolverKind::dpcg;
+      return cycles;
+    }
+    SolveReport report = run(key, options, SolverKind::dpcg);
+    const double dpcg_ms = solver_ms(work.recorder.passes()) - cycles_ms;
+    quicker[key] = dpcg_ms < cycles_ms ? SolverKind::dpcg : SolverKind::fmg_pcg;
+    report.replaced = "auto: both tried, " + std::string(name_of(quicker[key])) + " from now on: dpcg took " +
+                      ratio_text(dpcg_ms / cycles_ms) + " of the time of fmg-pcg";
+    return report;
   }
 
   const OperatorKey& solved_key() const {

@@ -1,7 +1,6 @@
 #include "engine/solve/surface_results.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "engine/solve/assembly.h"
 #include "shaders/surface_shared.h"
@@ -23,13 +22,6 @@ std::uint64_t energy_groups(const LevelBuffers& level) {
   return (energy_elements(level) + WORKGROUP_SIZE - 1) / WORKGROUP_SIZE;
 }
 
-// Share of the difference between two levels that is the finer one's own error: second order, spacing halved.
-constexpr double fine_share = 1.0 / 3.0;
-
-double relative(double difference, double whole) {
-  return whole > 0 ? fine_share * std::sqrt(difference / whole) : 0.0;
-}
-
 }  // namespace
 
 SurfaceResults::SurfaceResults(vk::Context& context, const LevelBuffers& level) {
@@ -38,7 +30,6 @@ SurfaceResults::SurfaceResults(vk::Context& context, const LevelBuffers& level) 
   };
   phi_ = vector(level.face_count, "results/phi at faces");
   exitance_ = vector(level.face_count, "results/exitance");
-  coarse_exitance_ = vector(level.face_count, "results/exitance of the coarser level");
   vertex_exitance_ = vector(level.surface_vertex_count, "results/exitance at vertices");
   vertex_unscattered_ = vector(level.surface_vertex_count, "results/unscattered light at vertices");
   display_factor_ = vector(1, "results/display factor");
@@ -46,7 +37,9 @@ SurfaceResults::SurfaceResults(vk::Context& context, const LevelBuffers& level) 
   clip_on_host_ = vk::Buffer(context, sizeof(gpu::Clip), vk::Place::host, "results/clip, read back");
   const std::uint64_t sums_bytes = energy_groups(level) * sizeof(gpu::EnergySums);
   sums_ = vk::Buffer(context, sums_bytes, vk::Place::device, "results/energy sums");
-  sums_on_host_ = vk::Buffer(context, sums_bytes, vk::Place::host, "results/energy sums, read back");
+  constexpr std::uint64_t total_bytes = WORKGROUP_SIZE * sizeof(gpu::EnergySums);
+  totals_ = vk::Buffer(context, total_bytes, vk::Place::device, "results/energy totals");
+  totals_on_host_ = vk::Buffer(context, total_bytes, vk::Place::host, "results/energy totals, read back");
 }
 
 void record_exitance(Workspace& work, const Solved& solved, const vk::Buffer& phi, const vk::Buffer& exitance,
@@ -70,10 +63,6 @@ void record_exitance(Workspace& work, const Solved& solved, const vk::Buffer& ph
                                .boundary = on_device(solved.boundary)};
   work.recorder.dispatch(work.passes.exitance.of(solved.op.model), push, level.face_count, "exitance",
                          level.face_count * (sizeof(glm::uvec3) + 6 * vec3_bytes + 3 * solved.op.field_bytes()));
-}
-
-void SurfaceResults::record_coarse(Workspace& work, const Solved& solved) {
-  record_exitance(work, solved, phi_, coarse_exitance_, clip_);
 }
 
 void SurfaceResults::record_vertex_exitance(Workspace& work, const LevelBuffers& level, const vk::Buffer& faces,
@@ -147,7 +136,6 @@ void SurfaceResults::record_energy(Workspace& work, const Solved& solved) {
                              .to_phi = solved.op.to_phi.address(),
                              .q = level.q.address(),
                              .exitance = exitance_.address(),
-                             .coarse_exitance = coarse_exitance_.address(),
                              .scale = work.scale.address(),
                              .clip = clip_.address(),
                              .sums = sums_.address(),
@@ -156,9 +144,12 @@ void SurfaceResults::record_energy(Workspace& work, const Solved& solved) {
                              .fem = is_fem(solved.method),
                              .even = level.even ? 1u : 0u};
   const std::uint64_t bytes = level.tet_count * (sizeof(glm::uvec4) + 5 * vec3_bytes + 4 * solved.op.field_bytes()) +
-                              level.face_count * (sizeof(glm::uvec3) + 7 * vec3_bytes) + sums_.size();
+                              level.face_count * (sizeof(glm::uvec3) + 6 * vec3_bytes) + sums_.size();
   work.recorder.dispatch(work.passes.energy.of(solved.op.model), push, energy_elements(level), "energy", bytes);
-  work.recorder.copy(sums_, sums_on_host_, sums_.size());
+  const auto groups = static_cast<std::uint32_t>(energy_groups(level));
+  const gpu::EnergyTotalPush total{sums_.address(), totals_.address(), groups};
+  work.recorder.dispatch(work.passes.energy_total, total, WORKGROUP_SIZE, "energy", sums_.size() + totals_.size());
+  work.recorder.copy(totals_, totals_on_host_, totals_.size());
   work.recorder.copy(clip_, clip_on_host_, clip_.size());
 }
 
@@ -170,18 +161,12 @@ void SurfaceResults::record(Workspace& work, const Solved& solved) {
 
 Energy SurfaceResults::energy() const {
   Energy energy;
-  for (const gpu::EnergySums& sums : sums_on_host_.mapped_as<gpu::EnergySums>()) {
+  for (const gpu::EnergySums& sums : totals_on_host_.mapped_as<gpu::EnergySums>()) {
     energy.entered += glm::dvec3(sums.entered);
     energy.scattered_out += glm::dvec3(sums.exitance);
     energy.absorbed += glm::dvec3(sums.absorbed);
   }
   return energy;
-}
-
-ErrorEstimate SurfaceResults::error() const {
-  glm::dvec4 total{0};
-  for (const gpu::EnergySums& sums : sums_on_host_.mapped_as<gpu::EnergySums>()) total += glm::dvec4(sums.error);
-  return {.whole = relative(total.x, total.y), .unlit = relative(total.z, total.w)};
 }
 
 glm::dvec3 SurfaceResults::clipped() const {

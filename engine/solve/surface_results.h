@@ -35,15 +35,11 @@ class SurfaceResults {
   const vk::Buffer& vertex_exitance() const { return vertex_exitance_; }
   const vk::Buffer& vertex_unscattered() const { return vertex_unscattered_; }
 
-  // Exitance of the solution transferred from the coarser level, to be compared with the final one.
-  void record_coarse(Workspace& work, const Solved& solved);
-
   // Exitance and energy of the final solution.
   void record(Workspace& work, const Solved& solved);
 
   // Of what was recorded last and has run; the walk's share is not in it.
   Energy energy() const;
-  ErrorEstimate error() const;
   glm::dvec3 clipped() const;
 
  private:
@@ -53,12 +49,13 @@ class SurfaceResults {
   void record_vertex_unscattered(Workspace& work, const Solved& solved);
   void record_energy(Workspace& work, const Solved& solved);
 
-  vk::Buffer phi_, exitance_, coarse_exitance_, vertex_exitance_, vertex_unscattered_;
+  vk::Buffer phi_, exitance_, vertex_exitance_, vertex_unscattered_;
   vk::Buffer display_factor_;  // vec3
   vk::Buffer clip_;            // Clip
   vk::Buffer clip_on_host_;    // the same, mapped
   vk::Buffer sums_;            // EnergySums per workgroup
-  vk::Buffer sums_on_host_;    // the same, mapped
+  vk::Buffer totals_;          // EnergySums, WORKGROUP_SIZE of them
+  vk::Buffer totals_on_host_;  // the same, mapped
 };
 
 }  // namespace quadgraph

@@ -10,9 +10,8 @@ namespace quadgraph {
 struct Workspace {
   Recorder recorder;
   Passes passes;
-  vk::Buffer reduction;      // Reduction of pairs, for the largest dispatch
-  vk::Buffer scale;          // Scale
-  vk::Buffer state_on_host;  // SolveState, mapped
+  vk::Buffer reduction;  // Reduction of pairs, for the largest dispatch
+  vk::Buffer scale;      // Scale
 
   // `max_elements`: invocations of the largest dispatch that reduces.
   Workspace(vk::Context& context, std::uint64_t max_elements);

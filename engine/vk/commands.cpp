@@ -85,8 +85,8 @@ void Commands::transition(const Image& image, VkImageLayout from, VkImageLayout 
   vkCmdPipelineBarrier2(commands_, &info);
 }
 
-void Commands::copy(const Buffer& source, const Buffer& target, std::uint64_t bytes) {
-  const VkBufferCopy region{0, 0, bytes};
+void Commands::copy(const Buffer& source, const Buffer& target, std::uint64_t bytes, std::uint64_t target_offset) {
+  const VkBufferCopy region{0, target_offset, bytes};
   vkCmdCopyBuffer(commands_, source.handle(), target.handle(), 1, &region);
   barrier();
 }

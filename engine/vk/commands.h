@@ -31,7 +31,7 @@ class Commands {
   // Moves every layer of an image from `from` (UNDEFINED discards its contents) to `to`, with a full barrier.
   void transition(const Image& image, VkImageLayout from, VkImageLayout to);
 
-  void copy(const Buffer& source, const Buffer& target, std::uint64_t bytes);
+  void copy(const Buffer& source, const Buffer& target, std::uint64_t bytes, std::uint64_t target_offset = 0);
 
   // Layer after layer, rows tightly packed; the image must be in TRANSFER_SRC_OPTIMAL.
   void copy(const Image& source, const Buffer& target);

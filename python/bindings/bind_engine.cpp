@@ -16,6 +16,14 @@ namespace py = pybind11;
 namespace quadgraph::python {
 namespace {
 
+py::object error_dict(const std::optional<ErrorEstimate>& estimate) {
+  if (!estimate) return py::none();
+  py::dict d;
+  d["whole"] = estimate->whole;
+  d["unlit"] = estimate->unlit;
+  return d;
+}
+
 py::dict report_dict(const SolveReport& report) {
   py::dict d;
   d["method"] = std::string(name_of(report.method));
@@ -31,13 +39,11 @@ py::dict report_dict(const SolveReport& report) {
   py::list bounces;
   for (const glm::dvec3& bounce : report.bounces) bounces.append(as_tuple(bounce));
   d["bounces"] = bounces;
-  d["error"] = py::none();
-  if (report.error) {
-    py::dict error;
-    error["whole"] = report.error->whole;
-    error["unlit"] = report.error->unlit;
-    d["error"] = error;
-  }
+  d["replaced"] = report.replaced;
+  d["finest"] = report.finest;
+  d["work"] = report.work;
+  d["algebraic"] = error_dict(report.algebraic);
+  d["error"] = error_dict(report.error);
   return d;
 }
 
@@ -152,11 +158,15 @@ void set_lights(Engine& engine, const std::vector<std::string>& texts) {
 }
 
 py::dict solve(Engine& engine, const std::string& method, const std::string& solver, const std::string& source,
-               const std::string& model, double tolerance, std::uint32_t max_iterations, bool inter_reflection,
-               std::uint32_t bounces) {
+               const std::string& model, double tolerance, double error, std::uint32_t cycles, bool warm,
+               std::uint32_t max_iterations, bool inter_reflection, std::uint32_t bounces, std::uint32_t smoothing) {
   SolveOptions options = options_from(method, solver, source, model, tolerance, max_iterations);
+  options.error = error;
+  options.cycles = cycles;
+  options.warm = warm;
   options.inter_reflection = inter_reflection;
   options.bounces = bounces;
+  options.smoothing = smoothing;
   const SolveReport report = [&] {
     const py::gil_scoped_release release;
     return engine.solve(options);
@@ -233,10 +243,14 @@ void bind_engine(py::module_& module) {
           py::arg("level"), py::arg("sigma_s_prime"), py::arg("sigma_a"), py::arg("eta"),
           "Coefficients per node, (n, 3) in 1/mm, instead of a material; wanted for every level.")
       .def("update_irradiance", &Engine::update_irradiance, py::call_guard<py::gil_scoped_release>())
-      .def("solve", &solve, py::arg("method") = "fem", py::arg("solver") = "dpcg", py::arg("source") = "buried",
-           py::arg("model") = "auto", py::arg("tolerance") = 1e-3, py::arg("max_iterations") = 5000,
-           py::arg("inter_reflection") = true, py::arg("bounces") = 0,
-           "Solves for the present material and light; a report. Raises InputError, SolverError.")
+      .def("solve", &solve, py::arg("method") = "fem", py::arg("solver") = "fmg-pcg", py::arg("source") = "buried",
+           py::arg("model") = "auto", py::arg("tolerance") = 1e-3, py::arg("error") = 0.0, py::arg("cycles") = 0,
+           py::arg("warm") = false, py::arg("max_iterations") = 5000, py::arg("inter_reflection") = true,
+           py::arg("bounces") = 0, py::arg("smoothing") = 0,
+           "Solves for the present material and light (engine/graph/solution.h); a report. tolerance: estimated "
+           "algebraic error of the exitance; error: target for it and that of the mesh together, 0: none; cycles: so "
+           "many iterations on the finest level, 0: as many as it takes; warm: from the last solution. Raises "
+           "InputError, SolverError.")
       .def(
           "surface_field", [](const Engine& engine) { return field_dict(engine.surface_field()); },
           "Per outside face of level 0: position, normal, area, q, phi, exitance of scattered and of unscattered light "

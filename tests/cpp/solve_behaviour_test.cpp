@@ -159,13 +159,19 @@ TEST_CASE("a matrix that is not positive definite breaks down by name") {
   CheckedContext device;
   vk::Context& context = device.context;
   const OwnedLevel owned = split_at_centroids(box_level(2, 4.0f));
-  OperatorBuffers op(context, owned.view(), 3, Method::fem, Model::diffusion);
+  const OperatorKey key{Method::fem, Model::diffusion};
+  const Level level = owned.view();
+  Operators operators;
+  operators.create(context, {&level, 1}, key);
+  OperatorBuffers& op = operators.at(key, 0);
   Workspace work(context, op.count);
   const std::vector<glm::vec3> one(op.entries, glm::vec3(1)), minus(op.entries, glm::vec3(-1));
   const auto write = [&](const vk::Buffer& buffer, const std::vector<glm::vec3>& values) {
     vk::write_bytes(context, buffer, std::as_bytes(std::span(values)).first(buffer.size()));
   };
-  gpu::SolveState state{};
+  const gpu::Scale scale{.scale = glm::vec3(1), .inverse = glm::vec3(1), .unlit = 0};
+  vk::write_bytes(context, work.scale, std::as_bytes(std::span(&scale, 1)));
+  gpu::SolveState state = vk::download<gpu::SolveState>(context, op.state)[0];
   state.norm = glm::vec3(static_cast<float>(op.count));
   for (SolverKind solver : both_solvers) {
     write(op.diagonal, one);
@@ -176,8 +182,8 @@ TEST_CASE("a matrix that is not positive definite breaks down by name") {
     write(op.damping, one);
     vk::write_bytes(context, op.state, std::as_bytes(std::span(&state, 1)));
     const char* expected = solver == SolverKind::dpcg ? "not positive definite" : "diverges";
-    CHECK_THROWS_WITH_AS(solve_level(work, op, 3, options(Method::fem, solver, 1e-3)), doctest::Contains(expected),
-                         SolverError);
+    LevelSolver level_solver(work, operators, key, 0, {.solver = solver, .max_iterations = 5000});
+    CHECK_THROWS_WITH_AS(level_solver.run(), doctest::Contains(expected), SolverError);
   }
 }
 

@@ -54,19 +54,22 @@ TEST_CASE("structs in buffers") {
   compare(cg_start_comp, "RowsRef",
           {MEMBER(RowsRef, slice_offset), MEMBER(RowsRef, column), MEMBER(RowsRef, weight), MEMBER(RowsRef, row_sum),
            MEMBER(RowsRef, diagonal)});
-  compare(
-      cg_start_comp, "SolveState",
-      {MEMBER(SolveState, iterate), MEMBER(SolveState, check), MEMBER(SolveState, norm), MEMBER(SolveState, rz),
-       MEMBER(SolveState, alpha), MEMBER(SolveState, beta), MEMBER(SolveState, residual), MEMBER(SolveState, checked),
-       MEMBER(SolveState, iterations), MEMBER(SolveState, status), MEMBER(SolveState, channel)});
+  compare(cg_start_comp, "SolveState",
+          {MEMBER(SolveState, gate),      MEMBER(SolveState, coarse),     MEMBER(SolveState, surface),
+           MEMBER(SolveState, check),     MEMBER(SolveState, groups),     MEMBER(SolveState, surface_groups),
+           MEMBER(SolveState, norm),      MEMBER(SolveState, square),     MEMBER(SolveState, rz),
+           MEMBER(SolveState, alpha),     MEMBER(SolveState, beta),       MEMBER(SolveState, residual),
+           MEMBER(SolveState, checked),   MEMBER(SolveState, iterations), MEMBER(SolveState, status),
+           MEMBER(SolveState, channel),   MEMBER(SolveState, size),       MEMBER(SolveState, change),
+           MEMBER(SolveState, algebraic), MEMBER(SolveState, difference), MEMBER(SolveState, looked),
+           MEMBER(SolveState, looks),     MEMBER(SolveState, slow)});
   compare(exitance_comp, "Boundary",
           {MEMBER(Boundary, k11), MEMBER(Boundary, k12), MEMBER(Boundary, k22), MEMBER(Boundary, source),
            MEMBER(Boundary, reflected)});
   compare(exitance_comp, "Clip", {MEMBER(Clip, factor), MEMBER(Clip, share)});
-  compare(exitance_comp, "Scale", {MEMBER(Scale, scale), MEMBER(Scale, inverse)});
+  compare(exitance_comp, "Scale", {MEMBER(Scale, scale), MEMBER(Scale, inverse), MEMBER(Scale, unlit)});
   compare(energy_comp, "EnergySums",
-          {MEMBER(EnergySums, entered), MEMBER(EnergySums, exitance), MEMBER(EnergySums, absorbed),
-           MEMBER(EnergySums, error)});
+          {MEMBER(EnergySums, entered), MEMBER(EnergySums, exitance), MEMBER(EnergySums, absorbed)});
 }
 
 TEST_CASE("arrays in buffers have the stride of their C++ element") {

@@ -17,15 +17,28 @@
 #include "spirv/cg_start_sp3.comp.h"
 #include "spirv/cg_update.comp.h"
 #include "spirv/cg_update_sp3.comp.h"
-#include "spirv/damping.comp.h"
-#include "spirv/damping_sp3.comp.h"
+#include "spirv/chebyshev.comp.h"
+#include "spirv/chebyshev_sp3.comp.h"
+#include "spirv/coarse_solve.comp.h"
+#include "spirv/coarse_solve_sp3.comp.h"
+#include "spirv/correct.comp.h"
+#include "spirv/correct_sp3.comp.h"
 #include "spirv/display_scale.comp.h"
+#include "spirv/eigenvalue_bound.comp.h"
+#include "spirv/eigenvalue_bound_sp3.comp.h"
 #include "spirv/energy.comp.h"
 #include "spirv/energy_sp3.comp.h"
+#include "spirv/energy_total.comp.h"
 #include "spirv/evaluate_material.comp.h"
 #include "spirv/exitance.comp.h"
 #include "spirv/exitance_sp3.comp.h"
 #include "spirv/irradiance_scale.comp.h"
+#include "spirv/prolong.comp.h"
+#include "spirv/prolong_sp3.comp.h"
+#include "spirv/residual.comp.h"
+#include "spirv/residual_sp3.comp.h"
+#include "spirv/restrict.comp.h"
+#include "spirv/restrict_sp3.comp.h"
 #include "spirv/right_hand_side_fdm.comp.h"
 #include "spirv/right_hand_side_fdm_sp3.comp.h"
 #include "spirv/right_hand_side_fem.comp.h"
@@ -33,6 +46,9 @@
 #include "spirv/right_hand_side_fv.comp.h"
 #include "spirv/right_hand_side_fv_sp3.comp.h"
 #include "spirv/shape.comp.h"
+#include "spirv/surface_change.comp.h"
+#include "spirv/surface_change_sp3.comp.h"
+#include "spirv/surface_share.comp.h"
 #include "spirv/sweep.comp.h"
 #include "spirv/sweep_sp3.comp.h"
 #include "spirv/transfer.comp.h"
@@ -121,10 +137,11 @@ TEST_CASE("push constants") {
          MEMBER(RightHandSideFemPush, count), MEMBER(RightHandSideFemPush, surface_count),
          MEMBER(RightHandSideFemPush, boundary)});
   }
-  for (const vk::Spirv code : {vk::Spirv(damping_comp), vk::Spirv(damping_sp3_comp)}) {
-    compare(code, "DampingPush",
-            {MEMBER(DampingPush, rows), MEMBER(DampingPush, damping), MEMBER(DampingPush, reduction),
-             MEMBER(DampingPush, count)});
+  for (const vk::Spirv code : {vk::Spirv(eigenvalue_bound_comp), vk::Spirv(eigenvalue_bound_sp3_comp)}) {
+    compare(code, "EigenvalueBoundPush",
+            {MEMBER(EigenvalueBoundPush, rows), MEMBER(EigenvalueBoundPush, y), MEMBER(EigenvalueBoundPush, z),
+             MEMBER(EigenvalueBoundPush, damping), MEMBER(EigenvalueBoundPush, reduction),
+             MEMBER(EigenvalueBoundPush, count), MEMBER(EigenvalueBoundPush, first)});
   }
   for (const vk::Spirv code : {vk::Spirv(transfer_comp), vk::Spirv(transfer_sp3_comp)}) {
     compare(code, "TransferPush",
@@ -138,31 +155,30 @@ TEST_CASE("push constants") {
         code, "CgStartPush",
         {MEMBER(CgStartPush, rows), MEMBER(CgStartPush, b), MEMBER(CgStartPush, x), MEMBER(CgStartPush, r),
          MEMBER(CgStartPush, p), MEMBER(CgStartPush, state), MEMBER(CgStartPush, reduction), MEMBER(CgStartPush, count),
-         MEMBER(CgStartPush, max_iterations), MEMBER(CgStartPush, tolerance), MEMBER(CgStartPush, first)});
+         MEMBER(CgStartPush, tolerance), MEMBER(CgStartPush, what), MEMBER(CgStartPush, multigrid)});
   }
   for (const vk::Spirv code : {vk::Spirv(cg_multiply_comp), vk::Spirv(cg_multiply_sp3_comp)}) {
     compare(code, "CgMultiplyPush",
             {MEMBER(CgMultiplyPush, rows), MEMBER(CgMultiplyPush, p), MEMBER(CgMultiplyPush, product),
-             MEMBER(CgMultiplyPush, state), MEMBER(CgMultiplyPush, reduction), MEMBER(CgMultiplyPush, count),
-             MEMBER(CgMultiplyPush, tolerance)});
+             MEMBER(CgMultiplyPush, state), MEMBER(CgMultiplyPush, reduction), MEMBER(CgMultiplyPush, count)});
   }
   for (const vk::Spirv code : {vk::Spirv(cg_update_comp), vk::Spirv(cg_update_sp3_comp)}) {
-    compare(
-        code, "CgUpdatePush",
-        {MEMBER(CgUpdatePush, diagonal), MEMBER(CgUpdatePush, p), MEMBER(CgUpdatePush, product),
-         MEMBER(CgUpdatePush, x), MEMBER(CgUpdatePush, r), MEMBER(CgUpdatePush, state), MEMBER(CgUpdatePush, reduction),
-         MEMBER(CgUpdatePush, count), MEMBER(CgUpdatePush, max_iterations), MEMBER(CgUpdatePush, tolerance)});
+    compare(code, "CgUpdatePush",
+            {MEMBER(CgUpdatePush, diagonal), MEMBER(CgUpdatePush, p), MEMBER(CgUpdatePush, product),
+             MEMBER(CgUpdatePush, x), MEMBER(CgUpdatePush, r), MEMBER(CgUpdatePush, state),
+             MEMBER(CgUpdatePush, reduction), MEMBER(CgUpdatePush, count), MEMBER(CgUpdatePush, multigrid)});
   }
   for (const vk::Spirv code : {vk::Spirv(cg_direction_comp), vk::Spirv(cg_direction_sp3_comp)}) {
     compare(code, "CgDirectionPush",
-            {MEMBER(CgDirectionPush, diagonal), MEMBER(CgDirectionPush, r), MEMBER(CgDirectionPush, p),
-             MEMBER(CgDirectionPush, state), MEMBER(CgDirectionPush, count)});
+            {MEMBER(CgDirectionPush, diagonal), MEMBER(CgDirectionPush, r), MEMBER(CgDirectionPush, z),
+             MEMBER(CgDirectionPush, p), MEMBER(CgDirectionPush, state), MEMBER(CgDirectionPush, count),
+             MEMBER(CgDirectionPush, multigrid)});
   }
   for (const vk::Spirv code : {vk::Spirv(sweep_comp), vk::Spirv(sweep_sp3_comp)}) {
     compare(code, "SweepPush",
             {MEMBER(SweepPush, rows), MEMBER(SweepPush, b), MEMBER(SweepPush, from), MEMBER(SweepPush, to),
              MEMBER(SweepPush, damping), MEMBER(SweepPush, state), MEMBER(SweepPush, reduction),
-             MEMBER(SweepPush, count), MEMBER(SweepPush, sweeps), MEMBER(SweepPush, tolerance)});
+             MEMBER(SweepPush, count), MEMBER(SweepPush, sweeps)});
   }
   for (const vk::Spirv code : {vk::Spirv(exitance_comp), vk::Spirv(exitance_sp3_comp)}) {
     compare(
@@ -174,12 +190,68 @@ TEST_CASE("push constants") {
          MEMBER(ExitancePush, fem), MEMBER(ExitancePush, clipped), MEMBER(ExitancePush, boundary)});
   }
   for (const vk::Spirv code : {vk::Spirv(energy_comp), vk::Spirv(energy_sp3_comp)}) {
-    compare(
-        code, "EnergyPush",
-        {MEMBER(EnergyPush, vertices), MEMBER(EnergyPush, tets), MEMBER(EnergyPush, faces),
-         MEMBER(EnergyPush, face_kinds), MEMBER(EnergyPush, optical), MEMBER(EnergyPush, x), MEMBER(EnergyPush, to_phi),
-         MEMBER(EnergyPush, q), MEMBER(EnergyPush, exitance), MEMBER(EnergyPush, coarse_exitance),
-         MEMBER(EnergyPush, scale), MEMBER(EnergyPush, clip), MEMBER(EnergyPush, sums), MEMBER(EnergyPush, tet_count),
-         MEMBER(EnergyPush, face_count), MEMBER(EnergyPush, fem), MEMBER(EnergyPush, even)});
+    compare(code, "EnergyPush",
+            {MEMBER(EnergyPush, vertices), MEMBER(EnergyPush, tets), MEMBER(EnergyPush, faces),
+             MEMBER(EnergyPush, face_kinds), MEMBER(EnergyPush, optical), MEMBER(EnergyPush, x),
+             MEMBER(EnergyPush, to_phi), MEMBER(EnergyPush, q), MEMBER(EnergyPush, exitance), MEMBER(EnergyPush, scale),
+             MEMBER(EnergyPush, clip), MEMBER(EnergyPush, sums), MEMBER(EnergyPush, tet_count),
+             MEMBER(EnergyPush, face_count), MEMBER(EnergyPush, fem), MEMBER(EnergyPush, even)});
+  }
+}
+
+TEST_CASE("push constants of the cycles and of the looks at the surface") {
+  compare(energy_total_comp, "EnergyTotalPush",
+          {MEMBER(EnergyTotalPush, sums), MEMBER(EnergyTotalPush, total), MEMBER(EnergyTotalPush, count)});
+  compare(surface_share_comp, "SurfaceSharePush",
+          {MEMBER(SurfaceSharePush, vertices), MEMBER(SurfaceSharePush, faces), MEMBER(SurfaceSharePush, face_kinds),
+           MEMBER(SurfaceSharePush, face_offset), MEMBER(SurfaceSharePush, face_incidence), MEMBER(SurfaceSharePush, q),
+           MEMBER(SurfaceSharePush, scale), MEMBER(SurfaceSharePush, share), MEMBER(SurfaceSharePush, count),
+           MEMBER(SurfaceSharePush, fem), MEMBER(SurfaceSharePush, reflected)});
+  for (const vk::Spirv code : {vk::Spirv(correct_comp), vk::Spirv(correct_sp3_comp)}) {
+    compare(code, "CorrectPush",
+            {MEMBER(CorrectPush, z), MEMBER(CorrectPush, x), MEMBER(CorrectPush, state), MEMBER(CorrectPush, count)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(residual_comp), vk::Spirv(residual_sp3_comp)}) {
+    compare(code, "ResidualPush",
+            {MEMBER(ResidualPush, rows), MEMBER(ResidualPush, f), MEMBER(ResidualPush, x), MEMBER(ResidualPush, r),
+             MEMBER(ResidualPush, count)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(chebyshev_comp), vk::Spirv(chebyshev_sp3_comp)}) {
+    compare(code, "ChebyshevPush",
+            {MEMBER(ChebyshevPush, rows), MEMBER(ChebyshevPush, f), MEMBER(ChebyshevPush, from),
+             MEMBER(ChebyshevPush, to), MEMBER(ChebyshevPush, d), MEMBER(ChebyshevPush, damping),
+             MEMBER(ChebyshevPush, state), MEMBER(ChebyshevPush, reduction), MEMBER(ChebyshevPush, count),
+             MEMBER(ChebyshevPush, first), MEMBER(ChebyshevPush, zero), MEMBER(ChebyshevPush, last),
+             MEMBER(ChebyshevPush, reduce), MEMBER(ChebyshevPush, keep), MEMBER(ChebyshevPush, add)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(coarse_solve_comp), vk::Spirv(coarse_solve_sp3_comp)}) {
+    compare(code, "CoarseSolvePush",
+            {MEMBER(CoarseSolvePush, rows), MEMBER(CoarseSolvePush, f), MEMBER(CoarseSolvePush, z),
+             MEMBER(CoarseSolvePush, other), MEMBER(CoarseSolvePush, d), MEMBER(CoarseSolvePush, damping),
+             MEMBER(CoarseSolvePush, state), MEMBER(CoarseSolvePush, count), MEMBER(CoarseSolvePush, steps),
+             MEMBER(CoarseSolvePush, reduce), MEMBER(CoarseSolvePush, ratio)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(restrict_comp), vk::Spirv(restrict_sp3_comp)}) {
+    compare(code, "RestrictPush",
+            {MEMBER(RestrictPush, offset), MEMBER(RestrictPush, index), MEMBER(RestrictPush, weight),
+             MEMBER(RestrictPush, r), MEMBER(RestrictPush, f), MEMBER(RestrictPush, count)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(prolong_comp), vk::Spirv(prolong_sp3_comp)}) {
+    compare(code, "ProlongPush",
+            {MEMBER(ProlongPush, index), MEMBER(ProlongPush, weight), MEMBER(ProlongPush, coarse_x),
+             MEMBER(ProlongPush, x), MEMBER(ProlongPush, width), MEMBER(ProlongPush, count)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(surface_change_comp), vk::Spirv(surface_change_sp3_comp)}) {
+    compare(code, "SurfaceChangePush",
+            {MEMBER(SurfaceChangePush, x),           MEMBER(SurfaceChangePush, to_phi),
+             MEMBER(SurfaceChangePush, share),       MEMBER(SurfaceChangePush, before),
+             MEMBER(SurfaceChangePush, scale),       MEMBER(SurfaceChangePush, state),
+             MEMBER(SurfaceChangePush, reduction),   MEMBER(SurfaceChangePush, first),
+             MEMBER(SurfaceChangePush, count),       MEMBER(SurfaceChangePush, what),
+             MEMBER(SurfaceChangePush, level),       MEMBER(SurfaceChangePush, verify),
+             MEMBER(SurfaceChangePush, stall_limit), MEMBER(SurfaceChangePush, max_iterations),
+             MEMBER(SurfaceChangePush, looks),       MEMBER(SurfaceChangePush, by_change),
+             MEMBER(SurfaceChangePush, least_rate),  MEMBER(SurfaceChangePush, slow_rate),
+             MEMBER(SurfaceChangePush, tolerance),   MEMBER(SurfaceChangePush, boundary)});
   }
 }

@@ -1,6 +1,9 @@
 // Solutions of the GPU: against the CPU reference, closed forms and conservation.
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <glm/gtx/component_wise.hpp>
+
 #include "engine/graph/boundary.h"
 #include "engine/graph/error.h"
 #include "tests/cpp/solve_fixtures.h"
@@ -16,19 +19,44 @@ ReferenceSolution reference(const Scene& scene, const gpu::Material& material, c
                          {{gpu::BEAM_DIRECTIONAL, glm::normalize(direction)}, q}, how);
 }
 
-// phi at the faces of level 0, interpolated from a solution of level 1.
+// phi at the carriers on the surface: vertices, or surface nodes.
 std::vector<glm::dvec3> phi_from_coarse(const Scene& scene, Method method, const std::vector<glm::dvec3>& coarse) {
   const Level& level = scene.graph.levels()[0];
   const Transfer& t = method == Method::fem ? level.barycentric : level.surface;
   const std::uint32_t first = method == Method::fem ? 0 : scene.graph.levels()[1].tet_count();
-  std::vector<glm::dvec3> rows(t.index.size() / t.width, glm::dvec3(0));
-  for (std::size_t i = 0; i < t.index.size(); ++i) {
-    rows[i / t.width] += static_cast<double>(t.weight[i]) * coarse[first + t.index[i]];
+  std::vector<glm::dvec3> phi(method == Method::fem ? level.surface_vertex_count : level.face_count(), glm::dvec3(0));
+  for (std::size_t i = 0; i < phi.size() * t.width; ++i) {
+    phi[i / t.width] += static_cast<double>(t.weight[i]) * coarse[first + t.index[i]];
   }
-  if (method != Method::fem) return rows;
-  std::vector<glm::dvec3> phi;
-  for (const glm::uvec3& f : level.faces) phi.push_back((rows[f.x] + rows[f.y] + rows[f.z]) / 3.0);
   return phi;
+}
+
+// Area and q of a carrier on the surface.
+struct Share {
+  double area = 0, unlit = 0;
+  glm::dvec3 q{0};  // times the area
+};
+
+std::vector<Share> shares_of(const Level& level, Method method, const SurfaceField& field) {
+  double power = 0, area = 0;
+  for (std::size_t f = 0; f < field.q.size(); ++f) {
+    area += static_cast<double>(field.area[f]);
+    power += static_cast<double>(field.area[f]) * glm::compAdd(glm::dvec3(field.q[f]));
+  }
+  std::vector<Share> shares(method == Method::fem ? level.surface_vertex_count : level.face_count());
+  for (std::uint32_t f = 0; f < level.face_count(); ++f) {
+    const glm::dvec3 q(field.q[f]);
+    const bool unlit = glm::compAdd(q) < 0.1 * power / area;
+    const auto add = [&](Share& share, double size) {
+      share.area += size;
+      share.unlit += unlit ? size : 0;
+      share.q += size * q;
+    };
+    const auto size = static_cast<double>(field.area[f]);
+    if (method != Method::fem) add(shares[f], size);
+    for (int k = 0; k < 3 && method == Method::fem; ++k) add(shares[level.faces[f][k]], size / 3);
+  }
+  return shares;
 }
 
 }  // namespace
@@ -37,28 +65,33 @@ TEST_CASE("the error estimate compares the exitance with that of the coarser lev
   Scene scene({6, 3});
   scene.simulation.set_material(homogeneous());
   scene.light(one_side);
+  const Level& fine = scene.graph.levels()[0];
   const Level& coarse = scene.graph.levels()[1];
   const auto coarse_q = scene.irradiance(1, one_side);
   for (Method method : all_methods) {
     const SolveOptions how = options(method, SolverKind::dpcg, 1e-6);
     const Boundary boundary = boundary_of(method, Source::diffuse, Model::diffusion, 1.3);
     const SolveReport report = scene.simulation.solve(how);
-    const SurfaceField field = scene.simulation.surface_field();
+    const std::vector<Share> shares = shares_of(fine, method, scene.simulation.surface_field());
+    const std::vector<glm::vec3> phi = scene.simulation.phi();
     const auto optical = evaluate_material(coarse, homogeneous());
-    const std::vector<glm::dvec3> phi = phi_from_coarse(
+    const std::vector<glm::dvec3> start = phi_from_coarse(
         scene, method,
         solve_reference(coarse, optical, 1.3f, {{gpu::BEAM_LAMBERTIAN, glm::vec3(0)}, coarse_q}, how).phi);
     glm::dvec2 difference{0}, norm{0};
-    for (std::size_t f = 0; f < phi.size(); ++f) {
-      const glm::dvec3 exitance = boundary.k11 * phi[f] - boundary.reflected * glm::dvec3(field.q[f]);
-      const glm::dvec3 d = glm::dvec3(field.exitance[f]) - exitance, m(field.exitance[f]);
-      const glm::dvec2 where(1.0, field.q[f] == glm::vec3(0) ? 1.0 : 0.0);
-      difference += where * (field.area[f] * glm::dot(d, d));
-      norm += where * (field.area[f] * glm::dot(m, m));
+    for (std::size_t i = 0; i < start.size(); ++i) {
+      const glm::dvec3 value(phi[method == Method::fem ? i : fine.tet_count() + i]);
+      const glm::dvec3 m = boundary.k11 * value - boundary.reflected / shares[i].area * shares[i].q;
+      const glm::dvec3 d = boundary.k11 * (value - start[i]);
+      const glm::dvec2 weight(shares[i].area, shares[i].unlit);
+      difference += glm::dot(d, d) * weight;
+      norm += glm::dot(m, m) * weight;
     }
     REQUIRE(report.error);
+    REQUIRE(report.algebraic);
     CHECK(report.error->whole == doctest::Approx(std::sqrt(difference.x / norm.x) / 3).epsilon(1e-3));
     CHECK(report.error->unlit == doctest::Approx(std::sqrt(difference.y / norm.y) / 3).epsilon(1e-3));
+    CHECK(report.algebraic->whole < 1e-6);
   }
 }
 
@@ -79,12 +112,12 @@ TEST_CASE("the solution equals the CPU reference for every method, model, source
       REQUIRE(report.levels.size() == 2);
       for (const LevelReport& level : report.levels) {
         CHECK(level.converged);
-        CHECK(level.residual <= 1e-5);
+        CHECK(level.residual <= 1e-4);
         CHECK(level.iterations > 0);
       }
       CHECK(report.levels[1].level == 0);
       CHECK(report.levels[1].unknowns == expected.report.unknowns);
-      // A residual of 1e-5 allows this much error at the condition number of this box.
+      // The tolerance is that of the exitance; deep inside phi may be further off.
       CHECK(relative_difference(scene.simulation.phi(), expected.phi) < 2e-4);
       const SurfaceField field = scene.simulation.surface_field();
       CHECK(relative_difference(field.phi, expected.phi_face) < 2e-4);

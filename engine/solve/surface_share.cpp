@@ -1,0 +1,25 @@
+#include "engine/solve/surface_share.h"
+
+#include "shaders/surface_shared.h"
+
+namespace quadgraph {
+
+void record_surface_share(Workspace& work, const LevelBuffers& level, Method method, const Boundary& boundary,
+                          const OperatorBuffers& op) {
+  const gpu::SurfaceSharePush push{.vertices = level.vertices.address(),
+                                   .faces = level.faces.address(),
+                                   .face_kinds = level.face_kind.address(),
+                                   .face_offset = level.face_offset.address(),
+                                   .face_incidence = level.face_incidence.address(),
+                                   .q = level.q.address(),
+                                   .scale = work.scale.address(),
+                                   .share = op.surface_share.address(),
+                                   .count = op.surface_count,
+                                   .fem = method == Method::fem ? 1u : 0u,
+                                   .reflected = static_cast<float>(boundary.reflected)};
+  const std::uint64_t face_bytes = sizeof(glm::uvec3) + 4 * sizeof(glm::vec3) + sizeof(std::uint32_t);
+  work.recorder.dispatch(work.passes.surface_share, push, op.surface_count, "right-hand side",
+                         3 * level.face_count * face_bytes + op.surface_count * sizeof(gpu::SurfaceShare));
+}
+
+}  // namespace quadgraph

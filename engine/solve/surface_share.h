@@ -1,0 +1,15 @@
+// What every carrier on the surface stands for in an error of the exitance.
+#pragma once
+
+#include "engine/graph/boundary.h"
+#include "engine/solve/operator_buffers.h"
+#include "engine/solve/simulation.h"
+#include "engine/solve/workspace.h"
+
+namespace quadgraph {
+
+// Fills op.surface_share for the present q; the scale is in place.
+void record_surface_share(Workspace& work, const LevelBuffers& level, Method method, const Boundary& boundary,
+                          const OperatorBuffers& op);
+
+}  // namespace quadgraph

@@ -1,0 +1,36 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "solve_shared.h"
+#include "fields.glsl"
+#include "rows.glsl"
+#include "reduce.glsl"
+#include "convergence.glsl"
+
+layout(local_size_x = WORKGROUP_SIZE) in;
+layout(push_constant, scalar) uniform Block { ChebyshevPush push; };
+
+Field step_at(uint i) {
+  Field r;
+  if (push.zero == 1u) {
+    r = push.f.at[i];
+  } else {
+    r = residual(push.rows, push.f, push.from, i);
+  }
+  Field d = scaled(0.5 * push.add * push.damping.at[0], solved(push.rows.diagonal.at[i], r));
+  if (push.first == 0u) d = add_scaled(d, vec3(push.keep), push.d.at[i]);
+  if (push.last == 0u) push.d.at[i] = d;
+  Field x = d;
+  if (push.zero == 0u) x = add(push.from.at[i], d);
+  if (push.zero == 0u || push.last == 1u) push.to.at[i] = x;
+  return x;
+}
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  vec3 own = vec3(0);
+  if (i < push.count) own = product(push.f.at[i], step_at(i));
+  if (push.reduce == 0u) return;
+  vec3 rz;
+  if (!reduce_dispatch(push.reduction, own, rz)) return;
+  if (gl_LocalInvocationID.x == 0u) take_preconditioned(push.state, rz);
+}

@@ -1,0 +1,67 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "solve_shared.h"
+#include "fields.glsl"
+#include "reduce.glsl"
+#include "convergence.glsl"
+
+layout(local_size_x = WORKGROUP_SIZE) in;
+layout(push_constant, scalar) uniform Block { CoarseSolvePush push; };
+
+Field residual_at(CoherentFields x, uint i) {
+  uint slice = i / SLICE_ROWS;
+  uint end = push.rows.slice_offset.at[slice + 1u];
+  Field own = x.at[i];
+  Field sum = times(push.rows.row_sum.at[i], own);
+  for (uint e = push.rows.slice_offset.at[slice] + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
+    sum = add(sum, times(push.rows.weight.at[e], difference(x.at[push.rows.column.at[e]], own)));
+  }
+  return difference(push.f.at[i], sum);
+}
+
+// One step on all rows; the writes are seen by all before the next.
+void iterate(CoherentFields from, CoherentFields to, bool zero, float keep, vec3 add_share) {
+  for (uint i = gl_LocalInvocationID.x; i < push.count; i += WORKGROUP_SIZE) {
+    Field r;
+    if (zero) {
+      r = push.f.at[i];
+    } else {
+      r = residual_at(from, i);
+    }
+    Field d = scaled(add_share, solved(push.rows.diagonal.at[i], r));
+    if (!zero) d = add_scaled(d, vec3(keep), push.d.at[i]);
+    push.d.at[i] = d;
+    if (zero) {
+      to.at[i] = d;
+    } else {
+      to.at[i] = add(from.at[i], d);
+    }
+  }
+  memoryBarrierBuffer();
+  barrier();
+}
+
+void main() {
+  vec3 inverse = 0.5 * push.damping.at[0];  // 1/lambda
+  float middle = 0.5 * (1.0 + push.ratio), radius = 0.5 * (1.0 - push.ratio);
+  float rho = radius / middle;
+  iterate(push.z, push.other, true, 0.0, inverse / middle);
+  for (uint k = 1u; k < push.steps; ++k) {
+    float next = 1.0 / (2.0 * middle / radius - rho);
+    bool odd = k % 2u == 1u;
+    CoherentFields from = push.z, to = push.other;
+    if (odd) {
+      from = push.other;
+      to = push.z;
+    }
+    iterate(from, to, false, next * rho, 2.0 * next / radius * inverse);
+    rho = next;
+  }
+  if (push.reduce == 0u) return;
+  vec3 own = vec3(0);
+  for (uint i = gl_LocalInvocationID.x; i < push.count; i += WORKGROUP_SIZE) {
+    own += product(push.f.at[i], push.z.at[i]);
+  }
+  vec3 rz = reduce_workgroup(own);
+  if (gl_LocalInvocationID.x == 0u) take_preconditioned(push.state, rz);
+}

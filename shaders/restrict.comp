@@ -1,0 +1,17 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "solve_shared.h"
+#include "fields.glsl"
+
+layout(local_size_x = WORKGROUP_SIZE) in;
+layout(push_constant, scalar) uniform Block { RestrictPush push; };
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= push.count) return;
+  Field sum = no_field();
+  for (uint k = push.offset.at[i]; k < push.offset.at[i + 1u]; ++k) {
+    sum = add_scaled(sum, vec3(push.weight.at[k]), push.r.at[push.index.at[k]]);
+  }
+  push.f.at[i] = sum;
+}
