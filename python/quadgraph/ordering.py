@@ -9,6 +9,7 @@ import numpy as np
 from quadgraph.graph import Graph, first_use
 
 BLOCK = 1024  # r^2 of the paper
+WINDOW = 256  # vertices that are sorted by their number of neighbours
 _LINE = 16  # 4-byte values in a 64-byte cache line
 
 
@@ -66,9 +67,30 @@ def face_neighbours(faces: np.ndarray) -> np.ndarray:
 
 
 def in_blocks(graph: Graph) -> Graph:
-    """Renumber: tets and faces in breadth-first blocks of their own links, vertices by first use."""
+    """Renumber: tets and faces in breadth-first blocks of their own links, vertices by first use and `by_degree`."""
     inner_links = np.where(graph.links < len(graph.tets), graph.links, -1)
-    return renumbered(graph, breadth_first_blocks(inner_links), breadth_first_blocks(face_neighbours(graph.faces)))
+    blocks = renumbered(graph, breadth_first_blocks(inner_links), breadth_first_blocks(face_neighbours(graph.faces)))
+    return with_vertices(blocks, by_degree(blocks))
+
+
+def by_degree(graph: Graph, window: int = WINDOW) -> np.ndarray:
+    """Order (n_v,) int64 of the vertices in which those with most neighbours come first in every window.
+
+    Rows of linear elements are padded to the longest of 32 neighbouring ones (shaders/solve_shared.h): in the order of
+    first use that adds a third, sorted in windows a twentieth. Surface vertices stay first.
+    """
+    vertex = np.arange(len(graph.vertices))
+    on_surface = vertex < graph.surface_vertex_count
+    return np.lexsort((vertex, -degrees(graph), vertex // window, ~on_surface))
+
+
+def degrees(graph: Graph) -> np.ndarray:
+    """(n_v,) number of vertices that share an edge with each."""
+    count = len(graph.vertices)
+    first, second = np.triu_indices(4, 1)
+    edges = np.sort(graph.tets.astype(np.int64)[:, np.stack([first, second], axis=1)].reshape(-1, 2), axis=1)
+    edges = np.unique(edges[:, 0] * count + edges[:, 1])
+    return np.bincount(edges // count, minlength=count) + np.bincount(edges % count, minlength=count)
 
 
 def at_random(graph: Graph, seed: int = 0) -> Graph:
@@ -77,16 +99,21 @@ def at_random(graph: Graph, seed: int = 0) -> Graph:
     shuffled = renumbered(graph, generator.permutation(len(graph.tets)), generator.permutation(len(graph.faces)))
     on_surface, total = shuffled.surface_vertex_count, len(shuffled.vertices)
     order = np.concatenate([generator.permutation(on_surface), on_surface + generator.permutation(total - on_surface)])
+    return with_vertices(shuffled, order)
+
+
+def with_vertices(graph: Graph, order: np.ndarray) -> Graph:
+    """Put vertex order[i] at place i; `order` keeps those on the surface first."""
     number = np.argsort(order)
     return Graph(
-        shuffled.vertices[order],
-        number[shuffled.tets],
-        number[shuffled.faces],
-        shuffled.face_tets,
-        shuffled.links,
-        shuffled.inner,
-        shuffled.surface,
-        shuffled.face_kinds,
+        graph.vertices[order],
+        number[graph.tets],
+        number[graph.faces],
+        graph.face_tets,
+        graph.links,
+        graph.inner,
+        graph.surface,
+        graph.face_kinds,
     )
 
 

@@ -48,11 +48,35 @@ def test_surface_vertices_still_come_first(ordered):
     assert np.array_equal(np.unique(ordered.faces), np.arange(ordered.surface_vertex_count))
 
 
-def test_vertices_are_numbered_by_first_use(built):
+def test_vertices_are_numbered_by_first_use_up_to_windows(built):
     ordered = ordering.in_blocks(built)
     stream = np.concatenate([ordered.faces.ravel(), ordered.tets.ravel()])
     _, first = np.unique(stream, return_index=True)
-    assert (np.diff(first) > 0).all()
+    on_surface = ordered.surface_vertex_count
+    vertex = np.arange(len(first))
+    window = 2 * (vertex // ordering.WINDOW) + (vertex >= on_surface)
+    starts = np.concatenate([[0], np.flatnonzero(np.diff(window)) + 1])
+    latest, earliest = (reduce.reduceat(first, starts) for reduce in (np.maximum, np.minimum))
+    assert len(starts) > 2
+    assert (latest[:-1] < earliest[1:]).all()
+
+
+def test_rows_of_a_window_shrink_and_need_little_padding(built):
+    def padded(graph: graph.Graph) -> float:
+        degree = ordering.degrees(graph)
+        slices = np.pad(degree, (0, -len(degree) % 32)).reshape(-1, 32)
+        return 32 * slices.max(axis=1).sum() / degree.sum()
+
+    ordered = ordering.in_blocks(built)
+    degree = ordering.degrees(ordered)
+    neighbours = [set(), set()]
+    for tet in ordered.tets:
+        for seen, vertex in zip(neighbours, (0, ordered.surface_vertex_count), strict=True):
+            if vertex in tet:
+                seen.update(tet.tolist())
+    assert [len(seen) - 1 for seen in neighbours] == [degree[0], degree[ordered.surface_vertex_count]]
+    assert (np.diff(degree[: ordering.WINDOW]) <= 0).all()
+    assert padded(ordered) < 1.12 < 1.25 < padded(ordering.at_random(built))
 
 
 def test_blocks_beat_chance(built):
