@@ -71,6 +71,14 @@ struct EvaluateMaterialPush {
   uint count;
 };
 
+// copy.comp: target[i] = source[i], invocation k those of k, k + invocations, ...
+struct CopyPush {
+  QG_REF(Uvec4s) source;
+  QG_REF(Uvec4s) target;
+  uint count;
+  uint invocations;  // in the dispatch, a multiple of WORKGROUP_SIZE
+};
+
 #ifdef __cplusplus
 }  // namespace quadgraph::gpu
 #endif

@@ -8,6 +8,7 @@
 #include "engine/render/default_lights.h"
 #include "engine/render/engine.h"
 #include "engine/vk/context.h"
+#include "engine/vk/copy_bandwidth.h"
 #include "engine/vk/memory.h"
 #include "python/bindings/bindings.h"
 
@@ -205,6 +206,22 @@ py::dict leaving(Engine& engine, const IndexArray& face, const FloatArray& direc
   return result;
 }
 
+py::dict copy_bandwidth(const std::string& device) {
+  vk::Context context(vk::ContextOptions{false, device});
+  const vk::CopyBandwidth copied = [&] {
+    const py::gil_scoped_release release;
+    return vk::copy_bandwidth(context, vk::default_copy_bytes(context));
+  }();
+  py::dict d;
+  d["device"] = context.info().name;
+  d["driver"] = context.info().driver;
+  d["gb_per_s"] = copied.gb_per_s;
+  d["kernel"] = copied.kernel;
+  d["transfer"] = copied.transfer;
+  d["bytes"] = copied.bytes;
+  return d;
+}
+
 }  // namespace
 
 void bind_engine(py::module_& module) {
@@ -213,6 +230,10 @@ void bind_engine(py::module_& module) {
       "default_lights", &default_light_texts, py::arg("view") = "", py::arg("up") = "y",
       "The lights a picture gets when nobody asks for others: warm from behind `view`, cool from the side, a little "
       "from all around.");
+  module.def(
+      "copy_bandwidth", &copy_bandwidth, py::arg("device") = "",
+      "GB/s, read and written, at which a device copies one buffer into another: kernel (a compute pass), transfer "
+      "(the driver's own copy), gb_per_s (the faster); bytes of each buffer; device, driver. Raises VulkanError.");
   py::class_<Engine>(module, "Engine", "A .qgraph on a Vulkan device.")
       .def(py::init(&make_engine), py::arg("path"), py::arg("device") = "", py::arg("validation") = false,
            "device: part of its name. validation: load the validation layer. Raises FormatError, InputError, "

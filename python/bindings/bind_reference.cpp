@@ -5,6 +5,7 @@
 #include "engine/graph/fresnel.h"
 #include "engine/graph/radiance.h"
 #include "engine/graph/reference.h"
+#include "engine/graph/source_walk.h"
 #include "engine/solve/beams.h"
 #include "python/bindings/bindings.h"
 
@@ -72,6 +73,21 @@ py::array diffuse_load_array(const QuadGraph& graph, std::uint32_t index, const 
   const auto optical = optical_from(sigma_s_prime, sigma_a, level.node_count());
   const Problem problem = problem_of(method, "diffuse", model, optical, eta);
   return fields(diffuse_load(level, problem, vectors(q, level.face_count(), "q")), problem.model);
+}
+
+py::array buried_load_array(const QuadGraph& graph, std::uint32_t index, const std::string& method,
+                            const FloatArray& sigma_s_prime, const FloatArray& sigma_a, double eta, const FloatArray& q,
+                            const std::optional<std::array<float, 3>>& direction, const std::string& model) {
+  const Level& level = level_of(graph, index);
+  const auto optical = optical_from(sigma_s_prime, sigma_a, level.node_count());
+  check_optical(optical, level.node_count());
+  check_eta(eta);
+  const Problem problem = problem_of(method, "buried", model, optical, eta);
+  std::vector<Quarters> quarters;
+  for (const glm::vec3& value : vectors(q, level.face_count(), "q")) quarters.push_back({value, value, value, value});
+  const std::vector<glm::dvec3> scattered =
+      walk_source(level, problem, beam_along(as_vector(direction)).way, quarters).scattered;
+  return fields(buried_load(level, problem, scattered), problem.model);
 }
 
 py::dict solution_dict(ReferenceSolution&& solution) {
@@ -182,6 +198,12 @@ void bind_reference(py::module_& module) {
   module.def("diffuse_load", &diffuse_load_array, py::arg("graph"), py::arg("level"), py::arg("method"),
              py::arg("sigma_s_prime"), py::arg("sigma_a"), py::arg("eta"), py::arg("q"), py::arg("model") = "diffusion",
              "b of the diffuse source for irradiance q (n_f, 3) in W/mm^2: (n, 3), or (n, 2, 3) with sp3.");
+  module.def(
+      "buried_load", &buried_load_array, py::arg("graph"), py::arg("level"), py::arg("method"),
+      py::arg("sigma_s_prime"), py::arg("sigma_a"), py::arg("eta"), py::arg("q"), py::arg("direction") = py::none(),
+      py::arg("model") = "diffusion",
+      "b of the buried source for irradiance q (n_f, 3) in W/mm^2 that travels along direction (3,) outside, None: "
+      "Lambertian: shape as of diffuse_load.");
   module.def("solve_reference", &reference, py::arg("graph"), py::arg("level"), py::arg("sigma_s_prime"),
              py::arg("sigma_a"), py::arg("eta"), py::arg("q"), py::arg("direction") = py::none(),
              py::arg("method") = "fem", py::arg("solver") = "dpcg", py::arg("source") = "buried",

@@ -21,6 +21,7 @@
 #include "spirv/chebyshev_sp3.comp.h"
 #include "spirv/coarse_solve.comp.h"
 #include "spirv/coarse_solve_sp3.comp.h"
+#include "spirv/copy.comp.h"
 #include "spirv/correct.comp.h"
 #include "spirv/correct_sp3.comp.h"
 #include "spirv/display_scale.comp.h"
@@ -62,6 +63,8 @@ TEST_CASE("push constants") {
   compare(evaluate_material_comp, "EvaluateMaterialPush",
           {MEMBER(EvaluateMaterialPush, material), MEMBER(EvaluateMaterialPush, nodes),
            MEMBER(EvaluateMaterialPush, optical), MEMBER(EvaluateMaterialPush, count)});
+  compare(copy_comp, "CopyPush",
+          {MEMBER(CopyPush, source), MEMBER(CopyPush, target), MEMBER(CopyPush, count), MEMBER(CopyPush, invocations)});
   compare(shape_comp, "ShapePush",
           {MEMBER(ShapePush, vertices), MEMBER(ShapePush, tets), MEMBER(ShapePush, faces), MEMBER(ShapePush, tet_shape),
            MEMBER(ShapePush, face_area), MEMBER(ShapePush, tet_count), MEMBER(ShapePush, face_count)});
