@@ -11,8 +11,8 @@ from types import ModuleType
 from rich.console import Console
 
 from quadgraph import atomic_file
+from quadgraph.benchmark.scene import commit
 from quadgraph.commands import scene
-from quadgraph.commands.bench import commit
 from quadgraph.errors import InputError
 
 # Study to its module of quadgraph.reference.studies.

@@ -64,8 +64,9 @@ def inter_reflection_text(report: dict, wanted: bool) -> str:
 
 
 def pass_table(passes: list[dict]) -> Table:
-    """Return ms, dispatches, bytes and GB/s per pass."""
-    table = Table("pass", "ms", "dispatches", "MB", "GB/s", title="passes")
+    """Return ms, dispatches, bytes and GB/s per pass, and the share of the copy bandwidth where it is known."""
+    shares = all("copy_share" in entry for entry in passes)
+    table = Table("pass", "ms", "dispatches", "MB", "GB/s", *(["of copying"] if shares else []), title="passes")
     for entry in passes:
         table.add_row(
             entry["name"],
@@ -73,6 +74,7 @@ def pass_table(passes: list[dict]) -> Table:
             str(entry["count"]),
             f"{entry['bytes'] / 1e6:.2f}",
             f"{bandwidth(entry):.2f}" if entry["bytes"] else "",
+            *([f"{100 * entry['copy_share']:.0f}%"] if shares and entry["bytes"] else []),
         )
     table.add_row("all", f"{sum(entry['time_ms'] for entry in passes):.3f}", end_section=True)
     return table

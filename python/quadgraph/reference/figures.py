@@ -24,12 +24,12 @@ _DEPTH = 3e-4  # of a scan line's brightest pixel: what is darker is not drawn
 _PUBLISHED, _OURS, _TRUTH = "#c44e52", "#1f77b4", "#222222"
 
 
-def load_pyplot():
-    """Import matplotlib without a window. Raises InputError if it is absent."""
+def load_pyplot(extra: str = "truth"):
+    """Import matplotlib without a window. Raises InputError, naming the optional extra that has it, if it is absent."""
     try:
         import matplotlib
     except ImportError as error:
-        raise InputError(f"matplotlib cannot be loaded ({error}); pip install -e '.[truth]' installs it") from error
+        raise InputError(f"matplotlib cannot be loaded ({error}); pip install -e '.[{extra}]' installs it") from error
     matplotlib.use("Agg")
     from matplotlib import pyplot
 

@@ -1,0 +1,57 @@
+"""The error of a solution of the linear system, as it shows on the surface."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from quadgraph.errors import SolverError
+
+if TYPE_CHECKING:
+    from quadgraph._core import Engine
+
+UNLIT = 0.1  # of the mean irradiance (channels summed): faces that let in less are the unlit part
+_TRUTH_TOLERANCE = 1e-6
+_TRUTH_ITERATIONS = 100_000
+
+
+@dataclass(frozen=True)
+class Judge:
+    """Area (n,) mm^2 and exitance (n, 3) W/mm^2 of the exact solution at the outside faces; unlit (n,) bool."""
+
+    area: np.ndarray
+    unlit: np.ndarray
+    exitance: np.ndarray
+
+    def error(self, exitance: np.ndarray) -> dict[str, float]:
+        """Relative RMS over area of the difference to the truth, channels together: "whole" surface, "unlit" part."""
+        squared = self.area * ((exitance - self.exitance) ** 2).sum(axis=1)
+        size = self.area * (self.exitance**2).sum(axis=1)
+        return {
+            "whole": float(np.sqrt(squared.sum() / size.sum())),
+            "unlit": float(np.sqrt(squared[self.unlit].sum() / size[self.unlit].sum())),
+        }
+
+
+def unlit_part(area: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """Faces (n,) bool that let in less than a tenth of the mean over the surface, area (n,), q (n, 3)."""
+    total = np.asarray(q, np.float64).sum(axis=1)
+    return total < UNLIT * (area @ total) / area.sum()
+
+
+def judge(engine: Engine, **way: object) -> Judge:
+    """Solve the same system far beyond what is asked of the solvers; `way` as for Engine.solve, less the solver.
+
+    Raises SolverError if that does not converge.
+    """
+    report = engine.solve(
+        **way, solver="dpcg", tolerance=_TRUTH_TOLERANCE, max_iterations=_TRUTH_ITERATIONS, inter_reflection=False
+    )
+    if not report["levels"][-1]["converged"]:
+        residual = report["levels"][-1]["residual"]
+        raise SolverError(f"the exact solution: residual {residual:.1e} found, {_TRUTH_TOLERANCE:.0e} wanted")
+    field = engine.surface_field()
+    area = np.asarray(field["area"], np.float64)
+    return Judge(area, unlit_part(area, field["q"]), np.asarray(field["exitance"], np.float64))

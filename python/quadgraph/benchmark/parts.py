@@ -1,0 +1,74 @@
+"""The parts of the benchmark on the fixed scenes, or on a file of the user's."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from quadgraph.benchmark import convergence, passes, rivals, scaling
+from quadgraph.benchmark.convergence import Progress
+from quadgraph.benchmark.scene import Device, Scene, bake_bunny
+from quadgraph.commands.scene import load_core
+
+_HEIGHTS_MM = (30, 100)  # of the bunny that the solvers are compared on
+_PASSES_HEIGHT_MM = 60  # of the one whose passes are timed, in both orders
+
+
+@dataclass
+class Parts:
+    """What to measure on: `file` or, if None, bunnies that are baked into `folder` when they are first needed.
+
+    copied: as _core.copy_bandwidth tells.
+    """
+
+    file: Path | None
+    random_order: Path | None
+    material: str
+    repeats: int
+    device: Device
+    folder: Path
+    copied: dict[str, Any]
+    tell: Progress
+    _baked: dict[tuple[float, str], Path] = field(default_factory=dict)
+
+    def passes(self) -> list[dict[str, Any]]:
+        """Of every way to solve: time, bytes and speed of its passes; in both orders of nodes where there are two."""
+        files = self._both_orders()
+        lights = load_core().default_lights()
+        engines = {order: self.device.open(path, self.material, lights) for order, path in files.items()}
+        entries = []
+        for way in passes.METHODS:
+            self.tell(f"passes: {passes.name_of(way)}")
+            entries.append(passes.measure(engines, self.material, way, self.repeats, self.copied["gb_per_s"]))
+        return entries
+
+    def solvers(self) -> list[dict[str, Any]]:
+        """Error against work and time on every scene."""
+        return [convergence.run(scene, self.device, self.repeats, self.tell) for scene in self._scenes()]
+
+    def rivals(self) -> list[dict[str, Any]]:
+        """Our two best solvers beside other people's on every scene."""
+        return [rivals.run(scene, self.device, self.repeats, self.tell) for scene in self._scenes()]
+
+    def scaling(self, folder: Path, sizes: tuple[int, ...]) -> dict[str, Any]:
+        """Cycles and time by size; bodies are kept in `folder`."""
+        folder.mkdir(parents=True, exist_ok=True)
+        return scaling.run(folder, sizes, self.device, self.repeats, self.tell)
+
+    def _both_orders(self) -> dict[str, Path]:
+        if self.file is None:
+            return {order: self._bunny(_PASSES_HEIGHT_MM, order) for order in ("blocks", "random")}
+        return {"blocks": self.file} | ({"random": self.random_order} if self.random_order else {})
+
+    def _scenes(self) -> list[Scene]:
+        if self.file is not None:
+            return [Scene(self.file.stem, self.file, self.material)]
+        return [Scene(f"bunny, {h} mm", self._bunny(h, "blocks"), self.material) for h in _HEIGHTS_MM]
+
+    def _bunny(self, height_mm: float, order: str) -> Path:
+        key = (height_mm, order)
+        if key not in self._baked:
+            self.tell(f"baking the bunny, {height_mm:g} mm high, nodes in order: {order}")
+            self._baked[key] = bake_bunny(self.folder / f"bunny-{height_mm:g}-{order}.qgraph", height_mm, order)
+        return self._baked[key]

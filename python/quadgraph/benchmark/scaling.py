@@ -1,0 +1,120 @@
+"""How cycles and time grow with the size: one body, the bunny at 100 mm, at growing resolutions.
+
+Finer than the bundled mesh it is subdivided (Loop), then every size is simplified to the wanted number of surface
+vertices and baked as usual; a body has about six tets per surface vertex.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from pathlib import Path
+from statistics import median
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from quadgraph.benchmark.convergence import OURS, Progress, Runner, Way
+from quadgraph.benchmark.judge import judge
+from quadgraph.benchmark.scene import LIGHT, Device, bunny_mesh
+
+if TYPE_CHECKING:
+    from quadgraph._core import Engine
+
+SURFACE_VERTICES = (500, 1800, 8500, 28_000, 80_000, 165_000, 330_000)
+MODELS = ("diffusion", "sp3")
+TOLERANCE = 1e-3  # error of the unlit part that the cycles are counted to
+FITTED_FROM = 50_000  # tets; smaller bodies are all overhead
+HEIGHT_MM = 100.0
+_MOST_CYCLES = 40
+_NO_SECOND_LEVEL = 1500  # surface vertices below which the chain of levels may end at once
+_LIMITS = {"time_limit_s": 3600.0, "memory_limit_bytes": 24 << 30}
+
+
+def run(
+    folder: Path, sizes: tuple[int, ...], device: Device, repeats: int, tell: Progress, way: Way = OURS
+) -> dict[str, Any]:
+    """Bake into `folder` what is not there from an earlier run, count cycles, take times (medians of `repeats`).
+
+    Raises InputError, ToolError, SolverError.
+    """
+    bodies = []
+    for size in sizes:
+        path, seconds = _baked(folder, size, tell)
+        engine = device.open(path, "marble", [LIGHT])
+        level = engine.graph.levels[0]
+        entry = {"tets": len(level.tets), "vertices": len(level.vertices), "levels": len(engine.graph.levels)}
+        tell(f"{entry['tets']:,} tets: cycles and time")
+        models = {model: _measure(engine, replace(way, model=model), repeats) for model in MODELS}
+        bodies.append(entry | {"bake_s": seconds, "models": models})
+    return {
+        "height_mm": HEIGHT_MM,
+        "solver": way.solver,
+        "tolerance": TOLERANCE,
+        "repeats": repeats,
+        "bodies": bodies,
+        "exponents": {model: exponent(bodies, model) for model in MODELS},
+    }
+
+
+def exponent(bodies: list[dict[str, Any]], model: str) -> float | None:
+    """Slope of log time over log tets for the bodies of FITTED_FROM tets and more; None for fewer than two."""
+    fitted = [b for b in bodies if b["tets"] >= FITTED_FROM and b["models"][model]["time_ms"] is not None]
+    if len(fitted) < 2:
+        return None
+    times = [body["models"][model]["time_ms"] for body in fitted]
+    return float(np.polyfit(np.log([body["tets"] for body in fitted]), np.log(times), 1)[0])
+
+
+def _baked(folder: Path, size: int, tell: Progress) -> tuple[Path, float | None]:
+    """The body with about `size` surface vertices, and seconds of its bake; None if it was there."""
+    from quadgraph.bake import BakeOptions, bake
+
+    path = folder / f"bunny-{size}.qgraph"
+    if path.exists():
+        return path, None
+    mesh = _subdivided(folder, size)
+    start = time.perf_counter()
+    # The smallest bodies would get one level, which has no cycles.
+    options = BakeOptions(
+        height_mm=HEIGHT_MM, surface_vertices=size, levels=2 if size < _NO_SECOND_LEVEL else None, **_LIMITS
+    )
+    bake(mesh, path, options, lambda text: tell(f"{size:,} surface vertices: {text}"))
+    return path, time.perf_counter() - start
+
+
+def _subdivided(folder: Path, size: int) -> Path:
+    """The bundled mesh, with four times the vertices as often as `size` wants it."""
+    import pymeshlab
+
+    meshes = pymeshlab.MeshSet()
+    meshes.load_new_mesh(str(bunny_mesh()))
+    steps = 0
+    while meshes.current_mesh().vertex_number() < size:
+        meshes.meshing_surface_subdivision_loop(iterations=1, threshold=pymeshlab.PercentageValue(0))
+        steps += 1
+    if steps == 0:
+        return bunny_mesh()
+    path = folder / f"bunny-subdivided-{steps}.ply"
+    meshes.save_current_mesh(str(path))
+    return path
+
+
+def _measure(engine: Engine, way: Way, repeats: int) -> dict[str, Any]:
+    """Least cycles to the tolerance in the unlit part, by the true error, and by the solver's own; work; time of it."""
+    runner = Runner(engine, way, judge(engine, **way.system))
+    point = next((point for n in range(1, _MOST_CYCLES) if (point := runner.at(n, TOLERANCE)).unlit <= TOLERANCE), None)
+    report = engine.solve(**way.system, solver=way.solver, tolerance=TOLERANCE, inter_reflection=False)
+    found = {"cycles_by_estimate": report["levels"][-1]["iterations"]}
+    if point is None:
+        return found | {"cycles": None, "time_ms": None}
+    for _ in range(repeats):
+        runner.time(point)
+    return found | {
+        "cycles": point.iterations,
+        "work": point.work,
+        "whole": point.whole,
+        "unlit": point.unlit,
+        "time_ms": median(point.time_ms),
+        "wall_ms": median(point.wall_ms),
+    }
