@@ -11,11 +11,14 @@ layout(push_constant, scalar) uniform Block { CgStartPush push; };
 
 // A true residual up to this many times the recursive one confirms it.
 const float confirmed = 2.0;
+// Below this no change of the surface says anything in single precision: the residual itself has to be as small.
+const float SMALLEST_CHANGE = 1e-6;
 
 // After the surface had met the tolerance: is the residual what the recursion said?
 void check(float worst) {
   float before = push.state.at[0].checked;
-  if (worst <= max(confirmed * push.state.at[0].residual, push.tolerance)) {
+  float recursive = push.tolerance < SMALLEST_CHANGE ? 0.0 : confirmed * push.state.at[0].residual;
+  if (worst <= max(recursive, push.tolerance)) {
     stop(push.state, SOLVE_CONVERGED, 0u);
   } else if (worst > 0.5 * before) {
     stop(push.state, SOLVE_STAGNATED, 0u);

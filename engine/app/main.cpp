@@ -14,6 +14,9 @@ using namespace quadgraph;
 
 namespace {
 
+// The picture has been written, but its error is not what was asked for.
+constexpr int exit_missed = 3;
+
 // Wall time of the stages of a run.
 class Stages {
  public:
@@ -41,7 +44,8 @@ void refuse_messages(const vk::Context& context) {
   }
 }
 
-void run(const AppOptions& options) {
+// The exit code.
+int run(const AppOptions& options) {
   Stages stages;
   Engine engine(options.file, options.device);
   stages.end("load");
@@ -59,6 +63,7 @@ void run(const AppOptions& options) {
   const Metadata metadata = with_exposure(engine.metadata(), picture, options.tone);
   const RunReport report{engine, solve, metadata, options.output.string(), stages.wall_ms};
   std::cout << (options.json ? json_report(report) : text_report(report)) << "\n";
+  return solve.missed.empty() ? EXIT_SUCCESS : exit_missed;
 }
 
 }  // namespace
@@ -67,8 +72,7 @@ int main(int argc, char** argv) {
   try {
     int exit_code = EXIT_SUCCESS;
     const auto options = parse_command_line(argc, argv, exit_code);
-    if (options) run(*options);
-    return exit_code;
+    return options ? run(*options) : exit_code;
   } catch (const std::exception& error) {
     std::string line = error.what();
     std::replace(line.begin(), line.end(), '\n', ' ');

@@ -19,8 +19,9 @@ struct Typed {
   std::vector<std::string> lights;
   std::string view = "0,10", up = "y";
   float fov = 30;
-  std::string method = "fem", solver = "dpcg", source = "buried", model = "auto";
-  double tolerance = 1e-3;
+  std::string method = "fem", solver = "fmg-pcg", source = "buried", model = "auto";
+  std::string tolerance = "0.001", error = "0";
+  std::uint32_t cycles = 0;
   std::uint32_t max_iterations = 5000, bounces = 0;
   std::string size = "1024x1024", exposure = "auto", background = "studio";
   float roughness = 0.3f;
@@ -63,7 +64,9 @@ void declare_solver(CLI::App& app, Typed& typed) {
   app.add_option("--method", typed.method, "fem, quadgraph-fv or quadgraph-fdm")
       ->capture_default_str()
       ->group("Solver");
-  app.add_option("--solver", typed.solver, "dpcg or cascade")->capture_default_str()->group("Solver");
+  app.add_option("--solver", typed.solver, "fmg-pcg, vcycle, dpcg, cascade, jacobi or auto (fmg-pcg or dpcg)")
+      ->capture_default_str()
+      ->group("Solver");
   app.add_option("--source", typed.source,
                  "buried (light scatters inside) or diffuse (enters at the surface, as published)")
       ->capture_default_str()
@@ -72,7 +75,16 @@ void declare_solver(CLI::App& app, Typed& typed) {
                  "diffusion, sp3, or auto: diffusion where it is within 1% of sp3, and for the published baseline")
       ->capture_default_str()
       ->group("Solver");
-  app.add_option("--tolerance", typed.tolerance, "relative residual to stop at")
+  app.add_option("--tolerance", typed.tolerance,
+                 "relative RMS error to which the exitance is solved, over the whole surface and over its unlit part")
+      ->capture_default_str()
+      ->group("Solver");
+  app.add_option("--error", typed.error,
+                 "the same with the error of the mesh, e.g. 1%, on a level as coarse as that allows; exit 3 if none "
+                 "does; 0: no target, the finest level")
+      ->capture_default_str()
+      ->group("Solver");
+  app.add_option("--cycles", typed.cycles, "iterations on the finest level; 0: as many as the tolerance takes")
       ->capture_default_str()
       ->group("Solver");
   app.add_option("--max-iterations", typed.max_iterations, "per level")->capture_default_str()->group("Solver");
@@ -138,6 +150,13 @@ void check_output(const AppOptions& options) {
   }
 }
 
+// A number, or percent.
+double parse_share(std::string_view text, const std::string& what) {
+  const bool percent = text.ends_with('%');
+  if (percent) text.remove_suffix(1);
+  return parse_number(text, what) / (percent ? 100 : 1);
+}
+
 AppOptions understood(const Typed& typed) {
   if (!typed.headless) {
     throw InputError("this version has no window: use --headless -o PICTURE.png to render a picture");
@@ -156,8 +175,10 @@ AppOptions understood(const Typed& typed) {
                    .solver = solver_from_name(typed.solver),
                    .source = source_from_name(typed.source),
                    .model = model_from_name(typed.model),
-                   .tolerance = typed.tolerance,
+                   .tolerance = parse_share(typed.tolerance, "tolerance"),
                    .max_iterations = typed.max_iterations,
+                   .cycles = typed.cycles,
+                   .error = parse_share(typed.error, "error"),
                    .inter_reflection = !typed.no_inter_reflection,
                    .bounces = typed.bounces};
   parse_size(typed.size, options.render);

@@ -14,6 +14,10 @@ Json as_json(const glm::dvec3& rgb) {
   return {rgb.x, rgb.y, rgb.z};
 }
 
+Json as_json(const std::optional<ErrorEstimate>& error) {
+  return error ? Json{{"whole", error->whole}, {"unlit", error->unlit}} : Json(nullptr);
+}
+
 Json as_json(const SolveReport& report) {
   Json json;
   json["method"] = name_of(report.method);
@@ -37,7 +41,12 @@ Json as_json(const SolveReport& report) {
   json["bounces_W"] = Json::array();
   for (const glm::dvec3& bounce : report.bounces) json["bounces_W"].push_back(as_json(bounce));
   json["clipped"] = as_json(report.clipped);
-  json["error"] = report.error ? Json{{"whole", report.error->whole}, {"unlit", report.error->unlit}} : Json(nullptr);
+  json["finest"] = report.finest;
+  json["work"] = report.work;
+  json["algebraic"] = as_json(report.algebraic);
+  json["error"] = as_json(report.error);
+  json["replaced"] = report.replaced;
+  json["missed"] = report.missed;
   return json;
 }
 
@@ -96,6 +105,8 @@ std::string text_report(const RunReport& report) {
     out << "error    " << decimals(100 * report.solve.error->whole, 2) << "% over the surface, "
         << (unlit > 0 ? decimals(100 * unlit, 2) + "% over the unlit part" : "nothing unlit") << " (estimated)\n";
   }
+  if (!report.solve.replaced.empty()) out << "solver   " << report.solve.replaced << "\n";
+  if (!report.solve.missed.empty()) out << "missed   " << report.solve.missed << "\n";
   out << "memory   " << decimals(static_cast<double>(report.engine.peak_device_bytes()) / mebibyte, 0)
       << " MiB on the device at most\n"
       << "time     ";

@@ -124,6 +124,7 @@ struct SolveReport {
   // share of it that is the finer one's own. Empty with a single level.
   std::optional<ErrorEstimate> error;
   bool inter_reflection = false;    // whether light from part to part was followed
+  std::string missed;               // what was wanted of the error and is not met; empty if all is
   std::vector<glm::dvec3> bounces;  // W per channel that each bounce brought in
   std::uint32_t exchange_age = 0;   // solves that what some face sees has been behind the shape; 0: nothing is
 };

@@ -46,6 +46,9 @@ Looks looks_of(SolverKind solver) {
   }
 }
 
+// A batch of sweeps that leaves more of the residual than this has met the limit of single precision.
+constexpr float least_progress = 1 - 1e-4f;
+
 bool relaxes(SolverKind solver) {
   return solver == SolverKind::cascade || solver == SolverKind::jacobi;
 }
@@ -110,14 +113,14 @@ void LevelSolver::record_surface(const vk::Buffer& x, const vk::Buffer& before, 
                                     .count = rows.surface_count,
                                     .what = what,
                                     .level = level_,
-                                    .verify = task_.tolerance < tight ? 1u : 0u,
+                                    .verify = verified() ? 1u : 0u,
                                     .stall_limit = looks.stall_limit,
                                     .max_iterations = task_.max_iterations,
                                     .looks = looks.first,
                                     .by_change = relaxes(task_.solver) ? 1u : 0u,
                                     .least_rate = looks.least_rate,
                                     .slow_rate = looks.slow_rate,
-                                    .tolerance = static_cast<float>(task_.tolerance),
+                                    .tolerance = task_.fixed ? 0.0f : static_cast<float>(task_.tolerance),
                                     .boundary = on_device(task_.boundary)};
   const std::uint64_t bytes =
       rows.surface_count * (rows.field_bytes() + sizeof(gpu::SurfaceShare) + 2 * std::uint64_t{sizeof(glm::vec3)});
@@ -144,8 +147,12 @@ void LevelSolver::record_start() {
   entries_ += op().entries;
 }
 
+bool LevelSolver::verified() const {
+  return !task_.fixed && task_.tolerance < tight;
+}
+
 void LevelSolver::record_check() {
-  if (task_.tolerance < tight) dispatch_start(gpu::START_CHECK);
+  if (verified()) dispatch_start(gpu::START_CHECK);
 }
 
 void LevelSolver::record_difference() {
@@ -281,7 +288,11 @@ void LevelSolver::run() {
     record_state();
     work_.recorder.submit();
     const std::uint32_t before = taken_;
+    const float residual_before = state_.residual;
     take();
+    if (relaxes(task_.solver) && running() && before > 0 && state_.residual > least_progress * residual_before) {
+      stagnated_ = true;
+    }
     if (relaxes(task_.solver) && (taken_ - before) % 2 == 1) {
       std::swap(operators_.at(key_, level_).x, operators_.at(key_, level_).product);
     }
@@ -290,12 +301,12 @@ void LevelSolver::run() {
 
 LevelReport LevelSolver::report() const {
   const std::optional<ErrorEstimate> left = algebraic();
+  const bool met = task_.fixed && left && left->whole <= task_.tolerance && left->unlit <= task_.tolerance;
   return {.level = level_,
           .unknowns = op().count * (op().model == Model::sp3 ? 2 : 1),
           .iterations = total_,
           .residual = state_.residual,
-          .converged = state_.status == gpu::SOLVE_CONVERGED ||
-                       (left && left->whole <= task_.tolerance && left->unlit <= task_.tolerance)};
+          .converged = task_.start ? !failed() : state_.status == gpu::SOLVE_CONVERGED || met};
 }
 
 std::optional<ErrorEstimate> LevelSolver::algebraic() const {

@@ -15,7 +15,9 @@ namespace quadgraph {
 struct LevelTask {
   SolverKind solver = SolverKind::fmg_pcg;  // never automatic; in one with cycles, the level may be any
   Boundary boundary{};
-  double tolerance = 1e-3;           // of the algebraic error; 0: none is small enough
+  double tolerance = 1e-3;           // of the algebraic error
+  bool fixed = false;                // max_iterations are done whatever is left
+  bool start = false;                // only to start the next finer level: never too little
   std::uint32_t max_iterations = 0;  // in all
   std::uint32_t smoothing = 1;       // of a cycle
 };
@@ -52,7 +54,9 @@ class LevelSolver {
 
   // Of the last `take`.
   const gpu::SolveState& state() const { return state_; }
-  bool running() const { return state_.status == gpu::SOLVE_RUNNING && state_.iterations < task_.max_iterations; }
+  bool running() const {
+    return state_.status == gpu::SOLVE_RUNNING && !stagnated_ && state_.iterations < task_.max_iterations;
+  }
 
   // Cycles that stall or grow, or meet what is not a number.
   bool failed() const;
@@ -78,6 +82,7 @@ class LevelSolver {
   void record_cg();
   void record_cycle();
   void record_sweeps(std::uint32_t sweeps);
+  bool verified() const;
   void did(std::uint32_t iterations);
   std::uint64_t start_bytes() const;
 
@@ -92,6 +97,7 @@ class LevelSolver {
   std::uint32_t taken_ = 0;     // of them, counted
   std::uint32_t total_ = 0;     // counted in all, over all starts
   double entries_ = 0;
+  bool stagnated_ = false;  // a relaxation that single precision lets fall no further
   gpu::SolveState state_{};
 };
 

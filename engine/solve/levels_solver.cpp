@@ -1,28 +1,39 @@
 #include "engine/solve/levels_solver.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 
 #include "engine/graph/exchange.h"
 #include "engine/solve/assembly.h"
+#include "engine/solve/mesh_error.h"
 #include "engine/solve/surface_share.h"
 
 namespace quadgraph {
 namespace {
 
-// Iterations on a level that only starts the next finer one, and on the finest in the first submission.
-constexpr std::uint32_t coarse_cycles = 1, first_cycles = 6;
+// Cycles on a level that only starts the next finer one, of which one would do for the start, but not for the error
+// that is taken from the difference between the two; and on the finest in the first submission.
+constexpr std::uint32_t coarse_cycles = 2, first_cycles = 6;
 
-// Bounces in the first submission: each brings in about an eighth of the one before.
-constexpr std::uint32_t first_bounces = 4;
+// Bounces in the first submission: each brings in about an eighth of the one before, and what is left is to be a tenth
+// of the usual tolerance.
+constexpr std::uint32_t first_bounces = 5, more_bounces = 2;
 
-// Share of the difference between two levels that is the finer one's own error: second order, spacing halved.
-constexpr double fine_share = 1.0 / 3.0;
+// What light that enters again may be off by, in tolerances: it is a tenth of all light at most.
+constexpr double exchange_share = 5;
 
 // Share of a target for the whole error that is left to the algebraic one.
 constexpr double algebraic_share = 0.25;
 
 bool same(const Boundary& a, const Boundary& b) {
   return a.k11 == b.k11 && a.k12 == b.k12 && a.k22 == b.k22;
+}
+
+std::string percent(double share) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.2g%%", 100 * share);
+  return text;
 }
 
 }  // namespace
@@ -64,10 +75,7 @@ SolveReport LevelsSolver::run() {
   while (true) {
     solve_down_to(finest_);
     settle();
-    if (finest_ == 0 ||
-        (report_.error && report_.error->whole <= options_.error && report_.error->unlit <= options_.error)) {
-      break;
-    }
+    if (finest_ == 0 || reached()) break;
     --finest_;
   }
   finish();
@@ -167,14 +175,10 @@ void LevelsSolver::approach(std::uint32_t level) {
   LevelTask task{.solver = report_.solver, .boundary = boundary_, .max_iterations = options_.max_iterations};
   task.tolerance = options_.error > 0 ? algebraic_share * options_.error : options_.tolerance;
   task.smoothing = options_.smoothing > 0 ? options_.smoothing : report_.solver == SolverKind::vcycle ? 2 : 1;
-  if (last && options_.cycles > 0) {
-    task.tolerance = 0;
-    task.max_iterations = options_.cycles;
-  }
-  if (!last && cycles()) {
-    task.tolerance = 0;
-    task.max_iterations = coarse_cycles;
-  }
+  task.start = !last && cycles();
+  task.fixed = (task.start && !bounces_on(level)) || (last && options_.cycles > 0);
+  if (task.fixed) task.max_iterations = task.start ? coarse_cycles : options_.cycles;
+  if (task.start && bounces_on(level)) task.tolerance *= exchange_share;
   solvers_[level].emplace(parts_.work, parts_.operators, key_, level, task);
   record_first(level);
 }
@@ -227,7 +231,7 @@ void LevelsSolver::bounce(std::uint32_t bounces) {
 
 void LevelsSolver::bounce_more() {
   const std::uint32_t exchange = *parts_.exchange.level();
-  bounce(first_bounces);
+  bounce(more_bounces);
   for (std::uint32_t level = exchange; level-- > finest_;) {
     record_light(level);
     iterate(level);
@@ -301,9 +305,14 @@ void LevelsSolver::take_error() {
   report_.algebraic = solver.algebraic();
   report_.error.reset();
   if (finest_ + 1 == solvers_.size() || !solvers_[finest_ + 1]) return;
-  const glm::dvec2 mesh = fine_share * glm::dvec2(solver.state().difference);
+  const glm::dvec2 difference(solver.state().difference);
+  std::optional<glm::dvec2> coarser;
+  if (finest_ + 2 < solvers_.size() && solvers_[finest_ + 2]) {
+    coarser = glm::dvec2(solvers_[finest_ + 1]->state().difference);
+  }
+  const ErrorEstimate mesh = mesh_error(difference, coarser);
   const ErrorEstimate left = report_.algebraic.value_or(ErrorEstimate{});
-  report_.error = ErrorEstimate{mesh.x + left.whole, mesh.y + left.unlit};
+  report_.error = ErrorEstimate{std::hypot(mesh.whole, left.whole), std::hypot(mesh.unlit, left.unlit)};
 }
 
 void LevelsSolver::finish() {
@@ -314,10 +323,25 @@ void LevelsSolver::finish() {
     entries += solvers_[i]->entries();
   }
   report_.finest = finest_;
+  report_.missed = missed();
   report_.work = entries / op(0).entries;
   report_.bounces = parts_.exchange.bounces();
   report_.energy = energy();
   report_.clipped = parts_.results.clipped();
+}
+
+// In words.
+std::string LevelsSolver::missed() const {
+  if (!(options_.error > 0)) return "";
+  if (!report_.error) return "error " + percent(options_.error) + ": a file with a single level cannot tell its error";
+  if (reached()) return "";
+  return "error " + percent(options_.error) + " is not reached: " + percent(report_.error->whole) +
+         " of the surface, " + percent(report_.error->unlit) +
+         " of its unlit part; a file with more vertices on its surface would come closer";
+}
+
+bool LevelsSolver::reached() const {
+  return report_.error && report_.error->whole <= options_.error && report_.error->unlit <= options_.error;
 }
 
 Energy LevelsSolver::energy() const {

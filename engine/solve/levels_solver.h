@@ -55,6 +55,8 @@ class LevelsSolver {
   void solve(std::uint32_t level);
   void solve_down_to(std::uint32_t finest);
   bool bounced_enough() const;
+  bool reached() const;
+  std::string missed() const;
   void bounce(std::uint32_t bounces);
   void bounce_more();
   void settle();

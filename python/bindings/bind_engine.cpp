@@ -41,6 +41,7 @@ py::dict report_dict(const SolveReport& report) {
   for (const glm::dvec3& bounce : report.bounces) bounces.append(as_tuple(bounce));
   d["bounces"] = bounces;
   d["replaced"] = report.replaced;
+  d["missed"] = report.missed;
   d["finest"] = report.finest;
   d["work"] = report.work;
   d["algebraic"] = error_dict(report.algebraic);

@@ -89,8 +89,8 @@ TEST_CASE("the error estimate compares the exitance with that of the coarser lev
     }
     REQUIRE(report.error);
     REQUIRE(report.algebraic);
-    CHECK(report.error->whole == doctest::Approx(std::sqrt(difference.x / norm.x) / 3).epsilon(1e-3));
-    CHECK(report.error->unlit == doctest::Approx(std::sqrt(difference.y / norm.y) / 3).epsilon(1e-3));
+    CHECK(report.error->whole == doctest::Approx(std::sqrt(difference.x / norm.x) / std::sqrt(3)).epsilon(1e-3));
+    CHECK(report.error->unlit == doctest::Approx(std::sqrt(difference.y / norm.y) / std::sqrt(3)).epsilon(1e-3));
     CHECK(report.algebraic->whole < 1e-6);
   }
 }

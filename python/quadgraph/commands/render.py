@@ -67,7 +67,7 @@ def image_size(value: str) -> tuple[int, int]:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Render and write; 0 on success."""
+    """Render and write; 3 if a tolerance or an error was not met, else 0."""
     for path in args.output:
         if path.suffix.lower() not in WRITERS:
             raise InputError(f"{path}: output must end in {' or '.join(WRITERS)}")
@@ -93,11 +93,12 @@ def run(args: argparse.Namespace) -> int:
     report["seconds"] = time.perf_counter() - start
     if args.json:
         atomic_file.write_json(args.json, report)
-    print_summary(engine, report, args.output)
-    return 0
+    unmet = scene.unmet(report, args)
+    print_summary(engine, report, unmet, args.output)
+    return 3 if unmet else 0
 
 
-def print_summary(engine, report: dict, outputs: list[Path]) -> None:
+def print_summary(engine, report: dict, unmet: list[str], outputs: list[Path]) -> None:
     """Say what was made and what it took."""
     console = Console(highlight=False, soft_wrap=True)
     frame_ms = sum(entry["time_ms"] for entry in report["passes"])
@@ -107,7 +108,7 @@ def print_summary(engine, report: dict, outputs: list[Path]) -> None:
         f"frame: {frame_ms:.0f} ms on the device, {report['seconds']:.1f} s all told with loading and start-up"
     )
     console.print(f"{text.error_text(report)}, energy balance {100 * worst:+.3f}%")
-    for sentence in scene.unconverged(report):
-        console.print(f"not converged: {sentence}")
+    for sentence in text.solver_texts(report) + unmet:
+        console.print(sentence)
     for path in outputs:
         console.print(f"picture: {path}")

@@ -86,12 +86,33 @@ def bandwidth(entry: dict) -> float:
 
 
 def error_text(report: dict) -> str:
-    """Estimated discretisation error in words."""
-    if report["error"] is None:
-        return "error: not estimated (a single level)"
-    unlit = report["error"]["unlit"]
-    of_unlit = f"{100 * unlit:.2f}% unlit" if unlit > 0 else "nothing unlit"
-    return f"error: {100 * report['error']['whole']:.2f}% whole, {of_unlit} (estimate)"
+    """Estimated error of the exitance in words."""
+    return (
+        "error (estimate): "
+        + "; ".join(
+            f"{name} {two_parts(report[key])}"
+            for name, key in (("in all", "error"), ("of that algebraic", "algebraic"))
+            if report[key] is not None
+        )
+        if report["error"]
+        else f"error: not estimated (a single level); algebraic {two_parts(report['algebraic'])}"
+    )
+
+
+def two_parts(error: dict | None) -> str:
+    """Return the error over the whole surface and over its unlit part in words."""
+    if error is None:
+        return "unknown"
+    of_unlit = f"{100 * error['unlit']:.2g}% unlit" if error["unlit"] > 0 else "nothing unlit"
+    return f"{100 * error['whole']:.2g}% whole, {of_unlit}"
+
+
+def solver_texts(report: dict) -> list[str]:
+    """Say which solver took another one's place, and on which level it stopped if not on the finest."""
+    texts = [f"solver: {report['replaced']}"] if report["replaced"] else []
+    if report["finest"] > 0:
+        texts.append(f"level: {report['finest']} suffices; its solution is carried to the finest")
+    return texts
 
 
 def size_text(engine: Engine) -> str:

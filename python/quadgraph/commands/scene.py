@@ -39,6 +39,19 @@ def positive_int(text: str) -> int:
     return value
 
 
+def share(text: str) -> float:
+    """Argument type: a share above 0 and below 1, as a number or in percent."""
+    number = text.removesuffix("%")
+    value = float(number) / (100 if number != text else 1)
+    if not 0 < value < 1:
+        raise argparse.ArgumentTypeError(f"{text}: must be above 0 and below 1 (or 100%)")
+    return value
+
+
+# What each is: docs/architecture.md, "Solvers".
+SOLVERS = ("fmg-pcg", "vcycle", "dpcg", "cascade", "jacobi", "auto")
+
+
 def add_scene_arguments(parser: argparse.ArgumentParser) -> None:
     """Add FILE, material, lights, method, solver and device options."""
     parser.add_argument("file", metavar="FILE", type=Path, help="a baked .qgraph")
@@ -61,7 +74,14 @@ def add_scene_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--method", choices=("fem", "quadgraph-fv", "quadgraph-fdm"), default="fem", help="default: %(default)s"
     )
-    parser.add_argument("--solver", choices=("dpcg", "cascade"), default="dpcg", help="default: %(default)s")
+    parser.add_argument(
+        "--solver",
+        choices=SOLVERS,
+        default="fmg-pcg",
+        help="fmg-pcg: full multigrid, then conjugate gradients with V-cycles; vcycle: without conjugate gradients; "
+        "dpcg: conjugate gradients with the diagonal; cascade: relaxation from coarse to fine, as published; jacobi: "
+        "on the finest level alone; auto: fmg-pcg or dpcg, whichever is quicker here (default: %(default)s)",
+    )
     parser.add_argument(
         "--source",
         choices=("buried", "diffuse"),
@@ -76,7 +96,27 @@ def add_scene_arguments(parser: argparse.ArgumentParser) -> None:
         help="auto: diffusion where it is within 1%% of sp3, and for the published baseline (default: %(default)s)",
     )
     parser.add_argument(
-        "--tolerance", type=positive_float, default=1e-3, help="relative residual (default: %(default)s)"
+        "--tolerance",
+        type=share,
+        default=1e-3,
+        metavar="T",
+        help="stop when the exitance is estimated to be solved to this relative RMS error, over the whole surface and "
+        "over its unlit part (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--error",
+        type=share,
+        default=0.0,
+        metavar="E",
+        help="stop when that error and the mesh's together are estimated to be below E, e.g. 1%%, on a level of the "
+        "file as coarse as that allows; exit 3 if no level does (default: no target, the finest level)",
+    )
+    parser.add_argument(
+        "--cycles",
+        type=positive_int,
+        default=0,
+        metavar="N",
+        help="exactly N iterations on the finest level (default: as many as the tolerance takes)",
     )
     parser.add_argument(
         "--max-iterations", type=positive_int, default=5000, metavar="N", help="per level (default: %(default)s)"
@@ -120,6 +160,8 @@ def solve(engine: Engine, args: argparse.Namespace) -> dict:
         source=args.source,
         model=args.model,
         tolerance=args.tolerance,
+        error=args.error,
+        cycles=args.cycles,
         max_iterations=args.max_iterations,
         inter_reflection=not args.no_inter_reflection,
         bounces=args.bounces,
@@ -133,10 +175,14 @@ def check_validation(engine: Engine) -> None:
         raise InputError("Vulkan validation: " + " | ".join(messages))
 
 
-def unconverged(report: dict) -> list[str]:
-    """One sentence per level that stopped before the tolerance was met."""
-    return [
-        f"level {level['level']} stopped after {level['iterations']} iterations at residual {level['residual']:.2e}"
+def unmet(report: dict, args: argparse.Namespace) -> list[str]:
+    """One sentence per level that stopped before the tolerance was met, unless so asked, and one for the error."""
+    missed = [report["missed"]] if report["missed"] else []
+    if args.cycles > 0:
+        return missed
+    return missed + [
+        f"not converged: level {level['level']} stopped after {level['iterations']} iterations "
+        f"at residual {level['residual']:.2e}"
         for level in report["levels"]
         if not level["converged"]
     ]

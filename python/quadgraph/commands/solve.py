@@ -29,7 +29,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Solve and report; 3 if a level did not converge, else 0."""
+    """Solve and report; 3 if a tolerance or an error was not met, else 0."""
     if args.field and args.field.suffix != ".npz":
         raise InputError(f"{args.field}: --field must end in .npz")
     engine = scene.make_engine(args)
@@ -50,7 +50,7 @@ def run(args: argparse.Namespace) -> int:
         console.print(table)
     console.print(text.inter_reflection_text(report, not args.no_inter_reflection))
     console.print(text.error_text(report))
-    stopped = scene.unconverged(report)
-    for sentence in stopped:
-        console.print(f"not converged: {sentence}")
-    return 3 if stopped else 0
+    unmet = scene.unmet(report, args)
+    for sentence in text.solver_texts(report) + unmet:
+        console.print(sentence)
+    return 3 if unmet else 0
