@@ -176,6 +176,27 @@ struct TransferPush {
   uint count;
 };
 
+// follow.comp: the last solution as the next start: before = x in the present units, x = before + transfer of what has
+// changed on the coarser level since. `coarse_x` null: there is none. `before` null: no finer level will ask.
+struct FollowPush {
+  QG_REF(Uints) index;
+  QG_REF(Floats) weight;
+  QG_REF(Fields) coarse_x;
+  QG_REF(Fields) coarse_before;
+  QG_REF(Vec3s) coarse_to_phi;
+  QG_REF(Vec3s) to_phi;
+  QG_REF(Fields) x;
+  QG_REF(Fields) before;
+  QG_REF(Vec3s) unit;  // one: the scale that x has
+  QG_REF(Scales) scale;
+  uint width;
+  uint first;
+  uint coarse_first;
+  uint count;
+  uint has_coarse;
+  uint keep_before;
+};
+
 const uint START_FIRST = 0u;     // resets the state, opens the gates
 const uint START_CHECK = 1u;     // after the surface has met the tolerance: does the residual agree?
 const uint START_RESIDUAL = 2u;  // no decision

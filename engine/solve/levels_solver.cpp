@@ -84,19 +84,12 @@ SolveReport LevelsSolver::run() {
 
 // Where the levels to be solved begin.
 void LevelsSolver::start_over() {
-  const auto coarsest = static_cast<std::uint32_t>(solvers_.size()) - 1;
-  const std::uint32_t exchange = report_.inter_reflection ? parts_.exchange.level().value_or(0) : 0;
-  // In motion the next coarser level comes along, for the error, and that of the bounces.
-  next_ = std::min(coarsest, std::max(finest_ + 1, exchange));
+  next_ = static_cast<std::uint32_t>(solvers_.size()) - 1;
+  if (report_.solver == SolverKind::jacobi) {
+    next_ = std::max(finest_, report_.inter_reflection ? parts_.exchange.level().value_or(0) : 0);
+  }
   warm_ = options_.warm;
   for (std::uint32_t level = finest_; level <= next_; ++level) warm_ = warm_ && op(level).solved;
-  if (report_.solver == SolverKind::jacobi) {
-    next_ = std::max(finest_, exchange);
-  } else if (!warm_) {
-    next_ = coarsest;
-  }
-  if (!cycles()) return;
-  for (std::uint32_t level = coarsest; level > next_; --level) record_setup(level);
 }
 
 bool LevelsSolver::bounces_on(std::uint32_t level) const {
@@ -156,21 +149,30 @@ void LevelsSolver::record_light(std::uint32_t level) {
   if (parts_.exchange.any()) record_load_again(level);
 }
 
-// x before the first iteration, and the exitance of what comes from the coarser level.
+// x before the first iteration, and the exitance of what comes from the coarser level. In motion x follows what changes
+// on the coarser levels: where the light jumps that is as good a start as one from nothing, and else a better one.
 void LevelsSolver::record_first(std::uint32_t level) {
   const bool alone = report_.solver == SolverKind::jacobi || level + 1 == solvers_.size() || !solvers_[level + 1];
-  if (alone) {
-    if (!warm_) parts_.work.recorder.fill(op(level).x, 0);
-    return;
+  if (!alone) {
+    const vk::Buffer& target = warm_ ? op(level).p : op(level).x;
+    parts_.operators.record_transfer(parts_.work, key_, level, target);
+    solvers_[level]->record_origin(target);
   }
-  const vk::Buffer& target = warm_ ? op(level).p : op(level).x;
-  parts_.operators.record_transfer(parts_.work, key_, level, target);
-  solvers_[level]->record_origin(target);
+  if (warm_) {
+    parts_.operators.record_follow(parts_.work, key_, level, !alone);
+  } else if (alone) {
+    parts_.work.recorder.fill(op(level).x, 0);
+  }
 }
 
 void LevelsSolver::approach(std::uint32_t level) {
   record_setup(level);
   record_light(level);
+  set_solver(level);
+  record_first(level);
+}
+
+void LevelsSolver::set_solver(std::uint32_t level) {
   const bool last = level == finest_;
   LevelTask task{.solver = report_.solver, .boundary = boundary_, .max_iterations = options_.max_iterations};
   task.tolerance = options_.error > 0 ? algebraic_share * options_.error : options_.tolerance;
@@ -180,7 +182,6 @@ void LevelsSolver::approach(std::uint32_t level) {
   if (task.fixed) task.max_iterations = task.start ? coarse_cycles : options_.cycles;
   if (task.start && bounces_on(level)) task.tolerance *= exchange_share;
   solvers_[level].emplace(parts_.work, parts_.operators, key_, level, task);
-  record_first(level);
 }
 
 // Iterations behind the present b.
@@ -195,10 +196,15 @@ void LevelsSolver::iterate(std::uint32_t level) {
 void LevelsSolver::solve(std::uint32_t level) {
   approach(level);
   iterate(level);
-  op(level).solved = true;
+  record_solved(level);
   // A level's own error is that of the light before it bounces, which the coarser ones do not have.
   record_difference(level);
   if (bounces_on(level)) bounce(options_.bounces > 0 ? options_.bounces : first_bounces);
+}
+
+void LevelsSolver::record_solved(std::uint32_t level) {
+  op(level).solved = true;
+  parts_.work.recorder.copy(parts_.work.scale, op(level).unit, sizeof(glm::vec3));
 }
 
 void LevelsSolver::record_difference(std::uint32_t level) {
@@ -266,12 +272,12 @@ void LevelsSolver::replace() {
   report_.solver = SolverKind::dpcg;
   const bool usable = failed.state().status != gpu::SOLVE_NOT_FINITE && failed.state().status != gpu::SOLVE_DIVERGED;
   if (usable) {
-    warm_ = true;
-    next_ = finest_;
-  } else {
-    for (std::uint32_t level = 0; level < solvers_.size(); ++level) op(level).solved = false;
-    start_over();
+    set_solver(finest_);
+    iterate(finest_);
+    return record_difference(finest_);
   }
+  for (std::uint32_t level = 0; level < solvers_.size(); ++level) op(level).solved = false;
+  start_over();
   solve_down_to(finest_);
 }
 
@@ -279,7 +285,7 @@ void LevelsSolver::replace() {
 void LevelsSolver::record_results() {
   for (std::uint32_t level = finest_; level-- > 0;) {
     parts_.operators.record_transfer(parts_.work, key_, level, op(level).x);
-    op(level).solved = true;
+    record_solved(level);
   }
   if (finest_ > 0 && options_.source == Source::buried) {
     parts_.walks[0].record(parts_.work, parts_.levels[0], parts_.beams, key_.method, parts_.coefficients.eta(),

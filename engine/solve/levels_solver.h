@@ -49,7 +49,9 @@ class LevelsSolver {
   void record_load_again(std::uint32_t level);
   void record_light(std::uint32_t level);
   void record_first(std::uint32_t level);
+  void record_solved(std::uint32_t level);
   void record_difference(std::uint32_t level);
+  void set_solver(std::uint32_t level);
   void approach(std::uint32_t level);
   void iterate(std::uint32_t level);
   void solve(std::uint32_t level);

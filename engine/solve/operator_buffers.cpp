@@ -57,6 +57,8 @@ OperatorBuffers::OperatorBuffers(vk::Context& context, const Level& level, std::
     z = buffer(count * field_bytes(), vectors, "z");
     other = buffer(count * field_bytes(), vectors, "other z");
   }
+  if (index > 0) before = buffer(count * field_bytes(), vectors, "x before");
+  unit = buffer(sizeof(glm::vec3), vectors, "unit of x");
   surface_first = method == Method::fem ? 0 : level.tet_count();
   surface_count = method == Method::fem ? level.surface_vertex_count : level.face_count();
   surface_share = buffer(surface_count * sizeof(gpu::SurfaceShare), vectors, "surface share");

@@ -22,6 +22,8 @@ struct OperatorBuffers {
   vk::Buffer r, p;                  // residual, direction
   vk::Buffer product;               // A p; in a relaxation, the other x; in a cycle, the direction, then the residual
   vk::Buffer z, other;              // correction of a cycle, and its second buffer; fem only
+  vk::Buffer before;                // x of the last solve, on levels that have a finer one
+  vk::Buffer unit;                  // vec3: the scale that x has
   vk::Buffer state, state_on_host;  // SolveState, and the same, mapped
   vk::Buffer damping;               // vec3
 

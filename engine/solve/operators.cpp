@@ -73,4 +73,36 @@ void Operators::record_transfer(Workspace& work, const OperatorKey& key, std::ui
   }
 }
 
+void Operators::record_follow(Workspace& work, const OperatorKey& key, std::uint32_t level, bool changed) {
+  const OperatorBuffers& fine = at(key, level);
+  gpu::FollowPush push{};
+  push.to_phi = fine.to_phi.address();
+  push.x = fine.x.address();
+  push.unit = fine.unit.address();
+  push.scale = work.scale.address();
+  push.count = fine.count;
+  push.has_coarse = changed ? 1u : 0u;
+  push.keep_before = level > 0 ? 1u : 0u;
+  if (level > 0) push.before = fine.before.address();
+  const auto dispatch = [&] {
+    work.recorder.dispatch(work.passes.follow.of(key.model), push, push.count, "transfer",
+                           push.count * (push.width * (8 + sizeof(glm::vec3) + 2 * fine.field_bytes()) +
+                                         sizeof(glm::vec3) + 3 * fine.field_bytes()));
+  };
+  if (!changed) return dispatch();
+  const OperatorBuffers& coarse = at(key, level + 1);
+  push.coarse_x = coarse.x.address();
+  push.coarse_before = coarse.before.address();
+  push.coarse_to_phi = coarse.to_phi.address();
+  for (const auto& part : levels_.at(key)[level].transfer->parts) {
+    push.index = part.index.address();
+    push.weight = part.weight.address();
+    push.width = part.width;
+    push.first = part.first;
+    push.coarse_first = part.coarse_first;
+    push.count = part.count;
+    dispatch();
+  }
+}
+
 }  // namespace quadgraph

@@ -42,6 +42,10 @@ class Operators {
   // `target`, as x of `level`, from x of the next coarser one.
   void record_transfer(Workspace& work, const OperatorKey& key, std::uint32_t level, const vk::Buffer& target);
 
+  // x of `level` from the last solution, with what has changed on the next coarser one since; `changed`: that there is
+  // such a level.
+  void record_follow(Workspace& work, const OperatorKey& key, std::uint32_t level, bool changed);
+
  private:
   struct OfLevel {
     std::optional<OperatorBuffers> op;

@@ -41,6 +41,8 @@
 #include "spirv/exchange_rays.comp.h"
 #include "spirv/exitance.comp.h"
 #include "spirv/exitance_sp3.comp.h"
+#include "spirv/follow.comp.h"
+#include "spirv/follow_sp3.comp.h"
 #include "spirv/gather_exitance.comp.h"
 #include "spirv/gather_phi.comp.h"
 #include "spirv/gather_phi_sp3.comp.h"
@@ -110,6 +112,7 @@ Passes::Passes()
       MODEL_PASS(right_hand_side_buried, RightHandSideBuriedPush),
       MODEL_PASS(eigenvalue_bound, EigenvalueBoundPush),
       MODEL_PASS(transfer, TransferPush),
+      MODEL_PASS(follow, FollowPush),
       MODEL_PASS(cg_start, CgStartPush),
       MODEL_PASS(cg_multiply, CgMultiplyPush),
       MODEL_PASS(cg_update, CgUpdatePush),

@@ -40,7 +40,7 @@ struct Passes {
       energy_total, surface_share, uncollided, gather_exitance, gather_scale, exchange, exchange_finer, exchange_enter,
       exchange_boxes, exchange_rays;
   ModelPass assemble_fdm, assemble_fv, assemble_edges, assemble_fem, right_hand_side_fdm, right_hand_side_fv,
-      right_hand_side_fem, right_hand_side_buried, eigenvalue_bound, transfer, cg_start, cg_multiply, cg_update,
+      right_hand_side_fem, right_hand_side_buried, eigenvalue_bound, transfer, follow, cg_start, cg_multiply, cg_update,
       cg_direction, correct, sweep, residual, chebyshev, coarse_solve, restrict, prolong, surface_change, exitance,
       energy, gather_phi;
 };

@@ -33,6 +33,8 @@
 #include "spirv/evaluate_material.comp.h"
 #include "spirv/exitance.comp.h"
 #include "spirv/exitance_sp3.comp.h"
+#include "spirv/follow.comp.h"
+#include "spirv/follow_sp3.comp.h"
 #include "spirv/irradiance_scale.comp.h"
 #include "spirv/prolong.comp.h"
 #include "spirv/prolong_sp3.comp.h"
@@ -213,6 +215,14 @@ TEST_CASE("push constants of the cycles and of the looks at the surface") {
   for (const vk::Spirv code : {vk::Spirv(correct_comp), vk::Spirv(correct_sp3_comp)}) {
     compare(code, "CorrectPush",
             {MEMBER(CorrectPush, z), MEMBER(CorrectPush, x), MEMBER(CorrectPush, state), MEMBER(CorrectPush, count)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(follow_comp), vk::Spirv(follow_sp3_comp)}) {
+    compare(code, "FollowPush",
+            {MEMBER(FollowPush, index), MEMBER(FollowPush, weight), MEMBER(FollowPush, coarse_x),
+             MEMBER(FollowPush, coarse_before), MEMBER(FollowPush, coarse_to_phi), MEMBER(FollowPush, to_phi),
+             MEMBER(FollowPush, x), MEMBER(FollowPush, before), MEMBER(FollowPush, unit), MEMBER(FollowPush, scale),
+             MEMBER(FollowPush, width), MEMBER(FollowPush, first), MEMBER(FollowPush, coarse_first),
+             MEMBER(FollowPush, count), MEMBER(FollowPush, has_coarse), MEMBER(FollowPush, keep_before)});
   }
   for (const vk::Spirv code : {vk::Spirv(residual_comp), vk::Spirv(residual_sp3_comp)}) {
     compare(code, "ResidualPush",

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from quadgraph.bake import BakeOptions, bake
 from quadgraph.surface import Surface
 from shapes import pymeshlab_samples, read_ply
 
@@ -34,3 +35,11 @@ def bunny(bunny_path: Path) -> Surface:
     surface = read_ply(bunny_path)
     scale = 100 / (surface.vertices[:, 1].max() - surface.vertices[:, 1].min())
     return Surface(surface.vertices * scale, surface.triangles).rounded()
+
+
+@pytest.fixture(scope="session")
+def bunny_qgraph(bunny_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The bundled bunny baked at 100 mm with 6000 vertices on its finest surface."""
+    path = tmp_path_factory.mktemp("bunny") / "bunny.qgraph"
+    bake(bunny_path, path, BakeOptions(height_mm=100.0, surface_vertices=6000))
+    return path

@@ -87,16 +87,10 @@ def bandwidth(entry: dict) -> float:
 
 def error_text(report: dict) -> str:
     """Estimated error of the exitance in words."""
-    return (
-        "error (estimate): "
-        + "; ".join(
-            f"{name} {two_parts(report[key])}"
-            for name, key in (("in all", "error"), ("of that algebraic", "algebraic"))
-            if report[key] is not None
-        )
-        if report["error"]
-        else f"error: not estimated (a single level); algebraic {two_parts(report['algebraic'])}"
-    )
+    algebraic = f"algebraic {two_parts(report['algebraic'])}"
+    if report["error"] is None:
+        return f"error: of the mesh not estimated (a single level); {algebraic} (estimate)"
+    return f"error: {two_parts(report['error'])}; of that {algebraic} (estimate)"
 
 
 def two_parts(error: dict | None) -> str:
