@@ -228,7 +228,6 @@ TEST_CASE("a warm start with one cycle a frame follows a moving light and an edi
     const SolveReport report = scene.simulation.solve({.model = Model::diffusion, .cycles = 1, .warm = true});
     const auto warm = scene.simulation.surface_field();
     CHECK(report.levels.back().iterations == 1);
-    CHECK(report.levels.size() == 2);  // the next coarser one comes along, for the error
     CHECK(report.error);
     if (frame % 6 != 0) continue;
     const auto kept = warm.exitance;
