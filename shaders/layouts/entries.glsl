@@ -71,15 +71,19 @@ Field add_geometry(Field sum, Row row, uint j, float g, float m, float b) {
 }
 #endif
 
-// Entries of unit e.
-Field add_unit(Field sum, Row row, uint e) {
+// add_unit: entries of unit e.
 #if ENTRIES == ENTRIES_RGB && COLUMNS == 32
+Field add_unit(Field sum, Row row, uint e) {
   return add_entry(sum, row, Entries(push.weight).at[e], push.column.at[e]);
+}
 #elif ENTRIES == ENTRIES_RGB
+Field add_unit(Field sum, Row row, uint e) {
   uint codes = push.column.at[e];
   sum = add_entry(sum, row, Entries(push.weight).at[2u * e], column_of(row, codes & 0xffffu));
   return add_entry(sum, row, Entries(push.weight).at[2u * e + 1u], column_of(row, codes >> 16u));
+}
 #elif ENTRIES == ENTRIES_RGB_WORDS
+Field add_unit(Field sum, Row row, uint e) {
 #if MOMENTS == 1
   uvec4 words = AlignedUvec4s(push.weight).at[e];
   return add_entry(sum, row, Entry(uintBitsToFloat(words.yzw)), words.x);
@@ -90,7 +94,9 @@ Field add_unit(Field sum, Row row, uint e) {
   Entry entry = Entry(uintBitsToFloat(uvec3(a.y, b)), uintBitsToFloat(uvec3(c, d.x)), uintBitsToFloat(uvec3(d.y, f)));
   return add_entry(sum, row, entry, a.x);
 #endif
+}
 #elif ENTRIES == ENTRIES_HALF
+Field add_unit(Field sum, Row row, uint e) {
 #if COLUMNS == 16 && MOMENTS == 1
   uvec4 words = AlignedUvec4s(push.weight).at[e];
   uint first = column_of(row, words.x & 0xffffu), second = column_of(row, words.x >> 16u);
@@ -115,26 +121,36 @@ Field add_unit(Field sum, Row row, uint e) {
   Entry b = Entry(factor * vec3(w[4].y, w[5]), factor * vec3(w[6], w[7].x), factor * vec3(w[7].y, w[8]));
 #endif
   return add_entry(add_entry(sum, row, a, first), row, b, second);
+}
 #elif ENTRIES == ENTRIES_GEOMETRY && COLUMNS == 32
+Field add_unit(Field sum, Row row, uint e) {
   uvec4 words = AlignedUvec4s(push.weight).at[e];
   vec3 gmb = uintBitsToFloat(words.yzw);
   return add_geometry(sum, row, words.x, gmb.x, gmb.y, gmb.z);
+}
 #elif ENTRIES == ENTRIES_MIXED && COLUMNS == 32
+Field add_unit(Field sum, Row row, uint e) {
   uvec3 words = Uvec3s(push.weight).at[e];
   vec2 masses = unpackHalf2x16(words.z);
   return add_geometry(sum, row, words.x, uintBitsToFloat(words.y), masses.x, masses.y);
+}
 #elif ENTRIES == ENTRIES_MIXED
+Field add_unit(Field sum, Row row, uint e) {
   uint at = 5u * e;
   uint codes = push.weight.at[at];
   vec2 g = uintBitsToFloat(uvec2(push.weight.at[at + 1u], push.weight.at[at + 2u]));
   vec2 first = unpackHalf2x16(push.weight.at[at + 3u]), second = unpackHalf2x16(push.weight.at[at + 4u]);
   sum = add_geometry(sum, row, column_of(row, codes & 0xffffu), g.x, first.x, first.y);
   return add_geometry(sum, row, column_of(row, codes >> 16u), g.y, second.x, second.y);
+}
 #elif ENTRIES == ENTRIES_GEOMETRY_HALF
+Field add_unit(Field sum, Row row, uint e) {
   uvec2 words = AlignedUvec2s(push.weight).at[e];
   vec2 masses = unpackHalf2x16(words.y);
   return add_geometry(sum, row, column_of(row, words.x & 0xffffu), unpackHalf2x16(words.x).y, masses.x, masses.y);
+}
 #else
+Field add_unit(Field sum, Row row, uint e) {
   uint at = 7u * e;
   vec3 stiffness = uintBitsToFloat(uvec3(push.weight.at[at], push.weight.at[at + 1u], push.weight.at[at + 2u]));
   vec2 p = unpackHalf2x16(push.weight.at[at + 3u]), q = unpackHalf2x16(push.weight.at[at + 4u]),
@@ -144,8 +160,8 @@ Field add_unit(Field sum, Row row, uint e) {
   Entry entry = block(stiffness, k.sigma_a * vec3(p, q.x), k.relaxation * vec3(q.y, r), k,
                       k.b * unpackHalf2x16(last).x);
   return add_entry(sum, row, entry, column_of(row, last >> 16u));
-#endif
 }
+#endif
 
 Entry row_sum_of(Row row) {
 #if GEOMETRIC && COEFFICIENTS == COEFFICIENTS_EVEN

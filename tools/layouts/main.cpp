@@ -76,7 +76,7 @@ void run(const Options& options) {
   }
   vk::Context context({.validation = options.validation, .device = options.device});
   layouts::Record record{.commit = options.commit,
-                         .file = options.file,
+                         .file = std::filesystem::path(options.file).filename().string(),
                          .device = context.info().name,
                          .driver = context.info().driver,
                          .level = options.level,
