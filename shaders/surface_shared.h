@@ -149,6 +149,7 @@ struct SurfaceChangePush {
   uint by_change;    // 1: the rate is that of the changes where it is the larger one
   float least_rate;  // by which a residual is taken to fall from look to look
   float slow_rate;   // at which it has hardly fallen
+  uint by_residual;  // 1: the residual has to be below the tolerance, too
   float tolerance;
   Boundary boundary;
 };

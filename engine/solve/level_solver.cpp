@@ -120,6 +120,8 @@ void LevelSolver::record_surface(const vk::Buffer& x, const vk::Buffer& before, 
                                     .by_change = relaxes(task_.solver) ? 1u : 0u,
                                     .least_rate = looks.least_rate,
                                     .slow_rate = looks.slow_rate,
+                                    // Far from the surface a jump of kappa can hide errors from it for long.
+                                    .by_residual = task_.solver == SolverKind::dpcg ? 1u : 0u,
                                     .tolerance = task_.fixed ? 0.0f : static_cast<float>(task_.tolerance),
                                     .boundary = on_device(task_.boundary)};
   const std::uint64_t bytes =

@@ -265,6 +265,7 @@ TEST_CASE("push constants of the cycles and of the looks at the surface") {
              MEMBER(SurfaceChangePush, stall_limit), MEMBER(SurfaceChangePush, max_iterations),
              MEMBER(SurfaceChangePush, looks),       MEMBER(SurfaceChangePush, by_change),
              MEMBER(SurfaceChangePush, least_rate),  MEMBER(SurfaceChangePush, slow_rate),
-             MEMBER(SurfaceChangePush, tolerance),   MEMBER(SurfaceChangePush, boundary)});
+             MEMBER(SurfaceChangePush, by_residual), MEMBER(SurfaceChangePush, tolerance),
+             MEMBER(SurfaceChangePush, boundary)});
   }
 }
