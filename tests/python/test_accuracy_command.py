@@ -7,7 +7,7 @@ import json
 import pytest
 
 from quadgraph import cli
-from quadgraph.commands.accuracy import STUDIES
+from quadgraph.commands.accuracy import ON_ENGINE, STUDIES
 from quadgraph.reference.studies import coarse, half_space, orders, radiance, slab, sphere
 
 pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
@@ -40,7 +40,7 @@ def test_an_unknown_study_is_refused_with_the_list(capsys):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("study", [study for study in STUDIES if study != "scenes"])  # which test_scenes.py runs
+@pytest.mark.parametrize("study", [study for study in STUDIES if study not in ON_ENGINE])  # which have their own tests
 def test_every_study_runs_on_the_engine(study, tmp_path):
     path = tmp_path / "record.json"
     assert cli.main(["accuracy", study, "--json", str(path)]) == 0

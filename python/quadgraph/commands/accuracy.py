@@ -24,7 +24,12 @@ STUDIES = {
     "coarse": "coarse",
     "radiance": "radiance",
     "scenes": "scenes",
+    "estimate": "estimate",
+    "target": "target",
 }
+
+# Studies of real bodies, which the CPU reference cannot stand in for, because only the engine does what they judge.
+ON_ENGINE = {"scenes": "makes pictures", "estimate": "estimates its error", "target": "stops at an error"}
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -36,14 +41,18 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--reference", action="store_true", help="solve with the CPU reference in double precision instead of the GPU"
     )
     parser.add_argument("--device", default="", metavar="NAME", help="part of the Vulkan device's name")
+    _add_bodies_options(parser.add_argument_group("scenes, estimate, target"))
     _add_scenes_options(parser.add_argument_group("scenes"))
 
 
-def _add_scenes_options(group: argparse._ArgumentGroup) -> None:
+def _add_bodies_options(group: argparse._ArgumentGroup) -> None:
     group.add_argument("--scene", action="append", default=[], metavar="NAME", help="only this one; several allowed")
     group.add_argument(
-        "--meshes", type=Path, default=_meshes(), metavar="FOLDER", help="of the scenes' meshes (default: %(default)s)"
+        "--meshes", type=Path, default=_meshes(), metavar="FOLDER", help="of the mesh files (default: %(default)s)"
     )
+
+
+def _add_scenes_options(group: argparse._ArgumentGroup) -> None:
     group.add_argument(
         "--truth",
         type=Path,
@@ -70,10 +79,12 @@ def run(args: argparse.Namespace) -> int:
 
     scene.load_core()
     study = importlib.import_module(f"quadgraph.reference.studies.{STUDIES[args.study]}")
-    body_of = bodies.on_reference if args.reference else bodies.on_engine(args.device)
-    if args.study == "scenes":
-        record = _run_scenes(study, args)
+    if args.study in ON_ENGINE:
+        if args.reference:
+            raise InputError(f"{args.study}: --reference found, but only the engine {ON_ENGINE[args.study]}")
+        record = _run_on_engine(study, args)
     else:
+        body_of = bodies.on_reference if args.reference else bodies.on_engine(args.device)
         with Console(stderr=True).status(f"study: {args.study}"):
             record = study.run(body_of)
     console = Console(highlight=False)
@@ -84,7 +95,8 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _run_scenes(study: ModuleType, args: argparse.Namespace) -> dict:
-    if args.reference:
-        raise InputError("scenes: --reference found, but only the engine makes pictures")
-    return study.run(args.device, args.meshes, args.truth, args.scene, args.samples, args.images)
+def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
+    if args.study == "scenes":
+        return study.run(args.device, args.meshes, args.truth, args.scene, args.samples, args.images)
+    with Console(stderr=True).status(f"study: {args.study}"):
+        return study.run(args.device, args.meshes, args.scene)

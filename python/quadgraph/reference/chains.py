@@ -1,0 +1,141 @@
+"""Baked chains of levels for a study: with their finest levels taken off, and with a solution carried up to them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import trimesh
+from scipy.sparse import csr_matrix
+from scipy.sparse.linalg import lsqr
+
+from quadgraph import display_map, qgraph_file
+from quadgraph.bake import BakeOptions, bake
+from quadgraph.errors import InputError
+from quadgraph.surface import Surface
+
+_ACCURACY = 1e-8  # of the least squares; fields are in single precision
+
+
+def _sphere(detail: int) -> trimesh.Trimesh:
+    return trimesh.creation.icosphere(subdivisions=detail)
+
+
+def _torus(detail: int) -> trimesh.Trimesh:
+    sections = {"major_sections": 2 ** (detail + 2), "minor_sections": 7 * 2 ** (detail - 2)}
+    return trimesh.creation.torus(major_radius=1, minor_radius=0.4, **sections)
+
+
+def _box(detail: int) -> trimesh.Trimesh:
+    box = trimesh.creation.box((1, 0.8, 0.5))
+    for _ in range(detail):
+        box = box.subdivide()
+    box.merge_vertices()
+    return box
+
+
+def _lobes(detail: int) -> trimesh.Trimesh:
+    ball = _sphere(detail)
+    x, y, z = ball.vertices.T
+    radius = 1 + 0.25 * np.sin(3 * x + 1) * np.cos(4 * y) + 0.2 * np.sin(5 * z + 2 * x)
+    return trimesh.Trimesh(ball.vertices * radius[:, None], ball.faces, process=False)
+
+
+# Name to a surface of about 10 * 4^detail vertices.
+SHAPES: dict[str, Callable[[int], trimesh.Trimesh]] = {"sphere": _sphere, "torus": _torus, "box": _box, "lobes": _lobes}
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A body to bake. mesh: a file of the meshes' folder, or a name in SHAPES with `detail`.
+
+    height: mm along y; vertices: about how many the finest surface gets, None for all; levels: how many at most.
+    """
+
+    name: str
+    mesh: str
+    height: float
+    vertices: int | None = None
+    levels: int = 5
+    detail: int = 6
+
+
+def chosen(subjects: Sequence[Subject], names: Sequence[str]) -> list[Subject]:
+    """Those of the given names, all if there are none. Raises InputError for a name that is not among them."""
+    known = {subject.name: subject for subject in subjects}
+    for name in names:
+        if name not in known:
+            raise InputError(f"scene '{name}': allowed are {', '.join(known)}")
+    return [known[name] for name in names or known]
+
+
+def baked(subject: Subject, meshes: Path, folder: Path) -> Path:
+    """Bake a subject into `folder`, without what its faces see. Raises as quadgraph.bake.bake does."""
+    source = meshes / subject.mesh
+    if subject.mesh in SHAPES:
+        source = folder / f"{subject.name}.ply"
+        SHAPES[subject.mesh](subject.detail).export(source)
+    output = folder / f"{subject.name}.qgraph"
+    options = {"height_mm": subject.height, "levels": subject.levels, "visibility_rays": 0}
+    bake(source, output, BakeOptions(surface_vertices=subject.vertices, **options))
+    return output
+
+
+def without_finest(path: Path, count: int, output: Path) -> Path:
+    """Write the levels of a .qgraph but its `count` finest, with the finest that is left as the display mesh."""
+    file = qgraph_file.read(path)
+    kept = {}
+    for name, array in file.sections.items():
+        level, _, field = name.removeprefix("level").partition("/")
+        if name.startswith("level") and int(level) >= count:
+            kept[f"level{int(level) - count}/{field}"] = array
+    metadata = file.metadata | {"levels": file.metadata["levels"][count:]}
+    qgraph_file.write(output, metadata, kept | _display(kept["level0/vertices"], kept["level0/faces"]))
+    return output
+
+
+def _display(vertices: np.ndarray, faces: np.ndarray) -> dict[str, np.ndarray]:
+    """Sections of the display mesh that is the surface itself."""
+    used = int(faces.max()) + 1
+    surface = Surface(vertices[:used].astype(np.float64), faces.astype(np.int64))
+    face, coordinates = display_map.nearest_faces(surface.vertices, surface)
+    return {
+        "display/vertices": np.ascontiguousarray(vertices[:used]),
+        "display/normals": display_map.vertex_normals(surface).astype(np.float32),
+        "display/triangles": faces,
+        "display/face": face.astype(np.uint32),
+        "display/barycentric": coordinates.astype(np.float32),
+    }
+
+
+def at_corners(faces: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Values (n, 3) at the surface's vertices whose means over the corners of faces (n_f, 3) are `values` (n_f, 3).
+
+    M of linear elements is such a mean. A closed surface has twice as many faces as vertices, so it says what was
+    averaged: by least squares, from the mean over the faces around a vertex, whose share it keeps where an even pattern
+    of triangles leaves one undetermined.
+    """
+    rows = np.repeat(np.arange(len(faces)), 3)
+    mean = csr_matrix((np.full(faces.size, 1 / 3), (rows, faces.ravel())))
+    start = (mean.T @ values) / np.asarray(mean.sum(axis=0)).T
+    rest = values - mean @ start
+    steps = [lsqr(mean, rest[:, c], atol=_ACCURACY, btol=_ACCURACY, iter_lim=2000)[0] for c in range(values.shape[1])]
+    return start + np.column_stack(steps)
+
+
+def carried(levels: list, values: np.ndarray, first: int) -> np.ndarray:
+    """Values (n, 3) at the surface vertices of levels[first], carried to the faces of levels[0], (n_f, 3).
+
+    levels: of a loaded file. By the file's barycentric transfers; where a fine vertex lies inside the coarse body only
+    the coarse surface counts, for what is carried lives there.
+    """
+    for level in reversed(levels[:first]):
+        index, weight = (np.asarray(part) for part in level.barycentric)
+        index, weight = (part[: level.surface_vertex_count] for part in (index, weight))
+        weight = np.where(index < len(values), weight, 0)
+        whole = weight.sum(axis=1, keepdims=True)
+        index = np.minimum(index, len(values) - 1)
+        values = np.einsum("ij,ijc->ic", weight / np.where(whole > 0, whole, 1), values[index])
+    return values[np.asarray(levels[0].faces)].mean(axis=1)

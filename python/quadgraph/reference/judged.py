@@ -1,0 +1,111 @@
+"""The engine on a baked chain of levels, against the truth that a finer level of the same chain stands for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from quadgraph.commands.scene import load_core
+from quadgraph.errors import InputError
+from quadgraph.reference import chains
+
+if TYPE_CHECKING:
+    from quadgraph._core import Engine, QuadGraph
+
+PARTS = ("whole", "unlit")
+UNLIT_BELOW = 0.1  # of the mean irradiance, as the engine has it
+LEAST_SHARE = 0.02  # of the area: a smaller unlit part is not judged
+TRUTH_TOLERANCE = 1e-5
+LIGHTS = ("sun", "sun and sky", "three", "lamp", "near lamp and sky")
+
+
+@dataclass(frozen=True)
+class Case:
+    """A subject's name, a material and a model as the engine reads them, and a name in LIGHTS."""
+
+    subject: str
+    material: str
+    light: str
+    model: str = "auto"
+
+
+def lights(name: str, vertices: np.ndarray) -> list[str]:
+    """What the engine reads for a name in LIGHTS, around a body of these vertices (n, 3), mm."""
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    middle, size = (low + high) / 2, float((high - low).max())
+
+    def lamp(way: tuple[float, float, float]) -> str:
+        """A point light that gives about 1 W/mm^2 at the middle of the body."""
+        place = middle + size * np.array(way)
+        power = 4 * np.pi * size**2 * float(np.dot(way, way))
+        return f"point:{','.join(f'{x:g}' for x in place)}:{power:g}"
+
+    return {
+        "sun": ["directional:0.3,-0.2,-0.9:1"],
+        "sun and sky": ["directional:-1,-0.3,0.2:1", "ambient:0.02"],
+        "three": ["directional:0.3,-0.2,-0.9:1", "directional:-1,-0.3,0.2:0.3", "ambient:0.1"],
+        "lamp": [lamp((0.8, 0.7, 0.6))],
+        "near lamp and sky": [lamp((-0.2, 0.9, -0.5)), "ambient:0.05"],
+    }[name]
+
+
+class Judged:
+    """A baked chain on the device twice: from the level that is judged, and whole, whose finest level is the truth.
+
+    finer: levels between the two, each of a quarter of the vertices of the one before. Neither follows light from part
+    to part. Raises InputError if the chain is too short for the judged level to have a coarser one.
+    """
+
+    def __init__(self, path: Path, device: str, finer: int) -> None:
+        core = load_core()
+        self.graph: QuadGraph = core.load(path)
+        if len(self.graph.levels) < finer + 2:
+            raise InputError(f"{path}: {len(self.graph.levels)} levels found, at least {finer + 2} needed")
+        self.finer = finer
+        self._case: Case | None = None
+        self._fine: Engine = core.Engine(path, device=device)
+        coarse = chains.without_finest(path, finer, path.with_name(f"{path.stem}-{finer}.qgraph"))
+        self._coarse: Engine = core.Engine(coarse, device=device)
+
+    @property
+    def vertices(self) -> int:
+        """Vertices on the surface of the judged level."""
+        return self.graph.levels[self.finer].surface_vertex_count
+
+    def light(self, case: Case) -> None:
+        """Set the case's material and lights on both, and find the truth."""
+        for engine in (self._coarse, self._fine):
+            engine.set_material(case.material)
+            engine.set_lights(lights(case.light, np.asarray(self.graph.levels[0].vertices)))
+        self._fine.solve(model=case.model, tolerance=TRUTH_TOLERANCE, inter_reflection=False)
+        self._case = case
+
+    def solve(self, **options: Any) -> dict[str, Any]:
+        """The engine's report of a solve from the judged level down."""
+        return self._coarse.solve(model=self._case.model, inter_reflection=False, **options)
+
+    def true_error(self) -> dict[str, float]:
+        """Relative RMS error of the last solve's exitance by part, those of too small a share of the area left out.
+
+        Where errors halve from level to level and are not correlated, the truth's own mesh hides a share of 4^-finer of
+        the square, which is put back.
+        """
+        levels, truth = self.graph.levels, self._fine.surface_field()
+        found = np.asarray(self._coarse.surface_field()["exitance"], np.float64)
+        corners = chains.at_corners(np.asarray(levels[self.finer].faces), found)
+        difference = truth["exitance"] - chains.carried(levels, corners, self.finer)
+        area, q = np.asarray(truth["area"], np.float64), np.asarray(truth["q"], np.float64).sum(axis=1)
+        unlit = q < UNLIT_BELOW * (area @ q) / area.sum()
+        errors = {}
+        for part, weight in zip(PARTS, (area, area * unlit), strict=True):
+            if weight.sum() > LEAST_SHARE * area.sum():
+                share = _squares(weight, difference) / _squares(weight, truth["exitance"])
+                errors[part] = float(np.sqrt(share / (1 - 4.0**-self.finer)))
+        return errors
+
+
+def _squares(weight: np.ndarray, values: np.ndarray) -> float:
+    return float(weight @ (np.asarray(values, np.float64) ** 2).sum(axis=1))
