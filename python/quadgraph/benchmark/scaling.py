@@ -1,11 +1,12 @@
 """How cycles and time grow with the size: one body, the bunny at 100 mm, at growing resolutions.
 
-Finer than the bundled mesh it is subdivided (Loop), then every size is simplified to the wanted number of surface
-vertices and baked as usual; a body has about six tets per surface vertex.
+Every size is simplified from the bundled mesh; finer ones than that are then subdivided (Loop). All are baked as usual.
+A body has about six tets per surface vertex.
 """
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -26,6 +27,7 @@ MODELS = ("diffusion", "sp3")
 TOLERANCE = 1e-3  # error of the unlit part that the cycles are counted to
 FITTED_FROM = 50_000  # tets; smaller bodies are all overhead
 HEIGHT_MM = 100.0
+_BUNNY_VERTICES = 28_000  # below those of the bundled mesh, so that it can be simplified to them
 _MOST_CYCLES = 40
 _NO_SECOND_LEVEL = 1500  # surface vertices below which the chain of levels may end at once
 _LIMITS = {"time_limit_s": 3600.0, "memory_limit_bytes": 24 << 30}
@@ -73,29 +75,31 @@ def _baked(folder: Path, size: int, tell: Progress) -> tuple[Path, float | None]
     path = folder / f"bunny-{size}.qgraph"
     if path.exists():
         return path, None
-    mesh = _subdivided(folder, size)
-    start = time.perf_counter()
+    steps = max(0, math.ceil(math.log(size / _BUNNY_VERTICES, 4)))
+    mesh = _subdivided(folder, size, steps) if steps else bunny_mesh()
     # The smallest bodies would get one level, which has no cycles.
     options = BakeOptions(
-        height_mm=HEIGHT_MM, surface_vertices=size, levels=2 if size < _NO_SECOND_LEVEL else None, **_LIMITS
+        height_mm=HEIGHT_MM,
+        surface_vertices=None if steps else size,
+        levels=2 if size < _NO_SECOND_LEVEL else None,
+        **_LIMITS,
     )
+    start = time.perf_counter()
     bake(mesh, path, options, lambda text: tell(f"{size:,} surface vertices: {text}"))
     return path, time.perf_counter() - start
 
 
-def _subdivided(folder: Path, size: int) -> Path:
-    """The bundled mesh, with four times the vertices as often as `size` wants it."""
+def _subdivided(folder: Path, size: int, steps: int) -> Path:
+    """The bundled mesh, simplified so that `steps` subdivisions of a triangle into four bring it to `size` vertices."""
     import pymeshlab
 
+    from quadgraph import lod, mesh_io
+
+    coarse = lod.simplify(mesh_io.read_surface(bunny_mesh(), height_mm=HEIGHT_MM).surface, size // 4**steps)
     meshes = pymeshlab.MeshSet()
-    meshes.load_new_mesh(str(bunny_mesh()))
-    steps = 0
-    while meshes.current_mesh().vertex_number() < size:
-        meshes.meshing_surface_subdivision_loop(iterations=1, threshold=pymeshlab.PercentageValue(0))
-        steps += 1
-    if steps == 0:
-        return bunny_mesh()
-    path = folder / f"bunny-subdivided-{steps}.ply"
+    meshes.add_mesh(pymeshlab.Mesh(coarse.vertices, coarse.triangles))
+    meshes.meshing_surface_subdivision_loop(iterations=steps, threshold=pymeshlab.PercentageValue(0))
+    path = folder / f"bunny-{size}.ply"
     meshes.save_current_mesh(str(path))
     return path
 
