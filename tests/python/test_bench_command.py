@@ -82,7 +82,8 @@ def cycles(record: dict) -> dict[str, list[int]]:
 
 
 def test_cycles_do_not_depend_on_the_size(tmp_path):
-    record = bench(tmp_path, "--scaling", str(tmp_path), "--sizes", "500,1800,8500")["scaling"]
+    record = bench(tmp_path, "--scaling", "--sizes", "500,1800,8500", "--bodies", str(tmp_path / "bodies"))["scaling"]
+    assert len(list((tmp_path / "bodies").glob("*.qgraph"))) == 3
     sizes = [body["tets"] for body in record["bodies"]]
     assert sizes[0] < 4000
     assert sizes[-1] > 40_000

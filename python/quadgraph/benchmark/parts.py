@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,7 @@ _PASSES_HEIGHT_MM = 60  # of the one whose passes are timed, in both orders
 
 @dataclass
 class Parts:
-    """What to measure on: `file` or, if None, bunnies that are baked into `folder` when they are first needed.
+    """What to measure on: `file` or, if None, bunnies that are baked into `folder` unless they are there.
 
     copied: as _core.copy_bandwidth tells.
     """
@@ -30,7 +30,6 @@ class Parts:
     folder: Path
     copied: dict[str, Any]
     tell: Progress
-    _baked: dict[tuple[float, str], Path] = field(default_factory=dict)
 
     def passes(self) -> list[dict[str, Any]]:
         """Of every way to solve: time, bytes and speed of its passes; in both orders of nodes where there are two."""
@@ -51,10 +50,9 @@ class Parts:
         """Our two best solvers beside other people's on every scene."""
         return [rivals.run(scene, self.device, self.repeats, self.tell) for scene in self._scenes()]
 
-    def scaling(self, folder: Path, sizes: tuple[int, ...]) -> dict[str, Any]:
-        """Cycles and time by size; bodies are kept in `folder`."""
-        folder.mkdir(parents=True, exist_ok=True)
-        return scaling.run(folder, sizes, self.device, self.repeats, self.tell)
+    def scaling(self, sizes: tuple[int, ...]) -> dict[str, Any]:
+        """Cycles and time by size, in surface vertices."""
+        return scaling.run(self.folder, sizes, self.device, self.repeats, self.tell)
 
     def _both_orders(self) -> dict[str, Path]:
         if self.file is None:
@@ -67,8 +65,8 @@ class Parts:
         return [Scene(f"bunny, {h} mm", self._bunny(h, "blocks"), self.material) for h in _HEIGHTS_MM]
 
     def _bunny(self, height_mm: float, order: str) -> Path:
-        key = (height_mm, order)
-        if key not in self._baked:
-            self.tell(f"baking the bunny, {height_mm:g} mm high, nodes in order: {order}")
-            self._baked[key] = bake_bunny(self.folder / f"bunny-{height_mm:g}-{order}.qgraph", height_mm, order)
-        return self._baked[key]
+        path = self.folder / f"bunny-{height_mm:g}mm-{order}.qgraph"
+        if path.exists():
+            return path
+        self.tell(f"baking the bunny, {height_mm:g} mm high, nodes in order: {order}")
+        return bake_bunny(path, height_mm, order)

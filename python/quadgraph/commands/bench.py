@@ -31,12 +31,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     what.add_argument("--passes", action="store_true", help="ms, bytes, GB/s and share of copying of every pass")
     what.add_argument("--solvers", action="store_true", help="error against work and time, all solvers")
     what.add_argument("--rivals", action="store_true", help="SciPy's CG and PyAMG on the identical system")
-    what.add_argument(
-        "--scaling",
-        type=Path,
-        metavar="FOLDER",
-        help="cycles and time from 3 thousand to 2 million tets; the bodies are kept in FOLDER",
-    )
+    what.add_argument("--scaling", action="store_true", help="cycles and time from 3 thousand to 2 million tets")
     what.add_argument(
         "--sizes",
         type=_sizes,
@@ -48,6 +43,12 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         type=Path,
         metavar="FILE",
         help="the same object baked with --order random: every pass is measured in both in turn",
+    )
+    parser.add_argument(
+        "--bodies",
+        type=Path,
+        metavar="FOLDER",
+        help="keep what is baked there, and take from there what is (default: bake for the occasion)",
     )
     parser.add_argument("--repeats", type=scene.positive_int, default=3, metavar="N", help="default: %(default)s")
     parser.add_argument("--material", default="marble", metavar="M", help="default: %(default)s")
@@ -100,7 +101,7 @@ def _measure(args: argparse.Namespace, folder: Path, copied: dict[str, Any], tel
         if getattr(args, name):
             record[name] = getattr(parts, name)()
     if args.scaling:
-        record["scaling"] = parts.scaling(args.scaling, args.sizes or SURFACE_VERTICES)
+        record["scaling"] = parts.scaling(args.sizes or SURFACE_VERTICES)
     return record
 
 
