@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from quadgraph._core import Engine
 
 UNLIT = 0.1  # of the mean irradiance (channels summed): faces that let in less are the unlit part
-_TRUTH_TOLERANCE = 1e-6
+_TRUTH_TOLERANCE = 1e-6  # asked for; single precision may stall a little before
+_TRUTH_RESIDUAL = 1e-5  # demanded; leaves an error of the unlit part of some 1e-5
 _TRUTH_ITERATIONS = 100_000
 
 
@@ -49,9 +50,9 @@ def judge(engine: Engine, **way: object) -> Judge:
     report = engine.solve(
         **way, solver="dpcg", tolerance=_TRUTH_TOLERANCE, max_iterations=_TRUTH_ITERATIONS, inter_reflection=False
     )
-    if not report["levels"][-1]["converged"]:
-        residual = report["levels"][-1]["residual"]
-        raise SolverError(f"the exact solution: residual {residual:.1e} found, {_TRUTH_TOLERANCE:.0e} wanted")
+    residual = report["levels"][-1]["residual"]
+    if residual > _TRUTH_RESIDUAL:
+        raise SolverError(f"the exact solution: residual {residual:.1e} found, {_TRUTH_RESIDUAL:.0e} wanted")
     field = engine.surface_field()
     area = np.asarray(field["area"], np.float64)
     return Judge(area, unlit_part(area, field["q"]), np.asarray(field["exitance"], np.float64))
