@@ -77,10 +77,10 @@ def run(args: argparse.Namespace) -> int:
         tempfile.TemporaryDirectory(prefix="quadgraph-bench-") as folder,
         Console(stderr=True).status("copy bandwidth") as status,
     ):
+        bodies = args.bodies or Path(folder)
+        bodies.mkdir(parents=True, exist_ok=True)
         copied = core.copy_bandwidth(args.device)
-        record = (
-            scenes.machine(copied) | {"repeats": args.repeats} | _measure(args, Path(folder), copied, status.update)
-        )
+        record = scenes.machine(copied) | {"repeats": args.repeats} | _measure(args, bodies, copied, status.update)
     console.print(", ".join(f"{key}: {record[key]}" for key in ("device", "driver", "cores", "load", "commit")))
     console.print(tables.copy_text(record["copy"]))
     for table in tables.all_of(record):
