@@ -155,7 +155,7 @@ void LevelsSolver::record_first(std::uint32_t level) {
   const bool alone = report_.solver == SolverKind::jacobi || level + 1 == solvers_.size() || !solvers_[level + 1];
   if (!alone) {
     const vk::Buffer& target = warm_ ? op(level).p : op(level).x;
-    parts_.operators.record_transfer(parts_.work, key_, level, target);
+    parts_.operators.record_transfer(parts_.work, key_, level, target, op(level).state);
     solvers_[level]->record_origin(target);
   }
   if (warm_) {
@@ -284,7 +284,7 @@ void LevelsSolver::replace() {
 // What leaves level 0, of the solution carried there.
 void LevelsSolver::record_results() {
   for (std::uint32_t level = finest_; level-- > 0;) {
-    parts_.operators.record_transfer(parts_.work, key_, level, op(level).x);
+    parts_.operators.record_transfer(parts_.work, key_, level, op(level).x, op(finest_).state);
     record_solved(level);
   }
   if (finest_ > 0 && options_.source == Source::buried) {

@@ -51,8 +51,8 @@ void Operators::remeasure(std::uint32_t number) {
   }
 }
 
-void Operators::record_transfer(Workspace& work, const OperatorKey& key, std::uint32_t level,
-                                const vk::Buffer& target) {
+void Operators::record_transfer(Workspace& work, const OperatorKey& key, std::uint32_t level, const vk::Buffer& target,
+                                const vk::Buffer& state) {
   const OperatorBuffers& coarse = at(key, level + 1);
   const OperatorBuffers& fine = at(key, level);
   for (const auto& part : levels_.at(key)[level].transfer->parts) {
@@ -62,7 +62,7 @@ void Operators::record_transfer(Workspace& work, const OperatorKey& key, std::ui
                                  .coarse_to_phi = coarse.to_phi.address(),
                                  .to_phi = fine.to_phi.address(),
                                  .x = target.address(),
-                                 .state = fine.state.address(),
+                                 .state = state.address(),
                                  .width = part.width,
                                  .first = part.first,
                                  .coarse_first = part.coarse_first,

@@ -39,8 +39,10 @@ class Operators {
   void disassemble();                    // coefficients have changed: every operator is
   void remeasure(std::uint32_t number);  // vertices of a level have moved: its elements have, too
 
-  // `target`, as x of `level`, from x of the next coarser one.
-  void record_transfer(Workspace& work, const OperatorKey& key, std::uint32_t level, const vk::Buffer& target);
+  // `target`, as x of `level`, from x of the next coarser one, in the channels that `state`, of a level that was solved
+  // for the same light, tells to be lit.
+  void record_transfer(Workspace& work, const OperatorKey& key, std::uint32_t level, const vk::Buffer& target,
+                       const vk::Buffer& state);
 
   // x of `level` from the last solution, with what has changed on the next coarser one since; `changed`: that there is
   // such a level.

@@ -88,12 +88,14 @@ def test_a_wrong_use_is_refused_in_words(arguments, word, capsys):
     assert word in capsys.readouterr().err
 
 
-def test_an_error_that_is_asked_for_is_the_true_one_or_said_to_be_out_of_reach(body):
+def test_an_error_that_is_asked_for_is_the_true_one_or_said_to_be_out_of_reach(chain):
+    body = Judged(chain, "", target.FINER)  # whose finest level has not been solved before
     body.light(CASES[2])
     coarse, fine = (target.judge(body, CASES[2], asked) for asked in (0.1, 0.0001))
     assert coarse["reached"]
     assert max(coarse["true"].values()) <= 0.1
     assert coarse["work"] < fine["work"]
+    assert coarse["vertices"] < body.vertices
     assert not fine["reached"]
     assert fine["vertices"] == body.vertices
 
