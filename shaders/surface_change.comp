@@ -35,7 +35,7 @@ void decide(vec2 change) {
   state.at[0].change = change;
   state.at[0].algebraic = algebraic;
   state.at[0].slow = rate > push.slow_rate ? state.at[0].slow + 1u : 0u;
-  bool residual_met = push.by_residual == 0u || state.at[0].residual <= push.tolerance;
+  bool residual_met = push.by_residual == 0u || state.at[0].residual <= max(push.tolerance, 2.0 * SOLVED);
   if (looks >= push.looks && residual_met && all(lessThanEqual(algebraic, vec2(push.tolerance)))) {
     stop(state, SOLVE_CONVERGED, 0u);
     if (push.verify == 1u) {
