@@ -126,7 +126,7 @@ TEST_CASE("a picture shows what was solved, and says how it was made") {
   CHECK(value("material") == material);
   CHECK(value("lights") == "directional:0,0,-1:1");
   CHECK(value("method") == "fem");
-  CHECK(value("solver") == "dpcg");
+  CHECK(value("solver") == "fmg-pcg");
   CHECK(value("tolerance") == "0.001");
   CHECK(value("units") == "W/(mm^2 sr)");
   CHECK(value("source") == "tiny.qgraph");
