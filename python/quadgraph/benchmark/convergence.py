@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 TARGETS = (0.01, 0.001)  # error of the unlit part
 END = 5e-4  # where a curve ends
 MOST_ITERATIONS = 1600  # on the finest level; a solver that needs more is cut off there
-COARSE_TOLERANCES = (0.01, 0.003)
+COARSE_TOLERANCES = (0.03, 0.01, 0.1)
 
 _LADDER = (1, 2, 3, 5, 8, 13, 21, 34, 55, 89, 144, 233, 377, 610, 987, 1597)
 
