@@ -49,6 +49,20 @@ struct ShapePush {
   uint face_count;
 };
 
+// assemble_even.comp: weight, row_sum and diagonal where the coefficients are the same everywhere, one invocation per
+// vertex. What entries and rows are made of is that of row_structure.h, FemShape; entries from `area_count` on have no
+// area.
+struct AssembleEvenPush {
+  RowsRef rows;
+  QG_REF(Opticals) optical;  // one
+  QG_REF(Vec2s) entry_shape;
+  QG_REF(Floats) entry_area;
+  QG_REF(Vec2s) row_shape;
+  uint count;
+  uint area_count;
+  Boundary boundary;
+};
+
 // The elements around an edge: tet * 8 + edge of the tet, or face * 8 + RING_FACE.
 const uint RING_FACE = 7u;
 

@@ -8,14 +8,15 @@
 namespace quadgraph::gpu {
 #endif
 
-// A crossing, out of the face opposite corner k of a tet: (the tet across, or tet_count + face; its new vertex << 8 |
-// for each corner j two bits from 2 j on: its place in the tet across, for k that of the new vertex).
-#define CROSSING_VERTICES 16777216
+// A crossing, out of the face opposite corner k of a tet: (the tet across, or tet_count + face) << CROSSING_BITS | for
+// each corner j < 3 two bits from 2 j on: its place in the tet across, for k that of the new vertex. The place of
+// corner 3 is the one that is left.
+#define CROSSING_BITS 6
 
 struct BodyRef {
   QG_REF(Vec3s) vertices;  // mm
   QG_REF(Uvec4s) tets;
-  QG_REF(Uvec2s) crossings;  // four per tet
+  QG_REF(Uints) crossings;  // four per tet
   QG_REF(Uvec3s) faces;
   QG_REF(Uints) face_tets;
   QG_REF(Uints) face_kinds;

@@ -6,8 +6,8 @@
 // The ray's point is carried in barycentric coordinates, which pass from tet to tet with the shared corners: it then
 // never leaves the mesh by rounding. The corner that the next tet does not share always sits in slot 3, opposite the
 // face that the ray comes in through. Nearly all of the time goes to loads (lavapipe: some 3 loads cost as much as all
-// arithmetic of a tet), so that a tet is read only as far as it is new: two words of its crossing, one vertex and, in a
-// varied material, its coefficients.
+// arithmetic of a tet), so that a tet is read only as far as it is new: its crossing, one vertex and, in a varied
+// material, its coefficients.
 
 struct Corner {
   uint id;
@@ -102,7 +102,7 @@ void swap_with_3(inout Corner corner) {
   corner = other;
 }
 
-// Puts the corner opposite the exit into slot 3 and returns what lies across.
+// Puts the corner opposite the exit into slot 3 and returns what lies across, and the places of all corners in it.
 uvec2 turn(uint tet, uint slot) {
   if (slot == 0u) {
     swap_with_3(corner_0);
@@ -111,15 +111,18 @@ uvec2 turn(uint tet, uint slot) {
   } else {
     swap_with_3(corner_2);
   }
-  return BODY.crossings.at[4u * tet + corner_3.place];
+  uint crossing = BODY.crossings.at[4u * tet + corner_3.place];
+  uint last = (crossing ^ crossing >> 2u ^ crossing >> 4u) & 3u;
+  return uvec2(crossing >> CROSSING_BITS, crossing & 63u | last << 6u);
 }
 
 // Enters the tet across, whose new corner replaces that in slot 3.
 void enter(uvec2 crossing) {
   if (BODY.even == 0u) optical = BODY.optical.at[crossing.x];
-  uint id = crossing.y >> 8u;
   corner_0.place = crossing.y >> 2u * corner_0.place & 3u;
   corner_1.place = crossing.y >> 2u * corner_1.place & 3u;
   corner_2.place = crossing.y >> 2u * corner_2.place & 3u;
-  corner_3 = Corner(id, crossing.y >> 2u * corner_3.place & 3u, BODY.vertices.at[id], 0.0, payload(id));
+  uint place = crossing.y >> 2u * corner_3.place & 3u;
+  uint id = BODY.tets.at[crossing.x][place];
+  corner_3 = Corner(id, place, BODY.vertices.at[id], 0.0, payload(id));
 }

@@ -100,11 +100,14 @@ struct Engine::Implementation {
     std::vector<PassStats> passes;
     const GatherField& field = simulation.gather(passes);
     if (!passes.empty()) gather_passes = std::move(passes);
-    if (triangle_face.size() == 0) {
-      triangle_face = vk::upload<std::uint32_t>(context, display_faces(graph.display(), graph.levels()[0]),
-                                                "display/faces of triangles");
-    }
+    display_room();
     return field;
+  }
+
+  void display_room() {
+    if (triangle_face.size() > 0) return;
+    triangle_face = vk::upload<std::uint32_t>(context, display_faces(graph.display(), graph.levels()[0]),
+                                              "display/faces of triangles");
   }
 };
 
@@ -189,6 +192,14 @@ void Engine::update_irradiance() {
   self.irradiance_stale = false;
 }
 
+void Engine::make_room(const SolveOptions& options) {
+  auto& self = *implementation_;
+  if (self.irradiance_stale) update_irradiance();
+  const bool gathered = options.method == Method::fem && options.source == Source::buried;
+  self.simulation.make_room(options, gathered);
+  if (gathered) self.display_room();
+}
+
 SolveReport Engine::solve(const SolveOptions& options) {
   auto& self = *implementation_;
   if (self.irradiance_stale) update_irradiance();
@@ -253,6 +264,10 @@ std::uint64_t Engine::device_bytes() const {
 
 const std::map<std::string, std::uint64_t>& Engine::memory() const {
   return implementation_->context.allocated_by_purpose();
+}
+
+std::uint64_t Engine::allocation_count() const {
+  return implementation_->context.allocation_count();
 }
 
 std::uint64_t Engine::peak_device_bytes() const {

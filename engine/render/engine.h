@@ -69,6 +69,10 @@ class Engine {
   // Shadow maps and q on every level from the present lights and material. Throws InputError without a material.
   void update_irradiance();
 
+  // Allocates what a solve with these options and a picture of it need, which later ones find: memory() then tells what
+  // they take. Calls update_irradiance if lights or material changed since. Throws as `solve`.
+  void make_room(const SolveOptions& options = {});
+
   // Calls update_irradiance if lights or material changed since, then solves. Throws as Simulation::solve.
   SolveReport solve(const SolveOptions& options = {});
 
@@ -89,6 +93,9 @@ class Engine {
   // Device memory now and at most so far, bytes, and the present one by purpose (engine/vk/memory.h).
   std::uint64_t device_bytes() const;
   const std::map<std::string, std::uint64_t>& memory() const;
+
+  // Allocations of device memory ever made.
+  std::uint64_t allocation_count() const;
   std::uint64_t peak_device_bytes() const;
 
   // What the last picture was made with: source, material, lights, camera, method, solver, tolerance, units, device,

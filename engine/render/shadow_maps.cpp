@@ -4,7 +4,6 @@
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
-#include <map>
 
 #include "engine/render/draw.h"
 #include "spirv/shadow.vert.h"
@@ -68,6 +67,14 @@ std::vector<gpu::ShadowView> point_views(const Light& light, const Sphere& bound
   return views;
 }
 
+template <typename T>
+void replace(vk::Context& context, const std::vector<T>& values, const char* name, vk::Buffer& buffer) {
+  if (buffer.handle() == VK_NULL_HANDLE || buffer.size() != values.size() * sizeof(T)) {
+    buffer = {context, values.size() * sizeof(T), vk::Place::device, name};
+  }
+  vk::write_bytes(context, buffer, std::as_bytes(std::span(values)));
+}
+
 vk::Image depth_image(vk::Context& context, std::uint32_t size) {
   return {context, {VK_FORMAT_D32_SFLOAT, size, size, 1, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT}, "shadows/depth"};
 }
@@ -100,7 +107,6 @@ ShadowMaps::ShadowMaps(vk::Context& context)
 PassStats ShadowMaps::update(const DisplayBuffers& mesh, const Sphere& bounds, std::span<const Light> lights) {
   std::vector<gpu::LightRecord> records;
   std::vector<gpu::ShadowView> views;
-  depths_.clear();
   for (const Light& light : lights) {
     const auto own = shadow_views(light, bounds);
     records.push_back(light_record(light));
@@ -112,16 +118,19 @@ PassStats ShadowMaps::update(const DisplayBuffers& mesh, const Sphere& bounds, s
   PassStats stats{.name = "shadow maps"};
   vk::Commands commands(context_, 1);
   commands.begin_pass(stats.name);
-  std::map<std::uint32_t, vk::Image> images;  // by size
+  depths_.resize(views.size());
+  std::size_t number = 0;
   for (gpu::ShadowView& view : views) {
     const std::uint64_t map_bytes = std::uint64_t{view.size} * view.size * sizeof(float);
-    auto image = images.find(view.size);
-    if (image == images.end()) image = images.emplace(view.size, depth_image(context_, view.size)).first;
+    auto image = images_.find(view.size);
+    if (image == images_.end()) image = images_.emplace(view.size, depth_image(context_, view.size)).first;
     const auto size = static_cast<float>(view.size);
     draw(commands, {{}, &image->second}, {0, 0, size, size}, pass_,
          gpu::ShadowPush{view.clip_from_world, mesh.vertices.address()}, mesh.triangles, 3 * mesh.triangle_count);
-    view.depth = depths_.emplace_back(context_, map_bytes, vk::Place::device, "shadows/map").address();
-    commands.copy(image->second, depths_.back());
+    vk::Buffer& depth = depths_[number++];
+    if (depth.size() != map_bytes) depth = {context_, map_bytes, vk::Place::device, "shadows/map"};
+    view.depth = depth.address();
+    commands.copy(image->second, depth);
     stats.bytes += mesh.vertices.size() + mesh.triangles.size() + 3 * map_bytes;
     ++stats.count;
   }
@@ -129,8 +138,8 @@ PassStats ShadowMaps::update(const DisplayBuffers& mesh, const Sphere& bounds, s
   stats.time_ms = commands.submit_and_wait()[0].time_ms;
 
   light_count_ = static_cast<std::uint32_t>(records.size());
-  lights_ = vk::upload<gpu::LightRecord>(context_, records, "shadows/lights");
-  views_ = vk::upload<gpu::ShadowView>(context_, views, "shadows/views");
+  replace<gpu::LightRecord>(context_, records, "shadows/lights", lights_);
+  replace<gpu::ShadowView>(context_, views, "shadows/views", views_);
   return stats;
 }
 

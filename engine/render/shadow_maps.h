@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -25,7 +26,8 @@ class ShadowMaps {
  public:
   explicit ShadowMaps(vk::Context& context);
 
-  // Draws the maps of `lights`, in place of those before. `bounds` holds the mesh.
+  // Draws the maps of `lights`, in place of those before, whose memory they take over where it is as large. `bounds`
+  // holds the mesh.
   PassStats update(const DisplayBuffers& mesh, const Sphere& bounds, std::span<const Light> lights);
 
   std::uint32_t light_count() const { return light_count_; }
@@ -38,7 +40,8 @@ class ShadowMaps {
   std::uint32_t light_count_ = 0;
   vk::Buffer lights_;
   vk::Buffer views_;
-  std::vector<vk::Buffer> depths_;  // per view
+  std::map<std::uint32_t, vk::Image> images_;  // what is drawn into, by size
+  std::vector<vk::Buffer> depths_;             // per view
 };
 
 }  // namespace quadgraph

@@ -63,8 +63,23 @@ void measure(Workspace& work, const LevelBuffers& level, OperatorBuffers& op) {
   op.measured = true;
 }
 
+void assemble_even(Workspace& work, const LevelBuffers& level, const Boundary& boundary, OperatorBuffers& op) {
+  const gpu::AssembleEvenPush push{.rows = op.rows(),
+                                   .optical = level.optical.address(),
+                                   .entry_shape = op.entry_shape.address(),
+                                   .entry_area = op.entry_area.address(),
+                                   .row_shape = op.row_shape.address(),
+                                   .count = op.count,
+                                   .area_count = static_cast<std::uint32_t>(op.entry_area.size() / sizeof(float)),
+                                   .boundary = on_device(boundary)};
+  work.recorder.dispatch(work.passes.assemble_even.of(op.model), push, op.count, "assembly",
+                         op.entry_shape.size() + op.entry_area.size() + op.row_shape.size() +
+                             (op.entries + 2 * op.count) * op.entry_bytes());
+}
+
 void assemble_fem(Workspace& work, const LevelBuffers& level, const Boundary& boundary, bool even,
                   OperatorBuffers& op) {
+  if (op.by_entry(even)) return assemble_even(work, level, boundary, op);
   if (!op.measured) measure(work, level, op);
   const gpu::AssembleEdgesPush edges{.rows = op.rows(),
                                      .optical = level.optical.address(),

@@ -9,7 +9,7 @@ constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
 
 // Tets that a ray crosses on the way to its end, about as many as in marble at the finest level; for the bytes.
 constexpr std::uint64_t tets_per_ray = 8;
-constexpr std::uint64_t tet_bytes = sizeof(glm::uvec2) + vec3_bytes + sizeof(gpu::Optical);
+constexpr std::uint64_t tet_bytes = 2 * sizeof(std::uint32_t) + vec3_bytes + sizeof(gpu::Optical);
 
 }  // namespace
 

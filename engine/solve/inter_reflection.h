@@ -23,6 +23,9 @@ class InterReflection {
   // Whether the file says what the faces of some level see.
   bool baked() const { return matrix_.has_value(); }
 
+  // Room for the bounces, unless it is there. To be called where `level` has a value.
+  void make_room(Workspace& work, const std::vector<LevelBuffers>& levels);
+
   // That level, if they see anything; no light enters again elsewhere.
   std::optional<std::uint32_t> level() const { return matrix_ && !matrix_->empty() ? level_ : std::nullopt; }
 
@@ -66,7 +69,6 @@ class InterReflection {
     std::uint32_t width = 0;
   };
 
-  void make_room(Workspace& work, const std::vector<LevelBuffers>& levels);
   void record_enter(Workspace& work, const LevelBuffers& level, const vk::Buffer& irradiance, double transmitted);
 
   const QuadGraph& graph_;

@@ -17,34 +17,23 @@ vk::Buffer upload(vk::Context& context, const std::vector<T>& values, const std:
 
 OperatorBuffers::OperatorBuffers(vk::Context& context, const Level& level, std::uint32_t index, Method method,
                                  Model model_in)
-    : model(model_in), count(carrier_count(level, method)) {
-  const std::string prefix =
-      "level " + std::to_string(index) + " " + std::string(name_of(method)) + " " + std::string(name_of(model)) + " ";
+    : model(model_in),
+      count(carrier_count(level, method)),
+      method_(method),
+      prefix_("level " + std::to_string(index) + " " + std::string(name_of(method)) + " " +
+              std::string(name_of(model)) + " ") {
   const auto buffer = [&](std::uint64_t bytes, const std::string& purpose, const char* name) {
-    return vk::Buffer(context, bytes, vk::Place::device, purpose + prefix + name);
+    return vk::Buffer(context, bytes, vk::Place::device, purpose + prefix_ + name);
   };
-  const std::string rows = "operator/", vectors = "solver/", structure = "assembly/";
-  SlicedColumns columns;
-  if (method == Method::fem) {
-    FemStructure fem = fem_structure(level);
-    columns = std::move(fem.columns);
-    edge_count = static_cast<std::uint32_t>(fem.edge_entry.size());
-    edge_entry = upload(context, fem.edge_entry, structure + prefix + "edge_entry");
-    ring_offset = upload(context, fem.ring_offset, structure + prefix + "ring_offset");
-    ring = upload(context, fem.ring, structure + prefix + "ring");
-    tet_offset = upload(context, fem.tet_offset, structure + prefix + "tet_offset");
-    tet_incidence = upload(context, fem.tet_incidence, structure + prefix + "tet_incidence");
-    tet_shape = buffer(std::uint64_t{gpu::TET_SHAPE} * level.tet_count() * sizeof(float), structure, "tet_shape");
-    face_area = buffer(level.face_count() * sizeof(float), structure, "face_area");
-    to_phi = upload(context, std::vector<glm::vec3>(count, glm::vec3(1)), rows + prefix + "to_phi");
-  } else {
-    columns = node_columns(level);
-    to_phi = buffer(count * sizeof(glm::vec3), rows, "to_phi");
-  }
+  const std::string rows = "operator/", vectors = "solver/";
+  const bool fem = method == Method::fem;
+  const SlicedColumns columns = fem ? slice(vertex_neighbours(level)) : node_columns(level);
+  to_phi = fem ? upload(context, std::vector<glm::vec3>(count, glm::vec3(1)), rows + prefix_ + "to_phi")
+               : buffer(count * sizeof(glm::vec3), rows, "to_phi");
   entries = static_cast<std::uint32_t>(columns.column.size());
   slices = static_cast<std::uint32_t>(columns.slice_offset.size() - 1);
-  slice_offset = upload(context, columns.slice_offset, rows + prefix + "slice_offset");
-  column = upload(context, columns.column, rows + prefix + "column");
+  slice_offset = upload(context, columns.slice_offset, rows + prefix_ + "slice_offset");
+  column = upload(context, columns.column, rows + prefix_ + "column");
   weight = buffer(entries * entry_bytes(), rows, "weight");
   row_sum = buffer(count * entry_bytes(), rows, "row_sum");
   diagonal = buffer(count * entry_bytes(), rows, "diagonal");
@@ -65,8 +54,41 @@ OperatorBuffers::OperatorBuffers(vk::Context& context, const Level& level, std::
   surface_before = buffer(surface_count * sizeof(glm::vec3), vectors, "exitance before");
   surface_start = buffer(surface_count * sizeof(glm::vec3), vectors, "exitance of the start");
   state = buffer(sizeof(gpu::SolveState), vectors, "state");
-  state_on_host = {context, sizeof(gpu::SolveState), vk::Place::host, vectors + prefix + "state, read back"};
+  state_on_host = {context, sizeof(gpu::SolveState), vk::Place::host, vectors + prefix_ + "state, read back"};
   damping = buffer(sizeof(glm::vec3), vectors, "damping");
+}
+
+void OperatorBuffers::make_room(vk::Context& context, const Level& level, bool even) {
+  if (method_ != Method::fem) return;
+  if (by_entry(even)) {
+    if (row_shape.size() == 0) upload_shape(context, level);
+  } else {
+    if (ring.size() == 0) upload_rings(context, level);
+  }
+}
+
+void OperatorBuffers::upload_shape(vk::Context& context, const Level& level) {
+  const Neighbours rows = vertex_neighbours(level);
+  const FemShape shape = fem_shape(level, rows, slice(rows));
+  const std::string prefix = "assembly/" + prefix_;
+  entry_shape = upload(context, shape.entry, prefix + "entry_shape");
+  entry_area = upload(context, shape.area, prefix + "entry_area");
+  row_shape = upload(context, shape.row, prefix + "row_shape");
+}
+
+void OperatorBuffers::upload_rings(vk::Context& context, const Level& level) {
+  const Neighbours rows = vertex_neighbours(level);
+  const FemRings rings = fem_rings(level, rows, slice(rows));
+  const std::string prefix = "assembly/" + prefix_;
+  edge_count = static_cast<std::uint32_t>(rings.edge_entry.size());
+  edge_entry = upload(context, rings.edge_entry, prefix + "edge_entry");
+  ring_offset = upload(context, rings.ring_offset, prefix + "ring_offset");
+  ring = upload(context, rings.ring, prefix + "ring");
+  tet_offset = upload(context, rings.tet_offset, prefix + "tet_offset");
+  tet_incidence = upload(context, rings.tet_incidence, prefix + "tet_incidence");
+  tet_shape = {context, std::uint64_t{gpu::TET_SHAPE} * level.tet_count() * sizeof(float), vk::Place::device,
+               prefix + "tet_shape"};
+  face_area = {context, level.face_count() * sizeof(float), vk::Place::device, prefix + "face_area"};
 }
 
 gpu::RowsRef OperatorBuffers::rows() const {

@@ -31,11 +31,16 @@ struct OperatorBuffers {
   vk::Buffer surface_share;                            // SurfaceShare of each
   vk::Buffer surface_before, surface_start;            // vec3 of each: exitance at the last look, and at the start
 
-  std::uint32_t edge_count = 0;              // fem only, like all that follow
+  // fem only, like all that follow: of a body at rest and coefficients that are the same everywhere.
+  vk::Buffer entry_shape, entry_area, row_shape;  // AssembleEvenPush
+
+  // Of all others.
+  std::uint32_t edge_count = 0;
   vk::Buffer edge_entry, ring_offset, ring;  // AssembleEdgesPush
   vk::Buffer tet_offset, tet_incidence;      // AssembleFemPush
   vk::Buffer tet_shape, face_area;           // ShapePush
   bool measured = false;                     // they belong to the present vertices
+  bool moved = false;                        // since these buffers were made
 
   std::optional<Boundary> assembled;  // for the present material, with this boundary
   bool damped = false;                // `damping` belongs to these rows
@@ -43,14 +48,27 @@ struct OperatorBuffers {
   bool weighed = false;               // surface_share belongs to the present light and vertices
   bool solved = false;                // x has been solved for, if for other light or coefficients
 
-  // Uploads the structure; values are undefined until assembled.
+  // Uploads the rows; values are undefined until assembled.
   OperatorBuffers(vk::Context& context, const Level& level, std::uint32_t index, Method method, Model model);
+
+  // Uploads what the assembly needs, unless it is there. `even`: the coefficients are the same everywhere.
+  void make_room(vk::Context& context, const Level& level, bool even);
+
+  // Whether entry_shape makes the entries, and not the elements around each edge.
+  bool by_entry(bool even) const { return even && !moved; }
 
   std::uint64_t field_bytes() const { return (model == Model::sp3 ? 2 : 1) * sizeof(glm::vec3); }
   std::uint64_t entry_bytes() const { return (model == Model::sp3 ? 3 : 1) * sizeof(glm::vec3); }
 
   gpu::RowsRef rows() const;
   std::uint64_t product_bytes() const;  // read by one product with the rows, diagonal left out
+
+ private:
+  void upload_shape(vk::Context& context, const Level& level);
+  void upload_rings(vk::Context& context, const Level& level);
+
+  Method method_;
+  std::string prefix_;
 };
 
 }  // namespace quadgraph

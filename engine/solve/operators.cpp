@@ -4,16 +4,18 @@
 
 namespace quadgraph {
 
-void Operators::create(vk::Context& context, std::span<const Level> levels, const OperatorKey& key) {
-  if (levels_.contains(key)) return;
+void Operators::create(vk::Context& context, std::span<const Level> levels, const OperatorKey& key, bool even) {
   const std::size_t count = std::min<std::size_t>(levels.size(), MAX_LEVELS);
-  std::vector<OfLevel> of_key(count);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    of_key[i].op.emplace(context, levels[i], i, key.method, key.model);
-    if (i + 1 < count) of_key[i].transfer.emplace(context, levels[i], levels[i + 1], i, key.method);
+  if (!levels_.contains(key)) {
+    std::vector<OfLevel> of_key(count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      of_key[i].op.emplace(context, levels[i], i, key.method, key.model);
+      if (i + 1 < count) of_key[i].transfer.emplace(context, levels[i], levels[i + 1], i, key.method);
+    }
+    for (std::uint32_t i = 0; i < count; ++i) write_gates(context, of_key, i);
+    levels_.emplace(key, std::move(of_key));
   }
-  for (std::uint32_t i = 0; i < count; ++i) write_gates(context, of_key, i);
-  levels_.emplace(key, std::move(of_key));
+  for (std::uint32_t i = 0; i < count; ++i) at(key, i).make_room(context, levels[i], even);
 }
 
 // What opens the gates of the level's state.
@@ -47,6 +49,7 @@ void Operators::remeasure(std::uint32_t number) {
   for (auto& [key, of_key] : levels_) {
     if (number >= of_key.size()) continue;
     of_key[number].op->measured = false;
+    of_key[number].op->moved = true;
     of_key[number].op->assembled.reset();
   }
 }

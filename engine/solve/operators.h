@@ -23,8 +23,8 @@ struct OperatorKey {
 
 class Operators {
  public:
-  // Uploads the structures of all levels, unless they are there.
-  void create(vk::Context& context, std::span<const Level> levels, const OperatorKey& key);
+  // Uploads what operators of all levels need, unless it is there. `even`: the coefficients are the same everywhere.
+  void create(vk::Context& context, std::span<const Level> levels, const OperatorKey& key, bool even);
 
   // Of a key that has been created.
   OperatorBuffers& at(const OperatorKey& key, std::uint32_t level) { return *levels_.at(key)[level].op; }

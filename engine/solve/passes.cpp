@@ -7,6 +7,8 @@
 #include "shaders/walk_shared.h"
 #include "spirv/assemble_edges.comp.h"
 #include "spirv/assemble_edges_sp3.comp.h"
+#include "spirv/assemble_even.comp.h"
+#include "spirv/assemble_even_sp3.comp.h"
 #include "spirv/assemble_fdm.comp.h"
 #include "spirv/assemble_fdm_sp3.comp.h"
 #include "spirv/assemble_fem.comp.h"
@@ -105,6 +107,7 @@ Passes::Passes()
       MODEL_PASS(assemble_fdm, AssembleFdmPush),
       MODEL_PASS(assemble_fv, AssembleFvPush),
       MODEL_PASS(assemble_edges, AssembleEdgesPush),
+      MODEL_PASS(assemble_even, AssembleEvenPush),
       MODEL_PASS(assemble_fem, AssembleFemPush),
       MODEL_PASS(right_hand_side_fdm, RightHandSideFdmPush),
       MODEL_PASS(right_hand_side_fv, RightHandSideFvPush),

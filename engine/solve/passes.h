@@ -39,10 +39,10 @@ struct Passes {
   LazyPass evaluate_material, shape, irradiance_scale, walk_source, vertex_exitance, display_scale, vertex_unscattered,
       energy_total, surface_share, uncollided, gather_exitance, gather_scale, exchange, exchange_finer, exchange_enter,
       exchange_boxes, exchange_rays;
-  ModelPass assemble_fdm, assemble_fv, assemble_edges, assemble_fem, right_hand_side_fdm, right_hand_side_fv,
-      right_hand_side_fem, right_hand_side_buried, eigenvalue_bound, transfer, follow, cg_start, cg_multiply, cg_update,
-      cg_direction, correct, sweep, residual, chebyshev, coarse_solve, restrict, prolong, surface_change, exitance,
-      energy, gather_phi;
+  ModelPass assemble_fdm, assemble_fv, assemble_edges, assemble_even, assemble_fem, right_hand_side_fdm,
+      right_hand_side_fv, right_hand_side_fem, right_hand_side_buried, eigenvalue_bound, transfer, follow, cg_start,
+      cg_multiply, cg_update, cg_direction, correct, sweep, residual, chebyshev, coarse_solve, restrict, prolong,
+      surface_change, exitance, energy, gather_phi;
 };
 
 }  // namespace quadgraph

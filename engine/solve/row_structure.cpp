@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
 #include <utility>
 
 #include "shaders/assembly_shared.h"
@@ -9,54 +11,8 @@
 namespace quadgraph {
 namespace {
 
-// Neighbours of every row, in compressed rows.
-struct Neighbours {
-  std::vector<std::uint32_t> offset;
-  std::vector<std::uint32_t> column;
-};
-
-SlicedColumns slice(const Neighbours& rows) {
-  const std::size_t count = rows.offset.size() - 1;
-  SlicedColumns sliced;
-  sliced.slice_offset.push_back(0);
-  for (std::size_t first = 0; first < count; first += SLICE_ROWS) {
-    const std::size_t last = std::min<std::size_t>(first + SLICE_ROWS, count);
-    std::uint32_t width = 0;
-    for (std::size_t i = first; i < last; ++i) width = std::max(width, rows.offset[i + 1] - rows.offset[i]);
-    for (std::uint32_t k = 0; k < width; ++k) {
-      for (std::size_t i = first; i < first + SLICE_ROWS; ++i) {
-        const bool present = i < last && k < rows.offset[i + 1] - rows.offset[i];
-        const auto own = static_cast<std::uint32_t>(std::min(i, last - 1));
-        sliced.column.push_back(present ? rows.column[rows.offset[i] + k] : own);
-      }
-    }
-    sliced.slice_offset.push_back(static_cast<std::uint32_t>(sliced.column.size()));
-  }
-  return sliced;
-}
-
 // Pairs of corners of a tet, in the order of TET_SHAPE.
 constexpr std::array<std::array<int, 2>, 6> tet_edges = {{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
-
-// Neighbours of every vertex, each once, ascending.
-Neighbours vertex_neighbours(const Level& level) {
-  std::vector<std::vector<std::uint32_t>> lists(level.vertices.size());
-  for (const glm::uvec4& tet : level.tets) {
-    for (const auto& [a, b] : tet_edges) {
-      lists[tet[a]].push_back(tet[b]);
-      lists[tet[b]].push_back(tet[a]);
-    }
-  }
-  Neighbours rows;
-  rows.offset.push_back(0);
-  for (auto& list : lists) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-    rows.column.insert(rows.column.end(), list.begin(), list.end());
-    rows.offset.push_back(static_cast<std::uint32_t>(rows.column.size()));
-  }
-  return rows;
-}
 
 // The place of `column` in row `row`, which holds it.
 std::uint32_t place_of(const Neighbours& rows, std::uint32_t row, std::uint32_t column) {
@@ -134,7 +90,91 @@ Lists rings_of(const Level& level, const Edges& edges) {
   });
 }
 
+// What an entry of linear elements is made of: integrals of the two basis functions over tets and open faces.
+struct EdgeShape {
+  double stiffness = 0;  // of the product of their gradients, mm
+  double mass = 0;       // of their product, mm^3
+  double area = 0;       // the same over faces, mm^2
+};
+
+void add_tets(const Level& level, const Edges& edges, std::vector<EdgeShape>& of_edge, std::vector<glm::vec2>& of_row) {
+  std::vector<double> mass(of_row.size(), 0.0);
+  for (const glm::uvec4& tet : level.tets) {
+    const glm::dvec3 p(level.vertices[tet.x]);
+    const glm::dvec3 e1 = glm::dvec3(level.vertices[tet.y]) - p, e2 = glm::dvec3(level.vertices[tet.z]) - p,
+                     e3 = glm::dvec3(level.vertices[tet.w]) - p;
+    // The gradient of corner k is normal[k] / (6 V), up to an orientation that cancels in products.
+    const glm::dvec3 n1 = glm::cross(e2, e3), n2 = glm::cross(e3, e1), n3 = glm::cross(e1, e2);
+    const std::array<glm::dvec3, 4> normal = {-(n1 + n2 + n3), n1, n2, n3};
+    const double six_volume = std::abs(glm::dot(e1, n1));
+    for (const auto& [a, b] : tet_edges) {
+      EdgeShape& edge = of_edge[edges.between(tet[a], tet[b])];
+      edge.stiffness +=
+          glm::dot(normal[static_cast<std::size_t>(a)], normal[static_cast<std::size_t>(b)]) / (6 * six_volume);
+      edge.mass += six_volume / 120;
+    }
+    for (int k = 0; k < 4; ++k) mass[tet[k]] += six_volume / 24;
+  }
+  for (std::size_t i = 0; i < mass.size(); ++i) of_row[i].x = static_cast<float>(mass[i]);
+}
+
+void add_faces(const Level& level, const Edges& edges, std::vector<EdgeShape>& of_edge,
+               std::vector<glm::vec2>& of_row) {
+  std::vector<double> area(level.surface_vertex_count, 0.0);
+  for (std::uint32_t f = 0; f < level.face_count(); ++f) {
+    if (level.reflecting(f)) continue;
+    const glm::uvec3& face = level.faces[f];
+    const glm::dvec3 p(level.vertices[face.x]);
+    const double twice_area =
+        glm::length(glm::cross(glm::dvec3(level.vertices[face.y]) - p, glm::dvec3(level.vertices[face.z]) - p));
+    for (int k = 0; k < 3; ++k) {
+      of_edge[edges.between(face[k], face[(k + 1) % 3])].area += twice_area / 24;
+      area[face[k]] += twice_area / 6;
+    }
+  }
+  for (std::size_t i = 0; i < area.size(); ++i) of_row[i].y = static_cast<float>(area[i]);
+}
+
 }  // namespace
+
+Neighbours vertex_neighbours(const Level& level) {
+  std::vector<std::vector<std::uint32_t>> lists(level.vertices.size());
+  for (const glm::uvec4& tet : level.tets) {
+    for (const auto& [a, b] : tet_edges) {
+      lists[tet[a]].push_back(tet[b]);
+      lists[tet[b]].push_back(tet[a]);
+    }
+  }
+  Neighbours rows;
+  rows.offset.push_back(0);
+  for (auto& list : lists) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    rows.column.insert(rows.column.end(), list.begin(), list.end());
+    rows.offset.push_back(static_cast<std::uint32_t>(rows.column.size()));
+  }
+  return rows;
+}
+
+SlicedColumns slice(const Neighbours& rows) {
+  const std::size_t count = rows.offset.size() - 1;
+  SlicedColumns sliced;
+  sliced.slice_offset.push_back(0);
+  for (std::size_t first = 0; first < count; first += SLICE_ROWS) {
+    const std::size_t last = std::min<std::size_t>(first + SLICE_ROWS, count);
+    std::uint32_t width = 0;
+    for (std::size_t i = first; i < last; ++i) width = std::max(width, rows.offset[i + 1] - rows.offset[i]);
+    for (std::uint32_t k = 0; k < width; ++k) {
+      for (std::size_t i = first; i < first + SLICE_ROWS; ++i) {
+        const bool present = i < last && k < rows.offset[i + 1] - rows.offset[i];
+        const auto own = static_cast<std::uint32_t>(std::min(i, last - 1));
+        sliced.column.push_back(present ? rows.column[rows.offset[i] + k] : own);
+      }
+    }
+    sliced.slice_offset.push_back(static_cast<std::uint32_t>(sliced.column.size()));
+  }
+  return sliced;
+}
 
 SlicedColumns node_columns(const Level& level) {
   Neighbours rows;
@@ -150,13 +190,32 @@ SlicedColumns node_columns(const Level& level) {
   return slice(rows);
 }
 
-FemStructure fem_structure(const Level& level) {
-  const Neighbours rows = vertex_neighbours(level);
+FemShape fem_shape(const Level& level, const Neighbours& rows, const SlicedColumns& columns) {
   const Edges edges(rows);
-  FemStructure structure;
-  structure.columns = slice(rows);
+  std::vector<EdgeShape> of_edge(edges.count());
+  FemShape shape;
+  shape.row.assign(level.vertices.size(), glm::vec2(0));
+  add_tets(level, edges, of_edge, shape.row);
+  add_faces(level, edges, of_edge, shape.row);
+  shape.entry.assign(columns.column.size(), glm::vec2(0));
+  const std::uint32_t surface_slices = (level.surface_vertex_count + SLICE_ROWS - 1) / SLICE_ROWS;
+  shape.area.assign(columns.slice_offset[surface_slices], 0.0f);
+  std::uint32_t edge = 0;
   edges.for_each([&](std::uint32_t a, std::uint32_t b) {
-    structure.edge_entry.emplace_back(entry_of(rows, structure.columns, a, b), entry_of(rows, structure.columns, b, a));
+    const EdgeShape& own = of_edge[edge++];
+    for (const std::uint32_t entry : {entry_of(rows, columns, a, b), entry_of(rows, columns, b, a)}) {
+      shape.entry[entry] = glm::vec2(own.stiffness, own.mass);
+      if (own.area > 0) shape.area[entry] = static_cast<float>(own.area);
+    }
+  });
+  return shape;
+}
+
+FemRings fem_rings(const Level& level, const Neighbours& rows, const SlicedColumns& columns) {
+  const Edges edges(rows);
+  FemRings structure;
+  edges.for_each([&](std::uint32_t a, std::uint32_t b) {
+    structure.edge_entry.emplace_back(entry_of(rows, columns, a, b), entry_of(rows, columns, b, a));
   });
   Lists rings = rings_of(level, edges);
   structure.ring_offset = std::move(rings.offset);

@@ -18,9 +18,21 @@ struct SlicedColumns {
   std::vector<std::uint32_t> column;
 };
 
-// Columns of fem rows, and which elements make their entries (AssembleEdgesPush, AssembleFemPush).
-struct FemStructure {
-  SlicedColumns columns;
+// Neighbours of every row, in compressed rows, ascending.
+struct Neighbours {
+  std::vector<std::uint32_t> offset;
+  std::vector<std::uint32_t> column;
+};
+
+// What the entries of fem rows are made of where the coefficients are the same everywhere (AssembleEvenPush).
+struct FemShape {
+  std::vector<glm::vec2> entry;  // stiffness, mm; mass, mm^3; 0 in padding
+  std::vector<float> area;       // mm^2; of the slices that surface vertices have a part in
+  std::vector<glm::vec2> row;    // mass, mm^3; area, mm^2
+};
+
+// Which elements make the entries of fem rows (AssembleEdgesPush, AssembleFemPush).
+struct FemRings {
   std::vector<glm::uvec2> edge_entry;  // the two entries of every edge
   std::vector<std::uint32_t> ring_offset, ring;
   std::vector<std::uint32_t> tet_offset, tet_incidence;
@@ -35,8 +47,15 @@ struct FaceIncidence {
 // Rows of the nodes: the four links, or the one.
 SlicedColumns node_columns(const Level& level);
 
-// Rows of the vertices: their neighbours, ascending.
-FemStructure fem_structure(const Level& level);
+// The vertices around every vertex, ascending.
+Neighbours vertex_neighbours(const Level& level);
+
+// Rows of the vertices.
+SlicedColumns slice(const Neighbours& rows);
+
+// Of the present vertices of `level`; `rows` are its vertex_neighbours.
+FemShape fem_shape(const Level& level, const Neighbours& rows, const SlicedColumns& columns);
+FemRings fem_rings(const Level& level, const Neighbours& rows, const SlicedColumns& columns);
 
 FaceIncidence face_incidence(const Level& level);
 

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "engine/graph/error.h"
+#include "engine/graph/exchange.h"
 #include "engine/graph/moved_levels.h"
 #include "engine/graph/sky.h"
 #include "engine/solve/beams.h"
@@ -136,11 +137,10 @@ struct Simulation::Implementation {
 
   SolveReport solve(const SolveOptions& options) {
     check_options(options);
-    coefficients.check();
+    const OperatorKey key = key_of(options);
     solved.reset();
     work.recorder.clear();
-    const OperatorKey key{options.method, coefficients.resolve(options.model, options.method, options.source)};
-    make_room(key);
+    make_room(key, options);
     exchange.refresh(work, shape.levels(), levels, options.exchange_rows);
     const SolveReport report =
         options.solver == SolverKind::automatic ? solve_quickly(key, options) : run(key, options, options.solver);
@@ -151,12 +151,27 @@ struct Simulation::Implementation {
     return report;
   }
 
-  void make_room(const OperatorKey& key) {
+  OperatorKey key_of(const SolveOptions& options) const {
+    coefficients.check();
+    return {options.method, coefficients.resolve(options.model, options.method, options.source)};
+  }
+
+  void make_room(const OperatorKey& key, const SolveOptions& options) {
     coefficients.make_room(context, shape.rest(), key.method, levels);
     for (std::uint32_t i = 0; i < levels.size() && key.method != Method::fem; ++i) {
       upload_graph(context, shape.levels()[i], i, levels[i]);
     }
-    operators.create(context, shape.levels(), key);
+    operators.create(context, shape.levels(), key, coefficients.even());
+    const std::optional<std::uint32_t> bounced = bounces_wanted(options) ? exchange.level() : std::nullopt;
+    if (bounced) exchange.make_room(work, levels);
+    for (std::uint32_t i = 0; i < levels.size() && options.source == Source::buried; ++i) {
+      walks[i].make_room(context, levels[i], beams, key.method, bounced && i <= *bounced);
+    }
+  }
+
+  GatherField& gather_room() {
+    if (!gather) gather.emplace(context, shape.levels()[0]);
+    return *gather;
   }
 
   SolveReport run(const OperatorKey& key, const SolveOptions& options, SolverKind solver) {
@@ -191,7 +206,7 @@ struct Simulation::Implementation {
 
   const GatherField& gathered(std::vector<PassStats>& gather_passes) {
     gather_passes.clear();
-    if (!gather) gather.emplace(context, shape.levels()[0]);
+    gather_room();
     if (!gather_stale) return *gather;
     work.recorder.clear();
     gather->record(work, {levels[0], operators.at(*solved, 0), beams, results.vertex_exitance(),
@@ -267,6 +282,12 @@ void Simulation::irradiance_changed() {
 
 void Simulation::set_vertices(std::uint32_t level, std::span<const glm::vec3> positions) {
   implementation_->move(level, positions);
+}
+
+void Simulation::make_room(const SolveOptions& options, bool gather) {
+  implementation_->make_room(implementation_->key_of(options), options);
+  implementation_->work.recorder.submit();
+  if (gather) implementation_->gather_room();
 }
 
 SolveReport Simulation::solve(const SolveOptions& options) {

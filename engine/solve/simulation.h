@@ -93,6 +93,10 @@ class Simulation {
   // wrong size or value or where a tet would be turned inside out.
   void set_vertices(std::uint32_t level, std::span<const glm::vec3> positions);
 
+  // Allocates all that `solve` with these options needs for the present coefficients and light, and with `gather` what
+  // view rays gather; later solves like it allocate nothing. Throws InputError as `solve`.
+  void make_room(const SolveOptions& options, bool gather);
+
   // Solves for the present coefficients and light, all levels. Throws InputError before they are set, SolverError when
   // conjugate gradients break down or a value is not finite.
   SolveReport solve(const SolveOptions& options);

@@ -28,7 +28,7 @@ std::uint64_t sums_bytes(const LevelBuffers& level, std::uint32_t beam_kind) {
 // Of one beam: every invocation looks at its face; half the faces are lit, evenly, and a ray crosses ten tets, about as
 // many as in marble at the finest level.
 std::uint64_t walk_bytes(const LevelBuffers& level, std::uint32_t ray_count) {
-  constexpr std::uint64_t tet_bytes = sizeof(glm::uvec2) + vec3_bytes + sizeof(gpu::Optical) + 2 * power_bytes;
+  constexpr std::uint64_t tet_bytes = 2 * sizeof(std::uint32_t) + vec3_bytes + sizeof(gpu::Optical) + 2 * power_bytes;
   return std::uint64_t{level.face_count} * ray_count * (FACE_QUARTERS * sizeof(float) + 10 * tet_bytes / 2);
 }
 
@@ -39,19 +39,19 @@ int place_of(std::uint32_t vertex, const glm::uvec4& tet) {
 }
 
 // From `tet` out of the face opposite corner k into the tet `across`.
-glm::uvec2 crossing(const Level& level, const glm::uvec4& tet, int k, std::uint32_t across) {
-  if (across >= level.tet_count()) return {across, 0};
+std::uint32_t crossing(const Level& level, const glm::uvec4& tet, int k, std::uint32_t across) {
+  std::uint32_t packed = across << CROSSING_BITS;
+  if (across >= level.tet_count()) return packed;
   const glm::uvec4& next = level.tets[across];
   const std::uint32_t fresh = next[0] + next[1] + next[2] + next[3] - tet[0] - tet[1] - tet[2] - tet[3] + tet[k];
-  std::uint32_t packed = fresh << 8;
-  for (int j = 0; j < 4; ++j) {
+  for (int j = 0; j < 3; ++j) {
     packed |= static_cast<std::uint32_t>(place_of(j == k ? fresh : tet[j], next)) << 2 * j;
   }
-  return {across, packed};
+  return packed;
 }
 
-std::vector<glm::uvec2> crossings(const Level& level) {
-  std::vector<glm::uvec2> result;
+std::vector<std::uint32_t> crossings(const Level& level) {
+  std::vector<std::uint32_t> result;
   result.reserve(4 * level.tets.size());
   for (std::size_t t = 0; t < level.tets.size(); ++t) {
     for (int k = 0; k < 4; ++k) result.push_back(crossing(level, level.tets[t], k, level.links[t][k]));
@@ -59,16 +59,19 @@ std::vector<glm::uvec2> crossings(const Level& level) {
   return result;
 }
 
+// Elements that crossings can name.
+constexpr std::uint32_t most_nodes = 1u << (32 - CROSSING_BITS);
+
 }  // namespace
 
 SourceWalk::SourceWalk(vk::Context& context, const Level& level, std::uint32_t number)
     : prefix_("level " + std::to_string(number) + " "),
       unscattered_(context, level.face_count() * power_bytes, vk::Place::device, "walk/" + prefix_ + "unscattered") {
-  if (level.vertex_count() > CROSSING_VERTICES) {
-    throw InputError(prefix_ + "has " + std::to_string(level.vertex_count()) +
-                     " vertices; the buried source takes up to " + std::to_string(CROSSING_VERTICES));
+  if (level.node_count() > most_nodes) {
+    throw InputError(prefix_ + "has " + std::to_string(level.node_count()) +
+                     " tets and outside faces; the buried source takes up to " + std::to_string(most_nodes));
   }
-  crossings_ = vk::upload<glm::uvec2>(context, crossings(level), "geometry/" + prefix_ + "crossings");
+  crossings_ = vk::upload<std::uint32_t>(context, crossings(level), "geometry/" + prefix_ + "crossings");
 }
 
 gpu::BodyRef SourceWalk::body(const LevelBuffers& level, double eta, bool even) const {
@@ -86,7 +89,7 @@ gpu::BodyRef SourceWalk::body(const LevelBuffers& level, double eta, bool even) 
 }
 
 void SourceWalk::Sums::make_room(vk::Context& context, std::uint64_t bytes, const std::string& prefix) {
-  if (device.size() == bytes) return;
+  if (device.size() >= bytes) return;
   device = {context, bytes, vk::Place::device, "walk/" + prefix + "sums"};
   host = {context, bytes, vk::Place::host, "walk/" + prefix + "sums, read back"};
   scale = {context, sizeof(gpu::Scale), vk::Place::host, "walk/" + prefix + "scale, read back"};
@@ -109,16 +112,21 @@ WalkPower SourceWalk::Sums::power() const {
   return power;
 }
 
-void SourceWalk::make_room(vk::Context& context, const LevelBuffers& level, const BeamBuffers& beams, Method method) {
-  vk::Buffer& deposit = deposits_[carrier(method)];
-  const std::uint64_t deposit_bytes = carriers(level, method) * power_bytes;
-  if (deposit.size() != deposit_bytes)
-    deposit = {context, deposit_bytes, vk::Place::device, "walk/" + prefix_ + "deposit"};
+void SourceWalk::make_room(vk::Context& context, const LevelBuffers& level, const BeamBuffers& beams, Method method,
+                           bool again) {
+  const auto room = [&](vk::Buffer& buffer, std::uint64_t bytes, const char* name) {
+    if (buffer.size() != bytes) buffer = {context, bytes, vk::Place::device, "walk/" + prefix_ + name};
+  };
+  room(deposits_[carrier(method)], carriers(level, method) * power_bytes, "deposit");
   std::uint64_t all_sums = 0;
   for (const gpu::Beam& beam : beams.beams) {
     if (beam.way.kind != gpu::BEAM_MEAN) all_sums += sums_bytes(level, beam.way.kind);
   }
   sums_.make_room(context, all_sums, prefix_);
+  if (!again) return;
+  room(all_deposits_[carrier(method)], carriers(level, method) * power_bytes, "deposit with light that entered again");
+  room(all_unscattered_, level.face_count * power_bytes, "unscattered with light that entered again");
+  sums_again_.make_room(context, sums_bytes(level, gpu::BEAM_MEAN), prefix_);
 }
 
 gpu::WalkSourcePush SourceWalk::push(const Workspace& work, const LevelBuffers& level, const BeamBuffers& beams,
@@ -138,7 +146,7 @@ void SourceWalk::record(Workspace& work, const LevelBuffers& level, const BeamBu
                         bool even) {
   if (walked_[carrier(method)]) return;
   walked_[carrier(method)] = true;
-  make_room(work.recorder.context(), level, beams, method);
+  make_room(work.recorder.context(), level, beams, method, false);
   work.recorder.fill(deposits_[carrier(method)], 0);
   work.recorder.fill(unscattered_, 0);
   if (sums_.device.size() == 0) return;
@@ -158,14 +166,10 @@ void SourceWalk::record(Workspace& work, const LevelBuffers& level, const BeamBu
 
 void SourceWalk::record_again(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, Method method,
                               double eta, bool even) {
-  vk::Context& context = work.recorder.context();
-  const auto like = [&](vk::Buffer& buffer, const vk::Buffer& model, const char* name) {
-    if (buffer.size() != model.size()) buffer = {context, model.size(), vk::Place::device, "walk/" + prefix_ + name};
-    work.recorder.copy(model, buffer, model.size());
-  };
-  like(all_deposits_[carrier(method)], deposits_[carrier(method)], "deposit with light that entered again");
-  like(all_unscattered_, unscattered_, "unscattered with light that entered again");
-  sums_again_.make_room(context, sums_bytes(level, gpu::BEAM_MEAN), prefix_);
+  make_room(work.recorder.context(), level, beams, method, true);
+  const vk::Buffer& deposit = deposits_[carrier(method)];
+  work.recorder.copy(deposit, all_deposits_[carrier(method)], deposit.size());
+  work.recorder.copy(unscattered_, all_unscattered_, unscattered_.size());
   work.recorder.fill(sums_again_.device, 0);
   again_ = true;
   gpu::WalkSourcePush push = this->push(work, level, beams, method, eta, even);

@@ -28,7 +28,7 @@ std::vector<glm::dvec3> powers(std::span<const std::uint32_t> words, const glm::
 
 class SourceWalk {
  public:
-  // Throws InputError if the level has too many vertices.
+  // Throws InputError if the level has too many tets and faces.
   SourceWalk(vk::Context& context, const Level& level, std::uint32_t number);
 
   // What rays need of the level. `even`: level.optical is the same everywhere, which saves its reading.
@@ -36,6 +36,9 @@ class SourceWalk {
 
   // Light, material or shape have changed.
   void invalidate() { walked_ = {false, false}; }
+
+  // Room for what `record` and, with `again`, `record_again` write, as far as the beams go, unless it is there.
+  void make_room(vk::Context& context, const LevelBuffers& level, const BeamBuffers& beams, Method method, bool again);
 
   // Walks, unless that has been done for the present light: level.beam_q of every beam of the scene, scaled by
   // work.scale. The graph methods share their deposits.
@@ -74,7 +77,6 @@ class SourceWalk {
 
   static std::size_t carrier(Method method) { return method == Method::fem ? 0 : 1; }
 
-  void make_room(vk::Context& context, const LevelBuffers& level, const BeamBuffers& beams, Method method);
   gpu::WalkSourcePush push(const Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, Method method,
                            double eta, bool even) const;
 

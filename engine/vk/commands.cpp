@@ -100,6 +100,11 @@ void Commands::copy(const Image& source, const Buffer& target) {
   barrier();
 }
 
+void Commands::update(const Buffer& target, std::span<const std::byte> data) {
+  vkCmdUpdateBuffer(commands_, target.handle(), 0, data.size(), data.data());
+  barrier();
+}
+
 void Commands::fill(const Buffer& target, std::uint32_t value) {
   vkCmdFillBuffer(commands_, target.handle(), 0, VK_WHOLE_SIZE, value);
   barrier();

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,9 @@ class Commands {
   void copy(const Image& source, const Buffer& target);
 
   void fill(const Buffer& target, std::uint32_t value);
+
+  // Replaces the first bytes of `target`, at most 65536, a multiple of 4.
+  void update(const Buffer& target, std::span<const std::byte> data);
 
   // One invocation per element, in workgroups of the pass's size; followed by a barrier.
   template <typename Push>

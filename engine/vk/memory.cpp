@@ -8,6 +8,13 @@
 
 namespace quadgraph::vk {
 
+namespace {
+
+// Bytes that a command buffer takes along (vkCmdUpdateBuffer).
+constexpr std::size_t largest_update = 65536;
+
+}  // namespace
+
 Allocation::Allocation(Context& context, const VkMemoryRequirements& requirements, Place place, bool device_address,
                        const std::string& name)
     : context_(&context), size_(requirements.size), purpose_(name.substr(0, name.find('/'))) {
@@ -100,6 +107,11 @@ void write_bytes(Context& context, const Buffer& target, std::span<const std::by
     throw InputError("buffer holds " + std::to_string(target.size()) + " bytes, got " + std::to_string(data.size()));
   }
   if (data.empty()) return;
+  if (data.size() <= largest_update && data.size() % 4 == 0) {
+    Commands commands(context);
+    commands.update(target, data);
+    return static_cast<void>(commands.submit_and_wait());
+  }
   const Buffer staging(context, data.size(), Place::host, "staging/upload");
   std::memcpy(staging.mapped(), data.data(), data.size());
   Commands commands(context);

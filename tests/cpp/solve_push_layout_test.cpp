@@ -3,6 +3,8 @@
 #include "shaders/surface_shared.h"
 #include "spirv/assemble_edges.comp.h"
 #include "spirv/assemble_edges_sp3.comp.h"
+#include "spirv/assemble_even.comp.h"
+#include "spirv/assemble_even_sp3.comp.h"
 #include "spirv/assemble_fdm.comp.h"
 #include "spirv/assemble_fdm_sp3.comp.h"
 #include "spirv/assemble_fem.comp.h"
@@ -104,6 +106,12 @@ TEST_CASE("push constants") {
              MEMBER(AssembleEdgesPush, face_area), MEMBER(AssembleEdgesPush, edge_entry),
              MEMBER(AssembleEdgesPush, ring_offset), MEMBER(AssembleEdgesPush, ring), MEMBER(AssembleEdgesPush, count),
              MEMBER(AssembleEdgesPush, even), MEMBER(AssembleEdgesPush, boundary)});
+  }
+  for (const vk::Spirv code : {vk::Spirv(assemble_even_comp), vk::Spirv(assemble_even_sp3_comp)}) {
+    compare(code, "AssembleEvenPush",
+            {MEMBER(AssembleEvenPush, rows), MEMBER(AssembleEvenPush, optical), MEMBER(AssembleEvenPush, entry_shape),
+             MEMBER(AssembleEvenPush, entry_area), MEMBER(AssembleEvenPush, row_shape), MEMBER(AssembleEvenPush, count),
+             MEMBER(AssembleEvenPush, area_count), MEMBER(AssembleEvenPush, boundary)});
   }
   for (const vk::Spirv code : {vk::Spirv(assemble_fem_comp), vk::Spirv(assemble_fem_sp3_comp)}) {
     compare(code, "AssembleFemPush",
