@@ -176,6 +176,17 @@ py::dict solve(Engine& engine, const std::string& method, const std::string& sol
   return report_dict(report);
 }
 
+void make_room(Engine& engine, const std::string& method, const std::string& source, const std::string& model,
+               bool inter_reflection) {
+  SolveOptions options;
+  options.method = method_from_name(method);
+  options.source = source_from_name(source);
+  options.model = model_from_name(model);
+  options.inter_reflection = inter_reflection;
+  const py::gil_scoped_release release;
+  engine.make_room(options);
+}
+
 View view_from(const std::string& text, const std::string& up, float vertical_fov) {
   if (up != "y" && up != "z") throw InputError("up '" + up + "': allowed are y and z");
   View view;
@@ -304,6 +315,11 @@ void bind_engine(py::module_& module) {
           "Device time and bytes per pass of the last frame.")
       .def_property_readonly("metadata", &Engine::metadata)
       .def_property_readonly("device_bytes", &Engine::device_bytes)
+      .def("make_room", &make_room, py::arg("method") = "fem", py::arg("source") = "buried", py::arg("model") = "auto",
+           py::arg("inter_reflection") = true,
+           "Allocates what a solve for the present material and light, and a picture of it, will take.")
+      .def_property_readonly("allocation_count", &Engine::allocation_count,
+                             "Allocations of device memory ever made; staging for large arrays among them.")
       .def("memory", &memory_list, "What device_bytes consists of: {purpose, bytes}, largest first.")
       .def_property_readonly("peak_device_bytes", &Engine::peak_device_bytes)
       .def_property_readonly("device_name", [](const Engine& engine) { return engine.context().info().name; })

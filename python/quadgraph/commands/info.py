@@ -1,4 +1,4 @@
-"""`quadgraph info`: everything a .qgraph file holds."""
+"""`quadgraph info`: everything a .qgraph file holds, and the device memory that it will take."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from quadgraph.commands import device_memory
 from quadgraph.commands.bake import exchange_line, level_table
 
 
@@ -26,7 +27,7 @@ def run(args: argparse.Namespace) -> int:
     from quadgraph import qgraph_file
 
     file = qgraph_file.read(args.file)
-    facts = describe(file)
+    facts = describe(file) | {"device_memory": device_memory.ask(args.file)}
     if args.json:
         print(json.dumps(facts, indent=1))
     else:
@@ -85,6 +86,11 @@ def _print_facts(name: str, facts: dict[str, Any]) -> None:
     console.print(level_table(metadata["levels"]))
     console.print(_quality_table(facts["levels"]))
     console.print(_section_table(facts["sections"]))
+    memory = facts["device_memory"]
+    if memory["unknown"] is not None:
+        console.print(f"device memory: unknown, {memory['unknown']}", markup=False, soft_wrap=True)
+    else:
+        console.print(device_memory.table(memory["entries"]))
 
 
 def _quality_table(levels: list[dict[str, Any]]) -> Table:

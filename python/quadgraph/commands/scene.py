@@ -12,6 +12,10 @@ if TYPE_CHECKING:
     from quadgraph._core import Engine
 
 
+DEFAULT_MATERIAL = "marble"
+VARIED_MATERIAL = "marble-veins"
+
+
 def load_core():
     """Import the compiled module, or say how to get it. Raises InputError."""
     try:
@@ -58,7 +62,7 @@ def add_scene_arguments(parser: argparse.ArgumentParser) -> None:
     add_device_arguments(parser)
     parser.add_argument(
         "--material",
-        default="marble",
+        default=DEFAULT_MATERIAL,
         metavar="M",
         help="a name (marble, skin1, wholemilk, ..., marble-veins) or sigma_s_prime=S,sigma_a=A,eta=E in 1/mm, "
         "one value or R/G/B each (default: %(default)s)",
