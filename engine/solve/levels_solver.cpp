@@ -76,7 +76,7 @@ SolveReport LevelsSolver::run() {
     solve_down_to(finest_);
     settle();
     if (finest_ == 0 || reached()) break;
-    --finest_;
+    next_ = --finest_;  // from the solution that was found not to be good enough
   }
   finish();
   return report_;

@@ -5,7 +5,7 @@
 // the sums of those of the differences of all finer levels. With differences that fall by rho from level to level,
 //   error_L = D_L f(rho),  f(rho) = rho / sqrt(1 - rho^2).
 // The ratio of two differences is a noisy rho: f is the geometric mean of that and of first order, rho = 1/2. Order
-// two, D_L / 3, is 2.3 times too little on real meshes (docs/accuracy.md, "The estimate of the error").
+// two, D_L / 3, is 1.9 times too little on real meshes (docs/accuracy.md, "The estimate of the error").
 #pragma once
 
 #include <glm/vec2.hpp>

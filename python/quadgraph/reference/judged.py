@@ -87,11 +87,11 @@ class Judged:
         """The engine's report of a solve from the judged level down."""
         return self._coarse.solve(model=self._case.model, inter_reflection=False, **options)
 
-    def true_error(self) -> dict[str, float]:
+    def true_error(self, finest: int = 0) -> dict[str, float]:
         """Relative RMS error of the last solve's exitance by part, those of too small a share of the area left out.
 
-        Where errors halve from level to level and are not correlated, the truth's own mesh hides a share of 4^-finer of
-        the square, which is put back.
+        finest: the level below the judged one that was solved last. Where errors halve from level to level and are not
+        correlated, the truth's own mesh hides a share of 4^-(levels between) of the square, which is put back.
         """
         levels, truth = self.graph.levels, self._fine.surface_field()
         found = np.asarray(self._coarse.surface_field()["exitance"], np.float64)
@@ -103,7 +103,7 @@ class Judged:
         for part, weight in zip(PARTS, (area, area * unlit), strict=True):
             if weight.sum() > LEAST_SHARE * area.sum():
                 share = _squares(weight, difference) / _squares(weight, truth["exitance"])
-                errors[part] = float(np.sqrt(share / (1 - 4.0**-self.finer)))
+                errors[part] = float(np.sqrt(share / (1 - 4.0 ** -(self.finer + finest))))
         return errors
 
 
