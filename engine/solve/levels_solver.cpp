@@ -23,6 +23,9 @@ constexpr std::uint32_t first_bounces = 5, more_bounces = 2;
 // What light that enters again may be off by, in tolerances: it is a tenth of all light at most.
 constexpr double exchange_share = 5;
 
+// A bounce that brings in no more than this share of all light is the last: single precision would not tell another.
+constexpr double least_bounce = 1e-6;
+
 // Share of a target for the whole error that is left to the algebraic one.
 constexpr double algebraic_share = 0.25;
 
@@ -220,8 +223,9 @@ void LevelsSolver::solve_down_to(std::uint32_t finest) {
 }
 
 bool LevelsSolver::bounced_enough() const {
+  const double wanted = (options_.error > 0 ? options_.error : options_.tolerance) / 10;
   return options_.bounces > 0 || parts_.exchange.count() >= max_bounces ||
-         parts_.exchange.converged((options_.error > 0 ? options_.error : options_.tolerance) / 10);
+         parts_.exchange.converged(std::max(wanted, least_bounce));
 }
 
 // On the level with the exchange, from the solution it has.
