@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import itertools
+import json
 import os
 import shutil
 import signal
@@ -249,13 +250,17 @@ def test_a_bake_killed_while_writing_leaves_no_output_file(sphere, tmp_path):
 
 
 def test_bunny_within_its_budget_of_memory(bunny_path, tmp_path):
-    report = bake.bake(bunny_path, tmp_path / "bunny.qgraph", bake.BakeOptions(height_mm=100))
-    print(f"bunny baked in {report.seconds['total']:.1f} s")
-    assert report.peak_memory["self"] + bake.WORKERS * report.peak_memory["largest_child"] < 2e9
-    assert report.byte_size < 64e6
+    # In a process whose parent is small: Linux counts a process's peak from that of the one it was started by.
+    command = [sys.executable, "-m", "quadgraph.cli", "bake", bunny_path, "-o", tmp_path / "bunny.qgraph"]
+    started = ["sh", "-c", '"$@"; exit $?', "sh", *command, "--height", "100mm", "--json"]
+    done = subprocess.run([str(part) for part in started], capture_output=True, text=True, check=True, timeout=300)
+    report = json.loads(done.stdout)
+    print(f"bunny baked in {report['seconds']['total']:.1f} s")
+    assert report["peak_memory"]["self"] + bake.WORKERS * report["peak_memory"]["largest_child"] < 2e9
+    assert report["byte_size"] < 64e6
     finest = qgraph_file.read(tmp_path / "bunny.qgraph").metadata["levels"][0]
     assert finest["tets"] > 150_000
-    assert len(report.levels) >= 4
+    assert len(report["levels"]) >= 4
 
 
 def test_display_vertices_of_the_bunny_match_exactly(bunny):
