@@ -28,6 +28,7 @@ void check(float worst) {
 }
 
 void start(float worst) {
+  push.state.at[0].earlier = push.what == START_AGAIN ? push.state.at[0].earlier + push.state.at[0].iterations : 0u;
   push.state.at[0].iterations = 0u;
   push.state.at[0].slow = 0u;
   push.state.at[0].looks = 0u;
@@ -46,7 +47,7 @@ void decide(vec3 square) {
   float worst = worst_residual(square, norm);
   if (any(not_finite(square + norm))) {
     stop(push.state, SOLVE_NOT_FINITE, first_channel(not_finite(square + norm)));
-  } else if (push.what == START_FIRST) {
+  } else if (push.what == START_FIRST || push.what == START_AGAIN) {
     start(worst);
   } else if (push.what == START_CHECK) {
     check(worst);

@@ -118,7 +118,7 @@ const uint SOLVE_STALLED = 7u;       // the residual hardly falls for too many c
 // Levels that one solve works on at most; coarser ones of a file are left out.
 #define MAX_LEVELS 12
 
-// State of the solve of one level. `size` and `difference`, `change` and `algebraic` are of the exitance, as area-
+// State of the solve of one level. `difference`, `change` and `algebraic` are of the exitance, as area-
 // weighted RMS over the whole surface (x) and over its unlit part (y), channels together.
 struct SolveState {
   uvec3 gate[MAX_LEVELS];   // indirect workgroup counts of the iteration's passes on each level; zero when not wanted
@@ -134,10 +134,10 @@ struct SolveState {
   vec3 beta;        // share of the old direction
   float residual;   // worst channel
   float checked;    // worst channel, at the last computation of the true residual
-  uint iterations;  // done
+  uint iterations;  // done since the start
+  uint earlier;     // done before it, since the first start of a solve
   uint status;      // SOLVE_*
   uint channel;     // that failed
-  vec2 size;        // of the exitance, scaled
   vec2 change;      // of the last iterations, relative
   vec2 algebraic;   // estimated error that is left, relative; below 0: not known yet
   vec2 difference;  // from the exitance of the start, relative
@@ -198,6 +198,7 @@ struct FollowPush {
 };
 
 const uint START_FIRST = 0u;     // resets the state, opens the gates
+const uint START_AGAIN = 3u;     // the same within a solve: iterations done so far are kept as earlier ones
 const uint START_CHECK = 1u;     // after the surface has met the tolerance: does the residual agree?
 const uint START_RESIDUAL = 2u;  // no decision
 

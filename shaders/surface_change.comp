@@ -70,7 +70,6 @@ void main() {
   if (!reduce_dispatch_pair(push.reduction, difference_squares, size_squares, differences, sizes)) return;
   if (gl_LocalInvocationID.x != 0u) return;
   vec2 relative = sqrt(ratio(differences.xy, sizes.xy));
-  push.state.at[0].size = sqrt(sizes.xy);
   if (push.what == SURFACE_DIFFERENCE) {
     push.state.at[0].difference = relative;
   } else {

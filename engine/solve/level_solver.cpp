@@ -91,7 +91,7 @@ void LevelSolver::dispatch_start(std::uint32_t what) {
                               .tolerance = static_cast<float>(task_.tolerance),
                               .what = what,
                               .multigrid = multigrid_ ? 1u : 0u};
-  if (what == gpu::START_FIRST) {
+  if (what == gpu::START_FIRST || what == gpu::START_AGAIN) {
     work_.recorder.dispatch(work_.passes.cg_start.of(key_.model), push, rows.count, "residual", start_bytes());
   } else {
     const std::uint64_t gate = what == gpu::START_CHECK ? offsetof(gpu::SolveState, check) : gate_of(level_);
@@ -140,12 +140,9 @@ void LevelSolver::record_origin(const vk::Buffer& x) {
 
 void LevelSolver::record_start() {
   record_surface(op().x, op().surface_before, gpu::SURFACE_STORE);
-  dispatch_start(gpu::START_FIRST);
-  // What was recorded before has run by then, all of it, or nobody would start again without a look.
-  did(recorded_ - taken_);
+  dispatch_start(started_ ? gpu::START_AGAIN : gpu::START_FIRST);
+  started_ = true;
   unlooked_ = 0;
-  recorded_ = 0;
-  taken_ = 0;
   entries_ += op().entries;
 }
 
@@ -217,7 +214,6 @@ void LevelSolver::record_sweeps(std::uint32_t sweeps) {
 }
 
 void LevelSolver::record(std::uint32_t iterations) {
-  recorded_ += iterations;
   if (relaxes(task_.solver)) return record_sweeps(iterations);
   for (std::uint32_t k = 0; k < iterations; ++k) {
     if (task_.solver == SolverKind::vcycle) {
@@ -236,7 +232,6 @@ void LevelSolver::record_state() {
 }
 
 void LevelSolver::did(std::uint32_t iterations) {
-  total_ += iterations;
   const OperatorBuffers& rows = op();
   Recorder& recorder = work_.recorder;
   const std::uint64_t field = rows.field_bytes() * rows.count;
@@ -259,8 +254,9 @@ void LevelSolver::did(std::uint32_t iterations) {
 
 void LevelSolver::take() {
   state_ = op().state_on_host.mapped_as<gpu::SolveState>()[0];
-  did(state_.iterations - taken_);
-  taken_ = recorded_ = state_.iterations;
+  const std::uint32_t all = state_.earlier + state_.iterations;
+  did(all - taken_);
+  taken_ = all;
   if (!failed() || uses_cycles(task_.solver)) return;
   throw SolverError("level " + std::to_string(level_) + ": " + std::string(name_of(key_.method)) + " (" +
                     std::string(name_of(key_.model)) + ") with " + std::string(name_of(task_.solver)) + " " +
@@ -306,7 +302,7 @@ LevelReport LevelSolver::report() const {
   const bool met = task_.fixed && left && left->whole <= task_.tolerance && left->unlit <= task_.tolerance;
   return {.level = level_,
           .unknowns = op().count * (op().model == Model::sp3 ? 2 : 1),
-          .iterations = total_,
+          .iterations = taken_,
           .residual = state_.residual,
           .converged = task_.start ? !failed() : state_.status == gpu::SOLVE_CONVERGED || met};
 }

@@ -93,9 +93,8 @@ class LevelSolver {
   LevelTask task_;
   std::optional<Multigrid> multigrid_;
   std::uint32_t unlooked_ = 0;  // iterations recorded since the last look at the surface
-  std::uint32_t recorded_ = 0;  // since the start
-  std::uint32_t taken_ = 0;     // of them, counted
-  std::uint32_t total_ = 0;     // counted in all, over all starts
+  std::uint32_t taken_ = 0;     // iterations counted, over all starts
+  bool started_ = false;
   double entries_ = 0;
   bool stagnated_ = false;  // a relaxation that single precision lets fall no further
   gpu::SolveState state_{};

@@ -173,6 +173,7 @@ void LevelsSolver::approach(std::uint32_t level) {
   record_light(level);
   set_solver(level);
   record_first(level);
+  op(level).solved = false;  // until it is: a failure leaves nothing to go on from
 }
 
 void LevelsSolver::set_solver(std::uint32_t level) {
@@ -276,8 +277,10 @@ void LevelsSolver::replace() {
   report_.solver = SolverKind::dpcg;
   const bool usable = failed.state().status != gpu::SOLVE_NOT_FINITE && failed.state().status != gpu::SOLVE_DIVERGED;
   if (usable) {
+    op(finest_).solved = false;
     set_solver(finest_);
     iterate(finest_);
+    record_solved(finest_);
     return record_difference(finest_);
   }
   for (std::uint32_t level = 0; level < solvers_.size(); ++level) op(level).solved = false;

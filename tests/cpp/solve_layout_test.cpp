@@ -60,7 +60,7 @@ TEST_CASE("structs in buffers") {
            MEMBER(SolveState, norm),      MEMBER(SolveState, square),     MEMBER(SolveState, rz),
            MEMBER(SolveState, alpha),     MEMBER(SolveState, beta),       MEMBER(SolveState, residual),
            MEMBER(SolveState, checked),   MEMBER(SolveState, iterations), MEMBER(SolveState, status),
-           MEMBER(SolveState, channel),   MEMBER(SolveState, size),       MEMBER(SolveState, change),
+           MEMBER(SolveState, channel),   MEMBER(SolveState, earlier),    MEMBER(SolveState, change),
            MEMBER(SolveState, algebraic), MEMBER(SolveState, difference), MEMBER(SolveState, looked),
            MEMBER(SolveState, looks),     MEMBER(SolveState, slow)});
   compare(exitance_comp, "Boundary",
