@@ -20,9 +20,9 @@
 #include "spirv/cg_start_sp3.comp.h"
 #include "spirv/cg_update.comp.h"
 #include "spirv/cg_update_sp3.comp.h"
-#include "spirv/damping.comp.h"
-#include "spirv/damping_sp3.comp.h"
 #include "spirv/display_scale.comp.h"
+#include "spirv/eigenvalue_bound.comp.h"
+#include "spirv/eigenvalue_bound_sp3.comp.h"
 #include "spirv/energy.comp.h"
 #include "spirv/energy_sp3.comp.h"
 #include "spirv/evaluate_material.comp.h"
@@ -97,7 +97,7 @@ TEST_CASE("arrays in buffers have the stride of their C++ element") {
                                             vk::Spirv(right_hand_side_fdm_comp),
                                             vk::Spirv(right_hand_side_fv_comp),
                                             vk::Spirv(right_hand_side_fem_comp),
-                                            vk::Spirv(damping_comp),
+                                            vk::Spirv(eigenvalue_bound_comp),
                                             vk::Spirv(transfer_comp),
                                             vk::Spirv(cg_start_comp),
                                             vk::Spirv(cg_multiply_comp),
@@ -114,7 +114,7 @@ TEST_CASE("arrays in buffers have the stride of their C++ element") {
                                       vk::Spirv(right_hand_side_fdm_sp3_comp),
                                       vk::Spirv(right_hand_side_fv_sp3_comp),
                                       vk::Spirv(right_hand_side_fem_sp3_comp),
-                                      vk::Spirv(damping_sp3_comp),
+                                      vk::Spirv(eigenvalue_bound_sp3_comp),
                                       vk::Spirv(transfer_sp3_comp),
                                       vk::Spirv(cg_start_sp3_comp),
                                       vk::Spirv(cg_multiply_sp3_comp),
