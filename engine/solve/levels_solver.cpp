@@ -68,8 +68,7 @@ SolveReport LevelsSolver::run() {
   if (!parts_.scaled) record_scale(parts_.work, parts_.levels[0]);
   parts_.scaled = true;
   const auto coarsest = static_cast<std::uint32_t>(solvers_.size()) - 1;
-  const bool choose = options_.error > 0 && key_.method == Method::fem;
-  finest_ = choose && coarsest > 0 ? coarsest - 1 : 0;
+  finest_ = options_.error > 0 && key_.method == Method::fem ? coarsest : 0;
   start_over();
   if (!report_.inter_reflection || (options_.bounces == 0 && !warm_)) {
     parts_.exchange.record_none(parts_.work, parts_.levels);
@@ -78,7 +77,7 @@ SolveReport LevelsSolver::run() {
   while (true) {
     solve_down_to(finest_);
     settle();
-    if (finest_ == 0 || reached()) break;
+    if (finest_ == 0 || (reached() && (!report_.inter_reflection || bounces_reach(finest_)))) break;
     next_ = --finest_;  // from the solution that was found not to be good enough
   }
   finish();
@@ -93,6 +92,11 @@ void LevelsSolver::start_over() {
   }
   warm_ = options_.warm;
   for (std::uint32_t level = finest_; level <= next_; ++level) warm_ = warm_ && op(level).solved;
+}
+
+// Whether light that bounced is part of what a level is solved for: not on those coarser than where it bounces.
+bool LevelsSolver::bounces_reach(std::uint32_t level) const {
+  return report_.inter_reflection && parts_.exchange.level() && level <= *parts_.exchange.level();
 }
 
 bool LevelsSolver::bounces_on(std::uint32_t level) const {
@@ -147,7 +151,7 @@ void LevelsSolver::record_light(std::uint32_t level) {
   if (!op(level).weighed) record_surface_share(parts_.work, parts_.levels[level], key_.method, boundary_, op(level));
   op(level).weighed = true;
   record_load(level);
-  if (!report_.inter_reflection || !parts_.exchange.level() || level > *parts_.exchange.level()) return;
+  if (!bounces_reach(level)) return;
   parts_.exchange.record_beam(parts_.work, parts_.levels, level, parts_.coefficients.eta());
   if (parts_.exchange.any()) record_load_again(level);
 }
@@ -257,7 +261,7 @@ void LevelsSolver::settle() {
     LevelSolver& solver = *solvers_[finest_];
     if (solver.failed()) {
       replace();
-    } else if (report_.inter_reflection && parts_.exchange.level() && !bounced_enough()) {
+    } else if (bounces_reach(finest_) && !bounced_enough()) {
       bounce_more();
     } else if (solver.running()) {
       solver.record(first_cycles);
@@ -348,13 +352,16 @@ std::string LevelsSolver::missed() const {
   if (!(options_.error > 0)) return "";
   if (!report_.error) return "error " + percent(options_.error) + ": a file with a single level cannot tell its error";
   if (reached()) return "";
-  return "error " + percent(options_.error) + " is not reached: " + percent(report_.error->whole) +
-         " of the surface, " + percent(report_.error->unlit) +
-         " of its unlit part; a file with more vertices on its surface would come closer";
+  char factor[8];
+  std::snprintf(factor, sizeof(factor), "%.2g", confidence);
+  return "error " + percent(options_.error) + " is not certain: the estimate is " + percent(report_.error->whole) +
+         " of the surface, " + percent(report_.error->unlit) + " of its unlit part, and the error may be " + factor +
+         " times that; a file with more vertices on its surface would come closer";
 }
 
 bool LevelsSolver::reached() const {
-  return report_.error && report_.error->whole <= options_.error && report_.error->unlit <= options_.error;
+  const double wanted = options_.error / confidence;
+  return report_.error && report_.error->whole <= wanted && report_.error->unlit <= wanted;
 }
 
 Energy LevelsSolver::energy() const {

@@ -38,6 +38,7 @@ class LevelsSolver {
 
  private:
   OperatorBuffers& op(std::uint32_t level) { return parts_.operators.at(key_, level); }
+  bool bounces_reach(std::uint32_t level) const;
   bool bounces_on(std::uint32_t level) const;
   bool cycles() const { return uses_cycles(report_.solver); }
   Solved solved(std::uint32_t level);

@@ -17,10 +17,16 @@ from quadgraph.tet_files import read_faces, read_tets, write_smesh
 
 TETGEN = Program("tetgen", "install Debian's package tetgen: apt install tetgen")
 OPTIONS = "-pYq1.4/0"  # piecewise linear complex, surface kept, radius-edge ratio 1.4, no dihedral bound
-_TEST_TIME_LIMIT_S = 120.0
+# Of the test for self-intersection, which takes about 0.1 ms a vertex on an idle core: room for a busy or slow one.
+_TEST_TIME_LIMIT_S, _TEST_TIME_PER_VERTEX_S = 120.0, 2e-3
 
 
-def intersecting_triangles(surface: Surface, time_limit_s: float = _TEST_TIME_LIMIT_S) -> np.ndarray:
+def _time_limit_s(vertices: int) -> float:
+    """How long the test for self-intersection of a surface of so many vertices may take, s."""
+    return _TEST_TIME_LIMIT_S + _TEST_TIME_PER_VERTEX_S * vertices
+
+
+def intersecting_triangles(surface: Surface) -> np.ndarray:
     """Indices of triangles that cross another, by TetGen's exact predicates; (0,) if there are none.
 
     Unlike pymeshlab's count this includes crossings between triangles that share a vertex. Coincident vertices must
@@ -28,8 +34,8 @@ def intersecting_triangles(surface: Surface, time_limit_s: float = _TEST_TIME_LI
     """
     with workspace() as directory:
         write_smesh(surface, directory / "surface.smesh")
-        done = run(TETGEN, ["-d", "surface.smesh"], directory=directory, time_limit_s=time_limit_s,
-                   memory_limit_bytes=None)  # fmt: skip
+        done = run(TETGEN, ["-d", "surface.smesh"], directory=directory,
+                   time_limit_s=_time_limit_s(len(surface.vertices)), memory_limit_bytes=None)  # fmt: skip
         crossing = read_faces(directory / "surface.1.face")
     if not len(crossing) and "No faces are intersecting" not in done.output:
         raise ToolError(f"tetgen -d: no verdict on self-intersection: {done.output[-300:].strip()}")

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "tests/cpp/checked_context.h"
 #include "tests/cpp/test_levels.h"
 #include "tools/layouts/study.h"
 
@@ -11,18 +12,6 @@ using namespace quadgraph;
 using namespace quadgraph::layouts;
 
 namespace {
-
-// A context whose validation messages fail the test that made it.
-struct CheckedContext {
-  vk::Context context{{.validation = true, .device = ""}};
-
-  CheckedContext() = default;
-  CheckedContext(const CheckedContext&) = delete;
-  CheckedContext& operator=(const CheckedContext&) = delete;
-  ~CheckedContext() {
-    for (const auto& message : context.validation_messages()) FAIL_CHECK(message);
-  }
-};
 
 // A level whose rows do not fill the last slice, of 1000 vertices, with a material and values of no symmetry.
 struct Body {

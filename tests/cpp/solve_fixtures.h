@@ -7,21 +7,10 @@
 
 #include "engine/graph/reference.h"
 #include "engine/solve/simulation.h"
+#include "tests/cpp/checked_context.h"
 #include "tests/cpp/test_graphs.h"
 
 namespace quadgraph {
-
-// A context whose validation messages fail the test that made it.
-struct CheckedContext {
-  vk::Context context{{.validation = true, .device = ""}};
-
-  CheckedContext() = default;
-  CheckedContext(const CheckedContext&) = delete;
-  CheckedContext& operator=(const CheckedContext&) = delete;
-  ~CheckedContext() {
-    for (const auto& message : context.validation_messages()) FAIL_CHECK(message);
-  }
-};
 
 struct Scene {
   CheckedContext device;

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from quadgraph import tetgen
 from quadgraph.cgal_mesh import CGAL_MESH
 from quadgraph.child_process import Program, run
 from quadgraph.errors import InputError, ToolError
@@ -83,6 +84,20 @@ def test_crossings_are_found_and_only_there() -> None:
     middle = crossing.corners[found].mean(axis=1)
     assert np.abs(np.linalg.norm(middle, axis=1) - np.linalg.norm(middle - (0.9, 0.1, 0.05), axis=1)).max() < 0.5
     assert not len(intersecting_triangles(join(icosphere(2), moved(icosphere(2), 2.5, 0, 0))))
+
+
+def test_the_test_for_crossings_may_take_longer_on_larger_meshes(monkeypatch) -> None:
+    limits = []
+
+    def run_for(*call, time_limit_s, **rest):
+        limits.append(time_limit_s)
+        return run(*call, time_limit_s=time_limit_s, **rest)
+
+    monkeypatch.setattr(tetgen, "run", run_for)
+    small, large = icosphere(2), icosphere(4)
+    for surface in (small, large):
+        intersecting_triangles(surface)
+    assert limits[1] - limits[0] >= 1e-3 * (len(large.vertices) - len(small.vertices))
 
 
 @pytest.fixture(scope="module")

@@ -11,10 +11,11 @@ import trimesh
 from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import lsqr
 
-from quadgraph import display_map, qgraph_file
+from quadgraph import display_map, graph, ordering, qgraph_file
 from quadgraph.bake import BakeOptions, bake
 from quadgraph.errors import InputError
-from quadgraph.surface import Surface
+from quadgraph.reference import meshes
+from quadgraph.surface import Surface, TetMesh
 
 _ACCURACY = 1e-8  # of the least squares; fields are in single precision
 
@@ -71,9 +72,9 @@ def chosen(subjects: Sequence[Subject], names: Sequence[str]) -> list[Subject]:
     return [known[name] for name in names or known]
 
 
-def baked(subject: Subject, meshes: Path, folder: Path) -> Path:
+def baked(subject: Subject, mesh_folder: Path, folder: Path) -> Path:
     """Bake a subject into `folder`, without what its faces see. Raises as quadgraph.bake.bake does."""
-    source = meshes / subject.mesh
+    source = mesh_folder / subject.mesh
     if subject.mesh in SHAPES:
         source = folder / f"{subject.name}.ply"
         SHAPES[subject.mesh](subject.detail).export(source)
@@ -94,6 +95,22 @@ def without_finest(path: Path, count: int, output: Path) -> Path:
     metadata = file.metadata | {"levels": file.metadata["levels"][count:]}
     qgraph_file.write(output, metadata, kept | _display(kept["level0/vertices"], kept["level0/faces"]))
     return output
+
+
+def refined(path: Path, count: int, output: Path) -> Path:
+    """Write the levels of a .qgraph below `count` levels more, each the finest so far with every tet cut in eight.
+
+    The body's shape stays as it is. Nodes are where a mesh has them that has not been relaxed.
+    """
+    sections = qgraph_file.read(path).sections
+    graphs, level = [], 0
+    while f"level{level}/tets" in sections:
+        vertices, tets = (sections[f"level{level}/{field}"] for field in ("vertices", "tets"))
+        graphs.append(graph.build(TetMesh(vertices.astype(np.float64), tets.astype(np.int64), mesher=None)))
+        level += 1
+    for _ in range(count):
+        graphs.insert(0, ordering.in_blocks(meshes.refined(graphs[0])))
+    return meshes.write(output, graphs)
 
 
 def _display(vertices: np.ndarray, faces: np.ndarray) -> dict[str, np.ndarray]:

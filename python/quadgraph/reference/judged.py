@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import tempfile
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
 from quadgraph.commands.scene import load_core
 from quadgraph.errors import InputError
 from quadgraph.reference import chains
+from quadgraph.reference.chains import Subject
 
 if TYPE_CHECKING:
     from quadgraph._core import Engine, QuadGraph
@@ -70,10 +73,9 @@ class Judged:
         coarse = chains.without_finest(path, finer, path.with_name(f"{path.stem}-{finer}.qgraph"))
         self._coarse: Engine = core.Engine(coarse, device=device)
 
-    @property
-    def vertices(self) -> int:
-        """Vertices on the surface of the judged level."""
-        return self.graph.levels[self.finer].surface_vertex_count
+    def vertices_of(self, level: int) -> int:
+        """Vertices on the surface of a level, counted from the judged one."""
+        return self.graph.levels[self.finer + level].surface_vertex_count
 
     def light(self, case: Case) -> None:
         """Set the case's material and lights on both, and find the truth."""
@@ -105,6 +107,31 @@ class Judged:
                 share = _squares(weight, difference) / _squares(weight, truth["exitance"])
                 errors[part] = float(np.sqrt(share / (1 - 4.0 ** -(self.finer + finest))))
         return errors
+
+
+Body = TypeVar("Body")
+
+
+def judged(
+    subjects: Sequence[Subject],
+    cases: Sequence[Case],
+    meshes: Path,
+    body_of: Callable[[Path], Body],
+    rows_of: Callable[[Body, Case], list[dict[str, Any]]],
+) -> list[dict[str, Any]]:
+    """Bake each subject with mesh files from the folder `meshes`, and collect the rows of its cases.
+
+    body_of: from the baked file, in a folder that does not outlive the subject. Raises InputError for a mesh that
+    cannot be read.
+    """
+    rows = []
+    for subject in subjects:
+        with tempfile.TemporaryDirectory(prefix="quadgraph-study-") as folder:
+            body = body_of(chains.baked(subject, meshes, Path(folder)))
+            for case in cases:
+                if case.subject == subject.name:
+                    rows += rows_of(body, case)
+    return rows
 
 
 def _squares(weight: np.ndarray, values: np.ndarray) -> float:

@@ -78,7 +78,7 @@ def ball(radius: float, refinements: int, subdivisions: int = 3) -> Graph:
     shape = Surface(np.array(surface.vertices, np.float64), np.array(surface.faces, np.int64)).rounded()
     mesh = graph.build(tetrahedralise(shape, mesher="tetgen"))
     for _ in range(refinements):
-        mesh = refined_sphere(mesh, radius)
+        mesh = refined(mesh, lambda p: radius * p / np.linalg.norm(p, axis=1)[:, None])
     return mesh
 
 
@@ -143,16 +143,20 @@ def face_frames(level: Graph) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return corners.mean(axis=1), normal / length[:, None], length / 2
 
 
-def refined_sphere(mesh: Graph, radius: float) -> Graph:
-    """Cut every tet into eight and put new surface vertices on the sphere: the edge length halves everywhere."""
+def refined(mesh: Graph, moved: Callable[[np.ndarray], np.ndarray] | None = None) -> Graph:
+    """Cut every tet into eight and every outside face into four: the edge length halves everywhere.
+
+    moved: from the new vertices on the surface (n, 3), mm, to where they go; None leaves the shape as it is.
+    """
     vertices, tets = mesh.vertices, mesh.tets
     pairs = np.array([(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)])
     edges = np.sort(tets[:, pairs].reshape(-1, 2), axis=1)
     unique, inverse = np.unique(edges, axis=0, return_inverse=True)
     middles = vertices[unique].mean(axis=1)
-    outside = np.sort(mesh.faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-    on_surface = np.isin(unique @ [len(vertices), 1], outside @ [len(vertices), 1])
-    middles[on_surface] *= radius / np.linalg.norm(middles[on_surface], axis=1)[:, None]
+    if moved:
+        outside = np.sort(mesh.faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+        on_surface = np.isin(unique @ [len(vertices), 1], outside @ [len(vertices), 1])
+        middles[on_surface] = moved(middles[on_surface])
     middle = len(vertices) + inverse.reshape(-1, 6)
     points = np.concatenate([vertices, middles])
     corners = [np.column_stack([tets[:, k], middle[:, (pairs == k).any(axis=1)]]) for k in range(4)]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -12,9 +11,12 @@ from rich.table import Table
 
 from quadgraph.reference import chains
 from quadgraph.reference.chains import Subject
-from quadgraph.reference.judged import PARTS, Case, Judged
+from quadgraph.reference.judged import PARTS, Case, Judged, judged
 
 FINER = 2  # the truth has sixteen times the vertices
+CONFIDENCE = 0.95
+# Of a solve to a tolerance, and of one to an error, which brings every level to a quarter of it: none is good enough.
+MODES: dict[str, dict[str, float]] = {"--tolerance": {}, "--error": {"error": 0.002}}
 
 SUBJECTS = (
     Subject("sphere", "sphere", 20),
@@ -70,14 +72,20 @@ CASES = (
 )
 
 
-def judge(body: Judged, case: Case) -> dict[str, Any]:
-    """One row: the engine's estimate of its error and the true one, by part."""
+def judge(body: Judged, case: Case) -> list[dict[str, Any]]:
+    """A row per mode: the engine's estimate of its error and the true one, by part."""
     body.light(case)
-    report = body.solve()
-    true = body.true_error()
+    return [_row(body, case, mode) for mode in MODES]
+
+
+def _row(body: Judged, case: Case, mode: str) -> dict[str, Any]:
+    report = body.solve(**MODES[mode])
+    true = body.true_error(report["finest"])
     return asdict(case) | {
+        "mode": mode,
         "model": report["model"],
-        "vertices": body.vertices,
+        "vertices": body.vertices_of(report["finest"]),
+        "work": report["work"],
         "estimate": {part: report["error"][part] for part in true},
         "true": true,
     }
@@ -88,16 +96,18 @@ def run(device: str, meshes: Path, names: list[str]) -> dict[str, Any]:
 
     Raises InputError for an unknown name or a mesh that cannot be read.
     """
-    rows = []
-    for subject in chains.chosen(SUBJECTS, names):
-        with tempfile.TemporaryDirectory(prefix="quadgraph-study-") as folder:
-            body = Judged(chains.baked(subject, meshes, Path(folder)), device, FINER)
-            rows += [judge(body, case) for case in CASES if case.subject == subject.name]
+    rows = judged(chains.chosen(SUBJECTS, names), CASES, meshes, lambda path: Judged(path, device, FINER), judge)
     return {"rows": rows, "statistics": statistics(rows)}
 
 
-def statistics(rows: list[dict[str, Any]]) -> dict[str, Any]:
-    """Of the ratios of estimate to truth: their number, the share within a factor of 2, the extremes and the median."""
+def statistics(rows: list[dict[str, Any]]) -> dict[str, dict[str, dict[str, float]]]:
+    """By mode and part, of the ratios of estimate to truth: their number, the share within a factor of 2, the extremes,
+    the median, and `confidence`, the factor on the estimate that 95% of the truths do not exceed.
+    """
+    return {mode: found for mode in MODES if (found := _by_part([row for row in rows if row["mode"] == mode]))}
+
+
+def _by_part(rows: list[dict[str, Any]]) -> dict[str, dict[str, float]]:
     result = {}
     for part in PARTS:
         ratios = np.array([row["estimate"][part] / row["true"][part] for row in rows if part in row["true"]])
@@ -109,22 +119,27 @@ def statistics(rows: list[dict[str, Any]]) -> dict[str, Any]:
             "least": float(ratios.min()),
             "median": float(np.median(ratios)),
             "greatest": float(ratios.max()),
+            "confidence": float(np.quantile(1 / ratios, CONFIDENCE)),
         }
     return result
 
 
 def tables(record: dict[str, Any]) -> list[Table]:
     """All cases, and the statistics."""
-    columns = ("body", "vertices", "material", "light", "model")
+    columns = ("body", "vertices", "material", "light", "model", "mode")
     numbers = ("estimate", "true", "ratio", "estimate, unlit", "true, unlit", "ratio, unlit")
     cases = Table(*columns, *numbers, title="relative RMS error of M: the engine's estimate, and the truth")
     for row in record["rows"]:
         cells = [cell for part in PARTS for cell in _cells(row, part)]
-        cases.add_row(row["subject"], f"{row['vertices']:,}", row["material"], row["light"], row["model"], *cells)
-    summary = Table("part", "cases", "within a factor of 2", "least", "median", "greatest", title="estimate over truth")
-    for part, found in record["statistics"].items():
-        extremes = (f"{found[key]:.2f}" for key in ("least", "median", "greatest"))
-        summary.add_row(part, str(found["count"]), f"{found['within_2']:.0%}", *extremes)
+        names = [row[key] for key in ("material", "light", "model", "mode")]
+        cases.add_row(row["subject"], f"{row['vertices']:,}", *names, *cells)
+    extremes = ("least", "median", "greatest", "confidence")
+    heads = (*extremes[:-1], f"{CONFIDENCE:.0%} of truth over estimate")
+    summary = Table("mode", "part", "cases", "within a factor of 2", *heads, title="estimate over truth")
+    for mode, parts in record["statistics"].items():
+        for part, found in parts.items():
+            cells = (f"{found[key]:.2f}" for key in extremes)
+            summary.add_row(mode, part, str(found["count"]), f"{found['within_2']:.0%}", *cells)
     return [cases, summary]
 
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import tempfile
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +10,7 @@ from rich.table import Table
 
 from quadgraph.reference import chains
 from quadgraph.reference.chains import Subject
-from quadgraph.reference.judged import PARTS, Case, Judged
+from quadgraph.reference.judged import PARTS, Case, Judged, judged
 
 FINER = 1  # the truth has four times the vertices: so few are left where errors of 1% are
 ASKED = (0.05, 0.02, 0.01)  # relative RMS error of M
@@ -21,27 +20,62 @@ SUBJECTS = (
     Subject("fertility", "fertility.ply", 8),
     Subject("igea", "igea.ply", 5, 28000),
     Subject("armadillo", "armadillo.ply", 8, 28000),
+    Subject("gargoyle", "gargoyle.ply", 20),
+    Subject("fandisk", "fandisk.ply", 20),
+    Subject("dragon", "dragon.ply", 30, 28000),
 )
 CASES = (
     Case("spot", "skin1", "sun and sky"),
     Case("fertility", "ketchup", "three"),
     Case("igea", "skin2", "sun"),
     Case("armadillo", "ketchup", "sun"),
+    Case("gargoyle", "ketchup", "lamp"),
+    Case("fandisk", "ketchup", "sun and sky"),
+    Case("dragon", "ketchup", "near lamp and sky"),
 )
 
 
-def judge(body: Judged, case: Case, asked: float) -> dict[str, Any]:
-    """One row: what was asked for, whether the engine says that it got there, and the true error by part."""
-    report = body.solve(error=asked)
-    estimate = {part: report["error"][part] for part in PARTS}
+@dataclass(frozen=True)
+class Pair:
+    """A baked body without its finest level, under two truths: its own mesh cut finer, and that finest level.
+
+    The second has relief that the judged file does not: no solve of that file can tell what it lacks.
+    """
+
+    own: Judged
+    original: Judged
+
+    @classmethod
+    def of(cls, path: Path, device: str) -> Pair:
+        """Of a baked chain. Raises InputError as Judged does."""
+        judged_file = chains.without_finest(path, FINER, path.with_name(f"{path.stem}-judged.qgraph"))
+        own = chains.refined(judged_file, FINER, path.with_name(f"{path.stem}-refined.qgraph"))
+        return cls(Judged(own, device, FINER), Judged(path, device, FINER))
+
+    def light(self, case: Case) -> None:
+        """Set the case's material and lights, and find the truths."""
+        self.own.light(case)
+        self.original.light(case)
+
+
+def judge(body: Pair, case: Case) -> list[dict[str, Any]]:
+    """A row per error asked for: whether the engine says that it got there, and the true error by part."""
+    body.light(case)
+    return [_row(body, case, asked) for asked in ASKED]
+
+
+def _row(body: Pair, case: Case, asked: float) -> dict[str, Any]:
+    report = body.own.solve(error=asked)
+    beside = body.original.solve(error=asked)
     return asdict(case) | {
         "model": report["model"],
         "asked": asked,
-        "reached": max(estimate.values()) <= asked,
-        "vertices": body.graph.levels[body.finer + report["finest"]].surface_vertex_count,
+        "reached": not report["missed"],
+        "vertices": body.own.vertices_of(report["finest"]),
         "work": report["work"],
-        "estimate": estimate,
-        "true": body.true_error(report["finest"]),
+        "estimate": {part: report["error"][part] for part in PARTS},
+        "true": body.own.true_error(report["finest"]),
+        "of_original": body.original.true_error(beside["finest"]),
     }
 
 
@@ -50,22 +84,15 @@ def run(device: str, meshes: Path, names: list[str]) -> dict[str, Any]:
 
     Raises InputError for an unknown name or a mesh that cannot be read.
     """
-    rows = []
-    for subject in chains.chosen(SUBJECTS, names):
-        with tempfile.TemporaryDirectory(prefix="quadgraph-study-") as folder:
-            body = Judged(chains.baked(subject, meshes, Path(folder)), device, FINER)
-            for case in CASES:
-                if case.subject == subject.name:
-                    body.light(case)
-                    rows += [judge(body, case, asked) for asked in ASKED]
-    return {"rows": rows}
+    subjects = chains.chosen(SUBJECTS, names)
+    return {"rows": judged(subjects, CASES, meshes, lambda path: Pair.of(path, device), judge)}
 
 
 def tables(record: dict[str, Any]) -> list[Table]:
     """One row per body and error asked for."""
     columns = ("body", "material", "light", "model", "asked", "reached", "vertices", "work")
-    found = [(what, part) for what in ("estimate", "true") for part in PARTS]
-    table = Table(*columns, *(", ".join(pair) for pair in found), title="--error")
+    found = [(what, part) for what in ("estimate", "true", "of_original") for part in PARTS]
+    table = Table(*columns, *(", ".join(pair).replace("_", " ") for pair in found), title="--error")
     for row in record["rows"]:
         numbers = [f"{row[what][part]:.2%}" if part in row[what] else "" for what, part in found]
         names = [row[key] for key in ("subject", "material", "light", "model")]
