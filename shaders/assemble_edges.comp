@@ -3,6 +3,7 @@
 #include "assembly_shared.h"
 #include "optics.h"
 #include "entries.glsl"
+#include "stored_entries.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { AssembleEdgesPush push; };
@@ -11,23 +12,23 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= push.count) return;
   vec3 stiffness = vec3(0), absorption = vec3(0), relaxation = vec3(0);
-  Optical optical = push.optical.at[0];
-  uint k = push.ring_offset.at[i], end = push.ring_offset.at[i + 1u];
+  Optical optical = load_optical(push.optical, 0);
+  uint k = load_uint(push.ring_offset, i), end = load_uint(push.ring_offset, i + 1u);
   for (; k < end; ++k) {
-    uint element = push.ring.at[k];
+    uint element = load_uint(push.ring, k);
     uint index = element >> 3u, edge = element & 7u;
     if (edge == RING_FACE) break;
-    if (push.even == 0u) optical = push.optical.at[index];
-    float mass = push.tet_shape.at[TET_SHAPE * index + 6u] / 20.0;
-    stiffness += kappa(optical) * push.tet_shape.at[TET_SHAPE * index + edge];
+    if (push.even == 0u) optical = load_optical(push.optical, index);
+    float mass = load_float(push.tet_shape, TET_SHAPE * index + 6u) / 20.0;
+    stiffness += kappa(optical) * load_float(push.tet_shape, TET_SHAPE * index + edge);
     absorption += optical.sigma_a * mass;
     relaxation += relaxation_of(optical) * mass;
   }
   float area = 0.0;
-  for (; k < end; ++k) area += push.face_area.at[push.ring.at[k] >> 3u] / 12.0;
+  for (; k < end; ++k) area += load_float(push.face_area, load_uint(push.ring, k) >> 3u) / 12.0;
   Entry entry =
       sum_of(entry_of(stiffness, absorption, relaxation), boundary_entry(push.boundary, vec3(area)));
-  uvec2 entries = push.edge_entry.at[i];
-  push.rows.weight.at[entries.x] = entry;
-  push.rows.weight.at[entries.y] = entry;
+  uvec2 entries = load_uvec2(push.edge_entry, i);
+  store_entry(push.rows, entries.x, entry);
+  store_entry(push.rows, entries.y, entry);
 }

@@ -3,6 +3,7 @@
 #include "assembly_shared.h"
 #include "optics.h"
 #include "entries.glsl"
+#include "stored_entries.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { AssembleEvenPush push; };
@@ -10,19 +11,18 @@ layout(push_constant, scalar) uniform Block { AssembleEvenPush push; };
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= push.count) return;
-  Optical optical = push.optical.at[0];
+  Optical optical = load_optical(push.optical, 0);
   vec3 kappa_all = kappa(optical), relaxation = relaxation_of(optical);
   uint slice = i / SLICE_ROWS;
-  uint end = push.rows.slice_offset.at[slice + 1u];
+  uint end = load_uint(push.rows.slice_offset, slice + 1u);
   Entry sum = entry_of(vec3(0), vec3(0), vec3(0));
-  for (uint e = push.rows.slice_offset.at[slice] + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
-    vec2 shape = push.entry_shape.at[e];
+  for (uint e = load_uint(push.rows.slice_offset, slice) + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
+    vec2 shape = load_vec2(push.entry_shape, e);
     Entry entry = entry_of(shape.x * kappa_all, shape.y * optical.sigma_a, shape.y * relaxation);
-    if (e < push.area_count) entry = sum_of(entry, boundary_entry(push.boundary, vec3(push.entry_area.at[e])));
-    push.rows.weight.at[e] = entry;
-    sum = sum_of(sum, entry);
+    if (e < push.area_count) entry = sum_of(entry, boundary_entry(push.boundary, vec3(load_float(push.entry_area, e))));
+    sum = sum_of(sum, store_entry(push.rows, e, entry));
   }
-  vec2 shape = push.row_shape.at[i];
+  vec2 shape = load_vec2(push.row_shape, i);
   Entry row_sum = sum_of(entry_of(vec3(0), shape.x * optical.sigma_a, shape.x * relaxation),
                          boundary_entry(push.boundary, vec3(shape.y)));
   push.rows.row_sum.at[i] = row_sum;

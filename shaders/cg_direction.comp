@@ -11,12 +11,12 @@ void main() {
   if (i >= push.count) return;
   Field direction;
   if (push.multigrid == 1u) {
-    direction = push.z.at[i];
+    direction = load_field(push.z, i);
   } else {
-    direction = solved(push.diagonal.at[i], push.r.at[i]);
+    direction = solved(load_block(push.diagonal, i), load_field(push.r, i));
   }
   // The old direction of the first iteration is no number one may count on.
   vec3 beta = push.state.at[0].beta;
-  if (beta != vec3(0)) direction = add_scaled(direction, beta, push.p.at[i]);
+  if (beta != vec3(0)) direction = add_scaled(direction, beta, load_field(push.p, i));
   push.p.at[i] = direction;
 }

@@ -22,7 +22,7 @@ void main() {
   if (i < push.count) {
     Field result = row_times(push.rows, push.p, i);
     push.product.at[i] = result;
-    energy = product(push.p.at[i], result);
+    energy = product(load_field(push.p, i), result);
   }
   vec3 total;
   if (!reduce_dispatch(push.reduction, energy, total)) return;

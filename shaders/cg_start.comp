@@ -20,9 +20,13 @@ void check(float worst) {
   float recursive = push.tolerance < SMALLEST_CHANGE ? 0.0 : confirmed * push.state.at[0].residual;
   if (worst <= max(recursive, push.tolerance)) {
     stop(push.state, SOLVE_CONVERGED, 0u);
-  } else if (worst > 0.5 * before) {
+  } else if (push.state.at[0].restarts > 0u && worst > 0.5 * before) {
     stop(push.state, SOLVE_STAGNATED, 0u);
   } else {
+    // What the recursion has lost may be little of the residual and most of the energy that is missing: a restart has
+    // to show anew how fast the surface changes.
+    push.state.at[0].restarts += 1u;
+    push.state.at[0].looks = 0u;
     open(push.state);
   }
 }
@@ -32,6 +36,7 @@ void start(float worst) {
   push.state.at[0].iterations = 0u;
   push.state.at[0].slow = 0u;
   push.state.at[0].looks = 0u;
+  push.state.at[0].restarts = 0u;
   push.state.at[0].change = vec2(0);
   push.state.at[0].algebraic = vec2(-1);
   if (worst > 0.0) {
@@ -65,7 +70,7 @@ void main() {
   vec3 own = vec3(0);
   if (i < push.count) {
     Field r = residual(push.rows, push.b, push.x, i);
-    Field z = solved(push.rows.diagonal.at[i], r);
+    Field z = solved(load_block(push.rows.diagonal, i), r);
     push.r.at[i] = r;
     if (push.multigrid == 0u) push.p.at[i] = z;
     own = product(r, z);

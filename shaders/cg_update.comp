@@ -25,10 +25,10 @@ void main() {
   vec3 own = vec3(0);
   if (i < push.count) {
     vec3 alpha = push.state.at[0].alpha;
-    push.x.at[i] = add_scaled(push.x.at[i], alpha, push.p.at[i]);
-    Field r = add_scaled(push.r.at[i], -alpha, push.product.at[i]);
+    push.x.at[i] = add_scaled(load_field(push.x, i), alpha, load_field(push.p, i));
+    Field r = add_scaled(load_field(push.r, i), -alpha, load_field(push.product, i));
     push.r.at[i] = r;
-    own = product(r, solved(push.diagonal.at[i], r));
+    own = product(r, solved(load_block(push.diagonal, i), r));
   }
   vec3 square;
   if (!reduce_dispatch(push.reduction, own, square)) return;

@@ -12,15 +12,15 @@ layout(push_constant, scalar) uniform Block { ChebyshevPush push; };
 Field step_at(uint i) {
   Field r;
   if (push.zero == 1u) {
-    r = push.f.at[i];
+    r = load_field(push.f, i);
   } else {
     r = residual(push.rows, push.f, push.from, i);
   }
-  Field d = scaled(0.5 * push.add * push.damping.at[0], solved(push.rows.diagonal.at[i], r));
-  if (push.first == 0u) d = add_scaled(d, vec3(push.keep), push.d.at[i]);
+  Field d = scaled(0.5 * push.add * load_vec3(push.damping, 0), solved(load_block(push.rows.diagonal, i), r));
+  if (push.first == 0u) d = add_scaled(d, vec3(push.keep), load_field(push.d, i));
   if (push.last == 0u) push.d.at[i] = d;
   Field x = d;
-  if (push.zero == 0u) x = add(push.from.at[i], d);
+  if (push.zero == 0u) x = add(load_field(push.from, i), d);
   if (push.zero == 0u || push.last == 1u) push.to.at[i] = x;
   return x;
 }
@@ -28,7 +28,7 @@ Field step_at(uint i) {
 void main() {
   uint i = gl_GlobalInvocationID.x;
   vec3 own = vec3(0);
-  if (i < push.count) own = product(push.f.at[i], step_at(i));
+  if (i < push.count) own = product(load_field(push.f, i), step_at(i));
   if (push.reduce == 0u) return;
   vec3 rz;
   if (!reduce_dispatch(push.reduction, own, rz)) return;

@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "solve_shared.h"
 #include "fields.glsl"
+#include "stored_entries.glsl"
 #include "reduce.glsl"
 #include "convergence.glsl"
 
@@ -10,13 +11,14 @@ layout(push_constant, scalar) uniform Block { CoarseSolvePush push; };
 
 Field residual_at(CoherentFields x, uint i) {
   uint slice = i / SLICE_ROWS;
-  uint end = push.rows.slice_offset.at[slice + 1u];
-  Field own = x.at[i];
-  Field sum = times(push.rows.row_sum.at[i], own);
-  for (uint e = push.rows.slice_offset.at[slice] + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
-    sum = add(sum, times(push.rows.weight.at[e], difference(x.at[push.rows.column.at[e]], own)));
+  uint end = load_uint(push.rows.slice_offset, slice + 1u);
+  Field own = load_coherent(x, i);
+  Field sum = times(load_block(push.rows.row_sum, i), own);
+  for (uint e = load_uint(push.rows.slice_offset, slice) + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
+    StoredEntry stored = stored_entry(push.rows, e);
+    sum = add(sum, times(entry_in(stored), difference(load_coherent(x, column_of(stored)), own)));
   }
-  return difference(push.f.at[i], sum);
+  return difference(load_field(push.f, i), sum);
 }
 
 // One step on all rows; the writes are seen by all before the next.
@@ -24,17 +26,17 @@ void iterate(CoherentFields from, CoherentFields to, bool zero, float keep, vec3
   for (uint i = gl_LocalInvocationID.x; i < push.count; i += WORKGROUP_SIZE) {
     Field r;
     if (zero) {
-      r = push.f.at[i];
+      r = load_field(push.f, i);
     } else {
       r = residual_at(from, i);
     }
-    Field d = scaled(add_share, solved(push.rows.diagonal.at[i], r));
-    if (!zero) d = add_scaled(d, vec3(keep), push.d.at[i]);
+    Field d = scaled(add_share, solved(load_block(push.rows.diagonal, i), r));
+    if (!zero) d = add_scaled(d, vec3(keep), load_coherent(push.d, i));
     push.d.at[i] = d;
     if (zero) {
       to.at[i] = d;
     } else {
-      to.at[i] = add(from.at[i], d);
+      to.at[i] = add(load_coherent(from, i), d);
     }
   }
   memoryBarrierBuffer();
@@ -42,7 +44,7 @@ void iterate(CoherentFields from, CoherentFields to, bool zero, float keep, vec3
 }
 
 void main() {
-  vec3 inverse = 0.5 * push.damping.at[0];  // 1/lambda
+  vec3 inverse = 0.5 * load_vec3(push.damping, 0);  // 1/lambda
   float middle = 0.5 * (1.0 + push.ratio), radius = 0.5 * (1.0 - push.ratio);
   float rho = radius / middle;
   iterate(push.z, push.other, true, 0.0, inverse / middle);
@@ -60,7 +62,7 @@ void main() {
   if (push.reduce == 0u) return;
   vec3 own = vec3(0);
   for (uint i = gl_LocalInvocationID.x; i < push.count; i += WORKGROUP_SIZE) {
-    own += product(push.f.at[i], push.z.at[i]);
+    own += product(load_field(push.f, i), load_coherent(push.z, i));
   }
   vec3 rz = reduce_workgroup(own);
   if (gl_LocalInvocationID.x == 0u) take_preconditioned(push.state, rz);

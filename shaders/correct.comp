@@ -9,5 +9,5 @@ layout(push_constant, scalar) uniform Block { CorrectPush push; };
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i == 0u) push.state.at[0].iterations += 1u;
-  if (i < push.count) push.x.at[i] = add(push.x.at[i], push.z.at[i]);
+  if (i < push.count) push.x.at[i] = add(load_field(push.x, i), load_field(push.z, i));
 }

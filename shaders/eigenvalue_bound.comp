@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "assembly_shared.h"
 #include "fields.glsl"
+#include "stored_entries.glsl"
 #define REDUCE(a, b) max(a, b)
 #define REDUCE_ZERO vec3(0)
 #include "reduce.glsl"
@@ -32,7 +33,7 @@ Field one() {
 
 Field start_or(Fields y, uint i) {
   if (push.first == 1u) return one();
-  return y.at[i];
+  return load_field(y, i);
 }
 
 vec3 largest_ratio(Field z, Field y) {
@@ -48,12 +49,13 @@ void main() {
   vec3 own = vec3(0);
   if (i < push.count) {
     uint slice = i / SLICE_ROWS;
-    uint end = push.rows.slice_offset.at[slice + 1u];
-    Entry diagonal = push.rows.diagonal.at[i];
+    uint end = load_uint(push.rows.slice_offset, slice + 1u);
+    Entry diagonal = load_block(push.rows.diagonal, i);
     Field y = start_or(push.y, i);
     Field z = y;
-    for (uint e = push.rows.slice_offset.at[slice] + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
-      z = add(z, magnitude_times(diagonal, push.rows.weight.at[e], start_or(push.y, push.rows.column.at[e])));
+    for (uint e = load_uint(push.rows.slice_offset, slice) + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
+      StoredEntry stored = stored_entry(push.rows, e);
+      z = add(z, magnitude_times(diagonal, entry_in(stored), start_or(push.y, column_of(stored))));
     }
     push.z.at[i] = z;
     own = largest_ratio(z, y);
@@ -62,6 +64,6 @@ void main() {
   if (!reduce_dispatch(push.reduction, own, largest)) return;
   if (gl_LocalInvocationID.x != 0u) return;
   vec3 before = vec3(ELEMENT_BOUND);
-  if (push.first == 0u) before = 2.0 / push.damping.at[0];
+  if (push.first == 0u) before = 2.0 / load_vec3(push.damping, 0);
   push.damping.at[0] = 2.0 / min(before, largest);
 }

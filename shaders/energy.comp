@@ -8,18 +8,19 @@ layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { EnergyPush push; };
 
 vec3 absorbed(uint tet) {
-  uvec4 corners = push.tets.at[tet];
-  vec3 p = push.vertices.at[corners.x];
-  vec3 e1 = push.vertices.at[corners.y] - p, e2 = push.vertices.at[corners.z] - p, e3 = push.vertices.at[corners.w] - p;
+  uvec4 corners = load_uvec4(push.tets, tet);
+  vec3 p = load_vec3(push.vertices, corners.x);
+  vec3 e1 = load_vec3(push.vertices, corners.y) - p, e2 = load_vec3(push.vertices, corners.z) - p;
+  vec3 e3 = load_vec3(push.vertices, corners.w) - p;
   float volume = abs(dot(e1, cross(e2, e3))) / 6.0;
   vec3 phi;
   if (push.fem == 1u) {
-    phi = 0.25 * (push.x.at[corners.x].phi + push.x.at[corners.y].phi + push.x.at[corners.z].phi +
-                  push.x.at[corners.w].phi);
+    phi = 0.25 * (load_field(push.x, corners.x).phi + load_field(push.x, corners.y).phi +
+                  load_field(push.x, corners.z).phi + load_field(push.x, corners.w).phi);
   } else {
-    phi = push.to_phi.at[tet] * push.x.at[tet].phi;
+    phi = load_vec3(push.to_phi, tet) * load_field(push.x, tet).phi;
   }
-  return push.optical.at[push.even == 1u ? 0u : tet].sigma_a * phi * push.scale.at[0].scale * volume;
+  return load_optical(push.optical, push.even == 1u ? 0u : tet).sigma_a * phi * push.scale.at[0].scale * volume;
 }
 
 void main() {
@@ -27,11 +28,11 @@ void main() {
   EnergySums sums = EnergySums(vec3(0), vec3(0), vec3(0));
   if (i < push.tet_count) sums.absorbed = absorbed(i);
   if (i < push.face_count) {
-    uvec3 corners = push.faces.at[i];
-    vec3 p = push.vertices.at[corners.x];
-    float area = 0.5 * length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));
-    vec3 q = push.face_kinds.at[i] == FACE_OPEN ? push.q.at[i] : vec3(0);
-    vec3 exitance = push.exitance.at[i] * push.clip.at[0].factor;
+    uvec3 corners = load_uvec3(push.faces, i);
+    vec3 p = load_vec3(push.vertices, corners.x);
+    float area = 0.5 * length(cross(load_vec3(push.vertices, corners.y) - p, load_vec3(push.vertices, corners.z) - p));
+    vec3 q = load_uint(push.face_kinds, i) == FACE_OPEN ? load_vec3(push.q, i) : vec3(0);
+    vec3 exitance = load_vec3(push.exitance, i) * push.clip.at[0].factor;
     push.exitance.at[i] = exitance;
     sums.entered = area * q;
     sums.exitance = area * exitance;

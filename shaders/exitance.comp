@@ -15,14 +15,14 @@ struct Surface {
 Surface at_face(uint f) {
   if (push.fem == 0u) {
     uint node = push.tet_count + f;
-    Field x = scaled(push.to_phi.at[node], push.x.at[node]);
+    Field x = scaled(load_vec3(push.to_phi, node), load_field(push.x, node));
     vec3 flux = outward_flux(push.boundary, x);
     return Surface(x.phi, flux, max(flux, vec3(0)));
   }
   Surface mean = Surface(vec3(0), vec3(0), vec3(0));
-  uvec3 corners = push.faces.at[f];
+  uvec3 corners = load_uvec3(push.faces, f);
   for (int k = 0; k < 3; ++k) {
-    Field x = push.x.at[corners[k]];
+    Field x = load_field(push.x, corners[k]);
     vec3 flux = outward_flux(push.boundary, x);
     mean.phi += x.phi / 3.0;
     mean.raw += flux / 3.0;
@@ -32,9 +32,9 @@ Surface at_face(uint f) {
 }
 
 float area_of(uint f) {
-  uvec3 corners = push.faces.at[f];
-  vec3 p = push.vertices.at[corners.x];
-  return 0.5 * length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));
+  uvec3 corners = load_uvec3(push.faces, f);
+  vec3 p = load_vec3(push.vertices, corners.x);
+  return 0.5 * length(cross(load_vec3(push.vertices, corners.y) - p, load_vec3(push.vertices, corners.z) - p));
 }
 
 void main() {
@@ -42,7 +42,7 @@ void main() {
   vec3 negative = vec3(0), positive = vec3(0);  // integrals over the face
   if (f < push.count) {
     Surface surface = Surface(vec3(0), vec3(0), vec3(0));
-    if (push.face_kinds.at[f] == FACE_OPEN) surface = at_face(f);
+    if (load_uint(push.face_kinds, f) == FACE_OPEN) surface = at_face(f);
     vec3 scale = push.scale.at[0].scale;
     push.phi.at[f] = surface.phi * scale;
     if (push.clipped == 1u) {
@@ -51,7 +51,8 @@ void main() {
       positive = area * surface.positive;
       push.exitance.at[f] = surface.positive * scale;
     } else {
-      vec3 reflected = push.face_kinds.at[f] == FACE_OPEN ? push.boundary.reflected * push.q.at[f] : vec3(0);
+      bool open = load_uint(push.face_kinds, f) == FACE_OPEN;
+      vec3 reflected = open ? push.boundary.reflected * load_vec3(push.q, f) : vec3(0);
       push.exitance.at[f] = surface.raw * scale - reflected;
     }
   }

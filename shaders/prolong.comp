@@ -9,9 +9,9 @@ layout(push_constant, scalar) uniform Block { ProlongPush push; };
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= push.count) return;
-  Field x = push.x.at[i];
+  Field x = load_field(push.x, i);
   for (uint k = push.width * i; k < push.width * (i + 1u); ++k) {
-    x = add_scaled(x, vec3(push.weight.at[k]), push.coarse_x.at[push.index.at[k]]);
+    x = add_scaled(x, vec3(load_float(push.weight, k)), load_field(push.coarse_x, load_uint(push.index, k)));
   }
   push.x.at[i] = x;
 }

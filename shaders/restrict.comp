@@ -10,8 +10,8 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= push.count) return;
   Field sum = no_field();
-  for (uint k = push.offset.at[i]; k < push.offset.at[i + 1u]; ++k) {
-    sum = add_scaled(sum, vec3(push.weight.at[k]), push.r.at[push.index.at[k]]);
+  for (uint k = load_uint(push.offset, i); k < load_uint(push.offset, i + 1u); ++k) {
+    sum = add_scaled(sum, vec3(load_float(push.weight, k)), load_field(push.r, load_uint(push.index, k)));
   }
   push.f.at[i] = sum;
 }

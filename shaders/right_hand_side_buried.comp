@@ -9,9 +9,10 @@ layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { RightHandSideBuriedPush push; };
 
 float volume_of(uint tet) {
-  uvec4 corners = push.tets.at[tet];
-  vec3 p = push.vertices.at[corners.x];
-  vec3 e1 = push.vertices.at[corners.y] - p, e2 = push.vertices.at[corners.z] - p, e3 = push.vertices.at[corners.w] - p;
+  uvec4 corners = load_uvec4(push.tets, tet);
+  vec3 p = load_vec3(push.vertices, corners.x);
+  vec3 e1 = load_vec3(push.vertices, corners.y) - p, e2 = load_vec3(push.vertices, corners.z) - p;
+  vec3 e3 = load_vec3(push.vertices, corners.w) - p;
   return abs(dot(e1, cross(e2, e3))) / 6.0;
 }
 
@@ -23,7 +24,7 @@ void main() {
     if (push.per_volume == 1u && power != vec3(0)) power /= volume_of(i);
     Field b = lit(power);
     push.b.at[i] = b;
-    square = product(b, solved(push.diagonal.at[i], b));
+    square = product(b, solved(load_block(push.diagonal, i), b));
   }
   vec3 norm;
   if (!reduce_dispatch(push.reduction, square, norm)) return;

@@ -10,11 +10,11 @@ layout(push_constant, scalar) uniform Block { RightHandSideFdmPush push; };
 
 // kappa_k q / (kappa_s d) at surface node `face`.
 vec3 surface_load(uint face) {
-  if (push.face_kinds.at[face] != FACE_OPEN) return vec3(0);
-  uint tet = push.face_tets.at[face];
-  float d = distance(push.nodes.at[tet], push.nodes.at[push.tet_count + face]);
-  vec3 kappa_ratio = kappa(push.optical.at[tet]) / kappa(push.optical.at[push.tet_count + face]);
-  return kappa_ratio * push.q.at[face] * push.scale.at[0].inverse / d;
+  if (load_uint(push.face_kinds, face) != FACE_OPEN) return vec3(0);
+  uint tet = load_uint(push.face_tets, face);
+  float d = distance(load_vec3(push.nodes, tet), load_vec3(push.nodes, push.tet_count + face));
+  vec3 kappa_ratio = kappa(load_optical(push.optical, tet)) / kappa(load_optical(push.optical, push.tet_count + face));
+  return kappa_ratio * load_vec3(push.q, face) * push.scale.at[0].inverse / d;
 }
 
 void main() {
@@ -23,7 +23,7 @@ void main() {
   if (i < push.count) {
     Field b = diffuse_source(push.boundary, i < push.tet_count ? vec3(0) : surface_load(i - push.tet_count));
     push.b.at[i] = b;
-    square = product(b, solved(push.diagonal.at[i], b));
+    square = product(b, solved(load_block(push.diagonal, i), b));
   }
   vec3 norm;
   if (!reduce_dispatch(push.reduction, square, norm)) return;

@@ -10,12 +10,12 @@ layout(push_constant, scalar) uniform Block { RightHandSideFemPush push; };
 // Integral of q against the basis function of surface vertex i: a third of each of its open faces.
 vec3 surface_load(uint i) {
   vec3 sum = vec3(0);
-  for (uint k = push.face_offset.at[i]; k < push.face_offset.at[i + 1u]; ++k) {
-    uint face = push.face_incidence.at[k];
-    uvec3 corners = push.faces.at[face];
-    vec3 p = push.vertices.at[corners.x];
-    float area = 0.5 * length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));
-    sum += push.q.at[face] * push.scale.at[0].inverse * area;
+  for (uint k = load_uint(push.face_offset, i); k < load_uint(push.face_offset, i + 1u); ++k) {
+    uint face = load_uint(push.face_incidence, k);
+    uvec3 corners = load_uvec3(push.faces, face);
+    vec3 p = load_vec3(push.vertices, corners.x);
+    float area = 0.5 * length(cross(load_vec3(push.vertices, corners.y) - p, load_vec3(push.vertices, corners.z) - p));
+    sum += load_vec3(push.q, face) * push.scale.at[0].inverse * area;
   }
   return sum / 3.0;
 }
@@ -26,7 +26,7 @@ void main() {
   if (i < push.count) {
     Field b = diffuse_source(push.boundary, i < push.surface_count ? surface_load(i) : vec3(0));
     push.b.at[i] = b;
-    square = product(b, solved(push.diagonal.at[i], b));
+    square = product(b, solved(load_block(push.diagonal, i), b));
   }
   vec3 norm;
   if (!reduce_dispatch(push.reduction, square, norm)) return;

@@ -9,11 +9,11 @@ layout(push_constant, scalar) uniform Block { RightHandSideFvPush push; };
 
 // area q at surface node `face`.
 vec3 surface_load(uint face) {
-  if (push.face_kinds.at[face] != FACE_OPEN) return vec3(0);
-  uvec3 corners = push.faces.at[face];
-  vec3 p = push.vertices.at[corners.x];
-  float area = 0.5 * length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));
-  return area * push.q.at[face] * push.scale.at[0].inverse;
+  if (load_uint(push.face_kinds, face) != FACE_OPEN) return vec3(0);
+  uvec3 corners = load_uvec3(push.faces, face);
+  vec3 p = load_vec3(push.vertices, corners.x);
+  float area = 0.5 * length(cross(load_vec3(push.vertices, corners.y) - p, load_vec3(push.vertices, corners.z) - p));
+  return area * load_vec3(push.q, face) * push.scale.at[0].inverse;
 }
 
 void main() {
@@ -22,7 +22,7 @@ void main() {
   if (i < push.count) {
     Field b = diffuse_source(push.boundary, i < push.tet_count ? vec3(0) : surface_load(i - push.tet_count));
     push.b.at[i] = b;
-    square = product(b, solved(push.diagonal.at[i], b));
+    square = product(b, solved(load_block(push.diagonal, i), b));
   }
   vec3 norm;
   if (!reduce_dispatch(push.reduction, square, norm)) return;

@@ -30,6 +30,7 @@ QG_ARRAY(Vec3s, vec3);
 QG_ARRAY(Vec4s, vec4);
 QG_ARRAY(Uvec3s, uvec3);
 QG_ARRAY(Uvec4s, uvec4);
+#include "load.glsl"
 #endif
 
 // Invocations per compute workgroup. Every device of Vulkan 1.3 offers at least 128; GPUs and lavapipe offer 1024.
@@ -61,6 +62,11 @@ struct Material {
 
 #ifndef __cplusplus
 QG_ARRAY(Opticals, Optical);
+
+Optical load_optical(Opticals a, uint i) {
+  if (TEXELS) return Optical(load_vec3(Vec3s(uvec2(a)), 2u * i), load_vec3(Vec3s(uvec2(a)), 2u * i + 1u));
+  return a.at[i];
+}
 #endif
 
 // evaluate_material.comp: optical[i] = material_at(nodes[i]).

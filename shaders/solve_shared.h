@@ -37,6 +37,32 @@ QG_ARRAY(Entries, Entry);
 layout(buffer_reference, scalar, buffer_reference_align = 4) coherent buffer CoherentFields {
   Field at[];
 };
+
+Field load_field(Fields a, uint i) {
+#if MOMENTS == 1
+  if (TEXELS) return Field(load_vec3(Vec3s(uvec2(a)), i));
+#else
+  if (TEXELS) return Field(load_vec3(Vec3s(uvec2(a)), 2u * i), load_vec3(Vec3s(uvec2(a)), 2u * i + 1u));
+#endif
+  return a.at[i];
+}
+
+Field load_coherent(CoherentFields a, uint i) {
+  if (TEXELS) return load_field(Fields(uvec2(a)), i);
+  return a.at[i];
+}
+
+Entry load_block(Entries a, uint i) {
+#if MOMENTS == 1
+  if (TEXELS) return Entry(load_vec3(Vec3s(uvec2(a)), i));
+#else
+  if (TEXELS) {
+    Vec3s parts = Vec3s(uvec2(a));
+    return Entry(load_vec3(parts, 3u * i), load_vec3(parts, 3u * i + 1u), load_vec3(parts, 3u * i + 2u));
+  }
+#endif
+  return a.at[i];
+}
 #endif
 
 // K of engine/graph/boundary.h, and what the diffuse source needs.
@@ -45,7 +71,8 @@ struct Boundary {
   float source, reflected;
 };
 
-// Operator rows of one level, method and model, without the right-hand side: with a_e = weight_e and j_e = column_e,
+// Operator rows of one level, method and model, without the right-hand side: with a_e and j_e, weight and column of
+// entry e (packing.h),
 //   (A x)_i = row_sum_i x_i + sum_e a_e (x_j_e - x_i)
 // over e = slice_offset[i / SLICE_ROWS] + i % SLICE_ROWS, in steps of SLICE_ROWS, to the next slice. Padding entries
 // name their own row with weight 0. Taking differences, the stiffness, which is all that a fine mesh's large entries
@@ -53,8 +80,7 @@ struct Boundary {
 // precision. `diagonal` = row_sum - sum of the weights is for preconditioning.
 struct RowsRef {
   QG_REF(Uints) slice_offset;
-  QG_REF(Uints) column;
-  QG_REF(Entries) weight;
+  QG_REF(Uints) entry;
   QG_REF(Entries) row_sum;
   QG_REF(Entries) diagonal;
 };
@@ -144,6 +170,7 @@ struct SolveState {
   float looked;     // residual at the last look at the surface
   uint looks;       // so far
   uint slow;        // of them in a row at which the residual had hardly fallen
+  uint restarts;    // from the true residual, after it had been found larger than the recursive one
 };
 
 // Powers of two, at least the power that enters: so squares neither overflow nor vanish, and shares of it fit in fixed

@@ -30,8 +30,8 @@ void main() {
   vec3 square = vec3(0);
   if (i < push.count) {
     Field r = residual(push.rows, push.b, push.from, i);
-    Field z = solved(push.rows.diagonal.at[i], r);
-    push.to.at[i] = add_scaled(push.from.at[i], push.damping.at[0], z);
+    Field z = solved(load_block(push.rows.diagonal, i), r);
+    push.to.at[i] = add_scaled(load_field(push.from, i), load_vec3(push.damping, 0), z);
     square = product(r, z);
   }
   if (push.sweeps == 0u) return;

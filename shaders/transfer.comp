@@ -11,11 +11,11 @@ void main() {
   if (row >= push.count) return;
   Field value = no_field();
   for (uint k = 0u; k < push.width; ++k) {
-    uint j = push.coarse_first + push.index.at[row * push.width + k];
-    vec3 factor = push.weight.at[row * push.width + k] * push.coarse_to_phi.at[j];
-    value = add_scaled(value, factor, push.coarse_x.at[j]);
+    uint j = push.coarse_first + load_uint(push.index, row * push.width + k);
+    vec3 factor = load_float(push.weight, row * push.width + k) * load_vec3(push.coarse_to_phi, j);
+    value = add_scaled(value, factor, load_field(push.coarse_x, j));
   }
   uint i = push.first + row;
-  vec3 factor = mix(vec3(0), 1.0 / push.to_phi.at[i], greaterThan(push.state.at[0].norm, vec3(0)));
+  vec3 factor = mix(vec3(0), 1.0 / load_vec3(push.to_phi, i), greaterThan(push.state.at[0].norm, vec3(0)));
   push.x.at[i] = scaled(factor, value);
 }

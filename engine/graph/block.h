@@ -39,6 +39,9 @@ inline Field operator*(const glm::dvec3& factor, const Field& a) {
 inline Field operator*(const Block& a, const Field& x) {
   return {a.a11 * x.phi + a.a12 * x.phi2, a.a12 * x.phi + a.a22 * x.phi2};
 }
+inline Block operator-(const Block& a, const Block& b) {
+  return {a.a11 - b.a11, a.a12 - b.a12, a.a22 - b.a22};
+}
 inline Block& operator+=(Block& a, const Block& b) {
   a.a11 += b.a11;
   a.a12 += b.a12;

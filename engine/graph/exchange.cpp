@@ -93,9 +93,10 @@ std::vector<double> sky_visibility(const Level& level) {
 }
 
 BouncedSolution solve_with_bounces(const Level& level, std::span<const gpu::Optical> optical, double eta,
-                                   std::span<const EnteringLight> lights, const SolveOptions& options) {
+                                   std::span<const EnteringLight> lights, const SolveOptions& options,
+                                   Entries entries) {
   BouncedSolution result;
-  result.solution = solve_reference(level, optical, eta, lights, options);
+  result.solution = solve_reference(level, optical, eta, lights, options, entries);
   if (!bounces_wanted(options) || !sees_itself(level)) return result;
   const glm::dvec3 entered = result.solution.energy.entered;
   Bounces bounces(level, eta, lights, result);
@@ -103,7 +104,7 @@ BouncedSolution solve_with_bounces(const Level& level, std::span<const gpu::Opti
   bool settled = false;
   for (std::uint32_t k = 0; k < most && !(settled && options.bounces == 0); ++k) {
     settled = bounces.advance(options.tolerance / 10);
-    result.solution = solve_reference(level, optical, eta, bounces.lights(), options);
+    result.solution = solve_reference(level, optical, eta, bounces.lights(), options, entries);
   }
   result.converged = settled;
   result.solution.energy.re_entered = result.solution.energy.entered - entered;

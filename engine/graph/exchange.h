@@ -38,6 +38,7 @@ inline constexpr std::uint32_t max_bounces = 64;
 // options.bounces > 0 so many bounces from none. Each takes M of the solve and E of the bounce before. None where
 // bounces_wanted is false or the level sees nothing of itself.
 BouncedSolution solve_with_bounces(const Level& level, std::span<const gpu::Optical> optical, double eta,
-                                   std::span<const EnteringLight> lights, const SolveOptions& options);
+                                   std::span<const EnteringLight> lights, const SolveOptions& options,
+                                   Entries entries = Entries::exact);
 
 }  // namespace quadgraph

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "engine/graph/error.h"
 #include "engine/graph/geometry.h"
 #include "engine/graph/source_walk.h"
+#include "engine/graph/stored_entries.h"
 #include "shaders/material.h"
 
 namespace quadgraph {
@@ -219,9 +221,12 @@ std::vector<gpu::Optical> evaluate_material(const Level& level, const gpu::Mater
 }
 
 ReferenceSolution solve_reference(const Level& level, std::span<const gpu::Optical> optical, double eta,
-                                  std::span<const EnteringLight> lights, const SolveOptions& options) {
+                                  std::span<const EnteringLight> lights, const SolveOptions& options, Entries entries) {
   const Problem problem{options.method, options.source, options.model, optical, eta};
-  const Rows rows = assemble(level, problem);
+  Rows rows = assemble(level, problem);
+  if (entries == Entries::stored && format_of(level, options.method) == EntryFormat::packed) {
+    rows = as_packed(std::move(rows), options.model);
+  }
   ReferenceSolution solution;
   const Vector b = load(level, problem, lights, solution);
   solution.report.unknowns = static_cast<std::uint32_t>(rows.size()) * (options.model == Model::sp3 ? 2 : 1);

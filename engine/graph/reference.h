@@ -32,16 +32,21 @@ struct EnteringLight {
   std::span<const glm::vec3> q;  // W/mm^2, one per outside face, even over the face; ignored at reflecting faces
 };
 
+// The entries of the operator in double precision, or rounded to what a device stores (stored_entries.h).
+enum class Entries { exact, stored };
+
 // Solves one level from zero to `options.tolerance` (cascade: plain relaxation on this level) under all `lights`
 // together. `options.model` must not be `automatic`; bounces are those of exchange.h, not of this. Throws InputError as
 // `assemble` does, SolverError if conjugate gradients meet a direction of non-positive energy or the residual is no
 // longer finite.
 ReferenceSolution solve_reference(const Level& level, std::span<const gpu::Optical> optical, double eta,
-                                  std::span<const EnteringLight> lights, const SolveOptions& options);
+                                  std::span<const EnteringLight> lights, const SolveOptions& options,
+                                  Entries entries = Entries::exact);
 
 inline ReferenceSolution solve_reference(const Level& level, std::span<const gpu::Optical> optical, double eta,
-                                         const EnteringLight& light, const SolveOptions& options) {
-  return solve_reference(level, optical, eta, std::span(&light, 1), options);
+                                         const EnteringLight& light, const SolveOptions& options,
+                                         Entries entries = Entries::exact) {
+  return solve_reference(level, optical, eta, std::span(&light, 1), options, entries);
 }
 
 }  // namespace quadgraph

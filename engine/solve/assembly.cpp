@@ -24,9 +24,9 @@ void assemble_fdm(Workspace& work, const LevelBuffers& level, const Boundary& bo
                                   .count = op.count,
                                   .tet_count = level.tet_count,
                                   .boundary = on_device(boundary)};
-  const std::uint64_t bytes = op.entries * (index_bytes + vec3_bytes + op.entry_bytes()) +
-                              op.count * (2 * vec3_bytes + sizeof(gpu::Optical) + op.entry_bytes());
-  work.recorder.dispatch(work.passes.assemble_fdm.of(op.model), push, op.count, "assembly", bytes);
+  const std::uint64_t bytes = op.entries * (vec3_bytes + 2 * op.entry_bytes()) +
+                              op.count * (2 * vec3_bytes + sizeof(gpu::Optical) + 2 * op.block_bytes());
+  work.recorder.dispatch(work.passes.assemble_fdm.of(op.model, op.format), push, op.count, "assembly", bytes);
 }
 
 void assemble_fv(Workspace& work, const LevelBuffers& level, const Boundary& boundary, OperatorBuffers& op) {
@@ -42,9 +42,10 @@ void assemble_fv(Workspace& work, const LevelBuffers& level, const Boundary& bou
                                  .tet_count = level.tet_count,
                                  .boundary = on_device(boundary)};
   const std::uint64_t link_bytes =
-      index_bytes + 2 * sizeof(glm::uvec4) + 5 * vec3_bytes + 2 * sizeof(gpu::Optical) + op.entry_bytes();
-  work.recorder.dispatch(work.passes.assemble_fv.of(op.model), push, op.count, "assembly",
-                         op.entries * link_bytes + op.count * (vec3_bytes + sizeof(gpu::Optical) + op.entry_bytes()) +
+      2 * sizeof(glm::uvec4) + 5 * vec3_bytes + 2 * sizeof(gpu::Optical) + 2 * op.entry_bytes();
+  work.recorder.dispatch(work.passes.assemble_fv.of(op.model, op.format), push, op.count, "assembly",
+                         op.entries * link_bytes +
+                             op.count * (vec3_bytes + sizeof(gpu::Optical) + 2 * op.block_bytes()) +
                              level.tet_count * (sizeof(glm::uvec4) + 4 * vec3_bytes));
 }
 
@@ -59,7 +60,6 @@ void measure(Workspace& work, const LevelBuffers& level, OperatorBuffers& op) {
   const std::uint64_t bytes = level.tet_count * (sizeof(glm::uvec4) + 4 * vec3_bytes + gpu::TET_SHAPE * sizeof(float)) +
                               level.face_count * (sizeof(glm::uvec3) + 3 * vec3_bytes + sizeof(float));
   work.recorder.dispatch(work.passes.shape, push, std::max(level.tet_count, level.face_count), "shape", bytes);
-  work.recorder.fill(op.weight, 0);  // padding stays so: no edge writes it
   op.measured = true;
 }
 
@@ -72,9 +72,9 @@ void assemble_even(Workspace& work, const LevelBuffers& level, const Boundary& b
                                    .count = op.count,
                                    .area_count = static_cast<std::uint32_t>(op.entry_area.size() / sizeof(float)),
                                    .boundary = on_device(boundary)};
-  work.recorder.dispatch(work.passes.assemble_even.of(op.model), push, op.count, "assembly",
+  work.recorder.dispatch(work.passes.assemble_even.of(op.model, op.format), push, op.count, "assembly",
                          op.entry_shape.size() + op.entry_area.size() + op.row_shape.size() +
-                             (op.entries + 2 * op.count) * op.entry_bytes());
+                             2 * (op.entries * op.entry_bytes() + op.count * op.block_bytes()));
 }
 
 void assemble_fem(Workspace& work, const LevelBuffers& level, const Boundary& boundary, bool even,
@@ -94,9 +94,9 @@ void assemble_fem(Workspace& work, const LevelBuffers& level, const Boundary& bo
   // Every tet is met at its six edges, then at its four corners.
   const std::uint64_t tet_bytes = index_bytes + (even ? 0 : sizeof(gpu::Optical)) + sizeof(float);
   const std::uint64_t face_bytes = index_bytes + sizeof(float);
-  work.recorder.dispatch(work.passes.assemble_edges.of(op.model), edges, op.edge_count, "assembly",
+  work.recorder.dispatch(work.passes.assemble_edges.of(op.model, op.format), edges, op.edge_count, "assembly",
                          6 * level.tet_count * (tet_bytes + sizeof(float)) + 3 * level.face_count * face_bytes +
-                             op.edge_count * (3 * index_bytes + 2 * op.entry_bytes()));
+                             op.edge_count * (3 * index_bytes + 4 * op.entry_bytes()));
   const gpu::AssembleFemPush push{.rows = op.rows(),
                                   .optical = level.optical.address(),
                                   .tet_shape = op.tet_shape.address(),
@@ -109,14 +109,14 @@ void assemble_fem(Workspace& work, const LevelBuffers& level, const Boundary& bo
                                   .surface_count = level.surface_vertex_count,
                                   .even = even ? 1u : 0u,
                                   .boundary = on_device(boundary)};
-  work.recorder.dispatch(work.passes.assemble_fem.of(op.model), push, op.count, "assembly",
+  work.recorder.dispatch(work.passes.assemble_fem.of(op.model, op.format), push, op.count, "assembly",
                          4 * level.tet_count * tet_bytes + 3 * level.face_count * face_bytes +
-                             (op.entries + 2 * op.count) * op.entry_bytes());
+                             2 * (op.entries * op.entry_bytes() + op.count * op.block_bytes()));
 }
 
 // Every right-hand side reads the diagonal and writes b.
 std::uint64_t row_bytes(const OperatorBuffers& op) {
-  return (op.entry_bytes() + op.field_bytes()) * op.count;
+  return (op.block_bytes() + op.field_bytes()) * op.count;
 }
 
 void load_fdm(Workspace& work, const LevelBuffers& level, const Boundary& boundary, OperatorBuffers& op) {
@@ -234,8 +234,8 @@ void record_damping(Workspace& work, Method method, OperatorBuffers& op) {
                                         .reduction = work.reduction.address(),
                                         .count = op.count,
                                         .first = step == 0 ? 1u : 0u};
-    work.recorder.dispatch(work.passes.eigenvalue_bound.of(op.model), push, op.count, "eigenvalue bound",
-                           op.product_bytes() + op.count * (op.entry_bytes() + 2 * op.field_bytes()));
+    work.recorder.dispatch(work.passes.eigenvalue_bound.of(op.model, op.format), push, op.count, "eigenvalue bound",
+                           op.product_bytes() + op.count * (op.block_bytes() + 2 * op.field_bytes()));
     std::swap(y, z);
   }
 }

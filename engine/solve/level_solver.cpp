@@ -70,8 +70,8 @@ LevelSolver::LevelSolver(Workspace& work, Operators& operators, const OperatorKe
 }
 
 template <typename Push>
-void LevelSolver::dispatch(ModelPass& pass, const Push& push, std::uint64_t gate, const char* name) {
-  work_.recorder.dispatch_indirect(pass.of(key_.model), push, op().state, gate, name);
+void LevelSolver::dispatch(LazyPass& pass, const Push& push, std::uint64_t gate, const char* name) {
+  work_.recorder.dispatch_indirect(pass, push, op().state, gate, name);
 }
 
 std::uint64_t LevelSolver::start_bytes() const {
@@ -92,10 +92,11 @@ void LevelSolver::dispatch_start(std::uint32_t what) {
                               .what = what,
                               .multigrid = multigrid_ ? 1u : 0u};
   if (what == gpu::START_FIRST || what == gpu::START_AGAIN) {
-    work_.recorder.dispatch(work_.passes.cg_start.of(key_.model), push, rows.count, "residual", start_bytes());
+    work_.recorder.dispatch(work_.passes.cg_start.of(rows.model, rows.format), push, rows.count, "residual",
+                            start_bytes());
   } else {
     const std::uint64_t gate = what == gpu::START_CHECK ? offsetof(gpu::SolveState, check) : gate_of(level_);
-    dispatch(work_.passes.cg_start, push, gate, "residual");
+    dispatch(work_.passes.cg_start.of(rows.model, rows.format), push, gate, "residual");
   }
 }
 
@@ -127,7 +128,7 @@ void LevelSolver::record_surface(const vk::Buffer& x, const vk::Buffer& before, 
   const std::uint64_t bytes =
       rows.surface_count * (rows.field_bytes() + sizeof(gpu::SurfaceShare) + 2 * std::uint64_t{sizeof(glm::vec3)});
   if (what == gpu::SURFACE_CHANGE) {
-    dispatch(work_.passes.surface_change, push, offsetof(gpu::SolveState, surface), "surface change");
+    dispatch(work_.passes.surface_change.of(key_.model), push, offsetof(gpu::SolveState, surface), "surface change");
   } else {
     work_.recorder.dispatch(work_.passes.surface_change.of(key_.model), push, rows.surface_count, "surface change",
                             bytes);
@@ -178,11 +179,11 @@ void LevelSolver::record_cg() {
   // The first direction of plain conjugate gradients comes with the start.
   if (multigrid_) {
     multigrid_->record(level_);
-    dispatch(work_.passes.cg_direction, direction, gate_of(level_), "cg-direction");
+    dispatch(work_.passes.cg_direction.of(key_.model), direction, gate_of(level_), "cg-direction");
   }
-  dispatch(work_.passes.cg_multiply, multiply, gate_of(level_), "cg-multiply");
-  dispatch(work_.passes.cg_update, update, gate_of(level_), "cg-update");
-  if (!multigrid_) dispatch(work_.passes.cg_direction, direction, gate_of(level_), "cg-direction");
+  dispatch(work_.passes.cg_multiply.of(rows.model, rows.format), multiply, gate_of(level_), "cg-multiply");
+  dispatch(work_.passes.cg_update.of(key_.model), update, gate_of(level_), "cg-update");
+  if (!multigrid_) dispatch(work_.passes.cg_direction.of(key_.model), direction, gate_of(level_), "cg-direction");
 }
 
 // x += z, then the residual anew.
@@ -191,7 +192,7 @@ void LevelSolver::record_cycle() {
   multigrid_->record(level_);
   const gpu::CorrectPush correct{multigrid_->correction(level_).address(), rows.x.address(), rows.state.address(),
                                  rows.count};
-  dispatch(work_.passes.correct, correct, gate_of(level_), "correction");
+  dispatch(work_.passes.correct.of(key_.model), correct, gate_of(level_), "correction");
   dispatch_start(gpu::START_RESIDUAL);
 }
 
@@ -206,7 +207,7 @@ void LevelSolver::record_sweeps(std::uint32_t sweeps) {
     const gpu::SweepPush push{
         rows.rows(),          rows.b.address(),          from.address(), to.address(),        rows.damping.address(),
         rows.state.address(), work_.reduction.address(), rows.count,     look ? unlooked_ : 0};
-    dispatch(work_.passes.sweep, push, gate_of(level_), "sweep");
+    dispatch(work_.passes.sweep.of(rows.model, rows.format), push, gate_of(level_), "sweep");
     if (!look) continue;
     record_surface(to, rows.surface_before, gpu::SURFACE_CHANGE);
     unlooked_ = 0;

@@ -51,7 +51,7 @@ LevelBuffers upload_level(vk::Context& context, const Level& level, std::uint32_
   const FaceIncidence incidence = face_incidence(level);
   buffers.face_offset = vk::upload<std::uint32_t>(context, incidence.offset, prefix + "face_offset");
   buffers.face_incidence = vk::upload<std::uint32_t>(context, incidence.face, prefix + "face_incidence");
-  buffers.q = vk::Buffer(context, level.faces.size() * sizeof(glm::vec3), vk::Place::device,
+  buffers.q = vk::Buffer(context, level.faces.size() * sizeof(glm::vec3), vk::Place::read,
                          "light/level " + std::to_string(number) + " q");
   vk::Commands commands(context);
   commands.fill(buffers.q, 0);

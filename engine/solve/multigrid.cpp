@@ -53,8 +53,8 @@ std::uint32_t Multigrid::coarse_steps() const {
 }
 
 template <typename Push>
-void Multigrid::dispatch(ModelPass& pass, const Push& push, std::uint32_t level, const char* name) {
-  work_.recorder.dispatch_indirect(pass.of(key_.model), push, op(top_).state,
+void Multigrid::dispatch(LazyPass& pass, const Push& push, std::uint32_t level, const char* name) {
+  work_.recorder.dispatch_indirect(pass, push, op(top_).state,
                                    offsetof(gpu::SolveState, gate) + level * sizeof(glm::uvec3), name);
 }
 
@@ -77,7 +77,7 @@ void Multigrid::record_step(std::uint32_t level, const vk::Buffer& from, const v
                                 .reduce = reduce ? 1u : 0u,
                                 .keep = static_cast<float>(step.keep),
                                 .add = static_cast<float>(step.add)};
-  dispatch(work_.passes.chebyshev, push, level, "smoothing");
+  dispatch(work_.passes.chebyshev.of(rows.model, rows.format), push, level, "smoothing");
 }
 
 // From zero: the first step is d itself, which the second takes as x; so z comes out, after one step or two.
@@ -97,7 +97,7 @@ void Multigrid::record_restriction(std::uint32_t level) {
   const OperatorBuffers& fine = op(level);
   const OperatorBuffers& coarse = op(level + 1);
   const gpu::ResidualPush residual{fine.rows(), fine.r.address(), fine.z.address(), fine.product.address(), fine.count};
-  dispatch(work_.passes.residual, residual, level, "coarse residual");
+  dispatch(work_.passes.residual.of(fine.model, fine.format), residual, level, "coarse residual");
   const TransferBuffers& transfer = operators_.transfer(key_, level);
   const gpu::RestrictPush push{transfer.back_offset.address(),
                                transfer.back_index.address(),
@@ -105,7 +105,7 @@ void Multigrid::record_restriction(std::uint32_t level) {
                                fine.product.address(),
                                coarse.r.address(),
                                coarse.count};
-  dispatch(work_.passes.restrict, push, level + 1, "restriction");
+  dispatch(work_.passes.restrict.of(key_.model), push, level + 1, "restriction");
 }
 
 void Multigrid::record_prolongation(std::uint32_t level) {
@@ -117,7 +117,7 @@ void Multigrid::record_prolongation(std::uint32_t level) {
                               fine.z.address(),
                               part.width,
                               fine.count};
-  dispatch(work_.passes.prolong, push, level, "prolongation");
+  dispatch(work_.passes.prolong.of(key_.model), push, level, "prolongation");
 }
 
 void Multigrid::record_coarse_solve() {
@@ -135,7 +135,7 @@ void Multigrid::record_coarse_solve() {
                                   .steps = coarse_steps(),
                                   .reduce = coarsest() == top_ ? 1u : 0u,
                                   .ratio = static_cast<float>(ratio)};
-  work_.recorder.dispatch_indirect(work_.passes.coarse_solve.of(key_.model), push, op(top_).state,
+  work_.recorder.dispatch_indirect(work_.passes.coarse_solve.of(rows.model, rows.format), push, op(top_).state,
                                    offsetof(gpu::SolveState, coarse), "coarse solve");
 }
 
@@ -161,7 +161,7 @@ void Multigrid::did(std::uint32_t top, std::uint32_t cycles) const {
   for (std::uint32_t level = top; level < coarsest(); ++level) {
     const OperatorBuffers& rows = op(level);
     const std::uint64_t field = rows.field_bytes() * rows.count, transfer = 8 * std::uint64_t{rows.count} * 4;
-    recorder.did("smoothing", cycles, rows.entry_bytes() * rows.count + 2 * field);
+    recorder.did("smoothing", cycles, rows.block_bytes() * rows.count + 2 * field);
     recorder.did("smoothing", cycles * (2 * smoothing_ - 1), smoothing_bytes(rows));
     recorder.did("coarse residual", cycles, rows.product_bytes() + 3 * field);
     recorder.did("restriction", cycles, transfer + field + op(level + 1).field_bytes() * op(level + 1).count);

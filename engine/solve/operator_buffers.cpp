@@ -16,14 +16,15 @@ vk::Buffer upload(vk::Context& context, const std::vector<T>& values, const std:
 }  // namespace
 
 OperatorBuffers::OperatorBuffers(vk::Context& context, const Level& level, std::uint32_t index, Method method,
-                                 Model model_in)
+                                 Model model_in, EntryFormat format_in)
     : model(model_in),
+      format(format_in),
       count(carrier_count(level, method)),
       method_(method),
       prefix_("level " + std::to_string(index) + " " + std::string(name_of(method)) + " " +
               std::string(name_of(model)) + " ") {
   const auto buffer = [&](std::uint64_t bytes, const std::string& purpose, const char* name) {
-    return vk::Buffer(context, bytes, vk::Place::device, purpose + prefix_ + name);
+    return vk::Buffer(context, bytes, vk::Place::read, purpose + prefix_ + name);
   };
   const std::string rows = "operator/", vectors = "solver/";
   const bool fem = method == Method::fem;
@@ -33,10 +34,9 @@ OperatorBuffers::OperatorBuffers(vk::Context& context, const Level& level, std::
   entries = static_cast<std::uint32_t>(columns.column.size());
   slices = static_cast<std::uint32_t>(columns.slice_offset.size() - 1);
   slice_offset = upload(context, columns.slice_offset, rows + prefix_ + "slice_offset");
-  column = upload(context, columns.column, rows + prefix_ + "column");
-  weight = buffer(entries * entry_bytes(), rows, "weight");
-  row_sum = buffer(count * entry_bytes(), rows, "row_sum");
-  diagonal = buffer(count * entry_bytes(), rows, "diagonal");
+  entry = upload(context, stored_columns(columns.column, model, format), rows + prefix_ + "entry");
+  row_sum = buffer(count * block_bytes(), rows, "row_sum");
+  diagonal = buffer(count * block_bytes(), rows, "diagonal");
   b = buffer(count * field_bytes(), vectors, "b");
   x = buffer(count * field_bytes(), vectors, "x");
   r = buffer(count * field_bytes(), vectors, "r");
@@ -86,18 +86,17 @@ void OperatorBuffers::upload_rings(vk::Context& context, const Level& level) {
   ring = upload(context, rings.ring, prefix + "ring");
   tet_offset = upload(context, rings.tet_offset, prefix + "tet_offset");
   tet_incidence = upload(context, rings.tet_incidence, prefix + "tet_incidence");
-  tet_shape = {context, std::uint64_t{gpu::TET_SHAPE} * level.tet_count() * sizeof(float), vk::Place::device,
+  tet_shape = {context, std::uint64_t{gpu::TET_SHAPE} * level.tet_count() * sizeof(float), vk::Place::read,
                prefix + "tet_shape"};
-  face_area = {context, level.face_count() * sizeof(float), vk::Place::device, prefix + "face_area"};
+  face_area = {context, level.face_count() * sizeof(float), vk::Place::read, prefix + "face_area"};
 }
 
 gpu::RowsRef OperatorBuffers::rows() const {
-  return {slice_offset.address(), column.address(), weight.address(), row_sum.address(), diagonal.address()};
+  return {slice_offset.address(), entry.address(), row_sum.address(), diagonal.address()};
 }
 
 std::uint64_t OperatorBuffers::product_bytes() const {
-  return std::uint64_t{entries} * (sizeof(std::uint32_t) + entry_bytes() + field_bytes()) +
-         (slices + 1) * sizeof(std::uint32_t);
+  return std::uint64_t{entries} * (entry_bytes() + field_bytes()) + (slices + 1) * sizeof(std::uint32_t);
 }
 
 }  // namespace quadgraph

@@ -6,6 +6,7 @@
 #include "engine/graph/boundary.h"
 #include "engine/graph/graph.h"
 #include "engine/graph/solution.h"
+#include "engine/graph/stored_entries.h"
 #include "engine/vk/memory.h"
 #include "shaders/solve_shared.h"
 
@@ -13,10 +14,11 @@ namespace quadgraph {
 
 struct OperatorBuffers {
   Model model = Model::diffusion;
+  EntryFormat format = EntryFormat::packed;
   std::uint32_t count = 0;    // rows: carriers, each with one unknown or, in SP3, two
   std::uint32_t entries = 0;  // off the diagonal, padding included
   std::uint32_t slices = 0;
-  vk::Buffer slice_offset, column, weight, row_sum, diagonal;  // RowsRef
+  vk::Buffer slice_offset, entry, row_sum, diagonal;  // RowsRef
   vk::Buffer to_phi;
   vk::Buffer b, x;                  // scaled (gpu::Scale)
   vk::Buffer r, p;                  // residual, direction
@@ -49,7 +51,8 @@ struct OperatorBuffers {
   bool solved = false;                // x has been solved for, if for other light or coefficients
 
   // Uploads the rows; values are undefined until assembled.
-  OperatorBuffers(vk::Context& context, const Level& level, std::uint32_t index, Method method, Model model);
+  OperatorBuffers(vk::Context& context, const Level& level, std::uint32_t index, Method method, Model model,
+                  EntryFormat format);
 
   // Uploads what the assembly needs, unless it is there. `even`: the coefficients are the same everywhere.
   void make_room(vk::Context& context, const Level& level, bool even);
@@ -58,7 +61,8 @@ struct OperatorBuffers {
   bool by_entry(bool even) const { return even && !moved; }
 
   std::uint64_t field_bytes() const { return (model == Model::sp3 ? 2 : 1) * sizeof(glm::vec3); }
-  std::uint64_t entry_bytes() const { return (model == Model::sp3 ? 3 : 1) * sizeof(glm::vec3); }
+  std::uint64_t block_bytes() const { return (model == Model::sp3 ? 3 : 1) * sizeof(glm::vec3); }
+  std::uint64_t entry_bytes() const { return stored_words(model, format) * sizeof(std::uint32_t); }
 
   gpu::RowsRef rows() const;
   std::uint64_t product_bytes() const;  // read by one product with the rows, diagonal left out

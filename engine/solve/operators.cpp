@@ -9,7 +9,8 @@ void Operators::create(vk::Context& context, std::span<const Level> levels, cons
   if (!levels_.contains(key)) {
     std::vector<OfLevel> of_key(count);
     for (std::uint32_t i = 0; i < count; ++i) {
-      of_key[i].op.emplace(context, levels[i], i, key.method, key.model);
+      const EntryFormat format = plain_.contains(key) ? EntryFormat::plain : format_of(levels[i], key.method);
+      of_key[i].op.emplace(context, levels[i], i, key.method, key.model, format);
       if (i + 1 < count) of_key[i].transfer.emplace(context, levels[i], levels[i + 1], i, key.method);
     }
     for (std::uint32_t i = 0; i < count; ++i) write_gates(context, of_key, i);
@@ -45,7 +46,14 @@ void Operators::disassemble() {
   unload();
 }
 
-void Operators::remeasure(std::uint32_t number) {
+void Operators::remeasure(std::uint32_t number, const Level& level) {
+  std::erase_if(levels_, [&](const auto& of_key) {
+    const auto& [key, levels] = of_key;
+    if (number >= levels.size() || levels[number].op->format == EntryFormat::plain) return false;
+    if (format_of(level, key.method) == EntryFormat::packed) return false;
+    plain_.insert(key);
+    return true;
+  });
   for (auto& [key, of_key] : levels_) {
     if (number >= of_key.size()) continue;
     of_key[number].op->measured = false;

@@ -4,6 +4,7 @@
 #include <compare>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -35,9 +36,12 @@ class Operators {
     return *levels_.at(key)[level].transfer;
   }
 
-  void unload();                         // light has changed: every b is stale
-  void disassemble();                    // coefficients have changed: every operator is
-  void remeasure(std::uint32_t number);  // vertices of a level have moved: its elements have, too
+  void unload();       // light has changed: every b is stale
+  void disassemble();  // coefficients have changed: every operator is
+
+  // Vertices of a level, now `level`, have moved: its elements have, too. Where packed entries would round too much
+  // now, the operators are to be created again, with plain ones.
+  void remeasure(std::uint32_t number, const Level& level);
 
   // `target`, as x of `level`, from x of the next coarser one, in the channels that `state`, of a level that was solved
   // for the same light, tells to be lit.
@@ -57,6 +61,7 @@ class Operators {
   static void write_gates(vk::Context& context, const std::vector<OfLevel>& levels, std::uint32_t number);
 
   std::map<OperatorKey, std::vector<OfLevel>> levels_;
+  std::set<OperatorKey> plain_;  // on all levels, since a motion
 };
 
 }  // namespace quadgraph

@@ -3,6 +3,7 @@
 #include "shaders/assembly_shared.h"
 #include "shaders/exchange_shared.h"
 #include "shaders/gather_shared.h"
+#include "shaders/packing.h"
 #include "shaders/surface_shared.h"
 #include "shaders/walk_shared.h"
 #include "spirv/assemble_edges.comp.h"
@@ -79,10 +80,17 @@
 
 namespace quadgraph {
 
-// SPIR-V of both variants, the size of their push constants, and a name.
-#define MODEL_PASS(pass, Push)                                                                  \
-  pass {                                                                                        \
-    {pass##_comp, sizeof(gpu::Push), #pass}, {pass##_sp3_comp, sizeof(gpu::Push), #pass " sp3"} \
+// SPIR-V of both models, the size of their push constants, a name, and which format of entries.
+#define MODEL_PASSES(pass, Push, format)                       \
+  {                                                            \
+    {pass##_comp, sizeof(gpu::Push), #pass, format}, {         \
+      pass##_sp3_comp, sizeof(gpu::Push), #pass " sp3", format \
+    }                                                          \
+  }
+#define MODEL_PASS(pass, Push) pass MODEL_PASSES(pass, Push, 0)
+#define ENTRY_PASS(pass, Push)                                                        \
+  pass {                                                                              \
+    MODEL_PASSES(pass, Push, ENTRIES_PACKED), MODEL_PASSES(pass, Push, ENTRIES_PLAIN) \
   }
 #define ONE_PASS(pass, Push) pass(pass##_comp, sizeof(gpu::Push), #pass)
 
@@ -104,27 +112,27 @@ Passes::Passes()
       ONE_PASS(exchange_enter, ExchangeEnterPush),
       ONE_PASS(exchange_boxes, ExchangeBoxesPush),
       ONE_PASS(exchange_rays, ExchangeRaysPush),
-      MODEL_PASS(assemble_fdm, AssembleFdmPush),
-      MODEL_PASS(assemble_fv, AssembleFvPush),
-      MODEL_PASS(assemble_edges, AssembleEdgesPush),
-      MODEL_PASS(assemble_even, AssembleEvenPush),
-      MODEL_PASS(assemble_fem, AssembleFemPush),
+      ENTRY_PASS(assemble_fdm, AssembleFdmPush),
+      ENTRY_PASS(assemble_fv, AssembleFvPush),
+      ENTRY_PASS(assemble_edges, AssembleEdgesPush),
+      ENTRY_PASS(assemble_even, AssembleEvenPush),
+      ENTRY_PASS(assemble_fem, AssembleFemPush),
+      ENTRY_PASS(eigenvalue_bound, EigenvalueBoundPush),
+      ENTRY_PASS(cg_start, CgStartPush),
+      ENTRY_PASS(cg_multiply, CgMultiplyPush),
+      ENTRY_PASS(sweep, SweepPush),
+      ENTRY_PASS(residual, ResidualPush),
+      ENTRY_PASS(chebyshev, ChebyshevPush),
+      ENTRY_PASS(coarse_solve, CoarseSolvePush),
       MODEL_PASS(right_hand_side_fdm, RightHandSideFdmPush),
       MODEL_PASS(right_hand_side_fv, RightHandSideFvPush),
       MODEL_PASS(right_hand_side_fem, RightHandSideFemPush),
       MODEL_PASS(right_hand_side_buried, RightHandSideBuriedPush),
-      MODEL_PASS(eigenvalue_bound, EigenvalueBoundPush),
       MODEL_PASS(transfer, TransferPush),
       MODEL_PASS(follow, FollowPush),
-      MODEL_PASS(cg_start, CgStartPush),
-      MODEL_PASS(cg_multiply, CgMultiplyPush),
       MODEL_PASS(cg_update, CgUpdatePush),
       MODEL_PASS(cg_direction, CgDirectionPush),
       MODEL_PASS(correct, CorrectPush),
-      MODEL_PASS(sweep, SweepPush),
-      MODEL_PASS(residual, ResidualPush),
-      MODEL_PASS(chebyshev, ChebyshevPush),
-      MODEL_PASS(coarse_solve, CoarseSolvePush),
       MODEL_PASS(restrict, RestrictPush),
       MODEL_PASS(prolong, ProlongPush),
       MODEL_PASS(surface_change, SurfaceChangePush),

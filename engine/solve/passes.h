@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "engine/graph/solution.h"
+#include "engine/graph/stored_entries.h"
 #include "engine/vk/pipeline.h"
 
 namespace quadgraph {
@@ -11,11 +12,11 @@ namespace quadgraph {
 // A pipeline that does not exist until it is wanted.
 class LazyPass {
  public:
-  LazyPass(vk::Spirv code, std::uint32_t push_size, const char* name)
-      : code_(code), push_size_(push_size), name_(name) {}
+  LazyPass(vk::Spirv code, std::uint32_t push_size, const char* name, std::uint32_t variant = 0)
+      : code_(code), push_size_(push_size), name_(name), variant_(variant) {}
 
   const vk::ComputePass& get(vk::Context& context) {
-    if (!pass_) pass_.emplace(context, code_, push_size_, name_);
+    if (!pass_) pass_.emplace(context, code_, push_size_, name_, vk::ComputePass::default_workgroup_size, variant_);
     return *pass_;
   }
 
@@ -23,6 +24,7 @@ class LazyPass {
   vk::Spirv code_;
   std::uint32_t push_size_;
   const char* name_;
+  std::uint32_t variant_;
   std::optional<vk::ComputePass> pass_;
 };
 
@@ -33,16 +35,23 @@ struct ModelPass {
   LazyPass& of(Model model) { return model == Model::sp3 ? sp3 : diffusion; }
 };
 
+// The same of a pass that touches entries, for both formats.
+struct EntryPass {
+  ModelPass packed, plain;
+
+  LazyPass& of(Model model, EntryFormat format) { return (format == EntryFormat::plain ? plain : packed).of(model); }
+};
+
 struct Passes {
   Passes();
 
   LazyPass evaluate_material, shape, irradiance_scale, walk_source, vertex_exitance, display_scale, vertex_unscattered,
       energy_total, surface_share, uncollided, gather_exitance, gather_scale, exchange, exchange_finer, exchange_enter,
       exchange_boxes, exchange_rays;
-  ModelPass assemble_fdm, assemble_fv, assemble_edges, assemble_even, assemble_fem, right_hand_side_fdm,
-      right_hand_side_fv, right_hand_side_fem, right_hand_side_buried, eigenvalue_bound, transfer, follow, cg_start,
-      cg_multiply, cg_update, cg_direction, correct, sweep, residual, chebyshev, coarse_solve, restrict, prolong,
-      surface_change, exitance, energy, gather_phi;
+  EntryPass assemble_fdm, assemble_fv, assemble_edges, assemble_even, assemble_fem, eigenvalue_bound, cg_start,
+      cg_multiply, sweep, residual, chebyshev, coarse_solve;
+  ModelPass right_hand_side_fdm, right_hand_side_fv, right_hand_side_fem, right_hand_side_buried, transfer, follow,
+      cg_update, cg_direction, correct, restrict, prolong, surface_change, exitance, energy, gather_phi;
 };
 
 }  // namespace quadgraph

@@ -127,7 +127,7 @@ struct Simulation::Implementation {
     if (level.nodes.size() > 0) {
       vk::write_bytes(context, level.nodes, std::as_bytes(shape.levels()[number].nodes));
     }
-    operators.remeasure(number);
+    operators.remeasure(number, shape.levels()[number]);
     quicker.clear();
     exchange.moved(number);
     if (number == 0) gather.reset();

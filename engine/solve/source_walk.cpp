@@ -192,7 +192,7 @@ void SourceWalk::record_right_hand_side(Workspace& work, const LevelBuffers& lev
                                           .deposit_count = carriers(level, method),
                                           .per_volume = method == Method::quadgraph_fdm ? 1u : 0u};
   work.recorder.dispatch(work.passes.right_hand_side_buried.of(op.model), push, op.count, "right-hand side",
-                         op.count * (op.entry_bytes() + op.field_bytes()) + carriers(level, method) * power_bytes);
+                         op.count * (op.block_bytes() + op.field_bytes()) + carriers(level, method) * power_bytes);
 }
 
 std::vector<glm::dvec3> SourceWalk::unscattered_power(vk::Context& context, const glm::dvec3& scale) const {

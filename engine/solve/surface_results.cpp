@@ -26,7 +26,7 @@ std::uint64_t energy_groups(const LevelBuffers& level) {
 
 SurfaceResults::SurfaceResults(vk::Context& context, const LevelBuffers& level) {
   const auto vector = [&](std::uint64_t count, const char* name) {
-    return vk::Buffer(context, count * vec3_bytes, vk::Place::device, name);
+    return vk::Buffer(context, count * vec3_bytes, vk::Place::read, name);
   };
   phi_ = vector(level.face_count, "results/phi at faces");
   exitance_ = vector(level.face_count, "results/exitance");

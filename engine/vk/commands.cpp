@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "engine/graph/error.h"
+#include "engine/vk/arena.h"
 
 namespace quadgraph::vk {
 namespace {
@@ -114,6 +115,8 @@ void Commands::bind(const ComputePass& pass, const void* push, std::uint32_t siz
   assert(size == pass.push_size());
   vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pass.pipeline());
   vkCmdPushConstants(commands_, pass.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, size, push);
+  const VkDescriptorSet texels = context_.arena().set();
+  vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pass.layout(), 0, 1, &texels, 0, nullptr);
 }
 
 void Commands::dispatch_bytes(const ComputePass& pass, const void* push, std::uint32_t size, std::uint64_t elements) {

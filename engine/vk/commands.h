@@ -24,6 +24,7 @@ class Commands {
   // Starts recording. At most `max_passes` calls of begin_pass are timed.
   explicit Commands(Context& context, std::uint32_t max_passes = 0);
 
+  Context& context() { return context_; }
   VkCommandBuffer handle() const { return commands_; }
 
   // All writes before are visible to all that follows: the one barrier the engine needs between passes.

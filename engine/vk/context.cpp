@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "engine/graph/error.h"
+#include "engine/vk/arena.h"
 
 namespace quadgraph::vk {
 namespace {
@@ -128,6 +129,7 @@ Context::Context(const ContextOptions& options) {
     pick_device(options.device);
     read_properties();
     create_device();
+    arena_ = std::make_unique<Arena>(*this, options.texels.value_or(info_.type == VK_PHYSICAL_DEVICE_TYPE_CPU));
   } catch (...) {
     destroy();
     throw;
@@ -139,6 +141,7 @@ Context::~Context() {
 }
 
 void Context::destroy() noexcept {
+  arena_.reset();
   if (device_ != VK_NULL_HANDLE) vkDestroyDevice(device_, nullptr);
   if (messenger_ != VK_NULL_HANDLE) {
     auto destroy_messenger = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(

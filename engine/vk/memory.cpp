@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "engine/graph/error.h"
+#include "engine/vk/arena.h"
 #include "engine/vk/commands.h"
 
 namespace quadgraph::vk {
@@ -18,6 +19,29 @@ constexpr std::size_t largest_update = 65536;
 Allocation::Allocation(Context& context, const VkMemoryRequirements& requirements, Place place, bool device_address,
                        const std::string& name)
     : context_(&context), size_(requirements.size), purpose_(name.substr(0, name.find('/'))) {
+  if (place == Place::read && context.arena().used()) {
+    take_range(requirements);
+  } else {
+    allocate(requirements, place, device_address);
+  }
+  context.allocated_bytes_ += size_;
+  context.allocated_by_purpose_[purpose_] += size_;
+  ++context.allocation_count_;
+  context.peak_allocated_bytes_ = std::max(context.peak_allocated_bytes_, context.allocated_bytes_);
+}
+
+void Allocation::take_range(const VkMemoryRequirements& requirements) {
+  Arena& arena = context_->arena();
+  const auto offset = arena.take(size_, requirements.alignment);
+  if (!offset) {
+    throw VulkanError(std::to_string(size_) + " bytes do not fit beside what else is read as texels, of which " +
+                      context_->info().name + " allows " + std::to_string(arena.size()) + " bytes");
+  }
+  offset_ = *offset;
+  memory_ = arena.memory();
+}
+
+void Allocation::allocate(const VkMemoryRequirements& requirements, Place place, bool device_address) {
   VkMemoryAllocateFlagsInfo flags{};
   flags.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO;
   flags.flags = device_address ? VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT : 0;
@@ -26,19 +50,14 @@ Allocation::Allocation(Context& context, const VkMemoryRequirements& requirement
   info.pNext = &flags;
   info.allocationSize = requirements.size;
   info.memoryTypeIndex =
-      place == Place::device
-          ? context.memory_type(requirements.memoryTypeBits, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT)
-          : context.memory_type(requirements.memoryTypeBits,
-                                VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
-                                VK_MEMORY_PROPERTY_HOST_CACHED_BIT);
-  VkDeviceMemory memory = VK_NULL_HANDLE;
-  check(vkAllocateMemory(context.device(), &info, nullptr, &memory),
+      place == Place::host
+          ? context_->memory_type(requirements.memoryTypeBits,
+                                  VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
+                                  VK_MEMORY_PROPERTY_HOST_CACHED_BIT)
+          : context_->memory_type(requirements.memoryTypeBits, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+  check(vkAllocateMemory(context_->device(), &info, nullptr, &memory_),
         "vkAllocateMemory of " + std::to_string(requirements.size) + " bytes");
-  memory_ = UniqueMemory(context.device(), memory);
-  context.allocated_bytes_ += size_;
-  context.allocated_by_purpose_[purpose_] += size_;
-  ++context.allocation_count_;
-  context.peak_allocated_bytes_ = std::max(context.peak_allocated_bytes_, context.allocated_bytes_);
+  own_ = UniqueMemory(context_->device(), memory_);
 }
 
 Allocation::Allocation(Allocation&& other) noexcept {
@@ -48,13 +67,16 @@ Allocation::Allocation(Allocation&& other) noexcept {
 Allocation& Allocation::operator=(Allocation&& other) noexcept {
   std::swap(context_, other.context_);
   std::swap(size_, other.size_);
+  std::swap(offset_, other.offset_);
   std::swap(purpose_, other.purpose_);
   std::swap(memory_, other.memory_);
+  std::swap(own_, other.own_);
   return *this;
 }
 
 Allocation::~Allocation() {
-  if (context_ == nullptr || memory_.get() == VK_NULL_HANDLE) return;
+  if (context_ == nullptr || memory_ == VK_NULL_HANDLE) return;
+  if (own_.get() == VK_NULL_HANDLE) context_->arena().release(offset_, size_);
   context_->allocated_bytes_ -= size_;
   const auto of_purpose = context_->allocated_by_purpose_.find(purpose_);
   of_purpose->second -= size_;
@@ -85,7 +107,8 @@ Buffer::Buffer(Context& context, std::uint64_t size, Place place, const std::str
     throw VulkanError("buffer '" + name + "': " + error.what() + "; " + std::to_string(context.allocated_bytes()) +
                       " bytes are in use");
   }
-  check(vkBindBufferMemory(context.device(), buffer, allocation_.memory(), 0), "vkBindBufferMemory '" + name + "'");
+  check(vkBindBufferMemory(context.device(), buffer, allocation_.memory(), allocation_.offset()),
+        "vkBindBufferMemory '" + name + "'");
   if (place == Place::host) {
     check(vkMapMemory(context.device(), allocation_.memory(), 0, VK_WHOLE_SIZE, 0, &mapped_),
           "vkMapMemory '" + name + "'");
@@ -96,8 +119,8 @@ Buffer::Buffer(Context& context, std::uint64_t size, Place place, const std::str
   address_ = vkGetBufferDeviceAddress(context.device(), &address_info);
 }
 
-Buffer upload_bytes(Context& context, std::span<const std::byte> data, const std::string& name) {
-  Buffer target(context, data.size(), Place::device, name);
+Buffer upload_bytes(Context& context, std::span<const std::byte> data, const std::string& name, Place place) {
+  Buffer target(context, data.size(), place, name);
   write_bytes(context, target, data);
   return target;
 }

@@ -17,10 +17,11 @@ namespace quadgraph::vk {
 
 enum class Place {
   device,  // fastest for the GPU
+  read,    // the same, for arrays that shaders load (shaders/load.glsl): in the arena where there is one
   host,    // mapped, coherent, cached if possible: uploads and read-backs
 };
 
-// One allocation, counted in Context::allocated_bytes.
+// One allocation, or a range of the arena; counted in Context::allocated_bytes.
 class Allocation {
  public:
   Allocation() = default;
@@ -30,13 +31,19 @@ class Allocation {
   Allocation& operator=(Allocation&& other) noexcept;
   ~Allocation();
 
-  VkDeviceMemory memory() const { return memory_.get(); }
+  VkDeviceMemory memory() const { return memory_; }
+  std::uint64_t offset() const { return offset_; }  // bytes, in memory
 
  private:
+  void take_range(const VkMemoryRequirements& requirements);
+  void allocate(const VkMemoryRequirements& requirements, Place place, bool device_address);
+
   Context* context_ = nullptr;
   std::uint64_t size_ = 0;
+  std::uint64_t offset_ = 0;
   std::string purpose_;
-  UniqueMemory memory_;
+  VkDeviceMemory memory_ = VK_NULL_HANDLE;
+  UniqueMemory own_;  // none in a range of the arena
 };
 
 // A storage buffer reached by its device address. `size` is in bytes and may be 0, which allocates the minimum. Throws
@@ -65,12 +72,12 @@ class Buffer {
 };
 
 // A device buffer filled with `data` through a staging copy; waits for it.
-Buffer upload_bytes(Context& context, std::span<const std::byte> data, const std::string& name);
+Buffer upload_bytes(Context& context, std::span<const std::byte> data, const std::string& name, Place place);
 
 template <typename T>
-Buffer upload(Context& context, std::span<const T> data, const std::string& name) {
+Buffer upload(Context& context, std::span<const T> data, const std::string& name, Place place = Place::read) {
   static_assert(std::is_trivially_copyable_v<T>);
-  return upload_bytes(context, std::as_bytes(data), name);
+  return upload_bytes(context, std::as_bytes(data), name, place);
 }
 
 // Replaces the first bytes of `target`; waits for it.

@@ -1,8 +1,11 @@
 #include "engine/vk/pipeline.h"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 
 #include "engine/graph/error.h"
+#include "engine/vk/arena.h"
 
 namespace quadgraph::vk {
 namespace {
@@ -24,8 +27,11 @@ UniquePipelineLayout push_layout(Context& context, std::uint32_t push_size, VkSh
                       context.info().name + " allows " + std::to_string(context.limits().maxPushConstantsSize));
   }
   const VkPushConstantRange range{stages, 0, push_size};
+  const VkDescriptorSetLayout texels = context.arena().layout();
   VkPipelineLayoutCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+  info.setLayoutCount = 1;
+  info.pSetLayouts = &texels;
   info.pushConstantRangeCount = push_size > 0 ? 1 : 0;
   info.pPushConstantRanges = &range;
   VkPipelineLayout layout = VK_NULL_HANDLE;
@@ -33,14 +39,35 @@ UniquePipelineLayout push_layout(Context& context, std::uint32_t push_size, VkSh
   return {context.device(), layout};
 }
 
-VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits bit, const UniqueShaderModule& module) {
+VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits bit, const UniqueShaderModule& module,
+                                      const VkSpecializationInfo& constants) {
   VkPipelineShaderStageCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
   info.stage = bit;
   info.module = module.get();
   info.pName = "main";
+  info.pSpecializationInfo = &constants;
   return info;
 }
+
+// How shaders load arrays: TEXELS and TEXELS_AT of shaders/load.glsl. And a variant of their own.
+struct Constants {
+  VkBool32 texels;
+  std::uint32_t at;
+  std::uint32_t variant;
+  std::array<VkSpecializationMapEntry, 3> entries = {{{0, offsetof(Constants, texels), sizeof(VkBool32)},
+                                                      {1, offsetof(Constants, at), sizeof(std::uint32_t)},
+                                                      {2, offsetof(Constants, variant), sizeof(std::uint32_t)}}};
+  VkSpecializationInfo info{static_cast<std::uint32_t>(entries.size()), entries.data(),
+                            offsetof(Constants, variant) + sizeof(std::uint32_t), this};
+
+  explicit Constants(Context& context, std::uint32_t variant_in = 0)
+      : texels(context.arena().used() ? VK_TRUE : VK_FALSE),
+        at(static_cast<std::uint32_t>(context.arena().address())),
+        variant(variant_in) {}
+  Constants(const Constants&) = delete;
+  Constants& operator=(const Constants&) = delete;
+};
 
 // The fixed-function state of every graphics pass, kept alive while the pipeline is created.
 struct FixedState {
@@ -101,7 +128,7 @@ struct FixedState {
 }  // namespace
 
 ComputePass::ComputePass(Context& context, Spirv code, std::uint32_t push_size, const std::string& name,
-                         std::uint32_t workgroup_size)
+                         std::uint32_t workgroup_size, std::uint32_t variant)
     : push_size_(push_size),
       workgroup_size_(workgroup_size),
       name_(name),
@@ -115,7 +142,8 @@ ComputePass::ComputePass(Context& context, Spirv code, std::uint32_t push_size, 
   const UniqueShaderModule module = shader_module(context, code, name);
   VkComputePipelineCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
-  info.stage = stage(VK_SHADER_STAGE_COMPUTE_BIT, module);
+  const Constants constants(context, variant);
+  info.stage = stage(VK_SHADER_STAGE_COMPUTE_BIT, module, constants.info);
   info.layout = layout_.get();
   VkPipeline pipeline = VK_NULL_HANDLE;
   check(vkCreateComputePipelines(context.device(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
@@ -129,11 +157,12 @@ GraphicsPass::GraphicsPass(Context& context, const GraphicsOptions& options, con
       layout_(
           push_layout(context, options.push_size, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, name)) {
   const UniqueShaderModule vertex = shader_module(context, options.vertex, name + ".vert");
-  std::vector<VkPipelineShaderStageCreateInfo> stages = {stage(VK_SHADER_STAGE_VERTEX_BIT, vertex)};
+  const Constants constants(context);
+  std::vector<VkPipelineShaderStageCreateInfo> stages = {stage(VK_SHADER_STAGE_VERTEX_BIT, vertex, constants.info)};
   UniqueShaderModule fragment;
   if (!options.fragment.empty()) {
     fragment = shader_module(context, options.fragment, name + ".frag");
-    stages.push_back(stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment));
+    stages.push_back(stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment, constants.info));
   }
   const FixedState state(options);
   VkGraphicsPipelineCreateInfo info{};

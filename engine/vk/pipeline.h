@@ -1,5 +1,5 @@
-// Compute and graphics pipelines. Shaders reach all data through addresses in their push constants, so there are no
-// descriptor sets.
+// Compute and graphics pipelines. Shaders reach all data through addresses in their push constants; the one descriptor
+// set, alike for all, is the arena's (arena.h).
 #pragma once
 
 #include <cstdint>
@@ -18,9 +18,9 @@ using Spirv = std::span<const std::uint32_t>;
 class ComputePass {
  public:
   // `push_size` in bytes must equal the size of the shader's push-constant block, and `workgroup_size` its
-  // local_size_x.
+  // local_size_x; `variant` is its specialization constant 2, if it has one.
   ComputePass(Context& context, Spirv code, std::uint32_t push_size, const std::string& name,
-              std::uint32_t workgroup_size = default_workgroup_size);
+              std::uint32_t workgroup_size = default_workgroup_size, std::uint32_t variant = 0);
 
   static constexpr std::uint32_t default_workgroup_size = 256;  // WORKGROUP_SIZE in shaders/shared.h
 

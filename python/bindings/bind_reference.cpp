@@ -107,14 +107,14 @@ py::dict reference(const QuadGraph& graph, std::uint32_t index, const FloatArray
                    const FloatArray& sigma_a, double eta, const FloatArray& q,
                    const std::optional<std::array<float, 3>>& direction, const std::string& method,
                    const std::string& solver, const std::string& source, const std::string& model, double tolerance,
-                   std::uint32_t max_iterations) {
+                   std::uint32_t max_iterations, bool stored) {
   const Level& level = level_of(graph, index);
   const SolveOptions options = options_from(method, solver, source, model, tolerance, max_iterations);
   const auto optical = optical_from(sigma_s_prime, sigma_a, level.node_count());
   const EnteringLight light{beam_along(as_vector(direction)).way, vectors(q, level.face_count(), "q")};
   ReferenceSolution solution = [&] {
     const py::gil_scoped_release release;
-    return solve_reference(level, optical, eta, light, options);
+    return solve_reference(level, optical, eta, light, options, stored ? Entries::stored : Entries::exact);
   }();
   return solution_dict(std::move(solution));
 }
@@ -208,7 +208,9 @@ void bind_reference(py::module_& module) {
              py::arg("sigma_a"), py::arg("eta"), py::arg("q"), py::arg("direction") = py::none(),
              py::arg("method") = "fem", py::arg("solver") = "dpcg", py::arg("source") = "buried",
              py::arg("model") = "sp3", py::arg("tolerance") = 1e-10, py::arg("max_iterations") = 100000,
-             "Solve one level on the CPU. sigma_s_prime and sigma_a (n, 3) 1/mm at the nodes; q (n_f, 3) W/mm^2, the "
+             py::arg("stored") = false,
+             "Solve one level on the CPU; stored: with the entries of the operator rounded as a device stores them. "
+             "sigma_s_prime and sigma_a (n, 3) 1/mm at the nodes; q (n_f, 3) W/mm^2, the "
              "irradiance that the surface lets in; direction (3,) in which it travels outside, None: Lambertian. "
              "Returns phi and phi2 per carrier, phi_face, exitance and unscattered per outside face (W/mm^2), energy "
              "(W), clipped, report. Raises InputError, SolverError.");

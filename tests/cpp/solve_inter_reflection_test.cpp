@@ -162,8 +162,9 @@ TEST_CASE("the bounces are those of the CPU, for every conservative method and m
       const SolveReport found = body.simulation.solve(options);
       const SurfaceField field = body.simulation.surface_field();
       options.tolerance = 1e-7;
-      const BouncedSolution expected = solve_with_bounces(level, evaluate_material(level, material(eta)),
-                                                          static_cast<double>(eta), {&light, 1}, options);
+      const BouncedSolution expected =
+          solve_with_bounces(level, evaluate_material(level, material(eta)), static_cast<double>(eta), {&light, 1},
+                             options, Entries::stored);
       CHECK(relative_difference(field.exitance, expected.solution.exitance) < 1e-4);
       CHECK(relative_difference(field.unscattered, expected.solution.unscattered) < 1e-4);
       for (int c = 0; c < 3; ++c) {

@@ -52,8 +52,7 @@ TEST_CASE("structs in buffers") {
            MEMBER(Material, vein_sigma_s_prime), MEMBER(Material, vein_sigma_a), MEMBER(Material, vein_period),
            MEMBER(Material, vein_sharpness)});
   compare(cg_start_comp, "RowsRef",
-          {MEMBER(RowsRef, slice_offset), MEMBER(RowsRef, column), MEMBER(RowsRef, weight), MEMBER(RowsRef, row_sum),
-           MEMBER(RowsRef, diagonal)});
+          {MEMBER(RowsRef, slice_offset), MEMBER(RowsRef, entry), MEMBER(RowsRef, row_sum), MEMBER(RowsRef, diagonal)});
   compare(cg_start_comp, "SolveState",
           {MEMBER(SolveState, gate),      MEMBER(SolveState, coarse),     MEMBER(SolveState, surface),
            MEMBER(SolveState, check),     MEMBER(SolveState, groups),     MEMBER(SolveState, surface_groups),
@@ -62,7 +61,7 @@ TEST_CASE("structs in buffers") {
            MEMBER(SolveState, checked),   MEMBER(SolveState, iterations), MEMBER(SolveState, status),
            MEMBER(SolveState, channel),   MEMBER(SolveState, earlier),    MEMBER(SolveState, change),
            MEMBER(SolveState, algebraic), MEMBER(SolveState, difference), MEMBER(SolveState, looked),
-           MEMBER(SolveState, looks),     MEMBER(SolveState, slow)});
+           MEMBER(SolveState, looks),     MEMBER(SolveState, slow),       MEMBER(SolveState, restarts)});
   compare(exitance_comp, "Boundary",
           {MEMBER(Boundary, k11), MEMBER(Boundary, k12), MEMBER(Boundary, k22), MEMBER(Boundary, source),
            MEMBER(Boundary, reflected)});

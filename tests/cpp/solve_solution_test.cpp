@@ -16,7 +16,7 @@ ReferenceSolution reference(const Scene& scene, const gpu::Material& material, c
                             const SolveOptions& how, const glm::vec3& direction) {
   const Level& level = scene.graph.levels()[0];
   return solve_reference(level, evaluate_material(level, material), material.eta,
-                         {{gpu::BEAM_DIRECTIONAL, glm::normalize(direction)}, q}, how);
+                         {{gpu::BEAM_DIRECTIONAL, glm::normalize(direction)}, q}, how, Entries::stored);
 }
 
 // phi at the carriers on the surface: vertices, or surface nodes.
@@ -77,7 +77,8 @@ TEST_CASE("the error estimate compares the exitance with that of the coarser lev
     const auto optical = evaluate_material(coarse, homogeneous());
     const std::vector<glm::dvec3> start = phi_from_coarse(
         scene, method,
-        solve_reference(coarse, optical, 1.3f, {{gpu::BEAM_LAMBERTIAN, glm::vec3(0)}, coarse_q}, how).phi);
+        solve_reference(coarse, optical, 1.3f, {{gpu::BEAM_LAMBERTIAN, glm::vec3(0)}, coarse_q}, how, Entries::stored)
+            .phi);
     glm::dvec2 difference{0}, norm{0};
     for (std::size_t i = 0; i < start.size(); ++i) {
       const glm::dvec3 value(phi[method == Method::fem ? i : fine.tet_count() + i]);

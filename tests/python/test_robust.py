@@ -70,7 +70,9 @@ def check(engine, optical, model: str, balance: float = 1e-5) -> None:
     report = engine.solve(model=model, tolerance=1e-6, max_iterations=20000)
     field, finest = engine.surface_field(), engine.graph.levels[0]
     coefficients = optical(np.asarray(finest.nodes, np.float64))
-    exact = _core.solve_reference(engine.graph, 0, *coefficients, ETA, light_on(finest), **light, model=model)
+    exact = _core.solve_reference(
+        engine.graph, 0, *coefficients, ETA, light_on(finest), **light, model=model, stored=True
+    )
     largest = max(exact["exitance"].max(), 1e-30)
     worst = np.abs(field["exitance"] - exact["exitance"]).max() / largest
     imbalance = np.abs(report["energy"]["balance"]).max()

@@ -1,0 +1,78 @@
+// How shaders load arrays, and in which format entries lie, changes no answer.
+#include <doctest/doctest.h>
+
+#include "engine/graph/stored_entries.h"
+#include "engine/vk/arena.h"
+#include "tests/cpp/solve_fixtures.h"
+
+using namespace quadgraph;
+
+namespace {
+
+struct Body {
+  vk::Context context;
+  QuadGraph graph;
+  Simulation simulation;
+
+  Body(bool texels, const std::vector<std::byte>& file)
+      : context({.validation = true, .device = "", .texels = texels}),
+        graph(QuadGraph::parse(file, "box")),
+        simulation(context, graph) {
+    CHECK(context.arena().used() == texels);
+  }
+  ~Body() { CHECK(context.validation_messages().empty()); }
+};
+
+std::vector<glm::vec3> solution(Body& body, const gpu::Material& material, const SolveOptions& options) {
+  body.simulation.set_material(material);
+  for (std::uint32_t i = 0; i < body.simulation.level_count(); ++i) {
+    const Level& level = body.graph.levels()[i];
+    std::vector<glm::vec3> q;
+    for (std::uint32_t f = 0; f < level.face_count(); ++f) q.push_back(one_side(level.nodes[level.tet_count() + f]));
+    body.simulation.set_irradiance(i, q, glm::vec3(1, 0.2f, 0));
+  }
+  body.simulation.solve(options);
+  return body.simulation.surface_field().exitance;
+}
+
+}  // namespace
+
+TEST_CASE("arrays read as texels and arrays read through references give the same numbers") {
+  const auto file = box_graph({4, 2}, 10.0f);
+  Body texels(true, file), references(false, file);
+  for (Method method : {Method::fem, Method::quadgraph_fv, Method::quadgraph_fdm}) {
+    for (Model model : {Model::diffusion, Model::sp3}) {
+      for (Source source : {Source::buried, Source::diffuse}) {
+        for (const gpu::Material& material : {homogeneous(), veined()}) {
+          // The published rows are not positive definite there (solve_behaviour_test.cpp).
+          if (method == Method::quadgraph_fdm && material.kind == gpu::MATERIAL_MARBLE_VEINS) continue;
+          const SolveOptions options{.method = method, .source = source, .model = model, .tolerance = 1e-5};
+          CAPTURE(name_of(method));
+          CAPTURE(name_of(model));
+          const auto a = solution(texels, material, options), b = solution(references, material, options);
+          CHECK(relative_difference(a, b) < 1e-6);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("a body squeezed until packed entries would round too much is solved like one of that shape") {
+  const auto squeeze = [](glm::vec3 p) { return p * glm::vec3(0.01f, 0.01f, 10.0f); };
+  std::vector<OwnedLevel> levels = {split_at_centroids(box_level(4, 10.0f, 0.15f)),
+                                    split_at_centroids(box_level(2, 10.0f, 0.15f))};
+  Body moved(true, graph_of(levels));
+  for (OwnedLevel& level : levels) {
+    for (glm::vec3& p : level.vertices) p = squeeze(p);
+  }
+  Body fresh(true, graph_of(levels));
+  const gpu::Material material = homogeneous();
+  const SolveOptions options{.model = Model::sp3, .tolerance = 1e-5};
+  solution(moved, material, options);  // with packed entries
+  for (std::uint32_t i = 0; i < moved.simulation.level_count(); ++i) {
+    CHECK(format_of(moved.graph.levels()[i], Method::fem) == EntryFormat::packed);
+    CHECK(format_of(fresh.graph.levels()[i], Method::fem) == EntryFormat::plain);
+    moved.simulation.set_vertices(i, fresh.graph.levels()[i].vertices);
+  }
+  CHECK(relative_difference(solution(moved, material, options), solution(fresh, material, options)) < 1e-4);
+}
