@@ -50,7 +50,16 @@ def test_gpu_equals_cpu_reference(engine, method, model, source, material):
     sigma_s_prime, sigma_a = _core.evaluate_material(engine.graph, 0, _core.Material(material))
     eta = _core.Material(material).eta
     expected = _core.solve_reference(
-        engine.graph, 0, sigma_s_prime, sigma_a, eta, lit_from_above(levels[0]), **light, **way, tolerance=1e-11, stored=True
+        engine.graph,
+        0,
+        sigma_s_prime,
+        sigma_a,
+        eta,
+        lit_from_above(levels[0]),
+        **light,
+        **way,
+        tolerance=1e-11,
+        stored=True,
     )
     field = engine.surface_field()
     scale = np.abs(expected["exitance"]).max(axis=0)
