@@ -18,7 +18,7 @@ vec3 absorbed(uint tet) {
     phi = 0.25 * (load_field(push.x, corners.x).phi + load_field(push.x, corners.y).phi +
                   load_field(push.x, corners.z).phi + load_field(push.x, corners.w).phi);
   } else {
-    phi = load_vec3(push.to_phi, tet) * load_field(push.x, tet).phi;
+    phi = load_vec3_or_one(push.to_phi, tet) * load_field(push.x, tet).phi;
   }
   return load_optical(push.optical, push.even == 1u ? 0u : tet).sigma_a * phi * push.scale.at[0].scale * volume;
 }

@@ -15,7 +15,7 @@ struct Surface {
 Surface at_face(uint f) {
   if (push.fem == 0u) {
     uint node = push.tet_count + f;
-    Field x = scaled(load_vec3(push.to_phi, node), load_field(push.x, node));
+    Field x = scaled(load_vec3_or_one(push.to_phi, node), load_field(push.x, node));
     vec3 flux = outward_flux(push.boundary, x);
     return Surface(x.phi, flux, max(flux, vec3(0)));
   }

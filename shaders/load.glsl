@@ -63,6 +63,12 @@ vec3 load_vec3(Vec3s a, uint i) {
   return a.at[i];
 }
 
+// The same; 1 everywhere if there is no array.
+vec3 load_vec3_or_one(Vec3s a, uint i) {
+  if (uvec2(a) == uvec2(0)) return vec3(1);
+  return load_vec3(a, i);
+}
+
 vec4 load_vec4(Vec4s a, uint i) {
   if (TEXELS) return uintBitsToFloat(texels4(texel_of(uvec2(a)) + 4u * i));
   return a.at[i];

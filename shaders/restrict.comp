@@ -11,7 +11,8 @@ void main() {
   if (i >= push.count) return;
   Field sum = no_field();
   for (uint k = load_uint(push.offset, i); k < load_uint(push.offset, i + 1u); ++k) {
-    sum = add_scaled(sum, vec3(load_float(push.weight, k)), load_field(push.r, load_uint(push.index, k)));
+    uint place = load_uint(push.place, k);
+    sum = add_scaled(sum, vec3(load_float(push.weight, place)), load_field(push.r, place / push.width));
   }
   push.f.at[i] = sum;
 }

@@ -187,8 +187,8 @@ QG_ARRAY(SolveStates, SolveState);
 QG_ARRAY(Scales, Scale);
 #endif
 
-// transfer.comp: x = sum of weight * to_phi_coarse * x_coarse / to_phi, for `count` rows from `first` on; 0 in a
-// channel without light.
+// transfer.comp: x = sum of weight * to_phi_coarse * x_coarse / to_phi (1 where null), for `count` rows from `first`
+// on; 0 in a channel without light.
 struct TransferPush {
   QG_REF(Uints) index;
   QG_REF(Floats) weight;
@@ -344,13 +344,15 @@ struct CoarseSolvePush {
   float ratio;
 };
 
-// restrict.comp: f_i = sum of weight_k r_index_k, k from offset[i] to offset[i + 1]: the transpose of a transfer.
+// restrict.comp: f_i = sum of weight_p r_(p / width), p = place_k, k from offset[i] to offset[i + 1]: the transpose of
+// the transfer whose weights these are.
 struct RestrictPush {
   QG_REF(Uints) offset;
-  QG_REF(Uints) index;
+  QG_REF(Uints) place;
   QG_REF(Floats) weight;
   QG_REF(Fields) r;
   QG_REF(Fields) f;
+  uint width;
   uint count;
 };
 

@@ -61,7 +61,8 @@ void main() {
     vec3 scale = push.scale.at[0].scale / max(push.scale.at[0].scale.x,
                                               max(push.scale.at[0].scale.y, push.scale.at[0].scale.z));
     SurfaceShare share = push.share.at[i];
-    vec3 flux = outward_flux(push.boundary, scaled(load_vec3(push.to_phi, carrier), load_field(push.x, carrier)));
+    Field x = scaled(load_vec3_or_one(push.to_phi, carrier), load_field(push.x, carrier));
+    vec3 flux = outward_flux(push.boundary, x);
     vec3 m = scale * (flux - push.scale.at[0].inverse * share.reflected);
     vec3 change = m - load_vec3(push.before, i);
     difference_squares = vec3(dot(change, change) * share.area, 0.0);

@@ -12,10 +12,10 @@ void main() {
   Field value = no_field();
   for (uint k = 0u; k < push.width; ++k) {
     uint j = push.coarse_first + load_uint(push.index, row * push.width + k);
-    vec3 factor = load_float(push.weight, row * push.width + k) * load_vec3(push.coarse_to_phi, j);
+    vec3 factor = load_float(push.weight, row * push.width + k) * load_vec3_or_one(push.coarse_to_phi, j);
     value = add_scaled(value, factor, load_field(push.coarse_x, j));
   }
   uint i = push.first + row;
-  vec3 factor = mix(vec3(0), 1.0 / load_vec3(push.to_phi, i), greaterThan(push.state.at[0].norm, vec3(0)));
+  vec3 factor = mix(vec3(0), 1.0 / load_vec3_or_one(push.to_phi, i), greaterThan(push.state.at[0].norm, vec3(0)));
   push.x.at[i] = scaled(factor, value);
 }

@@ -225,7 +225,7 @@ void record_damping(Workspace& work, Method method, OperatorBuffers& op) {
     return;
   }
   const vk::Buffer* y = &op.z;
-  const vk::Buffer* z = &op.other;
+  const vk::Buffer* z = &op.product;
   for (std::uint32_t step = 0; step < bound_steps; ++step) {
     const gpu::EigenvalueBoundPush push{.rows = op.rows(),
                                         .y = y->address(),

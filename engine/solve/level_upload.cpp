@@ -6,10 +6,9 @@
 namespace quadgraph {
 namespace {
 
-// Of the column r of a transfer: the targets that take from it, and how much, from offset[r] to offset[r + 1].
+// Of the column r of a transfer: the places of its weights, from offset[r] to offset[r + 1].
 struct Transposed {
-  std::vector<std::uint32_t> offset, index;
-  std::vector<float> weight;
+  std::vector<std::uint32_t> offset, place;
 };
 
 Transposed transposed(const Transfer& transfer, std::uint32_t columns) {
@@ -19,14 +18,10 @@ Transposed transposed(const Transfer& transfer, std::uint32_t columns) {
     if (transfer.weight[k] > 0) ++back.offset[transfer.index[k] + 1];
   }
   for (std::uint32_t i = 0; i < columns; ++i) back.offset[i + 1] += back.offset[i];
-  back.index.resize(back.offset.back());
-  back.weight.resize(back.offset.back());
+  back.place.resize(back.offset.back());
   std::vector<std::uint32_t> next(back.offset.begin(), back.offset.end() - 1);
   for (std::size_t k = 0; k < transfer.index.size(); ++k) {
-    if (!(transfer.weight[k] > 0)) continue;
-    const std::uint32_t place = next[transfer.index[k]]++;
-    back.index[place] = static_cast<std::uint32_t>(k / transfer.width);
-    back.weight[place] = transfer.weight[k];
+    if (transfer.weight[k] > 0) back.place[next[transfer.index[k]]++] = static_cast<std::uint32_t>(k);
   }
   return back;
 }
@@ -78,8 +73,7 @@ TransferBuffers::TransferBuffers(vk::Context& context, const Level& level, const
     add(level.barycentric, "barycentric", 0, 0);
     const Transposed back = transposed(level.barycentric, coarse.vertex_count());
     back_offset = vk::upload<std::uint32_t>(context, back.offset, prefix + "barycentric_back_offset");
-    back_index = vk::upload<std::uint32_t>(context, back.index, prefix + "barycentric_back_index");
-    back_weight = vk::upload<float>(context, back.weight, prefix + "barycentric_back_weight");
+    back_place = vk::upload<std::uint32_t>(context, back.place, prefix + "barycentric_back_place");
   } else {
     add(level.inner, "inner", 0, 0);
     add(level.surface, "surface", level.tet_count(), coarse.tet_count());

@@ -21,7 +21,7 @@ struct TransferBuffers {
     std::uint32_t width = 0, first = 0, coarse_first = 0, count = 0;
   };
   std::vector<Part> parts;
-  vk::Buffer back_offset, back_index, back_weight;  // the transpose (RestrictPush); fem only
+  vk::Buffer back_offset, back_place;  // the transpose (RestrictPush); fem only
 
   TransferBuffers(vk::Context& context, const Level& level, const Level& coarse, std::uint32_t number, Method method);
 };

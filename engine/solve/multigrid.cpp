@@ -43,7 +43,8 @@ bool Multigrid::possible(Operators& operators, const OperatorKey& key) {
 }
 
 const vk::Buffer& Multigrid::correction(std::uint32_t level) const {
-  return smoothing_ % 2 == 0 ? op(level).z : op(level).other;
+  if (smoothing_ % 2 == 0) return op(level).z;
+  return level == coarsest() ? op(level).other : op(level).product;
 }
 
 // As many as there are vertices across the body, whose square the condition of the coarsest operator grows with; even.
@@ -80,7 +81,8 @@ void Multigrid::record_step(std::uint32_t level, const vk::Buffer& from, const v
   dispatch(work_.passes.chebyshev.of(rows.model, rows.format), push, level, "smoothing");
 }
 
-// From zero: the first step is d itself, which the second takes as x; so z comes out, after one step or two.
+// From zero: the first step is d itself, which the second takes as x; so z comes out, after one step or two. Later, one
+// step needs no d, whose place its result takes.
 void Multigrid::record_smoothing(std::uint32_t level, bool from_zero) {
   OperatorBuffers& rows = op(level);
   for (std::uint32_t k = 0; k < smoothing_; ++k) {
@@ -88,7 +90,8 @@ void Multigrid::record_smoothing(std::uint32_t level, bool from_zero) {
     if (from_zero) {
       record_step(level, rows.product, rows.z, k, k == 0, reduce);
     } else {
-      record_step(level, k == 0 ? rows.z : rows.other, k == 0 ? rows.other : rows.z, k, false, reduce);
+      const vk::Buffer& between = smoothing_ == 1 ? rows.product : rows.other;
+      record_step(level, k == 0 ? rows.z : between, k == 0 ? between : rows.z, k, false, reduce);
     }
   }
 }
@@ -99,12 +102,14 @@ void Multigrid::record_restriction(std::uint32_t level) {
   const gpu::ResidualPush residual{fine.rows(), fine.r.address(), fine.z.address(), fine.product.address(), fine.count};
   dispatch(work_.passes.residual.of(fine.model, fine.format), residual, level, "coarse residual");
   const TransferBuffers& transfer = operators_.transfer(key_, level);
-  const gpu::RestrictPush push{transfer.back_offset.address(),
-                               transfer.back_index.address(),
-                               transfer.back_weight.address(),
-                               fine.product.address(),
-                               coarse.r.address(),
-                               coarse.count};
+  const auto& part = transfer.parts.front();
+  const gpu::RestrictPush push{.offset = transfer.back_offset.address(),
+                               .place = transfer.back_place.address(),
+                               .weight = part.weight.address(),
+                               .r = fine.product.address(),
+                               .f = coarse.r.address(),
+                               .width = part.width,
+                               .count = coarse.count};
   dispatch(work_.passes.restrict.of(key_.model), push, level + 1, "restriction");
 }
 

@@ -29,8 +29,7 @@ OperatorBuffers::OperatorBuffers(vk::Context& context, const Level& level, std::
   const std::string rows = "operator/", vectors = "solver/";
   const bool fem = method == Method::fem;
   const SlicedColumns columns = fem ? slice(vertex_neighbours(level)) : node_columns(level);
-  to_phi = fem ? upload(context, std::vector<glm::vec3>(count, glm::vec3(1)), rows + prefix_ + "to_phi")
-               : buffer(count * sizeof(glm::vec3), rows, "to_phi");
+  if (!fem) to_phi = buffer(count * sizeof(glm::vec3), rows, "to_phi");
   entries = static_cast<std::uint32_t>(columns.column.size());
   slices = static_cast<std::uint32_t>(columns.slice_offset.size() - 1);
   slice_offset = upload(context, columns.slice_offset, rows + prefix_ + "slice_offset");
@@ -42,10 +41,7 @@ OperatorBuffers::OperatorBuffers(vk::Context& context, const Level& level, std::
   r = buffer(count * field_bytes(), vectors, "r");
   p = buffer(count * field_bytes(), vectors, "p");
   product = buffer(count * field_bytes(), vectors, "product");
-  if (method == Method::fem) {
-    z = buffer(count * field_bytes(), vectors, "z");
-    other = buffer(count * field_bytes(), vectors, "other z");
-  }
+  if (fem) z = buffer(count * field_bytes(), vectors, "z");
   if (index > 0) before = buffer(count * field_bytes(), vectors, "x before");
   unit = buffer(sizeof(glm::vec3), vectors, "unit of x");
   surface_first = method == Method::fem ? 0 : level.tet_count();
@@ -58,8 +54,11 @@ OperatorBuffers::OperatorBuffers(vk::Context& context, const Level& level, std::
   damping = buffer(sizeof(glm::vec3), vectors, "damping");
 }
 
-void OperatorBuffers::make_room(vk::Context& context, const Level& level, bool even) {
+void OperatorBuffers::make_room(vk::Context& context, const Level& level, bool even, bool two_steps) {
   if (method_ != Method::fem) return;
+  if (two_steps && other.size() == 0) {
+    other = {context, count * field_bytes(), vk::Place::read, "solver/" + prefix_ + "other z"};
+  }
   if (by_entry(even)) {
     if (row_shape.size() == 0) upload_shape(context, level);
   } else {

@@ -19,11 +19,11 @@ struct OperatorBuffers {
   std::uint32_t entries = 0;  // off the diagonal, padding included
   std::uint32_t slices = 0;
   vk::Buffer slice_offset, entry, row_sum, diagonal;  // RowsRef
-  vk::Buffer to_phi;
-  vk::Buffer b, x;                  // scaled (gpu::Scale)
-  vk::Buffer r, p;                  // residual, direction
+  vk::Buffer to_phi;                                  // vec3 per row; none with fem: 1
+  vk::Buffer b, x;                                    // scaled (gpu::Scale)
+  vk::Buffer r, p;                                    // residual, direction
   vk::Buffer product;               // A p; in a relaxation, the other x; in a cycle, the direction, then the residual
-  vk::Buffer z, other;              // correction of a cycle, and its second buffer; fem only
+  vk::Buffer z, other;              // correction of a cycle, and a second buffer of it (make_room); fem only
   vk::Buffer before;                // x of the last solve, on levels that have a finer one
   vk::Buffer unit;                  // vec3: the scale that x has
   vk::Buffer state, state_on_host;  // SolveState, and the same, mapped
@@ -54,8 +54,9 @@ struct OperatorBuffers {
   OperatorBuffers(vk::Context& context, const Level& level, std::uint32_t index, Method method, Model model,
                   EntryFormat format);
 
-  // Uploads what the assembly needs, unless it is there. `even`: the coefficients are the same everywhere.
-  void make_room(vk::Context& context, const Level& level, bool even);
+  // Makes what the assembly needs, and what smoothing in two steps does, unless it is there. `even`: the coefficients
+  // are the same everywhere.
+  void make_room(vk::Context& context, const Level& level, bool even, bool two_steps);
 
   // Whether entry_shape makes the entries, and not the elements around each edge.
   bool by_entry(bool even) const { return even && !moved; }

@@ -4,7 +4,8 @@
 
 namespace quadgraph {
 
-void Operators::create(vk::Context& context, std::span<const Level> levels, const OperatorKey& key, bool even) {
+void Operators::create(vk::Context& context, std::span<const Level> levels, const OperatorKey& key, bool even,
+                       bool two_steps) {
   const std::size_t count = std::min<std::size_t>(levels.size(), MAX_LEVELS);
   if (!levels_.contains(key)) {
     std::vector<OfLevel> of_key(count);
@@ -16,7 +17,7 @@ void Operators::create(vk::Context& context, std::span<const Level> levels, cons
     for (std::uint32_t i = 0; i < count; ++i) write_gates(context, of_key, i);
     levels_.emplace(key, std::move(of_key));
   }
-  for (std::uint32_t i = 0; i < count; ++i) at(key, i).make_room(context, levels[i], even);
+  for (std::uint32_t i = 0; i < count; ++i) at(key, i).make_room(context, levels[i], even, two_steps || i + 1 == count);
 }
 
 // What opens the gates of the level's state.

@@ -24,8 +24,9 @@ struct OperatorKey {
 
 class Operators {
  public:
-  // Uploads what operators of all levels need, unless it is there. `even`: the coefficients are the same everywhere.
-  void create(vk::Context& context, std::span<const Level> levels, const OperatorKey& key, bool even);
+  // Makes what operators of all levels need, unless it is there. `even`: the coefficients are the same everywhere;
+  // `two_steps`: cycles smooth in two steps.
+  void create(vk::Context& context, std::span<const Level> levels, const OperatorKey& key, bool even, bool two_steps);
 
   // Of a key that has been created.
   OperatorBuffers& at(const OperatorKey& key, std::uint32_t level) { return *levels_.at(key)[level].op; }

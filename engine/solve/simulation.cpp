@@ -161,7 +161,8 @@ struct Simulation::Implementation {
     for (std::uint32_t i = 0; i < levels.size() && key.method != Method::fem; ++i) {
       upload_graph(context, shape.levels()[i], i, levels[i]);
     }
-    operators.create(context, shape.levels(), key, coefficients.even());
+    const bool two_steps = options.smoothing == 2 || (options.smoothing == 0 && options.solver == SolverKind::vcycle);
+    operators.create(context, shape.levels(), key, coefficients.even(), two_steps);
     const std::optional<std::uint32_t> bounced = bounces_wanted(options) ? exchange.level() : std::nullopt;
     if (bounced) exchange.make_room(work, levels);
     for (std::uint32_t i = 0; i < levels.size() && options.source == Source::buried; ++i) {
@@ -324,7 +325,8 @@ std::vector<glm::vec3> Simulation::phi() const {
   const OperatorBuffers& rows = implementation_->operators.at(self.solved_key(), 0);
   const std::size_t moments = rows.model == Model::sp3 ? 2 : 1;
   const auto x = vk::download<glm::vec3>(self.context, rows.x);
-  std::vector<glm::vec3> phi = vk::download<glm::vec3>(self.context, rows.to_phi);
+  std::vector<glm::vec3> phi(rows.count, glm::vec3(1));
+  if (rows.to_phi.size() > 0) phi = vk::download<glm::vec3>(self.context, rows.to_phi);
   const glm::vec3 scale = self.scale();
   for (std::size_t i = 0; i < phi.size(); ++i) phi[i] *= x[moments * i] * scale;
   return phi;

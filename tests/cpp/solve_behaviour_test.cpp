@@ -162,7 +162,7 @@ TEST_CASE("a matrix that is not positive definite breaks down by name") {
   const OperatorKey key{Method::fem, Model::diffusion};
   const Level level = owned.view();
   Operators operators;
-  operators.create(context, {&level, 1}, key, true);
+  operators.create(context, {&level, 1}, key, true, false);
   OperatorBuffers& op = operators.at(key, 0);
   Workspace work(context, op.count);
   const std::vector<glm::vec3> one(op.entries, glm::vec3(1)), minus(op.entries, glm::vec3(-1));

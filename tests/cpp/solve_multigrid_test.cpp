@@ -50,7 +50,7 @@ struct Chain {
       simulation.set_irradiance(i, dark);
     }
     simulation.solve({.model = model});
-    operators.create(device.context, graph.levels(), key, false);
+    operators.create(device.context, graph.levels(), key, false, true);
     for (std::uint32_t i = 0; i < cells.size(); ++i) {
       record_assembly(work, simulation.level(i), Method::fem, boundary_of(Method::fem, Source::buried, model, 1.3),
                       false, operators.at(key, i));
