@@ -64,6 +64,7 @@ void Commands::barrier() {
   info.memoryBarrierCount = 1;
   info.pMemoryBarriers = &memory;
   vkCmdPipelineBarrier2(commands_, &info);
+  unfinished_ = true;
 }
 
 void Commands::transition(const Image& image, VkImageLayout from, VkImageLayout to) {
@@ -84,6 +85,7 @@ void Commands::transition(const Image& image, VkImageLayout from, VkImageLayout 
   info.imageMemoryBarrierCount = 1;
   info.pImageMemoryBarriers = &barrier;
   vkCmdPipelineBarrier2(commands_, &info);
+  unfinished_ = true;
 }
 
 void Commands::copy(const Buffer& source, const Buffer& target, std::uint64_t bytes, std::uint64_t target_offset) {
@@ -161,8 +163,10 @@ void Commands::end_pass() {
   }
 }
 
-// Runs what was recorded and records anew.
+// Runs what was recorded, if anything was, and records anew.
 void Commands::flush() {
+  if (!unfinished_) return;
+  unfinished_ = false;
   end_and_run();
   check(vkResetCommandPool(context_.device(), pool_.get(), 0), "vkResetCommandPool");
   begin();

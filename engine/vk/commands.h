@@ -79,6 +79,7 @@ class Commands {
   UniqueQueryPool queries_;
   std::uint32_t max_passes_ = 0;
   bool host_timed_ = false;
+  bool unfinished_ = false;  // something has been recorded since the last flush
   std::chrono::steady_clock::time_point pass_start_;
   std::vector<PassTime> passes_;
 };
