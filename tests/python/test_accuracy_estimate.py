@@ -18,7 +18,6 @@ core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not
 
 # The bounds of the issue.
 FACTOR, MOST, WORST = 2.0, 0.9, 0.25
-FINER = 1
 LOBES = Subject("lobes", "lobes", 30, detail=5)
 CASES = (
     Case("lobes", "marble", "sun"),
@@ -35,7 +34,7 @@ def chain(tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="module")
 def body(chain) -> Judged:
-    return Judged(chain, "", FINER)
+    return Judged(chain, "", *estimate.FINER)
 
 
 def test_a_chain_without_its_finest_levels_is_the_rest_of_it(chain, tmp_path):
@@ -84,14 +83,17 @@ def sizes(level) -> tuple[float, float]:
     return np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2, np.einsum("ij,ij->", a, np.cross(b, c)) / 6
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case.material}, {case.light}")
-def test_the_estimate_is_right_within_a_factor_of_two(body, case):
-    rows = estimate.judge(body, case)
-    assert [row["mode"] for row in rows] == list(estimate.MODES)
-    for row in rows:
-        assert list(row["true"]) == [part for part in PARTS if part == "whole" or case.light != "three"]
-        for part, true in row["true"].items():
-            assert 1 / FACTOR < row["estimate"][part] / true < FACTOR, (row["mode"], part)
+def test_the_estimate_is_right_within_a_factor_of_two(body):
+    ratios = []
+    for case in CASES:
+        rows = estimate.judge(body, case)
+        assert [row["mode"] for row in rows] == list(estimate.MODES) * len(estimate.FINER)
+        for row in rows:
+            assert list(row["true"]) == [part for part in PARTS if part == "whole" or case.light != "three"]
+            ratios += [row["estimate"][part] / true for part, true in row["true"].items()]
+    within = [1 / FACTOR < ratio < FACTOR for ratio in ratios]
+    assert np.mean(within) >= MOST, ratios
+    assert min(ratios) >= WORST, ratios
 
 
 def test_statistics_count_both_sides_of_the_factor():
@@ -99,8 +101,9 @@ def test_statistics_count_both_sides_of_the_factor():
     rows = [{"mode": "--error", "estimate": {"whole": e}, "true": {"whole": 0.02}} for e in estimates]
     found = estimate.statistics(rows)
     assert list(found) == ["--error"]
-    assert list(found["--error"]) == ["whole"]
+    assert list(found["--error"]) == ["whole", "larger"]
     whole = found["--error"]["whole"]
+    assert found["--error"]["larger"] == whole
     assert whole["count"] == 5
     assert whole["within_2"] == pytest.approx(0.6)
     assert whole["least"] == pytest.approx(0.45)
@@ -144,7 +147,7 @@ def test_an_error_is_asked_for_where_light_goes_from_part_to_part(tmp_path, inte
 @pytest.mark.long
 def test_the_estimate_over_all_bodies_materials_and_lights(shared):
     record = estimate.run("", shared / "meshes", [])
-    assert len(record["rows"]) >= 30 * len(estimate.MODES)
+    assert len(record["rows"]) >= 30 * len(estimate.FINER) * len(estimate.MODES)
     assert len(estimate.tables(record)) == 2
     for mode, parts in record["statistics"].items():
         for part, found in parts.items():

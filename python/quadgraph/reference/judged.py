@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 PARTS = ("whole", "unlit")
 UNLIT_BELOW = 0.1  # of the mean irradiance, as the engine has it
 LEAST_SHARE = 0.02  # of the area: a smaller unlit part is not judged
-TRUTH_TOLERANCE = 1e-5
+TRUTH_TOLERANCE = 1e-4  # of errors of .1% and more
 LIGHTS = ("sun", "sun and sky", "three", "lamp", "near lamp and sky")
 
 
@@ -56,56 +56,59 @@ def lights(name: str, vertices: np.ndarray) -> list[str]:
 
 
 class Judged:
-    """A baked chain on the device twice: from the level that is judged, and whole, whose finest level is the truth.
+    """A baked chain on the device: whole, with its finest level as the truth, and from each level that is judged.
 
-    finer: levels between the two, each of a quarter of the vertices of the one before. Neither follows light from part
-    to part. Raises InputError if the chain is too short for the judged level to have a coarser one.
+    finer: of each judged level, the number of finer ones, each of which has four times the vertices of the next. None
+    follows light from part to part. Raises InputError if the chain is too short for a judged level to have a coarser
+    one.
     """
 
-    def __init__(self, path: Path, device: str, finer: int) -> None:
+    def __init__(self, path: Path, device: str, *finer: int) -> None:
         core = load_core()
         self.graph: QuadGraph = core.load(path)
-        if len(self.graph.levels) < finer + 2:
-            raise InputError(f"{path}: {len(self.graph.levels)} levels found, at least {finer + 2} needed")
-        self.finer = finer
+        if len(self.graph.levels) < max(finer) + 2:
+            raise InputError(f"{path}: {len(self.graph.levels)} levels found, at least {max(finer) + 2} needed")
         self._case: Case | None = None
         self._fine: Engine = core.Engine(path, device=device)
-        coarse = chains.without_finest(path, finer, path.with_name(f"{path.stem}-{finer}.qgraph"))
-        self._coarse: Engine = core.Engine(coarse, device=device)
+        self._coarse: dict[int, Engine] = {}
+        for count in finer:
+            rest = chains.without_finest(path, count, path.with_name(f"{path.stem}-{count}.qgraph"))
+            self._coarse[count] = core.Engine(rest, device=device)
 
     def vertices_of(self, level: int) -> int:
-        """Vertices on the surface of a level, counted from the judged one."""
-        return self.graph.levels[self.finer + level].surface_vertex_count
+        """Vertices on the surface of a level of the whole chain."""
+        return self.graph.levels[level].surface_vertex_count
 
     def light(self, case: Case) -> None:
-        """Set the case's material and lights on both, and find the truth."""
-        for engine in (self._coarse, self._fine):
+        """Set the case's material and lights on all, and find the truth."""
+        for engine in (self._fine, *self._coarse.values()):
             engine.set_material(case.material)
             engine.set_lights(lights(case.light, np.asarray(self.graph.levels[0].vertices)))
         self._fine.solve(model=case.model, tolerance=TRUTH_TOLERANCE, inter_reflection=False)
         self._case = case
 
-    def solve(self, **options: Any) -> dict[str, Any]:
-        """The engine's report of a solve from the judged level down."""
-        return self._coarse.solve(model=self._case.model, inter_reflection=False, **options)
+    def solve(self, finer: int, **options: Any) -> dict[str, Any]:
+        """The engine's report of a solve from the judged level with so many finer ones down."""
+        return self._coarse[finer].solve(model=self._case.model, inter_reflection=False, **options)
 
-    def true_error(self, finest: int = 0) -> dict[str, float]:
-        """Relative RMS error of the last solve's exitance by part, those of too small a share of the area left out.
+    def true_error(self, finer: int, finest: int = 0) -> dict[str, float]:
+        """Relative RMS error of that level's last solve's exitance by part, those of too small a share of the area left
+        out.
 
         finest: the level below the judged one that was solved last. Where errors halve from level to level and are not
         correlated, the truth's own mesh hides a share of 4^-(levels between) of the square, which is put back.
         """
         levels, truth = self.graph.levels, self._fine.surface_field()
-        found = np.asarray(self._coarse.surface_field()["exitance"], np.float64)
-        corners = chains.at_corners(np.asarray(levels[self.finer].faces), found)
-        difference = truth["exitance"] - chains.carried(levels, corners, self.finer)
+        found = np.asarray(self._coarse[finer].surface_field()["exitance"], np.float64)
+        corners = chains.at_corners(np.asarray(levels[finer].faces), found)
+        difference = truth["exitance"] - chains.carried(levels, corners, finer)
         area, q = np.asarray(truth["area"], np.float64), np.asarray(truth["q"], np.float64).sum(axis=1)
         unlit = q < UNLIT_BELOW * (area @ q) / area.sum()
         errors = {}
         for part, weight in zip(PARTS, (area, area * unlit), strict=True):
             if weight.sum() > LEAST_SHARE * area.sum():
                 share = _squares(weight, difference) / _squares(weight, truth["exitance"])
-                errors[part] = float(np.sqrt(share / (1 - 4.0 ** -(self.finer + finest))))
+                errors[part] = float(np.sqrt(share / (1 - 4.0 ** -(finer + finest))))
         return errors
 
 

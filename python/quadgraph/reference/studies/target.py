@@ -16,10 +16,10 @@ FINER = 1  # the truth has four times the vertices: so few are left where errors
 ASKED = (0.05, 0.02, 0.01)  # relative RMS error of M
 
 SUBJECTS = (
-    Subject("spot", "spot.ply", 5),
-    Subject("fertility", "fertility.ply", 8),
+    Subject("spot", "spot.ply", 4),
+    Subject("fertility", "fertility.ply", 6),
     Subject("igea", "igea.ply", 5, 28000),
-    Subject("armadillo", "armadillo.ply", 8, 28000),
+    Subject("armadillo", "armadillo.ply", 6, 28000),
     Subject("gargoyle", "gargoyle.ply", 20),
     Subject("fandisk", "fandisk.ply", 20),
     Subject("dragon", "dragon.ply", 30, 28000),
@@ -65,17 +65,17 @@ def judge(body: Pair, case: Case) -> list[dict[str, Any]]:
 
 
 def _row(body: Pair, case: Case, asked: float) -> dict[str, Any]:
-    report = body.own.solve(error=asked)
-    beside = body.original.solve(error=asked)
+    report = body.own.solve(FINER, error=asked)
+    beside = body.original.solve(FINER, error=asked)
     return asdict(case) | {
         "model": report["model"],
         "asked": asked,
         "reached": not report["missed"],
-        "vertices": body.own.vertices_of(report["finest"]),
+        "vertices": body.own.vertices_of(FINER + report["finest"]),
         "work": report["work"],
         "estimate": {part: report["error"][part] for part in PARTS},
-        "true": body.own.true_error(report["finest"]),
-        "of_original": body.original.true_error(beside["finest"]),
+        "true": body.own.true_error(FINER, report["finest"]),
+        "of_original": body.original.true_error(FINER, beside["finest"]),
     }
 
 
