@@ -15,7 +15,7 @@
 
 namespace quadgraph {
 
-// The true error is at most this many times the estimate in 95% of 126 cases: bodies of 2.5 to 100 mm, ten materials,
+// The true error is at most this many times the estimate in 95% of 126 cases: bodies of 5 to 100 mm, ten materials,
 // five lights, levels of 700 to 7,000 surface vertices against one of 11 to 41 thousand.
 constexpr double confidence = 1.4;
 
