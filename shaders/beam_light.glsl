@@ -1,6 +1,8 @@
 // What a beam brings to a quarter of a face, W/mm^2. Of a level's beam_q each beam has a part with its floats per face.
 vec3 beam_light(Beam beam, Floats beam_q, uint face_count, uint face, uint quarter) {
   uint at = beam.offset * face_count + beam.floats * face;
-  if (beam.floats == BEAM_RGB) return vec3(beam_q.at[at], beam_q.at[at + 1u], beam_q.at[at + 2u]);
-  return beam_q.at[at + (beam.floats == BEAM_QUARTERS ? quarter : 0u)] * beam.colour;
+  if (beam.floats == BEAM_RGB) {
+    return vec3(load_float(beam_q, at), load_float(beam_q, at + 1u), load_float(beam_q, at + 2u));
+  }
+  return load_float(beam_q, at + (beam.floats == BEAM_QUARTERS ? quarter : 0u)) * beam.colour;
 }

@@ -27,6 +27,22 @@ struct BodyRef {
   float eta;
 };
 
+#ifndef __cplusplus
+QG_ARRAY(BodyRefs, BodyRef);
+
+BodyRef body_in_texels(uint t) {
+  return BodyRef(Vec3s(texels2(t)), Uvec4s(texels2(t + 2u)), Uints(texels2(t + 4u)), Uvec3s(texels2(t + 6u)),
+                 Uints(texels2(t + 8u)), Uints(texels2(t + 10u)), Opticals(texels2(t + 12u)), texel(t + 14u),
+                 texel(t + 15u), texel(t + 16u), uintBitsToFloat(texel(t + 17u)));
+}
+
+// The only one of an array.
+BodyRef load_body(BodyRefs a) {
+  if (TEXELS) return body_in_texels(texel_of(uvec2(a)));
+  return a.at[0];
+}
+#endif
+
 #ifdef __cplusplus
 }  // namespace quadgraph::gpu
 #endif

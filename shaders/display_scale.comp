@@ -9,13 +9,13 @@ layout(push_constant, scalar) uniform Block { DisplayScalePush push; };
 void main() {
   uint f = gl_GlobalInvocationID.x;
   vec3 solved = vec3(0), shown = vec3(0);  // integrals over the face, in units of the scale
-  if (f < push.count && push.face_kinds.at[f] == FACE_OPEN) {
-    uvec3 corners = push.faces.at[f];
-    vec3 p = push.vertices.at[corners.x];
-    float area = 0.5 * length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));
-    vec3 weight = area * push.scale.at[0].inverse;
-    solved = weight * push.exitance.at[f];
-    for (int k = 0; k < 3; ++k) shown += weight / 3.0 * push.vertex_exitance.at[corners[k]];
+  if (f < push.count && load_uint(push.face_kinds, f) == FACE_OPEN) {
+    uvec3 corners = load_uvec3(push.faces, f);
+    vec3 p = load_vec3(push.vertices, corners.x);
+    float area = 0.5 * length(cross(load_vec3(push.vertices, corners.y) - p, load_vec3(push.vertices, corners.z) - p));
+    vec3 weight = area * load_scale(push.scale).inverse;
+    solved = weight * load_vec3(push.exitance, f);
+    for (int k = 0; k < 3; ++k) shown += weight / 3.0 * load_vec3(push.vertex_exitance, corners[k]);
   }
   vec3 total_solved, total_shown;
   if (!reduce_dispatch_pair(push.reduction, solved, shown, total_solved, total_shown)) return;

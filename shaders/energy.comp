@@ -20,7 +20,7 @@ vec3 absorbed(uint tet) {
   } else {
     phi = load_vec3_or_one(push.to_phi, tet) * load_field(push.x, tet).phi;
   }
-  return load_optical(push.optical, push.even == 1u ? 0u : tet).sigma_a * phi * push.scale.at[0].scale * volume;
+  return load_optical(push.optical, push.even == 1u ? 0u : tet).sigma_a * phi * load_scale(push.scale).scale * volume;
 }
 
 void main() {

@@ -9,8 +9,8 @@ layout(push_constant, scalar) uniform Block { ExchangePush push; };
 #include "face_area.glsl"
 
 // W/mm^2 that a face sends out.
-vec3 sent_by(uint face) {
-  return push.exitance.at[face] * push.clip.at[0].factor + (1.0 - push.transmitted) * push.before.at[face];
+vec3 sent_by(uint face, vec3 clip) {
+  return load_vec3(push.exitance, face) * clip + (1.0 - push.transmitted) * load_vec3(push.before, face);
 }
 
 void main() {
@@ -18,13 +18,14 @@ void main() {
   vec3 received = vec3(0), sent = vec3(0);  // W
   if (f < push.count) {
     vec3 irradiance = vec3(0);
-    if (push.face_kinds.at[f] == FACE_OPEN) {
-      uvec2 row = push.rows.at[f];
-      for (uint k = row.x; k < row.y; ++k) irradiance += sent_by(push.entries.at[k]);
+    if (load_uint(push.face_kinds, f) == FACE_OPEN) {
+      vec3 clip = push.clip.at[0].factor;
+      uvec2 row = load_uvec2(push.rows, f);
+      for (uint k = row.x; k < row.y; ++k) irradiance += sent_by(load_uint(push.entries, k), clip);
       irradiance /= push.rays;
       float area = area_of(f);
       received = area * irradiance;
-      sent = area * float(row.y - row.x) / push.rays * sent_by(f);
+      sent = area * float(row.y - row.x) / push.rays * sent_by(f, clip);
     }
     push.irradiance.at[f] = irradiance;
   }

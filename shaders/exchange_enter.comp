@@ -12,12 +12,12 @@ void main() {
   uint f = gl_GlobalInvocationID.x;
   vec3 change = vec3(0), entered = vec3(0);
   if (f < push.count) {
-    vec3 irradiance = push.factor.at[0] * push.irradiance.at[f];
+    vec3 irradiance = load_vec3(push.factor, 0u) * load_vec3(push.irradiance, f);
     push.irradiance.at[f] = irradiance;
     vec3 q = push.transmitted * irradiance;
     float area = area_of(f);
-    entered = area * push.q.at[f];
-    change = area * abs(q - push.beam_q.at[f]);
+    entered = area * load_vec3(push.q, f);
+    change = area * abs(q - load_vec3(push.beam_q, f));
     push.beam_q.at[f] = q;
   }
   vec3 total_change, total_entered;

@@ -13,9 +13,9 @@ void main() {
   vec3 received = vec3(0);  // W
   if (f < push.count) {
     vec3 irradiance = vec3(0);
-    if (push.face_kinds.at[f] == FACE_OPEN) {
+    if (load_uint(push.face_kinds, f) == FACE_OPEN) {
       for (uint k = f * push.width; k < (f + 1u) * push.width; ++k) {
-        irradiance += push.weight.at[k] * push.coarse.at[push.index.at[k]];
+        irradiance += load_float(push.weight, k) * load_vec3(push.coarse, load_uint(push.index, k));
       }
       received = area_of(f) * irradiance;
     }

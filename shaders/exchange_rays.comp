@@ -28,8 +28,8 @@ struct Frame {
 };
 
 Frame frame_of(uint face) {
-  uvec3 ids = push.faces.at[face];
-  vec3 a = push.vertices.at[ids.x], b = push.vertices.at[ids.y], c = push.vertices.at[ids.z];
+  uvec3 ids = load_uvec3(push.faces, face);
+  vec3 a = load_vec3(push.vertices, ids.x), b = load_vec3(push.vertices, ids.y), c = load_vec3(push.vertices, ids.z);
   vec3 normal = normalize(cross(b - a, c - a)), t1 = normalize(b - a);
   return Frame((a + b + c) / 3.0, t1, cross(normal, t1), normal);
 }
@@ -44,9 +44,9 @@ Ray ray_of(Frame frame, uint face, uint i) {
 
 // Moeller and Trumbore 1997, about the origin of the ray.
 void meet(Ray ray, uint face, inout Hit hit) {
-  uvec3 ids = push.faces.at[face];
-  vec3 a = push.vertices.at[ids.x] - ray.origin, ab = push.vertices.at[ids.y] - push.vertices.at[ids.x],
-       ac = push.vertices.at[ids.z] - push.vertices.at[ids.x];
+  uvec3 ids = load_uvec3(push.faces, face);
+  vec3 first = load_vec3(push.vertices, ids.x), a = first - ray.origin;
+  vec3 ab = load_vec3(push.vertices, ids.y) - first, ac = load_vec3(push.vertices, ids.z) - first;
   vec3 p = cross(ray.direction, ac);
   float det = dot(ab, p);
   if (det == 0.0) return;
@@ -70,14 +70,14 @@ uint first_met(Ray ray, uint own) {
   Hit hit = Hit(FAR, NONE, false);
   uint node = 1u;
   while (node != 0u) {
-    if (may_meet(ray, push.boxes.at[node], hit.distance)) {
+    if (may_meet(ray, load_box(push.boxes, node), hit.distance)) {
       if (node < push.leaf_count) {
         node *= 2u;
         continue;
       }
       uint leaf = node - push.leaf_count;
-      for (uint k = push.leaf_begin.at[leaf]; k < push.leaf_begin.at[leaf + 1u]; ++k) {
-        uint face = push.order.at[k];
+      for (uint k = load_uint(push.leaf_begin, leaf); k < load_uint(push.leaf_begin, leaf + 1u); ++k) {
+        uint face = load_uint(push.order, k);
         if (face != own) meet(ray, face, hit);
       }
     }

@@ -76,6 +76,11 @@ struct Box {
 
 #ifndef __cplusplus
 QG_ARRAY(Boxes, Box);
+
+Box load_box(Boxes a, uint i) {
+  if (TEXELS) return Box(load_vec3(Vec3s(uvec2(a)), 2u * i), load_vec3(Vec3s(uvec2(a)), 2u * i + 1u));
+  return a.at[i];
+}
 #endif
 
 // exchange_boxes.comp: boxes of the nodes `first` to `first` + `count` - 1 of the tree, leaves before their parents.

@@ -43,7 +43,7 @@ void main() {
   if (f < push.count) {
     Surface surface = Surface(vec3(0), vec3(0), vec3(0));
     if (load_uint(push.face_kinds, f) == FACE_OPEN) surface = at_face(f);
-    vec3 scale = push.scale.at[0].scale;
+    vec3 scale = load_scale(push.scale).scale;
     push.phi.at[f] = surface.phi * scale;
     if (push.clipped == 1u) {
       float area = area_of(f);

@@ -20,7 +20,7 @@ void main() {
   uint row = gl_GlobalInvocationID.x;
   if (row >= push.count) return;
   uint i = push.first + row;
-  Field x = scaled(load_vec3(push.unit, 0) * push.scale.at[0].inverse, load_field(push.x, i));
+  Field x = scaled(load_vec3(push.unit, 0) * load_scale(push.scale).inverse, load_field(push.x, i));
   if (push.keep_before == 1u) push.before.at[i] = x;
   if (push.has_coarse == 1u) x = add(x, change_of_coarse(row));
   push.x.at[i] = x;

@@ -6,9 +6,9 @@
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { ResolvePush push; };
 
-BodyRef body;
-#define BODY body
-#define POINTS push.scene.at[0].points
+SurfaceScene scene;
+#define BODY scene.body
+#define POINTS scene.points
 #include "gather.glsl"
 #include "pixel.glsl"
 
@@ -20,8 +20,9 @@ struct Sample {
 };
 
 Sample sample_at(uint i) {
-  vec4 specular = push.samples[1].at[i], normal = push.samples[2].at[i];
-  return Sample(uint(specular.w) * FACE_HALF + uint(normal.w), push.samples[0].at[i].xyz, normal.xyz, specular.rgb);
+  vec4 specular = load_vec4(push.samples[1], i), normal = load_vec4(push.samples[2], i);
+  uint face = uint(specular.w) * FACE_HALF + uint(normal.w);
+  return Sample(face, load_vec4(push.samples[0], i).xyz, normal.xyz, specular.rgb);
 }
 
 // Whether one ray does for two samples of a pixel. Between faces what is seen can change too much.
@@ -31,9 +32,9 @@ bool together(Sample a, Sample b) {
 
 // Barycentric coordinates of the point of a face that lies below or above `point`.
 vec3 coordinates_in(uint face, vec3 point) {
-  uvec3 ids = BODY.faces.at[face];
-  vec3 a = BODY.vertices.at[ids.x];
-  vec3 u = BODY.vertices.at[ids.y] - a, v = BODY.vertices.at[ids.z] - a, offset = point - a;
+  uvec3 ids = load_uvec3(BODY.faces, face);
+  vec3 a = load_vec3(BODY.vertices, ids.x);
+  vec3 u = load_vec3(BODY.vertices, ids.y) - a, v = load_vec3(BODY.vertices, ids.z) - a, offset = point - a;
   vec3 normal = cross(u, v);
   float area = max(dot(normal, normal), 1e-30);
   float second = dot(cross(offset, v), normal) / area, third = dot(cross(u, offset), normal) / area;
@@ -42,19 +43,19 @@ vec3 coordinates_in(uint face, vec3 point) {
 }
 
 // Radiance of even light from all sides, W/(mm^2 sr).
-vec3 ambient_radiance(SurfaceScenes scene) {
+vec3 ambient_radiance() {
   vec3 sum = vec3(0);
-  for (uint i = 0u; i < scene.at[0].light_count; ++i) {
-    LightRecord light = scene.at[0].lights.at[i];
+  for (uint i = 0u; i < scene.light_count; ++i) {
+    LightRecord light = load_light(scene.lights, i);
     if (light.kind == LIGHT_AMBIENT) sum += light.power / PI;
   }
   return sum;
 }
 
-Gathered towards_eye(SurfaceScenes scene, uint face, vec3 position, vec3 normal) {
-  vec3 v = normalize(scene.at[0].eye - position);
-  return leaving(face, coordinates_in(face, position), v, normalize(normal), scene.at[0].scale,
-                 scene.at[0].radiance_norm);
+Gathered towards_eye(uint face, vec3 position, vec3 normal) {
+  vec3 v = normalize(scene.eye - position);
+  return leaving(face, coordinates_in(face, position), v, normalize(normal), scene.scale,
+                 scene.radiance_norm);
 }
 
 // One view ray for all samples that lie together: where faces are larger than pixels, one per pixel. Samples are read
@@ -62,10 +63,9 @@ Gathered towards_eye(SurfaceScenes scene, uint face, vec3 position, vec3 normal)
 void main() {
   Pixel pixel;
   if (!find_pixel(pixel)) return;
-  SurfaceScenes scene = push.scene;
-  body = scene.at[0].body;
+  scene = load_scene(push.scene);
   uint waiting = 0u;
-  for (uint k = 0u; k < 4u; ++k) waiting |= push.samples[0].at[sample_of(pixel, k)].w > 0.0 ? 1u << k : 0u;
+  for (uint k = 0u; k < 4u; ++k) waiting |= load_vec4(push.samples[0], sample_of(pixel, k)).w > 0.0 ? 1u << k : 0u;
   vec3 scattered = vec3(0), specular = vec3(0), seen = vec3(0);
   float alpha = 0.0;
   while (waiting != 0u) {
@@ -82,10 +82,10 @@ void main() {
       normal += other.normal;
       specular += 0.25 * other.specular;
     }
-    Gathered light = towards_eye(scene, first.face, 0.25 / share * position, normal);
+    Gathered light = towards_eye(first.face, 0.25 / share * position, normal);
     scattered += share * light.radiance;
     seen += share * light.seen;
     alpha += share;
   }
-  write_pixel(pixel, vec3[](scattered, specular, seen * ambient_radiance(scene), seen), alpha);
+  write_pixel(pixel, vec3[](scattered, specular, seen * ambient_radiance(), seen), alpha);
 }

@@ -31,7 +31,7 @@ Gathered gather(uint tet, vec3 direction) {
     }
     vec3 n = exit.outward / length(exit.outward);
     float cosine = dot(direction, n);
-    if (BODY.face_kinds.at[crossing.x - BODY.tet_count] == FACE_OPEN) {
+    if (load_uint(BODY.face_kinds, crossing.x - BODY.tet_count) == FACE_OPEN) {
       float reflected = internal_reflectance(cosine, BODY.eta);
       sum.seen += left * (1.0 - reflected);
       left *= reflected;
@@ -56,13 +56,14 @@ vec3 view_ray(vec3 outward, vec3 n, vec3 face_normal) {
 // scattered light, and the share that is seen of what is behind. Fresnel and refraction included: radiance over eta^2
 // is kept.
 Gathered leaving(uint face, vec3 l, vec3 outward, vec3 n, GatherScales scale, float radiance_norm) {
-  uvec3 ids = BODY.faces.at[face];
-  mat3 corners = mat3(BODY.vertices.at[ids.x], BODY.vertices.at[ids.y], BODY.vertices.at[ids.z]);
+  uvec3 ids = load_uvec3(BODY.faces, face);
+  mat3 corners = corners_of(ids);
   vec3 face_normal = normalize(cross(corners[1] - corners[0], corners[2] - corners[0]));
-  uint tet = BODY.face_tets.at[face];
+  uint tet = load_uint(BODY.face_tets, face);
   start_on_face(tet, ids, corners, l);
   Gathered inside = gather(tet, view_ray(outward, n, face_normal));
-  GatherScale a = scale.at[ids.x], b = scale.at[ids.y], c = scale.at[ids.z];
+  GatherScale a = load_gather_scale(scale, ids.x), b = load_gather_scale(scale, ids.y),
+              c = load_gather_scale(scale, ids.z);
   vec3 factor = l.x * a.factor + l.y * b.factor + l.z * c.factor;
   vec3 rest = l.x * a.rest + l.y * b.rest + l.z * c.rest;
   float transmittance = fresnel_transmittance(clamp(dot(outward, n), 0.0, 1.0), BODY.eta);

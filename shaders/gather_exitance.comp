@@ -54,7 +54,7 @@ bool gather_straight(uint tet, vec3 direction, Lambertian nodes) {
       continue;
     }
     vec3 n = exit.outward / length(exit.outward);
-    if (BODY.face_kinds.at[crossing.x - BODY.tet_count] == FACE_OPEN) {
+    if (load_uint(BODY.face_kinds, crossing.x - BODY.tet_count) == FACE_OPEN) {
       thin = thin || any(greaterThan(left[LAMBERTIAN_NODES - 1u], vec3(GATHER_END)));
       for (uint k = 0u; k < LAMBERTIAN_NODES; ++k) left[k] *= internal_reflectance(nodes.cosine[k], BODY.eta);
       if (BODY.eta == 1.0) break;
@@ -77,18 +77,18 @@ void gather_slanted(uint tet, uvec3 ids, mat3 corners, vec3 normal, vec3 tangent
 
 void main() {
   uint face = gl_GlobalInvocationID.x;
-  body = push.body.at[0];
+  body = load_body(push.body);
   if (face >= BODY.face_count) return;
   push.exitance.at[face] = vec3(0);
-  if (BODY.face_kinds.at[face] != FACE_OPEN) return;
+  if (load_uint(BODY.face_kinds, face) != FACE_OPEN) return;
   for (uint k = 0u; k < LAMBERTIAN_NODES; ++k) {
     radiance[k] = vec3(0);
     left[k] = vec3(1);
   }
-  uvec3 ids = BODY.faces.at[face];
-  mat3 corners = mat3(BODY.vertices.at[ids.x], BODY.vertices.at[ids.y], BODY.vertices.at[ids.z]);
+  uvec3 ids = load_uvec3(BODY.faces, face);
+  mat3 corners = corners_of(ids);
   vec3 normal = normalize(cross(corners[1] - corners[0], corners[2] - corners[0]));
-  uint tet = BODY.face_tets.at[face];
+  uint tet = load_uint(BODY.face_tets, face);
   start_on_face(tet, ids, corners, vec3(1.0 / 3.0));
   if (gather_straight(tet, -normal, lambertian(BODY.eta))) {
     gather_slanted(tet, ids, corners, normal, face_tangent(face, normal, corners[1] - corners[0]));

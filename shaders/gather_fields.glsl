@@ -6,7 +6,7 @@ struct Payload {
 };
 
 Payload payload(uint id) {
-  return Payload(POINTS.at[id]);
+  return Payload(load_gather_point(POINTS, id));
 }
 
 #include "tet_ray.glsl"

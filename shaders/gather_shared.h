@@ -44,9 +44,21 @@ const float LEAST_COSINE = 0.02f;
 const float LEAST_VIEW_COSINE = 0.02f;
 
 #ifndef __cplusplus
-QG_ARRAY(BodyRefs, BodyRef);
 QG_ARRAY(GatherPoints, GatherPoint);
 QG_ARRAY(GatherScales, GatherScale);
+
+GatherPoint load_gather_point(GatherPoints a, uint i) {
+  if (TEXELS) {
+    Vec3s parts = Vec3s(uvec2(a));
+    return GatherPoint(load_vec3(parts, 3u * i), load_vec3(parts, 3u * i + 1u), load_vec3(parts, 3u * i + 2u));
+  }
+  return a.at[i];
+}
+
+GatherScale load_gather_scale(GatherScales a, uint i) {
+  if (TEXELS) return GatherScale(load_vec3(Vec3s(uvec2(a)), 2u * i), load_vec3(Vec3s(uvec2(a)), 2u * i + 1u));
+  return a.at[i];
+}
 #endif
 
 // gather_phi.comp: phi of the points from the solution of linear elements.

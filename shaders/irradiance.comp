@@ -42,18 +42,18 @@ vec4 quarters_of(LightRecord light, vec3 a, vec3 ab, vec3 ac, vec3 normal) {
 void main() {
   uint f = gl_GlobalInvocationID.x;
   if (f >= push.face_count) return;
-  uvec3 face = push.faces.at[f];
-  vec3 a = push.vertices.at[face.x];
-  vec3 ab = push.vertices.at[face.y] - a;
-  vec3 ac = push.vertices.at[face.z] - a;
+  uvec3 face = load_uvec3(push.faces, f);
+  vec3 a = load_vec3(push.vertices, face.x);
+  vec3 ab = load_vec3(push.vertices, face.y) - a;
+  vec3 ac = load_vec3(push.vertices, face.z) - a;
   vec3 normal = normalize(cross(ab, ac));
 
   vec3 q = vec3(0);
   uint beam = 0u;  // of the light
   for (uint i = 0u; i < push.light_count; ++i) {
-    LightRecord light = push.lights.at[i];
+    LightRecord light = load_light(push.lights, i);
     if (light.kind == LIGHT_AMBIENT) {
-      float share = push.sky.at[f] * push.diffuse_transmittance;
+      float share = load_float(push.sky, f) * push.diffuse_transmittance;
       push.beam_q.at[beam + f] = share;
       q += share * light.power;
       beam += BEAM_FACE * push.face_count;

@@ -7,9 +7,9 @@ layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { IrradianceScalePush push; };
 
 float area_of(uint face) {
-  uvec3 corners = push.faces.at[face];
-  vec3 p = push.vertices.at[corners.x];
-  return 0.5 * length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));
+  uvec3 corners = load_uvec3(push.faces, face);
+  vec3 p = load_vec3(push.vertices, corners.x);
+  return 0.5 * length(cross(load_vec3(push.vertices, corners.y) - p, load_vec3(push.vertices, corners.z) - p));
 }
 
 // Faces with less than this share of the mean irradiance count as unlit.
@@ -18,10 +18,9 @@ const float UNLIT = 0.1;
 void main() {
   uint i = gl_GlobalInvocationID.x;
   float own = i < push.count ? area_of(i) : 0.0;
+  vec3 entering = i < push.count ? own * load_vec3(push.q, i) : vec3(0);
   vec3 power, area;
-  if (!reduce_dispatch_pair(push.reduction, i < push.count ? own * push.q.at[i] : vec3(0), vec3(own), power, area)) {
-    return;
-  }
+  if (!reduce_dispatch_pair(push.reduction, entering, vec3(own), power, area)) return;
   if (gl_LocalInvocationID.x != 0u) return;
   push.scale.at[0].unlit = UNLIT * (power.x + power.y + power.z) / area.x;
   vec3 any_channel = vec3(max(power.x, max(power.y, power.z)));

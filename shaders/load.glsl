@@ -28,6 +28,11 @@ uvec4 texels4(uint i) {
   return uvec4(texel(i), texel(i + 1u), texel(i + 2u), texel(i + 3u));
 }
 
+mat4 mat4_in_texels(uint i) {
+  return mat4(uintBitsToFloat(texels4(i)), uintBitsToFloat(texels4(i + 4u)), uintBitsToFloat(texels4(i + 8u)),
+              uintBitsToFloat(texels4(i + 12u)));
+}
+
 uint load_uint(Uints a, uint i) {
   if (TEXELS) return texel(texel_of(uvec2(a)) + i);
   return a.at[i];
@@ -46,6 +51,12 @@ uvec3 load_uvec3(Uvec3s a, uint i) {
 uvec4 load_uvec4(Uvec4s a, uint i) {
   if (TEXELS) return texels4(texel_of(uvec2(a)) + 4u * i);
   return a.at[i];
+}
+
+// a.at[i][k].
+uint load_component(Uvec4s a, uint i, uint k) {
+  if (TEXELS) return texel(texel_of(uvec2(a)) + 4u * i + k);
+  return a.at[i][k];
 }
 
 float load_float(Floats a, uint i) {

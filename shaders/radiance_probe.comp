@@ -14,12 +14,12 @@ BodyRef body;
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= push.count) return;
-  body = push.body.at[0];
-  uint face = push.face.at[i];
-  uvec3 ids = BODY.faces.at[face];
-  vec3 p = BODY.vertices.at[ids.x];
-  vec3 normal = normalize(cross(BODY.vertices.at[ids.y] - p, BODY.vertices.at[ids.z] - p));
-  Gathered light = leaving(face, vec3(1.0 / 3.0), push.direction.at[i], normal, push.scale, push.radiance_norm);
+  body = load_body(push.body);
+  uint face = load_uint(push.face, i);
+  uvec3 ids = load_uvec3(BODY.faces, face);
+  vec3 p = load_vec3(BODY.vertices, ids.x);
+  vec3 normal = normalize(cross(load_vec3(BODY.vertices, ids.y) - p, load_vec3(BODY.vertices, ids.z) - p));
+  Gathered light = leaving(face, vec3(1.0 / 3.0), load_vec3(push.direction, i), normal, push.scale, push.radiance_norm);
   push.radiance.at[i] = light.radiance;
   push.transmittance.at[i] = light.seen;
 }

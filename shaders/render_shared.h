@@ -44,6 +44,24 @@ struct LightRecord {
 #ifndef __cplusplus
 QG_ARRAY(ShadowViews, ShadowView);
 QG_ARRAY(LightRecords, LightRecord);
+
+ShadowView load_shadow_view(ShadowViews a, uint i) {
+  if (TEXELS) {
+    uint t = texel_of(uvec2(a)) + 22u * i;
+    return ShadowView(mat4_in_texels(t), Floats(texels2(t + 16u)), texel(t + 18u), uintBitsToFloat(texel(t + 19u)),
+                      uintBitsToFloat(texel(t + 20u)), uintBitsToFloat(texel(t + 21u)));
+  }
+  return a.at[i];
+}
+
+LightRecord load_light(LightRecords a, uint i) {
+  if (TEXELS) {
+    uint t = texel_of(uvec2(a)) + 9u * i;
+    return LightRecord(texel(t), uintBitsToFloat(texels3(t + 1u)), uintBitsToFloat(texels3(t + 4u)), texel(t + 7u),
+                       texel(t + 8u));
+  }
+  return a.at[i];
+}
 #endif
 
 // shadow.vert: depth of the display mesh.
@@ -95,6 +113,34 @@ struct SurfaceScene {
 
 #ifndef __cplusplus
 QG_ARRAY(SurfaceScenes, SurfaceScene);
+
+// The only one of an array.
+SurfaceScene load_scene(SurfaceScenes a) {
+  if (!TEXELS) return a.at[0];
+  uint t = texel_of(uvec2(a));
+  SurfaceScene scene;
+  scene.clip_from_world = mat4_in_texels(t);
+  scene.eye = uintBitsToFloat(texels3(t + 16u));
+  scene.eta = uintBitsToFloat(texel(t + 19u));
+  scene.roughness = uintBitsToFloat(texel(t + 20u));
+  scene.radiance_norm = uintBitsToFloat(texel(t + 21u));
+  scene.light_count = texel(t + 22u);
+  scene.vertices = Vec3s(texels2(t + 24u));
+  scene.normals = Vec3s(texels2(t + 26u));
+  scene.face = Uints(texels2(t + 28u));
+  scene.barycentric = Vec3s(texels2(t + 30u));
+  scene.faces = Uvec3s(texels2(t + 32u));
+  scene.exitance = Vec3s(texels2(t + 34u));
+  scene.unscattered = Vec3s(texels2(t + 36u));
+  scene.sky = Floats(texels2(t + 38u));
+  scene.lights = LightRecords(texels2(t + 40u));
+  scene.views = ShadowViews(texels2(t + 42u));
+  scene.triangle_face = Uints(texels2(t + 44u));
+  scene.points = GatherPoints(texels2(t + 46u));
+  scene.scale = GatherScales(texels2(t + 48u));
+  scene.body = body_in_texels(t + 50u);
+  return scene;
+}
 #endif
 
 // surface.vert, surface.frag: radiance of the display mesh. surface_gathered.frag: what is needed to gather it.

@@ -9,7 +9,7 @@ layout(push_constant, scalar) uniform Block { ResolvePush push; };
 
 vec4 mean_of(Vec4s samples, Pixel pixel) {
   vec4 sum = vec4(0);
-  for (uint k = 0u; k < 4u; ++k) sum += samples.at[sample_of(pixel, k)];
+  for (uint k = 0u; k < 4u; ++k) sum += load_vec4(samples, sample_of(pixel, k));
   return 0.25 * sum;
 }
 

@@ -14,7 +14,7 @@ vec3 surface_load(uint face) {
   uint tet = load_uint(push.face_tets, face);
   float d = distance(load_vec3(push.nodes, tet), load_vec3(push.nodes, push.tet_count + face));
   vec3 kappa_ratio = kappa(load_optical(push.optical, tet)) / kappa(load_optical(push.optical, push.tet_count + face));
-  return kappa_ratio * load_vec3(push.q, face) * push.scale.at[0].inverse / d;
+  return kappa_ratio * load_vec3(push.q, face) * load_scale(push.scale).inverse / d;
 }
 
 void main() {

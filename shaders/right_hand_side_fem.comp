@@ -9,13 +9,13 @@ layout(push_constant, scalar) uniform Block { RightHandSideFemPush push; };
 
 // Integral of q against the basis function of surface vertex i: a third of each of its open faces.
 vec3 surface_load(uint i) {
-  vec3 sum = vec3(0);
+  vec3 sum = vec3(0), inverse = load_scale(push.scale).inverse;
   for (uint k = load_uint(push.face_offset, i); k < load_uint(push.face_offset, i + 1u); ++k) {
     uint face = load_uint(push.face_incidence, k);
     uvec3 corners = load_uvec3(push.faces, face);
     vec3 p = load_vec3(push.vertices, corners.x);
     float area = 0.5 * length(cross(load_vec3(push.vertices, corners.y) - p, load_vec3(push.vertices, corners.z) - p));
-    sum += load_vec3(push.q, face) * push.scale.at[0].inverse * area;
+    sum += load_vec3(push.q, face) * inverse * area;
   }
   return sum / 3.0;
 }

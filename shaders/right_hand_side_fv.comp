@@ -13,7 +13,7 @@ vec3 surface_load(uint face) {
   uvec3 corners = load_uvec3(push.faces, face);
   vec3 p = load_vec3(push.vertices, corners.x);
   float area = 0.5 * length(cross(load_vec3(push.vertices, corners.y) - p, load_vec3(push.vertices, corners.z) - p));
-  return area * load_vec3(push.q, face) * push.scale.at[0].inverse;
+  return area * load_vec3(push.q, face) * load_scale(push.scale).inverse;
 }
 
 void main() {

@@ -5,5 +5,5 @@
 layout(push_constant, scalar) uniform Block { ShadowPush push; };
 
 void main() {
-  gl_Position = push.clip_from_world * vec4(push.vertices.at[gl_VertexIndex], 1.0);
+  gl_Position = push.clip_from_world * vec4(load_vec3(push.vertices, gl_VertexIndex), 1.0);
 }

@@ -185,6 +185,24 @@ struct Scale {
 QG_ARRAY(Beams, Beam);
 QG_ARRAY(SolveStates, SolveState);
 QG_ARRAY(Scales, Scale);
+
+Beam load_beam(Beams a, uint i) {
+  if (TEXELS) {
+    uint t = texel_of(uvec2(a)) + 9u * i;
+    BeamRecord way = BeamRecord(texel(t), uintBitsToFloat(texels3(t + 1u)));
+    return Beam(way, uintBitsToFloat(texels3(t + 4u)), texel(t + 7u), texel(t + 8u));
+  }
+  return a.at[i];
+}
+
+// The only one of an array.
+Scale load_scale(Scales a) {
+  if (TEXELS) {
+    uint t = texel_of(uvec2(a));
+    return Scale(uintBitsToFloat(texels3(t)), uintBitsToFloat(texels3(t + 3u)), uintBitsToFloat(texel(t + 6u)));
+  }
+  return a.at[0];
+}
 #endif
 
 // transfer.comp: x = sum of weight * to_phi_coarse * x_coarse / to_phi (1 where null), for `count` rows from `first`

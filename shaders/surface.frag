@@ -13,14 +13,15 @@ layout(location = 0) out vec4 scattered_coverage;  // W/(mm^2 sr), 1
 layout(location = 1) out vec4 specular;            // W/(mm^2 sr), 1
 layout(location = 2) out vec4 unscattered;         // W/(mm^2 sr), 1
 
+SurfaceScene scene;
 #include "specular.glsl"
 
 // As of a diffuser behind the surface: the same from every side but for Fresnel.
 void main() {
-  SurfaceScenes scene = push.scene;
+  scene = load_scene(push.scene);
   vec3 n = normalize(normal);
-  vec3 v = normalize(scene.at[0].eye - position);
-  float share = fresnel_transmittance(clamp(dot(n, v), 0.0, 1.0), scene.at[0].eta) / scene.at[0].radiance_norm;
+  vec3 v = normalize(scene.eye - position);
+  float share = fresnel_transmittance(clamp(dot(n, v), 0.0, 1.0), scene.eta) / scene.radiance_norm;
   scattered_coverage = vec4(exitance * share, 1.0);
   specular = vec4(specular_radiance(position, n, v, sky), 1.0);
   unscattered = vec4(unscattered_exitance * share, 1.0);

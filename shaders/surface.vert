@@ -10,17 +10,17 @@ layout(location = 3) out vec3 unscattered_exitance;  // W/mm^2
 layout(location = 4) out float sky;                  // share that is not hidden by the body
 
 void main() {
-  SurfaceScenes scene = push.scene;
-  position = scene.at[0].vertices.at[gl_VertexIndex];
-  normal = scene.at[0].normals.at[gl_VertexIndex];
-  uint index = scene.at[0].face.at[gl_VertexIndex];
-  uvec3 face = scene.at[0].faces.at[index];
-  sky = scene.at[0].sky.at[index];
-  vec3 weight = scene.at[0].barycentric.at[gl_VertexIndex];
+  SurfaceScene scene = load_scene(push.scene);
+  position = load_vec3(scene.vertices, gl_VertexIndex);
+  normal = load_vec3(scene.normals, gl_VertexIndex);
+  uint index = load_uint(scene.face, gl_VertexIndex);
+  uvec3 face = load_uvec3(scene.faces, index);
+  sky = load_float(scene.sky, index);
+  vec3 weight = load_vec3(scene.barycentric, gl_VertexIndex);
   exitance = unscattered_exitance = vec3(0.0);
   for (int k = 0; k < 3; ++k) {
-    exitance += weight[k] * scene.at[0].exitance.at[face[k]];
-    unscattered_exitance += weight[k] * scene.at[0].unscattered.at[face[k]];
+    exitance += weight[k] * load_vec3(scene.exitance, face[k]);
+    unscattered_exitance += weight[k] * load_vec3(scene.unscattered, face[k]);
   }
-  gl_Position = scene.at[0].clip_from_world * vec4(position, 1.0);
+  gl_Position = scene.clip_from_world * vec4(position, 1.0);
 }

@@ -58,12 +58,12 @@ void main() {
   if (i < push.count) {
     uint carrier = push.first + i;
     // One factor for all channels, which are weighed alike.
-    vec3 scale = push.scale.at[0].scale / max(push.scale.at[0].scale.x,
-                                              max(push.scale.at[0].scale.y, push.scale.at[0].scale.z));
-    SurfaceShare share = push.share.at[i];
+    Scale unit = load_scale(push.scale);
+    vec3 scale = unit.scale / max(unit.scale.x, max(unit.scale.y, unit.scale.z));
+    SurfaceShare share = load_surface_share(push.share, i);
     Field x = scaled(load_vec3_or_one(push.to_phi, carrier), load_field(push.x, carrier));
     vec3 flux = outward_flux(push.boundary, x);
-    vec3 m = scale * (flux - push.scale.at[0].inverse * share.reflected);
+    vec3 m = scale * (flux - unit.inverse * share.reflected);
     vec3 change = m - load_vec3(push.before, i);
     difference_squares = vec3(dot(change, change) * share.area, 0.0);
     size_squares = vec3(dot(m, m) * share.area, 0.0);

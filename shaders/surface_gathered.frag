@@ -11,12 +11,14 @@ layout(location = 0) out vec4 position_coverage;  // mm, 1
 layout(location = 1) out vec4 specular_face;      // W/(mm^2 sr), high half of the face
 layout(location = 2) out vec4 normal_face;        // unit, low half of the face
 
+SurfaceScene scene;
 #include "specular.glsl"
 
 void main() {
+  scene = load_scene(push.scene);
   vec3 n = normalize(normal);
-  uint face = push.scene.at[0].triangle_face.at[gl_PrimitiveID];
+  uint face = load_uint(scene.triangle_face, gl_PrimitiveID);
   position_coverage = vec4(position, 1.0);
-  specular_face = vec4(specular_radiance(position, n, normalize(push.scene.at[0].eye - position), sky), face / FACE_HALF);
+  specular_face = vec4(specular_radiance(position, n, normalize(scene.eye - position), sky), face / FACE_HALF);
   normal_face = vec4(n, face % FACE_HALF);
 }

@@ -107,6 +107,14 @@ struct SurfaceShare {
 };
 #ifndef __cplusplus
 QG_ARRAY(SurfaceShares, SurfaceShare);
+
+SurfaceShare load_surface_share(SurfaceShares a, uint i) {
+  if (TEXELS) {
+    uint t = texel_of(uvec2(a)) + 5u * i;
+    return SurfaceShare(uintBitsToFloat(texels2(t)), uintBitsToFloat(texels3(t + 2u)));
+  }
+  return a.at[i];
+}
 #endif
 
 // surface_share.comp: fem: the first `count` vertices, each with a third of its open faces; graph methods: the surface

@@ -29,8 +29,7 @@ bool one_ray_does(vec3 least, vec3 largest, mat3 corners, float area) {
 }
 
 // The way light travels outside, at a point of a face.
-vec3 incoming(uint ray, vec3 position, vec3 normal, vec3 tangent) {
-  BeamRecord beam = push.beam.at[0].way;
+vec3 incoming(BeamRecord beam, uint ray, vec3 position, vec3 normal, vec3 tangent) {
   if (beam.kind == BEAM_DIRECTIONAL) return beam.vector;
   if (beam.kind == BEAM_POINT) return normalize(position - beam.vector);
   return lambertian_incoming(ray, normal, tangent);
@@ -50,9 +49,9 @@ vec3 mean_direction(vec3 normal, vec3 tangent) {
 
 // Ray `ray` of every origin on a face.
 void walk_from(uint face, uint ray) {
-  Beam beam = push.beam.at[0];
+  Beam beam = load_beam(push.beam, 0u);
   vec3 q[FACE_QUARTERS];
-  vec3 inverse = push.scale.at[0].inverse;
+  vec3 inverse = load_scale(push.scale).inverse;
   vec3 least = vec3(NEVER), largest = vec3(0), sum = vec3(0);
   for (uint k = 0u; k < FACE_QUARTERS; ++k) {
     q[k] = beam_light(beam, push.beam_q, push.body.face_count, face, k) * inverse;
@@ -60,15 +59,15 @@ void walk_from(uint face, uint ray) {
     largest = max(largest, q[k]);
     sum += q[k];
   }
-  if (largest == vec3(0) || push.body.face_kinds.at[face] != FACE_OPEN) return;
-  uvec3 ids = push.body.faces.at[face];
-  mat3 corners = mat3(push.body.vertices.at[ids.x], push.body.vertices.at[ids.y], push.body.vertices.at[ids.z]);
+  if (largest == vec3(0) || load_uint(push.body.face_kinds, face) != FACE_OPEN) return;
+  uvec3 ids = load_uvec3(push.body.faces, face);
+  mat3 corners = corners_of(ids);
   vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
   float area = 0.5 * length(normal);
   normal /= 2.0 * area;
   vec3 tangent = face_tangent(face, normal, corners[1] - corners[0]);
   bool one = one_ray_does(least, largest, corners, area);
-  uint tet = push.body.face_tets.at[face];
+  uint tet = load_uint(push.body.face_tets, face);
   float share = 0.25 * area * share_of(ray, push.rays);
   for (uint k = one ? FACE_CENTRE : 0u; k < FACE_QUARTERS; ++k) {
     vec3 power = share * (one ? sum : q[k]);
@@ -77,7 +76,7 @@ void walk_from(uint face, uint ray) {
     start_on_face(tet, ids, corners, l);
     vec3 inside = beam.way.kind == BEAM_MEAN
                       ? mean_direction(normal, tangent)
-                      : refracted(incoming(ray, corners * l, normal, tangent), normal, push.body.eta);
+                      : refracted(incoming(beam.way, ray, corners * l, normal, tangent), normal, push.body.eta);
     walk(Ray(tet, inside, power, vec3(0)));
   }
 }

@@ -50,7 +50,7 @@ gpu::SurfaceScene scene(const RasterInput& input, const Camera& camera) {
     scene.triangle_face = input.gather->triangle_face.address();
     scene.points = input.gather->field.points().address();
     scene.scale = input.gather->field.scale().address();
-    scene.body = input.gather->field.body().mapped_as<gpu::BodyRef>()[0];
+    scene.body = input.gather->field.body();
   }
   return scene;
 }
@@ -80,7 +80,7 @@ struct Rasteriser::Targets {
     for (int k = 0; k < SAMPLE_LAYERS; ++k) {
       images.emplace_back(context, image_options(sample_format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT),
                           "picture/samples");
-      samples.emplace_back(context, sample_bytes(), vk::Place::device, "picture/samples");
+      samples.emplace_back(context, sample_bytes(), vk::Place::read, "picture/samples");
     }
     for (const char* name : layer_names)
       layers.emplace_back(context, 12 * pixels(), vk::Place::host, std::string("picture/") + name);

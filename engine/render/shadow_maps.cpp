@@ -70,7 +70,7 @@ std::vector<gpu::ShadowView> point_views(const Light& light, const Sphere& bound
 template <typename T>
 void replace(vk::Context& context, const std::vector<T>& values, const char* name, vk::Buffer& buffer) {
   if (buffer.handle() == VK_NULL_HANDLE || buffer.size() != values.size() * sizeof(T)) {
-    buffer = {context, values.size() * sizeof(T), vk::Place::device, name};
+    buffer = {context, values.size() * sizeof(T), vk::Place::read, name};
   }
   vk::write_bytes(context, buffer, std::as_bytes(std::span(values)));
 }
@@ -128,7 +128,7 @@ PassStats ShadowMaps::update(const DisplayBuffers& mesh, const Sphere& bounds, s
     draw(commands, {{}, &image->second}, {0, 0, size, size}, pass_,
          gpu::ShadowPush{view.clip_from_world, mesh.vertices.address()}, mesh.triangles, 3 * mesh.triangle_count);
     vk::Buffer& depth = depths_[number++];
-    if (depth.size() != map_bytes) depth = {context_, map_bytes, vk::Place::device, "shadows/map"};
+    if (depth.size() != map_bytes) depth = {context_, map_bytes, vk::Place::read, "shadows/map"};
     view.depth = depth.address();
     commands.copy(image->second, depth);
     stats.bytes += mesh.vertices.size() + mesh.triangles.size() + 3 * map_bytes;

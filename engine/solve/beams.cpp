@@ -65,7 +65,7 @@ void replace_beams(vk::Context& context, std::span<const gpu::Beam> beams, BeamB
   vk::Commands commands(context);
   for (LevelBuffers& level : levels) {
     const std::uint64_t bytes = std::uint64_t{floats} * level.face_count * sizeof(float);
-    if (level.beam_q.size() != bytes) level.beam_q = {context, bytes, vk::Place::device, "light/beams on faces"};
+    if (level.beam_q.size() != bytes) level.beam_q = {context, bytes, vk::Place::read, "light/beams on faces"};
     commands.fill(level.beam_q, 0);
     commands.fill(level.q, 0);
   }

@@ -55,7 +55,7 @@ void ExchangeMatrix::make_room_for_rays(vk::Context& context) {
   leaves_ = tree.leaves();
   order_ = vk::upload<std::uint32_t>(context, tree.order, "exchange/faces of the tree");
   leaf_begin_ = vk::upload<std::uint32_t>(context, tree.leaf_begin, "exchange/leaves of the tree");
-  boxes_ = {context, 2ull * leaves_ * sizeof(gpu::Box), vk::Place::device, "exchange/boxes of the tree"};
+  boxes_ = {context, 2ull * leaves_ * sizeof(gpu::Box), vk::Place::read, "exchange/boxes of the tree"};
 }
 
 void ExchangeMatrix::moved() {

@@ -1,5 +1,7 @@
 #include "engine/solve/gather_field.h"
 
+#include <cstring>
+
 #include "engine/graph/vertex_starts.h"
 
 namespace quadgraph {
@@ -17,19 +19,25 @@ GatherField::GatherField(vk::Context& context, const Level& level) {
   const VertexStarts starts = vertex_starts(level);
   start_ = vk::upload<std::uint32_t>(context, starts.start, "gather/a tet at each vertex");
   nearest_ = vk::upload<std::uint32_t>(context, starts.nearest, "gather/nearest surface vertex");
-  body_ = vk::Buffer(context, sizeof(gpu::BodyRef), vk::Place::host, "gather/body");
   const auto room = [&](std::uint64_t bytes, const char* name) {
-    return vk::Buffer(context, bytes, vk::Place::device, name);
+    return vk::Buffer(context, bytes, vk::Place::read, name);
   };
+  body_on_device_ = room(sizeof(gpu::BodyRef), "gather/body");
   points_ = room(level.vertex_count() * sizeof(gpu::GatherPoint), "gather/points");
   gathered_ = room(level.face_count() * vec3_bytes, "gather/gathered exitance");
   scale_ = room(level.surface_vertex_count * sizeof(gpu::GatherScale), "gather/scale");
 }
 
 void GatherField::record(Workspace& work, const GatherInput& input) {
-  body_.mapped_as<gpu::BodyRef>()[0] = input.body;
+  write_body(work.recorder.context(), input.body);
   record_points(work, input);
   record_scale(work, input);
+}
+
+void GatherField::write_body(vk::Context& context, const gpu::BodyRef& body) {
+  if (std::memcmp(&body, &body_, sizeof(body)) == 0) return;
+  vk::write_bytes(context, body_on_device_, std::as_bytes(std::span(&body, 1)));
+  body_ = body;
 }
 
 void GatherField::record_points(Workspace& work, const GatherInput& input) {
@@ -40,7 +48,7 @@ void GatherField::record_points(Workspace& work, const GatherInput& input) {
                                .count = level.vertex_count};
   work.recorder.dispatch(work.passes.gather_phi.of(input.op.model), phi, level.vertex_count, "gather points",
                          level.vertex_count * (vec3_bytes + input.op.field_bytes()));
-  const gpu::UncollidedPush uncollided{.body = body_.address(),
+  const gpu::UncollidedPush uncollided{.body = body_on_device_.address(),
                                        .start = start_.address(),
                                        .nearest = nearest_.address(),
                                        .face_offset = level.face_offset.address(),
@@ -58,7 +66,7 @@ void GatherField::record_points(Workspace& work, const GatherInput& input) {
 void GatherField::record_scale(Workspace& work, const GatherInput& input) {
   const LevelBuffers& level = input.level;
   const gpu::GatherExitancePush exitance{
-      .body = body_.address(), .points = points_.address(), .exitance = gathered_.address()};
+      .body = body_on_device_.address(), .points = points_.address(), .exitance = gathered_.address()};
   work.recorder.dispatch(work.passes.gather_exitance, exitance, level.face_count, "gathered exitance",
                          level.face_count * (tets_per_ray * (tet_bytes + sizeof(gpu::GatherPoint)) + vec3_bytes));
   const gpu::GatherScalePush scale{.vertices = level.vertices.address(),

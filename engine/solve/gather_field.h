@@ -30,17 +30,20 @@ class GatherField {
   // Fluence of both kinds at the vertices, exitance of what is gathered, and their scale.
   void record(Workspace& work, const GatherInput& input);
 
-  const vk::Buffer& body() const { return body_; }          // BodyRef, one
+  const gpu::BodyRef& body() const { return body_; }  // as it was last recorded
+  const vk::Buffer& body_on_device() const { return body_on_device_; }
   const vk::Buffer& points() const { return points_; }      // GatherPoint per vertex
   const vk::Buffer& gathered() const { return gathered_; }  // vec3 per face, W/mm^2: exitance of what is gathered
   const vk::Buffer& scale() const { return scale_; }        // GatherScale per surface vertex
 
  private:
+  void write_body(vk::Context& context, const gpu::BodyRef& body);
   void record_points(Workspace& work, const GatherInput& input);
   void record_scale(Workspace& work, const GatherInput& input);
 
   vk::Buffer start_, nearest_;  // engine/graph/vertex_starts.h
-  vk::Buffer body_, points_, gathered_, scale_;
+  vk::Buffer body_on_device_, points_, gathered_, scale_;
+  gpu::BodyRef body_{};
 };
 
 }  // namespace quadgraph

@@ -43,7 +43,7 @@ void InterReflection::make_room(Workspace& work, const std::vector<LevelBuffers>
   if (!irradiance_.empty()) return;
   vk::Context& context = work.recorder.context();
   const auto room = [&](std::uint64_t bytes, const char* name) {
-    return vk::Buffer(context, bytes, vk::Place::device, name);
+    return vk::Buffer(context, bytes, vk::Place::read, name);
   };
   const Level& level = graph_.levels()[*level_];
   matrix_->make_room(context);

@@ -66,7 +66,7 @@ constexpr std::uint32_t most_nodes = 1u << (32 - CROSSING_BITS);
 
 SourceWalk::SourceWalk(vk::Context& context, const Level& level, std::uint32_t number)
     : prefix_("level " + std::to_string(number) + " "),
-      unscattered_(context, level.face_count() * power_bytes, vk::Place::device, "walk/" + prefix_ + "unscattered") {
+      unscattered_(context, level.face_count() * power_bytes, vk::Place::read, "walk/" + prefix_ + "unscattered") {
   if (level.node_count() > most_nodes) {
     throw InputError(prefix_ + "has " + std::to_string(level.node_count()) +
                      " tets and outside faces; the buried source takes up to " + std::to_string(most_nodes));
@@ -115,7 +115,7 @@ WalkPower SourceWalk::Sums::power() const {
 void SourceWalk::make_room(vk::Context& context, const LevelBuffers& level, const BeamBuffers& beams, Method method,
                            bool again) {
   const auto room = [&](vk::Buffer& buffer, std::uint64_t bytes, const char* name) {
-    if (buffer.size() != bytes) buffer = {context, bytes, vk::Place::device, "walk/" + prefix_ + name};
+    if (buffer.size() != bytes) buffer = {context, bytes, vk::Place::read, "walk/" + prefix_ + name};
   };
   room(deposits_[carrier(method)], carriers(level, method) * power_bytes, "deposit");
   std::uint64_t all_sums = 0;

@@ -78,9 +78,9 @@ inline LevelBuffers upload_as_level(vk::Context& context, const Shape& shape, st
   level.face_count = static_cast<std::uint32_t>(shape.faces.size());
   level.vertices = vk::upload<glm::vec3>(context, shape.vertices, "vertices");
   level.faces = vk::upload<glm::uvec3>(context, shape.faces, "faces");
-  level.q = vk::Buffer(context, 12 * shape.faces.size(), vk::Place::device, "q");
-  level.beam_q = vk::Buffer(context, sizeof(float) * FACE_QUARTERS * light_count * shape.faces.size(),
-                            vk::Place::device, "beam q");
+  level.q = vk::Buffer(context, 12 * shape.faces.size(), vk::Place::read, "q");
+  level.beam_q =
+      vk::Buffer(context, sizeof(float) * FACE_QUARTERS * light_count * shape.faces.size(), vk::Place::read, "beam q");
   const std::vector<float> sky(shape.faces.size(), 1.0f);
   level.sky = vk::upload<float>(context, sky, "sky");
   return level;

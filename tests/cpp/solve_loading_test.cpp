@@ -2,8 +2,11 @@
 #include <doctest/doctest.h>
 
 #include "engine/graph/stored_entries.h"
+#include "engine/solve/gather_field.h"
 #include "engine/vk/arena.h"
+#include "tests/cpp/exchange_fixtures.h"
 #include "tests/cpp/solve_fixtures.h"
+#include "tests/cpp/walk_fixtures.h"
 
 using namespace quadgraph;
 
@@ -54,6 +57,75 @@ TEST_CASE("arrays read as texels and arrays read through references give the sam
         }
       }
     }
+  }
+}
+
+TEST_CASE("the walk leaves the same power everywhere, whatever light it starts from") {
+  Body texels(true, box_graph({2}, 4.0f)), references(false, box_graph({2}, 4.0f));
+  WalkInput input{.level = box_level(4, 4.0f, 0.3f),
+                  .optical = [](const glm::vec3& p) { return optical_of({1.0f, p.x, p.y + p.z}, {0.1f, 0.0f, 0.02f}); },
+                  .quarter_q = [](const Lit& lit, std::uint32_t k) { return lit.centre.x * static_cast<float>(k + 1); },
+                  .eta = 1.3};
+  const std::array<gpu::BeamRecord, 4> beams = {{{gpu::BEAM_DIRECTIONAL, glm::normalize(glm::vec3(1, -0.4f, 0.3f))},
+                                                 {gpu::BEAM_POINT, {-3.0f, 1.0f, 2.5f}},
+                                                 {gpu::BEAM_LAMBERTIAN, {}},
+                                                 {gpu::BEAM_MEAN, {}}}};
+  for (const gpu::BeamRecord& beam : beams) {
+    for (const Method method : {Method::fem, Method::quadgraph_fv}) {
+      CAPTURE(beam.kind);
+      CAPTURE(name_of(method));
+      input.beam = beam;
+      input.method = method;
+      const GpuWalk a = walk(texels.context, input), b = walk(references.context, input);
+      CHECK(glm::length(total(b.deposit)) > 0);
+      CHECK(relative_difference(a.deposit, b.deposit) < 1e-6);
+      CHECK(relative_difference(a.unscattered, b.unscattered) < 1e-6);
+      CHECK(relative_difference(std::vector{a.power.absorbed}, std::vector{b.power.absorbed}) < 1e-6);
+    }
+  }
+}
+
+TEST_CASE("bodies send each other the same light, also after a move that casts their rays anew") {
+  OwnedLevel fine = facing_slabs(4, 10.0f, 2.0f, 2.0f), coarse = facing_slabs(2, 10.0f, 2.0f, 2.0f);
+  bake_seen(coarse, 64);
+  const auto file = graph_of(std::vector{fine, coarse});
+  Body texels(true, file), references(false, file);
+  const SolveOptions options{.model = Model::diffusion, .tolerance = 1e-5};
+  for (const bool moves : {false, true}) {
+    CAPTURE(moves);
+    for (Body* body : {&texels, &references}) {
+      for (std::uint32_t i = 0; moves && i < body->simulation.level_count(); ++i) {
+        body->simulation.set_vertices(i, moved(i == 0 ? fine : coarse, bent).vertices);
+      }
+    }
+    const auto a = solution(texels, veined(), options), b = solution(references, veined(), options);
+    CHECK(relative_difference(a, b) < 1e-6);
+    const SolveReport report = references.simulation.solve(options);
+    REQUIRE(report.inter_reflection);
+    CHECK(report.energy.re_entered.x > 0.01 * report.energy.entered.x);
+    const auto re_entered = texels.simulation.solve(options).energy.re_entered;
+    CHECK(relative_difference(std::vector{re_entered}, std::vector{report.energy.re_entered}) < 1e-6);
+  }
+}
+
+TEST_CASE("view rays gather the same") {
+  const auto file = box_graph({4, 2}, 10.0f);
+  Body texels(true, file), references(false, file);
+  for (const gpu::Material& material : {homogeneous(), veined()}) {
+    const SolveOptions options{.model = Model::sp3, .tolerance = 1e-5};
+    solution(texels, material, options);
+    solution(references, material, options);
+    std::vector<PassStats> passes;
+    const GatherField &a = texels.simulation.gather(passes), &b = references.simulation.gather(passes);
+    const auto points = [](Body& body, const GatherField& field) {
+      return vk::download<glm::vec3>(body.context, field.points());  // three per point
+    };
+    CHECK(relative_difference(points(texels, a), points(references, b)) < 1e-6);
+    const auto gathered = vk::download<glm::vec3>(references.context, b.gathered());
+    CHECK(std::any_of(gathered.begin(), gathered.end(), [](const glm::vec3& m) { return m.x > 0; }));
+    CHECK(relative_difference(vk::download<glm::vec3>(texels.context, a.gathered()), gathered) < 1e-6);
+    CHECK(relative_difference(vk::download<glm::vec3>(texels.context, a.scale()),
+                              vk::download<glm::vec3>(references.context, b.scale())) < 1e-6);
   }
 }
 

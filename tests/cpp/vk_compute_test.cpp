@@ -72,7 +72,7 @@ TEST_CASE("a pass of many more elements takes longer") {
   vk::Context context({.validation = true, .device = ""});
   {
     constexpr std::uint32_t few = 1000, many = 1000000;
-    const vk::Buffer nodes(context, many * sizeof(glm::vec3), vk::Place::device, "nodes");
+    const vk::Buffer nodes(context, many * sizeof(glm::vec3), vk::Place::read, "nodes");
     const vk::Buffer optical(context, many * sizeof(gpu::Optical), vk::Place::device, "optical");
     const vk::ComputePass pass(context, evaluate_material_comp, sizeof(gpu::EvaluateMaterialPush), "evaluate material");
     vk::Commands commands(context, 2);
