@@ -16,8 +16,8 @@ FINER = 1  # the truth has four times the vertices: so few are left where errors
 ASKED = (0.05, 0.02, 0.01)  # relative RMS error of M
 
 SUBJECTS = (
-    Subject("spot", "spot.ply", 2.5),
-    Subject("fertility", "fertility.ply", 4),
+    Subject("spot", "spot.ply", 4),
+    Subject("fertility", "fertility.ply", 6),
     Subject("igea", "igea.ply", 5, 28000),
     Subject("armadillo", "armadillo.ply", 6, 28000),
     Subject("twirl", "twirl.ply", 5),
