@@ -1,4 +1,6 @@
-// What the last workgroup of a solver pass decides.
+// What the last workgroup of a solver pass decides. Loops stay loops, as in reduce.glsl: llvmpipe walks through this code
+// in every workgroup, with nothing to do.
+#extension GL_EXT_control_flow_attributes : require
 
 bvec3 not_finite(vec3 v) {
   return bvec3(isnan(v.x) || isinf(v.x), isnan(v.y) || isinf(v.y), isnan(v.z) || isinf(v.z));
@@ -22,7 +24,7 @@ uint first_channel(bvec3 flags) {
 }
 
 void open(SolveStates state) {
-  for (uint l = 0u; l < MAX_LEVELS; ++l) state.at[0].gate[l] = uvec3(state.at[0].groups[l], 1u, 1u);
+  [[dont_unroll]] for (uint l = 0u; l < MAX_LEVELS; ++l) state.at[0].gate[l] = uvec3(state.at[0].groups[l], 1u, 1u);
   state.at[0].coarse = uvec3(1);
   state.at[0].surface = uvec3(state.at[0].surface_groups, 1u, 1u);
   state.at[0].check = uvec3(0);
@@ -30,7 +32,7 @@ void open(SolveStates state) {
 }
 
 void close(SolveStates state) {
-  for (uint l = 0u; l < MAX_LEVELS; ++l) state.at[0].gate[l] = uvec3(0);
+  [[dont_unroll]] for (uint l = 0u; l < MAX_LEVELS; ++l) state.at[0].gate[l] = uvec3(0);
   state.at[0].coarse = uvec3(0);
   state.at[0].surface = uvec3(0);
   state.at[0].check = uvec3(0);
