@@ -17,8 +17,9 @@ std::uint64_t largest_view(const Context& context) {
 
 }  // namespace
 
-Arena::Arena(Context& context, bool used) : used_(used), size_(used ? largest_view(context) : texel_bytes) {
-  if (used) free_[0] = size_;
+Arena::Arena(Context& context, std::uint64_t bytes)
+    : used_(bytes > 0), size_(used_ ? std::min(bytes, largest_view(context)) : texel_bytes) {
+  if (used_) free_[0] = size_;
   create_texels(context);
   create_view(context);
   create_set(context);
@@ -112,6 +113,7 @@ std::optional<std::uint64_t> Arena::take(std::uint64_t size, std::uint64_t align
     if (after > 0) free_[offset + size] = after;
     return offset;
   }
+  overflowed_ = true;
   return std::nullopt;
 }
 

@@ -2,7 +2,8 @@
 //
 // llvmpipe, Mesa's device on the CPU, follows a buffer reference one invocation after the other, but fetches the texels
 // of eight at once: products with an operator's rows take a ninth of the time. So on devices of type CPU all buffers of
-// Place::read lie here. Elsewhere the arena holds one texel that nothing reads, and they lie where others do.
+// Place::read lie here. Elsewhere the arena holds one texel that nothing reads, and they lie where others do. So does
+// what finds no room here, and from then on all shaders follow references.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -19,19 +20,23 @@ class Context;
 
 class Arena {
  public:
-  // `used`: as many bytes as the device can show as one texel buffer, which cost address space until they are written.
-  Arena(Context& context, bool used);
+  // `bytes`, or as many as the device can show as one texel buffer; they cost address space until they are written.
+  Arena(Context& context, std::uint64_t bytes);
   Arena(const Arena&) = delete;
   Arena& operator=(const Arena&) = delete;
 
   bool used() const { return used_; }
+
+  // Whether it is used and all that asked for room has got it.
+  bool complete() const { return used_ && !overflowed_; }
+
   std::uint64_t size() const { return size_; }  // bytes
   VkDeviceMemory memory() const { return memory_.get(); }
   VkDeviceAddress address() const { return address_; }
   VkDescriptorSetLayout layout() const { return layout_.get(); }
   VkDescriptorSet set() const { return set_; }
 
-  // Offset of a free range in `memory`, bytes; nothing if there is none.
+  // Offset of a free range in `memory`, bytes; nothing, and no longer complete, if there is none.
   std::optional<std::uint64_t> take(std::uint64_t size, std::uint64_t alignment);
 
   // Gives a range back.
@@ -43,6 +48,7 @@ class Arena {
   void create_set(Context& context);
 
   bool used_;
+  bool overflowed_ = false;
   std::uint64_t size_;
   UniqueMemory memory_;
   UniqueBuffer texels_;

@@ -129,7 +129,8 @@ Context::Context(const ContextOptions& options) {
     pick_device(options.device);
     read_properties();
     create_device();
-    arena_ = std::make_unique<Arena>(*this, options.texels.value_or(info_.type == VK_PHYSICAL_DEVICE_TYPE_CPU));
+    const std::uint64_t usual = info_.type == VK_PHYSICAL_DEVICE_TYPE_CPU ? max_buffer_bytes_ : 0;
+    arena_ = std::make_unique<Arena>(*this, options.texel_bytes.value_or(usual));
   } catch (...) {
     destroy();
     throw;

@@ -22,8 +22,9 @@ struct ContextOptions {
   bool validation = false;
   // Part of the device's name, case-insensitive; empty: a discrete GPU, else an integrated one, else any.
   std::string device;
-  // Shaders read arrays as texels (arena.h); unset: on a device of type CPU.
-  std::optional<bool> texels = std::nullopt;
+  // Bytes of arrays that shaders read as texels (arena.h); unset: on a device of type CPU as many as it can show, else
+  // 0.
+  std::optional<std::uint64_t> texel_bytes = std::nullopt;
 };
 
 struct DeviceInfo {

@@ -19,26 +19,21 @@ constexpr std::size_t largest_update = 65536;
 Allocation::Allocation(Context& context, const VkMemoryRequirements& requirements, Place place, bool device_address,
                        const std::string& name)
     : context_(&context), size_(requirements.size), purpose_(name.substr(0, name.find('/'))) {
-  if (place == Place::read && context.arena().used()) {
-    take_range(requirements);
-  } else {
-    allocate(requirements, place, device_address);
-  }
+  const bool in_arena = place == Place::read && context.arena().used() && take_range(requirements);
+  if (!in_arena) allocate(requirements, place, device_address);
   context.allocated_bytes_ += size_;
   context.allocated_by_purpose_[purpose_] += size_;
   ++context.allocation_count_;
   context.peak_allocated_bytes_ = std::max(context.peak_allocated_bytes_, context.allocated_bytes_);
 }
 
-void Allocation::take_range(const VkMemoryRequirements& requirements) {
+bool Allocation::take_range(const VkMemoryRequirements& requirements) {
   Arena& arena = context_->arena();
   const auto offset = arena.take(size_, requirements.alignment);
-  if (!offset) {
-    throw VulkanError(std::to_string(size_) + " bytes do not fit beside what else is read as texels, of which " +
-                      context_->info().name + " allows " + std::to_string(arena.size()) + " bytes");
-  }
+  if (!offset) return false;
   offset_ = *offset;
   memory_ = arena.memory();
+  return true;
 }
 
 void Allocation::allocate(const VkMemoryRequirements& requirements, Place place, bool device_address) {

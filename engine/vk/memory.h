@@ -17,7 +17,7 @@ namespace quadgraph::vk {
 
 enum class Place {
   device,  // fastest for the GPU
-  read,    // the same, for arrays that shaders load (shaders/load.glsl): in the arena where there is one
+  read,    // the same, for arrays that shaders load (shaders/load.glsl): in the arena where there is one with room
   host,    // mapped, coherent, cached if possible: uploads and read-backs
 };
 
@@ -35,7 +35,7 @@ class Allocation {
   std::uint64_t offset() const { return offset_; }  // bytes, in memory
 
  private:
-  void take_range(const VkMemoryRequirements& requirements);
+  bool take_range(const VkMemoryRequirements& requirements);
   void allocate(const VkMemoryRequirements& requirements, Place place, bool device_address);
 
   Context* context_ = nullptr;

@@ -62,7 +62,7 @@ struct Constants {
                             offsetof(Constants, variant) + sizeof(std::uint32_t), this};
 
   explicit Constants(Context& context, std::uint32_t variant_in = 0)
-      : texels(context.arena().used() ? VK_TRUE : VK_FALSE),
+      : texels(context.arena().complete() ? VK_TRUE : VK_FALSE),
         at(static_cast<std::uint32_t>(context.arena().address())),
         variant(variant_in) {}
   Constants(const Constants&) = delete;
@@ -129,8 +129,11 @@ struct FixedState {
 
 ComputePass::ComputePass(Context& context, Spirv code, std::uint32_t push_size, const std::string& name,
                          std::uint32_t workgroup_size, std::uint32_t variant)
-    : push_size_(push_size),
+    : context_(context),
+      code_(code),
+      push_size_(push_size),
       workgroup_size_(workgroup_size),
+      variant_(variant),
       name_(name),
       layout_(push_layout(context, push_size, VK_SHADER_STAGE_COMPUTE_BIT, name)) {
   const VkPhysicalDeviceLimits& limits = context.limits();
@@ -139,32 +142,47 @@ ComputePass::ComputePass(Context& context, Spirv code, std::uint32_t push_size, 
     throw VulkanError(name + " needs workgroups of " + std::to_string(workgroup_size) + " invocations, " +
                       context.info().name + " allows " + std::to_string(largest));
   }
-  const UniqueShaderModule module = shader_module(context, code, name);
+  pipeline();
+}
+
+VkPipeline ComputePass::pipeline() const {
+  UniquePipeline& made = pipelines_[context_.arena().complete() ? 1 : 0];
+  if (made.get() != VK_NULL_HANDLE) return made.get();
+  const UniqueShaderModule module = shader_module(context_, code_, name_);
   VkComputePipelineCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
-  const Constants constants(context, variant);
+  const Constants constants(context_, variant_);
   info.stage = stage(VK_SHADER_STAGE_COMPUTE_BIT, module, constants.info);
   info.layout = layout_.get();
   VkPipeline pipeline = VK_NULL_HANDLE;
-  check(vkCreateComputePipelines(context.device(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
-        "vkCreateComputePipelines '" + name + "'");
-  pipeline_ = UniquePipeline(context.device(), pipeline);
-  context.set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline), name);
+  check(vkCreateComputePipelines(context_.device(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
+        "vkCreateComputePipelines '" + name_ + "'");
+  made = UniquePipeline(context_.device(), pipeline);
+  context_.set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline), name_);
+  return pipeline;
 }
 
 GraphicsPass::GraphicsPass(Context& context, const GraphicsOptions& options, const std::string& name)
-    : push_size_(options.push_size),
+    : context_(context),
+      options_(options),
+      name_(name),
       layout_(
           push_layout(context, options.push_size, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, name)) {
-  const UniqueShaderModule vertex = shader_module(context, options.vertex, name + ".vert");
-  const Constants constants(context);
+  pipeline();
+}
+
+VkPipeline GraphicsPass::pipeline() const {
+  UniquePipeline& made = pipelines_[context_.arena().complete() ? 1 : 0];
+  if (made.get() != VK_NULL_HANDLE) return made.get();
+  const UniqueShaderModule vertex = shader_module(context_, options_.vertex, name_ + ".vert");
+  const Constants constants(context_);
   std::vector<VkPipelineShaderStageCreateInfo> stages = {stage(VK_SHADER_STAGE_VERTEX_BIT, vertex, constants.info)};
   UniqueShaderModule fragment;
-  if (!options.fragment.empty()) {
-    fragment = shader_module(context, options.fragment, name + ".frag");
+  if (!options_.fragment.empty()) {
+    fragment = shader_module(context_, options_.fragment, name_ + ".frag");
     stages.push_back(stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment, constants.info));
   }
-  const FixedState state(options);
+  const FixedState state(options_);
   VkGraphicsPipelineCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
   info.pNext = &state.rendering;
@@ -180,10 +198,11 @@ GraphicsPass::GraphicsPass(Context& context, const GraphicsOptions& options, con
   info.pDynamicState = &state.dynamic;
   info.layout = layout_.get();
   VkPipeline pipeline = VK_NULL_HANDLE;
-  check(vkCreateGraphicsPipelines(context.device(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
-        "vkCreateGraphicsPipelines '" + name + "'");
-  pipeline_ = UniquePipeline(context.device(), pipeline);
-  context.set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline), name);
+  check(vkCreateGraphicsPipelines(context_.device(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
+        "vkCreateGraphicsPipelines '" + name_ + "'");
+  made = UniquePipeline(context_.device(), pipeline);
+  context_.set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline), name_);
+  return pipeline;
 }
 
 }  // namespace quadgraph::vk

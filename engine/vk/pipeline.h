@@ -2,6 +2,7 @@
 // set, alike for all, is the arena's (arena.h).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -15,6 +16,9 @@ namespace quadgraph::vk {
 // A SPIR-V module as the build embeds it ("spirv/NAME.STAGE.h").
 using Spirv = std::span<const std::uint32_t>;
 
+// A pipeline for shaders that load arrays as texels, or through references (arena.h); made when it is wanted.
+using LoadingPipelines = std::array<UniquePipeline, 2>;
+
 class ComputePass {
  public:
   // `push_size` in bytes must equal the size of the shader's push-constant block, and `workgroup_size` its
@@ -24,18 +28,22 @@ class ComputePass {
 
   static constexpr std::uint32_t default_workgroup_size = 256;  // WORKGROUP_SIZE in shaders/shared.h
 
-  VkPipeline pipeline() const { return pipeline_.get(); }
+  // For what the arena holds now.
+  VkPipeline pipeline() const;
   VkPipelineLayout layout() const { return layout_.get(); }
   std::uint32_t push_size() const { return push_size_; }
   std::uint32_t workgroup_size() const { return workgroup_size_; }
   const std::string& name() const { return name_; }
 
  private:
+  Context& context_;
+  Spirv code_;
   std::uint32_t push_size_;
   std::uint32_t workgroup_size_;
+  std::uint32_t variant_;
   std::string name_;
   UniquePipelineLayout layout_;
-  UniquePipeline pipeline_;
+  mutable LoadingPipelines pipelines_;
 };
 
 struct GraphicsOptions {
@@ -52,14 +60,16 @@ class GraphicsPass {
  public:
   GraphicsPass(Context& context, const GraphicsOptions& options, const std::string& name);
 
-  VkPipeline pipeline() const { return pipeline_.get(); }
+  VkPipeline pipeline() const;
   VkPipelineLayout layout() const { return layout_.get(); }
-  std::uint32_t push_size() const { return push_size_; }
+  std::uint32_t push_size() const { return options_.push_size; }
 
  private:
-  std::uint32_t push_size_;
+  Context& context_;
+  GraphicsOptions options_;
+  std::string name_;
   UniquePipelineLayout layout_;
-  UniquePipeline pipeline_;
+  mutable LoadingPipelines pipelines_;
 };
 
 }  // namespace quadgraph::vk

@@ -17,14 +17,16 @@ struct Body {
   QuadGraph graph;
   Simulation simulation;
 
-  Body(bool texels, const std::vector<std::byte>& file)
-      : context({.validation = true, .device = "", .texels = texels}),
+  Body(std::uint64_t bytes, const std::vector<std::byte>& file)
+      : context({.validation = true, .device = "", .texel_bytes = bytes}),
         graph(QuadGraph::parse(file, "box")),
         simulation(context, graph) {
-    CHECK(context.arena().used() == texels);
+    CHECK(context.arena().used() == (bytes > 0));
   }
   ~Body() { CHECK(context.validation_messages().empty()); }
 };
+
+constexpr std::uint64_t none = 0, plenty = 1ull << 28;
 
 std::vector<glm::vec3> solution(Body& body, const gpu::Material& material, const SolveOptions& options) {
   body.simulation.set_material(material);
@@ -42,7 +44,7 @@ std::vector<glm::vec3> solution(Body& body, const gpu::Material& material, const
 
 TEST_CASE("arrays read as texels and arrays read through references give the same numbers") {
   const auto file = box_graph({4, 2}, 10.0f);
-  Body texels(true, file), references(false, file);
+  Body texels(plenty, file), references(none, file);
   for (Method method : {Method::fem, Method::quadgraph_fv, Method::quadgraph_fdm}) {
     for (Model model : {Model::diffusion, Model::sp3}) {
       for (Source source : {Source::buried, Source::diffuse}) {
@@ -60,8 +62,22 @@ TEST_CASE("arrays read as texels and arrays read through references give the sam
   }
 }
 
+TEST_CASE("what finds no room among the texels is read through references, and so is all else from then on") {
+  const auto file = box_graph({4, 2}, 10.0f);
+  Body roomy(plenty, file), narrow(300'000, file);
+  for (const gpu::Material& material : {homogeneous(), veined()}) {
+    for (Model model : {Model::diffusion, Model::sp3}) {
+      const SolveOptions options{.model = model, .tolerance = 1e-5};
+      CHECK(relative_difference(solution(narrow, material, options), solution(roomy, material, options)) < 1e-6);
+    }
+  }
+  CHECK(roomy.context.arena().complete());
+  CHECK(narrow.context.arena().used());
+  CHECK(!narrow.context.arena().complete());
+}
+
 TEST_CASE("the walk leaves the same power everywhere, whatever light it starts from") {
-  Body texels(true, box_graph({2}, 4.0f)), references(false, box_graph({2}, 4.0f));
+  Body texels(plenty, box_graph({2}, 4.0f)), references(none, box_graph({2}, 4.0f));
   WalkInput input{.level = box_level(4, 4.0f, 0.3f),
                   .optical = [](const glm::vec3& p) { return optical_of({1.0f, p.x, p.y + p.z}, {0.1f, 0.0f, 0.02f}); },
                   .quarter_q = [](const Lit& lit, std::uint32_t k) { return lit.centre.x * static_cast<float>(k + 1); },
@@ -89,7 +105,7 @@ TEST_CASE("bodies send each other the same light, also after a move that casts t
   OwnedLevel fine = facing_slabs(4, 10.0f, 2.0f, 2.0f), coarse = facing_slabs(2, 10.0f, 2.0f, 2.0f);
   bake_seen(coarse, 64);
   const auto file = graph_of(std::vector{fine, coarse});
-  Body texels(true, file), references(false, file);
+  Body texels(plenty, file), references(none, file);
   const SolveOptions options{.model = Model::diffusion, .tolerance = 1e-5};
   for (const bool moves : {false, true}) {
     CAPTURE(moves);
@@ -110,7 +126,7 @@ TEST_CASE("bodies send each other the same light, also after a move that casts t
 
 TEST_CASE("view rays gather the same") {
   const auto file = box_graph({4, 2}, 10.0f);
-  Body texels(true, file), references(false, file);
+  Body texels(plenty, file), references(none, file);
   for (const gpu::Material& material : {homogeneous(), veined()}) {
     const SolveOptions options{.model = Model::sp3, .tolerance = 1e-5};
     solution(texels, material, options);
@@ -133,11 +149,11 @@ TEST_CASE("a body squeezed until packed entries would round too much is solved l
   const auto squeeze = [](glm::vec3 p) { return p * glm::vec3(0.01f, 0.01f, 10.0f); };
   std::vector<OwnedLevel> levels = {split_at_centroids(box_level(4, 10.0f, 0.15f)),
                                     split_at_centroids(box_level(2, 10.0f, 0.15f))};
-  Body moved(true, graph_of(levels));
+  Body moved(plenty, graph_of(levels));
   for (OwnedLevel& level : levels) {
     for (glm::vec3& p : level.vertices) p = squeeze(p);
   }
-  Body fresh(true, graph_of(levels));
+  Body fresh(plenty, graph_of(levels));
   const gpu::Material material = homogeneous();
   const SolveOptions options{.model = Model::sp3, .tolerance = 1e-5};
   solution(moved, material, options);  // with packed entries

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "engine/graph/error.h"
+#include "engine/vk/arena.h"
 #include "engine/vk/commands.h"
 
 using namespace quadgraph;
@@ -75,5 +76,35 @@ TEST_CASE("memory is counted by purpose, and every allocation") {
   }
   CHECK(context.allocated_by_purpose().empty());
   CHECK(context.allocation_count() == 3);
+  for (const auto& message : context.validation_messages()) FAIL_CHECK(message);
+}
+
+TEST_CASE("ranges of the arena are given back and taken again, and the first that does not fit ends it") {
+  vk::Context context({.validation = true, .device = "", .texel_bytes = 1 << 16});
+  const auto in_arena = [&](const vk::Buffer& buffer) {
+    const VkDeviceAddress begin = context.arena().address();
+    return buffer.address() >= begin && buffer.address() < begin + (1 << 16);
+  };
+  const auto read = [&](std::uint64_t bytes) { return vk::Buffer(context, bytes, vk::Place::read, "test/read"); };
+  {
+    vk::Buffer a = read(1 << 14), b = read(1 << 15);
+    const vk::Buffer elsewhere(context, 256, vk::Place::device, "test/device");
+    CHECK(in_arena(a));
+    CHECK(in_arena(b));
+    CHECK(!in_arena(elsewhere));
+    const std::vector<std::uint32_t> values(100, 7);
+    vk::write_bytes(context, b, std::as_bytes(std::span(values)));
+    a = read(1 << 13);  // the new one is there before the old one goes
+    a = read(1 << 14);
+    CHECK(vk::download<std::uint32_t>(context, b)[99] == 7);
+    CHECK(context.arena().complete());
+  }
+  CHECK(context.allocated_bytes() == 0);
+  CHECK(in_arena(read(1 << 16)));  // all of it, in one piece again
+  CHECK(context.arena().complete());
+  const vk::Buffer large = read((1 << 16) + 4);
+  CHECK(!in_arena(large));
+  CHECK(!context.arena().complete());
+  CHECK(in_arena(read(256)));
   for (const auto& message : context.validation_messages()) FAIL_CHECK(message);
 }
