@@ -48,7 +48,10 @@ QG_INLINE PackedBlock pack(vec3 block, int bits) {
   exponent = clamp(exponent + PACKED_BIAS, 0, 63);
   float most = float((1 << (bits - 1)) - 1);
   vec3 number = roundEven(clamp(block * power_of_two(PACKED_BIAS - exponent), vec3(-most), vec3(most)));
-  return PackedBlock(ivec3(number), uint(exponent));
+  PackedBlock packed;
+  packed.number = ivec3(number);
+  packed.exponent = uint(exponent);
+  return packed;
 }
 
 QG_INLINE vec3 unpack(ivec3 number, uint exponent) {
