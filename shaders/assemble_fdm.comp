@@ -36,8 +36,9 @@ void main() {
   Optical own = load_optical(push.optical, i);
   vec3 to_phi = 1.0 / kappa(own);
   push.to_phi.at[i] = to_phi;
+  uint inner = column_of(stored_entry(push.rows, begin));
   Entry row_sum = i < push.tet_count ? entry_of(vec3(0), own.sigma_a * to_phi, relaxation_of(own) * to_phi)
-                                     : surface_row_sum(i, column_of(stored_entry(push.rows, begin)), sqrt(inverse_square));
+                                     : surface_row_sum(i, inner, sqrt(inverse_square));
   push.rows.row_sum.at[i] = row_sum;
   push.rows.diagonal.at[i] = difference_of(row_sum, sum);
 }

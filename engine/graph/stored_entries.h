@@ -15,11 +15,11 @@ namespace quadgraph {
 // ENTRIES_* of shaders/packing.h.
 enum class EntryFormat : std::uint32_t { packed, plain };
 
-// The format for the rows of a level at rest. The methods on the graph, the published ones, are stored as published.
-// Rounding shifts the fluxes between the vertices of an element by a share of its largest entry, which may be as much
-// as all that holds the shape of the solution there: so fem rows are plain if a vertex has an entry above 1000 times
-// what a well-shaped element of its size has, or more than a hundredth of the vertices lie in elements of which
-// rounding changes the conduction by about as much as it is (long needles, layers of flat tets).
+// The format for the rows of a level in its present shape. The methods on the graph, the published ones, are stored as
+// published. Rounding shifts the fluxes between the vertices of an element by a share of its largest entry, which may
+// be as much as all that holds the shape of the solution there: so fem rows are plain if a vertex has an entry above
+// 1000 times what a well-shaped element of its size has, or more than a hundredth of the vertices lie in elements of
+// which rounding changes the conduction by about as much as it is (long needles, layers of flat tets).
 EntryFormat format_of(const Level& level, Method method);
 
 // 32-bit words of an entry.
