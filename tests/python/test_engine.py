@@ -187,3 +187,20 @@ def test_unusable_input_is_named(engine, sphere_path):
             engine.solve(**bad)
     with pytest.raises(Exception, match="no such gpu"):
         _core.Engine(sphere_path, device="no such gpu")
+
+
+@pytest.mark.parametrize("model", ["diffusion", "sp3"])
+def test_storing_entries_hardly_changes_the_exitance(bunny_qgraph, model):
+    graph = _core.Engine(bunny_qgraph).graph
+    level = graph.levels[0]
+    material = _core.Material("marble-veins")
+    coefficients = _core.evaluate_material(graph, 0, material)
+    exact, stored = (
+        _core.solve_reference(
+            graph, 0, *coefficients, material.eta, lit_from_above(level), model=model, tolerance=1e-8, stored=stored
+        )["exitance"]
+        for stored in (False, True)
+    )
+    change = np.linalg.norm(stored - exact) / np.linalg.norm(exact)
+    print(f"{model}: {change:.1e}")
+    assert 0 < change < 1e-4
