@@ -11,7 +11,7 @@ import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -72,7 +72,8 @@ class BakeOptions:
 class BakeReport:
     """What a bake did. Times in s; of levels, `seconds` per step; memory in bytes, children apart.
 
-    exchange: what faces see of each other, as `exchange.summary` tells; None if left out.
+    exchange: what faces see of each other, as `exchange.summary` tells; None if left out. budget: what was measured and
+    chosen for an error that was asked for (`quadgraph.budget.plan`).
     """
 
     output: str
@@ -82,6 +83,7 @@ class BakeReport:
     repairs: list[dict[str, Any]] = field(default_factory=list)
     levels: list[dict[str, Any]] = field(default_factory=list)
     exchange: dict[str, Any] | None = None
+    budget: dict[str, Any] | None = None
     notes: list[str] = field(default_factory=list)
     seconds: dict[str, float] = field(default_factory=dict)
     peak_memory: dict[str, int] = field(default_factory=dict)
@@ -99,10 +101,21 @@ class BakeReport:
 
 
 @dataclass(frozen=True)
-class _Level:
+class Level:
+    """A level's graph, what made its tets, and what the report tells of it."""
+
     graph: graph.Graph
     mesher: MesherInfo
     report: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A mesh file's surface, mm, fit for the mesher, and what was repaired for that."""
+
+    source: SourceMesh
+    surface: Surface
+    repairs: list[Repair]
 
 
 def bake(mesh: Path, output: Path, options: BakeOptions, progress: Progress | None = None) -> BakeReport:
@@ -113,8 +126,16 @@ def bake(mesh: Path, output: Path, options: BakeOptions, progress: Progress | No
     and at once: whatever interrupts the bake, it is untouched, and no child program is left.
     """
     tell = progress or (lambda text: None)
-    _check_options(output, options)
+    check_options(output, options)
     report, start = BakeReport(str(output)), time.perf_counter()
+    prepared = prepare(mesh, options, report, tell)
+    write(prepared, make_levels(prepared.surface, options, report, tell), options, report)
+    report.seconds["total"] = time.perf_counter() - start
+    return report
+
+
+def prepare(mesh: Path, options: BakeOptions, report: BakeReport, tell: Progress) -> Prepared:
+    """Read and repair. Raises InputError."""
     with report.timed("read"):
         source = mesh_io.read_surface(mesh, unit=options.unit, height_mm=options.height_mm)
     tell(f"read {source.name}: {source.vertices:,} vertices, {source.triangles:,} triangles")
@@ -122,22 +143,30 @@ def bake(mesh: Path, output: Path, options: BakeOptions, progress: Progress | No
         surface, repairs = repair.repair(source.surface, source.name)
     for entry in repairs:
         tell(f"repaired: {entry.what}: {entry.count:,}")
-    levels = _make_levels(surface.rounded(), options, report, tell)
+    return Prepared(source, surface, repairs)
+
+
+def write(
+    prepared: Prepared, levels: list[Level], options: BakeOptions, report: BakeReport, budget: dict | None = None
+) -> None:
+    """Write `levels` below the displayed surface to the report's output, and complete the report.
+
+    budget: what the bake measured for an error that was asked for, kept in the file.
+    """
     graphs = [level.graph for level in levels]
     with report.timed("exchange"):
         seen = exchange.bake(graphs, options.visibility_rays)
     if seen is not None:
         report.exchange = exchange.summary(seen, graphs[seen.level].boundary)
     with report.timed("transfers"):
-        content = sections.whole_file(graphs, surface, seen)
-    metadata = _metadata(source, repairs, levels, options)
+        content = sections.whole_file(graphs, prepared.surface, seen)
+    metadata = _metadata(prepared, levels, options) | ({} if budget is None else {"budget": budget})
     with report.timed("write"):
-        report.byte_size = qgraph_file.write(output, metadata, content)
-    report.seconds["total"] = time.perf_counter() - start
-    return _complete(report, metadata, levels)
+        report.byte_size = qgraph_file.write(Path(report.output), metadata, content)
+    _complete(report, metadata, levels)
 
 
-def _check_options(output: Path, options: BakeOptions) -> None:
+def check_options(output: Path, options: BakeOptions) -> None:
     """Refuse at once what would otherwise be found out after the work."""
     if options.order not in ORDERS:
         raise InputError(f"order: {options.order!r} found, allowed are {', '.join(ORDERS)}")
@@ -150,7 +179,9 @@ def _check_options(output: Path, options: BakeOptions) -> None:
         raise InputError(f"{output}: is a folder, a file name is needed")
 
 
-def _make_levels(surface: Surface, options: BakeOptions, report: BakeReport, tell: Progress) -> list[_Level]:
+def make_levels(surface: Surface, options: BakeOptions, report: BakeReport, tell: Progress) -> list[Level]:
+    """Levels of a surface, finest first. Raises InputError or ToolError where there is no finest one."""
+    surface = surface.rounded()
     with _workers() as submit:
         with report.timed("simplify"):
             finest = lod.simplify(surface, options.surface_vertices) if options.surface_vertices else surface
@@ -175,8 +206,8 @@ def _workers() -> Iterator[Callable[..., Future]]:
             pool.shutdown(wait=False, cancel_futures=True)
 
 
-def _collect(jobs: list[Future[_Level]], report: BakeReport, tell: Progress) -> list[_Level]:
-    levels: list[_Level] = []
+def _collect(jobs: list[Future[Level]], report: BakeReport, tell: Progress) -> list[Level]:
+    levels: list[Level] = []
     for number, job in enumerate(jobs):
         try:
             levels.append(job.result())
@@ -189,7 +220,7 @@ def _collect(jobs: list[Future[_Level]], report: BakeReport, tell: Progress) -> 
     return levels
 
 
-def _make_level(surface: Surface, options: BakeOptions) -> _Level:
+def _make_level(surface: Surface, options: BakeOptions) -> Level:
     """Tets, graph, even nodes, cache-local order."""
     clock = [time.perf_counter()]
     limits = {"time_limit_s": options.time_limit_s, "memory_limit_bytes": options.memory_limit_bytes}
@@ -209,11 +240,11 @@ def _make_level(surface: Surface, options: BakeOptions) -> _Level:
         "link_length_variation": variation,
         "locality": ordering.inner_locality(ordered),
     }
-    return _Level(ordered, mesh.mesher, report)
+    return Level(ordered, mesh.mesher, report)
 
 
-def _metadata(source: SourceMesh, repairs: list[Repair], levels: list[_Level], options: BakeOptions) -> dict[str, Any]:
-    mesher = levels[0].mesher
+def _metadata(prepared: Prepared, levels: list[Level], options: BakeOptions) -> dict[str, Any]:
+    source, mesher = prepared.source, levels[0].mesher
     packages = (*_PACKAGES, "embreex") if options.visibility_rays else _PACKAGES
     grading = None
     if options.mesher == "cgal":
@@ -229,7 +260,7 @@ def _metadata(source: SourceMesh, repairs: list[Repair], levels: list[_Level], o
         "unit_mm": source.unit_mm,
         "mesher": {"name": mesher.name, "version": mesher.version, "options": mesher.options, "grading": grading},
         "options": {key: getattr(options, key) for key in _OPTIONS},
-        "repairs": [asdict(entry) for entry in repairs],
+        "repairs": [asdict(entry) for entry in prepared.repairs],
         "levels": [sections.level_metadata(level.graph) for level in levels],
         "tools": {
             "python": platform.python_version(),
@@ -239,17 +270,14 @@ def _metadata(source: SourceMesh, repairs: list[Repair], levels: list[_Level], o
     }
 
 
-def _complete(report: BakeReport, metadata: dict[str, Any], levels: list[_Level]) -> BakeReport:
+def _complete(report: BakeReport, metadata: dict[str, Any], levels: list[Level]) -> None:
     # Linux counts ru_maxrss in KiB, macOS in bytes.
     unit = 1 if sys.platform == "darwin" else 1024
-    return replace(
-        report,
-        source=metadata["source"],
-        unit_mm=metadata["unit_mm"],
-        repairs=metadata["repairs"],
-        levels=[entry | level.report for entry, level in zip(metadata["levels"], levels, strict=True)],
-        peak_memory={
-            "self": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit,
-            "largest_child": resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * unit,
-        },
-    )
+    report.source = metadata["source"]
+    report.unit_mm = metadata["unit_mm"]
+    report.repairs = metadata["repairs"]
+    report.levels = [entry | level.report for entry, level in zip(metadata["levels"], levels, strict=True)]
+    report.peak_memory = {
+        "self": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit,
+        "largest_child": resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * unit,
+    }

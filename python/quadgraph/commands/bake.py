@@ -5,13 +5,16 @@ from __future__ import annotations
 import argparse
 import json
 import re
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.table import Table
 
-from quadgraph.commands.scene import positive_float, positive_int
+from quadgraph.commands import budget
+from quadgraph.commands.scene import positive_float, positive_int, share
+from quadgraph.errors import InputError
 
 if TYPE_CHECKING:
     from quadgraph.bake import BakeReport
@@ -35,6 +38,26 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--memory-limit", type=positive_float, metavar="GB", help="memory for each run of the mesher (default: 4)"
     )
     parser.add_argument("--json", action="store_true", help="print the report as JSON on standard output")
+    _add_error_options(parser.add_argument_group("no more than an error needs"))
+
+
+def _add_error_options(group: argparse._ArgumentGroup) -> None:
+    group.add_argument(
+        "--error",
+        type=share,
+        metavar="E",
+        help="choose surface vertices, levels, model and cycles by measuring: as few as keep the relative RMS error of "
+        "the exitance below E, e.g. 2%%, over the whole and over the unlit surface; exit 3 if the mesh cannot",
+    )
+    group.add_argument("--material", metavar="M", help="what the error is for, as `render` takes it")
+    group.add_argument(
+        "--light",
+        action="append",
+        metavar="L",
+        help="what the error is for, as `render` takes it; several allowed (default: three usual sets of lights, "
+        "under all of which it is kept)",
+    )
+    group.add_argument("--device", default="", metavar="NAME", help="part of the Vulkan device's name")
 
 
 def _add_mesh_options(parser: argparse.ArgumentParser) -> None:
@@ -81,17 +104,38 @@ def steps(text: str) -> int:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Bake, telling the progress on standard error; 0 on success."""
+    """Bake, telling the progress on standard error; 3 if an error was asked for and is not kept, else 0."""
+    _check_error_options(args)
     errors = Console(stderr=True, highlight=False)
     with errors.status(f"baking {args.mesh.name}"):
-        from quadgraph import bake
-
-        report = bake.bake(args.mesh, args.output, _options(args), lambda text: errors.print(text, markup=False))
+        report = _bake(args, lambda text: errors.print(text, markup=False))
     if args.json:
         print(json.dumps(report.as_dict(), indent=1))
     else:
         _print_report(report)
-    return 0
+    return 3 if report.budget and not report.budget["reached"] else 0
+
+
+def _check_error_options(args: argparse.Namespace) -> None:
+    if args.error is not None:
+        if args.material is None:
+            raise InputError("--error: --material is missing; how fine a mesh must be depends on what it is made of")
+        return
+    for name in ("material", "light"):
+        if getattr(args, name) is not None:
+            raise InputError(f"--{name}: found without --error; without one a file is baked for every {name}")
+
+
+def _bake(args: argparse.Namespace, tell: Callable[[str], None]) -> BakeReport:
+    if args.error is None:
+        from quadgraph.bake import bake
+
+        return bake(args.mesh, args.output, _options(args), tell)
+    from quadgraph.budget.plan import bake_for
+
+    return bake_for(
+        args.mesh, args.output, _options(args), args.error, args.material, args.light or (), args.device, tell
+    )
 
 
 def _options(args: argparse.Namespace):
@@ -120,6 +164,9 @@ def _print_report(report: BakeReport) -> None:
         console.print(f"repaired: {entry['what']}: {entry['count']:,}", markup=False)
     for note in report.notes:
         console.print(note, markup=False)
+    if report.budget:
+        for sentence in budget.sentences(report.budget):
+            console.print(sentence, markup=False, soft_wrap=True)
     variation = report.levels[0]["link_length_variation"]
     console.print(
         f"link lengths vary by {100 * variation['before']['local']:.1f}% of their local mean, "

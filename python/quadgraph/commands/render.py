@@ -93,7 +93,7 @@ def run(args: argparse.Namespace) -> int:
     report["seconds"] = time.perf_counter() - start
     if args.json:
         atomic_file.write_json(args.json, report)
-    unmet = scene.unmet(report, args)
+    unmet = scene.unmet(report)
     print_summary(engine, report, unmet, args.output)
     return 3 if unmet else 0
 

@@ -102,8 +102,12 @@ def two_parts(error: dict | None) -> str:
 
 
 def solver_texts(report: dict) -> list[str]:
-    """Say which solver took another one's place, and on which level it stopped if not on the finest."""
-    texts = [f"solver: {report['replaced']}"] if report["replaced"] else []
+    """Say what the bake knows of the error, which solver took another one's place, and where it stopped if not on the
+    finest level.
+    """
+    texts = [report["budget"]] if report["budget"] else []
+    if report["replaced"]:
+        texts.append(f"solver: {report['replaced']}")
     if report["finest"] > 0:
         texts.append(f"level: {report['finest']} suffices; its solution is carried to the finest")
     return texts

@@ -50,7 +50,7 @@ def run(args: argparse.Namespace) -> int:
         console.print(table)
     console.print(text.inter_reflection_text(report, not args.no_inter_reflection))
     console.print(text.error_text(report))
-    unmet = scene.unmet(report, args)
+    unmet = scene.unmet(report)
     for sentence in text.solver_texts(report) + unmet:
         console.print(sentence)
     return 3 if unmet else 0

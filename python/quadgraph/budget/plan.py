@@ -1,0 +1,253 @@
+"""A bake for an error: the fewest vertices, cycles and unknowns that keep it, found by measuring.
+
+The whole mesh's own chain of levels is baked and, if that is small enough, its finest level cut in eight: the truth,
+solved with SP3. Every level of the chain, and then surfaces of the sizes that lie between them, are solved with every
+model and number of cycles and held against it on the displayed triangles, which counts relief that a simplified surface
+lacks as well as the error of the elements. The error falls with the number of vertices, smoothly enough that three
+surfaces of chosen sizes are enough.
+"""
+
+from __future__ import annotations
+
+import tempfile
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from quadgraph import bake, lod
+from quadgraph.bake import BakeOptions, BakeReport, Level, Prepared, Progress
+from quadgraph.budget.judge import Reference, Truth
+from quadgraph.budget.trials import MODELS, Forecast, Scene, Trial, forecast, measure
+from quadgraph.commands.budget import ENOUGH
+from quadgraph.commands.scene import load_core
+from quadgraph.errors import InputError
+from quadgraph.reference.judged import lights as lights_around
+
+MOST_VERTICES = 30000  # of the surface that stands for the whole mesh
+MOST_CUT_VERTICES = 16000  # of one that is cut finer: five times the memory of a solve on 30 thousand
+LEAST_VERTICES = 150  # on a surface that a bake chooses
+_LEAST_COARSEST = 45  # on the coarsest level of the whole mesh's chain, so that even small levels have one below
+AIM = 0.93  # share of the error that surfaces are chosen for
+_ROUNDS = 3
+_CLOSE = 1.1  # of the expected cost: what costs no more than this is not tried to be bettered
+_SAME = 0.03  # of the number of vertices: two surfaces nearer than this are one
+DEEP = 2.0  # diffusion lengths: .1% of the whole and .35% of the unlit surface know what is deeper (design.md)
+
+
+class Bench:
+    """The files of one bake, and what was measured on them."""
+
+    def __init__(self, whole: Prepared, options: BakeOptions, scene: Scene, folder: Path, device: str) -> None:
+        self._whole, self._options, self.scene = whole, options, scene
+        self._folder, self._device = folder, device
+        self.candidates: dict[int, list[Level]] = {}
+        self.trials: list[Trial] = []
+        self.models: Sequence[str] = MODELS
+        self._truths: dict[str, Truth] = {}
+
+    def find_truth(self, levels: list[Level]) -> None:
+        """Of the levels of the whole mesh."""
+        path = self._written(levels, "whole.qgraph")
+        self.cuts = int(len(self._whole.surface.vertices) <= MOST_CUT_VERTICES)
+        reference = Reference(path, self.cuts, self._folder, self._device)
+        self.truth_vertices = reference.surface_vertices
+        for name, lights in self.scene.lights.items():
+            self._truths[name] = reference.truth(self.scene.material, lights)
+
+    def add(self, levels: list[Level]) -> list[Trial]:
+        """Measure a candidate."""
+        path = self._written(levels, "trial.qgraph")
+        found = measure(path, self.scene, self._truths, self.truth_vertices, self._device, self.models)
+        self.candidates[found[0].surface_vertices] = levels
+        self.trials += found
+        return found
+
+    def _written(self, levels: list[Level], name: str) -> Path:
+        report = BakeReport(str(self._folder / name))
+        bake.write(self._whole, levels, replace(self._options, visibility_rays=0), report)
+        return Path(report.output)
+
+    def best(self, error: float) -> Trial | None:
+        """The cheapest that keeps it."""
+        return min((t for t in self.trials if t.error <= error), key=lambda t: t.cost, default=None)
+
+
+def bake_for(
+    mesh: Path,
+    output: Path,
+    options: BakeOptions,
+    error: float,
+    material: str,
+    lights: Sequence[str] = (),
+    device: str = "",
+    progress: Progress | None = None,
+) -> BakeReport:
+    """Bake `mesh` into `output` with no more than `error` needs, and report; `report.budget` tells what was measured.
+
+    error: relative RMS of the exitance against the whole mesh cut finer, the larger of the whole and the unlit surface,
+    above 0 and below 1; material, lights: as the engine reads them, without lights some usual ones. Where no setting
+    keeps the error the whole mesh is baked, and `report.budget["reached"]` is false. Raises InputError as
+    quadgraph.bake.bake does, and where `options` say what the error is to choose.
+    """
+    tell = progress or (lambda text: None)
+    bake.check_options(output, options)
+    _check(options, error)
+    load_core().Material(material)
+    report, start = BakeReport(str(output)), time.perf_counter()
+    prepared = bake.prepare(mesh, options, report, tell)
+    scene = _scene(prepared, material, lights)
+    with tempfile.TemporaryDirectory(prefix="quadgraph-budget-") as folder:
+        levels, budget = _planned(prepared, options, scene, error, Path(folder), device, report, tell)
+    chosen = replace(options, surface_vertices=budget["surface_vertices"])
+    bake.write(prepared, levels, chosen, report, budget)
+    report.budget = budget
+    report.seconds["total"] = time.perf_counter() - start
+    return report
+
+
+def _check(options: BakeOptions, error: float) -> None:
+    if not 0 < error < 1:
+        raise InputError(f"error: {error} found, allowed is above 0 and below 1")
+    for name in ("surface_vertices", "levels"):
+        if getattr(options, name) is not None:
+            raise InputError(f"{name}: {getattr(options, name)} found, but an error is asked for, which chooses it")
+
+
+def _scene(prepared: Prepared, material: str, lights: Sequence[str]) -> Scene:
+    if lights:
+        return Scene(material, {"given": list(lights)}, True)
+    usual = {"usual": load_core().default_lights()}
+    return Scene(
+        material, usual | {name: lights_around(name, prepared.surface.vertices) for name in ("sun", "lamp")}, False
+    )
+
+
+def _planned(
+    prepared: Prepared,
+    options: BakeOptions,
+    scene: Scene,
+    error: float,
+    folder: Path,
+    device: str,
+    report: BakeReport,
+    tell: Progress,
+) -> tuple[list[Level], dict[str, Any]]:
+    whole = prepared
+    if len(prepared.surface.vertices) > MOST_VERTICES:
+        with report.timed("simplify"):
+            whole = replace(prepared, surface=lod.simplify(prepared.surface, MOST_VERTICES))
+    count = len(whole.surface.vertices)
+    bench = Bench(whole, options, scene, folder, device)
+    depth = max(2, 1 + int(np.log(max(count / _LEAST_COARSEST, 1)) / np.log(4)))
+    levels = _levels(whole, replace(options, levels=depth), report)
+    tell(f"error: solving the whole mesh, {count:,} vertices")
+    with report.timed("error"):
+        bench.find_truth(levels)
+        _measure_chain(bench, levels, error, tell)
+    predicted = _refine(bench, whole, options, error, report, tell)
+    best = bench.best(ENOUGH * error)
+    chosen = best or min(bench.trials, key=lambda t: (-t.surface_vertices, t.error))
+    budget = _record(bench, chosen, predicted, len(prepared.surface.vertices), count, error)
+    return bench.candidates[chosen.surface_vertices], budget
+
+
+def _levels(whole: Prepared, options: BakeOptions, report: BakeReport) -> list[Level]:
+    """Levels that may come to nothing: only their times are reported."""
+    scratch = BakeReport(report.output)
+    levels = bake.make_levels(whole.surface, options, scratch, lambda text: None)
+    for stage, seconds in scratch.seconds.items():
+        report.seconds[stage] = report.seconds.get(stage, 0) + seconds
+    return levels
+
+
+def _measure_chain(bench: Bench, levels: list[Level], error: float, tell: Progress) -> None:
+    """The levels that have a coarser one; the finest only if it is needed."""
+    for number in range(max(len(levels) - 2, 0), -1, -1):
+        if number == 0 and len(bench.candidates) > 1 and bench.best(AIM * error):
+            return
+        _tell(bench.add(levels[number:]), tell)
+
+
+def _tell(found: list[Trial], tell: Progress) -> None:
+    for model in dict.fromkeys(trial.model for trial in found):
+        least = min(trial.error for trial in found if trial.model == model)
+        tell(f"error: {found[0].surface_vertices:,} vertices, {model}: {least:.2%}")
+
+
+def _refine(
+    bench: Bench, whole: Prepared, options: BakeOptions, error: float, report: BakeReport, tell: Progress
+) -> Forecast | None:
+    """Bake and measure surfaces that are expected to keep the error; the first expectation, None if none is."""
+    first = None
+    for _ in range(_ROUNDS):
+        expected = forecast(bench.trials, AIM * error)
+        first = first or expected
+        best = bench.best(ENOUGH * error)
+        if expected is None or (best and best.cost <= _CLOSE * expected.cost):
+            return first
+        count = _apart(bench, max(round(expected.surface_vertices), LEAST_VERTICES))
+        if count >= len(whole.surface.vertices):
+            return first
+        try:
+            sized = replace(options, surface_vertices=count, levels=2 if count < 4 * lod.SMALLEST else None)
+            levels = _levels(whole, sized, report)
+        except InputError as refused:
+            tell(f"error: {refused}")
+            return first
+        with report.timed("error"):
+            _tell(bench.add(levels), tell)
+    return first
+
+
+def _apart(bench: Bench, count: int) -> int:
+    """A number of vertices that has not been tried: more, if one that is as good as this one has been."""
+    while any(abs(count / other - 1) < _SAME for other in bench.candidates):
+        count = round(count * (1 + 2 * _SAME))
+    return count
+
+
+def _record(
+    bench: Bench, chosen: Trial, predicted: Forecast | None, vertices: int, judged: int, error: float
+) -> dict[str, Any]:
+    levels = bench.candidates[chosen.surface_vertices]
+    finest = max(bench.candidates)
+    return {
+        "error": error,
+        "reached": bool(chosen.error <= ENOUGH * error),
+        "measured": chosen.error,
+        "errors": chosen.errors,
+        "material": bench.scene.material,
+        "lights": {name: list(texts) for name, texts in bench.scene.lights.items()},
+        "lights_given": bench.scene.given,
+        "model": chosen.model,
+        "cycles": chosen.cycles,
+        "cost_bytes": chosen.cost,
+        "surface_vertices": chosen.surface_vertices,
+        "levels": [level.graph.surface_vertex_count for level in levels],
+        "mesh_vertices": vertices,
+        "judged_vertices": judged,
+        "truth_vertices": bench.truth_vertices,
+        "predicted_vertices": None if predicted is None else predicted.surface_vertices,
+        "diffusion_error": min(
+            t.error for t in bench.trials if t.surface_vertices == finest and t.model == "diffusion"
+        ),
+        "deep_share": _deep_share(levels[0], bench.scene.material),
+        "trials": [trial.as_dict() for trial in bench.trials],
+    }
+
+
+def _deep_share(level: Level, material: str) -> float:
+    """Share of a level's vertices deeper than DEEP diffusion lengths, where the light goes deepest."""
+    coefficients = load_core().Material(material)
+    sigma_tr = [np.sqrt(3 * a * (a + s)) for s, a in zip(coefficients.sigma_s_prime, coefficients.sigma_a, strict=True)]
+    graph = level.graph
+    surface, inner = np.split(graph.vertices, [graph.surface_vertex_count])
+    if min(sigma_tr) == 0 or len(inner) == 0:
+        return 0.0
+    depth, _ = cKDTree(surface).query(inner)
+    return float((depth > DEEP / min(sigma_tr)).sum() / len(graph.vertices))

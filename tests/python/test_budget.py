@@ -1,0 +1,169 @@
+"""A bake for an error: what it measures, chooses and says, on bodies that nothing was fitted to."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from quadgraph import cli, qgraph_file
+from quadgraph.bake import BakeOptions
+from quadgraph.budget import judge, plan, trials
+from quadgraph.budget.trials import Trial
+from quadgraph.commands import budget
+from quadgraph.errors import FormatError, InputError
+from quadgraph.reference import chains
+
+core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
+
+SUN = "directional:0.3,-0.2,-0.9:1"
+ERROR = 0.05
+SETTINGS = {"method": "fem", "source": "buried", "solver": "fmg-pcg", "cycles": 0, "model": "auto"}
+
+
+def arguments(**given) -> argparse.Namespace:
+    values = SETTINGS | {"file": Path("x.qgraph"), "material": "skin1", "light": [SUN], "error": ERROR}
+    return argparse.Namespace(**(values | given))
+
+
+def law(vertices: int, model: str = "sp3", cycles: int = 2, *, order: float = 0.8, floor: float = 0.0) -> Trial:
+    """A trial whose error falls with the number of vertices down to a floor, and whose cost rises with it."""
+    error = float(np.hypot(2 * vertices**-order, floor))
+    return Trial(
+        vertices, model, cycles, 100.0 * vertices * (1 + cycles), {"sun": {"whole": error / 2, "unlit": error}}
+    )
+
+
+def test_a_forecast_follows_the_order_between_and_beyond_trials():
+    known = [law(n) for n in (200, 800, 3200)]
+    for wanted in (0.02, 0.006, 0.05):
+        found = trials.forecast(known, wanted)
+        assert found.surface_vertices == pytest.approx((wanted / 2) ** (-1 / 0.8), rel=1e-6)
+        assert found.cost == pytest.approx(300 * found.surface_vertices, rel=1e-6)
+
+
+def test_a_forecast_takes_the_cheapest_setting_and_none_that_never_gets_there():
+    known = [law(n, model, cycles, floor=floor) for n in (200, 800, 3200) for model, cycles, floor in
+             (("diffusion", 1, 0.03), ("sp3", 2, 0.0), ("sp3", 3, 0.0))]  # fmt: skip
+    assert trials.forecast(known, 0.02).model == "sp3"
+    assert trials.forecast(known, 0.02).cycles == 2
+    assert trials.forecast(known, 0.06).model == "diffusion"
+    assert trials.forecast(known, 1e-3) is None
+
+
+@pytest.fixture(scope="module")
+def mesh(tmp_path_factory) -> Path:
+    path = tmp_path_factory.mktemp("budget") / "lobes.ply"
+    chains.SHAPES["lobes"](4).export(path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def baked(mesh):
+    return plan.bake_for(mesh, mesh.with_suffix(".qgraph"), BakeOptions(height_mm=8), ERROR, "skin1", [SUN])
+
+
+def test_the_error_is_kept_with_less_than_the_mesh(baked):
+    found = baked.budget
+    assert found["reached"]
+    assert found["measured"] <= ERROR
+    assert found["surface_vertices"] < found["mesh_vertices"] / 2
+    finer = [t for t in found["trials"] if t["surface_vertices"] > found["surface_vertices"]]
+    assert finer
+    # The next coarser surface tried does not do: nothing is left over.
+    coarser = [t for t in found["trials"] if t["surface_vertices"] < 0.6 * found["surface_vertices"]]
+    assert all(budget.worst(t) > ERROR for t in coarser if t["model"] == found["model"])
+
+
+def test_the_error_is_the_true_one(baked, mesh, tmp_path):
+    """Against a mesh that the bake did not use: its own cut twice, on which the error of the truth is a sixteenth."""
+    whole = plan.bake.bake(mesh, tmp_path / "whole.qgraph", BakeOptions(height_mm=8, visibility_rays=0))
+    truth = judge.Reference(Path(whole.output), 2, tmp_path).truth("skin1", [SUN])
+    found = baked.budget
+    solved = judge.Subject(Path(baked.output), "skin1").solve([SUN], model=found["model"], cycles=found["cycles"])
+    error = truth.error(solved.exitance)
+    assert max(error.values()) <= ERROR
+    for part, measured in found["errors"]["given"].items():
+        assert error[part] == pytest.approx(measured, rel=0.15)
+
+
+def test_the_file_tells_a_solve_what_keeps_the_error(baked):
+    metadata = core.load(baked.output).metadata
+    taken = budget.taken(metadata, arguments())
+    assert taken.options == {"error": 0.0, "model": baked.budget["model"], "cycles": baked.budget["cycles"]}
+    assert json.loads(metadata)["budget"] == baked.budget
+
+
+@pytest.mark.parametrize(
+    ("given", "word"),
+    [
+        ({"material": "marble"}, "skin1, not marble"),
+        ({"light": None}, "other light"),
+        ({"solver": "dpcg"}, "fmg-pcg"),
+        ({"error": 0.001}, "no less than"),
+    ],
+)
+def test_what_was_not_measured_is_left_to_the_estimate(baked, given, word):
+    taken = budget.taken(core.load(baked.output).metadata, arguments(**given))
+    assert taken.options is None
+    assert word in taken.sentence
+
+
+def test_a_record_that_no_bake_wrote_is_refused(baked):
+    broken = json.dumps({"budget": baked.budget | {"trials": [{"surface_vertices": 1}]}})
+    with pytest.raises(FormatError, match="budget"):
+        budget.taken(broken, arguments())
+    assert budget.taken(json.dumps({}), arguments()) is None
+
+
+def test_what_was_left_out_is_said(baked):
+    text = "\n".join(budget.sentences(baked.budget))
+    for word in ("error 5%: kept", f"of {baked.budget['mesh_vertices']:,} vertices", "cycles", "model", "interior"):
+        assert word in text
+
+
+def test_render_keeps_the_error_by_the_file(baked, tmp_path, capsys):
+    out = tmp_path / "out.png"
+    scene = ["--material", "skin1", "--light", SUN, "--error", "5%", "--no-inter-reflection", "--size", "32x32"]
+    assert cli.main(["render", baked.output, *scene, "-o", str(out)]) == 0
+    assert "kept, the bake measured" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("given", "word"),
+    [
+        (["--error", "2%"], "--material"),
+        (["--material", "skin1"], "--error"),
+        (["--light", SUN], "--error"),
+        (["--error", "2%", "--material", "skin1", "--surface-vertices", "500"], "surface_vertices"),
+        (["--error", "2%", "--material", "skin1", "--levels", "2"], "levels"),
+        (["--error", "2%", "--material", "chalk"], "chalk"),
+    ],
+)
+def test_a_wrong_use_is_refused_in_words(mesh, tmp_path, given, word, capsys):
+    out = tmp_path / "out.qgraph"
+    assert cli.main(["bake", str(mesh), "--height", "8mm", "-o", str(out), *given]) == 1
+    assert word in capsys.readouterr().err
+    assert not out.exists()
+
+
+def test_an_error_out_of_reach_is_said_to_be(tmp_path, capsys):
+    """All of so coarse a mesh is baked, and the exit status tells."""
+    source, out = tmp_path / "lobes.ply", tmp_path / "out.qgraph"
+    chains.SHAPES["lobes"](3).export(source)
+    options = ["--height", "20mm", "--material", "marble", "--light", SUN, "--error", "0.2%"]
+    assert cli.main(["bake", str(source), "-o", str(out), *options]) == 3
+    assert "out of this mesh's reach" in capsys.readouterr().out
+    record = qgraph_file.read(out).metadata["budget"]
+    assert not record["reached"]
+    assert record["measured"] > 0.002
+    assert record["surface_vertices"] == record["mesh_vertices"]
+
+
+def test_errors_that_are_none_are_refused(mesh, tmp_path):
+    for error in (0.0, 1.0, float("nan")):
+        with pytest.raises(InputError, match="error"):
+            plan.bake_for(mesh, tmp_path / "x.qgraph", BakeOptions(height_mm=8), error, "skin1")
