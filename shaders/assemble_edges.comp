@@ -13,22 +13,22 @@ void main() {
   if (i >= push.count) return;
   vec3 stiffness = vec3(0), absorption = vec3(0), relaxation = vec3(0);
   Optical optical = load_optical(push.optical, 0);
-  uint k = load_uint(push.ring_offset, i), end = load_uint(push.ring_offset, i + 1u);
+  uint k = load_assembly_uint(push.ring_offset, i), end = load_assembly_uint(push.ring_offset, i + 1u);
   for (; k < end; ++k) {
-    uint element = load_uint(push.ring, k);
+    uint element = load_assembly_uint(push.ring, k);
     uint index = element >> 3u, edge = element & 7u;
     if (edge == RING_FACE) break;
     if (push.even == 0u) optical = load_optical(push.optical, index);
-    float mass = load_float(push.tet_shape, TET_SHAPE * index + 6u) / 20.0;
-    stiffness += kappa(optical) * load_float(push.tet_shape, TET_SHAPE * index + edge);
+    float mass = load_assembly_float(push.tet_shape, TET_SHAPE * index + 6u) / 20.0;
+    stiffness += kappa(optical) * load_assembly_float(push.tet_shape, TET_SHAPE * index + edge);
     absorption += optical.sigma_a * mass;
     relaxation += relaxation_of(optical) * mass;
   }
   float area = 0.0;
-  for (; k < end; ++k) area += load_float(push.face_area, load_uint(push.ring, k) >> 3u) / 12.0;
+  for (; k < end; ++k) area += load_assembly_float(push.face_area, load_assembly_uint(push.ring, k) >> 3u) / 12.0;
   Entry entry =
       sum_of(entry_of(stiffness, absorption, relaxation), boundary_entry(push.boundary, vec3(area)));
-  uvec2 entries = load_uvec2(push.edge_entry, i);
+  uvec2 entries = load_assembly_uvec2(push.edge_entry, i);
   store_entry(push.rows, entries.x, entry);
   store_entry(push.rows, entries.y, entry);
 }

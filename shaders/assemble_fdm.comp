@@ -21,8 +21,8 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= push.count) return;
   uint slice = i / SLICE_ROWS;
-  uint begin = load_uint(push.rows.slice_offset, slice) + i % SLICE_ROWS;
-  uint end = load_uint(push.rows.slice_offset, slice + 1u);
+  uint begin = load_row_uint(push.rows.slice_offset, slice) + i % SLICE_ROWS;
+  uint end = load_row_uint(push.rows.slice_offset, slice + 1u);
   vec3 position = load_vec3(push.nodes, i);
   float inverse_square = 0.0;  // 1/mm^2, of the last link
   Entry sum = entry_of(vec3(0), vec3(0), vec3(0));

@@ -10,9 +10,9 @@ layout(push_constant, scalar) uniform Block { AssembleFemPush push; };
 
 Entry off_diagonal_sum(uint i) {
   uint slice = i / SLICE_ROWS;
-  uint end = load_uint(push.rows.slice_offset, slice + 1u);
+  uint end = load_row_uint(push.rows.slice_offset, slice + 1u);
   Entry sum = entry_of(vec3(0), vec3(0), vec3(0));
-  for (uint e = load_uint(push.rows.slice_offset, slice) + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
+  for (uint e = load_row_uint(push.rows.slice_offset, slice) + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
     sum = sum_of(sum, load_entry(push.rows, e));
   }
   return sum;
@@ -23,11 +23,11 @@ void main() {
   if (i >= push.count) return;
   vec3 absorption = vec3(0), relaxation = vec3(0);
   Optical optical = load_optical(push.optical, 0);
-  uint end = load_uint(push.tet_offset, i + 1u);
-  for (uint k = load_uint(push.tet_offset, i); k < end; ++k) {
-    uint tet = load_uint(push.tet_incidence, k);
+  uint end = load_assembly_uint(push.tet_offset, i + 1u);
+  for (uint k = load_assembly_uint(push.tet_offset, i); k < end; ++k) {
+    uint tet = load_assembly_uint(push.tet_incidence, k);
     if (push.even == 0u) optical = load_optical(push.optical, tet);
-    float mass = load_float(push.tet_shape, TET_SHAPE * tet + 6u) / 20.0;
+    float mass = load_assembly_float(push.tet_shape, TET_SHAPE * tet + 6u) / 20.0;
     absorption += optical.sigma_a * mass;
     relaxation += relaxation_of(optical) * mass;
   }
@@ -35,7 +35,7 @@ void main() {
   if (i < push.surface_count) {
     end = load_uint(push.face_offset, i + 1u);
     for (uint k = load_uint(push.face_offset, i); k < end; ++k) {
-      area += load_float(push.face_area, load_uint(push.face_incidence, k)) / 12.0;
+      area += load_assembly_float(push.face_area, load_uint(push.face_incidence, k)) / 12.0;
     }
   }
   // Consistent masses: of a tet's twenty parts five belong to each of its vertices, of a face's twelve four.

@@ -43,8 +43,8 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= push.count) return;
   uint slice = i / SLICE_ROWS;
-  uint begin = load_uint(push.rows.slice_offset, slice) + i % SLICE_ROWS;
-  uint end = load_uint(push.rows.slice_offset, slice + 1u);
+  uint begin = load_row_uint(push.rows.slice_offset, slice) + i % SLICE_ROWS;
+  uint end = load_row_uint(push.rows.slice_offset, slice + 1u);
   Entry sum = entry_of(vec3(0), vec3(0), vec3(0));
   float area = 0.0;
   for (uint e = begin; e < end; e += SLICE_ROWS) {

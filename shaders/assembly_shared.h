@@ -43,8 +43,8 @@ struct ShapePush {
   QG_REF(Vec3s) vertices;
   QG_REF(Uvec4s) tets;
   QG_REF(Uvec3s) faces;
-  QG_REF(Floats) tet_shape;
-  QG_REF(Floats) face_area;  // mm^2
+  QG_REF(AssemblyFloats) tet_shape;
+  QG_REF(AssemblyFloats) face_area;  // mm^2
   uint tet_count;
   uint face_count;
 };
@@ -55,9 +55,9 @@ struct ShapePush {
 struct AssembleEvenPush {
   RowsRef rows;
   QG_REF(Opticals) optical;  // one
-  QG_REF(Vec2s) entry_shape;
-  QG_REF(Floats) entry_area;
-  QG_REF(Vec2s) row_shape;
+  QG_REF(AssemblyVec2s) entry_shape;
+  QG_REF(AssemblyFloats) entry_area;
+  QG_REF(AssemblyVec2s) row_shape;
   uint count;
   uint area_count;
   Boundary boundary;
@@ -71,11 +71,11 @@ const uint RING_FACE = 7u;
 struct AssembleEdgesPush {
   RowsRef rows;
   QG_REF(Opticals) optical;
-  QG_REF(Floats) tet_shape;
-  QG_REF(Floats) face_area;
-  QG_REF(Uvec2s) edge_entry;
-  QG_REF(Uints) ring_offset;
-  QG_REF(Uints) ring;
+  QG_REF(AssemblyFloats) tet_shape;
+  QG_REF(AssemblyFloats) face_area;
+  QG_REF(AssemblyUvec2s) edge_entry;
+  QG_REF(AssemblyUints) ring_offset;
+  QG_REF(AssemblyUints) ring;
   uint count;
   uint even;  // 1: the coefficients are the same everywhere
   Boundary boundary;
@@ -86,10 +86,10 @@ struct AssembleEdgesPush {
 struct AssembleFemPush {
   RowsRef rows;
   QG_REF(Opticals) optical;
-  QG_REF(Floats) tet_shape;
-  QG_REF(Floats) face_area;
-  QG_REF(Uints) tet_offset;
-  QG_REF(Uints) tet_incidence;
+  QG_REF(AssemblyFloats) tet_shape;
+  QG_REF(AssemblyFloats) face_area;
+  QG_REF(AssemblyUints) tet_offset;
+  QG_REF(AssemblyUints) tet_incidence;
   QG_REF(Uints) face_offset;
   QG_REF(Uints) face_incidence;
   uint count;

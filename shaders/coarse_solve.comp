@@ -11,10 +11,10 @@ layout(push_constant, scalar) uniform Block { CoarseSolvePush push; };
 
 Field residual_at(CoherentFields x, uint i) {
   uint slice = i / SLICE_ROWS;
-  uint end = load_uint(push.rows.slice_offset, slice + 1u);
+  uint end = load_row_uint(push.rows.slice_offset, slice + 1u);
   Field own = load_coherent(x, i);
   Field sum = times(load_block(push.rows.row_sum, i), own);
-  for (uint e = load_uint(push.rows.slice_offset, slice) + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
+  for (uint e = load_row_uint(push.rows.slice_offset, slice) + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
     StoredEntry stored = stored_entry(push.rows, e);
     sum = add(sum, times(entry_in(stored), difference(load_coherent(x, column_of(stored)), own)));
   }

@@ -49,11 +49,11 @@ void main() {
   vec3 own = vec3(0);
   if (i < push.count) {
     uint slice = i / SLICE_ROWS;
-    uint end = load_uint(push.rows.slice_offset, slice + 1u);
+    uint end = load_row_uint(push.rows.slice_offset, slice + 1u);
     Entry diagonal = load_block(push.rows.diagonal, i);
     Field y = start_or(push.y, i);
     Field z = y;
-    for (uint e = load_uint(push.rows.slice_offset, slice) + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
+    for (uint e = load_row_uint(push.rows.slice_offset, slice) + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
       StoredEntry stored = stored_entry(push.rows, e);
       z = add(z, magnitude_times(diagonal, entry_in(stored), start_or(push.y, column_of(stored))));
     }

@@ -9,8 +9,8 @@ layout(push_constant, scalar) uniform Block { FollowPush push; };
 Field change_of_coarse(uint row) {
   Field value = no_field();
   for (uint k = 0u; k < push.width; ++k) {
-    uint j = push.coarse_first + load_uint(push.index, row * push.width + k);
-    vec3 factor = load_float(push.weight, row * push.width + k) * load_vec3_or_one(push.coarse_to_phi, j);
+    uint j = push.coarse_first + load_row_uint(push.index, row * push.width + k);
+    vec3 factor = load_row_float(push.weight, row * push.width + k) * load_vec3_or_one(push.coarse_to_phi, j);
     value = add_scaled(value, factor, difference(load_field(push.coarse_x, j), load_field(push.coarse_before, j)));
   }
   return scaled(1.0 / load_vec3_or_one(push.to_phi, push.first + row), value);

@@ -11,7 +11,7 @@ void main() {
   if (i >= push.count) return;
   Field x = load_field(push.x, i);
   for (uint k = push.width * i; k < push.width * (i + 1u); ++k) {
-    x = add_scaled(x, vec3(load_float(push.weight, k)), load_field(push.coarse_x, load_uint(push.index, k)));
+    x = add_scaled(x, vec3(load_row_float(push.weight, k)), load_field(push.coarse_x, load_row_uint(push.index, k)));
   }
   push.x.at[i] = x;
 }

@@ -4,10 +4,10 @@
 // (A x)_i.
 Field row_times(RowsRef rows, Fields x, uint i) {
   uint slice = i / SLICE_ROWS;
-  uint end = load_uint(rows.slice_offset, slice + 1u);
+  uint end = load_row_uint(rows.slice_offset, slice + 1u);
   Field own = load_field(x, i);
   Field sum = times(load_block(rows.row_sum, i), own);
-  for (uint e = load_uint(rows.slice_offset, slice) + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
+  for (uint e = load_row_uint(rows.slice_offset, slice) + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
     StoredEntry stored = stored_entry(rows, e);
     sum = add(sum, times(entry_in(stored), difference(load_field(x, column_of(stored)), own)));
   }

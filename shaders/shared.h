@@ -30,6 +30,12 @@ QG_ARRAY(Vec3s, vec3);
 QG_ARRAY(Vec4s, vec4);
 QG_ARRAY(Uvec3s, uvec3);
 QG_ARRAY(Uvec4s, uvec4);
+QG_ARRAY(RowUints, uint);
+QG_ARRAY(RowFloats, float);
+QG_ARRAY(AssemblyUints, uint);
+QG_ARRAY(AssemblyUvec2s, uvec2);
+QG_ARRAY(AssemblyFloats, float);
+QG_ARRAY(AssemblyVec2s, vec2);
 #include "load.glsl"
 #endif
 
@@ -64,7 +70,10 @@ struct Material {
 QG_ARRAY(Opticals, Optical);
 
 Optical load_optical(Opticals a, uint i) {
-  if (TEXELS) return Optical(load_vec3(Vec3s(uvec2(a)), 2u * i), load_vec3(Vec3s(uvec2(a)), 2u * i + 1u));
+  if (FIELD_TEXELS) {
+    uint t = field_texel_of(uvec2(a)) + 6u * i;
+    return Optical(uintBitsToFloat(field_texels3(t)), uintBitsToFloat(field_texels3(t + 3u)));
+  }
   return a.at[i];
 }
 #endif

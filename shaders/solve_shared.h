@@ -39,28 +39,32 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) coherent buffer Coh
 };
 
 Field load_field(Fields a, uint i) {
+  if (FIELD_TEXELS) {
 #if MOMENTS == 1
-  if (TEXELS) return Field(load_vec3(Vec3s(uvec2(a)), i));
+    return Field(uintBitsToFloat(field_texels3(field_texel_of(uvec2(a)) + 3u * i)));
 #else
-  if (TEXELS) return Field(load_vec3(Vec3s(uvec2(a)), 2u * i), load_vec3(Vec3s(uvec2(a)), 2u * i + 1u));
+    uint t = field_texel_of(uvec2(a)) + 6u * i;
+    return Field(uintBitsToFloat(field_texels3(t)), uintBitsToFloat(field_texels3(t + 3u)));
 #endif
+  }
   return a.at[i];
 }
 
 Field load_coherent(CoherentFields a, uint i) {
-  if (TEXELS) return load_field(Fields(uvec2(a)), i);
+  if (FIELD_TEXELS) return load_field(Fields(uvec2(a)), i);
   return a.at[i];
 }
 
 Entry load_block(Entries a, uint i) {
+  if (ROW_TEXELS) {
 #if MOMENTS == 1
-  if (TEXELS) return Entry(load_vec3(Vec3s(uvec2(a)), i));
+    return Entry(uintBitsToFloat(row_texels3(row_texel_of(uvec2(a)) + 3u * i)));
 #else
-  if (TEXELS) {
-    Vec3s parts = Vec3s(uvec2(a));
-    return Entry(load_vec3(parts, 3u * i), load_vec3(parts, 3u * i + 1u), load_vec3(parts, 3u * i + 2u));
-  }
+    uint t = row_texel_of(uvec2(a)) + 9u * i;
+    return Entry(uintBitsToFloat(row_texels3(t)), uintBitsToFloat(row_texels3(t + 3u)),
+                 uintBitsToFloat(row_texels3(t + 6u)));
 #endif
+  }
   return a.at[i];
 }
 #endif
@@ -79,8 +83,8 @@ struct Boundary {
 // consist of, cancels before it is rounded: the flux from i to j is that from j to i, and energy is kept in single
 // precision. `diagonal` = row_sum - sum of the weights is for preconditioning.
 struct RowsRef {
-  QG_REF(Uints) slice_offset;
-  QG_REF(Uints) entry;
+  QG_REF(RowUints) slice_offset;
+  QG_REF(RowUints) entry;
   QG_REF(Entries) row_sum;
   QG_REF(Entries) diagonal;
 };
@@ -208,8 +212,8 @@ Scale load_scale(Scales a) {
 // transfer.comp: x = sum of weight * to_phi_coarse * x_coarse / to_phi (1 where null), for `count` rows from `first`
 // on; 0 in a channel without light.
 struct TransferPush {
-  QG_REF(Uints) index;
-  QG_REF(Floats) weight;
+  QG_REF(RowUints) index;
+  QG_REF(RowFloats) weight;
   QG_REF(Fields) coarse_x;
   QG_REF(Vec3s) coarse_to_phi;
   QG_REF(Vec3s) to_phi;
@@ -224,8 +228,8 @@ struct TransferPush {
 // follow.comp: the last solution as the next start: before = x in the present units, x = before + transfer of what has
 // changed on the coarser level since. `coarse_x` null: there is none. `before` null: no finer level will ask.
 struct FollowPush {
-  QG_REF(Uints) index;
-  QG_REF(Floats) weight;
+  QG_REF(RowUints) index;
+  QG_REF(RowFloats) weight;
   QG_REF(Fields) coarse_x;
   QG_REF(Fields) coarse_before;
   QG_REF(Vec3s) coarse_to_phi;
@@ -365,9 +369,9 @@ struct CoarseSolvePush {
 // restrict.comp: f_i = sum of weight_p r_(p / width), p = place_k, k from offset[i] to offset[i + 1]: the transpose of
 // the transfer whose weights these are.
 struct RestrictPush {
-  QG_REF(Uints) offset;
-  QG_REF(Uints) place;
-  QG_REF(Floats) weight;
+  QG_REF(RowUints) offset;
+  QG_REF(RowUints) place;
+  QG_REF(RowFloats) weight;
   QG_REF(Fields) r;
   QG_REF(Fields) f;
   uint width;
@@ -376,8 +380,8 @@ struct RestrictPush {
 
 // prolong.comp: x += transfer of the coarse x.
 struct ProlongPush {
-  QG_REF(Uints) index;
-  QG_REF(Floats) weight;
+  QG_REF(RowUints) index;
+  QG_REF(RowFloats) weight;
   QG_REF(Fields) coarse_x;
   QG_REF(Fields) x;
   uint width;

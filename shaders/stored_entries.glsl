@@ -1,7 +1,7 @@
 // The entries of an operator as packing.h stores them: reading and writing.
 #include "packing.h"
 
-layout(constant_id = 2) const uint ENTRIES = ENTRIES_PACKED;
+layout(constant_id = 1) const uint ENTRIES = ENTRIES_PACKED;
 
 // Words of an entry; of packed ones the rest is unused.
 #if MOMENTS == 1
@@ -21,18 +21,18 @@ layout(buffer_reference, scalar, buffer_reference_align = 8) buffer AlignedUvec2
 StoredEntry stored_entry(RowsRef rows, uint e) {
   StoredEntry stored;
   if (ENTRIES == ENTRIES_PLAIN) {
-    for (uint k = 0u; k < PLAIN_WORDS; ++k) stored.word[k] = load_uint(rows.entry, PLAIN_WORDS * e + k);
+    for (uint k = 0u; k < PLAIN_WORDS; ++k) stored.word[k] = load_row_uint(rows.entry, PLAIN_WORDS * e + k);
     return stored;
   }
 #if MOMENTS == 1
-  if (!TEXELS) {
+  if (!ROW_TEXELS) {
     uvec2 words = AlignedUvec2s(uvec2(rows.entry)).at[e];
     stored.word[0] = words.x;
     stored.word[1] = words.y;
     return stored;
   }
 #endif
-  for (uint k = 0u; k < PACKED_WORDS; ++k) stored.word[k] = load_uint(rows.entry, PACKED_WORDS * e + k);
+  for (uint k = 0u; k < PACKED_WORDS; ++k) stored.word[k] = load_row_uint(rows.entry, PACKED_WORDS * e + k);
   return stored;
 }
 

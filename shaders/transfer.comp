@@ -11,8 +11,8 @@ void main() {
   if (row >= push.count) return;
   Field value = no_field();
   for (uint k = 0u; k < push.width; ++k) {
-    uint j = push.coarse_first + load_uint(push.index, row * push.width + k);
-    vec3 factor = load_float(push.weight, row * push.width + k) * load_vec3_or_one(push.coarse_to_phi, j);
+    uint j = push.coarse_first + load_row_uint(push.index, row * push.width + k);
+    vec3 factor = load_row_float(push.weight, row * push.width + k) * load_vec3_or_one(push.coarse_to_phi, j);
     value = add_scaled(value, factor, load_field(push.coarse_x, j));
   }
   uint i = push.first + row;

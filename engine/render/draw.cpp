@@ -58,7 +58,7 @@ void draw_bytes(vk::Commands& commands, const DrawTarget& target, const Viewport
   vkCmdBindPipeline(handle, VK_PIPELINE_BIND_POINT_GRAPHICS, pass.pipeline());
   vkCmdPushConstants(handle, pass.layout(), VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0, push_size,
                      push);
-  const VkDescriptorSet texels = commands.context().arena().set();
+  const VkDescriptorSet texels = commands.context().arenas().set();
   vkCmdBindDescriptorSets(handle, VK_PIPELINE_BIND_POINT_GRAPHICS, pass.layout(), 0, 1, &texels, 0, nullptr);
   vkCmdBindIndexBuffer(handle, indices.handle(), 0, VK_INDEX_TYPE_UINT32);
   vkCmdDrawIndexed(handle, index_count, 1, 0, 0, 0);

@@ -16,7 +16,7 @@ namespace quadgraph {
 namespace {
 
 vk::Buffer room(vk::Context& context, std::uint32_t number, std::uint64_t count) {
-  return {context, count * sizeof(gpu::Optical), vk::Place::read,
+  return {context, count * sizeof(gpu::Optical), vk::Place::fields,
           "material/level " + std::to_string(number) + " optical"};
 }
 

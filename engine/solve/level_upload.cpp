@@ -65,15 +65,15 @@ TransferBuffers::TransferBuffers(vk::Context& context, const Level& level, const
                                  Method method) {
   const std::string prefix = "transfers/level " + std::to_string(number) + " ";
   const auto add = [&](const Transfer& t, const std::string& name, std::uint32_t first, std::uint32_t coarse_first) {
-    parts.push_back({vk::upload(context, t.index, prefix + name + "_index"),
-                     vk::upload(context, t.weight, prefix + name + "_weight"), t.width, first, coarse_first,
-                     static_cast<std::uint32_t>(t.index.size() / t.width)});
+    parts.push_back({vk::upload(context, t.index, prefix + name + "_index", vk::Place::rows),
+                     vk::upload(context, t.weight, prefix + name + "_weight", vk::Place::rows), t.width, first,
+                     coarse_first, static_cast<std::uint32_t>(t.index.size() / t.width)});
   };
   if (method == Method::fem) {
     add(level.barycentric, "barycentric", 0, 0);
     const Transposed back = transposed(level.barycentric, coarse.vertex_count());
-    back_offset = vk::upload<std::uint32_t>(context, back.offset, prefix + "barycentric_back_offset");
-    back_place = vk::upload<std::uint32_t>(context, back.place, prefix + "barycentric_back_place");
+    back_offset = vk::upload<std::uint32_t>(context, back.offset, prefix + "barycentric_back_offset", vk::Place::rows);
+    back_place = vk::upload<std::uint32_t>(context, back.place, prefix + "barycentric_back_place", vk::Place::rows);
   } else {
     add(level.inner, "inner", 0, 0);
     add(level.surface, "surface", level.tet_count(), coarse.tet_count());

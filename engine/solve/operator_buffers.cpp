@@ -9,8 +9,8 @@ namespace quadgraph {
 namespace {
 
 template <typename T>
-vk::Buffer upload(vk::Context& context, const std::vector<T>& values, const std::string& name) {
-  return vk::upload<T>(context, values, name);
+vk::Buffer upload(vk::Context& context, const std::vector<T>& values, const std::string& name, vk::Place place) {
+  return vk::upload<T>(context, values, name, place);
 }
 
 }  // namespace
@@ -23,8 +23,15 @@ OperatorBuffers::OperatorBuffers(vk::Context& context, const Level& level, std::
       method_(method),
       prefix_("level " + std::to_string(index) + " " + std::string(name_of(method)) + " " +
               std::string(name_of(model)) + " ") {
-  const auto buffer = [&](std::uint64_t bytes, const std::string& purpose, const char* name) {
-    return vk::Buffer(context, bytes, vk::Place::read, purpose + prefix_ + name);
+  const auto buffer = [&](std::uint64_t bytes, const std::string& purpose, const char* name,
+                          vk::Place place = vk::Place::read) {
+    return vk::Buffer(context, bytes, place, purpose + prefix_ + name);
+  };
+  const auto block = [&](const char* name) {
+    return buffer(count * block_bytes(), "operator/", name, vk::Place::rows);
+  };
+  const auto field = [&](const char* name) {
+    return buffer(count * field_bytes(), "solver/", name, vk::Place::fields);
   };
   const std::string rows = "operator/", vectors = "solver/";
   const bool fem = method == Method::fem;
@@ -32,17 +39,17 @@ OperatorBuffers::OperatorBuffers(vk::Context& context, const Level& level, std::
   if (!fem) to_phi = buffer(count * sizeof(glm::vec3), rows, "to_phi");
   entries = static_cast<std::uint32_t>(columns.column.size());
   slices = static_cast<std::uint32_t>(columns.slice_offset.size() - 1);
-  slice_offset = upload(context, columns.slice_offset, rows + prefix_ + "slice_offset");
-  entry = upload(context, stored_columns(columns.column, model, format), rows + prefix_ + "entry");
-  row_sum = buffer(count * block_bytes(), rows, "row_sum");
-  diagonal = buffer(count * block_bytes(), rows, "diagonal");
-  b = buffer(count * field_bytes(), vectors, "b");
-  x = buffer(count * field_bytes(), vectors, "x");
-  r = buffer(count * field_bytes(), vectors, "r");
-  p = buffer(count * field_bytes(), vectors, "p");
-  product = buffer(count * field_bytes(), vectors, "product");
-  if (fem) z = buffer(count * field_bytes(), vectors, "z");
-  if (index > 0) before = buffer(count * field_bytes(), vectors, "x before");
+  slice_offset = upload(context, columns.slice_offset, rows + prefix_ + "slice_offset", vk::Place::rows);
+  entry = upload(context, stored_columns(columns.column, model, format), rows + prefix_ + "entry", vk::Place::rows);
+  row_sum = block("row_sum");
+  diagonal = block("diagonal");
+  b = field("b");
+  x = field("x");
+  r = field("r");
+  p = field("p");
+  product = field("product");
+  if (fem) z = field("z");
+  if (index > 0) before = field("x before");
   unit = buffer(sizeof(glm::vec3), vectors, "unit of x");
   surface_first = method == Method::fem ? 0 : level.tet_count();
   surface_count = method == Method::fem ? level.surface_vertex_count : level.face_count();
@@ -57,7 +64,7 @@ OperatorBuffers::OperatorBuffers(vk::Context& context, const Level& level, std::
 void OperatorBuffers::make_room(vk::Context& context, const Level& level, bool even, bool two_steps) {
   if (method_ != Method::fem) return;
   if (two_steps && other.size() == 0) {
-    other = {context, count * field_bytes(), vk::Place::read, "solver/" + prefix_ + "other z"};
+    other = {context, count * field_bytes(), vk::Place::fields, "solver/" + prefix_ + "other z"};
   }
   if (by_entry(even)) {
     if (row_shape.size() == 0) upload_shape(context, level);
@@ -70,9 +77,9 @@ void OperatorBuffers::upload_shape(vk::Context& context, const Level& level) {
   const Neighbours rows = vertex_neighbours(level);
   const FemShape shape = fem_shape(level, rows, slice(rows));
   const std::string prefix = "assembly/" + prefix_;
-  entry_shape = upload(context, shape.entry, prefix + "entry_shape");
-  entry_area = upload(context, shape.area, prefix + "entry_area");
-  row_shape = upload(context, shape.row, prefix + "row_shape");
+  entry_shape = upload(context, shape.entry, prefix + "entry_shape", vk::Place::assembly);
+  entry_area = upload(context, shape.area, prefix + "entry_area", vk::Place::assembly);
+  row_shape = upload(context, shape.row, prefix + "row_shape", vk::Place::assembly);
 }
 
 void OperatorBuffers::upload_rings(vk::Context& context, const Level& level) {
@@ -80,14 +87,14 @@ void OperatorBuffers::upload_rings(vk::Context& context, const Level& level) {
   const FemRings rings = fem_rings(level, rows, slice(rows));
   const std::string prefix = "assembly/" + prefix_;
   edge_count = static_cast<std::uint32_t>(rings.edge_entry.size());
-  edge_entry = upload(context, rings.edge_entry, prefix + "edge_entry");
-  ring_offset = upload(context, rings.ring_offset, prefix + "ring_offset");
-  ring = upload(context, rings.ring, prefix + "ring");
-  tet_offset = upload(context, rings.tet_offset, prefix + "tet_offset");
-  tet_incidence = upload(context, rings.tet_incidence, prefix + "tet_incidence");
-  tet_shape = {context, std::uint64_t{gpu::TET_SHAPE} * level.tet_count() * sizeof(float), vk::Place::read,
+  edge_entry = upload(context, rings.edge_entry, prefix + "edge_entry", vk::Place::assembly);
+  ring_offset = upload(context, rings.ring_offset, prefix + "ring_offset", vk::Place::assembly);
+  ring = upload(context, rings.ring, prefix + "ring", vk::Place::assembly);
+  tet_offset = upload(context, rings.tet_offset, prefix + "tet_offset", vk::Place::assembly);
+  tet_incidence = upload(context, rings.tet_incidence, prefix + "tet_incidence", vk::Place::assembly);
+  tet_shape = {context, std::uint64_t{gpu::TET_SHAPE} * level.tet_count() * sizeof(float), vk::Place::assembly,
                prefix + "tet_shape"};
-  face_area = {context, level.face_count() * sizeof(float), vk::Place::read, prefix + "face_area"};
+  face_area = {context, level.face_count() * sizeof(float), vk::Place::assembly, prefix + "face_area"};
 }
 
 gpu::RowsRef OperatorBuffers::rows() const {

@@ -117,7 +117,7 @@ void Commands::bind(const ComputePass& pass, const void* push, std::uint32_t siz
   assert(size == pass.push_size());
   vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pass.pipeline());
   vkCmdPushConstants(commands_, pass.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, size, push);
-  const VkDescriptorSet texels = context_.arena().set();
+  const VkDescriptorSet texels = context_.arenas().set();
   vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pass.layout(), 0, 1, &texels, 0, nullptr);
 }
 

@@ -130,7 +130,7 @@ Context::Context(const ContextOptions& options) {
     read_properties();
     create_device();
     const std::uint64_t usual = info_.type == VK_PHYSICAL_DEVICE_TYPE_CPU ? max_buffer_bytes_ : 0;
-    arena_ = std::make_unique<Arena>(*this, options.texel_bytes.value_or(usual));
+    arenas_ = std::make_unique<Arenas>(*this, options.texel_bytes.value_or(usual));
   } catch (...) {
     destroy();
     throw;
@@ -142,7 +142,7 @@ Context::~Context() {
 }
 
 void Context::destroy() noexcept {
-  arena_.reset();
+  arenas_.reset();
   if (device_ != VK_NULL_HANDLE) vkDestroyDevice(device_, nullptr);
   if (messenger_ != VK_NULL_HANDLE) {
     auto destroy_messenger = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(

@@ -15,15 +15,15 @@
 
 namespace quadgraph::vk {
 
-class Arena;
+class Arenas;
 
 struct ContextOptions {
   // Load VK_LAYER_KHRONOS_validation and keep its messages; VulkanError if the layer is not installed.
   bool validation = false;
   // Part of the device's name, case-insensitive; empty: a discrete GPU, else an integrated one, else any.
   std::string device;
-  // Bytes of arrays that shaders read as texels (arena.h); unset: on a device of type CPU as many as it can show, else
-  // 0.
+  // Bytes of each arena of arrays that shaders read as texels (arena.h); unset: on a device of type CPU as many as it
+  // can show, else 0.
   std::optional<std::uint64_t> texel_bytes = std::nullopt;
 };
 
@@ -47,7 +47,7 @@ class Context {
   const VkPhysicalDeviceLimits& limits() const { return limits_; }
   std::uint64_t max_buffer_bytes() const { return max_buffer_bytes_; }
   const DeviceInfo& info() const { return info_; }
-  Arena& arena() { return *arena_; }
+  Arenas& arenas() { return *arenas_; }
 
   // Index of a memory type allowed by `type_bits` with all of `required`, preferring `preferred`. Throws VulkanError.
   std::uint32_t memory_type(std::uint32_t type_bits, VkMemoryPropertyFlags required,
@@ -94,7 +94,7 @@ class Context {
   std::uint64_t max_buffer_bytes_ = 0;
   VkPhysicalDeviceMemoryProperties memory_properties_{};
   DeviceInfo info_;
-  std::unique_ptr<Arena> arena_;
+  std::unique_ptr<Arenas> arenas_;
   bool debug_utils_ = false;
   PFN_vkSetDebugUtilsObjectNameEXT set_object_name_ = nullptr;
   std::uint64_t allocated_bytes_ = 0;

@@ -18,8 +18,8 @@ constexpr std::size_t largest_update = 65536;
 
 Allocation::Allocation(Context& context, const VkMemoryRequirements& requirements, Place place, bool device_address,
                        const std::string& name)
-    : context_(&context), size_(requirements.size), purpose_(name.substr(0, name.find('/'))) {
-  const bool in_arena = place == Place::read && context.arena().used() && take_range(requirements);
+    : context_(&context), size_(requirements.size), purpose_(name.substr(0, name.find('/'))), place_(place) {
+  const bool in_arena = arena_of(place) < arena_count && take_range(requirements);
   if (!in_arena) allocate(requirements, place, device_address);
   context.allocated_bytes_ += size_;
   context.allocated_by_purpose_[purpose_] += size_;
@@ -28,7 +28,8 @@ Allocation::Allocation(Context& context, const VkMemoryRequirements& requirement
 }
 
 bool Allocation::take_range(const VkMemoryRequirements& requirements) {
-  Arena& arena = context_->arena();
+  Arena& arena = context_->arenas()[arena_of(place_)];
+  if (!arena.used()) return false;
   const auto offset = arena.take(size_, requirements.alignment);
   if (!offset) return false;
   offset_ = *offset;
@@ -64,6 +65,7 @@ Allocation& Allocation::operator=(Allocation&& other) noexcept {
   std::swap(size_, other.size_);
   std::swap(offset_, other.offset_);
   std::swap(purpose_, other.purpose_);
+  std::swap(place_, other.place_);
   std::swap(memory_, other.memory_);
   std::swap(own_, other.own_);
   return *this;
@@ -71,7 +73,7 @@ Allocation& Allocation::operator=(Allocation&& other) noexcept {
 
 Allocation::~Allocation() {
   if (context_ == nullptr || memory_ == VK_NULL_HANDLE) return;
-  if (own_.get() == VK_NULL_HANDLE) context_->arena().release(offset_, size_);
+  if (own_.get() == VK_NULL_HANDLE) context_->arenas()[arena_of(place_)].release(offset_, size_);
   context_->allocated_bytes_ -= size_;
   const auto of_purpose = context_->allocated_by_purpose_.find(purpose_);
   of_purpose->second -= size_;

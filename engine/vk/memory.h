@@ -16,10 +16,19 @@
 namespace quadgraph::vk {
 
 enum class Place {
-  device,  // fastest for the GPU
-  read,    // the same, for arrays that shaders load (shaders/load.glsl): in the arena where there is one with room
-  host,    // mapped, coherent, cached if possible: uploads and read-backs
+  // Fastest for the GPU, and in the arena of that name where there is one with room: arrays that shaders load, by the
+  // type they have there (shaders/load.glsl).
+  read,      // Uints, Floats and all that is not one of the following
+  rows,      // Entries, RowUints, RowFloats: operators and the transfers between their levels
+  fields,    // Fields, Opticals: what carriers have
+  assembly,  // Assembly...: what operators are filled from
+  device,    // fastest for the GPU
+  host,      // mapped, coherent, cached if possible: uploads and read-backs
 };
+
+constexpr std::uint32_t arena_of(Place place) {
+  return static_cast<std::uint32_t>(place);
+}
 
 // One allocation, or a range of the arena; counted in Context::allocated_bytes.
 class Allocation {
@@ -42,6 +51,7 @@ class Allocation {
   std::uint64_t size_ = 0;
   std::uint64_t offset_ = 0;
   std::string purpose_;
+  Place place_ = Place::device;
   VkDeviceMemory memory_ = VK_NULL_HANDLE;
   UniqueMemory own_;  // none in a range of the arena
 };

@@ -27,7 +27,7 @@ UniquePipelineLayout push_layout(Context& context, std::uint32_t push_size, VkSh
                       context.info().name + " allows " + std::to_string(context.limits().maxPushConstantsSize));
   }
   const VkPushConstantRange range{stages, 0, push_size};
-  const VkDescriptorSetLayout texels = context.arena().layout();
+  const VkDescriptorSetLayout texels = context.arenas().layout();
   VkPipelineLayoutCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
   info.setLayoutCount = 1;
@@ -50,21 +50,23 @@ VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits bit, const UniqueSha
   return info;
 }
 
-// How shaders load arrays: TEXELS and TEXELS_AT of shaders/load.glsl. And a variant of their own.
+// Specialization constants by their number: how shaders load arrays (shaders/load.glsl), and a variant of their own.
 struct Constants {
-  VkBool32 texels;
-  std::uint32_t at;
-  std::uint32_t variant;
-  std::array<VkSpecializationMapEntry, 3> entries = {{{0, offsetof(Constants, texels), sizeof(VkBool32)},
-                                                      {1, offsetof(Constants, at), sizeof(std::uint32_t)},
-                                                      {2, offsetof(Constants, variant), sizeof(std::uint32_t)}}};
-  VkSpecializationInfo info{static_cast<std::uint32_t>(entries.size()), entries.data(),
-                            offsetof(Constants, variant) + sizeof(std::uint32_t), this};
+  static constexpr std::uint32_t count = 2 + arena_count;
+  std::array<std::uint32_t, count> values;
+  std::array<VkSpecializationMapEntry, count> entries;
+  VkSpecializationInfo info{count, entries.data(), sizeof(values), values.data()};
 
-  explicit Constants(Context& context, std::uint32_t variant_in = 0)
-      : texels(context.arena().complete() ? VK_TRUE : VK_FALSE),
-        at(static_cast<std::uint32_t>(context.arena().address())),
-        variant(variant_in) {}
+  explicit Constants(Context& context, std::uint32_t variant = 0) {
+    values[0] = context.arenas().complete();
+    values[1] = variant;
+    for (std::uint32_t i = 0; i < arena_count; ++i) {
+      values[2 + i] = static_cast<std::uint32_t>(context.arenas()[i].address());
+    }
+    for (std::uint32_t i = 0; i < count; ++i) {
+      entries[i] = {i, static_cast<std::uint32_t>(i * sizeof(std::uint32_t)), sizeof(std::uint32_t)};
+    }
+  }
   Constants(const Constants&) = delete;
   Constants& operator=(const Constants&) = delete;
 };
@@ -146,7 +148,7 @@ ComputePass::ComputePass(Context& context, Spirv code, std::uint32_t push_size, 
 }
 
 VkPipeline ComputePass::pipeline() const {
-  UniquePipeline& made = pipelines_[context_.arena().complete() ? 1 : 0];
+  UniquePipeline& made = pipelines_[context_.arenas().complete()];
   if (made.get() != VK_NULL_HANDLE) return made.get();
   const UniqueShaderModule module = shader_module(context_, code_, name_);
   VkComputePipelineCreateInfo info{};
@@ -172,7 +174,7 @@ GraphicsPass::GraphicsPass(Context& context, const GraphicsOptions& options, con
 }
 
 VkPipeline GraphicsPass::pipeline() const {
-  UniquePipeline& made = pipelines_[context_.arena().complete() ? 1 : 0];
+  UniquePipeline& made = pipelines_[context_.arenas().complete()];
   if (made.get() != VK_NULL_HANDLE) return made.get();
   const UniqueShaderModule vertex = shader_module(context_, options_.vertex, name_ + ".vert");
   const Constants constants(context_);

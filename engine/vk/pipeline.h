@@ -1,9 +1,9 @@
 // Compute and graphics pipelines. Shaders reach all data through addresses in their push constants; the one descriptor
-// set, alike for all, is the arena's (arena.h).
+// set, alike for all, is the arenas' (arena.h).
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,8 +16,8 @@ namespace quadgraph::vk {
 // A SPIR-V module as the build embeds it ("spirv/NAME.STAGE.h").
 using Spirv = std::span<const std::uint32_t>;
 
-// A pipeline for shaders that load arrays as texels, or through references (arena.h); made when it is wanted.
-using LoadingPipelines = std::array<UniquePipeline, 2>;
+// A pipeline by the arenas whose arrays shaders load as texels (Arenas::complete); made when it is wanted.
+using LoadingPipelines = std::map<std::uint32_t, UniquePipeline>;
 
 class ComputePass {
  public:
@@ -28,7 +28,7 @@ class ComputePass {
 
   static constexpr std::uint32_t default_workgroup_size = 256;  // WORKGROUP_SIZE in shaders/shared.h
 
-  // For what the arena holds now.
+  // For what the arenas hold now.
   VkPipeline pipeline() const;
   VkPipelineLayout layout() const { return layout_.get(); }
   std::uint32_t push_size() const { return push_size_; }

@@ -18,7 +18,7 @@ struct Lit {
   Engine engine;
 
   explicit Lit(std::uint64_t bytes) : engine(cube, {.validation = true, .device = "", .texel_bytes = bytes}) {
-    CHECK(engine.context().arena().used() == (bytes > 0));
+    CHECK(engine.context().arenas()[0].used() == (bytes > 0));
     engine.set_material("sigma_s_prime=2/1/0.5,sigma_a=0.1,eta=1.3");
     engine.set_lights({parse_light("directional:-0.3,-0.4,-0.86602540:1/2/3"), parse_light("point:4,2,1:20/10/5"),
                        parse_light("ambient:0.2")});

@@ -40,7 +40,7 @@ struct Assembled {
         op(device.context, level, 0, method, model, format_of(level, method)),
         work(device.context, level.node_count()) {
     upload_graph(device.context, level, 0, buffers);
-    buffers.optical = vk::upload<gpu::Optical>(device.context, optical, "optical");
+    buffers.optical = vk::upload<gpu::Optical>(device.context, optical, "optical", vk::Place::fields);
     op.make_room(device.context, level, even, false);
     record_assembly(work, buffers, method, problem.boundary(), even, op);
     work.recorder.submit();

@@ -80,7 +80,7 @@ inline GpuWalk walk(vk::Context& context, const WalkInput& input) {
     q.emplace_back(sum);
     result.entered += area_of(level, level.faces[f]) * sum;
   }
-  buffers.optical = vk::upload<gpu::Optical>(context, optical, "optical");
+  buffers.optical = vk::upload<gpu::Optical>(context, optical, "optical", vk::Place::fields);
   vk::write_bytes(context, buffers.q, std::as_bytes(std::span(q)));
   buffers.beam_q = again ? vk::upload<glm::vec3>(context, q, "beam q") : vk::upload<float>(context, quarters, "beam q");
   const gpu::Beam beam{input.beam, input.colour, again ? gpu::BEAM_RGB : gpu::BEAM_QUARTERS, 0};
