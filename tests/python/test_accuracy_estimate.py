@@ -11,8 +11,9 @@ from quadgraph import cli
 from quadgraph.bake import BakeOptions, bake
 from quadgraph.reference import chains
 from quadgraph.reference.chains import Subject
-from quadgraph.reference.judged import PARTS, Case, Judged, lights
+from quadgraph.reference.judged import Case, Judged, lights
 from quadgraph.reference.studies import estimate, target
+from quadgraph.reference.surface_errors import PARTS
 
 core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 

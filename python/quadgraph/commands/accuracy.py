@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import importlib
-import os
 from pathlib import Path
 from types import ModuleType
 
@@ -48,7 +47,11 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
 def _add_bodies_options(group: argparse._ArgumentGroup) -> None:
     group.add_argument("--scene", action="append", default=[], metavar="NAME", help="only this one; several allowed")
     group.add_argument(
-        "--meshes", type=Path, default=_meshes(), metavar="FOLDER", help="of the mesh files (default: %(default)s)"
+        "--meshes",
+        type=Path,
+        default=scene.shared_meshes(),
+        metavar="FOLDER",
+        help="of the mesh files (default: %(default)s)",
     )
 
 
@@ -56,21 +59,11 @@ def _add_scenes_options(group: argparse._ArgumentGroup) -> None:
     group.add_argument(
         "--truth",
         type=Path,
-        default=Path("docs/benchmarks/truth"),
+        default=scene.COMMITTED_TRUTH,
         metavar="FOLDER",
         help="of the path-traced pictures (default: %(default)s)",
     )
-    group.add_argument(
-        "--samples",
-        type=scene.positive_int,
-        metavar="N",
-        help="bring the path-traced pictures to N samples a pixel first, with Mitsuba; Ctrl-C keeps what is there",
-    )
     group.add_argument("--images", type=Path, metavar="FOLDER", help="draw figures there, with matplotlib")
-
-
-def _meshes() -> Path:
-    return Path(os.environ.get("QUADGRAPH_SHARED", "../shared")) / "meshes"
 
 
 def run(args: argparse.Namespace) -> int:
@@ -97,6 +90,6 @@ def run(args: argparse.Namespace) -> int:
 
 def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
     if args.study == "scenes":
-        return study.run(args.device, args.meshes, args.truth, args.scene, args.samples, args.images)
+        return study.run(args.device, args.meshes, args.truth, args.scene, args.images)
     with Console(stderr=True).status(f"study: {args.study}"):
         return study.run(args.device, args.meshes, args.scene)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -51,6 +52,15 @@ def share(text: str) -> float:
     if not 0 < value < 1:
         raise argparse.ArgumentTypeError(f"{text}: must be above 0 and below 1 (or 100%)")
     return value
+
+
+# Path-traced pictures that come with the repository.
+COMMITTED_TRUTH = Path("docs/benchmarks/truth")
+
+
+def shared_meshes() -> Path:
+    """The folder in which scenes' mesh files are looked for by default."""
+    return Path(os.environ.get("QUADGRAPH_SHARED", "../shared")) / "meshes"
 
 
 # What each is: docs/architecture.md, "Solvers".

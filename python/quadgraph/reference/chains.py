@@ -143,7 +143,12 @@ def at_corners(faces: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 
 def carried(levels: list, values: np.ndarray, first: int) -> np.ndarray:
-    """Values (n, 3) at the surface vertices of levels[first], carried to the faces of levels[0], (n_f, 3).
+    """Values (n, 3) at the surface vertices of levels[first], carried to the faces of levels[0], (n_f, 3)."""
+    return to_vertices(levels, values, first)[np.asarray(levels[0].faces)].mean(axis=1)
+
+
+def to_vertices(levels: list, values: np.ndarray, first: int) -> np.ndarray:
+    """Values (n, 3) at the surface vertices of levels[first], carried to those of levels[0].
 
     levels: of a loaded file. By the file's barycentric transfers; where a fine vertex lies inside the coarse body only
     the coarse surface counts, for what is carried lives there.
@@ -155,4 +160,4 @@ def carried(levels: list, values: np.ndarray, first: int) -> np.ndarray:
         whole = weight.sum(axis=1, keepdims=True)
         index = np.minimum(index, len(values) - 1)
         values = np.einsum("ij,ijc->ic", weight / np.where(whole > 0, whole, 1), values[index])
-    return values[np.asarray(levels[0].faces)].mean(axis=1)
+    return values

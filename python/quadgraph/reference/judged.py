@@ -12,15 +12,12 @@ import numpy as np
 
 from quadgraph.commands.scene import load_core
 from quadgraph.errors import InputError
-from quadgraph.reference import chains
+from quadgraph.reference import chains, surface_errors
 from quadgraph.reference.chains import Subject
 
 if TYPE_CHECKING:
     from quadgraph._core import Engine, QuadGraph
 
-PARTS = ("whole", "unlit")
-UNLIT_BELOW = 0.1  # of the mean irradiance, as the engine has it
-LEAST_SHARE = 0.02  # of the area: a smaller unlit part is not judged
 TRUTH_TOLERANCE = 1e-4  # of errors of .1% and more
 LIGHTS = ("sun", "sun and sky", "three", "lamp", "near lamp and sky")
 
@@ -102,14 +99,12 @@ class Judged:
         found = np.asarray(self._coarse[finer].surface_field()["exitance"], np.float64)
         corners = chains.at_corners(np.asarray(levels[finer].faces), found)
         difference = truth["exitance"] - chains.carried(levels, corners, finer)
-        area, q = np.asarray(truth["area"], np.float64), np.asarray(truth["q"], np.float64).sum(axis=1)
-        unlit = q < UNLIT_BELOW * (area @ q) / area.sum()
-        errors = {}
-        for part, weight in zip(PARTS, (area, area * unlit), strict=True):
-            if weight.sum() > LEAST_SHARE * area.sum():
-                share = _squares(weight, difference) / _squares(weight, truth["exitance"])
-                errors[part] = float(np.sqrt(share / (1 - 4.0 ** -(finer + finest))))
-        return errors
+        hidden = 4.0 ** -(finer + finest)
+        parts = surface_errors.weights(np.asarray(truth["area"], np.float64), truth["q"])
+        return {
+            part: surface_errors.relative(weight, difference, truth["exitance"]) / np.sqrt(1 - hidden)
+            for part, weight in parts.items()
+        }
 
 
 Body = TypeVar("Body")
@@ -135,7 +130,3 @@ def judged(
                 if case.subject == subject.name:
                     rows += rows_of(body, case)
     return rows
-
-
-def _squares(weight: np.ndarray, values: np.ndarray) -> float:
-    return float(weight @ (np.asarray(values, np.float64) ** 2).sum(axis=1))

@@ -11,7 +11,8 @@ from rich.table import Table
 
 from quadgraph.reference import chains
 from quadgraph.reference.chains import Subject
-from quadgraph.reference.judged import PARTS, Case, Judged, judged
+from quadgraph.reference.judged import Case, Judged, judged
+from quadgraph.reference.surface_errors import PARTS
 
 FINER = (2, 1)  # of the two levels that are judged: the truth has sixteen, or four, times the vertices
 CONFIDENCE = 0.95

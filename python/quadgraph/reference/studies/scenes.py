@@ -14,9 +14,9 @@ from rich.table import Table
 from quadgraph import bake
 from quadgraph.commands.scene import load_core
 from quadgraph.errors import InputError
-from quadgraph.reference import blocks, truth, truth_run
+from quadgraph.reference import blocks, scene_meshes, scenes, store, truth_run
 from quadgraph.reference.path_tracing import BATCH
-from quadgraph.reference.scenes import FOV, HEIGHT_MM, PIXELS, SCENES, Scene
+from quadgraph.reference.scenes import FOV, PIXELS, Scene
 from quadgraph.reference.truth import Truth
 from quadgraph.reference.truth_run import Subject
 
@@ -51,7 +51,7 @@ SETTINGS = (
 
 @dataclass(frozen=True)
 class Comparison:
-    """One view: the truth, the coverage (h, w) of the engine's pixels, and its pictures (h, w) by setting's name."""
+    """One image: the truth, the coverage (h, w) of the engine's pixels, and its pictures (h, w) by setting's name."""
 
     image: Truth
     alpha: np.ndarray
@@ -63,26 +63,20 @@ def run(
     meshes: Path,
     truths: Path,
     names: list[str],
-    samples: int | None = None,
     images: Path | None = None,
 ) -> dict[str, Any]:
     """Compare the scenes of the given names, all if there are none.
 
-    meshes: folder of the mesh files; truths: folder of the path-traced pictures, brought to `samples` samples a pixel
-    first if given; images: folder for figures, none without it. Raises InputError.
+    meshes: folder of the mesh files; truths: folder of the path-traced pictures; images: folder for figures, none
+    without it. Raises InputError.
     """
-    unknown = [name for name in names if name not in SCENES]
-    if unknown:
-        raise InputError(f"scene '{unknown[0]}': allowed are {', '.join(SCENES)}")
-    subjects = [truth_run.subject(SCENES[name], meshes / SCENES[name].mesh) for name in names or SCENES]
-    if samples:
-        truth_run.render(subjects, truths, samples, Console(stderr=True))
+    subjects = [truth_run.subject(scene, scene_meshes.file(scene, meshes)) for scene in scenes.chosen(names)]
     record = {}
     for found in subjects:
-        stored = {view: _stored(found, truths, view) for view in found.scene.views}
+        stored = {image: _stored(found, truths, image) for image in found.scene.images}
         with Console(stderr=True).status(f"scene: {found.scene.name}"):
-            compared = compare(found, meshes, stored, device)
-        record[found.scene.name] = {view: measured(one) for view, one in compared.items()}
+            compared = compare(found, stored, device)
+        record[found.scene.name] = {image: measured(one) for image, one in compared.items()}
         if images:
             from quadgraph.reference import figures
 
@@ -90,11 +84,11 @@ def run(
     return {"block": blocks.BLOCK, "bright": blocks.BRIGHT, "scenes": record}
 
 
-def compare(found: Subject, meshes: Path, stored: dict[str, Truth], device: str = "") -> dict[str, Comparison]:
-    """Bake a scene's mesh, and solve and render it in every setting; by view."""
+def compare(found: Subject, stored: dict[str, Truth], device: str = "") -> dict[str, Comparison]:
+    """Bake a scene's mesh, and solve and render it in every setting; by image."""
     with tempfile.TemporaryDirectory(prefix="quadgraph-study-") as folder:
         file = Path(folder) / "scene.qgraph"
-        bake.bake(meshes / found.scene.mesh, file, bake.BakeOptions(height_mm=HEIGHT_MM))
+        bake.bake(found.mesh, file, bake.BakeOptions(height_mm=found.scene.height))
         engine = load_core().Engine(file, device=device)
     set_scene(engine, found.scene)
     shown = {}
@@ -110,9 +104,8 @@ def compare(found: Subject, meshes: Path, stored: dict[str, Truth], device: str 
 def set_scene(engine: Engine, scene: Scene) -> None:
     """Give the engine the coefficients, in the middle of every node, and the light."""
     for index, level in enumerate(engine.graph.levels):
-        values = scene.coefficients(np.asarray(level.nodes, np.float64))
-        grey = (np.repeat(value[:, None], 3, axis=1).astype(np.float32) for value in values)
-        engine.set_optical(index, *grey, scene.eta)
+        values = scene.in_channels(np.asarray(level.nodes, np.float64))
+        engine.set_optical(index, *(value.astype(np.float32) for value in values), scene.eta)
     engine.set_lights([scene.light])
 
 
@@ -127,29 +120,30 @@ def solve(engine: Engine, setting: Setting) -> dict[str, Any]:
     )
 
 
-def picture(engine: Engine, scene: Scene, view: str, setting: Setting) -> tuple[np.ndarray, np.ndarray]:
-    """Radiance of light that was in the body, W/(mm^2 sr), and coverage, both (h, w), after a solve.
+def picture(engine: Engine, scene: Scene, image: str, setting: Setting) -> tuple[np.ndarray, np.ndarray]:
+    """Radiance of light that was in the body, W/(mm^2 sr), and coverage, both (h, w), after a solve; image: its name.
 
     Parallel light that crosses the body unscattered stays parallel: no camera sees it.
     """
+    chosen = scene.images[image]
     found = engine.render(
-        view=scene.views[view].text, vertical_fov=FOV, width=PIXELS, height=PIXELS, radiance=setting.radiance
+        view=scene.views[chosen.view].text, vertical_fov=FOV, width=PIXELS, height=PIXELS, radiance=setting.radiance
     )
-    shown = np.asarray(found.scattered, np.float64)[..., 0]
+    shown = np.asarray(found.scattered, np.float64)[..., chosen.channel]
     if scene.direction is None:
-        shown = shown + np.asarray(found.unscattered, np.float64)[..., 0]
+        shown = shown + np.asarray(found.unscattered, np.float64)[..., chosen.channel]
     return shown, np.array(found.alpha, np.float64)
 
 
 def measured(compared: Comparison) -> dict[str, Any]:
-    """What the record holds of a view: deviations by setting and part of the picture."""
+    """What the record holds of an image: deviations by setting and part of the picture."""
     image = compared.image
     chosen = blocks.parts(image.mean, compared.alpha)
     deviations = {
         name: {part: asdict(blocks.deviation(shown, image.mean, image.error, chosen[part])) for part in PARTS}
         for name, shown in compared.pictures.items()
     }
-    return {"samples": image.batches * BATCH, "truth": truth.digest(image.key), "settings": deviations}
+    return {"samples": image.batches * BATCH, "truth": store.digest(image.key), "settings": deviations}
 
 
 def tables(record: dict[str, Any]) -> list[Table]:
@@ -157,10 +151,11 @@ def tables(record: dict[str, Any]) -> list[Table]:
     return [_table(name, views) for name, views in record["scenes"].items()]
 
 
-def _stored(found: Subject, folder: Path, view: str) -> Truth:
-    image = truth_run.stored(found, folder, view)
+def _stored(found: Subject, folder: Path, name: str) -> Truth:
+    image = truth_run.stored(found, folder, name)
     if image.batches < 2:
-        raise InputError(f"{found.path(folder, view)}: not there; --samples N makes it with Mitsuba")
+        command = f"quadgraph reference {found.scene.name} --kind transport --samples N"
+        raise InputError(f"{found.path(folder, name)}: not there; '{command}' makes it with Mitsuba")
     return image
 
 

@@ -10,7 +10,8 @@ from rich.table import Table
 
 from quadgraph.reference import chains
 from quadgraph.reference.chains import Subject
-from quadgraph.reference.judged import PARTS, Case, Judged, judged
+from quadgraph.reference.judged import Case, Judged, judged
+from quadgraph.reference.surface_errors import PARTS
 
 FINER = 1  # the truth has four times the vertices: so few are left where errors of 1% are
 ASKED = (0.05, 0.02, 0.01)  # relative RMS error of M
