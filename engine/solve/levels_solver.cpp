@@ -12,9 +12,14 @@
 namespace quadgraph {
 namespace {
 
-// Cycles on a level that only starts the next finer one, of which one would do for the start, but not for the error
-// that is taken from the difference between the two; and on the finest in the first submission.
+// Cycles on a level that only starts the next finer one, where the finest gets a given number: one would do for the
+// start, but not for the error that is taken from the difference between the two. And on the finest in the first
+// submission.
 constexpr std::uint32_t coarse_cycles = 2, first_cycles = 6;
+
+// Tolerances that such a level is solved to where the finest has one: what is left of its error counts as a difference
+// of the meshes, which on thin bodies is small.
+constexpr double coarse_share = 2;
 
 // Bounces in the first submission: each brings in about an eighth of the one before, and what is left is to be a tenth
 // of the usual tolerance.
@@ -186,9 +191,9 @@ void LevelsSolver::set_solver(std::uint32_t level) {
   task.tolerance = options_.error > 0 ? algebraic_share * options_.error : options_.tolerance;
   task.smoothing = options_.smoothing > 0 ? options_.smoothing : report_.solver == SolverKind::vcycle ? 2 : 1;
   task.start = !last && cycles();
-  task.fixed = (task.start && !bounces_on(level)) || (last && options_.cycles > 0);
+  task.fixed = options_.cycles > 0 && (last || (task.start && !bounces_on(level)));
   if (task.fixed) task.max_iterations = task.start ? coarse_cycles : options_.cycles;
-  if (task.start && bounces_on(level)) task.tolerance *= exchange_share;
+  if (task.start) task.tolerance *= bounces_on(level) ? exchange_share : coarse_share;
   solvers_[level].emplace(parts_.work, parts_.operators, key_, level, task);
 }
 
