@@ -47,6 +47,8 @@ SETTINGS = (
     Setting("SP3, gathered", "buried", "sp3", "gathered", False),
     OURS,
 )
+# In figures: title to setting.
+SHOWN = {"published": PUBLISHED.name, "ours": OURS.name}
 
 
 @dataclass(frozen=True)
@@ -80,7 +82,7 @@ def run(
         if images:
             from quadgraph.reference import figures
 
-            figures.write(images / f"scenes-{found.scene.name}.png", found.scene, compared, PUBLISHED.name, OURS.name)
+            figures.write(images / f"scenes-{found.scene.name}.png", found.scene, compared, SHOWN)
     return {"block": blocks.BLOCK, "bright": blocks.BRIGHT, "scenes": record}
 
 

@@ -1,0 +1,1 @@
+"""Speed against accuracy: scenes x methods to milliseconds a frame and errors against both truths (docs/chart.md)."""

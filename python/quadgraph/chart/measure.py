@@ -1,0 +1,105 @@
+"""The chart's measurements: methods settle in turn, round after round, and each draws its frames of a moving light."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from statistics import median
+from typing import Any
+
+import numpy as np
+
+from quadgraph.chart.body import STEP_DEGREES, STEP_SHARE, Body
+from quadgraph.chart.judge import Judge
+from quadgraph.chart.method import SETTLED, SWING, Method
+from quadgraph.errors import SolverError
+from quadgraph.reference.path_tracing import BATCH
+
+Progress = Callable[[str], None]
+
+# What a frame consists of, by the passes of the engine and of others; the rest is the solver's.
+STAGES = {
+    "light": ("shadow maps", "irradiance"),
+    "source": ("source walk", "surface share", "right-hand side"),
+    "exitance": ("exitance", "energy", "gather points", "uncollided", "gathered exitance", "gather scale"),
+    "picture": ("surface", "resolve", "gather"),
+}
+
+
+@dataclass
+class Point:
+    """A method, the passes of all its frames in ms, its errors and pictures, or why there are none."""
+
+    method: Method
+    frames: list[dict[str, float]] = field(default_factory=list)
+    errors: dict[str, dict[str, float] | None] = field(default_factory=dict)
+    pictures: dict[str, np.ndarray] = field(default_factory=dict)
+    failed: str = ""
+
+    def record(self) -> dict[str, Any]:
+        """Ready for JSON: ms of the median frame, and by stage and pass the medians over all frames."""
+        told = {"name": self.method.name, "family": self.method.family, "settings": self.method.settings}
+        if self.failed:
+            return told | {"failed": self.failed}
+        passes = {name: median(frame.get(name, 0.0) for frame in self.frames) for name in self.frames[0]}
+        whole = [sum(frame.values()) for frame in self.frames]
+        return told | {
+            "ms": round(median(whole), 4),
+            "ms_range": [round(min(whole), 4), round(max(whole), 4)],
+            "stages": {name: round(ms, 4) for name, ms in stages(passes).items()},
+            "passes": {name: round(ms, 4) for name, ms in passes.items()},
+            "errors": self.errors,
+        }
+
+
+def stages(passes: dict[str, float]) -> dict[str, float]:
+    """Time by stage of a frame, ms."""
+    stage_of = {name: stage for stage, names in STAGES.items() for name in names}
+    spent = dict.fromkeys(("light", "source", "solve", "exitance", "picture"), 0.0)
+    for name, ms in passes.items():
+        spent[stage_of.get(name, "solve")] += ms
+    return spent
+
+
+def measure(body: Body, judge: Judge, methods: Sequence[Method], repeats: int, tell: Progress) -> list[Point]:
+    """Every method's point. Rounds alternate between all methods, so that a slower minute slows them all."""
+    points = [Point(method) for method in methods]
+    for number in range(repeats):
+        for index, point in enumerate(points):
+            progress = f"round {number + 1} of {repeats}, method {index + 1} of {len(points)}"
+            tell(f"{body.scene.name}: {progress}: {point.method.name}")
+            if not point.failed:
+                _round(body, judge, point)
+    return points
+
+
+def _round(body: Body, judge: Judge, point: Point) -> None:
+    try:
+        point.method.prepare(body)
+        point.frames += [point.method.frame(step) for step in SWING[1:]]
+        if not point.errors:
+            point.pictures = {view: point.method.picture(view) for view in body.scene.views}
+            point.errors = judge.errors(point.method, point.pictures)
+    except SolverError as error:
+        point.failed = str(error)
+
+
+def scene_record(body: Body, judge: Judge, points: Sequence[Point]) -> dict[str, Any]:
+    """One scene of the record."""
+    samples = {name: image.batches * BATCH for name, image in judge.images.items()}
+    return {
+        "name": body.scene.name,
+        "mesh": body.scene.mesh,
+        "height_mm": body.scene.height,
+        "eta": body.scene.eta,
+        "light": body.scene.light,
+        "levels": body.levels(),
+        "truth": judge.noise() | {"samples": samples},
+        "points": [point.record() for point in points],
+    }
+
+
+def conditions(repeats: int, pixels: int) -> dict[str, Any]:
+    """What holds for all points, for the record."""
+    frame = {"pixels": pixels, "light_turns_degrees": STEP_DEGREES, "even_light_dims": STEP_SHARE}
+    return {"repeats": repeats, "settled": SETTLED, "frame": frame}

@@ -1,0 +1,125 @@
+"""The chart's record: what one run measured, and all that the drawings are made from."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from quadgraph.chart.pareto import front
+from quadgraph.errors import InputError
+
+FORMAT = 1
+PARTS = ("whole", "unlit")
+TRUTHS = {"pde": "PDE truth: error of mesh and solver", "transport": "path tracing: error of the picture"}
+_NEEDED = ("format", "device", "driver", "commit", "frame", "scenes")
+
+
+@dataclass(frozen=True)
+class Panel:
+    """The points of a scene that have an error against one truth over one part, by time, and which make the front.
+
+    noise: of the truth, relative; the largest of the PDE truths'.
+    """
+
+    truth: str
+    part: str
+    points: list[dict[str, Any]]
+    errors: list[float]
+    front: list[int]
+    noise: float
+
+    @property
+    def title(self) -> str:
+        """In words."""
+        return f"{TRUTHS[self.truth]}, {'whole' if self.part == 'whole' else 'unlit part'}"
+
+
+def panels(scene: dict[str, Any]) -> list[Panel]:
+    """Those of a scene that have any points: truth by truth, the whole first."""
+    found = [_panel(scene, truth, part) for truth in TRUTHS for part in PARTS]
+    return [panel for panel in found if panel.points]
+
+
+def _panel(scene: dict[str, Any], truth: str, part: str) -> Panel:
+    points = [p for p in scene["points"] if not p.get("failed") and part in (p["errors"][truth] or {})]
+    points = sorted(points, key=lambda p: p["ms"])
+    errors = [point["errors"][truth][part] for point in points]
+    noise = scene["truth"][truth]
+    levels = [of.get(part, 0.0) for of in noise.values()] if truth == "pde" else [noise.get(part, 0.0)]
+    pairs = [(point["ms"], error) for point, error in zip(points, errors, strict=True)]
+    return Panel(truth, part, points, errors, front(pairs), max(levels, default=0.0))
+
+
+def families(record: dict[str, Any]) -> list[str]:
+    """All families, in the order of their first points."""
+    return list(dict.fromkeys(point["family"] for scene in record["scenes"] for point in scene["points"]))
+
+
+def read(path: Path) -> dict[str, Any]:
+    """Read a record. Raises InputError, naming file and field, if it is not one that can be drawn."""
+    try:
+        record = json.loads(path.read_text())
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path}: cannot be read as JSON: {error}") from error
+    missing = [key for key in _NEEDED if not isinstance(record, dict) or key not in record]
+    if missing:
+        raise InputError(f"{path}: {missing[0]}: not there; `quadgraph chart --json` writes a record")
+    if record["format"] != FORMAT:
+        raise InputError(f"{path}: format: {record['format']!r} found, {FORMAT} allowed")
+    try:
+        for scene in record["scenes"]:
+            panels(scene)
+            families(record)
+    except (KeyError, TypeError, AttributeError) as error:
+        raise InputError(f"{path}: scenes: {type(error).__name__} of {error}, which a record has") from error
+    return record
+
+
+def short(point: dict[str, Any]) -> str:
+    """A point's name for a label: without what is usual."""
+    return point["name"].replace(" · fmg-pcg", "").replace(" · numpy", "").replace(" · ", ", ")
+
+
+def kind(point: dict[str, Any]) -> str:
+    """What a point is a variation of its family in: one of KINDS."""
+    settings = point["settings"]
+    if settings["cycles"]:
+        return "cycles"
+    if "Lambertian" in point["name"]:
+        return "lambertian"
+    return "settled" if settings["solver"] in ("fmg-pcg", "matrix") or settings["method"] != "fem" else "solver"
+
+
+# Kind to its marker, as matplotlib and plotly call it, and words.
+KINDS = {
+    "settled": ("o", "circle", "solved to the tolerance; smaller: coarser level"),
+    "cycles": ("s", "square", "fixed number of cycles a frame"),
+    "solver": ("^", "triangle-up", "another solver"),
+    "lambertian": ("D", "diamond", "shown as a diffuser"),
+}
+_COLOURS = {
+    "fem, SP₃": "#1f77b4",
+    "fem, SP₃, inter-reflection": "#0b3c6f",
+    "fem, diffusion": "#2ca02c",
+    "fem, diffusion, inter-reflection": "#14591a",
+    "fem, diffusion, published source": "#e6953a",
+    "quadgraph-fv, SP₃": "#8c6bb1",
+    "quadgraph-fv, diffusion": "#c79fd4",
+    "quadgraph-fdm, as published": "#c44e52",
+    "dipole per vertex": "#7f7f7f",
+}
+_MORE = ("#17a2a2", "#bcbd22", "#8c564b", "#e377c2")
+
+
+def colours(names: list[str]) -> dict[str, str]:
+    """A colour for each family, those that are not known by turns."""
+    unknown = [name for name in names if name not in _COLOURS]
+    return _COLOURS | {name: _MORE[i % len(_MORE)] for i, name in enumerate(unknown)}
+
+
+def device_text(record: dict[str, Any]) -> str:
+    """What the times are of, in words."""
+    machine = f"{record['device'].split(' (')[0]}, {record['cores']} cores, load {record['load']}"
+    return f"{machine}, {record['frame']['pixels']}² pixels"

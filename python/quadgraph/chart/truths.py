@@ -1,0 +1,70 @@
+"""A scene's truths as they are stored, and all that is measured against them, found before anything is measured."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from quadgraph.chart import dipole_method, engine_methods  # noqa: F401  registers them
+from quadgraph.chart.body import Body
+from quadgraph.chart.judge import Judge, PdeTruths
+from quadgraph.chart.method import Method, methods
+from quadgraph.commands.scene import COMMITTED_TRUTH
+from quadgraph.errors import InputError
+from quadgraph.reference import pde_truth, scene_meshes, truth_run
+from quadgraph.reference.scenes import Scene
+from quadgraph.reference.truth import Truth
+
+
+@dataclass(frozen=True)
+class Folders:
+    """Of mesh files, of path-traced pictures, and of PDE truths with the chains that they belong to."""
+
+    meshes: Path
+    transport: Path
+    pde: Path
+
+
+def folders(meshes: Path, truth: Path | None) -> Folders:
+    """The default ones, or one for all truths."""
+    return Folders(meshes, truth or COMMITTED_TRUTH, truth or scene_meshes.default_folder())
+
+
+def subject(
+    scene: Scene,
+    where: Folders,
+    against: Sequence[str],
+    wanted: Sequence[str],
+    working: Path,
+    device: str,
+    pixels: int,
+) -> tuple[Body, Judge, list[Method]]:
+    """A scene with its judge and its methods, those that `wanted` names.
+
+    Bakes the chain if it is not there; raises InputError if a truth in `against` is absent or stale.
+    """
+    images = _images(scene, where) if "transport" in against else {}
+    body = Body(scene, pde_truth.chain(scene, where.meshes, where.pde), working, device, pixels)
+    chosen = methods(body.chain, wanted)
+    pde = _pde(scene, where, chosen) if "pde" in against else {}
+    return body, Judge(body, pde, images), chosen
+
+
+def _images(scene: Scene, where: Folders) -> dict[str, Truth]:
+    found = truth_run.subject(scene, scene_meshes.file(scene, where.meshes))
+    images = {name: truth_run.stored(found, where.transport, name) for name in scene.images}
+    for name, image in images.items():
+        if image.batches < 2:
+            command = f"quadgraph reference {scene.name} --kind transport --samples N"
+            raise InputError(f"{found.path(where.transport, name)}: not there; '{command}' makes it with Mitsuba")
+    return images
+
+
+def _pde(scene: Scene, where: Folders, chosen: Sequence[Method]) -> PdeTruths:
+    """Of the equations that methods solve, in their order."""
+    judged = [method.settings for method in chosen if not method.settings["inter_reflection"]]
+    equations = dict.fromkeys((settings["model"], settings["source"]) for settings in judged)
+    return {
+        (model, source): pde_truth.stored(scene, model, where.meshes, where.pde, source) for model, source in equations
+    }

@@ -1,0 +1,144 @@
+"""`quadgraph chart`: scenes x methods to milliseconds a frame and errors against both truths (docs/chart.md)."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from quadgraph import atomic_file
+from quadgraph.commands import scene
+from quadgraph.errors import InputError
+
+TRUTHS = ("pde", "transport")
+_TABLE_WIDTH = 150  # characters; narrower, the tables cannot be read
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Register the subcommand."""
+    parser = subparsers.add_parser("chart", help="speed against accuracy of all methods", description=__doc__)
+    parser.add_argument(
+        "--output",
+        type=Path,
+        metavar="FOLDER",
+        help="draw chart-SCENE.png, .svg, pictures-SCENE.png and chart.html there",
+    )
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write the record here")
+    parser.add_argument(
+        "--from",
+        dest="record",
+        type=Path,
+        metavar="FILE",
+        help="draw the charts of that record again, the same to the byte, instead of measuring; needs no device",
+    )
+    _add_measure_options(parser.add_argument_group("what is measured"))
+    _add_truth_options(parser.add_argument_group("truth"))
+
+
+def _add_measure_options(group: argparse._ArgumentGroup) -> None:
+    group.add_argument("--scene", action="append", default=[], metavar="NAME", help="only this one; several allowed")
+    group.add_argument(
+        "--method",
+        action="append",
+        default=[],
+        metavar="TEXT",
+        help="only methods with this text in their names; several allowed",
+    )
+    group.add_argument("--repeats", type=scene.positive_int, default=3, metavar="N", help="default: %(default)s")
+    group.add_argument(
+        "--pixels",
+        type=scene.positive_int,
+        default=256,
+        metavar="N",
+        help="edge of the picture that a frame draws (default: %(default)s)",
+    )
+    group.add_argument("--device", default="", metavar="NAME", help="part of the Vulkan device's name")
+
+
+def _add_truth_options(group: argparse._ArgumentGroup) -> None:
+    group.add_argument(
+        "--against", choices=TRUTHS, action="append", help="only this truth (default: both; `reference` makes them)"
+    )
+    group.add_argument(
+        "--meshes",
+        type=Path,
+        default=scene.shared_meshes(),
+        metavar="FOLDER",
+        help="of the mesh files (default: %(default)s)",
+    )
+    group.add_argument(
+        "--truth",
+        type=Path,
+        metavar="FOLDER",
+        help=f"where truths are (default: {scene.COMMITTED_TRUTH} for transport, ~/.cache/quadgraph for pde)",
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Measure or read, print, draw; 0 on success."""
+    _check(args)
+    from rich.console import Console
+
+    from quadgraph.chart import record as records
+    from quadgraph.chart import tables
+
+    record = records.read(args.record) if args.record else json.loads(json.dumps(_measured(args)))
+    console = Console(highlight=False)
+    console.width = max(console.width, _TABLE_WIDTH)
+    for table in tables.all_of(record):
+        console.print(table)
+    if args.json and not args.record:
+        atomic_file.write_json(args.json, record)
+    if args.output:
+        from quadgraph.chart import page, static
+
+        for path in (*static.write(args.output, record), page.write(args.output / "chart.html", record)):
+            print(f"wrote {path}")
+    return 0
+
+
+def _check(args: argparse.Namespace) -> None:
+    """Refuse before the work what would fail after it."""
+    if args.record and (args.json or args.scene or args.method or args.against):
+        raise InputError(
+            "--from draws a record as it is: --json, --scene, --method and --against cannot be given with it"
+        )
+    if args.output:
+        from quadgraph.chart.page import load_plotly
+        from quadgraph.reference.figures import load_pyplot
+
+        load_pyplot("chart")
+        load_plotly()
+
+
+def _measured(args: argparse.Namespace) -> dict[str, Any]:
+    from rich.console import Console
+
+    from quadgraph.benchmark.scene import machine
+    from quadgraph.chart import measure, pictures, truths
+    from quadgraph.chart.record import FORMAT
+    from quadgraph.reference import scenes
+
+    folders = truths.folders(args.meshes, args.truth)
+    against = tuple(args.against or TRUTHS)
+    with (
+        tempfile.TemporaryDirectory(prefix="quadgraph-chart-") as working,
+        Console(stderr=True).status("truths") as status,
+    ):
+        subjects = [
+            truths.subject(one, folders, against, args.method, Path(working), args.device, args.pixels)
+            for one in scenes.chosen(args.scene)
+        ]
+        copied = scene.load_core().copy_bandwidth(args.device)
+        record = {"format": FORMAT} | machine(copied) | measure.conditions(args.repeats, args.pixels)
+        found = []
+        while subjects:
+            # Each with its engines is let go before the next.
+            body, judge, methods = subjects.pop(0)
+            points = measure.measure(body, judge, methods, args.repeats, status.update)
+            found.append(measure.scene_record(body, judge, points))
+            if args.output:
+                pictures.write(args.output, judge, points)
+        return record | {"scenes": found}
