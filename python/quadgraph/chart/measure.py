@@ -21,8 +21,8 @@ Progress = Callable[[str], None]
 STAGES = {
     "light": ("shadow maps", "irradiance"),
     "source": ("source walk", "surface share", "right-hand side"),
-    "exitance": ("exitance", "energy", "gather points", "uncollided", "gathered exitance", "gather scale"),
-    "picture": ("surface", "resolve", "gather"),
+    "exitance": ("exitance", "energy"),
+    "picture": ("gather points", "uncollided", "gathered exitance", "gather scale", "surface", "resolve", "gather"),
 }
 
 

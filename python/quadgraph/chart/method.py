@@ -21,8 +21,8 @@ class Method(Protocol):
     """One way to answer a scene; one point of the chart.
 
     family: what it is a setting of, for colour and filter; settings: everything it depends on, ready for JSON, of which
-    `model` names the PDE that it solves, `level` the level of the chain whose surface it answers on, and
-    `inter_reflection` whether it follows light from part to part.
+    `model` and `source` name the PDE that it solves, `level` the level of the chain whose surface it answers on,
+    `inter_reflection` whether it follows light from part to part, and `runs_on` what its times are of.
     """
 
     name: str

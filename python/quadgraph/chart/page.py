@@ -88,8 +88,9 @@ def _figure(plotly: Any, record: dict[str, Any], scene: dict[str, Any]) -> Any:
         for family in dict.fromkeys(point["family"] for point in panel.points):
             figure.add_trace(_family(plotly, panel, family, colours[family], family not in named), **where)
             named.add(family)
+        figure.update_xaxes(title_text=panel.time_words, **where)
     lines = {"type": "log", "showline": True, "linecolor": "#888"}
-    figure.update_xaxes(title_text="ms a frame", tickvals=_TICKS, ticktext=[f"{t:g}" for t in _TICKS], **lines)
+    figure.update_xaxes(tickvals=_TICKS, ticktext=[f"{t:g}" for t in _TICKS], **lines)
     figure.update_yaxes(tickvals=_TICKS, ticktext=[f"{100 * t:g}%" for t in _TICKS], **lines)
     margins = {"l": 60, "r": 20, "t": 40, "b": 40}
     return figure.update_layout(
@@ -101,7 +102,7 @@ def _family(plotly: Any, panel: Panel, family: str, colour: str, in_legend: bool
     chosen = [i for i, point in enumerate(panel.points) if point["family"] == family]
     points = [panel.points[i] for i in chosen]
     return plotly.Scatter(
-        x=[point["ms"] for point in points],
+        x=[panel.times[i] for i in chosen],
         y=[panel.errors[i] for i in chosen],
         mode="markers",
         name=family,
@@ -121,7 +122,7 @@ def _family(plotly: Any, panel: Panel, family: str, colour: str, in_legend: bool
 
 def _front(plotly: Any, panel: Panel, in_legend: bool) -> Any:
     return plotly.Scatter(
-        x=[panel.points[i]["ms"] for i in panel.front],
+        x=[panel.times[i] for i in panel.front],
         y=[panel.errors[i] for i in panel.front],
         mode="lines",
         line={"color": "#222222", "width": 1.4, "shape": "hv"},

@@ -20,12 +20,14 @@ _NEEDED = ("format", "device", "driver", "commit", "frame", "scenes")
 class Panel:
     """The points of a scene that have an error against one truth over one part, by time, and which make the front.
 
-    noise: of the truth, relative; the largest of the PDE truths'.
+    times: ms of a frame, for the PDE truth without its picture, which does not enter; noise: of the truth, relative;
+    the largest of the PDE truths'.
     """
 
     truth: str
     part: str
     points: list[dict[str, Any]]
+    times: list[float]
     errors: list[float]
     front: list[int]
     noise: float
@@ -35,6 +37,11 @@ class Panel:
         """In words."""
         return f"{TRUTHS[self.truth]}, {'whole' if self.part == 'whole' else 'unlit part'}"
 
+    @property
+    def time_words(self) -> str:
+        """What the times are of."""
+        return "ms a frame without its picture" if self.truth == "pde" else "ms a frame"
+
 
 def panels(scene: dict[str, Any]) -> list[Panel]:
     """Those of a scene that have any points: truth by truth, the whole first."""
@@ -43,13 +50,26 @@ def panels(scene: dict[str, Any]) -> list[Panel]:
 
 
 def _panel(scene: dict[str, Any], truth: str, part: str) -> Panel:
-    points = [p for p in scene["points"] if not p.get("failed") and part in (p["errors"][truth] or {})]
-    points = sorted(points, key=lambda p: p["ms"])
+    done = [point for point in scene["points"] if not point.get("failed")]
+    if truth == "pde":
+        done = [point for point in done if kind(point) != "lambertian"]
+    points = [point for point in done if part in (point["errors"][truth] or {})]
+    points = sorted(points, key=lambda point: _time(point, truth))
+    times = [_time(point, truth) for point in points]
     errors = [point["errors"][truth][part] for point in points]
     noise = scene["truth"][truth]
     levels = [of.get(part, 0.0) for of in noise.values()] if truth == "pde" else [noise.get(part, 0.0)]
-    pairs = [(point["ms"], error) for point, error in zip(points, errors, strict=True)]
-    return Panel(truth, part, points, errors, front(pairs), max(levels, default=0.0))
+    best = front(list(zip(times, errors, strict=True)))
+    return Panel(truth, part, points, times, errors, best, max(levels, default=0.0))
+
+
+def _time(point: dict[str, Any], truth: str) -> float:
+    return without_picture(point) if truth == "pde" else point["ms"]
+
+
+def without_picture(point: dict[str, Any]) -> float:
+    """Of a frame, the ms until the exitance is known."""
+    return sum(ms for stage, ms in point["stages"].items() if stage != "picture")
 
 
 def families(record: dict[str, Any]) -> list[str]:
@@ -85,11 +105,12 @@ def short(point: dict[str, Any]) -> str:
 def kind(point: dict[str, Any]) -> str:
     """What a point is a variation of its family in: one of KINDS."""
     settings = point["settings"]
-    if settings["cycles"]:
+    if settings.get("cycles"):
         return "cycles"
     if "Lambertian" in point["name"]:
         return "lambertian"
-    return "settled" if settings["solver"] in ("fmg-pcg", "matrix") or settings["method"] != "fem" else "solver"
+    other = settings.get("method") == "fem" and settings.get("solver") != "fmg-pcg"
+    return "solver" if other else "settled"
 
 
 # Kind to its marker, as matplotlib and plotly call it, and words.

@@ -51,13 +51,13 @@ def _figure(pyplot: Any, record: dict[str, Any], scene: dict[str, Any]) -> Any:
     )
     for axis, panel in zip(axes, shown, strict=False):
         _panel(axis, panel, colours)
-        axis.set_xlabel(f"ms a frame on {records.device_text(record)}")
+        axis.set_xlabel(f"{panel.time_words}, {records.device_text(record)}")
     for axis in axes[len(shown) :]:
         axis.set_axis_off()
     _legend(figure, scene, colours)
     figure.canvas.draw()
     for axis, panel in zip(axes, shown, strict=False):
-        place(axis, [(panel.points[i]["ms"], panel.errors[i], records.short(panel.points[i])) for i in _named(panel)])
+        place(axis, [(panel.times[i], panel.errors[i], records.short(panel.points[i])) for i in _named(panel)])
     return figure
 
 
@@ -65,14 +65,14 @@ def _panel(axis: Any, panel: Panel, colours: dict[str, str]) -> None:
     axis.set_xscale("log")
     axis.set_yscale("log")
     for series in _series(panel):
-        x, y = zip(*((panel.points[i]["ms"], panel.errors[i]) for i in series), strict=True)
+        x, y = zip(*((panel.times[i], panel.errors[i]) for i in series), strict=True)
         axis.plot(x, y, color=colours[panel.points[series[0]]["family"]], linewidth=0.8, alpha=0.45, zorder=1)
     for index, (point, error) in enumerate(zip(panel.points, panel.errors, strict=True)):
         size = _SIZE * _COARSER ** point["settings"]["level"]
         marker = KINDS[records.kind(point)][0]
         look = {"color": colours[point["family"]], "marker": marker, "linewidths": 1 if index in panel.front else 0.5}
         look["edgecolors"] = "#222222" if index in panel.front else "w"
-        axis.scatter(point["ms"], error, size, zorder=3, **look)
+        axis.scatter(panel.times[index], error, size, zorder=3, **look)
     _front(axis, panel)
     if panel.noise > 0:
         axis.axhspan(axis.get_ylim()[0], panel.noise, color="#000000", alpha=0.06, linewidth=0, zorder=0)
@@ -86,10 +86,10 @@ def _panel(axis: Any, panel: Panel, colours: dict[str, str]) -> None:
 
 def _front(axis: Any, panel: Panel) -> None:
     """What is reached at each time, as steps to the edges of the panel, which has room for labels."""
-    times, errors = [point["ms"] for point in panel.points], panel.errors
+    times, errors = panel.times, panel.errors
     axis.set_xlim(min(times) / 2.5, max(times) * 2)
     axis.set_ylim(min([*errors, panel.noise or errors[0]]) / 1.8, max(errors) * 2)
-    x, y = zip(*((panel.points[i]["ms"], errors[i]) for i in panel.front), strict=True)
+    x, y = zip(*((times[i], errors[i]) for i in panel.front), strict=True)
     x, y = (x[0], *x, axis.get_xlim()[1]), (axis.get_ylim()[1], *y, y[-1])
     axis.plot(x, y, color="#222222", linewidth=1.4, drawstyle="steps-post", zorder=2)
 

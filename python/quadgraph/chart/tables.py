@@ -18,7 +18,7 @@ def all_of(record: dict[str, Any]) -> list[Table]:
 
 
 def _table(record: dict[str, Any], scene: dict[str, Any]) -> Table:
-    table = Table("method", "ms", "of that solve", *(f"{_WORDS[truth]}, {part}" for truth, part in _COLUMNS))
+    table = Table("method", "ms", "without picture", "solve", *(f"{_WORDS[truth]}, {part}" for truth, part in _COLUMNS))
     table.title = f"{scene['name']} on {records.device_text(record)}; *: best at its time"
     table.columns[0].no_wrap = True
     best = {
@@ -27,10 +27,9 @@ def _table(record: dict[str, Any], scene: dict[str, Any]) -> Table:
     done = [point for point in scene["points"] if not point.get("failed")]
     for point in sorted(done, key=lambda point: point["ms"]):
         cells = [_cell(point, column, best.get(column, [])) for column in _COLUMNS]
-        table.add_row(point["name"], f"{point['ms']:.3g}", f"{point['stages']['solve']:.3g}", *cells)
-    for point in scene["points"]:
-        if point.get("failed"):
-            table.add_row(point["name"], "", "", point["failed"])
+        table.add_row(point["name"], *(f"{ms:.3g}" for ms in _times(point)), *cells)
+    failed = [f"{point['name']}: {point['failed']}" for point in scene["points"] if point.get("failed")]
+    table.caption = "\n".join(failed)
     return table
 
 
@@ -40,3 +39,7 @@ def _cell(point: dict[str, Any], column: tuple[str, str], best: list[str]) -> st
     if part not in errors:
         return ""
     return f"{100 * errors[part]:.3g}%" + ("*" if point["name"] in best else "")
+
+
+def _times(point: dict[str, Any]) -> tuple[float, float, float]:
+    return point["ms"], records.without_picture(point), point["stages"]["solve"]
