@@ -1,10 +1,9 @@
 """A bake for an error: the fewest vertices, cycles and unknowns that keep it, found by measuring.
 
-The whole mesh's own chain of levels is baked and, if that is small enough, its finest level cut in eight: the truth,
-solved with SP3. Every level of the chain, and then surfaces of the sizes that lie between them, are solved with every
-model and number of cycles and held against it on the displayed triangles, which counts relief that a simplified surface
-lacks as well as the error of the elements. The error falls with the number of vertices, smoothly enough that three
-surfaces of chosen sizes are enough.
+The whole mesh's own chain of levels is baked, and its finest level cut in eight: the truth, solved with SP3. Levels of
+the chain, and then surfaces of sizes between them, are solved with every model and number of cycles and held against it
+on the displayed triangles, which counts relief that a simplified surface lacks as well as the error of the elements.
+The error falls with the number of vertices, smoothly enough that three surfaces of chosen sizes are enough.
 """
 
 from __future__ import annotations
@@ -21,15 +20,24 @@ from scipy.spatial import cKDTree
 
 from quadgraph import bake, lod
 from quadgraph.bake import BakeOptions, BakeReport, Level, Prepared, Progress
-from quadgraph.budget.judge import Reference, Truth
-from quadgraph.budget.trials import MODELS, Forecast, Scene, Trial, forecast, measure
+from quadgraph.budget.judge import Reference, Subject, Truth
+from quadgraph.budget.trials import (
+    MODELS,
+    Forecast,
+    Scene,
+    Trial,
+    assemble,
+    forecast,
+    known_share,
+    measure,
+    trial,
+)
 from quadgraph.commands.budget import ENOUGH
 from quadgraph.commands.scene import load_core
 from quadgraph.errors import InputError
 from quadgraph.reference.judged import lights as lights_around
 
 MOST_VERTICES = 30000  # of the surface that stands for the whole mesh
-MOST_CUT_VERTICES = 16000  # of one that is cut finer: five times the memory of a solve on 30 thousand
 LEAST_VERTICES = 150  # on a surface that a bake chooses
 _LEAST_COARSEST = 45  # on the coarsest level of the whole mesh's chain, so that even small levels have one below
 AIM = 0.93  # share of the error that surfaces are chosen for
@@ -50,11 +58,10 @@ class Bench:
         self.models: Sequence[str] = MODELS
         self._truths: dict[str, Truth] = {}
 
-    def find_truth(self, levels: list[Level]) -> None:
-        """Of the levels of the whole mesh."""
+    def find_truth(self, levels: list[Level], cuts: int = 1) -> None:
+        """Of the levels of the whole mesh, cut so many times."""
         path = self._written(levels, "whole.qgraph")
-        self.cuts = int(len(self._whole.surface.vertices) <= MOST_CUT_VERTICES)
-        reference = Reference(path, self.cuts, self._folder, self._device)
+        reference = Reference(path, cuts, self._folder, self._device)
         self.truth_vertices = reference.surface_vertices
         for name, lights in self.scene.lights.items():
             self._truths[name] = reference.truth(self.scene.material, lights)
@@ -67,10 +74,22 @@ class Bench:
         self.trials += found
         return found
 
+    def judge(self, path: Path, model: str, cycles: int) -> Trial:
+        """Measure one setting on a file."""
+        subject = Subject(path, self.scene.material, self._device)
+        assemble(subject, self.scene, model)
+        known = known_share(subject, self.truth_vertices)
+        return trial(subject, self.scene, self._truths, known, model, cycles)
+
     def _written(self, levels: list[Level], name: str) -> Path:
         report = BakeReport(str(self._folder / name))
         bake.write(self._whole, levels, replace(self._options, visibility_rays=0), report)
         return Path(report.output)
+
+    def narrow(self, error: float) -> None:
+        """Leave out of further candidates the models that keep the error on none."""
+        kept = [model for model in MODELS if forecast([t for t in self.trials if t.model == model], error)]
+        self.models = kept or MODELS
 
     def best(self, error: float) -> Trial | None:
         """The cheapest that keeps it."""
@@ -143,17 +162,27 @@ def _planned(
             whole = replace(prepared, surface=lod.simplify(prepared.surface, MOST_VERTICES))
     count = len(whole.surface.vertices)
     bench = Bench(whole, options, scene, folder, device)
-    depth = max(2, 1 + int(np.log(max(count / _LEAST_COARSEST, 1)) / np.log(4)))
-    levels = _levels(whole, replace(options, levels=depth), report)
+    levels = _levels(whole, replace(options, levels=depth_of(count)), report)
     tell(f"error: solving the whole mesh, {count:,} vertices")
     with report.timed("error"):
         bench.find_truth(levels)
-        _measure_chain(bench, levels, error, tell)
+        measure_chain(bench, levels, AIM * error, tell)
+        bench.narrow(AIM * error)
     predicted = _refine(bench, whole, options, error, report, tell)
     best = bench.best(ENOUGH * error)
     chosen = best or min(bench.trials, key=lambda t: (-t.surface_vertices, t.error))
     budget = _record(bench, chosen, predicted, len(prepared.surface.vertices), count, error)
     return bench.candidates[chosen.surface_vertices], budget
+
+
+def depth_of(vertices: int) -> int:
+    """Levels of the chain of a whole mesh with so many vertices on its surface."""
+    return max(2, 1 + int(np.log(max(vertices / _LEAST_COARSEST, 1)) / np.log(4)))
+
+
+def levels_for(vertices: int) -> int | None:
+    """Levels that a surface of so many vertices is baked with, None for as many as make sense; never one alone."""
+    return 2 if vertices < 4 * lod.SMALLEST else None
 
 
 def _levels(whole: Prepared, options: BakeOptions, report: BakeReport) -> list[Level]:
@@ -165,17 +194,17 @@ def _levels(whole: Prepared, options: BakeOptions, report: BakeReport) -> list[L
     return levels
 
 
-def _measure_chain(bench: Bench, levels: list[Level], error: float, tell: Progress) -> None:
-    """The levels that have a coarser one; the finest only if it is needed."""
+def measure_chain(bench: Bench, levels: list[Level], error: float, tell: Progress) -> None:
+    """The levels of the whole mesh that have a coarser one; the finest only if it is needed."""
     for number in range(max(len(levels) - 2, 0), -1, -1):
-        if number == 0 and len(bench.candidates) > 1 and bench.best(AIM * error):
+        if number == 0 and len(bench.candidates) > 1 and bench.best(error):
             return
         _tell(bench.add(levels[number:]), tell)
 
 
 def _tell(found: list[Trial], tell: Progress) -> None:
-    for model in dict.fromkeys(trial.model for trial in found):
-        least = min(trial.error for trial in found if trial.model == model)
+    for model in dict.fromkeys(t.model for t in found):
+        least = min(t.error for t in found if t.model == model)
         tell(f"error: {found[0].surface_vertices:,} vertices, {model}: {least:.2%}")
 
 
@@ -194,7 +223,7 @@ def _refine(
         if count >= len(whole.surface.vertices):
             return first
         try:
-            sized = replace(options, surface_vertices=count, levels=2 if count < 4 * lod.SMALLEST else None)
+            sized = replace(options, surface_vertices=count, levels=levels_for(count))
             levels = _levels(whole, sized, report)
         except InputError as refused:
             tell(f"error: {refused}")
@@ -215,7 +244,8 @@ def _record(
     bench: Bench, chosen: Trial, predicted: Forecast | None, vertices: int, judged: int, error: float
 ) -> dict[str, Any]:
     levels = bench.candidates[chosen.surface_vertices]
-    finest = max(bench.candidates)
+    diffusion = [t for t in bench.trials if t.model == "diffusion"]
+    finest = max(t.surface_vertices for t in diffusion)
     return {
         "error": error,
         "reached": bool(chosen.error <= ENOUGH * error),
@@ -233,9 +263,7 @@ def _record(
         "judged_vertices": judged,
         "truth_vertices": bench.truth_vertices,
         "predicted_vertices": None if predicted is None else predicted.surface_vertices,
-        "diffusion_error": min(
-            t.error for t in bench.trials if t.surface_vertices == finest and t.model == "diffusion"
-        ),
+        "diffusion_error": min(t.error for t in diffusion if t.surface_vertices == finest),
         "deep_share": _deep_share(levels[0], bench.scene.material),
         "trials": [trial.as_dict() for trial in bench.trials],
     }

@@ -61,25 +61,38 @@ def measure(
 ) -> list[Trial]:
     """Every setting on one file, until more cycles bring nothing.
 
-    truth_vertices: on the surface that the truth was solved on. Two solutions' errors add by their squares, which fall
-    in proportion to the number of vertices (docs/accuracy.md), so that this share of the difference is the truth's own.
+    truth_vertices: on the surface that the truth was solved on.
     """
     subject = Subject(path, scene.material, device)
-    known = np.sqrt(1 - min(subject.surface_vertices / truth_vertices, 0.5))
+    known = known_share(subject, truth_vertices)
     trials: list[Trial] = []
     for model in models:
         least = np.inf
-        subject.solve(next(iter(scene.lights.values())), model=model)  # rows are not assembled again for new light
+        assemble(subject, scene, model)
         for cycles in CYCLES:
-            trial = _trial(subject, scene, truths, known, model, cycles)
-            trials.append(trial)
-            if trial.error > _GAIN * least:
+            trials.append(trial(subject, scene, truths, known, model, cycles))
+            if trials[-1].error > _GAIN * least:
                 break
-            least = trial.error
+            least = trials[-1].error
     return trials
 
 
-def _trial(subject: Subject, scene: Scene, truths: Mapping[str, Truth], known: float, model: str, cycles: int) -> Trial:
+def assemble(subject: Subject, scene: Scene, model: str) -> None:
+    """Solve once, so that later solves under new light only do what new light takes."""
+    subject.solve(next(iter(scene.lights.values())), model=model)
+
+
+def known_share(subject: Subject, truth_vertices: int) -> float:
+    """Share of a file's error that a truth with so many vertices on its surface shows.
+
+    Errors of two solutions add by their squares, which fall no slower than the number of vertices rises
+    (docs/accuracy.md).
+    """
+    return float(np.sqrt(1 - min(subject.surface_vertices / truth_vertices, 0.5)))
+
+
+def trial(subject: Subject, scene: Scene, truths: Mapping[str, Truth], known: float, model: str, cycles: int) -> Trial:
+    """One setting on one file; known: of `known_share`."""
     errors, costs = {}, []
     for name, lights in scene.lights.items():
         solved = subject.solve(lights, model=model, cycles=cycles)

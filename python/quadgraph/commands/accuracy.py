@@ -25,10 +25,16 @@ STUDIES = {
     "scenes": "scenes",
     "estimate": "estimate",
     "target": "target",
+    "budget": "budget",
 }
 
 # Studies of real bodies, which the CPU reference cannot stand in for, because only the engine does what they judge.
-ON_ENGINE = {"scenes": "makes pictures", "estimate": "estimates its error", "target": "stops at an error"}
+ON_ENGINE = {
+    "scenes": "makes pictures",
+    "estimate": "estimates its error",
+    "target": "stops at an error",
+    "budget": "is baked for",
+}
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -40,7 +46,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--reference", action="store_true", help="solve with the CPU reference in double precision instead of the GPU"
     )
     parser.add_argument("--device", default="", metavar="NAME", help="part of the Vulkan device's name")
-    _add_bodies_options(parser.add_argument_group("scenes, estimate, target"))
+    _add_bodies_options(parser.add_argument_group("scenes, estimate, target, budget"))
     _add_scenes_options(parser.add_argument_group("scenes"))
 
 
