@@ -104,15 +104,17 @@ class Truth:
 class Reference:
     """A whole mesh's own chain of levels, its finest `cuts` times cut in eight, as the truth on displayed triangles.
 
-    path: a file that was baked from the whole mesh, so that its triangles are the displayed ones; folder: for the file
-    that is cut.
+    path: a file that was baked from the whole mesh, so that its triangles are the displayed ones; folder: of this mesh
+    alone, for the file that is cut, which is taken if it is there.
     """
 
     def __init__(self, path: Path, cuts: int, folder: Path, device: str = "") -> None:
         core = load_core()
         graph = core.load(path)
         corners = np.asarray(graph.display["vertices"], np.float64)[np.asarray(graph.display["triangles"])]
-        cut = chains.refined(path, cuts, folder / "cut.qgraph") if cuts else path
+        cut = folder / f"cut-{cuts}.qgraph" if cuts else path
+        if not cut.exists():
+            chains.refined(path, cuts, cut)
         self._engine: Engine = core.Engine(cut, device=device)
         finest = self._engine.graph.levels[0]
         self.surface_vertices = finest.surface_vertex_count
