@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from quadgraph import cli, qgraph_file
+from quadgraph import bake, cli, qgraph_file
 from quadgraph.bake import BakeOptions
 from quadgraph.budget import plan, trials
+from quadgraph.budget.judge import Reference
 from quadgraph.budget.trials import Trial
 from quadgraph.commands import budget
 from quadgraph.errors import FormatError, InputError
@@ -131,13 +132,23 @@ def test_a_record_that_no_bake_wrote_is_refused(record):
     broken = json.dumps({"budget": record | {"trials": [{"surface_vertices": 1}]}})
     with pytest.raises(FormatError, match="budget"):
         budget.taken(broken, arguments())
+    with pytest.raises(FormatError, match="budget"):
+        budget.sentences({"error": 0.02}, "x.qgraph")
+    endless = record | {"trials": [trial | {"cycles": 10**9} for trial in record["trials"]]}
+    with pytest.raises(FormatError, match="cycles"):
+        budget.taken(json.dumps({"budget": endless}), arguments())
     assert budget.taken(json.dumps({}), arguments()) is None
 
 
 def test_what_was_left_out_is_said(record):
-    text = "\n".join(budget.sentences(record))
+    text = "\n".join(budget.sentences(record, "x.qgraph"))
     for word in ("error 5%: kept", f"of {record['mesh_vertices']:,} vertices", "cycles", "model", "interior"):
         assert word in text
+
+
+def test_info_says_what_was_left_out(baked, capsys):
+    assert cli.main(["info", str(baked)]) == 0
+    assert "error 5%: kept" in capsys.readouterr().out
 
 
 def test_render_keeps_the_error_by_the_file(baked, tmp_path, capsys):
@@ -156,6 +167,7 @@ def test_render_keeps_the_error_by_the_file(baked, tmp_path, capsys):
         (["--error", "2%", "--material", "skin1", "--surface-vertices", "500"], "surface_vertices"),
         (["--error", "2%", "--material", "skin1", "--levels", "2"], "levels"),
         (["--error", "2%", "--material", "chalk"], "chalk"),
+        (["--error", "2%", "--material", "skin1", "--light", "ambient:0"], "nothing leaves"),
     ],
 )
 def test_a_wrong_use_is_refused_in_words(mesh, tmp_path, given, word, capsys):
@@ -176,6 +188,19 @@ def test_an_error_out_of_reach_is_said_to_be(tmp_path, capsys):
     assert not record["reached"]
     assert record["measured"] > 0.002
     assert record["surface_vertices"] == record["mesh_vertices"]
+
+
+def test_a_file_without_coarser_levels_is_measured_too(tmp_path):
+    """Its steps of conjugate gradients bring in less than a cycle: enough of them are tried."""
+    source, path = tmp_path / "lobes.ply", tmp_path / "one.qgraph"
+    chains.SHAPES["lobes"](3).export(source)
+    bake.bake(source, path, BakeOptions(height_mm=5, levels=1, visibility_rays=0))
+    reference = Reference(path, 1, tmp_path)
+    truths = {"given": reference.truth("ketchup", [SUN])}
+    scene = trials.Scene("ketchup", {"given": [SUN]}, True)
+    found = trials.measure(path, scene, truths, reference.surface_vertices, "", ("sp3",))
+    assert found[-1].error < 0.1
+    assert found[-1].error > 0.97 * found[-2].error
 
 
 def test_errors_that_are_none_are_refused(mesh, tmp_path):

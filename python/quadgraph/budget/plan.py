@@ -34,7 +34,7 @@ from quadgraph.budget.trials import (
 )
 from quadgraph.commands.budget import ENOUGH
 from quadgraph.commands.scene import load_core
-from quadgraph.errors import InputError
+from quadgraph.errors import InputError, ToolError
 from quadgraph.reference.judged import lights as lights_around
 
 MOST_VERTICES = 30000  # of the surface that stands for the whole mesh
@@ -65,6 +65,8 @@ class Bench:
         self.truth_vertices = reference.surface_vertices
         for name, lights in self.scene.lights.items():
             self._truths[name] = reference.truth(self.scene.material, lights)
+            if not self._truths[name].exitance.any():
+                raise InputError(f"light {', '.join(lights)}: nothing leaves the body, which has no error then")
 
     def add(self, levels: list[Level]) -> list[Trial]:
         """Measure a candidate."""
@@ -225,7 +227,7 @@ def _refine(
         try:
             sized = replace(options, surface_vertices=count, levels=levels_for(count))
             levels = _levels(whole, sized, report)
-        except InputError as refused:
+        except (InputError, ToolError) as refused:
             tell(f"error: {refused}")
             return first
         with report.timed("error"):

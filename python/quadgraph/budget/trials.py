@@ -13,6 +13,7 @@ from quadgraph.budget.judge import Subject, Truth
 
 MODELS = ("diffusion", "sp3")
 CYCLES = (1, 2, 3, 4, 6)  # on the finest level
+STEPS = (8, 16, 32, 64, 128, 256)  # of conjugate gradients, where there is no coarser level
 _GAIN = 0.97  # of an error: more cycles than those that leave more of it are not tried
 _LOWEST_ORDER, _HIGHEST_ORDER = 0.25, 1.0  # of the error in the number of vertices, where it is not between two trials
 
@@ -69,7 +70,7 @@ def measure(
     for model in models:
         least = np.inf
         assemble(subject, scene, model)
-        for cycles in CYCLES:
+        for cycles in CYCLES if subject.levels > 1 else STEPS:
             trials.append(trial(subject, scene, truths, known, model, cycles))
             if trials[-1].error > _GAIN * least:
                 break

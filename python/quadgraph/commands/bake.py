@@ -165,7 +165,7 @@ def _print_report(report: BakeReport) -> None:
     for note in report.notes:
         console.print(note, markup=False)
     if report.budget:
-        for sentence in budget.sentences(report.budget):
+        for sentence in budget.sentences(report.budget, report.output):
             console.print(sentence, markup=False, soft_wrap=True)
     variation = report.levels[0]["link_length_variation"]
     console.print(

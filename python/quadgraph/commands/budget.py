@@ -16,16 +16,28 @@ ENOUGH = 0.97  # share of an error that a measured one may have: the truth that 
 _PARTS = {"whole": "of the surface", "unlit": "of its unlit part"}
 
 
-def sentences(budget: dict[str, Any]) -> list[str]:
-    """What was chosen, what was left out, and why. budget: as quadgraph.budget.plan writes it."""
-    return [
-        _verdict(budget),
-        _surface(budget),
-        _model(budget),
-        _cycles(budget),
-        _interior(budget),
-        "not in this error: of the model against transport, of light from part to part (docs/accuracy.md)",
-    ]
+# What reading a record can raise that no bake wrote.
+_BROKEN = (KeyError, TypeError, ValueError, AttributeError, ZeroDivisionError)
+MOST_CYCLES = 256
+
+
+def sentences(budget: dict[str, Any], file: str) -> list[str]:
+    """What was chosen, what was left out, and why. budget: as quadgraph.budget.plan writes it. Raises FormatError."""
+    try:
+        return [
+            _verdict(budget),
+            _surface(budget),
+            _model(budget),
+            _cycles(budget),
+            _interior(budget),
+            "not in this error: of the model against transport, of light from part to part (docs/accuracy.md)",
+        ]
+    except _BROKEN as error:
+        raise _no_record(file, error) from error
+
+
+def _no_record(file: str, error: Exception) -> FormatError:
+    return FormatError(f"{file}: metadata: 'budget' is not what a bake writes ({error!r})")
 
 
 def percent(value: float) -> str:
@@ -128,8 +140,8 @@ def taken(metadata: str, args: argparse.Namespace) -> Taken | None:
         return None
     try:
         return _taken(budget, args)
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise FormatError(f"{args.file}: metadata: 'budget' is not what a bake writes ({error!r})") from error
+    except _BROKEN as error:
+        raise _no_record(str(args.file), error) from error
 
 
 def _taken(budget: dict[str, Any], args: argparse.Namespace) -> Taken:
@@ -151,6 +163,8 @@ def _taken(budget: dict[str, Any], args: argparse.Namespace) -> Taken:
         least = percent(min(worst(t) for t in budget["trials"] if t["surface_vertices"] == budget["surface_vertices"]))
         return Taken(None, f"{head} no less than {least} on this file: the solve's own estimate decides")
     best = min(kept, key=lambda trial: float(trial["cost"]))
+    if not 1 <= best["cycles"] <= MOST_CYCLES:
+        raise ValueError(f"cycles {best['cycles']} found, 1 to {MOST_CYCLES} allowed")
     lights = "in this light" if budget["lights_given"] else f"under {len(budget['lights'])} usual sets of lights"
     setting = f"{best['model']} and {best['cycles']} cycles"
     return Taken(

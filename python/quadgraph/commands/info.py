@@ -11,7 +11,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from quadgraph.commands import device_memory
+from quadgraph.commands import budget, device_memory
 from quadgraph.commands.bake import exchange_line, level_table
 
 
@@ -83,6 +83,8 @@ def _print_facts(name: str, facts: dict[str, Any]) -> None:
     for line in lines:
         console.print(line, markup=False, soft_wrap=True)
     console.print(exchange_line(facts["exchange"]), soft_wrap=True)
+    for sentence in budget.sentences(metadata["budget"], name) if "budget" in metadata else []:
+        console.print(sentence, markup=False, soft_wrap=True)
     console.print(level_table(metadata["levels"]))
     console.print(_quality_table(facts["levels"]))
     console.print(_section_table(facts["sections"]))
