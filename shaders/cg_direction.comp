@@ -2,21 +2,21 @@
 #extension GL_GOOGLE_include_directive : require
 #include "solve_shared.h"
 #include "fields.glsl"
+#include "stride.glsl"
 
-layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { CgDirectionPush push; };
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
-  if (i >= push.count) return;
-  Field direction;
-  if (push.multigrid == 1u) {
-    direction = load_field(push.z, i);
-  } else {
-    direction = solved(load_block(push.diagonal, i), load_field(push.r, i));
-  }
-  // The old direction of the first iteration is no number one may count on.
   vec3 beta = push.state.at[0].beta;
-  if (beta != vec3(0)) direction = add_scaled(direction, beta, load_field(push.p, i));
-  push.p.at[i] = direction;
+  EACH(i, push.count) {
+    Field direction;
+    if (push.multigrid == 1u) {
+      direction = load_field(push.z, i);
+    } else {
+      direction = solved(load_block(push.diagonal, i), load_field(push.r, i));
+    }
+    // The old direction of the first iteration is no number one may count on.
+    if (beta != vec3(0)) direction = add_scaled(direction, beta, load_field(push.p, i));
+    push.p.at[i] = direction;
+  }
 }

@@ -3,10 +3,10 @@
 #include "solve_shared.h"
 #include "fields.glsl"
 #include "rows.glsl"
+#include "stride.glsl"
 #include "reduce.glsl"
 #include "convergence.glsl"
 
-layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { CgMultiplyPush push; };
 
 void decide(vec3 energy) {
@@ -17,12 +17,11 @@ void decide(vec3 energy) {
 }
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
   vec3 energy = vec3(0);
-  if (i < push.count) {
+  EACH(i, push.count) {
     Field result = row_times(push.rows, push.p, i);
     push.product.at[i] = result;
-    energy = product(load_field(push.p, i), result);
+    energy += product(load_field(push.p, i), result);
   }
   vec3 total;
   if (!reduce_dispatch(push.reduction, energy, total)) return;

@@ -3,10 +3,10 @@
 #include "solve_shared.h"
 #include "fields.glsl"
 #include "rows.glsl"
+#include "stride.glsl"
 #include "reduce.glsl"
 #include "convergence.glsl"
 
-layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { CgStartPush push; };
 
 // A true residual up to this many times the recursive one confirms it.
@@ -66,14 +66,13 @@ void decide(vec3 square) {
 }
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
   vec3 own = vec3(0);
-  if (i < push.count) {
+  EACH(i, push.count) {
     Field r = residual(push.rows, push.b, push.x, i);
     Field z = solved(load_block(push.rows.diagonal, i), r);
     push.r.at[i] = r;
     if (push.multigrid == 0u) push.p.at[i] = z;
-    own = product(r, z);
+    own += product(r, z);
   }
   vec3 square;
   if (!reduce_dispatch(push.reduction, own, square)) return;

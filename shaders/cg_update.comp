@@ -2,10 +2,10 @@
 #extension GL_GOOGLE_include_directive : require
 #include "solve_shared.h"
 #include "fields.glsl"
+#include "stride.glsl"
 #include "reduce.glsl"
 #include "convergence.glsl"
 
-layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { CgUpdatePush push; };
 
 void decide(vec3 square) {
@@ -21,14 +21,13 @@ void decide(vec3 square) {
 }
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
   vec3 own = vec3(0);
-  if (i < push.count) {
-    vec3 alpha = push.state.at[0].alpha;
+  vec3 alpha = push.state.at[0].alpha;
+  EACH(i, push.count) {
     push.x.at[i] = add_scaled(load_field(push.x, i), alpha, load_field(push.p, i));
     Field r = add_scaled(load_field(push.r, i), -alpha, load_field(push.product, i));
     push.r.at[i] = r;
-    own = product(r, solved(load_block(push.diagonal, i), r));
+    own += product(r, solved(load_block(push.diagonal, i), r));
   }
   vec3 square;
   if (!reduce_dispatch(push.reduction, own, square)) return;

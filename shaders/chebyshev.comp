@@ -3,10 +3,10 @@
 #include "solve_shared.h"
 #include "fields.glsl"
 #include "rows.glsl"
+#include "stride.glsl"
 #include "reduce.glsl"
 #include "convergence.glsl"
 
-layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { ChebyshevPush push; };
 
 Field step_at(uint i) {
@@ -26,9 +26,8 @@ Field step_at(uint i) {
 }
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
   vec3 own = vec3(0);
-  if (i < push.count) own = product(load_field(push.f, i), step_at(i));
+  EACH(i, push.count) own += product(load_field(push.f, i), step_at(i));
   if (push.reduce == 0u) return;
   vec3 rz;
   if (!reduce_dispatch(push.reduction, own, rz)) return;

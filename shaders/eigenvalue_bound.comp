@@ -3,11 +3,11 @@
 #include "assembly_shared.h"
 #include "fields.glsl"
 #include "stored_entries.glsl"
+#include "stride.glsl"
 #define REDUCE(a, b) max(a, b)
 #define REDUCE_ZERO vec3(0)
 #include "reduce.glsl"
 
-layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { EigenvalueBoundPush push; };
 
 // What linear tetrahedra never exceed: no eigenvalue of an element's D^-1 K is above its trace.
@@ -45,9 +45,8 @@ vec3 largest_ratio(Field z, Field y) {
 }
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
   vec3 own = vec3(0);
-  if (i < push.count) {
+  EACH(i, push.count) {
     uint slice = i / SLICE_ROWS;
     uint end = load_row_uint(push.rows.slice_offset, slice + 1u);
     Entry diagonal = load_block(push.rows.diagonal, i);
@@ -58,7 +57,7 @@ void main() {
       z = add(z, magnitude_times(diagonal, entry_in(stored), start_or(push.y, column_of(stored))));
     }
     push.z.at[i] = z;
-    own = largest_ratio(z, y);
+    own = max(own, largest_ratio(z, y));
   }
   vec3 largest;
   if (!reduce_dispatch(push.reduction, own, largest)) return;

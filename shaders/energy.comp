@@ -2,9 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 #include "surface_shared.h"
 #include "fields.glsl"
+#include "stride.glsl"
 #include "reduce.glsl"
 
-layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { EnergyPush push; };
 
 vec3 absorbed(uint tet) {
@@ -24,18 +24,17 @@ vec3 absorbed(uint tet) {
 }
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
   EnergySums sums = EnergySums(vec3(0), vec3(0), vec3(0));
-  if (i < push.tet_count) sums.absorbed = absorbed(i);
-  if (i < push.face_count) {
+  EACH(i, push.tet_count) sums.absorbed += absorbed(i);
+  EACH(i, push.face_count) {
     uvec3 corners = load_uvec3(push.faces, i);
     vec3 p = load_vec3(push.vertices, corners.x);
     float area = 0.5 * length(cross(load_vec3(push.vertices, corners.y) - p, load_vec3(push.vertices, corners.z) - p));
     vec3 q = load_uint(push.face_kinds, i) == FACE_OPEN ? load_vec3(push.q, i) : vec3(0);
     vec3 exitance = load_vec3(push.exitance, i) * push.clip.at[0].factor;
     push.exitance.at[i] = exitance;
-    sums.entered = area * q;
-    sums.exitance = area * exitance;
+    sums.entered += area * q;
+    sums.exitance += area * exitance;
   }
   vec3 parts[3] = vec3[](sums.entered, sums.exitance, sums.absorbed);
   [[dont_unroll]] for (int k = 0; k < 3; ++k) parts[k] = reduce_workgroup(parts[k]);

@@ -2,9 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 #include "surface_shared.h"
 #include "fields.glsl"
+#include "stride.glsl"
 #include "reduce.glsl"
 
-layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { ExitancePush push; };
 
 // phi, and the outward flux as it is and without what is negative at the carriers, in units of the scale.
@@ -38,17 +38,16 @@ float area_of(uint f) {
 }
 
 void main() {
-  uint f = gl_GlobalInvocationID.x;
   vec3 negative = vec3(0), positive = vec3(0);  // integrals over the face
-  if (f < push.count) {
+  EACH(f, push.count) {
     Surface surface = Surface(vec3(0), vec3(0), vec3(0));
     if (load_uint(push.face_kinds, f) == FACE_OPEN) surface = at_face(f);
     vec3 scale = load_scale(push.scale).scale;
     push.phi.at[f] = surface.phi * scale;
     if (push.clipped == 1u) {
       float area = area_of(f);
-      negative = area * (surface.positive - surface.raw);
-      positive = area * surface.positive;
+      negative += area * (surface.positive - surface.raw);
+      positive += area * surface.positive;
       push.exitance.at[f] = surface.positive * scale;
     } else {
       bool open = load_uint(push.face_kinds, f) == FACE_OPEN;

@@ -1,9 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "assembly_shared.h"
+#include "stride.glsl"
 #include "reduce.glsl"
 
-layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { IrradianceScalePush push; };
 
 float area_of(uint face) {
@@ -16,9 +16,13 @@ float area_of(uint face) {
 const float UNLIT = 0.1;
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
-  float own = i < push.count ? area_of(i) : 0.0;
-  vec3 entering = i < push.count ? own * load_vec3(push.q, i) : vec3(0);
+  float own = 0.0;
+  vec3 entering = vec3(0);
+  EACH(i, push.count) {
+    float face = area_of(i);
+    own += face;
+    entering += face * load_vec3(push.q, i);
+  }
   vec3 power, area;
   if (!reduce_dispatch_pair(push.reduction, entering, vec3(own), power, area)) return;
   if (gl_LocalInvocationID.x != 0u) return;

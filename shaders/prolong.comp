@@ -2,16 +2,16 @@
 #extension GL_GOOGLE_include_directive : require
 #include "solve_shared.h"
 #include "fields.glsl"
+#include "stride.glsl"
 
-layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { ProlongPush push; };
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
-  if (i >= push.count) return;
-  Field x = load_field(push.x, i);
-  for (uint k = push.width * i; k < push.width * (i + 1u); ++k) {
-    x = add_scaled(x, vec3(load_row_float(push.weight, k)), load_field(push.coarse_x, load_row_uint(push.index, k)));
+  EACH(i, push.count) {
+    Field x = load_field(push.x, i);
+    for (uint k = push.width * i; k < push.width * (i + 1u); ++k) {
+      x = add_scaled(x, vec3(load_row_float(push.weight, k)), load_field(push.coarse_x, load_row_uint(push.index, k)));
+    }
+    push.x.at[i] = x;
   }
-  push.x.at[i] = x;
 }

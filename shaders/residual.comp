@@ -3,11 +3,10 @@
 #include "solve_shared.h"
 #include "fields.glsl"
 #include "rows.glsl"
+#include "stride.glsl"
 
-layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { ResidualPush push; };
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
-  if (i < push.count) push.r.at[i] = residual(push.rows, push.f, push.x, i);
+  EACH(i, push.count) push.r.at[i] = residual(push.rows, push.f, push.x, i);
 }

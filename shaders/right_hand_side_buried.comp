@@ -3,9 +3,9 @@
 #include "walk_shared.h"
 #include "fields.glsl"
 #include "fixed_point.glsl"
+#include "stride.glsl"
 #include "reduce.glsl"
 
-layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { RightHandSideBuriedPush push; };
 
 float volume_of(uint tet) {
@@ -17,14 +17,13 @@ float volume_of(uint tet) {
 }
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
   vec3 square = vec3(0);
-  if (i < push.count) {
+  EACH(i, push.count) {
     vec3 power = i < push.deposit_count ? power_at(push.deposit, i) : vec3(0);
     if (push.per_volume == 1u && power != vec3(0)) power /= volume_of(i);
     Field b = lit(power);
     push.b.at[i] = b;
-    square = product(b, solved(load_block(push.diagonal, i), b));
+    square += product(b, solved(load_block(push.diagonal, i), b));
   }
   vec3 norm;
   if (!reduce_dispatch(push.reduction, square, norm)) return;

@@ -2,10 +2,10 @@
 #extension GL_GOOGLE_include_directive : require
 #include "surface_shared.h"
 #include "fields.glsl"
+#include "stride.glsl"
 #include "reduce.glsl"
 #include "convergence.glsl"
 
-layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { SurfaceChangePush push; };
 
 // A residual counts as falling by 1 - 1e-4 from look to look at least.
@@ -53,20 +53,19 @@ void decide(vec2 change) {
 }
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
   vec3 difference_squares = vec3(0), size_squares = vec3(0);
-  if (i < push.count) {
+  Scale unit = load_scale(push.scale);
+  // One factor for all channels, which are weighed alike.
+  vec3 scale = unit.scale / max(unit.scale.x, max(unit.scale.y, unit.scale.z));
+  EACH(i, push.count) {
     uint carrier = push.first + i;
-    // One factor for all channels, which are weighed alike.
-    Scale unit = load_scale(push.scale);
-    vec3 scale = unit.scale / max(unit.scale.x, max(unit.scale.y, unit.scale.z));
     SurfaceShare share = load_surface_share(push.share, i);
     Field x = scaled(load_vec3_or_one(push.to_phi, carrier), load_field(push.x, carrier));
     vec3 flux = outward_flux(push.boundary, x);
     vec3 m = scale * (flux - unit.inverse * share.reflected);
     vec3 change = m - load_vec3(push.before, i);
-    difference_squares = vec3(dot(change, change) * share.area, 0.0);
-    size_squares = vec3(dot(m, m) * share.area, 0.0);
+    difference_squares += vec3(dot(change, change) * share.area, 0.0);
+    size_squares += vec3(dot(m, m) * share.area, 0.0);
     if (push.what != SURFACE_DIFFERENCE) push.before.at[i] = m;
   }
   if (push.what == SURFACE_STORE) return;

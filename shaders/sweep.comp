@@ -3,10 +3,10 @@
 #include "solve_shared.h"
 #include "fields.glsl"
 #include "rows.glsl"
+#include "stride.glsl"
 #include "reduce.glsl"
 #include "convergence.glsl"
 
-layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { SweepPush push; };
 
 // A relaxation that converges never exceeds its start by this much; one that diverges does at once.
@@ -26,13 +26,12 @@ void decide(vec3 square) {
 }
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
   vec3 square = vec3(0);
-  if (i < push.count) {
+  EACH(i, push.count) {
     Field r = residual(push.rows, push.b, push.from, i);
     Field z = solved(load_block(push.rows.diagonal, i), r);
     push.to.at[i] = add_scaled(load_field(push.from, i), load_vec3(push.damping, 0), z);
-    square = product(r, z);
+    square += product(r, z);
   }
   if (push.sweeps == 0u) return;
   vec3 rz;

@@ -70,8 +70,8 @@ LevelSolver::LevelSolver(Workspace& work, Operators& operators, const OperatorKe
 }
 
 template <typename Push>
-void LevelSolver::dispatch(LazyPass& pass, const Push& push, std::uint64_t gate, const char* name) {
-  work_.recorder.dispatch_indirect(pass, push, op().state, gate, name);
+void LevelSolver::dispatch(LazyPass& pass, const Push& push, std::uint64_t gate, const char* name, bool concludes) {
+  work_.recorder.dispatch_indirect(pass, push, op().state, gate, name, concludes);
 }
 
 std::uint64_t LevelSolver::start_bytes() const {
@@ -131,7 +131,7 @@ void LevelSolver::record_surface(const vk::Buffer& x, const vk::Buffer& before, 
     dispatch(work_.passes.surface_change.of(key_.model), push, offsetof(gpu::SolveState, surface), "surface change");
   } else {
     work_.recorder.dispatch(work_.passes.surface_change.of(key_.model), push, rows.surface_count, "surface change",
-                            bytes);
+                            bytes, what != gpu::SURFACE_STORE);
   }
 }
 
@@ -207,7 +207,7 @@ void LevelSolver::record_sweeps(std::uint32_t sweeps) {
     const gpu::SweepPush push{
         rows.rows(),          rows.b.address(),          from.address(), to.address(),        rows.damping.address(),
         rows.state.address(), work_.reduction.address(), rows.count,     look ? unlooked_ : 0};
-    dispatch(work_.passes.sweep.of(rows.model, rows.format), push, gate_of(level_), "sweep");
+    dispatch(work_.passes.sweep.of(rows.model, rows.format), push, gate_of(level_), "sweep", look);
     if (!look) continue;
     record_surface(to, rows.surface_before, gpu::SURFACE_CHANGE);
     unlooked_ = 0;

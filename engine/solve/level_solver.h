@@ -76,7 +76,7 @@ class LevelSolver {
  private:
   const OperatorBuffers& op() const { return operators_.at(key_, level_); }
   template <typename Push>
-  void dispatch(LazyPass& pass, const Push& push, std::uint64_t gate, const char* name);
+  void dispatch(LazyPass& pass, const Push& push, std::uint64_t gate, const char* name, bool concludes = true);
   void dispatch_start(std::uint32_t what);
   void record_surface(const vk::Buffer& x, const vk::Buffer& before, std::uint32_t what);
   void record_cg();

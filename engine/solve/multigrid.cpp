@@ -54,9 +54,9 @@ std::uint32_t Multigrid::coarse_steps() const {
 }
 
 template <typename Push>
-void Multigrid::dispatch(LazyPass& pass, const Push& push, std::uint32_t level, const char* name) {
+void Multigrid::dispatch(LazyPass& pass, const Push& push, std::uint32_t level, const char* name, bool concludes) {
   work_.recorder.dispatch_indirect(pass, push, op(top_).state,
-                                   offsetof(gpu::SolveState, gate) + level * sizeof(glm::uvec3), name);
+                                   offsetof(gpu::SolveState, gate) + level * sizeof(glm::uvec3), name, concludes);
 }
 
 void Multigrid::record_step(std::uint32_t level, const vk::Buffer& from, const vk::Buffer& to, std::uint32_t number,
@@ -78,7 +78,7 @@ void Multigrid::record_step(std::uint32_t level, const vk::Buffer& from, const v
                                 .reduce = reduce ? 1u : 0u,
                                 .keep = static_cast<float>(step.keep),
                                 .add = static_cast<float>(step.add)};
-  dispatch(work_.passes.chebyshev.of(rows.model, rows.format), push, level, "smoothing");
+  dispatch(work_.passes.chebyshev.of(rows.model, rows.format), push, level, "smoothing", reduce);
 }
 
 // From zero: the first step is d itself, which the second takes as x; so z comes out, after one step or two. Later, one

@@ -38,7 +38,7 @@ class Multigrid {
   std::uint64_t smoothing_bytes(const OperatorBuffers& op) const;
 
   template <typename Push>
-  void dispatch(LazyPass& pass, const Push& push, std::uint32_t level, const char* name);
+  void dispatch(LazyPass& pass, const Push& push, std::uint32_t level, const char* name, bool concludes = true);
 
   void record_smoothing(std::uint32_t level, bool from_zero);
   void record_step(std::uint32_t level, const vk::Buffer& from, const vk::Buffer& to, std::uint32_t number, bool zero,

@@ -22,7 +22,7 @@ void Operators::create(vk::Context& context, std::span<const Level> levels, cons
 
 // What opens the gates of the level's state.
 void Operators::write_gates(vk::Context& context, const std::vector<OfLevel>& levels, std::uint32_t number) {
-  const auto groups = [](std::uint32_t count) { return (count + WORKGROUP_SIZE - 1) / WORKGROUP_SIZE; };
+  const auto groups = [&](std::uint32_t count) { return vk::strided_workgroups(context, count); };
   gpu::SolveState state{};
   for (std::size_t i = number; i < levels.size(); ++i) state.groups[i] = groups(levels[i].op->count);
   state.surface_groups = groups(levels[number].op->surface_count);

@@ -80,64 +80,66 @@
 
 namespace quadgraph {
 
-// SPIR-V of both models, the size of their push constants, a name, and which format of entries.
-#define MODEL_PASSES(pass, Push, format)                       \
-  {                                                            \
-    {pass##_comp, sizeof(gpu::Push), #pass, format}, {         \
-      pass##_sp3_comp, sizeof(gpu::Push), #pass " sp3", format \
-    }                                                          \
+// SPIR-V of both models, the size of their push constants, a name, how they work, and which format of entries.
+#define MODEL_PASSES(pass, Push, work, format)                       \
+  {                                                                  \
+    {pass##_comp, sizeof(gpu::Push), #pass, work, format}, {         \
+      pass##_sp3_comp, sizeof(gpu::Push), #pass " sp3", work, format \
+    }                                                                \
   }
-#define MODEL_PASS(pass, Push) pass MODEL_PASSES(pass, Push, 0)
-#define ENTRY_PASS(pass, Push)                                                        \
-  pass {                                                                              \
-    MODEL_PASSES(pass, Push, ENTRIES_PACKED), MODEL_PASSES(pass, Push, ENTRIES_PLAIN) \
+#define MODEL_PASS(pass, Push, work) pass MODEL_PASSES(pass, Push, work, 0)
+#define ENTRY_PASS(pass, Push, work)                                                              \
+  pass {                                                                                          \
+    MODEL_PASSES(pass, Push, work, ENTRIES_PACKED), MODEL_PASSES(pass, Push, work, ENTRIES_PLAIN) \
   }
-#define ONE_PASS(pass, Push) pass(pass##_comp, sizeof(gpu::Push), #pass)
+#define ONE_PASS(pass, Push, work) pass(pass##_comp, sizeof(gpu::Push), #pass, work)
+
+using enum vk::Work;
 
 Passes::Passes()
-    : ONE_PASS(evaluate_material, EvaluateMaterialPush),
-      ONE_PASS(shape, ShapePush),
-      ONE_PASS(irradiance_scale, IrradianceScalePush),
-      ONE_PASS(walk_source, WalkSourcePush),
-      ONE_PASS(vertex_exitance, VertexExitancePush),
-      ONE_PASS(display_scale, DisplayScalePush),
-      ONE_PASS(vertex_unscattered, VertexUnscatteredPush),
-      ONE_PASS(energy_total, EnergyTotalPush),
-      ONE_PASS(surface_share, SurfaceSharePush),
-      ONE_PASS(uncollided, UncollidedPush),
-      ONE_PASS(gather_exitance, GatherExitancePush),
-      ONE_PASS(gather_scale, GatherScalePush),
-      ONE_PASS(exchange, ExchangePush),
-      ONE_PASS(exchange_finer, ExchangeFinerPush),
-      ONE_PASS(exchange_enter, ExchangeEnterPush),
-      ONE_PASS(exchange_boxes, ExchangeBoxesPush),
-      ONE_PASS(exchange_rays, ExchangeRaysPush),
-      ENTRY_PASS(assemble_fdm, AssembleFdmPush),
-      ENTRY_PASS(assemble_fv, AssembleFvPush),
-      ENTRY_PASS(assemble_edges, AssembleEdgesPush),
-      ENTRY_PASS(assemble_even, AssembleEvenPush),
-      ENTRY_PASS(assemble_fem, AssembleFemPush),
-      ENTRY_PASS(eigenvalue_bound, EigenvalueBoundPush),
-      ENTRY_PASS(cg_start, CgStartPush),
-      ENTRY_PASS(cg_multiply, CgMultiplyPush),
-      ENTRY_PASS(sweep, SweepPush),
-      ENTRY_PASS(residual, ResidualPush),
-      ENTRY_PASS(chebyshev, ChebyshevPush),
-      ENTRY_PASS(coarse_solve, CoarseSolvePush),
-      MODEL_PASS(right_hand_side_fdm, RightHandSideFdmPush),
-      MODEL_PASS(right_hand_side_fv, RightHandSideFvPush),
-      MODEL_PASS(right_hand_side_fem, RightHandSideFemPush),
-      MODEL_PASS(right_hand_side_buried, RightHandSideBuriedPush),
-      MODEL_PASS(transfer, TransferPush),
-      MODEL_PASS(follow, FollowPush),
-      MODEL_PASS(cg_update, CgUpdatePush),
-      MODEL_PASS(cg_direction, CgDirectionPush),
-      MODEL_PASS(correct, CorrectPush),
-      MODEL_PASS(restrict, RestrictPush),
-      MODEL_PASS(prolong, ProlongPush),
-      MODEL_PASS(surface_change, SurfaceChangePush),
-      MODEL_PASS(exitance, ExitancePush),
-      MODEL_PASS(energy, EnergyPush),
-      MODEL_PASS(gather_phi, GatherPhiPush) {}
+    : ONE_PASS(evaluate_material, EvaluateMaterialPush, each),
+      ONE_PASS(shape, ShapePush, each),
+      ONE_PASS(irradiance_scale, IrradianceScalePush, reducing),
+      ONE_PASS(walk_source, WalkSourcePush, each),
+      ONE_PASS(vertex_exitance, VertexExitancePush, each),
+      ONE_PASS(display_scale, DisplayScalePush, reducing),
+      ONE_PASS(vertex_unscattered, VertexUnscatteredPush, each),
+      ONE_PASS(energy_total, EnergyTotalPush, each),
+      ONE_PASS(surface_share, SurfaceSharePush, each),
+      ONE_PASS(uncollided, UncollidedPush, each),
+      ONE_PASS(gather_exitance, GatherExitancePush, each),
+      ONE_PASS(gather_scale, GatherScalePush, each),
+      ONE_PASS(exchange, ExchangePush, each),
+      ONE_PASS(exchange_finer, ExchangeFinerPush, each),
+      ONE_PASS(exchange_enter, ExchangeEnterPush, each),
+      ONE_PASS(exchange_boxes, ExchangeBoxesPush, each),
+      ONE_PASS(exchange_rays, ExchangeRaysPush, each),
+      ENTRY_PASS(assemble_fdm, AssembleFdmPush, each),
+      ENTRY_PASS(assemble_fv, AssembleFvPush, each),
+      ENTRY_PASS(assemble_edges, AssembleEdgesPush, each),
+      ENTRY_PASS(assemble_even, AssembleEvenPush, each),
+      ENTRY_PASS(assemble_fem, AssembleFemPush, each),
+      ENTRY_PASS(eigenvalue_bound, EigenvalueBoundPush, reducing),
+      ENTRY_PASS(cg_start, CgStartPush, reducing),
+      ENTRY_PASS(cg_multiply, CgMultiplyPush, reducing),
+      ENTRY_PASS(sweep, SweepPush, reducing),
+      ENTRY_PASS(residual, ResidualPush, strided),
+      ENTRY_PASS(chebyshev, ChebyshevPush, reducing),
+      ENTRY_PASS(coarse_solve, CoarseSolvePush, each),
+      MODEL_PASS(right_hand_side_fdm, RightHandSideFdmPush, each),
+      MODEL_PASS(right_hand_side_fv, RightHandSideFvPush, each),
+      MODEL_PASS(right_hand_side_fem, RightHandSideFemPush, each),
+      MODEL_PASS(right_hand_side_buried, RightHandSideBuriedPush, reducing),
+      MODEL_PASS(transfer, TransferPush, each),
+      MODEL_PASS(follow, FollowPush, each),
+      MODEL_PASS(cg_update, CgUpdatePush, reducing),
+      MODEL_PASS(cg_direction, CgDirectionPush, strided),
+      MODEL_PASS(correct, CorrectPush, strided),
+      MODEL_PASS(restrict, RestrictPush, strided),
+      MODEL_PASS(prolong, ProlongPush, strided),
+      MODEL_PASS(surface_change, SurfaceChangePush, reducing),
+      MODEL_PASS(exitance, ExitancePush, reducing),
+      MODEL_PASS(energy, EnergyPush, strided),
+      MODEL_PASS(gather_phi, GatherPhiPush, each) {}
 
 }  // namespace quadgraph

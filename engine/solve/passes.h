@@ -12,20 +12,30 @@ namespace quadgraph {
 // A pipeline that does not exist until it is wanted.
 class LazyPass {
  public:
-  LazyPass(vk::Spirv code, std::uint32_t push_size, const char* name, std::uint32_t variant = 0)
-      : code_(code), push_size_(push_size), name_(name), variant_(variant) {}
+  LazyPass(vk::Spirv code, std::uint32_t push_size, const char* name, vk::Work work = vk::Work::each,
+           std::uint32_t variant = 0)
+      : code_(code), push_size_(push_size), name_(name), work_(work), variant_(variant) {}
 
-  const vk::ComputePass& get(vk::Context& context) {
-    if (!pass_) pass_.emplace(context, code_, push_size_, name_, vk::ComputePass::default_workgroup_size, variant_);
-    return *pass_;
+  const vk::ComputePass& get(vk::Context& context) { return made(pass_, context, work_); }
+
+  // The dispatch that has to follow; null if none has.
+  const vk::ComputePass* conclusion(vk::Context& context) {
+    if (work_ != vk::Work::reducing || !vk::few_workgroups(context)) return nullptr;
+    return &made(conclusion_, context, vk::Work::conclusion);
   }
 
  private:
+  const vk::ComputePass& made(std::optional<vk::ComputePass>& pass, vk::Context& context, vk::Work work) {
+    if (!pass) pass.emplace(context, code_, push_size_, name_, vk::ComputePass::default_workgroup_size, variant_, work);
+    return *pass;
+  }
+
   vk::Spirv code_;
   std::uint32_t push_size_;
   const char* name_;
+  vk::Work work_;
   std::uint32_t variant_;
-  std::optional<vk::ComputePass> pass_;
+  std::optional<vk::ComputePass> pass_, conclusion_;
 };
 
 // The two variants of a pass that touches fields.

@@ -22,23 +22,25 @@ class Recorder {
   void clear() { passes_.clear(); }
   const std::vector<PassStats>& passes() const { return passes_; }
 
-  // One timed dispatch; `bytes` is what the algorithm reads and writes in it.
+  // One timed dispatch; `bytes` is what the algorithm reads and writes in it. `concludes`: its reduction is wanted.
   template <typename Push>
-  void dispatch(LazyPass& pass, const Push& push, std::uint64_t elements, const std::string& name,
-                std::uint64_t bytes) {
+  void dispatch(LazyPass& pass, const Push& push, std::uint64_t elements, const std::string& name, std::uint64_t bytes,
+                bool concludes = true) {
     const vk::ComputePass& pipeline = pass.get(context_);
     begin(name, bytes, true);
     commands_->dispatch(pipeline, push, elements);
+    if (concludes) conclude(pass, push);
     commands_->end_pass();
   }
 
   // The same with workgroup counts from the device. Bytes and count are added by `did`, once known.
   template <typename Push>
   void dispatch_indirect(LazyPass& pass, const Push& push, const vk::Buffer& arguments, std::uint64_t offset,
-                         const std::string& name) {
+                         const std::string& name, bool concludes = true) {
     const vk::ComputePass& pipeline = pass.get(context_);
     begin(name, 0, false);
     commands_->dispatch_indirect(pipeline, push, arguments, offset);
+    if (concludes) conclude(pass, push);
     commands_->end_pass();
   }
 
@@ -52,6 +54,12 @@ class Recorder {
   void did(const std::string& name, std::uint32_t count, std::uint64_t bytes_each);
 
  private:
+  template <typename Push>
+  void conclude(LazyPass& pass, const Push& push) {
+    const vk::ComputePass* conclusion = pass.conclusion(context_);
+    if (conclusion != nullptr) commands_->dispatch(*conclusion, push, 1);
+  }
+
   vk::Commands& commands();
   void begin(const std::string& name, std::uint64_t bytes, bool counts);
   PassStats& stats(const std::string& name);

@@ -18,8 +18,8 @@ std::uint64_t energy_elements(const LevelBuffers& level) {
   return std::max(level.tet_count, level.face_count);
 }
 
-std::uint64_t energy_groups(const LevelBuffers& level) {
-  return (energy_elements(level) + WORKGROUP_SIZE - 1) / WORKGROUP_SIZE;
+std::uint32_t energy_groups(vk::Context& context, const LevelBuffers& level) {
+  return vk::strided_workgroups(context, energy_elements(level));
 }
 
 }  // namespace
@@ -35,7 +35,7 @@ SurfaceResults::SurfaceResults(vk::Context& context, const LevelBuffers& level) 
   display_factor_ = vector(1, "results/display factor");
   clip_ = vk::Buffer(context, sizeof(gpu::Clip), vk::Place::device, "results/clip");
   clip_on_host_ = vk::Buffer(context, sizeof(gpu::Clip), vk::Place::host, "results/clip, read back");
-  const std::uint64_t sums_bytes = energy_groups(level) * sizeof(gpu::EnergySums);
+  const std::uint64_t sums_bytes = energy_groups(context, level) * sizeof(gpu::EnergySums);
   sums_ = vk::Buffer(context, sums_bytes, vk::Place::device, "results/energy sums");
   constexpr std::uint64_t total_bytes = WORKGROUP_SIZE * sizeof(gpu::EnergySums);
   totals_ = vk::Buffer(context, total_bytes, vk::Place::device, "results/energy totals");
@@ -146,7 +146,7 @@ void SurfaceResults::record_energy(Workspace& work, const Solved& solved) {
   const std::uint64_t bytes = level.tet_count * (sizeof(glm::uvec4) + 5 * vec3_bytes + 4 * solved.op.field_bytes()) +
                               level.face_count * (sizeof(glm::uvec3) + 6 * vec3_bytes) + sums_.size();
   work.recorder.dispatch(work.passes.energy.of(solved.op.model), push, energy_elements(level), "energy", bytes);
-  const auto groups = static_cast<std::uint32_t>(energy_groups(level));
+  const std::uint32_t groups = energy_groups(work.recorder.context(), level);
   const gpu::EnergyTotalPush total{sums_.address(), totals_.address(), groups};
   work.recorder.dispatch(work.passes.energy_total, total, WORKGROUP_SIZE, "energy", sums_.size() + totals_.size());
   work.recorder.copy(totals_, totals_on_host_, totals_.size());

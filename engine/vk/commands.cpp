@@ -123,7 +123,7 @@ void Commands::bind(const ComputePass& pass, const void* push, std::uint32_t siz
 
 void Commands::dispatch_bytes(const ComputePass& pass, const void* push, std::uint32_t size, std::uint64_t elements) {
   if (elements == 0) return;
-  const std::uint64_t groups = (elements + pass.workgroup_size() - 1) / pass.workgroup_size();
+  const std::uint64_t groups = pass.workgroups(elements);
   if (groups > context_.limits().maxComputeWorkGroupCount[0]) {
     throw VulkanError(pass.name() + " needs " + std::to_string(groups) + " workgroups, " + context_.info().name +
                       " allows " + std::to_string(context_.limits().maxComputeWorkGroupCount[0]));

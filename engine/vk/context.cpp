@@ -57,6 +57,7 @@ struct Features {
             {"scalarBlockLayout", &v12.scalarBlockLayout},
             {"dynamicRendering", &v13.dynamicRendering},
             {"synchronization2", &v13.synchronization2},
+            {"maintenance4", &v13.maintenance4},
             {"hostQueryReset", &v12.hostQueryReset},
             {"maintenance4", &v13.maintenance4},
             {"shaderInt64", &base.features.shaderInt64},

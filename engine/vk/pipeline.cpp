@@ -52,17 +52,20 @@ VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits bit, const UniqueSha
 
 // Specialization constants by their number: how shaders load arrays (shaders/load.glsl), and a variant of their own.
 struct Constants {
-  static constexpr std::uint32_t count = 2 + arena_count;
+  static constexpr std::uint32_t count = 4 + arena_count;
   std::array<std::uint32_t, count> values;
   std::array<VkSpecializationMapEntry, count> entries;
   VkSpecializationInfo info{count, entries.data(), sizeof(values), values.data()};
 
-  explicit Constants(Context& context, std::uint32_t variant = 0) {
+  explicit Constants(Context& context, std::uint32_t variant = 0, std::uint32_t part = 0,
+                     std::uint32_t workgroup_size = 0) {
     values[0] = context.arenas().complete();
     values[1] = variant;
     for (std::uint32_t i = 0; i < arena_count; ++i) {
       values[2 + i] = static_cast<std::uint32_t>(context.arenas()[i].address());
     }
+    values[2 + arena_count] = part;
+    values[3 + arena_count] = workgroup_size;
     for (std::uint32_t i = 0; i < count; ++i) {
       entries[i] = {i, static_cast<std::uint32_t>(i * sizeof(std::uint32_t)), sizeof(std::uint32_t)};
     }
@@ -70,6 +73,12 @@ struct Constants {
   Constants(const Constants&) = delete;
   Constants& operator=(const Constants&) = delete;
 };
+
+// shaders/part.glsl.
+constexpr std::uint32_t part_whole = 0, part_sums = 1, part_conclusion = 2;
+
+// On two to dozens of cores: enough to share out, few enough that starting and reducing them costs nothing.
+constexpr std::uint32_t most_strided = 64, strided_size = 8;
 
 // The fixed-function state of every graphics pass, kept alive while the pipeline is created.
 struct FixedState {
@@ -129,13 +138,25 @@ struct FixedState {
 
 }  // namespace
 
+bool few_workgroups(Context& context) {
+  return context.arenas()[0].used();
+}
+
+std::uint32_t strided_workgroups(Context& context, std::uint64_t elements) {
+  const bool few = few_workgroups(context);
+  const std::uint64_t size = few ? strided_size : ComputePass::default_workgroup_size;
+  const std::uint64_t groups = (elements + size - 1) / size;
+  return static_cast<std::uint32_t>(few ? std::min<std::uint64_t>(groups, most_strided) : groups);
+}
+
 ComputePass::ComputePass(Context& context, Spirv code, std::uint32_t push_size, const std::string& name,
-                         std::uint32_t workgroup_size, std::uint32_t variant)
+                         std::uint32_t workgroup_size, std::uint32_t variant, Work work)
     : context_(context),
       code_(code),
       push_size_(push_size),
-      workgroup_size_(workgroup_size),
+      workgroup_size_(work != Work::each && few_workgroups(context) ? strided_size : workgroup_size),
       variant_(variant),
+      work_(work),
       name_(name),
       layout_(push_layout(context, push_size, VK_SHADER_STAGE_COMPUTE_BIT, name)) {
   const VkPhysicalDeviceLimits& limits = context.limits();
@@ -147,13 +168,21 @@ ComputePass::ComputePass(Context& context, Spirv code, std::uint32_t push_size, 
   pipeline();
 }
 
+std::uint64_t ComputePass::workgroups(std::uint64_t elements) const {
+  if (work_ != Work::each) return strided_workgroups(context_, elements);
+  return (elements + workgroup_size_ - 1) / workgroup_size_;
+}
+
 VkPipeline ComputePass::pipeline() const {
   UniquePipeline& made = pipelines_[context_.arenas().complete()];
   if (made.get() != VK_NULL_HANDLE) return made.get();
   const UniqueShaderModule module = shader_module(context_, code_, name_);
   VkComputePipelineCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
-  const Constants constants(context_, variant_);
+  const std::uint32_t part = work_ == Work::conclusion                             ? part_conclusion
+                             : work_ == Work::reducing && few_workgroups(context_) ? part_sums
+                                                                                   : part_whole;
+  const Constants constants(context_, variant_, part, workgroup_size_);
   info.stage = stage(VK_SHADER_STAGE_COMPUTE_BIT, module, constants.info);
   info.layout = layout_.get();
   VkPipeline pipeline = VK_NULL_HANDLE;

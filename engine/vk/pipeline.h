@@ -19,12 +19,26 @@ using Spirv = std::span<const std::uint32_t>;
 // A pipeline by the arenas whose arrays shaders load as texels (Arenas::complete); made when it is wanted.
 using LoadingPipelines = std::map<std::uint32_t, UniquePipeline>;
 
+// How the invocations of a pass share its elements.
+enum class Work {
+  each,        // one element each
+  strided,     // shaders/stride.glsl: several each, where few workgroups are fastest
+  reducing,    // the same, and what comes of a reduction is for a dispatch of its own there
+  conclusion,  // that dispatch, of one workgroup (shaders/part.glsl)
+};
+
+// Whether few workgroups with long loops are fastest: on a device of type CPU, unless it was told to have no arenas.
+bool few_workgroups(Context& context);
+
+// Of a strided pass over that many elements.
+std::uint32_t strided_workgroups(Context& context, std::uint64_t elements);
+
 class ComputePass {
  public:
   // `push_size` in bytes must equal the size of the shader's push-constant block, and `workgroup_size` its
-  // local_size_x; `variant` is its specialization constant 2, if it has one.
+  // local_size_x unless it is strided; `variant` is its specialization constant 1, if it has one.
   ComputePass(Context& context, Spirv code, std::uint32_t push_size, const std::string& name,
-              std::uint32_t workgroup_size = default_workgroup_size, std::uint32_t variant = 0);
+              std::uint32_t workgroup_size = default_workgroup_size, std::uint32_t variant = 0, Work work = Work::each);
 
   static constexpr std::uint32_t default_workgroup_size = 256;  // WORKGROUP_SIZE in shaders/shared.h
 
@@ -33,6 +47,7 @@ class ComputePass {
   VkPipelineLayout layout() const { return layout_.get(); }
   std::uint32_t push_size() const { return push_size_; }
   std::uint32_t workgroup_size() const { return workgroup_size_; }
+  std::uint64_t workgroups(std::uint64_t elements) const;
   const std::string& name() const { return name_; }
 
  private:
@@ -41,6 +56,7 @@ class ComputePass {
   std::uint32_t push_size_;
   std::uint32_t workgroup_size_;
   std::uint32_t variant_;
+  Work work_;
   std::string name_;
   UniquePipelineLayout layout_;
   mutable LoadingPipelines pipelines_;

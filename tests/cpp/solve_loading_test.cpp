@@ -147,8 +147,9 @@ TEST_CASE("view rays gather the same") {
     const auto gathered = vk::download<glm::vec3>(references.context, b.gathered());
     CHECK(std::any_of(gathered.begin(), gathered.end(), [](const glm::vec3& m) { return m.x > 0; }));
     CHECK(relative_difference(vk::download<glm::vec3>(texels.context, a.gathered()), gathered) < 1e-6);
+    // What the factor leaves over is a difference; and other sums, in another order, end in other last bits.
     CHECK(relative_difference(vk::download<glm::vec3>(texels.context, a.scale()),
-                              vk::download<glm::vec3>(references.context, b.scale())) < 1e-6);
+                              vk::download<glm::vec3>(references.context, b.scale())) < 1e-5);
   }
 }
 
