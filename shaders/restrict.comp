@@ -12,7 +12,7 @@ void main() {
     uint end = load_row_uint(push.offset, i + 1u);
     for (uint k = load_row_uint(push.offset, i); k < end; ++k) {
       uint place = load_row_uint(push.place, k);
-      sum = add_scaled(sum, vec3(load_row_float(push.weight, place)), load_field(push.r, place / push.width));
+      sum = add_scaled(sum, vec3(load_row_float(push.weight, place)), load_field(push.r, place / BARYCENTRIC_WIDTH));
     }
     push.f.at[i] = sum;
   }

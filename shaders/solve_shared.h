@@ -366,15 +366,18 @@ struct CoarseSolvePush {
   float ratio;
 };
 
-// restrict.comp: f_i = sum of weight_p r_(p / width), p = place_k, k from offset[i] to offset[i + 1]: the transpose of
-// the transfer whose weights these are.
+// Rows of barycentric transfers, which cycles use, have so many entries (engine/graph/graph.h). llvmpipe divides by
+// what it does not know lane by lane.
+const uint BARYCENTRIC_WIDTH = 4u;
+
+// restrict.comp: f_i = sum of weight_p r_(p / BARYCENTRIC_WIDTH), p = place_k, k from offset[i] to offset[i + 1]: the
+// transpose of the transfer whose weights these are.
 struct RestrictPush {
   QG_REF(RowUints) offset;
   QG_REF(RowUints) place;
   QG_REF(RowFloats) weight;
   QG_REF(Fields) r;
   QG_REF(Fields) f;
-  uint width;
   uint count;
 };
 

@@ -17,6 +17,9 @@ const float POWER_UNIT = 1.4210854715202004e-14f;  // 2^-46
 // Per origin of a Lambertian beam.
 const uint LAMBERTIAN_RAYS = 2u * LAMBERTIAN_NODES;
 
+// Pairs of sums that the workgroups of a walk share: few to read back, many enough to be seldom waited for.
+const uint WALK_SUMS = 256u;
+
 // walk_source.comp: follows the rays of one beam. One invocation per face; of a Lambertian beam, one per face and ray
 // of the bundle.
 struct WalkSourcePush {
@@ -26,7 +29,7 @@ struct WalkSourcePush {
   QG_REF(Scales) scale;
   QG_REF(Uints) deposit;      // fixed point, per vertex (fem) or tet: power scattered for the first time
   QG_REF(Uints) unscattered;  // fixed point, per face: power that leaves
-  QG_REF(Uints) sums;         // fixed point, two per workgroup: absorbed; left, or still under way at the end
+  QG_REF(Uints) sums;         // fixed point, WALK_SUMS times two: absorbed; left, or still under way at the end
   uint rays;                  // per origin: 1, or LAMBERTIAN_RAYS
   uint fem;
 };

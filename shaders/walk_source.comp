@@ -87,7 +87,8 @@ void main() {
   unscattered = vec3(0);
   if (i >= push.body.face_count * push.rays) return;
   walk_from(i % push.body.face_count, i / push.body.face_count);
-  // Per workgroup, so that invocations seldom wait for each other.
-  add_power(push.sums, 2u * gl_WorkGroupID.x, absorbed);
-  add_power(push.sums, 2u * gl_WorkGroupID.x + 1u, unscattered);
+  // In turn, so that invocations seldom wait for each other.
+  uint at = 2u * (gl_WorkGroupID.x % WALK_SUMS);
+  add_power(push.sums, at, absorbed);
+  add_power(push.sums, at + 1u, unscattered);
 }

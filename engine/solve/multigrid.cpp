@@ -108,7 +108,6 @@ void Multigrid::record_restriction(std::uint32_t level) {
                                .weight = part.weight.address(),
                                .r = fine.product.address(),
                                .f = coarse.r.address(),
-                               .width = part.width,
                                .count = coarse.count};
   dispatch(work_.passes.restrict.of(key_.model), push, level + 1, "restriction");
 }

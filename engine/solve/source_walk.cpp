@@ -18,12 +18,7 @@ std::uint32_t rays(std::uint32_t beam_kind) {
   return beam_kind == gpu::BEAM_LAMBERTIAN ? gpu::LAMBERTIAN_RAYS : 1;
 }
 
-// Two sums of every workgroup.
-std::uint64_t sums_bytes(const LevelBuffers& level, std::uint32_t beam_kind) {
-  const std::uint64_t groups =
-      (std::uint64_t{level.face_count} * rays(beam_kind) + WORKGROUP_SIZE - 1) / WORKGROUP_SIZE;
-  return 2 * groups * power_bytes;
-}
+constexpr std::uint64_t sums_bytes = 2 * gpu::WALK_SUMS * power_bytes;
 
 // Of one beam: every invocation looks at its face; half the faces are lit, evenly, and a ray crosses ten tets, about as
 // many as in marble at the finest level.
@@ -120,13 +115,13 @@ void SourceWalk::make_room(vk::Context& context, const LevelBuffers& level, cons
   room(deposits_[carrier(method)], carriers(level, method) * power_bytes, "deposit");
   std::uint64_t all_sums = 0;
   for (const gpu::Beam& beam : beams.beams) {
-    if (beam.way.kind != gpu::BEAM_MEAN) all_sums += sums_bytes(level, beam.way.kind);
+    if (beam.way.kind != gpu::BEAM_MEAN) all_sums += sums_bytes;
   }
   sums_.make_room(context, all_sums, prefix_);
   if (!again) return;
   room(all_deposits_[carrier(method)], carriers(level, method) * power_bytes, "deposit with light that entered again");
   room(all_unscattered_, level.face_count * power_bytes, "unscattered with light that entered again");
-  sums_again_.make_room(context, sums_bytes(level, gpu::BEAM_MEAN), prefix_);
+  sums_again_.make_room(context, sums_bytes, prefix_);
 }
 
 gpu::WalkSourcePush SourceWalk::push(const Workspace& work, const LevelBuffers& level, const BeamBuffers& beams,
@@ -159,7 +154,7 @@ void SourceWalk::record(Workspace& work, const LevelBuffers& level, const BeamBu
     work.recorder.dispatch(work.passes.walk_source, push, std::uint64_t{level.face_count} * push.rays, "source walk",
                            walk_bytes(level, push.rays));
     push.beam += sizeof(gpu::Beam);
-    push.sums += sums_bytes(level, kind);
+    push.sums += sums_bytes;
   }
   sums_.read_back(work);
 }

@@ -253,10 +253,9 @@ TEST_CASE("push constants of the cycles and of the looks at the surface") {
              MEMBER(CoarseSolvePush, reduce), MEMBER(CoarseSolvePush, ratio)});
   }
   for (const vk::Spirv code : {vk::Spirv(restrict_comp), vk::Spirv(restrict_sp3_comp)}) {
-    compare(
-        code, "RestrictPush",
-        {MEMBER(RestrictPush, offset), MEMBER(RestrictPush, place), MEMBER(RestrictPush, weight),
-         MEMBER(RestrictPush, r), MEMBER(RestrictPush, f), MEMBER(RestrictPush, width), MEMBER(RestrictPush, count)});
+    compare(code, "RestrictPush",
+            {MEMBER(RestrictPush, offset), MEMBER(RestrictPush, place), MEMBER(RestrictPush, weight),
+             MEMBER(RestrictPush, r), MEMBER(RestrictPush, f), MEMBER(RestrictPush, count)});
   }
   for (const vk::Spirv code : {vk::Spirv(prolong_comp), vk::Spirv(prolong_sp3_comp)}) {
     compare(code, "ProlongPush",
