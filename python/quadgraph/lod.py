@@ -16,7 +16,7 @@ from quadgraph.tetgen import intersecting_triangles
 DEFAULT_MIN_ANGLE_DEGREES = 12.0
 MAX_LEVELS = 16  # of the .qgraph format
 _RATIO = 4  # vertices of a level over those of the next
-SMALLEST = 200  # vertices: with no number of levels asked for, no level below this is begun
+_SMALLEST = 200  # vertices: with no number of levels asked for, no level below this is begun
 _QUALITY = (0.3, 1.0, 0.6)  # pymeshlab's penalty on thin triangles, tried in this order
 _GUARD_RINGS = (1.0, 2.0, 4.0)  # radius kept at full resolution around crossings, in coarse edge lengths
 
@@ -53,7 +53,7 @@ def build_chain(
     chain = Chain(surface)
     while len(chain) < (levels or MAX_LEVELS):
         target = round(len(chain[-1].vertices) / _RATIO)
-        if levels is None and target < SMALLEST:
+        if levels is None and target < _SMALLEST:
             chain.ended = f"the next level would have only {target} vertices"
             return chain
         coarse, trouble = _next_level(chain[-1], target, min_angle_degrees)

@@ -34,9 +34,8 @@ def arguments(**given) -> argparse.Namespace:
 def law(vertices: int, model: str = "sp3", cycles: int = 2, *, order: float = 0.8, floor: float = 0.0) -> Trial:
     """A trial whose error falls with the number of vertices down to a floor, and whose cost rises with it."""
     error = float(np.hypot(2 * vertices**-order, floor))
-    return Trial(
-        vertices, model, cycles, 100.0 * vertices * (1 + cycles), {"sun": {"whole": error / 2, "unlit": error}}
-    )
+    cost = 100.0 * vertices * (1 + cycles)
+    return Trial(vertices, 3, True, model, cycles, cost, {"sun": {"whole": error / 2, "unlit": error}})
 
 
 def test_a_forecast_follows_the_order_between_and_beyond_trials():
@@ -207,3 +206,18 @@ def test_errors_that_are_none_are_refused(mesh, tmp_path):
     for error in (0.0, 1.0, float("nan")):
         with pytest.raises(InputError, match="error"):
             plan.bake_for(mesh, tmp_path / "x.qgraph", BakeOptions(height_mm=8), error, "skin1")
+
+
+@pytest.mark.parametrize(("arguments", "word"), [(["--scene", "teapot"], "lobes"), (["--reference"], "is baked for")])
+def test_a_wrong_use_of_the_study_is_refused_in_words(arguments, word, capsys):
+    assert cli.main(["accuracy", "budget", *arguments]) == 1
+    assert word in capsys.readouterr().err
+
+
+@pytest.mark.long
+def test_every_error_is_kept_at_little_more_than_the_least_cost(shared):
+    rows = study.run("", shared / "meshes", [])["rows"]
+    assert len(rows) == len(study.CASES)
+    assert all(row["reached"] for row in rows), rows
+    assert all(max(row["chosen"]["errors"].values()) <= row["error"] for row in rows), rows
+    assert all(row["ratio"] <= 1.5 for row in rows), rows

@@ -39,7 +39,8 @@ from quadgraph.reference.judged import lights as lights_around
 
 MOST_VERTICES = 30000  # of the surface that stands for the whole mesh
 LEAST_VERTICES = 150  # on a surface that a bake chooses
-_LEAST_COARSEST = 45  # on the coarsest level of the whole mesh's chain, so that even small levels have one below
+_LEAST_COARSEST = 6  # vertices on the last level of a chain that goes as deep as it can
+_SHALLOW = 300  # vertices on the surface that one which does not ends below, if it has two levels then
 AIM = 0.93  # share of the error that surfaces are chosen for
 _ROUNDS = 3
 _CLOSE = 1.1  # of the expected cost: what costs no more than this is not tried to be bettered
@@ -53,7 +54,7 @@ class Bench:
     def __init__(self, whole: Prepared, options: BakeOptions, scene: Scene, folder: Path, device: str) -> None:
         self._whole, self._options, self.scene = whole, options, scene
         self._folder, self._device = folder, device
-        self.candidates: dict[int, list[Level]] = {}
+        self.candidates: dict[tuple[int, int], list[Level]] = {}  # by vertices on the surface and number of levels
         self.trials: list[Trial] = []
         self.models: Sequence[str] = MODELS
         self._truths: dict[str, Truth] = {}
@@ -69,10 +70,16 @@ class Bench:
                 raise InputError(f"light {', '.join(lights)}: nothing leaves the body, which has no error then")
 
     def add(self, levels: list[Level]) -> list[Trial]:
-        """Measure a candidate."""
-        path = self._written(levels, "trial.qgraph")
-        found = measure(path, self.scene, self._truths, self.truth_vertices, self._device, self.models)
-        self.candidates[found[0].surface_vertices] = levels
+        """Measure a candidate with all of its levels, and with as few as bring it down to a small one.
+
+        Cycles that go down to a handful of vertices reduce the error of a thin body much faster; on others they do not.
+        """
+        found = []
+        for depth in sorted({len(levels), _shallow(levels)}):
+            path = self._written(levels[:depth], "trial.qgraph")
+            deep = depth == len(levels)
+            found += measure(path, self.scene, self._truths, self.truth_vertices, self._device, self.models, deep)
+            self.candidates[found[-1].surface_vertices, depth] = levels[:depth]
         self.trials += found
         return found
 
@@ -174,17 +181,18 @@ def _planned(
     best = bench.best(ENOUGH * error)
     chosen = best or min(bench.trials, key=lambda t: (-t.surface_vertices, t.error))
     budget = _record(bench, chosen, predicted, len(prepared.surface.vertices), count, error)
-    return bench.candidates[chosen.surface_vertices], budget
+    return bench.candidates[chosen.surface_vertices, chosen.levels], budget
 
 
 def depth_of(vertices: int) -> int:
-    """Levels of the chain of a whole mesh with so many vertices on its surface."""
+    """Levels of a chain that goes as deep as it can, below a surface of so many vertices."""
     return max(2, 1 + int(np.log(max(vertices / _LEAST_COARSEST, 1)) / np.log(4)))
 
 
-def levels_for(vertices: int) -> int | None:
-    """Levels that a surface of so many vertices is baked with, None for as many as make sense; never one alone."""
-    return 2 if vertices < 4 * lod.SMALLEST else None
+def _shallow(levels: list[Level]) -> int:
+    """As few levels as end below a small number of vertices, two at least where there are."""
+    small = [number for number, level in enumerate(levels) if level.graph.surface_vertex_count < _SHALLOW]
+    return min(max(2, 1 + small[0]) if small else len(levels), len(levels))
 
 
 def _levels(whole: Prepared, options: BakeOptions, report: BakeReport) -> list[Level]:
@@ -199,7 +207,7 @@ def _levels(whole: Prepared, options: BakeOptions, report: BakeReport) -> list[L
 def measure_chain(bench: Bench, levels: list[Level], error: float, tell: Progress) -> None:
     """The levels of the whole mesh that have a coarser one; the finest only if it is needed."""
     for number in range(max(len(levels) - 2, 0), -1, -1):
-        if number == 0 and len(bench.candidates) > 1 and bench.best(error):
+        if number == 0 and bench.best(error):
             return
         _tell(bench.add(levels[number:]), tell)
 
@@ -225,7 +233,7 @@ def _refine(
         if count >= len(whole.surface.vertices):
             return first
         try:
-            sized = replace(options, surface_vertices=count, levels=levels_for(count))
+            sized = replace(options, surface_vertices=count, levels=depth_of(count))
             levels = _levels(whole, sized, report)
         except (InputError, ToolError) as refused:
             tell(f"error: {refused}")
@@ -237,7 +245,7 @@ def _refine(
 
 def _apart(bench: Bench, count: int) -> int:
     """A number of vertices that has not been tried: more, if one that is as good as this one has been."""
-    while any(abs(count / other - 1) < _SAME for other in bench.candidates):
+    while any(abs(count / other - 1) < _SAME for other, _ in bench.candidates):
         count = round(count * (1 + 2 * _SAME))
     return count
 
@@ -245,7 +253,7 @@ def _apart(bench: Bench, count: int) -> int:
 def _record(
     bench: Bench, chosen: Trial, predicted: Forecast | None, vertices: int, judged: int, error: float
 ) -> dict[str, Any]:
-    levels = bench.candidates[chosen.surface_vertices]
+    levels = bench.candidates[chosen.surface_vertices, chosen.levels]
     diffusion = [t for t in bench.trials if t.model == "diffusion"]
     finest = max(t.surface_vertices for t in diffusion)
     return {

@@ -29,9 +29,14 @@ class Scene:
 
 @dataclass(frozen=True)
 class Trial:
-    """One setting on one file. errors: relative RMS by light and part; cost: bytes read and written a frame, mean."""
+    """One setting on one file. errors: relative RMS by light and part; cost: bytes read and written a frame, mean.
+
+    levels: of the file; deep: whether they go down as far as they can.
+    """
 
     surface_vertices: int
+    levels: int
+    deep: bool
     model: str
     cycles: int
     cost: float
@@ -43,9 +48,9 @@ class Trial:
         return max(max(parts.values()) for parts in self.errors.values())
 
     @property
-    def setting(self) -> tuple[str, int]:
+    def setting(self) -> tuple[bool, str, int]:
         """What is the same on another file."""
-        return self.model, self.cycles
+        return self.deep, self.model, self.cycles
 
     def as_dict(self) -> dict[str, Any]:
         """Ready for JSON."""
@@ -59,10 +64,11 @@ def measure(
     truth_vertices: int,
     device: str,
     models: Iterable[str] = MODELS,
+    deep: bool = False,
 ) -> list[Trial]:
     """Every setting on one file, until more cycles bring nothing.
 
-    truth_vertices: on the surface that the truth was solved on.
+    truth_vertices: on the surface that the truth was solved on; deep: as in Trial.
     """
     subject = Subject(path, scene.material, device)
     known = known_share(subject, truth_vertices)
@@ -71,7 +77,7 @@ def measure(
         least = np.inf
         assemble(subject, scene, model)
         for cycles in CYCLES if subject.levels > 1 else STEPS:
-            trials.append(trial(subject, scene, truths, known, model, cycles))
+            trials.append(trial(subject, scene, truths, known, model, cycles, deep))
             if trials[-1].error > _GAIN * least:
                 break
             least = trials[-1].error
@@ -92,20 +98,29 @@ def known_share(subject: Subject, truth_vertices: int) -> float:
     return float(np.sqrt(1 - min(subject.surface_vertices / truth_vertices, 0.5)))
 
 
-def trial(subject: Subject, scene: Scene, truths: Mapping[str, Truth], known: float, model: str, cycles: int) -> Trial:
+def trial(
+    subject: Subject,
+    scene: Scene,
+    truths: Mapping[str, Truth],
+    known: float,
+    model: str,
+    cycles: int,
+    deep: bool = False,
+) -> Trial:
     """One setting on one file; known: of `known_share`."""
     errors, costs = {}, []
     for name, lights in scene.lights.items():
         solved = subject.solve(lights, model=model, cycles=cycles)
         errors[name] = {part: error / known for part, error in truths[name].error(solved.exitance).items()}
         costs.append(solved.cost)
-    return Trial(subject.surface_vertices, model, cycles, float(np.mean(costs)), errors)
+    return Trial(subject.surface_vertices, subject.levels, deep, model, cycles, float(np.mean(costs)), errors)
 
 
 @dataclass(frozen=True)
 class Forecast:
     """A setting at the number of vertices where it is expected to meet an error, and its expected cost."""
 
+    deep: bool
     model: str
     cycles: int
     surface_vertices: float

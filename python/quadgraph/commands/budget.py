@@ -92,9 +92,7 @@ def _cycles(budget: dict[str, Any]) -> str:
     more = [
         t
         for t in budget["trials"]
-        if t["surface_vertices"] == budget["surface_vertices"]
-        and t["model"] == budget["model"]
-        and t["cycles"] > budget["cycles"]
+        if _of_file(t, budget) and t["model"] == budget["model"] and t["cycles"] > budget["cycles"]
     ]
     if more:
         best = min(more, key=worst)
@@ -115,6 +113,11 @@ def _interior(budget: dict[str, Any]) -> str:
         f"interior: {percent(share)} of the vertices are deeper than two diffusion lengths and would hardly be missed; "
         "they stay, for a hollow shell is not baked"
     )
+
+
+def _of_file(trial: dict[str, Any], budget: dict[str, Any]) -> bool:
+    """Whether it was measured on the file that was kept."""
+    return (trial["surface_vertices"], trial["levels"]) == (budget["surface_vertices"], len(budget["levels"]))
 
 
 def worst(trial: dict[str, Any]) -> float:
@@ -155,12 +158,10 @@ def _taken(budget: dict[str, Any], args: argparse.Namespace) -> Taken:
     kept = [
         trial
         for trial in budget["trials"]
-        if trial["surface_vertices"] == budget["surface_vertices"]
-        and args.model in ("auto", trial["model"])
-        and worst(trial) <= ENOUGH * args.error
+        if _of_file(trial, budget) and args.model in ("auto", trial["model"]) and worst(trial) <= ENOUGH * args.error
     ]
     if not kept:
-        least = percent(min(worst(t) for t in budget["trials"] if t["surface_vertices"] == budget["surface_vertices"]))
+        least = percent(min(worst(trial) for trial in budget["trials"] if _of_file(trial, budget)))
         return Taken(None, f"{head} no less than {least} on this file: the solve's own estimate decides")
     best = min(kept, key=lambda trial: float(trial["cost"]))
     if not 1 <= best["cycles"] <= MOST_CYCLES:

@@ -29,16 +29,16 @@ SPREAD = 2.0 ** np.array([-0.5, -0.25, 0.0, 0.25])  # numbers of vertices that a
 ALTERNATIONS = 4  # of the chosen and the cheapest setting, when they are timed
 
 SUBJECTS = (
-    Subject("spot", "spot.ply", 8, 4000),
-    Subject("fertility", "fertility.ply", 7, 4000),
-    Subject("igea", "igea.ply", 6, 4000),
-    Subject("armadillo", "armadillo.ply", 8, 5000),
-    Subject("twirl", "twirl.ply", 8, 4000),
-    Subject("fandisk", "fandisk.ply", 5, 4000),
-    Subject("gargoyle", "gargoyle.ply", 8, 5000),
-    Subject("bunny", BUNNY, 8, 4000),
+    Subject("spot", "spot.ply", 8, 3000),
+    Subject("fertility", "fertility.ply", 7, 3000),
+    Subject("igea", "igea.ply", 6, 3000),
+    Subject("armadillo", "armadillo.ply", 8, 3000),
+    Subject("twirl", "twirl.ply", 8, 3000),
+    Subject("fandisk", "fandisk.ply", 5, 3000),
+    Subject("gargoyle", "gargoyle.ply", 8, 3000),
+    Subject("bunny", BUNNY, 8, 3000),
     Subject("sphere", "sphere", 6, detail=4),
-    Subject("torus", "torus", 3, detail=5),
+    Subject("torus", "torus", 3, detail=4),
     Subject("lobes", "lobes", 5, detail=4),
 )
 
@@ -153,15 +153,16 @@ class Search:
 
     def cheapest(self, error: float, chosen: Trial) -> Trial | None:
         """The cheapest setting that keeps it: of the levels of the whole mesh's chain, of surfaces around what is to be
-        expected of each model and around what was chosen, and of the best of them with a level more or less.
+        expected of each model and around what was chosen, and of the best of them with every number of levels.
         """
         plan.measure_chain(self.bench, self._chain, error, lambda text: None)
         self.bench.narrow(error)
         for count in self._counts(error, chosen):
-            self.bench.add(self._baked(surface_vertices=count, levels=plan.levels_for(count)))
+            self.bench.add(self._baked(surface_vertices=count, levels=plan.depth_of(count)))
         best = self.bench.best(error)
-        if best and best.surface_vertices < len(self._whole.surface.vertices):
-            self._vary_levels(best.surface_vertices)
+        if best:
+            same = [levels for (count, _), levels in self.bench.candidates.items() if count == best.surface_vertices]
+            self._vary_levels(max(same, key=len))
         return self.bench.best(error)
 
     def _counts(self, error: float, chosen: Trial) -> list[int]:
@@ -178,11 +179,12 @@ class Search:
                 found.append(count)
         return found
 
-    def _vary_levels(self, vertices: int) -> None:
-        usual = len(self.bench.candidates[vertices])
-        for levels in (usual - 1, usual + 1):
-            if levels > 1:
-                self.bench.add(self._baked(surface_vertices=vertices, levels=levels))
+    def _vary_levels(self, levels: list[Level]) -> None:
+        """Measure the candidate with fewer levels than it has, where that was not done."""
+        vertices = levels[0].graph.surface_vertex_count
+        for depth in range(2, len(levels)):
+            if (vertices, depth) not in self.bench.candidates:
+                self.bench.add(levels[:depth])
 
     def _baked(self, **options: Any) -> list[Level]:
         return bake.make_levels(
@@ -192,7 +194,12 @@ class Search:
     def time_ratio(self, output: Path, chosen: Trial, cheapest: Trial) -> float:
         """Least device time of a frame under new light, of what was chosen over that of the cheapest, taken in turn."""
         rival = self._folder / "cheapest.qgraph"
-        bake.write(self._whole, self.bench.candidates[cheapest.surface_vertices], self._options, BakeReport(str(rival)))
+        bake.write(
+            self._whole,
+            self.bench.candidates[cheapest.surface_vertices, cheapest.levels],
+            self._options,
+            BakeReport(str(rival)),
+        )
         material, lights_given = self.bench.scene.material, self.bench.scene.lights["given"]
         files = [File(path, material, self._device) for path in (output, rival)]
         least = [np.inf, np.inf]
@@ -230,4 +237,4 @@ def tables(record: dict[str, Any]) -> list[Table]:
 
 
 def _setting(trial: dict[str, Any]) -> str:
-    return f"{trial['surface_vertices']:,}, {trial['model']}, {trial['cycles']}"
+    return f"{trial['surface_vertices']:,}/{trial['levels']}, {trial['model']}, {trial['cycles']}"
