@@ -2,8 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "assembly_shared.h"
 #include "optics.h"
-#include "entries.glsl"
-#include "stored_entries.glsl"
+#include "stored_rows.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { AssembleEdgesPush push; };
@@ -26,9 +25,7 @@ void main() {
   }
   float area = 0.0;
   for (; k < end; ++k) area += load_assembly_float(push.face_area, load_assembly_uint(push.ring, k) >> 3u) / 12.0;
-  Entry entry =
-      sum_of(entry_of(stiffness, absorption, relaxation), boundary_entry(push.boundary, vec3(area)));
   uvec2 entries = load_assembly_uvec2(push.edge_entry, i);
-  store_entry(push.rows, entries.x, entry);
-  store_entry(push.rows, entries.y, entry);
+  store_terms(push.rows, entries.x, stiffness, absorption, relaxation, area, push.boundary);
+  store_terms(push.rows, entries.y, stiffness, absorption, relaxation, area, push.boundary);
 }

@@ -2,8 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "assembly_shared.h"
 #include "optics.h"
-#include "entries.glsl"
-#include "stored_entries.glsl"
+#include "stored_rows.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { AssembleFemPush push; };
@@ -39,8 +38,5 @@ void main() {
     }
   }
   // Consistent masses: of a tet's twenty parts five belong to each of its vertices, of a face's twelve four.
-  Entry row_sum = sum_of(entry_of(vec3(0), 5.0 * absorption, 5.0 * relaxation),
-                         boundary_entry(push.boundary, vec3(4.0 * area)));
-  push.rows.row_sum.at[i] = row_sum;
-  push.rows.diagonal.at[i] = difference_of(row_sum, off_diagonal_sum(i));
+  store_row(push.rows, i, 5.0 * absorption, 5.0 * relaxation, 4.0 * area, push.boundary, off_diagonal_sum(i));
 }

@@ -2,8 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "assembly_shared.h"
 #include "optics.h"
-#include "entries.glsl"
-#include "stored_entries.glsl"
+#include "stored_rows.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { AssembleFvPush push; };

@@ -2,6 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 #include "solve_shared.h"
 #include "fields.glsl"
+#include "optics.h"
+#include "stored_rows.glsl"
 #include "stride.glsl"
 
 layout(push_constant, scalar) uniform Block { CgDirectionPush push; };
@@ -13,7 +15,7 @@ void main() {
     if (push.multigrid == 1u) {
       direction = load_field(push.z, i);
     } else {
-      direction = solved(load_block(push.diagonal, i), load_field(push.r, i));
+      direction = solved(load_diagonal(push.diagonal, i), load_field(push.r, i));
     }
     // The old direction of the first iteration is no number one may count on.
     if (beta != vec3(0)) direction = add_scaled(direction, beta, load_field(push.p, i));

@@ -19,7 +19,7 @@ void decide(vec3 energy) {
 void main() {
   vec3 energy = vec3(0);
   EACH(i, push.count) {
-    Field result = row_times(push.rows, push.p, i);
+    Field result = row_times(push.rows, load_row(push.rows, i).sum, push.p, i);
     push.product.at[i] = result;
     energy += product(load_field(push.p, i), result);
   }

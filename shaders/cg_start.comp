@@ -68,8 +68,9 @@ void decide(vec3 square) {
 void main() {
   vec3 own = vec3(0);
   EACH(i, push.count) {
-    Field r = residual(push.rows, push.b, push.x, i);
-    Field z = solved(load_block(push.rows.diagonal, i), r);
+    Row row = load_row(push.rows, i);
+    Field r = residual(push.rows, row.sum, push.b, push.x, i);
+    Field z = solved(row.diagonal, r);
     push.r.at[i] = r;
     if (push.multigrid == 0u) push.p.at[i] = z;
     own += product(r, z);

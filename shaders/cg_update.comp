@@ -2,6 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 #include "solve_shared.h"
 #include "fields.glsl"
+#include "optics.h"
+#include "stored_rows.glsl"
 #include "stride.glsl"
 #include "reduce.glsl"
 #include "convergence.glsl"
@@ -27,7 +29,7 @@ void main() {
     push.x.at[i] = add_scaled(load_field(push.x, i), alpha, load_field(push.p, i));
     Field r = add_scaled(load_field(push.r, i), -alpha, load_field(push.product, i));
     push.r.at[i] = r;
-    own += product(r, solved(load_block(push.diagonal, i), r));
+    own += product(r, solved(load_diagonal(push.diagonal, i), r));
   }
   vec3 square;
   if (!reduce_dispatch(push.reduction, own, square)) return;

@@ -10,13 +10,14 @@
 layout(push_constant, scalar) uniform Block { ChebyshevPush push; };
 
 Field step_at(uint i) {
+  Row row = load_row(push.rows, i);
   Field r;
   if (push.zero == 1u) {
     r = load_field(push.f, i);
   } else {
-    r = residual(push.rows, push.f, push.from, i);
+    r = residual(push.rows, row.sum, push.f, push.from, i);
   }
-  Field d = scaled(0.5 * push.add * load_vec3(push.damping, 0), solved(load_block(push.rows.diagonal, i), r));
+  Field d = scaled(0.5 * push.add * load_vec3(push.damping, 0), solved(row.diagonal, r));
   if (push.first == 0u) d = add_scaled(d, vec3(push.keep), load_field(push.d, i));
   if (push.last == 0u) push.d.at[i] = d;
   Field x = d;

@@ -2,18 +2,19 @@
 #extension GL_GOOGLE_include_directive : require
 #include "solve_shared.h"
 #include "fields.glsl"
-#include "stored_entries.glsl"
+#include "optics.h"
+#include "stored_rows.glsl"
 #include "reduce.glsl"
 #include "convergence.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { CoarseSolvePush push; };
 
-Field residual_at(CoherentFields x, uint i) {
+Field residual_at(CoherentFields x, Entry row_sum, uint i) {
   uint slice = i / SLICE_ROWS;
   uint end = load_row_uint(push.rows.slice_offset, slice + 1u);
   Field own = load_coherent(x, i);
-  Field sum = times(load_block(push.rows.row_sum, i), own);
+  Field sum = times(row_sum, own);
   for (uint e = load_row_uint(push.rows.slice_offset, slice) + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
     StoredEntry stored = stored_entry(push.rows, e);
     sum = add(sum, times(entry_in(stored), difference(load_coherent(x, column_of(stored)), own)));
@@ -24,13 +25,14 @@ Field residual_at(CoherentFields x, uint i) {
 // One step on all rows; the writes are seen by all before the next.
 void iterate(CoherentFields from, CoherentFields to, bool zero, float keep, vec3 add_share) {
   for (uint i = gl_LocalInvocationID.x; i < push.count; i += WORKGROUP_SIZE) {
+    Row row = load_row(push.rows, i);
     Field r;
     if (zero) {
       r = load_field(push.f, i);
     } else {
-      r = residual_at(from, i);
+      r = residual_at(from, row.sum, i);
     }
-    Field d = scaled(add_share, solved(load_block(push.rows.diagonal, i), r));
+    Field d = scaled(add_share, solved(row.diagonal, r));
     if (!zero) d = add_scaled(d, vec3(keep), load_coherent(push.d, i));
     push.d.at[i] = d;
     if (zero) {

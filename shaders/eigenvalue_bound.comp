@@ -2,7 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 #include "assembly_shared.h"
 #include "fields.glsl"
-#include "stored_entries.glsl"
+#include "optics.h"
+#include "stored_rows.glsl"
 #include "stride.glsl"
 #define REDUCE(a, b) max(a, b)
 #define REDUCE_ZERO vec3(0)
@@ -49,13 +50,17 @@ void main() {
   EACH(i, push.count) {
     uint slice = i / SLICE_ROWS;
     uint end = load_row_uint(push.rows.slice_offset, slice + 1u);
-    Entry diagonal = load_block(push.rows.diagonal, i);
+    Row row = load_row(push.rows, i);
     Field y = start_or(push.y, i);
-    Field z = y;
+    Entry diagonal = row.sum;  // of A; D may be rounded otherwise
+    Field z = no_field();
     for (uint e = load_row_uint(push.rows.slice_offset, slice) + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
       StoredEntry stored = stored_entry(push.rows, e);
-      z = add(z, magnitude_times(diagonal, entry_in(stored), start_or(push.y, column_of(stored))));
+      Entry entry = entry_in(stored);
+      diagonal = difference_of(diagonal, entry);
+      z = add(z, magnitude_times(row.diagonal, entry, start_or(push.y, column_of(stored))));
     }
+    z = add(z, magnitude_times(row.diagonal, diagonal, y));
     push.z.at[i] = z;
     own = max(own, largest_ratio(z, y));
   }

@@ -8,5 +8,5 @@
 layout(push_constant, scalar) uniform Block { ResidualPush push; };
 
 void main() {
-  EACH(i, push.count) push.r.at[i] = residual(push.rows, push.f, push.x, i);
+  EACH(i, push.count) push.r.at[i] = residual(push.rows, load_row(push.rows, i).sum, push.f, push.x, i);
 }

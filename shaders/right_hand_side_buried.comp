@@ -2,6 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 #include "walk_shared.h"
 #include "fields.glsl"
+#include "optics.h"
+#include "stored_rows.glsl"
 #include "fixed_point.glsl"
 #include "stride.glsl"
 #include "reduce.glsl"
@@ -23,7 +25,7 @@ void main() {
     if (push.per_volume == 1u && power != vec3(0)) power /= volume_of(i);
     Field b = lit(power);
     push.b.at[i] = b;
-    square += product(b, solved(load_block(push.diagonal, i), b));
+    square += product(b, solved(load_diagonal(push.diagonal, i), b));
   }
   vec3 norm;
   if (!reduce_dispatch(push.reduction, square, norm)) return;

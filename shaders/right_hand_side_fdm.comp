@@ -3,6 +3,7 @@
 #include "assembly_shared.h"
 #include "optics.h"
 #include "fields.glsl"
+#include "stored_rows.glsl"
 #include "reduce.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
@@ -23,7 +24,7 @@ void main() {
   if (i < push.count) {
     Field b = diffuse_source(push.boundary, i < push.tet_count ? vec3(0) : surface_load(i - push.tet_count));
     push.b.at[i] = b;
-    square = product(b, solved(load_block(push.diagonal, i), b));
+    square = product(b, solved(load_diagonal(push.diagonal, i), b));
   }
   vec3 norm;
   if (!reduce_dispatch(push.reduction, square, norm)) return;

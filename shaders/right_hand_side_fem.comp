@@ -2,6 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 #include "assembly_shared.h"
 #include "fields.glsl"
+#include "optics.h"
+#include "stored_rows.glsl"
 #include "reduce.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
@@ -26,7 +28,7 @@ void main() {
   if (i < push.count) {
     Field b = diffuse_source(push.boundary, i < push.surface_count ? surface_load(i) : vec3(0));
     push.b.at[i] = b;
-    square = product(b, solved(load_block(push.diagonal, i), b));
+    square = product(b, solved(load_diagonal(push.diagonal, i), b));
   }
   vec3 norm;
   if (!reduce_dispatch(push.reduction, square, norm)) return;

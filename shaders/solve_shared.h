@@ -81,7 +81,8 @@ struct Boundary {
 // over e = slice_offset[i / SLICE_ROWS] + i % SLICE_ROWS, in steps of SLICE_ROWS, to the next slice. Padding entries
 // name their own row with weight 0. Taking differences, the stiffness, which is all that a fine mesh's large entries
 // consist of, cancels before it is rounded: the flux from i to j is that from j to i, and energy is kept in single
-// precision. `diagonal` = row_sum - sum of the weights is for preconditioning.
+// precision. `diagonal` = row_sum - sum of the weights is for preconditioning. Both are read with stored_rows.glsl:
+// with packed entries of SP3 they are one array.
 struct RowsRef {
   QG_REF(RowUints) slice_offset;
   QG_REF(RowUints) entry;

@@ -8,7 +8,7 @@ layout(constant_id = 1) const uint ENTRIES = ENTRIES_PACKED;
 #define PACKED_WORDS 2u
 #define PLAIN_WORDS 4u
 #else
-#define PACKED_WORDS 5u
+#define PACKED_WORDS 4u
 #define PLAIN_WORDS 10u
 #endif
 struct StoredEntry {
@@ -17,6 +17,9 @@ struct StoredEntry {
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer AlignedUvec2s {
   uvec2 at[];
 };
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer AlignedUvec4s {
+  uvec4 at[];
+};
 
 StoredEntry stored_entry(RowsRef rows, uint e) {
   StoredEntry stored;
@@ -24,14 +27,15 @@ StoredEntry stored_entry(RowsRef rows, uint e) {
     for (uint k = 0u; k < PLAIN_WORDS; ++k) stored.word[k] = load_row_uint(rows.entry, PLAIN_WORDS * e + k);
     return stored;
   }
-#if MOMENTS == 1
   if (!ROW_TEXELS) {
+#if MOMENTS == 1
     uvec2 words = AlignedUvec2s(uvec2(rows.entry)).at[e];
-    stored.word[0] = words.x;
-    stored.word[1] = words.y;
+#else
+    uvec4 words = AlignedUvec4s(uvec2(rows.entry)).at[e];
+#endif
+    for (uint k = 0u; k < PACKED_WORDS; ++k) stored.word[k] = words[k];
     return stored;
   }
-#endif
   for (uint k = 0u; k < PACKED_WORDS; ++k) stored.word[k] = load_row_uint(rows.entry, PACKED_WORDS * e + k);
   return stored;
 }
@@ -45,14 +49,6 @@ void store_plain(RowsRef rows, uint first, vec3 block) {
   for (uint k = 0u; k < 3u; ++k) rows.entry.at[first + k] = words[k];
 }
 
-int first_number(uint word) {
-  return int(word << 13u) >> 19;
-}
-
-int second_number(uint word) {
-  return int(word) >> 19;
-}
-
 #if MOMENTS == 1
 uint column_of(StoredEntry stored) {
   if (ENTRIES == ENTRIES_PLAIN) return stored.word[0];
@@ -62,7 +58,7 @@ uint column_of(StoredEntry stored) {
 Entry entry_in(StoredEntry stored) {
   if (ENTRIES == ENTRIES_PLAIN) return Entry(plain_block(stored, 1u));
   uint first = stored.word[0], second = stored.word[1];
-  ivec3 number = ivec3(int(first) >> 20, int(second << 12u) >> 20, int(second) >> 20);
+  ivec3 number = ivec3(number_at(first, 20, 12), number_at(second, 8, 12), number_at(second, 20, 12));
   return Entry(unpack(number, (second >> 2u) & 63u));
 }
 
@@ -82,22 +78,25 @@ Entry store_entry(RowsRef rows, uint e, Entry entry) {
 #else
 uint column_of(StoredEntry stored) {
   if (ENTRIES == ENTRIES_PLAIN) return stored.word[0];
-  return (stored.word[0] & 0x7ffffu) | (stored.word[1] & 63u) << 19u;
+  return stored.word[0] & 0x3fffffu;
+}
+
+Entry entry_of_words(uvec4 words) {
+  Sp3Block block = unpack_sp3(words);
+  return Entry(block.a11, SP3_SHARE12 * block.a11 + block.rest12, SP3_SHARE22 * block.a11 + block.rest22);
 }
 
 Entry entry_in(StoredEntry stored) {
   if (ENTRIES == ENTRIES_PLAIN) {
     return Entry(plain_block(stored, 1u), plain_block(stored, 4u), plain_block(stored, 7u));
   }
-  uint a = stored.word[1], b = stored.word[2], c = stored.word[3], d = stored.word[4];
-  ivec3 a11 = ivec3(second_number(stored.word[0]), first_number(a), second_number(a));
-  ivec3 a12 = ivec3(first_number(b), second_number(b), first_number(c));
-  ivec3 a22 = ivec3(second_number(c), first_number(d), second_number(d));
-  return Entry(unpack(a11, b & 63u), unpack(a12, c & 63u), unpack(a22, d & 63u));
+  return entry_of_words(uvec4(stored.word[0], stored.word[1], stored.word[2], stored.word[3]));
 }
 
-uint packed(uint low, int first, int second) {
-  return low | (uint(first) & 0x1fffu) << 6u | uint(second) << 19u;
+Entry store_sp3(RowsRef rows, uint e, Sp3Block block) {
+  uvec4 words = pack_sp3(rows.entry.at[4u * e] & 0x3fffffu, block);
+  for (uint k = 0u; k < 4u; ++k) rows.entry.at[4u * e + k] = words[k];
+  return entry_of_words(words);
 }
 
 // Leaves the column as it is; returns what is stored.
@@ -108,14 +107,8 @@ Entry store_entry(RowsRef rows, uint e, Entry entry) {
     store_plain(rows, 10u * e + 7u, entry.a22);
     return entry;
   }
-  PackedBlock a11 = pack(entry.a11, 13), a12 = pack(entry.a12, 13), a22 = pack(entry.a22, 13);
-  uint at = 5u * e;
-  rows.entry.at[at] = (rows.entry.at[at] & 0x7ffffu) | uint(a11.number.x) << 19u;
-  rows.entry.at[at + 1u] = packed(rows.entry.at[at + 1u] & 63u, a11.number.y, a11.number.z);
-  rows.entry.at[at + 2u] = packed(a11.exponent, a12.number.x, a12.number.y);
-  rows.entry.at[at + 3u] = packed(a12.exponent, a12.number.z, a22.number.x);
-  rows.entry.at[at + 4u] = packed(a22.exponent, a22.number.y, a22.number.z);
-  return Entry(unpack(a11.number, a11.exponent), unpack(a12.number, a12.exponent), unpack(a22.number, a22.exponent));
+  return store_sp3(rows, e, Sp3Block(entry.a11, entry.a12 - SP3_SHARE12 * entry.a11,
+                                     entry.a22 - SP3_SHARE22 * entry.a11));
 }
 #endif
 

@@ -28,8 +28,9 @@ void decide(vec3 square) {
 void main() {
   vec3 square = vec3(0);
   EACH(i, push.count) {
-    Field r = residual(push.rows, push.b, push.from, i);
-    Field z = solved(load_block(push.rows.diagonal, i), r);
+    Row row = load_row(push.rows, i);
+    Field r = residual(push.rows, row.sum, push.b, push.from, i);
+    Field z = solved(row.diagonal, r);
     push.to.at[i] = add_scaled(load_field(push.from, i), load_vec3(push.damping, 0), z);
     square += product(r, z);
   }

@@ -10,15 +10,10 @@
 namespace quadgraph {
 namespace {
 
-constexpr int diffusion_bits = 12, sp3_bits = 13;
+constexpr int diffusion_bits = 12;
 
 // See format_of.
 constexpr double largest_entry = 1000, largest_conduction = 4000, most_vertices = 0.01;
-
-// The signed number of `bits` bits from bit `first` on.
-int number_at(std::uint32_t word, int first, int bits) {
-  return static_cast<std::int32_t>(word << (32 - bits - first)) >> (32 - bits);
-}
 
 void store_plain(std::uint32_t* words, const glm::dvec3& block) {
   for (int c = 0; c < 3; ++c) words[c] = glm::floatBitsToUint(static_cast<float>(block[c]));
@@ -74,12 +69,12 @@ EntryFormat format_of(const Level& level, Method method) {
 }
 
 std::vector<std::uint32_t> stored_columns(std::span<const std::uint32_t> columns, Model model, EntryFormat format) {
-  const bool plain = format == EntryFormat::plain;
-  const std::uint32_t words = stored_words(model, format), low_bits = model == Model::sp3 ? 19 : 20;
+  const bool split = format == EntryFormat::packed && model != Model::sp3;
+  const std::uint32_t words = stored_words(model, format);
   std::vector<std::uint32_t> stored(words * columns.size(), 0);
   for (std::size_t e = 0; e < columns.size(); ++e) {
-    stored[words * e] = plain ? columns[e] : columns[e] & ((1u << low_bits) - 1);
-    if (!plain) stored[words * e + 1] = columns[e] >> low_bits;
+    stored[words * e] = split ? columns[e] & 0xfffffu : columns[e];
+    if (split) stored[words * e + 1] = columns[e] >> 20u;
   }
   return stored;
 }
@@ -91,25 +86,18 @@ void store_weight(std::span<std::uint32_t> words, std::size_t e, const Block& we
     store_plain(w + 1, weight.a11);
     if (sp3) store_plain(w + 4, weight.a12);
     if (sp3) store_plain(w + 7, weight.a22);
-    return;
-  }
-  const int bits = sp3 ? sp3_bits : diffusion_bits;
-  const gpu::PackedBlock a11 = gpu::pack(glm::vec3(weight.a11), bits);
-  if (!sp3) {
-    const glm::uvec3 n = glm::uvec3(a11.number) & 0xfffu;
+  } else if (sp3) {
+    const glm::dvec3 rest12 = weight.a12 - double{gpu::SP3_SHARE12} * weight.a11;
+    const glm::dvec3 rest22 = weight.a22 - double{gpu::SP3_SHARE22} * weight.a11;
+    const gpu::Sp3Block block{glm::vec3(weight.a11), glm::vec3(rest12), glm::vec3(rest22)};
+    const glm::uvec4 packed = gpu::pack_sp3(w[0] & 0x3fffffu, block);
+    for (int k = 0; k < 4; ++k) w[k] = packed[k];
+  } else {
+    const gpu::PackedBlock block = gpu::pack(glm::vec3(weight.a11), diffusion_bits);
+    const glm::uvec3 n = glm::uvec3(block.number) & 0xfffu;
     w[0] = (w[0] & 0xfffffu) | n.x << 20u;
-    w[1] = (w[1] & 3u) | a11.exponent << 2u | n.y << 8u | n.z << 20u;
-    return;
+    w[1] = (w[1] & 3u) | block.exponent << 2u | n.y << 8u | n.z << 20u;
   }
-  const gpu::PackedBlock a12 = gpu::pack(glm::vec3(weight.a12), bits), a22 = gpu::pack(glm::vec3(weight.a22), bits);
-  const auto packed = [](std::uint32_t low, int first, int second) {
-    return low | (static_cast<std::uint32_t>(first) & 0x1fffu) << 6u | static_cast<std::uint32_t>(second) << 19u;
-  };
-  w[0] = (w[0] & 0x7ffffu) | static_cast<std::uint32_t>(a11.number.x) << 19u;
-  w[1] = packed(w[1] & 63u, a11.number.y, a11.number.z);
-  w[2] = packed(a11.exponent, a12.number.x, a12.number.y);
-  w[3] = packed(a12.exponent, a12.number.z, a22.number.x);
-  w[4] = packed(a22.exponent, a22.number.y, a22.number.z);
 }
 
 StoredEntry stored_entry(std::span<const std::uint32_t> words, std::size_t e, Model model, EntryFormat format) {
@@ -119,15 +107,14 @@ StoredEntry stored_entry(std::span<const std::uint32_t> words, std::size_t e, Mo
     return {w[0], {plain_block(w + 1), plain_block(w + 4), plain_block(w + 7)}};
   }
   if (model != Model::sp3) {
-    const glm::ivec3 number(number_at(w[0], 20, 12), number_at(w[1], 8, 12), number_at(w[1], 20, 12));
+    const glm::ivec3 number(gpu::number_at(w[0], 20, 12), gpu::number_at(w[1], 8, 12), gpu::number_at(w[1], 20, 12));
     return {(w[0] & 0xfffffu) | (w[1] & 3u) << 20u, {glm::dvec3(gpu::unpack(number, (w[1] >> 2u) & 63u)), {}, {}}};
   }
-  const auto first = [&](int k) { return number_at(w[k], 6, sp3_bits); };
-  const auto second = [&](int k) { return number_at(w[k], 19, sp3_bits); };
-  return {(w[0] & 0x7ffffu) | (w[1] & 63u) << 19u,
-          {glm::dvec3(gpu::unpack({second(0), first(1), second(1)}, w[2] & 63u)),
-           glm::dvec3(gpu::unpack({first(2), second(2), first(3)}, w[3] & 63u)),
-           glm::dvec3(gpu::unpack({second(3), first(4), second(4)}, w[4] & 63u))}};
+  const gpu::Sp3Block block = gpu::unpack_sp3({w[0], w[1], w[2], w[3]});
+  const glm::dvec3 a11(block.a11);
+  return {w[0] & 0x3fffffu,
+          {a11, double{gpu::SP3_SHARE12} * a11 + glm::dvec3(block.rest12),
+           double{gpu::SP3_SHARE22} * a11 + glm::dvec3(block.rest22)}};
 }
 
 Rows as_packed(Rows rows, Model model) {

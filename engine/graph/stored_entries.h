@@ -25,7 +25,7 @@ EntryFormat format_of(const Level& level, Method method);
 // 32-bit words of an entry.
 constexpr std::uint32_t stored_words(Model model, EntryFormat format) {
   if (format == EntryFormat::plain) return model == Model::sp3 ? 10 : 4;
-  return model == Model::sp3 ? 5 : 2;
+  return model == Model::sp3 ? 4 : 2;
 }
 
 // Entries of these columns, all of them 0.

@@ -25,7 +25,7 @@ void assemble_fdm(Workspace& work, const LevelBuffers& level, const Boundary& bo
                                   .tet_count = level.tet_count,
                                   .boundary = on_device(boundary)};
   const std::uint64_t bytes = op.entries * (vec3_bytes + 2 * op.entry_bytes()) +
-                              op.count * (2 * vec3_bytes + sizeof(gpu::Optical) + 2 * op.block_bytes());
+                              op.count * (2 * vec3_bytes + sizeof(gpu::Optical) + op.row_bytes());
   work.recorder.dispatch(work.passes.assemble_fdm.of(op.model, op.format), push, op.count, "assembly", bytes);
 }
 
@@ -44,8 +44,7 @@ void assemble_fv(Workspace& work, const LevelBuffers& level, const Boundary& bou
   const std::uint64_t link_bytes =
       2 * sizeof(glm::uvec4) + 5 * vec3_bytes + 2 * sizeof(gpu::Optical) + 2 * op.entry_bytes();
   work.recorder.dispatch(work.passes.assemble_fv.of(op.model, op.format), push, op.count, "assembly",
-                         op.entries * link_bytes +
-                             op.count * (vec3_bytes + sizeof(gpu::Optical) + 2 * op.block_bytes()) +
+                         op.entries * link_bytes + op.count * (vec3_bytes + sizeof(gpu::Optical) + op.row_bytes()) +
                              level.tet_count * (sizeof(glm::uvec4) + 4 * vec3_bytes));
 }
 
@@ -74,7 +73,7 @@ void assemble_even(Workspace& work, const LevelBuffers& level, const Boundary& b
                                    .boundary = on_device(boundary)};
   work.recorder.dispatch(work.passes.assemble_even.of(op.model, op.format), push, op.count, "assembly",
                          op.entry_shape.size() + op.entry_area.size() + op.row_shape.size() +
-                             2 * (op.entries * op.entry_bytes() + op.count * op.block_bytes()));
+                             2 * op.entries * op.entry_bytes() + op.count * op.row_bytes());
 }
 
 void assemble_fem(Workspace& work, const LevelBuffers& level, const Boundary& boundary, bool even,
@@ -111,11 +110,11 @@ void assemble_fem(Workspace& work, const LevelBuffers& level, const Boundary& bo
                                   .boundary = on_device(boundary)};
   work.recorder.dispatch(work.passes.assemble_fem.of(op.model, op.format), push, op.count, "assembly",
                          4 * level.tet_count * tet_bytes + 3 * level.face_count * face_bytes +
-                             2 * (op.entries * op.entry_bytes() + op.count * op.block_bytes()));
+                             2 * op.entries * op.entry_bytes() + op.count * op.row_bytes());
 }
 
 // Every right-hand side reads the diagonal and writes b.
-std::uint64_t row_bytes(const OperatorBuffers& op) {
+std::uint64_t right_hand_side_bytes(const OperatorBuffers& op) {
   return (op.block_bytes() + op.field_bytes()) * op.count;
 }
 
@@ -126,7 +125,7 @@ void load_fdm(Workspace& work, const LevelBuffers& level, const Boundary& bounda
                                        .face_kinds = level.face_kind.address(),
                                        .q = level.q.address(),
                                        .scale = work.scale.address(),
-                                       .diagonal = op.diagonal.address(),
+                                       .diagonal = op.rows().diagonal,
                                        .b = op.b.address(),
                                        .state = op.state.address(),
                                        .reduction = work.reduction.address(),
@@ -134,8 +133,8 @@ void load_fdm(Workspace& work, const LevelBuffers& level, const Boundary& bounda
                                        .tet_count = level.tet_count,
                                        .boundary = on_device(boundary)};
   const std::uint64_t face_bytes = 2 * index_bytes + 3 * vec3_bytes + 2 * sizeof(gpu::Optical);
-  work.recorder.dispatch(work.passes.right_hand_side_fdm.of(op.model), push, op.count, "right-hand side",
-                         row_bytes(op) + level.face_count * face_bytes);
+  work.recorder.dispatch(work.passes.right_hand_side_fdm.of(op.model, op.format), push, op.count, "right-hand side",
+                         right_hand_side_bytes(op) + level.face_count * face_bytes);
 }
 
 void load_fv(Workspace& work, const LevelBuffers& level, const Boundary& boundary, OperatorBuffers& op) {
@@ -144,7 +143,7 @@ void load_fv(Workspace& work, const LevelBuffers& level, const Boundary& boundar
                                       .face_kinds = level.face_kind.address(),
                                       .q = level.q.address(),
                                       .scale = work.scale.address(),
-                                      .diagonal = op.diagonal.address(),
+                                      .diagonal = op.rows().diagonal,
                                       .b = op.b.address(),
                                       .state = op.state.address(),
                                       .reduction = work.reduction.address(),
@@ -152,8 +151,8 @@ void load_fv(Workspace& work, const LevelBuffers& level, const Boundary& boundar
                                       .tet_count = level.tet_count,
                                       .boundary = on_device(boundary)};
   const std::uint64_t face_bytes = sizeof(glm::uvec3) + 4 * vec3_bytes + index_bytes;
-  work.recorder.dispatch(work.passes.right_hand_side_fv.of(op.model), push, op.count, "right-hand side",
-                         row_bytes(op) + level.face_count * face_bytes);
+  work.recorder.dispatch(work.passes.right_hand_side_fv.of(op.model, op.format), push, op.count, "right-hand side",
+                         right_hand_side_bytes(op) + level.face_count * face_bytes);
 }
 
 void load_fem(Workspace& work, const LevelBuffers& level, const Boundary& boundary, OperatorBuffers& op) {
@@ -163,7 +162,7 @@ void load_fem(Workspace& work, const LevelBuffers& level, const Boundary& bounda
                                        .face_incidence = level.face_incidence.address(),
                                        .q = level.q.address(),
                                        .scale = work.scale.address(),
-                                       .diagonal = op.diagonal.address(),
+                                       .diagonal = op.rows().diagonal,
                                        .b = op.b.address(),
                                        .state = op.state.address(),
                                        .reduction = work.reduction.address(),
@@ -171,8 +170,8 @@ void load_fem(Workspace& work, const LevelBuffers& level, const Boundary& bounda
                                        .surface_count = level.surface_vertex_count,
                                        .boundary = on_device(boundary)};
   const std::uint64_t face_bytes = index_bytes + sizeof(glm::uvec3) + 4 * vec3_bytes;
-  work.recorder.dispatch(work.passes.right_hand_side_fem.of(op.model), push, op.count, "right-hand side",
-                         row_bytes(op) + 3 * level.face_count * face_bytes);
+  work.recorder.dispatch(work.passes.right_hand_side_fem.of(op.model, op.format), push, op.count, "right-hand side",
+                         right_hand_side_bytes(op) + 3 * level.face_count * face_bytes);
 }
 
 }  // namespace

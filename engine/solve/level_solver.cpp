@@ -164,7 +164,7 @@ void LevelSolver::record_cg() {
   const std::uint32_t multigrid = multigrid_ ? 1 : 0;
   const gpu::CgMultiplyPush multiply{rows.rows(),          rows.p.address(),          rows.product.address(),
                                      rows.state.address(), work_.reduction.address(), rows.count};
-  const gpu::CgUpdatePush update{.diagonal = rows.diagonal.address(),
+  const gpu::CgUpdatePush update{.diagonal = rows.rows().diagonal,
                                  .p = rows.p.address(),
                                  .product = rows.product.address(),
                                  .x = rows.x.address(),
@@ -174,16 +174,17 @@ void LevelSolver::record_cg() {
                                  .count = rows.count,
                                  .multigrid = multigrid};
   const vk::Buffer& z = multigrid_ ? multigrid_->correction(level_) : rows.z;
-  const gpu::CgDirectionPush direction{rows.diagonal.address(), rows.r.address(), z.address(), rows.p.address(),
-                                       rows.state.address(),    rows.count,       multigrid};
+  const gpu::CgDirectionPush direction{rows.rows().diagonal, rows.r.address(), z.address(), rows.p.address(),
+                                       rows.state.address(), rows.count,       multigrid};
   // The first direction of plain conjugate gradients comes with the start.
   if (multigrid_) {
     multigrid_->record(level_);
-    dispatch(work_.passes.cg_direction.of(key_.model), direction, gate_of(level_), "cg-direction");
+    dispatch(work_.passes.cg_direction.of(rows.model, rows.format), direction, gate_of(level_), "cg-direction");
   }
   dispatch(work_.passes.cg_multiply.of(rows.model, rows.format), multiply, gate_of(level_), "cg-multiply");
-  dispatch(work_.passes.cg_update.of(key_.model), update, gate_of(level_), "cg-update");
-  if (!multigrid_) dispatch(work_.passes.cg_direction.of(key_.model), direction, gate_of(level_), "cg-direction");
+  dispatch(work_.passes.cg_update.of(rows.model, rows.format), update, gate_of(level_), "cg-update");
+  if (!multigrid_)
+    dispatch(work_.passes.cg_direction.of(rows.model, rows.format), direction, gate_of(level_), "cg-direction");
 }
 
 // x += z, then the residual anew.

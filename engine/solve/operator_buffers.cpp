@@ -3,6 +3,7 @@
 #include "engine/graph/operator.h"
 #include "engine/solve/row_structure.h"
 #include "shaders/assembly_shared.h"
+#include "shaders/packing.h"
 #include "shaders/surface_shared.h"
 
 namespace quadgraph {
@@ -28,7 +29,8 @@ OperatorBuffers::OperatorBuffers(vk::Context& context, const Level& level, std::
     return vk::Buffer(context, bytes, place, purpose + prefix_ + name);
   };
   const auto block = [&](const char* name) {
-    return buffer(count * block_bytes(), "operator/", name, vk::Place::rows);
+    const std::uint64_t head = compact_rows() ? gpu::SP3_ROWS_HEAD * sizeof(float) : 0;
+    return buffer(head + count * block_bytes(), "operator/", name, vk::Place::rows);
   };
   const auto field = [&](const char* name) {
     return buffer(count * field_bytes(), "solver/", name, vk::Place::fields);
@@ -42,7 +44,7 @@ OperatorBuffers::OperatorBuffers(vk::Context& context, const Level& level, std::
   slice_offset = upload(context, columns.slice_offset, rows + prefix_ + "slice_offset", vk::Place::rows);
   entry = upload(context, stored_columns(columns.column, model, format), rows + prefix_ + "entry", vk::Place::rows);
   row_sum = block("row_sum");
-  diagonal = block("diagonal");
+  if (!compact_rows()) diagonal = block("diagonal");
   b = field("b");
   x = field("x");
   r = field("r");
@@ -97,8 +99,13 @@ void OperatorBuffers::upload_rings(vk::Context& context, const Level& level) {
   face_area = {context, level.face_count() * sizeof(float), vk::Place::assembly, prefix + "face_area"};
 }
 
+std::uint64_t OperatorBuffers::block_bytes() const {
+  if (compact_rows()) return gpu::SP3_ROW_FLOATS * sizeof(float);
+  return (model == Model::sp3 ? 3 : 1) * sizeof(glm::vec3);
+}
+
 gpu::RowsRef OperatorBuffers::rows() const {
-  return {slice_offset.address(), entry.address(), row_sum.address(), diagonal.address()};
+  return {slice_offset.address(), entry.address(), row_sum.address(), (compact_rows() ? row_sum : diagonal).address()};
 }
 
 std::uint64_t OperatorBuffers::product_bytes() const {

@@ -18,7 +18,7 @@ struct OperatorBuffers {
   std::uint32_t count = 0;    // rows: carriers, each with one unknown or, in SP3, two
   std::uint32_t entries = 0;  // off the diagonal, padding included
   std::uint32_t slices = 0;
-  vk::Buffer slice_offset, entry, row_sum, diagonal;  // RowsRef
+  vk::Buffer slice_offset, entry, row_sum, diagonal;  // RowsRef; no diagonal with compact_rows
   vk::Buffer to_phi;                                  // vec3 per row; none with fem: 1
   vk::Buffer b, x;                                    // scaled (gpu::Scale)
   vk::Buffer r, p;                                    // residual, direction
@@ -62,7 +62,12 @@ struct OperatorBuffers {
   bool by_entry(bool even) const { return even && !moved; }
 
   std::uint64_t field_bytes() const { return (model == Model::sp3 ? 2 : 1) * sizeof(glm::vec3); }
-  std::uint64_t block_bytes() const { return (model == Model::sp3 ? 3 : 1) * sizeof(glm::vec3); }
+  // Whether the sum of a row and its diagonal are both found from one record in row_sum (shaders/stored_rows.glsl).
+  bool compact_rows() const { return model == Model::sp3 && format == EntryFormat::packed; }
+
+  // Read for the diagonal of a row, and of a row's sum and diagonal together.
+  std::uint64_t block_bytes() const;
+  std::uint64_t row_bytes() const { return (compact_rows() ? 1 : 2) * block_bytes(); }
   std::uint64_t entry_bytes() const { return stored_words(model, format) * sizeof(std::uint32_t); }
 
   gpu::RowsRef rows() const;

@@ -45,7 +45,7 @@ struct ModelPass {
   LazyPass& of(Model model) { return model == Model::sp3 ? sp3 : diffusion; }
 };
 
-// The same of a pass that touches entries, for both formats.
+// The same of a pass that touches entries or rows, for both formats.
 struct EntryPass {
   ModelPass packed, plain;
 
@@ -59,9 +59,9 @@ struct Passes {
       energy_total, surface_share, uncollided, gather_exitance, gather_scale, exchange, exchange_finer, exchange_enter,
       exchange_boxes, exchange_rays;
   EntryPass assemble_fdm, assemble_fv, assemble_edges, assemble_even, assemble_fem, eigenvalue_bound, cg_start,
-      cg_multiply, sweep, residual, chebyshev, coarse_solve;
-  ModelPass right_hand_side_fdm, right_hand_side_fv, right_hand_side_fem, right_hand_side_buried, transfer, follow,
-      cg_update, cg_direction, correct, restrict, prolong, surface_change, exitance, energy, gather_phi;
+      cg_multiply, cg_update, cg_direction, sweep, residual, chebyshev, coarse_solve, right_hand_side_fdm,
+      right_hand_side_fv, right_hand_side_fem, right_hand_side_buried;
+  ModelPass transfer, follow, correct, restrict, prolong, surface_change, exitance, energy, gather_phi;
 };
 
 }  // namespace quadgraph

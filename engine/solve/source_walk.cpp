@@ -179,14 +179,14 @@ void SourceWalk::record_right_hand_side(Workspace& work, const LevelBuffers& lev
   const gpu::RightHandSideBuriedPush push{.deposit = deposit(method).address(),
                                           .vertices = level.vertices.address(),
                                           .tets = level.tets.address(),
-                                          .diagonal = op.diagonal.address(),
+                                          .diagonal = op.rows().diagonal,
                                           .b = op.b.address(),
                                           .state = op.state.address(),
                                           .reduction = work.reduction.address(),
                                           .count = op.count,
                                           .deposit_count = carriers(level, method),
                                           .per_volume = method == Method::quadgraph_fdm ? 1u : 0u};
-  work.recorder.dispatch(work.passes.right_hand_side_buried.of(op.model), push, op.count, "right-hand side",
+  work.recorder.dispatch(work.passes.right_hand_side_buried.of(op.model, op.format), push, op.count, "right-hand side",
                          op.count * (op.block_bytes() + op.field_bytes()) + carriers(level, method) * power_bytes);
 }
 
