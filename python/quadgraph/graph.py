@@ -71,8 +71,12 @@ def build(mesh: TetMesh) -> Graph:
     Raises InputError if the boundary is no closed manifold, if three tets share a face, or if a tet is so flat that
     no float32 point lies inside.
     """
-    vertices, tets = _split(np.asarray(mesh.vertices, np.float64), np.asarray(mesh.tets, np.int64))
+    vertices, tets = np.asarray(mesh.vertices, np.float64), np.asarray(mesh.tets, np.int64)
     neighbours = _neighbours(tets)
+    several = (neighbours < 0).sum(axis=1) > 1
+    if several.any():
+        vertices, tets = _split(vertices, tets, several)
+        neighbours = _neighbours(tets)
     face_tets, corner = np.nonzero(neighbours < 0)
     faces = tets[face_tets[:, None], FACE_CORNERS[corner]]
     if not Surface(vertices, faces).is_closed_manifold:
@@ -99,9 +103,8 @@ def _neighbours(tets: np.ndarray) -> np.ndarray:
     return neighbours.reshape(-1, 4)
 
 
-def _split(vertices: np.ndarray, tets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    outside = (_neighbours(tets) < 0).sum(axis=1)
-    several = outside > 1
+def _split(vertices: np.ndarray, tets: np.ndarray, several: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Cut the tets of (n_t,) `several` in four around a point inside."""
     corners = vertices[tets[several]]
     points = _points_inside(corners)
     numbers = len(vertices) + np.arange(len(points))

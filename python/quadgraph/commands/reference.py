@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.table import Table
@@ -12,10 +11,7 @@ from rich.table import Table
 from quadgraph.commands import scene
 from quadgraph.errors import InputError
 
-if TYPE_CHECKING:
-    from quadgraph.reference.scenes import Scene
-
-KINDS = ("transport", "pde")
+KINDS = ("transport", "pde", "walk")
 MODELS, SOURCES = ("sp3", "diffusion"), ("buried", "diffuse")
 
 
@@ -30,7 +26,8 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         choices=KINDS,
         required=True,
         help="transport: pictures by path tracing with Mitsuba; pde: the exitance of converged linear elements in "
-        "double precision. Ctrl-C keeps what is there, and the same command goes on",
+        "double precision; walk: random walks through 'sphere' and 'slab', to check the others by. Ctrl-C keeps what "
+        "is there, and the same command goes on",
     )
     parser.add_argument(
         "--meshes",
@@ -43,10 +40,13 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--truth",
         type=Path,
         metavar="FOLDER",
-        help=f"where truths are kept (default: {scene.COMMITTED_TRUTH} for transport, ~/.cache/quadgraph for pde)",
+        help=f"where truths are kept (default: {scene.COMMITTED_TRUTH} for transport, else ~/.cache/quadgraph)",
     )
     _add_transport_options(parser.add_argument_group("transport"))
     _add_pde_options(parser.add_argument_group("pde"))
+    parser.add_argument_group("walk").add_argument(
+        "--walks", type=scene.positive_int, default=1_000_000, metavar="N", help="through each (default: %(default)s)"
+    )
 
 
 def _add_transport_options(group: argparse._ArgumentGroup) -> None:
@@ -65,21 +65,19 @@ def _add_pde_options(group: argparse._ArgumentGroup) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Make the truths; 0 on success."""
-    from quadgraph.reference import scenes
-
-    chosen = scenes.chosen(args.scene)
-    table = _transport(args, chosen) if args.kind == "transport" else _pde(args, chosen)
+    table = {"transport": _transport, "pde": _pde, "walk": _walk}[args.kind](args)
     Console(highlight=False).print(table)
     return 0
 
 
-def _transport(args: argparse.Namespace, chosen: list[Scene]) -> Table:
-    from quadgraph.reference import scene_meshes, truth_run
+def _transport(args: argparse.Namespace) -> Table:
+    from quadgraph.reference import scene_meshes, scenes, truth_run
     from quadgraph.reference.path_tracing import BATCH
 
     if args.samples is None:
         raise InputError("--samples: not given, a number of samples a pixel is needed")
     folder = args.truth or scene.COMMITTED_TRUTH
+    chosen = scenes.chosen(args.scene)
     subjects = [truth_run.subject(one, scene_meshes.file(one, args.meshes)) for one in chosen]
     truth_run.render(subjects, folder, args.samples, Console(stderr=True))
     table = Table("scene", "image", "samples a pixel", "lit: noise of a block", "all")
@@ -91,15 +89,15 @@ def _transport(args: argparse.Namespace, chosen: list[Scene]) -> Table:
     return table
 
 
-def _pde(args: argparse.Namespace, chosen: list[Scene]) -> Table:
-    from quadgraph.reference import pde_truth, scene_meshes
+def _pde(args: argparse.Namespace) -> Table:
+    from quadgraph.reference import pde_truth, scene_meshes, scenes
 
     scene.load_core()
     folder, console = args.truth or scene_meshes.default_folder(), Console(stderr=True)
     parts = ("whole", "unlit")
     names = ("first step", "second step", "noise")
     table = Table("scene", "model", "source", *(f"{name}: {part}" for name in names for part in parts))
-    for one in chosen:
+    for one in scenes.chosen(args.scene):
         for source in args.source or SOURCES[:1]:
             for model in args.model or MODELS:
                 found = pde_truth.make(one, model, args.meshes, folder, console, source)
@@ -107,3 +105,31 @@ def _pde(args: argparse.Namespace, chosen: list[Scene]) -> Table:
                 cells = ("" if number is None else f"{number:.2%}" for number in numbers)
                 table.add_row(one.name, model, source, *cells)
     return table
+
+
+def _walk(args: argparse.Namespace) -> Table:
+    from quadgraph.reference import cross_checks, scene_meshes
+
+    for name in args.scene:
+        if name not in cross_checks.BODIES:
+            raise InputError(f"scene '{name}': allowed with --kind walk are {', '.join(cross_checks.BODIES)}")
+    chosen, console = args.scene or cross_checks.BODIES, Console(stderr=True)
+    missing = cross_checks.why_no_pmmc()
+    if missing:
+        console.print(f"left out: {missing}", highlight=False)
+    rows = []
+    if "sphere" in chosen:
+        folder, pictures = args.truth or scene_meshes.default_folder(), args.truth or scene.COMMITTED_TRUTH
+        rows += cross_checks.sphere(args.walks, folder, pictures, console, not missing)
+    if "slab" in chosen:
+        rows += cross_checks.slabs(args.walks, not missing)
+    table = Table("quantity", "our walks", "by others", "standard errors apart")
+    for row in rows:
+        others = (f"{name} {_with_error(*value)}" for name, value in row.others.items())
+        apart = (f"{value:+.1f}" for value in row.deviations().values())
+        table.add_row(row.quantity, _with_error(*row.ours), "\n".join(others), "\n".join(apart))
+    return table
+
+
+def _with_error(mean: float, error: float) -> str:
+    return f"{mean:.5g} ± {error:.1g}" if error else f"{mean:.5g}"

@@ -32,9 +32,13 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Exits:
-    """Where walks ended at the surface: position (n, 3) mm, scattered (n,) bool; absorbed: how many never got there."""
+    """Where walks ended at the surface: position (n, 3) mm, unit direction outside (n, 3), scattered (n,) bool.
+
+    absorbed: how many never got there.
+    """
 
     position: np.ndarray
+    direction: np.ndarray
     scattered: np.ndarray
     absorbed: int
 
@@ -51,6 +55,7 @@ def walk(
     """Follow every walk from (n, 3) inside until it is absorbed or leaves."""
     scattered = np.zeros(len(position), bool)
     ends: list[np.ndarray] = []
+    ways: list[np.ndarray] = []
     flags: list[np.ndarray] = []
     absorbed = 0
     while len(position):
@@ -71,10 +76,16 @@ def walk(
         direction[at[stays]] -= 2 * cosine[stays, None] * normal[stays]
         gone[at[~stays]] = True
         ends.append(position[gone])
+        ways.append(_outside(direction[gone], normal[~stays], cosine[~stays], eta))
         flags.append(scattered[gone])
         keep = ~(gone | dies)
         position, direction, scattered = position[keep], direction[keep], scattered[keep]
-    return Exits(np.concatenate(ends), np.concatenate(flags), absorbed)
+    return Exits(np.concatenate(ends), np.concatenate(ways), np.concatenate(flags), absorbed)
+
+
+def _outside(direction: np.ndarray, normal: np.ndarray, cosine: np.ndarray, eta: float) -> np.ndarray:
+    """Directions (n, 3) that leave, refracted at the surface that they meet at `cosine` (n,)."""
+    return eta * direction + (refracted(cosine, eta) - eta * cosine)[:, None] * normal
 
 
 def isotropic(count: int, generator: np.random.Generator) -> np.ndarray:
@@ -130,19 +141,28 @@ def sphere(medium: Medium, radius: float, eta: float, bins: int, walks: int, see
     counts = np.zeros(bins)
     edges = np.linspace(-1, 1, bins + 1)
     for size in _batches(walks):
-        outside = _directional_entry(size, eta, generator)
-        inside = refracted(outside, 1 / eta)
-        sine = np.sqrt(1 - outside**2)
-        normal = np.column_stack([sine, np.zeros(size), outside])
-        travelling = np.array([0.0, 0.0, -1.0]) / eta + (outside / eta - inside)[:, None] * normal
-        geometry = _sphere_out(radius), lambda at: at / np.linalg.norm(at, axis=1)[:, None]
-        exits = walk(radius * normal, travelling, medium, eta, *geometry, generator)
+        exits = through_sphere(medium, radius, eta, size, generator)
         counts += np.histogram(exits.position[exits.scattered, 2] / radius, edges)[0]
     shares = _shares(counts, walks)
-    cosine = np.linspace(0, 1, 20001)
-    entered = np.pi * radius**2 * np.trapezoid(2 * cosine * transmittance_from_outside(cosine, eta), cosine)
-    scale = entered / (4 * np.pi * radius**2 / bins)
+    scale = entering_sphere(radius, eta) / (4 * np.pi * radius**2 / bins)
     return Estimate(shares.mean * scale, shares.error * scale)
+
+
+def through_sphere(medium: Medium, radius: float, eta: float, walks: int, generator: np.random.Generator) -> Exits:
+    """Walks of parallel light along -z that entered a sphere about the origin, all of it where y = 0 and x >= 0."""
+    outside = _directional_entry(walks, eta, generator)
+    inside = refracted(outside, 1 / eta)
+    sine = np.sqrt(1 - outside**2)
+    normal = np.column_stack([sine, np.zeros(walks), outside])
+    travelling = np.array([0.0, 0.0, -1.0]) / eta + (outside / eta - inside)[:, None] * normal
+    geometry = _sphere_out(radius), lambda at: at / np.linalg.norm(at, axis=1)[:, None]
+    return walk(radius * normal, travelling, medium, eta, *geometry, generator)
+
+
+def entering_sphere(radius: float, eta: float) -> float:
+    """W that enter a sphere in parallel light of 1 W/mm^2."""
+    cosine = np.linspace(0, 1, 20001)
+    return float(np.pi * radius**2 * np.trapezoid(2 * cosine * transmittance_from_outside(cosine, eta), cosine))
 
 
 def _batches(walks: int) -> list[int]:
