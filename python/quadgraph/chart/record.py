@@ -142,5 +142,5 @@ def colours(names: list[str]) -> dict[str, str]:
 
 def device_text(record: dict[str, Any]) -> str:
     """What the times are of, in words."""
-    machine = f"{record['device'].split(' (')[0]}, {record['cores']} cores, load {record['load']}"
-    return f"{machine}, {record['frame']['pixels']}² pixels"
+    machine = f"{record['device'].split(' (')[0]}, {record['cores']} cores under load {record['load']}"
+    return f"{machine}, pictures of {record['frame']['pixels']}² pixels"

@@ -46,12 +46,11 @@ def _figure(pyplot: Any, record: dict[str, Any], scene: dict[str, Any]) -> Any:
     axes = figure.subplots(rows, 2 if len(shown) > 1 else 1, squeeze=False).ravel()
     colours = records.colours(records.families(record))
     level = scene["levels"][0]
-    figure.suptitle(
-        f"{scene['name']}: {level['surface_vertices']:,} vertices on the finest of {len(scene['levels'])} levels"
-    )
+    size = f"{level['surface_vertices']:,} vertices on the finest of {len(scene['levels'])} levels"
+    figure.suptitle(f"{scene['name']}: {size}; {records.device_text(record)}", fontsize=11)
     for axis, panel in zip(axes, shown, strict=False):
         _panel(axis, panel, colours)
-        axis.set_xlabel(f"{panel.time_words}, {records.device_text(record)}")
+        axis.set_xlabel(panel.time_words)
     for axis in axes[len(shown) :]:
         axis.set_axis_off()
     _legend(figure, scene, colours)
