@@ -63,6 +63,8 @@ def stages(passes: dict[str, float]) -> dict[str, float]:
 
 def measure(body: Body, judge: Judge, methods: Sequence[Method], repeats: int, tell: Progress) -> list[Point]:
     """Every method's point. Rounds alternate between all methods, so that a slower minute slows them all."""
+    tell(f"{body.scene.name}: truth")
+    judge.noise()  # what is unlit is found on an engine that methods share: before they do
     points = [Point(method) for method in methods]
     for number in range(repeats):
         for index, point in enumerate(points):
