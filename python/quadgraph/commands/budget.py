@@ -64,6 +64,8 @@ def _surface(budget: dict[str, Any]) -> str:
     if budget["predicted_vertices"] is not None:
         text += f", {budget['predicted_vertices']:,.0f} were expected to do from coarser and finer levels"
     text += f"; the picture shows all {budget['mesh_vertices']:,}"
+    if budget["judged_vertices"] < budget["mesh_vertices"]:
+        text += f", of which {budget['judged_vertices']:,} stood for it: finer relief was not judged"
     finer = [t for t in budget["trials"] if t["surface_vertices"] > budget["surface_vertices"]]
     same = [t for t in finer if t["model"] == budget["model"]]
     if same:
