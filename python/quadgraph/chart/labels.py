@@ -19,7 +19,7 @@ def place(axis: Any, named: Sequence[tuple[float, float, str]]) -> None:
     least is taken. Below and left of a front nothing is: places there come first.
     """
     renderer = axis.figure.canvas.get_renderer()
-    inside = axis.get_window_extent(renderer)
+    inside = axis.get_window_extent(renderer).padded(-4)
     taken = [box for path in axis.collections for box in _marker_boxes(axis, path)]
     taken += [box for line in axis.lines if line.get_drawstyle() == "steps-post" for box in _step_boxes(axis, line)]
     for x, y, text in named:
@@ -43,7 +43,7 @@ def place(axis: Any, named: Sequence[tuple[float, float, str]]) -> None:
 
 def _label(axis: Any, x: float, y: float, text: str, distance: float, angle: float) -> Any:
     across, along = np.cos(angle), np.sin(angle)
-    far = distance > _DISTANCES[1]
+    far = distance > _DISTANCES[0]
     return axis.annotate(
         text,
         (x, y),

@@ -97,9 +97,16 @@ def read(path: Path) -> dict[str, Any]:
     return record
 
 
+# What labels leave out: what is the default, or clear from the rest.
+_USUAL = (" · fmg-pcg", " · numpy", " a frame", "fem, ")
+
+
 def short(point: dict[str, Any]) -> str:
     """A point's name for a label: without what is usual."""
-    return point["name"].replace(" · fmg-pcg", "").replace(" · numpy", "").replace(" · ", ", ")
+    name = point["name"]
+    for usual in _USUAL:
+        name = name.replace(usual, "")
+    return name.replace(" · ", ", ")
 
 
 def kind(point: dict[str, Any]) -> str:
