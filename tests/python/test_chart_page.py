@@ -45,7 +45,7 @@ def elements(browser, selector):
     return browser.find_elements("css selector", selector)
 
 
-def wait_for(condition, seconds=30.0):
+def wait_for(condition, seconds=120.0):
     end = time.monotonic() + seconds
     while not condition():
         assert time.monotonic() < end, "the page did not get there"

@@ -12,8 +12,8 @@ _DIRECTIONS = tuple(np.radians([225, 180, 270, 200, 250, 45, 0, 90, 135, 315, 20
 _FONT = 8.5
 
 
-def place(axis: Any, named: Sequence[tuple[float, float, str]]) -> None:
-    """Write the texts of (x, y, text) beside their points, each at the first place around it that is free.
+def place(axis: Any, named: Sequence[tuple[float, float, str, str]]) -> None:
+    """Write the texts of (x, y, text, colour) beside their points, each at the first place around it that is free.
 
     All scattered points and lines in steps of the panel are kept free; if there is no free place, the one that covers
     least is taken. Below and left of a front nothing is: places there come first.
@@ -22,11 +22,11 @@ def place(axis: Any, named: Sequence[tuple[float, float, str]]) -> None:
     inside = axis.get_window_extent(renderer).padded(-4)
     taken = [box for path in axis.collections for box in _marker_boxes(axis, path)]
     taken += [box for line in axis.lines if line.get_drawstyle() == "steps-post" for box in _step_boxes(axis, line)]
-    for x, y, text in named:
+    for x, y, text, colour in named:
         candidates = []
         for distance in _DISTANCES:
             for angle in _DIRECTIONS:
-                label = _label(axis, x, y, text, distance, angle)
+                label = _label(axis, (x, y), text, colour, distance, angle)
                 box = label.get_window_extent(renderer).padded(1.5)
                 cost = _outside(box, inside) + sum(_shared(box, other) for other in taken)
                 candidates.append((cost, label, box))
@@ -41,15 +41,16 @@ def place(axis: Any, named: Sequence[tuple[float, float, str]]) -> None:
         taken.append(box)
 
 
-def _label(axis: Any, x: float, y: float, text: str, distance: float, angle: float) -> Any:
+def _label(axis: Any, at: tuple[float, float], text: str, colour: str, distance: float, angle: float) -> Any:
     across, along = np.cos(angle), np.sin(angle)
     far = distance > _DISTANCES[0]
     return axis.annotate(
         text,
-        (x, y),
+        at,
         (distance * across, distance * along),
         textcoords="offset points",
         fontsize=_FONT,
+        color=colour,
         ha="left" if across > 0.3 else "right" if across < -0.3 else "center",
         va="bottom" if along > 0.3 else "top" if along < -0.3 else "center",
         zorder=4,

@@ -56,8 +56,13 @@ def _figure(pyplot: Any, record: dict[str, Any], scene: dict[str, Any]) -> Any:
     _legend(figure, scene, colours)
     figure.canvas.draw()
     for axis, panel in zip(axes, shown, strict=False):
-        place(axis, [(panel.times[i], panel.errors[i], records.short(panel.points[i])) for i in _named(panel)])
+        place(axis, [_label(panel, index, colours) for index in _named(panel)])
     return figure
+
+
+def _label(panel: Panel, index: int, colours: dict[str, str]) -> tuple[float, float, str, str]:
+    point = panel.points[index]
+    return panel.times[index], panel.errors[index], records.short(point), colours[point["family"]]
 
 
 def _panel(axis: Any, panel: Panel, colours: dict[str, str]) -> None:
@@ -86,7 +91,7 @@ def _panel(axis: Any, panel: Panel, colours: dict[str, str]) -> None:
 def _front(axis: Any, panel: Panel) -> None:
     """What is reached at each time, as steps to the edges of the panel, which has room for labels."""
     times, errors = panel.times, panel.errors
-    axis.set_xlim(min(times) / 2.5, max(times) * 2)
+    axis.set_xlim(min(times) / 3.5, max(times) * 2)
     axis.set_ylim(min([*errors, panel.noise or errors[0]]) / 1.8, max(errors) * 2)
     x, y = zip(*((times[i], errors[i]) for i in panel.front), strict=True)
     x, y = (x[0], *x, axis.get_xlim()[1]), (axis.get_ylim()[1], *y, y[-1])
