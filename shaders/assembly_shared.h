@@ -102,6 +102,7 @@ struct AssembleFemPush {
 struct IrradianceScalePush {
   QG_REF(Vec3s) vertices;
   QG_REF(Uvec3s) faces;
+  QG_REF(Uints) face_kinds;
   QG_REF(Vec3s) q;
   QG_REF(Scales) scale;
   QG_REF(Reduction) reduction;

@@ -7,6 +7,7 @@
 layout(push_constant, scalar) uniform Block { IrradianceScalePush push; };
 
 float area_of(uint face) {
+  if (load_uint(push.face_kinds, face) != FACE_OPEN) return 0.0;
   uvec3 corners = load_uvec3(push.faces, face);
   vec3 p = load_vec3(push.vertices, corners.x);
   return 0.5 * length(cross(load_vec3(push.vertices, corners.y) - p, load_vec3(push.vertices, corners.z) - p));

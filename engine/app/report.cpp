@@ -47,6 +47,8 @@ Json as_json(const SolveReport& report) {
   json["error"] = as_json(report.error);
   json["replaced"] = report.replaced;
   json["missed"] = report.missed;
+  json["mesh_warning"] = report.mesh_warning;
+  json["model_warning"] = report.model_warning;
   return json;
 }
 
@@ -107,6 +109,9 @@ std::string text_report(const RunReport& report) {
   }
   if (!report.solve.replaced.empty()) out << "solver   " << report.solve.replaced << "\n";
   if (!report.solve.missed.empty()) out << "missed   " << report.solve.missed << "\n";
+  for (const std::string& warning : {report.solve.mesh_warning, report.solve.model_warning}) {
+    if (!warning.empty()) out << "warning  " << warning << "\n";
+  }
   out << "memory   " << decimals(static_cast<double>(report.engine.peak_device_bytes()) / mebibyte, 0)
       << " MiB on the device at most\n"
       << "time     ";

@@ -119,12 +119,18 @@ struct SolveReport {
   // Share of the exitance, per channel, that linear elements put below zero and that was taken from the rest instead;
   // 0 with Source::diffuse, whose exitance stays as it is.
   glm::dvec3 clipped{0};
-  std::optional<ErrorEstimate> algebraic;  // what further iterations would change; empty if that cannot be told yet
+  // What further iterations would change, and no less than the share of the light that is unaccounted for; empty if
+  // that cannot be told yet.
+  std::optional<ErrorEstimate> algebraic;
   // The algebraic error and that of the mesh: the difference between the exitance of the two finest levels, times the
-  // share of it that is the finer one's own. Empty with a single level.
+  // share of it that is the finer one's own, and no less than what elements as deep as those at the surface leave
+  // (engine/graph/resolution.h). Empty with a single level.
   std::optional<ErrorEstimate> error;
-  bool inter_reflection = false;    // whether light from part to part was followed
-  std::string missed;               // what was wanted of the error and is not met; empty if all is
+  bool inter_reflection = false;  // whether light from part to part was followed
+  std::string missed;             // what was wanted of the error and is not met; empty if all is
+  // What else is to be said against the answer, of elements and of the model (engine/graph/resolution.h); empty if
+  // nothing.
+  std::string mesh_warning, model_warning;
   std::vector<glm::dvec3> bounces;  // W per channel that each bounce brought in
   std::uint32_t exchange_age = 0;   // solves that what some face sees has been behind the shape; 0: nothing is
 };

@@ -13,7 +13,7 @@ namespace {
 constexpr int diffusion_bits = 12;
 
 // See format_of.
-constexpr double largest_entry = 1000, largest_conduction = 4000, most_vertices = 0.01;
+constexpr double largest_entry = 1000, largest_conduction = 4000, most_vertices = 0.01, mean_conduction = 25;
 
 void store_plain(std::uint32_t* words, const glm::dvec3& block) {
   for (int c = 0; c < 3; ++c) words[c] = glm::floatBitsToUint(static_cast<float>(block[c]));
@@ -60,10 +60,14 @@ std::vector<VertexShape> vertex_shapes(const Level& level) {
 EntryFormat format_of(const Level& level, Method method) {
   if (method != Method::fem || level.vertices.size() > gpu::PACKED_COLUMNS) return EntryFormat::plain;
   std::size_t bad = 0;
+  double conduction = 0, volume = 0;
   for (const VertexShape& shape : vertex_shapes(level)) {
     if (!(shape.largest <= largest_entry * std::cbrt(shape.volume))) return EntryFormat::plain;
     if (!(shape.conduction <= largest_conduction * shape.volume)) ++bad;
+    conduction += shape.conduction;
+    volume += shape.volume;
   }
+  if (!(conduction <= mean_conduction * volume)) return EntryFormat::plain;
   return static_cast<double>(bad) > most_vertices * static_cast<double>(level.vertices.size()) ? EntryFormat::plain
                                                                                                : EntryFormat::packed;
 }

@@ -200,8 +200,13 @@ void record_assembly(Workspace& work, const LevelBuffers& level, Method method, 
 }
 
 void record_scale(Workspace& work, const LevelBuffers& finest) {
-  const gpu::IrradianceScalePush push{finest.vertices.address(), finest.faces.address(),   finest.q.address(),
-                                      work.scale.address(),      work.reduction.address(), finest.face_count};
+  const gpu::IrradianceScalePush push{.vertices = finest.vertices.address(),
+                                      .faces = finest.faces.address(),
+                                      .face_kinds = finest.face_kind.address(),
+                                      .q = finest.q.address(),
+                                      .scale = work.scale.address(),
+                                      .reduction = work.reduction.address(),
+                                      .count = finest.face_count};
   work.recorder.dispatch(work.passes.irradiance_scale, push, finest.face_count, "right-hand side",
                          finest.face_count * (sizeof(glm::uvec3) + 4 * vec3_bytes));
 }

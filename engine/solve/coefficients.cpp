@@ -10,6 +10,7 @@
 #include "engine/graph/operator.h"
 #include "engine/solve/assembly.h"
 #include "engine/vk/commands.h"
+#include "shaders/material.h"
 
 namespace quadgraph {
 
@@ -31,7 +32,7 @@ void Coefficients::set(const gpu::Material& material) {
 }
 
 void Coefficients::set(vk::Context& context, std::uint32_t number, std::span<const gpu::Optical> optical, float eta,
-                       LevelBuffers& level) {
+                       LevelBuffers& level, std::span<const SurfaceSample> samples) {
   check_optical(optical, level.node_count);
   check_eta(static_cast<double>(eta));
   if (material_) std::fill(albedo_.begin(), albedo_.end(), std::nullopt);
@@ -40,6 +41,18 @@ void Coefficients::set(vk::Context& context, std::uint32_t number, std::span<con
   vk::write_bytes(context, level.optical, std::as_bytes(optical));
   eta_ = eta;
   albedo_[number] = least_albedo(optical);
+  sampled_[number].clear();
+  for (const SurfaceSample& sample : samples) sampled_[number].push_back(optical[sample.tet]);
+}
+
+std::vector<gpu::Optical> Coefficients::at(std::uint32_t number, const Level& rest,
+                                           std::span<const SurfaceSample> samples) const {
+  if (!material_) return sampled_[number];
+  std::vector<gpu::Optical> optical;
+  for (const SurfaceSample& sample : samples) {
+    optical.push_back(gpu::material_at(*material_, rest.nodes[sample.tet]));
+  }
+  return optical;
 }
 
 void Coefficients::check() const {

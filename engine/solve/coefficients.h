@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/graph/resolution.h"
 #include "engine/graph/solution.h"
 #include "engine/solve/simulation.h"
 #include "engine/solve/workspace.h"
@@ -13,14 +14,14 @@ namespace quadgraph {
 
 class Coefficients {
  public:
-  explicit Coefficients(std::size_t levels) : albedo_(levels) {}
+  explicit Coefficients(std::size_t levels) : albedo_(levels), sampled_(levels) {}
 
   // Throws InputError as check_material does.
   void set(const gpu::Material& material);
 
-  // Takes the coefficients of level `number`. Throws InputError on a wrong size or value.
+  // Takes the coefficients of level `number`, and notes those at `samples`. Throws InputError on a wrong size or value.
   void set(vk::Context& context, std::uint32_t number, std::span<const gpu::Optical> optical, float eta,
-           LevelBuffers& level);
+           LevelBuffers& level, std::span<const SurfaceSample> samples);
 
   // Throws InputError if there are none, or not for every level.
   void check() const;
@@ -29,6 +30,9 @@ class Coefficients {
 
   // The same everywhere.
   bool even() const { return material_ && material_->kind == gpu::MATERIAL_HOMOGENEOUS; }
+
+  // One entry per sample of level `number`, which is `rest` in the file.
+  std::vector<gpu::Optical> at(std::uint32_t number, const Level& rest, std::span<const SurfaceSample> samples) const;
 
   // The model that is meant where `wanted` is automatic.
   Model resolve(Model wanted, Method method, Source source) const;
@@ -50,7 +54,8 @@ class Coefficients {
   Extent extent_ = Extent::one;
   std::optional<Extent> evaluated_;  // material_, there
   float eta_ = 1;
-  std::vector<std::optional<double>> albedo_;  // the least one of every level
+  std::vector<std::optional<double>> albedo_;       // the least one of every level
+  std::vector<std::vector<gpu::Optical>> sampled_;  // of every level whose coefficients were given
 };
 
 }  // namespace quadgraph

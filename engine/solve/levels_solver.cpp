@@ -34,6 +34,14 @@ constexpr double least_bounce = 1e-6;
 // Share of a target for the whole error that is left to the algebraic one.
 constexpr double algebraic_share = 0.25;
 
+// Rounds of iterations behind a solution that leaves more light unaccounted for than the tolerance, and the tolerance
+// down to which that is asked: below it single precision is what is left.
+constexpr std::uint32_t most_rounds = 4;
+constexpr double least_unbalanced = 1e-4;
+
+// Of the light that enters, what sums in single precision may lose.
+constexpr double lost_in_sums = 2e-6;
+
 bool same(const Boundary& a, const Boundary& b) {
   return a.k11 == b.k11 && a.k12 == b.k12 && a.k22 == b.k22;
 }
@@ -272,6 +280,10 @@ void LevelsSolver::settle() {
       solver.record(first_cycles);
       solver.record_check();
       if (!bounces_on(finest_)) record_difference(finest_);
+    } else if (!balanced() && rounds_ < most_rounds) {
+      ++rounds_;
+      iterate(finest_);
+      if (!bounces_on(finest_)) record_difference(finest_);
     } else {
       return;
     }
@@ -325,6 +337,10 @@ void LevelsSolver::submit() {
 void LevelsSolver::take_error() {
   const LevelSolver& solver = *solvers_[finest_];
   report_.algebraic = solver.algebraic();
+  if (report_.algebraic) {
+    report_.algebraic->whole = std::max(report_.algebraic->whole, unbalanced());
+    if (report_.algebraic->unlit > 0) report_.algebraic->unlit = std::max(report_.algebraic->unlit, unbalanced());
+  }
   report_.error.reset();
   if (finest_ + 1 == solvers_.size() || !solvers_[finest_ + 1]) return;
   const glm::dvec2 difference(solver.state().difference);
@@ -332,7 +348,8 @@ void LevelsSolver::take_error() {
   if (finest_ + 2 < solvers_.size() && solvers_[finest_ + 2]) {
     coarser = glm::dvec2(solvers_[finest_ + 1]->state().difference);
   }
-  const ErrorEstimate mesh = mesh_error(difference, coarser);
+  ErrorEstimate mesh = mesh_error(difference, coarser);
+  if (!parts_.resolution.empty()) mesh.whole = std::max(mesh.whole, parts_.resolution[finest_].error);
   const ErrorEstimate left = report_.algebraic.value_or(ErrorEstimate{});
   report_.error = ErrorEstimate{std::hypot(mesh.whole, left.whole), std::hypot(mesh.unlit, left.unlit)};
 }
@@ -367,6 +384,28 @@ std::string LevelsSolver::missed() const {
 bool LevelsSolver::reached() const {
   const double wanted = options_.error / confidence;
   return report_.error && report_.error->whole <= wanted && report_.error->unlit <= wanted;
+}
+
+// Share of the light that scattered which the last solution neither lets out nor absorbs: an error that is the same
+// everywhere, which looks at the surface are slow to see where cycles are slow to remove it, is just that.
+double LevelsSolver::unbalanced() const {
+  if (finest_ > 0 || key_.method == Method::quadgraph_fdm) return 0;
+  const Energy all = energy();
+  const Energy collided = parts_.results.energy();
+  double squares = 0, sizes = 0;
+  for (int c = 0; c < 3; ++c) {
+    const double out = all.scattered_out[c], size = out + collided.absorbed[c];
+    if (!(size > 0)) continue;
+    const double share = std::max(0.0, std::abs(all.balance()[c]) - lost_in_sums) * all.entered[c] / size;
+    squares += share * share * out * out;
+    sizes += out * out;
+  }
+  return sizes > 0 ? std::sqrt(squares / sizes) : 0;
+}
+
+bool LevelsSolver::balanced() const {
+  const double wanted = options_.error > 0 ? algebraic_share * options_.error : options_.tolerance;
+  return options_.cycles > 0 || wanted < least_unbalanced || unbalanced() <= wanted;
 }
 
 Energy LevelsSolver::energy() const {

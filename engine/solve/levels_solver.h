@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/graph/resolution.h"
 #include "engine/solve/coefficients.h"
 #include "engine/solve/inter_reflection.h"
 #include "engine/solve/level_solver.h"
@@ -25,7 +26,8 @@ struct SolveParts {
   SurfaceResults& results;
   Coefficients& coefficients;
   InterReflection& exchange;
-  bool& scaled;  // the scale is that of the present q
+  bool& scaled;                        // the scale is that of the present q
+  std::vector<Resolution> resolution;  // per level; empty where nothing is known of it
 };
 
 class LevelsSolver {
@@ -43,6 +45,8 @@ class LevelsSolver {
   bool cycles() const { return uses_cycles(report_.solver); }
   Solved solved(std::uint32_t level);
   Energy energy() const;
+  double unbalanced() const;
+  bool balanced() const;
 
   void start_over();
   void record_setup(std::uint32_t level);
@@ -77,6 +81,7 @@ class LevelsSolver {
   std::uint32_t finest_ = 0;  // level that is solved last, as far as is known
   std::uint32_t next_ = 0;    // level to be solved next; all coarser ones have been
   bool warm_ = false;
+  std::uint32_t rounds_ = 0;                         // of iterations that were added because light was unaccounted for
   std::vector<std::optional<LevelSolver>> solvers_;  // per level
 };
 

@@ -73,7 +73,10 @@ struct Simulation::Implementation {
   bool scaled = false;                // the scale is that of the present q
   std::optional<OperatorKey> solved;  // by the last solve
   Source solved_source = Source::buried;
-  std::map<OperatorKey, SolverKind> quicker;  // where both have been tried, on the present material and shape
+  std::vector<std::vector<SurfaceSample>> samples;      // per level
+  std::map<Model, std::vector<Resolution>> resolution;  // per level, of the present material and shape
+  double chord = 0;                                     // mm, of the finest level
+  std::map<OperatorKey, SolverKind> quicker;            // where both have been tried, on the present material and shape
 
   Implementation(vk::Context& context_in, const QuadGraph& graph_in)
       : context(context_in),
@@ -84,6 +87,8 @@ struct Simulation::Implementation {
         coefficients(levels.size()),
         exchange(graph_in) {
     for (std::uint32_t i = 0; i < levels.size(); ++i) walks.emplace_back(context, shape.levels()[i], i);
+    for (const Level& level : shape.levels()) samples.push_back(surface_samples(level));
+    chord = mean_chord(shape.levels()[0]);
     const gpu::Beam lambertian = beam_along(std::nullopt);
     light({&lambertian, 1});
   }
@@ -116,6 +121,7 @@ struct Simulation::Implementation {
   // Changed coefficients: everything is.
   void disassemble() {
     quicker.clear();
+    resolution.clear();
     operators.disassemble();
     unload();
   }
@@ -128,6 +134,9 @@ struct Simulation::Implementation {
       vk::write_bytes(context, level.nodes, std::as_bytes(shape.levels()[number].nodes));
     }
     operators.remeasure(number, shape.levels()[number]);
+    samples[number] = surface_samples(shape.levels()[number]);
+    if (number == 0) chord = mean_chord(shape.levels()[0]);
+    resolution.clear();
     quicker.clear();
     exchange.moved(number);
     if (number == 0) gather.reset();
@@ -142,8 +151,9 @@ struct Simulation::Implementation {
     work.recorder.clear();
     make_room(key, options);
     exchange.refresh(work, shape.levels(), levels, options.exchange_rows);
-    const SolveReport report =
+    SolveReport report =
         options.solver == SolverKind::automatic ? solve_quickly(key, options) : run(key, options, options.solver);
+    warn(options.source, report);
     passes = work.recorder.passes();
     gather_stale = true;
     solved = key;
@@ -175,8 +185,31 @@ struct Simulation::Implementation {
     return *gather;
   }
 
+  std::vector<gpu::Optical> optical_at(std::uint32_t level) const {
+    return coefficients.at(level, shape.rest()[level], samples[level]);
+  }
+
+  const std::vector<Resolution>& resolution_with(Model model) {
+    std::vector<Resolution>& found = resolution[model];
+    for (auto i = static_cast<std::uint32_t>(found.size()); i < levels.size(); ++i) {
+      found.push_back(resolution_of(samples[i], optical_at(i), static_cast<double>(coefficients.eta()), model));
+    }
+    return found;
+  }
+
+  void warn(Source source, SolveReport& report) {
+    if (report.method == Method::fem) {
+      report.mesh_warning = mesh_warning(resolution_with(report.model)[report.finest]);
+    }
+    report.model_warning =
+        model_warning(optical_at(0), static_cast<double>(coefficients.eta()), chord, source, report.model);
+  }
+
   SolveReport run(const OperatorKey& key, const SolveOptions& options, SolverKind solver) {
-    const SolveParts parts{work, levels, beams, walks, operators, results, coefficients, exchange, scaled};
+    const bool known = key.method == Method::fem && options.source == Source::buried;
+    const SolveParts parts{
+        work,    levels,       beams,    walks,  operators,
+        results, coefficients, exchange, scaled, known ? resolution_with(key.model) : std::vector<Resolution>{}};
     return LevelsSolver(parts, key, options, solver).run();
   }
 
@@ -252,7 +285,8 @@ void Simulation::set_optical(std::uint32_t level, std::span<const gpu::Optical> 
   if (level >= level_count()) {
     throw InputError("level " + std::to_string(level) + " of optical: there are " + std::to_string(level_count()));
   }
-  implementation_->coefficients.set(implementation_->context, level, optical, eta, implementation_->levels[level]);
+  implementation_->coefficients.set(implementation_->context, level, optical, eta, implementation_->levels[level],
+                                    implementation_->samples[level]);
   implementation_->disassemble();
 }
 

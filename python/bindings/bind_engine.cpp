@@ -42,6 +42,8 @@ py::dict report_dict(const SolveReport& report) {
   d["bounces"] = bounces;
   d["replaced"] = report.replaced;
   d["missed"] = report.missed;
+  d["mesh_warning"] = report.mesh_warning;
+  d["model_warning"] = report.model_warning;
   d["finest"] = report.finest;
   d["work"] = report.work;
   d["algebraic"] = error_dict(report.algebraic);
@@ -275,6 +277,17 @@ void bind_engine(py::module_& module) {
           },
           py::arg("level"), py::arg("sigma_s_prime"), py::arg("sigma_a"), py::arg("eta"),
           "Coefficients per node, (n, 3) in 1/mm, instead of a material; wanted for every level.")
+      .def(
+          "set_vertices",
+          [](Engine& engine, std::uint32_t level, const FloatArray& positions) {
+            const Level& of = level_of(engine.graph(), level);
+            engine.simulation().set_vertices(level, vectors(positions, of.vertex_count(), "positions"));
+          },
+          py::arg("level"), py::arg("positions"),
+          "Moves the vertices of a level, (n_v, 3) mm, and the material with them; light given by set_irradiance "
+          "stays, "
+          "lights are evaluated again by update_irradiance. Raises InputError, and moves nothing, where a tet would be "
+          "turned inside out.")
       .def("update_irradiance", &Engine::update_irradiance, py::call_guard<py::gil_scoped_release>())
       .def("solve", &solve, py::arg("method") = "fem", py::arg("solver") = "fmg-pcg", py::arg("source") = "buried",
            py::arg("model") = "auto", py::arg("tolerance") = 1e-3, py::arg("error") = 0.0, py::arg("cycles") = 0,

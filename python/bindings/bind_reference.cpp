@@ -6,6 +6,7 @@
 #include "engine/graph/radiance.h"
 #include "engine/graph/reference.h"
 #include "engine/graph/source_walk.h"
+#include "engine/graph/stored_entries.h"
 #include "engine/solve/beams.h"
 #include "python/bindings/bindings.h"
 
@@ -221,6 +222,15 @@ void bind_reference(py::module_& module) {
              "direction as for solve_reference; phi (n_v, 3) of its solution with fem; faces (n,) and outside (n, 3), "
              "the unit directions into which light leaves their centroids. Returns radiance (n, 3) in W/(mm^2 sr), "
              "exitance (n_f, 3), entry (n_v, 3) in W/mm^2 and depth (n_v, 3). Raises InputError.");
+  module.def(
+      "entry_format",
+      [](const QuadGraph& graph, std::uint32_t level, const std::string& method) {
+        const EntryFormat format = format_of(level_of(graph, level), method_from_name(method));
+        return format == EntryFormat::packed ? "packed" : "plain";
+      },
+      py::arg("graph"), py::arg("level"), py::arg("method"),
+      "How a device stores the entries of the operator: 'packed', with a shared exponent, or 'plain', in single "
+      "precision.");
   module.def("boundary", &boundary_dict, py::arg("method"), py::arg("source"), py::arg("model"), py::arg("eta"),
              "k11, k12, k22, source, reflected (engine/graph/boundary.h).");
   module.def("fresnel_moment", &fresnel_moment, py::arg("n"), py::arg("eta"),

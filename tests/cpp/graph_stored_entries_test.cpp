@@ -144,11 +144,11 @@ TEST_CASE("plain entries are single precision") {
 
 TEST_CASE("elements that rounding would harm get plain entries, and so do the published methods") {
   const auto stretched = [](float factor) {
-    OwnedLevel level = split_at_centroids(box_level(3, 2.0f));
+    OwnedLevel level = split_at_corners(box_level(3, 2.0f));
     for (glm::vec3& p : level.vertices) p.z *= factor;
     return level;
   };
-  for (const auto& [factor, format] : {std::pair(1.0f, EntryFormat::packed), std::pair(5.0f, EntryFormat::packed),
+  for (const auto& [factor, format] : {std::pair(1.0f, EntryFormat::packed), std::pair(2.0f, EntryFormat::packed),
                                        std::pair(1000.0f, EntryFormat::plain), std::pair(1e-3f, EntryFormat::plain)}) {
     CAPTURE(factor);
     const OwnedLevel level = stretched(factor);
@@ -156,7 +156,9 @@ TEST_CASE("elements that rounding would harm get plain entries, and so do the pu
     CHECK(format_of(level.view(), Method::quadgraph_fv) == EntryFormat::plain);
     CHECK(format_of(level.view(), Method::quadgraph_fdm) == EntryFormat::plain);
   }
-  OwnedLevel one_flat = split_at_centroids(box_level(3, 2.0f));
+  CHECK(format_of(split_at_centroids(box_level(3, 2.0f)).view(), Method::fem) ==
+        EntryFormat::plain);  // flat all through
+  OwnedLevel one_flat = split_at_corners(box_level(3, 2.0f));
   const glm::uvec4 tet = one_flat.tets.front();
   const glm::vec3 middle = (one_flat.vertices[tet.x] + one_flat.vertices[tet.y] + one_flat.vertices[tet.z]) / 3.0f;
   glm::vec3& apex = one_flat.vertices[tet.w];

@@ -24,7 +24,7 @@ constexpr double row_tolerance = 2e-6;
 // The veined material, with every seventh face a wall.
 struct Assembled {
   CheckedContext device;
-  OwnedLevel owned = split_at_centroids(box_level(3, 6.0f, 0.15f));
+  OwnedLevel owned = split_at_corners(box_level(3, 6.0f, 0.15f));
   Level level;
   std::vector<gpu::Optical> optical;
   Problem problem;

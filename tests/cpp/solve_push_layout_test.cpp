@@ -72,10 +72,10 @@ TEST_CASE("push constants") {
   compare(shape_comp, "ShapePush",
           {MEMBER(ShapePush, vertices), MEMBER(ShapePush, tets), MEMBER(ShapePush, faces), MEMBER(ShapePush, tet_shape),
            MEMBER(ShapePush, face_area), MEMBER(ShapePush, tet_count), MEMBER(ShapePush, face_count)});
-  compare(
-      irradiance_scale_comp, "IrradianceScalePush",
-      {MEMBER(IrradianceScalePush, vertices), MEMBER(IrradianceScalePush, faces), MEMBER(IrradianceScalePush, q),
-       MEMBER(IrradianceScalePush, scale), MEMBER(IrradianceScalePush, reduction), MEMBER(IrradianceScalePush, count)});
+  compare(irradiance_scale_comp, "IrradianceScalePush",
+          {MEMBER(IrradianceScalePush, vertices), MEMBER(IrradianceScalePush, faces),
+           MEMBER(IrradianceScalePush, face_kinds), MEMBER(IrradianceScalePush, q), MEMBER(IrradianceScalePush, scale),
+           MEMBER(IrradianceScalePush, reduction), MEMBER(IrradianceScalePush, count)});
   compare(
       vertex_exitance_comp, "VertexExitancePush",
       {MEMBER(VertexExitancePush, vertices), MEMBER(VertexExitancePush, faces), MEMBER(VertexExitancePush, face_offset),

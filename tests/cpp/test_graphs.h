@@ -72,10 +72,15 @@ class GraphWriter {
 };
 
 // Every tet cut into four at its centroid, so that none has two outside faces.
-inline OwnedLevel split_at_centroids(const OwnedLevel& level) {
+inline OwnedLevel split_at_centroids(const OwnedLevel& level, const std::vector<bool>& which = {}) {
   std::vector<glm::vec3> vertices = level.vertices;
   std::vector<glm::uvec4> tets;
-  for (const glm::uvec4& t : level.tets) {
+  for (std::size_t i = 0; i < level.tets.size(); ++i) {
+    const glm::uvec4& t = level.tets[i];
+    if (!which.empty() && !which[i]) {
+      tets.push_back(t);
+      continue;
+    }
     const auto centre = static_cast<std::uint32_t>(vertices.size());
     vertices.push_back((vertices[t[0]] + vertices[t[1]] + vertices[t[2]] + vertices[t[3]]) / 4.0f);
     for (int k = 0; k < 4; ++k) {
@@ -85,6 +90,15 @@ inline OwnedLevel split_at_centroids(const OwnedLevel& level) {
     }
   }
   return level_from_tets(std::move(vertices), std::move(tets));
+}
+
+// Only those with several outside faces, as a bake does: elements stay well-shaped.
+inline OwnedLevel split_at_corners(const OwnedLevel& level) {
+  std::vector<int> outside(level.tets.size(), 0);
+  for (const std::uint32_t t : level.face_tets) ++outside[t];
+  std::vector<bool> which;
+  for (const int faces : outside) which.push_back(faces > 1);
+  return split_at_centroids(level, which);
 }
 
 // Inverse squared distance from the `width` nearest sources.

@@ -102,12 +102,13 @@ def two_parts(error: dict | None) -> str:
 
 
 def solver_texts(report: dict) -> list[str]:
-    """Say what the bake knows of the error, which solver took another one's place, and where it stopped if not on the
-    finest level.
+    """Say what the bake knows of the error, which solver took another one's place, what warns of the answer, and where
+    it stopped if not on the finest level.
     """
     texts = [report["budget"]] if report["budget"] else []
     if report["replaced"]:
         texts.append(f"solver: {report['replaced']}")
+    texts += [f"warning: {report[name]}" for name in ("mesh_warning", "model_warning") if report[name]]
     if report["finest"] > 0:
         texts.append(f"level: {report['finest']} suffices; its solution is carried to the finest")
     return texts

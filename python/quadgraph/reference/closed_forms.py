@@ -24,6 +24,19 @@ class Layer:
     thickness: float
 
 
+@dataclass(frozen=True)
+class Beam:
+    """Unscattered light in a layer, fluence amplitude e^(start + rate z) at depth z mm, the exponent at most 0."""
+
+    amplitude: float
+    start: float
+    rate: float
+
+    def at(self, z: float) -> float:
+        """Fluence per unit that entered."""
+        return float(self.amplitude * np.exp(self.start + self.rate * z))
+
+
 def slab(
     medium: Medium,
     thickness: float,
@@ -75,8 +88,8 @@ class _Slab:
             float(k.matrix[0] @ lit - k.reflected), float(k.matrix[0] @ unlit), float(absorbed), unscattered
         )
 
-    def _beams(self, mu: float, eta: float) -> tuple[list[list[tuple[float, float]]], float]:
-        """Per layer the (fluence at its top, decay rate) of unscattered light down and up; the share that leaves."""
+    def _beams(self, mu: float, eta: float) -> tuple[list[list[Beam]], float]:
+        """Unscattered light down and up in each layer; the share that leaves."""
         depths = np.cumsum([0.0] + [layer.medium.sigma_t * layer.thickness for layer in self.layers]) / mu
         inside = float(reflectance_from_inside(mu, eta))
         once = np.exp(-depths[-1])
@@ -84,8 +97,8 @@ class _Slab:
         beams = []
         for layer, top in zip(self.layers, depths, strict=False):
             rate = layer.medium.sigma_t / mu
-            up = inside * np.exp(top - 2 * depths[-1])
-            beams.append([(amplitude * np.exp(-top) / mu, -rate), (amplitude * up / mu, rate)])
+            whole = amplitude / mu
+            beams.append([Beam(whole, -top, -rate), Beam(whole * inside, top - 2 * depths[-1], rate)])
         return beams, float((1 - inside) * once * (1 + inside * once) * amplitude)
 
     def _particular(self, index: int, rate: float) -> np.ndarray:
@@ -96,26 +109,26 @@ class _Slab:
         return np.linalg.solve(system.mass - rate**2 * system.stiffness, source)
 
     def _field(
-        self, index: int, z: float, coefficients: np.ndarray, beams: list[list[tuple[float, float]]]
+        self, index: int, z: float, coefficients: np.ndarray, beams: list[list[Beam]]
     ) -> tuple[np.ndarray, np.ndarray]:
         """The moments (m,) and their slope at depth z of a layer."""
         values, slopes = _even_and_odd(self.systems[index], z, self.layers[index].thickness)
         value, slope = values @ coefficients[index], slopes @ coefficients[index]
-        for amplitude, rate in beams[index]:
-            part = self._particular(index, rate) * amplitude * np.exp(rate * z)
-            value, slope = value + part, slope + rate * part
+        for beam in beams[index]:
+            part = self._particular(index, beam.rate) * beam.at(z)
+            value, slope = value + part, slope + beam.rate * part
         return value, slope
 
-    def _coefficients(self, beams: list[list[tuple[float, float]]]) -> np.ndarray:
+    def _coefficients(self, beams: list[list[Beam]]) -> np.ndarray:
         """(layers, 2 m): the conditions are linear, so their matrix is what unit coefficients do to them."""
         size = 2 * self.count * len(self.layers)
-        none: list[list[tuple[float, float]]] = [[] for _ in self.layers]
+        none: list[list[Beam]] = [[] for _ in self.layers]
         matrix = [self._conditions(unit.reshape(len(self.layers), -1), none) for unit in np.eye(size)]
         right = -self._conditions(np.zeros((len(self.layers), 2 * self.count)), beams)
         right[: self.count] += self.boundary.matrix[:, 0] * self.boundary.source
         return np.linalg.solve(np.column_stack(matrix), right).reshape(len(self.layers), -1)
 
-    def _conditions(self, coefficients: np.ndarray, beams: list[list[tuple[float, float]]]) -> np.ndarray:
+    def _conditions(self, coefficients: np.ndarray, beams: list[list[Beam]]) -> np.ndarray:
         """What must equal the diffuse source at z = 0, and 0 elsewhere."""
         k = self.boundary.matrix
         value, slope = self._field(0, 0.0, coefficients, beams)
@@ -130,7 +143,7 @@ class _Slab:
                 rows += [value - below, flux - self.systems[index + 1].stiffness @ slope]
         return np.concatenate(rows)
 
-    def _absorbed(self, index: int, coefficients: np.ndarray, beams: list[list[tuple[float, float]]]) -> float:
+    def _absorbed(self, index: int, coefficients: np.ndarray, beams: list[list[Beam]]) -> float:
         layer = self.layers[index]
         # Nodes gather at both ends, where the light changes over a mean free path.
         angle, weights = gauss(_DEPTHS, 0, np.pi)
@@ -139,7 +152,7 @@ class _Slab:
         total = 0.0
         for z, weight in zip(depth, weights, strict=True):
             fluence = self._field(index, z, coefficients, beams)[0][0]
-            fluence += sum(amplitude * np.exp(rate * z) for amplitude, rate in beams[index])
+            fluence += sum(beam.at(z) for beam in beams[index])
             total += weight * layer.medium.sigma_a * fluence
         return total
 

@@ -113,7 +113,7 @@ def facing_plates(edge: float, thickness: float, gap: float, across: int) -> Gra
     and y.
     """
     side = np.linspace(-edge / 2, edge / 2, across + 1)
-    plates = [box(side, side, z + np.array([0, thickness]), _no_wall) for z in (gap / 2, -gap / 2 - thickness)]
+    plates = [box(side, side, z + np.array([0, thickness]), no_wall) for z in (gap / 2, -gap / 2 - thickness)]
     start = len(plates[0].vertices)
     vertices = np.concatenate([plate.vertices for plate in plates])
     return _built(vertices, np.concatenate([plates[0].tets, plates[1].tets + start]))
@@ -163,6 +163,13 @@ def refined(mesh: Graph, moved: Callable[[np.ndarray], np.ndarray] | None = None
     return _built(points, np.concatenate([*corners, *_octahedron(points, middle)]))
 
 
+def moved(mesh: Graph, shape: Callable[[np.ndarray], np.ndarray]) -> Graph:
+    """The graph with its vertices where `shape` puts points (n, 3), mm, and nodes at centroids; nothing is checked."""
+    vertices = shape(mesh.vertices).astype(np.float32).astype(np.float64)
+    inner, surface = vertices[mesh.tets].mean(axis=1), vertices[mesh.faces].mean(axis=1)
+    return replace(mesh, vertices=vertices, inner=inner, surface=surface)
+
+
 def write(path: Path, graphs: list[Graph]) -> Path:
     """Write levels, finest first, as a .qgraph with the finest boundary as the display mesh."""
     boundary = graphs[0].boundary
@@ -181,7 +188,8 @@ def write(path: Path, graphs: list[Graph]) -> Path:
     return path
 
 
-def _no_wall(normal: np.ndarray) -> np.ndarray:
+def no_wall(normal: np.ndarray) -> np.ndarray:
+    """For `box`: none reflects."""
     return np.zeros(len(normal), bool)
 
 

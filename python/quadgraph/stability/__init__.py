@@ -1,0 +1,1 @@
+"""Where methods fail, and whether they say so: what `quadgraph stability` runs (docs/stability.md)."""
