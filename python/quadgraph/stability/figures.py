@@ -65,8 +65,9 @@ def _figure(pyplot: Any, each: dict[str, Any]) -> Any:
         _panel(axis, points)
         axis.set_title(name, fontsize=9)
         axis.set_xticks([i + 0.5 for i in range(columns)], each["x"]["texts"], fontsize=7.5)
+        if number >= len(panels) - across:
+            axis.set_xlabel(each["x"]["label"], fontsize=8.5)
         axis.set_yticks([j + 0.5 for j in range(rows)], each["y"]["texts"], fontsize=7.5)
-    figure.supxlabel(each["x"]["label"], fontsize=8.5)
     figure.supylabel(each["y"]["label"], fontsize=8.5)
     figure.suptitle(f"{each['title']}\nerror in % against {each['truth']}", fontsize=8.5)
     keys = [pyplot.Rectangle((0, 0), 1, 1, color=COLOURS[name]) for name in CLASSES]
