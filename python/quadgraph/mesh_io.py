@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
+import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -22,7 +24,8 @@ Arrays = tuple[np.ndarray, np.ndarray]
 
 def _read_ply(path: Path) -> Arrays:
     meshes = pymeshlab.MeshSet()
-    meshes.load_new_mesh(str(path))
+    with contextlib.chdir(os.curdir):  # where a file that cannot be read would leave us in its folder
+        meshes.load_new_mesh(str(path))
     mesh = meshes.current_mesh()
     if not mesh.face_number():
         return mesh.vertex_matrix(), np.empty((0, 3), np.int64)

@@ -142,6 +142,14 @@ def test_truncated_binary_files_are_refused(tmp_path: Path) -> None:
             read_surface(path, unit="mm")
 
 
+def test_a_file_that_cannot_be_read_leaves_us_where_we_are(tmp_path: Path) -> None:
+    path, here = tmp_path / "bad.ply", Path.cwd()
+    path.write_text("ply\nformat ascii 1.0\n")
+    with pytest.raises(InputError):
+        read_surface(path, unit="mm")
+    assert Path.cwd() == here
+
+
 def test_missing_file(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="No such file"):
         read_surface(tmp_path / "none.ply", unit="mm")
