@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "engine/graph/exchange.h"
+#include "engine/solve/asked_error.h"
 #include "engine/solve/assembly.h"
 #include "engine/solve/mesh_error.h"
 #include "engine/solve/surface_share.h"
@@ -39,17 +39,8 @@ constexpr double algebraic_share = 0.25;
 constexpr std::uint32_t most_rounds = 4;
 constexpr double least_unbalanced = 1e-4;
 
-// Of the light that enters, what sums in single precision may lose.
-constexpr double lost_in_sums = 2e-6;
-
 bool same(const Boundary& a, const Boundary& b) {
   return a.k11 == b.k11 && a.k12 == b.k12 && a.k22 == b.k22;
-}
-
-std::string percent(double share) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.2g%%", 100 * share);
-  return text;
 }
 
 }  // namespace
@@ -196,7 +187,7 @@ void LevelsSolver::approach(std::uint32_t level) {
 void LevelsSolver::set_solver(std::uint32_t level) {
   const bool last = level == finest_;
   LevelTask task{.solver = report_.solver, .boundary = boundary_, .max_iterations = options_.max_iterations};
-  task.tolerance = options_.error > 0 ? algebraic_share * options_.error : options_.tolerance;
+  task.tolerance = algebraic_wanted();
   task.smoothing = options_.smoothing > 0 ? options_.smoothing : report_.solver == SolverKind::vcycle ? 2 : 1;
   task.start = !last && cycles();
   task.fixed = options_.cycles > 0 && (last || (task.start && !bounces_on(level)));
@@ -338,8 +329,9 @@ void LevelsSolver::take_error() {
   const LevelSolver& solver = *solvers_[finest_];
   report_.algebraic = solver.algebraic();
   if (report_.algebraic) {
-    report_.algebraic->whole = std::max(report_.algebraic->whole, unbalanced());
-    if (report_.algebraic->unlit > 0) report_.algebraic->unlit = std::max(report_.algebraic->unlit, unbalanced());
+    const double least = unbalanced();
+    report_.algebraic->whole = std::max(report_.algebraic->whole, least);
+    if (report_.algebraic->unlit > 0) report_.algebraic->unlit = std::max(report_.algebraic->unlit, least);
   }
   report_.error.reset();
   if (finest_ + 1 == solvers_.size() || !solvers_[finest_ + 1]) return;
@@ -362,50 +354,29 @@ void LevelsSolver::finish() {
     entries += solvers_[i]->entries();
   }
   report_.finest = finest_;
-  report_.missed = missed();
+  if (options_.error > 0 && !reached()) report_.missed = missed(report_.error, options_.error);
   report_.work = entries / op(0).entries;
   report_.bounces = parts_.exchange.bounces();
   report_.energy = energy();
   report_.clipped = parts_.results.clipped();
 }
 
-// In words.
-std::string LevelsSolver::missed() const {
-  if (!(options_.error > 0)) return "";
-  if (!report_.error) return "error " + percent(options_.error) + ": a file with a single level cannot tell its error";
-  if (reached()) return "";
-  char factor[8];
-  std::snprintf(factor, sizeof(factor), "%.2g", confidence);
-  return "error " + percent(options_.error) + " is not certain: the estimate is " + percent(report_.error->whole) +
-         " of the surface, " + percent(report_.error->unlit) + " of its unlit part, and the error may be " + factor +
-         " times that; a file with more vertices on its surface would come closer";
-}
-
 bool LevelsSolver::reached() const {
-  const double wanted = options_.error / confidence;
-  return report_.error && report_.error->whole <= wanted && report_.error->unlit <= wanted;
+  return report_.error && certain(*report_.error, options_.error);
 }
 
-// Share of the light that scattered which the last solution neither lets out nor absorbs: an error that is the same
-// everywhere, which looks at the surface are slow to see where cycles are slow to remove it, is just that.
+// The light that is unaccounted for on level 0, where all of it can be told.
 double LevelsSolver::unbalanced() const {
   if (finest_ > 0 || key_.method == Method::quadgraph_fdm) return 0;
-  const Energy all = energy();
-  const Energy collided = parts_.results.energy();
-  double squares = 0, sizes = 0;
-  for (int c = 0; c < 3; ++c) {
-    const double out = all.scattered_out[c], size = out + collided.absorbed[c];
-    if (!(size > 0)) continue;
-    const double share = std::max(0.0, std::abs(all.balance()[c]) - lost_in_sums) * all.entered[c] / size;
-    squares += share * share * out * out;
-    sizes += out * out;
-  }
-  return sizes > 0 ? std::sqrt(squares / sizes) : 0;
+  return quadgraph::unbalanced(energy(), parts_.results.energy());
+}
+
+double LevelsSolver::algebraic_wanted() const {
+  return options_.error > 0 ? algebraic_share * options_.error : options_.tolerance;
 }
 
 bool LevelsSolver::balanced() const {
-  const double wanted = options_.error > 0 ? algebraic_share * options_.error : options_.tolerance;
-  return options_.cycles > 0 || wanted < least_unbalanced || unbalanced() <= wanted;
+  return options_.cycles > 0 || algebraic_wanted() < least_unbalanced || unbalanced() <= algebraic_wanted();
 }
 
 Energy LevelsSolver::energy() const {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/graph/resolution.h"
@@ -26,8 +27,8 @@ struct SolveParts {
   SurfaceResults& results;
   Coefficients& coefficients;
   InterReflection& exchange;
-  bool& scaled;                        // the scale is that of the present q
-  std::vector<Resolution> resolution;  // per level; empty where nothing is known of it
+  bool& scaled;                            // the scale is that of the present q
+  std::span<const Resolution> resolution;  // per level; empty where nothing is known of it
 };
 
 class LevelsSolver {
@@ -46,6 +47,7 @@ class LevelsSolver {
   Solved solved(std::uint32_t level);
   Energy energy() const;
   double unbalanced() const;
+  double algebraic_wanted() const;
   bool balanced() const;
 
   void start_over();
@@ -63,7 +65,6 @@ class LevelsSolver {
   void solve_down_to(std::uint32_t finest);
   bool bounced_enough() const;
   bool reached() const;
-  std::string missed() const;
   void bounce(std::uint32_t bounces);
   void bounce_more();
   void settle();

@@ -208,8 +208,11 @@ struct Simulation::Implementation {
   SolveReport run(const OperatorKey& key, const SolveOptions& options, SolverKind solver) {
     const bool known = key.method == Method::fem && options.source == Source::buried;
     const SolveParts parts{
-        work,    levels,       beams,    walks,  operators,
-        results, coefficients, exchange, scaled, known ? resolution_with(key.model) : std::vector<Resolution>{}};
+        work,         levels,
+        beams,        walks,
+        operators,    results,
+        coefficients, exchange,
+        scaled,       known ? std::span<const Resolution>(resolution_with(key.model)) : std::span<const Resolution>{}};
     return LevelsSolver(parts, key, options, solver).run();
   }
 

@@ -11,9 +11,10 @@ import pytest
 from baked import write_levels
 from quadgraph.benchmark import charts, passes, scaling
 from quadgraph.benchmark.convergence import DIAGONAL, MOST_ITERATIONS, TARGETS, Runner, Way
-from quadgraph.benchmark.judge import Judge, judge, unlit_part
+from quadgraph.benchmark.judge import Judge, judge
 from quadgraph.benchmark.scene import LIGHT, Device
 from quadgraph.errors import InputError, SolverError
+from quadgraph.reference.surface_errors import unlit_part
 from shapes import icosphere
 
 _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")

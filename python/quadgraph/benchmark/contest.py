@@ -9,9 +9,10 @@ import numpy as np
 from scipy.sparse import diags
 from scipy.sparse.linalg import cg
 
-from quadgraph.benchmark.judge import Judge, unlit_part
+from quadgraph.benchmark.judge import Judge
 from quadgraph.benchmark.system import System
 from quadgraph.errors import SolverError
+from quadgraph.reference.surface_errors import unlit_part
 
 _MOST_ITERATIONS = 1000
 _EXACT = 1e-12  # relative residual of the solution that errors are measured against

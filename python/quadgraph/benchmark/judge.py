@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from quadgraph.errors import SolverError
+from quadgraph.reference.surface_errors import unlit_part
 
 if TYPE_CHECKING:
     from quadgraph._core import Engine
 
-UNLIT = 0.1  # of the mean irradiance (channels summed): faces that let in less are the unlit part
 _TRUTH_TOLERANCE = 1e-6  # asked for; single precision may stall a little before
 _TRUTH_RESIDUAL = 1e-5  # demanded; leaves an error of the unlit part of some 1e-5
 _TRUTH_ITERATIONS = 100_000
@@ -34,12 +34,6 @@ class Judge:
             "whole": float(np.sqrt(squared.sum() / size.sum())),
             "unlit": float(np.sqrt(squared[self.unlit].sum() / size[self.unlit].sum())),
         }
-
-
-def unlit_part(area: np.ndarray, q: np.ndarray) -> np.ndarray:
-    """Faces (n,) bool that let in less than a tenth of the mean over the surface, area (n,), q (n, 3)."""
-    total = np.asarray(q, np.float64).sum(axis=1)
-    return total < UNLIT * (area @ total) / area.sum()
 
 
 def judge(engine: Engine, **way: object) -> Judge:

@@ -11,14 +11,11 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from quadgraph.commands.scene import load_core
-from quadgraph.reference import chains
+from quadgraph.reference import chains, surface_errors
 
 if TYPE_CHECKING:
     from quadgraph._core import Engine
 
-PARTS = ("whole", "unlit")
-UNLIT_BELOW = 0.1  # of the mean irradiance, as the engine has it
-LEAST_SHARE = 0.02  # of the area: a smaller unlit part is not judged
 TRUTH_TOLERANCE = 1e-4  # of errors of .3% and more
 # The four triangles that one is cut into: their corners (4, 3) in its barycentric coordinates (3,).
 _QUARTERS = 0.5 * np.array(
@@ -93,12 +90,11 @@ class Truth:
 
     def error(self, exitance: np.ndarray) -> dict[str, float]:
         """Relative RMS error of exitance (n, 3) by part, without the unlit one where it is small."""
-        found = {}
-        for part, weight in zip(PARTS, (self.area, self.area * self.unlit), strict=True):
-            if weight.sum() > LEAST_SHARE * self.area.sum():
-                square = _squares(weight, exitance - self.exitance) / _squares(weight, self.exitance)
-                found[part] = float(np.sqrt(square))
-        return found
+        weights = surface_errors.weights_of(self.area, self.unlit)
+        return {
+            part: surface_errors.relative(weight, exitance - self.exitance, self.exitance)
+            for part, weight in weights.items()
+        }
 
 
 class Reference:
@@ -129,8 +125,7 @@ class Reference:
         pieces = np.asarray(field["area"], np.float64)[self._pieces]
         area = pieces.sum(axis=1)
         exitance, q = (self._mean(pieces / area[:, None], field[name]) for name in ("exitance", "q"))
-        total = q.sum(axis=1)
-        return Truth(exitance, area, total < UNLIT_BELOW * (area @ total) / area.sum())
+        return Truth(exitance, area, surface_errors.unlit_part(area, q))
 
     def _mean(self, share: np.ndarray, values: np.ndarray) -> np.ndarray:
         return np.einsum("ij,ijc->ic", share, np.asarray(values, np.float64)[self._pieces])
@@ -145,7 +140,3 @@ def _pieces(level: Any, corners: np.ndarray, cuts: int) -> np.ndarray:
     middles = np.asarray(level.vertices, np.float64)[np.asarray(level.faces)].mean(axis=1)
     wanted = np.einsum("pk,nkd->npd", places, corners)
     return cKDTree(middles).query(wanted.reshape(-1, 3))[1].reshape(len(corners), len(places))
-
-
-def _squares(weight: np.ndarray, values: np.ndarray) -> float:
-    return float(weight @ (np.asarray(values, np.float64) ** 2).sum(axis=1))

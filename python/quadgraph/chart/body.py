@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from quadgraph import display_map, exchange, qgraph_file
-from quadgraph.benchmark.judge import unlit_part
+from quadgraph import exchange, qgraph_file
 from quadgraph.chart.method import Chain
 from quadgraph.chart.pixels import Hits, hits
 from quadgraph.commands.scene import load_core
+from quadgraph.reference import chains
 from quadgraph.reference.scenes import Scene
+from quadgraph.reference.surface_errors import unlit_part
 from quadgraph.surface import Surface
 
 if TYPE_CHECKING:
@@ -34,24 +35,6 @@ def light_at(scene: Scene, step: int) -> str:
     angle = np.radians(STEP_DEGREES * step)
     turned = way * np.cos(angle) + np.cross(axis, way) * np.sin(angle)
     return f"directional:{','.join(f'{x:.9g}' for x in turned)}:1"
-
-
-def from_level(path: Path, first: int, output: Path) -> Path:
-    """Write the levels of a .qgraph from level `first` down, shown on the same display mesh."""
-    file = qgraph_file.read(path)
-    kept = {}
-    for name, array in file.sections.items():
-        level, _, part = name.removeprefix("level").partition("/")
-        if name.startswith("level") and int(level) >= first:
-            kept[f"level{int(level) - first}/{part}"] = array
-    faces = kept["level0/faces"]
-    surface = Surface(kept["level0/vertices"][: faces.max() + 1].astype(np.float64), faces.astype(np.int64))
-    face, coordinates = display_map.nearest_faces(file.sections["display/vertices"].astype(np.float64), surface)
-    shown = {name: file.sections[f"display/{name}"] for name in ("vertices", "normals", "triangles")}
-    shown |= {"face": face.astype(np.uint32), "barycentric": coordinates.astype(np.float32)}
-    metadata = file.metadata | {"levels": file.metadata["levels"][first:]}
-    qgraph_file.write(output, metadata, kept | {f"display/{name}": array for name, array in shown.items()})
-    return output
 
 
 @dataclass(frozen=True)
@@ -95,7 +78,7 @@ class Body:
         path = self.folder / f"{self.scene.name}-from-{level}.qgraph"
         if level == 0:
             return self.path
-        return path if path.exists() else from_level(self.path, level, path)
+        return path if path.exists() else chains.without_finest(self.path, level, path, same_display=True)
 
     def engine(self, level: int, system: tuple[str, ...]) -> Engine:
         """The engine of that system, e.g. (method, model, source), on the chain from a level down."""

@@ -52,13 +52,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
 
 def _add_bodies_options(group: argparse._ArgumentGroup) -> None:
     group.add_argument("--scene", action="append", default=[], metavar="NAME", help="only this one; several allowed")
-    group.add_argument(
-        "--meshes",
-        type=Path,
-        default=scene.shared_meshes(),
-        metavar="FOLDER",
-        help="of the mesh files (default: %(default)s)",
-    )
+    scene.add_meshes_argument(group)
 
 
 def _add_scenes_options(group: argparse._ArgumentGroup) -> None:

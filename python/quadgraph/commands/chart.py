@@ -61,13 +61,7 @@ def _add_truth_options(group: argparse._ArgumentGroup) -> None:
     group.add_argument(
         "--against", choices=TRUTHS, action="append", help="only this truth (default: both; `reference` makes them)"
     )
-    group.add_argument(
-        "--meshes",
-        type=Path,
-        default=scene.shared_meshes(),
-        metavar="FOLDER",
-        help="of the mesh files (default: %(default)s)",
-    )
+    scene.add_meshes_argument(group)
     group.add_argument(
         "--truth",
         type=Path,

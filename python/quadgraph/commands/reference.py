@@ -29,13 +29,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "double precision; walk: random walks through 'sphere' and 'slab', to check the others by. Ctrl-C keeps what "
         "is there, and the same command goes on",
     )
-    parser.add_argument(
-        "--meshes",
-        type=Path,
-        default=scene.shared_meshes(),
-        metavar="FOLDER",
-        help="of the mesh files (default: %(default)s)",
-    )
+    scene.add_meshes_argument(parser)
     parser.add_argument(
         "--truth",
         type=Path,

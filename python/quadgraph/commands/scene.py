@@ -63,6 +63,17 @@ def shared_meshes() -> Path:
     return Path(os.environ.get("QUADGRAPH_SHARED", "../shared")) / "meshes"
 
 
+def add_meshes_argument(group: argparse._ActionsContainer) -> None:
+    """Add the folder of scenes' mesh files."""
+    group.add_argument(
+        "--meshes",
+        type=Path,
+        default=shared_meshes(),
+        metavar="FOLDER",
+        help="of the mesh files (default: %(default)s)",
+    )
+
+
 # What each is: docs/architecture.md, "Solvers".
 SOLVERS = ("fmg-pcg", "vcycle", "dpcg", "cascade", "jacobi", "auto")
 

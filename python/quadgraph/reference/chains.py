@@ -84,8 +84,11 @@ def baked(subject: Subject, mesh_folder: Path, folder: Path) -> Path:
     return output
 
 
-def without_finest(path: Path, count: int, output: Path) -> Path:
-    """Write the levels of a .qgraph but its `count` finest, with the finest that is left as the display mesh."""
+def without_finest(path: Path, count: int, output: Path, same_display: bool = False) -> Path:
+    """Write the levels of a .qgraph but its `count` finest.
+
+    What is displayed is the finest level that is left, or, with same_display, the display mesh that the file has.
+    """
     file = qgraph_file.read(path)
     kept = {}
     for name, array in file.sections.items():
@@ -93,7 +96,17 @@ def without_finest(path: Path, count: int, output: Path) -> Path:
         if name.startswith("level") and int(level) >= count:
             kept[f"level{int(level) - count}/{field}"] = array
     metadata = file.metadata | {"levels": file.metadata["levels"][count:]}
-    qgraph_file.write(output, metadata, kept | _display(kept["level0/vertices"], kept["level0/faces"]))
+    faces = kept["level0/faces"]
+    vertices = kept["level0/vertices"][: int(faces.max()) + 1]
+    surface = Surface(vertices.astype(np.float64), faces.astype(np.int64))
+    if same_display:
+        shown = {name: file.sections[f"display/{name}"] for name in ("vertices", "normals", "triangles")}
+    else:
+        normals = display_map.vertex_normals(surface).astype(np.float32)
+        shown = {"vertices": np.ascontiguousarray(vertices), "normals": normals, "triangles": faces}
+    face, coordinates = display_map.nearest_faces(shown["vertices"].astype(np.float64), surface)
+    shown |= {"face": face.astype(np.uint32), "barycentric": coordinates.astype(np.float32)}
+    qgraph_file.write(output, metadata, kept | {f"display/{name}": array for name, array in shown.items()})
     return output
 
 
@@ -111,20 +124,6 @@ def refined(path: Path, count: int, output: Path) -> Path:
     for _ in range(count):
         graphs.insert(0, ordering.in_blocks(meshes.refined(graphs[0])))
     return meshes.write(output, graphs)
-
-
-def _display(vertices: np.ndarray, faces: np.ndarray) -> dict[str, np.ndarray]:
-    """Sections of the display mesh that is the surface itself."""
-    used = int(faces.max()) + 1
-    surface = Surface(vertices[:used].astype(np.float64), faces.astype(np.int64))
-    face, coordinates = display_map.nearest_faces(surface.vertices, surface)
-    return {
-        "display/vertices": np.ascontiguousarray(vertices[:used]),
-        "display/normals": display_map.vertex_normals(surface).astype(np.float32),
-        "display/triangles": faces,
-        "display/face": face.astype(np.uint32),
-        "display/barycentric": coordinates.astype(np.float32),
-    }
 
 
 def at_corners(faces: np.ndarray, values: np.ndarray) -> np.ndarray:

@@ -9,15 +9,13 @@ from typing import Any
 import numpy as np
 
 from quadgraph.errors import QuadGraphError
-from quadgraph.reference import meshes
+from quadgraph.reference import meshes, surface_errors
 from quadgraph.reference.bodies import Scheme
 from quadgraph.stability.bodies import Chain, Irradiance, Medium, Shape
 from quadgraph.stability.classes import REFUSED, Errors, classify
 from quadgraph.stability.methods import Method
 from quadgraph.stability.truths import TruthOf
 
-UNLIT_BELOW = 0.1  # of the mean irradiance, as the engine has it
-LEAST_SHARE = 0.02  # of the area: a smaller unlit part is not judged
 DARK = 1e-4  # of the whole's exitance (RMS): an unlit part below it is black in any picture, and not judged
 
 
@@ -87,14 +85,14 @@ def errors(case: Case, found: np.ndarray, truth: np.ndarray) -> Errors:
     if not np.isfinite(truth).all():
         raise ValueError("the truth is not finite")
     centre, normal, _ = meshes.face_frames(case.chain.graphs[0])
-    q, area = case.q(centre, normal), case.chain.area
-    unlit = area * (q < UNLIT_BELOW * (area @ q) / area.sum())
+    area = case.chain.area
+    unlit = surface_errors.weights(area, case.q(centre, normal)[:, None]).get("unlit")
     if case.regions is not None:
         labels = np.unique(case.regions(case.chain), return_inverse=True)[1]
         found, truth = (_means(values, area, labels) for values in (found, truth))
     difference = found - truth
     whole = _relative(area, difference, truth)
-    if unlit.sum() <= LEAST_SHARE * area.sum() or _rms(unlit, truth) <= DARK * _rms(area, truth):
+    if unlit is None or _rms(unlit, truth) <= DARK * _rms(area, truth):
         return Errors(whole)
     return Errors(whole, _relative(unlit, difference, truth))
 

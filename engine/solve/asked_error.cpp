@@ -1,0 +1,51 @@
+#include "engine/solve/asked_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "engine/solve/mesh_error.h"
+
+namespace quadgraph {
+namespace {
+
+// Of the light that enters, what sums in single precision may lose.
+constexpr double lost_in_sums = 2e-6;
+
+std::string two_digits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.2g", value);
+  return text;
+}
+
+std::string percent(double share) {
+  return two_digits(100 * share) + "%";
+}
+
+}  // namespace
+
+double unbalanced(const Energy& energy, const Energy& collided) {
+  double squares = 0, sizes = 0;
+  for (int c = 0; c < 3; ++c) {
+    const double out = energy.scattered_out[c], size = out + collided.absorbed[c];
+    if (!(size > 0)) continue;
+    const double share = std::max(0.0, std::abs(energy.balance()[c]) - lost_in_sums) * energy.entered[c] / size;
+    squares += share * share * out * out;
+    sizes += out * out;
+  }
+  return sizes > 0 ? std::sqrt(squares / sizes) : 0;
+}
+
+bool certain(const ErrorEstimate& estimate, double wanted) {
+  return estimate.whole <= wanted / confidence && estimate.unlit <= wanted / confidence;
+}
+
+std::string missed(const std::optional<ErrorEstimate>& estimate, double wanted) {
+  const std::string asked = "error " + percent(wanted);
+  if (!estimate) return asked + ": a file with a single level cannot tell its error";
+  return asked + " is not certain: the estimate is " + percent(estimate->whole) + " of the surface, " +
+         percent(estimate->unlit) + " of its unlit part, and the error may be " + two_digits(confidence) +
+         " times that; a file with more vertices on its surface would come closer";
+}
+
+}  // namespace quadgraph
