@@ -131,29 +131,24 @@ def _figure_13(pyplot: Any, rows: list[dict[str, Any]]) -> Any:
 
 def _figure_14(pyplot: Any, rows: list[dict[str, Any]]) -> Any:
     figure, axes = pyplot.subplots(
-        1, len(rows), figsize=(5.6 * len(rows), 4.4), layout="constrained", squeeze=False, sharey=True
+        2, len(rows), figsize=(5.6 * len(rows), 7), layout="constrained", squeeze=False, sharey=True
     )
-    for axis, row in zip(axes[0], rows, strict=True):
-        for name, curve in row["curves"].items():
-            colour = _LINES[name.split(",")[0]]
-            style = "-" if name.endswith("with levels") else (0, (3, 2))
-            axis.plot(
-                [p["ms"] for p in curve],
-                [text.worst(p) for p in curve],
-                color=colour,
-                linestyle=style,
-                marker="o",
-                markersize=3,
-            )
-        axis.set_xscale("log")
-        axis.set_yscale("log")
-        _plain(axis.xaxis, _number)
-        _plain(axis.yaxis, _percent)
-        axis.set_title(f"{row['body']}, {row['nodes'][0]['inner']:,} tets", fontsize=10)
-        axis.set_ylim(_KNOWN, 1.5)
-        axis.set_xlabel("ms of the solve")
-        axis.grid(alpha=0.22)
-    axes[0][0].set_ylabel("error left, the larger of whole and unlit")
+    panels = {"work": "work: applications of the finest operator", "ms": "ms of the solve"}
+    for line, (key, words) in enumerate(panels.items()):
+        for axis, row in zip(axes[line], rows, strict=True):
+            for name, curve in row["curves"].items():
+                look = {"color": _LINES[name.split(",")[0]], "marker": "o", "markersize": 3}
+                look["linestyle"] = "-" if name.endswith("with levels") else (0, (3, 2))
+                axis.plot([p[key] for p in curve], [text.worst(p) for p in curve], **look)
+            axis.set_xscale("log")
+            axis.set_yscale("log")
+            axis.set_ylim(_KNOWN, 1.5)
+            _plain(axis.xaxis, _number)
+            _plain(axis.yaxis, _percent)
+            axis.set_title(f"{row['body']}, {row['nodes'][0]['inner']:,} tets", fontsize=10)
+            axis.set_xlabel(words)
+            axis.grid(alpha=0.22)
+        axes[line][0].set_ylabel("error left, the larger of whole and unlit")
     words = {"published": _LINES["published"], "ours, SP₃": _LINES["ours"]}
     _legend(pyplot, figure, words, {"with levels": "-", "without": (0, (3, 2))})
     return _bare(figure)
