@@ -42,27 +42,25 @@ def _measure(subject: Subject, setting: Setting, tell: Progress) -> dict[str, An
             engine.set_material(ways.MATERIAL)
             engine.set_lights([ways.light(0)])
         iterations = way.iterations or _CYCLES
-        times: dict[str, list[tuple[float, float]]] = {order: [] for order in _ORDERS}
+        times: dict[str, list[float]] = {order: [] for order in _ORDERS}
         for number in range(_ROUNDS * setting.repeats + 1):
             for order, engine in engines.items():
                 engine.solve(**way.budget(iterations))
                 if number:  # the first assembles
-                    times[order].append(_spent(engine.passes))
+                    times[order].append(_iterating(engine.passes))
         entries[way.name] = _entry(times)
     return {"body": subject.name, "load": round(os.getloadavg()[0], 2), "ways": entries} | baked["blocks"].report
 
 
-def _spent(passes: list[dict[str, Any]]) -> tuple[float, float]:
-    """Of a solve: ms of iterating, and of all."""
-    iterating = sum(entry["time_ms"] for entry in passes if entry["name"] in SOLVER_PASSES)
-    return iterating, sum(entry["time_ms"] for entry in passes)
+def _iterating(passes: list[dict[str, Any]]) -> float:
+    """Of a solve, ms of iterating."""
+    return sum(entry["time_ms"] for entry in passes if entry["name"] in SOLVER_PASSES)
 
 
-def _entry(times: dict[str, list[tuple[float, float]]]) -> dict[str, Any]:
-    best = {order: round(min(iterating for iterating, _ in found), 3) for order, found in times.items()}
+def _entry(times: dict[str, list[float]]) -> dict[str, Any]:
+    """Medians, and the median gain over the pairs that were measured next to each other, which load disturbs least."""
     pairs = zip(times["random"], times["blocks"], strict=True)
     return {
-        "ms": best,
-        "gain": round(best["random"] / best["blocks"] - 1, 4),
-        "gain_median": round(median(theirs[0] / ours[0] for theirs, ours in pairs) - 1, 4),
+        "ms": {order: round(median(found), 3) for order, found in times.items()},
+        "gain": round(median(random / blocks for random, blocks in pairs) - 1, 4),
     }
