@@ -55,10 +55,10 @@ def device_text(record: dict[str, Any], name: str) -> str:
     machine = entry["machine"]
     loads = [row["load"] for row in entry["rows"].values()]
     load = f"load {min(loads):g} to {max(loads):g}" if loads else "nothing measured"
+    drawn = f", pictures of {settings['pixels']}² pixels, best of {2 * settings['repeats']} frames"
     return (
-        f"{machine['device'].split(' (')[0]}, {machine['cores']} cores, {load}; scale {settings['scale']:g}, "
-        f"pictures of {settings['pixels']}² pixels, best of {2 * settings['repeats']} frames; commit "
-        f"{machine['commit']}"
+        f"{machine['device'].split(' (')[0]}, {machine['cores']} cores, {load}; scale {settings['scale']:g}"
+        f"{drawn if name in ('1', '12') else ''}; commit {machine['commit']}"
     )
 
 
