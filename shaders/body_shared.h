@@ -27,8 +27,37 @@ struct BodyRef {
   float eta;
 };
 
+// Around the faces of a node of the tree, mm.
+struct Box {
+  vec3 low, high;
+};
+
+#ifndef __cplusplus
+QG_ARRAY(Boxes, Box);
+
+Box load_box(Boxes a, uint i) {
+  if (TEXELS) return Box(load_vec3(Vec3s(uvec2(a)), 2u * i), load_vec3(Vec3s(uvec2(a)), 2u * i + 1u));
+  return a.at[i];
+}
+#endif
+
+// A tree over outside faces (engine/graph/face_tree.h).
+struct TreeRef {
+  QG_REF(Uints) order;
+  QG_REF(Uints) leaf_begin;
+  QG_REF(Boxes) boxes;  // by node
+  uint leaf_count;
+};
+
+// A body, and the tree over its faces.
+struct SolidRef {
+  BodyRef body;
+  TreeRef tree;
+};
+
 #ifndef __cplusplus
 QG_ARRAY(BodyRefs, BodyRef);
+QG_ARRAY(SolidRefs, SolidRef);
 
 BodyRef body_in_texels(uint t) {
   return BodyRef(Vec3s(texels2(t)), Uvec4s(texels2(t + 2u)), Uints(texels2(t + 4u)), Uvec3s(texels2(t + 6u)),
@@ -39,6 +68,20 @@ BodyRef body_in_texels(uint t) {
 // The only one of an array.
 BodyRef load_body(BodyRefs a) {
   if (TEXELS) return body_in_texels(texel_of(uvec2(a)));
+  return a.at[0];
+}
+
+TreeRef tree_in_texels(uint t) {
+  return TreeRef(Uints(texels2(t)), Uints(texels2(t + 2u)), Boxes(texels2(t + 4u)), texel(t + 6u));
+}
+
+SolidRef solid_in_texels(uint t) {
+  return SolidRef(body_in_texels(t), tree_in_texels(t + 18u));
+}
+
+// The only one of an array.
+SolidRef load_solid(SolidRefs a) {
+  if (TEXELS) return solid_in_texels(texel_of(uvec2(a)));
   return a.at[0];
 }
 #endif

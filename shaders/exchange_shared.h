@@ -2,6 +2,7 @@
 #ifndef QUADGRAPH_EXCHANGE_SHARED_H
 #define QUADGRAPH_EXCHANGE_SHARED_H
 
+#include "body_shared.h"
 #include "surface_shared.h"
 
 #ifdef __cplusplus
@@ -68,20 +69,6 @@ struct ExchangeEnterPush {
   uint count;
   float transmitted;  // share of even light
 };
-
-// Around the faces of a node of the tree (engine/graph/face_tree.h), mm.
-struct Box {
-  vec3 low, high;
-};
-
-#ifndef __cplusplus
-QG_ARRAY(Boxes, Box);
-
-Box load_box(Boxes a, uint i) {
-  if (TEXELS) return Box(load_vec3(Vec3s(uvec2(a)), 2u * i), load_vec3(Vec3s(uvec2(a)), 2u * i + 1u));
-  return a.at[i];
-}
-#endif
 
 // exchange_boxes.comp: boxes of the nodes `first` to `first` + `count` - 1 of the tree, leaves before their parents.
 struct ExchangeBoxesPush {

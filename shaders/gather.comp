@@ -7,9 +7,11 @@ layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { ResolvePush push; };
 
 SurfaceScene scene;
-#define BODY scene.body
+#define BODY scene.solid.body
+#define TREE_BODY scene.solid.body
+#define TREE scene.solid.tree
 #define POINTS scene.points
-#include "gather.glsl"
+#include "leaving.glsl"
 #include "pixel.glsl"
 
 const float PI = 3.14159265;
@@ -52,7 +54,7 @@ vec3 ambient_radiance() {
   return sum;
 }
 
-Gathered towards_eye(uint face, vec3 position, vec3 normal) {
+Leaving towards_eye(uint face, vec3 position, vec3 normal) {
   vec3 v = normalize(scene.eye - position);
   return leaving(face, coordinates_in(face, position), v, normalize(normal), scene.scale,
                  scene.radiance_norm);
@@ -82,7 +84,7 @@ void main() {
       normal += other.normal;
       specular += 0.25 * other.specular;
     }
-    Gathered light = towards_eye(first.face, 0.25 / share * position, normal);
+    Leaving light = towards_eye(first.face, 0.25 / share * position, normal);
     scattered += share * light.radiance;
     seen += share * light.seen;
     alpha += share;

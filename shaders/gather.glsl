@@ -1,14 +1,34 @@
 // Radiance gathered along a view ray, and its scale. Include after fresnel.glsl and a definition of BODY and POINTS.
 #include "gather_fields.glsl"
 
+// Where most of a ray leaves the body, to go on outside.
+struct Escape {
+  vec3 share;      // of the light there that comes through, this surface included
+  uint face;       // that it leaves by
+  vec3 point;      // mm
+  vec3 direction;  // unit, outside
+};
+
 struct Gathered {
   vec3 radiance;  // W/(mm^2 sr)
   vec3 seen;      // share of the light behind the body that comes through, both surfaces but the first included
+  Escape escape;  // by which most of it does
 };
+
+float largest(vec3 v) {
+  return max(v.x, max(v.y, v.z));
+}
+
+// At the ray's point, on the face opposite slot 3.
+Escape escape_here(vec3 share, uint face, vec3 direction, vec3 n, float cosine) {
+  vec3 point = corner_0.l * corner_0.position + corner_1.l * corner_1.position + corner_2.l * corner_2.position;
+  float cos_o = sqrt(max(1.0 - BODY.eta * BODY.eta * (1.0 - cosine * cosine), 0.0));
+  return Escape(share, face, point, normalize(BODY.eta * (direction - cosine * n) + cos_o * n));
+}
 
 // One step of transport: collided and uncollided fluence scattered into a ray that goes from its point into the body.
 Gathered gather(uint tet, vec3 direction) {
-  Gathered sum = Gathered(vec3(0), vec3(0));
+  Gathered sum = Gathered(vec3(0), vec3(0), Escape(vec3(0), 0u, vec3(0), vec3(0)));
   vec3 left = vec3(1);
   GatherPoint here = fields_here();
   for (uint step = 0u; step < GATHER_STEPS; ++step) {
@@ -33,7 +53,11 @@ Gathered gather(uint tet, vec3 direction) {
     float cosine = dot(direction, n);
     if (load_uint(BODY.face_kinds, crossing.x - BODY.tet_count) == FACE_OPEN) {
       float reflected = internal_reflectance(cosine, BODY.eta);
-      sum.seen += left * (1.0 - reflected);
+      vec3 through = left * (1.0 - reflected);
+      sum.seen += through;
+      if (largest(through) > largest(sum.escape.share)) {
+        sum.escape = escape_here(through, crossing.x - BODY.tet_count, direction, n, cosine);
+      }
       left *= reflected;
       if (reflected == 0.0) break;
     }
@@ -43,30 +67,3 @@ Gathered gather(uint tet, vec3 direction) {
   return sum;
 }
 
-// The direction inside of light that leaves along `outward` at a surface of normal `n`, turned around; into the face of
-// normal `face_normal` in any case.
-vec3 view_ray(vec3 outward, vec3 n, vec3 face_normal) {
-  float cos_o = clamp(dot(outward, n), 0.0, 1.0);
-  float cos_i = sqrt(max(1.0 - (1.0 - cos_o * cos_o) / (BODY.eta * BODY.eta), 0.0));
-  vec3 ray = normalize((cos_o / BODY.eta - cos_i) * n - outward / BODY.eta);
-  return normalize(ray - max(dot(ray, face_normal) + LEAST_VIEW_COSINE, 0.0) * face_normal);
-}
-
-// Light that leaves face `face` at barycentric coordinates `l` along `outward`, at a surface of normal `n`: radiance of
-// scattered light, and the share that is seen of what is behind. Fresnel and refraction included: radiance over eta^2
-// is kept.
-Gathered leaving(uint face, vec3 l, vec3 outward, vec3 n, GatherScales scale, float radiance_norm) {
-  uvec3 ids = load_uvec3(BODY.faces, face);
-  mat3 corners = corners_of(ids);
-  vec3 face_normal = normalize(cross(corners[1] - corners[0], corners[2] - corners[0]));
-  uint tet = load_uint(BODY.face_tets, face);
-  start_on_face(tet, ids, corners, l);
-  Gathered inside = gather(tet, view_ray(outward, n, face_normal));
-  GatherScale a = load_gather_scale(scale, ids.x), b = load_gather_scale(scale, ids.y),
-              c = load_gather_scale(scale, ids.z);
-  vec3 factor = l.x * a.factor + l.y * b.factor + l.z * c.factor;
-  vec3 rest = l.x * a.rest + l.y * b.rest + l.z * c.rest;
-  float transmittance = fresnel_transmittance(clamp(dot(outward, n), 0.0, 1.0), BODY.eta);
-  return Gathered(transmittance * (factor * inside.radiance / (BODY.eta * BODY.eta) + rest / radiance_norm),
-                  transmittance * inside.seen);
-}

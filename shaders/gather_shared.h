@@ -23,6 +23,26 @@ struct GatherScale {
   vec3 rest;  // W/mm^2
 };
 
+// Sums over the open faces below a node of the tree over a body's faces.
+struct GatherNode {
+  vec3 exitance;  // W, of the solve
+  vec3 gathered;  // W, of what is gathered
+  vec3 normal;    // mm^2, area times normal
+  vec3 place;     // mm^3, area times centroid
+  float area;     // mm^2
+};
+
+// The solve's exitance follows the surface less closely than light does: within a mean free path the shape is that of
+// what is gathered. The factor of a vertex is therefore a ratio of means, with weights
+//   (exp(-d^2 / (2 s^2)) - end) (1 + n n') / 2 alike,   s^2 = GATHER_PATH / sigma_t^2 + GATHER_EDGE mean squared edge,
+// at distance d, where `end` brings them to zero at GATHER_REACH s, and `alike`, the smaller over the larger of what is
+// gathered here and there but at least GATHER_ALIKE, keeps bright faces from speaking for dark ones. Nodes whose
+// diagonal is at most GATHER_NODE s are taken whole.
+const float GATHER_PATH = 1.4f;
+const float GATHER_EDGE = 0.25f;
+const float GATHER_REACH = 2.4f;
+const float GATHER_ALIKE = 1e-3f;
+const float GATHER_NODE = 1.0f;
 // The largest factor: where the fluence of a coarse mesh is far too low, gathering has nothing to scale.
 const float GATHER_FACTOR_MAX = 4.0f;
 // A view ray ends where every channel keeps at most GATHER_END, and what lies behind, if it is as bright as the last
@@ -33,6 +53,8 @@ const float GATHER_END = 1e-2f;
 const float GATHER_LEAST = 1e-6f;
 // Tets that a view ray crosses at most.
 const uint GATHER_STEPS = 1024u;
+// Parts of a body behind each other that a view ray goes through at most.
+const uint VIEW_PARTS = 8u;
 // Optical depth from which on light that has not scattered counts as none, and tets on the way back to where it
 // entered.
 const float UNCOLLIDED_DEPTH = 16.0f;
@@ -46,6 +68,16 @@ const float LEAST_VIEW_COSINE = 0.02f;
 #ifndef __cplusplus
 QG_ARRAY(GatherPoints, GatherPoint);
 QG_ARRAY(GatherScales, GatherScale);
+QG_ARRAY(GatherNodes, GatherNode);
+
+GatherNode load_gather_node(GatherNodes a, uint i) {
+  if (TEXELS) {
+    uint t = texel_of(uvec2(a)) + 13u * i;
+    return GatherNode(uintBitsToFloat(texels3(t)), uintBitsToFloat(texels3(t + 3u)), uintBitsToFloat(texels3(t + 6u)),
+                      uintBitsToFloat(texels3(t + 9u)), uintBitsToFloat(texel(t + 12u)));
+  }
+  return a.at[i];
+}
 
 GatherPoint load_gather_point(GatherPoints a, uint i) {
   if (TEXELS) {
@@ -91,21 +123,31 @@ struct GatherExitancePush {
   QG_REF(Vec3s) exitance;  // W/mm^2, written
 };
 
+// gather_nodes.comp: nodes `first` to `first` + `count` - 1 of the tree, leaves before their parents.
+struct GatherNodesPush {
+  QG_REF(SolidRefs) solid;  // one
+  QG_REF(Vec3s) gathered;   // W/mm^2 per face
+  QG_REF(Vec3s) exitance;   // W/mm^2 per surface vertex
+  QG_REF(GatherNodes) nodes;
+  uint first;
+  uint count;
+};
+
 // gather_scale.comp: scale at surface vertices.
 struct GatherScalePush {
-  QG_REF(Vec3s) vertices;
-  QG_REF(Uvec3s) faces;
+  QG_REF(SolidRefs) solid;  // one
   QG_REF(Uints) face_offset;
   QG_REF(Uints) face_incidence;
-  QG_REF(Vec3s) gathered;  // W/mm^2 per face
-  QG_REF(Vec3s) exitance;  // W/mm^2 per surface vertex
+  QG_REF(Vec3s) gathered;
+  QG_REF(Vec3s) exitance;
+  QG_REF(GatherNodes) nodes;
   QG_REF(GatherScales) scale;
   uint count;
 };
 
 // radiance_probe.comp: radiance that leaves the centroids of faces.
 struct RadianceProbePush {
-  QG_REF(BodyRefs) body;  // one
+  QG_REF(SolidRefs) solid;  // one
   QG_REF(GatherPoints) points;
   QG_REF(GatherScales) scale;
   QG_REF(Uints) face;

@@ -108,7 +108,7 @@ struct SurfaceScene {
   QG_REF(Uints) triangle_face;  // per display triangle: outside face of level 0
   QG_REF(GatherPoints) points;
   QG_REF(GatherScales) scale;
-  BodyRef body;
+  SolidRef solid;
 };
 
 #ifndef __cplusplus
@@ -138,7 +138,7 @@ SurfaceScene load_scene(SurfaceScenes a) {
   scene.triangle_face = Uints(texels2(t + 44u));
   scene.points = GatherPoints(texels2(t + 46u));
   scene.scale = GatherScales(texels2(t + 48u));
-  scene.body = body_in_texels(t + 50u);
+  scene.solid = solid_in_texels(t + 50u);
   return scene;
 }
 #endif

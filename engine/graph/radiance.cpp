@@ -1,12 +1,10 @@
 #include "engine/graph/radiance.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
-#include <glm/vector_relational.hpp>
-#include <optional>
+#include <glm/gtx/component_wise.hpp>
 
 #include "engine/graph/entering.h"
 #include "engine/graph/fresnel.h"
@@ -34,39 +32,28 @@ struct Ends {
   glm::dvec3 from, to;
 };
 
-// Light along the way, in one direction of those that share it: all lengths are `stretch` times as long.
-struct Strand {
-  double stretch = 1;
-  std::optional<double> reflectance;  // of open faces from inside; none: by the angle
-  glm::dvec3 transmitted{1};          // e^-tau, less what left through faces
-  Gathered gathered;
-};
-
 class View {
  public:
   View(const Level& level, const Problem& problem, const InsideLight& light)
       : level_(level), problem_(problem), light_(light), ray_(level) {}
 
-  void run(std::uint32_t f, const glm::dvec3& barycentric, glm::dvec3 direction, std::span<Strand> strands) {
+  Gathered run(std::uint32_t f, const glm::dvec3& barycentric, glm::dvec3 direction) {
     ray_.start_on_face(f, barycentric);
-    thin_ = false;
     for (std::uint32_t step = 0; step < gpu::GATHER_STEPS; ++step) {
       const TetRay::Exit exit = ray_.find_exit(direction);
       if (!exit.found) break;
-      cross(exit, strands);
+      cross(exit);
       const std::uint32_t next = ray_.leave(exit);
-      if (ended(strands)) break;
+      if (ended()) break;
       if (next < level_.tet_count()) {
         ray_.enter(next);
       } else {
-        direction = meet_surface(next - level_.tet_count(), direction, strands);
+        direction = meet_surface(next - level_.tet_count(), direction);
       }
     }
-    for (Strand& strand : strands) strand.gathered.radiance += strand.transmitted * even_radiance();
+    gathered_.radiance += left_ * even_radiance();
+    return gathered_;
   }
-
-  // Whether the last run saw through the body.
-  bool thin() const { return thin_; }
 
  private:
   const gpu::Optical& optical() const { return problem_.optical[ray_.tet()]; }
@@ -76,50 +63,49 @@ class View {
     return {ray_.at_point(values), ray_.at_exit(values, exit)};
   }
 
-  void cross(const TetRay::Exit& exit, std::span<Strand> strands) {
+  void cross(const TetRay::Exit& exit) {
     const Ends phi = ends(light_.phi, exit), entry = ends(light_.uncollided.entry, exit),
                depth = ends(light_.uncollided.depth, exit);
-    for (Strand& strand : strands) {
-      const double length = exit.length * strand.stretch;
-      for (int c = 0; c < 3; ++c) {
-        const double tau = extinction()[c] * length;
-        const double x = tau + depth.to[c] - depth.from[c];  // along the ray the light may become brighter
-        const double uncollided = x >= 0 ? std::exp(-depth.from[c]) * weighted(entry.from[c], entry.to[c], x)
-                                         : std::exp(-depth.to[c] - tau) * weighted(entry.to[c], entry.from[c], -x);
-        const double fluence = weighted(phi.from[c], phi.to[c], tau) + uncollided;
-        const double scattering = optical().sigma_s_prime[c] / (4 * glm::pi<double>());
-        strand.gathered.radiance[c] += strand.transmitted[c] * scattering * length * fluence;
-        strand.transmitted[c] *= std::exp(-tau);
-      }
+    for (int c = 0; c < 3; ++c) {
+      const double tau = extinction()[c] * exit.length;
+      const double x = tau + depth.to[c] - depth.from[c];  // along the ray the light may become brighter
+      const double uncollided = x >= 0 ? std::exp(-depth.from[c]) * weighted(entry.from[c], entry.to[c], x)
+                                       : std::exp(-depth.to[c] - tau) * weighted(entry.to[c], entry.from[c], -x);
+      const double fluence = weighted(phi.from[c], phi.to[c], tau) + uncollided;
+      const double scattering = optical().sigma_s_prime[c] / (4 * glm::pi<double>());
+      gathered_.radiance[c] += left_[c] * scattering * exit.length * fluence;
+      left_[c] *= std::exp(-tau);
     }
   }
 
-  // Whether what lies behind the ray's point matters little to every strand.
-  bool ended(std::span<const Strand> strands) const {
+  // Whether what lies behind the ray's point matters little.
+  bool ended() const {
     const glm::dvec3 even = even_radiance();
-    for (const Strand& strand : strands) {
-      for (int c = 0; c < 3; ++c) {
-        const double kept = strand.transmitted[c];
-        if (kept > static_cast<double>(gpu::GATHER_END)) return false;
-        if (kept > static_cast<double>(gpu::GATHER_LEAST) &&
-            kept * even[c] > static_cast<double>(gpu::GATHER_END) * strand.gathered.radiance[c])
-          return false;
-      }
+    for (int c = 0; c < 3; ++c) {
+      if (left_[c] > static_cast<double>(gpu::GATHER_END)) return false;
+      if (left_[c] > static_cast<double>(gpu::GATHER_LEAST) &&
+          left_[c] * even[c] > static_cast<double>(gpu::GATHER_END) * gathered_.radiance[c])
+        return false;
     }
     return true;
   }
 
   // Mirrors the ray, by the share that stays inside.
-  glm::dvec3 meet_surface(std::uint32_t f, const glm::dvec3& direction, std::span<Strand> strands) {
+  glm::dvec3 meet_surface(std::uint32_t f, const glm::dvec3& direction) {
     const glm::dvec3 normal = ray_.face_normal();
-    for (Strand& strand : strands) {
-      if (level_.reflecting(f)) break;
-      thin_ = thin_ || glm::any(glm::greaterThan(strand.transmitted, glm::dvec3(gpu::GATHER_END)));
-      const double cosine = std::clamp(glm::dot(direction, normal), 0.0, 1.0);
-      const double kept = strand.reflectance.value_or(internal_reflectance(cosine, problem_.eta));
-      strand.gathered.seen += (1 - kept) * strand.transmitted;
-      strand.transmitted *= kept;
+    if (level_.reflecting(f)) return mirrored(direction, normal);
+    const double cosine = std::clamp(glm::dot(direction, normal), 0.0, 1.0);
+    const double kept = internal_reflectance(cosine, problem_.eta);
+    const glm::dvec3 through = (1 - kept) * left_;
+    gathered_.seen += through;
+    if (glm::compMax(through) > glm::compMax(gathered_.escape.share)) {
+      glm::dvec3 point(0);
+      for (std::size_t k = 0; k < 4; ++k) point += ray_.corner(k).lambda * ray_.corner(k).position;
+      const double outside = std::sqrt(std::max(1 - problem_.eta * problem_.eta * (1 - cosine * cosine), 0.0));
+      gathered_.escape = {through, f, point,
+                          glm::normalize(problem_.eta * (direction - cosine * normal) + outside * normal)};
     }
+    left_ *= kept;
     return mirrored(direction, normal);
   }
 
@@ -139,16 +125,15 @@ class View {
   const Problem& problem_;
   const InsideLight& light_;
   TetRay ray_;
-  bool thin_ = false;
+  glm::dvec3 left_{1};  // e^-tau, less what left through faces
+  Gathered gathered_;
 };
 
 }  // namespace
 
 Gathered gather(const Level& level, const Problem& problem, const InsideLight& light, std::uint32_t f,
                 const glm::dvec3& barycentric, const glm::dvec3& direction) {
-  std::array<Strand, 1> strands;
-  View(level, problem, light).run(f, barycentric, direction, strands);
-  return strands[0].gathered;
+  return View(level, problem, light).run(f, barycentric, direction);
 }
 
 glm::dvec3 gathered_radiance(const Level& level, const Problem& problem, const InsideLight& light, std::uint32_t f,
@@ -161,31 +146,17 @@ glm::dvec3 gathered_radiance(const Level& level, const Problem& problem, const I
 }
 
 std::vector<glm::dvec3> gathered_exitance(const Level& level, const Problem& problem, const InsideLight& light) {
-  std::array<Strand, gpu::LAMBERTIAN_NODES> fresh;
-  std::array<double, gpu::LAMBERTIAN_NODES> weight;
-  for (std::size_t k = 0; k < fresh.size(); ++k) {
-    const double outside = std::sqrt(static_cast<double>(gpu::LAMBERTIAN_U[k]));
-    const double mu = refracted_cosine(outside, problem.eta), leaves = fresnel_transmittance(outside, problem.eta);
-    fresh[k].stretch = 1 / mu;
-    fresh[k].reflectance = 1 - leaves;
-    weight[k] = glm::pi<double>() * static_cast<double>(gpu::LAMBERTIAN_W[k]) * leaves / (problem.eta * problem.eta);
-  }
   std::vector<glm::dvec3> exitance(level.faces.size(), glm::dvec3(0));
-  View view(level, problem, light);
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {
     if (level.reflecting(f)) continue;
-    auto strands = fresh;
-    const FaceFrame frame = frame_of(level, f);
-    view.run(f, glm::dvec3(1.0 / 3), -frame.normal, strands);
-    if (view.thin()) {
-      const auto directions = lambertian_directions(frame, f, problem.eta);
-      for (Strand& strand : strands) strand.gathered.radiance = glm::dvec3(0);
-      for (std::size_t i = 0; i < directions.size(); ++i) {
-        strands[i / 2].gathered.radiance +=
-            0.5 * gather(level, problem, light, f, glm::dvec3(1.0 / 3), directions[i]).radiance;
-      }
+    const auto directions = lambertian_directions(frame_of(level, f), f, problem.eta);
+    for (std::size_t k = 0; k < gpu::LAMBERTIAN_NODES; ++k) {
+      const double leaves = fresnel_transmittance(std::sqrt(static_cast<double>(gpu::LAMBERTIAN_U[k])), problem.eta);
+      const glm::dvec3& direction = directions[2 * k + k / 2];
+      exitance[f] += glm::pi<double>() * static_cast<double>(gpu::LAMBERTIAN_W[k]) * leaves /
+                     (problem.eta * problem.eta) *
+                     gather(level, problem, light, f, glm::dvec3(1.0 / 3), direction).radiance;
     }
-    for (std::size_t k = 0; k < strands.size(); ++k) exitance[f] += weight[k] * strands[k].gathered.radiance;
   }
   return exitance;
 }

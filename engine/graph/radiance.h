@@ -21,9 +21,17 @@ struct InsideLight {
   const Uncollided& uncollided;
 };
 
+// Where most of a ray leaves the body, to go on outside.
+struct Escape {
+  glm::dvec3 share{0};  // of the radiance behind that comes in, this face's transmittance included
+  std::uint32_t face = 0;
+  glm::dvec3 point{0}, direction{0};  // mm; unit, outside
+};
+
 struct Gathered {
   glm::dvec3 radiance{0};  // W/(mm^2 sr), inside
   glm::dvec3 seen{0};      // share of the radiance behind the body that comes straight through, before the last face
+  Escape escape;           // by which most of that does
 };
 
 // What a ray gathers from the point `barycentric` of open face f along `direction` (unit, inward). It is mirrored at
@@ -35,9 +43,8 @@ Gathered gather(const Level& level, const Problem& problem, const InsideLight& l
 glm::dvec3 gathered_radiance(const Level& level, const Problem& problem, const InsideLight& light, std::uint32_t f,
                              const glm::dvec3& barycentric, const glm::dvec3& outside);
 
-// W/mm^2 per outside face, 0 at reflecting ones: the exitance of the gathered radiance above the centroid of a face,
-// with the fields there taken to vary along its normal only, by four cosines; where a ray along the normal sees through
-// the body, by eight rays that go where they go.
+// W/mm^2 per outside face, 0 at reflecting ones: the exitance of the gathered radiance at the centroid of a face, by
+// four rays: one at each Gauss node of the outside cosine, their azimuths a quarter turn apart.
 std::vector<glm::dvec3> gathered_exitance(const Level& level, const Problem& problem, const InsideLight& light);
 
 }  // namespace quadgraph

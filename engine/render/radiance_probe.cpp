@@ -44,7 +44,7 @@ Leaving RadianceProbe::run(const Level& level, const GatherField& field, float e
   const vk::Buffer directions = vk::upload(context_, direction, "probe/directions");
   const vk::Buffer radiance(context_, direction.size_bytes(), vk::Place::device, "probe/radiance");
   const vk::Buffer transmittance(context_, direction.size_bytes(), vk::Place::device, "probe/transmittance");
-  const gpu::RadianceProbePush push{.body = field.body_on_device().address(),
+  const gpu::RadianceProbePush push{.solid = field.solid_on_device().address(),
                                     .points = field.points().address(),
                                     .scale = field.scale().address(),
                                     .face = faces.address(),

@@ -45,12 +45,12 @@ gpu::SurfaceScene scene(const RasterInput& input, const Camera& camera) {
                           .triangle_face = 0,
                           .points = 0,
                           .scale = 0,
-                          .body = {}};
+                          .solid = {}};
   if (input.gather != nullptr) {
     scene.triangle_face = input.gather->triangle_face.address();
     scene.points = input.gather->field.points().address();
     scene.scale = input.gather->field.scale().address();
-    scene.body = input.gather->field.body();
+    scene.solid = input.gather->field.solid();
   }
   return scene;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "engine/graph/face_tree.h"
 #include "shaders/exchange_shared.h"
 
 namespace quadgraph {
@@ -51,14 +50,11 @@ void ExchangeMatrix::make_room_for_rays(vk::Context& context) {
   cast_ = true;
   rows_ = vk::upload<glm::uvec2>(context, wide_rows(level_), "exchange/rows");
   entries_ = vk::upload<std::uint32_t>(context, wide_entries(level_), "exchange/entries");
-  const FaceTree tree = face_tree(level_);
-  leaves_ = tree.leaves();
-  order_ = vk::upload<std::uint32_t>(context, tree.order, "exchange/faces of the tree");
-  leaf_begin_ = vk::upload<std::uint32_t>(context, tree.leaf_begin, "exchange/leaves of the tree");
-  boxes_ = {context, 2ull * leaves_ * sizeof(gpu::Box), vk::Place::read, "exchange/boxes of the tree"};
+  tree_.emplace(context, level_, "exchange");
 }
 
 void ExchangeMatrix::moved() {
+  if (tree_) tree_->moved();
   for (std::uint32_t k = behind_; k < behind_since_.size(); ++k) {
     behind_since_[(next_ + k) % behind_since_.size()] = now_;
   }
@@ -70,7 +66,7 @@ std::uint32_t ExchangeMatrix::record_refresh(Workspace& work, const LevelBuffers
   const std::uint32_t wanted = count == 0 ? behind_ : std::min(count, behind_);
   if (wanted == 0) return 0;
   make_room_for_rays(work.recorder.context());
-  record_boxes(work, level);
+  tree_->record(work, level);
   for (std::uint32_t done = 0; done < wanted; done += most_rows) {
     record_rays(work, level, (next_ + done) % level.face_count, std::min(wanted - done, most_rows));
   }
@@ -79,34 +75,18 @@ std::uint32_t ExchangeMatrix::record_refresh(Workspace& work, const LevelBuffers
   return wanted;
 }
 
-void ExchangeMatrix::record_boxes(Workspace& work, const LevelBuffers& level) {
-  gpu::ExchangeBoxesPush push{.vertices = level.vertices.address(),
-                              .faces = level.faces.address(),
-                              .order = order_.address(),
-                              .leaf_begin = leaf_begin_.address(),
-                              .boxes = boxes_.address(),
-                              .first = leaves_,
-                              .count = leaves_,
-                              .leaf_count = leaves_};
-  std::uint64_t bytes = level.face_count * (index_bytes + sizeof(glm::uvec3) + 3 * vec3_bytes);
-  for (; push.first > 0; push.first /= 2, push.count /= 2) {
-    work.recorder.dispatch(work.passes.exchange_boxes, push, push.count, "exchange boxes",
-                           bytes + push.count * sizeof(gpu::Box));
-    bytes = push.count * sizeof(gpu::Box);  // children
-  }
-}
-
 void ExchangeMatrix::record_rays(Workspace& work, const LevelBuffers& level, std::uint32_t first, std::uint32_t count) {
+  const gpu::TreeRef tree = tree_->ref();
   const gpu::ExchangeRaysPush push{.vertices = level.vertices.address(),
                                    .faces = level.faces.address(),
-                                   .order = order_.address(),
-                                   .leaf_begin = leaf_begin_.address(),
-                                   .boxes = boxes_.address(),
+                                   .order = tree.order,
+                                   .leaf_begin = tree.leaf_begin,
+                                   .boxes = tree.boxes,
                                    .rows = rows_.address(),
                                    .entries = entries_.address(),
                                    .first = first,
                                    .face_count = level.face_count,
-                                   .leaf_count = leaves_,
+                                   .leaf_count = tree.leaf_count,
                                    .rays = rays()};
   constexpr std::uint64_t face_bytes = index_bytes + sizeof(glm::uvec3) + 3 * vec3_bytes;
   work.recorder.dispatch(

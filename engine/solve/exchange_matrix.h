@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "engine/solve/body_tree.h"
 #include "engine/solve/simulation.h"
 #include "engine/solve/workspace.h"
 
@@ -39,14 +41,12 @@ class ExchangeMatrix {
 
  private:
   void make_room_for_rays(vk::Context& context);
-  void record_boxes(Workspace& work, const LevelBuffers& level);
   void record_rays(Workspace& work, const LevelBuffers& level, std::uint32_t first, std::uint32_t count);
 
   const Level& level_;
   vk::Buffer rows_, entries_;
   bool cast_ = false;  // entries_ has room for all rays of every row
-  vk::Buffer order_, leaf_begin_, boxes_;
-  std::uint32_t leaves_ = 0;
+  std::optional<BodyTree> tree_;
 
   // Rows next_, next_ + 1, ... modulo the number of faces are behind the shape, behind_ of them.
   std::uint32_t next_ = 0, behind_ = 0;

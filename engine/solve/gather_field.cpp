@@ -13,31 +13,38 @@ constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
 constexpr std::uint64_t tets_per_ray = 8;
 constexpr std::uint64_t tet_bytes = 2 * sizeof(std::uint32_t) + vec3_bytes + sizeof(gpu::Optical);
 
+// Nodes that the means of a vertex look at and take, about as many as where edges are half a mean free path long.
+constexpr std::uint64_t boxes_per_mean = 150, nodes_per_mean = 60;
+
+constexpr std::uint64_t face_bytes = 2 * sizeof(std::uint32_t) + sizeof(glm::uvec3) + 7 * vec3_bytes;
+
 }  // namespace
 
-GatherField::GatherField(vk::Context& context, const Level& level) {
+GatherField::GatherField(vk::Context& context, const Level& level, const BodyTree& tree) {
   const VertexStarts starts = vertex_starts(level);
   start_ = vk::upload<std::uint32_t>(context, starts.start, "gather/a tet at each vertex");
   nearest_ = vk::upload<std::uint32_t>(context, starts.nearest, "gather/nearest surface vertex");
   const auto room = [&](std::uint64_t bytes, const char* name) {
     return vk::Buffer(context, bytes, vk::Place::read, name);
   };
-  body_on_device_ = room(sizeof(gpu::BodyRef), "gather/body");
+  solid_on_device_ = room(sizeof(gpu::SolidRef), "gather/body");
   points_ = room(level.vertex_count() * sizeof(gpu::GatherPoint), "gather/points");
   gathered_ = room(level.face_count() * vec3_bytes, "gather/gathered exitance");
+  nodes_ = room(tree.nodes() * sizeof(gpu::GatherNode), "gather/nodes");
   scale_ = room(level.surface_vertex_count * sizeof(gpu::GatherScale), "gather/scale");
 }
 
 void GatherField::record(Workspace& work, const GatherInput& input) {
-  write_body(work.recorder.context(), input.body);
+  write_solid(work.recorder.context(), {input.body, input.tree.ref()});
+  input.tree.record(work, input.level);
   record_points(work, input);
   record_scale(work, input);
 }
 
-void GatherField::write_body(vk::Context& context, const gpu::BodyRef& body) {
-  if (std::memcmp(&body, &body_, sizeof(body)) == 0) return;
-  vk::write_bytes(context, body_on_device_, std::as_bytes(std::span(&body, 1)));
-  body_ = body;
+void GatherField::write_solid(vk::Context& context, const gpu::SolidRef& solid) {
+  if (std::memcmp(&solid, &solid_, sizeof(solid)) == 0) return;
+  vk::write_bytes(context, solid_on_device_, std::as_bytes(std::span(&solid, 1)));
+  solid_ = solid;
 }
 
 void GatherField::record_points(Workspace& work, const GatherInput& input) {
@@ -48,7 +55,7 @@ void GatherField::record_points(Workspace& work, const GatherInput& input) {
                                .count = level.vertex_count};
   work.recorder.dispatch(work.passes.gather_phi.of(input.op.model), phi, level.vertex_count, "gather points",
                          level.vertex_count * (vec3_bytes + input.op.field_bytes()));
-  const gpu::UncollidedPush uncollided{.body = body_on_device_.address(),
+  const gpu::UncollidedPush uncollided{.body = solid_on_device_.address(),
                                        .start = start_.address(),
                                        .nearest = nearest_.address(),
                                        .face_offset = level.face_offset.address(),
@@ -66,21 +73,39 @@ void GatherField::record_points(Workspace& work, const GatherInput& input) {
 void GatherField::record_scale(Workspace& work, const GatherInput& input) {
   const LevelBuffers& level = input.level;
   const gpu::GatherExitancePush exitance{
-      .body = body_on_device_.address(), .points = points_.address(), .exitance = gathered_.address()};
+      .body = solid_on_device_.address(), .points = points_.address(), .exitance = gathered_.address()};
   work.recorder.dispatch(work.passes.gather_exitance, exitance, level.face_count, "gathered exitance",
                          level.face_count * (tets_per_ray * (tet_bytes + sizeof(gpu::GatherPoint)) + vec3_bytes));
-  const gpu::GatherScalePush scale{.vertices = level.vertices.address(),
-                                   .faces = level.faces.address(),
+  record_nodes(work, input);
+  const gpu::GatherScalePush scale{.solid = solid_on_device_.address(),
                                    .face_offset = level.face_offset.address(),
                                    .face_incidence = level.face_incidence.address(),
                                    .gathered = gathered_.address(),
                                    .exitance = input.vertex_exitance.address(),
+                                   .nodes = nodes_.address(),
                                    .scale = scale_.address(),
                                    .count = level.surface_vertex_count};
-  const std::uint64_t face_bytes = sizeof(std::uint32_t) + sizeof(glm::uvec3) + 4 * vec3_bytes;
   work.recorder.dispatch(
       work.passes.gather_scale, scale, level.surface_vertex_count, "gather scale",
-      3 * level.face_count * face_bytes + level.surface_vertex_count * (vec3_bytes + sizeof(gpu::GatherScale)));
+      level.surface_vertex_count *
+          (boxes_per_mean * sizeof(gpu::Box) + nodes_per_mean * sizeof(gpu::GatherNode) + sizeof(gpu::GatherScale)));
+}
+
+void GatherField::record_nodes(Workspace& work, const GatherInput& input) {
+  gpu::GatherNodesPush push{.solid = solid_on_device_.address(),
+                            .gathered = gathered_.address(),
+                            .exitance = input.vertex_exitance.address(),
+                            .nodes = nodes_.address(),
+                            .first = 0,
+                            .count = 0};
+  std::uint64_t bytes = input.level.face_count * face_bytes;
+  input.tree.upwards([&](std::uint32_t first, std::uint32_t count) {
+    push.first = first;
+    push.count = count;
+    work.recorder.dispatch(work.passes.gather_nodes, push, count, "gather nodes",
+                           bytes + count * sizeof(gpu::GatherNode));
+    bytes = count * sizeof(gpu::GatherNode);  // children
+  });
 }
 
 }  // namespace quadgraph

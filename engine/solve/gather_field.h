@@ -7,6 +7,7 @@
 
 #include "engine/graph/graph.h"
 #include "engine/solve/beams.h"
+#include "engine/solve/body_tree.h"
 #include "engine/solve/operator_buffers.h"
 #include "engine/solve/simulation.h"
 #include "engine/solve/workspace.h"
@@ -21,29 +22,32 @@ struct GatherInput {
   const BeamBuffers& beams;
   const vk::Buffer& vertex_exitance;  // vec3 per surface vertex, W/mm^2
   gpu::BodyRef body;
+  BodyTree& tree;  // of the level
 };
 
 class GatherField {
  public:
-  GatherField(vk::Context& context, const Level& level);
+  // `tree`: of the level.
+  GatherField(vk::Context& context, const Level& level, const BodyTree& tree);
 
   // Fluence of both kinds at the vertices, exitance of what is gathered, and their scale.
   void record(Workspace& work, const GatherInput& input);
 
-  const gpu::BodyRef& body() const { return body_; }  // as it was last recorded
-  const vk::Buffer& body_on_device() const { return body_on_device_; }
+  const gpu::SolidRef& solid() const { return solid_; }  // as it was last recorded
+  const vk::Buffer& solid_on_device() const { return solid_on_device_; }
   const vk::Buffer& points() const { return points_; }      // GatherPoint per vertex
   const vk::Buffer& gathered() const { return gathered_; }  // vec3 per face, W/mm^2: exitance of what is gathered
   const vk::Buffer& scale() const { return scale_; }        // GatherScale per surface vertex
 
  private:
-  void write_body(vk::Context& context, const gpu::BodyRef& body);
+  void write_solid(vk::Context& context, const gpu::SolidRef& solid);
   void record_points(Workspace& work, const GatherInput& input);
   void record_scale(Workspace& work, const GatherInput& input);
+  void record_nodes(Workspace& work, const GatherInput& input);
 
   vk::Buffer start_, nearest_;  // engine/graph/vertex_starts.h
-  vk::Buffer body_on_device_, points_, gathered_, scale_;
-  gpu::BodyRef body_{};
+  vk::Buffer solid_on_device_, points_, gathered_, nodes_, scale_;
+  gpu::SolidRef solid_{};
 };
 
 }  // namespace quadgraph

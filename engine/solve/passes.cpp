@@ -47,6 +47,7 @@
 #include "spirv/follow.comp.h"
 #include "spirv/follow_sp3.comp.h"
 #include "spirv/gather_exitance.comp.h"
+#include "spirv/gather_nodes.comp.h"
 #include "spirv/gather_phi.comp.h"
 #include "spirv/gather_phi_sp3.comp.h"
 #include "spirv/gather_scale.comp.h"
@@ -108,6 +109,7 @@ Passes::Passes()
       ONE_PASS(surface_share, SurfaceSharePush, each),
       ONE_PASS(uncollided, UncollidedPush, each),
       ONE_PASS(gather_exitance, GatherExitancePush, each),
+      ONE_PASS(gather_nodes, GatherNodesPush, each),
       ONE_PASS(gather_scale, GatherScalePush, each),
       ONE_PASS(exchange, ExchangePush, each),
       ONE_PASS(exchange_finer, ExchangeFinerPush, each),

@@ -67,7 +67,8 @@ struct Simulation::Implementation {
   SurfaceResults results;
   Coefficients coefficients;
   InterReflection exchange;
-  std::optional<GatherField> gather;  // made at first use
+  std::optional<BodyTree> tree;       // of level 0, made at first use
+  std::optional<GatherField> gather;  // the same
   bool gather_stale = true;
   std::vector<PassStats> passes;      // of the last solve
   bool scaled = false;                // the scale is that of the present q
@@ -140,6 +141,7 @@ struct Simulation::Implementation {
     quicker.clear();
     exchange.moved(number);
     if (number == 0) gather.reset();
+    if (number == 0 && tree) tree->moved();
     solved.reset();
     unload();
   }
@@ -181,7 +183,8 @@ struct Simulation::Implementation {
   }
 
   GatherField& gather_room() {
-    if (!gather) gather.emplace(context, shape.levels()[0]);
+    if (!tree) tree.emplace(context, shape.levels()[0], "gather");
+    if (!gather) gather.emplace(context, shape.levels()[0], *tree);
     return *gather;
   }
 
@@ -247,7 +250,7 @@ struct Simulation::Implementation {
     if (!gather_stale) return *gather;
     work.recorder.clear();
     gather->record(work, {levels[0], operators.at(*solved, 0), beams, results.vertex_exitance(),
-                          walks[0].body(levels[0], coefficients.eta(), coefficients.even())});
+                          walks[0].body(levels[0], coefficients.eta(), coefficients.even()), *tree});
     work.recorder.submit();
     gather_passes = work.recorder.passes();
     gather_stale = false;

@@ -35,7 +35,7 @@ TEST_CASE("the scene of the display") {
          MEMBER(SurfaceScene, barycentric),     MEMBER(SurfaceScene, faces),         MEMBER(SurfaceScene, exitance),
          MEMBER(SurfaceScene, unscattered),     MEMBER(SurfaceScene, sky),           MEMBER(SurfaceScene, lights),
          MEMBER(SurfaceScene, views),           MEMBER(SurfaceScene, triangle_face), MEMBER(SurfaceScene, points),
-         MEMBER(SurfaceScene, scale),           MEMBER(SurfaceScene, body)});
+         MEMBER(SurfaceScene, scale),           MEMBER(SurfaceScene, solid)});
     CHECK(layout.stride.at("SurfaceScene") == sizeof(gpu::SurfaceScene));
     compare(code, "SurfacePush", {MEMBER(SurfacePush, scene)});
   }

@@ -1,6 +1,7 @@
 // The structs of shaders/gather_shared.h lie in memory as the compiled shaders read them.
 #include "shaders/gather_shared.h"
 #include "spirv/gather_exitance.comp.h"
+#include "spirv/gather_nodes.comp.h"
 #include "spirv/gather_phi.comp.h"
 #include "spirv/gather_phi_sp3.comp.h"
 #include "spirv/gather_scale.comp.h"
@@ -17,7 +18,14 @@ TEST_CASE("what the gather keeps at vertices") {
   compare(radiance_probe_comp, "GatherScale", {MEMBER(GatherScale, factor), MEMBER(GatherScale, rest)});
   CHECK(layout.stride.at("GatherPoint") == sizeof(gpu::GatherPoint));
   CHECK(layout.stride.at("GatherScale") == sizeof(gpu::GatherScale));
-  CHECK(layout.stride.at("BodyRef") == sizeof(gpu::BodyRef));
+  CHECK(layout.stride.at("SolidRef") == sizeof(gpu::SolidRef));
+  compare(radiance_probe_comp, "SolidRef", {MEMBER(SolidRef, body), MEMBER(SolidRef, tree)});
+  compare(radiance_probe_comp, "TreeRef",
+          {MEMBER(TreeRef, order), MEMBER(TreeRef, leaf_begin), MEMBER(TreeRef, boxes), MEMBER(TreeRef, leaf_count)});
+  compare(gather_nodes_comp, "GatherNode",
+          {MEMBER(GatherNode, exitance), MEMBER(GatherNode, gathered), MEMBER(GatherNode, normal),
+           MEMBER(GatherNode, place), MEMBER(GatherNode, area)});
+  CHECK(SpirvLayout((vk::Spirv(gather_nodes_comp))).stride.at("GatherNode") == sizeof(gpu::GatherNode));
 }
 
 TEST_CASE("push constants of the gather") {
@@ -33,12 +41,16 @@ TEST_CASE("push constants of the gather") {
            MEMBER(UncollidedPush, vertex_count), MEMBER(UncollidedPush, surface_vertex_count)});
   compare(gather_exitance_comp, "GatherExitancePush",
           {MEMBER(GatherExitancePush, body), MEMBER(GatherExitancePush, points), MEMBER(GatherExitancePush, exitance)});
-  compare(gather_scale_comp, "GatherScalePush",
-          {MEMBER(GatherScalePush, vertices), MEMBER(GatherScalePush, faces), MEMBER(GatherScalePush, face_offset),
-           MEMBER(GatherScalePush, face_incidence), MEMBER(GatherScalePush, gathered),
-           MEMBER(GatherScalePush, exitance), MEMBER(GatherScalePush, scale), MEMBER(GatherScalePush, count)});
+  compare(gather_nodes_comp, "GatherNodesPush",
+          {MEMBER(GatherNodesPush, solid), MEMBER(GatherNodesPush, gathered), MEMBER(GatherNodesPush, exitance),
+           MEMBER(GatherNodesPush, nodes), MEMBER(GatherNodesPush, first), MEMBER(GatherNodesPush, count)});
+  compare(
+      gather_scale_comp, "GatherScalePush",
+      {MEMBER(GatherScalePush, solid), MEMBER(GatherScalePush, face_offset), MEMBER(GatherScalePush, face_incidence),
+       MEMBER(GatherScalePush, gathered), MEMBER(GatherScalePush, exitance), MEMBER(GatherScalePush, nodes),
+       MEMBER(GatherScalePush, scale), MEMBER(GatherScalePush, count)});
   compare(radiance_probe_comp, "RadianceProbePush",
-          {MEMBER(RadianceProbePush, body), MEMBER(RadianceProbePush, points), MEMBER(RadianceProbePush, scale),
+          {MEMBER(RadianceProbePush, solid), MEMBER(RadianceProbePush, points), MEMBER(RadianceProbePush, scale),
            MEMBER(RadianceProbePush, face), MEMBER(RadianceProbePush, direction), MEMBER(RadianceProbePush, radiance),
            MEMBER(RadianceProbePush, transmittance), MEMBER(RadianceProbePush, count),
            MEMBER(RadianceProbePush, radiance_norm)});

@@ -1,6 +1,6 @@
 // Gathered radiance on the device: that of the CPU, vertex by vertex and face by face.
 #include "engine/graph/error.h"
-#include "engine/graph/geometry.h"
+#include "engine/graph/gather_scale.h"
 #include "engine/graph/radiance.h"
 #include "engine/solve/gather_field.h"
 #include "tests/cpp/solve_fixtures.h"
@@ -92,34 +92,46 @@ TEST_CASE("the exitance of what is gathered is that of the CPU at every face") {
       const auto solved = gathering.scene.simulation.phi();
       CHECK(relative_difference(phi, solved) < 1e-6);
       const auto expected = gathered_exitance(gathering.scene.graph.levels()[0], gathering.problem(), {phi, fields});
-      CHECK(relative_difference(found, expected) < 1e-4);
+      // The device ends a ray by what the last tet gave, the CPU by what is at its end.
+      CHECK(relative_difference(found, expected) < 2e-4);
     }
   }
 }
 
-TEST_CASE("the scale gives every surface vertex the exitance that is shown") {
-  Gathering gathering(homogeneous(), ways[0]);
-  vk::Context& context = gathering.scene.device.context;
-  const Level& level = gathering.scene.graph.levels()[0];
-  const auto gathered = vk::download<glm::vec3>(context, gathering.field().gathered());
-  const auto scale = vk::download<gpu::GatherScale>(context, gathering.field().scale());
-  const auto shown = vk::download<glm::vec3>(context, gathering.scene.simulation.vertex_exitance());
-  std::vector<glm::dvec3> around(scale.size(), glm::dvec3(0));
-  std::vector<double> area(scale.size(), 0);
-  for (std::uint32_t f = 0; f < level.face_count(); ++f) {
-    const double size = face_area(level, level.faces[f]);
-    for (int k = 0; k < 3; ++k) {
-      around[level.faces[f][k]] += size * glm::dvec3(gathered[f]);
-      area[level.faces[f][k]] += size;
+TEST_CASE("the scale is that of the CPU at every surface vertex") {
+  // Elements of 1.7 mm: shorter than the mean free path of the first, of many those of the last.
+  for (const float denser : {0.05f, 1.0f, 20.0f}) {
+    CAPTURE(denser);
+    gpu::Material material = homogeneous();
+    material.sigma_s_prime *= denser;
+    material.sigma_a *= denser;
+    Gathering gathering(material, ways[0]);
+    vk::Context& context = gathering.scene.device.context;
+    std::vector<glm::dvec3> gathered, shown;
+    for (const glm::vec3& value : vk::download<glm::vec3>(context, gathering.field().gathered()))
+      gathered.emplace_back(value);
+    for (const glm::vec3& value : vk::download<glm::vec3>(context, gathering.scene.simulation.vertex_exitance()))
+      shown.emplace_back(value);
+    const auto expected = gather_scale(gathering.scene.graph.levels()[0], gathering.problem(), gathered, shown);
+    const auto found = vk::download<gpu::GatherScale>(context, gathering.field().scale());
+    REQUIRE(found.size() == expected.size());
+    for (const gpu::GatherScale& scale : found) {
+      for (int c = 0; c < 3; ++c) CHECK(scale.factor[c] <= gpu::GATHER_FACTOR_MAX);
     }
-  }
-  for (std::size_t v = 0; v < scale.size(); ++v) {
-    const glm::dvec3 total = glm::dvec3(scale[v].factor) * around[v] / area[v] + glm::dvec3(scale[v].rest);
-    for (int c = 0; c < 3; ++c) {
-      CHECK(total[c] == doctest::Approx(shown[v][c]).epsilon(1e-4));
-      CHECK(scale[v].factor[c] >= 0);
-      CHECK(scale[v].factor[c] <= gpu::GATHER_FACTOR_MAX);
+    // What is shown at the faces: where hardly any light is, the factor means nothing.
+    const Level& level = gathering.scene.graph.levels()[0];
+    std::vector<glm::dvec3> factor, wanted;
+    for (std::uint32_t f = 0; f < level.face_count(); ++f) {
+      const glm::uvec3& ids = level.faces[f];
+      const auto mean = [&](const auto& scale) {
+        return gathered[f] / 3.0 *
+               (glm::dvec3(scale[ids.x].factor) + glm::dvec3(scale[ids.y].factor) + glm::dvec3(scale[ids.z].factor));
+      };
+      factor.push_back(mean(found));
+      wanted.push_back(mean(expected));
     }
+    // The device takes small nodes whole.
+    CHECK(relative_difference(factor, wanted) < 0.02);
   }
 }
 

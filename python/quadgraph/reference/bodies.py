@@ -181,7 +181,10 @@ def _answer(
 def _scaled(
     mesh: Graph, faces: np.ndarray, cosine: np.ndarray, eta: float, gathered: dict, exitance: np.ndarray
 ) -> np.ndarray:
-    """Gathered radiance times M / M_gathered at the vertices, at most 4, and what is then missing of M as even."""
+    """Gathered radiance times M / M_gathered at the vertices, at most 4, and what is then missing of M as even.
+
+    The engine takes both as means over a mean free path: the same on a flat body.
+    """
     area = meshes.face_frames(mesh)[2] * (mesh.face_kinds == meshes.OPEN)
     corners = mesh.faces.ravel()
     around = np.maximum(np.bincount(corners, np.repeat(area, 3), len(mesh.vertices)), 1e-300)

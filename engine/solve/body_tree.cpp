@@ -1,0 +1,43 @@
+#include "engine/solve/body_tree.h"
+
+#include "engine/graph/face_tree.h"
+#include "shaders/exchange_shared.h"
+
+namespace quadgraph {
+
+BodyTree::BodyTree(vk::Context& context, const Level& level, const std::string& purpose) : purpose_(purpose) {
+  const FaceTree tree = face_tree(level);
+  leaves_ = tree.leaves();
+  order_ = vk::upload<std::uint32_t>(context, tree.order, purpose + "/faces of the tree");
+  leaf_begin_ = vk::upload<std::uint32_t>(context, tree.leaf_begin, purpose + "/leaves of the tree");
+  boxes_ = {context, nodes() * sizeof(gpu::Box), vk::Place::read, purpose + "/boxes of the tree"};
+}
+
+void BodyTree::record(Workspace& work, const LevelBuffers& level) {
+  if (!behind_) return;
+  behind_ = false;
+  gpu::ExchangeBoxesPush push{.vertices = level.vertices.address(),
+                              .faces = level.faces.address(),
+                              .order = order_.address(),
+                              .leaf_begin = leaf_begin_.address(),
+                              .boxes = boxes_.address(),
+                              .first = 0,
+                              .count = 0,
+                              .leaf_count = leaves_};
+  constexpr std::uint64_t face_bytes = sizeof(std::uint32_t) + sizeof(glm::uvec3) + 3 * sizeof(glm::vec3);
+  std::uint64_t bytes = level.face_count * face_bytes;
+  upwards([&](std::uint32_t first, std::uint32_t count) {
+    push.first = first;
+    push.count = count;
+    work.recorder.dispatch(work.passes.exchange_boxes, push, count, purpose_ + " boxes",
+                           bytes + count * sizeof(gpu::Box));
+    bytes = count * sizeof(gpu::Box);  // children
+  });
+}
+
+gpu::TreeRef BodyTree::ref() const {
+  return {
+      .order = order_.address(), .leaf_begin = leaf_begin_.address(), .boxes = boxes_.address(), .leaf_count = leaves_};
+}
+
+}  // namespace quadgraph
