@@ -6,7 +6,6 @@ layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { GatherScalePush push; };
 
 SolidRef solid;
-#include "gather_nodes.glsl"
 
 // Where the means are taken.
 struct Around {
@@ -63,7 +62,7 @@ void add(inout Means means, GatherNode node, Around around) {
 
 void add_leaf(inout Means means, uint leaf, Around around) {
   for (uint k = load_uint(solid.tree.leaf_begin, leaf); k < load_uint(solid.tree.leaf_begin, leaf + 1u); ++k) {
-    add(means, node_of_face(load_uint(solid.tree.order, k)), around);
+    add(means, load_gather_node(push.nodes, 2u * solid.tree.leaf_count + k), around);
   }
 }
 

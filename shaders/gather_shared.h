@@ -23,7 +23,7 @@ struct GatherScale {
   vec3 rest;  // W/mm^2
 };
 
-// Sums over the open faces below a node of the tree over a body's faces.
+// Sums over the open faces below a node of the tree over a body's faces, or one of these.
 struct GatherNode {
   vec3 exitance;  // W, of the solve
   vec3 gathered;  // W, of what is gathered
@@ -39,7 +39,7 @@ struct GatherNode {
 // gathered here and there but at least GATHER_ALIKE, keeps bright faces from speaking for dark ones. Nodes whose
 // diagonal is at most GATHER_NODE s are taken whole.
 const float GATHER_PATH = 1.4f;
-const float GATHER_EDGE = 0.25f;
+const float GATHER_EDGE = 0.12f;
 const float GATHER_REACH = 2.4f;
 const float GATHER_ALIKE = 1e-3f;
 const float GATHER_NODE = 1.0f;
@@ -123,7 +123,8 @@ struct GatherExitancePush {
   QG_REF(Vec3s) exitance;  // W/mm^2, written
 };
 
-// gather_nodes.comp: nodes `first` to `first` + `count` - 1 of the tree, leaves before their parents.
+// gather_nodes.comp: nodes `first` to `first` + `count` - 1 of the tree, leaves before their parents; and, behind all
+// nodes, every face by its place in TreeRef::order.
 struct GatherNodesPush {
   QG_REF(SolidRefs) solid;  // one
   QG_REF(Vec3s) gathered;   // W/mm^2 per face
@@ -139,7 +140,6 @@ struct GatherScalePush {
   QG_REF(Uints) face_offset;
   QG_REF(Uints) face_incidence;
   QG_REF(Vec3s) gathered;
-  QG_REF(Vec3s) exitance;
   QG_REF(GatherNodes) nodes;
   QG_REF(GatherScales) scale;
   uint count;

@@ -30,7 +30,7 @@ GatherField::GatherField(vk::Context& context, const Level& level, const BodyTre
   solid_on_device_ = room(sizeof(gpu::SolidRef), "gather/body");
   points_ = room(level.vertex_count() * sizeof(gpu::GatherPoint), "gather/points");
   gathered_ = room(level.face_count() * vec3_bytes, "gather/gathered exitance");
-  nodes_ = room(tree.nodes() * sizeof(gpu::GatherNode), "gather/nodes");
+  nodes_ = room((tree.nodes() + level.face_count()) * sizeof(gpu::GatherNode), "gather/nodes");
   scale_ = room(level.surface_vertex_count * sizeof(gpu::GatherScale), "gather/scale");
 }
 
@@ -81,7 +81,6 @@ void GatherField::record_scale(Workspace& work, const GatherInput& input) {
                                    .face_offset = level.face_offset.address(),
                                    .face_incidence = level.face_incidence.address(),
                                    .gathered = gathered_.address(),
-                                   .exitance = input.vertex_exitance.address(),
                                    .nodes = nodes_.address(),
                                    .scale = scale_.address(),
                                    .count = level.surface_vertex_count};

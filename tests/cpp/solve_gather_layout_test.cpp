@@ -44,11 +44,10 @@ TEST_CASE("push constants of the gather") {
   compare(gather_nodes_comp, "GatherNodesPush",
           {MEMBER(GatherNodesPush, solid), MEMBER(GatherNodesPush, gathered), MEMBER(GatherNodesPush, exitance),
            MEMBER(GatherNodesPush, nodes), MEMBER(GatherNodesPush, first), MEMBER(GatherNodesPush, count)});
-  compare(
-      gather_scale_comp, "GatherScalePush",
-      {MEMBER(GatherScalePush, solid), MEMBER(GatherScalePush, face_offset), MEMBER(GatherScalePush, face_incidence),
-       MEMBER(GatherScalePush, gathered), MEMBER(GatherScalePush, exitance), MEMBER(GatherScalePush, nodes),
-       MEMBER(GatherScalePush, scale), MEMBER(GatherScalePush, count)});
+  compare(gather_scale_comp, "GatherScalePush",
+          {MEMBER(GatherScalePush, solid), MEMBER(GatherScalePush, face_offset),
+           MEMBER(GatherScalePush, face_incidence), MEMBER(GatherScalePush, gathered), MEMBER(GatherScalePush, nodes),
+           MEMBER(GatherScalePush, scale), MEMBER(GatherScalePush, count)});
   compare(radiance_probe_comp, "RadianceProbePush",
           {MEMBER(RadianceProbePush, solid), MEMBER(RadianceProbePush, points), MEMBER(RadianceProbePush, scale),
            MEMBER(RadianceProbePush, face), MEMBER(RadianceProbePush, direction), MEMBER(RadianceProbePush, radiance),

@@ -135,6 +135,27 @@ TEST_CASE("the scale is that of the CPU at every surface vertex") {
   }
 }
 
+TEST_CASE("a body that has moved is scaled as one that was there") {
+  Gathering still(homogeneous(), ways[0]), moved(homogeneous(), ways[0]);
+  const auto scale = [](Gathering& gathering) {
+    return vk::download<gpu::GatherScale>(gathering.scene.device.context, gathering.field().scale());
+  };
+  const auto before = scale(still);
+  // Far away, so that boxes left behind would find nothing.
+  std::vector<glm::vec3> away;
+  for (const glm::vec3& p : moved.scene.graph.levels()[0].vertices) away.push_back(p + glm::vec3(64, 0, 0));
+  scale(moved);
+  moved.scene.simulation.set_vertices(0, away);
+  moved.scene.simulation.solve({.method = Method::fem, .model = Model::sp3, .tolerance = 1e-6});
+  const auto after = scale(moved);
+  std::vector<glm::vec3> factor, expected;
+  for (std::size_t v = 0; v < before.size(); ++v) {
+    factor.push_back(after[v].factor);
+    expected.push_back(before[v].factor);
+  }
+  CHECK(relative_difference(factor, expected) < 1e-2);
+}
+
 TEST_CASE("only linear elements with the buried source are gathered") {
   Scene scene({3});
   scene.simulation.set_material(homogeneous());
