@@ -37,7 +37,8 @@ struct GatherNode {
 //   (exp(-d^2 / (2 s^2)) - end) (1 + n n') / 2 alike,   s^2 = GATHER_PATH / sigma_t^2 + GATHER_EDGE mean squared edge,
 // at distance d, where `end` brings them to zero at GATHER_REACH s, and `alike`, the smaller over the larger of what is
 // gathered here and there but at least GATHER_ALIKE, keeps bright faces from speaking for dark ones. Nodes whose
-// diagonal is at most GATHER_NODE s are taken whole.
+// diagonal is at most GATHER_NODE s are taken whole. A centroid is at most sqrt(2/3) of a face's root mean squared edge
+// away from a corner: GATHER_EDGE GATHER_REACH^2 > 2/3 leaves no vertex without a face.
 const float GATHER_PATH = 1.4f;
 const float GATHER_EDGE = 0.12f;
 const float GATHER_REACH = 2.4f;

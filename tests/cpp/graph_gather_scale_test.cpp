@@ -67,3 +67,18 @@ TEST_CASE("the exitance counts over a mean free path: below it is smoothed, abov
   CHECK(factor_at(0.05f, 8.0f) > factor_at(0.05f, 1.0f));
   CHECK(factor_at(0.05f, 5.0f) == doctest::Approx(1.55).epsilon(0.05));
 }
+
+TEST_CASE("every vertex has its share, however long and thin the faces around it") {
+  // A box drawn out to needles, much longer than the mean free path.
+  OwnedLevel owned = box_level(3, 1.0f, 0.3f);
+  for (auto* points : {&owned.vertices, &owned.nodes}) {
+    for (glm::vec3& p : *points) p.x *= 200.0f;
+  }
+  const Level level = owned.view();
+  const std::vector<glm::dvec3> gathered(level.faces.size(), glm::dvec3(1));
+  const std::vector<glm::dvec3> exitance(level.surface_vertex_count, glm::dvec3(2));
+  const Opticals optical = medium(level, 1e3f);
+  for (const VertexScale& scale : gather_scale(level, problem_of(optical), gathered, exitance)) {
+    CHECK(scale.factor.x == doctest::Approx(2.0).epsilon(1e-9));
+  }
+}
