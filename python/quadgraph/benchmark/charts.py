@@ -21,8 +21,7 @@ _AXES = {
     "error-work.png": ("work", "work: applications of the finest operator"),
     "error-time.png": ("time_ms", "time of the solve on {device}, ms"),
 }
-_LOWEST = 1e-4  # of the axis of errors; there is room for the names of curves, which end near 5e-4
-_FLOOR = 3e-4  # errors below are not drawn
+_LOWEST = 3e-4  # of the axis of errors; errors below are not drawn
 
 
 def write(folder: Path, record: dict[str, Any]) -> list[Path]:
@@ -37,6 +36,7 @@ def write(folder: Path, record: dict[str, Any]) -> list[Path]:
             _panel(panel, scene, key)
             panel.set_xlabel(words.format(device=_short(record["device"])))
         panels[0].set_ylabel("error of the unlit side")
+        figure.legend(*panels[0].get_legend_handles_labels(), loc="outside right center", frameon=False)
         with atomic_file.replacing(folder / name) as stream:
             figure.savefig(stream, format="png", dpi=110)
         pyplot.close(figure)
@@ -49,38 +49,29 @@ def _short(device: str) -> str:
 
 
 def _panel(axis: Any, scene: dict[str, Any], key: str) -> None:
-    """One line per way, its name at the lower end."""
+    """One line per way."""
     axis.set_xscale("log")
     axis.set_yscale("log")
     axis.set_ylim(_LOWEST, 1)
     for target in (entry["unlit"] for entry in scene["ways"][0]["targets"]):
         axis.axhline(target, color="#444444", linewidth=0.7, linestyle=(0, (4, 4)))
     for way in scene["ways"]:
-        points = [point for point in way["points"] if point["unlit"] >= _FLOOR] or way["points"][:1]
+        points = [point for point in way["points"] if point["unlit"] >= _LOWEST] or way["points"][:1]
         x, y = [point[key] for point in points], [point["unlit"] for point in points]
         ours = way["name"] == scene["ways"][0]["name"]
         colour = _COLOURS.get(way["name"], "#222222")
-        axis.plot(x, y, color=colour, linewidth=2.6 if ours else 1.4, marker="o", markersize=4 if ours else 2.5)
-        _name(axis, way["name"], x, y, colour, ours)
+        axis.plot(
+            x,
+            y,
+            color=colour,
+            linewidth=2.6 if ours else 1.4,
+            marker="o",
+            markersize=4 if ours else 2.5,
+            label=way["name"],
+        )
     axis.set_title(f"{scene['name']}, {scene['material']}", fontsize=10)
     axis.grid(alpha=0.25, which="major")
     axis.yaxis.set_major_formatter(lambda error, _: f"{100 * error:g}%")
     axis.xaxis.set_major_formatter(lambda x, _: f"{x:g}")
     for side in ("top", "right"):
         axis.spines[side].set_visible(False)
-
-
-def _name(axis: Any, name: str, x: list[float], y: list[float], colour: str, bold: bool) -> None:
-    axis.annotate(
-        name,
-        (x[-1], y[-1]),
-        (0, -5),
-        textcoords="offset points",
-        color=colour,
-        fontsize=9,
-        fontweight="bold" if bold else "normal",
-        rotation=-60,
-        rotation_mode="anchor",
-        ha="left",
-        va="center",
-    )
