@@ -11,6 +11,7 @@ def point(family: str, level: int, ms: float, error: float, cycles: int = 0) -> 
     """One point: its unlit errors are three times the others, against transport there is .02 more."""
     settings = {"method": "fem", "model": "sp3", "source": "buried", "solver": "fmg-pcg", "level": level}
     settings |= {"inter_reflection": False, "radiance": "gathered", "cycles": cycles, "runs_on": "device"}
+    settings |= {"bake": "chain", "K": None}
     return {
         "name": f"{family} · level {level} · fmg-pcg" + (f" · {cycles} cycles a frame" if cycles else ""),
         "family": family,
@@ -53,6 +54,7 @@ def record(scenes: tuple[str, ...] = ("bunny", "sphere")) -> dict:
                 "eta": 1.3,
                 "light": "ambient:1",
                 "levels": levels,
+                "bakes": [],
                 "truth": noise | {"blocks": {"whole": 300, "unlit": 90}},
                 "points": [*points, failed],
             }

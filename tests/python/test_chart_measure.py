@@ -13,7 +13,8 @@ from quadgraph.chart.body import STEP_DEGREES, Body, light_at
 from quadgraph.chart.engine_methods import EngineMethod, engine_methods
 from quadgraph.chart.judge import Judge
 from quadgraph.chart.method import SWING, Chain
-from quadgraph.errors import InputError, SolverError
+from quadgraph.errors import InputError, SolverError, ToolError
+from quadgraph.reference.scene_bakes import Choice
 from quadgraph.reference.scenes import PIXELS, SCENES, Scene, View, pale
 from quadgraph.reference.truth import Truth
 from shapes import icosphere
@@ -48,7 +49,14 @@ class Told:
 
     def __init__(self, name, log, fails=False):
         self.name, self._log, self._fails = name, log, fails
-        self.settings = {"model": "sp3", "source": "buried", "level": 1, "inter_reflection": False, "runs_on": "paper"}
+        self.settings = {
+            "model": "sp3",
+            "source": "buried",
+            "level": 1,
+            "inter_reflection": False,
+            "bake": "chain",
+            "runs_on": "paper",
+        }
 
     def prepare(self, body):
         self._log.append((self.name, "prepare"))
@@ -109,6 +117,37 @@ def test_frames_follow_the_light_to_the_answer_that_a_cold_solve_finds(body):
         assert measuring.stages(passes[-1])["solve"] == pytest.approx(
             sum(passes[-1].values()) - sum(ms for s, ms in measuring.stages(passes[-1]).items() if s != "solve")
         )
+
+
+class Baked:
+    """A bake that is there, or fails."""
+
+    def __init__(self, path):
+        self.path = path
+
+    def made(self):
+        if self.path is None:
+            raise ToolError("quadgraph-cgal-mesh: not found")
+        return self.path
+
+
+def test_the_body_baked_in_another_way_is_judged_by_path_tracing_alone(body, tmp_path):
+    fine, coarse = Choice(), Choice(7000, grading=3.0)
+    path = write_levels(tmp_path / "fine.qgraph", [icosphere(4, RADIUS), icosphere(3, RADIUS)])
+    both = Body(BALL, body.path, tmp_path, "", 32, {fine: Baked(path), coarse: Baked(None)})
+    methods = [EngineMethod(radiance="lambertian", choice=choice) for choice in (fine, coarse)]
+    assert [(method.settings["bake"], method.settings["K"]) for method in methods] == [("default", None), ("K", 3.0)]
+    judge = Judge(both, {("sp3", "buried"): SomeTruth()}, {})
+    points = measuring.measure(both, judge, methods, 1, lambda text: None)
+    told = measuring.scene_record(both, judge, points)
+    assert points[0].errors["pde"] is None
+    assert len(methods[0].exitance()) == 5120
+    assert told["points"][1]["failed"] == "quadgraph-cgal-mesh: not found"
+    (bake,) = told["bakes"]
+    assert [level["faces"] for level in bake["levels"]] == [5120, 1280]
+    assert len(body.chain.faces) == 2
+    frames = [method for method in engine_methods(both.chain) if method.choice == fine]
+    assert {method.method for method in frames} == {"fem", "quadgraph-fdm"}
 
 
 def test_methods_take_turns_and_one_that_fails_is_told_and_left_out(body):

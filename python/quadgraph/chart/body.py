@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -14,6 +15,7 @@ from quadgraph.chart.method import Chain
 from quadgraph.chart.pixels import Hits, hits
 from quadgraph.commands.scene import load_core
 from quadgraph.reference import chains
+from quadgraph.reference.scene_bakes import Choice, SceneBake
 from quadgraph.reference.scenes import Scene
 from quadgraph.reference.surface_errors import unlit_part
 from quadgraph.surface import Surface
@@ -47,7 +49,8 @@ class Display:
 
 @dataclass
 class Body:
-    """A scene's baked chain, at `path`; files of its coarser levels go to `folder`. pixels: edge of a frame's picture.
+    """A scene's baked chain, at `path`; files of its coarser levels go to `folder`. pixels: edge of a frame's picture;
+    others: the same body baked in further ways, made when they are first asked for.
 
     The first engine of each system is kept, so that frames assemble nothing, and methods that differ in the solver
     alone share it.
@@ -58,6 +61,7 @@ class Body:
     folder: Path
     device: str
     pixels: int
+    others: Mapping[Choice, SceneBake] = field(default_factory=dict)
     _engines: dict[tuple, Engine] = field(default_factory=dict)
     _hits: dict[str, Hits] = field(default_factory=dict)
 
@@ -71,28 +75,33 @@ class Body:
         """What there is to choose methods by."""
         seen = exchange.from_file(self.file)
         faces = (len(self.file.sections[f"level{level}/faces"]) for level in range(self.file.level_count))
-        return Chain(tuple(faces), None if seen is None else seen.level)
+        return Chain(tuple(faces), None if seen is None else seen.level, tuple(self.others))
 
-    def level_path(self, level: int) -> Path:
-        """A file of the chain whose finest level that is."""
-        path = self.folder / f"{self.scene.name}-from-{level}.qgraph"
+    def level_path(self, level: int, choice: Choice | None = None) -> Path:
+        """A file whose finest level that is, of the chain or of the body baked in another way.
+
+        Raises ToolError if that cannot be baked.
+        """
+        whole = self.path if choice is None else self.others[choice].made()
+        path = self.folder / f"{whole.stem}-from-{level}.qgraph"
         if level == 0:
-            return self.path
-        return path if path.exists() else chains.without_finest(self.path, level, path, same_display=True)
+            return whole
+        return path if path.exists() else chains.without_finest(whole, level, path, same_display=True)
 
-    def engine(self, level: int, system: tuple[str, ...]) -> Engine:
-        """The engine of that system, e.g. (method, model, source), on the chain from a level down."""
-        key = (level, *system)
+    def engine(self, level: int, system: tuple[str, ...], choice: Choice | None = None) -> Engine:
+        """The engine of that system, e.g. (method, model, source), on the chain from a level down, or on another."""
+        key = (level, choice, *system)
         if key not in self._engines:
-            engine = load_core().Engine(self.level_path(level), device=self.device)
+            engine = load_core().Engine(self.level_path(level, choice), device=self.device)
             self._set_coefficients(engine)
             self._engines[key] = engine
         return self._engines[key]
 
-    def levels(self) -> list[dict[str, Any]]:
+    def levels(self, choice: Choice | None = None) -> list[dict[str, Any]]:
         """Sizes by level, for the record."""
+        file = self.file if choice is None else qgraph_file.read(self.others[choice].made())
         names = ("surface_vertices", "tets", "faces")
-        return [{name: entry[name] for name in names} for entry in self.file.metadata["levels"]]
+        return [{name: entry[name] for name in names} for entry in file.metadata["levels"]]
 
     @cached_property
     def display(self) -> Surface:

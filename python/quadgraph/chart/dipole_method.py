@@ -11,7 +11,7 @@ import numpy as np
 
 from quadgraph.chart.body import Body, light_at
 from quadgraph.chart.dipole import Dipole, transport
-from quadgraph.chart.method import SWING, Chain, Method, register
+from quadgraph.chart.method import CHAIN, SWING, Chain, Method, register
 
 if TYPE_CHECKING:
     from quadgraph._core import Engine
@@ -41,7 +41,15 @@ class DipoleMethod:
     @property
     def settings(self) -> dict[str, Any]:
         """As told; the model is the one that the dipole solves in a half-space."""
-        told = {"method": "dipole", "model": "diffusion", "source": "buried", "solver": "matrix", "level": self.level}
+        told = {
+            "method": "dipole",
+            "model": "diffusion",
+            "source": "buried",
+            "solver": "matrix",
+            "level": self.level,
+            "bake": CHAIN,
+            "K": None,
+        }
         told |= {"inter_reflection": False, "radiance": "lambertian", "cycles": 0, "tolerance": None}
         return told | {"runs_on": "CPU (numpy); light and picture on the device"}
 

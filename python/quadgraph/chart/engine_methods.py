@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from quadgraph.chart.body import Body, light_at
-from quadgraph.chart.method import SETTLED, SWING, Chain, Method, register
+from quadgraph.chart.method import CHAIN, SETTLED, SWING, Chain, Method, register
+from quadgraph.reference.scene_bakes import Choice
 from quadgraph.reference.scenes import FOV, PIXELS
 
 if TYPE_CHECKING:
@@ -22,7 +23,10 @@ _FINEST_PUBLISHED = 3  # levels on which the methods that do not converge with r
 
 @dataclass
 class EngineMethod:
-    """A way to solve and show, in the words of Engine.solve; cycles: 0 for as many as SETTLED takes."""
+    """A way to solve and show, in the words of Engine.solve.
+
+    cycles: 0 for as many as SETTLED takes; choice: how the body is baked, None for the chain that the PDE truth knows.
+    """
 
     method: str = "fem"
     model: str = "sp3"
@@ -32,6 +36,7 @@ class EngineMethod:
     inter_reflection: bool = False
     radiance: str = "gathered"
     cycles: int = 0
+    choice: Choice | None = None
     _body: Body | None = field(default=None, repr=False)
 
     @property
@@ -46,7 +51,7 @@ class EngineMethod:
     @property
     def name(self) -> str:
         """Family, level, and what is not usual."""
-        parts = [self.family, f"level {self.level}", self.solver]
+        parts = [self.family, *self._bake_words, f"level {self.level}", self.solver]
         parts += [f"{self.cycles} cycle{'s' if self.cycles > 1 else ''} a frame"] if self.cycles else []
         parts += ["Lambertian"] if self.radiance == "lambertian" and self._can_gather else []
         return " · ".join(parts)
@@ -54,7 +59,9 @@ class EngineMethod:
     @property
     def settings(self) -> dict[str, Any]:
         """As told, and what frames iterate to."""
-        told = {name: value for name, value in asdict(replace(self, _body=None)).items() if name != "_body"}
+        told = {name: value for name, value in asdict(replace(self, _body=None)).items() if name[0] != "_"}
+        told["bake"] = CHAIN if told.pop("choice") is None else "K" if self._grading is not None else "default"
+        told["K"] = self._grading
         return told | {"tolerance": None if self.cycles else SETTLED, "runs_on": "device"}
 
     def prepare(self, body: Body) -> None:
@@ -88,12 +95,22 @@ class EngineMethod:
         return shown if self._body.scene.direction else shown + np.asarray(found.unscattered, np.float64)
 
     @property
+    def _grading(self) -> float | None:
+        return self.choice.grading if self.choice else None
+
+    @property
+    def _bake_words(self) -> list[str]:
+        if self.choice is None:
+            return []
+        return ["default bake" if self._grading is None else f"K = {self._grading:g}"]
+
+    @property
     def _can_gather(self) -> bool:
         return self.method == "fem" and self.source == "buried"
 
     @property
     def _engine(self) -> Engine:
-        return self._body.engine(self.level, (self.method, self.model, self.source))
+        return self._body.engine(self.level, (self.method, self.model, self.source), self.choice)
 
     @property
     def _options(self) -> dict[str, Any]:
@@ -129,3 +146,6 @@ def engine_methods(chain: Chain) -> Iterator[Method]:
     fdm = replace(published, method="quadgraph-fdm", solver="cascade")
     yield from (replace(fdm, level=level) for level in levels[:_FINEST_PUBLISHED])
     yield replace(fdm, solver="dpcg")
+    for choice in chain.others:
+        frame = EngineMethod(inter_reflection=True, cycles=1, choice=choice)
+        yield from (frame, replace(frame, cycles=0), replace(frame, model="diffusion"), replace(fdm, choice=choice))

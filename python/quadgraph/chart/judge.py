@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from quadgraph.chart.body import Body
-from quadgraph.chart.method import Method
+from quadgraph.chart.method import CHAIN, Method
 from quadgraph.reference import blocks, surface_errors
 from quadgraph.reference.pde_truth import PdeTruth
 from quadgraph.reference.truth import Truth
@@ -25,7 +25,8 @@ PdeTruths = Mapping[tuple[str, str], PdeTruth]
 class Judge:
     """One scene's truths: of each PDE, and path-traced by name of Scene.images.
 
-    A PDE truth knows no light from part to part: what follows that is judged by transport alone.
+    A PDE truth knows no light from part to part, and no surface but its own chain's: what follows that light, or lives
+    on another mesh, is judged by transport alone.
     """
 
     body: Body
@@ -39,7 +40,7 @@ class Judge:
         """
         settings = method.settings
         truth = self.pde.get((settings["model"], settings["source"]))
-        if truth is None or settings["inter_reflection"]:
+        if truth is None or settings["inter_reflection"] or settings["bake"] != CHAIN:
             return {"pde": None, "transport": self._of_pictures(pictures)}
         return {
             "pde": truth.error(settings["level"], method.exitance()),

@@ -11,8 +11,8 @@ import numpy as np
 
 from quadgraph.chart.body import STEP_DEGREES, STEP_SHARE, Body
 from quadgraph.chart.judge import Judge
-from quadgraph.chart.method import SETTLED, SWING, Method
-from quadgraph.errors import SolverError
+from quadgraph.chart.method import CHAIN, SETTLED, SWING, Method
+from quadgraph.errors import SolverError, ToolError
 from quadgraph.reference.path_tracing import BATCH
 
 Progress = Callable[[str], None]
@@ -82,7 +82,7 @@ def _round(body: Body, judge: Judge, point: Point) -> None:
         if not point.errors:
             point.pictures = {view: point.method.picture(view) for view in body.scene.views}
             point.errors = judge.errors(point.method, point.pictures)
-    except SolverError as error:
+    except (SolverError, ToolError) as error:
         point.failed = str(error)
 
 
@@ -96,9 +96,20 @@ def scene_record(body: Body, judge: Judge, points: Sequence[Point]) -> dict[str,
         "eta": body.scene.eta,
         "light": body.scene.light,
         "levels": body.levels(),
+        "bakes": _bakes(body, points),
         "truth": judge.noise() | {"samples": samples},
         "points": [point.record() for point in points],
     }
+
+
+def _bakes(body: Body, points: Sequence[Point]) -> list[dict[str, Any]]:
+    """Levels of the chains other than the truth's that points were measured on."""
+    used = {
+        (point.method.settings["bake"], point.method.settings["K"]): point.method.choice
+        for point in points
+        if point.method.settings["bake"] != CHAIN and not point.failed
+    }
+    return [{"bake": bake, "K": k, "levels": body.levels(choice)} for (bake, k), choice in used.items()]
 
 
 def conditions(repeats: int, pixels: int) -> dict[str, Any]:

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from quadgraph.errors import InputError
+from quadgraph.reference.scene_bakes import Choice
 
 if TYPE_CHECKING:
     from quadgraph.chart.body import Body
 
 SWING = (2, 1, 0)  # steps of the light: a method is settled at the first, frames follow it to the scene's own, step 0
+CHAIN = "chain"  # `bake` of the chain that the PDE truth knows
 SETTLED = 1e-3  # algebraic error of the exitance to which solvers iterate, unless a number of cycles is given
 
 
@@ -21,8 +23,9 @@ class Method(Protocol):
     """One way to answer a scene; one point of the chart.
 
     family: what it is a setting of, for colour and filter; settings: everything it depends on, ready for JSON, of which
-    `model` and `source` name the PDE that it solves, `level` the level of the chain whose surface it answers on,
-    `inter_reflection` whether it follows light from part to part, and `runs_on` what its times are of.
+    `model` and `source` name the PDE that it solves, `level` the level whose surface it answers on, `bake` of which
+    chain, with `K` if it is the paper's, `inter_reflection` whether it follows light from part to part, and `runs_on`
+    what its times are of.
     """
 
     name: str
@@ -48,11 +51,12 @@ class Method(Protocol):
 @dataclass(frozen=True)
 class Chain:
     """What default methods are chosen by: faces of each level, finest first, and the level whose faces know what they
-    see of each other, None if there is none.
+    see of each other, None if there is none; others: further ways in which the body is baked.
     """
 
     faces: tuple[int, ...]
     seen: int | None
+    others: tuple[Choice, ...] = ()
 
 
 Provider = Callable[[Chain], Iterable[Method]]

@@ -67,7 +67,15 @@ def _header(record: dict[str, Any]) -> str:
 
 def _scene_text(scene: dict[str, Any]) -> str:
     sizes = " / ".join(f"{level['surface_vertices']:,}" for level in scene["levels"])
-    return f"{scene['height_mm']:g} mm, η = {scene['eta']:g}, {scene['light']}; surface vertices by level: {sizes}"
+    others = [f"{_bake_name(bake)} {bake['levels'][0]['surface_vertices']:,}" for bake in scene["bakes"]]
+    baked = f"; baked in other ways: {', '.join(others)}" if others else ""
+    return (
+        f"{scene['height_mm']:g} mm, η = {scene['eta']:g}, {scene['light']}; surface vertices by level: {sizes}{baked}"
+    )
+
+
+def _bake_name(bake: dict[str, Any]) -> str:
+    return "by default" if bake["K"] is None else f"K = {bake['K']:g}"
 
 
 def _figure(plotly: Any, record: dict[str, Any], scene: dict[str, Any]) -> Any:
@@ -110,7 +118,7 @@ def _family(plotly: Any, panel: Panel, family: str, colour: str, in_legend: bool
         showlegend=in_legend,
         marker={
             "color": colour,
-            "size": [_SIZE * _COARSER ** point["settings"]["level"] for point in points],
+            "size": [_SIZE * _COARSER ** records.coarseness(point) for point in points],
             "symbol": [KINDS[records.kind(point)][1] for point in points],
             "line": {"width": [1.6 if i in panel.front else 0.5 for i in chosen], "color": "#222222"},
             "opacity": 0.9,

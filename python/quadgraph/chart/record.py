@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
+from math import log
 from pathlib import Path
 from typing import Any
 
 from quadgraph.chart.pareto import front
 from quadgraph.errors import InputError
 
-FORMAT = 1
+FORMAT = 2
 PARTS = ("whole", "unlit")
 TRUTHS = {"pde": "PDE truth: error of mesh and solver", "transport": "path tracing: error of the picture"}
 _NEEDED = ("format", "device", "driver", "commit", "frame", "scenes")
@@ -104,7 +105,7 @@ _USUAL = (" · fmg-pcg", " · numpy", " a frame", "fem, ")
 def short(point: dict[str, Any]) -> str:
     """A point's name for a label: without what is usual."""
     name = point["name"]
-    for usual in _USUAL:
+    for usual in (*_USUAL, *([] if point["settings"]["bake"] == "chain" else [" · level 0"])):
         name = name.replace(usual, "")
     return name.replace(" · ", ", ")
 
@@ -112,6 +113,8 @@ def short(point: dict[str, Any]) -> str:
 def kind(point: dict[str, Any]) -> str:
     """What a point is a variation of its family in: one of KINDS."""
     settings = point["settings"]
+    if settings["bake"] != "chain":
+        return settings["bake"]
     if settings.get("cycles"):
         return "cycles"
     if "Lambertian" in point["name"]:
@@ -120,12 +123,22 @@ def kind(point: dict[str, Any]) -> str:
     return "solver" if other else "settled"
 
 
+def coarseness(point: dict[str, Any]) -> float:
+    """By how much its mesh is coarser than others of its series: the level; of the paper's meshes the base-3 logarithm
+    of K / 0.3.
+    """
+    settings = point["settings"]
+    return settings["level"] + (log(settings["K"] / 0.3, 3) if settings["K"] else 0.0)
+
+
 # Kind to its marker, as matplotlib and plotly call it, and words.
 KINDS = {
     "settled": ("o", "circle", "solved to the tolerance; smaller: coarser level"),
     "cycles": ("s", "square", "fixed number of cycles a frame"),
     "solver": ("^", "triangle-up", "another solver"),
     "lambertian": ("D", "diamond", "shown as a diffuser"),
+    "default": ("*", "star", "on the mesh that `bake` makes by default"),
+    "K": ("P", "cross", "on the paper's meshes, smaller: larger K"),
 }
 _COLOURS = {
     "fem, SP₃": "#1f77b4",

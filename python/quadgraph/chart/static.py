@@ -72,7 +72,7 @@ def _panel(axis: Any, panel: Panel, colours: dict[str, str]) -> None:
         x, y = zip(*((panel.times[i], panel.errors[i]) for i in series), strict=True)
         axis.plot(x, y, color=colours[panel.points[series[0]]["family"]], linewidth=0.8, alpha=0.45, zorder=1)
     for index, (point, error) in enumerate(zip(panel.points, panel.errors, strict=True)):
-        size = _SIZE * _COARSER ** point["settings"]["level"]
+        size = _SIZE * _COARSER ** records.coarseness(point)
         marker = KINDS[records.kind(point)][0]
         look = {"color": colours[point["family"]], "marker": marker, "linewidths": 1 if index in panel.front else 0.5}
         look["edgecolors"] = "#222222" if index in panel.front else "w"
@@ -99,12 +99,13 @@ def _front(axis: Any, panel: Panel) -> None:
 
 
 def _series(panel: Panel) -> list[list[int]]:
-    """Points that differ in the level alone, at least two."""
+    """Points that differ in the level alone, or in K alone, at least two."""
     found: dict[tuple, list[int]] = {}
     for index, point in enumerate(panel.points):
-        key = tuple((k, v) for k, v in sorted(point["settings"].items(), key=lambda kv: kv[0]) if k != "level")
+        settings = point["settings"].items()
+        key = tuple((name, value) for name, value in sorted(settings) if name not in ("level", "K"))
         found.setdefault((point["family"], *key), []).append(index)
-    ordered = (sorted(series, key=lambda i: panel.points[i]["settings"]["level"]) for series in found.values())
+    ordered = (sorted(series, key=lambda i: records.coarseness(panel.points[i])) for series in found.values())
     return [series for series in ordered if len(series) > 1]
 
 

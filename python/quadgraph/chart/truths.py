@@ -9,12 +9,18 @@ from pathlib import Path
 from quadgraph.chart import dipole_method, engine_methods  # noqa: F401  registers them
 from quadgraph.chart.body import Body
 from quadgraph.chart.judge import Judge, PdeTruths
-from quadgraph.chart.method import Method, methods
+from quadgraph.chart.method import CHAIN, Method, methods
 from quadgraph.commands.scene import COMMITTED_TRUTH
 from quadgraph.errors import InputError
-from quadgraph.reference import pde_truth, scene_meshes, truth_run
+from quadgraph.reference import pde_truth, scene_bakes, scene_meshes, truth_run
 from quadgraph.reference.scenes import Scene
 from quadgraph.reference.truth import Truth
+
+# Only path tracing can judge them: as `bake` does by default, and by the paper's mesher from fine to coarse.
+OTHER_BAKES = (
+    scene_bakes.Choice(),
+    *(scene_bakes.Choice(pde_truth.VERTICES, grading) for grading in (0.3, 1.0, 3.0)),
+)
 
 
 @dataclass(frozen=True)
@@ -45,7 +51,9 @@ def subject(
     Bakes the chain if it is not there; raises InputError if a truth in `against` is absent or stale.
     """
     images = _images(scene, where) if "transport" in against else {}
-    body = Body(scene, pde_truth.chain(scene, where.meshes, where.pde), working, device, pixels)
+    ways = OTHER_BAKES if "transport" in against else ()
+    others = {choice: scene_bakes.of(scene, choice, where.meshes, where.pde) for choice in ways}
+    body = Body(scene, pde_truth.chain(scene, where.meshes, where.pde), working, device, pixels, others)
     chosen = methods(body.chain, wanted)
     pde = _pde(scene, where, chosen) if "pde" in against else {}
     return body, Judge(body, pde, images), chosen
@@ -64,6 +72,7 @@ def _images(scene: Scene, where: Folders) -> dict[str, Truth]:
 def _pde(scene: Scene, where: Folders, chosen: Sequence[Method]) -> PdeTruths:
     """Of the equations that methods solve, in their order."""
     judged = [method.settings for method in chosen if not method.settings["inter_reflection"]]
+    judged = [settings for settings in judged if settings["bake"] == CHAIN]
     equations = dict.fromkeys((settings["model"], settings["source"]) for settings in judged)
     return {
         (model, source): pde_truth.stored(scene, model, where.meshes, where.pde, source) for model, source in equations

@@ -13,7 +13,7 @@ from quadgraph.commands import scene
 from quadgraph.errors import InputError
 
 TRUTHS = ("pde", "transport")
-_TABLE_WIDTH = 170  # characters; narrower, the tables cannot be read
+_TABLE_WIDTH = 190  # characters; narrower, the tables cannot be read
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:

@@ -9,7 +9,6 @@ is left out, as it must be in what is held against it.
 from __future__ import annotations
 
 import hashlib
-import os
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -19,11 +18,9 @@ import numpy as np
 from rich.console import Console
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-from quadgraph import __version__, mesh_io, qgraph_file
-from quadgraph.bake import BakeOptions, bake
 from quadgraph.commands.scene import load_core
 from quadgraph.errors import InputError
-from quadgraph.reference import chains, scene_meshes, store, surface_errors
+from quadgraph.reference import chains, scene_bakes, store, surface_errors
 from quadgraph.reference.bodies import Scheme
 from quadgraph.reference.pde_solve import REFINEMENTS, SKY_RAYS, Ladder
 from quadgraph.reference.scenes import Scene
@@ -108,21 +105,12 @@ class PdeTruth:
 
 def chain(scene: Scene, meshes: Path, folder: Path) -> Path:
     """The scene's baked chain of levels in `folder`, baked if it is not there. Raises as quadgraph.bake.bake does."""
-    path, options = _chain(scene, meshes, folder)
-    if not path.exists():
-        folder.mkdir(parents=True, exist_ok=True)
-        working = path.with_name(f".{os.getpid()}.{path.name}")
-        try:
-            bake(scene_meshes.file(scene, meshes), working, options)
-            working.replace(path)
-        finally:
-            working.unlink(missing_ok=True)
-    return path
+    return _baked(scene, meshes, folder).made()
 
 
 def stored(scene: Scene, model: str, meshes: Path, folder: Path, source: str = "buried") -> PdeTruth:
     """The truth that `make` made. Raises InputError if it is absent, unfinished or stale, naming what differs."""
-    path, chain_path = _path(folder, scene, model, source), _chain(scene, meshes, folder)[0]
+    path, chain_path = _path(folder, scene, model, source), _baked(scene, meshes, folder).path
     command = f"quadgraph reference {scene.name} --kind pde --model {model} --source {source}"
     for needed in (path, chain_path):
         if not needed.exists():
@@ -175,20 +163,8 @@ def _path(folder: Path, scene: Scene, model: str, source: str) -> Path:
     return folder / f"{scene.name}-{model}-{source}.npz"
 
 
-def _chain(scene: Scene, meshes: Path, folder: Path) -> tuple[Path, BakeOptions]:
-    """A file's name that is its own for whatever it is baked from and by, so that it cannot be stale; and how."""
-    mesh = scene_meshes.file(scene, meshes)
-    source = mesh_io.read_surface(mesh, height_mm=scene.height)
-    vertices = VERTICES if source.vertices > VERTICES else None
-    made_of = {
-        "mesh": source.sha256,
-        "height_mm": scene.height,
-        "vertices": vertices,
-        "quadgraph": __version__,
-        "format": qgraph_file.VERSION,
-    }
-    path = folder / f"{mesh.stem}-{scene.height:g}mm-{store.digest(made_of)[:12]}.qgraph"
-    return path, BakeOptions(height_mm=scene.height, surface_vertices=vertices)
+def _baked(scene: Scene, meshes: Path, folder: Path) -> scene_bakes.SceneBake:
+    return scene_bakes.of(scene, scene_bakes.Choice(VERTICES), meshes, folder)
 
 
 def _key(scene: Scene, model: str, source: str, chain_path: Path) -> dict[str, Any]:

@@ -1,0 +1,63 @@
+"""The bodies of scenes, baked in several ways and kept under names that tell what they were made from."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+from quadgraph import __version__, mesh_io, qgraph_file
+from quadgraph.bake import BakeOptions, bake
+from quadgraph.reference import scene_meshes, store
+from quadgraph.reference.scenes import Scene
+
+
+@dataclass(frozen=True)
+class Choice:
+    """How to bake: about how many vertices the finest surface has at most, None for all that the mesh has; grading: K
+    of the QuadGraph paper's sizing field, by its mesher; None for the default's.
+    """
+
+    vertices: int | None = None
+    grading: float | None = None
+
+
+@dataclass(frozen=True)
+class SceneBake:
+    """A baked body's file, whether it is there or not; its name is its own for whatever it is made from and by."""
+
+    source: Path
+    path: Path
+    options: BakeOptions
+
+    def made(self) -> Path:
+        """The file, baked if it is not there. Raises as quadgraph.bake.bake does."""
+        if not self.path.exists():
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            working = self.path.with_name(f".{os.getpid()}.{self.path.name}")
+            try:
+                bake(self.source, working, self.options)
+                working.replace(self.path)
+            finally:
+                working.unlink(missing_ok=True)
+        return self.path
+
+
+def of(scene: Scene, choice: Choice, meshes: Path, folder: Path) -> SceneBake:
+    """A scene's body baked that way, to be kept in `folder`. Raises InputError if its mesh cannot be read."""
+    mesh = scene_meshes.file(scene, meshes)
+    source = mesh_io.read_surface(mesh, height_mm=scene.height)
+    vertices = choice.vertices if choice.vertices is not None and source.vertices > choice.vertices else None
+    made_of = {
+        "mesh": source.sha256,
+        "height_mm": scene.height,
+        "vertices": vertices,
+        "quadgraph": __version__,
+        "format": qgraph_file.VERSION,
+    }
+    options = {"height_mm": scene.height, "surface_vertices": vertices}
+    if choice.grading is not None:
+        made_of["grading"] = choice.grading
+        options |= {"mesher": "cgal", "grading": choice.grading}
+    name = f"{mesh.stem}-{scene.height:g}mm-{store.digest(made_of)[:12]}.qgraph"
+    return SceneBake(mesh, folder / name, BakeOptions(**options))
