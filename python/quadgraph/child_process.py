@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import math
 import os
 import resource
 import shutil
@@ -20,6 +21,7 @@ from quadgraph.errors import ToolError
 
 _PR_SET_PDEATHSIG = 1
 _LAST_WORDS = 600  # characters of a failed program's output that its error repeats
+_WAITING = 4  # times its limit that a program may take by the clock: other programs want the processor too
 _LIBC = ctypes.CDLL(None, use_errno=True)
 
 
@@ -89,13 +91,16 @@ def workspace() -> Iterator[Path]:
         yield Path(name)
 
 
-def _child_setup(parent: int, memory_limit_bytes: int | None) -> Callable[[], None]:
+def _child_setup(parent: int, time_limit_s: float, memory_limit_bytes: int | None) -> Callable[[], None]:
+    processor_s = math.ceil(time_limit_s)
+
     def setup() -> None:
         # A killed parent takes its children along; the second line covers a parent that died before the first.
         _LIBC.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
         if os.getppid() != parent:
             os._exit(1)
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        resource.setrlimit(resource.RLIMIT_CPU, (processor_s, processor_s + 1))
         if memory_limit_bytes is not None:
             resource.setrlimit(resource.RLIMIT_AS, (memory_limit_bytes, memory_limit_bytes))
 
@@ -124,8 +129,9 @@ def run(
 ) -> Finished:
     """Run a program in `directory` to its end, unbuffered, in its own process group.
 
-    Raises ToolError when it is missing, ends with a status not in `accept`, or runs past `time_limit_s`; the
-    message carries its last words. Whatever ends the call, interrupts included, the group is dead afterwards.
+    Raises ToolError when it is missing, ends with a status not in `accept`, or takes more than `time_limit_s` of the
+    processor, in whole seconds, or four times as much by the clock; the message carries its last words. Whatever ends
+    the call, interrupts included, the group is dead afterwards.
     """
     # Without stdbuf an aborting TetGen loses its messages.
     prefix = [stdbuf, "-o0", "-e0"] if (stdbuf := shutil.which("stdbuf")) else []
@@ -138,7 +144,7 @@ def run(
             stdout=stream,
             stderr=subprocess.STDOUT,
             start_new_session=True,
-            preexec_fn=_child_setup(os.getpid(), memory_limit_bytes),
+            preexec_fn=_child_setup(os.getpid(), time_limit_s, memory_limit_bytes),
         )
         family = _FAMILY.get() or _Family()
         family.members.add(process)
@@ -146,14 +152,15 @@ def run(
             # Joined first, asked second: stopped_on_exit does the opposite, so that no program is missed.
             if family.ended:
                 raise ToolError(f"{program.name}: stopped, the work it belongs to has ended")
-            status = process.wait(timeout=time_limit_s)
+            status = process.wait(timeout=_WAITING * time_limit_s)
         except subprocess.TimeoutExpired:
-            words = _last_words(log.read_text(errors="replace"))
-            raise ToolError(f"{program.name}: stopped after {time_limit_s:g} s, its time limit: {words}") from None
+            status = -signal.SIGXCPU
         finally:
             _kill_group(process)
             family.members.discard(process)
     output = log.read_text(errors="replace")
+    if status == -signal.SIGXCPU:
+        raise ToolError(f"{program.name}: stopped after {time_limit_s:g} s, its time limit: {_last_words(output)}")
     if status not in accept:
         raise ToolError(_failure(program, status, output, memory_limit_bytes))
     return Finished(status, output)

@@ -198,6 +198,11 @@ def test_time_and_memory_limits_are_kept(tmp_path: Path) -> None:
         run(python, ["-c", "import time; print('started', flush=True); time.sleep(60)"], directory=tmp_path,
             time_limit_s=0.5, memory_limit_bytes=None)  # fmt: skip
     assert time.monotonic() - began < 10
+    with pytest.raises(ToolError, match="stopped after 1 s, its time limit: at work"):
+        run(python, ["-c", "print('at work', flush=True)\nwhile True: pass"], directory=tmp_path,
+            time_limit_s=1, memory_limit_bytes=None)  # fmt: skip
+    # One that waits for its turn takes no processor time.
+    run(python, ["-c", "import time; time.sleep(1.5)"], directory=tmp_path, time_limit_s=1, memory_limit_bytes=None)
     with pytest.raises(ToolError, match="MemoryError"):
         run(python, ["-c", "x = bytearray(1 << 30)"], directory=tmp_path, time_limit_s=20,
             memory_limit_bytes=512 << 20)  # fmt: skip

@@ -32,7 +32,10 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     size.add_argument("--height", type=length_mm, metavar="L", help="height of the object along y, like 100mm or 1.8m")
     _add_mesh_options(parser)
     parser.add_argument(
-        "--time-limit", type=positive_float, metavar="S", help="seconds for each run of the mesher (default: 300)"
+        "--time-limit",
+        type=positive_float,
+        metavar="S",
+        help="seconds of the processor for each run of the mesher, four times as many by the clock (default: 300)",
     )
     parser.add_argument(
         "--memory-limit", type=positive_float, metavar="GB", help="memory for each run of the mesher (default: 4)"
