@@ -37,9 +37,11 @@ std::string joined(const std::vector<std::string>& names) {
 }
 
 void declare_scene(CLI::App& app, Typed& typed) {
-  app.add_option("--material", typed.material,
-                 joined(material_names()) +
-                     "; or sigma_s_prime=2.0,sigma_a=0.01,eta=1.3 (1/mm; one value or R/G/B each); or NAME,key=value")
+  app.add_option(
+         "--material", typed.material,
+         joined(material_names()) +
+             "; or sigma_s_prime=2.0,sigma_a=0.01,eta=1.3 (1/mm; one value or R/G/B each); or "
+             "reflectance=0.8/0.6/0.5,mean_free_path=0.5 (mm), the colour that a thick body shows; or NAME,key=value")
       ->capture_default_str()
       ->group("Scene");
   app.add_option("--light", typed.lights,

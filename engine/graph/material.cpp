@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "engine/graph/colour.h"
 #include "engine/graph/error.h"
 #include "engine/graph/fresnel.h"
 
@@ -102,6 +103,29 @@ glm::vec3 parse_colour(std::string_view key, std::string_view text) {
   return {parse_number(key, parts[0]), parse_number(key, parts[1]), parse_number(key, parts[2])};
 }
 
+// A colour in place of coefficients.
+struct Shown {
+  std::optional<glm::vec3> reflectance, mean_free_path;
+
+  bool set(std::string_view key, std::string_view value) {
+    auto& field = key == "reflectance" ? reflectance : mean_free_path;
+    if (key != "reflectance" && key != "mean_free_path") return false;
+    field = parse_colour(key, value);
+    return true;
+  }
+};
+
+// Replaces the coefficients by those that look like that.
+void show(gpu::Material& material, const Shown& shown) {
+  for (int c = 0; c < 3; ++c) {
+    const float length = (*shown.mean_free_path)[c];
+    if (!(length > 0)) bad_field("mean_free_path", std::to_string(length), "a number > 0 (mm)");
+    const double albedo = albedo_of(static_cast<double>((*shown.reflectance)[c]), static_cast<double>(material.eta));
+    material.sigma_s_prime[c] = static_cast<float>(albedo / static_cast<double>(length));
+    material.sigma_a[c] = static_cast<float>((1 - albedo) / static_cast<double>(length));
+  }
+}
+
 // Sets one field; false if the key is unknown.
 bool set_field(gpu::Material& material, std::string_view key, std::string_view value) {
   if (key == "sigma_s_prime") {
@@ -127,7 +151,7 @@ bool set_field(gpu::Material& material, std::string_view key, std::string_view v
 }
 
 std::string allowed_keys(const gpu::Material& material) {
-  std::string keys = "sigma_s_prime, sigma_a, eta";
+  std::string keys = "sigma_s_prime, sigma_a, eta, or reflectance, mean_free_path, eta";
   if (material.kind == gpu::MATERIAL_MARBLE_VEINS) {
     keys += ", vein_sigma_s_prime, vein_sigma_a, vein_period, vein_sharpness";
   }
@@ -170,19 +194,30 @@ gpu::Material parse_material(std::string_view text) {
     material = *found;
     parts.erase(parts.begin());
   }
+  Shown shown;
   std::vector<std::string_view> seen;
   for (std::string_view part : parts) {
     const std::size_t at = part.find('=');
     const std::string_view key = part.substr(0, at);
     if (at == std::string_view::npos) bad_field(part, part, "key=value");
     if (std::find(seen.begin(), seen.end(), key) != seen.end()) bad_field(key, part, "one value");
-    if (!set_field(material, key, part.substr(at + 1))) bad_field(key, part, allowed_keys(material));
+    const std::string_view value = part.substr(at + 1);
+    if (!shown.set(key, value) && !set_field(material, key, value)) bad_field(key, part, allowed_keys(material));
     seen.push_back(key);
   }
-  for (std::string_view required : {"sigma_s_prime", "sigma_a"}) {
-    const bool given = starts_with_name || std::find(seen.begin(), seen.end(), required) != seen.end();
-    if (!given) bad_field(required, "nothing", "a value (it is required)");
+  const auto given = [&](std::string_view key) { return std::find(seen.begin(), seen.end(), key) != seen.end(); };
+  const bool by_colour = shown.reflectance || shown.mean_free_path;
+  using Required = std::array<std::string_view, 2>;
+  for (std::string_view required :
+       by_colour ? Required{"reflectance", "mean_free_path"} : Required{"sigma_s_prime", "sigma_a"}) {
+    if (!given(required) && (by_colour || !starts_with_name))
+      bad_field(required, "nothing", "a value (it is required)");
   }
+  for (std::string_view other : {"sigma_s_prime", "sigma_a"}) {
+    if (by_colour && given(other)) bad_field(other, "a value", "none beside reflectance and mean_free_path");
+  }
+  check_range("eta", material.eta, static_cast<float>(min_eta), static_cast<float>(max_eta), "1 to 3");
+  if (by_colour) show(material, shown);
   check_material(material);
   return material;
 }

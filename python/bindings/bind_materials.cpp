@@ -12,7 +12,8 @@ namespace quadgraph::python {
 void bind_materials(py::module_& module) {
   py::class_<gpu::Material>(module, "Material", "A material field in object space; coefficients in 1/mm.")
       .def(py::init([](const std::string& text) { return parse_material(text); }), py::arg("text"),
-           "From a name of material_names() or 'sigma_s_prime=2.0,sigma_a=0.01,eta=1.3' (one value or R/G/B each). "
+           "From a name of material_names() or 'sigma_s_prime=2.0,sigma_a=0.01,eta=1.3' (one value or R/G/B each), "
+           "or the colour of a thick body, 'reflectance=0.8/0.6/0.5,mean_free_path=0.5' (mm). "
            "Raises InputError.")
       .def_property_readonly("sigma_s_prime",
                              [](const gpu::Material& m) { return as_tuple(glm::dvec3(m.sigma_s_prime)); })

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "engine/graph/colour.h"
 #include "engine/graph/error.h"
 #include "engine/graph/fresnel.h"
 #include "engine/graph/material.h"
@@ -58,6 +59,35 @@ TEST_CASE("coefficients are given for all channels or for each, and override a n
   CHECK(veins.vein_period == 40.0f);
   CHECK(veins.vein_sigma_a == glm::vec3(1, 2, 3));
   CHECK(veins.sigma_a == parse_material("marble").sigma_a);
+}
+
+TEST_CASE("a colour gives the coefficients of a body that shows it") {
+  for (const double eta : {1.0, 1.3, 2.0}) {
+    for (const double albedo : {0.02, 0.5, 0.9, 0.999, 0.99999}) {
+      const double back = albedo_of(diffuse_reflectance(albedo, eta), eta);
+      CHECK(1 - back == doctest::Approx(1 - albedo).epsilon(1e-6));
+    }
+  }
+  CHECK(diffuse_reflectance(0.0, 1.3) == 0.0);
+  CHECK(diffuse_reflectance(1.0, 1.0) == doctest::Approx(1).epsilon(1e-3));
+  CHECK(diffuse_reflectance(1.0, 1.5) == doctest::Approx(0.96).epsilon(1e-3));  // all that gets in
+  const gpu::Material jade = parse_material("reflectance=0.2/0.5/0.3,mean_free_path=2/1/0.5,eta=1.5");
+  for (int c = 0; c < 3; ++c) {
+    const glm::vec3 length(2, 1, 0.5f), colour(0.2f, 0.5f, 0.3f);
+    const double sigma_t = static_cast<double>(jade.sigma_s_prime[c] + jade.sigma_a[c]);
+    CHECK(1 / sigma_t == doctest::Approx(static_cast<double>(length[c])));
+    const double albedo = static_cast<double>(jade.sigma_s_prime[c]) / sigma_t;
+    CHECK(diffuse_reflectance(albedo, 1.5) == doctest::Approx(static_cast<double>(colour[c])).epsilon(1e-5));
+  }
+  CHECK(parse_material("reflectance=0,mean_free_path=1").sigma_s_prime == glm::vec3(0));
+  CHECK(parse_material("marble-veins,reflectance=0.5,mean_free_path=1").kind == gpu::MATERIAL_MARBLE_VEINS);
+  check_refused("reflectance=0.5", "mean_free_path");
+  check_refused("mean_free_path=1", "reflectance");
+  check_refused("reflectance=0.99,mean_free_path=1,eta=1.5", "0 to 0.9598");
+  check_refused("reflectance=-0.1,mean_free_path=1", "reflectance");
+  check_refused("reflectance=0.5,mean_free_path=0", "mean_free_path");
+  check_refused("reflectance=0.5,mean_free_path=1,sigma_a=0", "sigma_a");
+  check_refused("reflectance=0.5,mean_free_path=1,eta=7", "eta");
 }
 
 TEST_CASE("what cannot be a material is refused by the field") {
