@@ -8,6 +8,6 @@ layout(push_constant, scalar) uniform Block { EvaluateMaterialPush push; };
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= push.count) return;
-  vec3 position = push.material.kind == MATERIAL_HOMOGENEOUS ? vec3(0) : load_vec3(push.nodes, i);
+  vec3 position = push.material.pattern == PATTERN_NONE ? vec3(0) : load_vec3(push.nodes, i);
   push.optical.at[i] = material_at(push.material, position);
 }

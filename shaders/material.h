@@ -13,6 +13,7 @@ using glm::floor;
 using glm::mix;
 using glm::pow;
 using glm::sin;
+using glm::sqrt;
 #endif
 
 // Integer hash of a lattice point to [0, 1] (PCG output permutation, Jarzynski and Olano 2020).
@@ -49,12 +50,47 @@ QG_INLINE float turbulence(vec3 p) {
   return sum;
 }
 
+// 0 below `edge`, 1 above, in between over 1 / sharpness.
+QG_INLINE float step_at(float edge, float x, float sharpness) {
+  float t = clamp((x - edge) * sharpness + 0.5f, 0.0f, 1.0f);
+  return t * t * (3.0f - 2.0f * t);
+}
+
 // 1 at the centre of a vein, 0 half a period away: sheets across a slanted axis, bent by turbulence (Perlin 1985).
-QG_INLINE float vein_amount(Material m, vec3 position) {
-  vec3 p = position / m.vein_period;
+QG_INLINE float veins(vec3 p, float sharpness) {
   float phase = dot(p, vec3(0.62f, 0.70f, 0.35f)) + 2.2f * turbulence(p * 0.7f);
   float wave = 1.0f - abs(sin(3.14159265f * phase));
-  return pow(clamp(wave, 0.0f, 1.0f), m.vein_sharpness);
+  return pow(clamp(wave, 0.0f, 1.0f), sharpness);
+}
+
+// Shells around the hills and hollows of turbulence, each of its own shade, as agate grows.
+QG_INLINE float bands(vec3 p, float sharpness) {
+  float phase = 16.0f * turbulence(p * 0.2f);
+  float band = floor(phase);
+  int shade = int(band);
+  float before = lattice_value(shade, 0, 0), after = lattice_value(shade + 1, 0, 0);
+  return mix(before, after, step_at(0.5f, phase - band, sharpness));
+}
+
+// Rings around the y axis, bent a little: slowly up, quickly down, as wood grows.
+QG_INLINE float rings(vec3 p, float sharpness) {
+  vec2 across = vec2(p.x, p.z);
+  float radius = sqrt(dot(across, across)) + 1.5f * turbulence(p * vec3(0.25f, 0.06f, 0.25f));
+  float part = radius - floor(radius);
+  return pow(part, sharpness) * (1.0f - step_at(0.96f, part, 25.0f));
+}
+
+// Where the second set of coefficients is, 0 to 1.
+QG_INLINE float pattern_amount(Material m, vec3 position) {
+  vec3 p = position / m.period;
+  if (m.pattern == PATTERN_VEINS) return veins(p, m.sharpness);
+  if (m.pattern == PATTERN_CLOUDS) return step_at(0.5f, turbulence(p), m.sharpness);
+  if (m.pattern == PATTERN_BANDS) return bands(p, m.sharpness);
+  if (m.pattern == PATTERN_RINGS) return rings(p, m.sharpness);
+  if (m.pattern == PATTERN_SPOTS) return step_at(0.72f, value_noise(p), m.sharpness);
+  vec3 cell = floor(p);
+  float sum = cell.x + cell.y + cell.z;
+  return sum - 2.0f * floor(0.5f * sum);
 }
 
 // Coefficients at `position` (mm, object space).
@@ -62,10 +98,10 @@ QG_INLINE Optical material_at(Material m, vec3 position) {
   Optical optical;
   optical.sigma_s_prime = m.sigma_s_prime;
   optical.sigma_a = m.sigma_a;
-  if (m.kind == MATERIAL_MARBLE_VEINS) {
-    float t = vein_amount(m, position);
-    optical.sigma_s_prime = mix(m.sigma_s_prime, m.vein_sigma_s_prime, t);
-    optical.sigma_a = mix(m.sigma_a, m.vein_sigma_a, t);
+  if (m.pattern != PATTERN_NONE) {
+    float t = pattern_amount(m, position);
+    optical.sigma_s_prime = mix(m.sigma_s_prime, m.second_sigma_s_prime, t);
+    optical.sigma_a = mix(m.sigma_a, m.second_sigma_a, t);
   }
   return optical;
 }

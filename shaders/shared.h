@@ -51,19 +51,26 @@ struct Optical {
   vec3 sigma_a;        // 1/mm, absorption, >= 0
 };
 
-const uint MATERIAL_HOMOGENEOUS = 0u;
-const uint MATERIAL_MARBLE_VEINS = 1u;
+const uint PATTERN_NONE = 0u;
+const uint PATTERN_VEINS = 1u;
+const uint PATTERN_CLOUDS = 2u;
+const uint PATTERN_BANDS = 3u;
+const uint PATTERN_RINGS = 4u;
+const uint PATTERN_SPOTS = 5u;
+const uint PATTERN_CHECKER = 6u;
+const uint PATTERNS = 7u;
 
-// A material field in object space. A homogeneous one uses the first three members only.
+// A material field in object space: two sets of coefficients, mixed by a pattern. One without a pattern uses the first
+// three members only.
 struct Material {
-  vec3 sigma_s_prime;       // 1/mm
-  vec3 sigma_a;             // 1/mm
-  float eta;                // refractive index inside over outside, 1 to 3
-  uint kind;                // MATERIAL_*
-  vec3 vein_sigma_s_prime;  // 1/mm, at the centre of a vein
-  vec3 vein_sigma_a;        // 1/mm
-  float vein_period;        // mm between veins
-  float vein_sharpness;     // exponent, >= 1: larger is thinner
+  vec3 sigma_s_prime;         // 1/mm
+  vec3 sigma_a;               // 1/mm
+  float eta;                  // refractive index inside over outside, 1 to 3
+  uint pattern;               // PATTERN_*
+  vec3 second_sigma_s_prime;  // 1/mm, where the pattern is 1
+  vec3 second_sigma_a;        // 1/mm
+  float period;               // mm from one vein, cloud, band, ring, spot or cell to the next
+  float sharpness;            // >= 1, larger: thinner veins and rings, harder edges of clouds, bands and spots
 };
 
 #ifndef __cplusplus

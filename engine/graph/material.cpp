@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include "engine/graph/colour.h"
 #include "engine/graph/error.h"
@@ -36,40 +37,47 @@ const std::array<Measured, 12> measured = {{
     {"wholemilk", {2.55f, 3.21f, 3.77f}, {0.0011f, 0.0024f, 0.014f}, 1.3f},
 }};
 
-constexpr std::string_view marble_veins = "marble-veins";
+// In the words that a user writes. Coefficients are made up, to look like the stone, the wood and the wax.
+struct Procedural {
+  std::string_view name, text;
+};
+
+const std::array<Procedural, 6> procedural = {{
+    {"marble-veins",
+     "marble,pattern=veins,second_sigma_s_prime=1.2,second_sigma_a=0.85/0.78/0.74,period=16,sharpness=14"},
+    {"jade",
+     "reflectance=0.30/0.62/0.42,mean_free_path=0.8,eta=1.6,pattern=clouds,second_reflectance=0.04/0.22/0.11,"
+     "second_mean_free_path=0.6,period=14,sharpness=4"},
+    {"agate",
+     "reflectance=0.90/0.84/0.74,mean_free_path=0.9,eta=1.54,pattern=bands,second_reflectance=0.38/0.09/0.04,"
+     "second_mean_free_path=0.5,period=5,sharpness=4"},
+    {"wax",
+     "reflectance=0.86/0.80/0.66,mean_free_path=0.7,eta=1.44,pattern=spots,second_reflectance=0.10/0.32/0.48,"
+     "second_mean_free_path=0.5,period=7,sharpness=5"},
+    {"wood",
+     "reflectance=0.66/0.45/0.25,mean_free_path=0.3,eta=1.5,pattern=rings,second_reflectance=0.32/0.16/0.07,"
+     "second_mean_free_path=0.25,period=5,sharpness=2"},
+    {"checker",
+     "reflectance=0.8,mean_free_path=0.5,eta=1.3,pattern=checker,second_reflectance=0.15/0.2/0.4,"
+     "second_mean_free_path=0.5,period=12,sharpness=1"},
+}};
+
+constexpr std::array<std::string_view, gpu::PATTERNS> patterns = {"none",  "veins", "clouds", "bands",
+                                                                  "rings", "spots", "checker"};
+constexpr std::string_view allowed_keys =
+    "pattern, eta, period, sharpness, sigma_s_prime, sigma_a, or reflectance, mean_free_path, and these four after "
+    "second_";
 constexpr float default_eta = 1.3f;
 
-gpu::Material homogeneous(const glm::vec3& sigma_s_prime, const glm::vec3& sigma_a, float eta) {
-  gpu::Material material{};
-  material.sigma_s_prime = sigma_s_prime;
-  material.sigma_a = sigma_a;
-  material.eta = eta;
-  material.kind = gpu::MATERIAL_HOMOGENEOUS;
-  material.vein_sigma_s_prime = sigma_s_prime;
-  material.vein_sigma_a = sigma_a;
-  material.vein_period = 16.0f;
-  material.vein_sharpness = 14.0f;
-  return material;
-}
-
-std::optional<gpu::Material> named(std::string_view name) {
-  const bool veins = name == marble_veins;
-  const std::string_view wanted = veins ? "marble" : name;
-  const auto row = std::find_if(measured.begin(), measured.end(), [&](const auto& m) { return m.name == wanted; });
-  if (row == measured.end()) return std::nullopt;
-  gpu::Material material = homogeneous(row->sigma_s_prime, row->sigma_a, row->eta);
-  if (veins) {
-    material.kind = gpu::MATERIAL_MARBLE_VEINS;
-    material.vein_sigma_s_prime = {1.2f, 1.2f, 1.2f};
-    material.vein_sigma_a = {0.85f, 0.78f, 0.74f};
-  }
-  return material;
+std::string joined(std::span<const std::string_view> names) {
+  std::string text;
+  for (std::string_view name : names) text += (text.empty() ? "" : ", ") + std::string(name);
+  return text;
 }
 
 std::string all_names() {
-  std::string names;
-  for (const std::string& name : material_names()) names += (names.empty() ? "" : ", ") + name;
-  return names;
+  const std::vector<std::string>& names = material_names();
+  return joined(std::vector<std::string_view>(names.begin(), names.end()));
 }
 
 [[noreturn]] void bad_field(std::string_view key, std::string_view found, const std::string& allowed) {
@@ -103,59 +111,62 @@ glm::vec3 parse_colour(std::string_view key, std::string_view text) {
   return {parse_number(key, parts[0]), parse_number(key, parts[1]), parse_number(key, parts[2])};
 }
 
-// A colour in place of coefficients.
-struct Shown {
-  std::optional<glm::vec3> reflectance, mean_free_path;
+// One of the two sets of coefficients, and a colour in place of them.
+struct Set {
+  std::string_view prefix;
+  glm::vec3& sigma_s_prime;
+  glm::vec3& sigma_a;
+  std::optional<glm::vec3> reflectance = {}, mean_free_path = {};
 
-  bool set(std::string_view key, std::string_view value) {
-    auto& field = key == "reflectance" ? reflectance : mean_free_path;
-    if (key != "reflectance" && key != "mean_free_path") return false;
-    field = parse_colour(key, value);
+  std::string key(std::string_view name) const { return std::string(prefix) + std::string(name); }
+
+  bool take(std::string_view name, std::string_view value) {
+    if (name == key("sigma_s_prime")) {
+      sigma_s_prime = parse_colour(name, value);
+    } else if (name == key("sigma_a")) {
+      sigma_a = parse_colour(name, value);
+    } else if (name == key("reflectance")) {
+      reflectance = parse_colour(name, value);
+    } else if (name == key("mean_free_path")) {
+      mean_free_path = parse_colour(name, value);
+    } else {
+      return false;
+    }
     return true;
+  }
+
+  // Coefficients that look like the colour, if one was given.
+  void show(float eta) {
+    for (int c = 0; reflectance && c < 3; ++c) {
+      const float length = (*mean_free_path)[c];
+      if (!(length > 0)) bad_field(key("mean_free_path"), std::to_string(length), "a number > 0 (mm)");
+      const double albedo = albedo_of(static_cast<double>((*reflectance)[c]), static_cast<double>(eta));
+      sigma_s_prime[c] = static_cast<float>(albedo / static_cast<double>(length));
+      sigma_a[c] = static_cast<float>((1 - albedo) / static_cast<double>(length));
+    }
   }
 };
 
-// Replaces the coefficients by those that look like that.
-void show(gpu::Material& material, const Shown& shown) {
-  for (int c = 0; c < 3; ++c) {
-    const float length = (*shown.mean_free_path)[c];
-    if (!(length > 0)) bad_field("mean_free_path", std::to_string(length), "a number > 0 (mm)");
-    const double albedo = albedo_of(static_cast<double>((*shown.reflectance)[c]), static_cast<double>(material.eta));
-    material.sigma_s_prime[c] = static_cast<float>(albedo / static_cast<double>(length));
-    material.sigma_a[c] = static_cast<float>((1 - albedo) / static_cast<double>(length));
-  }
+std::uint32_t parse_pattern(std::string_view text) {
+  const auto found = std::find(patterns.begin(), patterns.end(), text);
+  if (found == patterns.end()) bad_field("pattern", text, joined(patterns));
+  return static_cast<std::uint32_t>(found - patterns.begin());
 }
 
-// Sets one field; false if the key is unknown.
-bool set_field(gpu::Material& material, std::string_view key, std::string_view value) {
-  if (key == "sigma_s_prime") {
-    material.sigma_s_prime = parse_colour(key, value);
-  } else if (key == "sigma_a") {
-    material.sigma_a = parse_colour(key, value);
-  } else if (key == "eta") {
+// Takes one field that is not a coefficient; false if there is none of that name.
+bool take_field(gpu::Material& material, std::string_view key, std::string_view value) {
+  if (key == "eta") {
     material.eta = parse_number(key, value);
-  } else if (material.kind != gpu::MATERIAL_MARBLE_VEINS) {
-    return false;
-  } else if (key == "vein_sigma_s_prime") {
-    material.vein_sigma_s_prime = parse_colour(key, value);
-  } else if (key == "vein_sigma_a") {
-    material.vein_sigma_a = parse_colour(key, value);
-  } else if (key == "vein_period") {
-    material.vein_period = parse_number(key, value);
-  } else if (key == "vein_sharpness") {
-    material.vein_sharpness = parse_number(key, value);
+  } else if (key == "pattern") {
+    material.pattern = parse_pattern(value);
+  } else if (key == "period") {
+    material.period = parse_number(key, value);
+  } else if (key == "sharpness") {
+    material.sharpness = parse_number(key, value);
   } else {
     return false;
   }
   return true;
-}
-
-std::string allowed_keys(const gpu::Material& material) {
-  std::string keys = "sigma_s_prime, sigma_a, eta, or reflectance, mean_free_path, eta";
-  if (material.kind == gpu::MATERIAL_MARBLE_VEINS) {
-    keys += ", vein_sigma_s_prime, vein_sigma_a, vein_period, vein_sharpness";
-  }
-  return keys;
 }
 
 void check_colour(std::string_view key, const glm::vec3& value) {
@@ -169,55 +180,92 @@ void check_range(std::string_view key, float value, float low, float high, const
   if (!(value >= low && value <= high)) bad_field(key, std::to_string(value), allowed);
 }
 
+// A material by its name. Throws InputError if there is none.
+gpu::Material named(std::string_view name) {
+  const auto row = std::find_if(measured.begin(), measured.end(), [&](const auto& m) { return m.name == name; });
+  if (row != measured.end()) {
+    return {row->sigma_s_prime, row->sigma_a, row->eta, gpu::PATTERN_NONE, row->sigma_s_prime, row->sigma_a, 10, 1};
+  }
+  const auto made = std::find_if(procedural.begin(), procedural.end(), [&](const auto& p) { return p.name == name; });
+  if (made != procedural.end()) return parse_material(made->text);
+  throw InputError("material '" + std::string(name) + "': allowed are " + all_names() +
+                   ", or sigma_s_prime=...,sigma_a=...,eta=...");
+}
+
+// What a text has set of a material.
+class Given {
+ public:
+  void add(std::string_view key, std::string_view part) {
+    if (has(key)) bad_field(key, part, "one value");
+    keys_.push_back(key);
+  }
+
+  bool has(std::string_view key) const { return std::find(keys_.begin(), keys_.end(), key) != keys_.end(); }
+
+  // A colour is wanted whole and without coefficients; without one, coefficients are wanted unless they are known.
+  void check(const Set& set, bool known) const {
+    const bool colour = set.reflectance || set.mean_free_path;
+    if (known && !colour) return;
+    for (std::string_view name : {"sigma_s_prime", "sigma_a"}) {
+      if (colour && has(set.key(name))) bad_field(set.key(name), "a value", "none beside a reflectance");
+      if (!colour && !has(set.key(name))) bad_field(set.key(name), "nothing", "a value (it is required)");
+    }
+    for (std::string_view name : {"reflectance", "mean_free_path"}) {
+      if (colour && !has(set.key(name))) bad_field(set.key(name), "nothing", "a value (it is required)");
+    }
+  }
+
+ private:
+  std::vector<std::string_view> keys_;
+};
+
 }  // namespace
 
 const std::vector<std::string>& material_names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> list;
     for (const Measured& m : measured) list.emplace_back(m.name);
-    list.emplace_back(marble_veins);
+    for (const Procedural& p : procedural) list.emplace_back(p.name);
     return list;
   }();
   return names;
 }
 
+std::string_view pattern_name(const gpu::Material& material) {
+  return patterns[material.pattern];
+}
+
 gpu::Material parse_material(std::string_view text) {
   auto parts = split(text, ',');
-  gpu::Material material = homogeneous(glm::vec3(-1), glm::vec3(-1), default_eta);
   const bool starts_with_name = parts[0].find('=') == std::string_view::npos;
+  gpu::Material material{{}, {}, default_eta, gpu::PATTERN_NONE, {}, {}, 10, 1};
   if (starts_with_name) {
-    const auto found = named(parts[0]);
-    if (!found) {
-      throw InputError("material '" + std::string(parts[0]) + "': allowed are " + all_names() +
-                       ", or sigma_s_prime=...,sigma_a=...,eta=...");
-    }
-    material = *found;
+    material = named(parts[0]);
     parts.erase(parts.begin());
   }
-  Shown shown;
-  std::vector<std::string_view> seen;
+  const bool had_pattern = material.pattern != gpu::PATTERN_NONE;
+  Set first{"", material.sigma_s_prime, material.sigma_a};
+  Set second{"second_", material.second_sigma_s_prime, material.second_sigma_a};
+  Given given;
   for (std::string_view part : parts) {
     const std::size_t at = part.find('=');
     const std::string_view key = part.substr(0, at);
     if (at == std::string_view::npos) bad_field(part, part, "key=value");
-    if (std::find(seen.begin(), seen.end(), key) != seen.end()) bad_field(key, part, "one value");
+    given.add(key, part);
     const std::string_view value = part.substr(at + 1);
-    if (!shown.set(key, value) && !set_field(material, key, value)) bad_field(key, part, allowed_keys(material));
-    seen.push_back(key);
+    if (!take_field(material, key, value) && !first.take(key, value) && !second.take(key, value)) {
+      bad_field(key, part, std::string(allowed_keys));
+    }
   }
-  const auto given = [&](std::string_view key) { return std::find(seen.begin(), seen.end(), key) != seen.end(); };
-  const bool by_colour = shown.reflectance || shown.mean_free_path;
-  using Required = std::array<std::string_view, 2>;
-  for (std::string_view required :
-       by_colour ? Required{"reflectance", "mean_free_path"} : Required{"sigma_s_prime", "sigma_a"}) {
-    if (!given(required) && (by_colour || !starts_with_name))
-      bad_field(required, "nothing", "a value (it is required)");
-  }
-  for (std::string_view other : {"sigma_s_prime", "sigma_a"}) {
-    if (by_colour && given(other)) bad_field(other, "a value", "none beside reflectance and mean_free_path");
+  given.check(first, starts_with_name);
+  if (material.pattern != gpu::PATTERN_NONE) given.check(second, had_pattern);
+  for (std::string_view key : {"second_sigma_s_prime", "second_sigma_a", "second_reflectance", "second_mean_free_path",
+                               "period", "sharpness"}) {
+    if (material.pattern == gpu::PATTERN_NONE && given.has(key)) bad_field(key, "a value", "one beside a pattern");
   }
   check_range("eta", material.eta, static_cast<float>(min_eta), static_cast<float>(max_eta), "1 to 3");
-  if (by_colour) show(material, shown);
+  first.show(material.eta);
+  second.show(material.eta);
   check_material(material);
   return material;
 }
@@ -226,12 +274,14 @@ void check_material(const gpu::Material& material) {
   check_colour("sigma_s_prime", material.sigma_s_prime);
   check_colour("sigma_a", material.sigma_a);
   check_range("eta", material.eta, static_cast<float>(min_eta), static_cast<float>(max_eta), "1 to 3");
-  if (material.kind == gpu::MATERIAL_HOMOGENEOUS) return;
-  if (material.kind != gpu::MATERIAL_MARBLE_VEINS) bad_field("kind", std::to_string(material.kind), "0 or 1");
-  check_colour("vein_sigma_s_prime", material.vein_sigma_s_prime);
-  check_colour("vein_sigma_a", material.vein_sigma_a);
-  check_range("vein_period", material.vein_period, 1e-3f, 1e6f, "0.001 to 1000000 (mm)");
-  check_range("vein_sharpness", material.vein_sharpness, 1.0f, 1000.0f, "1 to 1000");
+  if (material.pattern == gpu::PATTERN_NONE) return;
+  if (material.pattern >= gpu::PATTERNS) {
+    bad_field("pattern", std::to_string(material.pattern), "0 to " + std::to_string(gpu::PATTERNS - 1));
+  }
+  check_colour("second_sigma_s_prime", material.second_sigma_s_prime);
+  check_colour("second_sigma_a", material.second_sigma_a);
+  check_range("period", material.period, 1e-3f, 1e6f, "0.001 to 1000000 (mm)");
+  check_range("sharpness", material.sharpness, 1.0f, 1000.0f, "1 to 1000");
 }
 
 }  // namespace quadgraph

@@ -73,8 +73,8 @@ double diffusion_error(double albedo, double eta) {
 
 double least_albedo(const gpu::Material& material) {
   const double base = least_albedo(material.sigma_s_prime, material.sigma_a);
-  if (material.kind == gpu::MATERIAL_HOMOGENEOUS) return base;
-  return std::min(base, least_albedo(material.vein_sigma_s_prime, material.vein_sigma_a));
+  if (material.pattern == gpu::PATTERN_NONE) return base;
+  return std::min(base, least_albedo(material.second_sigma_s_prime, material.second_sigma_a));
 }
 
 double least_albedo(std::span<const gpu::Optical> optical) {

@@ -1,5 +1,6 @@
 #include "engine/render/metadata.h"
 
+#include "engine/graph/material.h"
 #include "engine/render/text.h"
 
 namespace quadgraph {
@@ -36,10 +37,11 @@ std::string inter_reflection_text(const SolveOptions& options, const SolveReport
 std::string material_text(const gpu::Material& material) {
   std::string text = "sigma_s_prime=" + rgb_text(material.sigma_s_prime) + ",sigma_a=" + rgb_text(material.sigma_a) +
                      ",eta=" + number_text(material.eta);
-  if (material.kind == gpu::MATERIAL_MARBLE_VEINS) {
-    text += ",vein_sigma_s_prime=" + rgb_text(material.vein_sigma_s_prime) +
-            ",vein_sigma_a=" + rgb_text(material.vein_sigma_a) + ",vein_period=" + number_text(material.vein_period) +
-            ",vein_sharpness=" + number_text(material.vein_sharpness);
+  if (material.pattern != gpu::PATTERN_NONE) {
+    text += ",pattern=" + std::string(pattern_name(material)) +
+            ",second_sigma_s_prime=" + rgb_text(material.second_sigma_s_prime) +
+            ",second_sigma_a=" + rgb_text(material.second_sigma_a) + ",period=" + number_text(material.period) +
+            ",sharpness=" + number_text(material.sharpness);
   }
   return text;
 }

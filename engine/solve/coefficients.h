@@ -29,7 +29,7 @@ class Coefficients {
   float eta() const { return eta_; }
 
   // The same everywhere.
-  bool even() const { return material_ && material_->kind == gpu::MATERIAL_HOMOGENEOUS; }
+  bool even() const { return material_ && material_->pattern == gpu::PATTERN_NONE; }
 
   // One entry per sample of level `number`, which is `rest` in the file.
   std::vector<gpu::Optical> at(std::uint32_t number, const Level& rest, std::span<const SurfaceSample> samples) const;

@@ -34,7 +34,7 @@ void check_refused(const std::string& text, const std::string& field) {
 }  // namespace
 
 TEST_CASE("every listed name parses, and refers to its row of Jensen et al. 2001") {
-  CHECK(material_names().size() == 13);
+  CHECK(material_names().size() == 18);
   for (const std::string& name : material_names()) CHECK_NOTHROW(check_material(parse_material(name)));
   const gpu::Material marble = parse_material("marble");
   CHECK(marble.sigma_s_prime == glm::vec3(2.19f, 2.62f, 3.00f));
@@ -49,15 +49,15 @@ TEST_CASE("coefficients are given for all channels or for each, and override a n
   CHECK(own.sigma_s_prime == glm::vec3(2.0f));
   CHECK(own.sigma_a == glm::vec3(0.01f, 0.02f, 0.03f));
   CHECK(own.eta == 1.3f);
-  CHECK(own.kind == gpu::MATERIAL_HOMOGENEOUS);
+  CHECK(own.pattern == gpu::PATTERN_NONE);
   const gpu::Material changed = parse_material("marble,eta=1,sigma_a=0");
   CHECK(changed.sigma_s_prime == parse_material("marble").sigma_s_prime);
   CHECK(changed.sigma_a == glm::vec3(0));
   CHECK(changed.eta == 1.0f);
-  const gpu::Material veins = parse_material("marble-veins,vein_period=40,vein_sigma_a=1/2/3");
-  CHECK(veins.kind == gpu::MATERIAL_MARBLE_VEINS);
-  CHECK(veins.vein_period == 40.0f);
-  CHECK(veins.vein_sigma_a == glm::vec3(1, 2, 3));
+  const gpu::Material veins = parse_material("marble-veins,period=40,second_sigma_a=1/2/3");
+  CHECK(veins.pattern == gpu::PATTERN_VEINS);
+  CHECK(veins.period == 40.0f);
+  CHECK(veins.second_sigma_a == glm::vec3(1, 2, 3));
   CHECK(veins.sigma_a == parse_material("marble").sigma_a);
 }
 
@@ -80,7 +80,7 @@ TEST_CASE("a colour gives the coefficients of a body that shows it") {
     CHECK(diffuse_reflectance(albedo, 1.5) == doctest::Approx(static_cast<double>(colour[c])).epsilon(1e-5));
   }
   CHECK(parse_material("reflectance=0,mean_free_path=1").sigma_s_prime == glm::vec3(0));
-  CHECK(parse_material("marble-veins,reflectance=0.5,mean_free_path=1").kind == gpu::MATERIAL_MARBLE_VEINS);
+  CHECK(parse_material("marble-veins,reflectance=0.5,mean_free_path=1").pattern == gpu::PATTERN_VEINS);
   check_refused("reflectance=0.5", "mean_free_path");
   check_refused("mean_free_path=1", "reflectance");
   check_refused("reflectance=0.99,mean_free_path=1,eta=1.5", "0 to 0.9598");
@@ -106,23 +106,56 @@ TEST_CASE("what cannot be a material is refused by the field") {
   check_refused("marble,eta=0.9", "eta");
   check_refused("marble,eta=3.1", "eta");
   check_refused("marble,eta=1.3,eta=1.4", "eta");
-  check_refused("marble,vein_period=3", "vein_period");
-  check_refused("marble-veins,vein_period=0", "vein_period");
-  check_refused("marble-veins,vein_sharpness=0.5", "vein_sharpness");
+  check_refused("marble,period=3", "one beside a pattern");
+  check_refused("marble,pattern=stripes", "none, veins, clouds, bands, rings, spots, checker");
+  check_refused("marble,pattern=veins", "second_sigma_s_prime");
+  check_refused("marble,pattern=veins,second_reflectance=0.5", "second_mean_free_path");
+  check_refused("marble-veins,period=0", "period");
+  check_refused("marble-veins,sharpness=0.5", "sharpness");
   check_refused("marble,", "key=value");
-  check_refused("marble,colour=red", "sigma_s_prime, sigma_a, eta");
+  check_refused("marble,colour=red", "sigma_s_prime, sigma_a, or reflectance");
   check_refused("granite", "wholemilk");
+}
+
+TEST_CASE("patterns stay between the two materials, reach both, and are the same wherever they are evaluated") {
+  for (const std::string name : {"marble-veins", "jade", "agate", "wax", "wood", "checker"}) {
+    CAPTURE(name);
+    const gpu::Material m = parse_material(name);
+    CHECK(m.pattern != gpu::PATTERN_NONE);
+    float least = 1, most = 0;
+    double sum = 0;
+    constexpr int count = 20000;
+    for (int i = 0; i < count; ++i) {
+      // Points of a cube of 100 mm that fill it evenly (the R3 sequence).
+      const glm::dvec3 at = glm::fract(glm::dvec3(0.8191725134, 0.6710436067, 0.5497004779) * static_cast<double>(i));
+      const float t = gpu::pattern_amount(m, glm::vec3(100.0 * at - 50.0));
+      least = std::min(least, t);
+      most = std::max(most, t);
+      sum += static_cast<double>(t);
+    }
+    CHECK(least >= 0.0f);
+    CHECK(least < 0.1f);
+    CHECK(most <= 1.0f);
+    CHECK(most > 0.8f);
+    CHECK(sum / count > 0.02);
+    CHECK(sum / count < 0.8);
+  }
+  const gpu::Material checker =
+      parse_material("marble,pattern=checker,second_sigma_s_prime=1,second_sigma_a=2,period=10");
+  CHECK(gpu::material_at(checker, {1, 1, 1}).sigma_a == checker.sigma_a);
+  CHECK(gpu::material_at(checker, {11, 1, 1}).sigma_a == glm::vec3(2));
+  CHECK(gpu::material_at(checker, {11, -1, 1}).sigma_a == checker.sigma_a);
 }
 
 TEST_CASE("veins stay between the two materials, reach both, and have no jumps") {
   const gpu::Material m = parse_material("marble-veins");
   float least = 1, most = 0, steepest = 0;
   glm::vec3 last(-50.0f);
-  float before = gpu::vein_amount(m, last);
+  float before = gpu::pattern_amount(m, last);
   const glm::vec3 step = glm::vec3(0.6f, 0.64f, 0.48f) * 1e-3f;  // mm, through the lattice at a slant
   for (int i = 0; i < 200000; ++i) {
     last += step;
-    const float t = gpu::vein_amount(m, last);
+    const float t = gpu::pattern_amount(m, last);
     steepest = std::max(steepest, std::abs(t - before));
     before = t;
     least = std::min(least, t);
@@ -133,9 +166,9 @@ TEST_CASE("veins stay between the two materials, reach both, and have no jumps")
   CHECK(least < 0.01f);
   CHECK(most > 0.9f);
   // |t'| <= pi * sharpness / period * |phase'|, and |phase'| stays under 40 by the slopes of four octaves.
-  CHECK(steepest < 40.0f * 3.1416f * m.vein_sharpness / m.vein_period * 1e-3f);
+  CHECK(steepest < 40.0f * 3.1416f * m.sharpness / m.period * 1e-3f);
   const gpu::Optical optical = gpu::material_at(m, last);
-  const glm::vec3 low = glm::min(m.sigma_a, m.vein_sigma_a), high = glm::max(m.sigma_a, m.vein_sigma_a);
+  const glm::vec3 low = glm::min(m.sigma_a, m.second_sigma_a), high = glm::max(m.sigma_a, m.second_sigma_a);
   CHECK(glm::all(glm::greaterThanEqual(optical.sigma_a, low)));
   CHECK(glm::all(glm::lessThanEqual(optical.sigma_a, high)));
 }

@@ -50,11 +50,11 @@ inline gpu::Material homogeneous(float sigma_a = 0.05f) {
 
 inline gpu::Material veined() {
   gpu::Material material = homogeneous();
-  material.kind = gpu::MATERIAL_MARBLE_VEINS;
-  material.vein_sigma_s_prime = {4.0f, 3.0f, 1.0f};
-  material.vein_sigma_a = {0.3f, 0.1f, 0.2f};
-  material.vein_period = 5.0f;
-  material.vein_sharpness = 2.0f;
+  material.pattern = gpu::PATTERN_VEINS;
+  material.second_sigma_s_prime = {4.0f, 3.0f, 1.0f};
+  material.second_sigma_a = {0.3f, 0.1f, 0.2f};
+  material.period = 5.0f;
+  material.sharpness = 2.0f;
   return material;
 }
 

@@ -52,9 +52,9 @@ using namespace quadgraph;
 TEST_CASE("structs in buffers") {
   compare(assemble_fem_comp, "Optical", {MEMBER(Optical, sigma_s_prime), MEMBER(Optical, sigma_a)});
   compare(evaluate_material_comp, "Material",
-          {MEMBER(Material, sigma_s_prime), MEMBER(Material, sigma_a), MEMBER(Material, eta), MEMBER(Material, kind),
-           MEMBER(Material, vein_sigma_s_prime), MEMBER(Material, vein_sigma_a), MEMBER(Material, vein_period),
-           MEMBER(Material, vein_sharpness)});
+          {MEMBER(Material, sigma_s_prime), MEMBER(Material, sigma_a), MEMBER(Material, eta), MEMBER(Material, pattern),
+           MEMBER(Material, second_sigma_s_prime), MEMBER(Material, second_sigma_a), MEMBER(Material, period),
+           MEMBER(Material, sharpness)});
   compare(cg_start_comp, "RowsRef",
           {MEMBER(RowsRef, slice_offset), MEMBER(RowsRef, entry), MEMBER(RowsRef, row_sum), MEMBER(RowsRef, diagonal)});
   compare(cg_start_comp, "SolveState",

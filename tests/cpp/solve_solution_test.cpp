@@ -203,7 +203,7 @@ TEST_CASE("a furnace with the diffuse source is uniform to rounding, in both mod
     CAPTURE(what);
     // The published differences keep constants of kappa * phi, not of phi: it alone is wrong where kappa varies.
     gpu::Material material = what.method == Method::quadgraph_fdm ? homogeneous() : veined();
-    material.sigma_a = material.vein_sigma_a = glm::vec3(0);
+    material.sigma_a = material.second_sigma_a = glm::vec3(0);
     scene.simulation.set_material(material);
     const SolveReport report = scene.simulation.solve(what.options(SolverKind::dpcg, 3e-7));
     const Boundary boundary = boundary_of(what.method, what.source, what.model, 1.3);

@@ -16,11 +16,11 @@ gpu::Material veined() {
   return {.sigma_s_prime = {2.19f, 2.62f, 3.00f},
           .sigma_a = {0.0021f, 0.0041f, 0.0071f},
           .eta = 1.5f,
-          .kind = gpu::MATERIAL_MARBLE_VEINS,
-          .vein_sigma_s_prime = {1.0f, 1.2f, 1.1f},
-          .vein_sigma_a = {0.05f, 0.04f, 0.06f},
-          .vein_period = 20.0f,
-          .vein_sharpness = 4.0f};
+          .pattern = gpu::PATTERN_VEINS,
+          .second_sigma_s_prime = {1.0f, 1.2f, 1.1f},
+          .second_sigma_a = {0.05f, 0.04f, 0.06f},
+          .period = 20.0f,
+          .sharpness = 4.0f};
 }
 
 }  // namespace

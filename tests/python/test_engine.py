@@ -35,7 +35,7 @@ def lit_from_above(level) -> np.ndarray:
     return np.clip(normal[:, 2:], 0, None) * np.array([1.0, 0.8, 0.6])
 
 
-@pytest.mark.parametrize("material", [MATERIAL, "marble-veins,vein_period=6"])
+@pytest.mark.parametrize("material", [MATERIAL, "marble-veins,period=6"])
 @pytest.mark.parametrize("source", ["buried", "diffuse"])
 @pytest.mark.parametrize("model", ["diffusion", "sp3"])
 @pytest.mark.parametrize("method", ["fem", "quadgraph-fv", "quadgraph-fdm"])
