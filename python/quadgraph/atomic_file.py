@@ -35,10 +35,11 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
         raise InputError(f"{path}: cannot be written ({error.strerror})") from error
 
 
-def write_json(path: Path, value: Any) -> None:
-    """Write `value` as indented JSON. Raises InputError if `path` cannot be written."""
+def write_json(path: Path, value: Any, dense: bool = False) -> None:
+    """Write `value` as JSON, indented or without any space. Raises InputError if `path` cannot be written."""
+    form = {"separators": (",", ":")} if dense else {"indent": 1}
     with replacing(path) as stream:
-        stream.write((json.dumps(value, indent=1) + "\n").encode())
+        stream.write((json.dumps(value, **form) + "\n").encode())
 
 
 def _umask() -> int:

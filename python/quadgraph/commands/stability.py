@@ -76,7 +76,7 @@ def run(args: argparse.Namespace) -> int:
     for table in tables.all_of(record):
         console.print(table)
     if args.json:
-        atomic_file.write_json(args.json, record)
+        atomic_file.write_json(args.json, record, dense=True)
     if args.images:
         from quadgraph.stability import figures
 
