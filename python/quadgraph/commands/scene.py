@@ -89,7 +89,8 @@ def add_scene_arguments(parser: argparse.ArgumentParser) -> None:
         help="a name (marble, skin1, wholemilk, ..., marble-veins, jade, agate, wax, wood, checker), or "
         "sigma_s_prime=S,sigma_a=A,eta=E in 1/mm, or reflectance=C,mean_free_path=L,eta=E: the colour that a thick "
         "body shows, below 1, and a length in mm; one value or R/G/B each; and pattern=P,period=D,sharpness=K with a "
-        "second set, second_sigma_a and so on (default: %(default)s)",
+        "second set, second_sigma_a and so on; or a file .npz of sigma_s_prime and sigma_a on a grid (z, y, x) with "
+        "its spacing in mm (default: %(default)s)",
     )
     parser.add_argument(
         "--light",
@@ -175,7 +176,12 @@ def make_engine(args: argparse.Namespace) -> Engine:
     """Load `args.file` and set material and lights. Raises FormatError, InputError, VulkanError."""
     core = load_core()
     engine = core.Engine(args.file, device=args.device, validation=args.validation)
-    engine.set_material(args.material)
+    if args.material.lower().endswith(".npz"):
+        from quadgraph import volume
+
+        volume.set_material(engine, Path(args.material))
+    else:
+        engine.set_material(args.material)
     engine.set_lights(args.light or core.default_lights(getattr(args, "view", ""), getattr(args, "up", "y")))
     return engine
 
