@@ -94,7 +94,7 @@ def test_without_headless_it_says_what_to_do():
         (["-o", "x.jpg"], ["x.jpg", ".png", ".exr"]),
         ([], [".png", ".exr"]),
         (["-o", "x.png", "--light", "spot:1"], ["spot:1", "directional:DX,DY,DZ:IRRADIANCE"]),
-        (["-o", "x.png", "--material", "jade"], ["jade", "marble"]),
+        (["-o", "x.png", "--material", "granite"], ["granite", "marble"]),
         (["-o", "x.png", "--view", "10"], ["'10'", "azimuth,elevation"]),
         (["-o", "x.png", "--size", "10"], ["'10'", "WIDTHxHEIGHT"]),
         (["-o", "x.png", "--size", "0x10"], ["0x10"]),
