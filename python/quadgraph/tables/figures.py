@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from quadgraph import atomic_file
+from quadgraph.chart import labels
 from quadgraph.reference.figures import load_pyplot
 from quadgraph.tables import text
 from quadgraph.tables.ways import NAMES, TARGET
@@ -74,32 +75,41 @@ def _figure_12(pyplot: Any, rows: list[dict[str, Any]]) -> Any:
         (axes[1], NAMES, f"ms to {100 * TARGET:g}%", lambda e: (e.get("least") or {}).get("ms")),
         (axes[2], NAMES, f"iterations to {100 * TARGET:g}%", lambda e: (e.get("least") or {}).get("iterations")),
     )
+    named = []
     for axis, shown, title, value in panels:
         for way in shown:
             found = [value(entry) if (entry := text.done(row, way)) else None for row in rows]
-            _series(axis, rows, tets, found, _COLOURS[way], named=way == NAMES[0])
+            ends = _series(axis, rows, tets, found, _COLOURS[way])
+            if way == NAMES[0]:
+                named.append(ends)
         axis.set_title(title, fontsize=10)
         axis.set_xlabel("thousand tetrahedra")
-        axis.set_xlim(0, 1.12 * max(tets))
+        axis.set_xscale("log")
+        axis.set_yscale("log")
+        axis.margins(0.09)
+        for side in (axis.xaxis, axis.yaxis):
+            _plain(side, _number)
         axis.grid(alpha=0.22)
-    for axis in axes[:2]:
-        axis.set_ylim(bottom=0)
-    axes[2].set_yscale("log")
-    _plain(axes[2].yaxis, _number)
     _legend(pyplot, figure, _COLOURS)
-    return _bare(figure)
+    _bare(figure)
+    figure.draw_without_rendering()
+    for (axis, *_), ends in zip(panels, named, strict=True):
+        labels.place(axis, [(*at, body, "#444444") for body, at in ends.items()])
+    return figure
 
 
-def _series(axis: Any, rows: list[dict], x: list[float], y: list[float | None], colour: str, named: bool) -> None:
-    """Points, those of a body of several sizes joined, others named."""
+def _series(
+    axis: Any, rows: list[dict], x: list[float], y: list[float | None], colour: str
+) -> dict[str, tuple[float, float]]:
+    """Points, those of a body of several sizes joined; the last one of every body."""
     by_body: dict[str, list[tuple[float, float]]] = {}
     for row, a, b in zip(rows, x, y, strict=True):
         if b is not None:
             by_body.setdefault(row["body"], []).append((a, b))
-    for body, points in by_body.items():
-        axis.plot(*zip(*points, strict=True), color=colour, marker="o", markersize=4, linewidth=1.2)
-        if named:
-            axis.annotate(body, points[-1], (4, 3), textcoords="offset points", fontsize=7.5, color="#444444")
+    for points in by_body.values():
+        axis.plot(*zip(*points, strict=True), color=colour, linewidth=1.2)
+        axis.scatter(*zip(*points, strict=True), color=colour, s=16, zorder=3)
+    return {body: points[-1] for body, points in by_body.items()}
 
 
 def _figure_13(pyplot: Any, rows: list[dict[str, Any]]) -> Any:
