@@ -3,12 +3,18 @@
 #include "assembly_shared.h"
 #include "optics.h"
 #include "stored_rows.glsl"
+#include "tet_volume.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { AssembleFvPush push; };
 
 vec3 vertex(uvec4 tet, uint k) {
   return load_vec3(push.vertices, tet[k & 3u]);
+}
+
+// Of a node over a face, times twice the area of the face.
+float height(vec3 twice_area, vec3 away, float least) {
+  return max(abs(dot(twice_area, away)), least);
 }
 
 // The link of tet t across face k: area / (d_i/kappa_i + d_j/kappa_j), mm^2, or area kappa_i / d_i to a surface node.
@@ -19,9 +25,12 @@ vec3 conductance(uint t, uint k, out float area) {
   vec3 twice_area = cross(vertex(tet, k + 2u) - point, vertex(tet, k + 3u) - point);
   float size = length(twice_area);
   area = 0.5 * size;
-  vec3 resistance = vec3(abs(dot(twice_area, load_vec3(push.nodes, t) - point))) / kappa(load_optical(push.optical, t));
+  float least = push.least.quality * size * sqrt(size);
+  float height_t = height(twice_area, load_vec3(push.nodes, t) - point, least);
+  vec3 resistance = vec3(height_t) / kappa(load_optical(push.optical, t));
   if (j < push.tet_count) {
-    resistance += vec3(abs(dot(twice_area, load_vec3(push.nodes, j) - point))) / kappa(load_optical(push.optical, j));
+    float height_j = height(twice_area, load_vec3(push.nodes, j) - point, least);
+    resistance += vec3(height_j) / kappa(load_optical(push.optical, j));
   }
   return vec3(area * size) / resistance;
 }
@@ -35,7 +44,7 @@ uint face_towards(uint t, uint node) {
 float volume(uint t) {
   uvec4 tet = load_uvec4(push.tets, t);
   vec3 p = vertex(tet, 0u);
-  return dot(vertex(tet, 1u) - p, cross(vertex(tet, 2u) - p, vertex(tet, 3u) - p)) / 6.0;
+  return tet_volume(vertex(tet, 1u) - p, vertex(tet, 2u) - p, vertex(tet, 3u) - p, push.least);
 }
 
 void main() {

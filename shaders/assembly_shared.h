@@ -32,6 +32,7 @@ struct AssembleFvPush {
   QG_REF(Uints) face_kinds;
   uint count;      // nodes
   uint tet_count;  // inner nodes
+  LeastTet least;
   Boundary boundary;
 };
 
@@ -47,6 +48,7 @@ struct ShapePush {
   QG_REF(AssemblyFloats) face_area;  // mm^2
   uint tet_count;
   uint face_count;
+  LeastTet least;
 };
 
 // assemble_even.comp: weight, row_sum and diagonal where the coefficients are the same everywhere, one invocation per

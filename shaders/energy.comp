@@ -4,6 +4,7 @@
 #include "fields.glsl"
 #include "stride.glsl"
 #include "reduce.glsl"
+#include "tet_volume.glsl"
 
 layout(push_constant, scalar) uniform Block { EnergyPush push; };
 
@@ -12,7 +13,7 @@ vec3 absorbed(uint tet) {
   vec3 p = load_vec3(push.vertices, corners.x);
   vec3 e1 = load_vec3(push.vertices, corners.y) - p, e2 = load_vec3(push.vertices, corners.z) - p;
   vec3 e3 = load_vec3(push.vertices, corners.w) - p;
-  float volume = abs(dot(e1, cross(e2, e3))) / 6.0;
+  float volume = tet_volume(e1, e2, e3, push.least);
   vec3 phi;
   if (push.fem == 1u) {
     phi = 0.25 * (load_field(push.x, corners.x).phi + load_field(push.x, corners.y).phi +

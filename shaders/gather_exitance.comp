@@ -23,7 +23,9 @@ void main() {
   if (load_uint(BODY.face_kinds, face) != FACE_OPEN) return;
   uvec3 ids = load_uvec3(BODY.faces, face);
   mat3 corners = corners_of(ids);
-  vec3 normal = normalize(cross(corners[1] - corners[0], corners[2] - corners[0]));
+  vec3 doubled = cross(corners[1] - corners[0], corners[2] - corners[0]);
+  if (doubled == vec3(0)) return;
+  vec3 normal = normalize(doubled);
   vec3 tangent = face_tangent(face, normal, corners[1] - corners[0]);
   uint tet = load_uint(BODY.face_tets, face);
   vec3 exitance = vec3(0);

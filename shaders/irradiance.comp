@@ -46,7 +46,8 @@ void main() {
   vec3 a = load_vec3(push.vertices, face.x);
   vec3 ab = load_vec3(push.vertices, face.y) - a;
   vec3 ac = load_vec3(push.vertices, face.z) - a;
-  vec3 normal = normalize(cross(ab, ac));
+  vec3 doubled = cross(ab, ac);
+  vec3 normal = doubled / max(length(doubled), 1e-30);  // none of a face without area
 
   vec3 q = vec3(0);
   uint beam = 0u;  // of the light

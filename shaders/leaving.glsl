@@ -26,7 +26,8 @@ Leaving leaving(uint face, vec3 l, vec3 outward, vec3 n, GatherScales scale, flo
   for (uint part = 0u; part < VIEW_PARTS; ++part) {
     uvec3 ids = load_uvec3(BODY.faces, face);
     mat3 corners = corners_of(ids);
-    vec3 face_normal = normalize(cross(corners[1] - corners[0], corners[2] - corners[0]));
+    vec3 doubled = cross(corners[1] - corners[0], corners[2] - corners[0]);
+    vec3 face_normal = doubled / max(length(doubled), 1e-30);
     if (part > 0u) n = face_normal;
     share *= fresnel_transmittance(clamp(dot(outward, n), 0.0, 1.0), BODY.eta);
     uint tet = load_uint(BODY.face_tets, face);

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "assembly_shared.h"
+#include "tet_volume.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { ShapePush push; };
@@ -13,7 +14,8 @@ void measure_tet(uint t) {
   // The gradient of corner k is n_k / (6 V), up to an orientation that cancels in products.
   vec3 n1 = cross(e2, e3), n2 = cross(e3, e1), n3 = cross(e1, e2);
   vec3 n0 = -(n1 + n2 + n3);
-  float six_volume = abs(dot(e1, n1));
+  float squares = dot(n0, n0) + dot(n1, n1) + dot(n2, n2) + dot(n3, n3);
+  float six_volume = bounded_six_volume(dot(e1, n1), squares, push.least);
   float factor = 1.0 / (6.0 * six_volume);
   uint at = TET_SHAPE * t;
   push.tet_shape.at[at] = factor * dot(n0, n1);

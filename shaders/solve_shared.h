@@ -92,6 +92,12 @@ struct RowsRef {
 
 // Kinds of outside faces (engine/graph/graph.h).
 const uint FACE_OPEN = 0u;
+
+// What a tet of a deformed body counts for at least (tet_volume.glsl); 0 in both: for what it is.
+struct LeastTet {
+  float quality;  // 1 of a regular tet, 0 of a flat one
+  float volume;   // mm^3
+};
 const uint FACE_REFLECTING = 1u;
 
 const uint BEAM_DIRECTIONAL = 0u;

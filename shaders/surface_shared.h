@@ -91,6 +91,7 @@ struct EnergyPush {
   uint face_count;
   uint fem;
   uint even;  // 1: optical is the same everywhere
+  LeastTet least;
 };
 
 // energy_total.comp: one workgroup; total[i] = sum of sums[i], sums[i + WORKGROUP_SIZE], ...

@@ -99,6 +99,12 @@ vec3 q_at(uint beam, uint face, uint quarter) {
   return beam_light(load_beam(push.beams, beam), push.beam_q, BODY.face_count, face, quarter);
 }
 
+// Unit, but 0 of a face without area.
+vec3 normal_of(uint face) {
+  vec3 doubled = doubled_normal(face);
+  return doubled / max(length(doubled), 1e-30);
+}
+
 // The quarter of face `face` at its corner v.
 uint quarter_at(uint face, uint v) {
   uvec3 ids = load_uvec3(BODY.faces, face);
@@ -137,11 +143,11 @@ Light directed_light(uint beam, uint v, vec3 incoming) {
   Met met = back_to_surface(v, -incoming);
   if (met.found && BODY.eta > 1.0) {
     // By the normal where the straight way ends one knows how the light was bent.
-    met = back_to_surface(v, -refracted(incoming, normalize(doubled_normal(met.face)), BODY.eta));
+    met = back_to_surface(v, -refracted(incoming, normal_of(met.face), BODY.eta));
   }
   if (!met.found) return NO_LIGHT;
   vec3 q = q_at(beam, met.face, met.quarter);
-  return Light(entry_fluence(q, incoming, normalize(doubled_normal(met.face))), met.tau);
+  return Light(entry_fluence(q, incoming, normal_of(met.face)), met.tau);
 }
 
 vec3 surface_normal(uint v) {

@@ -64,6 +64,7 @@ void walk_from(uint face, uint ray) {
   mat3 corners = corners_of(ids);
   vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
   float area = 0.5 * length(normal);
+  if (area == 0.0) return;
   normal /= 2.0 * area;
   vec3 tangent = face_tangent(face, normal, corners[1] - corners[0]);
   bool one = one_ray_does(least, largest, corners, area);

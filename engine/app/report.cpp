@@ -49,6 +49,7 @@ Json as_json(const SolveReport& report) {
   json["missed"] = report.missed;
   json["mesh_warning"] = report.mesh_warning;
   json["model_warning"] = report.model_warning;
+  json["deformed"] = report.deformed;
   return json;
 }
 
@@ -109,7 +110,7 @@ std::string text_report(const RunReport& report) {
   }
   if (!report.solve.replaced.empty()) out << "solver   " << report.solve.replaced << "\n";
   if (!report.solve.missed.empty()) out << "missed   " << report.solve.missed << "\n";
-  for (const std::string& warning : {report.solve.mesh_warning, report.solve.model_warning}) {
+  for (const std::string& warning : {report.solve.mesh_warning, report.solve.model_warning, report.solve.deformed}) {
     if (!warning.empty()) out << "warning  " << warning << "\n";
   }
   out << "memory   " << decimals(static_cast<double>(report.engine.peak_device_bytes()) / mebibyte, 0)

@@ -57,8 +57,12 @@ void MovedLevels::move(std::uint32_t number, std::span<const glm::vec3> position
     throw InputError("vertices of level " + std::to_string(number) + ": there are " + std::to_string(rest_.size()) +
                      " levels");
   }
+  check(rest_[number], number, positions);
+  place(number, positions);
+}
+
+void MovedLevels::place(std::uint32_t number, std::span<const glm::vec3> positions) {
   const Level& rest = rest_[number];
-  check(rest, number, positions);
   std::vector<glm::vec3>& nodes = nodes_[number];
   nodes.resize(rest.nodes.size());
   for (std::size_t i = 0; i < nodes.size(); ++i) {

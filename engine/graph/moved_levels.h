@@ -28,6 +28,12 @@ class MovedLevels {
   // has no volume left or is turned inside out.
   void move(std::uint32_t number, std::span<const glm::vec3> positions);
 
+  // The same without a look at the tets.
+  void place(std::uint32_t number, std::span<const glm::vec3> positions);
+
+  // All levels as the file has them.
+  void put_back() { levels_ = rest_; }
+
  private:
   const std::vector<Level>& rest_;
   std::vector<Level> levels_;

@@ -152,9 +152,13 @@ double least_thickness(std::span<const gpu::Optical> optical, double chord) {
 
 }  // namespace
 
+std::uint32_t surface_sample_step(const Level& level) {
+  return static_cast<std::uint32_t>(std::max<std::size_t>(1, (level.faces.size() + most_samples - 1) / most_samples));
+}
+
 std::vector<SurfaceSample> surface_samples(const Level& level) {
   std::vector<SurfaceSample> samples;
-  const std::size_t step = std::max<std::size_t>(1, (level.faces.size() + most_samples - 1) / most_samples);
+  const std::size_t step = surface_sample_step(level);
   for (std::size_t f = 0; f < level.faces.size(); f += step) {
     if (level.reflecting(static_cast<std::uint32_t>(f))) continue;
     const std::uint32_t tet = level.face_tets[f];

@@ -22,6 +22,9 @@ struct SurfaceSample {
   std::uint32_t tet = 0;  // behind it
 };
 
+// Every so many'th face of a level is a sample, from the first one on; reflecting ones are left out.
+std::uint32_t surface_sample_step(const Level& level);
+
 // Up to 256 open faces of a level in its present shape, evenly drawn from all of them.
 std::vector<SurfaceSample> surface_samples(const Level& level);
 

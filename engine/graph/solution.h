@@ -131,6 +131,7 @@ struct SolveReport {
   // What else is to be said against the answer, of elements and of the model (engine/graph/resolution.h); empty if
   // nothing.
   std::string mesh_warning, model_warning;
+  std::string deformed;             // tets of level 0 that a deformation has spoilt; empty if none is
   std::vector<glm::dvec3> bounces;  // W per channel that each bounce brought in
   std::uint32_t exchange_age = 0;   // solves that what some face sees has been behind the shape; 0: nothing is
 };

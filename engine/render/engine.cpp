@@ -5,6 +5,7 @@
 #include "engine/graph/error.h"
 #include "engine/graph/material.h"
 #include "engine/render/display_faces.h"
+#include "engine/render/display_motion.h"
 #include "engine/render/irradiance.h"
 #include "engine/render/metadata.h"
 #include "engine/render/rasteriser.h"
@@ -69,6 +70,7 @@ struct Engine::Implementation {
         context(device),
         simulation(context, graph),
         mesh(upload_display(context, graph.display())),
+        motion(graph.display()),
         shadows(context),
         irradiance(context),
         rasteriser(context) {
@@ -81,6 +83,7 @@ struct Engine::Implementation {
   vk::Context context;
   Simulation simulation;
   DisplayBuffers mesh;
+  DisplayMotion motion;
   ShadowMaps shadows;
   IrradiancePass irradiance;
   Rasteriser rasteriser;
@@ -94,7 +97,8 @@ struct Engine::Implementation {
   Radiance radiance = Radiance::automatic;  // of the last picture
   std::optional<RadianceProbe> probe;       // made at first use
   vk::Buffer triangle_face;                 // display_faces.h, made at first use
-  std::vector<PassStats> irradiance_passes, gather_passes, render_passes;
+  std::vector<PassStats> deformation_passes, irradiance_passes, gather_passes, render_passes;
+  bool deformed = false;  // since the last solve
 
   const GatherField& gather() {
     std::vector<PassStats> passes;
@@ -170,6 +174,18 @@ void Engine::set_lights(std::vector<Light> lights) {
   implementation_->irradiance_stale = true;
 }
 
+void Engine::set_deformation(std::span<const Deformer> list) {
+  auto& self = *implementation_;
+  for (const Deformer& deformer : list) check_deformer(deformer);
+  check_shapes(list, self.graph);
+  const auto also = [&](Workspace& work) { self.motion.record(work, list, self.mesh); };
+  if (!self.simulation.set_deformation(list, self.motion.rest_box(), also)) return;
+  self.bounds = list.empty() ? bounding_sphere(self.graph.display().vertices) : self.motion.bounds();
+  self.irradiance_stale = self.irradiance_stale || !self.lights.empty();
+  self.deformed = true;
+  self.report.reset();
+}
+
 void Engine::set_irradiance(std::uint32_t level, std::span<const glm::vec3> q,
                             const std::optional<glm::vec3>& direction) {
   auto& self = *implementation_;
@@ -204,6 +220,9 @@ SolveReport Engine::solve(const SolveOptions& options) {
   auto& self = *implementation_;
   if (self.irradiance_stale) update_irradiance();
   self.gather_passes.clear();
+  self.deformation_passes.clear();
+  if (self.deformed) self.deformation_passes = self.simulation.deformation_passes();
+  self.deformed = false;
   self.report = self.simulation.solve(options);
   self.options = options;
   return *self.report;
@@ -245,14 +264,14 @@ Leaving Engine::leaving(std::span<const std::uint32_t> face, std::span<const glm
   if (!self.report) throw InputError("radiance: solve first");
   const GatherField& field = self.gather();
   if (!self.probe) self.probe.emplace(self.context);
-  return self.probe->run(self.graph.levels()[0], field, self.simulation.eta(), face, direction);
+  return self.probe->run(self.simulation.present_level(), field, self.simulation.eta(), face, direction);
 }
 
 std::vector<PassStats> Engine::passes() const {
   const auto& self = *implementation_;
   std::vector<PassStats> all;
-  for (const auto* passes :
-       {&self.irradiance_passes, &self.simulation.passes(), &self.gather_passes, &self.render_passes}) {
+  for (const auto* passes : {&self.deformation_passes, &self.irradiance_passes, &self.simulation.passes(),
+                             &self.gather_passes, &self.render_passes}) {
     all.insert(all.end(), passes->begin(), passes->end());
   }
   return all;

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/graph/deformer.h"
 #include "engine/graph/graph.h"
 #include "engine/render/camera.h"
 #include "engine/render/lights.h"
@@ -49,7 +50,7 @@ class Engine {
   const QuadGraph& graph() const;
   vk::Context& context() const;
   Simulation& simulation();
-  const Sphere& bounds() const;  // of the display mesh
+  const Sphere& bounds() const;  // of the display mesh in its present shape
 
   // Text as parse_material reads it, or a material. Throws InputError.
   void set_material(std::string_view text);
@@ -60,6 +61,12 @@ class Engine {
 
   // Throws InputError as check_light does.
   void set_lights(std::vector<Light> lights);
+
+  // Moves the body and what is shown of it by a list of deformers from where it lies in the file; an empty list puts it
+  // back there exactly. Bounds, shadows and what the body sees of itself follow; the material stays with the body.
+  // Light given by set_irradiance stays. There is no solution until the next solve. Throws InputError, and moves
+  // nothing, as check_deformer does, or for shapes of another body.
+  void set_deformation(std::span<const Deformer> list);
 
   // Irradiance given instead of computed from lights, as Simulation::set_irradiance; wanted for every level, and kept
   // until set_lights.
@@ -87,7 +94,8 @@ class Engine {
   // Throws InputError as `render` and as RadianceProbe::run.
   Leaving leaving(std::span<const std::uint32_t> face, std::span<const glm::vec3> direction);
 
-  // Passes of the last update_irradiance, solve and render, in this order.
+  // Passes of the last set_deformation that the last solve followed, update_irradiance, solve and render, in this
+  // order.
   std::vector<PassStats> passes() const;
 
   // Device memory now and at most so far, bytes, and the present one by purpose (engine/vk/memory.h).

@@ -40,6 +40,7 @@ void assemble_fv(Workspace& work, const LevelBuffers& level, const Boundary& bou
                                  .face_kinds = level.face_kind.address(),
                                  .count = op.count,
                                  .tet_count = level.tet_count,
+                                 .least = level.least,
                                  .boundary = on_device(boundary)};
   const std::uint64_t link_bytes =
       2 * sizeof(glm::uvec4) + 5 * vec3_bytes + 2 * sizeof(gpu::Optical) + 2 * op.entry_bytes();
@@ -55,7 +56,8 @@ void measure(Workspace& work, const LevelBuffers& level, OperatorBuffers& op) {
                             .tet_shape = op.tet_shape.address(),
                             .face_area = op.face_area.address(),
                             .tet_count = level.tet_count,
-                            .face_count = level.face_count};
+                            .face_count = level.face_count,
+                            .least = level.least};
   const std::uint64_t bytes = level.tet_count * (sizeof(glm::uvec4) + 4 * vec3_bytes + gpu::TET_SHAPE * sizeof(float)) +
                               level.face_count * (sizeof(glm::uvec3) + 3 * vec3_bytes + sizeof(float));
   work.recorder.dispatch(work.passes.shape, push, std::max(level.tet_count, level.face_count), "shape", bytes);

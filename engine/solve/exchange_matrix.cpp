@@ -61,6 +61,16 @@ void ExchangeMatrix::moved() {
   behind_ = static_cast<std::uint32_t>(behind_since_.size());
 }
 
+void ExchangeMatrix::put_back(vk::Context& context) {
+  turned();
+  behind_ = 0;
+  if (!cast_) return;
+  const std::vector<glm::uvec2> rows = wide_rows(level_);
+  const std::vector<std::uint32_t> entries = wide_entries(level_);
+  vk::write_bytes(context, rows_, std::as_bytes(std::span(rows)));
+  vk::write_bytes(context, entries_, std::as_bytes(std::span(entries)));
+}
+
 std::uint32_t ExchangeMatrix::record_refresh(Workspace& work, const LevelBuffers& level, std::uint32_t count) {
   ++now_;
   const std::uint32_t wanted = count == 0 ? behind_ : std::min(count, behind_);

@@ -23,6 +23,14 @@ class ExchangeMatrix {
   // The shape has changed: all rows are behind it.
   void moved();
 
+  // It has turned as a whole, which no row is behind.
+  void turned() {
+    if (tree_) tree_->moved();
+  }
+
+  // The shape is that of the file again: so are all rows.
+  void put_back(vk::Context& context);
+
   // Casts the rays of up to `count` rows that are behind the shape of `level`, the longest behind first; of all with 0.
   // Returns how many. To be called once in a solve, by which ages are counted.
   std::uint32_t record_refresh(Workspace& work, const LevelBuffers& level, std::uint32_t count);

@@ -28,6 +28,19 @@ void InterReflection::moved(std::uint32_t number) {
   if (number == level_) matrix_->moved();
 }
 
+void InterReflection::turned() {
+  if (matrix_) matrix_->turned();
+}
+
+void InterReflection::put_back(vk::Context& context, std::vector<LevelBuffers>& levels) {
+  if (!matrix_) return;
+  matrix_->put_back(context);
+  const auto sky = sky_of_levels(graph_.levels());
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    vk::write_bytes(context, levels[i].sky, std::as_bytes(std::span(sky[i])));
+  }
+}
+
 void InterReflection::refresh(Workspace& work, std::span<const Level> shape, std::vector<LevelBuffers>& levels,
                               std::uint32_t rows) {
   if (!matrix_ || matrix_->record_refresh(work, levels[*level_], rows) == 0) return;

@@ -32,6 +32,12 @@ class InterReflection {
   // The vertices of level `number` have moved.
   void moved(std::uint32_t number);
 
+  // The body has turned or moved as a whole.
+  void turned();
+
+  // The shape is that of the file again, and so is what its faces see.
+  void put_back(vk::Context& context, std::vector<LevelBuffers>& levels);
+
   // Brings up to `rows` rows that are behind the shape up to date, all with 0; then the view of the sky on every level.
   // To be called once in a solve.
   void refresh(Workspace& work, std::span<const Level> shape, std::vector<LevelBuffers>& levels, std::uint32_t rows);

@@ -10,8 +10,10 @@ void Operators::create(vk::Context& context, std::span<const Level> levels, cons
   if (!levels_.contains(key)) {
     std::vector<OfLevel> of_key(count);
     for (std::uint32_t i = 0; i < count; ++i) {
-      const EntryFormat format = plain_.contains(key) ? EntryFormat::plain : format_of(levels[i], key.method);
+      const bool plain = plain_on_device_ || plain_.contains(key);
+      const EntryFormat format = plain ? EntryFormat::plain : format_of(levels[i], key.method);
       of_key[i].op.emplace(context, levels[i], i, key.method, key.model, format);
+      of_key[i].op->moved = moved_on_device_;
       if (i + 1 < count) of_key[i].transfer.emplace(context, levels[i], levels[i + 1], i, key.method);
     }
     for (std::uint32_t i = 0; i < count; ++i) write_gates(context, of_key, i);
@@ -55,6 +57,34 @@ void Operators::remeasure(std::uint32_t number, const Level& level) {
     plain_.insert(key);
     return true;
   });
+  moved(number);
+}
+
+void Operators::remeasure(std::uint32_t number, bool plain) {
+  moved_on_device_ = true;
+  plain_on_device_ = plain_on_device_ || plain;
+  std::erase_if(levels_, [&](const auto& of_key) {
+    const auto& [key, levels] = of_key;
+    if (!plain || number >= levels.size() || levels[number].op->format == EntryFormat::plain) return false;
+    plain_.insert(key);
+    return true;
+  });
+  moved(number);
+}
+
+void Operators::put_back() {
+  for (const OperatorKey& key : plain_) levels_.erase(key);
+  plain_.clear();
+  moved_on_device_ = plain_on_device_ = false;
+  for (auto& [key, of_key] : levels_) {
+    for (OfLevel& level : of_key) {
+      level.op->measured = level.op->moved = false;
+      level.op->assembled.reset();
+    }
+  }
+}
+
+void Operators::moved(std::uint32_t number) {
   for (auto& [key, of_key] : levels_) {
     if (number >= of_key.size()) continue;
     of_key[number].op->measured = false;

@@ -44,6 +44,12 @@ class Operators {
   // now, the operators are to be created again, with plain ones.
   void remeasure(std::uint32_t number, const Level& level);
 
+  // The same where the device has moved them; `plain`: packed entries would round too much.
+  void remeasure(std::uint32_t number, bool plain);
+
+  // All vertices lie as in the file again.
+  void put_back();
+
   // `target`, as x of `level`, from x of the next coarser one, in the channels that `state`, of a level that was solved
   // for the same light, tells to be lit.
   void record_transfer(Workspace& work, const OperatorKey& key, std::uint32_t level, const vk::Buffer& target,
@@ -59,10 +65,13 @@ class Operators {
     std::optional<TransferBuffers> transfer;
   };
 
+  void moved(std::uint32_t number);
+
   static void write_gates(vk::Context& context, const std::vector<OfLevel>& levels, std::uint32_t number);
 
   std::map<OperatorKey, std::vector<OfLevel>> levels_;
   std::set<OperatorKey> plain_;  // on all levels, since a motion
+  bool moved_on_device_ = false, plain_on_device_ = false;
 };
 
 }  // namespace quadgraph

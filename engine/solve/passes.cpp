@@ -1,6 +1,7 @@
 #include "engine/solve/passes.h"
 
 #include "shaders/assembly_shared.h"
+#include "shaders/deform_shared.h"
 #include "shaders/exchange_shared.h"
 #include "shaders/gather_shared.h"
 #include "shaders/packing.h"
@@ -30,6 +31,10 @@
 #include "spirv/coarse_solve_sp3.comp.h"
 #include "spirv/correct.comp.h"
 #include "spirv/correct_sp3.comp.h"
+#include "spirv/deform.comp.h"
+#include "spirv/deform_bounds.comp.h"
+#include "spirv/deform_nodes.comp.h"
+#include "spirv/deform_normals.comp.h"
 #include "spirv/display_scale.comp.h"
 #include "spirv/eigenvalue_bound.comp.h"
 #include "spirv/eigenvalue_bound_sp3.comp.h"
@@ -67,6 +72,7 @@
 #include "spirv/right_hand_side_fv.comp.h"
 #include "spirv/right_hand_side_fv_sp3.comp.h"
 #include "spirv/shape.comp.h"
+#include "spirv/shape_state.comp.h"
 #include "spirv/surface_change.comp.h"
 #include "spirv/surface_change_sp3.comp.h"
 #include "spirv/surface_share.comp.h"
@@ -116,6 +122,11 @@ Passes::Passes()
       ONE_PASS(exchange_enter, ExchangeEnterPush, each),
       ONE_PASS(exchange_boxes, ExchangeBoxesPush, each),
       ONE_PASS(exchange_rays, ExchangeRaysPush, each),
+      ONE_PASS(deform, DeformPush, each),
+      ONE_PASS(deform_nodes, DeformNodesPush, each),
+      ONE_PASS(deform_normals, DeformNormalsPush, each),
+      ONE_PASS(deform_bounds, DeformBoundsPush, each),
+      ONE_PASS(shape_state, ShapeStatePush, each),
       ENTRY_PASS(assemble_fdm, AssembleFdmPush, each),
       ENTRY_PASS(assemble_fv, AssembleFvPush, each),
       ENTRY_PASS(assemble_edges, AssembleEdgesPush, each),

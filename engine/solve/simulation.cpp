@@ -13,6 +13,7 @@
 #include "engine/graph/sky.h"
 #include "engine/solve/beams.h"
 #include "engine/solve/coefficients.h"
+#include "engine/solve/deformed_levels.h"
 #include "engine/solve/gather_field.h"
 #include "engine/solve/inter_reflection.h"
 #include "engine/solve/level_upload.h"
@@ -47,6 +48,10 @@ double solver_ms(const std::vector<PassStats>& passes) {
   return spent;
 }
 
+// Mean conduction of elements (stored_entries.h) from which deformed bodies are stored in single precision: below it
+// packed entries change the exitance by less than 1e-3.
+constexpr double packed_conduction = 50;
+
 // As a number with two digits after the point.
 std::string ratio_text(double ratio) {
   char text[32];
@@ -59,6 +64,11 @@ std::string ratio_text(double ratio) {
 struct Simulation::Implementation {
   vk::Context& context;
   MovedLevels shape;
+  DeformedLevels deformed;
+  std::optional<MovedLevels> present;  // of level 0 where the device has moved it, made at first use
+  bool vertices_set = false;           // by set_vertices
+  std::string spoilt;                  // SolveReport::deformed
+  std::vector<PassStats> deformation_passes;
   std::vector<LevelBuffers> levels;
   BeamBuffers beams;
   std::vector<SourceWalk> walks;  // one per level
@@ -82,16 +92,22 @@ struct Simulation::Implementation {
   Implementation(vk::Context& context_in, const QuadGraph& graph_in)
       : context(context_in),
         shape(graph_in),
+        deformed(graph_in.levels()),
         levels(upload_levels(context_in, graph_in)),
         work(context_in, largest_dispatch()),
         results(context_in, levels[0]),
         coefficients(levels.size()),
         exchange(graph_in) {
     for (std::uint32_t i = 0; i < levels.size(); ++i) walks.emplace_back(context, shape.levels()[i], i);
-    for (const Level& level : shape.levels()) samples.push_back(surface_samples(level));
-    chord = mean_chord(shape.levels()[0]);
+    sample();
     const gpu::Beam lambertian = beam_along(std::nullopt);
     light({&lambertian, 1});
+  }
+
+  void sample() {
+    samples.clear();
+    for (const Level& level : shape.levels()) samples.push_back(surface_samples(level));
+    chord = mean_chord(shape.levels()[0]);
   }
 
   void light(std::span<const gpu::Beam> records) { replace_beams(context, records, beams, levels); }
@@ -137,13 +153,79 @@ struct Simulation::Implementation {
     operators.remeasure(number, shape.levels()[number]);
     samples[number] = surface_samples(shape.levels()[number]);
     if (number == 0) chord = mean_chord(shape.levels()[0]);
-    resolution.clear();
-    quicker.clear();
     exchange.moved(number);
     if (number == 0) gather.reset();
-    if (number == 0 && tree) tree->moved();
+    vertices_set = true;
+    forget_shape();
+  }
+
+  // What was known of the present shape.
+  void forget_shape() {
+    resolution.clear();
+    quicker.clear();
+    forget_place();
+  }
+
+  // What was known of where the body is.
+  void forget_place() {
+    present.reset();
+    if (tree) tree->moved();
     solved.reset();
     unload();
+  }
+
+  bool deform(std::span<const Deformer> list, const RestBox& box, const std::function<void(Workspace&)>& also) {
+    if (!vertices_set && std::equal(list.begin(), list.end(), deformed.list().begin(), deformed.list().end())) {
+      return false;
+    }
+    work.recorder.clear();
+    if (vertices_set || list.empty()) put_back();
+    if (!list.empty()) move_on_device(list, box);
+    if (also) also(work);
+    work.recorder.submit();
+    deformation_passes = work.recorder.passes();
+    return true;
+  }
+
+  void put_back() {
+    shape.put_back();
+    deformed.put_back(context, levels);
+    operators.put_back();
+    exchange.put_back(context, levels);
+    if (vertices_set) gather.reset();
+    vertices_set = false;
+    spoilt.clear();
+    sample();
+    forget_shape();
+  }
+
+  void move_on_device(std::span<const Deformer> list, const RestBox& box) {
+    const bool same = deformed.same_shape(list);
+    deformed.record(work, list, box, levels);
+    if (same) {
+      exchange.turned();
+      return forget_place();
+    }
+    work.recorder.submit();
+    for (std::uint32_t i = 0; i < levels.size(); ++i) {
+      ShapeState state = deformed.state(i);
+      operators.remeasure(i, state.conduction > packed_conduction);
+      exchange.moved(i);
+      samples[i] = std::move(state.samples);
+      if (i > 0) continue;
+      chord = state.chord;
+      spoilt = deformed_text(state);
+    }
+    forget_shape();
+  }
+
+  const Level& present_level() {
+    if (deformed.list().empty()) return shape.levels()[0];
+    if (!present) {
+      present.emplace(shape);
+      present->place(0, vk::download<glm::vec3>(context, levels[0].vertices));
+    }
+    return present->levels()[0];
   }
 
   SolveReport solve(const SolveOptions& options) {
@@ -156,6 +238,7 @@ struct Simulation::Implementation {
     SolveReport report =
         options.solver == SolverKind::automatic ? solve_quickly(key, options) : run(key, options, options.solver);
     warn(options.source, report);
+    report.deformed = spoilt;
     passes = work.recorder.passes();
     gather_stale = true;
     solved = key;
@@ -171,7 +254,9 @@ struct Simulation::Implementation {
   void make_room(const OperatorKey& key, const SolveOptions& options) {
     coefficients.make_room(context, shape.rest(), key.method, levels);
     for (std::uint32_t i = 0; i < levels.size() && key.method != Method::fem; ++i) {
+      const bool there = levels[i].nodes.size() > 0;
       upload_graph(context, shape.levels()[i], i, levels[i]);
+      if (!there && !deformed.list().empty()) deformed.record_nodes(work, i, levels[i]);
     }
     const bool two_steps = options.smoothing == 2 || (options.smoothing == 0 && options.solver == SolverKind::vcycle);
     operators.create(context, shape.levels(), key, coefficients.even(), two_steps);
@@ -264,7 +349,9 @@ struct Simulation::Implementation {
     std::vector<glm::vec3> field(area.size(), glm::vec3(0));
     if (solved_source == Source::diffuse) return field;
     const std::vector<glm::dvec3> power = walks[0].unscattered_power(context, glm::dvec3(scale()));
-    for (std::size_t f = 0; f < area.size(); ++f) field[f] = glm::vec3(power[f] / static_cast<double>(area[f]));
+    for (std::size_t f = 0; f < area.size(); ++f) {
+      if (area[f] > 0) field[f] = glm::vec3(power[f] / static_cast<double>(area[f]));
+    }
     return field;
   }
 };
@@ -325,6 +412,19 @@ void Simulation::set_vertices(std::uint32_t level, std::span<const glm::vec3> po
   implementation_->move(level, positions);
 }
 
+bool Simulation::set_deformation(std::span<const Deformer> list, const RestBox& rest,
+                                 const std::function<void(Workspace&)>& also) {
+  return implementation_->deform(list, rest, also);
+}
+
+const std::vector<PassStats>& Simulation::deformation_passes() const {
+  return implementation_->deformation_passes;
+}
+
+const Level& Simulation::present_level() const {
+  return implementation_->present_level();
+}
+
 void Simulation::make_room(const SolveOptions& options, bool gather) {
   implementation_->make_room(implementation_->key_of(options), options);
   implementation_->work.recorder.submit();
@@ -342,7 +442,7 @@ const std::vector<PassStats>& Simulation::passes() const {
 SurfaceField Simulation::surface_field() const {
   const Implementation& self = *implementation_;
   self.solved_key();
-  const Level& level = self.shape.levels()[0];
+  const Level& level = implementation_->present_level();
   SurfaceField field;
   field.q = vk::download<glm::vec3>(self.context, self.levels[0].q);
   field.phi = vk::download<glm::vec3>(self.context, self.results.phi());
@@ -353,7 +453,7 @@ SurfaceField Simulation::surface_field() const {
     const glm::dvec3 normal =
         glm::cross(glm::dvec3(level.vertices[face.y]) - p, glm::dvec3(level.vertices[face.z]) - p);
     field.position.push_back(level.nodes[level.tet_count() + f]);
-    field.normal.push_back(glm::vec3(glm::normalize(normal)));
+    field.normal.push_back(glm::vec3(normal / std::max(glm::length(normal), 1e-300)));
     field.area.push_back(static_cast<float>(0.5 * glm::length(normal)));
   }
   field.unscattered = self.unscattered(field.area);

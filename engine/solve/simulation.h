@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
@@ -13,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/graph/deformer.h"
 #include "engine/graph/graph.h"
 #include "engine/graph/solution.h"
 #include "engine/vk/context.h"
@@ -39,20 +41,22 @@ struct LevelBuffers {
   vk::Buffer face_kind;  // uint; 0 open, 1 reflecting
   // The open faces at surface vertex v: face_incidence[k], k from face_offset[v] to face_offset[v + 1].
   vk::Buffer face_offset, face_incidence;
-  vk::Buffer links;    // uvec4; for the graph methods, made at first use
-  vk::Buffer nodes;    // vec3, mm; inner nodes, then surface nodes; for the graph methods, made at first use
-  vk::Buffer rest;     // the same where the file has them, as far as optical goes: the material moves with the body
-  vk::Buffer optical;  // Optical per node; of the tets alone, or one for all (Coefficients), where that is enough
-  bool even = false;   // optical is the same everywhere, and read from the first
-  vk::Buffer q;        // vec3 per face, W/mm^2: written by the lights or by set_irradiance
-  vk::Buffer beam_q;   // float, per beam (BeamBuffers) gpu::Beam::floats per face: what q is made of
-  vk::Buffer sky;      // float per face: share of even light from outside that no other part of the body hides
+  vk::Buffer links;       // uvec4; for the graph methods, made at first use
+  vk::Buffer nodes;       // vec3, mm; inner nodes, then surface nodes; for the graph methods, made at first use
+  vk::Buffer rest;        // the same where the file has them, as far as optical goes: the material moves with the body
+  vk::Buffer optical;     // Optical per node; of the tets alone, or one for all (Coefficients), where that is enough
+  bool even = false;      // optical is the same everywhere, and read from the first
+  gpu::LeastTet least{};  // of the tets in the present shape
+  vk::Buffer q;           // vec3 per face, W/mm^2: written by the lights or by set_irradiance
+  vk::Buffer beam_q;      // float, per beam (BeamBuffers) gpu::Beam::floats per face: what q is made of
+  vk::Buffer sky;         // float per face: share of even light from outside that no other part of the body hides
 
   // Where the last beam begins in beam_q, that of light that enters again, bytes.
   std::uint64_t beam_again() const { return beam_q.size() - face_count * gpu::BEAM_RGB * sizeof(float); }
 };
 
 class GatherField;
+struct Workspace;
 
 class Simulation {
  public:
@@ -92,6 +96,18 @@ class Simulation {
   // they are evaluated next. There is no solution until the next solve. Throws InputError, and moves nothing, on a
   // wrong size or value or where a tet would be turned inside out.
   void set_vertices(std::uint32_t level, std::span<const glm::vec3> positions);
+
+  // Moves all levels by a list of deformers from where they lie in the file, on the device; an empty one puts them back
+  // there exactly. `rest`: the box of the display mesh. `also` records what else is to run with it, unless nothing has
+  // changed: false is returned then. What set_vertices did is gone. There is no solution until the next solve.
+  bool set_deformation(std::span<const Deformer> list, const RestBox& rest,
+                       const std::function<void(Workspace&)>& also = {});
+
+  // Passes of the last set_deformation that changed anything.
+  const std::vector<PassStats>& deformation_passes() const;
+
+  // Level 0 in its present shape; valid until the next motion.
+  const Level& present_level() const;
 
   // Allocates all that `solve` with these options needs for the present coefficients and light, and with `gather` what
   // view rays gather; later solves like it allocate nothing. Throws InputError as `solve`.

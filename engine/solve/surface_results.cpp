@@ -142,7 +142,8 @@ void SurfaceResults::record_energy(Workspace& work, const Solved& solved) {
                              .tet_count = level.tet_count,
                              .face_count = level.face_count,
                              .fem = is_fem(solved.method),
-                             .even = level.even ? 1u : 0u};
+                             .even = level.even ? 1u : 0u,
+                             .least = level.least};
   const std::uint64_t bytes = level.tet_count * (sizeof(glm::uvec4) + 5 * vec3_bytes + 4 * solved.op.field_bytes()) +
                               level.face_count * (sizeof(glm::uvec3) + 6 * vec3_bytes) + sums_.size();
   work.recorder.dispatch(work.passes.energy.of(solved.op.model), push, energy_elements(level), "energy", bytes);

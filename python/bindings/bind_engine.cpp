@@ -44,6 +44,7 @@ py::dict report_dict(const SolveReport& report) {
   d["missed"] = report.missed;
   d["mesh_warning"] = report.mesh_warning;
   d["model_warning"] = report.model_warning;
+  d["deformed"] = report.deformed;
   d["finest"] = report.finest;
   d["work"] = report.work;
   d["algebraic"] = error_dict(report.algebraic);

@@ -71,7 +71,8 @@ TEST_CASE("push constants") {
           {MEMBER(CopyPush, source), MEMBER(CopyPush, target), MEMBER(CopyPush, count), MEMBER(CopyPush, invocations)});
   compare(shape_comp, "ShapePush",
           {MEMBER(ShapePush, vertices), MEMBER(ShapePush, tets), MEMBER(ShapePush, faces), MEMBER(ShapePush, tet_shape),
-           MEMBER(ShapePush, face_area), MEMBER(ShapePush, tet_count), MEMBER(ShapePush, face_count)});
+           MEMBER(ShapePush, face_area), MEMBER(ShapePush, tet_count), MEMBER(ShapePush, face_count),
+           MEMBER(ShapePush, least)});
   compare(irradiance_scale_comp, "IrradianceScalePush",
           {MEMBER(IrradianceScalePush, vertices), MEMBER(IrradianceScalePush, faces),
            MEMBER(IrradianceScalePush, face_kinds), MEMBER(IrradianceScalePush, q), MEMBER(IrradianceScalePush, scale),
@@ -98,7 +99,7 @@ TEST_CASE("push constants") {
             {MEMBER(AssembleFvPush, rows), MEMBER(AssembleFvPush, vertices), MEMBER(AssembleFvPush, tets),
              MEMBER(AssembleFvPush, links), MEMBER(AssembleFvPush, nodes), MEMBER(AssembleFvPush, optical),
              MEMBER(AssembleFvPush, to_phi), MEMBER(AssembleFvPush, face_kinds), MEMBER(AssembleFvPush, count),
-             MEMBER(AssembleFvPush, tet_count), MEMBER(AssembleFvPush, boundary)});
+             MEMBER(AssembleFvPush, tet_count), MEMBER(AssembleFvPush, least), MEMBER(AssembleFvPush, boundary)});
   }
   for (const vk::Spirv code : {vk::Spirv(assemble_edges_comp), vk::Spirv(assemble_edges_sp3_comp)}) {
     compare(code, "AssembleEdgesPush",
@@ -203,12 +204,13 @@ TEST_CASE("push constants") {
          MEMBER(ExitancePush, fem), MEMBER(ExitancePush, clipped), MEMBER(ExitancePush, boundary)});
   }
   for (const vk::Spirv code : {vk::Spirv(energy_comp), vk::Spirv(energy_sp3_comp)}) {
-    compare(code, "EnergyPush",
-            {MEMBER(EnergyPush, vertices), MEMBER(EnergyPush, tets), MEMBER(EnergyPush, faces),
-             MEMBER(EnergyPush, face_kinds), MEMBER(EnergyPush, optical), MEMBER(EnergyPush, x),
-             MEMBER(EnergyPush, to_phi), MEMBER(EnergyPush, q), MEMBER(EnergyPush, exitance), MEMBER(EnergyPush, scale),
-             MEMBER(EnergyPush, clip), MEMBER(EnergyPush, sums), MEMBER(EnergyPush, tet_count),
-             MEMBER(EnergyPush, face_count), MEMBER(EnergyPush, fem), MEMBER(EnergyPush, even)});
+    compare(
+        code, "EnergyPush",
+        {MEMBER(EnergyPush, vertices), MEMBER(EnergyPush, tets), MEMBER(EnergyPush, faces),
+         MEMBER(EnergyPush, face_kinds), MEMBER(EnergyPush, optical), MEMBER(EnergyPush, x), MEMBER(EnergyPush, to_phi),
+         MEMBER(EnergyPush, q), MEMBER(EnergyPush, exitance), MEMBER(EnergyPush, scale), MEMBER(EnergyPush, clip),
+         MEMBER(EnergyPush, sums), MEMBER(EnergyPush, tet_count), MEMBER(EnergyPush, face_count),
+         MEMBER(EnergyPush, fem), MEMBER(EnergyPush, even), MEMBER(EnergyPush, least)});
   }
 }
 

@@ -108,7 +108,7 @@ def solver_texts(report: dict) -> list[str]:
     texts = [report["budget"]] if report["budget"] else []
     if report["replaced"]:
         texts.append(f"solver: {report['replaced']}")
-    texts += [f"warning: {report[name]}" for name in ("mesh_warning", "model_warning") if report[name]]
+    texts += [f"warning: {report[name]}" for name in ("mesh_warning", "model_warning", "deformed") if report.get(name)]
     if report["finest"] > 0:
         texts.append(f"level: {report['finest']} suffices; its solution is carried to the finest")
     return texts

@@ -1,0 +1,72 @@
+#include "engine/solve/deformed_mesh.h"
+
+namespace quadgraph {
+namespace {
+
+constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
+
+bool has_control(DeformerKind kind) {
+  return kind == DeformerKind::lattice || kind == DeformerKind::cage || kind == DeformerKind::displaced;
+}
+
+bool same_cage(const Deformer& a, const Deformer& b) {
+  return a.kind == DeformerKind::cage && b.kind == DeformerKind::cage && a.cage == b.cage && a.triangles == b.triangles;
+}
+
+}  // namespace
+
+void DeformedMesh::upload_control(vk::Context& context, const Deformer& deformer, Data& data) const {
+  std::vector<glm::vec3> control;
+  if (deformer.kind == DeformerKind::displaced) {
+    control = shape_displacements(deformer, number_, rest_.size());
+  } else {
+    for (const glm::dvec3& d : control_displacements(deformer)) control.emplace_back(d);
+  }
+  if (data.control.size() != control.size() * vec3_bytes) {
+    data.control = {context, control.size() * vec3_bytes, vk::Place::read, purpose_ + "/displacements"};
+  }
+  vk::write_bytes(context, data.control, std::as_bytes(std::span(control)));
+}
+
+DeformedMesh::Data& DeformedMesh::data_of(vk::Context& context, std::size_t place, const Deformer& deformer) {
+  if (data_.size() <= place) data_.resize(place + 1);
+  Data& data = data_[place];
+  if (!has_control(deformer.kind) || data.of == deformer) return data;
+  if (deformer.kind == DeformerKind::cage && !same_cage(data.of, deformer)) {
+    data.weight = vk::upload<float>(context, cage_weights(deformer, rest_), purpose_ + "/weights of a cage");
+  }
+  upload_control(context, deformer, data);
+  data.of = deformer;
+  return data;
+}
+
+void DeformedMesh::record(Workspace& work, std::span<const Deformer> list, const RestBox& box,
+                          const vk::Buffer& target) {
+  vk::Context& context = work.recorder.context();
+  for (std::size_t k = 0; k < list.size(); ++k) data_of(context, k, list[k]);
+  if (rest_on_device_.size() == 0) rest_on_device_ = vk::upload(context, rest_, purpose_ + "/rest");
+  const vk::Buffer* source = &rest_on_device_;
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    gpu::DeformPush push{.record = deform_record(list[k], box),
+                         .source = source->address(),
+                         .target = target.address(),
+                         .count = static_cast<std::uint32_t>(rest_.size())};
+    std::uint64_t bytes = 2 * rest_.size() * vec3_bytes;
+    if (has_control(list[k].kind)) {
+      push.record.control = data_[k].control.address();
+      bytes += data_[k].control.size();
+    }
+    if (list[k].kind == DeformerKind::cage) {
+      push.record.weight = data_[k].weight.address();
+      bytes += data_[k].weight.size();
+    }
+    work.recorder.dispatch(work.passes.deform, push, push.count, "deform", bytes);
+    source = &target;
+  }
+}
+
+void DeformedMesh::put_back(vk::Context& context, const vk::Buffer& target) const {
+  vk::write_bytes(context, target, std::as_bytes(rest_));
+}
+
+}  // namespace quadgraph
