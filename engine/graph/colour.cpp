@@ -1,8 +1,5 @@
 #include "engine/graph/colour.h"
 
-#include <string>
-
-#include "engine/graph/error.h"
 #include "engine/graph/fresnel.h"
 #include "engine/graph/resolution.h"
 
@@ -14,11 +11,6 @@ double diffuse_reflectance(double albedo, double eta) {
 }
 
 double albedo_of(double reflectance, double eta) {
-  const double most = diffuse_reflectance(1, eta);
-  if (!(reflectance >= 0 && reflectance < most)) {
-    throw InputError("material field 'reflectance': found '" + std::to_string(reflectance) + "', allowed is 0 to " +
-                     std::to_string(most) + ", which nothing that does not shine exceeds at this eta");
-  }
   // Reflectance rises with albedo. Where it is steep, near 1, halves of an interval in 1 - albedo lose no digits.
   double low = 0, high = 1;
   for (int i = 0; i < 60; ++i) {

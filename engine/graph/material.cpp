@@ -137,10 +137,16 @@ struct Set {
 
   // Coefficients that look like the colour, if one was given.
   void show(float eta) {
+    const double most = diffuse_reflectance(1, static_cast<double>(eta));
     for (int c = 0; reflectance && c < 3; ++c) {
       const float length = (*mean_free_path)[c];
       if (!(length > 0)) bad_field(key("mean_free_path"), std::to_string(length), "a number > 0 (mm)");
-      const double albedo = albedo_of(static_cast<double>((*reflectance)[c]), static_cast<double>(eta));
+      const auto shown = static_cast<double>((*reflectance)[c]);
+      if (!(shown >= 0 && shown < most)) {
+        bad_field(key("reflectance"), std::to_string(shown),
+                  "0 to " + std::to_string(most) + ", which nothing that does not shine exceeds at this eta");
+      }
+      const double albedo = albedo_of(shown, static_cast<double>(eta));
       sigma_s_prime[c] = static_cast<float>(albedo / static_cast<double>(length));
       sigma_a[c] = static_cast<float>((1 - albedo) / static_cast<double>(length));
     }

@@ -85,6 +85,7 @@ TEST_CASE("a colour gives the coefficients of a body that shows it") {
   check_refused("mean_free_path=1", "reflectance");
   check_refused("reflectance=0.99,mean_free_path=1,eta=1.5", "0 to 0.9598");
   check_refused("reflectance=-0.1,mean_free_path=1", "reflectance");
+  check_refused("marble,pattern=veins,second_reflectance=2,second_mean_free_path=1", "second_reflectance");
   check_refused("reflectance=0.5,mean_free_path=0", "mean_free_path");
   check_refused("reflectance=0.5,mean_free_path=1,sigma_a=0", "sigma_a");
   check_refused("reflectance=0.5,mean_free_path=1,eta=7", "eta");
