@@ -11,7 +11,7 @@ import numpy as np
 
 from quadgraph.chart.body import Body, light_at
 from quadgraph.chart.dipole import Dipole, transport
-from quadgraph.chart.method import CHAIN, SWING, Chain, Method, register
+from quadgraph.chart.method import SWING, Chain, Method, bake_settings, register
 
 if TYPE_CHECKING:
     from quadgraph._core import Engine
@@ -47,11 +47,14 @@ class DipoleMethod:
             "source": "buried",
             "solver": "matrix",
             "level": self.level,
-            "bake": CHAIN,
-            "K": None,
         }
-        told |= {"inter_reflection": False, "radiance": "lambertian", "cycles": 0, "tolerance": None}
-        return told | {"runs_on": "CPU (numpy); light and picture on the device"}
+        told |= bake_settings(None) | {
+            "inter_reflection": False,
+            "radiance": "lambertian",
+            "cycles": 0,
+            "tolerance": None,
+        }
+        return told | bake_settings(None) | {"runs_on": "CPU (numpy); light and picture on the device"}
 
     def prepare(self, body: Body) -> None:
         """Make the matrix, and an engine that has something to show."""

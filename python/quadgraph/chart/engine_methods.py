@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from quadgraph.chart.body import Body, light_at
-from quadgraph.chart.method import CHAIN, SETTLED, SWING, Chain, Method, register
+from quadgraph.chart.method import SETTLED, SWING, Chain, Method, bake_settings, register
 from quadgraph.reference.scene_bakes import Choice
 from quadgraph.reference.scenes import FOV, PIXELS
 
@@ -60,9 +60,8 @@ class EngineMethod:
     def settings(self) -> dict[str, Any]:
         """As told, and what frames iterate to."""
         told = {name: value for name, value in asdict(replace(self, _body=None)).items() if name[0] != "_"}
-        told["bake"] = CHAIN if told.pop("choice") is None else "K" if self._grading is not None else "default"
-        told["K"] = self._grading
-        return told | {"tolerance": None if self.cycles else SETTLED, "runs_on": "device"}
+        del told["choice"]
+        return told | bake_settings(self.choice) | {"tolerance": None if self.cycles else SETTLED, "runs_on": "device"}
 
     def prepare(self, body: Body) -> None:
         """Solve for the light two frames ago."""
@@ -95,14 +94,10 @@ class EngineMethod:
         return shown if self._body.scene.direction else shown + np.asarray(found.unscattered, np.float64)
 
     @property
-    def _grading(self) -> float | None:
-        return self.choice.grading if self.choice else None
-
-    @property
     def _bake_words(self) -> list[str]:
         if self.choice is None:
             return []
-        return ["default bake" if self._grading is None else f"K = {self._grading:g}"]
+        return ["default bake" if self.choice.grading is None else f"K = {self.choice.grading:g}"]
 
     @property
     def _can_gather(self) -> bool:

@@ -11,7 +11,7 @@ import numpy as np
 
 from quadgraph.chart.body import STEP_DEGREES, STEP_SHARE, Body
 from quadgraph.chart.judge import Judge
-from quadgraph.chart.method import CHAIN, SETTLED, SWING, Method
+from quadgraph.chart.method import SETTLED, SWING, Method, bake_settings
 from quadgraph.errors import SolverError, ToolError
 from quadgraph.reference.path_tracing import BATCH
 
@@ -104,12 +104,13 @@ def scene_record(body: Body, judge: Judge, points: Sequence[Point]) -> dict[str,
 
 def _bakes(body: Body, points: Sequence[Point]) -> list[dict[str, Any]]:
     """Levels of the chains other than the truth's that points were measured on."""
-    used = {
-        (point.method.settings["bake"], point.method.settings["K"]): point.method.choice
-        for point in points
-        if point.method.settings["bake"] != CHAIN and not point.failed
-    }
-    return [{"bake": bake, "K": k, "levels": body.levels(choice)} for (bake, k), choice in used.items()]
+    used = [point.method.settings for point in points if not point.failed]
+    ways = [(bake_settings(choice), choice) for choice in body.others]
+    return [
+        told | {"levels": body.levels(choice)}
+        for told, choice in ways
+        if any(told.items() <= settings.items() for settings in used)
+    ]
 
 
 def conditions(repeats: int, pixels: int) -> dict[str, Any]:

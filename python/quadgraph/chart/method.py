@@ -19,6 +19,13 @@ CHAIN = "chain"  # `bake` of the chain that the PDE truth knows
 SETTLED = 1e-3  # algebraic error of the exitance to which solvers iterate, unless a number of cycles is given
 
 
+def bake_settings(choice: Choice | None) -> dict[str, Any]:
+    """What a method's settings say of how its body is baked; None: the chain that the PDE truth knows."""
+    if choice is None:
+        return {"bake": CHAIN, "K": None}
+    return {"bake": "default" if choice.grading is None else "K", "K": choice.grading}
+
+
 class Method(Protocol):
     """One way to answer a scene; one point of the chart.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -32,15 +31,7 @@ class SceneBake:
 
     def made(self) -> Path:
         """The file, baked if it is not there. Raises as quadgraph.bake.bake does."""
-        if not self.path.exists():
-            self.path.parent.mkdir(parents=True, exist_ok=True)
-            working = self.path.with_name(f".{os.getpid()}.{self.path.name}")
-            try:
-                bake(self.source, working, self.options)
-                working.replace(self.path)
-            finally:
-                working.unlink(missing_ok=True)
-        return self.path
+        return store.kept(self.path, lambda working: bake(self.source, working, self.options))
 
 
 def of(scene: Scene, choice: Choice, meshes: Path, folder: Path) -> SceneBake:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 from zipfile import BadZipFile
@@ -17,6 +19,19 @@ from quadgraph.errors import InputError
 def digest(key: dict[str, Any]) -> str:
     """SHA-256 of a key."""
     return hashlib.sha256(json.dumps(key, sort_keys=True).encode()).hexdigest()
+
+
+def kept(path: Path, make: Callable[[Path], Any]) -> Path:
+    """The file at `path`, which `make` writes to the path that it is given, if it is not there yet."""
+    if not path.exists():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        working = path.with_name(f".{os.getpid()}.{path.name}")
+        try:
+            make(working)
+            working.replace(path)
+        finally:
+            working.unlink(missing_ok=True)
+    return path
 
 
 def save(path: Path, key: dict[str, Any], arrays: dict[str, np.ndarray]) -> None:

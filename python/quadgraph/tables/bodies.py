@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -114,19 +113,17 @@ class Store:
 
     def _kept(self, name: str, made_of: dict[str, Any], run: Callable[[Path], dict], tell: Progress) -> Baked:
         """The file that `run` bakes to the path it is given, telling seconds, and its report, unless both are there."""
-        self.folder.mkdir(parents=True, exist_ok=True)
         digest = store.digest(made_of | {"versions": [__version__, qgraph_file.VERSION]})
         path = self.folder / f"{name}-{digest[:12]}.qgraph"
         told = path.with_suffix(".json")
-        if not (path.exists() and told.exists()):
+
+        def make(working: Path) -> None:
             tell(f"{name}: baking")
-            working = path.with_name(f".{os.getpid()}.{path.name}")
-            try:
-                seconds = run(working)
-                atomic_file.write_json(told, _report(seconds, working))
-                working.replace(path)
-            finally:
-                working.unlink(missing_ok=True)
+            atomic_file.write_json(told, _report(run(working), working))
+
+        if not told.exists():
+            path.unlink(missing_ok=True)
+        store.kept(path, make)
         return Baked(path, json.loads(told.read_text()))
 
     def _surface(self, subject: Subject, faces: int) -> Surface:
