@@ -1,6 +1,7 @@
 #include "engine/graph/solution.h"
 
 #include <array>
+#include <string>
 #include <utility>
 
 #include "engine/graph/error.h"
@@ -40,6 +41,19 @@ std::string_view to_name(const Table& table, Value wanted) {
 }
 
 }  // namespace
+
+void check_options(const SolveOptions& options) {
+  if (!(options.tolerance > 0) || !(options.tolerance < 1)) {
+    throw InputError("tolerance: " + std::to_string(options.tolerance) + ", a number between 0 and 1 is wanted");
+  }
+  if (!(options.error >= 0) || !(options.error < 1)) {
+    throw InputError("error: " + std::to_string(options.error) + ", a number from 0 (no target) to below 1 is wanted");
+  }
+  if (options.smoothing > 2) {
+    throw InputError("smoothing: " + std::to_string(options.smoothing) +
+                     " steps, allowed are 1 and 2, and 0 for either");
+  }
+}
 
 Method method_from_name(std::string_view name) {
   return from_name(methods, "method", name);

@@ -74,7 +74,12 @@ struct SolveOptions {
   // Where the shape has changed: what the faces see of each other is found anew, for as many of them in each solve, in
   // turn; 0: for all.
   std::uint32_t exchange_rows = 0;
+
+  bool operator==(const SolveOptions&) const = default;
 };
+
+// Throws InputError naming what is out of range.
+void check_options(const SolveOptions& options);
 
 // inter_reflection, where source and method allow it.
 bool bounces_wanted(const SolveOptions& options);

@@ -13,6 +13,13 @@
 namespace quadgraph {
 namespace {
 
+// From y up to the view's axis: z up is y up turned by 90 degrees about x.
+glm::vec3 turned(const glm::vec3& v, UpAxis up) {
+  return up == UpAxis::y ? v : glm::vec3(v.x, -v.z, v.y);
+}
+
+}  // namespace
+
 void check_view(const View& view) {
   const auto refuse = [](const char* field, float found, const char* expected) {
     throw InputError(std::string("view, ") + field + ": found " + number_text(found) + ", expected " + expected);
@@ -26,13 +33,6 @@ void check_view(const View& view) {
     refuse("distance", *view.distance, "more than 0 mm");
   }
 }
-
-// From y up to the view's axis: z up is y up turned by 90 degrees about x.
-glm::vec3 turned(const glm::vec3& v, UpAxis up) {
-  return up == UpAxis::y ? v : glm::vec3(v.x, -v.z, v.y);
-}
-
-}  // namespace
 
 Sphere bounding_sphere(std::span<const glm::vec3> points) {
   if (points.empty()) return {};

@@ -28,7 +28,12 @@ struct View {
   std::optional<float> distance{};  // mm from the centre; without it the bounding sphere fits the picture
   UpAxis up = UpAxis::y;
   float vertical_fov = 30;  // degrees, 1 to 150
+
+  bool operator==(const View&) const = default;
 };
+
+// Throws InputError if an angle or the distance is out of range.
+void check_view(const View& view);
 
 // Parses "azimuth,elevation" or "azimuth,elevation,distance" into a view with the given rest. Throws InputError.
 View parse_view(std::string_view text, View rest = {});
@@ -45,7 +50,7 @@ struct Camera {
   glm::mat4 clip_from_world{1};  // depth 0 to 1, y up
 };
 
-// Throws InputError if an angle or the distance is out of range. `aspect` is width / height.
+// Throws InputError as check_view. `aspect` is width / height.
 Camera place_camera(const View& view, const Sphere& bounds, float aspect);
 
 }  // namespace quadgraph

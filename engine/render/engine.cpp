@@ -14,21 +14,7 @@
 namespace quadgraph {
 namespace {
 
-constexpr std::uint32_t largest_side = 16384;  // pixels
 constexpr float least_roughness = 0.02f;
-
-void check_options(const RenderOptions& options) {
-  for (std::uint32_t side : {options.width, options.height}) {
-    if (side < 1 || side > largest_side) {
-      throw InputError("size: found " + std::to_string(options.width) + "x" + std::to_string(options.height) +
-                       ", expected 1 to " + std::to_string(largest_side) + " pixels a side");
-    }
-  }
-  if (!(options.roughness >= least_roughness && options.roughness <= 1)) {
-    throw InputError("roughness: found " + number_text(options.roughness) + ", expected " +
-                     number_text(least_roughness) + " to 1");
-  }
-}
 
 // Adds to the entry of the same name.
 void add(std::vector<PassStats>& passes, const PassStats& more) {
@@ -115,6 +101,19 @@ struct Engine::Implementation {
   }
 };
 
+void check_options(const RenderOptions& options) {
+  for (std::uint32_t side : {options.width, options.height}) {
+    if (side < 1 || side > largest_side) {
+      throw InputError("size: found " + std::to_string(options.width) + "x" + std::to_string(options.height) +
+                       ", expected 1 to " + std::to_string(largest_side) + " pixels a side");
+    }
+  }
+  if (!(options.roughness >= least_roughness && options.roughness <= 1)) {
+    throw InputError("roughness: found " + number_text(options.roughness) + ", expected " +
+                     number_text(least_roughness) + " to 1");
+  }
+}
+
 Radiance radiance_from_name(std::string_view name) {
   for (const auto& [radiance, text] : radiance_names) {
     if (text == name) return radiance;
@@ -166,6 +165,10 @@ void Engine::set_optical(std::uint32_t level, std::span<const gpu::Optical> opti
   self.simulation.set_optical(level, optical, eta);
   self.material = "coefficients per node, eta=" + number_text(eta);
   self.irradiance_stale = self.irradiance_stale || !self.lights.empty();
+}
+
+void Engine::set_edits(std::span<const Edit> edits) {
+  implementation_->simulation.set_edits(edits);
 }
 
 void Engine::set_lights(std::vector<Light> lights) {

@@ -33,11 +33,19 @@ enum class Radiance {
 Radiance radiance_from_name(std::string_view name);
 std::string_view name_of(Radiance radiance);
 
+constexpr std::uint32_t largest_side = 16384;  // of a picture, pixels
+
 struct RenderOptions {
-  std::uint32_t width = 1024, height = 1024;  // pixels, 1 to 16384 each; every pixel is the mean of 2 x 2 samples
-  float roughness = 0.3f;                     // alpha of the GGX distribution of the surface, 0.02 to 1
+  std::uint32_t width = 1024,
+                height = 1024;  // pixels, 1 to largest_side each; every pixel is the mean of 2 x 2 samples
+  float roughness = 0.3f;       // alpha of the GGX distribution of the surface, 0.02 to 1
   Radiance radiance = Radiance::automatic;
+
+  bool operator==(const RenderOptions&) const = default;
 };
+
+// Throws InputError naming what is out of range.
+void check_options(const RenderOptions& options);
 
 class Engine {
  public:
@@ -58,6 +66,9 @@ class Engine {
 
   // Coefficients instead of a material, as Simulation::set_optical.
   void set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta);
+
+  // As Simulation::set_edits.
+  void set_edits(std::span<const Edit> edits);
 
   // Throws InputError as check_light does.
   void set_lights(std::vector<Light> lights);

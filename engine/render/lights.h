@@ -18,6 +18,8 @@ struct Light {
   // light that comes evenly from all sides; where the file says what the faces see, from where the body does not hide
   // it.
   glm::vec3 power{0};
+
+  bool operator==(const Light&) const = default;
 };
 
 // Parses "directional:DX,DY,DZ:IRRADIANCE", "point:X,Y,Z:POWER" or "ambient:IRRADIANCE", the last one number or R/G/B.

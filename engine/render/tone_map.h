@@ -15,6 +15,8 @@ struct ToneOptions {
   // Linear display colour in [0, 1] behind the object at the top and at the bottom of the picture.
   glm::vec3 background_top{0.008f, 0.0085f, 0.01f};
   glm::vec3 background_bottom{0.05f, 0.052f, 0.057f};
+
+  bool operator==(const ToneOptions&) const = default;
 };
 
 // Filmic curve per channel: K. Narkowicz, "ACES Filmic Tone Mapping Curve" (2015), a rational fit to the ACES reference

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "shaders/assembly_shared.h"
+#include "shaders/edits.h"
 
 namespace quadgraph {
 namespace {
@@ -187,6 +188,21 @@ void record_material(Workspace& work, const LevelBuffers& level, const gpu::Mate
   const gpu::EvaluateMaterialPush push{material, level.rest.address(), level.optical.address(), count};
   work.recorder.dispatch(work.passes.evaluate_material, push, count, "material",
                          count * (vec3_bytes + sizeof(gpu::Optical)));
+}
+
+void record_edits(Workspace& work, const LevelBuffers& level, const vk::Buffer& base, const EditBuffers& edits,
+                  const vk::Buffer* depth, std::uint32_t count) {
+  const gpu::EditMaterialPush push{base.address(),
+                                   level.optical.address(),
+                                   level.rest.address(),
+                                   depth ? depth->address() : 0,
+                                   edits.edits.address(),
+                                   edits.points.address(),
+                                   edits.count,
+                                   depth ? 1u : 0u,
+                                   count};
+  work.recorder.dispatch(work.passes.edit_material, push, count, "material edits",
+                         count * (vec3_bytes + 2 * sizeof(gpu::Optical)));
 }
 
 void record_assembly(Workspace& work, const LevelBuffers& level, Method method, const Boundary& boundary, bool even,

@@ -8,8 +8,18 @@
 
 namespace quadgraph {
 
+// EditArrays on the device.
+struct EditBuffers {
+  std::uint32_t count = 0;
+  vk::Buffer edits, points;
+};
+
 // The coefficients of the first `count` nodes; a material that varies is evaluated at level.rest.
 void record_material(Workspace& work, const LevelBuffers& level, const gpu::Material& material, std::uint32_t count);
+
+// The first `count` coefficients of `base`, which may be level.optical, with edits into level.optical.
+void record_edits(Workspace& work, const LevelBuffers& level, const vk::Buffer& base, const EditBuffers& edits,
+                  const vk::Buffer* depth, std::uint32_t count);
 
 // `even`: level.optical is the same everywhere, which takes less time.
 void record_assembly(Workspace& work, const LevelBuffers& level, Method method, const Boundary& boundary, bool even,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "engine/graph/depth.h"
 #include "engine/graph/error.h"
 #include "engine/graph/fresnel.h"
 #include "engine/graph/material.h"
@@ -23,34 +24,81 @@ vk::Buffer room(vk::Context& context, std::uint32_t number, std::uint64_t count)
 
 }  // namespace
 
+Coefficients::Coefficients(vk::Context& context, std::span<const Level> rest)
+    : context_(context),
+      rest_(rest),
+      given_(rest.size()),
+      depth_(rest.size()),
+      depth_buffers_(rest.size()),
+      albedo_(rest.size()),
+      sampled_(rest.size()) {}
+
+void Coefficients::changed() {
+  evaluated_.reset();
+  edited_albedo_.reset();
+}
+
 void Coefficients::set(const gpu::Material& material) {
   check_material(material);
   material_ = material;
-  evaluated_.reset();
+  for (vk::Buffer& given : given_) given = {};
+  changed();
   eta_ = material.eta;
   std::fill(albedo_.begin(), albedo_.end(), least_albedo(material));
 }
 
-void Coefficients::set(vk::Context& context, std::uint32_t number, std::span<const gpu::Optical> optical, float eta,
-                       LevelBuffers& level, std::span<const SurfaceSample> samples) {
-  check_optical(optical, level.node_count);
+void Coefficients::set(std::uint32_t number, std::span<const gpu::Optical> optical, float eta,
+                       std::span<const SurfaceSample> samples) {
+  check_optical(optical, rest_[number].node_count());
   check_eta(static_cast<double>(eta));
   if (material_) std::fill(albedo_.begin(), albedo_.end(), std::nullopt);
   material_.reset();
-  if (level.optical.size() < optical.size_bytes()) level.optical = room(context, number, optical.size());
-  vk::write_bytes(context, level.optical, std::as_bytes(optical));
+  vk::Buffer& given = given_[number];
+  if (given.size() == optical.size_bytes()) {
+    vk::write_bytes(context_, given, std::as_bytes(optical));
+  } else {
+    given = vk::upload(context_, optical, "material/level " + std::to_string(number) + " given");
+  }
+  changed();
   eta_ = eta;
   albedo_[number] = least_albedo(optical);
   sampled_[number].clear();
   for (const SurfaceSample& sample : samples) sampled_[number].push_back(optical[sample.tet]);
 }
 
-std::vector<gpu::Optical> Coefficients::at(std::uint32_t number, const Level& rest,
-                                           std::span<const SurfaceSample> samples) const {
-  if (!material_) return sampled_[number];
+void Coefficients::set(std::span<const Edit> edits) {
+  for (std::size_t i = 0; i < edits.size(); ++i) {
+    try {
+      check_edit(edits[i]);
+    } catch (const InputError& error) {
+      throw InputError("edit " + std::to_string(i) + ", " + error.what());
+    }
+  }
+  edits_ = EditArrays(edits);
+  edit_buffers_ = {};
+  if (!edits.empty()) {
+    edit_buffers_.count = static_cast<std::uint32_t>(edits.size());
+    edit_buffers_.edits = vk::upload<gpu::MaterialEdit>(context_, edits_.edits, "material/edits");
+    if (!edits_.points.empty()) {
+      edit_buffers_.points = vk::upload<glm::vec3>(context_, edits_.points, "material/strokes");
+    }
+  }
+  changed();
+}
+
+const std::vector<float>& Coefficients::depth(std::uint32_t number) {
+  if (depth_[number].empty()) depth_[number] = depth_below_surface(rest_[number], rest_[number].nodes);
+  return depth_[number];
+}
+
+std::vector<gpu::Optical> Coefficients::at(std::uint32_t number, std::span<const SurfaceSample> samples) {
+  const bool deep = edits_.wants_depth();
   std::vector<gpu::Optical> optical;
-  for (const SurfaceSample& sample : samples) {
-    optical.push_back(gpu::material_at(*material_, rest.nodes[sample.tet]));
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const std::uint32_t tet = samples[i].tet;
+    const glm::vec3& place = rest_[number].nodes[tet];
+    const gpu::Optical base = material_ ? gpu::material_at(*material_, place) : sampled_[number][i];
+    optical.push_back(edits_.apply(base, place, deep ? depth(number)[tet] : 0));
   }
   return optical;
 }
@@ -65,9 +113,21 @@ void Coefficients::check() const {
   throw InputError("optical: set for some levels, but not for level " + std::to_string(missing - albedo_.begin()));
 }
 
-Model Coefficients::resolve(Model wanted, Method method, Source source) const {
+Model Coefficients::resolve(Workspace& work, Model wanted, Method method, Source source,
+                            std::vector<LevelBuffers>& levels) {
   double least = 1;
   for (const auto& albedo : albedo_) least = std::min(least, *albedo);
+  if (wanted == Model::automatic && !edits_.edits.empty()) {
+    if (!edited_albedo_) {
+      make_room(method, levels);
+      record(work, levels);
+      work.recorder.submit();
+      std::vector<gpu::Optical> optical(count(levels[0], extent_));
+      vk::read_bytes(context_, levels[0].optical, std::as_writable_bytes(std::span(optical)));
+      edited_albedo_ = least_albedo(optical);
+    }
+    least = *edited_albedo_;
+  }
   return resolve_model(wanted, method, source, least, static_cast<double>(eta_));
 }
 
@@ -75,25 +135,38 @@ std::uint32_t Coefficients::count(const LevelBuffers& level, Extent extent) {
   return extent == Extent::nodes ? level.node_count : extent == Extent::tets ? level.tet_count : 1;
 }
 
-void Coefficients::make_room(vk::Context& context, std::span<const Level> rest, Method method,
-                             std::vector<LevelBuffers>& levels) {
+void Coefficients::make_room(Method method, std::vector<LevelBuffers>& levels) {
   extent_ = method != Method::fem ? Extent::nodes : even() ? Extent::one : Extent::tets;
+  const bool edited = !edits_.edits.empty(), placed = edited || (material_ && !even());
   for (std::uint32_t i = 0; i < levels.size(); ++i) {
     LevelBuffers& level = levels[i];
     level.even = even();
     const std::uint32_t wanted = count(level, extent_);
     if (level.optical.size() < wanted * sizeof(gpu::Optical)) {
-      level.optical = room(context, i, wanted);
+      level.optical = room(context_, i, wanted);
       evaluated_.reset();
     }
-    if (!material_ || even() || level.rest.size() >= wanted * sizeof(glm::vec3)) continue;
-    level.rest = vk::upload(context, rest[i].nodes.first(wanted), "material/level " + std::to_string(i) + " rest");
+    const std::string name = "material/level " + std::to_string(i);
+    if (placed && level.rest.size() < wanted * sizeof(glm::vec3)) {
+      level.rest = vk::upload(context_, rest_[i].nodes.first(wanted), name + " rest");
+    }
+    if (edits_.wants_depth() && depth_buffers_[i].size() == 0) {
+      depth_buffers_[i] = vk::upload<float>(context_, depth(i), name + " depth");
+    }
   }
 }
 
 void Coefficients::record(Workspace& work, const std::vector<LevelBuffers>& levels) {
-  if (!material_ || (evaluated_ && *evaluated_ >= extent_)) return;
-  for (const LevelBuffers& level : levels) record_material(work, level, *material_, count(level, extent_));
+  if (evaluated_ && *evaluated_ >= extent_) return;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const LevelBuffers& level = levels[i];
+    const std::uint32_t wanted = count(level, extent_);
+    if (material_) record_material(work, level, *material_, wanted);
+    if (!material_ || edit_buffers_.count > 0) {
+      record_edits(work, level, material_ ? level.optical : given_[i], edit_buffers_,
+                   edits_.wants_depth() ? &depth_buffers_[i] : nullptr, wanted);
+    }
+  }
   evaluated_ = extent_;
 }
 

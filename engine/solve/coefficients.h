@@ -1,12 +1,14 @@
-// Where the coefficients at the nodes of all levels come from: a material, or arrays.
+// Where the coefficients at the nodes of all levels come from: a material or arrays, and edits of these.
 #pragma once
 
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "engine/graph/edit.h"
 #include "engine/graph/resolution.h"
 #include "engine/graph/solution.h"
+#include "engine/solve/assembly.h"
 #include "engine/solve/simulation.h"
 #include "engine/solve/workspace.h"
 
@@ -14,14 +16,19 @@ namespace quadgraph {
 
 class Coefficients {
  public:
-  explicit Coefficients(std::size_t levels) : albedo_(levels), sampled_(levels) {}
+  // `rest`, the levels of the file, must stay alive.
+  Coefficients(vk::Context& context, std::span<const Level> rest);
 
   // Throws InputError as check_material does.
   void set(const gpu::Material& material);
 
   // Takes the coefficients of level `number`, and notes those at `samples`. Throws InputError on a wrong size or value.
-  void set(vk::Context& context, std::uint32_t number, std::span<const gpu::Optical> optical, float eta,
-           LevelBuffers& level, std::span<const SurfaceSample> samples);
+  void set(std::uint32_t number, std::span<const gpu::Optical> optical, float eta,
+           std::span<const SurfaceSample> samples);
+
+  // Of the material or the arrays, also of those that are set later. Throws InputError naming the edit and as
+  // check_edit.
+  void set(std::span<const Edit> edits);
 
   // Throws InputError if there are none, or not for every level.
   void check() const;
@@ -29,19 +36,19 @@ class Coefficients {
   float eta() const { return eta_; }
 
   // The same everywhere.
-  bool even() const { return material_ && material_->pattern == gpu::PATTERN_NONE; }
+  bool even() const { return material_ && material_->pattern == gpu::PATTERN_NONE && edits_.edits.empty(); }
 
-  // One entry per sample of level `number`, which is `rest` in the file.
-  std::vector<gpu::Optical> at(std::uint32_t number, const Level& rest, std::span<const SurfaceSample> samples) const;
+  // One entry per sample of level `number`.
+  std::vector<gpu::Optical> at(std::uint32_t number, std::span<const SurfaceSample> samples);
 
-  // The model that is meant where `wanted` is automatic.
-  Model resolve(Model wanted, Method method, Source source) const;
+  // The model that is meant where `wanted` is automatic. Edited coefficients are evaluated for that.
+  Model resolve(Workspace& work, Model wanted, Method method, Source source, std::vector<LevelBuffers>& levels);
 
-  // Room in `levels` for the coefficients that a method needs, and what they are evaluated at. `rest` are the levels of
-  // the file. To be called before a solve.
-  void make_room(vk::Context& context, std::span<const Level> rest, Method method, std::vector<LevelBuffers>& levels);
+  // Room in `levels` for the coefficients that a method needs, and what they are evaluated at. To be called before a
+  // solve.
+  void make_room(Method method, std::vector<LevelBuffers>& levels);
 
-  // Evaluates the material on all levels, unless that has been done.
+  // Evaluates the coefficients on all levels, unless that has been done.
   void record(Workspace& work, const std::vector<LevelBuffers>& levels);
 
  private:
@@ -50,11 +57,22 @@ class Coefficients {
 
   static std::uint32_t count(const LevelBuffers& level, Extent extent);
 
+  void changed();
+  const std::vector<float>& depth(std::uint32_t number);
+
+  vk::Context& context_;
+  std::span<const Level> rest_;
   std::optional<gpu::Material> material_;
+  std::vector<vk::Buffer> given_;  // arrays, per level, where there is no material
+  EditArrays edits_{{}};
+  EditBuffers edit_buffers_;
+  std::vector<std::vector<float>> depth_;  // mm, of the nodes of every level, computed at first use
+  std::vector<vk::Buffer> depth_buffers_;
   Extent extent_ = Extent::one;
-  std::optional<Extent> evaluated_;  // material_, there
+  std::optional<Extent> evaluated_;  // the present coefficients, there
   float eta_ = 1;
-  std::vector<std::optional<double>> albedo_;       // the least one of every level
+  std::vector<std::optional<double>> albedo_;       // the least one of every level, before edits
+  std::optional<double> edited_albedo_;             // the least one of the finest level after them
   std::vector<std::vector<gpu::Optical>> sampled_;  // of every level whose coefficients were given
 };
 

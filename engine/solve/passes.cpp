@@ -2,6 +2,7 @@
 
 #include "shaders/assembly_shared.h"
 #include "shaders/deform_shared.h"
+#include "shaders/edits.h"
 #include "shaders/exchange_shared.h"
 #include "shaders/gather_shared.h"
 #include "shaders/packing.h"
@@ -36,6 +37,7 @@
 #include "spirv/deform_nodes.comp.h"
 #include "spirv/deform_normals.comp.h"
 #include "spirv/display_scale.comp.h"
+#include "spirv/edit_material.comp.h"
 #include "spirv/eigenvalue_bound.comp.h"
 #include "spirv/eigenvalue_bound_sp3.comp.h"
 #include "spirv/energy.comp.h"
@@ -105,6 +107,7 @@ using enum vk::Work;
 
 Passes::Passes()
     : ONE_PASS(evaluate_material, EvaluateMaterialPush, each),
+      ONE_PASS(edit_material, EditMaterialPush, each),
       ONE_PASS(shape, ShapePush, each),
       ONE_PASS(irradiance_scale, IrradianceScalePush, reducing),
       ONE_PASS(walk_source, WalkSourcePush, each),

@@ -23,19 +23,6 @@
 namespace quadgraph {
 namespace {
 
-void check_options(const SolveOptions& options) {
-  if (!(options.tolerance > 0) || !(options.tolerance < 1)) {
-    throw InputError("tolerance: " + std::to_string(options.tolerance) + ", a number between 0 and 1 is wanted");
-  }
-  if (!(options.error >= 0) || !(options.error < 1)) {
-    throw InputError("error: " + std::to_string(options.error) + ", a number from 0 (no target) to below 1 is wanted");
-  }
-  if (options.smoothing > 2) {
-    throw InputError("smoothing: " + std::to_string(options.smoothing) +
-                     " steps, allowed are 1 and 2, and 0 for either");
-  }
-}
-
 // Passes that one solver has and the other has not, or more often.
 double solver_ms(const std::vector<PassStats>& passes) {
   constexpr std::array names = {"residual",     "cg-multiply",     "cg-update",   "cg-direction",
@@ -96,7 +83,7 @@ struct Simulation::Implementation {
         levels(upload_levels(context_in, graph_in)),
         work(context_in, largest_dispatch()),
         results(context_in, levels[0]),
-        coefficients(levels.size()),
+        coefficients(context_in, graph_in.levels()),
         exchange(graph_in) {
     for (std::uint32_t i = 0; i < levels.size(); ++i) walks.emplace_back(context, shape.levels()[i], i);
     sample();
@@ -230,9 +217,9 @@ struct Simulation::Implementation {
 
   SolveReport solve(const SolveOptions& options) {
     check_options(options);
-    const OperatorKey key = key_of(options);
     solved.reset();
     work.recorder.clear();
+    const OperatorKey key = key_of(options);
     make_room(key, options);
     exchange.refresh(work, shape.levels(), levels, options.exchange_rows);
     SolveReport report =
@@ -246,13 +233,13 @@ struct Simulation::Implementation {
     return report;
   }
 
-  OperatorKey key_of(const SolveOptions& options) const {
+  OperatorKey key_of(const SolveOptions& options) {
     coefficients.check();
-    return {options.method, coefficients.resolve(options.model, options.method, options.source)};
+    return {options.method, coefficients.resolve(work, options.model, options.method, options.source, levels)};
   }
 
   void make_room(const OperatorKey& key, const SolveOptions& options) {
-    coefficients.make_room(context, shape.rest(), key.method, levels);
+    coefficients.make_room(key.method, levels);
     for (std::uint32_t i = 0; i < levels.size() && key.method != Method::fem; ++i) {
       const bool there = levels[i].nodes.size() > 0;
       upload_graph(context, shape.levels()[i], i, levels[i]);
@@ -273,9 +260,7 @@ struct Simulation::Implementation {
     return *gather;
   }
 
-  std::vector<gpu::Optical> optical_at(std::uint32_t level) const {
-    return coefficients.at(level, shape.rest()[level], samples[level]);
-  }
+  std::vector<gpu::Optical> optical_at(std::uint32_t level) { return coefficients.at(level, samples[level]); }
 
   const std::vector<Resolution>& resolution_with(Model model) {
     std::vector<Resolution>& found = resolution[model];
@@ -378,8 +363,12 @@ void Simulation::set_optical(std::uint32_t level, std::span<const gpu::Optical> 
   if (level >= level_count()) {
     throw InputError("level " + std::to_string(level) + " of optical: there are " + std::to_string(level_count()));
   }
-  implementation_->coefficients.set(implementation_->context, level, optical, eta, implementation_->levels[level],
-                                    implementation_->samples[level]);
+  implementation_->coefficients.set(level, optical, eta, implementation_->samples[level]);
+  implementation_->disassemble();
+}
+
+void Simulation::set_edits(std::span<const Edit> edits) {
+  implementation_->coefficients.set(edits);
   implementation_->disassemble();
 }
 

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "engine/graph/deformer.h"
+#include "engine/graph/edit.h"
 #include "engine/graph/graph.h"
 #include "engine/graph/solution.h"
 #include "engine/vk/context.h"
@@ -75,6 +76,10 @@ class Simulation {
   // Coefficients instead of a material, one per node of `level` (inner, then surface); wanted for every level, and kept
   // until set_material. Throws InputError on a wrong size or value.
   void set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta);
+
+  // Edits of the material or the coefficients, one after the other, in place of those before; kept for what is set
+  // later. Throws InputError naming the edit and as check_edit.
+  void set_edits(std::span<const Edit> edits);
 
   // Index of refraction of what was set. Throws InputError before that, or if a level of set_optical is missing.
   float eta() const;

@@ -17,41 +17,6 @@ namespace py = pybind11;
 namespace quadgraph::python {
 namespace {
 
-py::object error_dict(const std::optional<ErrorEstimate>& estimate) {
-  if (!estimate) return py::none();
-  py::dict d;
-  d["whole"] = estimate->whole;
-  d["unlit"] = estimate->unlit;
-  return d;
-}
-
-py::dict report_dict(const SolveReport& report) {
-  py::dict d;
-  d["method"] = std::string(name_of(report.method));
-  d["solver"] = std::string(name_of(report.solver));
-  d["source"] = std::string(name_of(report.source));
-  d["model"] = std::string(name_of(report.model));
-  py::list levels;
-  for (const LevelReport& level : report.levels) levels.append(as_dict(level));
-  d["levels"] = levels;
-  d["energy"] = as_dict(report.energy);
-  d["clipped"] = as_tuple(report.clipped);
-  d["inter_reflection"] = report.inter_reflection;
-  py::list bounces;
-  for (const glm::dvec3& bounce : report.bounces) bounces.append(as_tuple(bounce));
-  d["bounces"] = bounces;
-  d["replaced"] = report.replaced;
-  d["missed"] = report.missed;
-  d["mesh_warning"] = report.mesh_warning;
-  d["model_warning"] = report.model_warning;
-  d["deformed"] = report.deformed;
-  d["finest"] = report.finest;
-  d["work"] = report.work;
-  d["algebraic"] = error_dict(report.algebraic);
-  d["error"] = error_dict(report.error);
-  return d;
-}
-
 py::dict field_dict(SurfaceField&& field) {
   py::dict d;
   d["position"] = own(std::move(field.position));
@@ -129,10 +94,7 @@ void bind_picture(py::module_& module) {
       .def(
           "srgb",
           [](const Picture& picture, const std::string& exposure, const std::string& background) {
-            const std::vector<std::uint8_t> rgb = to_srgb8(picture, tone_options(exposure, background));
-            py::array_t<std::uint8_t> array({py::ssize_t{picture.height}, py::ssize_t{picture.width}, py::ssize_t{3}});
-            std::copy(rgb.begin(), rgb.end(), array.mutable_data());
-            return array;
+            return srgb_array(picture, tone_options(exposure, background));
           },
           py::arg("exposure") = "auto", py::arg("background") = "studio", "Tone mapped, (h, w, 3) uint8 sRGB.")
       .def(
@@ -176,7 +138,7 @@ py::dict solve(Engine& engine, const std::string& method, const std::string& sol
     const py::gil_scoped_release release;
     return engine.solve(options);
   }();
-  return report_dict(report);
+  return as_dict(report);
 }
 
 void make_room(Engine& engine, const std::string& method, const std::string& source, const std::string& model,
@@ -238,6 +200,13 @@ py::dict copy_bandwidth(const std::string& device) {
 }
 
 }  // namespace
+
+py::array_t<std::uint8_t> srgb_array(const Picture& picture, const ToneOptions& options) {
+  const std::vector<std::uint8_t> rgb = to_srgb8(picture, options);
+  py::array_t<std::uint8_t> array({py::ssize_t{picture.height}, py::ssize_t{picture.width}, py::ssize_t{3}});
+  std::copy(rgb.begin(), rgb.end(), array.mutable_data());
+  return array;
+}
 
 void bind_engine(py::module_& module) {
   bind_picture(module);

@@ -13,6 +13,7 @@
 
 #include "engine/graph/graph.h"
 #include "engine/graph/solution.h"
+#include "engine/render/picture.h"
 #include "shaders/shared.h"
 
 namespace quadgraph::python {
@@ -21,6 +22,7 @@ void bind_graph(pybind11::module_& module);
 void bind_materials(pybind11::module_& module);
 void bind_reference(pybind11::module_& module);
 void bind_engine(pybind11::module_& module);
+void bind_scene(pybind11::module_& module);
 
 // Converted to C order and float32 if need be.
 using IndexArray = pybind11::array_t<std::uint32_t, pybind11::array::c_style | pybind11::array::forcecast>;
@@ -65,8 +67,12 @@ SolveOptions options_from(const std::string& method, const std::string& solver, 
 
 std::optional<glm::vec3> as_vector(const std::optional<std::array<float, 3>>& components);
 
+// Tone mapped, (height, width, 3) sRGB.
+pybind11::array_t<std::uint8_t> srgb_array(const Picture& picture, const ToneOptions& options);
+
 pybind11::tuple as_tuple(const glm::dvec3& v);
 pybind11::dict as_dict(const Energy& energy);
 pybind11::dict as_dict(const LevelReport& report);
+pybind11::dict as_dict(const SolveReport& report);
 
 }  // namespace quadgraph::python

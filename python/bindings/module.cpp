@@ -73,6 +73,45 @@ py::dict as_dict(const LevelReport& report) {
 
 namespace {
 
+py::object error_dict(const std::optional<ErrorEstimate>& estimate) {
+  if (!estimate) return py::none();
+  py::dict d;
+  d["whole"] = estimate->whole;
+  d["unlit"] = estimate->unlit;
+  return d;
+}
+
+}  // namespace
+
+py::dict as_dict(const SolveReport& report) {
+  py::dict d;
+  d["method"] = std::string(name_of(report.method));
+  d["solver"] = std::string(name_of(report.solver));
+  d["source"] = std::string(name_of(report.source));
+  d["model"] = std::string(name_of(report.model));
+  py::list levels;
+  for (const LevelReport& level : report.levels) levels.append(as_dict(level));
+  d["levels"] = levels;
+  d["energy"] = as_dict(report.energy);
+  d["clipped"] = as_tuple(report.clipped);
+  d["inter_reflection"] = report.inter_reflection;
+  py::list bounces;
+  for (const glm::dvec3& bounce : report.bounces) bounces.append(as_tuple(bounce));
+  d["bounces"] = bounces;
+  d["replaced"] = report.replaced;
+  d["missed"] = report.missed;
+  d["mesh_warning"] = report.mesh_warning;
+  d["model_warning"] = report.model_warning;
+  d["deformed"] = report.deformed;
+  d["finest"] = report.finest;
+  d["work"] = report.work;
+  d["algebraic"] = error_dict(report.algebraic);
+  d["error"] = error_dict(report.error);
+  return d;
+}
+
+namespace {
+
 // C++ errors arrive as the classes of quadgraph.errors, so that Python code catches one family.
 void register_errors() {
   py::register_exception_translator([](std::exception_ptr error) {
@@ -103,4 +142,5 @@ PYBIND11_MODULE(_core, module) {
   quadgraph::python::bind_materials(module);
   quadgraph::python::bind_reference(module);
   quadgraph::python::bind_engine(module);
+  quadgraph::python::bind_scene(module);
 }

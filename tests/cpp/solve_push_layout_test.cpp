@@ -1,5 +1,6 @@
 // The push constants of the passes of the solve are those of C++, in every variant.
 #include "shaders/assembly_shared.h"
+#include "shaders/edits.h"
 #include "shaders/surface_shared.h"
 #include "spirv/assemble_edges.comp.h"
 #include "spirv/assemble_edges_sp3.comp.h"
@@ -27,6 +28,7 @@
 #include "spirv/correct.comp.h"
 #include "spirv/correct_sp3.comp.h"
 #include "spirv/display_scale.comp.h"
+#include "spirv/edit_material.comp.h"
 #include "spirv/eigenvalue_bound.comp.h"
 #include "spirv/eigenvalue_bound_sp3.comp.h"
 #include "spirv/energy.comp.h"
@@ -67,6 +69,11 @@ TEST_CASE("push constants") {
   compare(evaluate_material_comp, "EvaluateMaterialPush",
           {MEMBER(EvaluateMaterialPush, material), MEMBER(EvaluateMaterialPush, nodes),
            MEMBER(EvaluateMaterialPush, optical), MEMBER(EvaluateMaterialPush, count)});
+  compare(
+      edit_material_comp, "EditMaterialPush",
+      {MEMBER(EditMaterialPush, base), MEMBER(EditMaterialPush, optical), MEMBER(EditMaterialPush, nodes),
+       MEMBER(EditMaterialPush, depth), MEMBER(EditMaterialPush, edits), MEMBER(EditMaterialPush, points),
+       MEMBER(EditMaterialPush, edit_count), MEMBER(EditMaterialPush, with_depth), MEMBER(EditMaterialPush, count)});
   compare(copy_comp, "CopyPush",
           {MEMBER(CopyPush, source), MEMBER(CopyPush, target), MEMBER(CopyPush, count), MEMBER(CopyPush, invocations)});
   compare(shape_comp, "ShapePush",

@@ -1,4 +1,4 @@
-"""`quadgraph render`: a picture of a baked object."""
+"""`quadgraph render`: a picture of a baked object, or pictures of a scene."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from pathlib import Path
 from rich.console import Console
 
 from quadgraph import atomic_file
+from quadgraph.commands import render_scene, scene
 from quadgraph.commands import report as text
-from quadgraph.commands import scene
 from quadgraph.errors import InputError
 
 WRITERS = (".png", ".exr")
@@ -18,8 +18,8 @@ WRITERS = (".png", ".exr")
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Register the subcommand."""
-    parser = subparsers.add_parser("render", help="a picture of a baked object", description=__doc__)
-    scene.add_scene_arguments(parser)
+    parser = subparsers.add_parser("render", help="a picture of a baked object, or of a scene", description=__doc__)
+    scene.add_scene_arguments(parser, "a baked .qgraph, or a scene (docs/scene.md), .json")
     parser.add_argument(
         "-o",
         "--output",
@@ -55,6 +55,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument("--exposure", default="auto", help="auto, or stops (default: %(default)s)")
     parser.add_argument("--background", default="studio", help="studio, black, white, or R/G/B (default: %(default)s)")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the report here")
+    render_scene.add_arguments(parser)
 
 
 def image_size(value: str) -> tuple[int, int]:
@@ -68,6 +69,9 @@ def image_size(value: str) -> tuple[int, int]:
 
 def run(args: argparse.Namespace) -> int:
     """Render and write; 3 if a tolerance or an error was not met, else 0."""
+    if render_scene.is_scene(args.file):
+        return render_scene.run(args)
+    render_scene.refuse(args)
     for path in args.output:
         if path.suffix.lower() not in WRITERS:
             raise InputError(f"{path}: output must end in {' or '.join(WRITERS)}")

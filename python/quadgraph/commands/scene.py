@@ -78,9 +78,9 @@ def add_meshes_argument(group: argparse._ActionsContainer) -> None:
 SOLVERS = ("fmg-pcg", "vcycle", "dpcg", "cascade", "jacobi", "auto")
 
 
-def add_scene_arguments(parser: argparse.ArgumentParser) -> None:
+def add_scene_arguments(parser: argparse.ArgumentParser, file_help: str = "a baked .qgraph") -> None:
     """Add FILE, material, lights, method, solver and device options."""
-    parser.add_argument("file", metavar="FILE", type=Path, help="a baked .qgraph")
+    parser.add_argument("file", metavar="FILE", type=Path, help=file_help)
     add_device_arguments(parser)
     parser.add_argument(
         "--material",

@@ -1,0 +1,37 @@
+// What a user shows, as a value: it can be compared, kept for undo, saved and loaded. docs/scene.md describes the file.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "engine/graph/edit.h"
+#include "engine/render/camera.h"
+#include "engine/render/engine.h"
+#include "engine/render/lights.h"
+#include "engine/render/tone_map.h"
+#include "engine/scene/json_field.h"
+
+namespace quadgraph {
+
+struct Scene {
+  std::filesystem::path body;             // .qgraph
+  std::string material = "marble-veins";  // as parse_material reads it
+  std::vector<Edit> edits{};              // of the material, one after the other
+  std::vector<Light> lights{};
+  View view{};
+  SolveOptions solve{};
+  RenderOptions render{};
+  ToneOptions tone{};
+
+  bool operator==(const Scene&) const = default;
+};
+
+// Reads the members of a scene file that say what is shown, and leaves others alone. Throws InputError with the path of
+// what is wrong.
+Scene scene_from(const JsonField& document);
+
+// What scene_from reads back as the same scene.
+Json to_json(const Scene& scene);
+
+}  // namespace quadgraph

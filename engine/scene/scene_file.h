@@ -1,0 +1,52 @@
+// A scene that may change from frame to frame, and its file.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/scene/scene.h"
+#include "engine/scene/track.h"
+
+namespace quadgraph {
+
+class SceneFile {
+ public:
+  // Reads a JSON file and checks the scene at every key of its tracks. A relative body is looked for beside the file; a
+  // scene that says nothing of lights gets default_lights of its first view.
+  // Throws InputError naming the file, the path into it, what was found and what is allowed.
+  static SceneFile load(const std::filesystem::path& path);
+
+  // One that does not change.
+  explicit SceneFile(const Scene& scene);
+
+  // `value`, JSON, in place of what is at `pointer`, or as a new member; a text that is not JSON counts as a string.
+  // Throws InputError, and changes nothing, where the scene would be wrong.
+  void set(const std::string& pointer, const std::string& value);
+
+  std::uint32_t frames() const { return frames_; }
+  double frames_per_second() const { return frames_per_second_; }
+
+  // Throws InputError.
+  Scene at(double frame) const;
+
+  // Writes a temporary file beside `path` and renames it. The body stays the same file. Throws InputError naming the
+  // file.
+  void save(const std::filesystem::path& path) const;
+
+ private:
+  SceneFile(Json document, std::filesystem::path path);
+
+  void check();
+
+  Json document_;
+  std::filesystem::path path_;  // empty: of no file
+  std::vector<Track> tracks_;
+  std::uint32_t frames_ = 1;
+  double frames_per_second_ = 24;
+  std::optional<View> first_view_;
+};
+
+}  // namespace quadgraph

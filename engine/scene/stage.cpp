@@ -1,0 +1,43 @@
+#include "engine/scene/stage.h"
+
+#include "engine/graph/error.h"
+
+namespace quadgraph {
+
+void Stage::show(const Scene& scene) {
+  const bool fresh = !engine_ || scene.body != scene_.body;
+  if (fresh) {
+    engine_.reset();  // two bodies need not fit beside each other
+    engine_ = std::make_unique<Engine>(scene.body, device_);
+    scene_ = {};
+    scene_.body = scene.body;
+  }
+  if (fresh || scene.material != scene_.material) {
+    engine_->set_material(scene.material);
+    scene_.material = scene.material;
+  }
+  if (scene.edits != scene_.edits) {
+    engine_->set_edits(scene.edits);
+    scene_.edits = scene.edits;
+  }
+  if (fresh || scene.lights != scene_.lights) {
+    engine_->set_lights(scene.lights);
+    scene_.lights = scene.lights;
+  }
+  scene_ = scene;
+}
+
+SolveReport Stage::solve() {
+  return engine().solve(scene_.solve);
+}
+
+Picture Stage::render() {
+  return engine().render(scene_.view, scene_.render);
+}
+
+Engine& Stage::engine() {
+  if (!engine_) throw InputError("stage: no scene is shown yet");
+  return *engine_;
+}
+
+}  // namespace quadgraph

@@ -1,0 +1,94 @@
+// Scenes as values and as files, and the stage that shows them.
+#include <pybind11/operators.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "engine/scene/scene_file.h"
+#include "engine/scene/stage.h"
+#include "python/bindings/bindings.h"
+
+namespace py = pybind11;
+
+namespace quadgraph::python {
+namespace {
+
+void bind_scene_type(py::module_& module) {
+  py::class_<Scene>(module, "Scene", "All that a user shows, as a value (docs/scene.md).")
+      .def(py::init([](const std::filesystem::path& body) { return Scene{.body = body}; }), py::arg("body"))
+      .def_readonly("body", &Scene::body)
+      .def_readonly("material", &Scene::material)
+      .def_property_readonly("lights",
+                             [](const Scene& scene) {
+                               std::vector<std::string> texts;
+                               for (const Light& light : scene.lights) texts.push_back(to_string(light));
+                               return texts;
+                             })
+      .def_property_readonly("size",
+                             [](const Scene& scene) { return py::make_tuple(scene.render.width, scene.render.height); })
+      .def(
+          "json", [](const Scene& scene) { return to_json(scene).dump(2); },
+          "The text of a scene file that shows this.")
+      .def(py::self == py::self);
+}
+
+void bind_scene_file(py::module_& module) {
+  py::class_<SceneFile>(module, "SceneFile", "A scene that may change from frame to frame (docs/scene.md).")
+      .def(py::init(&SceneFile::load), py::arg("path"), "Raises InputError naming file, path into it, found, allowed.")
+      .def(py::init<const Scene&>(), py::arg("scene"), "One that does not change.")
+      .def_property_readonly("frames", &SceneFile::frames)
+      .def_property_readonly("frames_per_second", &SceneFile::frames_per_second)
+      .def("at", &SceneFile::at, py::arg("frame"), "The Scene of a frame, which need not be whole.")
+      .def("set", &SceneFile::set, py::arg("pointer"), py::arg("value"),
+           "Puts a JSON value at a JSON pointer; a text that is no JSON counts as a string. Raises InputError, and "
+           "changes nothing, where the scene would be wrong.")
+      .def("save", &SceneFile::save, py::arg("path"), "Raises InputError naming the file.");
+}
+
+void bind_stage(py::module_& module) {
+  py::class_<Stage>(module, "Stage", "An Engine that shows a Scene.")
+      .def(py::init([](const std::string& device, bool validation) {
+             return std::make_unique<Stage>(vk::ContextOptions{validation, device});
+           }),
+           py::arg("device") = "", py::arg("validation") = false)
+      .def("show", &Stage::show, py::arg("scene"), py::call_guard<py::gil_scoped_release>(),
+           "Sets on the engine what differs. Raises FormatError, InputError, VulkanError.")
+      .def(
+          "solve",
+          [](Stage& stage) {
+            const SolveReport report = [&] {
+              const py::gil_scoped_release release;
+              return stage.solve();
+            }();
+            return as_dict(report);
+          },
+          "As Engine.solve, with the scene's options.")
+      .def("render", &Stage::render, py::call_guard<py::gil_scoped_release>(),
+           "As Engine.render, with the scene's view and options.")
+      .def(
+          "srgb", [](Stage& stage, const Picture& picture) { return srgb_array(picture, stage.scene().tone); },
+          py::arg("picture"), "(h, w, 3) uint8, with the scene's exposure and background.")
+      .def(
+          "write_png",
+          [](Stage& stage, const Picture& picture, const std::filesystem::path& path) {
+            write_png(path, picture, stage.scene().tone, stage.engine().metadata());
+          },
+          py::arg("picture"), py::arg("path"), "With the scene's exposure and background.")
+      .def(
+          "write_exr",
+          [](Stage& stage, const Picture& picture, const std::filesystem::path& path) {
+            write_exr(path, picture, stage.scene().tone, stage.engine().metadata());
+          },
+          py::arg("picture"), py::arg("path"), "Linear and not exposed.")
+      .def_property_readonly("scene", &Stage::scene)
+      .def_property_readonly("engine", &Stage::engine, py::return_value_policy::reference_internal);
+}
+
+}  // namespace
+
+void bind_scene(py::module_& module) {
+  bind_scene_type(module);
+  bind_scene_file(module);
+  bind_stage(module);
+}
+
+}  // namespace quadgraph::python

@@ -1,0 +1,171 @@
+"""`quadgraph render` of a scene file: one of its frames, or all as pictures or as a film (docs/scene.md)."""
+
+from __future__ import annotations
+
+import argparse
+import re
+import time
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import Progress
+
+from quadgraph import atomic_file, film
+from quadgraph.commands import report as text
+from quadgraph.commands import scene
+from quadgraph.errors import InputError
+
+# Options that a scene file says, and where it says them.
+STATED = {
+    "material": "/material",
+    "light": "/lights",
+    "method": "/solver/method",
+    "solver": "/solver/solver",
+    "source": "/solver/source",
+    "model": "/solver/model",
+    "tolerance": "/solver/tolerance",
+    "error": "/solver/error",
+    "cycles": "/solver/cycles",
+    "max_iterations": "/solver/max_iterations",
+    "no_inter_reflection": "/solver/inter_reflection",
+    "bounces": "/solver/bounces",
+    "view": "/camera/azimuth",
+    "up": "/camera/up",
+    "fov": "/camera/fov",
+    "size": "/picture/width",
+    "roughness": "/picture/roughness",
+    "radiance": "/picture/radiance",
+    "exposure": "/picture/exposure",
+    "background": "/picture/background",
+}
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options that only a scene file takes; to be called after all others."""
+    group = parser.add_argument_group("of a scene file")
+    group.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="PATH=VALUE",
+        help="change what the scene says, e.g. /camera/fov=40 or /material=jade; several allowed",
+    )
+    group.add_argument("--frame", type=float, default=0.0, metavar="F", help="the one to render (default: 0)")
+    group.add_argument(
+        "--frames",
+        type=scene.positive_int,
+        nargs="?",
+        const=0,
+        metavar="N",
+        help="render the first N, without N all of the scene, into a numbered OUT, e.g. frames/%%04d.png or .exr, or a "
+        "film, e.g. turn.mp4",
+    )
+    parser.set_defaults(unstated={name: parser.get_default(name) for name in STATED})
+
+
+def is_scene(path: Path) -> bool:
+    """Whether a file is taken for a scene, by its name."""
+    return path.suffix.lower() == ".json"
+
+
+def refuse(args: argparse.Namespace) -> None:
+    """Raise InputError if an option is given that only a scene file takes."""
+    for name, given in (("set", args.set), ("frame", args.frame), ("frames", args.frames is not None)):
+        if given:
+            raise InputError(f"--{name}: only with a scene file (.json), found {args.file}")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Render and write; 3 if a tolerance or an error was not met in some frame, else 0."""
+    core = scene.load_core()
+    for name, pointer in STATED.items():
+        if getattr(args, name) != args.unstated[name]:
+            option = name.replace("_", "-")
+            raise InputError(f"--{option}: not beside a scene file; change it there, or with --set {pointer}=...")
+    file = core.SceneFile(args.file)
+    for change in args.set:
+        pointer, equals, value = change.partition("=")
+        if not equals:
+            raise InputError(f"--set {change}: allowed is PATH=VALUE, e.g. /camera/fov=40")
+        file.set(pointer, value)
+    frames = [args.frame] if args.frames is None else range(args.frames or file.frames)
+    with_numbers = args.frames is not None
+    for path in args.output:
+        check_output(path, with_numbers)
+    stage = core.Stage(device=args.device, validation=args.validation)
+    reports = render(stage, file, frames, args.output)
+    if args.json:
+        atomic_file.write_json(args.json, reports if with_numbers else reports[0])
+    return summarise(stage, reports, args.output)
+
+
+def check_output(path: Path, with_numbers: bool) -> None:
+    """Raise InputError unless frames can be written to `path`."""
+    numbered = re.search(r"%0?\d*d", path.name) is not None
+    if path.suffix.lower() in film.SUFFIXES:
+        if not with_numbers:
+            raise InputError(f"{path}: a film wants --frames")
+        film.check()
+    elif path.suffix.lower() not in (".png", ".exr"):
+        raise InputError(f"{path}: output must end in .png, .exr or {' or '.join(film.SUFFIXES)}")
+    elif numbered != with_numbers:
+        wanted = "a number, e.g. %04d, in the name of every frame" if with_numbers else "no number without --frames"
+        raise InputError(f"{path}: {wanted} is wanted")
+
+
+def render(stage, file, frames: Iterable[float], outputs: list[Path]) -> list[dict]:
+    """Render frames and write each to all outputs; one report per frame."""
+    first = file.at(0)
+    films = {
+        path: film.Film(path, first.size, file.frames_per_second) for path in outputs if path.suffix in film.SUFFIXES
+    }
+    reports = []
+    try:
+        with Progress(console=Console(stderr=True), transient=True) as progress:
+            for frame in progress.track(list(frames), description="frames"):
+                start = time.perf_counter()
+                stage.show(file.at(frame))
+                report = stage.solve()
+                picture = stage.render()
+                scene.check_validation(stage.engine)
+                for path in outputs:
+                    write(stage, picture, path, frame, films)
+                report |= {"frame": frame, "cycles": 0, "budget": "", "seconds": time.perf_counter() - start}
+                reports.append(report | {"passes": stage.engine.passes})
+        for open_film in films.values():
+            open_film.finish()
+    finally:
+        for open_film in films.values():
+            open_film.discard()
+    return reports
+
+
+def write(stage, picture, path: Path, frame: float, films: dict[Path, film.Film]) -> None:
+    """Write one frame to one output."""
+    if path in films:
+        films[path].add(stage.srgb(picture))
+        return
+    to: Callable = stage.write_png if path.suffix.lower() == ".png" else stage.write_exr
+    named = path.with_name(path.name % int(frame)) if "%" in path.name else path
+    named.parent.mkdir(parents=True, exist_ok=True)
+    to(picture, named)
+
+
+def summarise(stage, reports: list[dict], outputs: list[Path]) -> int:
+    """Say what was made, of the frame with the largest error; the exit status."""
+    console = Console(highlight=False, soft_wrap=True)
+    worst = max(reports, key=lambda report: report["error"]["whole"] if report["error"] else 0.0)
+    seconds = sum(report["seconds"] for report in reports)
+    console.print(text.size_text(stage.engine))
+    if len(reports) == 1:
+        console.print(f"frame: {sum(p['time_ms'] for p in worst['passes']):.0f} ms on the device, {seconds:.1f} s")
+    else:
+        console.print(f"frames: {len(reports)} in {seconds:.1f} s; the worst of them is number {worst['frame']:g}")
+    console.print(text.error_text(worst))
+    missed = scene.unmet(worst)
+    for sentence in text.solver_texts(worst) + missed:
+        console.print(sentence)
+    for path in outputs:
+        console.print(f"{'film' if path.suffix in film.SUFFIXES else 'picture'}: {path}")
+    return 3 if any(scene.unmet(report) for report in reports) else 0
