@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/graph/deformer.h"
 #include "engine/graph/edit.h"
 #include "engine/render/camera.h"
 #include "engine/render/engine.h"
@@ -19,6 +20,7 @@ struct Scene {
   std::string material = "marble-veins";  // as parse_material reads it
   std::vector<Edit> edits{};              // of the material, one after the other
   std::vector<Light> lights{};
+  std::vector<Deformer> deformation{};  // one after the other
   View view{};
   SolveOptions solve{};
   RenderOptions render{};

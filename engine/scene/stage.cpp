@@ -24,6 +24,10 @@ void Stage::show(const Scene& scene) {
     engine_->set_lights(scene.lights);
     scene_.lights = scene.lights;
   }
+  if (scene.deformation != scene_.deformation) {
+    engine_->set_deformation(scene.deformation);
+    scene_.deformation = scene.deformation;
+  }
   scene_ = scene;
 }
 

@@ -64,6 +64,25 @@ Scene with_everything() {
                  {.operation = Edit::Operation::set, .sigma_s_prime = glm::vec3(3)}};
   scene.lights = {parse_light("directional:0,0.6,-0.8:1/2/3"), parse_light("point:1,2,3:0.1"),
                   parse_light("ambient:0.5")};
+  Deformer twist{.degrees = 30}, bend{.kind = DeformerKind::bend}, scaled{.kind = DeformerKind::transform};
+  bend.towards = {0, 0.5, 1};
+  bend.range_in_mm = true;
+  bend.begin = 0.2;
+  bend.end = 1.8;
+  bend.centre = glm::dvec3(1, 1, 1);
+  bend.degrees = 20;
+  scaled.scale = {1, 2, 1.1};
+  scaled.translate = {0, 3, 0};
+  Deformer taper{.kind = DeformerKind::taper, .axis = {1, 0, 0}, .factor = 0.7};
+  Deformer lattice{.kind = DeformerKind::lattice, .basis = LatticeBasis::linear};
+  lattice.displacements.assign(8, {0, 0, 0.1});
+  lattice.box = RestBox{glm::dvec3(-1), glm::dvec3(3)};
+  Deformer cage{.kind = DeformerKind::cage};
+  cage.cage = {{-4, -4, -4}, {12, -4, -4}, {-4, 12, -4}, {-4, -4, 12}};
+  cage.moved = cage.cage;
+  cage.moved[3].z = 13;
+  cage.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  scene.deformation = {twist, bend, taper, lattice, cage, scaled};
   scene.view = {.azimuth = 33.3f, .elevation = -5, .distance = 12.5f, .up = UpAxis::z, .vertical_fov = 40};
   scene.solve = {.method = Method::quadgraph_fv, .solver = SolverKind::dpcg, .tolerance = 0.002, .cycles = 3};
   scene.render = {.width = 64, .height = 48, .roughness = 0.2f, .radiance = Radiance::lambertian};
@@ -172,6 +191,16 @@ TEST_CASE("bad scenes: the path into the file, what was found, what is allowed")
   check_refused(R"({"body": "a", "picture": {"background": [2, 0, 0]}})", "/picture/background: background");
   check_refused(R"({"body": "a", "edits": [{"operation": "add"}]})", "/edits/0: sigma_s_prime, sigma_a: found neither");
   check_refused(R"({"body": "a", "edits": [{"operation": "dye", "sigma_a": 1}]})", "/edits/0/operation: found \"dye\"");
+  const auto deformer = [](const std::string& text) { return R"({"body": "a", "deformation": [{)" + text + "}]}"; };
+  check_refused(deformer(R"("type": "squash")"), "/deformation/0/type: ");
+  check_refused(deformer(R"("type": "twist")"), "/deformation/0/degrees: found nothing");
+  check_refused(deformer(R"("type": "twist", "degrees": 9, "factor": 2)"), "/deformation/0/factor: found 2");
+  check_refused(deformer(R"("type": "twist", "degrees": 9, "range": [1, 0])"), "/deformation/0: ");
+  check_refused(deformer(R"("type": "stretch", "factor": 0)"), "/deformation/0: ");
+  check_refused(deformer(R"("type": "stretch", "factor": 2, "range": [0, 1], "range_mm": [0, 1])"),
+                "/deformation/0/range_mm: found");
+  check_refused(deformer(R"("type": "lattice", "size": [2, 2, 40], "displacements": [])"),
+                "/deformation/0/size/2: found 40");
   check_refused(R"({"body": "a", "frames": 0})", "/frames: found 0");
   const auto track = [](const std::string& text) { return R"({"body": "a", "tracks": [{)" + text + "}]}"; };
   check_refused(track(R"("path": "/camera/fov", "keys": [[0, 1], [0, 2]])"), "/tracks/0/keys/1/0: found 0");
@@ -189,6 +218,7 @@ TEST_CASE("a stage that went through other scenes shows the same as a fresh one"
   Scene other = scene;
   other.material = "ketchup";
   other.edits.clear();
+  other.deformation.pop_back();
   other.lights.pop_back();
   Stage travelled({.validation = true, .device = ""}), fresh({.validation = true, .device = ""});
   for (const Scene& shown : {scene, other, scene}) {

@@ -151,6 +151,8 @@ def test_the_documented_scene_is_one_by_schema_and_engine(folder):
         ("/lights/1/irradiance", -1),
         ("/edits/0/operation", "dye"),
         ("/edits/0/depth", [1]),
+        ("/deformation/0/type", "squash"),
+        ("/deformation/0/factor", 2),
         ("/solver/method", "fen"),
         ("/picture/width", 1.5),
         ("/picture/background", "red"),
