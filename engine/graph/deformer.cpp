@@ -133,14 +133,14 @@ void check_closed(const Deformer& deformer) {
 
 void check_cage(const Deformer& deformer) {
   if (deformer.cage.size() < 4 || deformer.cage.size() > most_cage_vertices) {
-    refuse(deformer, "rest", std::to_string(deformer.cage.size()) + " vertices",
+    refuse(deformer, "cage", std::to_string(deformer.cage.size()) + " vertices",
            "4 to " + std::to_string(most_cage_vertices));
   }
   if (deformer.moved.size() != deformer.cage.size()) {
     refuse(deformer, "moved", std::to_string(deformer.moved.size()) + " vertices",
            std::to_string(deformer.cage.size()) + ", one for each at rest");
   }
-  check_points(deformer, "rest", deformer.cage);
+  check_points(deformer, "cage", deformer.cage);
   check_points(deformer, "moved", deformer.moved);
   check_closed(deformer);
 }
@@ -208,6 +208,16 @@ void check_deformer(const Deformer& deformer) {
     case DeformerKind::displaced:
       return check_displaced(deformer);
   }
+}
+
+std::vector<double> frame_weights(double frame, std::size_t count) {
+  std::vector<double> weights(count, 0.0);
+  if (count == 0) return weights;
+  const double at = std::clamp(frame, 0.0, static_cast<double>(count - 1));
+  const auto first = static_cast<std::size_t>(at);
+  weights[first] = 1 - (at - static_cast<double>(first));
+  if (first + 1 < count) weights[first + 1] = at - static_cast<double>(first);
+  return weights;
 }
 
 bool is_rigid(const Deformer& deformer) {

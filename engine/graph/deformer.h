@@ -67,6 +67,10 @@ struct Deformer {
 // Throws InputError naming the field, what was found and what is allowed.
 void check_deformer(const Deformer& deformer);
 
+// Of `count` shapes that are the frames of an animation, at a frame that need not be whole; before the first and after
+// the last one those.
+std::vector<double> frame_weights(double frame, std::size_t count);
+
 // Whether it only turns and moves.
 bool is_rigid(const Deformer& deformer);
 

@@ -90,6 +90,20 @@ void cage_from(const JsonField& field, Deformer& deformer) {
   }
 }
 
+void displaced_from(const JsonField& field, Deformer& deformer) {
+  field.allow({"type", "shapes", "weights", "frame"});
+  const JsonField shapes = field.at("shapes");
+  const std::string file = shapes.text();
+  deformer.shapes = shapes.within([&] { return load_shapes(file); });
+  const auto weights = field.find("weights"), frame = field.find("frame");
+  if (weights && frame) frame->refuse("one of weights and frame");
+  if (weights) {
+    for (const JsonField& weight : weights->items()) deformer.weights.push_back(weight.number());
+  } else {
+    deformer.weights = frame_weights(field.at("frame").number(), deformer.shapes->count());
+  }
+}
+
 Json point_json(const glm::dvec3& point) {
   return {point.x, point.y, point.z};
 }
@@ -116,6 +130,12 @@ void put_cage(const Deformer& deformer, Json& json) {
   json["cage"] = points_json(deformer.cage);
   json["moved"] = points_json(deformer.moved);
   for (const glm::uvec3& t : deformer.triangles) json["triangles"].push_back({t.x, t.y, t.z});
+}
+
+void put_displaced(const Deformer& deformer, Json& json) {
+  if (!deformer.shapes || deformer.shapes->file.empty()) throw InputError("displaced, shapes: they are in no file");
+  json["shapes"] = deformer.shapes->file.string();
+  json["weights"] = deformer.weights;
 }
 
 }  // namespace
@@ -145,7 +165,8 @@ Deformer deformer_from(const JsonField& field) {
       cage_from(field, deformer);
       break;
     case displaced:
-      type.refuse("twist, bend, taper, stretch, transform, lattice or cage");
+      displaced_from(field, deformer);
+      break;
   }
   field.within([&] { check_deformer(deformer); });
   return deformer;
@@ -158,6 +179,8 @@ Json to_json(const Deformer& deformer) {
     put_lattice(deformer, json);
   } else if (deformer.kind == cage) {
     put_cage(deformer, json);
+  } else if (deformer.kind == displaced) {
+    put_displaced(deformer, json);
   } else {
     put_axis(deformer, json);
   }

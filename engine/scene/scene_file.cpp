@@ -31,6 +31,16 @@ std::string content(const std::filesystem::path& path) {
   return text.str();
 }
 
+// Replaces the files of shapes that deformers name.
+template <typename Function>
+void each_shapes_file(Json& document, const Function& renamed) {
+  if (!document.contains("deformation") || !document["deformation"].is_array()) return;
+  for (Json& deformer : document["deformation"]) {
+    if (!deformer.is_object() || !deformer.contains("shapes") || !deformer["shapes"].is_string()) continue;
+    deformer["shapes"] = renamed(std::filesystem::path(deformer["shapes"].get<std::string>())).string();
+  }
+}
+
 }  // namespace
 
 SceneFile::SceneFile(Json document, std::filesystem::path path)
@@ -81,6 +91,9 @@ void SceneFile::set(const std::string& pointer, const std::string& value) {
 Scene SceneFile::at(double frame) const {
   Json document = document_;
   for (const Track& track : tracks_) track.apply(frame, document);
+  each_shapes_file(document, [&](const std::filesystem::path& shapes) {
+    return shapes.is_relative() ? path_.parent_path() / shapes : shapes;
+  });
   Scene scene = scene_from(JsonField(document, ""));
   if (!document.contains("lights")) scene.lights = default_lights(first_view_.value_or(scene.view));
   if (scene.body.is_relative()) scene.body = path_.parent_path() / scene.body;
@@ -94,6 +107,10 @@ void SceneFile::save(const std::filesystem::path& path) const {
     document["body"] =
         std::filesystem::proximate(path_.parent_path() / body, std::filesystem::absolute(path).parent_path());
   }
+  each_shapes_file(document, [&](const std::filesystem::path& shapes) {
+    if (!shapes.is_relative()) return shapes;
+    return std::filesystem::proximate(path_.parent_path() / shapes, std::filesystem::absolute(path).parent_path());
+  });
   write_atomically(path, [&](const std::filesystem::path& temporary) {
     std::ofstream file(temporary, std::ios::binary);
     file << document.dump(2) << "\n";

@@ -229,6 +229,19 @@ void bind_engine(py::module_& module) {
            "'directional:DX,DY,DZ:IRRADIANCE' and 'ambient:IRRADIANCE' (W/mm^2), 'point:X,Y,Z:POWER' (W); replaces all "
            "lights.")
       .def(
+          "set_deformation",
+          [](Engine& engine, const py::object& list) {
+            const std::vector<Deformer> deformers = deformation_from(list);
+            const py::gil_scoped_release release;
+            engine.set_deformation(deformers);
+          },
+          py::arg("list"),
+          "Moves body and display mesh from where they lie in the file: a list of dicts with 'type' twist, bend, "
+          "taper, "
+          "stretch, transform, lattice, cage or displaced and the fields of docs/deformation.md (mm, degrees), or its "
+          "JSON text; [] puts all back exactly. Material and what the body sees of itself follow. Raises InputError, "
+          "and moves nothing.")
+      .def(
           "set_irradiance",
           [](Engine& engine, std::uint32_t level, const FloatArray& q,
              const std::optional<std::array<float, 3>>& direction) {

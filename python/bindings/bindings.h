@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/graph/deformer.h"
 #include "engine/graph/graph.h"
 #include "engine/graph/solution.h"
 #include "engine/render/picture.h"
@@ -23,6 +24,7 @@ void bind_materials(pybind11::module_& module);
 void bind_reference(pybind11::module_& module);
 void bind_engine(pybind11::module_& module);
 void bind_scene(pybind11::module_& module);
+void bind_deformation(pybind11::module_& module);
 
 // Converted to C order and float32 if need be.
 using IndexArray = pybind11::array_t<std::uint32_t, pybind11::array::c_style | pybind11::array::forcecast>;
@@ -69,6 +71,9 @@ std::optional<glm::vec3> as_vector(const std::optional<std::array<float, 3>>& co
 
 // Tone mapped, (height, width, 3) sRGB.
 pybind11::array_t<std::uint8_t> srgb_array(const Picture& picture, const ToneOptions& options);
+
+// A list of dicts (docs/deformation.md), or its JSON text. Throws InputError.
+std::vector<Deformer> deformation_from(const pybind11::object& list);
 
 pybind11::tuple as_tuple(const glm::dvec3& v);
 pybind11::dict as_dict(const Energy& energy);

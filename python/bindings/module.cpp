@@ -141,6 +141,7 @@ PYBIND11_MODULE(_core, module) {
   quadgraph::python::bind_graph(module);
   quadgraph::python::bind_materials(module);
   quadgraph::python::bind_reference(module);
+  quadgraph::python::bind_deformation(module);
   quadgraph::python::bind_engine(module);
   quadgraph::python::bind_scene(module);
 }
