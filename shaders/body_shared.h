@@ -13,6 +13,9 @@ namespace quadgraph::gpu {
 // corner 3 is the one that is left.
 #define CROSSING_BITS 6
 
+const uint BODY_EVEN = 1u;      // the coefficients are the same everywhere
+const uint BODY_INVERTED = 2u;  // some tets are turned inside out: rays end there
+
 struct BodyRef {
   QG_REF(Vec3s) vertices;  // mm
   QG_REF(Uvec4s) tets;
@@ -23,7 +26,7 @@ struct BodyRef {
   QG_REF(Opticals) optical;  // per tet
   uint tet_count;
   uint face_count;
-  uint even;  // 1: the same coefficients everywhere
+  uint flags;  // BODY_*
   float eta;
 };
 

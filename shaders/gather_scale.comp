@@ -24,7 +24,7 @@ Around around_vertex(uint v) {
     vec3 ab = load_vec3(solid.body.vertices, ids.y) - a, ac = load_vec3(solid.body.vertices, ids.z) - a;
     vec3 doubled = cross(ab, ac), bc = ac - ab;
     float weight = length(doubled);
-    uint tet = solid.body.even == 1u ? 0u : load_uint(solid.body.face_tets, face);
+    uint tet = (solid.body.flags & BODY_EVEN) != 0u ? 0u : load_uint(solid.body.face_tets, face);
     Optical optical = load_optical(solid.body.optical, tet);
     normal += doubled;
     gathered += weight * load_vec3(push.gathered, face);

@@ -20,7 +20,7 @@ struct Corner {
 // Where a ray leaves a tet.
 struct Exit {
   uint slot;     // of the corner opposite, 0 to 2
-  bool found;    // false in a tet so flat that its faces have no side
+  bool found;    // false in a tet so flat that its faces have no side, and in one that is turned inside out
   float time;    // length over six volumes, 1/mm^2
   float path;    // mm
   vec4 rate;     // of the barycentric coordinates per time
@@ -59,11 +59,18 @@ mat3 corners_of(uvec3 ids) {
 void start_on_face(uint tet, uvec3 ids, mat3 corners, vec3 l) {
   uvec4 all = load_uvec4(BODY.tets, tet);
   uint apex = all.x + all.y + all.z + all.w - ids.x - ids.y - ids.z;
-  optical = load_optical(BODY.optical, BODY.even == 1u ? 0u : tet);
+  optical = load_optical(BODY.optical, (BODY.flags & BODY_EVEN) != 0u ? 0u : tet);
   corner_0 = Corner(ids.x, place_of(ids.x, all), corners[0], l.x, payload(ids.x));
   corner_1 = Corner(ids.y, place_of(ids.y, all), corners[1], l.y, payload(ids.y));
   corner_2 = Corner(ids.z, place_of(ids.z, all), corners[2], l.z, payload(ids.z));
   corner_3 = Corner(apex, place_of(apex, all), load_vec3(BODY.vertices, apex), 0.0, payload(apex));
+}
+
+// Whether the present tet, of this signed volume as find_exit takes it, is turned inside out.
+bool inside_out(float six_volume) {
+  uint p_0 = corner_0.place, p_1 = corner_1.place, p_2 = corner_2.place, p_3 = corner_3.place;
+  bool odd = (((p_0 > p_1) != (p_0 > p_2)) != ((p_0 > p_3) != (p_1 > p_2))) != ((p_1 > p_3) != (p_2 > p_3));
+  return odd != (six_volume > 0.0);
 }
 
 Exit find_exit(vec3 direction) {
@@ -79,7 +86,7 @@ Exit find_exit(vec3 direction) {
   Exit exit;
   exit.time = min(time.x, min(time.y, time.z));
   exit.slot = time.x == exit.time ? 0u : time.y == exit.time ? 1u : 2u;
-  exit.found = exit.time < NEVER;
+  exit.found = exit.time < NEVER && ((BODY.flags & BODY_INVERTED) == 0u || !inside_out(six_volume));
   exit.path = exit.time * abs(six_volume);
   exit.rate = vec4(rate, -(rate.x + rate.y + rate.z));
   exit.outward = -side * (exit.slot == 0u ? n_0 : exit.slot == 1u ? n_1 : n_2);
@@ -123,7 +130,7 @@ uvec2 turn(uint tet, uint slot) {
 
 // Enters the tet across, whose new corner replaces that in slot 3.
 void enter(uvec2 crossing) {
-  if (BODY.even == 0u) optical = load_optical(BODY.optical, crossing.x);
+  if ((BODY.flags & BODY_EVEN) == 0u) optical = load_optical(BODY.optical, crossing.x);
   corner_0.place = crossing.y >> 2u * corner_0.place & 3u;
   corner_1.place = crossing.y >> 2u * corner_1.place & 3u;
   corner_2.place = crossing.y >> 2u * corner_2.place & 3u;

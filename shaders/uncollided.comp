@@ -41,7 +41,7 @@ struct Met {
 // opposite of.
 void start_at_vertex(uint v, uint tet, vec3 direction) {
   uvec4 ids = load_uvec4(BODY.tets, tet);
-  optical = load_optical(BODY.optical, BODY.even == 1u ? 0u : tet);
+  optical = load_optical(BODY.optical, (BODY.flags & BODY_EVEN) != 0u ? 0u : tet);
   corner_0 = Corner(ids.x, 0u, load_vec3(BODY.vertices, ids.x), float(ids.x == v), Payload(0u));
   corner_1 = Corner(ids.y, 1u, load_vec3(BODY.vertices, ids.y), float(ids.y == v), Payload(0u));
   corner_2 = Corner(ids.z, 2u, load_vec3(BODY.vertices, ids.z), float(ids.z == v), Payload(0u));

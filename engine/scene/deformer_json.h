@@ -7,8 +7,8 @@
 namespace quadgraph {
 
 // {"type": "twist", "axis": [0, 1, 0], "degrees": 90, "range": [0, 1]}: the members of Deformer that its kind uses;
-// "range" in shares of the rest box or "range_mm" in coordinates along the axis; "shapes" the file that they are in. Throws
-// InputError with the path of what is wrong.
+// "range" in shares of the rest box or "range_mm" in coordinates along the axis; "shapes" the file that has them.
+// Throws InputError with the path of what is wrong.
 Deformer deformer_from(const JsonField& field);
 
 // Throws InputError for shapes that are in no file.

@@ -162,6 +162,7 @@ void DeformedLevels::put_back(vk::Context& context, std::vector<LevelBuffers>& l
     meshes_[i].put_back(context, levels[i].vertices);
     if (levels[i].nodes.size() > 0) vk::write_bytes(context, levels[i].nodes, std::as_bytes(rest_[i].nodes));
     levels[i].least = {};
+    levels[i].inverted = false;
   }
   list_.clear();
 }

@@ -196,6 +196,7 @@ struct Simulation::Implementation {
     work.recorder.submit();
     for (std::uint32_t i = 0; i < levels.size(); ++i) {
       ShapeState state = deformed.state(i);
+      levels[i].inverted = state.inverted > 0;
       operators.remeasure(i, state.conduction > packed_conduction);
       exchange.moved(i);
       samples[i] = std::move(state.samples);

@@ -48,6 +48,7 @@ struct LevelBuffers {
   vk::Buffer optical;     // Optical per node; of the tets alone, or one for all (Coefficients), where that is enough
   bool even = false;      // optical is the same everywhere, and read from the first
   gpu::LeastTet least{};  // of the tets in the present shape
+  bool inverted = false;  // some of them are turned inside out
   vk::Buffer q;           // vec3 per face, W/mm^2: written by the lights or by set_irradiance
   vk::Buffer beam_q;      // float, per beam (BeamBuffers) gpu::Beam::floats per face: what q is made of
   vk::Buffer sky;         // float per face: share of even light from outside that no other part of the body hides

@@ -79,7 +79,7 @@ gpu::BodyRef SourceWalk::body(const LevelBuffers& level, double eta, bool even) 
           .optical = level.optical.address(),
           .tet_count = level.tet_count,
           .face_count = level.face_count,
-          .even = even ? 1u : 0u,
+          .flags = (even ? gpu::BODY_EVEN : 0u) | (level.inverted ? gpu::BODY_INVERTED : 0u),
           .eta = static_cast<float>(eta)};
 }
 

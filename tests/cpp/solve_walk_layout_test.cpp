@@ -28,7 +28,7 @@ TEST_CASE("the walk and C++ agree on their structs") {
   CHECK(walk.offset.at("BodyRef") ==
         Members{MEMBER(BodyRef, vertices), MEMBER(BodyRef, tets), MEMBER(BodyRef, crossings), MEMBER(BodyRef, faces),
                 MEMBER(BodyRef, face_tets), MEMBER(BodyRef, face_kinds), MEMBER(BodyRef, optical),
-                MEMBER(BodyRef, tet_count), MEMBER(BodyRef, face_count), MEMBER(BodyRef, even), MEMBER(BodyRef, eta)});
+                MEMBER(BodyRef, tet_count), MEMBER(BodyRef, face_count), MEMBER(BodyRef, flags), MEMBER(BodyRef, eta)});
   CHECK(walk.offset.at("WalkSourcePush") ==
         Members{MEMBER(WalkSourcePush, body), MEMBER(WalkSourcePush, beam), MEMBER(WalkSourcePush, beam_q),
                 MEMBER(WalkSourcePush, scale), MEMBER(WalkSourcePush, deposit), MEMBER(WalkSourcePush, unscattered),

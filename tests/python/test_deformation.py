@@ -50,7 +50,7 @@ def test_every_kind_is_written_out_and_read_back_as_it_is():
         ({"type": "twist", "degrees": "a lot"}, "/1/degrees.*a number"),
         ({"type": "twist", "factor": 2}, "/1/factor.*degrees"),
         ({"type": "stretch", "factor": 0}, "/1: stretch, factor.*0.001"),
-        ({"type": "taper", "range": [1, 0]}, "/1: taper, range"),
+        ({"type": "taper", "factor": 2, "range": [1, 0]}, "/1: taper, range"),
         ({"type": "cage", **TETRAHEDRON}, "/1/moved"),
         ({"type": "displaced", "shapes": "nowhere.qshapes", "frame": 0}, "/1/shapes.*cannot be read"),
     ],
