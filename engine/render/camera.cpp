@@ -29,6 +29,9 @@ void check_view(const View& view) {
   if (!(view.vertical_fov >= 1 && view.vertical_fov <= 150)) {
     refuse("field of view", view.vertical_fov, "1 to 150 degrees");
   }
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!std::isfinite(view.target[axis])) refuse("target", view.target[axis], "a finite number of mm");
+  }
   if (view.distance && !(*view.distance > 0 && std::isfinite(*view.distance))) {
     refuse("distance", *view.distance, "more than 0 mm");
   }
@@ -78,10 +81,11 @@ Camera place_camera(const View& view, const Sphere& bounds, float aspect) {
       turned({-std::sin(azimuth) * std::sin(elevation), std::cos(elevation), -std::cos(azimuth) * std::sin(elevation)},
              view.up);
   camera.right = glm::cross(camera.up, camera.backward);
-  camera.eye = bounds.centre + distance * camera.backward;
+  camera.eye = bounds.centre + view.target + distance * camera.backward;
 
-  const float near = std::max(distance - 1.01f * bounds.radius, 1e-3f * bounds.radius);
-  const float far = distance + 1.01f * bounds.radius;
+  const float depth = distance + glm::dot(view.target, camera.backward);
+  const float near = std::max(depth - 1.01f * bounds.radius, 1e-3f * bounds.radius);
+  const float far = std::max(depth + 1.01f * bounds.radius, 2 * near);
   camera.clip_from_world = glm::perspectiveRH_ZO(glm::radians(view.vertical_fov), aspect, near, far) *
                            glm::lookAtRH(camera.eye, camera.eye - camera.backward, camera.up);
   return camera;

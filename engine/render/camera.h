@@ -20,14 +20,16 @@ Sphere bounding_sphere(std::span<const glm::vec3> points);
 
 enum class UpAxis { y, z };
 
-// A view of the object's centre. With y up, azimuth 0 looks along -z (from +z), azimuth 90 looks along -x (from +x).
-// With z up, azimuth 0 looks along +y (from -y), azimuth 90 along -x. Positive elevation looks from above.
+// A view of the object's centre, or of a point beside it. With y up, azimuth 0 looks along -z (from +z), azimuth 90
+// looks along -x (from +x). With z up, azimuth 0 looks along +y (from -y), azimuth 90 along -x. Positive elevation
+// looks from above.
 struct View {
   float azimuth = 0;                // degrees
   float elevation = 10;             // degrees, -90 to 90
   std::optional<float> distance{};  // mm from the centre; without it the bounding sphere fits the picture
   UpAxis up = UpAxis::y;
   float vertical_fov = 30;  // degrees, 1 to 150
+  glm::vec3 target{0};      // mm from the object's centre: what the middle of the picture shows
 
   bool operator==(const View&) const = default;
 };

@@ -18,6 +18,11 @@ VkRenderingAttachmentInfo attachment(const vk::Image& image, VkImageLayout layou
   return info;
 }
 
+VkExtent2D extent_of(const DrawTarget& target) {
+  const vk::ImageOptions& options = target.depth->options();
+  return {target.width > 0 ? target.width : options.width, target.height > 0 ? target.height : options.height};
+}
+
 void begin_rendering(vk::Commands& commands, const DrawTarget& target) {
   std::vector<VkRenderingAttachmentInfo> colours;
   for (const vk::Image* image : target.colours) {
@@ -30,7 +35,7 @@ void begin_rendering(vk::Commands& commands, const DrawTarget& target) {
   const auto depth = attachment(*target.depth, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, farthest);
   VkRenderingInfo info{};
   info.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
-  info.renderArea.extent = {target.depth->options().width, target.depth->options().height};
+  info.renderArea.extent = extent_of(target);
   info.layerCount = 1;
   info.colorAttachmentCount = static_cast<std::uint32_t>(colours.size());
   info.pColorAttachments = colours.data();
@@ -41,7 +46,7 @@ void begin_rendering(vk::Commands& commands, const DrawTarget& target) {
 // A negative height turns y up (VK_KHR_maintenance1).
 void set_viewport(vk::Commands& commands, const DrawTarget& target, const Viewport& viewport) {
   const VkViewport turned{viewport.x, viewport.y + viewport.height, viewport.width, -viewport.height, 0.0f, 1.0f};
-  const VkRect2D scissor{{0, 0}, {target.depth->options().width, target.depth->options().height}};
+  const VkRect2D scissor{{0, 0}, extent_of(target)};
   vkCmdSetViewport(commands.handle(), 0, 1, &turned);
   vkCmdSetScissor(commands.handle(), 0, 1, &scissor);
 }

@@ -16,6 +16,7 @@ struct Viewport {
 struct DrawTarget {
   std::vector<const vk::Image*> colours;
   const vk::Image* depth = nullptr;
+  std::uint32_t width = 0, height = 0;  // of the upper left part that is cleared and drawn into, pixels; 0: all
 };
 
 // Clears the images (colour 0, depth 1; contents before are dropped), draws an indexed triangle list with y up, and

@@ -6,7 +6,9 @@
 #include "engine/graph/material.h"
 #include "engine/render/display_faces.h"
 #include "engine/render/display_motion.h"
+#include "engine/render/inside.h"
 #include "engine/render/irradiance.h"
+#include "engine/render/legend.h"
 #include "engine/render/metadata.h"
 #include "engine/render/rasteriser.h"
 #include "engine/render/text.h"
@@ -84,7 +86,17 @@ struct Engine::Implementation {
   std::optional<RadianceProbe> probe;       // made at first use
   vk::Buffer triangle_face;                 // display_faces.h, made at first use
   std::vector<PassStats> deformation_passes, irradiance_passes, gather_passes, render_passes;
-  bool deformed = false;  // since the last solve
+  bool deformed = false;         // since the last solve
+  std::optional<Legend> legend;  // of the last picture
+  FalseColours false_colours;    // the same
+
+  void draw_inside(const Camera& camera, const RenderOptions& render) {
+    const Inside inside = inside_of({context, simulation, graph, *report, options, bounds, camera.eye}, render.show);
+    false_colours = {};  // two need not fit beside each other
+    false_colours = upload_false_colours(context, inside.mesh, inside.plane, inside.legend.diverging);
+    legend = inside.legend;
+    render_passes = rasteriser.run(false_colours, camera, render.width, render.height);
+  }
 
   const GatherField& gather() {
     std::vector<PassStats> passes;
@@ -235,31 +247,45 @@ SurfaceField Engine::surface_field() const {
   return implementation_->simulation.surface_field();
 }
 
-Picture Engine::render(const View& view, const RenderOptions& options) {
+const PictureBuffers& Engine::draw(const View& view, const RenderOptions& options) {
   auto& self = *implementation_;
   check_options(options);
   if (!self.report) throw InputError("render: solve first; there is no exitance to show");
   const Camera camera =
       place_camera(view, self.bounds, static_cast<float>(options.width) / static_cast<float>(options.height));
+  self.view = view;
+  if (options.show.quantity != Quantity::picture) {
+    self.draw_inside(camera, options);
+    return self.rasteriser.picture();
+  }
+  self.legend.reset();
   std::optional<GatherView> gather;
   if (options.radiance == Radiance::gathered ||
       (options.radiance == Radiance::automatic && self.simulation.can_gather())) {
     const GatherField& field = self.gather();
     gather.emplace(field, self.triangle_face);
   }
-  RasterResult result = self.rasteriser.run({.mesh = self.mesh,
-                                             .finest = self.simulation.level(0),
-                                             .vertex_exitance = self.simulation.vertex_exitance(),
-                                             .vertex_unscattered = self.simulation.vertex_unscattered(),
-                                             .shadows = self.shadows,
-                                             .eta = self.simulation.eta(),
-                                             .roughness = options.roughness,
-                                             .gather = gather ? &*gather : nullptr},
-                                            camera, options.width, options.height);
-  self.view = view;
+  self.render_passes = self.rasteriser.run({.mesh = self.mesh,
+                                            .finest = self.simulation.level(0),
+                                            .vertex_exitance = self.simulation.vertex_exitance(),
+                                            .vertex_unscattered = self.simulation.vertex_unscattered(),
+                                            .shadows = self.shadows,
+                                            .eta = self.simulation.eta(),
+                                            .roughness = options.roughness,
+                                            .gather = gather ? &*gather : nullptr},
+                                           camera, options.width, options.height);
   self.radiance = gather ? Radiance::gathered : Radiance::lambertian;
-  self.render_passes = std::move(result.passes);
-  return std::move(result.picture);
+  return self.rasteriser.picture();
+}
+
+Picture Engine::render(const View& view, const RenderOptions& options) {
+  Picture picture = read_picture(implementation_->context, draw(view, options));
+  if (const auto& shown = legend()) draw_legend(picture, *shown);
+  return picture;
+}
+
+const std::optional<Legend>& Engine::legend() const {
+  return implementation_->legend;
 }
 
 Leaving Engine::leaving(std::span<const std::uint32_t> face, std::span<const glm::vec3> direction) {

@@ -15,8 +15,9 @@
 #include "engine/graph/graph.h"
 #include "engine/render/camera.h"
 #include "engine/render/lights.h"
-#include "engine/render/picture.h"
+#include "engine/render/picture_buffers.h"
 #include "engine/render/radiance_probe.h"
+#include "engine/render/show.h"
 #include "engine/solve/simulation.h"
 #include "engine/vk/context.h"
 
@@ -36,10 +37,10 @@ std::string_view name_of(Radiance radiance);
 constexpr std::uint32_t largest_side = 16384;  // of a picture, pixels
 
 struct RenderOptions {
-  std::uint32_t width = 1024,
-                height = 1024;  // pixels, 1 to largest_side each; every pixel is the mean of 2 x 2 samples
-  float roughness = 0.3f;       // alpha of the GGX distribution of the surface, 0.02 to 1
+  std::uint32_t width = 1024, height = 1024;  // pixels, 1 to largest_side; every one is the mean of 2 x 2 samples
+  float roughness = 0.3f;                     // alpha of the GGX distribution of the surface, 0.02 to 1
   Radiance radiance = Radiance::automatic;
+  Show show{};  // what is to be seen
 
   bool operator==(const RenderOptions&) const = default;
 };
@@ -97,8 +98,14 @@ class Engine {
   // Level 0 of the last solve.
   SurfaceField surface_field() const;
 
-  // The last solve seen from `view`. Throws InputError before a solve, on an option out of range, or if radiance is to
-  // be gathered and cannot be.
+  // The last solve seen from `view`, left on the device until the next one. Throws InputError before a solve, on an
+  // option out of range, or if radiance is to be gathered and cannot be.
+  const PictureBuffers& draw(const View& view, const RenderOptions& options = {});
+
+  // What the colours of the last one mean; nothing if it shows the body as it looks.
+  const std::optional<Legend>& legend() const;
+
+  // The same as `draw`, read back, with the legend in it.
   Picture render(const View& view, const RenderOptions& options = {});
 
   // Gathered radiance of the last solve that leaves the centroids of outside faces of level 0 along unit directions.

@@ -21,6 +21,7 @@ struct Picture {
   std::vector<float> scattered, specular, unscattered;
   std::vector<float> transmittance;  // RGB per pixel: share of what is behind the body that is seen through it
   std::vector<float> alpha;          // per pixel, share of the pixel that the object covers
+  bool false_colour = false;         // the layer `scattered` is not radiance but linear display colour, shown as it is
 
   // The sum of the three layers at a value (pixel and channel), what is negative counting as none.
   float radiance(std::size_t value) const {

@@ -91,7 +91,9 @@ std::vector<std::uint8_t> to_srgb8(const Picture& picture, const ToneOptions& op
       const float threshold = dither(x, y);
       for (std::size_t c = 0; c < 3; ++c) {
         const float radiance = picture.radiance(3 * i + c);
-        const float object = alpha > 0 ? alpha * filmic(scale * radiance / alpha) : 0.0f;
+        const float object = picture.false_colour ? radiance
+                             : alpha > 0          ? alpha * filmic(scale * radiance / alpha)
+                                                  : 0.0f;
         const float behind = 1.0f - alpha + picture.transmittance[3 * i + c];
         const float shown = object + behind * background[static_cast<int>(c)];
         const float code = 255.0f * srgb_encode(std::clamp(shown, 0.0f, 1.0f));

@@ -1,11 +1,14 @@
 #include "engine/render/rasteriser.h"
 
 #include <algorithm>
+#include <array>
 #include <numbers>
+#include <numeric>
 #include <span>
 
 #include "engine/graph/fresnel.h"
-#include "engine/render/draw.h"
+#include "spirv/false_colour.frag.h"
+#include "spirv/false_colour.vert.h"
 #include "spirv/gather.comp.h"
 #include "spirv/resolve.comp.h"
 #include "spirv/surface.frag.h"
@@ -17,13 +20,6 @@ namespace {
 
 constexpr std::uint32_t tile_pixels = 512;  // per side; 96 MiB of samples
 constexpr VkFormat sample_format = VK_FORMAT_R32G32B32A32_SFLOAT;
-constexpr std::array<const char*, PICTURE_LAYERS> layer_names = {"scattered", "specular", "unscattered",
-                                                                 "transmittance"};
-
-std::vector<float> floats(const vk::Buffer& buffer) {
-  const auto mapped = buffer.mapped_as<float>();
-  return {mapped.begin(), mapped.end()};
-}
 
 gpu::SurfaceScene scene(const RasterInput& input, const Camera& camera) {
   gpu::SurfaceScene scene{.clip_from_world = camera.clip_from_world,
@@ -66,39 +62,32 @@ vk::GraphicsOptions pass_options(vk::Spirv fragment) {
 
 struct Rasteriser::Tile {
   std::uint32_t x, y, width, height;  // pixels inside the picture
+
+  std::uint64_t sample_bytes() const { return 64ull * width * height; }
 };
 
+// For tiles of up to as many pixels.
 struct Rasteriser::Targets {
-  Targets(vk::Context& context, std::uint32_t picture_width, std::uint32_t picture_height)
-      : width(picture_width),
-        height(picture_height),
-        samples_x(2 * std::min(width, tile_pixels)),
-        samples_y(2 * std::min(height, tile_pixels)),
+  Targets(vk::Context& context, std::uint32_t tile_width, std::uint32_t tile_height)
+      : width(tile_width),
+        height(tile_height),
         depth(context, image_options(VK_FORMAT_D32_SFLOAT, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT),
-              "picture/depth"),
-        alpha(context, 4 * pixels(), vk::Place::host, "picture/alpha") {
+              "picture/depth") {
     for (int k = 0; k < SAMPLE_LAYERS; ++k) {
       images.emplace_back(context, image_options(sample_format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT),
                           "picture/samples");
-      samples.emplace_back(context, sample_bytes(), vk::Place::read, "picture/samples");
+      samples.emplace_back(context, 64ull * width * height, vk::Place::read, "picture/samples");
     }
-    for (const char* name : layer_names)
-      layers.emplace_back(context, 12 * pixels(), vk::Place::host, std::string("picture/") + name);
   }
 
-  std::uint64_t pixels() const { return std::uint64_t{width} * height; }
-  std::uint64_t sample_bytes() const { return 16ull * samples_x * samples_y; }
   vk::ImageOptions image_options(VkFormat format, VkImageUsageFlags usage) const {
-    return {format, samples_x, samples_y, 1, usage};
+    return {format, 2 * width, 2 * height, 1, usage};
   }
 
-  std::uint32_t width, height;         // pixels of the picture
-  std::uint32_t samples_x, samples_y;  // of a tile
-  std::vector<vk::Image> images;       // of a tile
+  std::uint32_t width, height;  // pixels of 2 x 2 samples
+  std::vector<vk::Image> images;
   vk::Image depth;
   std::vector<vk::Buffer> samples;  // the same
-  std::vector<vk::Buffer> layers;   // of the picture
-  vk::Buffer alpha;
 };
 
 double radiance_norm(double eta) {
@@ -116,72 +105,142 @@ Rasteriser::Rasteriser(vk::Context& context)
       surface_(context, pass_options(surface_frag), "surface"),
       gathered_(context, pass_options(surface_gathered_frag), "surface gathered"),
       resolve_(context, resolve_comp, sizeof(gpu::ResolvePush), "resolve"),
-      gather_(context, gather_comp, sizeof(gpu::ResolvePush), "gather") {}
+      gather_(context, gather_comp, sizeof(gpu::ResolvePush), "gather"),
+      scene_(context, sizeof(gpu::SurfaceScene), vk::Place::read, "picture/scene") {}
 
-void Rasteriser::record(vk::Commands& commands, const RasterInput& input, const gpu::SurfacePush& push,
-                        const Targets& targets, const Tile& tile) {
-  DrawTarget target{{}, &targets.depth};
-  for (const vk::Image& image : targets.images) target.colours.push_back(&image);
-  commands.begin_pass("surface");
-  draw(commands, target,
-       {-2.0f * static_cast<float>(tile.x), -2.0f * static_cast<float>(tile.y),
-        2.0f * static_cast<float>(targets.width), 2.0f * static_cast<float>(targets.height)},
-       input.gather != nullptr ? gathered_ : surface_, push, input.mesh.triangles, 3 * input.mesh.triangle_count);
-  commands.end_pass();
-  record_resolve(commands, input, push, targets, tile);
+Rasteriser::~Rasteriser() = default;
+
+void Rasteriser::make_room(std::uint32_t width, std::uint32_t height) {
+  picture_.resize(context_, width, height);
+  std::uint32_t tile_width = std::min(width, tile_pixels), tile_height = std::min(height, tile_pixels);
+  if (targets_ && targets_->width >= tile_width && targets_->height >= tile_height) return;
+  if (targets_) {
+    tile_width = std::max(tile_width, targets_->width);
+    tile_height = std::max(tile_height, targets_->height);
+    targets_.reset();
+  }
+  targets_ = std::make_unique<Targets>(context_, tile_width, tile_height);
 }
 
-void Rasteriser::record_resolve(vk::Commands& commands, const RasterInput& input, const gpu::SurfacePush& push,
-                                const Targets& targets, const Tile& tile) {
-  gpu::ResolvePush resolve{.scene = push.scene,
+Viewport Rasteriser::viewport(const Tile& tile) const {
+  return {-2.0f * static_cast<float>(tile.x), -2.0f * static_cast<float>(tile.y),
+          2.0f * static_cast<float>(picture_.width), 2.0f * static_cast<float>(picture_.height)};
+}
+
+DrawTarget Rasteriser::target(const Tile& tile) const {
+  DrawTarget target{{}, &targets_->depth, 2 * tile.width, 2 * tile.height};
+  for (const vk::Image& image : targets_->images) target.colours.push_back(&image);
+  return target;
+}
+
+gpu::ResolvePush Rasteriser::resolve_push(std::uint64_t scene, const Tile& tile) const {
+  gpu::ResolvePush resolve{.scene = scene,
                            .samples = {},
                            .layers = {},
-                           .alpha = targets.alpha.address(),
+                           .alpha = picture_.alpha.address(),
                            .tile_x = tile.x,
                            .tile_y = tile.y,
                            .tile_width = tile.width,
                            .tile_height = tile.height,
-                           .sample_stride = targets.samples_x,
-                           .picture_width = targets.width};
-  for (std::size_t k = 0; k < PICTURE_LAYERS; ++k) resolve.layers[k] = targets.layers[k].address();
-  commands.begin_pass(input.gather != nullptr ? "gather" : "resolve");
+                           .sample_stride = 2 * tile.width,
+                           .picture_width = picture_.width};
+  for (std::size_t k = 0; k < PICTURE_LAYERS; ++k) resolve.layers[k] = picture_.layers[k].address();
+  for (std::size_t k = 0; k < SAMPLE_LAYERS; ++k) resolve.samples[k] = targets_->samples[k].address();
+  return resolve;
+}
+
+void Rasteriser::record_resolve(vk::Commands& commands, const char* name, const vk::ComputePass& pass,
+                                std::uint64_t scene, const Tile& tile) {
+  commands.begin_pass(name);
   for (std::size_t k = 0; k < SAMPLE_LAYERS; ++k) {
-    commands.copy(targets.images[k], targets.samples[k]);
-    resolve.samples[k] = targets.samples[k].address();
+    commands.copy(targets_->images[k], targets_->samples[k], 2 * tile.width, 2 * tile.height);
   }
-  commands.dispatch(input.gather != nullptr ? gather_ : resolve_, resolve, std::uint64_t{tile.width} * tile.height);
+  commands.dispatch(pass, resolve_push(scene, tile), std::uint64_t{tile.width} * tile.height);
   commands.end_pass();
 }
 
-RasterResult Rasteriser::run(const RasterInput& input, const Camera& camera, std::uint32_t width,
-                             std::uint32_t height) {
-  const Targets targets(context_, width, height);
-  const gpu::SurfaceScene constants = scene(input, camera);
-  const auto scene_buffer = vk::upload<gpu::SurfaceScene>(context_, std::span(&constants, 1), "picture/scene");
+void Rasteriser::record(vk::Commands& commands, const RasterInput& input, const Tile& tile) {
+  commands.begin_pass("surface");
+  draw(commands, target(tile), viewport(tile), input.gather != nullptr ? gathered_ : surface_,
+       gpu::SurfacePush{scene_.address()}, input.mesh.triangles, 3 * input.mesh.triangle_count);
+  commands.end_pass();
+  record_resolve(commands, input.gather != nullptr ? "gather" : "resolve", input.gather != nullptr ? gather_ : resolve_,
+                 scene_.address(), tile);
+}
+
+void Rasteriser::record(vk::Commands& commands, const FalseColours& input, const Camera& camera, const Tile& tile) {
+  const gpu::FalseColourPush push{.clip_from_world = camera.clip_from_world,
+                                  .vertices = input.vertices.address(),
+                                  .eye = camera.eye,
+                                  .plane = input.plane,
+                                  .diverging = input.diverging ? 1u : 0u};
+  commands.begin_pass("false colour");
+  draw(commands, target(tile), viewport(tile), *false_colour_, push, input.indices, input.vertex_count);
+  commands.end_pass();
+  record_resolve(commands, "resolve", resolve_, scene_.address(), tile);
+}
+
+// Adds up what the two passes of every tile took.
+template <typename Record>
+std::vector<PassStats> Rasteriser::run_tiles(std::uint32_t width, std::uint32_t height, const Record& record_tile) {
+  make_room(width, height);
   std::vector<PassStats> passes(2);
-  const std::uint64_t surface_bytes = 64ull * input.mesh.vertex_count + input.mesh.triangles.size() +
-                                      (2 * SAMPLE_LAYERS + 1) * targets.sample_bytes() / 2;
-  // Copied, then read. Of the body, as if every vertex were read once.
-  const std::uint64_t resolve_bytes =
-      3 * SAMPLE_LAYERS * targets.sample_bytes() + (input.gather != nullptr ? input.gather->field.points().size() : 0);
   for (std::uint32_t y = 0; y < height; y += tile_pixels) {
     for (std::uint32_t x = 0; x < width; x += tile_pixels) {
+      const Tile tile{x, y, std::min(tile_pixels, width - x), std::min(tile_pixels, height - y)};
       vk::Commands commands(context_, 2);
-      record(commands, input, {scene_buffer.address()}, targets,
-             {x, y, std::min(tile_pixels, width - x), std::min(tile_pixels, height - y)});
+      record_tile(commands, tile);
       const auto times = commands.submit_and_wait();
       for (std::size_t k = 0; k < passes.size(); ++k) {
         passes[k].name = times[k].name;
         passes[k].time_ms += times[k].time_ms;
-        passes[k].bytes += k == 0 ? surface_bytes : resolve_bytes;
         ++passes[k].count;
       }
+      passes[0].bytes += (2 * SAMPLE_LAYERS + 1) * tile.sample_bytes() / 2;
+      passes[1].bytes += 3 * SAMPLE_LAYERS * tile.sample_bytes();  // copied, then read
     }
   }
-  passes[1].bytes += (12 * PICTURE_LAYERS + 4) * targets.pixels();
-  return {{width, height, floats(targets.layers[0]), floats(targets.layers[1]), floats(targets.layers[2]),
-           floats(targets.layers[3]), floats(targets.alpha)},
-          passes};
+  passes[1].bytes += (12 * PICTURE_LAYERS + 4) * picture_.pixels();
+  return passes;
+}
+
+std::vector<PassStats> Rasteriser::run(const RasterInput& input, const Camera& camera, std::uint32_t width,
+                                       std::uint32_t height) {
+  const gpu::SurfaceScene constants = scene(input, camera);
+  vk::write_bytes(context_, scene_, std::as_bytes(std::span(&constants, 1)));
+  auto passes =
+      run_tiles(width, height, [&](vk::Commands& commands, const Tile& tile) { record(commands, input, tile); });
+  picture_.false_colour = false;
+  passes[0].bytes += passes[0].count * (64ull * input.mesh.vertex_count + input.mesh.triangles.size());
+  // Of the body, as if every vertex were read once.
+  if (input.gather != nullptr) passes[1].bytes += passes[1].count * input.gather->field.points().size();
+  return passes;
+}
+
+std::vector<PassStats> Rasteriser::run(const FalseColours& input, const Camera& camera, std::uint32_t width,
+                                       std::uint32_t height) {
+  if (!false_colour_) {
+    vk::GraphicsOptions options = pass_options(false_colour_frag);
+    options.vertex = false_colour_vert;
+    options.push_size = sizeof(gpu::FalseColourPush);
+    options.cull = VK_CULL_MODE_NONE;
+    false_colour_.emplace(context_, options, "false colour");
+  }
+  auto passes = run_tiles(width, height,
+                          [&](vk::Commands& commands, const Tile& tile) { record(commands, input, camera, tile); });
+  picture_.false_colour = true;
+  passes[0].bytes += passes[0].count * input.vertices.size();
+  return passes;
+}
+
+FalseColours upload_false_colours(vk::Context& context, const FalseMesh& mesh, const Plane& plane, bool diverging) {
+  std::vector<std::uint32_t> indices(mesh.size());
+  std::iota(indices.begin(), indices.end(), 0u);
+  return {.vertices = vk::upload<gpu::FalseVertex>(context, mesh, "picture/inside", vk::Place::device),
+          .indices = vk::upload<std::uint32_t>(context, indices, "picture/inside", vk::Place::device),
+          .vertex_count = static_cast<std::uint32_t>(mesh.size()),
+          .plane = plane,
+          .diverging = diverging};
 }
 
 }  // namespace quadgraph

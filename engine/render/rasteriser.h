@@ -1,11 +1,15 @@
 // The display mesh as a picture.
 #pragma once
 
-#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
 
 #include "engine/render/camera.h"
 #include "engine/render/display_buffers.h"
-#include "engine/render/picture.h"
+#include "engine/render/draw.h"
+#include "engine/render/false_mesh.h"
+#include "engine/render/picture_buffers.h"
 #include "engine/render/shadow_maps.h"
 #include "engine/solve/gather_field.h"
 #include "engine/solve/simulation.h"
@@ -35,30 +39,56 @@ struct RasterInput {
   const GatherView* gather = nullptr;  // null: radiance as of a diffuser
 };
 
-struct RasterResult {
-  Picture picture;
-  std::vector<PassStats> passes;
+// A view of the inside on the device.
+struct FalseColours {
+  vk::Buffer vertices;  // gpu::FalseVertex, three per triangle
+  vk::Buffer indices;   // u32, 0, 1, 2 ...
+  std::uint32_t vertex_count = 0;
+  Plane plane{0, 0, 1, 0};
+  bool diverging = false;
 };
 
-// Draws in tiles, so that memory does not grow with the samples of the picture.
+FalseColours upload_false_colours(vk::Context& context, const FalseMesh& mesh, const Plane& plane, bool diverging);
+
+// Draws in tiles, so that the memory of the samples does not grow with the picture. What it draws into is kept from
+// picture to picture.
 class Rasteriser {
  public:
   explicit Rasteriser(vk::Context& context);
+  ~Rasteriser();
 
-  RasterResult run(const RasterInput& input, const Camera& camera, std::uint32_t width, std::uint32_t height);
+  std::vector<PassStats> run(const RasterInput& input, const Camera& camera, std::uint32_t width, std::uint32_t height);
+
+  // The same of a view of the inside.
+  std::vector<PassStats> run(const FalseColours& input, const Camera& camera, std::uint32_t width,
+                             std::uint32_t height);
+
+  // The last one drawn.
+  const PictureBuffers& picture() const { return picture_; }
 
  private:
   struct Tile;
   struct Targets;
 
-  void record(vk::Commands& commands, const RasterInput& input, const gpu::SurfacePush& push, const Targets& targets,
-              const Tile& tile);
-  void record_resolve(vk::Commands& commands, const RasterInput& input, const gpu::SurfacePush& push,
-                      const Targets& targets, const Tile& tile);
+  void make_room(std::uint32_t width, std::uint32_t height);
+  Viewport viewport(const Tile& tile) const;
+  DrawTarget target(const Tile& tile) const;
+  gpu::ResolvePush resolve_push(std::uint64_t scene, const Tile& tile) const;
+  void record(vk::Commands& commands, const RasterInput& input, const Tile& tile);
+  void record(vk::Commands& commands, const FalseColours& input, const Camera& camera, const Tile& tile);
+  void record_resolve(vk::Commands& commands, const char* name, const vk::ComputePass& pass, std::uint64_t scene,
+                      const Tile& tile);
+
+  template <typename Record>
+  std::vector<PassStats> run_tiles(std::uint32_t width, std::uint32_t height, const Record& record_tile);
 
   vk::Context& context_;
   vk::GraphicsPass surface_, gathered_;
   vk::ComputePass resolve_, gather_;
+  std::optional<vk::GraphicsPass> false_colour_;  // made at first use
+  PictureBuffers picture_;
+  std::unique_ptr<Targets> targets_;  // of a tile
+  vk::Buffer scene_;
 };
 
 }  // namespace quadgraph

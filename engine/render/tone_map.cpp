@@ -13,11 +13,6 @@
 namespace quadgraph {
 namespace {
 
-// The quantile of the covered pixels' luminance that is brought to `bright`, which the curve shows at three quarters of
-// full sRGB: thin parts that glow then keep their shape above it.
-constexpr double exposure_quantile = 0.95;
-constexpr double bright = 0.4;
-
 double luminance(const Picture& picture, std::size_t pixel) {
   constexpr double weight[3] = {0.2126, 0.7152, 0.0722};  // ITU-R BT.709
   double sum = 0;
@@ -49,10 +44,11 @@ float auto_exposure(const Picture& picture) {
   const auto middle =
       values.begin() + static_cast<std::ptrdiff_t>(exposure_quantile * static_cast<double>(values.size()));
   std::nth_element(values.begin(), middle, values.end());
-  return *middle > 0 ? static_cast<float>(std::log2(bright / *middle)) : 0.0f;
+  return *middle > 0 ? static_cast<float>(std::log2(exposure_bright / *middle)) : 0.0f;
 }
 
 float exposure_of(const Picture& picture, const ToneOptions& options) {
+  if (picture.false_colour) return options.exposure_stops.value_or(0.0f);
   return options.exposure_stops ? *options.exposure_stops : auto_exposure(picture);
 }
 

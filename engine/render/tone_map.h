@@ -26,8 +26,12 @@ float filmic(float radiance);
 // sRGB transfer function (IEC 61966-2-1) of a linear value in [0, 1].
 float srgb_encode(float linear);
 
-// Stops that bring the 0.95 quantile of the luminance of the covered pixels to the curve's bright middle. Depends on
-// nothing but the picture; 0 for a black one.
+// The quantile of the covered pixels' luminance that auto_exposure brings to `exposure_bright`, which the curve shows
+// at three quarters of full sRGB: thin parts that glow then keep their shape above it.
+inline constexpr double exposure_quantile = 0.95;
+inline constexpr double exposure_bright = 0.4;
+
+// Stops that bring the quantile to its place. Depends on nothing but the picture; 0 for a black one.
 float auto_exposure(const Picture& picture);
 
 // The stops of `options`, or else those of auto_exposure.

@@ -19,6 +19,7 @@
 #include "engine/solve/level_upload.h"
 #include "engine/solve/levels_solver.h"
 #include "engine/solve/surface_results.h"
+#include "shaders/surface_shared.h"
 
 namespace quadgraph {
 namespace {
@@ -328,6 +329,23 @@ struct Simulation::Implementation {
     return *gather;
   }
 
+  std::vector<glm::vec3> exitance_on(std::uint32_t number) {
+    OperatorBuffers& op = operators.at(solved_key(), number);
+    if (number >= levels.size() || !op.solved) {
+      throw InputError("level " + std::to_string(number) + " of exitance: the last solve did not go over it");
+    }
+    const LevelBuffers& level = levels[number];
+    const vk::Buffer phi(context, level.face_count * sizeof(glm::vec3), vk::Place::read, "results/phi of a level");
+    const vk::Buffer exitance(context, level.face_count * sizeof(glm::vec3), vk::Place::read,
+                              "results/exitance of a level");
+    const vk::Buffer clip(context, sizeof(gpu::Clip), vk::Place::device, "results/clip of a level");
+    const Boundary boundary =
+        boundary_of(solved->method, solved_source, solved->model, static_cast<double>(coefficients.eta()));
+    record_exitance(work, {level, op, solved->method, boundary, nullptr}, phi, exitance, clip);
+    work.recorder.submit();
+    return vk::download<glm::vec3>(context, exitance);
+  }
+
   glm::vec3 scale() const { return vk::download<gpu::Scale>(context, work.scale)[0].scale; }
 
   // W/mm^2 per face.
@@ -460,6 +478,10 @@ std::vector<glm::vec3> Simulation::phi() const {
   const glm::vec3 scale = self.scale();
   for (std::size_t i = 0; i < phi.size(); ++i) phi[i] *= x[moments * i] * scale;
   return phi;
+}
+
+std::vector<glm::vec3> Simulation::exitance_on(std::uint32_t level) {
+  return implementation_->exitance_on(level);
 }
 
 const vk::Buffer& Simulation::vertex_exitance() const {

@@ -130,6 +130,10 @@ class Simulation {
   SurfaceField surface_field() const;
   std::vector<glm::vec3> phi() const;  // per carrier of the method
 
+  // The exitance that the last solve found on a level, W/mm^2 per outside face, scattered. Throws InputError if it did
+  // not go over that level.
+  std::vector<glm::vec3> exitance_on(std::uint32_t level);
+
   // vec3 per surface vertex of level 0, W/mm^2, for display: of scattered light, and of light that was not.
   const vk::Buffer& vertex_exitance() const;
   const vk::Buffer& vertex_unscattered() const;

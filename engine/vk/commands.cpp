@@ -94,11 +94,11 @@ void Commands::copy(const Buffer& source, const Buffer& target, std::uint64_t by
   barrier();
 }
 
-void Commands::copy(const Image& source, const Buffer& target) {
+void Commands::copy(const Image& source, const Buffer& target, std::uint32_t width, std::uint32_t height) {
   const ImageOptions& options = source.options();
   VkBufferImageCopy region{};
   region.imageSubresource = {source.aspect(), 0, 0, options.layers};
-  region.imageExtent = {options.width, options.height, 1};
+  region.imageExtent = {width > 0 ? width : options.width, height > 0 ? height : options.height, 1};
   vkCmdCopyImageToBuffer(commands_, source.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, target.handle(), 1, &region);
   barrier();
 }

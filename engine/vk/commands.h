@@ -35,8 +35,9 @@ class Commands {
 
   void copy(const Buffer& source, const Buffer& target, std::uint64_t bytes, std::uint64_t target_offset = 0);
 
-  // Layer after layer, rows tightly packed; the image must be in TRANSFER_SRC_OPTIMAL.
-  void copy(const Image& source, const Buffer& target);
+  // Layer after layer, rows tightly packed; the image must be in TRANSFER_SRC_OPTIMAL. With a width and a height only
+  // its upper left part of that size.
+  void copy(const Image& source, const Buffer& target, std::uint32_t width = 0, std::uint32_t height = 0);
 
   void fill(const Buffer& target, std::uint32_t value);
 

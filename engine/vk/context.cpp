@@ -26,14 +26,45 @@ bool layer_present(const char* name) {
   return std::any_of(layers.begin(), layers.end(), [&](const auto& l) { return std::strcmp(l.layerName, name) == 0; });
 }
 
-bool extension_present(const char* layer, const char* name) {
-  std::uint32_t count = 0;
-  check(vkEnumerateInstanceExtensionProperties(layer, &count, nullptr), "vkEnumerateInstanceExtensionProperties");
-  std::vector<VkExtensionProperties> extensions(count);
-  check(vkEnumerateInstanceExtensionProperties(layer, &count, extensions.data()),
-        "vkEnumerateInstanceExtensionProperties");
+bool named(const std::vector<VkExtensionProperties>& extensions, const char* name) {
   return std::any_of(extensions.begin(), extensions.end(),
                      [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
+}
+
+bool extension_present(const char* name) {
+  std::uint32_t count = 0;
+  check(vkEnumerateInstanceExtensionProperties(nullptr, &count, nullptr), "vkEnumerateInstanceExtensionProperties");
+  std::vector<VkExtensionProperties> extensions(count);
+  check(vkEnumerateInstanceExtensionProperties(nullptr, &count, extensions.data()),
+        "vkEnumerateInstanceExtensionProperties");
+  return named(extensions, name);
+}
+
+bool can_swap(VkPhysicalDevice device) {
+  std::uint32_t count = 0;
+  check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr), "vkEnumerateDeviceExtensionProperties");
+  std::vector<VkExtensionProperties> extensions(count);
+  check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data()),
+        "vkEnumerateDeviceExtensionProperties");
+  return named(extensions, VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+}
+
+// The first family whose queues draw, compute and, where there is a surface, present to it.
+std::optional<std::uint32_t> find_family(VkPhysicalDevice device, VkSurfaceKHR surface) {
+  std::uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  constexpr VkQueueFlags wanted = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+  for (std::uint32_t family = 0; family < count; ++family) {
+    VkBool32 presents = VK_TRUE;
+    if (surface != VK_NULL_HANDLE) {
+      check(vkGetPhysicalDeviceSurfaceSupportKHR(device, family, surface, &presents),
+            "vkGetPhysicalDeviceSurfaceSupportKHR");
+    }
+    if ((families[family].queueFlags & wanted) == wanted && presents == VK_TRUE) return family;
+  }
+  return std::nullopt;
 }
 
 // The features the engine relies on, chained so that one call queries or enables them all.
@@ -65,19 +96,6 @@ struct Features {
             {"geometryShader", &base.features.geometryShader}};
   }
 };
-
-// Empty if the device can run the engine, else what it lacks.
-std::string what_is_missing(VkPhysicalDevice device) {
-  VkPhysicalDeviceProperties properties;
-  vkGetPhysicalDeviceProperties(device, &properties);
-  if (properties.apiVersion < VK_API_VERSION_1_3) return "Vulkan 1.3";
-  Features features;
-  vkGetPhysicalDeviceFeatures2(device, &features.base);
-  for (const auto& [name, value] : features.required()) {
-    if (*value == VK_FALSE) return name;
-  }
-  return {};
-}
 
 int preference(VkPhysicalDeviceType type) {
   switch (type) {
@@ -127,6 +145,7 @@ Context::Context(const ContextOptions& options) {
   try {
     create_instance(options);
     if (options.validation) create_messenger();
+    if (options.surface) surface_ = options.surface->create(instance_);
     pick_device(options.device);
     read_properties();
     create_device();
@@ -145,6 +164,7 @@ Context::~Context() {
 void Context::destroy() noexcept {
   arenas_.reset();
   if (device_ != VK_NULL_HANDLE) vkDestroyDevice(device_, nullptr);
+  if (surface_ != VK_NULL_HANDLE) vkDestroySurfaceKHR(instance_, surface_, nullptr);
   if (messenger_ != VK_NULL_HANDLE) {
     auto destroy_messenger = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
         vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
@@ -157,9 +177,12 @@ void Context::create_instance(const ContextOptions& options) {
   if (options.validation && !layer_present(validation_layer)) {
     throw VulkanError(std::string(validation_layer) + " is not installed (Debian: vulkan-validationlayers)");
   }
-  debug_utils_ = extension_present(nullptr, VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+  debug_utils_ = extension_present(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
   std::vector<const char*> extensions;
   if (debug_utils_) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+  if (options.surface) {
+    for (const std::string& name : options.surface->instance_extensions) extensions.push_back(name.c_str());
+  }
 
   VkApplicationInfo application{};
   application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
@@ -173,6 +196,21 @@ void Context::create_instance(const ContextOptions& options) {
   info.enabledLayerCount = options.validation ? 1 : 0;
   info.ppEnabledLayerNames = &validation_layer;
   check(vkCreateInstance(&info, nullptr, &instance_), "vkCreateInstance");
+}
+
+// Empty if the device can run the engine, else what it lacks.
+std::string Context::what_is_missing(VkPhysicalDevice device) const {
+  VkPhysicalDeviceProperties properties;
+  vkGetPhysicalDeviceProperties(device, &properties);
+  if (properties.apiVersion < VK_API_VERSION_1_3) return "Vulkan 1.3";
+  Features features;
+  vkGetPhysicalDeviceFeatures2(device, &features.base);
+  for (const auto& [name, value] : features.required()) {
+    if (*value == VK_FALSE) return name;
+  }
+  if (surface_ != VK_NULL_HANDLE && !can_swap(device)) return VK_KHR_SWAPCHAIN_EXTENSION_NAME;
+  if (!find_family(device, VK_NULL_HANDLE)) return "a queue that both draws and computes";
+  return find_family(device, surface_) ? "" : "a queue that draws, computes and presents to this window";
 }
 
 void Context::create_messenger() {
@@ -209,8 +247,8 @@ void Context::pick_device(const std::string& wanted) {
     const std::string missing = what_is_missing(candidate);
     seen += std::string(seen.empty() ? "" : "; ") + properties.deviceName;
     if (!missing.empty()) seen += " (lacks " + missing + ")";
-    const bool named = lower(properties.deviceName).find(lower(wanted)) != std::string::npos;
-    if (!missing.empty() || !named || preference(properties.deviceType) >= best) continue;
+    const bool meant = lower(properties.deviceName).find(lower(wanted)) != std::string::npos;
+    if (!missing.empty() || !meant || preference(properties.deviceType) >= best) continue;
     best = preference(properties.deviceType);
     physical_device_ = candidate;
   }
@@ -241,16 +279,7 @@ void Context::read_properties() {
 }
 
 void Context::create_device() {
-  std::uint32_t count = 0;
-  vkGetPhysicalDeviceQueueFamilyProperties(physical_device_, &count, nullptr);
-  std::vector<VkQueueFamilyProperties> families(count);
-  vkGetPhysicalDeviceQueueFamilyProperties(physical_device_, &count, families.data());
-  const VkQueueFlags wanted = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
-  auto family =
-      std::find_if(families.begin(), families.end(), [&](const auto& f) { return (f.queueFlags & wanted) == wanted; });
-  if (family == families.end()) throw VulkanError(info_.name + " has no queue that both draws and computes");
-  queue_family_ = static_cast<std::uint32_t>(family - families.begin());
-
+  queue_family_ = find_family(physical_device_, surface_).value();
   const float priority = 1.0f;
   VkDeviceQueueCreateInfo queue_info{};
   queue_info.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
@@ -264,6 +293,9 @@ void Context::create_device() {
   info.pNext = &features.base;
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queue_info;
+  const char* const swapchain = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
+  info.enabledExtensionCount = surface_ != VK_NULL_HANDLE ? 1 : 0;
+  info.ppEnabledExtensionNames = &swapchain;
   check(vkCreateDevice(physical_device_, &info, nullptr, &device_), "vkCreateDevice");
   vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
   if (debug_utils_) {

@@ -1,10 +1,11 @@
-// One Vulkan device with one queue that can compute and draw. Everything else in vk/ borrows a Context and must die
-// before it.
+// One Vulkan device with one queue that can compute and draw and, for a window, present. Everything else in vk/ borrows
+// a Context and must die before it.
 #pragma once
 
 #include <vulkan/vulkan.h>
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -17,6 +18,12 @@ namespace quadgraph::vk {
 
 class Arenas;
 
+// What a context needs of a window to present to it (swapchain.h). The window must outlive the context.
+struct SurfaceSource {
+  std::vector<std::string> instance_extensions;
+  std::function<VkSurfaceKHR(VkInstance)> create;  // throws VulkanError; the context destroys what it returns
+};
+
 struct ContextOptions {
   // Load VK_LAYER_KHRONOS_validation and keep its messages; VulkanError if the layer is not installed.
   bool validation = false;
@@ -25,6 +32,8 @@ struct ContextOptions {
   // Bytes of each arena of arrays that shaders read as texels (arena.h); unset: on a device of type CPU as many as it
   // can show, else 0.
   std::optional<std::uint64_t> texel_bytes = std::nullopt;
+  // Of the window to present to; unset: none, and nothing that windows need is asked of the device.
+  std::optional<SurfaceSource> surface = std::nullopt;
 };
 
 struct DeviceInfo {
@@ -40,6 +49,8 @@ class Context {
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
 
+  VkInstance instance() const { return instance_; }
+  VkSurfaceKHR surface() const { return surface_; }  // null without a window
   VkPhysicalDevice physical_device() const { return physical_device_; }
   VkDevice device() const { return device_; }
   VkQueue queue() const { return queue_; }
@@ -78,6 +89,7 @@ class Context {
   void create_messenger();
   void pick_device(const std::string& wanted);
   void read_properties();
+  std::string what_is_missing(VkPhysicalDevice device) const;
   void create_device();
   void destroy() noexcept;
   static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
@@ -86,6 +98,7 @@ class Context {
 
   VkInstance instance_ = VK_NULL_HANDLE;
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+  VkSurfaceKHR surface_ = VK_NULL_HANDLE;
   VkPhysicalDevice physical_device_ = VK_NULL_HANDLE;
   VkDevice device_ = VK_NULL_HANDLE;
   VkQueue queue_ = VK_NULL_HANDLE;

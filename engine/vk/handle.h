@@ -51,6 +51,10 @@ using UniqueDescriptorSetLayout = Unique<VkDescriptorSetLayout, vkDestroyDescrip
 using UniqueDescriptorPool = Unique<VkDescriptorPool, vkDestroyDescriptorPool>;
 using UniqueCommandPool = Unique<VkCommandPool, vkDestroyCommandPool>;
 using UniqueFence = Unique<VkFence, vkDestroyFence>;
+using UniqueSemaphore = Unique<VkSemaphore, vkDestroySemaphore>;
+using UniqueSwapchain = Unique<VkSwapchainKHR, vkDestroySwapchainKHR>;
+using UniqueRenderPass = Unique<VkRenderPass, vkDestroyRenderPass>;
+using UniqueFramebuffer = Unique<VkFramebuffer, vkDestroyFramebuffer>;
 using UniqueQueryPool = Unique<VkQueryPool, vkDestroyQueryPool>;
 
 }  // namespace quadgraph::vk

@@ -41,16 +41,15 @@ struct Stage {
     const Sphere bounds = bounding_sphere(shape.vertices);
     shadows.update(mesh, bounds, lights);
     const Camera camera = place_camera(view, bounds, static_cast<float>(width) / static_cast<float>(height));
-    return rasteriser
-        .run({.mesh = mesh,
-              .finest = level,
-              .vertex_exitance = exitance,
-              .vertex_unscattered = unscattered,
-              .shadows = shadows,
-              .eta = eta,
-              .roughness = roughness},
-             camera, width, height)
-        .picture;
+    rasteriser.run({.mesh = mesh,
+                    .finest = level,
+                    .vertex_exitance = exitance,
+                    .vertex_unscattered = unscattered,
+                    .shadows = shadows,
+                    .eta = eta,
+                    .roughness = roughness},
+                   camera, width, height);
+    return read_picture(context, rasteriser.picture());
   }
 };
 

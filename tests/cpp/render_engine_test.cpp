@@ -9,6 +9,7 @@
 #include "engine/graph/error.h"
 #include "engine/graph/fresnel.h"
 #include "engine/render/engine.h"
+#include "engine/render/tone_mapper.h"
 
 using namespace quadgraph;
 
@@ -163,4 +164,22 @@ TEST_CASE("calls out of order and options out of range are refused") {
 
 TEST_CASE("a file that is not there is named") {
   CHECK_THROWS_WITH_AS(Engine("/no/such/file.qgraph"), doctest::Contains("/no/such/file.qgraph"), InputError);
+}
+
+TEST_CASE("pictures that follow each other allocate nothing, smaller ones neither") {
+  Checked checked;
+  Engine& engine = checked.engine;
+  engine.set_material("sigma_s_prime=2,sigma_a=0.1,eta=1.4");
+  engine.set_lights({parse_light("directional:0,0,-1:1")});
+  engine.solve();
+  ToneMapper mapper(engine.context());
+  const auto show = [&](float azimuth, std::uint32_t width, std::uint32_t height) {
+    const PictureBuffers& picture = engine.draw({.azimuth = azimuth}, {.width = width, .height = height});
+    mapper.run(picture, {}, mapper.exposure(picture, {}), {120, 90});
+  };
+  show(0, 120, 90);
+  const std::uint64_t allocations = engine.allocation_count(), bytes = engine.device_bytes();
+  for (int i = 1; i < 6; ++i) show(20.0f * static_cast<float>(i), 120 / static_cast<std::uint32_t>(i), 90);
+  CHECK(engine.allocation_count() == allocations);
+  CHECK(engine.device_bytes() == bytes);
 }

@@ -1,11 +1,17 @@
 // The structs of shaders/render_shared.h lie in memory as the compiled shaders read them.
+#include "shaders/display_shared.h"
+#include "shaders/false_colour_shared.h"
 #include "shaders/render_shared.h"
+#include "spirv/false_colour.frag.h"
+#include "spirv/false_colour.vert.h"
 #include "spirv/irradiance.comp.h"
+#include "spirv/luminance.comp.h"
 #include "spirv/resolve.comp.h"
 #include "spirv/shadow.vert.h"
 #include "spirv/surface.frag.h"
 #include "spirv/surface.vert.h"
 #include "spirv/surface_gathered.frag.h"
+#include "spirv/tone_map.comp.h"
 #include "tests/cpp/layout_compare.h"
 
 using namespace quadgraph;
@@ -54,4 +60,26 @@ TEST_CASE("push constants") {
            MEMBER(ResolvePush, alpha), MEMBER(ResolvePush, tile_x), MEMBER(ResolvePush, tile_y),
            MEMBER(ResolvePush, tile_width), MEMBER(ResolvePush, tile_height), MEMBER(ResolvePush, sample_stride),
            MEMBER(ResolvePush, picture_width)});
+}
+
+TEST_CASE("views of the inside") {
+  compare(false_colour_vert, "FalseVertex",
+          {MEMBER(FalseVertex, position), MEMBER(FalseVertex, value), MEMBER(FalseVertex, flags)});
+  CHECK(SpirvLayout(false_colour_vert).stride.at("FalseVertex") == sizeof(gpu::FalseVertex));
+  for (const vk::Spirv code : {vk::Spirv(false_colour_vert), vk::Spirv(false_colour_frag)}) {
+    compare(code, "FalseColourPush",
+            {MEMBER(FalseColourPush, clip_from_world), MEMBER(FalseColourPush, vertices), MEMBER(FalseColourPush, eye),
+             MEMBER(FalseColourPush, plane), MEMBER(FalseColourPush, diverging)});
+  }
+}
+
+TEST_CASE("what brings a picture to a screen") {
+  compare(luminance_comp, "LuminancePush",
+          {MEMBER(LuminancePush, layers), MEMBER(LuminancePush, alpha), MEMBER(LuminancePush, bins),
+           MEMBER(LuminancePush, count)});
+  compare(tone_map_comp, "ToneMapPush",
+          {MEMBER(ToneMapPush, layers), MEMBER(ToneMapPush, alpha), MEMBER(ToneMapPush, target),
+           MEMBER(ToneMapPush, background_top), MEMBER(ToneMapPush, background_bottom), MEMBER(ToneMapPush, exposure),
+           MEMBER(ToneMapPush, picture_width), MEMBER(ToneMapPush, picture_height), MEMBER(ToneMapPush, width),
+           MEMBER(ToneMapPush, height), MEMBER(ToneMapPush, false_colour), MEMBER(ToneMapPush, blue_first)});
 }
