@@ -1,4 +1,4 @@
-// quadgraph-engine: renders a baked object without Python and without a window.
+// quadgraph-engine: shows a baked object in a window, or writes a picture of it, without Python.
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
@@ -7,8 +7,10 @@
 
 #include "engine/app/options.h"
 #include "engine/app/report.h"
+#include "engine/app/viewer.h"
 #include "engine/graph/error.h"
 #include "engine/render/metadata.h"
+#include "engine/scene/stage.h"
 
 using namespace quadgraph;
 
@@ -34,7 +36,7 @@ class Stages {
 
 void write_picture(const AppOptions& options, const Picture& picture, const Metadata& metadata) {
   const auto write = options.output.extension() == ".exr" ? write_exr : write_png;
-  write(options.output, picture, options.tone, metadata);
+  write(options.output, picture, options.scene.tone, metadata);
 }
 
 void refuse_messages(const vk::Context& context) {
@@ -45,25 +47,40 @@ void refuse_messages(const vk::Context& context) {
 }
 
 // The exit code.
-int run(const AppOptions& options) {
+int write_one(const AppOptions& options) {
   Stages stages;
-  Engine engine(options.file, options.device);
+  Stage stage(options.device);
+  stage.show(options.scene);
+  Engine& engine = stage.engine();
   stages.end("load");
-  engine.set_material(options.material);
-  engine.set_lights(options.lights);
   engine.update_irradiance();
   stages.end("irradiance");
-  const SolveReport solve = engine.solve(options.solve);
+  const SolveReport solve = stage.solve();
   stages.end("solve");
-  const Picture picture = engine.render(options.view, options.render);
+  const Picture picture = stage.render();
   stages.end("render");
   write_picture(options, picture, engine.metadata());
   stages.end("write");
   refuse_messages(engine.context());
-  const Metadata metadata = with_exposure(engine.metadata(), picture, options.tone);
+  const Metadata metadata = with_exposure(engine.metadata(), picture, options.scene.tone);
   const RunReport report{engine, solve, metadata, options.output.string(), stages.wall_ms};
   std::cout << (options.json ? json_report(report) : text_report(report)) << "\n";
   return solve.missed.empty() ? EXIT_SUCCESS : exit_missed;
+}
+
+int show_window(const AppOptions& options) {
+  const std::filesystem::path name = options.scene.body.filename();
+  Window window(name.string() + " - QuadGraph", 1280, 800);
+  vk::ContextOptions device = options.device;
+  device.surface = window.surface();
+  Stage stage(device);
+  stage.show(options.scene);
+  {
+    const std::filesystem::path stem = options.output.empty() ? name.stem() : options.output;
+    Viewer(window, stage, stem).run();
+  }
+  refuse_messages(stage.engine().context());
+  return EXIT_SUCCESS;
 }
 
 }  // namespace
@@ -72,7 +89,8 @@ int main(int argc, char** argv) {
   try {
     int exit_code = EXIT_SUCCESS;
     const auto options = parse_command_line(argc, argv, exit_code);
-    return options ? run(*options) : exit_code;
+    if (!options) return exit_code;
+    return options->headless ? write_one(*options) : show_window(*options);
   } catch (const std::exception& error) {
     std::string line = error.what();
     std::replace(line.begin(), line.end(), '\n', ' ');

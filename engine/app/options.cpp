@@ -8,6 +8,7 @@
 #include "engine/graph/material.h"
 #include "engine/render/default_lights.h"
 #include "engine/render/text.h"
+#include "engine/scene/scene_file.h"
 
 namespace quadgraph {
 namespace {
@@ -25,7 +26,7 @@ struct Typed {
   std::uint32_t max_iterations = 5000, bounces = 0;
   std::string size = "1024x1024", exposure = "auto", background = "studio";
   float roughness = 0.3f;
-  std::string radiance = "auto";
+  std::string radiance = "auto", show = "picture";
   std::string device;
   bool no_inter_reflection = false, headless = false, validation = false, json = false;
 };
@@ -99,12 +100,24 @@ void declare_solver(CLI::App& app, Typed& typed) {
 }
 
 void declare_picture(CLI::App& app, Typed& typed) {
-  app.add_option("-o,--output", typed.output, "picture to write: .png (sRGB) or .exr (linear, layers)")
+  app.add_option(
+         "-o,--output", typed.output,
+         "with --headless the picture to write: .png (sRGB) or .exr (linear, layers); in a window the beginning "
+         "of the names of those that F12 writes (default: that of the file)")
       ->group("Picture");
-  app.add_option("--size", typed.size, "WIDTHxHEIGHT in pixels")->capture_default_str()->group("Picture");
+  app.add_option("--size", typed.size, "WIDTHxHEIGHT in pixels; of a window it has its own")
+      ->capture_default_str()
+      ->group("Picture");
   app.add_option("--radiance", typed.radiance,
                  "gathered (one more step of transport along every view ray), lambertian (the same from every side but "
                  "for Fresnel), or auto: gathered where it can be (fem, buried)")
+      ->capture_default_str()
+      ->group("Picture");
+  app.add_option(
+         "--show", typed.show,
+         "picture, or in false colour what is inside: q, exitance, error, difference[:METHOD], levels[:N], "
+         "phi[:AXIS[,MM]], tets[:AXIS[,MM[,N]]] or links[:AXIS[,MM[,N]]]; AXIS x, y or z across a cutting plane "
+         "MM from the object's centre, N a level")
       ->capture_default_str()
       ->group("Picture");
   app.add_option("--exposure", typed.exposure, "auto, or stops: radiance times 2^stops")
@@ -119,8 +132,11 @@ void declare_picture(CLI::App& app, Typed& typed) {
 }
 
 void declare(CLI::App& app, Typed& typed) {
-  app.add_option("file", typed.file, "a baked object, FILE.qgraph")->required();
-  app.add_flag("--headless", typed.headless, "render a picture without a window (this version has no window)");
+  app.add_option("file", typed.file,
+                 "a baked object, FILE.qgraph, or a scene, FILE.json, of which options replace what they name")
+      ->required();
+  app.add_flag("--headless", typed.headless,
+               "write a picture and open no window; without a display there is no other way");
   declare_scene(app, typed);
   declare_solver(app, typed);
   declare_picture(app, typed);
@@ -159,36 +175,74 @@ double parse_share(std::string_view text, const std::string& what) {
   return parse_number(text, what) / (percent ? 100 : 1);
 }
 
-AppOptions understood(const Typed& typed) {
-  if (!typed.headless) {
-    throw InputError("this version has no window: use --headless -o PICTURE.png to render a picture");
+// Tells which options replace what the scene says: all, unless it is from a file.
+class Given {
+ public:
+  Given(const CLI::App& app, bool from_file) : app_(app), from_file_(from_file) {}
+
+  bool operator()(const char* name) const { return !from_file_ || app_.count(name) > 0; }
+
+ private:
+  const CLI::App& app_;
+  bool from_file_;
+};
+
+void take_view(const Typed& typed, const Given& given, View& view) {
+  if (given("--up")) view.up = typed.up == "z" ? UpAxis::z : UpAxis::y;
+  if (given("--fov")) view.vertical_fov = typed.fov;
+  if (given("--view")) {
+    view.distance.reset();
+    view = parse_view(typed.view, view);
   }
+}
+
+void take_solve(const Typed& typed, const Given& given, SolveOptions& solve) {
+  if (given("--method")) solve.method = method_from_name(typed.method);
+  if (given("--solver")) solve.solver = solver_from_name(typed.solver);
+  if (given("--source")) solve.source = source_from_name(typed.source);
+  if (given("--model")) solve.model = model_from_name(typed.model);
+  if (given("--tolerance")) solve.tolerance = parse_share(typed.tolerance, "tolerance");
+  if (given("--error")) solve.error = parse_share(typed.error, "error");
+  if (given("--cycles")) solve.cycles = typed.cycles;
+  if (given("--max-iterations")) solve.max_iterations = typed.max_iterations;
+  if (given("--no-inter-reflection")) solve.inter_reflection = !typed.no_inter_reflection;
+  if (given("--bounces")) solve.bounces = typed.bounces;
+}
+
+void take_picture(const Typed& typed, const Given& given, Scene& scene) {
+  if (given("--size")) parse_size(typed.size, scene.render);
+  if (given("--roughness")) scene.render.roughness = typed.roughness;
+  if (given("--radiance")) scene.render.radiance = radiance_from_name(typed.radiance);
+  if (given("--show")) scene.render.show = parse_show(typed.show);
+  if (given("--exposure")) scene.tone.exposure_stops = parse_exposure(typed.exposure);
+  if (given("--background")) parse_background(typed.background, scene.tone);
+}
+
+Scene scene_of(const Typed& typed, const CLI::App& app) {
+  const std::filesystem::path file = typed.file;
+  const bool from_file = file.extension() == ".json";
+  const Given given(app, from_file);
+  Scene scene;
+  if (from_file) scene = SceneFile::load(file).at(0);
+  if (!from_file) scene.body = file;
+  if (given("--material")) scene.material = typed.material;
+  take_view(typed, given, scene.view);
+  if (given("--light")) scene.lights.clear();
+  for (const std::string& light : typed.lights) scene.lights.push_back(parse_light(light));
+  if (scene.lights.empty()) scene.lights = default_lights(scene.view);
+  take_solve(typed, given, scene.solve);
+  take_picture(typed, given, scene);
+  return scene;
+}
+
+AppOptions understood(const Typed& typed, const CLI::App& app) {
   AppOptions options;
-  options.file = typed.file;
+  options.headless = typed.headless;
   options.output = typed.output;
-  check_output(options);
-  options.material = typed.material;
-  options.view.up = typed.up == "z" ? UpAxis::z : UpAxis::y;
-  options.view.vertical_fov = typed.fov;
-  options.view = parse_view(typed.view, options.view);
-  for (const std::string& light : typed.lights) options.lights.push_back(parse_light(light));
-  if (options.lights.empty()) options.lights = default_lights(options.view);
-  options.solve = {.method = method_from_name(typed.method),
-                   .solver = solver_from_name(typed.solver),
-                   .source = source_from_name(typed.source),
-                   .model = model_from_name(typed.model),
-                   .tolerance = parse_share(typed.tolerance, "tolerance"),
-                   .max_iterations = typed.max_iterations,
-                   .cycles = typed.cycles,
-                   .error = parse_share(typed.error, "error"),
-                   .inter_reflection = !typed.no_inter_reflection,
-                   .bounces = typed.bounces};
-  parse_size(typed.size, options.render);
-  options.render.roughness = typed.roughness;
-  options.render.radiance = radiance_from_name(typed.radiance);
-  options.tone.exposure_stops = parse_exposure(typed.exposure);
-  parse_background(typed.background, options.tone);
-  options.device = {.validation = typed.validation, .device = typed.device};
+  if (options.headless) check_output(options);
+  options.scene = scene_of(typed, app);
+  options.device.validation = typed.validation;
+  options.device.device = typed.device;
   options.json = typed.json;
   return options;
 }
@@ -196,10 +250,14 @@ AppOptions understood(const Typed& typed) {
 }  // namespace
 
 std::optional<AppOptions> parse_command_line(int argc, const char* const* argv, int& exit_code) {
-  CLI::App app("Renders a translucent object: light enters, diffuses through the body and leaves it.",
-               "quadgraph-engine");
+  CLI::App app(
+      "Shows a translucent object in a window: light enters, diffuses through the body and leaves it. F1 lists the "
+      "keys.",
+      "quadgraph-engine");
   app.set_version_flag("--version", QUADGRAPH_VERSION);
-  app.footer("Example: quadgraph-engine bunny.qgraph --headless -o bunny.png --material skin1 --view 20,15");
+  app.footer(
+      "Examples: quadgraph-engine bunny.qgraph\n"
+      "          quadgraph-engine bunny.qgraph --headless -o bunny.png --material skin1 --view 20,15");
   Typed typed;
   declare(app, typed);
   try {
@@ -210,7 +268,7 @@ std::optional<AppOptions> parse_command_line(int argc, const char* const* argv, 
   } catch (const CLI::ParseError& error) {
     throw InputError(std::string(error.what()) + " (--help lists the options)");
   }
-  return understood(typed);
+  return understood(typed, app);
 }
 
 }  // namespace quadgraph

@@ -3,29 +3,21 @@
 
 #include <filesystem>
 #include <optional>
-#include <string>
-#include <vector>
 
-#include "engine/render/engine.h"
-#include "engine/render/tone_map.h"
+#include "engine/scene/scene.h"
 
 namespace quadgraph {
 
 struct AppOptions {
-  std::filesystem::path file;    // .qgraph
-  std::filesystem::path output;  // .png or .exr
-  std::string material = "marble";
-  std::vector<Light> lights;  // never empty
-  View view;
-  SolveOptions solve;
-  RenderOptions render;
-  ToneOptions tone;
+  Scene scene;                   // with lights
+  bool headless = false;         // a picture, and no window
+  std::filesystem::path output;  // headless: .png or .exr; else what pictures that the user asks for are called
   vk::ContextOptions device;
   bool json = false;
 };
 
 // Empty if the program should end with `exit_code`: help or version was asked for, or CLI11 has reported a mistake.
-// Throws InputError for a value out of range, or without --headless.
+// Throws InputError for a value out of range.
 std::optional<AppOptions> parse_command_line(int argc, const char* const* argv, int& exit_code);
 
 }  // namespace quadgraph

@@ -36,12 +36,13 @@ std::string material_from(const JsonField& field) {
 }
 
 View view_from(const JsonField& field) {
-  field.allow({"azimuth", "elevation", "distance", "up", "fov"});
+  field.allow({"azimuth", "elevation", "distance", "up", "fov", "target"});
   View view;
   if (const auto azimuth = field.find("azimuth")) view.azimuth = azimuth->real();
   if (const auto elevation = field.find("elevation")) view.elevation = elevation->real();
   if (const auto distance = field.find("distance")) view.distance = distance->real();
   if (const auto fov = field.find("fov")) view.vertical_fov = fov->real();
+  if (const auto target = field.find("target")) view.target = target->triple();
   if (const auto up = field.find("up")) {
     if (up->text() != "y" && up->text() != "z") up->refuse("\"y\" or \"z\"");
     view.up = up->text() == "z" ? UpAxis::z : UpAxis::y;
@@ -55,6 +56,7 @@ Json view_json(const View& view) {
   if (view.distance) json["distance"] = real_json(*view.distance);
   json["up"] = view.up == UpAxis::z ? "z" : "y";
   json["fov"] = real_json(view.vertical_fov);
+  if (view.target != glm::vec3(0)) json["target"] = triple_json(view.target);
   return json;
 }
 
@@ -107,12 +109,15 @@ void background_from(const JsonField& field, ToneOptions& tone) {
 }
 
 void picture_from(const JsonField& field, RenderOptions& render, ToneOptions& tone) {
-  field.allow({"width", "height", "roughness", "radiance", "exposure", "background"});
+  field.allow({"width", "height", "roughness", "radiance", "exposure", "background", "show"});
   if (const auto width = field.find("width")) render.width = width->whole(1, largest_side);
   if (const auto height = field.find("height")) render.height = height->whole(1, largest_side);
   if (const auto roughness = field.find("roughness")) render.roughness = roughness->real();
   if (const auto radiance = field.find("radiance")) {
     render.radiance = radiance->within([&] { return radiance_from_name(radiance->text()); });
+  }
+  if (const auto show = field.find("show")) {
+    render.show = show->within([&] { return parse_show(show->text()); });
   }
   if (const auto exposure = field.find("exposure")) {
     const std::string text = numbers(*exposure);
@@ -126,7 +131,8 @@ Json picture_json(const RenderOptions& render, const ToneOptions& tone) {
   Json json{{"width", render.width},
             {"height", render.height},
             {"roughness", real_json(render.roughness)},
-            {"radiance", name_of(render.radiance)}};
+            {"radiance", name_of(render.radiance)},
+            {"show", to_string(render.show)}};
   json["exposure"] = tone.exposure_stops ? real_json(*tone.exposure_stops) : Json("auto");
   json["background"] = {{"top", rgb_json(tone.background_top)}, {"bottom", rgb_json(tone.background_bottom)}};
   return json;

@@ -1,6 +1,6 @@
 // The images that a window shows, one after the other.
 //
-// One frame at a time: `begin` waits for the last one, so what a frame reads may be written anew between two frames.
+// One frame at a time: `begin` waits for the last one. Who writes what a frame reads calls `wait` before.
 #pragma once
 
 #include <vulkan/vulkan.h>

@@ -14,7 +14,19 @@ from quadgraph import __version__
 from quadgraph.errors import QuadGraphError
 
 # Modules that import nothing heavy: what a subcommand needs, it imports when it runs.
-SUBCOMMANDS = ("bake", "info", "render", "solve", "bench", "accuracy", "reference", "chart", "tables", "stability")
+SUBCOMMANDS = (
+    "bake",
+    "info",
+    "view",
+    "render",
+    "solve",
+    "bench",
+    "accuracy",
+    "reference",
+    "chart",
+    "tables",
+    "stability",
+)
 INTERRUPTED = 128 + signal.SIGINT
 
 

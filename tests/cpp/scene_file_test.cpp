@@ -83,9 +83,18 @@ Scene with_everything() {
   cage.moved[3].z = 13;
   cage.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
   scene.deformation = {twist, bend, taper, lattice, cage, scaled};
-  scene.view = {.azimuth = 33.3f, .elevation = -5, .distance = 12.5f, .up = UpAxis::z, .vertical_fov = 40};
+  scene.view = {.azimuth = 33.3f,
+                .elevation = -5,
+                .distance = 12.5f,
+                .up = UpAxis::z,
+                .vertical_fov = 40,
+                .target = {1, -2, 0.5f}};
   scene.solve = {.method = Method::quadgraph_fv, .solver = SolverKind::dpcg, .tolerance = 0.002, .cycles = 3};
-  scene.render = {.width = 64, .height = 48, .roughness = 0.2f, .radiance = Radiance::lambertian};
+  scene.render = {.width = 64,
+                  .height = 48,
+                  .roughness = 0.2f,
+                  .radiance = Radiance::lambertian,
+                  .show = parse_show("tets:y,-3,1")};
   scene.tone = {.exposure_stops = 1.5f, .background_top = {1, 0.5f, 0}, .background_bottom = glm::vec3(0.1f)};
   return scene;
 }

@@ -15,6 +15,7 @@ import pytest
 from PIL import Image
 
 import tiny
+from quadgraph.cli import main
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -84,8 +85,15 @@ def test_exr_and_json(tmp_path: Path):
     assert report["wall_ms"]["total"] > 0
 
 
-def test_without_headless_it_says_what_to_do():
-    assert_refused(run(tiny.PATH), "no window", "--headless")
+def test_without_display_it_says_what_to_do():
+    assert_refused(run(tiny.PATH), "no display", "--headless")
+
+
+def test_view_without_display_says_it_too(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture):
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+    assert main(["view", str(tiny.PATH), "--material", "skin1"]) == 1
+    assert "--headless" in capfd.readouterr().err
 
 
 @pytest.mark.parametrize(

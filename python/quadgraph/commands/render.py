@@ -52,6 +52,14 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         help="gathered: one more step of transport along every view ray, scaled to the exitance; lambertian: the same "
         "from every side but for Fresnel; auto: gathered where it can be (fem, buried) (default: %(default)s)",
     )
+    parser.add_argument(
+        "--show",
+        default="picture",
+        metavar="WHAT",
+        help="picture, or in false colour what is inside: q, exitance, error, difference[:METHOD], levels[:N], "
+        "phi[:AXIS[,MM]], tets[:AXIS[,MM[,N]]] or links[:AXIS[,MM[,N]]]; AXIS x, y or z across a cutting plane MM from "
+        "the object's centre, N a level (default: %(default)s)",
+    )
     parser.add_argument("--exposure", default="auto", help="auto, or stops (default: %(default)s)")
     parser.add_argument("--background", default="studio", help="studio, black, white, or R/G/B (default: %(default)s)")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the report here")
@@ -86,6 +94,7 @@ def run(args: argparse.Namespace) -> int:
         height=args.size[1],
         roughness=args.roughness,
         radiance=args.radiance,
+        show=args.show,
     )
     scene.check_validation(engine)
     for path in args.output:

@@ -36,6 +36,7 @@ STATED = {
     "size": "/picture/width",
     "roughness": "/picture/roughness",
     "radiance": "/picture/radiance",
+    "show": "/picture/show",
     "exposure": "/picture/exposure",
     "background": "/picture/background",
 }

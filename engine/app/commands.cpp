@@ -1,0 +1,167 @@
+#include "engine/app/commands.h"
+
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+#include <array>
+
+#include "engine/app/gestures.h"
+#include "engine/graph/material.h"
+
+namespace quadgraph {
+namespace {
+
+using S = State&;
+using W = const Surroundings&;
+
+constexpr float degrees = 7.5f, share = 0.04f;  // of a step of the keys
+constexpr float brighter = 1.25f;
+constexpr int control = GLFW_MOD_CONTROL, shift = GLFW_MOD_SHIFT;
+
+void orbit(S s, float right, float up) {
+  s.scene.view = orbited(s.scene.view, right, up);
+}
+
+void pan(S s, W w, float right, float up) {
+  s.scene.view = panned(s.scene.view, w.bounds, w.aspect, right, up);
+}
+
+void zoom(S s, W w, float steps) {
+  s.scene.view = zoomed(s.scene.view, w.bounds, w.aspect, steps);
+}
+
+Light* selected(S s) {
+  return s.light < s.scene.lights.size() ? &s.scene.lights[s.light] : nullptr;
+}
+
+void turn(S s, W w, float right, float up) {
+  if (Light* light = selected(s)) *light = turned(*light, s.scene.view, w.bounds, right, up);
+}
+
+void brighten(S s, float factor) {
+  if (Light* light = selected(s)) light->power *= factor;
+}
+
+void next_light(S s, W) {
+  if (!s.scene.lights.empty()) s.light = (s.light + 1) % s.scene.lights.size();
+}
+
+void next_material(S s, int by) {
+  const auto& names = material_names();
+  const auto found = std::find(names.begin(), names.end(), s.scene.material);
+  const auto count = static_cast<int>(names.size());
+  const int now = found == names.end() ? (by > 0 ? -1 : 0) : static_cast<int>(found - names.begin());
+  s.scene.material = names[static_cast<std::size_t>((now + by + count) % count)];
+}
+
+// The one after `value`, in a circle.
+template <typename T, std::size_t n>
+void next(T& value, const std::array<T, n>& all) {
+  const auto found = std::find(all.begin(), all.end(), value);
+  value = found == all.end() || found + 1 == all.end() ? all.front() : *(found + 1);
+}
+
+void next_method(S s, W) {
+  next(s.scene.solve.method, std::array{Method::fem, Method::quadgraph_fv, Method::quadgraph_fdm});
+}
+
+void next_solver(S s, W) {
+  next(s.scene.solve.solver, std::array{SolverKind::fmg_pcg, SolverKind::vcycle, SolverKind::dpcg, SolverKind::cascade,
+                                        SolverKind::jacobi, SolverKind::automatic});
+}
+
+void next_source(S s, W) {
+  next(s.scene.solve.source, std::array{Source::buried, Source::diffuse});
+}
+
+void next_model(S s, W) {
+  next(s.scene.solve.model, std::array{Model::automatic, Model::diffusion, Model::sp3});
+}
+
+void next_error(S s, W) {
+  next(s.scene.solve.error, std::array{0.0, 0.1, 0.05, 0.02, 0.01});
+}
+
+void next_quantity(S s, int by) {
+  constexpr int count = std::size(quantities);
+  Quantity& quantity = s.scene.render.show.quantity;
+  const auto at = static_cast<int>(std::find(std::begin(quantities), std::end(quantities), quantity) - quantities);
+  quantity = quantities[(at + by + count) % count];
+}
+
+void next_axis(S s, W) {
+  s.scene.render.show.axis = (s.scene.render.show.axis + 1) % 3;
+}
+
+void move_plane(S s, W w, float steps) {
+  float& offset = s.scene.render.show.offset;
+  offset = std::clamp(offset + steps * share * w.bounds.radius, -w.bounds.radius, w.bounds.radius);
+}
+
+void next_level(S s, W w) {
+  s.scene.render.show.level = (s.scene.render.show.level + 1) % w.levels;
+}
+
+void reset_view(S s, W) {
+  const View old = s.scene.view;
+  s.scene.view = View{.up = old.up, .vertical_fov = old.vertical_fov};
+}
+
+constexpr auto table = std::to_array<Command>({
+    {"Left", GLFW_KEY_LEFT, 0, 0, "turn the object to the left", [](S s, W) { orbit(s, -degrees, 0); }},
+    {"Right", GLFW_KEY_RIGHT, 0, 0, "to the right", [](S s, W) { orbit(s, degrees, 0); }},
+    {"Up", GLFW_KEY_UP, 0, 0, "up", [](S s, W) { orbit(s, 0, degrees); }},
+    {"Down", GLFW_KEY_DOWN, 0, 0, "down", [](S s, W) { orbit(s, 0, -degrees); }},
+    {"Shift+Left", GLFW_KEY_LEFT, 0, shift, "move the object to the left", [](S s, W w) { pan(s, w, -share, 0); }},
+    {"Shift+Right", GLFW_KEY_RIGHT, 0, shift, "to the right", [](S s, W w) { pan(s, w, share, 0); }},
+    {"Shift+Up", GLFW_KEY_UP, 0, shift, "up", [](S s, W w) { pan(s, w, 0, share); }},
+    {"Shift+Down", GLFW_KEY_DOWN, 0, shift, "down", [](S s, W w) { pan(s, w, 0, -share); }},
+    {"Page Up, =", GLFW_KEY_PAGE_UP, GLFW_KEY_EQUAL, 0, "nearer", [](S s, W w) { zoom(s, w, 1); }},
+    {"Page Down, -", GLFW_KEY_PAGE_DOWN, GLFW_KEY_MINUS, 0, "farther", [](S s, W w) { zoom(s, w, -1); }},
+    {"Home", GLFW_KEY_HOME, 0, 0, "the whole object from the front", reset_view},
+    {"L", GLFW_KEY_L, 0, 0, "select the next light", next_light},
+    {"Ctrl+Left", GLFW_KEY_LEFT, 0, control, "turn the light to the left", [](S s, W w) { turn(s, w, -degrees, 0); }},
+    {"Ctrl+Right", GLFW_KEY_RIGHT, 0, control, "to the right", [](S s, W w) { turn(s, w, degrees, 0); }},
+    {"Ctrl+Up", GLFW_KEY_UP, 0, control, "up", [](S s, W w) { turn(s, w, 0, degrees); }},
+    {"Ctrl+Down", GLFW_KEY_DOWN, 0, control, "down", [](S s, W w) { turn(s, w, 0, -degrees); }},
+    {"]", GLFW_KEY_RIGHT_BRACKET, 0, 0, "a quarter more of it", [](S s, W) { brighten(s, brighter); }},
+    {"[", GLFW_KEY_LEFT_BRACKET, 0, 0, "a fifth less of it", [](S s, W) { brighten(s, 1 / brighter); }},
+    {"M", GLFW_KEY_M, 0, 0, "the next material", [](S s, W) { next_material(s, 1); }},
+    {"Shift+M", GLFW_KEY_M, 0, shift, "the material before", [](S s, W) { next_material(s, -1); }},
+    {"G", GLFW_KEY_G, 0, 0, "the next method", next_method},
+    {"S", GLFW_KEY_S, 0, 0, "the next solver", next_solver},
+    {"B", GLFW_KEY_B, 0, 0, "the other source: buried, diffuse", next_source},
+    {"O", GLFW_KEY_O, 0, 0, "the next model", next_model},
+    {"E", GLFW_KEY_E, 0, 0, "the next error to aim at: none, 10, 5, 2, 1%", next_error},
+    {"V", GLFW_KEY_V, 0, 0, "show the next quantity inside", [](S s, W) { next_quantity(s, 1); }},
+    {"Shift+V", GLFW_KEY_V, 0, shift, "the quantity before", [](S s, W) { next_quantity(s, -1); }},
+    {"X", GLFW_KEY_X, 0, 0, "turn the cutting plane: x, y, z", next_axis},
+    {".", GLFW_KEY_PERIOD, 0, 0, "move it on", [](S s, W w) { move_plane(s, w, 1); }},
+    {",", GLFW_KEY_COMMA, 0, 0, "move it back", [](S s, W w) { move_plane(s, w, -1); }},
+    {"N", GLFW_KEY_N, 0, 0, "the next level, where levels are shown", next_level},
+    {"Tab", GLFW_KEY_TAB, 0, 0, "keys go to the panel: arrows, Space, Enter; Esc brings them back",
+     [](S s, W) { s.focus_panel = s.panel = true; }},
+    {"F10", GLFW_KEY_F10, 0, 0, "show or hide the panel", [](S s, W) { s.panel = !s.panel; }},
+    {"F11", GLFW_KEY_F11, 0, 0, "full screen and back", [](S s, W) { s.full_screen = true; }},
+    {"F12", GLFW_KEY_F12, 0, 0, "write the picture as PNG and EXR", [](S s, W) { s.screenshot = true; }},
+    {"F1, H", GLFW_KEY_F1, GLFW_KEY_H, 0, "show or hide this help", [](S s, W) { s.help = !s.help; }},
+    {"Q, Esc", GLFW_KEY_Q, GLFW_KEY_ESCAPE, 0, "quit", [](S s, W) { s.quit = true; }},
+});
+
+}  // namespace
+
+std::span<const Command> all_commands() {
+  return table;
+}
+
+bool run_command(int key, int mods, State& state, const Surroundings& surroundings) {
+  constexpr int known = GLFW_MOD_CONTROL | GLFW_MOD_SHIFT | GLFW_MOD_ALT | GLFW_MOD_SUPER;
+  for (const Command& command : table) {
+    if ((command.key != key && command.other_key != key) || command.mods != (mods & known)) continue;
+    command.run(state, surroundings);
+    return true;
+  }
+  return false;
+}
+
+}  // namespace quadgraph

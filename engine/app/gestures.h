@@ -1,0 +1,28 @@
+// What dragging and turning do to a camera and to a light.
+#pragma once
+
+#include "engine/render/camera.h"
+#include "engine/render/lights.h"
+
+namespace quadgraph {
+
+// The object turns with the hand: the eye goes `right` and `up` degrees the other way round it.
+View orbited(View view, float right, float up);
+
+// The object moves right and up by shares of the picture's height.
+View panned(View view, const Sphere& bounds, float aspect, float right, float up);
+
+// The eye comes nearer by so many steps, an eighth of its distance each.
+View zoomed(View view, const Sphere& bounds, float aspect, float steps);
+
+// Where the light comes from goes right and up round the object's centre, degrees as the viewer sees it.
+Light turned(Light light, const View& view, const Sphere& bounds, float right, float up);
+
+// As degrees of azimuth and elevation, as of a View, from where a light comes; and towards there.
+struct Bearing {
+  float azimuth = 0, elevation = 0;
+};
+Bearing bearing_of(const glm::vec3& towards, UpAxis up);
+glm::vec3 towards(const Bearing& bearing, UpAxis up);
+
+}  // namespace quadgraph

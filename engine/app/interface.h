@@ -1,0 +1,49 @@
+// Dear ImGui in our window: input to it, and what it draws onto a frame.
+#pragma once
+
+#include <vector>
+
+#include "engine/app/window.h"
+#include "engine/vk/swapchain.h"
+
+namespace quadgraph {
+
+class Interface {
+ public:
+  // One at a time. `scale` as Window::scale.
+  Interface(Window& window, vk::Context& context, const vk::Swapchain& swapchain);
+  ~Interface();
+  Interface(const Interface&) = delete;
+  Interface& operator=(const Interface&) = delete;
+
+  // What the user did since the last frame; then the frame's widgets may be made.
+  void begin(const std::vector<Event>& events);
+
+  // Whether the pointer is on a widget, and whether keys go to one: then all of them, or letters as text.
+  bool has_pointer() const;
+  bool has_keys() const;
+  bool has_text() const;
+
+  // Draws the widgets. The image must be in COLOR_ATTACHMENT_OPTIMAL and is left in PRESENT_SRC_KHR.
+  void draw(const vk::SwapchainFrame& frame);
+
+  float unit() const { return unit_; }  // window coordinates per pixel of an ordinary display
+
+ private:
+  void create_pass(VkFormat format);
+  void create_pool();
+  void load_fonts(float scale);
+  void start_backend();
+  void follow_swapchain();
+
+  Window& window_;
+  vk::Context& context_;
+  const vk::Swapchain& swapchain_;
+  float unit_ = 1;
+  vk::UniqueDescriptorPool pool_;
+  vk::UniqueRenderPass pass_;
+  std::uint64_t generation_ = 0;  // of the swapchain that the framebuffers are of
+  std::vector<vk::UniqueFramebuffer> framebuffers_;
+};
+
+}  // namespace quadgraph

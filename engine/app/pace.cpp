@@ -1,0 +1,34 @@
+#include "engine/app/pace.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace quadgraph {
+namespace {
+
+// What was measured last counts as much as all before it: a first picture compiles what later ones find compiled.
+double mixed(double before, double now) {
+  return before > 0 ? 0.5 * (before + now) : now;
+}
+
+constexpr double least_drawing = 0.35;  // of the budget, however long the solve takes
+constexpr float shares[] = {1.0f, 0.75f, 0.5f, 0.375f};
+
+}  // namespace
+
+void Pace::took(double solve_ms, double draw_ms, double pixels) {
+  if (solve_ms > 0) solve_ms_ = mixed(solve_ms_, solve_ms);
+  if (pixels > 0) draw_ns_ = mixed(draw_ns_, 1e6 * draw_ms / pixels);
+}
+
+float Pace::share(double pixels, bool solving) const {
+  const double left = std::max(budget_ms_ - (solving ? solve_ms_ : 0), least_drawing * budget_ms_);
+  for (const float share : shares) {
+    const double side = static_cast<double>(share);
+    if (1e-6 * draw_ns_ * pixels * side * side <= left) return share;
+  }
+  return std::end(shares)[-1];
+}
+
+}  // namespace quadgraph

@@ -1,0 +1,55 @@
+#include "engine/app/panel_widgets.h"
+
+#include <imgui.h>
+
+#include <cstdarg>
+#include <cstdint>
+#include <cstdio>
+
+namespace quadgraph {
+
+bool choose(const char* label, std::size_t& chosen, std::string_view (*name)(std::size_t), std::size_t count) {
+  bool changed = false;
+  if (!ImGui::BeginCombo(label, std::string(name(chosen)).c_str(), ImGuiComboFlags_HeightLarge)) return false;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (ImGui::Selectable(std::string(name(i)).c_str(), i == chosen) && i != chosen) {
+      chosen = i;
+      changed = true;
+    }
+    if (i == chosen) ImGui::SetItemDefaultFocus();
+  }
+  ImGui::EndCombo();
+  return changed;
+}
+
+bool slide(const char* label, float& value, float low, float high, const char* format, bool logarithmic) {
+  const ImGuiSliderFlags flags = logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None;
+  return ImGui::SliderFloat(label, &value, low, high, format, flags);
+}
+
+void tell(const char* name, const std::string& value) {
+  ImGui::TextDisabled("%s", name);
+  ImGui::SameLine(0.26f * ImGui::GetContentRegionMax().x);
+  ImGui::TextUnformatted(value.c_str());
+}
+
+std::string formatted(const char* format, ...) {
+  char text[256];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(text, sizeof(text), format, arguments);
+  va_end(arguments);
+  return text;
+}
+
+std::string percent(double share) {
+  const double value = 100 * share;
+  return formatted(value < 0.00995 ? "%.1e%%" : value < 0.995 ? "%.2f%%" : value < 9.95 ? "%.1f%%" : "%.0f%%", value);
+}
+
+std::string bytes_text(std::uint64_t bytes) {
+  const double megabytes = static_cast<double>(bytes) / 1e6;
+  return megabytes < 999.5 ? formatted("%.0f MB", megabytes) : formatted("%.2f GB", megabytes / 1000);
+}
+
+}  // namespace quadgraph

@@ -1,0 +1,43 @@
+// All that the window holds beside the engine: the scene, and what the user is doing to it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/render/engine.h"
+#include "engine/scene/scene.h"
+
+namespace quadgraph {
+
+// What the last frames took and found.
+struct Measured {
+  std::vector<PassStats> passes;  // of the last picture
+  double frame_ms = 0;            // from the change to the picture, of the last one
+  double frames_per_second = 0;   // of the last second in which something changed
+  float share = 1;                // of the window's pixels along a side that the last picture has
+  bool settled = false;           // the picture is the converged one
+  SolveReport solve;
+  float exposure_stops = 0;
+  std::uint64_t device_bytes = 0, peak_device_bytes = 0;
+};
+
+struct State {
+  Scene scene;
+  std::size_t light = 0;      // the selected one
+  std::string material_text;  // being typed
+  bool panel = true, help = false;
+  std::string message;   // the last thing to tell the user
+  bool refused = false;  // it is a complaint
+
+  // Wishes that the viewer fulfils.
+  bool focus_panel = false, focus_picture = false;
+  bool screenshot = false, full_screen = false, quit = false;
+
+  void say(std::string text, bool complaint = false) {
+    message = std::move(text);
+    refused = complaint;
+  }
+};
+
+}  // namespace quadgraph

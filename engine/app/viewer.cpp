@@ -1,0 +1,286 @@
+#include "engine/app/viewer.h"
+
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/app/gestures.h"
+#include "engine/app/panel.h"
+#include "engine/graph/error.h"
+#include "engine/render/metadata.h"
+
+namespace quadgraph {
+namespace {
+
+constexpr double budget_ms = 400;             // of a picture in motion
+constexpr double settle_after = 0.25;         // seconds without a change
+constexpr double idle_wait = 0.5;             // seconds
+constexpr float degrees_per_height = 180.0f;  // of a drag over the height of the picture
+constexpr std::uint32_t graph_steps = 20;     // of conjugate gradients a picture, for methods without cycles
+
+double milliseconds(std::chrono::steady_clock::duration duration) {
+  return std::chrono::duration<double, std::milli>(duration).count();
+}
+
+}  // namespace
+
+Viewer::Viewer(Window& window, Stage& stage, std::filesystem::path stem)
+    : window_(window),
+      stage_(stage),
+      engine_(stage.engine()),
+      swapchain_(engine_.context(), window.width(), window.height()),
+      interface_(window, engine_.context(), swapchain_),
+      tone_mapper_(engine_.context()),
+      pace_(budget_ms),
+      stem_(std::move(stem)) {
+  state_.scene = stage.scene();
+}
+
+// The last frame may still read the pixels.
+Viewer::~Viewer() {
+  vkDeviceWaitIdle(engine_.context().device());
+}
+
+void Viewer::run() {
+  while (!window_.closing()) {
+    window_.poll(patience());
+    swapchain_.resize(window_.width(), window_.height());
+    const std::vector<Event> events = window_.take_events();
+    if (!events.empty()) frames_wanted_ = 3;
+    handle(events);
+    fulfil_wishes();
+    keep_up();
+    build_widgets(events);
+    present();
+    window_.show_busy(!measured_.settled);
+  }
+}
+
+// Seconds that nothing need happen for.
+double Viewer::patience() const {
+  if (frames_wanted_ > 0 || window_.events_wait() || !shown_) return 0;
+  return measured_.settled ? idle_wait : 0.5 * settle_after;
+}
+
+Viewer::Part Viewer::part() const {
+  const auto wide = static_cast<std::uint32_t>(std::lround(panel_width * window_.scale()));
+  const std::uint32_t left = state_.panel && swapchain_.width() > wide + 64 ? wide : 0;
+  return {left, swapchain_.width() - left, swapchain_.height()};
+}
+
+Surroundings Viewer::surroundings() const {
+  const Part now = part();
+  const auto height = static_cast<float>(std::max(now.height, 1u));
+  return {engine_.bounds(), std::max(static_cast<float>(now.width), 1.0f) / height,
+          static_cast<std::uint32_t>(engine_.graph().levels().size())};
+}
+
+void Viewer::handle(const std::vector<Event>& events) {
+  for (const Event& event : events) {
+    if (const auto* key = std::get_if<KeyEvent>(&event)) {
+      handle_key(*key);
+    } else if (const auto* motion = std::get_if<MotionEvent>(&event)) {
+      handle_motion(*motion);
+    } else if (const auto* button = std::get_if<ButtonEvent>(&event)) {
+      dragging_ = button->action == GLFW_PRESS && !interface_.has_pointer();
+      drag_button_ = button->button;
+      drag_mods_ = button->mods;
+      if (dragging_) state_.focus_picture = true;
+    } else if (const auto* scroll = std::get_if<ScrollEvent>(&event); scroll != nullptr && !interface_.has_pointer()) {
+      const Surroundings around = surroundings();
+      state_.scene.view = zoomed(state_.scene.view, around.bounds, around.aspect, static_cast<float>(scroll->y));
+    }
+  }
+}
+
+void Viewer::handle_key(const KeyEvent& event) {
+  if (event.action == GLFW_RELEASE || interface_.has_text()) return;
+  if (interface_.has_keys()) {
+    // The panel has the keys that move in it.
+    constexpr int theirs[] = {GLFW_KEY_LEFT, GLFW_KEY_RIGHT, GLFW_KEY_UP,    GLFW_KEY_DOWN,
+                              GLFW_KEY_TAB,  GLFW_KEY_SPACE, GLFW_KEY_ENTER, GLFW_KEY_HOME};
+    if (event.key == GLFW_KEY_ESCAPE) state_.focus_picture = true;
+    if (event.key == GLFW_KEY_ESCAPE || std::find(std::begin(theirs), std::end(theirs), event.key) != std::end(theirs))
+      return;
+  }
+  if (event.key == GLFW_KEY_ESCAPE && state_.help) {
+    state_.help = false;
+    return;
+  }
+  run_command(event.key, event.mods, state_, surroundings());
+}
+
+void Viewer::handle_motion(const MotionEvent& event) {
+  const Surroundings around = surroundings();
+  const auto height = static_cast<float>(std::max(part().height, 1u));
+  const float right = static_cast<float>(event.x - pointer_x_) / height;
+  const float up = static_cast<float>(pointer_y_ - event.y) / height;
+  pointer_x_ = event.x;
+  pointer_y_ = event.y;
+  if (!dragging_) return;
+  View& view = state_.scene.view;
+  if (drag_button_ != GLFW_MOUSE_BUTTON_LEFT) {
+    view = panned(view, around.bounds, around.aspect, right, up);
+  } else if ((drag_mods_ & (GLFW_MOD_CONTROL | GLFW_MOD_SHIFT)) == 0) {
+    view = orbited(view, degrees_per_height * right, degrees_per_height * up);
+  } else if (state_.light < state_.scene.lights.size()) {
+    Light& light = state_.scene.lights[state_.light];
+    light = turned(light, view, around.bounds, degrees_per_height * right, degrees_per_height * up);
+  }
+}
+
+void Viewer::build_widgets(const std::vector<Event>& events) {
+  interface_.begin(events);
+  if (state_.focus_picture) ImGui::SetWindowFocus(nullptr);
+  if (state_.panel) draw_panel(state_, {engine_, measured_, interface_.unit()});
+  if (state_.help) draw_help(state_, interface_.unit());
+  const float left = static_cast<float>(part().left) / window_.pixels_per_unit();
+  if (const auto& legend = engine_.legend()) draw_colour_bar(*legend, left, interface_.unit());
+  draw_message(state_, left, interface_.unit());
+  ImGui::Render();
+  state_.focus_panel = state_.focus_picture = false;
+  frames_wanted_ = std::max(frames_wanted_ - 1, 0);
+}
+
+void Viewer::fulfil_wishes() {
+  if (state_.quit) window_.close();
+  if (state_.full_screen) window_.toggle_full_screen();
+  if (state_.screenshot && shown_) write_picture();
+  state_.full_screen = state_.screenshot = false;
+}
+
+// Brings the picture up to the scene: at once, as good as the budget allows, and exactly when nothing changes any more.
+void Viewer::keep_up() {
+  if (swapchain_.width() == 0) return;
+  const bool changed = !shown_ || state_.scene != *shown_ || part() != shown_part_;
+  if (changed) changed_ = Clock::now();
+  window_.show_busy(changed || !measured_.settled);
+  if (!changed && (measured_.settled || milliseconds(Clock::now() - changed_) < 1000 * settle_after || dragging_))
+    return;
+  const Scene before = shown_.value_or(state_.scene);
+  const bool first = !shown_;
+  try {
+    remake(!changed);
+  } catch (const VulkanError&) {
+    throw;
+  } catch (const std::exception& error) {
+    if (first) throw;
+    state_.say(error.what(), true);
+    if (state_.scene == before) throw;
+    state_.scene = before;
+    shown_.reset();
+    remake(false);
+  }
+  frames_wanted_ = 3;
+}
+
+// In motion one cycle from the last solution.
+SolveOptions Viewer::options_of_solve(bool settle) const {
+  SolveOptions options = state_.scene.solve;
+  if (settle) return options;
+  const bool cycles = options.method == Method::fem;
+  options.solver = cycles ? SolverKind::fmg_pcg : SolverKind::dpcg;
+  options.cycles = cycles ? 1 : graph_steps;
+  options.bounces = 1;
+  options.warm = true;
+  options.error = 0;
+  return options;
+}
+
+void Viewer::remake(bool settle) {
+  swapchain_.wait();  // the last frame may still read the pixels
+  const Clock::time_point start = Clock::now();
+  const Scene& scene = state_.scene;
+  const bool lit =
+      shown_ && scene.material == shown_->material && scene.lights == shown_->lights && scene.solve == shown_->solve;
+  const bool solving = !lit || (settle && !solved_exactly_);
+  if (solving) {
+    stage_.show(scene);
+    measured_.solve = engine_.solve(options_of_solve(settle));
+    solved_exactly_ = settle;
+  }
+  const Clock::time_point solved = Clock::now();
+  const Part now = part();
+  const double pixels = double(now.width) * now.height;
+  measured_.share = settle ? 1 : pace_.share(pixels, solving);
+  make_picture(settle);
+  shown_ = scene;
+  shown_part_ = now;
+  measured_.settled = settle;
+  measure(start, solving ? milliseconds(solved - start) : 0, milliseconds(Clock::now() - solved));
+}
+
+void Viewer::make_picture(bool settle) {
+  const Part now = part();
+  const auto side = [&](std::uint32_t pixels) {
+    return std::max(1u, static_cast<std::uint32_t>(std::lround(measured_.share * static_cast<float>(pixels))));
+  };
+  RenderOptions options = state_.scene.render;
+  options.width = settle ? now.width : side(now.width);
+  options.height = settle ? now.height : side(now.height);
+  const PictureBuffers& picture = engine_.draw(state_.scene.view, options);
+  measured_.exposure_stops = tone_mapper_.exposure(picture, state_.scene.tone);
+  pixels_ = &tone_mapper_.run(picture, state_.scene.tone, measured_.exposure_stops,
+                              {now.width, now.height, swapchain_.blue_first()});
+}
+
+void Viewer::measure(Clock::time_point start, double solve_ms, double draw_ms) {
+  const Clock::time_point now = Clock::now();
+  const double side = static_cast<double>(measured_.share);
+  pace_.took(solve_ms, draw_ms, side * side * double(shown_part_.width) * shown_part_.height);
+  measured_.frame_ms = milliseconds(now - start);
+  pictures_.push_back(now);
+  std::erase_if(pictures_, [&](const auto& time) { return milliseconds(now - time) > 1000; });
+  measured_.frames_per_second = std::max(static_cast<double>(pictures_.size()), 1000 / measured_.frame_ms);
+  measured_.passes = engine_.passes();
+  measured_.device_bytes = engine_.device_bytes();
+  measured_.peak_device_bytes = engine_.peak_device_bytes();
+}
+
+void Viewer::present() {
+  const auto frame = swapchain_.begin();
+  if (!frame) return;
+  const VkClearColorValue black{{0.0f, 0.0f, 0.0f, 1.0f}};
+  const VkImageSubresourceRange whole{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+  vkCmdClearColorImage(frame->commands, frame->image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &black, 1, &whole);
+  const bool fits =
+      shown_part_.left + shown_part_.width <= swapchain_.width() && shown_part_.height <= swapchain_.height();
+  if (pixels_ != nullptr && fits) {
+    vk::transition(frame->commands, frame->image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+    vk::copy_pixels(*frame, *pixels_, shown_part_.left, 0, shown_part_.width, shown_part_.height);
+  }
+  vk::transition(frame->commands, frame->image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                 VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+  interface_.draw(*frame);
+  swapchain_.present(*frame);
+}
+
+// The converged picture, whatever is on the screen now.
+void Viewer::write_picture() {
+  try {
+    remake(true);
+    RenderOptions options = state_.scene.render;
+    options.width = shown_part_.width;
+    options.height = shown_part_.height;
+    const Picture picture = engine_.render(state_.scene.view, options);
+    std::filesystem::path png, exr;
+    do {
+      png = stem_.string() + "-" + std::to_string(++pictures_written_) + ".png";
+      exr = png;
+      exr.replace_extension(".exr");
+    } while (std::filesystem::exists(png) || std::filesystem::exists(exr));
+    write_png(png, picture, state_.scene.tone, engine_.metadata());
+    write_exr(exr, picture, state_.scene.tone, engine_.metadata());
+    state_.say("written: " + png.string() + ", " + exr.string());
+  } catch (const VulkanError&) {
+    throw;
+  } catch (const std::exception& error) {
+    state_.say(error.what(), true);
+  }
+  frames_wanted_ = 3;
+}
+
+}  // namespace quadgraph

@@ -1,0 +1,79 @@
+// A scene in a window: shows it, lets the user change it, and keeps the picture up with it.
+#pragma once
+
+#include <chrono>
+#include <optional>
+
+#include "engine/app/commands.h"
+#include "engine/app/interface.h"
+#include "engine/app/pace.h"
+#include "engine/app/state.h"
+#include "engine/app/window.h"
+#include "engine/render/tone_mapper.h"
+#include "engine/scene/stage.h"
+#include "engine/vk/swapchain.h"
+
+namespace quadgraph {
+
+class Viewer {
+ public:
+  // Of the scene that the stage shows. `stem`: of the pictures that the user asks for. All must outlive the viewer.
+  Viewer(Window& window, Stage& stage, std::filesystem::path stem);
+
+  ~Viewer();
+  Viewer(const Viewer&) = delete;
+  Viewer& operator=(const Viewer&) = delete;
+
+  // Until the user closes the window. Throws VulkanError.
+  void run();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  // The part of the window that shows the picture, pixels.
+  struct Part {
+    std::uint32_t left = 0, width = 0, height = 0;
+
+    bool operator==(const Part&) const = default;
+  };
+
+  Part part() const;
+  Surroundings surroundings() const;
+  double patience() const;
+  void handle(const std::vector<Event>& events);
+  void handle_key(const KeyEvent& event);
+  void handle_motion(const MotionEvent& event);
+  void fulfil_wishes();
+  void build_widgets(const std::vector<Event>& events);
+  void keep_up();
+  void remake(bool settle);
+  SolveOptions options_of_solve(bool settle) const;
+  void make_picture(bool settle);
+  void measure(Clock::time_point start, double solve_ms, double draw_ms);
+  void present();
+  void write_picture();
+
+  Window& window_;
+  Stage& stage_;
+  Engine& engine_;
+  vk::Swapchain swapchain_;
+  Interface interface_;
+  ToneMapper tone_mapper_;
+  Pace pace_;
+  std::filesystem::path stem_;
+  std::uint32_t pictures_written_ = 0;
+  State state_;
+  Measured measured_;
+  bool dragging_ = false;
+  int drag_button_ = 0, drag_mods_ = 0;
+  double pointer_x_ = 0, pointer_y_ = 0;  // pixels
+  std::optional<Scene> shown_;            // empty before the first picture
+  Part shown_part_;
+  const vk::Buffer* pixels_ = nullptr;       // of shown_part_
+  bool solved_exactly_ = false;              // the last solve was to the tolerance
+  Clock::time_point changed_;                // when something changed last
+  std::vector<Clock::time_point> pictures_;  // of the last second
+  int frames_wanted_ = 3;                    // widgets settle over several frames
+};
+
+}  // namespace quadgraph

@@ -1,0 +1,42 @@
+"""`quadgraph view`: a baked object or a scene in a window."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from quadgraph.errors import InputError
+
+PROGRAM = "quadgraph-engine"
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Register the subcommand."""
+    parser = subparsers.add_parser(
+        "view",
+        help="a baked object or a scene in a window",
+        description=__doc__,
+        epilog=f"F1 in the window lists the keys. What may follow FILE, `{PROGRAM} --help` tells: --material, --light, "
+        "--view, --method and so on, as of `quadgraph render`.",
+    )
+    parser.add_argument("file", metavar="FILE", type=Path, help="a baked .qgraph, or a scene .json")
+    parser.add_argument("options", nargs=argparse.REMAINDER, metavar="OPTION", help=f"of {PROGRAM}")
+
+
+def find_program() -> str:
+    """Return the path of the engine's program: beside the interpreter, in the build, on the PATH. Raises InputError."""
+    build = Path(__file__).resolve().parents[3] / "build" / "engine" / "app"
+    folders = [Path(sys.executable).parent, build, *os.get_exec_path()]
+    found = shutil.which(PROGRAM, path=os.pathsep.join(map(str, folders)))
+    if found is None:
+        raise InputError(f"the program {PROGRAM} is not there; tools/setup builds it")
+    return found
+
+
+def run(args: argparse.Namespace) -> int:
+    """Open the window; the program's exit status once it is closed."""
+    return subprocess.run([find_program(), args.file, *args.options], check=False).returncode

@@ -1,0 +1,93 @@
+// What drags and keys do to camera and lights, without a window.
+#include <doctest/doctest.h>
+
+#include <glm/geometric.hpp>
+
+#include "engine/app/commands.h"
+#include "engine/app/gestures.h"
+#include "engine/app/pace.h"
+
+using namespace quadgraph;
+
+namespace {
+
+const Sphere bounds{{10, 20, 30}, 40};
+
+// Where a point is seen, in clip coordinates: right and up.
+glm::vec2 seen(const View& view, const glm::vec3& point) {
+  const glm::vec4 clip = place_camera(view, bounds, 1).clip_from_world * glm::vec4(point, 1);
+  return {clip.x / clip.w, clip.y / clip.w};
+}
+
+}  // namespace
+
+TEST_CASE("what is dragged follows the hand") {
+  for (const UpAxis up : {UpAxis::y, UpAxis::z}) {
+    const View view{.azimuth = 30, .elevation = 20, .up = up};
+    const glm::vec3 near = bounds.centre + 0.5f * bounds.radius * place_camera(view, bounds, 1).backward;
+    CHECK(seen(orbited(view, 10, 0), near).x > seen(view, near).x + 0.05f);
+    CHECK(seen(orbited(view, 0, 10), near).y > seen(view, near).y + 0.05f);
+    const glm::vec2 moved = seen(panned(view, bounds, 1, 0.25f, -0.1f), bounds.centre);
+    CHECK(moved.x == doctest::Approx(0.5).epsilon(1e-3));
+    CHECK(moved.y == doctest::Approx(-0.2).epsilon(1e-3));
+    const Light light{.kind = LightKind::directional, .direction = -place_camera(view, bounds, 1).backward};
+    const Light turned_light = turned(light, view, bounds, 15, 10);
+    const Camera camera = place_camera(view, bounds, 1);
+    CHECK(glm::dot(-turned_light.direction, camera.right) > 0.2f);
+    CHECK(glm::dot(-turned_light.direction, camera.up) > 0.1f);
+    CHECK(glm::length(turned_light.direction) == doctest::Approx(1));
+  }
+}
+
+TEST_CASE("a view can be turned, moved and zoomed for ever and stays one that can be shown") {
+  View view;
+  for (int i = 0; i < 400; ++i) {
+    view = orbited(view, 37, 23);
+    view = panned(view, bounds, 1.5f, 0.3f, -0.2f);
+    view = zoomed(view, bounds, 1.5f, i < 200 ? 1 : -1);
+    CHECK_NOTHROW(place_camera(view, bounds, 1.5f));
+    CHECK(std::abs(view.azimuth) <= 180);
+  }
+}
+
+TEST_CASE("bearings of lights read back") {
+  for (const UpAxis up : {UpAxis::y, UpAxis::z}) {
+    const Bearing bearing = bearing_of(towards({.azimuth = -120, .elevation = 35}, up), up);
+    CHECK(bearing.azimuth == doctest::Approx(-120));
+    CHECK(bearing.elevation == doctest::Approx(35));
+  }
+}
+
+TEST_CASE("every key does something, and no two share one") {
+  const auto commands = all_commands();
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    CHECK_FALSE(commands[i].text.empty());
+    for (std::size_t k = 0; k < i; ++k) {
+      const bool shares = commands[i].key == commands[k].key || commands[i].key == commands[k].other_key ||
+                          (commands[i].other_key != 0 && (commands[i].other_key == commands[k].key ||
+                                                          commands[i].other_key == commands[k].other_key));
+      CHECK_FALSE((shares && commands[i].mods == commands[k].mods));
+    }
+    State state;
+    state.scene.lights = {Light{.kind = LightKind::directional, .power = glm::vec3(1)}, Light{}};
+    // What the keys change must not be at the end of its range already.
+    state.scene.view.distance = 200.0f;
+    state.scene.view.azimuth = 5;
+    const State before = state;
+    CHECK(run_command(commands[i].key, commands[i].mods, state, {bounds, 1.5f, 4}));
+    const bool wished = state.quit || state.full_screen || state.screenshot || state.focus_panel ||
+                        state.help != before.help || state.panel != before.panel || state.light != before.light;
+    CHECK_MESSAGE((wished || state.scene != before.scene), commands[i].keys);
+  }
+  State state;
+  CHECK_FALSE(run_command(-1, 0, state, {bounds, 1, 1}));
+}
+
+TEST_CASE("a picture in motion keeps to its budget, and takes all of it") {
+  Pace pace(400);
+  CHECK(pace.share(1e6, true) == 1);
+  for (int i = 0; i < 20; ++i) pace.took(250, 600, 1e6);
+  CHECK(pace.share(1e6, false) == 0.75f);  // 340 of 400 ms
+  CHECK(pace.share(1e6, true) == 0.5f);    // 150 of the 150 that the solve leaves
+  CHECK(pace.share(1e4, true) == 1);
+}
