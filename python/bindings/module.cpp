@@ -103,6 +103,7 @@ py::dict as_dict(const SolveReport& report) {
   d["mesh_warning"] = report.mesh_warning;
   d["model_warning"] = report.model_warning;
   d["deformed"] = report.deformed;
+  d["exchange_age"] = report.exchange_age;
   d["finest"] = report.finest;
   d["work"] = report.work;
   d["algebraic"] = error_dict(report.algebraic);

@@ -16,6 +16,7 @@ from quadgraph.errors import QuadGraphError
 # Modules that import nothing heavy: what a subcommand needs, it imports when it runs.
 SUBCOMMANDS = (
     "bake",
+    "shapes",
     "info",
     "view",
     "render",

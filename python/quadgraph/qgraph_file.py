@@ -76,15 +76,24 @@ def write(path: Path, metadata: dict[str, Any], sections: dict[str, np.ndarray])
     is validated first: FormatError means a mistake of the caller. InputError if `path` cannot be written. Whatever
     interrupts the call, `path` is either untouched or complete.
     """
-    blob = np.frombuffer(json.dumps(metadata, sort_keys=True, allow_nan=False).encode(), np.uint8)
-    everything = {"metadata": blob, **sections}
-    qgraph_rules.check(everything, metadata, str(path))
+    qgraph_rules.check(_with_metadata(metadata, sections), metadata, str(path))
+    return write_sections(path, metadata, sections)
+
+
+def write_sections(path: Path, metadata: dict[str, Any], sections: dict[str, np.ndarray]) -> int:
+    """Do the same with sections of any meaning: header, table, padding and checksums of a .qgraph alone."""
+    everything = _with_metadata(metadata, sections)
     header, table = _head(everything)
     with replacing(path) as stream:
         for piece in (header.tobytes() + table.tobytes(), *everything.values()):
             size = stream.write(np.ascontiguousarray(piece) if isinstance(piece, np.ndarray) else piece)
             stream.write(b"\0" * (_aligned(size) - size))
     return int(header["file_size"])
+
+
+def _with_metadata(metadata: dict[str, Any], sections: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    blob = np.frombuffer(json.dumps(metadata, sort_keys=True, allow_nan=False).encode(), np.uint8)
+    return {"metadata": blob, **sections}
 
 
 def read(path: Path) -> QGraphFile:

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from quadgraph import _core
-from quadgraph.errors import InputError
+from quadgraph import _core, cli, qgraph_file
+from quadgraph.errors import FormatError, InputError
+from quadgraph.shapes import Shapes, of_moves
+from quadgraph.surface import Surface
 
 TINY = Path(__file__).resolve().parents[1] / "data" / "tiny.qgraph"
 
@@ -93,3 +96,66 @@ def test_a_scene_file_deforms_and_moves_the_deformation(tmp_path):
     assert np.allclose(np.array(heights) / heights[0], [1, 2, 3], rtol=1e-5)
     assert json.loads(file.at(2).json())["deformation"][0]["factor"] == 2
     assert stage.engine.validation_messages == []
+
+
+def squeezed(points: np.ndarray) -> np.ndarray:
+    """Return where an affine map takes points, which harmonic displacements follow exactly."""
+    return points @ np.array([[1.2, 0.1, 0], [0, 0.8, 0.2], [0, 0, 1]]) + np.array([0.3, 0, 0])
+
+
+def test_frames_of_a_mesh_move_display_and_tets_alike(engine, tmp_path, capsys):
+    display = engine.graph.display
+    faces = "".join(f"f {a} {b} {c}\n" for a, b, c in np.asarray(display["triangles"]) + 1)
+    for name, points in (("rest", display["vertices"]), ("end", squeezed(display["vertices"]))):
+        (tmp_path / f"{name}.obj").write_text("".join(f"v {x:.9g} {y:.9g} {z:.9g}\n" for x, y, z in points) + faces)
+    frames = [str(tmp_path / f"{name}.obj") for name in ("rest", "end")]
+    shapes = tmp_path / "squeeze.qshapes"
+    assert cli.main(["shapes", str(TINY), *frames, "-o", str(shapes)]) == 0
+    assert "2 shapes of 2 levels" in capsys.readouterr().out
+    engine.solve()
+    rest = engine.surface_field()["position"]
+    engine.set_deformation([{"type": "displaced", "shapes": str(shapes), "frame": 0.5}])
+    engine.solve()
+    expected = (rest + squeezed(rest)) / 2
+    assert np.allclose(engine.surface_field()["position"], expected, atol=1e-5)
+    engine.set_deformation([])
+
+    file = qgraph_file.read(TINY)
+    start = Surface(np.asarray(display["vertices"], np.float64), np.asarray(display["triangles"], np.int64))
+    moves = (squeezed(start.vertices) - start.vertices)[None]
+    found = of_moves(file, start, moves)
+    for number, level in enumerate(found.levels):
+        vertices = file.sections[f"level{number}/vertices"]
+        assert np.allclose(vertices + level[0], squeezed(vertices), atol=1e-5)
+    engine.set_deformation([{"type": "displaced", "shapes": found.in_memory(), "weights": [1]}])
+    engine.solve()
+    assert np.allclose(engine.surface_field()["position"], squeezed(rest), atol=1e-5)
+    engine.set_deformation([])
+
+
+def test_frames_of_something_else_are_refused(tmp_path, capsys):
+    (tmp_path / "far.obj").write_text("v 9 9 9\nv 10 9 9\nv 9 10 9\nf 1 2 3\n")
+    (tmp_path / "more.obj").write_text("v 9 9 9\nv 10 9 9\nv 9 10 9\nv 0 0 0\nf 1 2 3\n")
+    output = tmp_path / "a.qshapes"
+    for frames, said in (
+        (["far.obj"], "mm from the body"),
+        (["far.obj", "more.obj"], "4 vertices"),
+        (["a.glb"], ".obj"),
+    ):
+        assert cli.main(["shapes", str(TINY), *[str(tmp_path / f) for f in frames], "-o", str(output)]) == 1
+        assert said in capsys.readouterr().err
+    assert not output.exists()
+
+
+@pytest.mark.parametrize("spoil", [lambda data: data[:-64], lambda data: data[:200] + b"x" + data[201:], lambda _: b""])
+def test_damaged_shapes_are_refused(engine, tmp_path, spoil):
+    path = tmp_path / "a.qshapes"
+    levels = [np.zeros((1, len(level.vertices), 3), np.float32) for level in engine.graph.levels]
+    Shapes(np.zeros((1, len(engine.graph.display["vertices"]), 3), np.float32), levels).write(path)
+    moved = [{"type": "displaced", "shapes": str(path), "weights": [2]}]
+    engine.set_deformation(moved)
+    path.write_bytes(spoil(path.read_bytes()))
+    os.utime(path, (1, 1))
+    with pytest.raises((FormatError, InputError), match=r"a\.qshapes"):
+        engine.set_deformation(moved)
+    engine.set_deformation([])
