@@ -119,6 +119,10 @@ def test_frames_of_a_mesh_move_display_and_tets_alike(engine, tmp_path, capsys):
     expected = (rest + squeezed(rest)) / 2
     assert np.allclose(engine.surface_field()["position"], expected, atol=1e-5)
     engine.set_deformation([])
+    scene = {"body": str(TINY), "deformation": [{"type": "displaced", "shapes": shapes.name, "frame": 0.5}]}
+    (tmp_path / "scene.json").write_text(json.dumps(scene))
+    written = json.loads(_core.SceneFile(tmp_path / "scene.json").at(0).json())
+    assert written["deformation"] == [{"type": "displaced", "shapes": str(shapes), "weights": [0.5, 0.5]}]
 
     file = qgraph_file.read(TINY)
     start = Surface(np.asarray(display["vertices"], np.float64), np.asarray(display["triangles"], np.int64))
