@@ -4,5 +4,9 @@ vec3 beam_light(Beam beam, Floats beam_q, uint face_count, uint face, uint quart
   if (beam.floats == BEAM_RGB) {
     return vec3(load_float(beam_q, at), load_float(beam_q, at + 1u), load_float(beam_q, at + 2u));
   }
+  if (beam.floats == BEAM_RGB_QUARTERS) {
+    at += 3u * quarter;
+    return vec3(load_float(beam_q, at), load_float(beam_q, at + 1u), load_float(beam_q, at + 2u)) * beam.colour;
+  }
   return load_float(beam_q, at + (beam.floats == BEAM_QUARTERS ? quarter : 0u)) * beam.colour;
 }

@@ -6,13 +6,44 @@
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { IrradiancePush push; };
 
-// q of one light with a direction at one point, over its power: visibility * cos * E * F_t(cos, eta).
-float share_at(LightRecord light, vec3 position, vec3 normal) {
-  Incident incident = incident_light(light, position);
+// A light as a face is lit by it: of a projector one channel at a time.
+struct Lamp {
+  LightRecord light;
+  LightShape shape;
+  uint channel;
+  float width;  // of a sample of the face, mm
+};
+
+// What of a light in one place would enter at one point if nothing hid it, over its power: cos * E * F_t(cos, eta).
+float share_from(Lamp lamp, vec3 position, vec3 normal) {
+  Incident incident = incident_light(lamp.light, lamp.shape, position);
   float cos_i = min(dot(normal, incident.direction), 1.0);
-  if (cos_i <= 0.0) return 0.0;
-  float visibility = light_visibility(light, push.views, position, normal, 0);
-  return visibility * cos_i * fresnel_transmittance(cos_i, push.eta) * incident.share;
+  if (cos_i <= 0.0 || incident.share <= 0.0) return 0.0;
+  if (SHAPED && lamp.light.kind == LIGHT_PROJECTOR) {
+    float width = lamp.width / distance(lamp.light.vector, position);
+    incident.share *= projected(lamp.shape, -incident.direction, width)[lamp.channel];
+  }
+  return cos_i * fresnel_transmittance(cos_i, push.eta) * incident.share;
+}
+
+// The same of a patch, the mean over its parts.
+float share_from_parts(Lamp lamp, vec3 position, vec3 normal) {
+  vec3 middle = lamp.light.vector;
+  uint n = lamp.shape.parts;
+  float sum = 0.0;
+  for (uint k = 0u; k < n * n; ++k) {
+    vec2 place = (vec2(k % n, k / n) + 0.5) / float(n) - 0.5;
+    lamp.light.vector = middle + place.x * lamp.shape.right + place.y * lamp.shape.up;
+    sum += share_from(lamp, position, normal);
+  }
+  return sum / float(n * n);
+}
+
+// q of one light with a direction at one point, over its power.
+float share_at(Lamp lamp, vec3 position, vec3 normal) {
+  bool parts = SHAPED && lamp.shape.parts > 1u;
+  float share = parts ? share_from_parts(lamp, position, normal) : share_from(lamp, position, normal);
+  return share > 0.0 ? share * light_visibility(lamp.light, push.views, position, normal, 0) : 0.0;
 }
 
 // The quarter of a face that its point a + u ab + v ac lies in, away from their boundaries.
@@ -21,7 +52,7 @@ uint quarter_of(float u, float v) {
 }
 
 // The same on the quarters of the face a, a + ab, a + ac.
-vec4 quarters_of(LightRecord light, vec3 a, vec3 ab, vec3 ac, vec3 normal) {
+vec4 quarters_of(Lamp lamp, vec3 a, vec3 ab, vec3 ac, vec3 normal) {
   vec4 quarter = vec4(0);
   uint n = push.subdivision;
   float h = 1.0 / float(n);
@@ -32,7 +63,7 @@ vec4 quarters_of(LightRecord light, vec3 a, vec3 ab, vec3 ac, vec3 normal) {
         float u = h * (float(i) + (inverted == 1u ? 2.0 : 1.0) / 3.0);
         float v = h * (float(j) + (inverted == 1u ? 2.0 : 1.0) / 3.0);
         quarter[quarter_of(u, v)] +=
-            float(FACE_QUARTERS) * h * h * share_at(light, a + u * ab + v * ac, normal);
+            float(FACE_QUARTERS) * h * h * share_at(lamp, a + u * ab + v * ac, normal);
       }
     }
   }
@@ -51,6 +82,7 @@ void main() {
 
   vec3 q = vec3(0);
   uint beam = 0u;  // of the light
+  vec4 quarter = vec4(0);
   for (uint i = 0u; i < push.light_count; ++i) {
     LightRecord light = load_light(push.lights, i);
     if (light.kind == LIGHT_AMBIENT) {
@@ -60,9 +92,26 @@ void main() {
       beam += BEAM_FACE * push.face_count;
       continue;
     }
-    vec4 quarter = quarters_of(light, a, ab, ac, normal);
+    Lamp lamp = Lamp(light, no_shape(), 0u, 0.0);
+    if (SHAPED) {
+      lamp.shape = load_light_shape(push.shapes, i);
+      lamp.width = sqrt(0.5 * length(cross(ab, ac))) / float(push.subdivision);
+    }
+    if (SHAPED && light.kind == LIGHT_PROJECTOR) {
+      for (lamp.channel = 0u; lamp.channel < 3u; ++lamp.channel) {
+        vec4 image = quarters_of(lamp, a, ab, ac, normal);
+        uint at = beam + BEAM_RGB_QUARTERS * f + lamp.channel;
+        for (uint k = 0u; k < FACE_QUARTERS; ++k) push.beam_q.at[at + 3u * k] = image[k];
+        q[lamp.channel] += dot(image, vec4(0.25)) * light.power[lamp.channel];
+      }
+      beam += BEAM_RGB_QUARTERS * push.face_count;
+      continue;
+    }
+    quarter += quarters_of(lamp, a, ab, ac, normal);
+    if (lamp.shape.more_follow == 1u) continue;
     for (uint k = 0u; k < FACE_QUARTERS; ++k) push.beam_q.at[beam + FACE_QUARTERS * f + k] = quarter[k];
     q += dot(quarter, vec4(0.25)) * light.power;
+    quarter = vec4(0);
     beam += BEAM_QUARTERS * push.face_count;
   }
   push.q.at[f] = q;

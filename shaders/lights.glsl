@@ -1,16 +1,72 @@
 // Light that arrives at a point: direction, irradiance facing the light, and visibility from the shadow maps.
 #include "render_shared.h"
 
+// 1 where some light has a shape (LIGHT_FIRST_SHAPED).
+layout(constant_id = 1) const uint SHAPED_LIGHTS = 0u;
+const bool SHAPED = SHAPED_LIGHTS != 0u;
+
+// Of a light that has none.
+LightShape no_shape() {
+  LightShape shape;
+  shape.more_follow = 0u;
+  shape.parts = 1u;
+  return shape;
+}
+
 struct Incident {
   vec3 direction;  // unit, towards the light
   float share;     // irradiance on a plane facing the light, over its power; point: 1/mm^2
 };
 
-Incident incident_light(LightRecord light, vec3 position) {
+// Share of the intensity on the axis of a spot light in a direction at that cosine from it.
+float spot_share(LightShape shape, float cosine) {
+  float s = clamp((cosine - shape.outer) / max(shape.inner - shape.outer, 1e-7), 0.0, 1.0);
+  return s * s * (3.0 - 2.0 * s);
+}
+
+// Share of the intensity on the axis of light that a flat image sends out evenly: 1 / cosine^3.
+float projected_share(float cosine) {
+  return cosine > 0.0 ? 1.0 / (cosine * cosine * cosine) : 0.0;
+}
+
+float shaped_share(uint kind, LightShape shape, float cosine) {
+  if (kind == LIGHT_SPOT) return spot_share(shape, cosine);
+  if (kind == LIGHT_PATCH) return shape.share * max(cosine, 0.0);
+  return projected_share(cosine);
+}
+
+// The image of a projector in a direction away from it; black beside it. `width` is that of a sample there, mm over the
+// distance from the light: texels that are finer are taken together.
+vec3 projected(LightShape shape, vec3 away, float width) {
+  vec2 place = vec2(dot(shape.right, away), dot(shape.up, away)) / dot(shape.axis, away);
+  if (any(greaterThan(abs(place), vec2(1)))) return vec3(0);
+  float finest = 2.0 / (float(shape.rows) * length(shape.up));
+  float level = clamp(round(log2(max(width / finest, 1.0))), 0.0, float(shape.levels - 1u));
+  uvec2 size = uvec2(shape.columns, shape.rows);
+  uint first = 0u;
+  for (float k = 0.0; k < level; k += 1.0) {
+    first += size.x * size.y;
+    size = max(size / 2u, uvec2(1));
+  }
+  vec2 texel = clamp(vec2(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y) * vec2(size) - 0.5, vec2(0), vec2(size) - 1.0);
+  uvec2 low = uvec2(texel), high = min(low + 1u, size - 1u);
+  vec2 f = texel - vec2(low);
+  vec3 upper = mix(load_vec3(shape.texels, first + low.y * size.x + low.x),
+                   load_vec3(shape.texels, first + low.y * size.x + high.x), f.x);
+  vec3 lower = mix(load_vec3(shape.texels, first + high.y * size.x + low.x),
+                   load_vec3(shape.texels, first + high.y * size.x + high.x), f.x);
+  return mix(upper, lower, f.y);
+}
+
+Incident incident_light(LightRecord light, LightShape shape, vec3 position) {
   if (light.kind == LIGHT_DIRECTIONAL) return Incident(light.vector, 1.0);
   vec3 to_light = light.vector - position;
   float distance_squared = max(dot(to_light, to_light), 1e-12);
-  return Incident(to_light * inversesqrt(distance_squared), 1.0 / distance_squared);
+  Incident incident = Incident(to_light * inversesqrt(distance_squared), 1.0 / distance_squared);
+  if (SHAPED && light.kind >= LIGHT_FIRST_SHAPED) {
+    incident.share *= shaped_share(light.kind, shape, -dot(incident.direction, shape.axis));
+  }
+  return incident;
 }
 
 // Index among the six views of the one that `away`, pointing from the light, falls into.
@@ -47,7 +103,7 @@ float filtered(ShadowView view, bool perspective, vec2 texel, float depth, int r
 
 // Share of the light that reaches `position` (mm) on a surface of unit normal `normal`.
 float light_visibility(LightRecord light, ShadowViews views, vec3 position, vec3 normal, int radius) {
-  bool perspective = light.kind == LIGHT_POINT;
+  bool perspective = light.kind != LIGHT_DIRECTIONAL;
   uint index = light.first_view + (light.view_count == 6u ? cube_view(position - light.vector) : 0u);
   ShadowView view = load_shadow_view(views, index);
   float w = (view.clip_from_world * vec4(position, 1.0)).w;

@@ -12,10 +12,18 @@ namespace quadgraph::gpu {
 const uint LIGHT_DIRECTIONAL = 0u;
 const uint LIGHT_POINT = 1u;
 const uint LIGHT_AMBIENT = 2u;
+// Kinds from here on have a LightShape. Passes that know them are pipelines of their own, by a specialization constant
+// (lights.glsl): llvmpipe walks through code that no light needs.
+const uint LIGHT_FIRST_SHAPED = 3u;
+const uint LIGHT_SPOT = 3u;
+const uint LIGHT_PATCH = 4u;  // of a rectangle
+const uint LIGHT_PROJECTOR = 5u;
 
-// Texels along a side of a shadow map: of a single view, and of each of a point light's six.
+// Texels along a side of a shadow map: of a single view, and of each of a point light's six; of a patch.
 const uint SHADOW_SIZE = 2048u;
 const uint SHADOW_CUBE_SIZE = 1024u;
+const uint SHADOW_PATCH_SIZE = 1024u;
+const uint SHADOW_PATCH_CUBE_SIZE = 512u;
 
 // A shadow map holds the depth of the faces turned away from the light. On a closed body a lit point then lies a whole
 // thickness in front of its own depth, so that no bias is needed against self-shadowing but near the terminator, where
@@ -35,15 +43,38 @@ struct ShadowView {
 
 struct LightRecord {
   uint kind;        // LIGHT_*
-  vec3 vector;      // directional: unit, towards the light; point: its position, mm; ambient: unused
-  vec3 power;       // directional: irradiance, W/mm^2; point: intensity, W/sr; ambient: irradiance
+  vec3 vector;      // directional: unit, towards the light; ambient: unused; others: its position, mm
+  vec3 power;       // directional, ambient: irradiance, W/mm^2; point: intensity, W/sr; spot: the same on the axis;
+                    // patch: the same of its whole rectangle;
+                    // projector: the same where the image is white
   uint first_view;  // into the array of ShadowView
   uint view_count;  // 0 (ambient), 1, or 6 in the order +x -x +y -y +z -z
+};
+
+// How the light is spread over directions.
+struct LightShape {
+  vec3 axis;         // unit, the way the light travels
+  float inner;       // spot: cosine of the angle from the axis at which it begins to fade
+  float outer;       // spot: cosine at which it ends
+  float share;       // patch: of its rectangle
+  float width;       // patch: of its longer side, mm
+  uint more_follow;  // 1: the next record is part of the same beam
+  // Projector: a direction d is (dot(right, d), dot(up, d)) / dot(axis, d) of the way from the image's middle to its
+  // right and upper edge. Its levels of columns x rows texels, RGB, top row first, each half as large as the one
+  // before, rounded down.
+  vec3 right;  // patch: its sides, mm
+  vec3 up;
+  QG_REF(Vec3s) texels;
+  uint columns;
+  uint rows;
+  uint levels;
+  uint parts;  // patch: along either side, that send out light apart, though hidden as one
 };
 
 #ifndef __cplusplus
 QG_ARRAY(ShadowViews, ShadowView);
 QG_ARRAY(LightRecords, LightRecord);
+QG_ARRAY(LightShapes, LightShape);
 
 ShadowView load_shadow_view(ShadowViews a, uint i) {
   if (TEXELS) {
@@ -62,6 +93,17 @@ LightRecord load_light(LightRecords a, uint i) {
   }
   return a.at[i];
 }
+
+LightShape load_light_shape(LightShapes a, uint i) {
+  if (TEXELS) {
+    uint t = texel_of(uvec2(a)) + 20u * i;
+    return LightShape(uintBitsToFloat(texels3(t)), uintBitsToFloat(texel(t + 3u)), uintBitsToFloat(texel(t + 4u)),
+                      uintBitsToFloat(texel(t + 5u)), uintBitsToFloat(texel(t + 6u)), texel(t + 7u),
+                      uintBitsToFloat(texels3(t + 8u)), uintBitsToFloat(texels3(t + 11u)), Vec3s(texels2(t + 14u)),
+                      texel(t + 16u), texel(t + 17u), texel(t + 18u), texel(t + 19u));
+  }
+  return a.at[i];
+}
 #endif
 
 // shadow.vert: depth of the display mesh.
@@ -76,9 +118,10 @@ struct IrradiancePush {
   QG_REF(Vec3s) vertices;  // mm
   QG_REF(Uvec3s) faces;
   QG_REF(Vec3s) q;        // W/mm^2, written
-  QG_REF(Floats) beam_q;  // per light BEAM_QUARTERS per face, of ambient light BEAM_FACE: share of its power; written
+  QG_REF(Floats) beam_q;  // per beam what gpu::Beam says: shares of its power; written
   QG_REF(Floats) sky;     // per face: share of ambient light that other parts of the body do not hide
   QG_REF(LightRecords) lights;
+  QG_REF(LightShapes) shapes;  // per light
   QG_REF(ShadowViews) views;
   uint face_count;
   uint light_count;
@@ -104,6 +147,7 @@ struct SurfaceScene {
   QG_REF(Vec3s) unscattered;  // the same
   QG_REF(Floats) sky;         // per face of level 0: share of even light from outside that the body does not hide
   QG_REF(LightRecords) lights;
+  QG_REF(LightShapes) shapes;  // per light
   QG_REF(ShadowViews) views;
   QG_REF(Uints) triangle_face;  // per display triangle: outside face of level 0
   QG_REF(GatherPoints) points;
@@ -134,11 +178,12 @@ SurfaceScene load_scene(SurfaceScenes a) {
   scene.unscattered = Vec3s(texels2(t + 36u));
   scene.sky = Floats(texels2(t + 38u));
   scene.lights = LightRecords(texels2(t + 40u));
-  scene.views = ShadowViews(texels2(t + 42u));
-  scene.triangle_face = Uints(texels2(t + 44u));
-  scene.points = GatherPoints(texels2(t + 46u));
-  scene.scale = GatherScales(texels2(t + 48u));
-  scene.solid = solid_in_texels(t + 50u);
+  scene.shapes = LightShapes(texels2(t + 42u));
+  scene.views = ShadowViews(texels2(t + 44u));
+  scene.triangle_face = Uints(texels2(t + 46u));
+  scene.points = GatherPoints(texels2(t + 48u));
+  scene.scale = GatherScales(texels2(t + 50u));
+  scene.solid = solid_in_texels(t + 52u);
   return scene;
 }
 #endif

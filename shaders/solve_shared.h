@@ -111,16 +111,18 @@ struct BeamRecord {
   vec3 vector;  // directional: unit, the way the light travels; point: where it comes from, mm; others: unused
 };
 
-// How much of a beam is stored per face, floats: one or one per quarter, to be multiplied by its colour; or q itself.
+// How much of a beam is stored per face, floats: one, one per quarter or three per quarter, to be multiplied by its
+// colour; or q itself, for the whole face.
 const uint BEAM_FACE = 1u;
 const uint BEAM_QUARTERS = FACE_QUARTERS;
 const uint BEAM_RGB = 3u;
+const uint BEAM_RGB_QUARTERS = 3u * FACE_QUARTERS;
 
 // A beam as the faces of all levels see it (beam_light.glsl).
 struct Beam {
   BeamRecord way;
   vec3 colour;  // W/mm^2 of what is stored as 1
-  uint floats;  // BEAM_FACE, BEAM_QUARTERS or BEAM_RGB
+  uint floats;  // BEAM_FACE, BEAM_QUARTERS, BEAM_RGB or BEAM_RGB_QUARTERS
   uint offset;  // floats of the beams before it, per face
 };
 

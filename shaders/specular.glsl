@@ -4,16 +4,22 @@ const float PI = 3.14159265;
 
 // Cook and Torrance 1982 with the GGX distribution and height-correlated Smith masking (Walter et al. 2007, Heitz 2014)
 // and exact Fresnel reflectance: BRDF times the cosine of incidence, 1/sr.
-float cook_torrance(vec3 n, vec3 v, vec3 l) {
+float cook_torrance(vec3 n, vec3 v, vec3 l, float alpha2) {
   float n_l = dot(n, l), n_v = dot(n, v);
   if (n_l <= 0.0 || n_v <= 0.0) return 0.0;
   vec3 h = normalize(v + l);
-  float alpha2 = scene.roughness * scene.roughness;
   float n_h = dot(n, h);
   float base = n_h * n_h * (alpha2 - 1.0) + 1.0;
   float distribution = alpha2 / (PI * base * base);
   float mask = n_v * sqrt(alpha2 + (1.0 - alpha2) * n_l * n_l) + n_l * sqrt(alpha2 + (1.0 - alpha2) * n_v * n_v);
   return distribution * fresnel_reflectance(min(dot(v, h), 1.0), scene.eta) * 0.5 * n_l / mask;
+}
+
+// Square of the roughness that blurs the highlight of a patch over its width: as much as makes the highlights of
+// neighbours run into one.
+float blurred(LightRecord light, LightShape shape, vec3 position) {
+  vec3 away = position - light.vector;
+  return scene.roughness * scene.roughness + shape.width * shape.width / (8.0 * dot(away, away));
 }
 
 // Towards v at a point of unit normal n that sees the share `sky` of its surroundings, W/(mm^2 sr).
@@ -26,9 +32,14 @@ vec3 specular_radiance(vec3 position, vec3 n, vec3 v, float sky) {
       sum += fresnel_reflectance(clamp(dot(n, v), 0.0, 1.0), scene.eta) / PI * sky * light.power;
       continue;
     }
-    Incident incident = incident_light(light, position);
-    float reflected = cook_torrance(n, v, incident.direction);
-    if (reflected == 0.0) continue;
+    LightShape shape = no_shape();
+    if (SHAPED) shape = load_light_shape(scene.shapes, i);
+    Incident incident = incident_light(light, shape, position);
+    float alpha2 = scene.roughness * scene.roughness;
+    if (SHAPED && light.kind == LIGHT_PATCH) alpha2 = blurred(light, shape, position);
+    float reflected = cook_torrance(n, v, incident.direction, alpha2);
+    if (reflected == 0.0 || incident.share <= 0.0) continue;
+    if (SHAPED && light.kind == LIGHT_PROJECTOR) light.power *= projected(shape, -incident.direction, 0.0);
     sum += reflected * light_visibility(light, scene.views, position, n, 1) * incident.share * light.power;
   }
   return sum;

@@ -46,9 +46,7 @@ void declare_scene(CLI::App& app, Typed& typed) {
       ->capture_default_str()
       ->group("Scene");
   app.add_option("--light", typed.lights,
-                 "directional:DX,DY,DZ:IRRADIANCE (the way the light travels; W/mm^2), point:X,Y,Z:POWER (mm; W) or "
-                 "ambient:IRRADIANCE, the last one value or R/G/B; may be repeated. Default: one from behind, one from "
-                 "the side")
+                 std::string(light_forms) + "; may be repeated. Default: one from behind, one from the side")
       ->allow_extra_args(false)
       ->group("Scene");
   app.add_option("--view", typed.view,

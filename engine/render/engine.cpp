@@ -30,24 +30,6 @@ void add(std::vector<PassStats>& passes, const PassStats& more) {
 constexpr std::pair<Radiance, std::string_view> radiance_names[] = {
     {Radiance::gathered, "gathered"}, {Radiance::lambertian, "lambertian"}, {Radiance::automatic, "auto"}};
 
-// What IrradiancePass stores of them.
-std::vector<gpu::Beam> beams_of(const std::vector<Light>& lights) {
-  std::vector<gpu::Beam> beams;
-  for (const Light& light : lights) {
-    const glm::vec3 colour = light_record(light).power;
-    if (light.kind == LightKind::ambient) {
-      beams.push_back({{gpu::BEAM_LAMBERTIAN, glm::vec3(0)}, colour, gpu::BEAM_FACE, 0});
-      continue;
-    }
-    const bool point = light.kind == LightKind::point;
-    beams.push_back({{point ? gpu::BEAM_POINT : gpu::BEAM_DIRECTIONAL, point ? light.position : light.direction},
-                     colour,
-                     gpu::BEAM_QUARTERS,
-                     0});
-  }
-  return beams;
-}
-
 }  // namespace
 
 struct Engine::Implementation {
@@ -59,10 +41,11 @@ struct Engine::Implementation {
         simulation(context, graph),
         mesh(upload_display(context, graph.display())),
         motion(graph.display()),
+        images(context),
         shadows(context),
         irradiance(context),
         rasteriser(context) {
-    shadows.update(mesh, bounds, {});
+    shadows.update(mesh, {{}, bounds});
   }
 
   std::string source;
@@ -72,6 +55,7 @@ struct Engine::Implementation {
   Simulation simulation;
   DisplayBuffers mesh;
   DisplayMotion motion;
+  LightImages images;
   ShadowMaps shadows;
   IrradiancePass irradiance;
   Rasteriser rasteriser;
@@ -185,6 +169,7 @@ void Engine::set_edits(std::span<const Edit> edits) {
 
 void Engine::set_lights(std::vector<Light> lights) {
   for (const Light& light : lights) check_light(light);
+  implementation_->images.load(lights);
   implementation_->lights = std::move(lights);
   implementation_->irradiance_stale = true;
 }
@@ -205,7 +190,7 @@ void Engine::set_irradiance(std::uint32_t level, std::span<const glm::vec3> q,
                             const std::optional<glm::vec3>& direction) {
   auto& self = *implementation_;
   self.simulation.set_irradiance(level, q, direction);
-  if (!self.lights.empty()) self.shadows.update(self.mesh, self.bounds, {});
+  if (!self.lights.empty()) self.shadows.update(self.mesh, {{}, self.bounds});
   self.lights.clear();
   self.irradiance_stale = false;
 }
@@ -213,8 +198,9 @@ void Engine::set_irradiance(std::uint32_t level, std::span<const glm::vec3> q,
 void Engine::update_irradiance() {
   auto& self = *implementation_;
   if (self.material.empty()) throw InputError("irradiance: set a material first; the light that enters depends on eta");
-  self.irradiance_passes = {self.shadows.update(self.mesh, self.bounds, self.lights)};
-  self.simulation.set_beams(beams_of(self.lights));
+  const LightSet lights(self.lights, self.bounds, &self.images);
+  self.irradiance_passes = {self.shadows.update(self.mesh, lights)};
+  self.simulation.set_beams(lights.beams);
   for (std::uint32_t level = 0; level < self.simulation.level_count(); ++level) {
     add(self.irradiance_passes,
         self.irradiance.run(self.simulation.level(level), level, self.shadows, self.simulation.eta()));

@@ -71,7 +71,8 @@ class Engine {
   // As Simulation::set_edits.
   void set_edits(std::span<const Edit> edits);
 
-  // Throws InputError as check_light does.
+  // Reads the images of lights that have them, unless that has been done. Throws InputError as check_light and
+  // read_image do.
   void set_lights(std::vector<Light> lights);
 
   // Moves the body and what is shown of it by a list of deformers from where it lies in the file; an empty list puts it

@@ -18,6 +18,15 @@ static_assert(finest_subdivision % 2 == 0 && more_per_level % 2 == 0, "a sample 
 IrradiancePass::IrradiancePass(vk::Context& context)
     : context_(context), pass_(context, irradiance_comp, sizeof(gpu::IrradiancePush), "irradiance") {}
 
+const vk::ComputePass& IrradiancePass::pass(bool shaped) {
+  if (!shaped) return pass_;
+  if (!shaped_) {
+    shaped_.emplace(context_, irradiance_comp, static_cast<std::uint32_t>(sizeof(gpu::IrradiancePush)),
+                    "irradiance of shaped lights", vk::ComputePass::default_workgroup_size, 1u);
+  }
+  return *shaped_;
+}
+
 PassStats IrradiancePass::run(const LevelBuffers& buffers, std::uint32_t level, const ShadowMaps& shadows, float eta) {
   const std::uint32_t subdivision = finest_subdivision + more_per_level * level;
   const gpu::IrradiancePush push{.vertices = buffers.vertices.address(),
@@ -26,6 +35,7 @@ PassStats IrradiancePass::run(const LevelBuffers& buffers, std::uint32_t level, 
                                  .beam_q = buffers.beam_q.address(),
                                  .sky = buffers.sky.address(),
                                  .lights = shadows.lights().address(),
+                                 .shapes = shadows.shapes().address(),
                                  .views = shadows.views().address(),
                                  .face_count = buffers.face_count,
                                  .light_count = shadows.light_count(),
@@ -34,7 +44,7 @@ PassStats IrradiancePass::run(const LevelBuffers& buffers, std::uint32_t level, 
                                  .diffuse_transmittance = static_cast<float>(diffuse_transmittance(eta))};
   vk::Commands commands(context_, 1);
   commands.begin_pass("irradiance");
-  commands.dispatch(pass_, push, buffers.face_count);
+  commands.dispatch(pass(shadows.shaped()), push, buffers.face_count);
   commands.end_pass();
   const auto times = commands.submit_and_wait();
   // Per face: three indices, three corners, q; per light its quarters, and four texels per sample.

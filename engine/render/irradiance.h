@@ -1,6 +1,8 @@
 // The light that enters the body: q at the outside faces of a level.
 #pragma once
 
+#include <optional>
+
 #include "engine/render/shadow_maps.h"
 #include "engine/solve/simulation.h"
 #include "engine/vk/pipeline.h"
@@ -20,8 +22,11 @@ class IrradiancePass {
   PassStats run(const LevelBuffers& buffers, std::uint32_t level, const ShadowMaps& shadows, float eta);
 
  private:
+  const vk::ComputePass& pass(bool shaped);
+
   vk::Context& context_;
   vk::ComputePass pass_;
+  std::optional<vk::ComputePass> shaped_;  // where some light has a shape, made at first use
 };
 
 }  // namespace quadgraph

@@ -1,8 +1,11 @@
 #include "engine/render/lights.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 #include <glm/vector_relational.hpp>
+#include <numbers>
 
 #include "engine/graph/error.h"
 #include "engine/render/text.h"
@@ -10,45 +13,46 @@
 namespace quadgraph {
 namespace {
 
-constexpr const char* allowed =
-    "expected directional:DX,DY,DZ:IRRADIANCE (W/mm^2), point:X,Y,Z:POWER (mm, W) or ambient:IRRADIANCE (W/mm^2), the "
-    "last one number or R/G/B";
-
 bool finite(const glm::vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-}  // namespace
-
-Light parse_light(std::string_view text) {
-  const auto parts = split(text, ':');
-  const std::string where = "light '" + std::string(text) + "'";
-  const bool ambient = parts[0] == "ambient";
-  const bool known = ambient || parts[0] == "directional" || parts[0] == "point";
-  if (!known || parts.size() != (ambient ? 2 : 3)) throw InputError(where + ": " + allowed);
-  Light light;
-  light.power = parse_rgb(parts.back(), where + ", power");
-  if (ambient) {
-    light.kind = LightKind::ambient;
-  } else if (parts[0] == "point") {
-    light.kind = LightKind::point;
-    light.position = parse_triple(parts[1], ',', where + ", position");
-  } else {
-    const glm::dvec3 direction(parse_triple(parts[1], ',', where + ", direction"));
-    const double length = glm::length(direction);
-    if (length == 0) throw InputError(where + ", direction: found length 0, expected a direction");
-    light.direction = glm::vec3(direction / length);
+void check_spot(const Light& light, const std::string& where) {
+  if (!(light.angle > 0 && light.angle <= 90)) {
+    throw InputError(where + ", angle: found " + number_text(light.angle) +
+                     ", expected more than 0, at most 90 degrees");
   }
-  check_light(light);
-  return light;
+  if (!(light.edge >= 0 && light.edge <= 1)) {
+    throw InputError(where + ", edge: found " + number_text(light.edge) + ", expected 0 to 1");
+  }
 }
 
-std::string to_string(const Light& light) {
-  if (light.kind == LightKind::ambient) return "ambient:" + rgb_text(light.power);
-  return (light.kind == LightKind::point ? "point:" + triple_text(light.position, ',')
-                                         : "directional:" + triple_text(light.direction, ',')) +
-         ":" + rgb_text(light.power);
+void check_rectangle(const Light& light, const std::string& where) {
+  const float area = glm::length(glm::cross(light.u, light.v));
+  if (!finite(light.u) || !finite(light.v) || !(area > 0) || !std::isfinite(area)) {
+    throw InputError(where + ": expected two finite edges that are not parallel");
+  }
 }
+
+void check_file(const Light& light, const std::string& where) {
+  if (light.file.empty() || light.file.find(':') != std::string::npos) {
+    throw InputError(where + ", file: found '" + light.file + "', expected a name without ':'");
+  }
+}
+
+void check_projector(const Light& light, const std::string& where) {
+  if (!(light.angle > 0 && light.angle < 170)) {
+    throw InputError(where + ", angle: found " + number_text(light.angle) +
+                     ", expected more than 0, below 170 degrees");
+  }
+  if (!finite(light.up) || !(glm::length(glm::cross(light.direction, light.up)) > 1e-3f * glm::length(light.up))) {
+    throw InputError(where + ", up: found " + triple_text(light.up, ',') +
+                     ", expected a vector that is not along the direction");
+  }
+  check_file(light, where);
+}
+
+}  // namespace
 
 void check_light(const Light& light) {
   const std::string where = "light '" + to_string(light) + "'";
@@ -56,9 +60,29 @@ void check_light(const Light& light) {
     throw InputError(where + ", power: expected finite numbers >= 0");
   }
   if (!finite(light.position)) throw InputError(where + ", position: expected finite numbers");
-  if (light.kind == LightKind::directional && !(std::abs(glm::length(light.direction) - 1.0f) < 1e-3f)) {
+  const bool directed =
+      light.kind == LightKind::directional || light.kind == LightKind::spot || light.kind == LightKind::projector;
+  if (directed && !(std::abs(glm::length(light.direction) - 1.0f) < 1e-3f)) {
     throw InputError(where + ", direction: expected unit length");
   }
+  if (light.kind == LightKind::spot) check_spot(light, where);
+  if (light.kind == LightKind::rectangle) check_rectangle(light, where);
+  if (light.kind == LightKind::projector) check_projector(light, where);
+}
+
+SpotCosines spot_cosines(const Light& spot) {
+  const float outer = glm::radians(spot.angle);
+  // A step over nothing would divide by zero.
+  const float inner = std::min((1 - spot.edge) * outer, outer - 1e-3f * outer);
+  return {std::cos(inner), std::cos(outer)};
+}
+
+glm::vec3 axis_intensity(const Light& spot) {
+  const double outer = glm::radians(static_cast<double>(spot.angle));
+  const double inner = std::min((1 - static_cast<double>(spot.edge)) * outer, outer - 1e-3 * outer);
+  // 2 - cos a - cos b without cancellation, for narrow cones.
+  const double sines = 2 * (std::pow(std::sin(inner / 2), 2) + std::pow(std::sin(outer / 2), 2));
+  return spot.power / static_cast<float>(std::numbers::pi * sines);
 }
 
 }  // namespace quadgraph

@@ -37,6 +37,7 @@ gpu::SurfaceScene scene(const RasterInput& input, const Camera& camera) {
                           .unscattered = input.vertex_unscattered.address(),
                           .sky = input.finest.sky.address(),
                           .lights = input.shadows.lights().address(),
+                          .shapes = input.shadows.shapes().address(),
                           .views = input.shadows.views().address(),
                           .triangle_face = 0,
                           .points = 0,
@@ -51,11 +52,12 @@ gpu::SurfaceScene scene(const RasterInput& input, const Camera& camera) {
   return scene;
 }
 
-vk::GraphicsOptions pass_options(vk::Spirv fragment) {
+vk::GraphicsOptions pass_options(vk::Spirv fragment, bool shaped = false) {
   return {.vertex = surface_vert,
           .fragment = fragment,
           .push_size = sizeof(gpu::SurfacePush),
-          .colour_formats = std::vector<VkFormat>(SAMPLE_LAYERS, sample_format)};
+          .colour_formats = std::vector<VkFormat>(SAMPLE_LAYERS, sample_format),
+          .variant = shaped ? 1u : 0u};
 }
 
 }  // namespace
@@ -102,11 +104,17 @@ double radiance_norm(double eta) {
 
 Rasteriser::Rasteriser(vk::Context& context)
     : context_(context),
-      surface_(context, pass_options(surface_frag), "surface"),
-      gathered_(context, pass_options(surface_gathered_frag), "surface gathered"),
       resolve_(context, resolve_comp, sizeof(gpu::ResolvePush), "resolve"),
       gather_(context, gather_comp, sizeof(gpu::ResolvePush), "gather"),
       scene_(context, sizeof(gpu::SurfaceScene), vk::Place::read, "picture/scene") {}
+
+const vk::GraphicsPass& Rasteriser::surface(const RasterInput& input) {
+  const bool gathered = input.gather != nullptr, shaped = input.shadows.shaped();
+  auto& pass = surfaces_[(gathered ? 1 : 0) + (shaped ? 2 : 0)];
+  if (pass) return *pass;
+  const vk::Spirv fragment = gathered ? vk::Spirv(surface_gathered_frag) : vk::Spirv(surface_frag);
+  return pass.emplace(context_, pass_options(fragment, shaped), gathered ? "surface gathered" : "surface");
+}
 
 Rasteriser::~Rasteriser() = default;
 
@@ -161,8 +169,8 @@ void Rasteriser::record_resolve(vk::Commands& commands, const char* name, const 
 
 void Rasteriser::record(vk::Commands& commands, const RasterInput& input, const Tile& tile) {
   commands.begin_pass("surface");
-  draw(commands, target(tile), viewport(tile), input.gather != nullptr ? gathered_ : surface_,
-       gpu::SurfacePush{scene_.address()}, input.mesh.triangles, 3 * input.mesh.triangle_count);
+  draw(commands, target(tile), viewport(tile), surface(input), gpu::SurfacePush{scene_.address()}, input.mesh.triangles,
+       3 * input.mesh.triangle_count);
   commands.end_pass();
   record_resolve(commands, input.gather != nullptr ? "gather" : "resolve", input.gather != nullptr ? gather_ : resolve_,
                  scene_.address(), tile);

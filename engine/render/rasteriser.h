@@ -1,6 +1,7 @@
 // The display mesh as a picture.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -82,8 +83,10 @@ class Rasteriser {
   template <typename Record>
   std::vector<PassStats> run_tiles(std::uint32_t width, std::uint32_t height, const Record& record_tile);
 
+  const vk::GraphicsPass& surface(const RasterInput& input);
+
   vk::Context& context_;
-  vk::GraphicsPass surface_, gathered_;
+  std::array<std::optional<vk::GraphicsPass>, 4> surfaces_;  // gathered or not, with shaped lights or not; at first use
   vk::ComputePass resolve_, gather_;
   std::optional<vk::GraphicsPass> false_colour_;  // made at first use
   PictureBuffers picture_;

@@ -1,71 +1,10 @@
 #include "engine/render/shadow_maps.h"
 
-#include <cmath>
-#include <glm/ext/matrix_clip_space.hpp>
-#include <glm/ext/matrix_transform.hpp>
-#include <glm/geometric.hpp>
-
 #include "engine/render/draw.h"
 #include "spirv/shadow.vert.h"
 
 namespace quadgraph {
 namespace {
-
-constexpr float four_pi = 12.5663706f;
-
-// A direction that is safely not parallel to `axis`.
-glm::vec3 any_up(const glm::vec3& axis) {
-  return std::abs(axis.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
-}
-
-gpu::ShadowView directional_view(const Light& light, const Sphere& bounds) {
-  gpu::ShadowView view{};
-  view.size = gpu::SHADOW_SIZE;
-  // Two texels of margin, so that filtering never leaves the map on the object.
-  const float half = bounds.radius * (1.0f + 4.0f / static_cast<float>(view.size));
-  const float distance = 1.02f * bounds.radius;
-  view.near = 0;
-  view.far = 2.0f * distance;
-  view.texel = 2.0f * half / static_cast<float>(view.size);
-  const glm::vec3 eye = bounds.centre - distance * light.direction;
-  view.clip_from_world = glm::orthoRH_ZO(-half, half, -half, half, view.near, view.far) *
-                         glm::lookAtRH(eye, bounds.centre, any_up(light.direction));
-  return view;
-}
-
-// `half` is the tangent of half the opening angle.
-gpu::ShadowView perspective_view(const glm::vec3& eye, const glm::vec3& axis, float half, float near, float far,
-                                 std::uint32_t size) {
-  gpu::ShadowView view{};
-  view.size = size;
-  half *= 1.0f + 4.0f / static_cast<float>(size);
-  view.near = near;
-  view.far = far;
-  view.texel = 2.0f * half / static_cast<float>(size);
-  view.clip_from_world = glm::frustumRH_ZO(-half * near, half * near, -half * near, half * near, near, far) *
-                         glm::lookAtRH(eye, eye + axis, any_up(axis));
-  return view;
-}
-
-std::vector<gpu::ShadowView> point_views(const Light& light, const Sphere& bounds) {
-  const glm::vec3 to_centre = bounds.centre - light.position;
-  const float distance = glm::length(to_centre), r = bounds.radius;
-  if (distance > 1.1f * r) {
-    const float half = r / std::sqrt(distance * distance - r * r);
-    return {perspective_view(light.position, to_centre / distance, half, distance - 1.02f * r, distance + 1.02f * r,
-                             gpu::SHADOW_SIZE)};
-  }
-  std::vector<gpu::ShadowView> views;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (float sign : {1.0f, -1.0f}) {
-      glm::vec3 direction(0);
-      direction[axis] = sign;
-      views.push_back(
-          perspective_view(light.position, direction, 1.0f, 1e-3f * r, distance + 1.02f * r, gpu::SHADOW_CUBE_SIZE));
-    }
-  }
-  return views;
-}
 
 template <typename T>
 void replace(vk::Context& context, const std::vector<T>& values, const char* name, vk::Buffer& buffer) {
@@ -81,19 +20,6 @@ vk::Image depth_image(vk::Context& context, std::uint32_t size) {
 
 }  // namespace
 
-gpu::LightRecord light_record(const Light& light) {
-  if (light.kind == LightKind::ambient) return {gpu::LIGHT_AMBIENT, glm::vec3(0), light.power, 0, 0};
-  const bool point = light.kind == LightKind::point;
-  return {point ? gpu::LIGHT_POINT : gpu::LIGHT_DIRECTIONAL, point ? light.position : -light.direction,
-          point ? light.power / four_pi : light.power, 0, 0};
-}
-
-std::vector<gpu::ShadowView> shadow_views(const Light& light, const Sphere& bounds) {
-  if (light.kind == LightKind::ambient) return {};
-  if (light.kind == LightKind::directional) return {directional_view(light, bounds)};
-  return point_views(light, bounds);
-}
-
 ShadowMaps::ShadowMaps(vk::Context& context)
     : context_(context),
       pass_(context,
@@ -104,17 +30,8 @@ ShadowMaps::ShadowMaps(vk::Context& context)
              .cull = VK_CULL_MODE_FRONT_BIT},
             "shadow") {}
 
-PassStats ShadowMaps::update(const DisplayBuffers& mesh, const Sphere& bounds, std::span<const Light> lights) {
-  std::vector<gpu::LightRecord> records;
-  std::vector<gpu::ShadowView> views;
-  for (const Light& light : lights) {
-    const auto own = shadow_views(light, bounds);
-    records.push_back(light_record(light));
-    records.back().first_view = static_cast<std::uint32_t>(views.size());
-    records.back().view_count = static_cast<std::uint32_t>(own.size());
-    views.insert(views.end(), own.begin(), own.end());
-  }
-
+PassStats ShadowMaps::update(const DisplayBuffers& mesh, const LightSet& lights) {
+  std::vector<gpu::ShadowView> views = lights.views;
   PassStats stats{.name = "shadow maps"};
   vk::Commands commands(context_, 1);
   commands.begin_pass(stats.name);
@@ -137,9 +54,11 @@ PassStats ShadowMaps::update(const DisplayBuffers& mesh, const Sphere& bounds, s
   commands.end_pass();
   stats.time_ms = commands.submit_and_wait()[0].time_ms;
 
-  light_count_ = static_cast<std::uint32_t>(records.size());
-  replace<gpu::LightRecord>(context_, records, "shadows/lights", lights_);
-  replace<gpu::ShadowView>(context_, views, "shadows/views", views_);
+  light_count_ = static_cast<std::uint32_t>(lights.records.size());
+  shaped_ = lights.shaped;
+  replace(context_, lights.records, "shadows/lights", lights_);
+  replace(context_, lights.shapes, "shadows/shapes", shapes_);
+  replace(context_, views, "shadows/views", views_);
   return stats;
 }
 

@@ -6,9 +6,8 @@
 
 namespace quadgraph {
 
-// {"type": "directional", "direction": [x, y, z], "irradiance": E}, {"type": "point", "position": [x, y, z], "power":
-// P} or {"type": "ambient", "irradiance": E}; E and P one number or three. Units and directions as in Light. Throws
-// InputError with the path of what is wrong.
+// An object with the light's type and its other members as docs/scene.md lists them; units and directions as in Light.
+// Throws InputError with the path of what is wrong.
 Light light_from(const JsonField& field);
 
 Json to_json(const Light& light);

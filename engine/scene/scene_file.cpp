@@ -96,16 +96,26 @@ Scene SceneFile::at(double frame) const {
   });
   Scene scene = scene_from(JsonField(document, ""));
   if (!document.contains("lights")) scene.lights = default_lights(first_view_.value_or(scene.view));
-  if (scene.body.is_relative()) scene.body = path_.parent_path() / scene.body;
+  const std::filesystem::path folder = path_.parent_path();
+  if (scene.body.is_relative()) scene.body = folder / scene.body;
+  for (Light& light : scene.lights) {
+    if (!light.file.empty() && !folder.empty()) light.file = folder / light.file;
+  }
   return scene;
 }
 
 void SceneFile::save(const std::filesystem::path& path) const {
   Json document = document_;
-  const std::filesystem::path body = document["body"].get<std::string>();
-  if (body.is_relative()) {
-    document["body"] =
-        std::filesystem::proximate(path_.parent_path() / body, std::filesystem::absolute(path).parent_path());
+  const auto move = [&](Json& file) {
+    const std::filesystem::path old = file.get<std::string>();
+    if (old.is_absolute()) return;
+    file = std::filesystem::proximate(path_.parent_path() / old, std::filesystem::absolute(path).parent_path());
+  };
+  move(document["body"]);
+  if (document.contains("lights")) {
+    for (Json& light : document["lights"]) {
+      if (light.contains("file")) move(light["file"]);
+    }
   }
   each_shapes_file(document, [&](const std::filesystem::path& shapes) {
     if (!shapes.is_relative()) return shapes;

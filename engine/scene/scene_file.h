@@ -14,7 +14,8 @@ namespace quadgraph {
 
 class SceneFile {
  public:
-  // Reads a JSON file and checks the scene at every key of its tracks. A relative body is looked for beside the file; a
+  // Reads a JSON file and checks the scene at every key of its tracks. A relative body and relative images
+  // of lights are looked for beside the file; a
   // scene that says nothing of lights gets default_lights of its first view.
   // Throws InputError naming the file, the path into it, what was found and what is allowed.
   static SceneFile load(const std::filesystem::path& path);
@@ -32,7 +33,7 @@ class SceneFile {
   // Throws InputError.
   Scene at(double frame) const;
 
-  // Writes a temporary file beside `path` and renames it. The body stays the same file. Throws InputError naming the
+  // Writes a temporary file beside `path` and renames it. The body and images stay the same files. Throws InputError naming the
   // file.
   void save(const std::filesystem::path& path) const;
 

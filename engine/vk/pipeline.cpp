@@ -206,7 +206,7 @@ VkPipeline GraphicsPass::pipeline() const {
   UniquePipeline& made = pipelines_[context_.arenas().complete()];
   if (made.get() != VK_NULL_HANDLE) return made.get();
   const UniqueShaderModule vertex = shader_module(context_, options_.vertex, name_ + ".vert");
-  const Constants constants(context_);
+  const Constants constants(context_, options_.variant);
   std::vector<VkPipelineShaderStageCreateInfo> stages = {stage(VK_SHADER_STAGE_VERTEX_BIT, vertex, constants.info)};
   UniqueShaderModule fragment;
   if (!options_.fragment.empty()) {

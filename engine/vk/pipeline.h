@@ -69,6 +69,7 @@ struct GraphicsOptions {
   std::vector<VkFormat> colour_formats;          // no blending
   VkFormat depth_format = VK_FORMAT_D32_SFLOAT;  // VK_FORMAT_UNDEFINED: no depth test
   VkCullModeFlags cull = VK_CULL_MODE_BACK_BIT;  // front faces are counter-clockwise in the window with y up
+  std::uint32_t variant = 0;                     // specialization constant 1 of the shaders that have it
 };
 
 // Triangle lists without vertex buffers (shaders pull from addresses), dynamic viewport and scissor, depth test LESS.

@@ -229,8 +229,7 @@ void bind_engine(py::module_& module) {
       .def("set_material", py::overload_cast<std::string_view>(&Engine::set_material), py::arg("text"))
       .def("set_material", py::overload_cast<const gpu::Material&>(&Engine::set_material), py::arg("material"))
       .def("set_lights", &set_lights, py::arg("lights"),
-           "'directional:DX,DY,DZ:IRRADIANCE' and 'ambient:IRRADIANCE' (W/mm^2), 'point:X,Y,Z:POWER' (W); replaces all "
-           "lights.")
+           "Texts as --light takes them (engine/render/lights.h); replaces all lights.")
       .def(
           "set_deformation",
           [](Engine& engine, const py::object& list) {

@@ -39,7 +39,7 @@ struct Stage {
   Picture picture(const std::vector<Light>& lights, float eta, const View& view, std::uint32_t width,
                   std::uint32_t height, float roughness = 0.3f) {
     const Sphere bounds = bounding_sphere(shape.vertices);
-    shadows.update(mesh, bounds, lights);
+    shadows.update(mesh, {lights, bounds});
     const Camera camera = place_camera(view, bounds, static_cast<float>(width) / static_cast<float>(height));
     rasteriser.run({.mesh = mesh,
                     .finest = level,

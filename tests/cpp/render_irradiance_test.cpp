@@ -19,7 +19,7 @@ std::vector<glm::vec3> irradiance(vk::Context& context, const Shape& shape, cons
   const DisplayBuffers mesh = upload_as_display(context, shape);
   const LevelBuffers level = upload_as_level(context, shape, lights.size());
   ShadowMaps shadows(context);
-  shadows.update(mesh, bounding_sphere(shape.vertices), lights);
+  shadows.update(mesh, {lights, bounding_sphere(shape.vertices)});
   IrradiancePass(context).run(level, 0, shadows, eta);
   return vk::download<glm::vec3>(context, level.q);
 }
@@ -132,7 +132,7 @@ TEST_CASE("every light has its own quarters, which make up q") {
   const std::vector<Light> lights = {parse_light("point:0,0,14:5000/100/0"), parse_light("directional:0,-1,0:0/1/3")};
   const LevelBuffers level = upload_as_level(context, shape, lights.size());
   ShadowMaps shadows(context);
-  shadows.update(upload_as_display(context, shape), bounding_sphere(shape.vertices), lights);
+  shadows.update(upload_as_display(context, shape), {lights, bounding_sphere(shape.vertices)});
   IrradiancePass(context).run(level, 0, shadows, 1.0f);
   const auto q = vk::download<glm::vec3>(context, level.q);
   const auto shares = vk::download<float>(context, level.beam_q);
@@ -232,7 +232,7 @@ TEST_CASE("ambient light comes from the share of the sky that a face sees") {
   for (std::size_t f = 0; f < shape.faces.size(); ++f) sky.push_back(static_cast<float>(f % 5) / 4.0f);
   level.sky = vk::upload<float>(context, sky, "sky");
   ShadowMaps shadows(context);
-  shadows.update(mesh, bounding_sphere(shape.vertices), {&ambient, 1});
+  shadows.update(mesh, {{&ambient, 1}, bounding_sphere(shape.vertices)});
   IrradiancePass(context).run(level, 0, shadows, 1.3f);
   const auto q = vk::download<glm::vec3>(context, level.q);
   const auto entering = static_cast<float>(diffuse_transmittance(1.3));

@@ -25,6 +25,12 @@ TEST_CASE("lights and shadow views") {
     compare(code, "LightRecord",
             {MEMBER(LightRecord, kind), MEMBER(LightRecord, vector), MEMBER(LightRecord, power),
              MEMBER(LightRecord, first_view), MEMBER(LightRecord, view_count)});
+    compare(code, "LightShape",
+            {MEMBER(LightShape, axis), MEMBER(LightShape, inner), MEMBER(LightShape, outer), MEMBER(LightShape, share),
+             MEMBER(LightShape, width), MEMBER(LightShape, more_follow), MEMBER(LightShape, right),
+             MEMBER(LightShape, up), MEMBER(LightShape, texels), MEMBER(LightShape, columns), MEMBER(LightShape, rows),
+             MEMBER(LightShape, levels), MEMBER(LightShape, parts)});
+    CHECK(layout.stride.at("LightShape") == sizeof(gpu::LightShape));
     CHECK(layout.stride.at("ShadowView") == sizeof(gpu::ShadowView));
     CHECK(layout.stride.at("LightRecord") == sizeof(gpu::LightRecord));
   }
@@ -33,15 +39,27 @@ TEST_CASE("lights and shadow views") {
 TEST_CASE("the scene of the display") {
   for (const vk::Spirv code : {vk::Spirv(surface_vert), vk::Spirv(surface_frag), vk::Spirv(surface_gathered_frag)}) {
     const SpirvLayout layout(code);
-    compare(
-        code, "SurfaceScene",
-        {MEMBER(SurfaceScene, clip_from_world), MEMBER(SurfaceScene, eye),           MEMBER(SurfaceScene, eta),
-         MEMBER(SurfaceScene, roughness),       MEMBER(SurfaceScene, radiance_norm), MEMBER(SurfaceScene, light_count),
-         MEMBER(SurfaceScene, vertices),        MEMBER(SurfaceScene, normals),       MEMBER(SurfaceScene, face),
-         MEMBER(SurfaceScene, barycentric),     MEMBER(SurfaceScene, faces),         MEMBER(SurfaceScene, exitance),
-         MEMBER(SurfaceScene, unscattered),     MEMBER(SurfaceScene, sky),           MEMBER(SurfaceScene, lights),
-         MEMBER(SurfaceScene, views),           MEMBER(SurfaceScene, triangle_face), MEMBER(SurfaceScene, points),
-         MEMBER(SurfaceScene, scale),           MEMBER(SurfaceScene, solid)});
+    compare(code, "SurfaceScene", {MEMBER(SurfaceScene, clip_from_world),
+                                   MEMBER(SurfaceScene, eye),
+                                   MEMBER(SurfaceScene, eta),
+                                   MEMBER(SurfaceScene, roughness),
+                                   MEMBER(SurfaceScene, radiance_norm),
+                                   MEMBER(SurfaceScene, light_count),
+                                   MEMBER(SurfaceScene, vertices),
+                                   MEMBER(SurfaceScene, normals),
+                                   MEMBER(SurfaceScene, face),
+                                   MEMBER(SurfaceScene, barycentric),
+                                   MEMBER(SurfaceScene, faces),
+                                   MEMBER(SurfaceScene, exitance),
+                                   MEMBER(SurfaceScene, unscattered),
+                                   MEMBER(SurfaceScene, sky),
+                                   MEMBER(SurfaceScene, lights),
+                                   MEMBER(SurfaceScene, shapes),
+                                   MEMBER(SurfaceScene, views),
+                                   MEMBER(SurfaceScene, triangle_face),
+                                   MEMBER(SurfaceScene, points),
+                                   MEMBER(SurfaceScene, scale),
+                                   MEMBER(SurfaceScene, solid)});
     CHECK(layout.stride.at("SurfaceScene") == sizeof(gpu::SurfaceScene));
     compare(code, "SurfacePush", {MEMBER(SurfacePush, scene)});
   }
@@ -52,8 +70,8 @@ TEST_CASE("push constants") {
   compare(irradiance_comp, "IrradiancePush",
           {MEMBER(IrradiancePush, vertices), MEMBER(IrradiancePush, faces), MEMBER(IrradiancePush, q),
            MEMBER(IrradiancePush, beam_q), MEMBER(IrradiancePush, sky), MEMBER(IrradiancePush, lights),
-           MEMBER(IrradiancePush, views), MEMBER(IrradiancePush, face_count), MEMBER(IrradiancePush, light_count),
-           MEMBER(IrradiancePush, subdivision), MEMBER(IrradiancePush, eta),
+           MEMBER(IrradiancePush, shapes), MEMBER(IrradiancePush, views), MEMBER(IrradiancePush, face_count),
+           MEMBER(IrradiancePush, light_count), MEMBER(IrradiancePush, subdivision), MEMBER(IrradiancePush, eta),
            MEMBER(IrradiancePush, diffuse_transmittance)});
   compare(resolve_comp, "ResolvePush",
           {MEMBER(ResolvePush, scene), MEMBER(ResolvePush, samples), MEMBER(ResolvePush, layers),

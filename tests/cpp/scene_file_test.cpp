@@ -50,7 +50,14 @@ void check_refused(const std::string& text, const std::string& where) {
   CHECK(said.find("scene.json: " + where) != std::string::npos);
 }
 
-Scene with_everything() {
+// A Radiance picture of one texel in `folder`.
+std::string one_texel(const Folder& folder) {
+  const std::filesystem::path path = folder.path / "texel.hdr";
+  std::ofstream(path, std::ios::binary) << "#?RADIANCE\n\n-Y 1 +X 1\n\x80\x80\x80\x81";
+  return path.string();
+}
+
+Scene with_everything(const Folder& folder) {
   Scene scene;
   scene.body = cube;
   scene.material = "skin1,eta=1.4";
@@ -62,8 +69,12 @@ Scene with_everything() {
                   .depth_to = 0.9f,
                   .softness = 0.25f},
                  {.operation = Edit::Operation::set, .sigma_s_prime = glm::vec3(3)}};
-  scene.lights = {parse_light("directional:0,0.6,-0.8:1/2/3"), parse_light("point:1,2,3:0.1"),
-                  parse_light("ambient:0.5")};
+  scene.lights = {parse_light("directional:0,0.6,-0.8:1/2/3"),
+                  parse_light("point:1,2,3:0.1"),
+                  parse_light("ambient:0.5"),
+                  parse_light("spot:1,2,3:0,0.6,-0.8:20,0.5:4"),
+                  parse_light("rectangle:1,2,3:4,0,0:0,5,1:6/7/8"),
+                  parse_light("projector:1,2,3:0,0.6,-0.8:20,1,1,0:" + one_texel(folder) + ":4")};
   Deformer twist{.degrees = 30}, bend{.kind = DeformerKind::bend}, scaled{.kind = DeformerKind::transform};
   bend.towards = {0, 0.5, 1};
   bend.range_in_mm = true;
@@ -103,15 +114,19 @@ Scene with_everything() {
 
 TEST_CASE("a scene reads back as the same, from another folder too") {
   const Folder folder;
-  const Scene scene = with_everything();
+  const Scene scene = with_everything(folder);
   std::filesystem::create_directories(folder.path / "deep");
   SceneFile(scene).save(folder.path / "deep" / "a.json");
   const Scene read = SceneFile::load(folder.path / "deep" / "a.json").at(0);
   CHECK(read == scene);
   std::filesystem::copy(cube, folder.path / "cube.qgraph");
-  folder.scene(R"({"body": "cube.qgraph"})").save(folder.path / "deep" / "b.json");
+  folder
+      .scene(R"({"body": "cube.qgraph", "lights": [{"type": "projector", "position": [0, 0, 9], "direction": [0, 0, -1],
+                 "angle": 20, "file": "cube.qgraph", "power": 1}]})")
+      .save(folder.path / "deep" / "b.json");
   const Scene moved = SceneFile::load(folder.path / "deep" / "b.json").at(0);
   CHECK(std::filesystem::equivalent(moved.body, folder.path / "cube.qgraph"));
+  CHECK(std::filesystem::equivalent(moved.lights[0].file, folder.path / "cube.qgraph"));
 }
 
 TEST_CASE("what a file does not say is the default, and its lights belong to the first view") {
@@ -222,7 +237,8 @@ TEST_CASE("bad scenes: the path into the file, what was found, what is allowed")
 }
 
 TEST_CASE("a stage that went through other scenes shows the same as a fresh one") {
-  Scene scene = with_everything();
+  const Folder folder;
+  Scene scene = with_everything(folder);
   scene.solve = {};
   Scene other = scene;
   other.material = "ketchup";
