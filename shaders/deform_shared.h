@@ -90,7 +90,7 @@ struct ShapeSums {
 QG_ARRAY(ShapeSumsArray, ShapeSums);
 #endif
 
-// shape_state.comp: one workgroup for every WORKGROUP_SIZE tets or faces.
+// shape_state.comp: looks at all tets and faces.
 struct ShapeStatePush {
   QG_REF(Vec3s) vertices;
   QG_REF(Uvec4s) tets;

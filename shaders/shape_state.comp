@@ -1,10 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "deform_shared.h"
+#include "stride.glsl"
 #include "reduce.glsl"
 #include "tet_volume.glsl"
 
-layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { ShapeStatePush push; };
 
 shared float worst[WORKGROUP_SIZE];
@@ -37,34 +37,37 @@ float area_of(uint f) {
   return 0.5 * length(cross(load_vec3(push.vertices, ids.y) - p, load_vec3(push.vertices, ids.z) - p));
 }
 
+// In invocation 0.
 float least_of_group(float value) {
   uint lane = gl_LocalInvocationID.x;
   worst[lane] = value;
   barrier();
-  for (uint half_size = WORKGROUP_SIZE / 2u; half_size > 0u; half_size /= 2u) {
-    if (lane < half_size) worst[lane] = min(worst[lane], worst[lane + half_size]);
-    barrier();
-  }
-  return worst[0];
+  [[dont_unroll]] for (uint k = 1u; k < GROUP_SIZE && lane == 0u; ++k) value = min(value, worst[k]);
+  return value;
+}
+
+void take_sample(uint f, float area) {
+  float depth = 3.0 * state_of(load_uint(push.face_tets, f)).volume / max(area, 1e-30);
+  push.samples.at[f / push.step] = vec2(depth, area);
 }
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
-  TetState state = TetState(1.0, 0.0, 0.0);
-  if (i < push.tet_count) state = state_of(i);
-  float area = 0.0;
-  if (i < push.face_count) {
-    float size = area_of(i);
-    if (load_uint(push.face_kinds, i) == FACE_OPEN) area = size;
-    if (i % push.step == 0u) {
-      float depth = 3.0 * state_of(load_uint(push.face_tets, i)).volume / max(size, 1e-30);
-      push.samples.at[i / push.step] = vec2(depth, size);
-    }
+  vec3 counts = vec3(0), sums = vec3(0);
+  float least = 1.0;
+  EACH(i, push.tet_count) {
+    TetState state = state_of(i);
+    counts += state.quality <= 0.0 ? vec3(1, 0, 0) : state.quality < push.least.quality ? vec3(0, 1, 0) : vec3(0);
+    sums.xy += vec2(state.conduction, state.volume);
+    least = min(least, state.quality);
   }
-  bool inverted = state.quality <= 0.0, nearly_flat = !inverted && state.quality < push.least.quality;
-  vec3 counts = reduce_workgroup(vec3(inverted ? 1.0 : 0.0, nearly_flat ? 1.0 : 0.0, 0.0));
-  vec3 sums = reduce_workgroup(vec3(state.conduction, state.volume, area));
-  float least = least_of_group(state.quality);
+  EACH(f, push.face_count) {
+    float area = area_of(f);
+    if (load_uint(push.face_kinds, f) == FACE_OPEN) sums.z += area;
+    if (f % push.step == 0u) take_sample(f, area);
+  }
+  counts = reduce_workgroup(counts);
+  sums = reduce_workgroup(sums);
+  least = least_of_group(least);
   if (gl_LocalInvocationID.x != 0u) return;
   push.sums.at[gl_WorkGroupID.x] = ShapeSums(counts.x, counts.y, least, sums.x, sums.y, sums.z);
 }

@@ -18,8 +18,8 @@ constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
 // Of the cube of the rest box's diagonal: what a tet counts for at least, so that a body without any volume is finite.
 constexpr double least_volume = 1e-15;
 
-std::uint32_t groups_of(const Level& level) {
-  return (std::max(level.tet_count(), level.face_count()) + WORKGROUP_SIZE - 1) / WORKGROUP_SIZE;
+std::uint32_t elements_of(const Level& level) {
+  return std::max(level.tet_count(), level.face_count());
 }
 
 double six_volume(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d) {
@@ -70,7 +70,7 @@ void DeformedLevels::make_room(vk::Context& context) {
     if (measured.sums.size() > 0) continue;
     const std::string prefix = "deformation/level " + std::to_string(i) + " ";
     measured.step = surface_sample_step(rest_[i]);
-    const std::uint64_t sums = groups_of(rest_[i]) * sizeof(gpu::ShapeSums);
+    const std::uint64_t sums = vk::strided_workgroups(context, elements_of(rest_[i])) * sizeof(gpu::ShapeSums);
     const std::uint64_t samples = (rest_[i].face_count() / measured.step + 1) * sizeof(glm::vec2);
     measured.sums = {context, sums, vk::Place::device, prefix + "sums"};
     measured.samples = {context, samples, vk::Place::device, prefix + "samples"};
@@ -124,7 +124,7 @@ void DeformedLevels::record_state(Workspace& work, std::uint32_t number, const L
                                  .face_count = level.face_count,
                                  .step = measured.step,
                                  .least = level.least};
-  work.recorder.dispatch(work.passes.shape_state, push, std::max(level.tet_count, level.face_count), "tet quality",
+  work.recorder.dispatch(work.passes.shape_state, push, elements_of(rest_[number]), "tet quality",
                          level.tet_count * (sizeof(glm::uvec4) + 4 * vec3_bytes) +
                              level.face_count * (sizeof(glm::uvec3) + 3 * vec3_bytes) + measured.sums.size());
   work.recorder.copy(measured.sums, measured.sums_on_host, measured.sums.size());

@@ -129,7 +129,7 @@ Passes::Passes()
       ONE_PASS(deform_nodes, DeformNodesPush, each),
       ONE_PASS(deform_normals, DeformNormalsPush, each),
       ONE_PASS(deform_bounds, DeformBoundsPush, each),
-      ONE_PASS(shape_state, ShapeStatePush, each),
+      ONE_PASS(shape_state, ShapeStatePush, strided),
       ENTRY_PASS(assemble_fdm, AssembleFdmPush, each),
       ENTRY_PASS(assemble_fv, AssembleFvPush, each),
       ENTRY_PASS(assemble_edges, AssembleEdgesPush, each),
