@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 #include <map>
@@ -218,6 +219,19 @@ std::vector<double> frame_weights(double frame, std::size_t count) {
   weights[first] = 1 - (at - static_cast<double>(first));
   if (first + 1 < count) weights[first + 1] = at - static_cast<double>(first);
   return weights;
+}
+
+std::string summary_of(std::span<const Deformer> list) {
+  std::string text;
+  for (const Deformer& d : list) {
+    char amount[64] = "";
+    const bool turns = d.kind == DeformerKind::twist || d.kind == DeformerKind::bend;
+    const bool scales = d.kind == DeformerKind::taper || d.kind == DeformerKind::stretch;
+    if (turns) std::snprintf(amount, sizeof(amount), " %g degrees", d.degrees);
+    if (scales) std::snprintf(amount, sizeof(amount), " x %g", d.factor);
+    text += (text.empty() ? "" : ", ") + std::string(name_of(d.kind)) + amount;
+  }
+  return text;
 }
 
 bool is_rigid(const Deformer& deformer) {

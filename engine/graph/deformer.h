@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -70,6 +71,9 @@ void check_deformer(const Deformer& deformer);
 // Of `count` shapes that are the frames of an animation, at a frame that need not be whole; before the first and after
 // the last one those.
 std::vector<double> frame_weights(double frame, std::size_t count);
+
+// "twist 90 degrees, stretch x 1.5, cage": in words, without what does not fit into a line.
+std::string summary_of(std::span<const Deformer> list);
 
 // Whether it only turns and moves.
 bool is_rigid(const Deformer& deformer);

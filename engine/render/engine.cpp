@@ -71,6 +71,7 @@ struct Engine::Implementation {
   vk::Buffer triangle_face;                 // display_faces.h, made at first use
   std::vector<PassStats> deformation_passes, irradiance_passes, gather_passes, render_passes;
   bool deformed = false;         // since the last solve
+  std::string deformation;       // in words
   std::optional<Legend> legend;  // of the last picture
   FalseColours false_colours;    // the same
 
@@ -183,6 +184,7 @@ void Engine::set_deformation(std::span<const Deformer> list) {
   self.bounds = list.empty() ? bounding_sphere(self.graph.display().vertices) : self.motion.bounds();
   self.irradiance_stale = self.irradiance_stale || !self.lights.empty();
   self.deformed = true;
+  self.deformation = summary_of(list);
   self.report.reset();
 }
 
@@ -311,7 +313,7 @@ std::uint64_t Engine::peak_device_bytes() const {
 Metadata Engine::metadata() const {
   const auto& self = *implementation_;
   if (!self.report) return {};
-  return describe({self.source, self.material, self.lights, self.options, *self.report, self.view,
+  return describe({self.source, self.material, self.lights, self.deformation, self.options, *self.report, self.view,
                    name_of(self.radiance), self.context.info()});
 }
 

@@ -65,6 +65,8 @@ Metadata describe(const PictureFacts& facts) {
                        {"error", error_text(facts.report.error)},
                        {"units", "W/(mm^2 sr)"},
                        {"device", facts.device.name + ", " + facts.device.driver}};
+  if (!facts.deformation.empty()) metadata.emplace_back("deformation", facts.deformation);
+  if (!facts.report.deformed.empty()) metadata.emplace_back("deformed", facts.report.deformed);
   if (facts.view) {
     metadata.emplace_back("camera", camera_text(*facts.view));
     metadata.emplace_back("radiance", std::string(facts.radiance));

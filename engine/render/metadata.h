@@ -21,6 +21,7 @@ struct PictureFacts {
   std::string source;    // file name of the .qgraph
   std::string material;  // as the user named it, or material_text
   std::span<const Light> lights;
+  std::string deformation;  // summary_of
   const SolveOptions& options;
   const SolveReport& report;
   std::optional<View> view;

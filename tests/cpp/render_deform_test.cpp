@@ -1,6 +1,7 @@
 // The facade with a deformation: display mesh, bounds, lights and picture follow.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <glm/geometric.hpp>
@@ -147,6 +148,10 @@ TEST_CASE("what is shown and what is solved on stay together, and bounds and sha
     worst = std::max(worst, glm::distance(shown[v], on_face));
   }
   CHECK(worst < 1e-5);
+  const Metadata metadata = engine.metadata();
+  const auto said =
+      std::find(metadata.begin(), metadata.end(), Metadata::value_type("deformation", "stretch x 2, twist 90 degrees"));
+  CHECK(said != metadata.end());
   const auto passes = engine.passes();
   for (const char* name : {"deform", "tet quality", "display normals", "bounds"}) {
     CHECK(std::any_of(passes.begin(), passes.end(), [&](const PassStats& pass) { return pass.name == name; }));
