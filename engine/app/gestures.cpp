@@ -5,6 +5,7 @@
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
+#include <numbers>
 
 namespace quadgraph {
 namespace {
@@ -14,6 +15,24 @@ constexpr float nearest = 0.05f, farthest = 40.0f;  // radii
 
 float distance_of(const View& view, const Sphere& bounds, float aspect) {
   return glm::distance(place_camera(view, bounds, aspect).eye, bounds.centre + view.target);
+}
+
+// Power of a light at that distance over its irradiance at the object's centre, mm^2; 1 for those that are told by
+// their irradiance.
+float power_over_irradiance(const Light& light, float distance) {
+  const float sphere = 4 * std::numbers::pi_v<float> * distance * distance;
+  switch (light.kind) {
+    case LightKind::point:
+      return sphere;
+    case LightKind::spot: {
+      const SpotCosines cosines = spot_cosines(light);
+      return 0.25f * sphere * (2 - cosines.inner - cosines.outer);
+    }
+    case LightKind::rectangle:
+      return 0.25f * sphere;
+    default:
+      return 1;
+  }
 }
 
 }  // namespace
@@ -44,8 +63,25 @@ Light turned(Light light, const View& view, const Sphere& bounds, float right, f
   const glm::mat4 turn = glm::rotate(glm::mat4(1), glm::radians(right), camera.up) *
                          glm::rotate(glm::mat4(1), glm::radians(-up), camera.right);
   light.direction = glm::normalize(glm::vec3(turn * glm::vec4(light.direction, 0)));
+  light.u = glm::vec3(turn * glm::vec4(light.u, 0));
+  light.v = glm::vec3(turn * glm::vec4(light.v, 0));
+  light.up = glm::vec3(turn * glm::vec4(light.up, 0));
   light.position = bounds.centre + glm::vec3(turn * glm::vec4(light.position - bounds.centre, 0));
   return light;
+}
+
+Light as_kind(const Light& light, LightKind kind, const Sphere& bounds) {
+  const bool placed = light.kind != LightKind::directional && light.kind != LightKind::ambient;
+  const glm::vec3 from = placed ? light.position - bounds.centre : -3 * bounds.radius * light.direction;
+  const float distance = std::max(glm::length(from), 0.1f * bounds.radius);
+  Light result{.kind = kind};
+  result.direction = -glm::normalize(from);
+  result.position = bounds.centre + from;
+  const glm::vec3 side = std::abs(result.direction.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
+  result.u = bounds.radius * glm::normalize(glm::cross(result.direction, side));
+  result.v = glm::cross(result.direction, result.u);
+  result.power = light.power * (power_over_irradiance(result, distance) / power_over_irradiance(light, distance));
+  return result;
 }
 
 Bearing bearing_of(const glm::vec3& towards, UpAxis up) {

@@ -18,6 +18,9 @@ View zoomed(View view, const Sphere& bounds, float aspect, float steps);
 // Where the light comes from goes right and up round the object's centre, degrees as the viewer sees it.
 Light turned(Light light, const View& view, const Sphere& bounds, float right, float up);
 
+// A light of another kind, not a projector, that lights the object's centre about as strongly and from the same side.
+Light as_kind(const Light& light, LightKind kind, const Sphere& bounds);
+
 // As degrees of azimuth and elevation, as of a View, from where a light comes; and towards there.
 struct Bearing {
   float azimuth = 0, elevation = 0;

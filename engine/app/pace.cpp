@@ -17,16 +17,17 @@ constexpr float shares[] = {1.0f, 0.75f, 0.5f, 0.375f};
 
 }  // namespace
 
-void Pace::took(double solve_ms, double draw_ms, double pixels) {
+void Pace::took(double solve_ms, double draw_ms, double pixels, bool gathered) {
   if (solve_ms > 0) solve_ms_ = mixed(solve_ms_, solve_ms);
-  if (pixels > 0) draw_ns_ = mixed(draw_ns_, 1e6 * draw_ms / pixels);
+  double& draw_ns = draw_ns_[gathered ? 1 : 0];
+  if (pixels > 0) draw_ns = mixed(draw_ns, 1e6 * draw_ms / pixels);
 }
 
 float Pace::share(double pixels, bool solving) const {
   const double left = std::max(budget_ms_ - (solving ? solve_ms_ : 0), least_drawing * budget_ms_);
   for (const float share : shares) {
     const double side = static_cast<double>(share);
-    if (1e-6 * draw_ns_ * pixels * side * side <= left) return share;
+    if (1e-6 * draw_ns_[gathers(solving) ? 1 : 0] * pixels * side * side <= left) return share;
   }
   return std::end(shares)[-1];
 }

@@ -10,17 +10,19 @@ class Pace {
   // `budget_ms` for a picture in motion, light and solve included.
   explicit Pace(double budget_ms) : budget_ms_(budget_ms) {}
 
-  // What a picture took: light and solve, and drawing so many pixels.
-  void took(double solve_ms, double draw_ms, double pixels);
+  // What a picture took: light and solve, and drawing so many pixels with or without gathering.
+  void took(double solve_ms, double draw_ms, double pixels, bool gathered);
+
+  // Whether there is time to gather radiance along view rays. `solving`: light or solve come before the drawing.
+  bool gathers(bool solving) const { return !solving || solve_ms_ < budget_ms_; }
 
   // Side of a picture in motion, as a share of the whole one of so many pixels: 1, or less where that takes too long.
-  // `solving`: whether light or solve come before it.
   float share(double pixels, bool solving) const;
 
  private:
   double budget_ms_;
   double solve_ms_ = 0;
-  double draw_ns_ = 0;  // per pixel
+  double draw_ns_[2] = {0, 0};  // per pixel, without and with gathering
 };
 
 }  // namespace quadgraph

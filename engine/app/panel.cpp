@@ -77,8 +77,12 @@ void draw_material(State& state) {
 void draw_power(Light& light, const char* unit) {
   float most = std::max({light.power.x, light.power.y, light.power.z, 1e-9f});
   glm::vec3 tint = light.power / most;
-  const std::string format = std::string("%.3g ") + unit;
-  if (slide("power", most, 1e-6f, light.kind == LightKind::point ? 1e4f : 1.0f, format.c_str(), true)) {
+  // A text without a conversion: the slider moves along decades and tells the power.
+  const std::string told = formatted("%.3g ", static_cast<double>(most)) + unit;
+  float decades = std::log10(most);
+  if (slide("power", decades, -6,
+            light.kind == LightKind::directional || light.kind == LightKind::ambient ? 1.0f : 6.0f, told.c_str())) {
+    most = std::pow(10.0f, decades);
     light.power = most * tint;
   }
   if (ImGui::ColorEdit3("tint", &tint.x, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_NoInputs)) {
@@ -93,18 +97,39 @@ void draw_bearing(Light& light, UpAxis up) {
   if (around || above) light.direction = -towards(bearing, up);
 }
 
+// A projector needs an image, which a scene file names.
+void draw_kind(Light& light, const Sphere& bounds) {
+  constexpr std::array kinds = {LightKind::directional, LightKind::point, LightKind::ambient, LightKind::spot,
+                                LightKind::rectangle};
+  const auto found = std::find(kinds.begin(), kinds.end(), light.kind);
+  if (found == kinds.end()) return;
+  auto chosen = static_cast<std::size_t>(found - kinds.begin());
+  const auto name = [](std::size_t i) {
+    constexpr std::string_view names[] = {"directional", "point", "ambient", "spot", "rectangle"};
+    return names[i];
+  };
+  if (choose("kind", chosen, name, kinds.size())) light = as_kind(light, kinds[chosen], bounds);
+}
+
 void draw_light(State& state, const Sphere& bounds) {
   Light& light = state.scene.lights[state.light];
+  draw_kind(light, bounds);
   switch (light.kind) {
     case LightKind::directional:
       draw_bearing(light, state.scene.view.up);
       return draw_power(light, "W/mm²");
-    case LightKind::point:
-      ImGui::DragFloat3("at, mm", &light.position.x, 0.01f * bounds.radius, 0, 0, "%.1f");
-      return draw_power(light, "W");
-    default:
+    case LightKind::ambient:
       return draw_power(light, "W/mm²");
+    case LightKind::spot:
+    case LightKind::projector:
+      draw_bearing(light, state.scene.view.up);
+      slide("angle##light", light.angle, 1, light.kind == LightKind::spot ? 90 : 160, "%.0f°");
+      break;
+    default:
+      break;
   }
+  ImGui::DragFloat3("at, mm", &light.position.x, 0.01f * bounds.radius, 0, 0, "%.1f");
+  draw_power(light, "W");
 }
 
 void draw_lights(State& state, const Sphere& bounds) {
@@ -149,6 +174,7 @@ void draw_picture(State& state, const Measured& measured) {
   if (!section("Picture", false)) return;
   choose("radiance", state.scene.render.radiance,
          std::array{Radiance::automatic, Radiance::gathered, Radiance::lambertian});
+  ImGui::Checkbox("ground", &state.scene.render.ground);
   slide("roughness", state.scene.render.roughness, 0.02f, 1, "%.2f");
   auto& stops = state.scene.tone.exposure_stops;
   bool automatic = !stops;

@@ -32,7 +32,7 @@ struct State {
 
   // Wishes that the viewer fulfils.
   bool focus_panel = false, focus_picture = false;
-  bool screenshot = false, full_screen = false, quit = false;
+  bool screenshot = false, full_screen = false, quit = false, undo = false, redo = false, save = false;
 
   void say(std::string text, bool complaint = false) {
     message = std::move(text);

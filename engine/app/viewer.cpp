@@ -10,6 +10,7 @@
 #include "engine/app/panel.h"
 #include "engine/graph/error.h"
 #include "engine/render/metadata.h"
+#include "engine/scene/scene_file.h"
 
 namespace quadgraph {
 namespace {
@@ -18,6 +19,7 @@ constexpr double budget_ms = 400;             // of a picture in motion
 constexpr double settle_after = 0.25;         // seconds without a change
 constexpr double idle_wait = 0.5;             // seconds
 constexpr float degrees_per_height = 180.0f;  // of a drag over the height of the picture
+constexpr std::size_t most_steps = 200;       // that can be taken back
 constexpr std::uint32_t graph_steps = 20;     // of conjugate gradients a picture, for methods without cycles
 
 double milliseconds(std::chrono::steady_clock::duration duration) {
@@ -148,7 +150,47 @@ void Viewer::fulfil_wishes() {
   if (state_.quit) window_.close();
   if (state_.full_screen) window_.toggle_full_screen();
   if (state_.screenshot && shown_) write_picture();
-  state_.full_screen = state_.screenshot = false;
+  if (state_.undo) travel(past_, future_);
+  if (state_.redo) travel(future_, past_);
+  if (state_.save) save_scene();
+  state_.full_screen = state_.screenshot = state_.undo = state_.redo = state_.save = false;
+}
+
+// To the scene before, or after; the eye stays where it is.
+void Viewer::travel(std::vector<Scene>& from, std::vector<Scene>& to) {
+  if (from.empty()) return state_.say("there is nothing to take back, or to do again");
+  to.push_back(state_.scene);
+  Scene scene = from.back();
+  from.pop_back();
+  scene.view = state_.scene.view;
+  scene.render.show = state_.scene.render.show;
+  state_.scene = scene;
+  travelling_ = true;
+}
+
+// What the user has done since the last converged picture is one step.
+void Viewer::remember() {
+  Scene before = *shown_;
+  before.view = state_.scene.view;
+  before.render.show = state_.scene.render.show;
+  if (before == state_.scene) return;
+  if (!travelling_) {
+    past_.push_back(*shown_);
+    future_.clear();
+    if (past_.size() > most_steps) past_.erase(past_.begin());
+  }
+  travelling_ = false;
+}
+
+void Viewer::save_scene() {
+  try {
+    std::filesystem::path path = stem_;
+    path.replace_extension(".json");
+    SceneFile(state_.scene).save(path);
+    state_.say("written: " + path.string());
+  } catch (const std::exception& error) {
+    state_.say(error.what(), true);
+  }
 }
 
 // Brings the picture up to the scene: at once, as good as the budget allows, and exactly when nothing changes any more.
@@ -156,6 +198,7 @@ void Viewer::keep_up() {
   if (swapchain_.width() == 0) return;
   const bool changed = !shown_ || state_.scene != *shown_ || part() != shown_part_;
   if (changed) changed_ = Clock::now();
+  if (changed && shown_ && measured_.settled) remember();
   window_.show_busy(changed || !measured_.settled);
   if (!changed && (measured_.settled || milliseconds(Clock::now() - changed_) < 1000 * settle_after || dragging_))
     return;
@@ -205,14 +248,16 @@ void Viewer::remake(bool settle) {
   const Part now = part();
   const double pixels = double(now.width) * now.height;
   measured_.share = settle ? 1 : pace_.share(pixels, solving);
-  make_picture(settle);
+  make_picture(settle, settle || pace_.gathers(solving));
   shown_ = scene;
   shown_part_ = now;
   measured_.settled = settle;
-  measure(start, solving ? milliseconds(solved - start) : 0, milliseconds(Clock::now() - solved));
+  if (settle) travelling_ = false;
+  measure(start, solving ? milliseconds(solved - start) : 0, milliseconds(Clock::now() - solved),
+          settle || pace_.gathers(solving));
 }
 
-void Viewer::make_picture(bool settle) {
+void Viewer::make_picture(bool settle, bool gather) {
   const Part now = part();
   const auto side = [&](std::uint32_t pixels) {
     return std::max(1u, static_cast<std::uint32_t>(std::lround(measured_.share * static_cast<float>(pixels))));
@@ -220,16 +265,17 @@ void Viewer::make_picture(bool settle) {
   RenderOptions options = state_.scene.render;
   options.width = settle ? now.width : side(now.width);
   options.height = settle ? now.height : side(now.height);
+  if (!gather) options.radiance = Radiance::lambertian;
   const PictureBuffers& picture = engine_.draw(state_.scene.view, options);
   measured_.exposure_stops = tone_mapper_.exposure(picture, state_.scene.tone);
   pixels_ = &tone_mapper_.run(picture, state_.scene.tone, measured_.exposure_stops,
                               {now.width, now.height, swapchain_.blue_first()});
 }
 
-void Viewer::measure(Clock::time_point start, double solve_ms, double draw_ms) {
+void Viewer::measure(Clock::time_point start, double solve_ms, double draw_ms, bool gathered) {
   const Clock::time_point now = Clock::now();
   const double side = static_cast<double>(measured_.share);
-  pace_.took(solve_ms, draw_ms, side * side * double(shown_part_.width) * shown_part_.height);
+  pace_.took(solve_ms, draw_ms, side * side * double(shown_part_.width) * shown_part_.height, gathered);
   measured_.frame_ms = milliseconds(now - start);
   pictures_.push_back(now);
   std::erase_if(pictures_, [&](const auto& time) { return milliseconds(now - time) > 1000; });

@@ -48,8 +48,11 @@ class Viewer {
   void keep_up();
   void remake(bool settle);
   SolveOptions options_of_solve(bool settle) const;
-  void make_picture(bool settle);
-  void measure(Clock::time_point start, double solve_ms, double draw_ms);
+  void make_picture(bool settle, bool gather);
+  void measure(Clock::time_point start, double solve_ms, double draw_ms, bool gathered);
+  void travel(std::vector<Scene>& from, std::vector<Scene>& to);
+  void remember();
+  void save_scene();
   void present();
   void write_picture();
 
@@ -68,6 +71,8 @@ class Viewer {
   int drag_button_ = 0, drag_mods_ = 0;
   double pointer_x_ = 0, pointer_y_ = 0;  // pixels
   std::optional<Scene> shown_;            // empty before the first picture
+  std::vector<Scene> past_, future_;      // to take back, and to do again
+  bool travelling_ = false;               // the last change was one of these
   Part shown_part_;
   const vk::Buffer* pixels_ = nullptr;       // of shown_part_
   bool solved_exactly_ = false;              // the last solve was to the tolerance

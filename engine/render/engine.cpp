@@ -6,6 +6,7 @@
 #include "engine/graph/material.h"
 #include "engine/render/display_faces.h"
 #include "engine/render/display_motion.h"
+#include "engine/render/ground.h"
 #include "engine/render/inside.h"
 #include "engine/render/irradiance.h"
 #include "engine/render/legend.h"
@@ -72,6 +73,7 @@ struct Engine::Implementation {
   std::vector<PassStats> deformation_passes, irradiance_passes, gather_passes, render_passes;
   bool deformed = false;         // since the last solve
   std::string deformation;       // in words
+  std::optional<Ground> ground;  // made at first use
   std::optional<Legend> legend;  // of the last picture
   FalseColours false_colours;    // the same
 
@@ -185,6 +187,7 @@ void Engine::set_deformation(std::span<const Deformer> list) {
   self.irradiance_stale = self.irradiance_stale || !self.lights.empty();
   self.deformed = true;
   self.deformation = summary_of(list);
+  if (self.ground) self.ground->invalidate();
   self.report.reset();
 }
 
@@ -263,6 +266,10 @@ const PictureBuffers& Engine::draw(const View& view, const RenderOptions& option
                                             .gather = gather ? &*gather : nullptr},
                                            camera, options.width, options.height);
   self.radiance = gather ? Radiance::gathered : Radiance::lambertian;
+  if (options.ground) {
+    if (!self.ground) self.ground.emplace(self.context);
+    self.render_passes.push_back(self.ground->run(self.mesh, self.bounds, view, camera, self.rasteriser.picture()));
+  }
   return self.rasteriser.picture();
 }
 

@@ -109,13 +109,14 @@ void background_from(const JsonField& field, ToneOptions& tone) {
 }
 
 void picture_from(const JsonField& field, RenderOptions& render, ToneOptions& tone) {
-  field.allow({"width", "height", "roughness", "radiance", "exposure", "background", "show"});
+  field.allow({"width", "height", "roughness", "radiance", "exposure", "background", "show", "ground"});
   if (const auto width = field.find("width")) render.width = width->whole(1, largest_side);
   if (const auto height = field.find("height")) render.height = height->whole(1, largest_side);
   if (const auto roughness = field.find("roughness")) render.roughness = roughness->real();
   if (const auto radiance = field.find("radiance")) {
     render.radiance = radiance->within([&] { return radiance_from_name(radiance->text()); });
   }
+  if (const auto ground = field.find("ground")) render.ground = ground->truth();
   if (const auto show = field.find("show")) {
     render.show = show->within([&] { return parse_show(show->text()); });
   }
@@ -132,7 +133,8 @@ Json picture_json(const RenderOptions& render, const ToneOptions& tone) {
             {"height", render.height},
             {"roughness", real_json(render.roughness)},
             {"radiance", name_of(render.radiance)},
-            {"show", to_string(render.show)}};
+            {"show", to_string(render.show)},
+            {"ground", render.ground}};
   json["exposure"] = tone.exposure_stops ? real_json(*tone.exposure_stops) : Json("auto");
   json["background"] = {{"top", rgb_json(tone.background_top)}, {"bottom", rgb_json(tone.background_bottom)}};
   return json;

@@ -170,9 +170,9 @@ std::vector<std::string> default_light_texts(const std::string& view, const std:
 
 Picture render(Engine& engine, const std::string& view_text, const std::string& up, float vertical_fov,
                std::uint32_t width, std::uint32_t height, float roughness, const std::string& radiance,
-               const std::string& show) {
+               const std::string& show, bool ground) {
   const View view = view_from(view_text, up, vertical_fov);
-  const RenderOptions options{width, height, roughness, radiance_from_name(radiance), parse_show(show)};
+  const RenderOptions options{width, height, roughness, radiance_from_name(radiance), parse_show(show), ground};
   const py::gil_scoped_release release;
   return engine.render(view, options);
 }
@@ -307,9 +307,11 @@ void bind_engine(py::module_& module) {
           "phi", [](Engine& engine) { return own(engine.simulation().phi()); }, "Per carrier of level 0, W/mm^2.")
       .def("render", &render, py::arg("view") = "", py::arg("up") = "y", py::arg("vertical_fov") = 30.0f,
            py::arg("width") = 1024, py::arg("height") = 1024, py::arg("roughness") = RenderOptions{}.roughness,
-           py::arg("radiance") = "auto", py::arg("show") = "picture",
+           py::arg("radiance") = "auto", py::arg("show") = "picture", py::arg("ground") = false,
            "The last solve seen from 'azimuth,elevation[,distance]' (degrees, mm). radiance: gathered, lambertian, "
-           "auto. show: picture, or what is inside, in false colour (engine/render/show.h).")
+           "auto. show: picture, or what is inside, in false colour (engine/render/show.h). ground: with a shadow "
+           "where the body stands, as coverage "
+           "without light.")
       .def_property_readonly(
           "passes", [](const Engine& engine) { return as_list(engine.passes()); },
           "Device time and bytes per pass of the last frame.")

@@ -50,6 +50,24 @@ TEST_CASE("a view can be turned, moved and zoomed for ever and stays one that ca
   }
 }
 
+TEST_CASE("a light of another kind lights the object as strongly, and turns back into the same") {
+  const Light sun{
+      .kind = LightKind::directional, .direction = glm::normalize(glm::vec3(1, -2, 0.5f)), .power = {1, 0.5f, 0.25f}};
+  for (const LightKind kind : {LightKind::point, LightKind::spot, LightKind::rectangle}) {
+    const Light other = as_kind(sun, kind, bounds);
+    CHECK_NOTHROW(check_light(other));
+    const glm::vec3 away = bounds.centre - other.position;
+    CHECK(glm::distance(glm::normalize(away), sun.direction) < 1e-5f);
+    const float squared = glm::dot(away, away);
+    if (kind == LightKind::point) CHECK(other.power.x / (4 * 3.14159265f * squared) == doctest::Approx(1));
+    if (kind == LightKind::spot) CHECK(axis_intensity(other).x / squared == doctest::Approx(1));
+    if (kind == LightKind::rectangle) CHECK(glm::dot(glm::cross(other.u, other.v), away) > 0);
+    const Light back = as_kind(other, LightKind::directional, bounds);
+    CHECK(glm::distance(back.power, sun.power) < 1e-5f);
+    CHECK(glm::distance(back.direction, sun.direction) < 1e-5f);
+  }
+}
+
 TEST_CASE("bearings of lights read back") {
   for (const UpAxis up : {UpAxis::y, UpAxis::z}) {
     const Bearing bearing = bearing_of(towards({.azimuth = -120, .elevation = 35}, up), up);
@@ -75,8 +93,9 @@ TEST_CASE("every key does something, and no two share one") {
     state.scene.view.azimuth = 5;
     const State before = state;
     CHECK(run_command(commands[i].key, commands[i].mods, state, {bounds, 1.5f, 4}));
-    const bool wished = state.quit || state.full_screen || state.screenshot || state.focus_panel ||
-                        state.help != before.help || state.panel != before.panel || state.light != before.light;
+    const bool wished = state.quit || state.full_screen || state.undo || state.redo || state.save || state.screenshot ||
+                        state.focus_panel || state.help != before.help || state.panel != before.panel ||
+                        state.light != before.light;
     CHECK_MESSAGE((wished || state.scene != before.scene), commands[i].keys);
   }
   State state;
@@ -86,8 +105,13 @@ TEST_CASE("every key does something, and no two share one") {
 TEST_CASE("a picture in motion keeps to its budget, and takes all of it") {
   Pace pace(400);
   CHECK(pace.share(1e6, true) == 1);
-  for (int i = 0; i < 20; ++i) pace.took(250, 600, 1e6);
+  for (int i = 0; i < 20; ++i) pace.took(250, 600, 1e6, true);
   CHECK(pace.share(1e6, false) == 0.75f);  // 340 of 400 ms
   CHECK(pace.share(1e6, true) == 0.5f);    // 150 of the 150 that the solve leaves
   CHECK(pace.share(1e4, true) == 1);
+  CHECK(pace.gathers(true));
+  for (int i = 0; i < 20; ++i) pace.took(800, 100, 1e6, false);
+  CHECK_FALSE(pace.gathers(true));  // the solve has taken all of it
+  CHECK(pace.gathers(false));
+  CHECK(pace.share(1e6, true) == 1);
 }

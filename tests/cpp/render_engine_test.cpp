@@ -183,3 +183,25 @@ TEST_CASE("pictures that follow each other allocate nothing, smaller ones neithe
   CHECK(engine.allocation_count() == allocations);
   CHECK(engine.device_bytes() == bytes);
 }
+
+TEST_CASE("a body stands on its ground: a shadow at its foot, without light, none above, none from below") {
+  for (const UpAxis up : {UpAxis::y, UpAxis::z}) {
+    Checked checked;
+    Engine& engine = checked.engine;
+    engine.set_material("sigma_s_prime=2,sigma_a=0.1,eta=1.4");
+    engine.set_lights({parse_light("directional:0,0,-1:1")});
+    engine.solve();
+    const View view{.azimuth = 0, .elevation = 12, .up = up};
+    const Picture plain = engine.render(view, {.width = 90, .height = 90});
+    const Picture standing = engine.render(view, {.width = 90, .height = 90, .ground = true});
+    CHECK(standing.scattered == plain.scattered);
+    std::size_t foot = 89;  // the lowest row that shows the body, in the middle
+    while (plain.alpha[foot * 90 + 45] < 1) --foot;
+    CHECK(standing.alpha[(foot + 2) * 90 + 45] > 0.1f);
+    CHECK(standing.alpha[(foot + 2) * 90 + 45] < 1);
+    CHECK(standing.alpha[5 * 90 + 45] == plain.alpha[5 * 90 + 45]);
+    const View below{.azimuth = 0, .elevation = -12, .up = up};
+    CHECK(engine.render(below, {.width = 90, .height = 90, .ground = true}).alpha ==
+          engine.render(below, {.width = 90, .height = 90}).alpha);
+  }
+}

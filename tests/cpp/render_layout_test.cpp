@@ -1,9 +1,12 @@
 // The structs of shaders/render_shared.h lie in memory as the compiled shaders read them.
 #include "shaders/display_shared.h"
 #include "shaders/false_colour_shared.h"
+#include "shaders/ground_shared.h"
 #include "shaders/render_shared.h"
 #include "spirv/false_colour.frag.h"
 #include "spirv/false_colour.vert.h"
+#include "spirv/ground.comp.h"
+#include "spirv/ground_map.comp.h"
 #include "spirv/irradiance.comp.h"
 #include "spirv/luminance.comp.h"
 #include "spirv/resolve.comp.h"
@@ -100,4 +103,14 @@ TEST_CASE("what brings a picture to a screen") {
            MEMBER(ToneMapPush, background_top), MEMBER(ToneMapPush, background_bottom), MEMBER(ToneMapPush, exposure),
            MEMBER(ToneMapPush, picture_width), MEMBER(ToneMapPush, picture_height), MEMBER(ToneMapPush, width),
            MEMBER(ToneMapPush, height), MEMBER(ToneMapPush, false_colour), MEMBER(ToneMapPush, blue_first)});
+}
+
+TEST_CASE("the ground") {
+  compare(ground_map_comp, "GroundMapPush",
+          {MEMBER(GroundMapPush, depth), MEMBER(GroundMapPush, shadow), MEMBER(GroundMapPush, far),
+           MEMBER(GroundMapPush, reach)});
+  compare(ground_comp, "GroundPush",
+          {MEMBER(GroundPush, shadow), MEMBER(GroundPush, alpha), MEMBER(GroundPush, eye), MEMBER(GroundPush, corner),
+           MEMBER(GroundPush, right), MEMBER(GroundPush, down), MEMBER(GroundPush, half_width),
+           MEMBER(GroundPush, z_up), MEMBER(GroundPush, width), MEMBER(GroundPush, height)});
 }

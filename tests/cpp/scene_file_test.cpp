@@ -105,7 +105,8 @@ Scene with_everything(const Folder& folder) {
                   .height = 48,
                   .roughness = 0.2f,
                   .radiance = Radiance::lambertian,
-                  .show = parse_show("tets:y,-3,1")};
+                  .show = parse_show("tets:y,-3,1"),
+                  .ground = true};
   scene.tone = {.exposure_stops = 1.5f, .background_top = {1, 0.5f, 0}, .background_bottom = glm::vec3(0.1f)};
   return scene;
 }

@@ -60,6 +60,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "phi[:AXIS[,MM]], tets[:AXIS[,MM[,N]]] or links[:AXIS[,MM[,N]]]; AXIS x, y or z across a cutting plane MM from "
         "the object's centre, N a level (default: %(default)s)",
     )
+    parser.add_argument("--ground", action="store_true", help="a shadow on the ground where the object stands")
     parser.add_argument("--exposure", default="auto", help="auto, or stops (default: %(default)s)")
     parser.add_argument("--background", default="studio", help="studio, black, white, or R/G/B (default: %(default)s)")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the report here")
@@ -95,6 +96,7 @@ def run(args: argparse.Namespace) -> int:
         roughness=args.roughness,
         radiance=args.radiance,
         show=args.show,
+        ground=args.ground,
     )
     scene.check_validation(engine)
     for path in args.output:

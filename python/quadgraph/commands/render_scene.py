@@ -37,6 +37,7 @@ STATED = {
     "roughness": "/picture/roughness",
     "radiance": "/picture/radiance",
     "show": "/picture/show",
+    "ground": "/picture/ground",
     "exposure": "/picture/exposure",
     "background": "/picture/background",
 }
