@@ -18,6 +18,7 @@ from scipy.sparse.linalg import splu
 from quadgraph import qgraph_file
 from quadgraph.display_map import nearest_faces
 from quadgraph.errors import InputError
+from quadgraph.gltf_morph import MorphTargets, read_targets
 from quadgraph.mesh_io import read_surface
 from quadgraph.surface import Surface
 
@@ -48,12 +49,20 @@ class Shapes:
 def from_frames(body: Path, rest: Path, frames: Sequence[Path]) -> Shapes:
     """Read frames of the mesh `rest`, which lies where that of the baked `body` does, in its unit.
 
-    .obj, .ply or .off, all with the vertices and triangles of `rest` in its order. Raises InputError, FormatError.
+    .obj, .ply or .off, all with the vertices and triangles of `rest` in its order; or a single .glb or .gltf, of whose
+    morph targets each is a shape, and whose mesh is the rest. Raises InputError, FormatError.
     """
     file = qgraph_file.read(body)
+    if len(frames) == 1 and frames[0].suffix.lower() in (".glb", ".gltf"):
+        return _of_morph_targets(file, read_targets(frames[0]))
     start = _read(rest, file.metadata["unit_mm"])
     moves = [_moved(start, frame, file.metadata["unit_mm"]) for frame in frames]
     return of_moves(file, start, np.array(moves))
+
+
+def _of_morph_targets(file: qgraph_file.QGraphFile, morph: MorphTargets) -> Shapes:
+    unit_mm = file.metadata["unit_mm"]
+    return of_moves(file, Surface(morph.vertices * unit_mm, morph.triangles), morph.targets * unit_mm)
 
 
 def of_moves(file: qgraph_file.QGraphFile, start: Surface, moves: np.ndarray) -> Shapes:

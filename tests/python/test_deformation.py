@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import struct
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,7 @@ import pytest
 
 from quadgraph import _core, cli, qgraph_file
 from quadgraph.errors import FormatError, InputError
-from quadgraph.shapes import Shapes, of_moves
+from quadgraph.shapes import Shapes, from_frames, of_moves
 from quadgraph.surface import Surface
 
 TINY = Path(__file__).resolve().parents[1] / "data" / "tiny.qgraph"
@@ -137,6 +138,58 @@ def test_frames_of_a_mesh_move_display_and_tets_alike(engine, tmp_path, capsys):
     engine.set_deformation([])
 
 
+def glb_of(vertices: np.ndarray, triangles: np.ndarray, target: np.ndarray) -> bytes:
+    """Return a file of one mesh with one morph target, turned by 90 degrees about z and moved."""
+    which = np.flatnonzero(np.abs(target).max(axis=1) > 0)
+    arrays = [vertices, triangles.reshape(-1, 1), which[:, None], target[which]]
+    arrays = [np.ascontiguousarray(a, np.float32 if a.shape[1] == 3 else np.uint32) for a in arrays]
+    ends = np.cumsum([0] + [a.nbytes for a in arrays])
+    document = {
+        "asset": {"version": "2.0"},
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"children": [1], "translation": [1, 2, 3]}, {"mesh": 0, "rotation": [0, 0, 0.5**0.5, 0.5**0.5]}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "targets": [{"POSITION": 2}]}]}],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": len(vertices)},
+            {"bufferView": 1, "componentType": 5125, "type": "SCALAR", "count": triangles.size},
+            {
+                "componentType": 5126,
+                "type": "VEC3",
+                "count": len(vertices),
+                "sparse": {
+                    "count": len(which),
+                    "indices": {"bufferView": 2, "componentType": 5125},
+                    "values": {"bufferView": 3},
+                },
+            },
+        ],
+        "bufferViews": [
+            {"buffer": 0, "byteOffset": int(at), "byteLength": a.nbytes} for at, a in zip(ends, arrays, strict=False)
+        ],
+        "buffers": [{"byteLength": int(ends[-1])}],
+    }
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    binary = b"".join(a.tobytes() for a in arrays)
+    chunks = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(binary), 0x004E4942) + binary
+    return struct.pack("<III", 0x46546C67, 2, 12 + len(chunks)) + chunks
+
+
+def test_morph_targets_of_a_gltf_file_are_shapes(engine, tmp_path, capsys):
+    display = {name: np.asarray(values) for name, values in engine.graph.display.items()}
+    world = display["vertices"] - [1, 2, 3]
+    vertices = np.stack([world[:, 1], -world[:, 0], world[:, 2]], axis=1)  # before they are turned and moved
+    top = display["vertices"][:, 1] > display["vertices"][:, 1].max() - 1e-3
+    path = tmp_path / "a.glb"
+    path.write_bytes(glb_of(vertices, display["triangles"], np.where(top[:, None], [0.5, 0, 0], 0)))
+    found = from_frames(TINY, path, [path])
+    assert found.display.shape == (1, len(vertices), 3)
+    assert np.allclose(found.display[0], np.where(top[:, None], [0, 0.5, 0], 0), atol=1e-5)
+    path.write_bytes(path.read_bytes().replace(b'"targets"', b'"tarrots"'))
+    assert cli.main(["shapes", str(TINY), str(path), "-o", str(tmp_path / "a.qshapes")]) == 1
+    assert "0 meshes with morph targets" in capsys.readouterr().err
+
+
 def test_frames_of_something_else_are_refused(tmp_path, capsys):
     (tmp_path / "far.obj").write_text("v 9 9 9\nv 10 9 9\nv 9 10 9\nf 1 2 3\n")
     (tmp_path / "more.obj").write_text("v 9 9 9\nv 10 9 9\nv 9 10 9\nv 0 0 0\nf 1 2 3\n")
@@ -144,7 +197,7 @@ def test_frames_of_something_else_are_refused(tmp_path, capsys):
     for frames, said in (
         (["far.obj"], "mm from the body"),
         (["far.obj", "more.obj"], "4 vertices"),
-        (["a.glb"], ".obj"),
+        (["a.stl"], ".obj"),
     ):
         assert cli.main(["shapes", str(TINY), *[str(tmp_path / f) for f in frames], "-o", str(output)]) == 1
         assert said in capsys.readouterr().err

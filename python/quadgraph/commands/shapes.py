@@ -15,7 +15,8 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         metavar="FRAME",
         type=Path,
         nargs="+",
-        help="meshes (.obj, .ply, .off) with the vertices and triangles of the rest, in its unit",
+        help="meshes (.obj, .ply, .off) with the vertices and triangles of the rest, in its unit; or a single .glb or "
+        ".gltf: its morph targets",
     )
     parser.add_argument(
         "--rest", metavar="MESH", type=Path, help="the frame that lies where the body does; left out: the first"
