@@ -9,5 +9,6 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= push.count) return;
   vec3 position = push.material.pattern == PATTERN_NONE ? vec3(0) : load_vec3(push.nodes, i);
-  push.optical.at[i] = material_at(push.material, position);
+  float depth = push.material.pattern == PATTERN_LAYERS ? load_float(push.depth, i) : 0.0;
+  push.optical.at[i] = material_at(push.material, position, depth);
 }

@@ -81,7 +81,8 @@ QG_INLINE float rings(vec3 p, float sharpness) {
 }
 
 // Where the second set of coefficients is, 0 to 1.
-QG_INLINE float pattern_amount(Material m, vec3 position) {
+QG_INLINE float pattern_amount(Material m, vec3 position, float depth) {
+  if (m.pattern == PATTERN_LAYERS) return step_at(1.0f, depth / m.period, m.sharpness);
   vec3 p = position / m.period;
   if (m.pattern == PATTERN_VEINS) return veins(p, m.sharpness);
   if (m.pattern == PATTERN_CLOUDS) return step_at(0.5f, turbulence(p), m.sharpness);
@@ -93,13 +94,13 @@ QG_INLINE float pattern_amount(Material m, vec3 position) {
   return sum - 2.0f * floor(0.5f * sum);
 }
 
-// Coefficients at `position` (mm, object space).
-QG_INLINE Optical material_at(Material m, vec3 position) {
+// Coefficients at `position` (mm, object space), `depth` mm below the surface.
+QG_INLINE Optical material_at(Material m, vec3 position, float depth) {
   Optical optical;
   optical.sigma_s_prime = m.sigma_s_prime;
   optical.sigma_a = m.sigma_a;
   if (m.pattern != PATTERN_NONE) {
-    float t = pattern_amount(m, position);
+    float t = pattern_amount(m, position, depth);
     optical.sigma_s_prime = mix(m.sigma_s_prime, m.second_sigma_s_prime, t);
     optical.sigma_a = mix(m.sigma_a, m.second_sigma_a, t);
   }

@@ -58,7 +58,8 @@ const uint PATTERN_BANDS = 3u;
 const uint PATTERN_RINGS = 4u;
 const uint PATTERN_SPOTS = 5u;
 const uint PATTERN_CHECKER = 6u;
-const uint PATTERNS = 7u;
+const uint PATTERN_LAYERS = 7u;
+const uint PATTERNS = 8u;
 
 // A material field in object space: two sets of coefficients, mixed by a pattern. One without a pattern uses the first
 // three members only.
@@ -69,8 +70,8 @@ struct Material {
   uint pattern;               // PATTERN_*
   vec3 second_sigma_s_prime;  // 1/mm, where the pattern is 1
   vec3 second_sigma_a;        // 1/mm
-  float period;               // mm from one vein, cloud, band, ring, spot or cell to the next
-  float sharpness;            // >= 1, larger: thinner veins and rings, harder edges of clouds, bands and spots
+  float period;               // mm from one vein, cloud, band, ring, spot or cell to the next; depth of the upper layer
+  float sharpness;            // >= 1, larger: thinner veins and rings, harder edges of clouds, bands, spots and layers
 };
 
 #ifndef __cplusplus
@@ -85,10 +86,11 @@ Optical load_optical(Opticals a, uint i) {
 }
 #endif
 
-// evaluate_material.comp: optical[i] = material_at(nodes[i]).
+// evaluate_material.comp: optical[i] = material_at(nodes[i], depth[i]).
 struct EvaluateMaterialPush {
   Material material;
-  QG_REF(Vec3s) nodes;  // not read for a homogeneous material
+  QG_REF(Vec3s) nodes;   // mm; not read for a homogeneous material
+  QG_REF(Floats) depth;  // mm below the surface, of the nodes; read for layers
   QG_REF(Opticals) optical;
   uint count;
 };

@@ -42,7 +42,7 @@ struct Procedural {
   std::string_view name, text;
 };
 
-const std::array<Procedural, 6> procedural = {{
+const std::array<Procedural, 7> procedural = {{
     {"marble-veins",
      "marble,pattern=veins,second_sigma_s_prime=1.2,second_sigma_a=0.85/0.78/0.74,period=16,sharpness=14"},
     {"jade",
@@ -60,10 +60,13 @@ const std::array<Procedural, 6> procedural = {{
     {"checker",
      "reflectance=0.8,mean_free_path=0.5,eta=1.3,pattern=checker,second_reflectance=0.15/0.2/0.4,"
      "second_mean_free_path=0.5,period=12,sharpness=1"},
+    {"layered-skin",
+     "sigma_s_prime=1.1/1.5/1.9,sigma_a=0.05/0.22/0.5,eta=1.4,pattern=layers,second_sigma_s_prime=1.3/1.2/1.1,"
+     "second_sigma_a=0.004/0.012/0.02,period=1.5,sharpness=3"},
 }};
 
-constexpr std::array<std::string_view, gpu::PATTERNS> patterns = {"none",  "veins", "clouds", "bands",
-                                                                  "rings", "spots", "checker"};
+constexpr std::array<std::string_view, gpu::PATTERNS> patterns = {"none",  "veins", "clouds",  "bands",
+                                                                  "rings", "spots", "checker", "layers"};
 constexpr std::string_view allowed_keys =
     "pattern, eta, period, sharpness, sigma_s_prime, sigma_a, or reflectance, mean_free_path, and these four after "
     "second_";

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/graph/depth.h"
 #include "engine/graph/error.h"
 #include "engine/graph/geometry.h"
 #include "engine/graph/source_walk.h"
@@ -214,9 +215,13 @@ Vector load(const Level& level, const Problem& problem, std::span<const Entering
 }  // namespace
 
 std::vector<gpu::Optical> evaluate_material(const Level& level, const gpu::Material& material) {
+  std::vector<float> depth(level.nodes.size(), 0.0f);
+  if (material.pattern == gpu::PATTERN_LAYERS) depth = depth_below_surface(level, level.nodes);
   std::vector<gpu::Optical> optical;
   optical.reserve(level.nodes.size());
-  for (const glm::vec3& node : level.nodes) optical.push_back(gpu::material_at(material, node));
+  for (std::size_t i = 0; i < depth.size(); ++i) {
+    optical.push_back(gpu::material_at(material, level.nodes[i], depth[i]));
+  }
   return optical;
 }
 

@@ -184,8 +184,10 @@ gpu::Boundary on_device(const Boundary& boundary) {
           static_cast<float>(boundary.source), static_cast<float>(boundary.reflected)};
 }
 
-void record_material(Workspace& work, const LevelBuffers& level, const gpu::Material& material, std::uint32_t count) {
-  const gpu::EvaluateMaterialPush push{material, level.rest.address(), level.optical.address(), count};
+void record_material(Workspace& work, const LevelBuffers& level, const gpu::Material& material, const vk::Buffer* depth,
+                     std::uint32_t count) {
+  const gpu::EvaluateMaterialPush push{material, level.rest.address(), depth ? depth->address() : 0,
+                                       level.optical.address(), count};
   work.recorder.dispatch(work.passes.evaluate_material, push, count, "material",
                          count * (vec3_bytes + sizeof(gpu::Optical)));
 }

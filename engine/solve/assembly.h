@@ -14,8 +14,10 @@ struct EditBuffers {
   vk::Buffer edits, points;
 };
 
-// The coefficients of the first `count` nodes; a material that varies is evaluated at level.rest.
-void record_material(Workspace& work, const LevelBuffers& level, const gpu::Material& material, std::uint32_t count);
+// The coefficients of the first `count` nodes; a material that varies is evaluated at level.rest, one of layers at
+// `depth`.
+void record_material(Workspace& work, const LevelBuffers& level, const gpu::Material& material, const vk::Buffer* depth,
+                     std::uint32_t count);
 
 // The first `count` coefficients of `base`, which may be level.optical, with edits into level.optical.
 void record_edits(Workspace& work, const LevelBuffers& level, const vk::Buffer& base, const EditBuffers& edits,

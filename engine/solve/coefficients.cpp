@@ -92,13 +92,14 @@ const std::vector<float>& Coefficients::depth(std::uint32_t number) {
 }
 
 std::vector<gpu::Optical> Coefficients::at(std::uint32_t number, std::span<const SurfaceSample> samples) {
-  const bool deep = edits_.wants_depth();
+  const bool deep = wants_depth();
   std::vector<gpu::Optical> optical;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const std::uint32_t tet = samples[i].tet;
     const glm::vec3& place = rest_[number].nodes[tet];
-    const gpu::Optical base = material_ ? gpu::material_at(*material_, place) : sampled_[number][i];
-    optical.push_back(edits_.apply(base, place, deep ? depth(number)[tet] : 0));
+    const float below = deep ? depth(number)[tet] : 0;
+    const gpu::Optical base = material_ ? gpu::material_at(*material_, place, below) : sampled_[number][i];
+    optical.push_back(edits_.apply(base, place, below));
   }
   return optical;
 }
@@ -150,7 +151,7 @@ void Coefficients::make_room(Method method, std::vector<LevelBuffers>& levels) {
     if (placed && level.rest.size() < wanted * sizeof(glm::vec3)) {
       level.rest = vk::upload(context_, rest_[i].nodes.first(wanted), name + " rest");
     }
-    if (edits_.wants_depth() && depth_buffers_[i].size() == 0) {
+    if (wants_depth() && depth_buffers_[i].size() == 0) {
       depth_buffers_[i] = vk::upload<float>(context_, depth(i), name + " depth");
     }
   }
@@ -161,10 +162,10 @@ void Coefficients::record(Workspace& work, const std::vector<LevelBuffers>& leve
   for (std::size_t i = 0; i < levels.size(); ++i) {
     const LevelBuffers& level = levels[i];
     const std::uint32_t wanted = count(level, extent_);
-    if (material_) record_material(work, level, *material_, wanted);
+    const vk::Buffer* depth = wants_depth() ? &depth_buffers_[i] : nullptr;
+    if (material_) record_material(work, level, *material_, depth, wanted);
     if (!material_ || edit_buffers_.count > 0) {
-      record_edits(work, level, material_ ? level.optical : given_[i], edit_buffers_,
-                   edits_.wants_depth() ? &depth_buffers_[i] : nullptr, wanted);
+      record_edits(work, level, material_ ? level.optical : given_[i], edit_buffers_, depth, wanted);
     }
   }
   evaluated_ = extent_;

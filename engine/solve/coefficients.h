@@ -58,6 +58,8 @@ class Coefficients {
   static std::uint32_t count(const LevelBuffers& level, Extent extent);
 
   void changed();
+  bool layered() const { return material_ && material_->pattern == gpu::PATTERN_LAYERS; }
+  bool wants_depth() const { return layered() || edits_.wants_depth(); }
   const std::vector<float>& depth(std::uint32_t number);
 
   vk::Context& context_;

@@ -143,9 +143,20 @@ TEST_CASE("patterns stay between the two materials, reach both, and are the same
   }
   const gpu::Material checker =
       parse_material("marble,pattern=checker,second_sigma_s_prime=1,second_sigma_a=2,period=10");
-  CHECK(gpu::material_at(checker, {1, 1, 1}).sigma_a == checker.sigma_a);
-  CHECK(gpu::material_at(checker, {11, 1, 1}).sigma_a == glm::vec3(2));
-  CHECK(gpu::material_at(checker, {11, -1, 1}).sigma_a == checker.sigma_a);
+  CHECK(gpu::material_at(checker, {1, 1, 1}, 0).sigma_a == checker.sigma_a);
+  CHECK(gpu::material_at(checker, {11, 1, 1}, 0).sigma_a == glm::vec3(2));
+  CHECK(gpu::material_at(checker, {11, -1, 1}, 0).sigma_a == checker.sigma_a);
+}
+
+TEST_CASE("layers change at their depth") {
+  const gpu::Material m =
+      parse_material("marble,pattern=layers,second_sigma_s_prime=1,second_sigma_a=2,period=3,sharpness=2");
+  for (const glm::vec3 place : {glm::vec3(0), glm::vec3(7, -3, 100)}) {
+    CHECK(gpu::material_at(m, place, 0).sigma_a == m.sigma_a);
+    CHECK(gpu::material_at(m, place, 2.2f).sigma_a == m.sigma_a);
+    CHECK(gpu::material_at(m, place, 3).sigma_a.x == doctest::Approx(0.5f * (m.sigma_a.x + 2)));
+    CHECK(gpu::material_at(m, place, 3.8f).sigma_a == glm::vec3(2));
+  }
 }
 
 TEST_CASE("veins stay between the two materials, reach both, and have no jumps") {
@@ -168,7 +179,7 @@ TEST_CASE("veins stay between the two materials, reach both, and have no jumps")
   CHECK(most > 0.9f);
   // |t'| <= pi * sharpness / period * |phase'|, and |phase'| stays under 40 by the slopes of four octaves.
   CHECK(steepest < 40.0f * 3.1416f * m.sharpness / m.period * 1e-3f);
-  const gpu::Optical optical = gpu::material_at(m, last);
+  const gpu::Optical optical = gpu::material_at(m, last, 0);
   const glm::vec3 low = glm::min(m.sigma_a, m.second_sigma_a), high = glm::max(m.sigma_a, m.second_sigma_a);
   CHECK(glm::all(glm::greaterThanEqual(optical.sigma_a, low)));
   CHECK(glm::all(glm::lessThanEqual(optical.sigma_a, high)));
@@ -177,8 +188,8 @@ TEST_CASE("veins stay between the two materials, reach both, and have no jumps")
 TEST_CASE("a homogeneous material has kappa = 1 / (3 (sigma_a + sigma_s_prime)) everywhere") {
   const gpu::Material m = parse_material("sigma_s_prime=1.9,sigma_a=0.1");
   for (const float x : {-3.0f, 0.0f, 17.0f}) {
-    CHECK(gpu::kappa(gpu::material_at(m, glm::vec3(x))).y == doctest::Approx(1.0 / 6.0));
-    CHECK(gpu::material_at(m, glm::vec3(x)).sigma_a == m.sigma_a);
+    CHECK(gpu::kappa(gpu::material_at(m, glm::vec3(x), 0)).y == doctest::Approx(1.0 / 6.0));
+    CHECK(gpu::material_at(m, glm::vec3(x), 0).sigma_a == m.sigma_a);
   }
 }
 

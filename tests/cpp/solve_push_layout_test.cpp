@@ -66,9 +66,10 @@
 using namespace quadgraph;
 
 TEST_CASE("push constants") {
-  compare(evaluate_material_comp, "EvaluateMaterialPush",
-          {MEMBER(EvaluateMaterialPush, material), MEMBER(EvaluateMaterialPush, nodes),
-           MEMBER(EvaluateMaterialPush, optical), MEMBER(EvaluateMaterialPush, count)});
+  compare(
+      evaluate_material_comp, "EvaluateMaterialPush",
+      {MEMBER(EvaluateMaterialPush, material), MEMBER(EvaluateMaterialPush, nodes), MEMBER(EvaluateMaterialPush, depth),
+       MEMBER(EvaluateMaterialPush, optical), MEMBER(EvaluateMaterialPush, count)});
   compare(
       edit_material_comp, "EditMaterialPush",
       {MEMBER(EditMaterialPush, base), MEMBER(EditMaterialPush, optical), MEMBER(EditMaterialPush, nodes),

@@ -39,7 +39,7 @@ TEST_CASE("a material evaluated on the GPU equals the same code on the CPU") {
     vk::Commands commands(context, 1);
     commands.begin_pass("material");
     commands.dispatch(pass,
-                      gpu::EvaluateMaterialPush{veined(), node_buffer.address(), optical.address(),
+                      gpu::EvaluateMaterialPush{veined(), node_buffer.address(), 0, optical.address(),
                                                 static_cast<std::uint32_t>(nodes.size())},
                       nodes.size());
     commands.end_pass();
@@ -51,7 +51,7 @@ TEST_CASE("a material evaluated on the GPU equals the same code on the CPU") {
     const auto values = vk::download<gpu::Optical>(context, optical);
     float spread = 0;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      const gpu::Optical expected = gpu::material_at(veined(), nodes[i]);
+      const gpu::Optical expected = gpu::material_at(veined(), nodes[i], 0);
       for (int c = 0; c < 3; ++c) {
         CHECK(values[i].sigma_s_prime[c] == doctest::Approx(expected.sigma_s_prime[c]).epsilon(1e-3));
         CHECK(values[i].sigma_a[c] == doctest::Approx(expected.sigma_a[c]).epsilon(1e-3));
@@ -82,7 +82,7 @@ TEST_CASE("every pass takes time, together no more than went by") {
     commands.fill(nodes, 0);
     for (const std::uint32_t count : {few, many}) {
       commands.begin_pass("material");
-      commands.dispatch(pass, gpu::EvaluateMaterialPush{veined(), nodes.address(), optical.address(), count}, count);
+      commands.dispatch(pass, gpu::EvaluateMaterialPush{veined(), nodes.address(), 0, optical.address(), count}, count);
       commands.end_pass();
     }
     const auto times = commands.submit_and_wait();

@@ -86,7 +86,7 @@ def add_scene_arguments(parser: argparse.ArgumentParser, file_help: str = "a bak
         "--material",
         default=DEFAULT_MATERIAL,
         metavar="M",
-        help="a name (marble, skin1, wholemilk, ..., marble-veins, jade, agate, wax, wood, checker), or "
+        help="a name (marble, skin1, wholemilk, ..., marble-veins, jade, agate, wax, wood, checker, layered-skin), or "
         "sigma_s_prime=S,sigma_a=A,eta=E in 1/mm, or reflectance=C,mean_free_path=L,eta=E: the colour that a thick "
         "body shows, below 1, and a length in mm; one value or R/G/B each; and pattern=P,period=D,sharpness=K with a "
         "second set, second_sigma_a and so on; or a file .npz of sigma_s_prime and sigma_a on a grid (z, y, x) with "
