@@ -215,13 +215,16 @@ Vector load(const Level& level, const Problem& problem, std::span<const Entering
 }  // namespace
 
 std::vector<gpu::Optical> evaluate_material(const Level& level, const gpu::Material& material) {
-  std::vector<float> depth(level.nodes.size(), 0.0f);
-  if (material.pattern == gpu::PATTERN_LAYERS) depth = depth_below_surface(level, level.nodes);
+  return evaluate_material(level, material, level.nodes);
+}
+
+std::vector<gpu::Optical> evaluate_material(const Level& level, const gpu::Material& material,
+                                            std::span<const glm::vec3> points) {
+  std::vector<float> depth(points.size(), 0.0f);
+  if (material.pattern == gpu::PATTERN_LAYERS) depth = depth_below_surface(level, points);
   std::vector<gpu::Optical> optical;
-  optical.reserve(level.nodes.size());
-  for (std::size_t i = 0; i < depth.size(); ++i) {
-    optical.push_back(gpu::material_at(material, level.nodes[i], depth[i]));
-  }
+  optical.reserve(points.size());
+  for (std::size_t i = 0; i < depth.size(); ++i) optical.push_back(gpu::material_at(material, points[i], depth[i]));
   return optical;
 }
 

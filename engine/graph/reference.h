@@ -26,6 +26,10 @@ struct ReferenceSolution {
 // Evaluates a material at every node of a level.
 std::vector<gpu::Optical> evaluate_material(const Level& level, const gpu::Material& material);
 
+// At points in the body.
+std::vector<gpu::Optical> evaluate_material(const Level& level, const gpu::Material& material,
+                                            std::span<const glm::vec3> points);
+
 // Light as it enters: a beam and what of it every outside face lets in.
 struct EnteringLight {
   gpu::BeamRecord beam{};

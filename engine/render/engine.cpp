@@ -283,6 +283,13 @@ const std::optional<Legend>& Engine::legend() const {
   return implementation_->legend;
 }
 
+std::optional<Picked> Engine::pick(const View& view, float aspect, const glm::vec2& at) const {
+  auto& self = *implementation_;
+  const auto vertices = vk::download<glm::vec3>(self.context, self.mesh.vertices);
+  return quadgraph::pick(self.graph.display(), vertices, place_camera(view, self.bounds, aspect), view.vertical_fov,
+                         aspect, at);
+}
+
 Leaving Engine::leaving(std::span<const std::uint32_t> face, std::span<const glm::vec3> direction) {
   auto& self = *implementation_;
   if (!self.report) throw InputError("radiance: solve first");

@@ -15,6 +15,8 @@
 #include "engine/graph/graph.h"
 #include "engine/render/camera.h"
 #include "engine/render/lights.h"
+#include "engine/render/pick.h"
+#include "engine/render/picture.h"
 #include "engine/render/picture_buffers.h"
 #include "engine/render/radiance_probe.h"
 #include "engine/render/show.h"
@@ -109,6 +111,9 @@ class Engine {
 
   // The same as `draw`, read back, with the legend in it.
   Picture render(const View& view, const RenderOptions& options = {});
+
+  // What a picture of this view and shape (width / height) shows at `at` (engine/render/pick.h).
+  std::optional<Picked> pick(const View& view, float aspect, const glm::vec2& at) const;
 
   // Gathered radiance of the last solve that leaves the centroids of outside faces of level 0 along unit directions.
   // Throws InputError as `render` and as RadianceProbe::run.

@@ -5,6 +5,7 @@
 #include "engine/scene/deformer_json.h"
 #include "engine/scene/edit_json.h"
 #include "engine/scene/light_json.h"
+#include "engine/scene/volume.h"
 
 namespace quadgraph {
 namespace {
@@ -31,7 +32,7 @@ std::string material_from(const JsonField& field) {
   } else {
     text = field.text();
   }
-  field.within([&] { parse_material(text); });
+  if (!is_volume(text)) field.within([&] { parse_material(text); });
   return text;
 }
 

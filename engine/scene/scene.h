@@ -17,7 +17,7 @@ namespace quadgraph {
 
 struct Scene {
   std::filesystem::path body;             // .qgraph
-  std::string material = "marble-veins";  // as parse_material reads it
+  std::string material = "marble-veins";  // as parse_material reads it, or a volume's file
   std::vector<Edit> edits{};              // of the material, one after the other
   std::vector<Light> lights{};
   std::vector<Deformer> deformation{};  // one after the other

@@ -8,6 +8,7 @@
 
 #include "engine/render/atomic_file.h"
 #include "engine/render/default_lights.h"
+#include "engine/scene/volume.h"
 
 namespace quadgraph {
 namespace {
@@ -31,14 +32,26 @@ std::string content(const std::filesystem::path& path) {
   return text.str();
 }
 
-// Replaces the files of shapes that deformers name.
+// The member of that name, if it is a text.
+std::vector<Json*> text_of(Json& object, const char* name) {
+  if (!object.is_object() || !object.contains(name) || !object[name].is_string()) return {};
+  return {&object[name]};
+}
+
+// Replaces the files that a scene names: its body, a volume, images of lights, and shapes of deformers.
 template <typename Function>
-void each_shapes_file(Json& document, const Function& renamed) {
-  if (!document.contains("deformation") || !document["deformation"].is_array()) return;
-  for (Json& deformer : document["deformation"]) {
-    if (!deformer.is_object() || !deformer.contains("shapes") || !deformer["shapes"].is_string()) continue;
-    deformer["shapes"] = renamed(std::filesystem::path(deformer["shapes"].get<std::string>())).string();
+void each_file(Json& document, const Function& renamed) {
+  std::vector<Json*> files = text_of(document, "body");
+  for (Json* material : text_of(document, "material")) {
+    if (is_volume(material->get<std::string>())) files.push_back(material);
   }
+  for (const auto& [list, name] : {std::pair{"lights", "file"}, {"deformation", "shapes"}}) {
+    if (!document.contains(list) || !document[list].is_array()) continue;
+    for (Json& item : document[list]) {
+      for (Json* file : text_of(item, name)) files.push_back(file);
+    }
+  }
+  for (Json* file : files) *file = renamed(std::filesystem::path(file->get<std::string>())).string();
 }
 
 }  // namespace
@@ -91,41 +104,24 @@ void SceneFile::set(const std::string& pointer, const std::string& value) {
 Scene SceneFile::at(double frame) const {
   Json document = document_;
   for (const Track& track : tracks_) track.apply(frame, document);
-  each_shapes_file(document, [&](const std::filesystem::path& shapes) {
-    return shapes.is_relative() ? path_.parent_path() / shapes : shapes;
-  });
+  each_file(document,
+            [&](const std::filesystem::path& file) { return file.is_relative() ? path_.parent_path() / file : file; });
   Scene scene = scene_from(JsonField(document, ""));
   if (!document.contains("lights")) scene.lights = default_lights(first_view_.value_or(scene.view));
-  const std::filesystem::path folder = path_.parent_path();
-  if (scene.body.is_relative()) scene.body = folder / scene.body;
-  for (Light& light : scene.lights) {
-    if (!light.file.empty() && !folder.empty()) light.file = folder / light.file;
-  }
   return scene;
 }
 
 void SceneFile::save(const std::filesystem::path& path) const {
   Json document = document_;
-  const auto move = [&](Json& file) {
-    const std::filesystem::path old = file.get<std::string>();
-    if (old.is_absolute()) return;
-    file = std::filesystem::proximate(path_.parent_path() / old, std::filesystem::absolute(path).parent_path());
-  };
-  move(document["body"]);
-  if (document.contains("lights")) {
-    for (Json& light : document["lights"]) {
-      if (light.contains("file")) move(light["file"]);
-    }
-  }
-  each_shapes_file(document, [&](const std::filesystem::path& shapes) {
-    if (!shapes.is_relative()) return shapes;
-    return std::filesystem::proximate(path_.parent_path() / shapes, std::filesystem::absolute(path).parent_path());
+  each_file(document, [&](const std::filesystem::path& file) {
+    if (!file.is_relative()) return file;
+    return std::filesystem::proximate(path_.parent_path() / file, std::filesystem::absolute(path).parent_path());
   });
   write_atomically(path, [&](const std::filesystem::path& temporary) {
-    std::ofstream file(temporary, std::ios::binary);
-    file << document.dump(2) << "\n";
-    file.flush();
-    if (!file) throw InputError("no room, or no right to write there");
+    std::ofstream text(temporary, std::ios::binary);
+    text << document.dump(2) << "\n";
+    text.flush();
+    if (!text) throw InputError("no room, or no right to write there");
   });
 }
 

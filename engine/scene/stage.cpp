@@ -1,6 +1,7 @@
 #include "engine/scene/stage.h"
 
 #include "engine/graph/error.h"
+#include "engine/scene/volume.h"
 
 namespace quadgraph {
 
@@ -13,7 +14,11 @@ void Stage::show(const Scene& scene) {
     scene_.body = scene.body;
   }
   if (fresh || scene.material != scene_.material) {
-    engine_->set_material(scene.material);
+    if (is_volume(scene.material)) {
+      set_volume(*engine_, read_volume(scene.material));
+    } else {
+      engine_->set_material(scene.material);
+    }
     scene_.material = scene.material;
   }
   if (scene.edits != scene_.edits) {

@@ -177,6 +177,17 @@ Picture render(Engine& engine, const std::string& view_text, const std::string& 
   return engine.render(view, options);
 }
 
+py::object pick(const Engine& engine, const std::array<float, 2>& at, const std::string& view, const std::string& up,
+                float vertical_fov, float aspect) {
+  const auto found = engine.pick(view_from(view, up, vertical_fov), aspect, {at[0], at[1]});
+  if (!found) return py::none();
+  py::dict d;
+  d["position"] = as_tuple(glm::dvec3(found->position));
+  d["at_rest"] = as_tuple(glm::dvec3(found->at_rest));
+  d["normal"] = as_tuple(glm::dvec3(found->normal));
+  return d;
+}
+
 py::dict leaving(Engine& engine, const IndexArray& face, const FloatArray& direction) {
   const auto count = static_cast<std::size_t>(face.size());
   Leaving light = engine.leaving({face.data(), count}, vectors(direction, count, "direction"));
@@ -300,6 +311,10 @@ void bind_engine(py::module_& module) {
             return own(vk::download<glm::vec3>(engine.context(), engine.simulation().vertex_unscattered()));
           },
           "The same of light that left without having scattered.")
+      .def("pick", &pick, py::arg("at"), py::arg("view") = "", py::arg("up") = "y",
+           py::arg("vertical_fov") = View{}.vertical_fov, py::arg("aspect") = 1.0f,
+           "What a picture of this view and shape shows at (x, y), -1 to 1 from left to right and from bottom to top: "
+           "position, at_rest (mm; edits are placed by it) and normal; None where there is nothing.")
       .def("leaving", &leaving, py::arg("face"), py::arg("direction"),
            "Gathered radiance, W/(mm^2 sr), that leaves the centroids of outside faces (n,) of level 0 along unit "
            "outward directions (n, 3): radiance (n, 3) of scattered light, transmittance (n, 3) of the body.")

@@ -129,7 +129,7 @@ TEST_CASE("patterns stay between the two materials, reach both, and are the same
     for (int i = 0; i < count; ++i) {
       // Points of a cube of 100 mm that fill it evenly (the R3 sequence).
       const glm::dvec3 at = glm::fract(glm::dvec3(0.8191725134, 0.6710436067, 0.5497004779) * static_cast<double>(i));
-      const float t = gpu::pattern_amount(m, glm::vec3(100.0 * at - 50.0));
+      const float t = gpu::pattern_amount(m, glm::vec3(100.0 * at - 50.0), 0);
       least = std::min(least, t);
       most = std::max(most, t);
       sum += static_cast<double>(t);
@@ -163,11 +163,11 @@ TEST_CASE("veins stay between the two materials, reach both, and have no jumps")
   const gpu::Material m = parse_material("marble-veins");
   float least = 1, most = 0, steepest = 0;
   glm::vec3 last(-50.0f);
-  float before = gpu::pattern_amount(m, last);
+  float before = gpu::pattern_amount(m, last, 0);
   const glm::vec3 step = glm::vec3(0.6f, 0.64f, 0.48f) * 1e-3f;  // mm, through the lattice at a slant
   for (int i = 0; i < 200000; ++i) {
     last += step;
-    const float t = gpu::pattern_amount(m, last);
+    const float t = gpu::pattern_amount(m, last, 0);
     steepest = std::max(steepest, std::abs(t - before));
     before = t;
     least = std::min(least, t);

@@ -205,3 +205,28 @@ TEST_CASE("a body stands on its ground: a shadow at its foot, without light, non
           engine.render(below, {.width = 90, .height = 90}).alpha);
   }
 }
+
+TEST_CASE("a picked point lies on the surface under the pointer, and at rest where it came from") {
+  Checked checked;
+  Engine& engine = checked.engine;
+  const View front{.azimuth = 0, .elevation = 0};
+  const auto middle = engine.pick(front, 1, {0, 0});
+  REQUIRE(middle);
+  CHECK(glm::distance(middle->position, glm::vec3(1, 1, 2)) < 1e-5f);
+  CHECK(glm::distance(middle->at_rest, middle->position) < 1e-5f);
+  CHECK(middle->normal.z == doctest::Approx(1));
+  const auto aside = engine.pick(front, 2, {0.25f, 0.5f});
+  REQUIRE(aside);
+  CHECK(aside->position.x - 1 == doctest::Approx(aside->position.y - 1));  // twice as wide as high
+  CHECK(aside->position.x > 1.2f);
+  CHECK(!engine.pick(front, 1, {0.99f, 0.99f}));
+  Deformer away{.kind = DeformerKind::transform};
+  away.degrees = 90;
+  away.translate = {50, 0, 0};
+  engine.set_deformation({&away, 1});
+  const auto turned = engine.pick(front, 1, {0, 0});
+  REQUIRE(turned);
+  CHECK(glm::distance(turned->position, glm::vec3(51, 1, 2)) < 1e-4f);
+  // What is in front was at the side x = 0: turned by 90 degrees about y, x goes to -z.
+  CHECK(glm::distance(turned->at_rest, glm::vec3(0, 1, 1)) < 1e-4f);
+}

@@ -101,6 +101,19 @@ def test_set_changes_what_the_scene_says(folder, tmp_path):
     assert lit_side(out) > 0.05
 
 
+def test_a_volume_lies_beside_its_scene(folder, tmp_path):
+    grid = np.ones((2, 2, 2))
+    np.savez(folder / "even.npz", sigma_s_prime=2 * grid, sigma_a=0.05 * grid, spacing=10)
+    pictures = []
+    for material in ("even.npz", "sigma_s_prime=2,sigma_a=0.05"):
+        out = tmp_path / f"{len(pictures)}.png"
+        assert cli.main(["render", str(moving(folder)), "--set", f"/material={material}", "-o", str(out)]) == 0
+        with Image.open(out) as image:
+            pictures.append(np.asarray(image, int))
+    assert pictures[0].max() > 60
+    assert np.abs(pictures[0] - pictures[1]).max() <= 2
+
+
 @pytest.mark.parametrize(
     ("options", "said"),
     [

@@ -6,8 +6,8 @@
 #include "engine/graph/error.h"
 #include "engine/graph/geometry.h"
 #include "engine/graph/material.h"
+#include "engine/graph/reference.h"
 #include "engine/graph/source_walk.h"
-#include "shaders/material.h"
 
 namespace quadgraph::layouts {
 namespace {
@@ -35,11 +35,10 @@ Scene scene_of(const Level& level, const std::string& material) {
   const float contrast = checker ? static_cast<float>(contrast_of(material.substr(prefix.size()))) : 1.0f;
   const gpu::Material parsed = parse_material(checker ? "marble" : material);
   const auto at = [&](std::span<const glm::vec3> positions) {
-    std::vector<gpu::Optical> optical;
-    for (const glm::vec3& p : positions) {
-      optical.push_back(gpu::material_at(parsed, p));
-      const glm::ivec3 cell(glm::floor(p / cell_mm));
-      if ((cell.x + cell.y + cell.z) % 2 != 0) optical.back().sigma_a *= contrast;
+    std::vector<gpu::Optical> optical = evaluate_material(level, parsed, positions);
+    for (std::size_t i = 0; i < optical.size(); ++i) {
+      const glm::ivec3 cell(glm::floor(positions[i] / cell_mm));
+      if ((cell.x + cell.y + cell.z) % 2 != 0) optical[i].sigma_a *= contrast;
     }
     return optical;
   };

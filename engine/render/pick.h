@@ -1,0 +1,26 @@
+// What lies under a point of a picture.
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <span>
+
+#include "engine/graph/graph.h"
+#include "engine/render/camera.h"
+
+namespace quadgraph {
+
+struct Picked {
+  glm::vec3 position{0};  // mm, where the surface is now
+  glm::vec3 at_rest{0};   // mm, where that point lies in the file
+  glm::vec3 normal{0};    // unit, of the triangle, now
+};
+
+// The nearest point of the display mesh, whose vertices are now at `vertices`, mm, on the ray through `at`: of a
+// picture seen from `camera`, -1 to 1 from left to right and from bottom to top. `aspect` is width / height. Empty
+// where there is nothing.
+std::optional<Picked> pick(const DisplayMesh& mesh, std::span<const glm::vec3> vertices, const Camera& camera,
+                           float vertical_fov, float aspect, const glm::vec2& at);
+
+}  // namespace quadgraph

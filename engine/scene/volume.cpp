@@ -1,0 +1,166 @@
+#include "engine/scene/volume.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <map>
+
+#include "engine/graph/error.h"
+#include "engine/graph/fresnel.h"
+#include "engine/render/text.h"
+#include "engine/scene/npz.h"
+
+namespace quadgraph {
+namespace {
+
+// The arrays of a file, and complaints about them.
+class Fields {
+ public:
+  explicit Fields(const std::filesystem::path& path) : path_(path), arrays_(read_npz(path)) {
+    constexpr std::array<std::string_view, 5> known = {"sigma_s_prime", "sigma_a", "spacing", "origin", "eta"};
+    for (const auto& [name, array] : arrays_) {
+      if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+      refuse(name, "not known; allowed are sigma_s_prime, sigma_a, spacing, origin, eta");
+    }
+  }
+
+  [[noreturn]] void refuse(const std::string& name, const std::string& what) const {
+    throw InputError(path_.string() + ": " + name + ": " + what);
+  }
+
+  bool has(const std::string& name) const { return arrays_.contains(name); }
+
+  const NpzArray& numbers(const std::string& name) const {
+    const auto found = arrays_.find(name);
+    if (found == arrays_.end()) refuse(name, "not there; sigma_s_prime, sigma_a, spacing are wanted");
+    if (!found->second.numbers()) refuse(name, found->second.type + " found, numbers wanted");
+    return found->second;
+  }
+
+  // One number or `count`.
+  std::vector<double> few(const std::string& name, std::size_t least, std::size_t most) const {
+    const NpzArray& array = numbers(name);
+    const std::size_t found = array.values.size();
+    const bool finite =
+        std::all_of(array.values.begin(), array.values.end(), [](double v) { return std::isfinite(v); });
+    if (array.shape.size() > 1 || (found != least && found != most) || !finite) {
+      const std::string wanted = std::to_string(least) + (most > least ? " or " + std::to_string(most) : "");
+      refuse(name, listed(array.values) + " found, " + wanted + " finite number(s) wanted");
+    }
+    return array.values;
+  }
+
+  static std::string listed(const std::vector<double>& values) {
+    std::string text;
+    for (double value : values) text += (text.empty() ? "" : ", ") + number_text(value);
+    return "[" + text + "]";
+  }
+
+  static std::string shape_text(const std::vector<std::uint64_t>& shape) {
+    std::string text;
+    for (std::uint64_t size : shape) text += (text.empty() ? "" : ", ") + std::to_string(size);
+    return "(" + text + ")";
+  }
+
+ private:
+  std::filesystem::path path_;
+  std::map<std::string, NpzArray> arrays_;
+};
+
+const NpzArray& coefficient(const Fields& fields, const std::string& name) {
+  const NpzArray& array = fields.numbers(name);
+  const std::size_t axes = array.shape.size();
+  if ((axes != 3 && axes != 4) || array.values.empty() || (axes == 4 && array.shape[3] != 3)) {
+    fields.refuse(name, "shape " + Fields::shape_text(array.shape) + " found, (nz, ny, nx) or (nz, ny, nx, 3) wanted");
+  }
+  for (double value : array.values) {
+    if (!(std::isfinite(value) && value >= 0)) {
+      fields.refuse(name, "negative or not finite somewhere, numbers >= 0 (1/mm) allowed");
+    }
+  }
+  return array;
+}
+
+glm::vec3 cell_of(const NpzArray& array, std::size_t cell) {
+  if (array.shape.size() == 3) return glm::vec3(static_cast<float>(array.values[cell]));
+  const double* v = &array.values[3 * cell];
+  return glm::vec3(glm::dvec3(v[0], v[1], v[2]));
+}
+
+gpu::Optical mixed(const gpu::Optical& a, const gpu::Optical& b, float t) {
+  return {glm::mix(a.sigma_s_prime, b.sigma_s_prime, t), glm::mix(a.sigma_a, b.sigma_a, t)};
+}
+
+}  // namespace
+
+bool is_volume(std::string_view material) {
+  return material.ends_with(".npz");
+}
+
+Volume read_volume(const std::filesystem::path& path) {
+  const Fields fields(path);
+  const NpzArray &scattering = coefficient(fields, "sigma_s_prime"), &absorption = coefficient(fields, "sigma_a");
+  const std::vector<std::uint64_t> grid(scattering.shape.begin(), scattering.shape.begin() + 3);
+  if (!std::equal(grid.begin(), grid.end(), absorption.shape.begin())) {
+    const std::vector<std::uint64_t> other(absorption.shape.begin(), absorption.shape.begin() + 3);
+    fields.refuse("sigma_s_prime and sigma_a", "shapes " + Fields::shape_text(grid) + " and " +
+                                                   Fields::shape_text(other) + " found, the same are wanted");
+  }
+  Volume volume;
+  volume.cells = {grid[2], grid[1], grid[0]};
+  for (std::size_t i = 0; i < grid[0] * grid[1] * grid[2]; ++i) {
+    volume.optical.push_back({cell_of(scattering, i), cell_of(absorption, i)});
+  }
+  const std::vector<double> spacing = fields.few("spacing", 1, 3);
+  for (int axis = 0; axis < 3; ++axis) {
+    volume.spacing[axis] = spacing[spacing.size() == 3 ? static_cast<std::size_t>(axis) : 0];
+    if (!(volume.spacing[axis] > 0))
+      fields.refuse("spacing", Fields::listed(spacing) + " found, more than 0 mm allowed");
+  }
+  if (fields.has("origin")) {
+    const std::vector<double> origin = fields.few("origin", 3, 3);
+    volume.origin = glm::dvec3(origin[0], origin[1], origin[2]);
+  }
+  if (fields.has("eta")) {
+    const double eta = fields.few("eta", 1, 1)[0];
+    if (!(eta >= min_eta && eta <= max_eta)) fields.refuse("eta", number_text(eta) + " found, 1 to 3 allowed");
+    volume.eta = static_cast<float>(eta);
+  }
+  return volume;
+}
+
+std::vector<gpu::Optical> Volume::at(std::span<const glm::vec3> points, const glm::dvec3& centre) const {
+  const glm::dvec3 last(static_cast<double>(cells[0] - 1), static_cast<double>(cells[1] - 1),
+                        static_cast<double>(cells[2] - 1));
+  const glm::dvec3 first = origin.value_or(centre - 0.5 * spacing * last);
+  const auto cell = [&](std::size_t x, std::size_t y, std::size_t z) -> const gpu::Optical& {
+    return optical[x + cells[0] * (y + cells[1] * z)];
+  };
+  std::vector<gpu::Optical> found;
+  found.reserve(points.size());
+  for (const glm::vec3& point : points) {
+    const glm::dvec3 place = glm::clamp((glm::dvec3(point) - first) / spacing, glm::dvec3(0), last);
+    std::array<std::size_t, 3> low{}, high{};
+    glm::vec3 t;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto k = static_cast<std::size_t>(axis);
+      low[k] = static_cast<std::size_t>(place[axis]);
+      high[k] = std::min(low[k] + 1, cells[k] - 1);
+      t[axis] = static_cast<float>(place[axis] - static_cast<double>(low[k]));
+    }
+    const auto row = [&](std::size_t y, std::size_t z) { return mixed(cell(low[0], y, z), cell(high[0], y, z), t.x); };
+    found.push_back(mixed(mixed(row(low[1], low[2]), row(high[1], low[2]), t.y),
+                          mixed(row(low[1], high[2]), row(high[1], high[2]), t.y), t.z));
+  }
+  return found;
+}
+
+void set_volume(Engine& engine, const Volume& volume) {
+  const std::span<const Level> levels = engine.graph().levels();
+  const RestBox box = rest_box(levels[0].vertices);
+  for (std::uint32_t i = 0; i < levels.size(); ++i) {
+    engine.set_optical(i, volume.at(levels[i].nodes, 0.5 * (box.low + box.high)), volume.eta);
+  }
+}
+
+}  // namespace quadgraph

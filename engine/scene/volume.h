@@ -1,0 +1,37 @@
+// Coefficients on a grid in space, from a file: what was measured of a body, or made elsewhere.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/render/engine.h"
+
+namespace quadgraph {
+
+struct Volume {
+  std::array<std::size_t, 3> cells{};  // along x, y, z
+  std::vector<gpu::Optical> optical;   // at the middles of the cells, x fastest
+  glm::dvec3 spacing{1};               // mm
+  std::optional<glm::dvec3> origin;    // mm, the middle of the first cell; without one the grid is centred on the body
+  float eta = 1.3f;
+
+  // At each point, mm, of a body around `centre`: linear between the middles of cells, beside them the nearest cell's.
+  std::vector<gpu::Optical> at(std::span<const glm::vec3> points, const glm::dvec3& centre) const;
+};
+
+// Whether a material's text names such a file.
+bool is_volume(std::string_view material);
+
+// Reads a .npz of `sigma_s_prime` and `sigma_a`, (nz, ny, nx) or (nz, ny, nx, 3) in 1/mm, and `spacing`, one number or
+// three in mm along x, y, z; `origin` and `eta` if they are there. Throws InputError naming file, field, what was found
+// and what is allowed.
+Volume read_volume(const std::filesystem::path& path);
+
+// Gives an engine the coefficients of a volume on all its levels.
+void set_volume(Engine& engine, const Volume& volume);
+
+}  // namespace quadgraph
