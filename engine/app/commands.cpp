@@ -133,6 +133,7 @@ constexpr auto table = std::to_array<Command>({
     {"B", GLFW_KEY_B, 0, 0, "the other source: buried, diffuse", next_source},
     {"O", GLFW_KEY_O, 0, 0, "the next model", next_model},
     {"E", GLFW_KEY_E, 0, 0, "the next error to aim at: none, 10, 5, 2, 1%", next_error},
+    {"P", GLFW_KEY_P, 0, 0, "take the brush, or lay it down", [](S s, W) { s.brush.on = !s.brush.on; }},
     {"V", GLFW_KEY_V, 0, 0, "show the next quantity inside", [](S s, W) { next_quantity(s, 1); }},
     {"Shift+V", GLFW_KEY_V, 0, shift, "the quantity before", [](S s, W) { next_quantity(s, -1); }},
     {"X", GLFW_KEY_X, 0, 0, "turn the cutting plane: x, y, z", next_axis},

@@ -13,6 +13,7 @@
 #include "engine/graph/material.h"
 #include "engine/render/default_lights.h"
 #include "engine/render/legend.h"
+#include "engine/scene/volume.h"
 #include "shaders/colour_map.h"
 
 namespace quadgraph {
@@ -63,7 +64,7 @@ void draw_material(State& state) {
   if (ImGui::InputTextWithHint("##text", "marble,sigma_a=.01/.02/.05", &state.material_text,
                                ImGuiInputTextFlags_EnterReturnsTrue)) {
     try {
-      parse_material(state.material_text);
+      if (!is_volume(state.material_text)) parse_material(state.material_text);
       state.scene.material = state.material_text;
       state.say("");
     } catch (const std::exception& error) {
@@ -71,6 +72,40 @@ void draw_material(State& state) {
     }
   }
   ImGui::PopItemWidth();
+}
+
+// A coefficient that the brush may leave alone.
+void draw_coefficient(const char* name, std::optional<glm::vec3>& by, Edit::Operation operation) {
+  bool changed = by.has_value();
+  ImGui::PushID(name);
+  if (ImGui::Checkbox(name, &changed)) by = changed ? std::optional(glm::vec3(1)) : std::nullopt;
+  if (by) {
+    const bool factor = operation == Edit::Operation::multiply;
+    const float least = operation == Edit::Operation::add ? -10.0f : 0.0f;
+    ImGui::DragFloat3(factor ? "times" : "1/mm", &by->x, 0.01f, least, 100, "%.2f");
+  }
+  ImGui::PopID();
+}
+
+void draw_edits(State& state, const Sphere& bounds) {
+  if (!section("Edit", false)) return;
+  if (ImGui::Button("undo") && state.can_undo) state.undo = true;
+  ImGui::SameLine();
+  if (ImGui::Button("redo") && state.can_redo) state.redo = true;
+  ImGui::SameLine();
+  if (ImGui::Button("scene to file")) state.save = true;
+  Edit& edit = state.brush.edit;
+  ImGui::Checkbox("a left drag paints", &state.brush.on);
+  constexpr std::array<const char*, 3> names = {"multiply", "add", "set"};
+  auto operation = static_cast<int>(edit.operation);
+  if (ImGui::Combo("operation", &operation, names.data(), 3)) edit.operation = static_cast<Edit::Operation>(operation);
+  draw_coefficient("absorption", edit.sigma_a, edit.operation);
+  draw_coefficient("scattering", edit.sigma_s_prime, edit.operation);
+  slide("radius", edit.radius, 0.005f * bounds.radius, 0.5f * bounds.radius, "%.1f mm");
+  slide("from depth", edit.depth_from, 0, bounds.radius, "%.1f mm");
+  slide("to depth", edit.depth_to, edit.depth_from + 1e-3f * bounds.radius, 2 * bounds.radius, "%.1f mm");
+  slide("softness", edit.softness, 0, edit.radius, "%.1f mm");
+  tell("strokes", formatted("%zu", state.scene.edits.size()));
 }
 
 // Brightness and tint of a light whose numbers span many decades.
@@ -274,6 +309,7 @@ void draw_panel(State& state, const PanelFacts& facts) {
   draw_frame(facts.measured);
   draw_show(state, facts.engine);
   draw_material(state);
+  draw_edits(state, facts.engine.bounds());
   draw_lights(state, facts.engine.bounds());
   draw_solver(state);
   draw_picture(state, facts.measured);
@@ -291,7 +327,8 @@ void draw_help(State& state, float unit) {
                ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoNav |
                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoMove);
   ImGui::TextUnformatted("Left drag turns the object, right or middle drag moves it, the wheel brings it nearer.");
-  ImGui::TextUnformatted("With Ctrl or Shift a drag turns the selected light.");
+  ImGui::TextUnformatted(
+      "With Ctrl or Shift a drag turns the selected light; with the brush in hand a left drag paints.");
   ImGui::Separator();
   const auto commands = all_commands();
   const std::size_t rows = (commands.size() + 1) / 2;

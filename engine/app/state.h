@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/app/brush.h"
 #include "engine/render/engine.h"
 #include "engine/scene/scene.h"
 
@@ -24,7 +25,9 @@ struct Measured {
 
 struct State {
   Scene scene;
-  std::size_t light = 0;      // the selected one
+  std::size_t light = 0;  // the selected one
+  Brush brush;
+  bool can_undo = false, can_redo = false;
   std::string material_text;  // being typed
   bool panel = true, help = false;
   std::string message;   // the last thing to tell the user
@@ -32,7 +35,7 @@ struct State {
 
   // Wishes that the viewer fulfils.
   bool focus_panel = false, focus_picture = false;
-  bool screenshot = false, full_screen = false, quit = false, undo = false, redo = false, save = false;
+  bool screenshot = false, save = false, undo = false, redo = false, full_screen = false, quit = false;
 
   void say(std::string text, bool complaint = false) {
     message = std::move(text);

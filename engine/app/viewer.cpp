@@ -19,7 +19,6 @@ constexpr double budget_ms = 400;             // of a picture in motion
 constexpr double settle_after = 0.25;         // seconds without a change
 constexpr double idle_wait = 0.5;             // seconds
 constexpr float degrees_per_height = 180.0f;  // of a drag over the height of the picture
-constexpr std::size_t most_steps = 200;       // that can be taken back
 constexpr std::uint32_t graph_steps = 20;     // of conjugate gradients a picture, for methods without cycles
 
 double milliseconds(std::chrono::steady_clock::duration duration) {
@@ -36,8 +35,10 @@ Viewer::Viewer(Window& window, Stage& stage, std::filesystem::path stem)
       interface_(window, engine_.context(), swapchain_),
       tone_mapper_(engine_.context()),
       pace_(budget_ms),
-      stem_(std::move(stem)) {
+      stem_(std::move(stem)),
+      history_(stage.scene()) {
   state_.scene = stage.scene();
+  state_.brush = Brush::for_body(engine_.bounds().radius);
 }
 
 // The last frame may still read the pixels.
@@ -90,6 +91,10 @@ void Viewer::handle(const std::vector<Event>& events) {
       drag_button_ = button->button;
       drag_mods_ = button->mods;
       if (dragging_) state_.focus_picture = true;
+      const bool plain = button->button == GLFW_MOUSE_BUTTON_LEFT && button->mods == 0;
+      const auto place = dragging_ && plain && state_.brush.on ? pointed_at() : std::nullopt;
+      painting_ = place.has_value();
+      if (place) state_.brush.begin(state_.scene, *place);
     } else if (const auto* scroll = std::get_if<ScrollEvent>(&event); scroll != nullptr && !interface_.has_pointer()) {
       const Surroundings around = surroundings();
       state_.scene.view = zoomed(state_.scene.view, around.bounds, around.aspect, static_cast<float>(scroll->y));
@@ -122,6 +127,10 @@ void Viewer::handle_motion(const MotionEvent& event) {
   pointer_x_ = event.x;
   pointer_y_ = event.y;
   if (!dragging_) return;
+  if (painting_) {
+    if (const auto place = pointed_at()) state_.brush.lead(state_.scene, *place);
+    return;
+  }
   View& view = state_.scene.view;
   if (drag_button_ != GLFW_MOUSE_BUTTON_LEFT) {
     view = panned(view, around.bounds, around.aspect, right, up);
@@ -133,14 +142,25 @@ void Viewer::handle_motion(const MotionEvent& event) {
   }
 }
 
+// The place on the body under the pointer, mm, as it lies at rest.
+std::optional<glm::vec3> Viewer::pointed_at() const {
+  const Part now = part();
+  const glm::vec2 share((pointer_x_ - now.left) / std::max(now.width, 1u), pointer_y_ / std::max(now.height, 1u));
+  const auto found = engine_.pick(state_.scene.view, surroundings().aspect, {2 * share.x - 1, 1 - 2 * share.y});
+  return found ? std::optional(found->at_rest) : std::nullopt;
+}
+
 void Viewer::build_widgets(const std::vector<Event>& events) {
   interface_.begin(events);
   if (state_.focus_picture) ImGui::SetWindowFocus(nullptr);
+  state_.can_undo = history_.can_undo();
+  state_.can_redo = history_.can_redo();
   if (state_.panel) draw_panel(state_, {engine_, measured_, interface_.unit()});
   if (state_.help) draw_help(state_, interface_.unit());
   const float left = static_cast<float>(part().left) / window_.pixels_per_unit();
   if (const auto& legend = engine_.legend()) draw_colour_bar(*legend, left, interface_.unit());
   draw_message(state_, left, interface_.unit());
+  if (!dragging_ && !ImGui::IsAnyItemActive()) history_.note(state_.scene);
   ImGui::Render();
   state_.focus_panel = state_.focus_picture = false;
   frames_wanted_ = std::max(frames_wanted_ - 1, 0);
@@ -149,48 +169,12 @@ void Viewer::build_widgets(const std::vector<Event>& events) {
 void Viewer::fulfil_wishes() {
   if (state_.quit) window_.close();
   if (state_.full_screen) window_.toggle_full_screen();
+  if (state_.undo || state_.redo) history_.note(state_.scene);
+  if (state_.undo) state_.scene = history_.undo(state_.scene);
+  if (state_.redo) state_.scene = history_.redo(state_.scene);
   if (state_.screenshot && shown_) write_picture();
-  if (state_.undo) travel(past_, future_);
-  if (state_.redo) travel(future_, past_);
   if (state_.save) save_scene();
-  state_.full_screen = state_.screenshot = state_.undo = state_.redo = state_.save = false;
-}
-
-// To the scene before, or after; the eye stays where it is.
-void Viewer::travel(std::vector<Scene>& from, std::vector<Scene>& to) {
-  if (from.empty()) return state_.say("there is nothing to take back, or to do again");
-  to.push_back(state_.scene);
-  Scene scene = from.back();
-  from.pop_back();
-  scene.view = state_.scene.view;
-  scene.render.show = state_.scene.render.show;
-  state_.scene = scene;
-  travelling_ = true;
-}
-
-// What the user has done since the last converged picture is one step.
-void Viewer::remember() {
-  Scene before = *shown_;
-  before.view = state_.scene.view;
-  before.render.show = state_.scene.render.show;
-  if (before == state_.scene) return;
-  if (!travelling_) {
-    past_.push_back(*shown_);
-    future_.clear();
-    if (past_.size() > most_steps) past_.erase(past_.begin());
-  }
-  travelling_ = false;
-}
-
-void Viewer::save_scene() {
-  try {
-    std::filesystem::path path = stem_;
-    path.replace_extension(".json");
-    SceneFile(state_.scene).save(path);
-    state_.say("written: " + path.string());
-  } catch (const std::exception& error) {
-    state_.say(error.what(), true);
-  }
+  state_.full_screen = state_.screenshot = state_.save = state_.undo = state_.redo = false;
 }
 
 // Brings the picture up to the scene: at once, as good as the budget allows, and exactly when nothing changes any more.
@@ -198,7 +182,6 @@ void Viewer::keep_up() {
   if (swapchain_.width() == 0) return;
   const bool changed = !shown_ || state_.scene != *shown_ || part() != shown_part_;
   if (changed) changed_ = Clock::now();
-  if (changed && shown_ && measured_.settled) remember();
   window_.show_busy(changed || !measured_.settled);
   if (!changed && (measured_.settled || milliseconds(Clock::now() - changed_) < 1000 * settle_after || dragging_))
     return;
@@ -236,9 +219,12 @@ void Viewer::remake(bool settle) {
   swapchain_.wait();  // the last frame may still read the pixels
   const Clock::time_point start = Clock::now();
   const Scene& scene = state_.scene;
-  const bool lit =
-      shown_ && scene.material == shown_->material && scene.lights == shown_->lights && scene.solve == shown_->solve;
-  const bool solving = !lit || (settle && !solved_exactly_);
+  Scene lit = scene;  // what is shown, seen as it is now
+  if (shown_) lit = *shown_;
+  lit.view = scene.view;
+  lit.render = scene.render;
+  lit.tone = scene.tone;
+  const bool solving = !shown_ || lit != scene || (settle && !solved_exactly_);
   if (solving) {
     stage_.show(scene);
     measured_.solve = engine_.solve(options_of_solve(settle));
@@ -252,7 +238,6 @@ void Viewer::remake(bool settle) {
   shown_ = scene;
   shown_part_ = now;
   measured_.settled = settle;
-  if (settle) travelling_ = false;
   measure(start, solving ? milliseconds(solved - start) : 0, milliseconds(Clock::now() - solved),
           settle || pace_.gathers(solving));
 }
@@ -302,6 +287,22 @@ void Viewer::present() {
                  VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
   interface_.draw(*frame);
   swapchain_.present(*frame);
+}
+
+void Viewer::save_scene() {
+  try {
+    std::filesystem::path path;
+    do {
+      path = stem_.string() + "-" + std::to_string(++scenes_written_) + ".json";
+    } while (std::filesystem::exists(path));
+    Scene scene = state_.scene;
+    scene.body = std::filesystem::absolute(scene.body);
+    SceneFile(scene).save(path);
+    state_.say("written: " + path.string());
+  } catch (const std::exception& error) {
+    state_.say(error.what(), true);
+  }
+  frames_wanted_ = 3;
 }
 
 // The converged picture, whatever is on the screen now.

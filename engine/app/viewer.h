@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "engine/app/commands.h"
+#include "engine/app/history.h"
 #include "engine/app/interface.h"
 #include "engine/app/pace.h"
 #include "engine/app/state.h"
@@ -43,6 +44,7 @@ class Viewer {
   void handle(const std::vector<Event>& events);
   void handle_key(const KeyEvent& event);
   void handle_motion(const MotionEvent& event);
+  std::optional<glm::vec3> pointed_at() const;
   void fulfil_wishes();
   void build_widgets(const std::vector<Event>& events);
   void keep_up();
@@ -50,8 +52,6 @@ class Viewer {
   SolveOptions options_of_solve(bool settle) const;
   void make_picture(bool settle, bool gather);
   void measure(Clock::time_point start, double solve_ms, double draw_ms, bool gathered);
-  void travel(std::vector<Scene>& from, std::vector<Scene>& to);
-  void remember();
   void save_scene();
   void present();
   void write_picture();
@@ -64,15 +64,15 @@ class Viewer {
   ToneMapper tone_mapper_;
   Pace pace_;
   std::filesystem::path stem_;
-  std::uint32_t pictures_written_ = 0;
+  std::uint32_t pictures_written_ = 0, scenes_written_ = 0;
   State state_;
+  History history_;
   Measured measured_;
   bool dragging_ = false;
+  bool painting_ = false;  // the drag is a stroke of the brush
   int drag_button_ = 0, drag_mods_ = 0;
   double pointer_x_ = 0, pointer_y_ = 0;  // pixels
   std::optional<Scene> shown_;            // empty before the first picture
-  std::vector<Scene> past_, future_;      // to take back, and to do again
-  bool travelling_ = false;               // the last change was one of these
   Part shown_part_;
   const vk::Buffer* pixels_ = nullptr;       // of shown_part_
   bool solved_exactly_ = false;              // the last solve was to the tolerance

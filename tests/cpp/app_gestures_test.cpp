@@ -95,7 +95,7 @@ TEST_CASE("every key does something, and no two share one") {
     CHECK(run_command(commands[i].key, commands[i].mods, state, {bounds, 1.5f, 4}));
     const bool wished = state.quit || state.full_screen || state.undo || state.redo || state.save || state.screenshot ||
                         state.focus_panel || state.help != before.help || state.panel != before.panel ||
-                        state.light != before.light;
+                        state.light != before.light || state.brush.on != before.brush.on;
     CHECK_MESSAGE((wished || state.scene != before.scene), commands[i].keys);
   }
   State state;

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import os
 import shutil
 import subprocess
@@ -15,6 +16,8 @@ import pytest
 from PIL import Image
 
 import tiny
+from baked import write_levels
+from shapes import icosphere
 from test_engine_executable import ENGINE
 
 PROGRAMS = ("Xvfb", "xdotool", "import")
@@ -51,12 +54,12 @@ def display() -> Iterator[str]:
 class Hand:
     """A running window and what can be done to it."""
 
-    def __init__(self, server: str, folder: Path, *arguments: str):
+    def __init__(self, server: str, folder: Path, *arguments: str, body: Path = tiny.PATH):
         self.environment = os.environ | {"DISPLAY": server}
         self.environment.pop("WAYLAND_DISPLAY", None)
         self.folder = folder
         self.process = subprocess.Popen(
-            [ENGINE, str(tiny.PATH), "--validation", *arguments],
+            [ENGINE, str(body), "--validation", *arguments],
             env=self.environment,
             cwd=folder,
             stdout=subprocess.PIPE,
@@ -138,8 +141,8 @@ def open_window(server: str, tmp_path: Path) -> Iterator:
     """Opens windows, and closes what a failed test has left open."""
     hands: list[Hand] = []
 
-    def start(*arguments: str) -> Hand:
-        hands.append(Hand(server, tmp_path, *arguments))
+    def start(*arguments: str, body: Path = tiny.PATH) -> Hand:
+        hands.append(Hand(server, tmp_path, *arguments, body=body))
         return hands[-1]
 
     yield start
@@ -199,6 +202,39 @@ def test_a_hand_at_the_window(open_window, tmp_path: Path):
         shot = np.asarray(image).astype(int)
     above_message = np.s_[: SIZE[1] - 80]
     assert np.abs(shot[above_message] - hand.picture()[above_message]).max() <= 1
+    hand.close()
+
+
+def test_a_stroke_of_the_brush_shows_where_it_went_and_can_be_taken_back(open_window, tmp_path: Path):
+    """Painted to the right of the middle of a sphere, undone, redone, and written into a scene file."""
+    body = write_levels(tmp_path / "ball.qgraph", [icosphere(4, 10), icosphere(3, 10)])
+    front = ["--view", "0,0", "--light", "directional:0,0,-1:1"]
+    hand = open_window("--material", "skin1", "--exposure", "1", *front, body=body)
+    before = hand.picture()
+    hand.keys("p")
+    hand.drag(100, 0)
+    painted = hand.picture()
+    darker = before.sum(axis=2) - painted.sum(axis=2)
+    row, column = darker.shape[0] // 2, darker.shape[1] // 2
+    stroke, beside = (
+        darker[row - 4 : row + 4, column : column + 100],
+        darker[row - 4 : row + 4, column - 100 : column - 60],
+    )
+    assert stroke.mean() > 20
+    assert stroke.mean() > 3 * beside.mean()
+
+    hand.keys("ctrl+z")
+    assert np.abs(hand.picture() - before).max() <= 1
+    hand.keys("ctrl+y")
+    assert np.abs(hand.picture() - painted).max() <= 1
+    hand.keys("ctrl+s")
+    hand.settle()
+    scene = json.loads((tmp_path / "ball-1.json").read_text())
+    (edit,) = scene["edits"]
+    ends = np.array([edit["stroke"][0], edit["stroke"][-1]])
+    assert np.allclose(np.linalg.norm(ends, axis=1), 10, atol=0.1)
+    assert np.allclose(ends[0], [0, 0, 10], atol=0.1)
+    assert ends[1, 0] > 2
     hand.close()
 
 

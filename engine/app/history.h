@@ -1,0 +1,30 @@
+// What the scene was before, to go back to.
+#pragma once
+
+#include <vector>
+
+#include "engine/scene/scene.h"
+
+namespace quadgraph {
+
+// The camera, and what of the body is shown, are not part of it: going back leaves the eye where it is.
+class History {
+ public:
+  explicit History(Scene scene) : now_(std::move(scene)) {}
+
+  // Notes the scene if it differs from what was noted last.
+  void note(const Scene& scene);
+
+  // The scene noted before, or after the one that `undo` left; seen as `scene` is. As `scene` is if there is none.
+  Scene undo(const Scene& scene);
+  Scene redo(const Scene& scene);
+
+  bool can_undo() const { return !past_.empty(); }
+  bool can_redo() const { return !future_.empty(); }
+
+ private:
+  Scene now_;
+  std::vector<Scene> past_, future_;
+};
+
+}  // namespace quadgraph
