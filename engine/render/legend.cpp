@@ -61,6 +61,17 @@ class Canvas {
     }
   }
 
+  // Three quarters of what is there is taken away.
+  void darken(int x, int y, int width, int height) {
+    for (int row = std::max(y, 0); row < std::min(y + height, static_cast<int>(picture_.height)); ++row) {
+      for (int column = std::max(x, 0); column < std::min(x + width, static_cast<int>(picture_.width)); ++column) {
+        const auto pixel = static_cast<std::size_t>(row) * picture_.width + static_cast<std::size_t>(column);
+        for (std::size_t c = 0; c < 3; ++c) picture_.scattered[3 * pixel + c] *= 0.25f;
+        picture_.alpha[pixel] = 1 - 0.25f * (1 - picture_.alpha[pixel]);
+      }
+    }
+  }
+
   // From its upper left corner; every dot of the font is `size` pixels wide.
   void write(int x, int y, int size, const std::string& text) {
     std::vector<float> quads(text.size() * 80 * 16);
@@ -117,7 +128,10 @@ void draw_legend(Picture& picture, const Legend& legend) {
   if (bar_width < 60 * size || height < 80 * size) return;
   Canvas canvas(picture);
   const int left = margin, top = height - margin - bar_height - 14 * size;
-  canvas.write(left, top - 12 * size, size, legend.title + ", " + legend.unit);
+  const std::string title = legend.title + ", " + legend.unit;
+  const int wide = std::max(bar_width, Canvas::width_of(title, size));
+  canvas.darken(left - 6 * size, top - 18 * size, wide + 12 * size, height - top + 12 * size);
+  canvas.write(left, top - 12 * size, size, title);
   for (int x = 0; x < bar_width; ++x) {
     const float t = (static_cast<float>(x) + 0.5f) / static_cast<float>(bar_width);
     canvas.fill(left + x, top, 1, bar_height, gpu::mapped_colour(t, legend.diverging ? 1 : 0));

@@ -105,8 +105,7 @@ double radiance_norm(double eta) {
 Rasteriser::Rasteriser(vk::Context& context)
     : context_(context),
       resolve_(context, resolve_comp, sizeof(gpu::ResolvePush), "resolve"),
-      gather_(context, gather_comp, sizeof(gpu::ResolvePush), "gather"),
-      scene_(context, sizeof(gpu::SurfaceScene), vk::Place::read, "picture/scene") {}
+      gather_(context, gather_comp, sizeof(gpu::ResolvePush), "gather") {}
 
 const vk::GraphicsPass& Rasteriser::surface(const RasterInput& input) {
   const bool gathered = input.gather != nullptr, shaped = input.shadows.shaped();
@@ -215,6 +214,7 @@ std::vector<PassStats> Rasteriser::run_tiles(std::uint32_t width, std::uint32_t 
 std::vector<PassStats> Rasteriser::run(const RasterInput& input, const Camera& camera, std::uint32_t width,
                                        std::uint32_t height) {
   const gpu::SurfaceScene constants = scene(input, camera);
+  if (scene_.size() == 0) scene_ = {context_, sizeof(gpu::SurfaceScene), vk::Place::read, "picture/scene"};
   vk::write_bytes(context_, scene_, std::as_bytes(std::span(&constants, 1)));
   auto passes =
       run_tiles(width, height, [&](vk::Commands& commands, const Tile& tile) { record(commands, input, tile); });

@@ -91,7 +91,7 @@ class Rasteriser {
   std::optional<vk::GraphicsPass> false_colour_;  // made at first use
   PictureBuffers picture_;
   std::unique_ptr<Targets> targets_;  // of a tile
-  vk::Buffer scene_;
+  vk::Buffer scene_;                  // made at first use, as the targets are: no solve needs them
 };
 
 }  // namespace quadgraph
