@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "render_shared.h"
+#include "shaped.glsl"
 #include "fresnel.glsl"
+#include "environment.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { ResolvePush push; };
@@ -44,12 +45,15 @@ vec3 coordinates_in(uint face, vec3 point) {
   return l / (l.x + l.y + l.z);
 }
 
-// Radiance of even light from all sides, W/(mm^2 sr).
-vec3 ambient_radiance() {
+// Radiance of what is behind the body along a ray from the eye, W/(mm^2 sr).
+vec3 radiance_behind(vec3 ray) {
   vec3 sum = vec3(0);
   for (uint i = 0u; i < scene.light_count; ++i) {
     LightRecord light = load_light(scene.lights, i);
     if (light.kind == LIGHT_AMBIENT) sum += light.power / PI;
+    if (SHAPED && light.kind == LIGHT_ENVIRONMENT) {
+      sum += light.power * environment_at(load_light_shape(scene.shapes, i), ENVIRONMENT_RAYS, ray);
+    }
   }
   return sum;
 }
@@ -68,7 +72,7 @@ void main() {
   scene = load_scene(push.scene);
   uint waiting = 0u;
   for (uint k = 0u; k < 4u; ++k) waiting |= load_vec4(push.samples[0], sample_of(pixel, k)).w > 0.0 ? 1u << k : 0u;
-  vec3 scattered = vec3(0), specular = vec3(0), seen = vec3(0);
+  vec3 scattered = vec3(0), specular = vec3(0), seen = vec3(0), unscattered = vec3(0);
   float alpha = 0.0;
   while (waiting != 0u) {
     Sample first = sample_at(sample_of(pixel, findLSB(waiting)));
@@ -87,7 +91,8 @@ void main() {
     Leaving light = towards_eye(first.face, 0.25 / share * position, normal);
     scattered += share * light.radiance;
     seen += share * light.seen;
+    unscattered += share * light.seen * radiance_behind(normalize(0.25 / share * position - scene.eye));
     alpha += share;
   }
-  write_pixel(pixel, vec3[](scattered, specular, seen * ambient_radiance(), seen), alpha);
+  write_pixel(pixel, vec3[](scattered, specular, unscattered, seen), alpha);
 }

@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "lights.glsl"
 #include "fresnel.glsl"
+#include "environment.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { IrradiancePush push; };
@@ -70,6 +71,13 @@ vec4 quarters_of(Lamp lamp, vec3 a, vec3 ab, vec3 ac, vec3 normal) {
   return quarter;
 }
 
+// What of an environment enters a face, over its power.
+vec3 environment_share(LightShape shape, vec3 normal, uint hidden, uint face) {
+  vec3 all = environment_at(shape, ENVIRONMENT_ENTERING, normal);
+  if (uvec2(push.hidden) == uvec2(0)) return load_float(push.sky, face) * all;
+  return max(all - load_vec3(push.hidden, hidden), vec3(0));
+}
+
 void main() {
   uint f = gl_GlobalInvocationID.x;
   if (f >= push.face_count) return;
@@ -82,6 +90,7 @@ void main() {
 
   vec3 q = vec3(0);
   uint beam = 0u;  // of the light
+  uint environment = 0u;
   vec4 quarter = vec4(0);
   for (uint i = 0u; i < push.light_count; ++i) {
     LightRecord light = load_light(push.lights, i);
@@ -96,6 +105,13 @@ void main() {
     if (SHAPED) {
       lamp.shape = load_light_shape(push.shapes, i);
       lamp.width = sqrt(0.5 * length(cross(ab, ac))) / float(push.subdivision);
+    }
+    if (SHAPED && light.kind == LIGHT_ENVIRONMENT) {
+      vec3 share = environment_share(lamp.shape, normal, environment++ * push.face_count + f, f);
+      for (uint c = 0u; c < 3u; ++c) push.beam_q.at[beam + BEAM_RGB * f + c] = share[c] * light.power[c];
+      q += share * light.power;
+      beam += BEAM_RGB * push.face_count;
+      continue;
     }
     if (SHAPED && light.kind == LIGHT_PROJECTOR) {
       for (lamp.channel = 0u; lamp.channel < 3u; ++lamp.channel) {

@@ -18,6 +18,15 @@ const uint LIGHT_FIRST_SHAPED = 3u;
 const uint LIGHT_SPOT = 3u;
 const uint LIGHT_PATCH = 4u;  // of a rectangle
 const uint LIGHT_PROJECTOR = 5u;
+const uint LIGHT_ENVIRONMENT = 6u;
+
+// Pictures of an environment, one after the other in its texels (environment.h).
+const uint ENVIRONMENT_COLUMNS = 256u;
+const uint ENVIRONMENT_ROWS = 128u;
+const uint ENVIRONMENT_ENTERING = 0u;   // irradiance that enters a face, by its normal
+const uint ENVIRONMENT_RAYS = 1u;       // radiance as the rays see it that ask what hides it
+const uint ENVIRONMENT_REFLECTED = 2u;  // radiance as a rough surface reflects it, by the mirrored view
+const uint ENVIRONMENT_PICTURES = 3u;
 
 // Texels along a side of a shadow map: of a single view, and of each of a point light's six; of a patch.
 const uint SHADOW_SIZE = 2048u;
@@ -42,11 +51,11 @@ struct ShadowView {
 };
 
 struct LightRecord {
-  uint kind;        // LIGHT_*
-  vec3 vector;      // directional: unit, towards the light; ambient: unused; others: its position, mm
-  vec3 power;       // directional, ambient: irradiance, W/mm^2; point: intensity, W/sr; spot: the same on the axis;
-                    // patch: the same of its whole rectangle;
-                    // projector: the same where the image is white
+  uint kind;    // LIGHT_*
+  vec3 vector;  // directional: unit, towards the light; ambient, environment: unused; others: its position, mm
+  vec3 power;   // directional, ambient: irradiance, W/mm^2; environment: radiance of what is 1 in its texels, W/(mm^2
+                // sr); point: intensity, W/sr; spot: the same on the axis; patch: the same of its whole rectangle;
+                // projector: the same where the image is white
   uint first_view;  // into the array of ShadowView
   uint view_count;  // 0 (ambient), 1, or 6 in the order +x -x +y -y +z -z
 };
@@ -59,8 +68,9 @@ struct LightShape {
   float share;       // patch: of its rectangle
   float width;       // patch: of its longer side, mm
   uint more_follow;  // 1: the next record is part of the same beam
-  // Projector: a direction d is (dot(right, d), dot(up, d)) / dot(axis, d) of the way from the image's middle to its
-  // right and upper edge. Its levels of columns x rows texels, RGB, top row first, each half as large as the one
+  // Environment: unit vectors, axis to the middle of its picture (environment.h: ahead); its texels are the pictures
+  // above. Projector: a direction d is (dot(right, d), dot(up, d)) / dot(axis, d) of the way from the image's middle to
+  // its right and upper edge. Its levels of columns x rows texels, RGB, top row first, each half as large as the one
   // before, rounded down.
   vec3 right;  // patch: its sides, mm
   vec3 up;
@@ -120,6 +130,7 @@ struct IrradiancePush {
   QG_REF(Vec3s) q;        // W/mm^2, written
   QG_REF(Floats) beam_q;  // per beam what gpu::Beam says: shares of its power; written
   QG_REF(Floats) sky;     // per face: share of ambient light that other parts of the body do not hide
+  QG_REF(Vec3s) hidden;   // per environment and face: what they hide of it, as q; null: by the share of the sky
   QG_REF(LightRecords) lights;
   QG_REF(LightShapes) shapes;  // per light
   QG_REF(ShadowViews) views;
@@ -128,6 +139,32 @@ struct IrradiancePush {
   uint subdivision;  // even: the face is sampled at the centroids of subdivision^2 equal triangles
   float eta;
   float diffuse_transmittance;  // of a smooth surface under even light from outside
+};
+
+// environment_hidden.comp: what the body hides of every environment from the faces of the level whose rays are known,
+// as q over its power. environment_finer.comp: the same on a level from the next coarser one.
+struct EnvironmentHiddenPush {
+  QG_REF(Vec3s) vertices;
+  QG_REF(Uvec3s) faces;
+  QG_REF(Uvec2s) rows;  // as ExchangePush
+  QG_REF(Uints) entries;
+  QG_REF(LightRecords) lights;
+  QG_REF(LightShapes) shapes;
+  QG_REF(Vec3s) hidden;  // written
+  uint face_count;
+  uint light_count;
+  float rays;  // per face
+  float eta;
+};
+struct EnvironmentFinerPush {
+  QG_REF(Uints) index;
+  QG_REF(Floats) weight;
+  QG_REF(Vec3s) coarse;
+  QG_REF(Vec3s) hidden;  // written
+  uint width;
+  uint face_count;
+  uint coarse_count;
+  uint environments;
 };
 
 // All that surface.vert and surface.frag read.

@@ -22,6 +22,11 @@ float blurred(LightRecord light, LightShape shape, vec3 position) {
   return scene.roughness * scene.roughness + shape.width * shape.width / (8.0 * dot(away, away));
 }
 
+// What a surface reflects of an environment towards v, over its power and Fresnel reflectance.
+vec3 reflected_environment(LightShape shape, vec3 n, vec3 v) {
+  return environment_at(shape, ENVIRONMENT_REFLECTED, reflect(-v, n));
+}
+
 // Towards v at a point of unit normal n that sees the share `sky` of its surroundings, W/(mm^2 sr).
 vec3 specular_radiance(vec3 position, vec3 n, vec3 v, float sky) {
   vec3 sum = vec3(0.0);
@@ -34,6 +39,11 @@ vec3 specular_radiance(vec3 position, vec3 n, vec3 v, float sky) {
     }
     LightShape shape = no_shape();
     if (SHAPED) shape = load_light_shape(scene.shapes, i);
+    if (SHAPED && light.kind == LIGHT_ENVIRONMENT) {
+      float share = fresnel_reflectance(clamp(dot(n, v), 0.0, 1.0), scene.eta) * sky;
+      sum += share * light.power * reflected_environment(shape, n, v);
+      continue;
+    }
     Incident incident = incident_light(light, shape, position);
     float alpha2 = scene.roughness * scene.roughness;
     if (SHAPED && light.kind == LIGHT_PATCH) alpha2 = blurred(light, shape, position);

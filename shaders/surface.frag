@@ -14,6 +14,7 @@ layout(location = 1) out vec4 specular;            // W/(mm^2 sr), 1
 layout(location = 2) out vec4 unscattered;         // W/(mm^2 sr), 1
 
 SurfaceScene scene;
+#include "environment.glsl"
 #include "specular.glsl"
 
 // As of a diffuser behind the surface: the same from every side but for Fresnel.

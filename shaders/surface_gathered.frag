@@ -12,6 +12,7 @@ layout(location = 1) out vec4 specular_face;      // W/(mm^2 sr), high half of t
 layout(location = 2) out vec4 normal_face;        // unit, low half of the face
 
 SurfaceScene scene;
+#include "environment.glsl"
 #include "specular.glsl"
 
 void main() {

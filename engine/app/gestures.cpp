@@ -67,6 +67,10 @@ Light turned(Light light, const View& view, const Sphere& bounds, float right, f
   light.v = glm::vec3(turn * glm::vec4(light.v, 0));
   light.up = glm::vec3(turn * glm::vec4(light.up, 0));
   light.position = bounds.centre + glm::vec3(turn * glm::vec4(light.position - bounds.centre, 0));
+  light.u = glm::vec3(turn * glm::vec4(light.u, 0));
+  light.v = glm::vec3(turn * glm::vec4(light.v, 0));
+  if (light.kind == LightKind::projector) light.up = glm::vec3(turn * glm::vec4(light.up, 0));
+  if (light.kind == LightKind::environment) light.turn = std::remainder(light.turn + right, 360.0f);
   return light;
 }
 

@@ -160,6 +160,9 @@ void draw_light(State& state, const Sphere& bounds) {
       draw_bearing(light, state.scene.view.up);
       slide("angle##light", light.angle, 1, light.kind == LightKind::spot ? 90 : 160, "%.0f°");
       break;
+    case LightKind::environment:
+      slide("turn##light", light.turn, -180, 180, "%.0f°");
+      return draw_power(light, "W/(mm² sr)");
     default:
       break;
   }

@@ -7,6 +7,7 @@
 #include "engine/render/display_faces.h"
 #include "engine/render/display_motion.h"
 #include "engine/render/ground.h"
+#include "engine/render/hidden_sky.h"
 #include "engine/render/inside.h"
 #include "engine/render/irradiance.h"
 #include "engine/render/legend.h"
@@ -59,6 +60,7 @@ struct Engine::Implementation {
   LightImages images;
   ShadowMaps shadows;
   IrradiancePass irradiance;
+  std::optional<HiddenSky> hidden;  // where there is an environment, made at first use
   Rasteriser rasteriser;
 
   std::string material;
@@ -203,12 +205,19 @@ void Engine::set_irradiance(std::uint32_t level, std::span<const glm::vec3> q,
 void Engine::update_irradiance() {
   auto& self = *implementation_;
   if (self.material.empty()) throw InputError("irradiance: set a material first; the light that enters depends on eta");
+  self.images.set_eta(self.simulation.eta());
   const LightSet lights(self.lights, self.bounds, &self.images);
   self.irradiance_passes = {self.shadows.update(self.mesh, lights)};
   self.simulation.set_beams(lights.beams);
+  if (lights.environments > 0) {
+    if (!self.hidden) self.hidden.emplace(self.context, self.graph);
+    self.irradiance_passes.push_back(
+        self.hidden->run(self.simulation, self.shadows, lights.environments, self.simulation.eta()));
+  }
   for (std::uint32_t level = 0; level < self.simulation.level_count(); ++level) {
     add(self.irradiance_passes,
-        self.irradiance.run(self.simulation.level(level), level, self.shadows, self.simulation.eta()));
+        self.irradiance.run(self.simulation.level(level), level, self.shadows, self.simulation.eta(),
+                            self.hidden ? self.hidden->hidden(level) : 0));
   }
   self.simulation.irradiance_changed();
   self.irradiance_stale = false;

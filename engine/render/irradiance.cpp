@@ -27,13 +27,15 @@ const vk::ComputePass& IrradiancePass::pass(bool shaped) {
   return *shaped_;
 }
 
-PassStats IrradiancePass::run(const LevelBuffers& buffers, std::uint32_t level, const ShadowMaps& shadows, float eta) {
+PassStats IrradiancePass::run(const LevelBuffers& buffers, std::uint32_t level, const ShadowMaps& shadows, float eta,
+                              VkDeviceAddress hidden) {
   const std::uint32_t subdivision = finest_subdivision + more_per_level * level;
   const gpu::IrradiancePush push{.vertices = buffers.vertices.address(),
                                  .faces = buffers.faces.address(),
                                  .q = buffers.q.address(),
                                  .beam_q = buffers.beam_q.address(),
                                  .sky = buffers.sky.address(),
+                                 .hidden = hidden,
                                  .lights = shadows.lights().address(),
                                  .shapes = shadows.shapes().address(),
                                  .views = shadows.views().address(),

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "engine/render/environment.h"
 #include "engine/render/image_file.h"
 #include "engine/render/lights.h"
 #include "engine/vk/memory.h"
@@ -19,6 +20,14 @@ struct ProjectedImage {
   std::uint32_t columns = 0, rows = 0, levels = 0;
 };
 
+// Pictures as shaders/render_shared.h says (ENVIRONMENT_*).
+struct EnvironmentImage {
+  Environment environment;
+  std::vector<glm::vec3> pictures;
+  vk::Buffer texels;             // the same
+  float eta = 0, roughness = 0;  // what the pictures are for; 0: none yet
+};
+
 class LightImages {
  public:
   explicit LightImages(vk::Context& context) : context_(context) {}
@@ -29,6 +38,12 @@ class LightImages {
 
   // Of a light given to the last `load`.
   const ProjectedImage& projected(const std::string& file) const { return projected_.at(file).image; }
+  const EnvironmentImage& environment(const std::string& file) const { return environments_.at(file).image; }
+
+  // Brings the pictures of environments up to date that depend on the index of refraction; on the roughness of the
+  // surface.
+  void set_eta(float eta);
+  void set_roughness(float roughness);
 
  private:
   template <typename T>
@@ -37,8 +52,15 @@ class LightImages {
     T image;
   };
 
+  template <typename T>
+  using Images = std::map<std::string, Loaded<T>>;
+
+  template <typename T, typename Upload>
+  void load(const Light& light, Images<T>& old, Images<T>& images, const Upload& upload);
+
   vk::Context& context_;
-  std::map<std::string, Loaded<ProjectedImage>> projected_;
+  Images<ProjectedImage> projected_;
+  Images<EnvironmentImage> environments_;
 };
 
 }  // namespace quadgraph

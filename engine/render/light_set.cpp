@@ -60,10 +60,20 @@ gpu::LightShape projector_shape(const Light& light, const ProjectedImage& image)
   return shape;
 }
 
+// The image's right, up and ahead.
+glm::mat3 environment_frame(const Light& light) {
+  const bool z_up = light.up.z > 0;
+  const glm::vec3 right(1, 0, 0), ahead = z_up ? glm::vec3(0, 1, 0) : glm::vec3(0, 0, -1);
+  const float turn = glm::radians(light.turn), c = std::cos(turn), s = std::sin(turn);
+  return {c * right + s * ahead, light.up, c * ahead - s * right};
+}
+
 gpu::Beam beam_of(const Light& light, const gpu::LightRecord& record) {
   switch (light.kind) {
     case LightKind::ambient:
       return {{gpu::BEAM_LAMBERTIAN, glm::vec3(0)}, record.power, gpu::BEAM_FACE, 0};
+    case LightKind::environment:
+      return {{gpu::BEAM_LAMBERTIAN, glm::vec3(0)}, glm::vec3(1), gpu::BEAM_RGB, 0};
     case LightKind::directional:
       return {{gpu::BEAM_DIRECTIONAL, light.direction}, record.power, gpu::BEAM_QUARTERS, 0};
     case LightKind::point:
@@ -82,6 +92,8 @@ gpu::LightRecord light_record(const Light& light) {
   switch (light.kind) {
     case LightKind::ambient:
       return {gpu::LIGHT_AMBIENT, glm::vec3(0), light.power, 0, 0};
+    case LightKind::environment:
+      return {gpu::LIGHT_ENVIRONMENT, glm::vec3(0), light.power, 0, 0};
     case LightKind::directional:
       return {gpu::LIGHT_DIRECTIONAL, -light.direction, light.power, 0, 0};
     case LightKind::spot:
@@ -102,6 +114,9 @@ LightSet::LightSet(std::span<const Light> lights, const Sphere& bounds, const Li
       add_patches(light);
     } else if (light.kind == LightKind::projector) {
       add_projector(light, images->projected(light.file));
+    } else if (light.kind == LightKind::environment) {
+      add_environment(light, images->environment(light.file));
+      continue;
     } else {
       add(light_record(light), light.kind == LightKind::spot ? spot_shape(light) : gpu::LightShape{},
           shadow_views(light, bounds));
@@ -117,6 +132,23 @@ void LightSet::add(gpu::LightRecord record, const gpu::LightShape& shape, std::s
   records.push_back(record);
   shapes.push_back(shape);
   shaped = shaped || record.kind >= gpu::LIGHT_FIRST_SHAPED;
+}
+
+void LightSet::add_environment(const Light& light, const EnvironmentImage& image) {
+  const glm::mat3 frame = environment_frame(light);
+  gpu::LightShape shape{};
+  shape.right = frame[0];
+  shape.up = frame[1];
+  shape.axis = frame[2];
+  shape.texels = image.texels.address();
+  add(light_record(light), shape, {});
+  beams.push_back(beam_of(light, records.back()));
+  ++environments;
+  for (const Sun& sun : image.environment.suns) {
+    const Light peak{.direction = -(frame * sun.towards), .power = light.power * sun.irradiance};
+    add(light_record(peak), {}, shadow_views(peak, bounds_));
+    beams.push_back(beam_of(peak, records.back()));
+  }
 }
 
 void LightSet::add_projector(const Light& light, const ProjectedImage& image) {

@@ -18,13 +18,15 @@ class LightSet {
   std::vector<gpu::LightShape> shapes;  // per record
   std::vector<gpu::ShadowView> views;   // those of the first record first; depth addresses left 0
   std::vector<gpu::Beam> beams;         // in the order of the records that make them up; offsets left 0
-  bool shaped = false;                  // some kind beyond directional, point and ambient
+  std::uint32_t environments = 0;
+  bool shaped = false;  // some kind beyond directional, point and ambient
 
   // Of all lights on a body within `bounds`. `images` has loaded theirs, if they have any.
   LightSet(std::span<const Light> lights, const Sphere& bounds, const LightImages* images = nullptr);
 
  private:
   void add(gpu::LightRecord record, const gpu::LightShape& shape, std::span<const gpu::ShadowView> own);
+  void add_environment(const Light& light, const EnvironmentImage& image);
   void add_projector(const Light& light, const ProjectedImage& image);
   void add_patches(const Light& rectangle);
 

@@ -86,12 +86,28 @@ std::string write_projector(const Light& light) {
          ":" + light.file + ":";
 }
 
+void read_environment(const Parts& parts, const std::string& where, Light& light) {
+  light.file = parts[1];
+  const auto values = split(parts[2], ',');
+  light.turn = static_cast<float>(parse_number(values[0], where + ", turn"));
+  const std::string_view up = values.size() > 1 ? values[1] : "y";
+  if (values.size() > 2 || (up != "y" && up != "z")) {
+    throw InputError(where + ", turn: found '" + std::string(parts[2]) + "', expected TURN, TURN,y or TURN,z");
+  }
+  light.up = up == "y" ? glm::vec3(0, 1, 0) : glm::vec3(0, 0, 1);
+}
+
+std::string write_environment(const Light& light) {
+  return light.file + ":" + number_text(light.turn) + (light.up.z > 0 ? ",z:" : ",y:");
+}
+
 constexpr Form forms[] = {{"directional", LightKind::directional, 3, read_directional, write_directional},
                           {"point", LightKind::point, 3, read_point, write_point},
                           {"ambient", LightKind::ambient, 2, read_ambient, write_ambient},
                           {"spot", LightKind::spot, 5, read_spot, write_spot},
                           {"rectangle", LightKind::rectangle, 5, read_rectangle, write_rectangle},
-                          {"projector", LightKind::projector, 6, read_projector, write_projector}};
+                          {"projector", LightKind::projector, 6, read_projector, write_projector},
+                          {"environment", LightKind::environment, 4, read_environment, write_environment}};
 
 }  // namespace
 
@@ -100,8 +116,10 @@ const char* const light_forms =
     "ambient:IRRADIANCE (W/mm^2), spot:X,Y,Z:DX,DY,DZ:ANGLE[,EDGE]:POWER (ANGLE in degrees from the axis to where "
     "the light ends, EDGE the share of it over which it fades, 0.2; W in the whole cone), "
     "rectangle:X,Y,Z:UX,UY,UZ:VX,VY,VZ:POWER (centre and edges, mm; it shines to where U x V "
-    "points; W in all) or projector:X,Y,Z:DX,DY,DZ:ANGLE[,UX,UY,UZ]:FILE:POWER (ANGLE is the height of the image in "
-    "degrees, U where its top lies, y; .png, .exr or .hdr; W if it is white all over); the last one number or R/G/B";
+    "points; W in all), projector:X,Y,Z:DX,DY,DZ:ANGLE[,UX,UY,UZ]:FILE:POWER (ANGLE is the height of the image in "
+    "degrees, U where its top lies, y; .png, .exr or .hdr; W if it is white all over) or "
+    "environment:FILE:TURN[,UP]:RADIANCE (a picture of all that is around by longitude and latitude, degrees "
+    "counter-clockwise about UP, y or z; W/(mm^2 sr) of what is 1 in it); the last one number or R/G/B";
 
 Light parse_light(std::string_view text) {
   const Parts parts = split(text, ':');

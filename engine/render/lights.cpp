@@ -52,6 +52,14 @@ void check_projector(const Light& light, const std::string& where) {
   check_file(light, where);
 }
 
+void check_environment(const Light& light, const std::string& where) {
+  if (!std::isfinite(light.turn)) throw InputError(where + ", turn: expected a finite number");
+  if (light.up != glm::vec3(0, 1, 0) && light.up != glm::vec3(0, 0, 1)) {
+    throw InputError(where + ", up: found " + triple_text(light.up, ',') + ", expected y or z");
+  }
+  check_file(light, where);
+}
+
 }  // namespace
 
 void check_light(const Light& light) {
@@ -68,6 +76,7 @@ void check_light(const Light& light) {
   if (light.kind == LightKind::spot) check_spot(light, where);
   if (light.kind == LightKind::rectangle) check_rectangle(light, where);
   if (light.kind == LightKind::projector) check_projector(light, where);
+  if (light.kind == LightKind::environment) check_environment(light, where);
 }
 
 SpotCosines spot_cosines(const Light& spot) {

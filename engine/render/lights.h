@@ -7,7 +7,7 @@
 
 namespace quadgraph {
 
-enum class LightKind { directional, point, ambient, spot, rectangle, projector };
+enum class LightKind { directional, point, ambient, spot, rectangle, projector, environment };
 
 struct Light {
   LightKind kind = LightKind::directional;
@@ -19,13 +19,18 @@ struct Light {
   // it. Spot: power, W, sent out in the cone (axis_intensity). Rectangle: power, W, sent out from its one side, with
   // the same radiance power / (pi |u x v|) everywhere and in all directions.
   // Projector: power, W, sent out if the image is white (1) all over; a plane across the axis is lit as the image is.
+  // Environment: radiance of a texel of 1, W/(mm^2 sr).
   glm::vec3 power{0};
   float angle = 30;   // degrees; spot: from the axis to where the light ends, above 0, at most 90; projector: height of
                       // the image as seen from there, above 0, below 170
   float edge = 0.2f;  // spot: share of the angle over which it fades, 0 to 1
   glm::vec3 u{1, 0, 0}, v{0, 1, 0};  // rectangle: its edges, mm; it shines to where u x v points
-  glm::vec3 up{0, 1, 0};             // projector: to where the image's top lies; not along its direction
-  std::string file{};                // projector: its image, .png, .exr or .hdr
+  glm::vec3 up{0, 1, 0};             // projector: to where the image's top lies; not along its direction;
+  // environment: unit y or z, to where the top row lies
+  std::string file{};  // projector, environment: its image, .png, .exr or .hdr
+  // Environment: counter-clockwise seen from above, degrees. At 0 the middle of the image lies at -z, or for up z at y:
+  // behind the object as seen from azimuth 0; what is on the right of the image lies to the right of that.
+  float turn = 0;
 
   bool operator==(const Light&) const = default;
 };
@@ -34,9 +39,9 @@ struct Light {
 extern const char* const light_forms;
 
 // Parses "directional:DX,DY,DZ:IRRADIANCE", "point:X,Y,Z:POWER", "ambient:IRRADIANCE",
-// "spot:X,Y,Z:DX,DY,DZ:ANGLE[,EDGE]:POWER", "rectangle:X,Y,Z:UX,UY,UZ:VX,VY,VZ:POWER" or
-// "projector:X,Y,Z:DX,DY,DZ:ANGLE[,UX,UY,UZ]:FILE:POWER", the last one number or R/G/B.
-// A direction need not be of unit length. Throws InputError naming what was found and what is allowed.
+// "spot:X,Y,Z:DX,DY,DZ:ANGLE[,EDGE]:POWER", "rectangle:X,Y,Z:UX,UY,UZ:VX,VY,VZ:POWER",
+// "projector:X,Y,Z:DX,DY,DZ:ANGLE[,UX,UY,UZ]:FILE:POWER" or "environment:FILE:TURN[,UP]:RADIANCE", the last one number
+// or R/G/B. A direction need not be of unit length. Throws InputError naming what was found and what is allowed.
 Light parse_light(std::string_view text);
 
 // The text that parse_light reads back as the same light.

@@ -103,9 +103,7 @@ double radiance_norm(double eta) {
 }
 
 Rasteriser::Rasteriser(vk::Context& context)
-    : context_(context),
-      resolve_(context, resolve_comp, sizeof(gpu::ResolvePush), "resolve"),
-      gather_(context, gather_comp, sizeof(gpu::ResolvePush), "gather") {}
+    : context_(context), resolve_(context, resolve_comp, sizeof(gpu::ResolvePush), "resolve") {}
 
 const vk::GraphicsPass& Rasteriser::surface(const RasterInput& input) {
   const bool gathered = input.gather != nullptr, shaped = input.shadows.shaped();
@@ -113,6 +111,15 @@ const vk::GraphicsPass& Rasteriser::surface(const RasterInput& input) {
   if (pass) return *pass;
   const vk::Spirv fragment = gathered ? vk::Spirv(surface_gathered_frag) : vk::Spirv(surface_frag);
   return pass.emplace(context_, pass_options(fragment, shaped), gathered ? "surface gathered" : "surface");
+}
+
+const vk::ComputePass& Rasteriser::resolve(const RasterInput& input) {
+  if (input.gather == nullptr) return resolve_;
+  const std::uint32_t shaped = input.shadows.shaped() ? 1 : 0;
+  auto& pass = gathers_[shaped];
+  if (pass) return *pass;
+  return pass.emplace(context_, gather_comp, static_cast<std::uint32_t>(sizeof(gpu::ResolvePush)), "gather",
+                      vk::ComputePass::default_workgroup_size, shaped);
 }
 
 Rasteriser::~Rasteriser() = default;
@@ -171,8 +178,7 @@ void Rasteriser::record(vk::Commands& commands, const RasterInput& input, const 
   draw(commands, target(tile), viewport(tile), surface(input), gpu::SurfacePush{scene_.address()}, input.mesh.triangles,
        3 * input.mesh.triangle_count);
   commands.end_pass();
-  record_resolve(commands, input.gather != nullptr ? "gather" : "resolve", input.gather != nullptr ? gather_ : resolve_,
-                 scene_.address(), tile);
+  record_resolve(commands, input.gather != nullptr ? "gather" : "resolve", resolve(input), scene_.address(), tile);
 }
 
 void Rasteriser::record(vk::Commands& commands, const FalseColours& input, const Camera& camera, const Tile& tile) {

@@ -84,11 +84,13 @@ class Rasteriser {
   std::vector<PassStats> run_tiles(std::uint32_t width, std::uint32_t height, const Record& record_tile);
 
   const vk::GraphicsPass& surface(const RasterInput& input);
+  const vk::ComputePass& resolve(const RasterInput& input);
 
   vk::Context& context_;
   std::array<std::optional<vk::GraphicsPass>, 4> surfaces_;  // gathered or not, with shaped lights or not; at first use
-  vk::ComputePass resolve_, gather_;
-  std::optional<vk::GraphicsPass> false_colour_;  // made at first use
+  vk::ComputePass resolve_;
+  std::array<std::optional<vk::ComputePass>, 2> gathers_;  // without shaped lights and with; at first use
+  std::optional<vk::GraphicsPass> false_colour_;           // made at first use
   PictureBuffers picture_;
   std::unique_ptr<Targets> targets_;  // of a tile
   vk::Buffer scene_;                  // made at first use, as the targets are: no solve needs them

@@ -96,6 +96,7 @@ std::vector<gpu::ShadowView> shadow_views(const Light& light, const Sphere& boun
   switch (light.kind) {
     case LightKind::ambient:
     case LightKind::rectangle:
+    case LightKind::environment:
       return {};
     case LightKind::directional:
       return {directional_view(light, bounds)};

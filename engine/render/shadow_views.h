@@ -10,7 +10,7 @@
 namespace quadgraph {
 
 // The views of one light that together see all of `bounds` that it may shine on (depth address left 0): one
-// orthographic view of a directional light, none of ambient light and of
+// orthographic view of a directional light, none of ambient light, environments and
 // rectangles, which have those of their patches, one perspective view of another light outside 1.1
 // times the sphere and of a spot light whose cone is narrower, else six of 90 degrees.
 std::vector<gpu::ShadowView> shadow_views(const Light& light, const Sphere& bounds);

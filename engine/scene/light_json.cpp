@@ -101,12 +101,31 @@ void write_projector(const Light& light, Json& json) {
   json["power"] = rgb_json(light.power);
 }
 
+void read_environment(const JsonField& field, Light& light) {
+  field.allow({"type", "file", "turn", "up", "radiance"});
+  light.file = field.at("file").text();
+  if (const auto turn = field.find("turn")) light.turn = turn->real();
+  if (const auto up = field.find("up")) {
+    if (up->text() != "y" && up->text() != "z") up->refuse("y or z");
+    light.up = up->text() == "y" ? glm::vec3(0, 1, 0) : glm::vec3(0, 0, 1);
+  }
+  light.power = field.at("radiance").rgb();
+}
+
+void write_environment(const Light& light, Json& json) {
+  json["file"] = light.file;
+  json["turn"] = real_json(light.turn);
+  json["up"] = light.up.z > 0 ? "z" : "y";
+  json["radiance"] = rgb_json(light.power);
+}
+
 constexpr Form forms[] = {{"directional", LightKind::directional, read_directional, write_directional},
                           {"point", LightKind::point, read_point, write_point},
                           {"ambient", LightKind::ambient, read_ambient, write_ambient},
                           {"spot", LightKind::spot, read_spot, write_spot},
                           {"rectangle", LightKind::rectangle, read_rectangle, write_rectangle},
-                          {"projector", LightKind::projector, read_projector, write_projector}};
+                          {"projector", LightKind::projector, read_projector, write_projector},
+                          {"environment", LightKind::environment, read_environment, write_environment}};
 
 std::string allowed_types() {
   std::string text;

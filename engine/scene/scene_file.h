@@ -33,8 +33,8 @@ class SceneFile {
   // Throws InputError.
   Scene at(double frame) const;
 
-  // Writes a temporary file beside `path` and renames it. The body and images stay the same files. Throws InputError naming the
-  // file.
+  // Writes a temporary file beside `path` and renames it. The body and images stay the same files. Throws InputError
+  // naming the file.
   void save(const std::filesystem::path& path) const;
 
  private:

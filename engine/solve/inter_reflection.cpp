@@ -24,6 +24,12 @@ InterReflection::InterReflection(const QuadGraph& graph) : graph_(graph) {
   }
 }
 
+std::optional<SeenRows> InterReflection::seen(vk::Context& context) {
+  if (!level()) return std::nullopt;
+  matrix_->make_room(context);
+  return SeenRows{*level_, matrix_->rows(), matrix_->entries(), matrix_->rays()};
+}
+
 void InterReflection::moved(std::uint32_t number) {
   if (number == level_) matrix_->moved();
 }

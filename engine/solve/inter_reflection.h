@@ -29,6 +29,9 @@ class InterReflection {
   // That level, if they see anything; no light enters again elsewhere.
   std::optional<std::uint32_t> level() const { return matrix_ && !matrix_->empty() ? level_ : std::nullopt; }
 
+  // Its rows and entries.
+  std::optional<SeenRows> seen(vk::Context& context);
+
   // The vertices of level `number` have moved.
   void moved(std::uint32_t number);
 

@@ -373,6 +373,10 @@ const LevelBuffers& Simulation::level(std::uint32_t level) const {
   return implementation_->levels.at(level);
 }
 
+std::optional<SeenRows> Simulation::seen() {
+  return implementation_->exchange.seen(implementation_->context);
+}
+
 void Simulation::set_material(const gpu::Material& material) {
   implementation_->coefficients.set(material);
   implementation_->disassemble();

@@ -57,6 +57,15 @@ struct LevelBuffers {
   std::uint64_t beam_again() const { return beam_q.size() - face_count * gpu::BEAM_RGB * sizeof(float); }
 };
 
+// What the faces of one level see of each other, on the device: per face the first of its entries and one past the
+// last, uvec2; entries, the faces that `rays` cosine-weighted rays met (docs/qgraph-format.md).
+struct SeenRows {
+  std::uint32_t level;
+  const vk::Buffer& rows;
+  const vk::Buffer& entries;
+  std::uint32_t rays;
+};
+
 class GatherField;
 struct Workspace;
 
@@ -70,6 +79,10 @@ class Simulation {
 
   std::uint32_t level_count() const;
   const LevelBuffers& level(std::uint32_t level) const;
+
+  // Of the present shape, as far as solves have brought them up to date; none where no face sees another, or where the
+  // file does not say. Made at first use.
+  std::optional<SeenRows> seen();
 
   // Throws InputError as check_material does.
   void set_material(const gpu::Material& material);

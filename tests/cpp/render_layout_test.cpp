@@ -72,10 +72,10 @@ TEST_CASE("push constants") {
   compare(shadow_vert, "ShadowPush", {MEMBER(ShadowPush, clip_from_world), MEMBER(ShadowPush, vertices)});
   compare(irradiance_comp, "IrradiancePush",
           {MEMBER(IrradiancePush, vertices), MEMBER(IrradiancePush, faces), MEMBER(IrradiancePush, q),
-           MEMBER(IrradiancePush, beam_q), MEMBER(IrradiancePush, sky), MEMBER(IrradiancePush, lights),
-           MEMBER(IrradiancePush, shapes), MEMBER(IrradiancePush, views), MEMBER(IrradiancePush, face_count),
-           MEMBER(IrradiancePush, light_count), MEMBER(IrradiancePush, subdivision), MEMBER(IrradiancePush, eta),
-           MEMBER(IrradiancePush, diffuse_transmittance)});
+           MEMBER(IrradiancePush, beam_q), MEMBER(IrradiancePush, sky), MEMBER(IrradiancePush, hidden),
+           MEMBER(IrradiancePush, lights), MEMBER(IrradiancePush, shapes), MEMBER(IrradiancePush, views),
+           MEMBER(IrradiancePush, face_count), MEMBER(IrradiancePush, light_count), MEMBER(IrradiancePush, subdivision),
+           MEMBER(IrradiancePush, eta), MEMBER(IrradiancePush, diffuse_transmittance)});
   compare(resolve_comp, "ResolvePush",
           {MEMBER(ResolvePush, scene), MEMBER(ResolvePush, samples), MEMBER(ResolvePush, layers),
            MEMBER(ResolvePush, alpha), MEMBER(ResolvePush, tile_x), MEMBER(ResolvePush, tile_y),

@@ -35,9 +35,10 @@ TEST_CASE("ambient light has an irradiance and nothing else") {
 }
 
 TEST_CASE("the text of a light reads back as the same light") {
-  for (const char* text : {"directional:1,2,-3:0.1/0.2/0.3", "point:1e-3,7,123456:4", "spot:1,2,3:4,5,6:20:0.1",
-                           "spot:1,2,3:0,0,-1:90,1:0.1/0.2/0.3", "rectangle:1,2,3:4,0,0:0,5,6:7",
-                           "projector:1,2,3:0,0,1:25:a/b.png:3", "projector:1,2,3:0,0,1:25,1,1,0:b.exr:3/2/1"}) {
+  for (const char* text :
+       {"directional:1,2,-3:0.1/0.2/0.3", "point:1e-3,7,123456:4", "spot:1,2,3:4,5,6:20:0.1",
+        "spot:1,2,3:0,0,-1:90,1:0.1/0.2/0.3", "rectangle:1,2,3:4,0,0:0,5,6:7", "projector:1,2,3:0,0,1:25:a/b.png:3",
+        "projector:1,2,3:0,0,1:25,1,1,0:b.exr:3/2/1", "environment:a.hdr:20:3", "environment:a.hdr:-20,z:1/2/3"}) {
     const Light light = parse_light(text), again = parse_light(to_string(light));
     CHECK(again.kind == light.kind);
     CHECK(glm::distance(again.direction, light.direction) < 1e-6f);
@@ -45,6 +46,7 @@ TEST_CASE("the text of a light reads back as the same light") {
     CHECK(again.power == light.power);
     CHECK(again.up == light.up);
     CHECK(again.file == light.file);
+    CHECK(again.turn == light.turn);
   }
 }
 
@@ -54,12 +56,27 @@ TEST_CASE("a wrong light is refused with what was found and what is allowed") {
   CHECK_THROWS_WITH_AS(parse_light("directional:0,0,0:1"), doctest::Contains("length 0"), InputError);
   CHECK_THROWS_WITH_AS(parse_light("directional:0,0,1:-1"), doctest::Contains(">= 0"), InputError);
   CHECK_THROWS_WITH_AS(parse_light("point:0,zero,1:1"), doctest::Contains("'zero'"), InputError);
-  for (const char* text :
-       {"", "directional", "directional:0,0,1", "directional:0,1:1", "directional:0,0,1:1:1", "directional:0,0,1:1/2",
-        "spot:0,0,1:0,0,1:0:1", "spot:0,0,1:0,0,1:91:1", "spot:0,0,1:0,0,1:10,2:1", "spot:0,0,1:0,0,1:10,0,0:1",
-        "rectangle:0,0,1:1,0,0:2,0,0:1", "rectangle:0,0,1:1,0,0:1", "projector:0,0,1:0,0,1:170:a.png:1",
-        "projector:0,0,1:0,0,1:20,0,0,1:a.png:1", "projector:0,0,1:0,0,1:20::1", "point:0,0,1:nan", "point:0,0,inf:1",
-        "point:0,0,1:1x"}) {
+  for (const char* text : {"",
+                           "directional",
+                           "directional:0,0,1",
+                           "directional:0,1:1",
+                           "directional:0,0,1:1:1",
+                           "directional:0,0,1:1/2",
+                           "spot:0,0,1:0,0,1:0:1",
+                           "spot:0,0,1:0,0,1:91:1",
+                           "spot:0,0,1:0,0,1:10,2:1",
+                           "spot:0,0,1:0,0,1:10,0,0:1",
+                           "rectangle:0,0,1:1,0,0:2,0,0:1",
+                           "rectangle:0,0,1:1,0,0:1",
+                           "environment:a.hdr:0,x:1",
+                           "environment::0:1",
+                           "environment:a.hdr:1",
+                           "projector:0,0,1:0,0,1:170:a.png:1",
+                           "projector:0,0,1:0,0,1:20,0,0,1:a.png:1",
+                           "projector:0,0,1:0,0,1:20::1",
+                           "point:0,0,1:nan",
+                           "point:0,0,inf:1",
+                           "point:0,0,1:1x"}) {
     CAPTURE(text);
     CHECK_THROWS_AS(parse_light(text), InputError);
   }

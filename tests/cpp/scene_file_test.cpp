@@ -74,7 +74,8 @@ Scene with_everything(const Folder& folder) {
                   parse_light("ambient:0.5"),
                   parse_light("spot:1,2,3:0,0.6,-0.8:20,0.5:4"),
                   parse_light("rectangle:1,2,3:4,0,0:0,5,1:6/7/8"),
-                  parse_light("projector:1,2,3:0,0.6,-0.8:20,1,1,0:" + one_texel(folder) + ":4")};
+                  parse_light("projector:1,2,3:0,0.6,-0.8:20,1,1,0:" + one_texel(folder) + ":4"),
+                  parse_light("environment:" + one_texel(folder) + ":30,z:2")};
   Deformer twist{.degrees = 30}, bend{.kind = DeformerKind::bend}, scaled{.kind = DeformerKind::transform};
   bend.towards = {0, 0.5, 1};
   bend.range_in_mm = true;

@@ -12,6 +12,6 @@ from quadgraph.tetrahedralise import tetrahedralise
 __all__ = ["face_frames", "write_levels"]
 
 
-def write_levels(path: Path, surfaces: list[Surface]) -> Path:
-    """Tetrahedralise each surface (finest first) and write them as the levels of one file."""
-    return write(path, [graph.build(tetrahedralise(surface, mesher="tetgen")) for surface in surfaces])
+def write_levels(path: Path, surfaces: list[Surface], rays: int = 0) -> Path:
+    """Tetrahedralise each surface (finest first) and write them as the levels of a file; `rays` per face see others."""
+    return write(path, [graph.build(tetrahedralise(surface, mesher="tetgen")) for surface in surfaces], rays)

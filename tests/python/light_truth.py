@@ -139,3 +139,49 @@ def _between(image: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     u, v = (x - left)[:, None], (y - top)[:, None]
     upper = image[top, left] * (1 - u) + image[top, left + 1] * u
     return upper * (1 - v) + (image[top + 1, left] * (1 - u) + image[top + 1, left + 1] * u) * v
+
+
+def environment(picture: np.ndarray, turn: float, radiance: np.ndarray) -> Emitter:
+    """A picture (rows, columns, 3) of all that is around, y up, its middle at -z, turned counter-clockwise, degrees."""
+    rows, columns = picture.shape[:2]
+    edges = np.cos(np.pi * np.arange(rows + 1) / rows)
+    solid = np.repeat((edges[:-1] - edges[1:]) * 2 * np.pi / columns, columns)
+    texels = picture.reshape(-1, 3).astype(float)
+    chance = solid * texels.mean(axis=1)
+    chance /= chance.sum()
+    begin = np.concatenate([[0], np.cumsum(chance)])
+    c, s = np.cos(np.radians(turn)), np.sin(np.radians(turn))
+
+    def emit(points: np.ndarray, place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        texel = np.clip(np.searchsorted(begin, place[:, 0], side="right") - 1, 0, len(texels) - 1)
+        across = np.clip((place[:, 0] - begin[texel]) / chance[texel], 0, 1)
+        row, column = texel // columns, texel % columns
+        height = edges[row] + (edges[row + 1] - edges[row]) * place[:, 1]
+        longitude = 2 * np.pi * (column + across) / columns - np.pi
+        flat = np.sqrt(1 - height**2)
+        right, ahead = flat * np.sin(longitude), flat * np.cos(longitude)
+        way = np.stack([c * right - s * ahead, height, -s * right - c * ahead], axis=1)
+        return points + FAR * way, texels[texel] * radiance * (solid / chance)[texel, None]
+
+    return emit
+
+
+def write_hdr(path, picture: np.ndarray) -> np.ndarray:
+    """Write a Radiance picture without runs; what it then holds, (rows, columns, 3)."""
+    rows, columns = picture.shape[:2]
+    largest = np.maximum(picture.max(axis=2), 1e-30)
+    exponent = np.floor(np.log2(largest)) + 1
+    mantissa = np.minimum(np.floor(picture / np.exp2(exponent)[..., None] * 256), 255)
+    rgbe = np.concatenate([mantissa, exponent[..., None] + 128], axis=2).astype(np.uint8)
+    header = f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {rows} +X {columns}\n"
+    path.write_bytes(header.encode() + rgbe.tobytes())
+    return (mantissa + 0.5) * np.exp2(exponent - 8)[..., None]
+
+
+def directional(direction) -> Emitter:
+    """1 W/mm^2 on a plane that faces it."""
+
+    def emit(points: np.ndarray, place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return points - FAR * unit(direction), np.ones((len(points), 3))
+
+    return emit

@@ -19,7 +19,7 @@ SURFACES = {"sphere": icosphere(3, 10.0), "torus": torus(10.0, 3.0, 48, 24)}
 @pytest.fixture(scope="module")
 def files(tmp_path_factory) -> dict:
     folder = tmp_path_factory.mktemp("lights")
-    return {name: write_levels(folder / f"{name}.qgraph", [surface]) for name, surface in SURFACES.items()}
+    return {name: write_levels(folder / f"{name}.qgraph", [surface], rays=256) for name, surface in SURFACES.items()}
 
 
 @pytest.fixture(scope="module")
@@ -102,6 +102,24 @@ def test_projector(lit, tmp_path):
     position, direction, up = (4.0, 20.0, 26.0), (-0.1, -0.6, -0.8), (1.0, 1.0, 0.0)
     emitter = light_truth.projector(position, direction, up, 25.0, linear, [500.0, 300.0, 100.0])
     compare(lit, f"projector:4,20,26:-0.1,-0.6,-0.8:25,1,1,0:{name}:500/300/100", emitter)
+
+
+def surroundings(sun: float) -> np.ndarray:
+    """A sky that is brighter near the horizon, ground, a window of 20 by 30 degrees, and a sun of 3 degrees."""
+    height = np.cos(np.pi * (np.arange(128) + 0.5) / 128)[:, None]
+    sky = np.where(height > 0, 1 - 0.7 * height, 0.15)[..., None] * np.array([0.6, 0.8, 1.0])
+    picture = np.repeat(sky, 256, axis=1)
+    picture[50:71, 30:45] = (9, 8, 6)
+    picture[30:32, 160:162] = sun
+    return picture
+
+
+@pytest.mark.parametrize("sun", [1, 2000])
+def test_environment(lit, tmp_path, sun):
+    name = tmp_path / "surroundings.hdr"
+    picture = light_truth.write_hdr(name, surroundings(sun))
+    emitter = light_truth.environment(picture, 35.0, np.array([0.1, 0.2, 0.3]))
+    compare(lit, f"environment:{name}:35:0.1/0.2/0.3", emitter, 1024)
 
 
 def test_lights_add_up(lit):

@@ -99,7 +99,8 @@ def add_scene_arguments(parser: argparse.ArgumentParser, file_help: str = "a bak
         help="directional:DX,DY,DZ:IRRADIANCE (the way the light travels; W/mm^2), point:X,Y,Z:POWER (mm; W), "
         "ambient:IRRADIANCE, spot:X,Y,Z:DX,DY,DZ:ANGLE[,EDGE]:POWER (degrees from axis to edge of the light, the "
         "share over which it fades), rectangle:X,Y,Z:UX,UY,UZ:VX,VY,VZ:POWER (centre and edges), "
-        "projector:X,Y,Z:DX,DY,DZ:ANGLE[,UX,UY,UZ]:FILE:POWER (an image, degrees high); the last one number or "
+        "projector:X,Y,Z:DX,DY,DZ:ANGLE[,UX,UY,UZ]:FILE:POWER (an image, degrees high), "
+        "environment:FILE:TURN[,UP]:RADIANCE (a picture of all that is around); the last one number or "
         "R/G/B; docs/lights.md tells more; several allowed (default: warm from behind the view, cool from the side, a "
         "little from all around)",
     )

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import trimesh
 
-from quadgraph import graph, qgraph_file, sections
+from quadgraph import exchange, graph, qgraph_file, sections
 from quadgraph.graph import Graph
 from quadgraph.qgraph_rules import determinants
 from quadgraph.surface import Surface, TetMesh
@@ -170,8 +170,11 @@ def moved(mesh: Graph, shape: Callable[[np.ndarray], np.ndarray]) -> Graph:
     return replace(mesh, vertices=vertices, inner=inner, surface=surface)
 
 
-def write(path: Path, graphs: list[Graph]) -> Path:
-    """Write levels, finest first, as a .qgraph with the finest boundary as the display mesh."""
+def write(path: Path, graphs: list[Graph], rays: int = 0) -> Path:
+    """Write levels, finest first, as a .qgraph with the finest boundary as the display mesh.
+
+    rays: per face, that tell what the faces of a level see of each other; 0: that is left out.
+    """
     boundary = graphs[0].boundary
     used = int(boundary.triangles.max()) + 1
     display = Surface(boundary.vertices[:used], boundary.triangles)
@@ -184,7 +187,7 @@ def write(path: Path, graphs: list[Graph]) -> Path:
         "levels": [sections.level_metadata(g) for g in graphs],
         "tools": {},
     }
-    qgraph_file.write(path, metadata, sections.whole_file(graphs, display))
+    qgraph_file.write(path, metadata, sections.whole_file(graphs, display, exchange.bake(graphs, rays)))
     return path
 
 
