@@ -8,6 +8,7 @@ from PIL import Image
 
 import light_truth
 from baked import write_levels
+from quadgraph.errors import InputError
 from shapes import icosphere, torus
 
 _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
@@ -139,3 +140,46 @@ def test_lights_add_up(lit):
     for name in ("q", "exitance"):
         together, apart = fields[0][name], sum(field[name] for field in fields[1:])
         assert np.abs(together - apart).max() < 2e-4 * together.max()
+
+
+def test_pictures_in_runs_and_in_exr_are_the_same(engines, tmp_path):
+    import OpenEXR
+
+    plain, runs, exr = (tmp_path / name for name in ("plain.hdr", "runs.hdr", "float.exr"))
+    picture = light_truth.write_hdr(plain, surroundings(2000))
+    header, texels = plain.read_bytes().split(b"+X 256\n")
+    rows = np.frombuffer(texels, np.uint8).reshape(128, 256, 4)
+    coded = b"".join(
+        bytes([2, 2, 1, 0]) + b"".join(bytes([128]) + row[k : k + 128, c].tobytes() for c in range(4) for k in (0, 128))
+        for row in rows
+    )
+    runs.write_bytes(header + b"+X 256\n" + coded)
+    channels = {name: picture[..., c].astype(np.float32) for c, name in enumerate("RGB")}
+    OpenEXR.File({"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}, channels).write(str(exr))
+    found = []
+    for name in (plain, runs, exr):
+        engines["sphere"].set_lights([f"environment:{name}:0:1"])
+        engines["sphere"].solve(tolerance=0.1)
+        found.append(engines["sphere"].surface_field()["q"])
+    assert (found[1] == found[0]).all()
+    assert np.allclose(found[2], found[0], rtol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "said"),
+    [
+        ("none.hdr", None, "no such file"),
+        ("short.hdr", b"#?RADIANCE\n\n-Y 2 +X 2\n1234", "in its texels"),
+        ("large.hdr", b"#?RADIANCE\n\n-Y 2 +X 20000\n", "1 to 16384"),
+        ("text.png", b"text", "text.png"),
+        ("text.exr", b"text", "text.exr"),
+        ("text.jpg", b"text", "ends in .exr, .hdr or .png"),
+    ],
+)
+def test_a_picture_that_is_none_is_refused(engines, tmp_path, name, content, said):
+    if content is not None:
+        (tmp_path / name).write_bytes(content)
+    for light in (f"environment:{tmp_path / name}:0:1", f"projector:0,0,30:0,0,-1:20:{tmp_path / name}:1"):
+        with pytest.raises(InputError, match=said) as refusal:
+            engines["sphere"].set_lights([light])
+        assert name in str(refusal.value)
