@@ -192,6 +192,31 @@ void draw_lights(State& state, const Sphere& bounds) {
   }
 }
 
+// A slider over the deformer of a kind, which is in the list while it does something.
+void draw_deformer(Scene& scene, const char* label, DeformerKind kind) {
+  const bool turns = kind == DeformerKind::twist || kind == DeformerKind::bend;
+  auto& list = scene.deformation;
+  auto found = std::find_if(list.begin(), list.end(), [&](const Deformer& d) { return d.kind == kind; });
+  const double neutral = turns ? 0 : 1;
+  auto value = static_cast<float>(found == list.end() ? neutral : turns ? found->degrees : found->factor);
+  if (!slide(label, value, turns ? -180.0f : 0.4f, turns ? 180.0f : 2.0f, turns ? "%.0f°" : "%.2f times")) return;
+  if (found == list.end()) {
+    Deformer fresh{.kind = kind};
+    if (scene.view.up == UpAxis::z) fresh.axis = {0, 0, 1};
+    found = list.insert(list.end(), fresh);
+  }
+  (turns ? found->degrees : found->factor) = static_cast<double>(value);
+  if (std::abs(static_cast<double>(value) - neutral) < (turns ? 0.5 : 0.005)) list.erase(found);
+}
+
+void draw_shape(State& state) {
+  if (!section("Shape", false)) return;
+  draw_deformer(state.scene, "twist", DeformerKind::twist);
+  draw_deformer(state.scene, "bend", DeformerKind::bend);
+  draw_deformer(state.scene, "taper", DeformerKind::taper);
+  draw_deformer(state.scene, "stretch", DeformerKind::stretch);
+}
+
 void draw_solver(State& state) {
   if (!section("Solve")) return;
   SolveOptions& solve = state.scene.solve;
@@ -315,6 +340,7 @@ void draw_panel(State& state, const PanelFacts& facts) {
   draw_edits(state, facts.engine.bounds());
   draw_lights(state, facts.engine.bounds());
   draw_solver(state);
+  draw_shape(state);
   draw_picture(state, facts.measured);
   draw_camera(state, facts.engine.bounds());
   draw_passes(facts.measured.passes);
