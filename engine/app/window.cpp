@@ -54,7 +54,7 @@ Window::Window(const std::string& title, int width, int height) : title_(title) 
     if (glfwVulkanSupported() != GLFW_TRUE) no_window("this display has no Vulkan");
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
     glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
-    window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
+    window_ = glfwCreateWindow(width, height, (title + " ...").c_str(), nullptr, nullptr);
     if (window_ == nullptr) no_window("the display opens no window");
   } catch (...) {
     glfwTerminate();

@@ -54,7 +54,7 @@ class Window {
   // Pixels per unit of window coordinates; 1 on X11.
   float pixels_per_unit() const;
 
-  // Adds dots to the title, or takes them away.
+  // Adds dots to the title, or takes them away; it has them at first.
   void show_busy(bool busy);
 
   bool closing() const;
@@ -76,7 +76,7 @@ class Window {
 
   GLFWwindow* window_ = nullptr;
   std::string title_;
-  bool busy_ = false;
+  bool busy_ = true;
   std::deque<Event> events_;
   bool full_screen_ = false;
   int old_x_ = 0, old_y_ = 0, old_width_ = 0, old_height_ = 0;  // before full screen
