@@ -26,8 +26,8 @@ def measure(path: Path) -> list[dict[str, Any]]:
     """Return for both models, and a homogeneous and a varied material, what is allocated with the default lights.
 
     Each entry: "model", "material", "purposes" ({purpose: bytes}), "solve" and "total" (bytes, without and with what
-    lights and any picture keep; what depends on its size is not in it). Raises InputError without the compiled engine, VulkanError without a
-    device.
+    lights and any picture keep; what depends on its size is not in it). Raises InputError without the compiled engine,
+    VulkanError without a device.
     """
     core = load_core()
     entries = []
