@@ -55,6 +55,31 @@ def test_a_forecast_takes_the_cheapest_setting_and_none_that_never_gets_there():
     assert trials.forecast(known, 1e-3) is None
 
 
+class Measured(plan.Bench):
+    """A bench whose surfaces obey `law`, with the number of vertices in place of levels."""
+
+    def __init__(self, *vertices: int) -> None:
+        self.trials, self.candidates = [], {}
+        for count in vertices:
+            self.add(count)
+
+    def add(self, levels: int) -> list[Trial]:
+        """Measure a surface of so many vertices."""
+        self.trials.append(law(levels))
+        self.candidates[levels, 3] = levels
+        return self.trials[-1:]
+
+
+@pytest.mark.parametrize(("at", "tried"), [(0.9, [800]), (0.7, [800, 640]), (0.1, [800, 640, 512])])
+def test_smaller_surfaces_are_measured_for_as_long_as_they_keep_the_error(monkeypatch, at, tried):
+    monkeypatch.setattr(plan, "_levels", lambda whole, options, report: options.surface_vertices)
+    bench = Measured(1000)
+    wanted = law(round(1000 * at)).error / budget.ENOUGH
+    plan._descend(bench, None, BakeOptions(), wanted, bake.BakeReport(""), lambda text: None)
+    assert [count for count, _ in bench.candidates] == [1000, *tried]
+    assert bench.best(budget.ENOUGH * wanted).surface_vertices == min(c for c, _ in bench.candidates if c >= 1000 * at)
+
+
 @pytest.fixture(scope="module")
 def mesh(tmp_path_factory) -> Path:
     path = tmp_path_factory.mktemp("budget") / "lobes.ply"
