@@ -143,6 +143,7 @@ PYBIND11_MODULE(_core, module) {
   quadgraph::python::bind_materials(module);
   quadgraph::python::bind_reference(module);
   quadgraph::python::bind_deformation(module);
+  quadgraph::python::bind_path(module);
   quadgraph::python::bind_engine(module);
   quadgraph::python::bind_scene(module);
 }

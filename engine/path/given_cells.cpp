@@ -1,0 +1,52 @@
+#include "engine/path/given_cells.h"
+
+#include <string>
+
+#include "engine/graph/error.h"
+#include "engine/path/path_relaxation.h"
+
+namespace quadgraph {
+
+std::vector<float> paths_through(vk::Context& context, const glm::uvec3& size, float cell, std::span<const float> cost,
+                                 std::span<const float> entering, PathSolver solver) {
+  gpu::PathGrid grid{};
+  grid.cell = cell;
+  grid.size = size;
+  const std::size_t count = gpu::cell_count(grid);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (size[axis] % PATH_BLOCK != 0 || size[axis] < PATH_BLOCK || size[axis] > gpu::LARGEST_PATH_CELLS) {
+      throw InputError("cells: found " + std::to_string(size[axis]) + " along a side, expected a multiple of " +
+                       std::to_string(PATH_BLOCK) + " up to " + std::to_string(gpu::LARGEST_PATH_CELLS));
+    }
+  }
+  if (cost.size() != 3 * count || entering.size() != 3 * count) {
+    throw InputError("cells: " + std::to_string(cost.size()) + " costs and " + std::to_string(entering.size()) +
+                     " lights, expected " + std::to_string(3 * count) + " each");
+  }
+  std::vector<std::uint32_t> flags(count);
+  for (std::size_t i = 0; i < count; ++i) flags[i] = cost[i] >= 0 ? gpu::CELL_SOLID : 0;
+  const std::vector<std::uint32_t> stamps(3 * block_count(grid), 0);
+  const vk::Buffer flag_buffer = vk::upload<std::uint32_t>(context, flags, "path/flags");
+  const vk::Buffer stamp_buffer = vk::upload<std::uint32_t>(context, stamps, "path/stamps", vk::Place::device);
+  PathRelaxation relaxation(context);
+  relaxation.make_room(grid);
+  vk::write_bytes(context, relaxation.cost(), std::as_bytes(cost));
+  vk::write_bytes(context, relaxation.entering(), std::as_bytes(entering));
+  std::vector<PassStats> passes;
+  relaxation.solve({grid, flag_buffer, stamp_buffer}, solver, passes);
+  return vk::download<float>(context, relaxation.lengths());
+}
+
+GivenVoxels voxels_of(vk::Context& context, std::span<const glm::vec3> vertices, std::span<const glm::uvec3> triangles,
+                      std::uint32_t cells) {
+  const vk::Buffer vertex_buffer = vk::upload(context, vertices, "path/vertices");
+  const vk::Buffer triangle_buffer = vk::upload(context, triangles, "path/triangles");
+  Voxels voxels(context);
+  std::vector<PassStats> passes;
+  voxels.update({vertex_buffer, triangle_buffer, static_cast<std::uint32_t>(vertices.size()),
+                 static_cast<std::uint32_t>(triangles.size())},
+                cells, passes);
+  return {voxels.grid(), vk::download<std::uint32_t>(context, voxels.cells().flags)};
+}
+
+}  // namespace quadgraph

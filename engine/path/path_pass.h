@@ -1,0 +1,32 @@
+// Timing of a group of dispatches as one pass.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "engine/solve/simulation.h"
+#include "engine/vk/commands.h"
+
+namespace quadgraph {
+
+// Records with `record(commands)`, runs it, waits, and adds what it took to `passes`. `bytes`: read and written.
+template <typename Record>
+void run_pass(vk::Context& context, const char* name, std::uint64_t bytes, std::vector<PassStats>& passes,
+              const Record& record) {
+  vk::Commands commands(context, 1);
+  commands.begin_pass(name);
+  record(commands);
+  commands.end_pass();
+  passes.push_back({name, commands.submit_and_wait()[0].time_ms, bytes, 1});
+}
+
+// `buffer` with room for that many bytes, which may be more than it is asked for.
+inline void make_room(vk::Context& context, vk::Buffer& buffer, std::uint64_t bytes, vk::Place place,
+                      const char* name) {
+  if (buffer.handle() == VK_NULL_HANDLE || buffer.size() < bytes) {
+    buffer = {};  // two need not fit beside each other
+    buffer = {context, bytes, place, name};
+  }
+}
+
+}  // namespace quadgraph

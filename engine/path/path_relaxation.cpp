@@ -1,0 +1,89 @@
+#include "engine/path/path_relaxation.h"
+
+#include <string>
+
+#include "engine/graph/error.h"
+#include "engine/path/path_pass.h"
+#include "spirv/path_relax.comp.h"
+#include "spirv/path_start.comp.h"
+
+namespace quadgraph {
+namespace {
+
+constexpr std::uint32_t rounds_at_once = 24;
+// A path through a labyrinth may enter and leave every block several times; nothing that is shown comes near.
+constexpr std::uint32_t most_rounds = 2048;
+constexpr std::uint64_t word = sizeof(std::uint32_t);
+
+}  // namespace
+
+PathRelaxation::PathRelaxation(vk::Context& context)
+    : context_(context),
+      start_pass_(context, path_start_comp, sizeof(gpu::PathStartPush), "path start"),
+      groups_(context, (most_rounds + 1) * sizeof(glm::uvec3), vk::Place::device, "path/groups"),
+      counts_(context, sizeof(gpu::PathCounts), vk::Place::device, "path/counts of lit cells") {}
+
+const vk::ComputePass& PathRelaxation::pass(PathSolver solver) {
+  const std::uint32_t lattice = solver == PathSolver::lattice ? 1 : 0;
+  auto& pass = passes_[lattice];
+  if (pass) return *pass;
+  return pass.emplace(context_, path_relax_comp, static_cast<std::uint32_t>(sizeof(gpu::PathRelaxPush)), "path relax",
+                      std::uint32_t{PATH_GROUP}, lattice);
+}
+
+void PathRelaxation::make_room(const gpu::PathGrid& grid) {
+  const std::uint64_t bytes = 3 * word * gpu::cell_count(grid);
+  quadgraph::make_room(context_, cost_, bytes, vk::Place::read, "path/cost");
+  quadgraph::make_room(context_, entering_, bytes, vk::Place::read, "path/entering");
+  quadgraph::make_room(context_, lengths_, bytes, vk::Place::read, "path/lengths");
+  for (vk::Buffer& list : lists_) {
+    quadgraph::make_room(context_, list, 3 * word * block_count(grid), vk::Place::device, "path/blocks to relax");
+  }
+}
+
+void PathRelaxation::solve(const SolidCells& cells, PathSolver solver, std::vector<PassStats>& passes) {
+  const gpu::PathGrid& grid = cells.grid;
+  const vk::ComputePass& relax = pass(solver);
+  const std::vector<glm::uvec3> no_groups(most_rounds + 1, glm::uvec3(0, 1, 1));
+  const std::uint64_t count = gpu::cell_count(grid);
+  rounds_ = relaxed_ = 0;
+  std::vector<glm::uvec3> groups;
+  for (bool done = false; !done;) {
+    if (rounds_ + rounds_at_once > most_rounds) {
+      throw SolverError("shortest paths: not found in " + std::to_string(most_rounds) + " rounds");
+    }
+    run_pass(context_, "shortest paths", 0, passes, [&](vk::Commands& commands) {
+      if (rounds_ == 0) {
+        commands.update(groups_, std::as_bytes(std::span(no_groups)));
+        commands.fill(counts_, 0);
+        commands.barrier();
+        commands.dispatch(
+            start_pass_,
+            gpu::PathStartPush{grid, cells.flags.address(), entering_.address(), lengths_.address(),
+                               cells.stamps.address(), lists_[0].address(), groups_.address(), counts_.address()},
+            count);
+      }
+      for (std::uint32_t k = rounds_; k < rounds_ + rounds_at_once; ++k) {
+        const gpu::PathRelaxPush push{grid,
+                                      cost_.address(),
+                                      lengths_.address(),
+                                      cells.stamps.address(),
+                                      lists_[k % 2].address(),
+                                      lists_[(k + 1) % 2].address(),
+                                      groups_.address(),
+                                      k};
+        commands.dispatch_indirect(relax, push, groups_, k * sizeof(glm::uvec3));
+      }
+    });
+    groups = vk::download<glm::uvec3>(context_, groups_);
+    for (std::uint32_t k = rounds_; k < rounds_ + rounds_at_once; ++k) relaxed_ += groups[k].x;
+    rounds_ += rounds_at_once;
+    done = groups[rounds_].x == 0;
+  }
+  while (rounds_ > 0 && groups[rounds_ - 1].x == 0) --rounds_;
+  // Per block of a channel: lengths and costs with a cell around, and what has changed.
+  passes.back().bytes = relaxed_ * 4ull * (2 * 1000 + 512) + count * 28;
+  lit_ = vk::download<gpu::PathCounts>(context_, counts_)[0].lit;
+}
+
+}  // namespace quadgraph

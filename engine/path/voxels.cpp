@@ -1,0 +1,85 @@
+#include "engine/path/voxels.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include "engine/path/path_pass.h"
+#include "spirv/path_box.comp.h"
+#include "spirv/path_crossings.comp.h"
+#include "spirv/path_solid.comp.h"
+#include "spirv/path_winding.comp.h"
+
+namespace quadgraph {
+namespace {
+
+// A single triangle may cover all columns: of few triangles several invocations take one.
+constexpr std::uint32_t least_invocations = 8192;
+
+// Undoes sortable_float of path_box.comp.
+float from_sortable(std::uint32_t number) {
+  return std::bit_cast<float>((number & 0x80000000u) != 0 ? number & 0x7fffffffu : ~number);
+}
+
+}  // namespace
+
+Voxels::Voxels(vk::Context& context)
+    : context_(context),
+      box_pass_(context, path_box_comp, sizeof(gpu::PathBoxPush), "path box"),
+      crossings_pass_(context, path_crossings_comp, sizeof(gpu::PathCrossingsPush), "path crossings"),
+      winding_pass_(context, path_winding_comp, sizeof(gpu::PathWindingPush), "path winding"),
+      solid_pass_(context, path_solid_comp, sizeof(gpu::PathSolidPush), "path solid"),
+      box_(context, 6 * sizeof(std::uint32_t), vk::Place::read, "path/box"),
+      counts_(context, sizeof(gpu::PathCounts), vk::Place::read, "path/counts of cells") {}
+
+void Voxels::fit(const PathMesh& mesh, std::uint32_t cells, std::vector<PassStats>& passes) {
+  constexpr std::array<std::uint32_t, 6> none = {~0u, ~0u, ~0u, 0, 0, 0};
+  run_pass(context_, "box", mesh.vertices.size(), passes, [&](vk::Commands& commands) {
+    commands.update(box_, std::as_bytes(std::span(none)));
+    commands.barrier();
+    commands.dispatch(box_pass_, gpu::PathBoxPush{mesh.vertices.address(), box_.address(), mesh.vertex_count},
+                      mesh.vertex_count);
+  });
+  const auto found = vk::download<std::uint32_t>(context_, box_);
+  glm::vec3 low, high;
+  for (int axis = 0; axis < 3; ++axis) {
+    low[axis] = from_sortable(found[axis]);
+    high[axis] = from_sortable(found[3 + axis]);
+  }
+  grid_ = grid_around(low, high, cells);
+}
+
+void Voxels::update(const PathMesh& mesh, std::uint32_t cells, std::vector<PassStats>& passes) {
+  fit(mesh, cells, passes);
+  const std::uint64_t count = gpu::cell_count(grid_), blocks = block_count(grid_), word = sizeof(std::uint32_t);
+  make_room(context_, crossings_, 3 * count * word, vk::Place::read, "path/crossings");
+  make_room(context_, flags_, count * word, vk::Place::read, "path/flags");
+  make_room(context_, stamps_, 3 * blocks * word, vk::Place::device, "path/stamps");
+  const std::uint32_t stripes = std::max(least_invocations / std::max(mesh.triangle_count, 1u), 1u);
+  const gpu::PathCrossingsPush crossings{grid_,
+                                         mesh.vertices.address(),
+                                         mesh.triangles.address(),
+                                         crossings_.address(),
+                                         flags_.address(),
+                                         mesh.triangle_count,
+                                         stripes};
+  const std::uint64_t bytes = mesh.triangles.size() + 36ull * mesh.triangle_count + 8 * 3 * count * word;
+  run_pass(context_, "voxels", bytes, passes, [&](vk::Commands& commands) {
+    commands.fill(crossings_, 0);
+    commands.fill(flags_, 0);
+    commands.fill(stamps_, ~0u);
+    commands.fill(counts_, 0);
+    commands.barrier();
+    commands.dispatch(crossings_pass_, crossings, 3ull * stripes * mesh.triangle_count);
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+      commands.dispatch(winding_pass_, gpu::PathWindingPush{grid_, crossings_.address() + axis * count * word, axis},
+                        count / grid_.size[static_cast<int>(axis)]);
+    }
+    commands.dispatch(
+        solid_pass_,
+        gpu::PathSolidPush{grid_, crossings_.address(), flags_.address(), stamps_.address(), counts_.address()}, count);
+  });
+  solid_ = vk::download<std::uint32_t>(context_, counts_)[0];
+}
+
+}  // namespace quadgraph

@@ -1,0 +1,54 @@
+// A closed, open or broken triangle mesh as solid cells, made anew on the device whenever it has changed.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/path/path_grid.h"
+#include "engine/solve/simulation.h"
+#include "engine/vk/memory.h"
+#include "engine/vk/pipeline.h"
+
+namespace quadgraph {
+
+// A triangle mesh on the device: vec3, mm, and uvec3.
+struct PathMesh {
+  const vk::Buffer& vertices;
+  const vk::Buffer& triangles;
+  std::uint32_t vertex_count = 0, triangle_count = 0;
+};
+
+// The nodes of the graph.
+struct SolidCells {
+  gpu::PathGrid grid;
+  const vk::Buffer& flags;  // uint per cell, CELL_*
+  const vk::Buffer&
+      stamps;  // uint per block and channel: 0 where a cell of the block is solid, else the largest number
+};
+
+// A cell is solid where its middle is inside the surface or the surface crosses, within the cell, one of the three
+// lines through its middle: so thin sheets are not lost. Inside is what more than three of the six directions along
+// these lines say (shaders/path_shared.h): holes, flaps, intersections and triangles that are turned around mislead
+// single lines, not the majority.
+class Voxels {
+ public:
+  explicit Voxels(vk::Context& context);
+
+  // Of a mesh, `cells` along its longest side. `passes` gets what it took.
+  void update(const PathMesh& mesh, std::uint32_t cells, std::vector<PassStats>& passes);
+
+  const gpu::PathGrid& grid() const { return grid_; }
+  SolidCells cells() const { return {grid_, flags_, stamps_}; }
+  std::uint32_t solid() const { return solid_; }  // cells
+
+ private:
+  void fit(const PathMesh& mesh, std::uint32_t cells, std::vector<PassStats>& passes);
+
+  vk::Context& context_;
+  vk::ComputePass box_pass_, crossings_pass_, winding_pass_, solid_pass_;
+  vk::Buffer box_, crossings_, flags_, stamps_, counts_;
+  gpu::PathGrid grid_{};
+  std::uint32_t solid_ = 0;
+};
+
+}  // namespace quadgraph

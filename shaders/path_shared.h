@@ -1,0 +1,124 @@
+// Types of the shortest-path method that GLSL and C++ share, in scalar layout; tests/cpp/path_layout_test.cpp compares
+// them with the compiled shaders. docs/shortest-path.md tells what the passes do.
+#ifndef QUADGRAPH_PATH_SHARED_H
+#define QUADGRAPH_PATH_SHARED_H
+
+#include "shared.h"
+
+// Cells along the side of a block, which one workgroup of its square relaxes.
+#define PATH_BLOCK 8
+#define PATH_GROUP 64
+
+#ifdef __cplusplus
+namespace quadgraph::gpu {
+#endif
+
+// Vertices are rounded to this share of a cell, so that which column a triangle covers is exact in 32 bits for up to
+// LARGEST_PATH_CELLS along a side.
+const int PATH_SUBCELLS = 64;
+const uint LARGEST_PATH_CELLS = 160u;
+
+// Length of no path.
+const float PATH_FAR = 1e30f;
+
+// What a cell is.
+const uint CELL_SOLID = 1u;    // a node of the graph
+const uint CELL_INSIDE = 2u;   // its middle is inside the surface
+const uint CELL_SURFACE = 4u;  // the surface crosses one of the three lines through its middle, within the cell
+
+// Cubes along the axes; cell (x, y, z) is number x + size.x (y + size.y z). Sizes are multiples of PATH_BLOCK.
+struct PathGrid {
+  vec3 origin;  // mm, the low corner of cell (0, 0, 0)
+  float cell;   // mm, side of a cell
+  uvec3 size;   // cells
+};
+
+QG_INLINE uint cell_count(PathGrid grid) {
+  return grid.size.x * grid.size.y * grid.size.z;
+}
+
+QG_INLINE uint cell_number(PathGrid grid, uvec3 cell) {
+  return cell.x + grid.size.x * (cell.y + grid.size.y * cell.z);
+}
+
+QG_INLINE uvec3 cell_at(PathGrid grid, uint number) {
+  return uvec3(number % grid.size.x, number / grid.size.x % grid.size.y, number / (grid.size.x * grid.size.y));
+}
+
+// mm.
+QG_INLINE vec3 middle_of(PathGrid grid, uvec3 cell) {
+  return grid.origin + grid.cell * (vec3(cell) + vec3(0.5f));
+}
+
+// path_box.comp: the box around vertices, as numbers that order as the coordinates do (sortable_float).
+struct PathBoxPush {
+  QG_REF(Vec3s) vertices;  // mm
+  QG_REF(Uints) box;       // 6: low, high; begun at the largest and smallest number
+  uint count;
+};
+
+// path_crossings.comp: where the lines through the middles of cells cross triangles. Per axis and cell, in the first
+// cell whose middle lies behind a crossing: their number times 65536 plus the change of the winding number along the
+// axis.
+struct PathCrossingsPush {
+  PathGrid grid;
+  QG_REF(Vec3s) vertices;  // mm
+  QG_REF(Uvec3s) triangles;
+  QG_REF(Uints) crossings;  // 3 per cell, axis after axis; added to
+  QG_REF(Uints) flags;      // CELL_SURFACE, or-ed
+  uint triangle_count;
+  uint stripes;  // invocations per triangle and axis
+};
+
+// path_winding.comp: along the lines of one axis, in how many of its two directions a cell's middle is inside: where
+// the changes of the winding number along the line add up to 0, in both where that is not 0 here; else, where a
+// surface is open or does not know its outside, where an odd number of crossings lies on the way.
+struct PathWindingPush {
+  PathGrid grid;
+  QG_REF(Uints) crossings;  // of the axis, replaced
+  uint axis;
+};
+
+// What is counted of the cells.
+struct PathCounts {
+  uint solid;
+  uint lit;  // of them, in some channel
+};
+
+// path_solid.comp: which cells are solid.
+struct PathSolidPush {
+  PathGrid grid;
+  QG_REF(Uints) votes;  // path_winding.comp's, axis after axis
+  QG_REF(Uints) flags;
+  QG_REF(Uints) stamps;  // per block and channel; 0 where a cell of the block is solid
+  QG_REF(Uints) counts;  // PathCounts
+};
+
+// path_start.comp: lengths before the first step: -ln of what enters.
+struct PathStartPush {
+  PathGrid grid;
+  QG_REF(Uints) flags;
+  QG_REF(Uints) entering;  // 3 per cell, channel after channel: bits of W/mm^2
+  QG_REF(Floats) paths;    // the same order, written
+  QG_REF(Uints) stamps;
+  QG_REF(Uints) list;    // blocks of round 0: block + blocks * channel
+  QG_REF(Uints) groups;  // of round 0
+  QG_REF(Uints) counts;  // PathCounts
+};
+
+// path_relax.comp: relaxes the blocks of a list.
+struct PathRelaxPush {
+  PathGrid grid;
+  QG_REF(Floats) cost;   // 3 per cell, channel after channel, 1/mm; below 0: not solid
+  QG_REF(Floats) paths;  // the same order; falls
+  QG_REF(Uints) stamps;  // last round that a block is in, by block and channel
+  QG_REF(Uints) list;    // of this round
+  QG_REF(Uints) next;    // of the next one
+  QG_REF(Uints) groups;  // workgroup counts, 3 per round
+  uint round;
+};
+
+#ifdef __cplusplus
+}  // namespace quadgraph::gpu
+#endif
+#endif

@@ -1,0 +1,37 @@
+// The structs that the passes of the shortest-path method share with C++ lie in memory as the compiled shaders read
+// them.
+#include "shaders/path_shared.h"
+#include "spirv/path_box.comp.h"
+#include "spirv/path_crossings.comp.h"
+#include "spirv/path_relax.comp.h"
+#include "spirv/path_solid.comp.h"
+#include "spirv/path_start.comp.h"
+#include "spirv/path_winding.comp.h"
+#include "tests/cpp/layout_compare.h"
+
+using namespace quadgraph;
+
+TEST_CASE("the grid and the push constants of paths") {
+  for (const vk::Spirv code : {vk::Spirv(path_crossings_comp), vk::Spirv(path_relax_comp)}) {
+    compare(code, "PathGrid", {MEMBER(PathGrid, origin), MEMBER(PathGrid, cell), MEMBER(PathGrid, size)});
+  }
+  compare(path_box_comp, "PathBoxPush",
+          {MEMBER(PathBoxPush, vertices), MEMBER(PathBoxPush, box), MEMBER(PathBoxPush, count)});
+  compare(path_crossings_comp, "PathCrossingsPush",
+          {MEMBER(PathCrossingsPush, grid), MEMBER(PathCrossingsPush, vertices), MEMBER(PathCrossingsPush, triangles),
+           MEMBER(PathCrossingsPush, crossings), MEMBER(PathCrossingsPush, flags),
+           MEMBER(PathCrossingsPush, triangle_count), MEMBER(PathCrossingsPush, stripes)});
+  compare(path_winding_comp, "PathWindingPush",
+          {MEMBER(PathWindingPush, grid), MEMBER(PathWindingPush, crossings), MEMBER(PathWindingPush, axis)});
+  compare(path_solid_comp, "PathSolidPush",
+          {MEMBER(PathSolidPush, grid), MEMBER(PathSolidPush, votes), MEMBER(PathSolidPush, flags),
+           MEMBER(PathSolidPush, stamps), MEMBER(PathSolidPush, counts)});
+  compare(path_start_comp, "PathStartPush",
+          {MEMBER(PathStartPush, grid), MEMBER(PathStartPush, flags), MEMBER(PathStartPush, entering),
+           MEMBER(PathStartPush, paths), MEMBER(PathStartPush, stamps), MEMBER(PathStartPush, list),
+           MEMBER(PathStartPush, groups), MEMBER(PathStartPush, counts)});
+  compare(path_relax_comp, "PathRelaxPush",
+          {MEMBER(PathRelaxPush, grid), MEMBER(PathRelaxPush, cost), MEMBER(PathRelaxPush, paths),
+           MEMBER(PathRelaxPush, stamps), MEMBER(PathRelaxPush, list), MEMBER(PathRelaxPush, next),
+           MEMBER(PathRelaxPush, groups), MEMBER(PathRelaxPush, round)});
+}
