@@ -29,6 +29,7 @@ from quadgraph import (
     sections,
 )
 from quadgraph.errors import InputError, QuadGraphError
+from quadgraph.polygrid import build as polygrid
 from quadgraph.surface import MesherInfo, Repair, SourceMesh, Surface
 from quadgraph.tetrahedralise import (
     DEFAULT_GRADING,
@@ -40,7 +41,7 @@ from quadgraph.tetrahedralise import (
 ORDERS = {"blocks": ordering.in_blocks, "random": ordering.at_random}
 WORKERS = 2  # levels filled with tets at the same time
 _PACKAGES = ("numpy", "scipy", "pymeshlab", "trimesh")
-_OPTIONS = ("levels", "surface_vertices", "relax_nodes", "order", "visibility_rays")
+_OPTIONS = ("levels", "surface_vertices", "relax_nodes", "order", "visibility_rays", "cubes", "cells")
 
 Progress = Callable[[str], None]
 
@@ -49,10 +50,11 @@ Progress = Callable[[str], None]
 class BakeOptions:
     """What a bake can be told. Exactly one of `unit` ("mm", "cm", "m") and `height_mm` must be given.
 
-    levels: None for as many as make sense; mesher: "tetgen" or "cgal"; grading: K of the paper's sizing field, for
-    cgal; relax_nodes: steps that spread the inner nodes; order: "blocks" or "random"; surface_vertices: about how
-    many the finest simulation surface has, None for all of the input's; visibility_rays: from each face of one level,
-    to find what sees what, 0 for none; limits hold for each run of the mesher.
+    levels: None for as many as make sense; mesher: "tetgen", "cgal" or "polygrid"; grading: K of the paper's sizing
+    field, for cgal; cubes and cells: of a polygrid (`quadgraph.polygrid.build`), None for the usual; relax_nodes: steps
+    that spread the inner nodes; order: "blocks" or "random"; surface_vertices: about how many the finest simulation
+    surface has, None for all of the input's; visibility_rays: from each face of one level, to find what sees what, 0
+    for none; limits hold for each run of the mesher.
     """
 
     unit: str | None = None
@@ -60,6 +62,8 @@ class BakeOptions:
     levels: int | None = None
     mesher: str = "tetgen"
     grading: float | None = None
+    cubes: int | None = None
+    cells: int | None = None
     relax_nodes: int = relax.DEFAULT_STEPS
     order: str = "blocks"
     surface_vertices: int | None = None
@@ -73,7 +77,8 @@ class BakeReport:
     """What a bake did. Times in s; of levels, `seconds` per step; memory in bytes, children apart.
 
     exchange: what faces see of each other, as `exchange.summary` tells; None if left out. budget: what was measured and
-    chosen for an error that was asked for (`quadgraph.budget.plan`).
+    chosen for an error that was asked for (`quadgraph.budget.plan`). polygrid: how good it is
+    (`quadgraph.polygrid.quality`), None of other meshers.
     """
 
     output: str
@@ -84,6 +89,7 @@ class BakeReport:
     levels: list[dict[str, Any]] = field(default_factory=list)
     exchange: dict[str, Any] | None = None
     budget: dict[str, Any] | None = None
+    polygrid: dict[str, Any] | None = None
     notes: list[str] = field(default_factory=list)
     seconds: dict[str, float] = field(default_factory=dict)
     peak_memory: dict[str, int] = field(default_factory=dict)
@@ -161,6 +167,8 @@ def write(
     with report.timed("transfers"):
         content = sections.whole_file(graphs, prepared.surface, seen)
     metadata = _metadata(prepared, levels, options) | ({} if budget is None else {"budget": budget})
+    if report.polygrid is not None:
+        metadata["polygrid"] = report.polygrid
     with report.timed("write"):
         report.byte_size = qgraph_file.write(Path(report.output), metadata, content)
     _complete(report, metadata, levels)
@@ -173,15 +181,29 @@ def check_options(output: Path, options: BakeOptions) -> None:
     if options.relax_nodes < 0:
         raise InputError(f"relax_nodes: {options.relax_nodes} found, 0 or more allowed")
     exchange.check_rays(options.visibility_rays)
+    _check_polygrid_options(options)
     if not output.parent.is_dir():
         raise InputError(f"{output}: the folder {output.parent} does not exist")
     if output.is_dir():
         raise InputError(f"{output}: is a folder, a file name is needed")
 
 
+def _check_polygrid_options(options: BakeOptions) -> None:
+    if options.mesher == "polygrid":
+        for name in ("surface_vertices", "grading"):
+            if getattr(options, name) is not None:
+                raise InputError(f"{name}: found with mesher 'polygrid', whose cubes and cells say how fine it is")
+        return
+    for name in ("cubes", "cells"):
+        if getattr(options, name) is not None:
+            raise InputError(f"{name}: found with mesher {options.mesher!r}, only 'polygrid' has them")
+
+
 def make_levels(surface: Surface, options: BakeOptions, report: BakeReport, tell: Progress) -> list[Level]:
     """Levels of a surface, finest first. Raises InputError or ToolError where there is no finest one."""
     surface = surface.rounded()
+    if options.mesher == "polygrid":
+        return _polygrid_levels(surface, options, report, tell)
     with _workers() as submit:
         with report.timed("simplify"):
             finest = lod.simplify(surface, options.surface_vertices) if options.surface_vertices else surface
@@ -220,6 +242,13 @@ def _collect(jobs: list[Future[Level]], report: BakeReport, tell: Progress) -> l
     return levels
 
 
+def _polygrid_levels(surface: Surface, options: BakeOptions, report: BakeReport, tell: Progress) -> list[Level]:
+    with report.timed("polygrid"):
+        made = polygrid.build(surface, options.cubes, options.cells, options.levels, tell)
+    report.polygrid = made.report
+    return [_ordered_level(built, made.mesher, len(built.tets), {}, options) for built in made.graphs]
+
+
 def _make_level(surface: Surface, options: BakeOptions) -> Level:
     """Tets, graph, even nodes, cache-local order."""
     clock = [time.perf_counter()]
@@ -228,19 +257,28 @@ def _make_level(surface: Surface, options: BakeOptions) -> Level:
     clock.append(time.perf_counter())
     built = graph.build(mesh)
     clock.append(time.perf_counter())
+    seconds = {"tetrahedra": clock[1] - clock[0], "graph": clock[2] - clock[1]}
+    return _ordered_level(built, mesh.mesher, len(mesh.tets), seconds, options)
+
+
+def _ordered_level(
+    built: graph.Graph, mesher: MesherInfo, mesher_tets: int, seconds: dict[str, float], options: BakeOptions
+) -> Level:
+    clock = [time.perf_counter()]
     relaxed = relax.relax(built, options.relax_nodes)
     clock.append(time.perf_counter())
     ordered = ORDERS[options.order](relaxed)
+    if ordered.grid_links is not None:
+        ordered = polygrid.by_layers(ordered)
     clock.append(time.perf_counter())
-    steps = ("tetrahedra", "graph", "relax", "order")
     variation = {when: relax.link_length_variation(which) for when, which in (("before", built), ("after", relaxed))}
     report = {
-        "mesher_tets": len(mesh.tets),
-        "seconds": {step: b - a for step, a, b in zip(steps, clock[:-1], clock[1:], strict=True)},
+        "mesher_tets": mesher_tets,
+        "seconds": seconds | {"relax": clock[1] - clock[0], "order": clock[2] - clock[1]},
         "link_length_variation": variation,
         "locality": ordering.inner_locality(ordered),
     }
-    return Level(ordered, mesh.mesher, report)
+    return Level(ordered, mesher, report)
 
 
 def _metadata(prepared: Prepared, levels: list[Level], options: BakeOptions) -> dict[str, Any]:

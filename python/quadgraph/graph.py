@@ -32,7 +32,9 @@ class Graph:
     tets: (n_t, 4) int64, positively oriented, at most one outside face each; faces: (n_f, 3) int64, counter-clockwise
     from outside; face_tets: (n_f,) int64; links: (n_t, 4) int64, entry k across the face opposite to vertex k, n_t + f
     for outside face f; inner: (n_t, 3) and surface: (n_f, 3) float64, node positions, mm; face_kinds: (n_f,) int64 of
-    OPEN and REFLECTING, None if all faces are open.
+    OPEN and REFLECTING, None if all faces are open; grid_links: (n_v - n_s, 6) int64, the six links of each vertex
+    below the surface in a polygrid (`quadgraph.polygrid.lattice`), its own number where one is missing; None if the
+    vertices are no polygrid's.
     """
 
     vertices: np.ndarray
@@ -43,6 +45,7 @@ class Graph:
     inner: np.ndarray
     surface: np.ndarray
     face_kinds: np.ndarray | None = None
+    grid_links: np.ndarray | None = None
 
     @property
     def nodes(self) -> np.ndarray:

@@ -114,7 +114,18 @@ def with_vertices(graph: Graph, order: np.ndarray) -> Graph:
         graph.inner,
         graph.surface,
         graph.face_kinds,
+        _grid_links(graph, number),
     )
+
+
+def _grid_links(graph: Graph, number: np.ndarray) -> np.ndarray | None:
+    """Links of a polygrid where vertex i becomes number[i]."""
+    if graph.grid_links is None:
+        return None
+    first = graph.surface_vertex_count
+    links = np.empty_like(graph.grid_links)
+    links[number[first:] - first] = number[graph.grid_links]
+    return links
 
 
 def renumbered(graph: Graph, tet_order: np.ndarray, face_order: np.ndarray) -> Graph:
@@ -123,7 +134,8 @@ def renumbered(graph: Graph, tet_order: np.ndarray, face_order: np.ndarray) -> G
     tet_number, face_number = np.argsort(tet_order), np.argsort(face_order)
     number = np.concatenate([tet_number, n_t + face_number])
     tets, faces = graph.tets[tet_order], graph.faces[face_order]
-    vertices, (tets, faces) = first_use(graph.vertices, faces, tets, faces)
+    all_vertices = np.arange(len(graph.vertices))
+    vertices, (tets, faces, vertex_number) = first_use(graph.vertices, faces, tets, faces, all_vertices)
     return Graph(
         vertices,
         tets,
@@ -133,6 +145,7 @@ def renumbered(graph: Graph, tet_order: np.ndarray, face_order: np.ndarray) -> G
         graph.inner[tet_order],
         graph.surface[face_order],
         None if graph.face_kinds is None else graph.face_kinds[face_order],
+        _grid_links(graph, vertex_number),
     )
 
 

@@ -71,7 +71,22 @@ def _add_mesh_options(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help="simplify the simulation surface to about N vertices first; the displayed surface keeps all of its own",
     )
-    parser.add_argument("--mesher", choices=("tetgen", "cgal"), default="tetgen", help="default: %(default)s")
+    parser.add_argument(
+        "--mesher",
+        choices=("tetgen", "cgal", "polygrid"),
+        default="tetgen",
+        help="polygrid: a grid of regular connectivity in the shape of the body, which --method polygrid needs "
+        "(default: %(default)s)",
+    )
+    parser.add_argument(
+        "--cubes", type=positive_int, metavar="N", help="of a polygrid along the longest side (default: about 8)"
+    )
+    parser.add_argument(
+        "--cells",
+        type=positive_int,
+        metavar="N",
+        help="of a polygrid along a cube's side on the finest level, a power of 2 (default: 4)",
+    )
     parser.add_argument(
         "--grading", type=positive_float, metavar="K", help="growth of cgal's tets with depth (default: 1)"
     )
@@ -121,6 +136,8 @@ def run(args: argparse.Namespace) -> int:
 
 def _check_error_options(args: argparse.Namespace) -> None:
     if args.error is not None:
+        if args.mesher == "polygrid":
+            raise InputError("--error: found with --mesher polygrid, which is not coarsened for an error")
         if args.material is None:
             raise InputError("--error: --material is missing; how fine a mesh must be depends on what it is made of")
         return
@@ -150,6 +167,8 @@ def _options(args: argparse.Namespace):
         "levels": args.levels,
         "mesher": args.mesher,
         "grading": args.grading,
+        "cubes": args.cubes,
+        "cells": args.cells,
         "relax_nodes": args.relax_nodes,
         "order": args.order,
         "surface_vertices": args.surface_vertices,
@@ -167,6 +186,11 @@ def _print_report(report: BakeReport) -> None:
         console.print(f"repaired: {entry['what']}: {entry['count']:,}", markup=False)
     for note in report.notes:
         console.print(note, markup=False)
+    if report.polygrid:
+        from quadgraph.polygrid.quality import sentences
+
+        for sentence in sentences(report.polygrid):
+            console.print(sentence, markup=False, soft_wrap=True)
     if report.budget:
         for sentence in budget.sentences(report.budget, report.output):
             console.print(sentence, markup=False, soft_wrap=True)
