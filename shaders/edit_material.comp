@@ -16,6 +16,24 @@ float stroke_distance(MaterialEdit e, vec3 position) {
   return nearest;
 }
 
+Optical placed(Optical optical, MaterialEdit e, vec3 position, float weight) {
+  vec3 factor = vec3(1);
+  if (e.placed == 1u) {
+    vec3 place = in_box(e.box, position);
+    vec2 at = in_picture(e.box, place);
+    weight *= box_weight(e, place);
+    if (weight == 0.0) return optical;
+    if (e.image.levels > 0u) {
+      factor = load_image(push.texels, image_tap(e.image, at, texels_across(e.box, e.image, push.spacing)));
+    }
+    if (e.mask.levels > 0u) {
+      ImageTap tap = image_tap(e.mask, at, texels_across(e.box, e.mask, push.spacing));
+      weight *= min(luminance(load_image(push.texels, tap)), 1.0);
+    }
+  }
+  return edited(optical, e, factor, weight);
+}
+
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= push.count) return;
@@ -27,7 +45,7 @@ void main() {
     bool here = e.point_count == 0u || (all(greaterThan(position, e.low)) && all(lessThan(position, e.high)));
     if (!here) continue;
     float distance = e.point_count > 0u ? stroke_distance(e, position) : 0.0;
-    optical = edited(optical, e, edit_weight(e, distance, depth));
+    optical = placed(optical, e, position, edit_weight(e, distance, depth));
   }
   push.optical.at[i] = optical;
 }

@@ -2,15 +2,10 @@
 #ifndef QUADGRAPH_EDITS_H
 #define QUADGRAPH_EDITS_H
 
-#include "shared.h"
+#include "image_levels.h"
 
 #ifdef __cplusplus
 namespace quadgraph::gpu {
-using glm::clamp;
-using glm::dot;
-using glm::max;
-using glm::min;
-using glm::mix;
 using glm::sqrt;
 #endif
 
@@ -35,6 +30,10 @@ struct MaterialEdit {
   uint coefficients;
   uint first_point;  // of the stroke
   uint point_count;  // 0: everywhere
+  uint placed;       // 1: only in the box
+  ImageBox box;
+  ImageLevels image;  // of it: what the coefficients above are multiplied by
+  ImageLevels mask;   // of it: the luminance is how much of the edit arrives
 };
 
 QG_INLINE float segment_distance(vec3 p, vec3 a, vec3 b) {
@@ -58,18 +57,25 @@ QG_INLINE float edit_weight(MaterialEdit e, float distance, float depth) {
   return weight;
 }
 
+// The same of its box, at `place` in it (in_box).
+QG_INLINE float box_weight(MaterialEdit e, vec3 place) {
+  vec3 over = max(place, -place) - e.box.half_size;
+  return inside(max(over.x, max(over.y, over.z)), e.softness);
+}
+
 QG_INLINE vec3 edited_coefficient(uint operation, vec3 value, vec3 by, float weight) {
   if (operation == EDIT_MULTIPLY) return value * mix(vec3(1.0f), by, weight);
   if (operation == EDIT_ADD) return max(value + weight * by, vec3(0.0f));
   return mix(value, by, weight);
 }
 
-QG_INLINE Optical edited(Optical optical, MaterialEdit e, float weight) {
+// `factor`: what its image makes of its coefficients.
+QG_INLINE Optical edited(Optical optical, MaterialEdit e, vec3 factor, float weight) {
   if ((e.coefficients & EDIT_SCATTERING) != 0u) {
-    optical.sigma_s_prime = edited_coefficient(e.operation, optical.sigma_s_prime, e.sigma_s_prime, weight);
+    optical.sigma_s_prime = edited_coefficient(e.operation, optical.sigma_s_prime, factor * e.sigma_s_prime, weight);
   }
   if ((e.coefficients & EDIT_ABSORPTION) != 0u) {
-    optical.sigma_a = edited_coefficient(e.operation, optical.sigma_a, e.sigma_a, weight);
+    optical.sigma_a = edited_coefficient(e.operation, optical.sigma_a, factor * e.sigma_a, weight);
   }
   return optical;
 }
@@ -86,6 +92,8 @@ struct EditMaterialPush {
   QG_REF(Floats) depth;  // mm, of the nodes
   QG_REF(MaterialEdits) edits;
   QG_REF(Vec3s) points;  // mm, of all strokes
+  QG_REF(Vec3s) texels;  // of all images
+  float spacing;         // mm from node to node: what is finer in an image is taken together
   uint edit_count;
   uint with_depth;  // 0: depth is not read
   uint count;

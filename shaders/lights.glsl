@@ -1,4 +1,5 @@
 // Light that arrives at a point: direction, irradiance facing the light, and visibility from the shadow maps.
+#include "image_levels.h"
 #include "shaped.glsl"
 
 struct Incident {
@@ -29,21 +30,8 @@ vec3 projected(LightShape shape, vec3 away, float width) {
   vec2 place = vec2(dot(shape.right, away), dot(shape.up, away)) / dot(shape.axis, away);
   if (any(greaterThan(abs(place), vec2(1)))) return vec3(0);
   float finest = 2.0 / (float(shape.rows) * length(shape.up));
-  float level = clamp(round(log2(max(width / finest, 1.0))), 0.0, float(shape.levels - 1u));
-  uvec2 size = uvec2(shape.columns, shape.rows);
-  uint first = 0u;
-  for (float k = 0.0; k < level; k += 1.0) {
-    first += size.x * size.y;
-    size = max(size / 2u, uvec2(1));
-  }
-  vec2 texel = clamp(vec2(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y) * vec2(size) - 0.5, vec2(0), vec2(size) - 1.0);
-  uvec2 low = uvec2(texel), high = min(low + 1u, size - 1u);
-  vec2 f = texel - vec2(low);
-  vec3 upper = mix(load_vec3(shape.texels, first + low.y * size.x + low.x),
-                   load_vec3(shape.texels, first + low.y * size.x + high.x), f.x);
-  vec3 lower = mix(load_vec3(shape.texels, first + high.y * size.x + low.x),
-                   load_vec3(shape.texels, first + high.y * size.x + high.x), f.x);
-  return mix(upper, lower, f.y);
+  ImageLevels image = ImageLevels(0u, shape.columns, shape.rows, shape.levels);
+  return load_image(shape.texels, image_tap(image, vec2(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y), width / finest));
 }
 
 Incident incident_light(LightRecord light, LightShape shape, vec3 position) {

@@ -1,6 +1,8 @@
 // Measures of a level's elements, in double precision.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -28,6 +30,13 @@ inline double face_area(const Level& level, const glm::uvec3& face) {
   const glm::dvec3 p(level.vertices[face[0]]);
   return 0.5 *
          glm::length(glm::cross(glm::dvec3(level.vertices[face[1]]) - p, glm::dvec3(level.vertices[face[2]]) - p));
+}
+
+// mm, about, from node to node of the tets at the surface.
+inline float node_spacing(const Level& level) {
+  double area = 0;
+  for (const glm::uvec3& face : level.faces) area += face_area(level, face);
+  return static_cast<float>(std::sqrt(area / std::max(level.face_count(), 1u)));
 }
 
 }  // namespace quadgraph

@@ -4,12 +4,11 @@
 #include <cstddef>
 #include <cstring>
 #include <fstream>
-#include <map>
-#include <mutex>
 #include <new>
 #include <string>
 
 #include "engine/graph/error.h"
+#include "engine/graph/file_cache.h"
 #include "engine/graph/section_table.h"
 
 namespace quadgraph {
@@ -75,24 +74,8 @@ std::shared_ptr<const Shapes> read_shapes(const std::filesystem::path& path) {
 }  // namespace
 
 std::shared_ptr<const Shapes> load_shapes(const std::filesystem::path& path) {
-  struct Known {
-    std::filesystem::file_time_type written;
-    std::weak_ptr<const Shapes> shapes;
-  };
-  static std::mutex mutex;
-  static std::map<std::filesystem::path, Known> known;
-  std::error_code missing;
-  const auto written = std::filesystem::last_write_time(path, missing);
-  if (missing) throw InputError(path.string() + ": cannot be read (" + missing.message() + ")");
-  const std::lock_guard lock(mutex);
-  Known& entry = known[std::filesystem::absolute(path)];
-  if (entry.written == written) {
-    if (auto shapes = entry.shapes.lock()) return shapes;
-  }
-  static std::shared_ptr<const Shapes> last;  // kept while nobody else holds it: frame after frame asks again
-  last = read_shapes(path);
-  entry = {written, last};
-  return last;
+  static FileCache<Shapes> known(1);
+  return known.load(path, read_shapes);
 }
 
 }  // namespace quadgraph

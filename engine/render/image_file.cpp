@@ -12,11 +12,13 @@
 #include <glm/common.hpp>
 
 #include "engine/graph/error.h"
+#include "engine/graph/file_cache.h"
 
 namespace quadgraph {
 namespace {
 
-constexpr std::int64_t largest_side = 16384;  // texels
+constexpr std::int64_t largest_side = 16384;     // texels
+constexpr std::uint32_t largest_in_body = 1024;  // the same
 
 std::string extension_of(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
@@ -88,27 +90,6 @@ Image image_of(const png_image& png, const Value* values, const Decode& decode) 
 
 }  // namespace
 
-Image resampled(const Image& picture, std::uint32_t width, std::uint32_t height) {
-  const auto shrink = [](const Image& from, std::uint32_t to, bool rows) {
-    const std::uint32_t size = rows ? from.height : from.width, across = rows ? from.width : from.height;
-    Image image{rows ? from.width : to, rows ? to : from.height, {}};
-    image.texels.assign(std::size_t{to} * across, glm::vec3(0));
-    for (std::uint32_t i = 0; i < to; ++i) {
-      const double begin = static_cast<double>(i) * size / to, end = static_cast<double>(i + 1) * size / to;
-      for (auto k = static_cast<std::uint32_t>(begin); k < size && k < end; ++k) {
-        const double part = std::min<double>(end, k + 1) - std::max<double>(begin, k);
-        const auto share = static_cast<float>(part / (end - begin));
-        for (std::uint32_t j = 0; j < across; ++j) {
-          image.texels[rows ? std::size_t{i} * across + j : std::size_t{j} * to + i] +=
-              share * from.texels[rows ? std::size_t{k} * across + j : std::size_t{j} * size + k];
-        }
-      }
-    }
-    return image;
-  };
-  return shrink(shrink(picture, height, true), width, false);
-}
-
 void check_image_size(const std::filesystem::path& path, std::int64_t width, std::int64_t height) {
   if (width >= 1 && height >= 1 && width <= largest_side && height <= largest_side) return;
   throw InputError(path.string() + ": found " + std::to_string(width) + "x" + std::to_string(height) +
@@ -164,6 +145,15 @@ Image read_image(const std::filesystem::path& path) {
   Image image = read(path);
   check_values(path, image);
   return image;
+}
+
+std::shared_ptr<const ImagePyramid> load_pyramid(const std::filesystem::path& path) {
+  static FileCache<ImagePyramid> known(8);
+  return known.load(path, [](const std::filesystem::path& file) {
+    auto pyramid = std::make_shared<ImagePyramid>(pyramid_of(read_image(file), largest_in_body));
+    pyramid->file = file;
+    return pyramid;
+  });
 }
 
 }  // namespace quadgraph

@@ -11,20 +11,10 @@ namespace {
 
 constexpr std::uint32_t largest_projected = 4096;  // texels a side; beyond, no face or pixel sees them apart
 
-ProjectedImage upload_projected(vk::Context& context, const Image& picture) {
-  Image level = picture;
-  while (std::max(level.width, level.height) > largest_projected) {
-    level = resampled(level, std::max(level.width / 2, 1u), std::max(level.height / 2, 1u));
-  }
-  ProjectedImage image{{}, level.width, level.height, 1};
-  std::vector<glm::vec3> texels = level.texels;
-  while (level.width > 1 || level.height > 1) {
-    level = resampled(level, std::max(level.width / 2, 1u), std::max(level.height / 2, 1u));
-    texels.insert(texels.end(), level.texels.begin(), level.texels.end());
-    ++image.levels;
-  }
-  image.texels = vk::upload<glm::vec3>(context, texels, "light/projected image");
-  return image;
+ProjectedImage upload_projected(vk::Context& context, Image&& picture) {
+  const ImagePyramid pyramid = pyramid_of(std::move(picture), largest_projected);
+  return {vk::upload<glm::vec3>(context, pyramid.texels, "light/projected image"), pyramid.columns, pyramid.rows,
+          pyramid.levels};
 }
 
 constexpr std::size_t picture_texels = std::size_t{gpu::ENVIRONMENT_COLUMNS} * gpu::ENVIRONMENT_ROWS;

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "engine/scene/placement_json.h"
+
 namespace quadgraph {
 namespace {
 
@@ -19,7 +21,8 @@ Edit::Operation operation_from(const JsonField& field) {
 }  // namespace
 
 Edit edit_from(const JsonField& field) {
-  field.allow({"operation", "sigma_s_prime", "sigma_a", "stroke", "radius", "depth", "softness"});
+  field.allow(
+      {"operation", "sigma_s_prime", "sigma_a", "stroke", "radius", "depth", "softness", "placement", "image", "mask"});
   Edit edit;
   edit.operation = operation_from(field.at("operation"));
   if (const auto scattering = field.find("sigma_s_prime")) edit.sigma_s_prime = scattering->rgb();
@@ -35,6 +38,9 @@ Edit edit_from(const JsonField& field) {
     edit.depth_to = ends[1].real();
   }
   if (const auto softness = field.find("softness")) edit.softness = softness->real();
+  if (const auto placement = field.find("placement")) edit.placement = placement_from(*placement);
+  if (const auto image = field.find("image")) edit.image = image_from(*image);
+  if (const auto mask = field.find("mask")) edit.mask = image_from(*mask);
   field.within([&] { check_edit(edit); });
   return edit;
 }
@@ -52,6 +58,9 @@ Json to_json(const Edit& edit) {
     json["depth"] = Json::array({real_json(edit.depth_from), real_json(edit.depth_to)});
   }
   if (edit.softness > 0) json["softness"] = real_json(edit.softness);
+  if (edit.placement) json["placement"] = to_json(*edit.placement);
+  if (edit.image) json["image"] = to_json(*edit.image);
+  if (edit.mask) json["mask"] = to_json(*edit.mask);
   return json;
 }
 

@@ -6,7 +6,8 @@
 
 namespace quadgraph {
 
-// {"operation": "multiply", "sigma_a": 2, "stroke": [[x, y, z], ...], "radius": 4, "depth": [0, 3], "softness": 1}:
+// {"operation": "multiply", "sigma_a": 2, "stroke": [[x, y, z], ...], "radius": 4, "depth": [0, 3], "softness": 1,
+// "placement": {...}, "image": FILE, "mask": FILE}:
 // the members of Edit; "operation" multiply, add or set; coefficients one number or three; without "depth" all of it.
 // Throws InputError with the path of what is wrong.
 Edit edit_from(const JsonField& field);

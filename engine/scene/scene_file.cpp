@@ -38,14 +38,15 @@ std::vector<Json*> text_of(Json& object, const char* name) {
   return {&object[name]};
 }
 
-// Replaces the files that a scene names: its body, a volume, images of lights, and shapes of deformers.
+// Replaces the files that a scene names: its body, a volume, images of lights and edits, and shapes of deformers.
 template <typename Function>
 void each_file(Json& document, const Function& renamed) {
   std::vector<Json*> files = text_of(document, "body");
   for (Json* material : text_of(document, "material")) {
     if (is_volume(material->get<std::string>())) files.push_back(material);
   }
-  for (const auto& [list, name] : {std::pair{"lights", "file"}, {"deformation", "shapes"}}) {
+  for (const auto& [list, name] :
+       {std::pair{"lights", "file"}, {"edits", "image"}, {"edits", "mask"}, {"deformation", "shapes"}}) {
     if (!document.contains(list) || !document[list].is_array()) continue;
     for (Json& item : document[list]) {
       for (Json* file : text_of(item, name)) files.push_back(file);

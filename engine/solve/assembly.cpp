@@ -193,13 +193,15 @@ void record_material(Workspace& work, const LevelBuffers& level, const gpu::Mate
 }
 
 void record_edits(Workspace& work, const LevelBuffers& level, const vk::Buffer& base, const EditBuffers& edits,
-                  const vk::Buffer* depth, std::uint32_t count) {
+                  const vk::Buffer* depth, float spacing, std::uint32_t count) {
   const gpu::EditMaterialPush push{base.address(),
                                    level.optical.address(),
                                    level.rest.address(),
                                    depth ? depth->address() : 0,
                                    edits.edits.address(),
                                    edits.points.address(),
+                                   edits.texels.address(),
+                                   spacing,
                                    edits.count,
                                    depth ? 1u : 0u,
                                    count};

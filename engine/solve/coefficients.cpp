@@ -6,6 +6,7 @@
 #include "engine/graph/depth.h"
 #include "engine/graph/error.h"
 #include "engine/graph/fresnel.h"
+#include "engine/graph/geometry.h"
 #include "engine/graph/material.h"
 #include "engine/graph/model.h"
 #include "engine/graph/operator.h"
@@ -30,6 +31,7 @@ Coefficients::Coefficients(vk::Context& context, std::span<const Level> rest)
       given_(rest.size()),
       depth_(rest.size()),
       depth_buffers_(rest.size()),
+      spacing_(rest.size()),
       albedo_(rest.size()),
       sampled_(rest.size()) {}
 
@@ -82,6 +84,9 @@ void Coefficients::set(std::span<const Edit> edits) {
     if (!edits_.points.empty()) {
       edit_buffers_.points = vk::upload<glm::vec3>(context_, edits_.points, "material/strokes");
     }
+    if (!edits_.texels.empty()) {
+      edit_buffers_.texels = vk::upload<glm::vec3>(context_, edits_.texels, "material/images");
+    }
   }
   changed();
 }
@@ -89,6 +94,11 @@ void Coefficients::set(std::span<const Edit> edits) {
 const std::vector<float>& Coefficients::depth(std::uint32_t number) {
   if (depth_[number].empty()) depth_[number] = depth_below_surface(rest_[number], rest_[number].nodes);
   return depth_[number];
+}
+
+float Coefficients::spacing(std::uint32_t number) {
+  if (!spacing_[number]) spacing_[number] = node_spacing(rest_[number]);
+  return *spacing_[number];
 }
 
 std::vector<gpu::Optical> Coefficients::at(std::uint32_t number, std::span<const SurfaceSample> samples) {
@@ -99,7 +109,7 @@ std::vector<gpu::Optical> Coefficients::at(std::uint32_t number, std::span<const
     const glm::vec3& place = rest_[number].nodes[tet];
     const float below = deep ? depth(number)[tet] : 0;
     const gpu::Optical base = material_ ? gpu::material_at(*material_, place, below) : sampled_[number][i];
-    optical.push_back(edits_.apply(base, place, below));
+    optical.push_back(edits_.apply(base, place, below, spacing(number)));
   }
   return optical;
 }
@@ -165,7 +175,8 @@ void Coefficients::record(Workspace& work, const std::vector<LevelBuffers>& leve
     const vk::Buffer* depth = wants_depth() ? &depth_buffers_[i] : nullptr;
     if (material_) record_material(work, level, *material_, depth, wanted);
     if (!material_ || edit_buffers_.count > 0) {
-      record_edits(work, level, material_ ? level.optical : given_[i], edit_buffers_, depth, wanted);
+      record_edits(work, level, material_ ? level.optical : given_[i], edit_buffers_, depth,
+                   spacing(static_cast<std::uint32_t>(i)), wanted);
     }
   }
   evaluated_ = extent_;

@@ -61,6 +61,7 @@ class Coefficients {
   bool layered() const { return material_ && material_->pattern == gpu::PATTERN_LAYERS; }
   bool wants_depth() const { return layered() || edits_.wants_depth(); }
   const std::vector<float>& depth(std::uint32_t number);
+  float spacing(std::uint32_t number);
 
   vk::Context& context_;
   std::span<const Level> rest_;
@@ -70,6 +71,7 @@ class Coefficients {
   EditBuffers edit_buffers_;
   std::vector<std::vector<float>> depth_;  // mm, of the nodes of every level, computed at first use
   std::vector<vk::Buffer> depth_buffers_;
+  std::vector<std::optional<float>> spacing_;  // mm, of the nodes of every level, computed at first use
   Extent extent_ = Extent::one;
   std::optional<Extent> evaluated_;  // the present coefficients, there
   float eta_ = 1;

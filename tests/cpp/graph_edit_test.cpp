@@ -18,7 +18,7 @@ const gpu::Optical base{{1, 2, 3}, {0.1f, 0.2f, 0.3f}};
 
 gpu::Optical after(std::initializer_list<Edit> edits, const glm::vec3& place = {}, float depth = 0) {
   const std::vector<Edit> all(edits);
-  return EditArrays(all).apply(base, place, depth);
+  return EditArrays(all).apply(base, place, depth, 1);
 }
 
 }  // namespace
@@ -64,6 +64,75 @@ TEST_CASE("a stroke reaches as far as its radius, fading over its softness, betw
   CHECK(amount({5, 2.001f, 0}, 2) == 0);
 }
 
+namespace {
+
+// 4 x 2 texels: above 0, 1/4, 1/2, 3/4 from left to right, in green only; below 1.
+std::shared_ptr<const ImagePyramid> steps() {
+  Image image{4, 2, std::vector<glm::vec3>(8, glm::vec3(1))};
+  for (std::uint32_t i = 0; i < 4; ++i) image.texels[i] = {0, 0.25f * static_cast<float>(i), 0};
+  return std::make_shared<const ImagePyramid>(pyramid_of(image, 1024));
+}
+
+// 8 x 4 mm, 2 mm deep, seen along -y from above, its top towards -z: x to the right.
+const Placement flat{.centre = {10, 5, 0}, .direction = {0, -3, 0}, .up = {0, 1, -1}, .size = {8, 4, 2}};
+
+}  // namespace
+
+TEST_CASE("a placed image multiplies what the edit does, where its box lies, as it is seen along its direction") {
+  Edit edit{.operation = Edit::Operation::set, .sigma_a = glm::vec3(8), .placement = flat, .image = steps()};
+  const auto at = [&](const glm::vec3& place) {
+    return EditArrays(std::span(&edit, 1)).apply(base, place, 0, 0.1f).sigma_a;
+  };
+  // Middles of texels: 2 mm a side, the upper row at z = -1.
+  for (int i = 0; i < 4; ++i) {
+    const auto x = 7 + 2 * static_cast<float>(i);
+    CHECK(at({x, 5, -1}).x == doctest::Approx(0));
+    CHECK(at({x, 5, -1}).y == doctest::Approx(2.0 * i));
+    CHECK(at({x, 5.9f, 1}).x == doctest::Approx(8));
+  }
+  CHECK(at({10, 5, -1}).y == doctest::Approx(3));  // between two
+  CHECK(at({10, 5, 0}).x == doctest::Approx(4));
+  for (const glm::vec3& outside : {glm::vec3(5.9f, 5, 0), {14.1f, 5, 0}, {10, 6.1f, 0}, {10, 3.9f, 0}, {10, 5, 2.1f}}) {
+    CHECK(at(outside) == base.sigma_a);
+  }
+  edit.operation = Edit::Operation::add;
+  CHECK(at({9, 5, -1}).y == doctest::Approx(0.2 + 2));
+  edit.operation = Edit::Operation::multiply;
+  CHECK(at({9, 5, -1}).y == doctest::Approx(0.2 * 2));
+  CHECK(at({9, 5, -1}).z == doctest::Approx(0));
+  edit.softness = 0.5f;
+  CHECK(at({14, 5, 1}).x == doctest::Approx(0.5 * (0.1 + 0.8)));
+}
+
+TEST_CASE("the luminance of a mask is how much of an edit arrives, beside its depth and stroke") {
+  Edit edit{.operation = Edit::Operation::set, .sigma_a = glm::vec3(1), .depth_to = 1, .placement = flat};
+  edit.mask = steps();
+  const auto share = [&](const glm::vec3& place, float depth) {
+    const glm::vec3 found = EditArrays(std::span(&edit, 1)).apply(base, place, depth, 0.1f).sigma_a;
+    return (found.x - base.sigma_a.x) / (1 - base.sigma_a.x);
+  };
+  CHECK(share({13, 5, -1}, 0) == doctest::Approx(0.7152 * 0.75));
+  CHECK(share({7, 5, -1}, 0) == doctest::Approx(0));
+  CHECK(share({7, 5, 1}, 0.9f) == doctest::Approx(1));
+  CHECK(share({7, 5, 1}, 1.1f) == doctest::Approx(0));
+  edit.stroke = {{7, 5, 1}};
+  edit.radius = 1;
+  CHECK(share({7, 5, 1}, 0) == doctest::Approx(1));
+  CHECK(share({9, 5, 1}, 0) == doctest::Approx(0));
+}
+
+TEST_CASE("what is finer in an image than the nodes are apart is taken together") {
+  Image stripes{256, 256, {}};
+  for (std::uint32_t i = 0; i < 256 * 256; ++i) stripes.texels.emplace_back(static_cast<float>(i % 2));
+  Edit edit{.operation = Edit::Operation::set, .sigma_a = glm::vec3(1), .placement = Placement{.size = {64, 64, 64}}};
+  edit.image = std::make_shared<const ImagePyramid>(pyramid_of(stripes, 1024));
+  const EditArrays arrays(std::span(&edit, 1));
+  const glm::vec3 place(3.125f, 1, 0);  // in the middle of a texel
+  CHECK(std::abs(arrays.apply(base, place, 0, 0.25f).sigma_a.x - 0.5f) > 0.49f);
+  CHECK(arrays.apply(base, place, 0, 1).sigma_a.x == doctest::Approx(0.5));
+  CHECK(arrays.apply(base, place, 0, 1000).sigma_a.x == doctest::Approx(0.5));
+}
+
 TEST_CASE("what an edit cannot be is refused by its field") {
   const auto said = [](const Edit& edit) -> std::string {
     try {
@@ -85,6 +154,13 @@ TEST_CASE("what an edit cannot be is refused by its field") {
   CHECK(said({.sigma_a = one, .depth_from = -1}).starts_with("depth: found -1"));
   CHECK(said({.sigma_a = one, .depth_from = 2, .depth_to = 2}).starts_with("depth: found 2"));
   CHECK(said({.sigma_a = one, .softness = -1}).starts_with("softness: found -1"));
+  CHECK(said({.sigma_a = one, .mask = steps()}).starts_with("placement: found none"));
+  const auto placed = [&](const Placement& placement) { return said({.sigma_a = one, .placement = placement}); };
+  CHECK(placed(flat).empty());
+  CHECK(placed({.size = {1, 0, 1}}).starts_with("size: found 0"));
+  CHECK(placed({.direction = {0, 0, 0}, .size = one}).starts_with("direction: found 0"));
+  CHECK(placed({.direction = {0, 2, 0}, .size = one}).starts_with("up: found 0 or a direction along"));
+  CHECK(placed({.centre = {NAN, 0, 0}, .size = one}).starts_with("centre: found"));
 }
 
 TEST_CASE("the depth in a box is the distance to its nearest side") {

@@ -2,15 +2,27 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <random>
 
 #include "engine/graph/depth.h"
 #include "engine/graph/error.h"
+#include "engine/graph/geometry.h"
 #include "shaders/material.h"
 #include "tests/cpp/solve_fixtures.h"
 
 using namespace quadgraph;
 
 namespace {
+
+std::shared_ptr<const ImagePyramid> noise(std::uint32_t width, std::uint32_t height) {
+  Image image{width, height, {}};
+  std::mt19937 random(width);
+  std::uniform_real_distribution<float> value(0, 1);
+  for (std::uint32_t i = 0; i < width * height; ++i) {
+    image.texels.emplace_back(value(random), value(random), value(random));
+  }
+  return std::make_shared<const ImagePyramid>(pyramid_of(image, 1024));
+}
 
 const std::vector<Edit> edits = {
     {.operation = Edit::Operation::multiply,
@@ -24,14 +36,22 @@ const std::vector<Edit> edits = {
      .stroke = {{5, 5, 0}},
      .radius = 4,
      .depth_from = 0.5f,
-     .softness = 1}};
+     .softness = 1},
+    {.operation = Edit::Operation::multiply,
+     .sigma_s_prime = glm::vec3(1, 2, 1),
+     .sigma_a = glm::vec3(2),
+     .softness = 1,
+     .placement = Placement{.centre = {5, 4, 5}, .direction = {1, -1, 0.5f}, .up = {0, 1, 1}, .size = {8, 7, 12}},
+     .image = noise(9, 5),
+     .mask = noise(70, 33)}};
 
 std::vector<gpu::Optical> edited_on_cpu(const Level& level, const gpu::Material& material) {
   const EditArrays arrays(edits);
   const std::vector<float> depth = depth_below_surface(level, level.nodes);
   std::vector<gpu::Optical> optical;
   for (std::size_t i = 0; i < level.nodes.size(); ++i) {
-    optical.push_back(arrays.apply(gpu::material_at(material, level.nodes[i], depth[i]), level.nodes[i], depth[i]));
+    optical.push_back(arrays.apply(gpu::material_at(material, level.nodes[i], depth[i]), level.nodes[i], depth[i],
+                                   node_spacing(level)));
   }
   return optical;
 }

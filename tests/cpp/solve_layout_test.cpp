@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "shaders/assembly_shared.h"
+#include "shaders/edits.h"
 #include "shaders/surface_shared.h"
 #include "spirv/assemble_edges.comp.h"
 #include "spirv/assemble_edges_sp3.comp.h"
@@ -23,6 +24,7 @@
 #include "spirv/cg_update.comp.h"
 #include "spirv/cg_update_sp3.comp.h"
 #include "spirv/display_scale.comp.h"
+#include "spirv/edit_material.comp.h"
 #include "spirv/eigenvalue_bound.comp.h"
 #include "spirv/eigenvalue_bound_sp3.comp.h"
 #include "spirv/energy.comp.h"
@@ -55,6 +57,18 @@ TEST_CASE("structs in buffers") {
           {MEMBER(Material, sigma_s_prime), MEMBER(Material, sigma_a), MEMBER(Material, eta), MEMBER(Material, pattern),
            MEMBER(Material, second_sigma_s_prime), MEMBER(Material, second_sigma_a), MEMBER(Material, period),
            MEMBER(Material, sharpness)});
+  compare(edit_material_comp, "MaterialEdit",
+          {MEMBER(MaterialEdit, sigma_s_prime), MEMBER(MaterialEdit, sigma_a), MEMBER(MaterialEdit, low),
+           MEMBER(MaterialEdit, high), MEMBER(MaterialEdit, depth_from), MEMBER(MaterialEdit, depth_to),
+           MEMBER(MaterialEdit, radius), MEMBER(MaterialEdit, softness), MEMBER(MaterialEdit, operation),
+           MEMBER(MaterialEdit, coefficients), MEMBER(MaterialEdit, first_point), MEMBER(MaterialEdit, point_count),
+           MEMBER(MaterialEdit, placed), MEMBER(MaterialEdit, box), MEMBER(MaterialEdit, image),
+           MEMBER(MaterialEdit, mask)});
+  compare(edit_material_comp, "ImageBox",
+          {MEMBER(ImageBox, centre), MEMBER(ImageBox, right), MEMBER(ImageBox, up), MEMBER(ImageBox, half_size)});
+  compare(edit_material_comp, "ImageLevels",
+          {MEMBER(ImageLevels, first), MEMBER(ImageLevels, columns), MEMBER(ImageLevels, rows),
+           MEMBER(ImageLevels, levels)});
   compare(cg_start_comp, "RowsRef",
           {MEMBER(RowsRef, slice_offset), MEMBER(RowsRef, entry), MEMBER(RowsRef, row_sum), MEMBER(RowsRef, diagonal)});
   compare(cg_start_comp, "SolveState",
@@ -94,6 +108,7 @@ TEST_CASE("arrays in buffers have the stride of their C++ element") {
                                                                    {"EnergySumsArray", sizeof(gpu::EnergySums)},
                                                                    {"Reduction", sizeof(glm::vec3)}};
   const std::vector<vk::Spirv> diffusion = {vk::Spirv(evaluate_material_comp),
+                                            vk::Spirv(edit_material_comp),
                                             vk::Spirv(shape_comp),
                                             vk::Spirv(irradiance_scale_comp),
                                             vk::Spirv(display_scale_comp),
@@ -138,6 +153,7 @@ TEST_CASE("arrays in buffers have the stride of their C++ element") {
     auto expected = common;
     if (moments == 1) {  // what no pass of fields has
       expected.emplace_back("Floats", sizeof(float));
+      expected.emplace_back("MaterialEdits", sizeof(gpu::MaterialEdit));
       expected.emplace_back("Uvec2s", sizeof(glm::uvec2));
     }
     expected.emplace_back("Fields", moments * sizeof(glm::vec3));

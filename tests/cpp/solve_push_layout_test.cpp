@@ -70,11 +70,11 @@ TEST_CASE("push constants") {
       evaluate_material_comp, "EvaluateMaterialPush",
       {MEMBER(EvaluateMaterialPush, material), MEMBER(EvaluateMaterialPush, nodes), MEMBER(EvaluateMaterialPush, depth),
        MEMBER(EvaluateMaterialPush, optical), MEMBER(EvaluateMaterialPush, count)});
-  compare(
-      edit_material_comp, "EditMaterialPush",
-      {MEMBER(EditMaterialPush, base), MEMBER(EditMaterialPush, optical), MEMBER(EditMaterialPush, nodes),
-       MEMBER(EditMaterialPush, depth), MEMBER(EditMaterialPush, edits), MEMBER(EditMaterialPush, points),
-       MEMBER(EditMaterialPush, edit_count), MEMBER(EditMaterialPush, with_depth), MEMBER(EditMaterialPush, count)});
+  compare(edit_material_comp, "EditMaterialPush",
+          {MEMBER(EditMaterialPush, base), MEMBER(EditMaterialPush, optical), MEMBER(EditMaterialPush, nodes),
+           MEMBER(EditMaterialPush, depth), MEMBER(EditMaterialPush, edits), MEMBER(EditMaterialPush, points),
+           MEMBER(EditMaterialPush, texels), MEMBER(EditMaterialPush, spacing), MEMBER(EditMaterialPush, edit_count),
+           MEMBER(EditMaterialPush, with_depth), MEMBER(EditMaterialPush, count)});
   compare(copy_comp, "CopyPush",
           {MEMBER(CopyPush, source), MEMBER(CopyPush, target), MEMBER(CopyPush, count), MEMBER(CopyPush, invocations)});
   compare(shape_comp, "ShapePush",
