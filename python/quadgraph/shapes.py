@@ -18,7 +18,9 @@ from scipy.sparse.linalg import splu
 from quadgraph import qgraph_file
 from quadgraph.display_map import nearest_faces
 from quadgraph.errors import InputError
-from quadgraph.gltf_morph import MorphTargets, read_targets
+from quadgraph.gltf_file import GltfFile, read
+from quadgraph.gltf_morph import read_targets
+from quadgraph.gltf_skin import has_skin, read_frames
 from quadgraph.mesh_io import read_surface
 from quadgraph.surface import Surface
 
@@ -46,23 +48,36 @@ class Shapes:
         return qgraph_file.write_sections(path, {"kind": "shapes"}, sections)
 
 
+def from_gltf(body: Path, path: Path, rate: float = 24, animation: str | None = None) -> Shapes:
+    """Shapes of a .glb or .gltf whose mesh, unposed, lies where that of the baked `body` does, in its unit.
+
+    Of skinned meshes the frames of the animation of that name, or the only one, `rate` a second; without a skin a shape
+    for each morph target. Raises InputError, FormatError.
+    """
+    file = qgraph_file.read(body)
+    unit_mm = file.metadata["unit_mm"]
+    vertices, triangles, moves = read(path, lambda gltf: _moves_of(gltf, rate, animation))
+    return of_moves(file, Surface(vertices * unit_mm, triangles), moves * unit_mm)
+
+
+def _moves_of(file: GltfFile, rate: float, animation: str | None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Vertices (n, 3), triangles (m, 3), displacements (shapes, n, 3)."""
+    if has_skin(file):
+        skinned = read_frames(file, rate, animation)
+        return skinned.vertices, skinned.triangles, skinned.frames - skinned.vertices
+    morph = read_targets(file)
+    return morph.vertices, morph.triangles, morph.targets
+
+
 def from_frames(body: Path, rest: Path, frames: Sequence[Path]) -> Shapes:
     """Read frames of the mesh `rest`, which lies where that of the baked `body` does, in its unit.
 
-    .obj, .ply or .off, all with the vertices and triangles of `rest` in its order; or a single .glb or .gltf, of whose
-    morph targets each is a shape, and whose mesh is the rest. Raises InputError, FormatError.
+    .obj, .ply or .off, all with the vertices and triangles of `rest` in its order. Raises InputError, FormatError.
     """
     file = qgraph_file.read(body)
-    if len(frames) == 1 and frames[0].suffix.lower() in (".glb", ".gltf"):
-        return _of_morph_targets(file, read_targets(frames[0]))
     start = _read(rest, file.metadata["unit_mm"])
     moves = [_moved(start, frame, file.metadata["unit_mm"]) for frame in frames]
     return of_moves(file, start, np.array(moves))
-
-
-def _of_morph_targets(file: qgraph_file.QGraphFile, morph: MorphTargets) -> Shapes:
-    unit_mm = file.metadata["unit_mm"]
-    return of_moves(file, Surface(morph.vertices * unit_mm, morph.triangles), morph.targets * unit_mm)
 
 
 def of_moves(file: qgraph_file.QGraphFile, start: Surface, moves: np.ndarray) -> Shapes:

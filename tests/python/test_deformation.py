@@ -12,7 +12,7 @@ import pytest
 
 from quadgraph import _core, cli, qgraph_file
 from quadgraph.errors import FormatError, InputError
-from quadgraph.shapes import Shapes, from_frames, of_moves
+from quadgraph.shapes import Shapes, from_gltf, of_moves
 from quadgraph.surface import Surface
 
 TINY = Path(__file__).resolve().parents[1] / "data" / "tiny.qgraph"
@@ -182,7 +182,7 @@ def test_morph_targets_of_a_gltf_file_are_shapes(engine, tmp_path, capsys):
     top = display["vertices"][:, 1] > display["vertices"][:, 1].max() - 1e-3
     path = tmp_path / "a.glb"
     path.write_bytes(glb_of(vertices, display["triangles"], np.where(top[:, None], [0.5, 0, 0], 0)))
-    found = from_frames(TINY, path, [path])
+    found = from_gltf(TINY, path)
     assert found.display.shape == (1, len(vertices), 3)
     assert np.allclose(found.display[0], np.where(top[:, None], [0, 0.5, 0], 0), atol=1e-5)
     path.write_bytes(path.read_bytes().replace(b'"targets"', b'"tarrots"'))

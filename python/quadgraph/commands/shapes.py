@@ -5,6 +5,9 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from quadgraph.commands.scene import positive_float
+from quadgraph.errors import InputError
+
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Register the subcommand."""
@@ -16,10 +19,18 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         type=Path,
         nargs="+",
         help="meshes (.obj, .ply, .off) with the vertices and triangles of the rest, in its unit; or a single .glb or "
-        ".gltf: its morph targets",
+        ".gltf: the frames of its skinned animation, or its morph targets",
     )
     parser.add_argument(
         "--rest", metavar="MESH", type=Path, help="the frame that lies where the body does; left out: the first"
+    )
+    parser.add_argument("--animation", metavar="NAME", help="of a skinned glTF that has several")
+    parser.add_argument(
+        "--frames-per-second",
+        metavar="N",
+        type=positive_float,
+        default=24,
+        help="of a skinned glTF (default: %(default)s)",
     )
     parser.add_argument("-o", "--output", metavar="FILE", type=Path, required=True, help="the .qshapes to write")
 
@@ -28,7 +39,12 @@ def run(args: argparse.Namespace) -> int:
     """Read, carry to the tets, write; 0 on success."""
     from quadgraph import shapes
 
-    found = shapes.from_frames(args.body, args.rest or args.frames[0], args.frames)
+    if len(args.frames) == 1 and args.frames[0].suffix.lower() in (".glb", ".gltf"):
+        if args.rest:
+            raise InputError("--rest: a glTF file has its own")
+        found = shapes.from_gltf(args.body, args.frames[0], args.frames_per_second, args.animation)
+    else:
+        found = shapes.from_frames(args.body, args.rest or args.frames[0], args.frames)
     size = found.write(args.output)
     print(f"{args.output}: {len(found.display)} shapes of {len(found.levels)} levels, {size / 1e6:.1f} MB")
     return 0
