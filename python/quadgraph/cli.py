@@ -17,6 +17,7 @@ from quadgraph.errors import QuadGraphError
 SUBCOMMANDS = (
     "bake",
     "shapes",
+    "volume",
     "info",
     "view",
     "render",

@@ -1,0 +1,90 @@
+"""`quadgraph volume`: an OpenVDB file as a material's .npz, or such an .npz as an OpenVDB file.
+
+Its Python module must be there: apt install python3-openvdb.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from quadgraph.errors import InputError
+
+if TYPE_CHECKING:
+    from quadgraph.openvdb import Field
+
+_UNITS_MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0}
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Register the subcommand."""
+    parser = subparsers.add_parser("volume", help="coefficients from an OpenVDB file", description=__doc__)
+    parser.add_argument("file", metavar="FILE", type=Path, help="a .vdb, or an .npz as --material takes it")
+    for option, grid in (("--sigma-s-prime", "sigma_s_prime"), ("--sigma-a", "sigma_a")):
+        parser.add_argument(
+            option,
+            metavar="GRID[*NUMBER]",
+            type=_field,
+            default=grid,
+            help=f"{grid} (1/mm): a grid, times one number or R/G/B, or a number alone (default: %(default)s)",
+        )
+    parser.add_argument("--unit", choices=tuple(_UNITS_MM), default="mm", help="of lengths in the .vdb (%(default)s)")
+    parser.add_argument("--eta", type=_eta, help="refractive index (default: that in the file, or 1.3)")
+    parser.add_argument("-o", "--output", metavar="FILE", type=Path, required=True, help="the .npz, or .vdb, to write")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Read, combine, write; 0 on success."""
+    from quadgraph import openvdb
+
+    suffixes = args.file.suffix.lower(), args.output.suffix.lower()
+    if suffixes == (".npz", ".vdb"):
+        openvdb.write(args.file, args.output)
+        print(f"{args.output}: grids sigma_s_prime and sigma_a in mm")
+        return 0
+    if suffixes != (".vdb", ".npz"):
+        raise InputError(f"from '{args.file}' to '{args.output}': from .vdb to .npz, or back, is wanted")
+    volume = openvdb.read(args.file, args.sigma_s_prime, args.sigma_a, unit_mm=_UNITS_MM[args.unit], eta=args.eta)
+    volume.write(args.output)
+    cells, spacing = volume.sigma_s_prime.shape[2::-1], volume.spacing
+    print(
+        f"{args.output}: {' x '.join(map(str, cells))} cells of {' x '.join(f'{s:.4g}' for s in spacing)} mm, "
+        f"sigma_s_prime up to {volume.sigma_s_prime.max():.4g}, sigma_a up to {volume.sigma_a.max():.4g} 1/mm, "
+        f"eta {volume.eta:g}"
+    )
+    return 0
+
+
+def _eta(text: str) -> float:
+    value = float(text)
+    if not 1 <= value <= 3:
+        raise argparse.ArgumentTypeError(f"{text}: must be 1 to 3")
+    return value
+
+
+def _field(text: str) -> Field:
+    """Argument type: GRID, GRID*NUMBER, GRID*R/G/B, NUMBER or R/G/B."""
+    import numpy as np
+
+    from quadgraph.openvdb import Field
+
+    grid, _, factor = text.rpartition("*")
+    if not grid:
+        try:
+            return Field(None, _numbers(text))
+        except ValueError:
+            return Field(text, np.ones(3))
+    try:
+        return Field(grid, _numbers(factor))
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(f"'{factor}': one number from 0 on, or three joined by '/'") from error
+
+
+def _numbers(text: str):
+    import numpy as np
+
+    values = np.array([float(part) for part in text.split("/")])
+    if len(values) not in (1, 3) or not np.all((values >= 0) & np.isfinite(values)):
+        raise ValueError(text)
+    return np.broadcast_to(values, 3)
