@@ -50,6 +50,17 @@ def test_passes_have_time_bytes_and_a_share_of_copying_in_both_orders(sphere, tm
         assert words in printed
 
 
+def test_live_frames_do_more_the_more_changes(sphere, tmp_path, capsys):
+    live = bench(tmp_path, sphere, "--live")["live"]
+    names = [{entry["name"] for entry in kind["passes"]} for kind in live["kinds"]]
+    assert "source walk" in names[0]
+    assert "assembly" not in names[0]
+    assert "assembly" in names[1]
+    assert names[0] < names[1] < names[2]
+    assert all(kind["wall_ms"] >= sum(entry["time_ms"] for entry in kind["passes"]) > 0 for kind in live["kinds"])
+    assert "light, material and shape changing" in capsys.readouterr().out
+
+
 def test_solvers_have_curves_and_targets_and_are_drawn(sphere, tmp_path, capsys):
     pytest.importorskip("matplotlib", reason="matplotlib is not installed: pip install -e '.[bench]'")
     record = bench(tmp_path, sphere, "--solvers", "--chart", str(tmp_path / "images"))

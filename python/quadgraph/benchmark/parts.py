@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from quadgraph.benchmark import convergence, passes, rivals, scaling
+from quadgraph.benchmark import convergence, live, passes, rivals, scaling
 from quadgraph.benchmark.convergence import Progress
 from quadgraph.benchmark.scene import Device, Scene, bake_bunny
 from quadgraph.commands.scene import load_core
@@ -45,6 +45,12 @@ class Parts:
     def solvers(self) -> list[dict[str, Any]]:
         """Error against work and time on every scene."""
         return [convergence.run(scene, self.device, self.repeats, self.tell) for scene in self._scenes()]
+
+    def live(self) -> dict[str, Any]:
+        """Frames while light, material and shape change."""
+        path = self.file or self._bunny(_PASSES_HEIGHT_MM, "blocks")
+        self.tell("live: light, material and shape change")
+        return live.run(path, self.material, self.device, self.repeats, self.copied["gb_per_s"])
 
     def rivals(self) -> list[dict[str, Any]]:
         """Our two best solvers beside other people's on every scene."""

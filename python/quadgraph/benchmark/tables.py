@@ -7,7 +7,7 @@ from typing import Any
 from rich.box import MARKDOWN
 from rich.table import Table
 
-from quadgraph.benchmark import passes
+from quadgraph.benchmark import live, passes
 
 
 def _table(title: str) -> Table:
@@ -26,6 +26,7 @@ def copy_text(copied: dict[str, Any]) -> str:
 def all_of(record: dict[str, Any]) -> list[Table]:
     """Return the tables of every part that the record has."""
     shown = passes.tables(record["passes"]) if "passes" in record else []
+    shown += live.tables(record["live"]) if "live" in record else []
     shown += [solvers(scene) for scene in record.get("solvers", [])]
     shown += [rivals(scene) for scene in record.get("rivals", [])]
     return shown + ([scaling(record["scaling"])] if "scaling" in record else [])

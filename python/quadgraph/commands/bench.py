@@ -30,6 +30,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     what = parser.add_argument_group("what is measured (default: --passes and --solvers)")
     what.add_argument("--passes", action="store_true", help="ms, bytes, GB/s and share of copying of every pass")
     what.add_argument("--solvers", action="store_true", help="error against work and time, all solvers")
+    what.add_argument("--live", action="store_true", help="a frame while light, material and shape change, by pass")
     what.add_argument("--rivals", action="store_true", help="SciPy's CG and PyAMG on the identical system")
     what.add_argument("--scaling", action="store_true", help="cycles and time from 3 thousand to 2 million tets")
     what.add_argument(
@@ -63,7 +64,7 @@ def _sizes(text: str) -> tuple[int, ...]:
 
 def run(args: argparse.Namespace) -> int:
     """Measure, print, record; 0 on success."""
-    if not (args.passes or args.solvers or args.rivals or args.scaling):
+    if not (args.passes or args.solvers or args.live or args.rivals or args.scaling):
         args.passes = args.solvers = True
     _check(args)
     from rich.console import Console
@@ -97,7 +98,7 @@ def _measure(args: argparse.Namespace, folder: Path, copied: dict[str, Any], tel
     device = Device(args.device, args.validation)
     parts = Parts(args.file, args.random_order, args.material, args.repeats, device, folder, copied, tell)
     record: dict[str, Any] = {}
-    for name in ("passes", "solvers", "rivals"):
+    for name in ("passes", "live", "solvers", "rivals"):
         if getattr(args, name):
             record[name] = getattr(parts, name)()
     if args.scaling:
