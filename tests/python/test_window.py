@@ -105,7 +105,7 @@ class Hand:
 
     def settle(self) -> None:
         """Wait until the last thing done is seen and the picture has converged."""
-        seen = time.monotonic() + 1
+        seen = time.monotonic() + 3
         while not self.busy() and time.monotonic() < seen:
             time.sleep(0.02)
         deadline = time.monotonic() + 20
