@@ -32,7 +32,7 @@ std::string material_from(const JsonField& field) {
   } else {
     text = field.text();
   }
-  if (!is_volume(text)) field.within([&] { parse_material(text); });
+  field.within([&] { check_material_text(text); });
   return text;
 }
 

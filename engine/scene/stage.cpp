@@ -14,11 +14,7 @@ void Stage::show(const Scene& scene) {
     scene_.body = scene.body;
   }
   if (fresh || scene.material != scene_.material) {
-    if (is_volume(scene.material)) {
-      set_volume(*engine_, read_volume(scene.material));
-    } else {
-      engine_->set_material(scene.material);
-    }
+    set_material(*engine_, scene.material);
     scene_.material = scene.material;
   }
   if (scene.edits != scene_.edits) {

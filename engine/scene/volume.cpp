@@ -1,12 +1,14 @@
 #include "engine/scene/volume.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <glm/common.hpp>
 #include <map>
 
 #include "engine/graph/error.h"
 #include "engine/graph/fresnel.h"
+#include "engine/graph/material.h"
 #include "engine/render/text.h"
 #include "engine/scene/npz.h"
 
@@ -94,7 +96,14 @@ gpu::Optical mixed(const gpu::Optical& a, const gpu::Optical& b, float t) {
 }  // namespace
 
 bool is_volume(std::string_view material) {
-  return material.ends_with(".npz");
+  constexpr std::string_view suffix = ".npz";
+  const auto same = [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; };
+  return material.size() >= suffix.size() &&
+         std::equal(material.end() - suffix.size(), material.end(), suffix.begin(), same);
+}
+
+void check_material_text(std::string_view text) {
+  if (!is_volume(text)) parse_material(text);
 }
 
 Volume read_volume(const std::filesystem::path& path) {
@@ -155,7 +164,9 @@ std::vector<gpu::Optical> Volume::at(std::span<const glm::vec3> points, const gl
   return found;
 }
 
-void set_volume(Engine& engine, const Volume& volume) {
+void set_material(Engine& engine, std::string_view text) {
+  if (!is_volume(text)) return engine.set_material(text);
+  const Volume volume = read_volume(text);
   const std::span<const Level> levels = engine.graph().levels();
   const RestBox box = rest_box(levels[0].vertices);
   for (std::uint32_t i = 0; i < levels.size(); ++i) {

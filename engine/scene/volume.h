@@ -23,15 +23,19 @@ struct Volume {
   std::vector<gpu::Optical> at(std::span<const glm::vec3> points, const glm::dvec3& centre) const;
 };
 
-// Whether a material's text names such a file.
+// Whether a material's text names such a file: it ends in .npz, in any case.
 bool is_volume(std::string_view material);
+
+// A material's text, or the name of such a file, as far as that can be told without reading it. Throws InputError as
+// parse_material.
+void check_material_text(std::string_view text);
 
 // Reads a .npz of `sigma_s_prime` and `sigma_a`, (nz, ny, nx) or (nz, ny, nx, 3) in 1/mm, and `spacing`, one number or
 // three in mm along x, y, z; `origin` and `eta` if they are there. Throws InputError naming file, field, what was found
 // and what is allowed.
 Volume read_volume(const std::filesystem::path& path);
 
-// Gives an engine the coefficients of a volume on all its levels.
-void set_volume(Engine& engine, const Volume& volume);
+// A material, or coefficients on all levels from such a file. Throws InputError as parse_material or read_volume.
+void set_material(Engine& engine, std::string_view text);
 
 }  // namespace quadgraph

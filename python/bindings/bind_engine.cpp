@@ -7,6 +7,7 @@
 #include "engine/graph/error.h"
 #include "engine/render/default_lights.h"
 #include "engine/render/engine.h"
+#include "engine/scene/volume.h"
 #include "engine/vk/context.h"
 #include "engine/vk/copy_bandwidth.h"
 #include "engine/vk/memory.h"
@@ -237,7 +238,9 @@ void bind_engine(py::module_& module) {
            "device: part of its name. validation: load the validation layer. Raises FormatError, InputError, "
            "VulkanError.")
       .def_property_readonly("graph", &Engine::graph, py::return_value_policy::reference_internal)
-      .def("set_material", py::overload_cast<std::string_view>(&Engine::set_material), py::arg("text"))
+      .def(
+          "set_material", [](Engine& engine, std::string_view text) { set_material(engine, text); }, py::arg("text"),
+          "As --material reads it: names and numbers, or a .npz of coefficients (docs/scene.md). Raises InputError.")
       .def("set_material", py::overload_cast<const gpu::Material&>(&Engine::set_material), py::arg("material"))
       .def("set_lights", &set_lights, py::arg("lights"),
            "Texts as --light takes them (engine/render/lights.h); replaces all lights.")

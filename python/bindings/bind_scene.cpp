@@ -101,10 +101,7 @@ void bind_volume(py::module_& module) {
             return py::make_tuple(own(std::move(scattering)), own(std::move(absorption)));
           },
           py::arg("points"), py::arg("centre"),
-          "sigma_s_prime and sigma_a, (n, 3) each, at (n, 3) mm of a body around `centre`.")
-      .def(
-          "give", [](const Volume& volume, Engine& engine) { set_volume(engine, volume); }, py::arg("engine"),
-          "Gives an engine these coefficients on all its levels.");
+          "sigma_s_prime and sigma_a, (n, 3) each, at (n, 3) mm of a body around `centre`.");
 }
 
 }  // namespace

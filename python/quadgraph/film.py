@@ -15,6 +15,11 @@ _CODECS = {".mp4": "libx264", ".webm": "libvpx-vp9"}
 SUFFIXES = tuple(_CODECS)
 
 
+def is_film(path: Path) -> bool:
+    """Whether a file is to be a film, by its name."""
+    return path.suffix.lower() in _CODECS
+
+
 def check() -> None:
     """Raise InputError if films cannot be encoded here."""
     if importlib.util.find_spec("av") is None:
@@ -31,14 +36,14 @@ class Film:
         if size[0] % 2 or size[1] % 2:
             raise InputError(f"{path}: a film wants an even width and height, found {size[0]}x{size[1]}")
         self.path = path
-        self._temporary = path.with_name(f".{path.stem}.part{path.suffix}")
+        self._temporary = path.with_name(f".{path.stem}.part{path.suffix.lower()}")
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             self._container = av.open(self._temporary, "w")
         except OSError as error:
             raise InputError(f"{path}: cannot be written ({error.strerror})") from error
         rate = Fraction(frames_per_second).limit_denominator(1001)
-        self._stream = self._container.add_stream(_CODECS[path.suffix], rate=rate, options={"crf": "18"})
+        self._stream = self._container.add_stream(_CODECS[path.suffix.lower()], rate=rate, options={"crf": "18"})
         self._stream.width, self._stream.height = size
         self._stream.pix_fmt = "yuv420p"
 

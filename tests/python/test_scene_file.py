@@ -73,7 +73,7 @@ def test_frames_go_with_the_tracks_and_do_not_depend_on_each_other(folder, tmp_p
         assert np.array_equal(np.asarray(still), np.asarray(frame))
 
 
-@pytest.mark.parametrize("suffix", [".mp4", ".webm"])
+@pytest.mark.parametrize("suffix", [".MP4", ".webm"])
 def test_a_film_has_the_frames_and_the_rate(folder, tmp_path, suffix):
     import av
 
@@ -104,8 +104,9 @@ def test_set_changes_what_the_scene_says(folder, tmp_path):
 def test_a_volume_lies_beside_its_scene(folder, tmp_path):
     grid = np.ones((2, 2, 2))
     np.savez(folder / "even.npz", sigma_s_prime=2 * grid, sigma_a=0.05 * grid, spacing=10)
+    (folder / "even.npz").rename(folder / "even.NPZ")
     pictures = []
-    for material in ("even.npz", "sigma_s_prime=2,sigma_a=0.05"):
+    for material in ("even.NPZ", "sigma_s_prime=2,sigma_a=0.05"):
         out = tmp_path / f"{len(pictures)}.png"
         assert cli.main(["render", str(moving(folder)), "--set", f"/material={material}", "-o", str(out)]) == 0
         with Image.open(out) as image:

@@ -105,7 +105,7 @@ def run(args: argparse.Namespace) -> int:
 def check_output(path: Path, with_numbers: bool) -> None:
     """Raise InputError unless frames can be written to `path`."""
     numbered = re.search(r"%0?\d*d", path.name) is not None
-    if path.suffix.lower() in film.SUFFIXES:
+    if film.is_film(path):
         if not with_numbers:
             raise InputError(f"{path}: a film wants --frames")
         film.check()
@@ -119,9 +119,7 @@ def check_output(path: Path, with_numbers: bool) -> None:
 def render(stage, file, frames: Iterable[float], outputs: list[Path]) -> list[dict]:
     """Render frames and write each to all outputs; one report per frame."""
     first = file.at(0)
-    films = {
-        path: film.Film(path, first.size, file.frames_per_second) for path in outputs if path.suffix in film.SUFFIXES
-    }
+    films = {path: film.Film(path, first.size, file.frames_per_second) for path in outputs if film.is_film(path)}
     reports = []
     try:
         with Progress(console=Console(stderr=True), transient=True) as progress:
@@ -169,5 +167,5 @@ def summarise(stage, reports: list[dict], outputs: list[Path]) -> int:
     for sentence in text.solver_texts(worst) + missed:
         console.print(sentence)
     for path in outputs:
-        console.print(f"{'film' if path.suffix in film.SUFFIXES else 'picture'}: {path}")
+        console.print(f"{'film' if film.is_film(path) else 'picture'}: {path}")
     return 3 if any(scene.unmet(report) for report in reports) else 0

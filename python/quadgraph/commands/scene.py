@@ -180,10 +180,7 @@ def make_engine(args: argparse.Namespace) -> Engine:
     """Load `args.file` and set material and lights. Raises FormatError, InputError, VulkanError."""
     core = load_core()
     engine = core.Engine(args.file, device=args.device, validation=args.validation)
-    if args.material.lower().endswith(".npz"):
-        core.Volume(args.material).give(engine)
-    else:
-        engine.set_material(args.material)
+    engine.set_material(args.material)
     engine.set_lights(args.light or core.default_lights(getattr(args, "view", ""), getattr(args, "up", "y")))
     return engine
 
