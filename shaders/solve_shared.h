@@ -2,7 +2,7 @@
 #ifndef QUADGRAPH_SOLVE_SHARED_H
 #define QUADGRAPH_SOLVE_SHARED_H
 
-#include "shared.h"
+#include "beam_shared.h"
 
 // Rows per slice of an operator (sliced ELL): neighbouring invocations read neighbouring entries, and a row is padded
 // only to the longest of its slice. 32 is the width of the widest common subgroup.
@@ -92,52 +92,13 @@ struct RowsRef {
 
 // Kinds of outside faces (engine/graph/graph.h).
 const uint FACE_OPEN = 0u;
+const uint FACE_REFLECTING = 1u;
 
 // What a tet of a deformed body counts for at least (tet_volume.glsl); 0 in both: for what it is.
 struct LeastTet {
   float quality;  // 1 of a regular tet, 0 of a flat one
   float volume;   // mm^3
 };
-const uint FACE_REFLECTING = 1u;
-
-const uint BEAM_DIRECTIONAL = 0u;
-const uint BEAM_POINT = 1u;
-const uint BEAM_LAMBERTIAN = 2u;
-const uint BEAM_MEAN = 3u;
-
-// How the light of one source comes in, wherever it does.
-struct BeamRecord {
-  uint kind;    // BEAM_*
-  vec3 vector;  // directional: unit, the way the light travels; point: where it comes from, mm; others: unused
-};
-
-// How much of a beam is stored per face, floats: one, one per quarter or three per quarter, to be multiplied by its
-// colour; or q itself, for the whole face.
-const uint BEAM_FACE = 1u;
-const uint BEAM_QUARTERS = FACE_QUARTERS;
-const uint BEAM_RGB = 3u;
-const uint BEAM_RGB_QUARTERS = 3u * FACE_QUARTERS;
-
-// A beam as the faces of all levels see it (beam_light.glsl).
-struct Beam {
-  BeamRecord way;
-  vec3 colour;  // W/mm^2 of what is stored as 1
-  uint floats;  // BEAM_FACE, BEAM_QUARTERS, BEAM_RGB or BEAM_RGB_QUARTERS
-  uint offset;  // floats of the beams before it, per face
-};
-
-// Rays of a Lambertian beam from one origin: at outside cosine sqrt(u), u the four Gauss-Legendre nodes on [0, 1], two
-// antipodal azimuths each, turned by 90 degrees from node to node so that no direction is preferred. Each node has
-// weight w T(sqrt(u)), T the Fresnel transmittance, normalised to 1.
-const uint LAMBERTIAN_NODES = 4u;
-const float LAMBERTIAN_U[4] = {0.0694318442f, 0.3300094782f, 0.6699905218f, 0.9305681558f};
-const float LAMBERTIAN_W[4] = {0.1739274226f, 0.3260725774f, 0.3260725774f, 0.1739274226f};
-
-// BEAM_MEAN is even light by one ray from an origin, at the mean inside cosine of those of a Lambertian beam: for light
-// that re-enters, bounce after bounce. On face f it has the azimuth (f GOLDEN_TURN mod 2^32) / 2^32 turns, from the
-// face's first edge t1 towards normal x t1. The golden ratio's fraction in units of 2^-32: integers turn alike on CPU
-// and GPU.
-const uint GOLDEN_TURN = 2654435769u;
 
 // A ray ends where each channel has kept less than this share of its power, and what is left stays there.
 const float WALK_END = 1e-4f;
@@ -195,18 +156,8 @@ struct Scale {
 };
 
 #ifndef __cplusplus
-QG_ARRAY(Beams, Beam);
 QG_ARRAY(SolveStates, SolveState);
 QG_ARRAY(Scales, Scale);
-
-Beam load_beam(Beams a, uint i) {
-  if (TEXELS) {
-    uint t = texel_of(uvec2(a)) + 9u * i;
-    BeamRecord way = BeamRecord(texel(t), uintBitsToFloat(texels3(t + 1u)));
-    return Beam(way, uintBitsToFloat(texels3(t + 4u)), texel(t + 7u), texel(t + 8u));
-  }
-  return a.at[i];
-}
 
 // The only one of an array.
 Scale load_scale(Scales a) {

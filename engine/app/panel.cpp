@@ -4,24 +4,16 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numeric>
 
-#include "engine/app/commands.h"
-#include "engine/app/gestures.h"
+#include "engine/app/light_section.h"
 #include "engine/app/panel_widgets.h"
 #include "engine/graph/material.h"
-#include "engine/render/default_lights.h"
-#include "engine/render/legend.h"
 #include "engine/scene/volume.h"
-#include "shaders/colour_map.h"
 
 namespace quadgraph {
 namespace {
-
-bool section(const char* name, bool open = true) {
-  return ImGui::CollapsingHeader(name, open ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None);
-}
 
 void draw_plane(Show& show, const Sphere& bounds) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -64,7 +56,7 @@ void draw_material(State& state) {
   if (ImGui::InputTextWithHint("##text", "marble,sigma_a=.01/.02/.05", &state.material_text,
                                ImGuiInputTextFlags_EnterReturnsTrue)) {
     try {
-      if (!is_volume(state.material_text)) parse_material(state.material_text);
+      check_material_text(state.material_text);
       state.scene.material = state.material_text;
       state.say("");
     } catch (const std::exception& error) {
@@ -106,90 +98,6 @@ void draw_edits(State& state, const Sphere& bounds) {
   slide("to depth", edit.depth_to, edit.depth_from + 1e-3f * bounds.radius, 2 * bounds.radius, "%.1f mm");
   slide("softness", edit.softness, 0, edit.radius, "%.1f mm");
   tell("strokes", formatted("%zu", state.scene.edits.size()));
-}
-
-// Brightness and tint of a light whose numbers span many decades.
-void draw_power(Light& light, const char* unit) {
-  float most = std::max({light.power.x, light.power.y, light.power.z, 1e-9f});
-  glm::vec3 tint = light.power / most;
-  // A text without a conversion: the slider moves along decades and tells the power.
-  const std::string told = formatted("%.3g ", static_cast<double>(most)) + unit;
-  float decades = std::log10(most);
-  if (slide("power", decades, -6,
-            light.kind == LightKind::directional || light.kind == LightKind::ambient ? 1.0f : 6.0f, told.c_str())) {
-    most = std::pow(10.0f, decades);
-    light.power = most * tint;
-  }
-  if (ImGui::ColorEdit3("tint", &tint.x, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_NoInputs)) {
-    light.power = most * tint;
-  }
-}
-
-void draw_bearing(Light& light, UpAxis up) {
-  Bearing bearing = bearing_of(-light.direction, up);
-  const bool around = slide("from, around", bearing.azimuth, -180, 180, "%.0f°");
-  const bool above = slide("from above", bearing.elevation, -89.9f, 89.9f, "%.0f°");
-  if (around || above) light.direction = -towards(bearing, up);
-}
-
-// A projector needs an image, which a scene file names.
-void draw_kind(Light& light, const Sphere& bounds) {
-  constexpr std::array kinds = {LightKind::directional, LightKind::point, LightKind::ambient, LightKind::spot,
-                                LightKind::rectangle};
-  const auto found = std::find(kinds.begin(), kinds.end(), light.kind);
-  if (found == kinds.end()) return;
-  auto chosen = static_cast<std::size_t>(found - kinds.begin());
-  const auto name = [](std::size_t i) {
-    constexpr std::string_view names[] = {"directional", "point", "ambient", "spot", "rectangle"};
-    return names[i];
-  };
-  if (choose("kind", chosen, name, kinds.size())) light = as_kind(light, kinds[chosen], bounds);
-}
-
-void draw_light(State& state, const Sphere& bounds) {
-  Light& light = state.scene.lights[state.light];
-  draw_kind(light, bounds);
-  switch (light.kind) {
-    case LightKind::directional:
-      draw_bearing(light, state.scene.view.up);
-      return draw_power(light, "W/mm²");
-    case LightKind::ambient:
-      return draw_power(light, "W/mm²");
-    case LightKind::spot:
-    case LightKind::projector:
-      draw_bearing(light, state.scene.view.up);
-      slide("angle##light", light.angle, 1, light.kind == LightKind::spot ? 90 : 160, "%.0f°");
-      break;
-    case LightKind::environment:
-      slide("turn##light", light.turn, -180, 180, "%.0f°");
-      return draw_power(light, "W/(mm² sr)");
-    default:
-      break;
-  }
-  ImGui::DragFloat3("at, mm", &light.position.x, 0.01f * bounds.radius, 0, 0, "%.1f");
-  draw_power(light, "W");
-}
-
-void draw_lights(State& state, const Sphere& bounds) {
-  if (!section("Lights")) return;
-  auto& lights = state.scene.lights;
-  for (std::size_t i = 0; i < lights.size(); ++i) {
-    ImGui::PushID(static_cast<int>(i));
-    const std::string text = to_string(lights[i]);
-    const std::string name = formatted("%zu  %s", i + 1, text.substr(0, text.find(':')).c_str());
-    if (ImGui::RadioButton(name.c_str(), state.light == i)) state.light = i;
-    ImGui::PopID();
-  }
-  if (state.light < lights.size()) draw_light(state, bounds);
-  if (ImGui::Button("add")) {
-    lights.push_back(default_lights(state.scene.view).front());
-    state.light = lights.size() - 1;
-  }
-  ImGui::SameLine();
-  if (ImGui::Button("remove") && state.light < lights.size()) {
-    lights.erase(lights.begin() + static_cast<std::ptrdiff_t>(state.light));
-    state.light = lights.empty() ? 0 : std::min(state.light, lights.size() - 1);
-  }
 }
 
 // A slider over the deformer of a kind, which is in the list while it does something.
@@ -345,84 +253,6 @@ void draw_panel(State& state, const PanelFacts& facts) {
   draw_camera(state, facts.engine.bounds());
   draw_passes(facts.measured.passes);
   ImGui::PopItemWidth();
-  ImGui::End();
-}
-
-void draw_help(State& state, float unit) {
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({0.5f * size.x, 0.5f * size.y}, ImGuiCond_Always, {0.5f, 0.5f});
-  ImGui::SetNextWindowBgAlpha(0.94f);
-  ImGui::Begin("keys", &state.help,
-               ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoNav |
-                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoMove);
-  ImGui::TextUnformatted("Left drag turns the object, right or middle drag moves it, the wheel brings it nearer.");
-  ImGui::TextUnformatted(
-      "With Ctrl or Shift a drag turns the selected light; with the brush in hand a left drag paints.");
-  ImGui::Separator();
-  const auto commands = all_commands();
-  const std::size_t rows = (commands.size() + 1) / 2;
-  if (ImGui::BeginTable("table", 4, ImGuiTableFlags_SizingFixedFit)) {
-    for (std::size_t row = 0; row < rows; ++row) {
-      ImGui::TableNextRow();
-      for (std::size_t i = row; i < commands.size(); i += rows) {
-        ImGui::TableNextColumn();
-        ImGui::TextColored({0.95f, 0.65f, 0.32f, 1}, "%.*s", static_cast<int>(commands[i].keys.size()),
-                           commands[i].keys.data());
-        ImGui::TableNextColumn();
-        ImGui::Text("%.*s   ", static_cast<int>(commands[i].text.size()), commands[i].text.data());
-      }
-    }
-    ImGui::EndTable();
-  }
-  ImGui::Dummy({560 * unit, 0});
-  ImGui::End();
-}
-
-void draw_colour_bar(const Legend& legend, float left, float unit) {
-  constexpr int strips = 96;
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
-  const float width = std::min(360 * unit, size.x - left - 60 * unit);
-  if (width < 100 * unit) return;
-  ImGui::SetNextWindowPos({size.x - 12 * unit, size.y - 12 * unit}, ImGuiCond_Always, {1, 1});
-  ImGui::SetNextWindowBgAlpha(0.75f);
-  ImGui::Begin("colours", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
-                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
-  ImGui::Text("%s, %s", legend.title.c_str(), legend.unit.c_str());
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  ImDrawList* draw = ImGui::GetWindowDrawList();
-  for (int i = 0; i < strips; ++i) {
-    const glm::vec3 linear = gpu::mapped_colour((static_cast<float>(i) + 0.5f) / strips, legend.diverging ? 1 : 0);
-    const ImU32 colour = ImGui::GetColorU32({srgb_encode(linear.x), srgb_encode(linear.y), srgb_encode(linear.z), 1});
-    draw->AddRectFilled({at.x + width * static_cast<float>(i) / strips, at.y},
-                        {at.x + width * static_cast<float>(i + 1) / strips + 1, at.y + 14 * unit}, colour);
-  }
-  const ImU32 text = ImGui::GetColorU32(ImGuiCol_Text);
-  for (const Tick& tick : ticks_of(legend)) {
-    const float x = at.x + tick.place * width;
-    draw->AddLine({x, at.y + 14 * unit}, {x, at.y + 18 * unit}, text);
-    const float half = 0.5f * ImGui::CalcTextSize(tick.text.c_str()).x;
-    draw->AddText({std::clamp(x - half, at.x, at.x + width - 2 * half), at.y + 19 * unit}, text, tick.text.c_str());
-  }
-  ImGui::Dummy({width, 22 * unit + ImGui::GetTextLineHeight()});
-  ImGui::End();
-}
-
-void draw_message(const State& state, float left, float unit) {
-  if (state.message.empty()) return;
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({left + 12 * unit, size.y - 12 * unit}, ImGuiCond_Always, {0, 1});
-  ImGui::SetNextWindowSizeConstraints({0, 0}, {size.x - left - 24 * unit, size.y});
-  ImGui::SetNextWindowBgAlpha(0.85f);
-  ImGui::Begin("message", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
-                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
-  ImGui::PushTextWrapPos(size.x - left - 48 * unit);
-  const ImVec4 colour = state.refused ? ImVec4(1, 0.55f, 0.45f, 1) : ImVec4(0.9f, 0.9f, 0.89f, 1);
-  ImGui::PushStyleColor(ImGuiCol_Text, colour);
-  ImGui::TextUnformatted(state.message.c_str());
-  ImGui::PopStyleColor();
-  ImGui::PopTextWrapPos();
   ImGui::End();
 }
 

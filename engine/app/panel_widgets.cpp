@@ -8,6 +8,10 @@
 
 namespace quadgraph {
 
+bool section(const char* name, bool open) {
+  return ImGui::CollapsingHeader(name, open ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None);
+}
+
 bool choose(const char* label, std::size_t& chosen, std::string_view (*name)(std::size_t), std::size_t count) {
   bool changed = false;
   if (!ImGui::BeginCombo(label, std::string(name(chosen)).c_str(), ImGuiComboFlags_HeightLarge)) return false;

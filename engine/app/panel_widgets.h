@@ -8,6 +8,9 @@
 
 namespace quadgraph {
 
+// The head of a section; whether it is open. `open`: whether it is at first.
+bool section(const char* name, bool open = true);
+
 // A list to choose from, with the label to its right; whether another entry was chosen.
 bool choose(const char* label, std::size_t& chosen, std::string_view (*name)(std::size_t), std::size_t count);
 

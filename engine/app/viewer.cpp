@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "engine/app/gestures.h"
+#include "engine/app/overlays.h"
 #include "engine/app/panel.h"
 #include "engine/graph/error.h"
 #include "engine/render/metadata.h"

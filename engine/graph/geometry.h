@@ -25,11 +25,15 @@ inline double tet_volume(const Level& level, const glm::uvec4& tet) {
   return tet_determinant(level, tet) / 6.0;
 }
 
+// Along the outward normal, as long as twice the area, mm^2.
+inline glm::dvec3 face_vector(const Level& level, const glm::uvec3& face) {
+  const glm::dvec3 p(level.vertices[face[0]]);
+  return glm::cross(glm::dvec3(level.vertices[face[1]]) - p, glm::dvec3(level.vertices[face[2]]) - p);
+}
+
 // mm^2.
 inline double face_area(const Level& level, const glm::uvec3& face) {
-  const glm::dvec3 p(level.vertices[face[0]]);
-  return 0.5 *
-         glm::length(glm::cross(glm::dvec3(level.vertices[face[1]]) - p, glm::dvec3(level.vertices[face[2]]) - p));
+  return 0.5 * glm::length(face_vector(level, face));
 }
 
 // mm, about, from node to node of the tets at the surface.

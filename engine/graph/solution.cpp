@@ -1,10 +1,12 @@
 #include "engine/graph/solution.h"
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <utility>
 
 #include "engine/graph/error.h"
+#include "engine/graph/geometry.h"
 
 namespace quadgraph {
 namespace {
@@ -92,6 +94,17 @@ glm::dvec3 Energy::balance() const {
     result[c] = (entered[c] + re_entered[c] - out) / entered[c];
   }
   return result;
+}
+
+SurfaceField surface_of(const Level& level) {
+  SurfaceField field;
+  for (std::uint32_t f = 0; f < level.face_count(); ++f) {
+    const glm::dvec3 normal = face_vector(level, level.faces[f]);
+    field.position.push_back(level.nodes[level.tet_count() + f]);
+    field.normal.push_back(glm::vec3(normal / std::max(glm::length(normal), 1e-300)));
+    field.area.push_back(static_cast<float>(0.5 * glm::length(normal)));
+  }
+  return field;
 }
 
 }  // namespace quadgraph

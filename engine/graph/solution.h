@@ -10,6 +10,8 @@
 
 namespace quadgraph {
 
+struct Level;
+
 enum class Method {
   quadgraph_fdm,  // the published 1/d^2 differences on kappa*phi at the nodes of the QuadGraph [QG Eq. 5-6]
   quadgraph_fv,   // two-point flux between the nodes of the QuadGraph, harmonic means of kappa
@@ -151,5 +153,8 @@ struct SurfaceField {
   std::vector<glm::vec3> exitance;     // W/mm^2, of light that was scattered
   std::vector<glm::vec3> unscattered;  // W/mm^2, of light that was not
 };
+
+// Position, normal and area of the samples of a level.
+SurfaceField surface_of(const Level& level);
 
 }  // namespace quadgraph

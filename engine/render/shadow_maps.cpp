@@ -6,14 +6,6 @@
 namespace quadgraph {
 namespace {
 
-template <typename T>
-void replace(vk::Context& context, const std::vector<T>& values, const char* name, vk::Buffer& buffer) {
-  if (buffer.handle() == VK_NULL_HANDLE || buffer.size() != values.size() * sizeof(T)) {
-    buffer = {context, values.size() * sizeof(T), vk::Place::read, name};
-  }
-  vk::write_bytes(context, buffer, std::as_bytes(std::span(values)));
-}
-
 vk::Image depth_image(vk::Context& context, std::uint32_t size) {
   return {context, {VK_FORMAT_D32_SFLOAT, size, size, 1, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT}, "shadows/depth"};
 }
@@ -56,9 +48,9 @@ PassStats ShadowMaps::update(const DisplayBuffers& mesh, const LightSet& lights)
 
   light_count_ = static_cast<std::uint32_t>(lights.records.size());
   shaped_ = lights.shaped;
-  replace(context_, lights.records, "shadows/lights", lights_);
-  replace(context_, lights.shapes, "shadows/shapes", shapes_);
-  replace(context_, views, "shadows/views", views_);
+  vk::rewrite<gpu::LightRecord>(context_, lights.records, "shadows/lights", lights_);
+  vk::rewrite<gpu::LightShape>(context_, lights.shapes, "shadows/shapes", shapes_);
+  vk::rewrite<gpu::ShadowView>(context_, views, "shadows/views", views_);
   return stats;
 }
 

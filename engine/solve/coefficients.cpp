@@ -55,12 +55,7 @@ void Coefficients::set(std::uint32_t number, std::span<const gpu::Optical> optic
   check_eta(static_cast<double>(eta));
   if (material_) std::fill(albedo_.begin(), albedo_.end(), std::nullopt);
   material_.reset();
-  vk::Buffer& given = given_[number];
-  if (given.size() == optical.size_bytes()) {
-    vk::write_bytes(context_, given, std::as_bytes(optical));
-  } else {
-    given = vk::upload(context_, optical, "material/level " + std::to_string(number) + " given");
-  }
+  vk::rewrite(context_, optical, "material/level " + std::to_string(number) + " given", given_[number]);
   changed();
   eta_ = eta;
   albedo_[number] = least_albedo(optical);
@@ -77,17 +72,10 @@ void Coefficients::set(std::span<const Edit> edits) {
     }
   }
   edits_ = EditArrays(edits);
-  edit_buffers_ = {};
-  if (!edits.empty()) {
-    edit_buffers_.count = static_cast<std::uint32_t>(edits.size());
-    edit_buffers_.edits = vk::upload<gpu::MaterialEdit>(context_, edits_.edits, "material/edits");
-    if (!edits_.points.empty()) {
-      edit_buffers_.points = vk::upload<glm::vec3>(context_, edits_.points, "material/strokes");
-    }
-    if (!edits_.texels.empty()) {
-      edit_buffers_.texels = vk::upload<glm::vec3>(context_, edits_.texels, "material/images");
-    }
-  }
+  edit_buffers_.count = static_cast<std::uint32_t>(edits.size());
+  vk::rewrite<gpu::MaterialEdit>(context_, edits_.edits, "material/edits", edit_buffers_.edits);
+  vk::rewrite<glm::vec3>(context_, edits_.points, "material/strokes", edit_buffers_.points);
+  vk::rewrite<glm::vec3>(context_, edits_.texels, "material/images", edit_buffers_.texels);
   changed();
 }
 

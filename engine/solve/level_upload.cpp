@@ -1,5 +1,6 @@
 #include "engine/solve/level_upload.h"
 
+#include "engine/graph/sky.h"
 #include "engine/solve/row_structure.h"
 #include "engine/vk/commands.h"
 
@@ -51,6 +52,16 @@ LevelBuffers upload_level(vk::Context& context, const Level& level, std::uint32_
   vk::Commands commands(context);
   commands.fill(buffers.q, 0);
   commands.submit_and_wait();
+  return buffers;
+}
+
+std::vector<LevelBuffers> upload_levels(vk::Context& context, const std::vector<Level>& levels) {
+  std::vector<LevelBuffers> buffers;
+  const auto sky = sky_of_levels(levels);
+  for (std::uint32_t i = 0; i < levels.size(); ++i) {
+    buffers.push_back(upload_level(context, levels[i], i));
+    buffers[i].sky = vk::upload<float>(context, sky[i], "geometry/sky");
+  }
   return buffers;
 }
 

@@ -10,6 +10,9 @@ namespace quadgraph {
 // Geometry of level `number` without what is made at first use; q is zero.
 LevelBuffers upload_level(vk::Context& context, const Level& level, std::uint32_t number);
 
+// All levels of a file, with the shares of the sky that their faces see.
+std::vector<LevelBuffers> upload_levels(vk::Context& context, const std::vector<Level>& levels);
+
 // Links and nodes, unless they are there.
 void upload_graph(vk::Context& context, const Level& level, std::uint32_t number, LevelBuffers& buffers);
 

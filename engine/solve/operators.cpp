@@ -3,6 +3,13 @@
 #include <algorithm>
 
 namespace quadgraph {
+namespace {
+
+// Mean conduction of elements (stored_entries.h) from which deformed bodies are stored in single precision: below it
+// packed entries change the exitance by less than 1e-3.
+constexpr double packed_conduction = 50;
+
+}  // namespace
 
 void Operators::create(vk::Context& context, std::span<const Level> levels, const OperatorKey& key, bool even,
                        bool two_steps) {
@@ -60,7 +67,8 @@ void Operators::remeasure(std::uint32_t number, const Level& level) {
   moved(number);
 }
 
-void Operators::remeasure(std::uint32_t number, bool plain) {
+void Operators::remeasure(std::uint32_t number, double conduction) {
+  const bool plain = conduction > packed_conduction;
   moved_on_device_ = true;
   plain_on_device_ = plain_on_device_ || plain;
   std::erase_if(levels_, [&](const auto& of_key) {

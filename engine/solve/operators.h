@@ -44,8 +44,8 @@ class Operators {
   // now, the operators are to be created again, with plain ones.
   void remeasure(std::uint32_t number, const Level& level);
 
-  // The same where the device has moved them; `plain`: packed entries would round too much.
-  void remeasure(std::uint32_t number, bool plain);
+  // The same where the device has moved them; `conduction`: their mean, as format_of takes it.
+  void remeasure(std::uint32_t number, double conduction);
 
   // All vertices lie as in the file again.
   void put_back();

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "engine/graph/geometry.h"
 #include "shaders/assembly_shared.h"
 
 namespace quadgraph {
@@ -124,9 +125,7 @@ void add_faces(const Level& level, const Edges& edges, std::vector<EdgeShape>& o
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {
     if (level.reflecting(f)) continue;
     const glm::uvec3& face = level.faces[f];
-    const glm::dvec3 p(level.vertices[face.x]);
-    const double twice_area =
-        glm::length(glm::cross(glm::dvec3(level.vertices[face.y]) - p, glm::dvec3(level.vertices[face.z]) - p));
+    const double twice_area = 2 * face_area(level, face);
     for (int k = 0; k < 3; ++k) {
       of_edge[edges.between(face[k], face[(k + 1) % 3])].area += twice_area / 24;
       area[face[k]] += twice_area / 6;

@@ -24,24 +24,6 @@ std::uint32_t energy_groups(vk::Context& context, const LevelBuffers& level) {
 
 }  // namespace
 
-SurfaceResults::SurfaceResults(vk::Context& context, const LevelBuffers& level) {
-  const auto vector = [&](std::uint64_t count, const char* name) {
-    return vk::Buffer(context, count * vec3_bytes, vk::Place::read, name);
-  };
-  phi_ = vector(level.face_count, "results/phi at faces");
-  exitance_ = vector(level.face_count, "results/exitance");
-  vertex_exitance_ = vector(level.surface_vertex_count, "results/exitance at vertices");
-  vertex_unscattered_ = vector(level.surface_vertex_count, "results/unscattered light at vertices");
-  display_factor_ = vector(1, "results/display factor");
-  clip_ = vk::Buffer(context, sizeof(gpu::Clip), vk::Place::device, "results/clip");
-  clip_on_host_ = vk::Buffer(context, sizeof(gpu::Clip), vk::Place::host, "results/clip, read back");
-  const std::uint64_t sums_bytes = energy_groups(context, level) * sizeof(gpu::EnergySums);
-  sums_ = vk::Buffer(context, sums_bytes, vk::Place::device, "results/energy sums");
-  constexpr std::uint64_t total_bytes = WORKGROUP_SIZE * sizeof(gpu::EnergySums);
-  totals_ = vk::Buffer(context, total_bytes, vk::Place::device, "results/energy totals");
-  totals_on_host_ = vk::Buffer(context, total_bytes, vk::Place::host, "results/energy totals, read back");
-}
-
 void record_exitance(Workspace& work, const Solved& solved, const vk::Buffer& phi, const vk::Buffer& exitance,
                      const vk::Buffer& clip) {
   const LevelBuffers& level = solved.level;
@@ -63,6 +45,34 @@ void record_exitance(Workspace& work, const Solved& solved, const vk::Buffer& ph
                                .boundary = on_device(solved.boundary)};
   work.recorder.dispatch(work.passes.exitance.of(solved.op.model), push, level.face_count, "exitance",
                          level.face_count * (sizeof(glm::uvec3) + 6 * vec3_bytes + 3 * solved.op.field_bytes()));
+}
+
+std::vector<glm::vec3> exitance_of(vk::Context& context, Workspace& work, const Solved& solved) {
+  const std::uint64_t bytes = solved.level.face_count * vec3_bytes;
+  const vk::Buffer phi(context, bytes, vk::Place::read, "results/phi of a level");
+  const vk::Buffer exitance(context, bytes, vk::Place::read, "results/exitance of a level");
+  const vk::Buffer clip(context, sizeof(gpu::Clip), vk::Place::device, "results/clip of a level");
+  record_exitance(work, solved, phi, exitance, clip);
+  work.recorder.submit();
+  return vk::download<glm::vec3>(context, exitance);
+}
+
+SurfaceResults::SurfaceResults(vk::Context& context, const LevelBuffers& level) {
+  const auto vector = [&](std::uint64_t count, const char* name) {
+    return vk::Buffer(context, count * vec3_bytes, vk::Place::read, name);
+  };
+  phi_ = vector(level.face_count, "results/phi at faces");
+  exitance_ = vector(level.face_count, "results/exitance");
+  vertex_exitance_ = vector(level.surface_vertex_count, "results/exitance at vertices");
+  vertex_unscattered_ = vector(level.surface_vertex_count, "results/unscattered light at vertices");
+  display_factor_ = vector(1, "results/display factor");
+  clip_ = vk::Buffer(context, sizeof(gpu::Clip), vk::Place::device, "results/clip");
+  clip_on_host_ = vk::Buffer(context, sizeof(gpu::Clip), vk::Place::host, "results/clip, read back");
+  const std::uint64_t sums_bytes = energy_groups(context, level) * sizeof(gpu::EnergySums);
+  sums_ = vk::Buffer(context, sums_bytes, vk::Place::device, "results/energy sums");
+  constexpr std::uint64_t total_bytes = WORKGROUP_SIZE * sizeof(gpu::EnergySums);
+  totals_ = vk::Buffer(context, total_bytes, vk::Place::device, "results/energy totals");
+  totals_on_host_ = vk::Buffer(context, total_bytes, vk::Place::host, "results/energy totals, read back");
 }
 
 void SurfaceResults::record_vertex_exitance(Workspace& work, const LevelBuffers& level, const vk::Buffer& faces,

@@ -24,6 +24,9 @@ struct Solved {
 void record_exitance(Workspace& work, const Solved& solved, const vk::Buffer& phi, const vk::Buffer& exitance,
                      const vk::Buffer& clip);
 
+// M alone, read back; not clipped.
+std::vector<glm::vec3> exitance_of(vk::Context& context, Workspace& work, const Solved& solved);
+
 class SurfaceResults {
  public:
   SurfaceResults(vk::Context& context, const LevelBuffers& level);

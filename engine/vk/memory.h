@@ -93,6 +93,16 @@ Buffer upload(Context& context, std::span<const T> data, const std::string& name
 // Replaces the first bytes of `target`; waits for it.
 void write_bytes(Context& context, const Buffer& target, std::span<const std::byte> data);
 
+// Makes `target` hold `data`: in place where it is of that size, else in a new buffer; waits for it.
+template <typename T>
+void rewrite(Context& context, std::span<const T> data, const std::string& name, Buffer& target) {
+  if (target.handle() == VK_NULL_HANDLE || target.size() != data.size_bytes()) {
+    target = upload(context, data, name);
+  } else {
+    write_bytes(context, target, std::as_bytes(data));
+  }
+}
+
 // Copies a buffer back; waits for it.
 void read_bytes(Context& context, const Buffer& source, std::span<std::byte> target);
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <glm/geometric.hpp>
 
 #include "engine/graph/deform.h"
@@ -11,25 +10,16 @@
 #include "engine/render/display_motion.h"
 #include "engine/render/engine.h"
 #include "tests/cpp/checked_context.h"
+#include "tests/cpp/checked_engine.h"
 #include "tests/cpp/render_shapes.h"
 
 using namespace quadgraph;
 
 namespace {
 
-const std::filesystem::path cube = std::filesystem::path(QUADGRAPH_TEST_DATA) / "tiny.qgraph";
 constexpr const char* material = "marble,pattern=veins,second_sigma_s_prime=1,second_sigma_a=.5,period=1,sharpness=2";
 
-struct Checked {
-  Engine engine{cube, {.validation = true, .device = ""}};
-
-  Checked() = default;
-  Checked(const Checked&) = delete;
-  Checked& operator=(const Checked&) = delete;
-  ~Checked() {
-    for (const auto& message : engine.context().validation_messages()) FAIL_CHECK(message);
-  }
-
+struct Checked : CheckedEngine {
   Picture picture(const View& view = {}) {
     engine.solve();
     return engine.render(view, {.width = 48, .height = 48});

@@ -3,31 +3,17 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <filesystem>
 #include <glm/geometric.hpp>
 
 #include "engine/graph/error.h"
 #include "engine/graph/fresnel.h"
 #include "engine/render/engine.h"
 #include "engine/render/tone_mapper.h"
+#include "tests/cpp/checked_engine.h"
 
 using namespace quadgraph;
 
 namespace {
-
-const std::filesystem::path cube = std::filesystem::path(QUADGRAPH_TEST_DATA) / "tiny.qgraph";
-
-// An engine whose validation messages fail the test.
-struct Checked {
-  Engine engine{cube, {.validation = true, .device = ""}};
-
-  Checked() = default;
-  Checked(const Checked&) = delete;
-  Checked& operator=(const Checked&) = delete;
-  ~Checked() {
-    for (const auto& message : engine.context().validation_messages()) FAIL_CHECK(message);
-  }
-};
 
 double total(const std::vector<float>& values) {
   double sum = 0;
@@ -40,7 +26,7 @@ double total(const std::vector<float>& values) {
 TEST_CASE("a lit cube takes in the light of its face on every level, without a display") {
   unsetenv("DISPLAY");
   unsetenv("WAYLAND_DISPLAY");
-  Checked checked;
+  CheckedEngine checked;
   Engine& engine = checked.engine;
   engine.set_material("sigma_s_prime=2,sigma_a=0.1,eta=1.4");
   engine.set_lights({parse_light("directional:0,0,-1:1/2/3")});
@@ -67,7 +53,7 @@ TEST_CASE("a lit cube takes in the light of its face on every level, without a d
 }
 
 TEST_CASE("irradiance follows light and material, and given irradiance replaces the lights") {
-  Checked checked;
+  CheckedEngine checked;
   Engine& engine = checked.engine;
   engine.set_material("sigma_s_prime=2,sigma_a=0.1,eta=1");
   engine.set_lights({parse_light("directional:0,0,-1:1")});
@@ -83,7 +69,7 @@ TEST_CASE("irradiance follows light and material, and given irradiance replaces 
 }
 
 TEST_CASE("ambient light enters everywhere, and as much of it as a smooth surface lets in") {
-  Checked checked;
+  CheckedEngine checked;
   Engine& engine = checked.engine;
   engine.set_material("sigma_s_prime=5/3/1,sigma_a=0.1,eta=1.4");
   engine.set_lights({parse_light("ambient:2"), parse_light("directional:0,0,-1:1")});
@@ -99,7 +85,7 @@ TEST_CASE("ambient light enters everywhere, and as much of it as a smooth surfac
 }
 
 TEST_CASE("a picture shows what was solved, and says how it was made") {
-  Checked checked;
+  CheckedEngine checked;
   Engine& engine = checked.engine;
   // So dense that little light crosses the 2 mm unscattered: it would leave on the far side.
   const std::string material = "sigma_s_prime=3,sigma_a=0.05,eta=1.3";
@@ -147,7 +133,7 @@ TEST_CASE("a picture shows what was solved, and says how it was made") {
 }
 
 TEST_CASE("calls out of order and options out of range are refused") {
-  Checked checked;
+  CheckedEngine checked;
   Engine& engine = checked.engine;
   CHECK_THROWS_WITH_AS(engine.update_irradiance(), doctest::Contains("material"), InputError);
   CHECK_THROWS_WITH_AS(engine.render({}), doctest::Contains("solve first"), InputError);
@@ -167,7 +153,7 @@ TEST_CASE("a file that is not there is named") {
 }
 
 TEST_CASE("pictures that follow each other allocate nothing, smaller ones neither") {
-  Checked checked;
+  CheckedEngine checked;
   Engine& engine = checked.engine;
   engine.set_material("sigma_s_prime=2,sigma_a=0.1,eta=1.4");
   engine.set_lights({parse_light("directional:0,0,-1:1")});
@@ -186,7 +172,7 @@ TEST_CASE("pictures that follow each other allocate nothing, smaller ones neithe
 
 TEST_CASE("a body stands on its ground: a shadow at its foot, without light, none above, none from below") {
   for (const UpAxis up : {UpAxis::y, UpAxis::z}) {
-    Checked checked;
+    CheckedEngine checked;
     Engine& engine = checked.engine;
     engine.set_material("sigma_s_prime=2,sigma_a=0.1,eta=1.4");
     engine.set_lights({parse_light("directional:0,0,-1:1")});
@@ -207,7 +193,7 @@ TEST_CASE("a body stands on its ground: a shadow at its foot, without light, non
 }
 
 TEST_CASE("a picked point lies on the surface under the pointer, and at rest where it came from") {
-  Checked checked;
+  CheckedEngine checked;
   Engine& engine = checked.engine;
   const View front{.azimuth = 0, .elevation = 0};
   const auto middle = engine.pick(front, 1, {0, 0});

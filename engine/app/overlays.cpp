@@ -1,0 +1,91 @@
+#include "engine/app/overlays.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "engine/app/commands.h"
+#include "engine/render/tone_map.h"
+#include "shaders/colour_map.h"
+
+namespace quadgraph {
+
+void draw_help(State& state, float unit) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({0.5f * size.x, 0.5f * size.y}, ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::SetNextWindowBgAlpha(0.94f);
+  ImGui::Begin("keys", &state.help,
+               ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoNav |
+                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoMove);
+  ImGui::TextUnformatted("Left drag turns the object, right or middle drag moves it, the wheel brings it nearer.");
+  ImGui::TextUnformatted(
+      "With Ctrl or Shift a drag turns the selected light; with the brush in hand a left drag paints.");
+  ImGui::Separator();
+  const auto commands = all_commands();
+  const std::size_t rows = (commands.size() + 1) / 2;
+  if (ImGui::BeginTable("table", 4, ImGuiTableFlags_SizingFixedFit)) {
+    for (std::size_t row = 0; row < rows; ++row) {
+      ImGui::TableNextRow();
+      for (std::size_t i = row; i < commands.size(); i += rows) {
+        ImGui::TableNextColumn();
+        ImGui::TextColored({0.95f, 0.65f, 0.32f, 1}, "%.*s", static_cast<int>(commands[i].keys.size()),
+                           commands[i].keys.data());
+        ImGui::TableNextColumn();
+        ImGui::Text("%.*s   ", static_cast<int>(commands[i].text.size()), commands[i].text.data());
+      }
+    }
+    ImGui::EndTable();
+  }
+  ImGui::Dummy({560 * unit, 0});
+  ImGui::End();
+}
+
+void draw_colour_bar(const Legend& legend, float left, float unit) {
+  constexpr int strips = 96;
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const float width = std::min(360 * unit, size.x - left - 60 * unit);
+  if (width < 100 * unit) return;
+  ImGui::SetNextWindowPos({size.x - 12 * unit, size.y - 12 * unit}, ImGuiCond_Always, {1, 1});
+  ImGui::SetNextWindowBgAlpha(0.75f);
+  ImGui::Begin("colours", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
+                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
+  ImGui::Text("%s, %s", legend.title.c_str(), legend.unit.c_str());
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  ImDrawList* draw = ImGui::GetWindowDrawList();
+  for (int i = 0; i < strips; ++i) {
+    const glm::vec3 linear = gpu::mapped_colour((static_cast<float>(i) + 0.5f) / strips, legend.diverging ? 1 : 0);
+    const ImU32 colour = ImGui::GetColorU32({srgb_encode(linear.x), srgb_encode(linear.y), srgb_encode(linear.z), 1});
+    draw->AddRectFilled({at.x + width * static_cast<float>(i) / strips, at.y},
+                        {at.x + width * static_cast<float>(i + 1) / strips + 1, at.y + 14 * unit}, colour);
+  }
+  const ImU32 text = ImGui::GetColorU32(ImGuiCol_Text);
+  for (const Tick& tick : ticks_of(legend)) {
+    const float x = at.x + tick.place * width;
+    draw->AddLine({x, at.y + 14 * unit}, {x, at.y + 18 * unit}, text);
+    const float half = 0.5f * ImGui::CalcTextSize(tick.text.c_str()).x;
+    draw->AddText({std::clamp(x - half, at.x, at.x + width - 2 * half), at.y + 19 * unit}, text, tick.text.c_str());
+  }
+  ImGui::Dummy({width, 22 * unit + ImGui::GetTextLineHeight()});
+  ImGui::End();
+}
+
+void draw_message(const State& state, float left, float unit) {
+  if (state.message.empty()) return;
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({left + 12 * unit, size.y - 12 * unit}, ImGuiCond_Always, {0, 1});
+  ImGui::SetNextWindowSizeConstraints({0, 0}, {size.x - left - 24 * unit, size.y});
+  ImGui::SetNextWindowBgAlpha(0.85f);
+  ImGui::Begin("message", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
+                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
+  ImGui::PushTextWrapPos(size.x - left - 48 * unit);
+  const ImVec4 colour = state.refused ? ImVec4(1, 0.55f, 0.45f, 1) : ImVec4(0.9f, 0.9f, 0.89f, 1);
+  ImGui::PushStyleColor(ImGuiCol_Text, colour);
+  ImGui::TextUnformatted(state.message.c_str());
+  ImGui::PopStyleColor();
+  ImGui::PopTextWrapPos();
+  ImGui::End();
+}
+
+}  // namespace quadgraph

@@ -1,0 +1,18 @@
+// What lies over the picture: the keys, what the colours mean, and the last message.
+#pragma once
+
+#include "engine/app/state.h"
+#include "engine/render/legend.h"
+
+namespace quadgraph {
+
+// The keys, over the picture.
+void draw_help(State& state, float unit);
+
+// What the colours mean, over the picture's lower edge. `left`: where the picture begins, window coordinates.
+void draw_colour_bar(const Legend& legend, float left, float unit);
+
+// The last thing to tell the user, in the picture's lower left corner.
+void draw_message(const State& state, float left, float unit);
+
+}  // namespace quadgraph

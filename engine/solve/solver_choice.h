@@ -1,0 +1,28 @@
+// Which solver takes less time on a body and a material: both are tried, once.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <span>
+
+#include "engine/solve/operators.h"
+#include "engine/solve/recorder.h"
+
+namespace quadgraph {
+
+class SolverChoice {
+ public:
+  // After a change of material or shape.
+  void forget() { quicker_.clear(); }
+
+  // Solves with what is known to be quicker; else, from nothing and to the end, with both, and the report says so.
+  // `cycles`: whether multigrid is possible. `passes` tells those of all runs of this solve so far.
+  SolveReport solve(const OperatorKey& key, const SolveOptions& options, bool cycles,
+                    const std::function<SolveReport(SolverKind)>& run,
+                    const std::function<std::vector<PassStats>()>& passes);
+
+ private:
+  std::map<OperatorKey, SolverKind> quicker_;
+};
+
+}  // namespace quadgraph
