@@ -27,6 +27,7 @@ struct LuminancePush {
 struct ToneMapPush {
   QG_REF(Floats) layers[PICTURE_LAYERS];  // RGB per pixel
   QG_REF(Floats) alpha;                   // per pixel
+  QG_REF(Floats) surroundings;            // RGB per pixel
   QG_REF(Uints) target;                   // per pixel of the screen's part, 8 bits each, the first lowest; written
   vec3 background_top;                    // linear display colour
   vec3 background_bottom;
@@ -37,6 +38,7 @@ struct ToneMapPush {
   uint height;
   uint false_colour;  // 1: the first layer is linear display colour
   uint blue_first;    // order of the channels: 1 blue, green, red; 0 red, green, blue
+  uint surrounded;    // 1: surroundings are seen instead of a background
 };
 
 #ifdef __cplusplus

@@ -4,10 +4,15 @@
 #define QUADGRAPH_RENDER_SHARED_H
 
 #include "gather_shared.h"
+#include "image_levels.h"
 
 #ifdef __cplusplus
 namespace quadgraph::gpu {
 #endif
+
+// Bits of the variant of a pipeline, which is a specialization constant (shaped.glsl).
+#define VARIANT_SHAPED 1
+#define VARIANT_PLACED_ROUGHNESS 2
 
 const uint LIGHT_DIRECTIONAL = 0u;
 const uint LIGHT_POINT = 1u;
@@ -23,10 +28,11 @@ const uint LIGHT_ENVIRONMENT = 6u;
 // Pictures of an environment, one after the other in its texels (environment.h).
 const uint ENVIRONMENT_COLUMNS = 256u;
 const uint ENVIRONMENT_ROWS = 128u;
-const uint ENVIRONMENT_ENTERING = 0u;   // irradiance that enters a face, by its normal
-const uint ENVIRONMENT_RAYS = 1u;       // radiance as the rays see it that ask what hides it
-const uint ENVIRONMENT_REFLECTED = 2u;  // radiance as a rough surface reflects it, by the mirrored view
-const uint ENVIRONMENT_PICTURES = 3u;
+const uint ENVIRONMENT_ENTERING = 0u;          // irradiance that enters a face, by its normal
+const uint ENVIRONMENT_RAYS = 1u;              // radiance as the rays see it that ask what hides it
+const uint ENVIRONMENT_REFLECTED = 2u;         // radiance as a rough surface reflects it, by the mirrored view
+const uint ENVIRONMENT_REFLECTED_PLACED = 3u;  // the same where the image of a roughness is white
+const uint ENVIRONMENT_PICTURES = 4u;
 
 // Texels along a side of a shadow map: of a single view, and of each of a point light's six; of a patch.
 const uint SHADOW_SIZE = 2048u;
@@ -228,6 +234,12 @@ SurfaceScene load_scene(SurfaceScenes a) {
 // surface.vert, surface.frag: radiance of the display mesh. surface_gathered.frag: what is needed to gather it.
 struct SurfacePush {
   QG_REF(SurfaceScenes) scene;  // one
+  // With VARIANT_PLACED_ROUGHNESS: engine/render/surface_roughness.h.
+  QG_REF(Vec3s) rest;    // per display vertex, mm
+  QG_REF(Vec3s) texels;  // of the image
+  ImageLevels image;
+  ImageBox box;
+  float roughness;  // GGX alpha where the image is white
 };
 
 // Layers of a picture: scattered, specular and unscattered radiance, and transmittance.

@@ -1,9 +1,9 @@
-// Whether passes know lights with a shape (LIGHT_FIRST_SHAPED).
+// What passes know of: lights with a shape, a roughness that varies.
 #include "render_shared.h"
 
-// 1 where some light has a shape (LIGHT_FIRST_SHAPED).
-layout(constant_id = 1) const uint SHAPED_LIGHTS = 0u;
-const bool SHAPED = SHAPED_LIGHTS != 0u;
+layout(constant_id = 1) const uint VARIANT = 0u;
+const bool SHAPED = (VARIANT & VARIANT_SHAPED) != 0u;  // some light has a shape (LIGHT_FIRST_SHAPED)
+const bool PLACED_ROUGHNESS = (VARIANT & VARIANT_PLACED_ROUGHNESS) != 0u;  // an image says where it is another
 
 // Of a light that has none.
 LightShape no_shape() {

@@ -1,6 +1,21 @@
-// Light that the surface reflects. Include after lights.glsl, fresnel.glsl and a SurfaceScene `scene`.
+// Light that the surface reflects. Include after lights.glsl, fresnel.glsl, a SurfacePush `push` and a
+// SurfaceScene `scene`.
 
 const float PI = 3.14159265;
+
+// How much of the roughness here is that of an image.
+float placed_share = 0.0;
+
+// Makes scene.roughness that of a point of the surface, `rest` at rest, mm. To be called by all fragments.
+void place_roughness(vec3 rest) {
+  if (!PLACED_ROUGHNESS) return;
+  vec3 place = in_box(push.box, rest);
+  float width = max(length(dFdx(place.xy)), length(dFdy(place.xy)));
+  if (any(greaterThan(abs(place), push.box.half_size))) return;
+  ImageTap tap = image_tap(push.image, in_picture(push.box, place), texels_across(push.box, push.image, width));
+  placed_share = clamp(luminance(load_image(push.texels, tap)), 0.0, 1.0);
+  scene.roughness = mix(scene.roughness, push.roughness, placed_share);
+}
 
 // Cook and Torrance 1982 with the GGX distribution and height-correlated Smith masking (Walter et al. 2007, Heitz 2014)
 // and exact Fresnel reflectance: BRDF times the cosine of incidence, 1/sr.
@@ -24,7 +39,10 @@ float blurred(LightRecord light, LightShape shape, vec3 position) {
 
 // What a surface reflects of an environment towards v, over its power and Fresnel reflectance.
 vec3 reflected_environment(LightShape shape, vec3 n, vec3 v) {
-  return environment_at(shape, ENVIRONMENT_REFLECTED, reflect(-v, n));
+  vec3 mirrored = reflect(-v, n);
+  vec3 seen = environment_at(shape, ENVIRONMENT_REFLECTED, mirrored);
+  if (!PLACED_ROUGHNESS) return seen;
+  return mix(seen, environment_at(shape, ENVIRONMENT_REFLECTED_PLACED, mirrored), placed_share);
 }
 
 // Towards v at a point of unit normal n that sees the share `sky` of its surroundings, W/(mm^2 sr).

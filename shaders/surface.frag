@@ -7,6 +7,7 @@ layout(push_constant, scalar) uniform Block { SurfacePush push; };
 layout(location = 0) in vec3 position;  // mm
 layout(location = 1) in vec3 normal;
 layout(location = 4) in float sky;  // share that is not hidden by the body
+layout(location = 5) in vec3 rest;  // mm, the position at rest
 layout(location = 2) in vec3 exitance;             // W/mm^2
 layout(location = 3) in vec3 unscattered_exitance;  // W/mm^2
 layout(location = 0) out vec4 scattered_coverage;  // W/(mm^2 sr), 1
@@ -20,6 +21,7 @@ SurfaceScene scene;
 // As of a diffuser behind the surface: the same from every side but for Fresnel.
 void main() {
   scene = load_scene(push.scene);
+  place_roughness(rest);
   vec3 n = normalize(normal);
   vec3 v = normalize(scene.eye - position);
   float share = fresnel_transmittance(clamp(dot(n, v), 0.0, 1.0), scene.eta) / scene.radiance_norm;

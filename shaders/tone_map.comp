@@ -23,7 +23,7 @@ float dither(uint x, uint y) {
 
 // A pixel of the picture, or a mean of several.
 struct Seen {
-  vec3 radiance, transmittance;
+  vec3 radiance, transmittance, surroundings;
   float alpha;
 };
 
@@ -35,6 +35,7 @@ void add(inout Seen sum, uint x, uint y, float weight) {
     sum.radiance[c] +=
         weight * (max(push.layers[0].at[value], 0.0) + push.layers[1].at[value] + push.layers[2].at[value]);
     sum.transmittance[c] += weight * push.layers[3].at[value];
+    if (push.surrounded != 0u) sum.surroundings[c] += weight * push.surroundings.at[value];
   }
   sum.alpha += weight * push.alpha.at[i];
 }
@@ -45,7 +46,7 @@ Seen seen_at(uint x, uint y) {
   vec2 at = clamp((vec2(x, y) + 0.5) * (size / vec2(push.width, push.height)) - 0.5, vec2(0), size - 1.0);
   uvec2 low = uvec2(at), high = min(low + 1u, uvec2(size) - 1u);
   vec2 share = at - vec2(low);
-  Seen sum = Seen(vec3(0), vec3(0), 0.0);
+  Seen sum = Seen(vec3(0), vec3(0), vec3(0), 0.0);
   add(sum, low.x, low.y, (1.0 - share.x) * (1.0 - share.y));
   add(sum, high.x, low.y, share.x * (1.0 - share.y));
   add(sum, low.x, high.y, (1.0 - share.x) * share.y);
@@ -61,6 +62,7 @@ void main() {
   vec3 object = seen.alpha > 0.0 ? seen.alpha * filmic(push.exposure * seen.radiance / seen.alpha) : vec3(0);
   if (push.false_colour != 0u) object = seen.radiance;
   vec3 background = mix(push.background_top, push.background_bottom, (y + 0.5) / push.height);
+  if (push.surrounded != 0u) background = filmic(push.exposure * seen.surroundings);
   vec3 shown = clamp(object + (1.0 - seen.alpha + seen.transmittance) * background, vec3(0), vec3(1));
   uvec3 code = uvec3(min(floor(255.0 * srgb_encode(shown) + dither(x, y)), vec3(255)));
   if (push.blue_first != 0u) code = code.bgr;

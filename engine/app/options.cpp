@@ -28,7 +28,7 @@ struct Typed {
   float roughness = 0.3f;
   std::string radiance = "auto", show = "picture";
   std::string device;
-  bool ground = false;
+  bool ground = false, surroundings = false;
   bool no_inter_reflection = false, headless = false, validation = false, json = false;
 };
 
@@ -128,6 +128,8 @@ void declare_picture(CLI::App& app, Typed& typed) {
   app.add_flag("--ground,!--no-ground", typed.ground,
                "a shadow on the ground where the object stands; windows have it, other pictures with --ground")
       ->group("Picture");
+  app.add_flag("--surroundings", typed.surroundings, "what environment lights show, behind the object")
+      ->group("Picture");
   app.add_option("--roughness", typed.roughness, "of the surface, GGX alpha, 0.02 to 1")
       ->capture_default_str()
       ->group("Picture");
@@ -214,6 +216,7 @@ void take_solve(const Typed& typed, const Given& given, SolveOptions& solve) {
 void take_picture(const Typed& typed, const Given& given, Scene& scene) {
   if (given("--size")) parse_size(typed.size, scene.render);
   if (given("--ground")) scene.render.ground = typed.ground;
+  if (given("--surroundings")) scene.render.surroundings = typed.surroundings;
   if (given("--roughness")) scene.render.roughness = typed.roughness;
   if (given("--radiance")) scene.render.radiance = radiance_from_name(typed.radiance);
   if (given("--show")) scene.render.show = parse_show(typed.show);

@@ -146,6 +146,8 @@ void draw_picture(State& state, const Measured& measured) {
   choose("radiance", state.scene.render.radiance,
          std::array{Radiance::automatic, Radiance::gathered, Radiance::lambertian});
   ImGui::Checkbox("ground", &state.scene.render.ground);
+  ImGui::SameLine();
+  ImGui::Checkbox("surroundings", &state.scene.render.surroundings);
   slide("roughness", state.scene.render.roughness, 0.02f, 1, "%.2f");
   auto& stops = state.scene.tone.exposure_stops;
   bool automatic = !stops;

@@ -13,6 +13,7 @@
 #include "engine/render/legend.h"
 #include "engine/render/metadata.h"
 #include "engine/render/rasteriser.h"
+#include "engine/render/surroundings.h"
 #include "engine/render/text.h"
 
 namespace quadgraph {
@@ -27,6 +28,12 @@ void add(std::vector<PassStats>& passes, const PassStats& more) {
   same->time_ms += more.time_ms;
   same->bytes += more.bytes;
   same->count += more.count;
+}
+
+void check_roughness(float roughness) {
+  if (roughness >= least_roughness && roughness <= 1) return;
+  throw InputError("roughness: found " + number_text(roughness) + ", expected " + number_text(least_roughness) +
+                   " to 1");
 }
 
 constexpr std::pair<Radiance, std::string_view> radiance_names[] = {
@@ -73,11 +80,14 @@ struct Engine::Implementation {
   std::optional<RadianceProbe> probe;       // made at first use
   vk::Buffer triangle_face;                 // display_faces.h, made at first use
   std::vector<PassStats> deformation_passes, irradiance_passes, gather_passes, render_passes;
-  bool deformed = false;         // since the last solve
-  std::string deformation;       // in words
-  std::optional<Ground> ground;  // made at first use
-  std::optional<Legend> legend;  // of the last picture
-  FalseColours false_colours;    // the same
+  bool deformed = false;                                // since the last solve
+  std::string deformation;                              // in words
+  std::optional<Ground> ground;                         // made at first use
+  std::optional<Surroundings> surroundings;             // made at first use
+  std::shared_ptr<const ImagePyramid> roughness_image;  // of the last picture
+  vk::Buffer roughness_texels, rest_vertices;           // at first use
+  std::optional<Legend> legend;                         // of the last picture
+  FalseColours false_colours;                           // the same
 
   void draw_inside(const Camera& camera, const RenderOptions& render) {
     const Inside inside = inside_of({context, simulation, graph, *report, options, bounds, camera.eye}, render.show);
@@ -85,6 +95,21 @@ struct Engine::Implementation {
     false_colours = upload_false_colours(context, inside.mesh, inside.plane, inside.legend.diverging);
     legend = inside.legend;
     render_passes = rasteriser.run(false_colours, camera, render.width, render.height);
+  }
+
+  PlacedRoughness placed_roughness(const RoughnessMap& map) {
+    if (rest_vertices.size() == 0) {
+      rest_vertices = vk::upload<glm::vec3>(context, graph.display().vertices, "display/at rest");
+    }
+    if (roughness_image != map.image) {
+      roughness_texels = vk::upload<glm::vec3>(context, map.image->texels, "picture/roughness image");
+      roughness_image = map.image;
+    }
+    return {roughness_texels,
+            rest_vertices,
+            image_box(map.placement),
+            {0, map.image->columns, map.image->rows, map.image->levels},
+            map.roughness};
   }
 
   const GatherField& gather() {
@@ -109,10 +134,11 @@ void check_options(const RenderOptions& options) {
                        ", expected 1 to " + std::to_string(largest_side) + " pixels a side");
     }
   }
-  if (!(options.roughness >= least_roughness && options.roughness <= 1)) {
-    throw InputError("roughness: found " + number_text(options.roughness) + ", expected " +
-                     number_text(least_roughness) + " to 1");
-  }
+  check_roughness(options.roughness);
+  if (!options.roughness_map) return;
+  if (!options.roughness_map->image) throw InputError("roughness_map, image: found none");
+  check_roughness(options.roughness_map->roughness);
+  check_placement(options.roughness_map->placement);
 }
 
 Radiance radiance_from_name(std::string_view name) {
@@ -265,6 +291,10 @@ const PictureBuffers& Engine::draw(const View& view, const RenderOptions& option
     const GatherField& field = self.gather();
     gather.emplace(field, self.triangle_face);
   }
+  const auto& map = options.roughness_map;
+  self.images.set_roughness(options.roughness, map ? map->roughness : 0);
+  std::optional<PlacedRoughness> placed;
+  if (map) placed.emplace(self.placed_roughness(*map));
   self.render_passes = self.rasteriser.run({.mesh = self.mesh,
                                             .finest = self.simulation.level(0),
                                             .vertex_exitance = self.simulation.vertex_exitance(),
@@ -272,12 +302,20 @@ const PictureBuffers& Engine::draw(const View& view, const RenderOptions& option
                                             .shadows = self.shadows,
                                             .eta = self.simulation.eta(),
                                             .roughness = options.roughness,
+                                            .placed_roughness = placed ? &*placed : nullptr,
                                             .gather = gather ? &*gather : nullptr},
                                            camera, options.width, options.height);
   self.radiance = gather ? Radiance::gathered : Radiance::lambertian;
   if (options.ground) {
     if (!self.ground) self.ground.emplace(self.context);
     self.render_passes.push_back(self.ground->run(self.mesh, self.bounds, view, camera, self.rasteriser.picture()));
+  }
+  if (options.surroundings) {
+    if (!self.surroundings) self.surroundings.emplace(self.context);
+    PictureBuffers& picture = self.rasteriser.picture();
+    PassStats pass;
+    picture.has_surroundings = self.surroundings->run(self.lights, view, camera, picture, pass);
+    if (picture.has_surroundings) self.render_passes.push_back(pass);
   }
   return self.rasteriser.picture();
 }

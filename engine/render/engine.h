@@ -20,6 +20,7 @@
 #include "engine/render/picture_buffers.h"
 #include "engine/render/radiance_probe.h"
 #include "engine/render/show.h"
+#include "engine/render/surface_roughness.h"
 #include "engine/solve/simulation.h"
 #include "engine/vk/context.h"
 
@@ -42,8 +43,10 @@ struct RenderOptions {
   std::uint32_t width = 1024, height = 1024;  // pixels, 1 to largest_side; every one is the mean of 2 x 2 samples
   float roughness = 0.3f;                     // alpha of the GGX distribution of the surface, 0.02 to 1
   Radiance radiance = Radiance::automatic;
-  Show show{};          // what is to be seen
-  bool ground = false;  // with a shadow where the body stands, which counts as coverage without light
+  Show show{};                // what is to be seen
+  bool ground = false;        // with a shadow where the body stands, which counts as coverage without light
+  bool surroundings = false;  // environment lights are seen behind the body
+  std::optional<RoughnessMap> roughness_map{};
 
   bool operator==(const RenderOptions&) const = default;
 };

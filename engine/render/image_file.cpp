@@ -17,8 +17,8 @@
 namespace quadgraph {
 namespace {
 
-constexpr std::int64_t largest_side = 16384;     // texels
-constexpr std::uint32_t largest_in_body = 1024;  // the same
+constexpr std::int64_t largest_side = 16384;  // texels
+constexpr std::uint32_t largest_kept = 2048;  // the same
 
 std::string extension_of(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
@@ -150,7 +150,7 @@ Image read_image(const std::filesystem::path& path) {
 std::shared_ptr<const ImagePyramid> load_pyramid(const std::filesystem::path& path) {
   static FileCache<ImagePyramid> known(8);
   return known.load(path, [](const std::filesystem::path& file) {
-    auto pyramid = std::make_shared<ImagePyramid>(pyramid_of(read_image(file), largest_in_body));
+    auto pyramid = std::make_shared<ImagePyramid>(pyramid_of(read_image(file), largest_kept));
     pyramid->file = file;
     return pyramid;
   });

@@ -14,7 +14,7 @@ namespace quadgraph {
 // allowed.
 Image read_image(const std::filesystem::path& path);
 
-// The same with smaller ones, of at most 1024 texels a side: beyond, no node of a body sees them apart. What was read
+// The same with smaller ones, of at most 2048 texels a side. What was read
 // before if the file is still the same.
 std::shared_ptr<const ImagePyramid> load_pyramid(const std::filesystem::path& path);
 

@@ -75,11 +75,14 @@ void LightImages::set_eta(float eta) {
   }
 }
 
-void LightImages::set_roughness(float roughness) {
+void LightImages::set_roughness(float roughness, float placed) {
+  const auto write = [&](EnvironmentImage& image, std::uint32_t number, float& known, float wanted) {
+    if (wanted == 0 || std::exchange(known, wanted) == wanted) return;
+    write_picture(context_, image, number, reflection_degrees(wanted, environment_degree));
+  };
   for (auto& [file, loaded] : environments_) {
-    if (std::exchange(loaded.image.roughness, roughness) == roughness) continue;
-    write_picture(context_, loaded.image, gpu::ENVIRONMENT_REFLECTED,
-                  reflection_degrees(roughness, environment_degree));
+    write(loaded.image, gpu::ENVIRONMENT_REFLECTED, loaded.image.roughness, roughness);
+    write(loaded.image, gpu::ENVIRONMENT_REFLECTED_PLACED, loaded.image.placed_roughness, placed);
   }
 }
 

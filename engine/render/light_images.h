@@ -24,8 +24,8 @@ struct ProjectedImage {
 struct EnvironmentImage {
   Environment environment;
   std::vector<glm::vec3> pictures;
-  vk::Buffer texels;             // the same
-  float eta = 0, roughness = 0;  // what the pictures are for; 0: none yet
+  vk::Buffer texels;                                   // the same
+  float eta = 0, roughness = 0, placed_roughness = 0;  // what the pictures are for; 0: none yet
 };
 
 class LightImages {
@@ -41,9 +41,9 @@ class LightImages {
   const EnvironmentImage& environment(const std::string& file) const { return environments_.at(file).image; }
 
   // Brings the pictures of environments up to date that depend on the index of refraction; on the roughness of the
-  // surface.
+  // surface, and on that where an image says so, 0 without one.
   void set_eta(float eta);
-  void set_roughness(float roughness);
+  void set_roughness(float roughness, float placed);
 
  private:
   template <typename T>

@@ -60,14 +60,6 @@ gpu::LightShape projector_shape(const Light& light, const ProjectedImage& image)
   return shape;
 }
 
-// The image's right, up and ahead.
-glm::mat3 environment_frame(const Light& light) {
-  const bool z_up = light.up.z > 0;
-  const glm::vec3 right(1, 0, 0), ahead = z_up ? glm::vec3(0, 1, 0) : glm::vec3(0, 0, -1);
-  const float turn = glm::radians(light.turn), c = std::cos(turn), s = std::sin(turn);
-  return {c * right + s * ahead, light.up, c * ahead - s * right};
-}
-
 gpu::Beam beam_of(const Light& light, const gpu::LightRecord& record) {
   switch (light.kind) {
     case LightKind::ambient:
@@ -87,6 +79,13 @@ gpu::Beam beam_of(const Light& light, const gpu::LightRecord& record) {
 }
 
 }  // namespace
+
+glm::mat3 environment_frame(const Light& light) {
+  const bool z_up = light.up.z > 0;
+  const glm::vec3 right(1, 0, 0), ahead = z_up ? glm::vec3(0, 1, 0) : glm::vec3(0, 0, -1);
+  const float turn = glm::radians(light.turn), c = std::cos(turn), s = std::sin(turn);
+  return {c * right + s * ahead, light.up, c * ahead - s * right};
+}
 
 gpu::LightRecord light_record(const Light& light) {
   switch (light.kind) {

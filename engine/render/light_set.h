@@ -2,6 +2,7 @@
 // the light enters the body.
 #pragma once
 
+#include <glm/mat3x3.hpp>
 #include <span>
 #include <vector>
 
@@ -32,6 +33,9 @@ class LightSet {
 
   Sphere bounds_;
 };
+
+// Of an environment: its picture's right, up and ahead in the world.
+glm::mat3 environment_frame(const Light& light);
 
 // As shaders take it, without views; of a rectangle a patch in its middle,
 // of a projector with the power of the whole image as intensity.

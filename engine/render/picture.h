@@ -19,9 +19,10 @@ struct Picture {
   // negative), that the surface reflected, and that crossed the body without being scattered. They add up to the
   // picture.
   std::vector<float> scattered, specular, unscattered;
-  std::vector<float> transmittance;  // RGB per pixel: share of what is behind the body that is seen through it
-  std::vector<float> alpha;          // per pixel, share of the pixel that the object covers
-  bool false_colour = false;         // the layer `scattered` is not radiance but linear display colour, shown as it is
+  std::vector<float> transmittance;   // RGB per pixel: share of what is behind the body that is seen through it
+  std::vector<float> alpha;           // per pixel, share of the pixel that the object covers
+  std::vector<float> surroundings{};  // RGB per pixel, W/(mm^2 sr): what is behind; empty: only a backdrop
+  bool false_colour = false;          // the layer `scattered` is not radiance but linear display colour, shown as it is
 
   // The sum of the three layers at a value (pixel and channel), what is negative counting as none.
   float radiance(std::size_t value) const {
@@ -32,7 +33,7 @@ struct Picture {
 // Name and value of everything needed to make the picture again and to judge it.
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 
-// 8-bit sRGB RGB rows, tone mapped and laid over the background.
+// 8-bit sRGB RGB rows, tone mapped and laid over the surroundings, or the background.
 std::vector<std::uint8_t> to_srgb8(const Picture& picture, const ToneOptions& options);
 
 // Both write a temporary file beside `path` and rename it, and add to the metadata "exposure": the stops that
@@ -42,7 +43,8 @@ void write_png(const std::filesystem::path& path, const Picture& picture, const 
                const Metadata& metadata);
 
 // EXR: float32 linear and not exposed, channels R, G, B (the sum of the layers), A, and R, G, B of the layers
-// scattered, specular, unscattered and transmittance; metadata as string attributes.
+// scattered, specular, unscattered and transmittance, and of the surroundings if there are any; metadata as string
+// attributes.
 void write_exr(const std::filesystem::path& path, const Picture& picture, const ToneOptions& options,
                const Metadata& metadata);
 

@@ -25,6 +25,10 @@ void PictureBuffers::resize(vk::Context& context, std::uint32_t new_width, std::
   grow(context, sizeof(float) * pixels(), "picture/alpha", alpha);
 }
 
+void PictureBuffers::make_room_around(vk::Context& context) {
+  grow(context, sizeof(glm::vec3) * pixels(), "picture/surroundings", around);
+}
+
 Picture read_picture(vk::Context& context, const PictureBuffers& buffers) {
   const auto rgb = [&](std::size_t k) { return floats(context, buffers.layers[k], 3 * buffers.pixels()); };
   return {.width = buffers.width,
@@ -34,6 +38,8 @@ Picture read_picture(vk::Context& context, const PictureBuffers& buffers) {
           .unscattered = rgb(2),
           .transmittance = rgb(3),
           .alpha = floats(context, buffers.alpha, buffers.pixels()),
+          .surroundings =
+              buffers.has_surroundings ? floats(context, buffers.around, 3 * buffers.pixels()) : std::vector<float>(),
           .false_colour = buffers.false_colour};
 }
 

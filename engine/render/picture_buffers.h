@@ -15,12 +15,15 @@ struct PictureBuffers {
   std::uint32_t width = 0, height = 0;            // pixels
   std::array<vk::Buffer, PICTURE_LAYERS> layers;  // vec3 per pixel: scattered, specular, unscattered, transmittance
   vk::Buffer alpha;                               // float per pixel
-  bool false_colour = false;                      // as in Picture
+  vk::Buffer around;                              // vec3 per pixel: surroundings, if has_surroundings
+  bool has_surroundings = false;
+  bool false_colour = false;  // as in Picture
 
   std::uint64_t pixels() const { return std::uint64_t{width} * height; }
 
   // Takes the size, and memory for it where there is too little.
   void resize(vk::Context& context, std::uint32_t new_width, std::uint32_t new_height);
+  void make_room_around(vk::Context& context);
 };
 
 Picture read_picture(vk::Context& context, const PictureBuffers& buffers);

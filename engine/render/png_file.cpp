@@ -95,7 +95,9 @@ std::vector<std::uint8_t> to_srgb8(const Picture& picture, const ToneOptions& op
                              : alpha > 0          ? alpha * filmic(scale * radiance / alpha)
                                                   : 0.0f;
         const float behind = 1.0f - alpha + picture.transmittance[3 * i + c];
-        const float shown = object + behind * background[static_cast<int>(c)];
+        const float backdrop = picture.surroundings.empty() ? background[static_cast<int>(c)]
+                                                            : filmic(scale * picture.surroundings[3 * i + c]);
+        const float shown = object + behind * backdrop;
         const float code = 255.0f * srgb_encode(std::clamp(shown, 0.0f, 1.0f));
         bytes[3 * i + c] = static_cast<std::uint8_t>(std::min(std::floor(code + threshold), 255.0f));
       }

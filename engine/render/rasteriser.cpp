@@ -52,12 +52,23 @@ gpu::SurfaceScene scene(const RasterInput& input, const Camera& camera) {
   return scene;
 }
 
-vk::GraphicsOptions pass_options(vk::Spirv fragment, bool shaped = false) {
+gpu::SurfacePush surface_push(std::uint64_t scene, const PlacedRoughness* placed) {
+  gpu::SurfacePush push{.scene = scene, .rest = 0, .texels = 0, .image = {}, .box = {}, .roughness = 0};
+  if (placed == nullptr) return push;
+  push.rest = placed->rest.address();
+  push.texels = placed->texels.address();
+  push.image = placed->image;
+  push.box = placed->box;
+  push.roughness = placed->roughness;
+  return push;
+}
+
+vk::GraphicsOptions pass_options(vk::Spirv fragment, std::uint32_t variant = 0) {
   return {.vertex = surface_vert,
           .fragment = fragment,
           .push_size = sizeof(gpu::SurfacePush),
           .colour_formats = std::vector<VkFormat>(SAMPLE_LAYERS, sample_format),
-          .variant = shaped ? 1u : 0u};
+          .variant = variant};
 }
 
 }  // namespace
@@ -106,11 +117,13 @@ Rasteriser::Rasteriser(vk::Context& context)
     : context_(context), resolve_(context, resolve_comp, sizeof(gpu::ResolvePush), "resolve") {}
 
 const vk::GraphicsPass& Rasteriser::surface(const RasterInput& input) {
-  const bool gathered = input.gather != nullptr, shaped = input.shadows.shaped();
-  auto& pass = surfaces_[(gathered ? 1 : 0) + (shaped ? 2 : 0)];
+  const bool gathered = input.gather != nullptr;
+  const std::uint32_t variant = (input.shadows.shaped() ? VARIANT_SHAPED : 0u) |
+                                (input.placed_roughness != nullptr ? VARIANT_PLACED_ROUGHNESS : 0u);
+  auto& pass = surfaces_[(gathered ? 1 : 0) + 2 * variant];
   if (pass) return *pass;
   const vk::Spirv fragment = gathered ? vk::Spirv(surface_gathered_frag) : vk::Spirv(surface_frag);
-  return pass.emplace(context_, pass_options(fragment, shaped), gathered ? "surface gathered" : "surface");
+  return pass.emplace(context_, pass_options(fragment, variant), gathered ? "surface gathered" : "surface");
 }
 
 const vk::ComputePass& Rasteriser::resolve(const RasterInput& input) {
@@ -175,8 +188,8 @@ void Rasteriser::record_resolve(vk::Commands& commands, const char* name, const 
 
 void Rasteriser::record(vk::Commands& commands, const RasterInput& input, const Tile& tile) {
   commands.begin_pass("surface");
-  draw(commands, target(tile), viewport(tile), surface(input), gpu::SurfacePush{scene_.address()}, input.mesh.triangles,
-       3 * input.mesh.triangle_count);
+  draw(commands, target(tile), viewport(tile), surface(input), surface_push(scene_.address(), input.placed_roughness),
+       input.mesh.triangles, 3 * input.mesh.triangle_count);
   commands.end_pass();
   record_resolve(commands, input.gather != nullptr ? "gather" : "resolve", resolve(input), scene_.address(), tile);
 }
@@ -225,6 +238,7 @@ std::vector<PassStats> Rasteriser::run(const RasterInput& input, const Camera& c
   auto passes =
       run_tiles(width, height, [&](vk::Commands& commands, const Tile& tile) { record(commands, input, tile); });
   picture_.false_colour = false;
+  picture_.has_surroundings = false;
   passes[0].bytes += passes[0].count * (64ull * input.mesh.vertex_count + input.mesh.triangles.size());
   // Of the body, as if every vertex were read once.
   if (input.gather != nullptr) passes[1].bytes += passes[1].count * input.gather->field.points().size();
@@ -243,6 +257,7 @@ std::vector<PassStats> Rasteriser::run(const FalseColours& input, const Camera& 
   auto passes = run_tiles(width, height,
                           [&](vk::Commands& commands, const Tile& tile) { record(commands, input, camera, tile); });
   picture_.false_colour = true;
+  picture_.has_surroundings = false;
   passes[0].bytes += passes[0].count * input.vertices.size();
   return passes;
 }

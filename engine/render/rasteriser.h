@@ -29,6 +29,15 @@ struct GatherView {
   const vk::Buffer& triangle_face;  // display_faces.h
 };
 
+// A RoughnessMap on the device.
+struct PlacedRoughness {
+  const vk::Buffer& texels;
+  const vk::Buffer& rest;  // vec3 per display vertex, mm
+  gpu::ImageBox box;
+  gpu::ImageLevels image;
+  float roughness;
+};
+
 struct RasterInput {
   const DisplayBuffers& mesh;
   const LevelBuffers& finest;
@@ -36,8 +45,9 @@ struct RasterInput {
   const vk::Buffer& vertex_unscattered;  // the same
   const ShadowMaps& shadows;
   float eta = 1;
-  float roughness = 0.3f;              // alpha of GGX
-  const GatherView* gather = nullptr;  // null: radiance as of a diffuser
+  float roughness = 0.3f;                             // alpha of GGX
+  const PlacedRoughness* placed_roughness = nullptr;  // null: the same everywhere
+  const GatherView* gather = nullptr;                 // null: radiance as of a diffuser
 };
 
 // A view of the inside on the device.
@@ -66,6 +76,7 @@ class Rasteriser {
 
   // The last one drawn.
   const PictureBuffers& picture() const { return picture_; }
+  PictureBuffers& picture() { return picture_; }
 
  private:
   struct Tile;
@@ -87,7 +98,7 @@ class Rasteriser {
   const vk::ComputePass& resolve(const RasterInput& input);
 
   vk::Context& context_;
-  std::array<std::optional<vk::GraphicsPass>, 4> surfaces_;  // gathered or not, with shaped lights or not; at first use
+  std::array<std::optional<vk::GraphicsPass>, 8> surfaces_;  // gathered or not, by variant; at first use
   vk::ComputePass resolve_;
   std::array<std::optional<vk::ComputePass>, 2> gathers_;  // without shaped lights and with; at first use
   std::optional<vk::GraphicsPass> false_colour_;           // made at first use

@@ -59,6 +59,7 @@ const vk::Buffer& ToneMapper::run(const PictureBuffers& picture, const ToneOptio
   if (pixels_.size() < 4 * count) pixels_ = vk::Buffer(context_, 4 * count, vk::Place::device, "screen/pixels");
   gpu::ToneMapPush push{.layers = {},
                         .alpha = picture.alpha.address(),
+                        .surroundings = picture.around.address(),
                         .target = pixels_.address(),
                         .background_top = options.background_top,
                         .background_bottom = options.background_bottom,
@@ -68,7 +69,8 @@ const vk::Buffer& ToneMapper::run(const PictureBuffers& picture, const ToneOptio
                         .width = part.width,
                         .height = part.height,
                         .false_colour = picture.false_colour ? 1u : 0u,
-                        .blue_first = part.blue_first ? 1u : 0u};
+                        .blue_first = part.blue_first ? 1u : 0u,
+                        .surrounded = picture.has_surroundings ? 1u : 0u};
   for (std::size_t k = 0; k < PICTURE_LAYERS; ++k) push.layers[k] = picture.layers[k].address();
   vk::Commands commands(context_);
   commands.dispatch(tone_map_, push, count);

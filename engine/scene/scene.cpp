@@ -5,6 +5,7 @@
 #include "engine/scene/deformer_json.h"
 #include "engine/scene/edit_json.h"
 #include "engine/scene/light_json.h"
+#include "engine/scene/placement_json.h"
 #include "engine/scene/volume.h"
 
 namespace quadgraph {
@@ -110,7 +111,8 @@ void background_from(const JsonField& field, ToneOptions& tone) {
 }
 
 void picture_from(const JsonField& field, RenderOptions& render, ToneOptions& tone) {
-  field.allow({"width", "height", "roughness", "radiance", "exposure", "background", "show", "ground"});
+  field.allow({"width", "height", "roughness", "radiance", "exposure", "background", "show", "ground", "surroundings",
+               "roughness_map"});
   if (const auto width = field.find("width")) render.width = width->whole(1, largest_side);
   if (const auto height = field.find("height")) render.height = height->whole(1, largest_side);
   if (const auto roughness = field.find("roughness")) render.roughness = roughness->real();
@@ -118,6 +120,12 @@ void picture_from(const JsonField& field, RenderOptions& render, ToneOptions& to
     render.radiance = radiance->within([&] { return radiance_from_name(radiance->text()); });
   }
   if (const auto ground = field.find("ground")) render.ground = ground->truth();
+  if (const auto around = field.find("surroundings")) render.surroundings = around->truth();
+  if (const auto map = field.find("roughness_map")) {
+    map->allow({"image", "placement", "roughness"});
+    render.roughness_map = {image_from(map->at("image")), placement_from(map->at("placement"))};
+    if (const auto roughness = map->find("roughness")) render.roughness_map->roughness = roughness->real();
+  }
   if (const auto show = field.find("show")) {
     render.show = show->within([&] { return parse_show(show->text()); });
   }
@@ -135,7 +143,13 @@ Json picture_json(const RenderOptions& render, const ToneOptions& tone) {
             {"roughness", real_json(render.roughness)},
             {"radiance", name_of(render.radiance)},
             {"show", to_string(render.show)},
-            {"ground", render.ground}};
+            {"ground", render.ground},
+            {"surroundings", render.surroundings}};
+  if (const auto& map = render.roughness_map) {
+    json["roughness_map"] = {{"image", to_json(*map->image)},
+                             {"placement", to_json(map->placement)},
+                             {"roughness", real_json(map->roughness)}};
+  }
   json["exposure"] = tone.exposure_stops ? real_json(*tone.exposure_stops) : Json("auto");
   json["background"] = {{"top", rgb_json(tone.background_top)}, {"bottom", rgb_json(tone.background_bottom)}};
   return json;

@@ -38,7 +38,8 @@ std::vector<Json*> text_of(Json& object, const char* name) {
   return {&object[name]};
 }
 
-// Replaces the files that a scene names: its body, a volume, images of lights and edits, and shapes of deformers.
+// Replaces the files that a scene names: its body, a volume, images of lights, edits and the surface, and shapes of
+// deformers.
 template <typename Function>
 void each_file(Json& document, const Function& renamed) {
   std::vector<Json*> files = text_of(document, "body");
@@ -51,6 +52,10 @@ void each_file(Json& document, const Function& renamed) {
     for (Json& item : document[list]) {
       for (Json* file : text_of(item, name)) files.push_back(file);
     }
+  }
+  if (document.contains("picture") && document["picture"].is_object() &&
+      document["picture"].contains("roughness_map")) {
+    for (Json* file : text_of(document["picture"]["roughness_map"], "image")) files.push_back(file);
   }
   for (Json* file : files) *file = renamed(std::filesystem::path(file->get<std::string>())).string();
 }

@@ -92,6 +92,14 @@ void bind_picture(py::module_& module) {
             return pixels(picture, picture.alpha, 1, self);
           },
           "(h, w): share of the pixel that the object covers.")
+      .def_property_readonly(
+          "surroundings",
+          [](py::object self) -> py::object {
+            const auto& picture = self.cast<const Picture&>();
+            if (picture.surroundings.empty()) return py::none();
+            return pixels(picture, picture.surroundings, 3, self);
+          },
+          "(h, w, 3), W/(mm^2 sr): what is behind the body where environment lights are seen, else None.")
       .def(
           "srgb",
           [](const Picture& picture, const std::string& exposure, const std::string& background) {
@@ -171,9 +179,15 @@ std::vector<std::string> default_light_texts(const std::string& view, const std:
 
 Picture render(Engine& engine, const std::string& view_text, const std::string& up, float vertical_fov,
                std::uint32_t width, std::uint32_t height, float roughness, const std::string& radiance,
-               const std::string& show, bool ground) {
+               const std::string& show, bool ground, bool surroundings) {
   const View view = view_from(view_text, up, vertical_fov);
-  const RenderOptions options{width, height, roughness, radiance_from_name(radiance), parse_show(show), ground};
+  const RenderOptions options{.width = width,
+                              .height = height,
+                              .roughness = roughness,
+                              .radiance = radiance_from_name(radiance),
+                              .show = parse_show(show),
+                              .ground = ground,
+                              .surroundings = surroundings};
   const py::gil_scoped_release release;
   return engine.render(view, options);
 }
@@ -326,10 +340,11 @@ void bind_engine(py::module_& module) {
       .def("render", &render, py::arg("view") = "", py::arg("up") = "y", py::arg("vertical_fov") = 30.0f,
            py::arg("width") = 1024, py::arg("height") = 1024, py::arg("roughness") = RenderOptions{}.roughness,
            py::arg("radiance") = "auto", py::arg("show") = "picture", py::arg("ground") = false,
+           py::arg("surroundings") = false,
            "The last solve seen from 'azimuth,elevation[,distance]' (degrees, mm). radiance: gathered, lambertian, "
            "auto. show: picture, or what is inside, in false colour (engine/render/show.h). ground: with a shadow "
            "where the body stands, as coverage "
-           "without light.")
+           "without light. surroundings: environment lights are seen behind it, in the picture's surroundings.")
       .def_property_readonly(
           "passes", [](const Engine& engine) { return as_list(engine.passes()); },
           "Device time and bytes per pass of the last frame.")

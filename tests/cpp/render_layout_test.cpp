@@ -3,6 +3,7 @@
 #include "shaders/false_colour_shared.h"
 #include "shaders/ground_shared.h"
 #include "shaders/render_shared.h"
+#include "shaders/surroundings_shared.h"
 #include "spirv/false_colour.frag.h"
 #include "spirv/false_colour.vert.h"
 #include "spirv/ground.comp.h"
@@ -14,6 +15,7 @@
 #include "spirv/surface.frag.h"
 #include "spirv/surface.vert.h"
 #include "spirv/surface_gathered.frag.h"
+#include "spirv/surroundings.comp.h"
 #include "spirv/tone_map.comp.h"
 #include "tests/cpp/layout_compare.h"
 
@@ -64,7 +66,9 @@ TEST_CASE("the scene of the display") {
                                    MEMBER(SurfaceScene, scale),
                                    MEMBER(SurfaceScene, solid)});
     CHECK(layout.stride.at("SurfaceScene") == sizeof(gpu::SurfaceScene));
-    compare(code, "SurfacePush", {MEMBER(SurfacePush, scene)});
+    compare(code, "SurfacePush",
+            {MEMBER(SurfacePush, scene), MEMBER(SurfacePush, rest), MEMBER(SurfacePush, texels),
+             MEMBER(SurfacePush, image), MEMBER(SurfacePush, box), MEMBER(SurfacePush, roughness)});
   }
 }
 
@@ -99,10 +103,16 @@ TEST_CASE("what brings a picture to a screen") {
           {MEMBER(LuminancePush, layers), MEMBER(LuminancePush, alpha), MEMBER(LuminancePush, bins),
            MEMBER(LuminancePush, count)});
   compare(tone_map_comp, "ToneMapPush",
-          {MEMBER(ToneMapPush, layers), MEMBER(ToneMapPush, alpha), MEMBER(ToneMapPush, target),
-           MEMBER(ToneMapPush, background_top), MEMBER(ToneMapPush, background_bottom), MEMBER(ToneMapPush, exposure),
-           MEMBER(ToneMapPush, picture_width), MEMBER(ToneMapPush, picture_height), MEMBER(ToneMapPush, width),
-           MEMBER(ToneMapPush, height), MEMBER(ToneMapPush, false_colour), MEMBER(ToneMapPush, blue_first)});
+          {MEMBER(ToneMapPush, layers), MEMBER(ToneMapPush, alpha), MEMBER(ToneMapPush, surroundings),
+           MEMBER(ToneMapPush, target), MEMBER(ToneMapPush, background_top), MEMBER(ToneMapPush, background_bottom),
+           MEMBER(ToneMapPush, exposure), MEMBER(ToneMapPush, picture_width), MEMBER(ToneMapPush, picture_height),
+           MEMBER(ToneMapPush, width), MEMBER(ToneMapPush, height), MEMBER(ToneMapPush, false_colour),
+           MEMBER(ToneMapPush, blue_first), MEMBER(ToneMapPush, surrounded)});
+  compare(surroundings_comp, "SurroundingsPush",
+          {MEMBER(SurroundingsPush, texels), MEMBER(SurroundingsPush, surroundings), MEMBER(SurroundingsPush, image),
+           MEMBER(SurroundingsPush, corner), MEMBER(SurroundingsPush, right), MEMBER(SurroundingsPush, down),
+           MEMBER(SurroundingsPush, power), MEMBER(SurroundingsPush, width), MEMBER(SurroundingsPush, height),
+           MEMBER(SurroundingsPush, first)});
 }
 
 TEST_CASE("the ground") {

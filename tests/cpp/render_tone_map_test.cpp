@@ -46,6 +46,11 @@ PictureBuffers on_device(vk::Context& context, const Picture& picture) {
   write(buffers.layers[2], picture.unscattered);
   write(buffers.layers[3], picture.transmittance);
   write(buffers.alpha, picture.alpha);
+  buffers.has_surroundings = !picture.surroundings.empty();
+  if (buffers.has_surroundings) {
+    buffers.make_room_around(context);
+    write(buffers.around, picture.surroundings);
+  }
   return buffers;
 }
 
@@ -53,12 +58,16 @@ PictureBuffers on_device(vk::Context& context, const Picture& picture) {
 
 TEST_CASE("the screen shows what a PNG holds, within one code") {
   CheckedContext checked;
-  const Picture picture = sample_picture(61, 37);
-  const PictureBuffers buffers = on_device(checked.context, picture);
+  Picture picture = sample_picture(61, 37);
   ToneMapper mapper(checked.context);
   for (const ToneOptions& options :
        {ToneOptions{}, ToneOptions{.exposure_stops = 3.5f},
-        ToneOptions{.background_top = glm::vec3(1), .background_bottom = glm::vec3(0.2f)}}) {
+        ToneOptions{.background_top = glm::vec3(1), .background_bottom = glm::vec3(0.2f)}, ToneOptions{}}) {
+    // In the last two the body is seen before its surroundings.
+    if (options.background_top.x == 1) {
+      for (const float value : picture.specular) picture.surroundings.push_back(3 * value + 1e-3f);
+    }
+    const PictureBuffers buffers = on_device(checked.context, picture);
     const float stops = mapper.exposure(buffers, options);
     CHECK(std::abs(stops - exposure_of(picture, options)) <= 1.0f / 128);
     ToneOptions same = options;

@@ -61,6 +61,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "the object's centre, N a level (default: %(default)s)",
     )
     parser.add_argument("--ground", action="store_true", help="a shadow on the ground where the object stands")
+    parser.add_argument("--surroundings", action="store_true", help="what environment lights show, behind the object")
     parser.add_argument("--exposure", default="auto", help="auto, or stops (default: %(default)s)")
     parser.add_argument("--background", default="studio", help="studio, black, white, or R/G/B (default: %(default)s)")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the report here")
@@ -97,6 +98,7 @@ def run(args: argparse.Namespace) -> int:
         radiance=args.radiance,
         show=args.show,
         ground=args.ground,
+        surroundings=args.surroundings,
     )
     scene.check_validation(engine)
     for path in args.output:

@@ -38,6 +38,7 @@ STATED = {
     "radiance": "/picture/radiance",
     "show": "/picture/show",
     "ground": "/picture/ground",
+    "surroundings": "/picture/surroundings",
     "exposure": "/picture/exposure",
     "background": "/picture/background",
 }
