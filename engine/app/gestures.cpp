@@ -30,6 +30,12 @@ float power_over_irradiance(const Light& light, float distance) {
     }
     case LightKind::rectangle:
       return 0.25f * sphere;
+    case LightKind::projector: {  // of a square image
+      const float side = 2 * distance * std::tan(0.5f * glm::radians(light.angle));
+      return side * side;
+    }
+    case LightKind::environment:
+      return 1 / std::numbers::pi_v<float>;
     default:
       return 1;
   }
@@ -63,9 +69,6 @@ Light turned(Light light, const View& view, const Sphere& bounds, float right, f
   const glm::mat4 turn = glm::rotate(glm::mat4(1), glm::radians(right), camera.up) *
                          glm::rotate(glm::mat4(1), glm::radians(-up), camera.right);
   light.direction = glm::normalize(glm::vec3(turn * glm::vec4(light.direction, 0)));
-  light.u = glm::vec3(turn * glm::vec4(light.u, 0));
-  light.v = glm::vec3(turn * glm::vec4(light.v, 0));
-  light.up = glm::vec3(turn * glm::vec4(light.up, 0));
   light.position = bounds.centre + glm::vec3(turn * glm::vec4(light.position - bounds.centre, 0));
   light.u = glm::vec3(turn * glm::vec4(light.u, 0));
   light.v = glm::vec3(turn * glm::vec4(light.v, 0));
@@ -75,7 +78,8 @@ Light turned(Light light, const View& view, const Sphere& bounds, float right, f
 }
 
 Light as_kind(const Light& light, LightKind kind, const Sphere& bounds) {
-  const bool placed = light.kind != LightKind::directional && light.kind != LightKind::ambient;
+  const bool placed = light.kind == LightKind::point || light.kind == LightKind::spot ||
+                      light.kind == LightKind::rectangle || light.kind == LightKind::projector;
   const glm::vec3 from = placed ? light.position - bounds.centre : -3 * bounds.radius * light.direction;
   const float distance = std::max(glm::length(from), 0.1f * bounds.radius);
   Light result{.kind = kind};
@@ -84,8 +88,17 @@ Light as_kind(const Light& light, LightKind kind, const Sphere& bounds) {
   const glm::vec3 side = std::abs(result.direction.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
   result.u = bounds.radius * glm::normalize(glm::cross(result.direction, side));
   result.v = glm::cross(result.direction, result.u);
+  if (kind == LightKind::projector) result.up = side;
   result.power = light.power * (power_over_irradiance(result, distance) / power_over_irradiance(light, distance));
   return result;
+}
+
+Light faced(Light rectangle, const glm::vec3& direction, UpAxis up) {
+  const glm::vec3 upright = up == UpAxis::z ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);
+  const glm::vec3 right = glm::normalize(glm::cross(direction, upright));
+  rectangle.u = glm::length(rectangle.u) * right;
+  rectangle.v = glm::length(rectangle.v) * glm::cross(direction, right);
+  return rectangle;
 }
 
 Bearing bearing_of(const glm::vec3& towards, UpAxis up) {

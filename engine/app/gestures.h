@@ -21,6 +21,9 @@ Light turned(Light light, const View& view, const Sphere& bounds, float right, f
 // A light of another kind, not a projector, that lights the object's centre about as strongly and from the same side.
 Light as_kind(const Light& light, LightKind kind, const Sphere& bounds);
 
+// The same rectangle, shining along a unit direction that is not upright, with two of its edges level.
+Light faced(Light rectangle, const glm::vec3& direction, UpAxis up);
+
 // As degrees of azimuth and elevation, as of a View, from where a light comes; and towards there.
 struct Bearing {
   float azimuth = 0, elevation = 0;

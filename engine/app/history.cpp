@@ -37,4 +37,10 @@ Scene History::redo(const Scene& scene) {
   return step(scene, now_, future_, past_);
 }
 
+void History::refuse(const Scene& scene) {
+  if (past_.empty() || seen_as(now_, scene) != scene) return;
+  now_ = std::move(past_.back());
+  past_.pop_back();
+}
+
 }  // namespace quadgraph

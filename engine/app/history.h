@@ -19,6 +19,9 @@ class History {
   Scene undo(const Scene& scene);
   Scene redo(const Scene& scene);
 
+  // Forgets `scene`, which was noted last and cannot be shown.
+  void refuse(const Scene& scene);
+
   bool can_undo() const { return !past_.empty(); }
   bool can_redo() const { return !future_.empty(); }
 

@@ -1,10 +1,12 @@
 #include "engine/app/light_section.h"
 
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
 
 #include "engine/app/gestures.h"
 #include "engine/app/panel_widgets.h"
@@ -30,45 +32,90 @@ void draw_power(Light& light, const char* unit) {
   }
 }
 
-void draw_bearing(Light& light, UpAxis up) {
-  Bearing bearing = bearing_of(-light.direction, up);
+// Whether it was changed.
+bool draw_bearing(glm::vec3& direction, UpAxis up) {
+  Bearing bearing = bearing_of(-direction, up);
   const bool around = slide("from, around", bearing.azimuth, -180, 180, "%.0f°");
   const bool above = slide("from above", bearing.elevation, -89.9f, 89.9f, "%.0f°");
-  if (around || above) light.direction = -towards(bearing, up);
+  if (!around && !above) return false;
+  direction = -towards(bearing, up);
+  return true;
 }
 
-// A projector needs an image, which a scene file names.
-void draw_kind(Light& light, const Sphere& bounds) {
-  constexpr std::array kinds = {LightKind::directional, LightKind::point, LightKind::ambient, LightKind::spot,
-                                LightKind::rectangle};
-  const auto found = std::find(kinds.begin(), kinds.end(), light.kind);
-  if (found == kinds.end()) return;
-  auto chosen = static_cast<std::size_t>(found - kinds.begin());
+bool has_image(LightKind kind) {
+  return kind == LightKind::projector || kind == LightKind::environment;
+}
+
+// A light that needs an image becomes one when that has been typed.
+void draw_kind(State& state, Light& light, const Sphere& bounds) {
+  constexpr std::array kinds = {LightKind::directional, LightKind::point,     LightKind::ambient,    LightKind::spot,
+                                LightKind::rectangle,   LightKind::projector, LightKind::environment};
+  const LightKind shown = state.kind_with_image.value_or(light.kind);
+  auto chosen = static_cast<std::size_t>(std::find(kinds.begin(), kinds.end(), shown) - kinds.begin());
   const auto name = [](std::size_t i) {
-    constexpr std::string_view names[] = {"directional", "point", "ambient", "spot", "rectangle"};
+    constexpr std::string_view names[] = {"directional", "point",     "ambient",    "spot",
+                                          "rectangle",   "projector", "environment"};
     return names[i];
   };
-  if (choose("kind", chosen, name, kinds.size())) light = as_kind(light, kinds[chosen], bounds);
+  if (!choose("kind", chosen, name, kinds.size())) return;
+  state.kind_with_image.reset();
+  if (kinds[chosen] == light.kind) return;
+  if (has_image(kinds[chosen])) {
+    state.kind_with_image = kinds[chosen];
+  } else {
+    light = as_kind(light, kinds[chosen], bounds);
+  }
+}
+
+// What is no image the viewer tells when it shows the scene, and takes back.
+void draw_image(State& state, Light& light, const Sphere& bounds) {
+  if (!state.kind_with_image && !has_image(light.kind)) return;
+  if (!ImGui::IsAnyItemActive()) state.image_text = state.kind_with_image ? std::string() : light.file;
+  if (!ImGui::InputTextWithHint("image", "picture.png, .exr, .hdr", &state.image_text,
+                                ImGuiInputTextFlags_EnterReturnsTrue)) {
+    return;
+  }
+  if (state.kind_with_image) light = as_kind(light, *state.kind_with_image, bounds);
+  state.kind_with_image.reset();
+  light.file = state.image_text;
+  state.say("");
+}
+
+void draw_edges(Light& light, const Sphere& bounds, UpAxis up) {
+  glm::vec3 direction = glm::normalize(glm::cross(light.u, light.v));
+  if (draw_bearing(direction, up)) light = faced(light, direction, up);
+  const auto draw_edge = [&](const char* name, glm::vec3& edge) {
+    float length = glm::length(edge);
+    const glm::vec3 unit = edge / length;
+    if (slide(name, length, 0.02f * bounds.radius, 4 * bounds.radius, "%.1f mm")) edge = length * unit;
+  };
+  draw_edge("width", light.u);
+  draw_edge("height", light.v);
 }
 
 void draw_light(State& state, const Sphere& bounds) {
   Light& light = state.scene.lights[state.light];
-  draw_kind(light, bounds);
+  const UpAxis up = state.scene.view.up;
+  draw_kind(state, light, bounds);
+  draw_image(state, light, bounds);
   switch (light.kind) {
     case LightKind::directional:
-      draw_bearing(light, state.scene.view.up);
+      draw_bearing(light.direction, up);
       return draw_power(light, "W/mm²");
     case LightKind::ambient:
       return draw_power(light, "W/mm²");
     case LightKind::spot:
     case LightKind::projector:
-      draw_bearing(light, state.scene.view.up);
+      draw_bearing(light.direction, up);
       slide("angle##light", light.angle, 1, light.kind == LightKind::spot ? 90 : 160, "%.0f°");
+      break;
+    case LightKind::rectangle:
+      draw_edges(light, bounds, up);
       break;
     case LightKind::environment:
       slide("turn##light", light.turn, -180, 180, "%.0f°");
       return draw_power(light, "W/(mm² sr)");
-    default:
+    case LightKind::point:
       break;
   }
   ImGui::DragFloat3("at, mm", &light.position.x, 0.01f * bounds.radius, 0, 0, "%.1f");
@@ -80,22 +127,26 @@ void draw_light(State& state, const Sphere& bounds) {
 void draw_lights(State& state, const Sphere& bounds) {
   if (!section("Lights")) return;
   auto& lights = state.scene.lights;
+  const auto select = [&](std::size_t i) {
+    state.light = i;
+    state.kind_with_image.reset();
+  };
   for (std::size_t i = 0; i < lights.size(); ++i) {
     ImGui::PushID(static_cast<int>(i));
     const std::string text = to_string(lights[i]);
     const std::string name = formatted("%zu  %s", i + 1, text.substr(0, text.find(':')).c_str());
-    if (ImGui::RadioButton(name.c_str(), state.light == i)) state.light = i;
+    if (ImGui::RadioButton(name.c_str(), state.light == i)) select(i);
     ImGui::PopID();
   }
   if (state.light < lights.size()) draw_light(state, bounds);
   if (ImGui::Button("add")) {
     lights.push_back(default_lights(state.scene.view).front());
-    state.light = lights.size() - 1;
+    select(lights.size() - 1);
   }
   ImGui::SameLine();
   if (ImGui::Button("remove") && state.light < lights.size()) {
     lights.erase(lights.begin() + static_cast<std::ptrdiff_t>(state.light));
-    state.light = lights.empty() ? 0 : std::min(state.light, lights.size() - 1);
+    select(lights.empty() ? 0 : std::min(state.light, lights.size() - 1));
   }
 }
 

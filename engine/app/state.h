@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,8 @@ struct State {
   std::size_t light = 0;  // the selected one
   Brush brush;
   bool can_undo = false, can_redo = false;
-  std::string material_text;  // being typed
+  std::string material_text, image_text;     // being typed
+  std::optional<LightKind> kind_with_image;  // what the selected light is to be once its image is known
   bool panel = true, help = false;
   std::string message;   // the last thing to tell the user
   bool refused = false;  // it is a complaint

@@ -196,6 +196,7 @@ void Viewer::keep_up() {
     if (first) throw;
     state_.say(error.what(), true);
     if (state_.scene == before) throw;
+    history_.refuse(state_.scene);
     state_.scene = before;
     shown_.reset();
     remake(false);

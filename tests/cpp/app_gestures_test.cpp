@@ -53,8 +53,9 @@ TEST_CASE("a view can be turned, moved and zoomed for ever and stays one that ca
 TEST_CASE("a light of another kind lights the object as strongly, and turns back into the same") {
   const Light sun{
       .kind = LightKind::directional, .direction = glm::normalize(glm::vec3(1, -2, 0.5f)), .power = {1, 0.5f, 0.25f}};
-  for (const LightKind kind : {LightKind::point, LightKind::spot, LightKind::rectangle}) {
-    const Light other = as_kind(sun, kind, bounds);
+  for (const LightKind kind : {LightKind::point, LightKind::spot, LightKind::rectangle, LightKind::projector}) {
+    Light other = as_kind(sun, kind, bounds);
+    if (kind == LightKind::projector) other.file = "stripes.png";
     CHECK_NOTHROW(check_light(other));
     const glm::vec3 away = bounds.centre - other.position;
     CHECK(glm::distance(glm::normalize(away), sun.direction) < 1e-5f);
@@ -65,6 +66,40 @@ TEST_CASE("a light of another kind lights the object as strongly, and turns back
     const Light back = as_kind(other, LightKind::directional, bounds);
     CHECK(glm::distance(back.power, sun.power) < 1e-5f);
     CHECK(glm::distance(back.direction, sun.direction) < 1e-5f);
+  }
+}
+
+TEST_CASE("a light that becomes an environment and back brings as much light to a plane that faces it") {
+  const Sphere bounds{{1, 2, 3}, 10};
+  const Light sun{.kind = LightKind::directional, .direction = {0, -1, 0}, .power = {1, 0.5f, 0.25f}};
+  const Light around = as_kind(sun, LightKind::environment, bounds);
+  CHECK(around.power.x == doctest::Approx(1 / 3.14159265));
+  const Light back = as_kind(around, LightKind::directional, bounds);
+  CHECK(glm::distance(back.power, sun.power) < 1e-6f);
+}
+
+TEST_CASE("a rectangle faces where it is told to, upright, as large as it was") {
+  const Light light{.kind = LightKind::rectangle, .u = {3, 1, 0}, .v = {-1, 3, 2}};
+  for (const UpAxis up : {UpAxis::y, UpAxis::z}) {
+    const glm::vec3 direction = glm::normalize(glm::vec3(1, -2, 3));
+    const Light aimed = faced(light, direction, up);
+    CHECK(glm::distance(glm::normalize(glm::cross(aimed.u, aimed.v)), direction) < 1e-6f);
+    CHECK(glm::length(aimed.u) == doctest::Approx(glm::length(light.u)));
+    CHECK(glm::length(aimed.v) == doctest::Approx(glm::length(light.v)));
+    CHECK(std::abs(up == UpAxis::y ? aimed.u.y : aimed.u.z) < 1e-6f);
+  }
+}
+
+TEST_CASE("a light that is turned about the body faces it as before") {
+  const Sphere bounds{{1, 2, 3}, 10};
+  const Light sun{.kind = LightKind::directional, .direction = {0, 0, -1}, .power = {1, 1, 1}};
+  for (const LightKind kind : {LightKind::rectangle, LightKind::projector}) {
+    const Light light = as_kind(sun, kind, bounds), moved = turned(light, {}, bounds, 50, 20);
+    CHECK(glm::distance(moved.position, light.position) > 5);
+    const glm::vec3 away = glm::normalize(bounds.centre - moved.position);
+    CHECK(glm::distance(glm::normalize(glm::cross(moved.u, moved.v)), away) < 1e-5f);
+    CHECK(glm::distance(moved.direction, away) < 1e-5f);
+    if (kind == LightKind::projector) CHECK(std::abs(glm::dot(moved.up, moved.direction)) < 1e-5f);
   }
 }
 

@@ -35,6 +35,21 @@ TEST_CASE("scenes come back in turn, and are seen from where the eye is") {
   CHECK(!history.can_undo());
 }
 
+TEST_CASE("what could not be shown is no step to go back to") {
+  Scene scene;
+  History history(scene);
+  scene.material = "jade";
+  history.note(scene);
+  Scene refused = scene;
+  refused.material = "none.npz";
+  history.note(refused);
+  history.refuse(refused);
+  history.note(scene);
+  CHECK(history.undo(scene).material == Scene().material);
+  history.refuse(refused);  // which is not what was noted last
+  CHECK(history.can_redo());
+}
+
 TEST_CASE("a stroke follows the hand in steps of the brush's size") {
   const Brush brush = Brush::for_body(15);
   Scene scene;
