@@ -36,6 +36,36 @@ struct AssembleFvPush {
   Boundary boundary;
 };
 
+// grid_material.comp: the mean coefficients of the tets around each vertex, by volume, and a fourth of that, mm^3.
+struct GridMaterialPush {
+  QG_REF(Vec3s) vertices;
+  QG_REF(Uvec4s) tets;
+  QG_REF(Opticals) optical;  // of the tets
+  QG_REF(AssemblyUints) tet_offset;
+  QG_REF(AssemblyUints) tet_incidence;
+  QG_REF(Opticals) vertex_optical;
+  QG_REF(AssemblyFloats) volume;
+  uint count;  // vertices
+  uint even;   // 1: the coefficients are the same everywhere
+  LeastTet least;
+};
+
+// assemble_polygrid.comp: weight, diagonal and to_phi, one invocation per vertex. Entry k of a row is link k.
+struct AssemblePolygridPush {
+  RowsRef rows;
+  QG_REF(Vec3s) vertices;
+  QG_REF(Uvec3s) faces;
+  QG_REF(Uints) face_offset;
+  QG_REF(Uints) face_incidence;
+  QG_REF(Opticals) optical;  // of the vertices
+  QG_REF(AssemblyFloats) volume;
+  QG_REF(Vec3s) to_phi;
+  uint count;          // vertices
+  uint surface_count;  // of them on the surface
+  uint published;      // 1: differences of kappa phi, 0: of the flux
+  Boundary boundary;
+};
+
 // Floats of a tet's shape: grad l_i . grad l_j V of its edges 01, 02, 03, 12, 13, 23 (mm), and its volume (mm^3).
 const uint TET_SHAPE = 7u;
 

@@ -8,6 +8,10 @@
 
 layout(push_constant, scalar) uniform Block { EnergyPush push; };
 
+vec3 phi_at(uint carrier) {
+  return load_vec3_or_one(push.to_phi, carrier) * load_field(push.x, carrier).phi;
+}
+
 vec3 absorbed(uint tet) {
   uvec4 corners = load_uvec4(push.tets, tet);
   vec3 p = load_vec3(push.vertices, corners.x);
@@ -16,10 +20,9 @@ vec3 absorbed(uint tet) {
   float volume = tet_volume(e1, e2, e3, push.least);
   vec3 phi;
   if (push.fem == 1u) {
-    phi = 0.25 * (load_field(push.x, corners.x).phi + load_field(push.x, corners.y).phi +
-                  load_field(push.x, corners.z).phi + load_field(push.x, corners.w).phi);
+    phi = 0.25 * (phi_at(corners.x) + phi_at(corners.y) + phi_at(corners.z) + phi_at(corners.w));
   } else {
-    phi = load_vec3_or_one(push.to_phi, tet) * load_field(push.x, tet).phi;
+    phi = phi_at(tet);
   }
   return load_optical(push.optical, push.even == 1u ? 0u : tet).sigma_a * phi * load_scale(push.scale).scale * volume;
 }

@@ -22,7 +22,7 @@ Surface at_face(uint f) {
   Surface mean = Surface(vec3(0), vec3(0), vec3(0));
   uvec3 corners = load_uvec3(push.faces, f);
   for (int k = 0; k < 3; ++k) {
-    Field x = load_field(push.x, corners[k]);
+    Field x = scaled(load_vec3_or_one(push.to_phi, corners[k]), load_field(push.x, corners[k]));
     vec3 flux = outward_flux(push.boundary, x);
     mean.phi += x.phi / 3.0;
     mean.raw += flux / 3.0;

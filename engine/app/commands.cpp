@@ -55,14 +55,15 @@ void next_material(S s, int by) {
 }
 
 // The one after `value`, in a circle.
-template <typename T, std::size_t n>
-void next(T& value, const std::array<T, n>& all) {
+template <typename T, typename All>
+void next(T& value, const All& all) {
   const auto found = std::find(all.begin(), all.end(), value);
   value = found == all.end() || found + 1 == all.end() ? all.front() : *(found + 1);
 }
 
 void next_method(S s, W) {
-  next(s.scene.solve.method, std::array{Method::fem, Method::quadgraph_fv, Method::quadgraph_fdm});
+  next(s.scene.solve.method, s.methods);
+  if (!on_grid(s.scene.solve.method)) s.scene.solve.active_layers = 0;
 }
 
 void next_solver(S s, W) {

@@ -23,7 +23,7 @@ struct Typed {
   std::string method = "fem", solver = "fmg-pcg", source = "buried", model = "auto";
   std::string tolerance = "0.001", error = "0";
   std::uint32_t cycles = 0;
-  std::uint32_t max_iterations = 5000, bounces = 0;
+  std::uint32_t max_iterations = 5000, bounces = 0, active_layers = 0;
   std::string size = "1024x1024", exposure = "auto", background = "studio";
   float roughness = 0.3f;
   std::string radiance = "auto", show = "picture";
@@ -63,7 +63,7 @@ void declare_scene(CLI::App& app, Typed& typed) {
 }
 
 void declare_solver(CLI::App& app, Typed& typed) {
-  app.add_option("--method", typed.method, "fem, quadgraph-fv or quadgraph-fdm")
+  app.add_option("--method", typed.method, "fem, quadgraph-fv, quadgraph-fdm, polygrid or polygrid-divergence")
       ->capture_default_str()
       ->group("Solver");
   app.add_option("--solver", typed.solver, "fmg-pcg, vcycle, dpcg, cascade, jacobi or auto (fmg-pcg or dpcg)")
@@ -92,6 +92,9 @@ void declare_solver(CLI::App& app, Typed& typed) {
   app.add_option("--max-iterations", typed.max_iterations, "per level")->capture_default_str()->group("Solver");
   app.add_flag("--no-inter-reflection", typed.no_inter_reflection,
                "leave out light that leaves one part of the object and enters another")
+      ->group("Solver");
+  app.add_option("--active-layers", typed.active_layers,
+                 "of a polygrid that are solved for on all levels but the coarsest; 0: all")
       ->group("Solver");
   app.add_option("--bounces", typed.bounces, "of that light; 0: until they change nothing")
       ->capture_default_str()
@@ -211,6 +214,7 @@ void take_solve(const Typed& typed, const Given& given, SolveOptions& solve) {
   if (given("--max-iterations")) solve.max_iterations = typed.max_iterations;
   if (given("--no-inter-reflection")) solve.inter_reflection = !typed.no_inter_reflection;
   if (given("--bounces")) solve.bounces = typed.bounces;
+  if (given("--active-layers")) solve.active_layers = typed.active_layers;
 }
 
 void take_picture(const Typed& typed, const Given& given, Scene& scene) {

@@ -34,7 +34,7 @@ void draw_show(State& state, const Engine& engine) {
     if (ImGui::SliderInt("level", &level, 0, last)) show.level = static_cast<std::uint32_t>(level);
   }
   if (show.quantity == Quantity::difference) {
-    choose("other method", show.other, std::array{Method::fem, Method::quadgraph_fv, Method::quadgraph_fdm});
+    choose("other method", show.other, state.methods);
   }
 }
 
@@ -128,7 +128,7 @@ void draw_shape(State& state) {
 void draw_solver(State& state) {
   if (!section("Solve")) return;
   SolveOptions& solve = state.scene.solve;
-  choose("method", solve.method, std::array{Method::fem, Method::quadgraph_fv, Method::quadgraph_fdm});
+  if (choose("method", solve.method, state.methods) && !on_grid(solve.method)) solve.active_layers = 0;
   choose("solver", solve.solver,
          std::array{SolverKind::fmg_pcg, SolverKind::vcycle, SolverKind::dpcg, SolverKind::cascade, SolverKind::jacobi,
                     SolverKind::automatic});

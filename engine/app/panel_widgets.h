@@ -5,6 +5,7 @@
 #include <glm/vec3.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace quadgraph {
 
@@ -21,6 +22,17 @@ bool choose(const char* label, T& value, const std::array<T, n>& all) {
   std::size_t at = 0;
   while (at + 1 < n && values[at] != value) ++at;
   if (!choose(label, at, [](std::size_t i) { return name_of(values[i]); }, n)) return false;
+  value = values[at];
+  return true;
+}
+
+template <typename T>
+bool choose(const char* label, T& value, const std::vector<T>& all) {
+  static std::vector<T> values;
+  values = all;
+  std::size_t at = 0;
+  while (at + 1 < values.size() && values[at] != value) ++at;
+  if (!choose(label, at, [](std::size_t i) { return name_of(values[i]); }, values.size())) return false;
   value = values[at];
   return true;
 }

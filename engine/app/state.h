@@ -26,7 +26,8 @@ struct Measured {
 
 struct State {
   Scene scene;
-  std::size_t light = 0;  // the selected one
+  std::vector<Method> methods;  // that the file serves
+  std::size_t light = 0;        // the selected one
   Brush brush;
   bool can_undo = false, can_redo = false;
   std::string material_text, image_text;     // being typed

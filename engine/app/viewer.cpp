@@ -39,6 +39,7 @@ Viewer::Viewer(Window& window, Stage& stage, std::filesystem::path stem)
       stem_(std::move(stem)),
       history_(stage.scene()) {
   state_.scene = stage.scene();
+  state_.methods = methods_of(engine_.graph().levels()[0]);
   state_.brush = Brush::for_body(engine_.bounds().radius);
 }
 
@@ -209,7 +210,7 @@ SolveOptions Viewer::options_of_solve(bool settle) const {
   SolveOptions options = state_.scene.solve;
   if (settle) return options;
   const bool cycles = options.method == Method::fem;
-  options.solver = cycles ? SolverKind::fmg_pcg : SolverKind::dpcg;
+  options.solver = cycles ? SolverKind::fmg_pcg : symmetric(options.method) ? SolverKind::dpcg : SolverKind::cascade;
   options.cycles = cycles ? 1 : graph_steps;
   options.bounces = 1;
   options.warm = true;

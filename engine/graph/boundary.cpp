@@ -33,10 +33,10 @@ Boundary sp3(double eta) {
 }  // namespace
 
 Boundary boundary_of(Method method, Source source, Model model, double eta) {
-  const bool published = method == Method::quadgraph_fdm && source == Source::diffuse && model == Model::diffusion;
+  const bool as_published = published(method) && source == Source::diffuse && model == Model::diffusion;
   Boundary boundary;
   double f_dr = 2 * fresnel_moment(1, eta);
-  if (published) {
+  if (as_published) {
     f_dr = internal_diffuse_reflectance(eta);
     boundary.k11 = 1 / (2 * mismatch(eta));
   } else if (model == Model::diffusion) {

@@ -13,6 +13,7 @@ namespace quadgraph {
 Rows assemble_fdm(const Level& level, const Problem& problem);
 Rows assemble_fv(const Level& level, const Problem& problem);
 Rows assemble_fem(const Level& level, const Problem& problem);
+Rows assemble_polygrid(const Level& level, const Problem& problem);
 
 // The measure that multiplies (k11, k12) source q in b: per carrier the sum over the open outside faces f of
 // factor_f q_f, in the units of the method's rows.

@@ -38,6 +38,9 @@ Level read_level(const SectionTable& table, std::uint32_t index, bool coarsest) 
   level.links = vectors<glm::uvec4>(table, prefix + "links");
   level.nodes = vectors<glm::vec3>(table, prefix + "nodes");
   if (table.has(prefix + "face_kinds")) level.face_kinds = table.rows<std::uint32_t>(prefix + "face_kinds", 1);
+  if (table.has(prefix + "grid_links")) {
+    level.grid_links = table.rows<std::uint32_t>(prefix + "grid_links", grid_link_count);
+  }
   if (table.has(prefix + "seen")) {
     const auto rays = table.rows<std::uint32_t>(prefix + "seen_rays", 1);
     if (rays.size() != 1) fail_format(table.file(), prefix + "seen_rays", "one number expected");
@@ -67,6 +70,7 @@ std::vector<std::string> section_names(const SectionTable& table, std::uint32_t 
       names.push_back(prefix + field);
     }
     if (table.has(prefix + "face_kinds")) names.push_back(prefix + "face_kinds");
+    if (table.has(prefix + "grid_links")) names.push_back(prefix + "grid_links");
     if (table.has(prefix + "seen_rays") || table.has(prefix + "seen")) {
       names.push_back(prefix + "seen_rays");
       names.push_back(prefix + "seen");
@@ -163,7 +167,9 @@ void QuadGraph::read(const std::string& name) {
   for (std::uint32_t i = 0; i < count; ++i) {
     validate_level(levels_[i], i + 1 < count ? &levels_[i + 1] : nullptr, name, i);
     levels_[i].surface_vertex_count = count_surface_vertices(levels_[i]);
+    validate_grid(levels_[i], name, i);
   }
+  validate_grid_everywhere(levels_, name);
   validate_seen_once(levels_, name);
   validate_display(display_, levels_[0], name);
 }

@@ -24,6 +24,8 @@ struct Transfer {
 inline constexpr std::uint32_t face_open = 0;
 inline constexpr std::uint32_t face_reflecting = 1;
 
+inline constexpr std::uint32_t grid_link_count = 6;
+
 // One level of detail. The sections of docs/qgraph-format.md, all rules checked.
 struct Level {
   std::span<const glm::vec3> vertices;        // mm; the first surface_vertex_count lie on the surface
@@ -33,6 +35,10 @@ struct Level {
   std::span<const glm::uvec4> links;          // entry k across the face opposite vertex k; >= n_t: surface node
   std::span<const glm::vec3> nodes;           // mm; inner nodes, then surface nodes
   std::span<const std::uint32_t> face_kinds;  // FaceKind of each outside face; empty: all are open
+  // Of a polygrid, else empty: the six links of each vertex below the surface, in pairs of opposite ones; the last of
+  // six may be the vertex itself, for none. A surface vertex is named once, by its one neighbour. Vertices are in order
+  // of their layers, the fewest links from the surface.
+  std::span<const std::uint32_t> grid_links;
   // Where light that leaves one part enters another; at most one level has it. Rays that met face g of those sent out
   // from face f: entries g in seen[seen[f]] ... seen[seen[f + 1] - 1], ascending, one for each ray. Empty: not baked.
   std::span<const std::uint32_t> seen;
@@ -43,6 +49,10 @@ struct Level {
   std::uint32_t surface_vertex_count = 0;
 
   bool reflecting(std::uint32_t face) const { return !face_kinds.empty() && face_kinds[face] == face_reflecting; }
+  // Link k of vertex v below the surface.
+  std::uint32_t grid_link(std::uint32_t v, std::uint32_t k) const {
+    return grid_links[std::size_t{grid_link_count} * (v - surface_vertex_count) + k];
+  }
   std::uint32_t vertex_count() const { return static_cast<std::uint32_t>(vertices.size()); }
   std::uint32_t tet_count() const { return static_cast<std::uint32_t>(tets.size()); }
   std::uint32_t face_count() const { return static_cast<std::uint32_t>(faces.size()); }

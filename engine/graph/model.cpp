@@ -85,7 +85,7 @@ double least_albedo(std::span<const gpu::Optical> optical) {
 
 Model resolve_model(Model wanted, Method method, Source source, double albedo, double eta) {
   if (wanted != Model::automatic) return wanted;
-  if (method == Method::quadgraph_fdm && source == Source::diffuse) return Model::diffusion;
+  if (published(method) && source == Source::diffuse) return Model::diffusion;
   return diffusion_error(albedo, eta) <= model_tolerance ? Model::diffusion : Model::sp3;
 }
 

@@ -21,8 +21,8 @@ double diffusion_error(double albedo, double eta);
 double least_albedo(const gpu::Material& material);
 double least_albedo(std::span<const gpu::Optical> optical);
 
-// `wanted`; for `automatic` diffusion where it was published (quadgraph-fdm with the diffuse source knows no other
-// model) and where its error at `albedo` is at most model_tolerance, else sp3.
+// `wanted`; for `automatic` diffusion where it was published (quadgraph-fdm and polygrid with the diffuse source knows
+// no other model) and where its error at `albedo` is at most model_tolerance, else sp3.
 Model resolve_model(Model wanted, Method method, Source source, double albedo, double eta);
 
 }  // namespace quadgraph

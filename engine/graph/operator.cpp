@@ -24,6 +24,7 @@ void check_problem(const Level& level, const Problem& problem) {
   check_optical(problem.optical, level.nodes.size());
   check_eta(problem.eta);
   if (problem.model == Model::automatic) throw InputError("model 'auto': resolve it before assembling");
+  check_method(level, problem.method);
 }
 
 void check_irradiance(const Level& level, std::span<const glm::vec3> q) {
@@ -47,6 +48,8 @@ std::vector<glm::dvec3> surface_load(const Level& level, const Problem& problem,
     case Method::quadgraph_fv:
       return surface_load_fv(level, q);
     case Method::fem:
+    case Method::polygrid:
+    case Method::polygrid_divergence:
       return surface_load_fem(level, q);
   }
   throw InputError("unknown method");
@@ -66,6 +69,19 @@ void check_optical(std::span<const gpu::Optical> optical, std::size_t count) {
   }
 }
 
+std::vector<Method> methods_of(const Level& level) {
+  std::vector<Method> methods = {Method::fem, Method::quadgraph_fv, Method::quadgraph_fdm};
+  if (!level.grid_links.empty()) methods.insert(methods.end(), {Method::polygrid, Method::polygrid_divergence});
+  return methods;
+}
+
+void check_method(const Level& level, Method method) {
+  if (on_grid(method) && level.grid_links.empty()) {
+    throw InputError("method " + std::string(name_of(method)) +
+                     ": the file has no polygrid; bake it with --mesher polygrid");
+  }
+}
+
 void check_eta(double eta) {
   if (!(eta >= min_eta && eta <= max_eta)) throw InputError("eta " + std::to_string(eta) + ": allowed is 1 to 3");
 }
@@ -75,7 +91,7 @@ glm::dvec3 relaxation_of(const gpu::Optical& optical) {
 }
 
 std::uint32_t carrier_count(const Level& level, Method method) {
-  return method == Method::fem ? level.vertex_count() : level.node_count();
+  return on_vertices(method) ? level.vertex_count() : level.node_count();
 }
 
 Rows assemble(const Level& level, const Problem& problem) {
@@ -87,6 +103,9 @@ Rows assemble(const Level& level, const Problem& problem) {
       return assemble_fv(level, problem);
     case Method::fem:
       return assemble_fem(level, problem);
+    case Method::polygrid:
+    case Method::polygrid_divergence:
+      return assemble_polygrid(level, problem);
   }
   throw InputError("unknown method");
 }

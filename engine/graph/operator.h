@@ -1,7 +1,8 @@
 // The one operator format, in double precision, and the discretisations assembled on the CPU. The GPU assembles the
 // same rows in single precision (shaders/assemble_*.comp).
 //
-// Every discretisation is a symmetric system A x = b per channel, (phi, phi2) = to_phi * x, whose entries are blocks.
+// Every discretisation is a system A x = b per channel, symmetric but for polygrids, (phi, phi2) = to_phi * x, whose
+// entries are blocks.
 //
 // SP3 (Klose and Larsen 2006; physics.md, "SP3"), written for phi = phi1 - 2/3 phi2, the fluence of scattered light,
 // and phi2, is: stiffness of kappa times G = [[1, 2/3], [2/3, 55/63]], mass of diag(sigma_a, 5/9 sigma_t), boundary
@@ -24,6 +25,15 @@
 //   exact in layers whose links cross the interfaces at right angles, not consistent on general tets (physics.md).
 //     inner i:    sum_j g_ij (phi_i - phi_j) + sigma_a V phi_i = integral of S,   g_ij = area / (d_i/kappa_i +
 //     d_j/kappa_j) surface s:  (g + area/(2A)) phi_s - g phi_k = area Q / (2A),                g = area kappa_k / d_k
+//
+// polygrid, polygrid-divergence: carriers are the tet vertices, nodes of a polygrid. Not symmetric. w: the weights of
+//   Appendix B (shaders/polygrid.h); V: a fourth of the tets around a vertex, A: a third of its open faces;
+//   coefficients the mean of the tets around it. Rows are integrals over these, so that loads are those of fem. With
+//   diffusion:
+//     inner i, divergence: V_i (sum_j w_ij kappa_ij (phi_i - phi_j) + sigma_a phi_i) = S, kappa_ij harmonic
+//     inner i, published:  V_i (sum_j w_ij (u_i - u_j) + sigma_a/kappa_i u_i) = S, u = kappa phi, to_phi = 1/kappa
+//     surface s behind which lies k: A_s (kappa (phi_s - phi_k)/d + phi_s/(2A)) = A_s Q/(2A), kappa that of s if
+//       published, else the harmonic mean
 //
 // At a reflecting face nothing passes: K = 0 there, and q is ignored.
 #pragma once
@@ -68,6 +78,12 @@ std::uint32_t carrier_count(const Level& level, Method method);
 // Throw InputError unless there are `count` coefficients, all finite and >= 0; unless eta is in [min_eta, max_eta].
 void check_optical(std::span<const gpu::Optical> optical, std::size_t count);
 void check_eta(double eta);
+
+// The methods that a level has all for.
+std::vector<Method> methods_of(const Level& level);
+
+// Throws InputError where a level has not what the method needs.
+void check_method(const Level& level, Method method);
 
 // Throws InputError if sizes or values are out of range (sigma_s_prime, sigma_a >= 0 and finite; eta in [min_eta,
 // max_eta]) or if the model is `automatic`.

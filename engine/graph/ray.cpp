@@ -77,7 +77,7 @@ void Ray::scatter(const TetRay::Exit& exit) {
 }
 
 void Ray::deposit(std::size_t k, int c, double watt) {
-  const std::uint32_t carrier = problem_.method == Method::fem ? way_.corner(k).vertex : way_.tet();
+  const std::uint32_t carrier = on_vertices(problem_.method) ? way_.corner(k).vertex : way_.tet();
   result_.scattered[carrier][c] += watt;
 }
 

@@ -107,13 +107,13 @@ void conjugate_gradients(const Rows& rows, const Vector& b, const SolveOptions& 
 
 // The mean of `values` (per carrier) over outside face f.
 glm::dvec3 at_face(const Level& level, Method method, std::span<const glm::dvec3> values, std::uint32_t f) {
-  if (method != Method::fem) return values[level.tet_count() + f];
+  if (!on_vertices(method)) return values[level.tet_count() + f];
   const glm::uvec3& face = level.faces[f];
   return (values[face[0]] + values[face[1]] + values[face[2]]) / 3.0;
 }
 
 glm::dvec3 in_tet(const Level& level, Method method, std::span<const glm::dvec3> values, std::uint32_t t) {
-  if (method != Method::fem) return values[t];
+  if (!on_vertices(method)) return values[t];
   const glm::uvec4& tet = level.tets[t];
   return (values[tet[0]] + values[tet[1]] + values[tet[2]] + values[tet[3]]) / 4.0;
 }
@@ -239,7 +239,7 @@ ReferenceSolution solve_reference(const Level& level, std::span<const gpu::Optic
   const Vector b = load(level, problem, lights, solution);
   solution.report.unknowns = static_cast<std::uint32_t>(rows.size()) * (options.model == Model::sp3 ? 2 : 1);
   Vector x(rows.size());
-  if (options.solver != SolverKind::cascade && options.solver != SolverKind::jacobi) {
+  if (symmetric(options.method) && options.solver != SolverKind::cascade && options.solver != SolverKind::jacobi) {
     conjugate_gradients(rows, b, options, x, solution.report);
   } else {
     const double damping = options.method == Method::fem ? 2.0 / fem_bound : 1.0;

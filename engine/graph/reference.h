@@ -40,9 +40,9 @@ struct EnteringLight {
 enum class Entries { exact, stored };
 
 // Solves one level from zero to `options.tolerance` (cascade: plain relaxation on this level) under all `lights`
-// together. `options.model` must not be `automatic`; bounces are those of exchange.h, not of this. Throws InputError as
-// `assemble` does, SolverError if conjugate gradients meet a direction of non-positive energy or the residual is no
-// longer finite.
+// together; unsymmetric methods are always relaxed. `options.model` must not be `automatic`; bounces are those of
+// exchange.h, not of this. Throws InputError as `assemble` does, SolverError if conjugate gradients meet a direction of
+// non-positive energy or the residual is no longer finite.
 ReferenceSolution solve_reference(const Level& level, std::span<const gpu::Optical> optical, double eta,
                                   std::span<const EnteringLight> lights, const SolveOptions& options,
                                   Entries entries = Entries::exact);

@@ -11,8 +11,12 @@
 namespace quadgraph {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, Method>, 3> methods = {
-    {{"quadgraph-fdm", Method::quadgraph_fdm}, {"quadgraph-fv", Method::quadgraph_fv}, {"fem", Method::fem}}};
+constexpr std::array<std::pair<std::string_view, Method>, 5> methods = {
+    {{"quadgraph-fdm", Method::quadgraph_fdm},
+     {"quadgraph-fv", Method::quadgraph_fv},
+     {"fem", Method::fem},
+     {"polygrid", Method::polygrid},
+     {"polygrid-divergence", Method::polygrid_divergence}}};
 constexpr std::array<std::pair<std::string_view, SolverKind>, 6> solvers = {{{"fmg-pcg", SolverKind::fmg_pcg},
                                                                              {"vcycle", SolverKind::vcycle},
                                                                              {"dpcg", SolverKind::dpcg},
@@ -51,6 +55,10 @@ void check_options(const SolveOptions& options) {
   if (!(options.error >= 0) || !(options.error < 1)) {
     throw InputError("error: " + std::to_string(options.error) + ", a number from 0 (no target) to below 1 is wanted");
   }
+  if (options.active_layers > 0 && !on_grid(options.method)) {
+    throw InputError("active_layers: " + std::to_string(options.active_layers) + " with method " +
+                     std::string(name_of(options.method)) + ", which has no layers: allowed is 0");
+  }
   if (options.smoothing > 2) {
     throw InputError("smoothing: " + std::to_string(options.smoothing) +
                      " steps, allowed are 1 and 2, and 0 for either");
@@ -82,8 +90,28 @@ std::string_view name_of(Model model) {
   return to_name(models, model);
 }
 
+bool on_grid(Method method) {
+  return method == Method::polygrid || method == Method::polygrid_divergence;
+}
+
+bool on_vertices(Method method) {
+  return method == Method::fem || on_grid(method);
+}
+
+bool symmetric(Method method) {
+  return !on_grid(method);
+}
+
+bool conserves(Method method) {
+  return method == Method::fem || method == Method::quadgraph_fv;
+}
+
+bool published(Method method) {
+  return method == Method::quadgraph_fdm || method == Method::polygrid;
+}
+
 bool bounces_wanted(const SolveOptions& options) {
-  return options.inter_reflection && options.source == Source::buried && options.method != Method::quadgraph_fdm;
+  return options.inter_reflection && options.source == Source::buried && conserves(options.method);
 }
 
 glm::dvec3 Energy::balance() const {

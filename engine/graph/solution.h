@@ -13,10 +13,27 @@ namespace quadgraph {
 struct Level;
 
 enum class Method {
-  quadgraph_fdm,  // the published 1/d^2 differences on kappa*phi at the nodes of the QuadGraph [QG Eq. 5-6]
-  quadgraph_fv,   // two-point flux between the nodes of the QuadGraph, harmonic means of kappa
-  fem,            // linear elements on the tet vertices, consistent mass
+  quadgraph_fdm,        // the published 1/d^2 differences on kappa*phi at the nodes of the QuadGraph [QG Eq. 5-6]
+  quadgraph_fv,         // two-point flux between the nodes of the QuadGraph, harmonic means of kappa
+  fem,                  // linear elements on the tet vertices, consistent mass
+  polygrid,             // the published differences of kappa*phi along the links of a polygrid [PG Eq. 9, Appendix B]
+  polygrid_divergence,  // the same of the flux kappa grad phi, harmonic means of kappa
 };
+
+// Whether a method's carriers are the tet vertices, else the nodes of the QuadGraph.
+bool on_vertices(Method method);
+
+// Whether it needs the links of a polygrid.
+bool on_grid(Method method);
+
+// Whether its matrix is symmetric, so that conjugate gradients take it.
+bool symmetric(Method method);
+
+// Whether its fluxes add up to the power that enters.
+bool conserves(Method method);
+
+// Whether it is a published method, which with Source::diffuse and Model::diffusion has the published boundary.
+bool published(Method method);
 
 enum class SolverKind {
   fmg_pcg,    // full-multigrid start, then conjugate gradients preconditioned by a V-cycle; fem only
@@ -39,8 +56,8 @@ enum class Model {
   automatic,  // "auto": diffusion where its known error is small (engine/graph/model.h), else sp3
 };
 
-// "quadgraph-fdm", "quadgraph-fv", "fem"; "fmg-pcg", "vcycle", "dpcg", "cascade", "jacobi", "auto"; "buried",
-// "diffuse"; "diffusion", "sp3", "auto". Throw InputError listing the allowed names.
+// "quadgraph-fdm", "quadgraph-fv", "fem", "polygrid", "polygrid-divergence"; "fmg-pcg", "vcycle", "dpcg", "cascade",
+// "jacobi", "auto"; "buried", "diffuse"; "diffusion", "sp3", "auto". Throw InputError listing the allowed names.
 Method method_from_name(std::string_view name);
 SolverKind solver_from_name(std::string_view name);
 Source source_from_name(std::string_view name);
@@ -76,6 +93,9 @@ struct SolveOptions {
   // Where the shape has changed: what the faces see of each other is found anew, for as many of them in each solve, in
   // turn; 0: for all.
   std::uint32_t exchange_rows = 0;
+  // n > 0, with the links of a polygrid: on all levels but the coarsest only the first n layers of vertices below the
+  // surface are solved for, the others keep what the coarser level has [PG Section 5.3, Fig. 8]; 0: all are.
+  std::uint32_t active_layers = 0;
 
   bool operator==(const SolveOptions&) const = default;
 };

@@ -128,10 +128,11 @@ Inside difference(const InsideInput& input, const Show& show) {
   SolveOptions options = input.options;
   options.method = show.other;
   options.error = 0;
-  if (show.other != Method::fem) options.solver = SolverKind::dpcg;
-  if (show.other == Method::quadgraph_fdm) options.source = Source::diffuse;
+  if (show.other != Method::fem) options.solver = symmetric(show.other) ? SolverKind::dpcg : SolverKind::cascade;
+  if (published(show.other)) options.source = Source::diffuse;
   options.warm = false;
   options.cycles = 0;
+  options.active_layers = 0;
   input.simulation.solve(options);
   std::vector<float> values = exitance_of(input.simulation.surface_field());
   input.simulation.solve(input.options);
@@ -179,7 +180,7 @@ Inside phi_on_plane(const InsideInput& input, const Show& show) {
   const std::vector<float> phi = means(input.simulation.phi());
   Inside inside{.legend = legend_of("fluence φ", power_unit, phi, true), .plane = plane_of(input, show)};
   const std::vector<float> places = placed(inside.legend, phi);
-  const bool at_vertices = input.report.method == Method::fem;
+  const bool at_vertices = on_vertices(input.report.method);
   add_cuts(inside.mesh, vertices_of(input, 0), level.tets, inside.plane, false, [&](std::uint32_t t) {
     const glm::uvec4& tet = level.tets[t];
     return at_vertices ? glm::vec4(places[tet.x], places[tet.y], places[tet.z], places[tet.w]) : glm::vec4(places[t]);

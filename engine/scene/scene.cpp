@@ -64,7 +64,7 @@ Json view_json(const View& view) {
 
 SolveOptions solve_from(const JsonField& field) {
   field.allow({"method", "solver", "source", "model", "tolerance", "error", "cycles", "max_iterations",
-               "inter_reflection", "bounces"});
+               "inter_reflection", "bounces", "active_layers"});
   SolveOptions options;
   const auto named = [&](std::string_view key, auto& value, const auto& parse) {
     if (const auto name = field.find(key)) value = name->within([&] { return parse(name->text()); });
@@ -79,6 +79,7 @@ SolveOptions solve_from(const JsonField& field) {
   if (const auto most = field.find("max_iterations")) options.max_iterations = most->whole(1, many);
   if (const auto light = field.find("inter_reflection")) options.inter_reflection = light->truth();
   if (const auto bounces = field.find("bounces")) options.bounces = bounces->whole(0, many);
+  if (const auto layers = field.find("active_layers")) options.active_layers = layers->whole(0, many);
   field.within([&] { check_options(options); });
   return options;
 }
@@ -93,7 +94,8 @@ Json solve_json(const SolveOptions& options) {
           {"cycles", options.cycles},
           {"max_iterations", options.max_iterations},
           {"inter_reflection", options.inter_reflection},
-          {"bounces", options.bounces}};
+          {"bounces", options.bounces},
+          {"active_layers", options.active_layers}};
 }
 
 void background_from(const JsonField& field, ToneOptions& tone) {

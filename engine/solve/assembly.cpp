@@ -116,6 +116,39 @@ void assemble_fem(Workspace& work, const LevelBuffers& level, const Boundary& bo
                              2 * op.entries * op.entry_bytes() + op.count * op.row_bytes());
 }
 
+void assemble_polygrid(Workspace& work, const LevelBuffers& level, Method method, const Boundary& boundary, bool even,
+                       OperatorBuffers& op) {
+  const gpu::GridMaterialPush material{.vertices = level.vertices.address(),
+                                       .tets = level.tets.address(),
+                                       .optical = level.optical.address(),
+                                       .tet_offset = op.tet_offset.address(),
+                                       .tet_incidence = op.tet_incidence.address(),
+                                       .vertex_optical = op.grid_optical.address(),
+                                       .volume = op.grid_volume.address(),
+                                       .count = op.count,
+                                       .even = even ? 1u : 0u,
+                                       .least = level.least};
+  const std::uint64_t tet_bytes = sizeof(glm::uvec4) + 4 * vec3_bytes + index_bytes + sizeof(gpu::Optical);
+  work.recorder.dispatch(work.passes.grid_material, material, op.count, "assembly",
+                         4 * level.tet_count * tet_bytes + op.grid_optical.size() + op.grid_volume.size());
+  const gpu::AssemblePolygridPush push{.rows = op.rows(),
+                                       .vertices = level.vertices.address(),
+                                       .faces = level.faces.address(),
+                                       .face_offset = level.face_offset.address(),
+                                       .face_incidence = level.face_incidence.address(),
+                                       .optical = op.grid_optical.address(),
+                                       .volume = op.grid_volume.address(),
+                                       .to_phi = op.to_phi.address(),
+                                       .count = op.count,
+                                       .surface_count = level.surface_vertex_count,
+                                       .published = published(method) ? 1u : 0u,
+                                       .boundary = on_device(boundary)};
+  const std::uint64_t bytes = op.entries * (2 * op.entry_bytes() + vec3_bytes + sizeof(gpu::Optical)) +
+                              op.count * (2 * vec3_bytes + sizeof(gpu::Optical) + sizeof(float) + op.row_bytes()) +
+                              3 * level.face_count * (sizeof(glm::uvec3) + 3 * vec3_bytes + index_bytes);
+  work.recorder.dispatch(work.passes.assemble_polygrid.of(op.model, op.format), push, op.count, "assembly", bytes);
+}
+
 // Every right-hand side reads the diagonal and writes b.
 std::uint64_t right_hand_side_bytes(const OperatorBuffers& op) {
   return (op.block_bytes() + op.field_bytes()) * op.count;
@@ -218,6 +251,9 @@ void record_assembly(Workspace& work, const LevelBuffers& level, Method method, 
       return assemble_fv(work, level, boundary, op);
     case Method::fem:
       return assemble_fem(work, level, boundary, even, op);
+    case Method::polygrid:
+    case Method::polygrid_divergence:
+      return assemble_polygrid(work, level, method, boundary, even, op);
   }
 }
 
@@ -241,6 +277,8 @@ void record_diffuse_load(Workspace& work, const LevelBuffers& level, Method meth
     case Method::quadgraph_fv:
       return load_fv(work, level, boundary, op);
     case Method::fem:
+    case Method::polygrid:
+    case Method::polygrid_divergence:
       return load_fem(work, level, boundary, op);
   }
 }

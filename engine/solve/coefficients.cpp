@@ -135,7 +135,7 @@ std::uint32_t Coefficients::count(const LevelBuffers& level, Extent extent) {
 }
 
 void Coefficients::make_room(Method method, std::vector<LevelBuffers>& levels) {
-  extent_ = method != Method::fem ? Extent::nodes : even() ? Extent::one : Extent::tets;
+  extent_ = !on_vertices(method) ? Extent::nodes : even() ? Extent::one : Extent::tets;
   const bool edited = !edits_.edits.empty(), placed = edited || (material_ && !even());
   for (std::uint32_t i = 0; i < levels.size(); ++i) {
     LevelBuffers& level = levels[i];

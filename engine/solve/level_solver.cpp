@@ -142,6 +142,8 @@ void LevelSolver::record_origin(const vk::Buffer& x) {
 void LevelSolver::record_start() {
   record_surface(op().x, op().surface_before, gpu::SURFACE_STORE);
   dispatch_start(started_ ? gpu::START_AGAIN : gpu::START_FIRST);
+  // What stays as it is must be in both vectors of a relaxation.
+  if (active_rows() < op().count) work_.recorder.copy(op().x, op().product, op().x.size());
   started_ = true;
   unlooked_ = 0;
   entries_ += op().entries;
@@ -197,8 +199,14 @@ void LevelSolver::record_cycle() {
   dispatch_start(gpu::START_RESIDUAL);
 }
 
+std::uint32_t LevelSolver::active_rows() const {
+  const std::vector<std::uint32_t>& ends = op().layer_ends;
+  return task_.active_layers > 0 && task_.active_layers < ends.size() ? ends[task_.active_layers] : op().count;
+}
+
 void LevelSolver::record_sweeps(std::uint32_t sweeps) {
   const OperatorBuffers& rows = op();
+  const std::uint32_t active = active_rows();
   for (std::uint32_t k = 1; k <= sweeps; ++k) {
     ++unlooked_;
     const bool look = unlooked_ == window_of(task_.solver) || k == sweeps;
@@ -207,7 +215,7 @@ void LevelSolver::record_sweeps(std::uint32_t sweeps) {
     const vk::Buffer& to = forth ? rows.product : rows.x;
     const gpu::SweepPush push{
         rows.rows(),          rows.b.address(),          from.address(), to.address(),        rows.damping.address(),
-        rows.state.address(), work_.reduction.address(), rows.count,     look ? unlooked_ : 0};
+        rows.state.address(), work_.reduction.address(), active,         look ? unlooked_ : 0};
     dispatch(work_.passes.sweep.of(rows.model, rows.format), push, gate_of(level_), "sweep", look);
     if (!look) continue;
     record_surface(to, rows.surface_before, gpu::SURFACE_CHANGE);
@@ -237,7 +245,11 @@ void LevelSolver::did(std::uint32_t iterations) {
   const OperatorBuffers& rows = op();
   Recorder& recorder = work_.recorder;
   const std::uint64_t field = rows.field_bytes() * rows.count;
-  if (relaxes(task_.solver)) recorder.did("sweep", iterations, rows.product_bytes() + 4 * field);
+  const double active = static_cast<double>(active_rows()) / rows.count;
+  if (relaxes(task_.solver)) {
+    recorder.did("sweep", iterations,
+                 static_cast<std::uint64_t>(active * static_cast<double>(rows.product_bytes() + 4 * field)));
+  }
   if (task_.solver == SolverKind::fmg_pcg || task_.solver == SolverKind::dpcg) {
     recorder.did("cg-multiply", iterations, rows.product_bytes() + 3 * field);
     recorder.did("cg-update", iterations, 7 * field);
@@ -251,7 +263,7 @@ void LevelSolver::did(std::uint32_t iterations) {
   recorder.did(
       "surface change", iterations / window_of(task_.solver),
       rows.surface_count * (rows.field_bytes() + sizeof(gpu::SurfaceShare) + 2 * std::uint64_t{sizeof(glm::vec3)}));
-  entries_ += iterations * (rows.entries + (multigrid_ ? multigrid_->entries(level_) : 0.0));
+  entries_ += iterations * (active * rows.entries + (multigrid_ ? multigrid_->entries(level_) : 0.0));
 }
 
 void LevelSolver::take() {

@@ -20,6 +20,7 @@ struct LevelTask {
   bool start = false;                // only to start the next finer level: never too little
   std::uint32_t max_iterations = 0;  // in all
   std::uint32_t smoothing = 1;       // of a cycle
+  std::uint32_t active_layers = 0;   // of a relaxation: rows below these layers stay as they are; 0: none do
 };
 
 bool uses_cycles(SolverKind solver);
@@ -74,6 +75,7 @@ class LevelSolver {
   double entries() const { return entries_; }
 
  private:
+  std::uint32_t active_rows() const;
   const OperatorBuffers& op() const { return operators_.at(key_, level_); }
   template <typename Push>
   void dispatch(LazyPass& pass, const Push& push, std::uint64_t gate, const char* name, bool concludes = true);

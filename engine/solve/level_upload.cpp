@@ -80,7 +80,7 @@ TransferBuffers::TransferBuffers(vk::Context& context, const Level& level, const
                      vk::upload(context, t.weight, prefix + name + "_weight", vk::Place::rows), t.width, first,
                      coarse_first, static_cast<std::uint32_t>(t.index.size() / t.width)});
   };
-  if (method == Method::fem) {
+  if (on_vertices(method)) {
     add(level.barycentric, "barycentric", 0, 0);
     const Transposed back = transposed(level.barycentric, coarse.vertex_count());
     back_offset = vk::upload<std::uint32_t>(context, back.offset, prefix + "barycentric_back_offset", vk::Place::rows);

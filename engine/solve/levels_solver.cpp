@@ -7,6 +7,7 @@
 #include "engine/solve/asked_error.h"
 #include "engine/solve/assembly.h"
 #include "engine/solve/mesh_error.h"
+#include "engine/solve/solver_choice.h"
 #include "engine/solve/surface_share.h"
 
 namespace quadgraph {
@@ -58,12 +59,9 @@ LevelsSolver::LevelsSolver(const SolveParts& parts, const OperatorKey& key, cons
   report_.model = key.model;
   report_.exchange_age = parts.exchange.age();
   report_.inter_reflection = bounces_wanted(options) && parts.exchange.baked();
-  if (cycles() && !Multigrid::possible(parts.operators, key)) {
-    report_.solver = SolverKind::dpcg;
-    report_.replaced = std::string(name_of(solver)) + " by dpcg: " +
-                       (key.method == Method::fem ? "there is no coarser level that is small enough"
-                                                  : std::string(name_of(key.method)) + " has no cycles");
-  }
+  const PossibleSolver possible = possible_solver(parts.operators, key, solver);
+  report_.solver = possible.solver;
+  report_.replaced = possible.replaced;
 }
 
 SolveReport LevelsSolver::run() {
@@ -193,6 +191,7 @@ void LevelsSolver::set_solver(std::uint32_t level) {
   task.fixed = options_.cycles > 0 && (last || (task.start && !bounces_on(level)));
   if (task.fixed) task.max_iterations = task.start ? coarse_cycles : options_.cycles;
   if (task.start) task.tolerance *= bounces_on(level) ? exchange_share : coarse_share;
+  if (level + 1 < solvers_.size()) task.active_layers = options_.active_layers;
   solvers_[level].emplace(parts_.work, parts_.operators, key_, level, task);
 }
 
@@ -367,7 +366,7 @@ bool LevelsSolver::reached() const {
 
 // The light that is unaccounted for on level 0, where all of it can be told.
 double LevelsSolver::unbalanced() const {
-  if (finest_ > 0 || key_.method == Method::quadgraph_fdm) return 0;
+  if (finest_ > 0 || !conserves(key_.method)) return 0;
   return quadgraph::unbalanced(energy(), parts_.results.energy());
 }
 

@@ -1,6 +1,7 @@
 #include "engine/solve/operator_buffers.h"
 
 #include "engine/graph/operator.h"
+#include "engine/graph/polygrid.h"
 #include "engine/solve/row_structure.h"
 #include "shaders/assembly_shared.h"
 #include "shaders/packing.h"
@@ -12,6 +13,13 @@ namespace {
 template <typename T>
 vk::Buffer upload(vk::Context& context, const std::vector<T>& values, const std::string& name, vk::Place place) {
   return vk::upload<T>(context, values, name, place);
+}
+
+// Of ascending numbers from 0 on: how many are at most 0, 1, ...
+std::vector<std::uint32_t> ends_of(const std::vector<std::uint32_t>& layers) {
+  std::vector<std::uint32_t> ends(layers.back() + 1, 0);
+  for (std::uint32_t v = 0; v < layers.size(); ++v) ends[layers[v]] = v + 1;
+  return ends;
 }
 
 }  // namespace
@@ -37,7 +45,10 @@ OperatorBuffers::OperatorBuffers(vk::Context& context, const Level& level, std::
   };
   const std::string rows = "operator/", vectors = "solver/";
   const bool fem = method == Method::fem;
-  const SlicedColumns columns = fem ? slice(vertex_neighbours(level)) : node_columns(level);
+  const SlicedColumns columns = fem               ? slice(vertex_neighbours(level))
+                                : on_grid(method) ? grid_columns(level)
+                                                  : node_columns(level);
+  if (on_grid(method)) layer_ends = ends_of(grid_layers(level));
   if (!fem) to_phi = buffer(count * sizeof(glm::vec3), rows, "to_phi");
   entries = static_cast<std::uint32_t>(columns.column.size());
   slices = static_cast<std::uint32_t>(columns.slice_offset.size() - 1);
@@ -53,8 +64,8 @@ OperatorBuffers::OperatorBuffers(vk::Context& context, const Level& level, std::
   if (fem) z = field("z");
   if (index > 0) before = field("x before");
   unit = buffer(sizeof(glm::vec3), vectors, "unit of x");
-  surface_first = method == Method::fem ? 0 : level.tet_count();
-  surface_count = method == Method::fem ? level.surface_vertex_count : level.face_count();
+  surface_first = on_vertices(method) ? 0 : level.tet_count();
+  surface_count = on_vertices(method) ? level.surface_vertex_count : level.face_count();
   surface_share = buffer(surface_count * sizeof(gpu::SurfaceShare), vectors, "surface share");
   surface_before = buffer(surface_count * sizeof(glm::vec3), vectors, "exitance before");
   surface_start = buffer(surface_count * sizeof(glm::vec3), vectors, "exitance of the start");
@@ -64,6 +75,7 @@ OperatorBuffers::OperatorBuffers(vk::Context& context, const Level& level, std::
 }
 
 void OperatorBuffers::make_room(vk::Context& context, const Level& level, bool even, bool two_steps) {
+  if (on_grid(method_) && grid_optical.size() == 0) upload_grid(context, level);
   if (method_ != Method::fem) return;
   if (two_steps && other.size() == 0) {
     other = {context, count * field_bytes(), vk::Place::fields, "solver/" + prefix_ + "other z"};
@@ -92,11 +104,20 @@ void OperatorBuffers::upload_rings(vk::Context& context, const Level& level) {
   edge_entry = upload(context, rings.edge_entry, prefix + "edge_entry", vk::Place::assembly);
   ring_offset = upload(context, rings.ring_offset, prefix + "ring_offset", vk::Place::assembly);
   ring = upload(context, rings.ring, prefix + "ring", vk::Place::assembly);
-  tet_offset = upload(context, rings.tet_offset, prefix + "tet_offset", vk::Place::assembly);
-  tet_incidence = upload(context, rings.tet_incidence, prefix + "tet_incidence", vk::Place::assembly);
+  tet_offset = upload(context, rings.tets.offset, prefix + "tet_offset", vk::Place::assembly);
+  tet_incidence = upload(context, rings.tets.tet, prefix + "tet_incidence", vk::Place::assembly);
   tet_shape = {context, std::uint64_t{gpu::TET_SHAPE} * level.tet_count() * sizeof(float), vk::Place::assembly,
                prefix + "tet_shape"};
   face_area = {context, level.face_count() * sizeof(float), vk::Place::assembly, prefix + "face_area"};
+}
+
+void OperatorBuffers::upload_grid(vk::Context& context, const Level& level) {
+  const TetIncidence tets = quadgraph::tet_incidence(level);
+  const std::string prefix = "assembly/" + prefix_;
+  tet_offset = upload(context, tets.offset, prefix + "tet_offset", vk::Place::assembly);
+  tet_incidence = upload(context, tets.tet, prefix + "tet_incidence", vk::Place::assembly);
+  grid_optical = {context, count * sizeof(gpu::Optical), vk::Place::fields, prefix + "optical at vertices"};
+  grid_volume = {context, count * sizeof(float), vk::Place::assembly, prefix + "volume at vertices"};
 }
 
 std::uint64_t OperatorBuffers::block_bytes() const {

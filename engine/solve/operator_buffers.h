@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "engine/graph/boundary.h"
 #include "engine/graph/graph.h"
@@ -41,8 +42,11 @@ struct OperatorBuffers {
   vk::Buffer edge_entry, ring_offset, ring;  // AssembleEdgesPush
   vk::Buffer tet_offset, tet_incidence;      // AssembleFemPush
   vk::Buffer tet_shape, face_area;           // ShapePush
-  bool measured = false;                     // they belong to the present vertices
-  bool moved = false;                        // since these buffers were made
+  // Of polygrids: tet_offset and tet_incidence, and what GridMaterialPush makes of them.
+  vk::Buffer grid_optical, grid_volume;
+  std::vector<std::uint32_t> layer_ends;  // rows of each layer and all above it
+  bool measured = false;                  // they belong to the present vertices
+  bool moved = false;                     // since these buffers were made
 
   std::optional<Boundary> assembled;  // for the present material, with this boundary
   bool damped = false;                // `damping` belongs to these rows
@@ -75,6 +79,7 @@ struct OperatorBuffers {
 
  private:
   void upload_shape(vk::Context& context, const Level& level);
+  void upload_grid(vk::Context& context, const Level& level);
   void upload_rings(vk::Context& context, const Level& level);
 
   Method method_;

@@ -18,6 +18,8 @@
 #include "spirv/assemble_fem_sp3.comp.h"
 #include "spirv/assemble_fv.comp.h"
 #include "spirv/assemble_fv_sp3.comp.h"
+#include "spirv/assemble_polygrid.comp.h"
+#include "spirv/assemble_polygrid_sp3.comp.h"
 #include "spirv/cg_direction.comp.h"
 #include "spirv/cg_direction_sp3.comp.h"
 #include "spirv/cg_multiply.comp.h"
@@ -58,6 +60,7 @@
 #include "spirv/gather_phi.comp.h"
 #include "spirv/gather_phi_sp3.comp.h"
 #include "spirv/gather_scale.comp.h"
+#include "spirv/grid_material.comp.h"
 #include "spirv/irradiance_scale.comp.h"
 #include "spirv/prolong.comp.h"
 #include "spirv/prolong_sp3.comp.h"
@@ -130,8 +133,10 @@ Passes::Passes()
       ONE_PASS(deform_normals, DeformNormalsPush, each),
       ONE_PASS(deform_bounds, DeformBoundsPush, each),
       ONE_PASS(shape_state, ShapeStatePush, strided),
+      ONE_PASS(grid_material, GridMaterialPush, each),
       ENTRY_PASS(assemble_fdm, AssembleFdmPush, each),
       ENTRY_PASS(assemble_fv, AssembleFvPush, each),
+      ENTRY_PASS(assemble_polygrid, AssemblePolygridPush, each),
       ENTRY_PASS(assemble_edges, AssembleEdgesPush, each),
       ENTRY_PASS(assemble_even, AssembleEvenPush, each),
       ENTRY_PASS(assemble_fem, AssembleFemPush, each),

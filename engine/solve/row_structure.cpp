@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/graph/geometry.h"
+#include "engine/graph/polygrid.h"
 #include "shaders/assembly_shared.h"
 
 namespace quadgraph {
@@ -189,6 +190,18 @@ SlicedColumns node_columns(const Level& level) {
   return slice(rows);
 }
 
+SlicedColumns grid_columns(const Level& level) {
+  Neighbours rows;
+  rows.offset.push_back(0);
+  for (const std::uint32_t neighbour : grid_neighbours(level)) {
+    rows.column.push_back(neighbour);
+    rows.offset.push_back(static_cast<std::uint32_t>(rows.column.size()));
+  }
+  rows.column.insert(rows.column.end(), level.grid_links.begin(), level.grid_links.end());
+  while (rows.offset.size() <= level.vertices.size()) rows.offset.push_back(rows.offset.back() + grid_link_count);
+  return slice(rows);
+}
+
 FemShape fem_shape(const Level& level, const Neighbours& rows, const SlicedColumns& columns) {
   const Edges edges(rows);
   std::vector<EdgeShape> of_edge(edges.count());
@@ -219,14 +232,17 @@ FemRings fem_rings(const Level& level, const Neighbours& rows, const SlicedColum
   Lists rings = rings_of(level, edges);
   structure.ring_offset = std::move(rings.offset);
   structure.ring = std::move(rings.element);
+  structure.tets = tet_incidence(level);
+  return structure;
+}
+
+TetIncidence tet_incidence(const Level& level) {
   Lists tets = gather(level.vertices.size(), [&](const auto& add) {
     for (std::uint32_t t = 0; t < level.tet_count(); ++t) {
       for (int k = 0; k < 4; ++k) add(level.tets[t][k], t);
     }
   });
-  structure.tet_offset = std::move(tets.offset);
-  structure.tet_incidence = std::move(tets.element);
-  return structure;
+  return {std::move(tets.offset), std::move(tets.element)};
 }
 
 FaceIncidence face_incidence(const Level& level) {

@@ -31,11 +31,17 @@ struct FemShape {
   std::vector<glm::vec2> row;    // mass, mm^3; area, mm^2
 };
 
+// The tets at every vertex.
+struct TetIncidence {
+  std::vector<std::uint32_t> offset;  // vertices + 1
+  std::vector<std::uint32_t> tet;
+};
+
 // Which elements make the entries of fem rows (AssembleEdgesPush, AssembleFemPush).
 struct FemRings {
   std::vector<glm::uvec2> edge_entry;  // the two entries of every edge
   std::vector<std::uint32_t> ring_offset, ring;
-  std::vector<std::uint32_t> tet_offset, tet_incidence;
+  TetIncidence tets;
 };
 
 // The open outside faces at every surface vertex.
@@ -43,6 +49,9 @@ struct FaceIncidence {
   std::vector<std::uint32_t> offset;  // surface vertices + 1
   std::vector<std::uint32_t> face;
 };
+
+// Rows of the vertices of a polygrid: the six links, in their order, or the one.
+SlicedColumns grid_columns(const Level& level);
 
 // Rows of the nodes: the four links, or the one.
 SlicedColumns node_columns(const Level& level);
@@ -58,5 +67,6 @@ FemShape fem_shape(const Level& level, const Neighbours& rows, const SlicedColum
 FemRings fem_rings(const Level& level, const Neighbours& rows, const SlicedColumns& columns);
 
 FaceIncidence face_incidence(const Level& level);
+TetIncidence tet_incidence(const Level& level);
 
 }  // namespace quadgraph

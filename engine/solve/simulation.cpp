@@ -7,6 +7,7 @@
 
 #include "engine/graph/error.h"
 #include "engine/graph/exchange.h"
+#include "engine/graph/operator.h"
 #include "engine/solve/beams.h"
 #include "engine/solve/body_shape.h"
 #include "engine/solve/coefficients.h"
@@ -158,13 +159,14 @@ struct Simulation::Implementation {
   }
 
   OperatorKey key_of(const SolveOptions& options) {
+    check_method(shape.levels()[0], options.method);
     coefficients.check();
     return {options.method, coefficients.resolve(work, options.model, options.method, options.source, levels)};
   }
 
   void make_room(const OperatorKey& key, const SolveOptions& options) {
     coefficients.make_room(key.method, levels);
-    for (std::uint32_t i = 0; i < levels.size() && key.method != Method::fem; ++i) {
+    for (std::uint32_t i = 0; i < levels.size() && !on_vertices(key.method); ++i) {
       const bool there = levels[i].nodes.size() > 0;
       upload_graph(context, shape.levels()[i], i, levels[i]);
       if (!there) shape.record_nodes(work, i, levels[i]);

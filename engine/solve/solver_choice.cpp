@@ -4,6 +4,10 @@
 #include <array>
 #include <cstdio>
 
+#include "engine/graph/error.h"
+#include "engine/solve/level_solver.h"
+#include "engine/solve/multigrid.h"
+
 namespace quadgraph {
 namespace {
 
@@ -28,10 +32,25 @@ std::string ratio_text(double ratio) {
 
 }  // namespace
 
+PossibleSolver possible_solver(Operators& operators, const OperatorKey& key, SolverKind wanted) {
+  const std::string method(name_of(key.method)), name(name_of(wanted));
+  if (!symmetric(key.method)) {
+    if (wanted == SolverKind::dpcg) {
+      throw InputError("solver dpcg: the matrix of " + method + " is not symmetric; cascade and jacobi take it");
+    }
+    if (!uses_cycles(wanted)) return {wanted, ""};
+    return {SolverKind::cascade, name + " by cascade: the matrix of " + method + " is not symmetric"};
+  }
+  if (!uses_cycles(wanted) || Multigrid::possible(operators, key)) return {wanted, ""};
+  const std::string why =
+      key.method == Method::fem ? "there is no coarser level that is small enough" : method + " has no cycles";
+  return {SolverKind::dpcg, name + " by dpcg: " + why};
+}
+
 SolveReport SolverChoice::solve(const OperatorKey& key, const SolveOptions& options, bool cycles,
                                 const std::function<SolveReport(SolverKind)>& run,
                                 const std::function<std::vector<PassStats>()>& passes) {
-  if (!cycles) return run(SolverKind::dpcg);
+  if (!cycles) return run(symmetric(key.method) ? SolverKind::dpcg : SolverKind::cascade);
   const auto found = quicker_.find(key);
   if (found != quicker_.end()) return run(found->second);
   if (options.warm || options.cycles > 0 || options.error > 0) return run(SolverKind::fmg_pcg);

@@ -4,11 +4,21 @@
 #include <functional>
 #include <map>
 #include <span>
+#include <string>
 
 #include "engine/solve/operators.h"
 #include "engine/solve/recorder.h"
 
 namespace quadgraph {
+
+// What can be had where `wanted`, never automatic, is asked for, and why it is another; empty if it is that.
+struct PossibleSolver {
+  SolverKind solver;
+  std::string replaced;
+};
+
+// The operators of `key` have been created. Throws InputError for dpcg on a matrix that is not symmetric.
+PossibleSolver possible_solver(Operators& operators, const OperatorKey& key, SolverKind wanted);
 
 class SolverChoice {
  public:

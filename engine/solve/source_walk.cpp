@@ -11,7 +11,7 @@ constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
 constexpr std::uint64_t power_bytes = FIXED_WORDS * sizeof(std::uint32_t);
 
 std::uint32_t carriers(const LevelBuffers& level, Method method) {
-  return method == Method::fem ? level.vertex_count : level.tet_count;
+  return on_vertices(method) ? level.vertex_count : level.tet_count;
 }
 
 std::uint32_t rays(std::uint32_t beam_kind) {
@@ -134,7 +134,7 @@ gpu::WalkSourcePush SourceWalk::push(const Workspace& work, const LevelBuffers& 
           .unscattered = unscattered().address(),
           .sums = sums_.device.address(),
           .rays = 1,
-          .fem = method == Method::fem ? 1u : 0u};
+          .fem = on_vertices(method) ? 1u : 0u};
 }
 
 void SourceWalk::record(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, Method method, double eta,

@@ -75,7 +75,7 @@ class SourceWalk {
     WalkPower power() const;
   };
 
-  static std::size_t carrier(Method method) { return method == Method::fem ? 0 : 1; }
+  static std::size_t carrier(Method method) { return on_vertices(method) ? 0 : 1; }
 
   gpu::WalkSourcePush push(const Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, Method method,
                            double eta, bool even) const;

@@ -10,8 +10,8 @@ namespace {
 
 constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
 
-std::uint32_t is_fem(Method method) {
-  return method == Method::fem ? 1 : 0;
+std::uint32_t is_on_vertices(Method method) {
+  return on_vertices(method) ? 1 : 0;
 }
 
 std::uint64_t energy_elements(const LevelBuffers& level) {
@@ -40,7 +40,7 @@ void record_exitance(Workspace& work, const Solved& solved, const vk::Buffer& ph
                                .reduction = work.reduction.address(),
                                .count = level.face_count,
                                .tet_count = level.tet_count,
-                               .fem = is_fem(solved.method),
+                               .fem = is_on_vertices(solved.method),
                                .clipped = solved.walk != nullptr ? 1u : 0u,
                                .boundary = on_device(solved.boundary)};
   work.recorder.dispatch(work.passes.exitance.of(solved.op.model), push, level.face_count, "exitance",
@@ -151,7 +151,7 @@ void SurfaceResults::record_energy(Workspace& work, const Solved& solved) {
                              .sums = sums_.address(),
                              .tet_count = level.tet_count,
                              .face_count = level.face_count,
-                             .fem = is_fem(solved.method),
+                             .fem = is_on_vertices(solved.method),
                              .even = level.even ? 1u : 0u,
                              .least = level.least};
   const std::uint64_t bytes = level.tet_count * (sizeof(glm::uvec4) + 5 * vec3_bytes + 4 * solved.op.field_bytes()) +

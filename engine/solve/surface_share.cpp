@@ -15,7 +15,7 @@ void record_surface_share(Workspace& work, const LevelBuffers& level, Method met
                                    .scale = work.scale.address(),
                                    .share = op.surface_share.address(),
                                    .count = op.surface_count,
-                                   .fem = method == Method::fem ? 1u : 0u,
+                                   .fem = on_vertices(method) ? 1u : 0u,
                                    .reflected = static_cast<float>(boundary.reflected)};
   const std::uint64_t face_bytes = sizeof(glm::uvec3) + 4 * sizeof(glm::vec3) + sizeof(std::uint32_t);
   work.recorder.dispatch(work.passes.surface_share, push, op.surface_count, "surface share",

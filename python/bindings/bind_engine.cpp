@@ -136,7 +136,7 @@ void set_lights(Engine& engine, const std::vector<std::string>& texts) {
 py::dict solve(Engine& engine, const std::string& method, const std::string& solver, const std::string& source,
                const std::string& model, double tolerance, double error, std::uint32_t cycles, bool warm,
                std::uint32_t max_iterations, bool inter_reflection, std::uint32_t bounces, std::uint32_t smoothing,
-               std::uint32_t exchange_rows) {
+               std::uint32_t exchange_rows, std::uint32_t active_layers) {
   SolveOptions options = options_from(method, solver, source, model, tolerance, max_iterations);
   options.error = error;
   options.cycles = cycles;
@@ -145,6 +145,7 @@ py::dict solve(Engine& engine, const std::string& method, const std::string& sol
   options.bounces = bounces;
   options.smoothing = smoothing;
   options.exchange_rows = exchange_rows;
+  options.active_layers = active_layers;
   const SolveReport report = [&] {
     const py::gil_scoped_release release;
     return engine.solve(options);
@@ -305,13 +306,13 @@ void bind_engine(py::module_& module) {
       .def("solve", &solve, py::arg("method") = "fem", py::arg("solver") = "fmg-pcg", py::arg("source") = "buried",
            py::arg("model") = "auto", py::arg("tolerance") = 1e-3, py::arg("error") = 0.0, py::arg("cycles") = 0,
            py::arg("warm") = false, py::arg("max_iterations") = 5000, py::arg("inter_reflection") = true,
-           py::arg("bounces") = 0, py::arg("smoothing") = 0, py::arg("exchange_rows") = 0,
+           py::arg("bounces") = 0, py::arg("smoothing") = 0, py::arg("exchange_rows") = 0, py::arg("active_layers") = 0,
            "Solves for the present material and light (engine/graph/solution.h); a report. tolerance: estimated "
            "algebraic error of the exitance; error: target for it and that of the mesh together, 0: none; cycles: so "
            "many iterations on the finest level, 0: as many as it takes; warm: from the last solution; exchange_rows: "
            "of a body that deforms so many faces look anew at what they see, "
-           "0: all of them. Raises "
-           "InputError, SolverError.")
+           "0: all of them; active_layers: of a polygrid that are solved for on all levels but the coarsest, 0: all. "
+           "Raises InputError, SolverError.")
       .def(
           "surface_field", [](const Engine& engine) { return field_dict(engine.surface_field()); },
           "Per outside face of level 0: position, normal, area, q, phi, exitance of scattered and of unscattered light "

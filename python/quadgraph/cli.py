@@ -27,6 +27,7 @@ SUBCOMMANDS = (
     "reference",
     "chart",
     "tables",
+    "polygrid",
     "stability",
 )
 INTERRUPTED = 128 + signal.SIGINT

@@ -27,8 +27,9 @@ _LEVEL = {
     "nodes": (_F32, ("n_n", 3)),
 }
 _KINDS = {"face_kinds": (_U32, ("n_f",))}
+_GRID = {"grid_links": (_U32, ("n_i", 6))}
 _SEEN = {"seen_rays": (_U32, (1,)), "seen": (_U32, ("n_s",))}
-_OPTIONAL = (_KINDS, _SEEN)
+_OPTIONAL = (_KINDS, _GRID, _SEEN)
 _TRANSFERS = {
     "inner_index": (_U32, ("n_t", 8)),
     "inner_weight": (_F32, ("n_t", 8)),
@@ -76,6 +77,7 @@ def check(sections: dict[str, np.ndarray], metadata: dict[str, Any], name: str) 
         if f"level{i}/face_kinds" in sections:
             _check_fields(sections, f"level{i}/", _KINDS, counts, name)
             _check_range(sections[f"level{i}/face_kinds"], 2, f"{name}: level{i}/face_kinds")
+    _check_grid(sections, levels, name)
     _check_seen(sections, levels, name)
     for i in range(levels - 1):
         _check_fields(sections, f"level{i}/", _TRANSFERS, _level_counts(sections, i), name)
@@ -103,7 +105,8 @@ def _check_names(found: list[str], expected: list[str], name: str) -> None:
 
 def _level_counts(sections: dict[str, np.ndarray], level: int) -> dict[str, int]:
     n_v, n_t, n_f = (len(sections[f"level{level}/{field}"]) for field in ("vertices", "tets", "faces"))
-    return {"n_v": n_v, "n_t": n_t, "n_f": n_f, "n_n": n_t + n_f}
+    n_i = n_v - int(sections[f"level{level}/faces"].max()) - 1
+    return {"n_v": n_v, "n_t": n_t, "n_f": n_f, "n_n": n_t + n_f, "n_i": n_i}
 
 
 def _check_fields(
@@ -176,6 +179,35 @@ def _check_surface_links(level: dict[str, np.ndarray], n_t: int, n_f: int, where
     for shift in range(3):
         same |= (np.roll(stored, shift, axis=1) == outward).all(axis=1)
     _require(bool(same.all()), f"{where}/faces", "a face is not the outward face of its tet")
+
+
+def _check_grid(sections: dict[str, np.ndarray], levels: int, name: str) -> None:
+    found = [i for i in range(levels) if f"level{i}/grid_links" in sections]
+    _require(len(found) in (0, levels), f"{name}: grid_links", "some levels have it, but not all")
+    for i in found:
+        counts = _level_counts(sections, i)
+        _check_fields(sections, f"level{i}/", _GRID, counts, name)
+        _check_grid_links(sections[f"level{i}/grid_links"], counts, f"{name}: level{i}/grid_links")
+
+
+def _check_grid_links(links: np.ndarray, counts: dict[str, int], where: str) -> None:
+    first = counts["n_v"] - counts["n_i"]
+    _check_range(links, counts["n_v"], where)
+    own = links == first + np.arange(len(links))[:, None]
+    _require(not own[:, :5].any(), where, "a vertex is linked to itself")
+    outside = links[links < first]
+    once = len(outside) == first and bool((np.bincount(outside, minlength=first) == 1).all())
+    _require(once, where, "a vertex on the surface is not linked exactly once")
+    # Breadth first from the surface: the vertices of a layer follow those of the one before.
+    layer = np.full(counts["n_v"], counts["n_v"])
+    layer[:first] = 0
+    while True:
+        reached = np.minimum(layer[first:], layer[links].min(axis=1) + 1)
+        if (reached == layer[first:]).all():
+            break
+        layer[first:] = reached
+    _require(bool((layer[first:] <= len(links)).all()), where, "a vertex is not linked to the surface")
+    _require(bool((np.diff(layer) >= 0).all()), where, "vertices are not in the order of their layers")
 
 
 def _check_seen(sections: dict[str, np.ndarray], levels: int, name: str) -> None:

@@ -24,14 +24,16 @@ def _f32(array: np.ndarray) -> np.ndarray:
 def level(number: int, graph: Graph) -> dict[str, np.ndarray]:
     """Sections of one level, transfers excepted."""
     kinds = {} if graph.face_kinds is None else {f"level{number}/face_kinds": _u32(graph.face_kinds)}
-    return {
+    grid = {} if graph.grid_links is None else {f"level{number}/grid_links": _u32(graph.grid_links)}
+    always = {
         f"level{number}/vertices": _f32(graph.vertices),
         f"level{number}/tets": _u32(graph.tets),
         f"level{number}/faces": _u32(graph.faces),
         f"level{number}/face_tets": _u32(graph.face_tets),
         f"level{number}/links": _u32(graph.links),
         f"level{number}/nodes": _f32(graph.nodes),
-    } | kinds
+    }
+    return always | kinds | grid
 
 
 def transfers(number: int, fine: Graph, coarse: Graph) -> dict[str, np.ndarray]:

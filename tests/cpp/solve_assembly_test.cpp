@@ -334,10 +334,10 @@ TEST_CASE("around every edge lie its tets, then its open faces, and at every ver
   }
   CHECK(tet_edges == 6 * level.tets.size());
   CHECK(face_edges == 3 * (level.faces.size() - 1));
-  CHECK(fem.tet_incidence.size() == 4 * level.tets.size());
+  CHECK(fem.tets.tet.size() == 4 * level.tets.size());
   for (std::uint32_t v = 0; v < level.vertex_count(); ++v) {
-    for (std::uint32_t k = fem.tet_offset[v]; k < fem.tet_offset[v + 1]; ++k) {
-      CHECK(has(level.tets[fem.tet_incidence[k]], v));
+    for (std::uint32_t k = fem.tets.offset[v]; k < fem.tets.offset[v + 1]; ++k) {
+      CHECK(has(level.tets[fem.tets.tet[k]], v));
     }
   }
   const FaceIncidence faces = face_incidence(level);

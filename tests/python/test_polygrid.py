@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,16 +10,16 @@ import numpy as np
 import pytest
 import trimesh
 
-from quadgraph import bake, qgraph_file
-from quadgraph.errors import InputError
+import grids
+from grids import RADIUS
+from quadgraph import bake, cli, qgraph_file
+from quadgraph.errors import InputError, ToolError
 from quadgraph.graph import Graph
 from quadgraph.polygrid import build, lattice, placement, polycube, quality, reference, weights
 from quadgraph.polygrid.lattice import MISSING
 from quadgraph.qgraph_rules import determinants
 from quadgraph.surface import Surface, TetMesh
 from shapes import icosphere
-
-RADIUS = 10.0
 
 
 def random_polycube(seed: int) -> np.ndarray:
@@ -66,7 +67,7 @@ def test_thin_parts_are_reached():
 
 def test_no_polycube_is_made_of_what_no_lattice_shows():
     ring = trimesh.creation.torus(major_radius=20, minor_radius=0.3, major_sections=64, minor_sections=12)
-    with pytest.raises(InputError, match="1 pieces and 1 handles"):
+    with pytest.raises(ToolError, match="1 pieces and 1 handles"):
         polycube.build(surface_of(ring), 4)
     for cubes in (1, 33):
         with pytest.raises(InputError, match="cubes"):
@@ -114,23 +115,9 @@ def affine(points: np.ndarray) -> np.ndarray:
     return 2.0 + points @ np.array([0.3, -1.1, 0.7])
 
 
-class RoundSurface:
-    """The sphere of radius RADIUS, without facets."""
-
-    def nearest(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        normals = points / np.linalg.norm(points, axis=1, keepdims=True)
-        return RADIUS * normals, normals
-
-
 def ball(cells: int) -> Graph:
     """One cube blown up to a ball, placed as the paper does."""
-    grid = lattice.build(np.ones((1, 1, 1), bool), cells)
-    x, y, z = (2 * (grid.positions / cells - 1) - 1).T
-    turns = (x, y, z), (y, z, x), (z, x, y)
-    blown = RADIUS * np.stack([a * np.sqrt(1 - b**2 / 2 - c**2 / 2 + b**2 * c**2 / 3) for a, b, c in turns], axis=1)
-    placed = placement.settle(RoundSurface(), grid, blown)
-    assert placed.moved == ""
-    return build.as_graph(grid, placed.positions)
+    return grids.balls(cells)[0]
 
 
 def shaken(amount: float) -> Graph:
@@ -264,3 +251,31 @@ def test_options_that_do_not_belong_together_are_refused(tmp_path):
             bake.bake(mesh, tmp_path / "out.qgraph", bake.BakeOptions(unit="mm", **options))
     with pytest.raises(InputError, match="cells: 3"):
         build.build(icosphere(2, 1), cells=3)
+
+
+def test_the_table_has_ours_below_the_papers_rows(tmp_path, capsys):
+    cold = {"light": 10.0, "solve": 60.0, "picture": 30.0, "work": 9.0}
+    found = {
+        "body": "donut",
+        "cubes": 72,
+        "cells": 4,
+        "nodes": 6600,
+        "megabytes": 5.0,
+        "cold": cold,
+        "coherent": cold | {"solve": 10.0},
+        "curves": {
+            "plain": [(1, 0.5), (2, 0.1)],
+            "hierarchical": [(1, 0.1), (2, 0.004)],
+            "adaptive": [(0.5, 0.004)],
+        },
+    }
+    record = tmp_path / "record.json"
+    record.write_text(json.dumps({"Hole": found}))
+    assert cli.main(["polygrid", "--from", str(record), "--chart", str(tmp_path / "curves.png")]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    published = next(i for i, line in enumerate(lines) if line.startswith("| Hole, published | 36 x 12³ | 62 |"))
+    assert lines[published + 1] == "| donut | 72 x 4³ | 6.6 | 5 | 10 / 60 / 30 | 10.0 | 20.0 | 2.00 |"
+    assert lines[-1] == "| Hole | never | 2 | 0 |"
+    assert (tmp_path / "curves.png").stat().st_size > 5000
+    assert cli.main(["polygrid", "--body", "teapot"]) == 1
+    assert "bunny" in capsys.readouterr().err

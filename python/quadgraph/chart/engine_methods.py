@@ -36,14 +36,15 @@ class EngineMethod:
     inter_reflection: bool = False
     radiance: str = "gathered"
     cycles: int = 0
+    active_layers: int = 0
     choice: Choice | None = None
     _body: Body | None = field(default=None, repr=False)
 
     @property
     def family(self) -> str:
         """Discretisation, model and source, and whether light goes from part to part."""
-        if self.method == "quadgraph-fdm":
-            return "quadgraph-fdm, as published"
+        if self.method in ("quadgraph-fdm", "polygrid"):
+            return f"{self.method}, as published"
         if self.source == "diffuse":
             return f"{self.method}, {_MODELS[self.model]}, published source"
         return f"{self.method}, {_MODELS[self.model]}" + (", inter-reflection" if self.inter_reflection else "")
@@ -53,6 +54,7 @@ class EngineMethod:
         """Family, level, and what is not usual."""
         parts = [self.family, *self._bake_words, f"level {self.level}", self.solver]
         parts += [f"{self.cycles} cycle{'s' if self.cycles > 1 else ''} a frame"] if self.cycles else []
+        parts += [f"{self.active_layers} layers"] if self.active_layers else []
         parts += ["Lambertian"] if self.radiance == "lambertian" and self._can_gather else []
         return " · ".join(parts)
 
@@ -67,7 +69,7 @@ class EngineMethod:
         """Solve for the light two frames ago."""
         first, self._body = self._body is not body, body
         self._engine.set_lights([light_at(body.scene, SWING[0])])
-        quickest = "fmg-pcg" if self.method == "fem" else "dpcg"
+        quickest = {"fem": "fmg-pcg", "polygrid": "cascade", "polygrid-divergence": "cascade"}.get(self.method, "dpcg")
         self._engine.solve(**self._options | {"solver": quickest, "tolerance": SETTLED, "cycles": 0, "bounces": 0})
         if first:
             # A first frame compiles shaders and makes room.
@@ -97,6 +99,8 @@ class EngineMethod:
     def _bake_words(self) -> list[str]:
         if self.choice is None:
             return []
+        if self.choice.cells is not None:
+            return ["polygrid"]
         return ["default bake" if self.choice.grading is None else f"K = {self.choice.grading:g}"]
 
     @property
@@ -109,7 +113,7 @@ class EngineMethod:
 
     @property
     def _options(self) -> dict[str, Any]:
-        names = ("method", "model", "source", "solver", "inter_reflection", "cycles")
+        names = ("method", "model", "source", "solver", "inter_reflection", "cycles", "active_layers")
         bounces = 1 if self.inter_reflection and self.cycles else 0
         options = {"tolerance": SETTLED, "max_iterations": _MOST_ITERATIONS, "warm": True, "bounces": bounces}
         return {name: getattr(self, name) for name in names} | options
@@ -142,5 +146,11 @@ def engine_methods(chain: Chain) -> Iterator[Method]:
     yield from (replace(fdm, level=level) for level in levels[:_FINEST_PUBLISHED])
     yield replace(fdm, solver="dpcg")
     for choice in chain.others:
+        if choice.cells is not None:
+            grid = replace(published, method="polygrid", solver="cascade", choice=choice)
+            yield from (grid, replace(grid, active_layers=2))
+            yield replace(diffusion, method="polygrid-divergence", solver="cascade", choice=choice)
+            yield replace(diffusion, choice=choice)
+            continue
         frame = EngineMethod(inter_reflection=True, cycles=1, choice=choice)
         yield from (frame, replace(frame, cycles=0), replace(frame, model="diffusion"), replace(fdm, choice=choice))

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 SWING = (2, 1, 0)  # steps of the light: a method is settled at the first, frames follow it to the scene's own, step 0
 CHAIN = "chain"  # `bake` of the chain that the PDE truth knows
+POLYGRID = "polygrid"  # `bake` of a polygrid of the body
 SETTLED = 1e-3  # algebraic error of the exitance to which solvers iterate, unless a number of cycles is given
 
 
@@ -23,6 +24,8 @@ def bake_settings(choice: Choice | None) -> dict[str, Any]:
     """What a method's settings say of how its body is baked; None: the chain that the PDE truth knows."""
     if choice is None:
         return {"bake": CHAIN, "K": None}
+    if choice.cells is not None:
+        return {"bake": POLYGRID, "K": None}
     return {"bake": "default" if choice.grading is None else "K", "K": choice.grading}
 
 

@@ -138,6 +138,7 @@ KINDS = {
     "solver": ("^", "triangle-up", "another solver"),
     "lambertian": ("D", "diamond", "shown as a diffuser"),
     "default": ("*", "star", "on the mesh that `bake` makes by default"),
+    "polygrid": ("X", "x", "on a polygrid of the body"),
     "K": ("P", "cross", "on the paper's meshes, smaller: larger K"),
 }
 _COLOURS = {
@@ -149,6 +150,8 @@ _COLOURS = {
     "quadgraph-fv, SP₃": "#8c6bb1",
     "quadgraph-fv, diffusion": "#c79fd4",
     "quadgraph-fdm, as published": "#c44e52",
+    "polygrid, as published": "#d4a017",
+    "polygrid-divergence, diffusion": "#8a6d0b",
     "dipole per vertex": "#7f7f7f",
 }
 _MORE = ("#17a2a2", "#bcbd22", "#8c564b", "#e377c2")

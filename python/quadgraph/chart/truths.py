@@ -16,10 +16,11 @@ from quadgraph.reference import pde_truth, scene_bakes, scene_meshes, truth_run
 from quadgraph.reference.scenes import Scene
 from quadgraph.reference.truth import Truth
 
-# Only path tracing can judge them: as `bake` does by default, and by the paper's mesher from fine to coarse.
+# Only path tracing can judge them: as `bake` does by default, by the paper's mesher from fine to coarse, on a polygrid.
 OTHER_BAKES = (
     scene_bakes.Choice(),
     *(scene_bakes.Choice(pde_truth.VERTICES, grading) for grading in (0.3, 1.0, 3.0)),
+    scene_bakes.Choice(cells=4),
 )
 
 

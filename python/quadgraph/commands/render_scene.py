@@ -30,6 +30,7 @@ STATED = {
     "max_iterations": "/solver/max_iterations",
     "no_inter_reflection": "/solver/inter_reflection",
     "bounces": "/solver/bounces",
+    "active_layers": "/solver/active_layers",
     "view": "/camera/azimuth",
     "up": "/camera/up",
     "fov": "/camera/fov",

@@ -58,7 +58,7 @@ def inter_reflection_text(report: dict, wanted: bool) -> str:
     """Say whether light from part to part was followed, and if not, why."""
     if report["inter_reflection"]:
         return f"inter-reflection: {len(report['bounces'])} bounces"
-    if not wanted or report["source"] != "buried" or report["method"] == "quadgraph-fdm":
+    if not wanted or report["source"] != "buried" or report["method"] not in ("fem", "quadgraph-fv"):
         return "inter-reflection: left out"
     return "inter-reflection: left out, the file does not say what the faces see (bake it again)"
 

@@ -105,7 +105,10 @@ def add_scene_arguments(parser: argparse.ArgumentParser, file_help: str = "a bak
         "little from all around)",
     )
     parser.add_argument(
-        "--method", choices=("fem", "quadgraph-fv", "quadgraph-fdm"), default="fem", help="default: %(default)s"
+        "--method",
+        choices=("fem", "quadgraph-fv", "quadgraph-fdm", "polygrid", "polygrid-divergence"),
+        default="fem",
+        help="polygrid needs a file baked with --mesher polygrid (default: %(default)s)",
     )
     parser.add_argument(
         "--solver",
@@ -160,6 +163,14 @@ def add_scene_arguments(parser: argparse.ArgumentParser, file_help: str = "a bak
         help="leave out light that leaves one part of the object and enters another",
     )
     parser.add_argument(
+        "--active-layers",
+        type=positive_int,
+        default=0,
+        metavar="N",
+        help="of a polygrid that are solved for on all levels but the coarsest, the rest being taken from the coarser "
+        "level, as published (default: all)",
+    )
+    parser.add_argument(
         "--bounces",
         type=positive_int,
         default=0,
@@ -199,6 +210,7 @@ def solve(engine: Engine, args: argparse.Namespace) -> dict:
         "max_iterations": args.max_iterations,
         "inter_reflection": not args.no_inter_reflection,
         "bounces": args.bounces,
+        "active_layers": args.active_layers,
     }
     if taken and taken.options:
         options |= taken.options

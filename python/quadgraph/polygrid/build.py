@@ -43,7 +43,7 @@ def build(
     """The polygrid of a closed 2-manifold, mm: `cubes` along its longest side, `cells`^3 in each on the finest level.
 
     Every further level has half the cells, its interior nodes in the middle of their eight children, down to 2; at most
-    `levels`. Raises InputError for a bad option and where no polycube keeps the topology, ToolError where cells stay
+    `levels`. Raises InputError for a bad option, ToolError where no polycube keeps the topology and where cells stay
     inverted.
     """
     cells = DEFAULT_CELLS if cells is None else cells
@@ -61,7 +61,7 @@ def build(
     graphs = []
     for number, grid in enumerate(all_levels):
         if number:
-            positions = _averaged(all_levels[number - 1], positions, grid, on_surface)
+            positions = averaged(all_levels[number - 1], positions, grid, on_surface)
         graphs.append(as_graph(grid, positions, number))
     report = quality.report(graphs[0], cube, cells, placed.inverted, placed.moved, surface)
     options = f"{cube.count} cubes of {cells}^3 cells, {max(cube.solid.shape) - 2} along the longest side"
@@ -86,7 +86,7 @@ def _drawn(
     return chain
 
 
-def _averaged(fine: Lattice, positions: np.ndarray, coarse: Lattice, surface: OnSurface) -> np.ndarray:
+def averaged(fine: Lattice, positions: np.ndarray, coarse: Lattice, surface: OnSurface) -> np.ndarray:
     """Interior nodes in the middle of their children, boundary nodes of theirs, on the surface."""
     parent = _rows_of(coarse.cells, fine.cells // 2)
     boundary = np.full(coarse.interior, MISSING)

@@ -15,7 +15,7 @@ import numpy as np
 import trimesh
 from scipy import ndimage
 
-from quadgraph.errors import InputError
+from quadgraph.errors import InputError, ToolError
 from quadgraph.surface import Surface
 
 FEWEST, MOST = 2, 32  # cubes along the longest side
@@ -48,7 +48,8 @@ class Polycube:
 def build(surface: Surface, cubes: int | None = None) -> Polycube:
     """The polycube of a closed 2-manifold, mm; `cubes` along its longest side, None for about DEFAULT_CUBES.
 
-    Raises InputError where no lattice that was tried keeps the topology, saying what came out instead.
+    Raises InputError for a bad number, ToolError where no lattice that was tried keeps the topology, saying what came
+    out instead.
     """
     if cubes is not None and not FEWEST <= cubes <= MOST:
         raise InputError(f"cubes: {cubes} found, {FEWEST} to {MOST} allowed")
@@ -65,7 +66,7 @@ def build(surface: Surface, cubes: int | None = None) -> Polycube:
             if (pieces, genus) == (surface.components, surface.genus):
                 return Polycube(_grown(solid, inside, shares), origin, edge, left_out)
             found.append(f"{pieces} and {genus} of {number}")
-    raise InputError(
+    raise ToolError(
         f"polygrid: no polycube with the body's {surface.components} pieces and {surface.genus} handles; "
         f"pieces and handles of those tried, by cubes along the longest side: {', '.join(dict.fromkeys(found))}; "
         "another number of cubes may have them"

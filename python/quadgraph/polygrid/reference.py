@@ -3,7 +3,7 @@
 Rows (Wang et al. 2008, Eq. 9), w the weights of Appendix B, d the distance from a boundary node to its neighbour j:
     published:  sum_j w_j (kappa_i phi_i - kappa_j phi_j) + sigma_a phi_i = 0
     divergence: sum_j w_j kappa_ij (phi_i - phi_j)        + sigma_a phi_i = 0, kappa_ij the harmonic mean
-    boundary:   kappa_i (phi_i - phi_j) / d + k phi_i = load
+    boundary:   kappa (phi_i - phi_j) / d + k phi_i = load, kappa = kappa_i if published, else kappa_ij
 The published rows discretise the Laplacian of kappa phi, which is another equation wherever kappa varies.
 """
 
@@ -41,7 +41,10 @@ def operator(
     own, other = (here, there) if published else (2 * here * there / (here + there),) * 2
     inner = neighbours(graph)
     surface = np.arange(first)
-    per_distance = kappa[:first] / np.linalg.norm(graph.vertices[surface] - graph.vertices[inner], axis=1)
+    at_surface = kappa[:first]
+    if not published:
+        at_surface = 2 * at_surface * kappa[inner] / (at_surface + kappa[inner])
+    per_distance = at_surface / np.linalg.norm(graph.vertices[surface] - graph.vertices[inner], axis=1)
     diagonal = np.concatenate([per_distance + outflow, (weight * own).sum(axis=1) + sigma_a[rows]])
     matrix = sparse.coo_matrix(
         (

@@ -14,11 +14,13 @@ from quadgraph.reference.scenes import Scene
 @dataclass(frozen=True)
 class Choice:
     """How to bake: about how many vertices the finest surface has at most, None for all that the mesh has; grading: K
-    of the QuadGraph paper's sizing field, by its mesher; None for the default's.
+    of the QuadGraph paper's sizing field, by its mesher; None for the default's; cells: of a polygrid along a cube's
+    side, None for no polygrid.
     """
 
     vertices: int | None = None
     grading: float | None = None
+    cells: int | None = None
 
 
 @dataclass(frozen=True)
@@ -50,5 +52,8 @@ def of(scene: Scene, choice: Choice, meshes: Path, folder: Path) -> SceneBake:
     if choice.grading is not None:
         made_of["grading"] = choice.grading
         options |= {"mesher": "cgal", "grading": choice.grading}
+    if choice.cells is not None:
+        made_of["polygrid"] = choice.cells
+        options |= {"mesher": "polygrid", "cells": choice.cells, "surface_vertices": None}
     name = f"{mesh.stem}-{scene.height:g}mm-{store.digest(made_of)[:12]}.qgraph"
     return SceneBake(mesh, folder / name, BakeOptions(**options))
