@@ -9,18 +9,18 @@
 namespace quadgraph::gpu {
 #endif
 
-// Luminance of covered pixels is counted in bins of equal ratio, of which the first begins at 2^LEAST_STOP: a quantile
-// is then known within a 1/128 stop, less than a code of 8 bits.
+// Luminance and brightest channel of covered pixels are counted in bins of equal ratio, of which the first begins at
+// 2^LEAST_STOP: a quantile is then known within a 1/128 stop, less than a code of 8 bits.
 const uint BINS_PER_STOP = 128u;
 const float LEAST_STOP = -64.0f;
 const uint LUMINANCE_BINS = 128u * BINS_PER_STOP;
 
-// luminance.comp: counts of the covered pixels of a picture.
+// luminance.comp: counts of the covered pixels of a picture, by luminance and by their brightest channel.
 struct LuminancePush {
   QG_REF(Floats) layers[PICTURE_LAYERS];  // RGB per pixel
   QG_REF(Floats) alpha;                   // per pixel
-  QG_REF(Uints) bins;                     // LUMINANCE_BINS, added to; what is below the first or black is in the first
-  uint count;                             // pixels
+  QG_REF(Uints) bins;  // LUMINANCE_BINS twice, added to; what is below the first or black is in the first
+  uint count;          // pixels
 };
 
 // tone_map.comp: a picture as engine/render/png_file.cpp's to_srgb8 shows it, stretched to a part of a screen.

@@ -35,16 +35,28 @@ float srgb_encode(float linear) {
   return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
 }
 
+float exposure_for(const Brightness& seen) {
+  if (!(seen.luminance > 0)) return 0;
+  return static_cast<float>(
+      std::min(std::log2(exposure_bright / seen.luminance), std::log2(exposure_most / seen.brightest)));
+}
+
 float auto_exposure(const Picture& picture) {
-  std::vector<double> values;
+  std::vector<double> luminances, brightest;
   for (std::size_t i = 0; i < picture.alpha.size(); ++i) {
-    if (picture.alpha[i] == 1.0f) values.push_back(luminance(picture, i));
+    if (picture.alpha[i] != 1.0f) continue;
+    luminances.push_back(luminance(picture, i));
+    brightest.push_back(static_cast<double>(
+        std::max({picture.radiance(3 * i), picture.radiance(3 * i + 1), picture.radiance(3 * i + 2)})));
   }
-  if (values.empty()) return 0;
-  const auto middle =
-      values.begin() + static_cast<std::ptrdiff_t>(exposure_quantile * static_cast<double>(values.size()));
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle > 0 ? static_cast<float>(std::log2(exposure_bright / *middle)) : 0.0f;
+  if (luminances.empty()) return 0;
+  const auto quantile = [](std::vector<double>& values) {
+    const auto at =
+        values.begin() + static_cast<std::ptrdiff_t>(exposure_quantile * static_cast<double>(values.size()));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+  };
+  return exposure_for({quantile(luminances), quantile(brightest)});
 }
 
 float exposure_of(const Picture& picture, const ToneOptions& options) {

@@ -31,7 +31,19 @@ float srgb_encode(float linear);
 inline constexpr double exposure_quantile = 0.95;
 inline constexpr double exposure_bright = 0.4;
 
-// Stops that bring the quantile to its place. Depends on nothing but the picture; 0 for a black one.
+// The same quantile of their brightest channel is brought to no more than this, so that what is of one pure colour,
+// which has little luminance, keeps its shape too.
+inline constexpr double exposure_most = 0.9;
+
+// Those quantiles of the luminance and of the brightest channel of covered pixels.
+struct Brightness {
+  double luminance = 0, brightest = 0;
+};
+
+// What auto_exposure makes of them.
+float exposure_for(const Brightness& brightness);
+
+// Stops that bring the quantiles to their places. Depends on nothing but the picture; 0 for a black one.
 float auto_exposure(const Picture& picture);
 
 // The stops of `options`, or else those of auto_exposure.

@@ -10,10 +10,10 @@
 namespace quadgraph {
 namespace {
 
-constexpr std::uint64_t bin_bytes = sizeof(std::uint32_t) * gpu::LUMINANCE_BINS;
+constexpr std::uint64_t bin_bytes = sizeof(std::uint32_t) * 2 * gpu::LUMINANCE_BINS;
 
-// As auto_exposure, of the middle of the bin that holds the quantile.
-float exposure_from(std::span<const std::uint32_t> bins) {
+// The middle of the bin that holds the quantile, 0 for the first one.
+double quantile_of(std::span<const std::uint32_t> bins) {
   std::uint64_t count = 0;
   for (const std::uint32_t bin : bins) count += bin;
   const auto rank = static_cast<std::uint64_t>(exposure_quantile * static_cast<double>(count));
@@ -21,11 +21,13 @@ float exposure_from(std::span<const std::uint32_t> bins) {
   for (std::size_t i = 0; i < bins.size() && count > 0; ++i) {
     below += bins[i];
     if (below <= rank) continue;
-    if (i == 0) return 0;
-    const double stop = gpu::LEAST_STOP + (static_cast<double>(i) + 0.5) / gpu::BINS_PER_STOP;
-    return static_cast<float>(std::log2(exposure_bright) - stop);
+    return i == 0 ? 0 : std::exp2(gpu::LEAST_STOP + (static_cast<double>(i) + 0.5) / gpu::BINS_PER_STOP);
   }
   return 0;
+}
+
+float exposure_from(std::span<const std::uint32_t> bins) {
+  return exposure_for({quantile_of(bins.first(gpu::LUMINANCE_BINS)), quantile_of(bins.last(gpu::LUMINANCE_BINS))});
 }
 
 }  // namespace

@@ -100,6 +100,23 @@ TEST_CASE("automatic exposure follows the light, so that the shown picture does 
   CHECK(to_srgb8(picture, {.exposure_stops = stops - 4}) != shown);
 }
 
+TEST_CASE("automatic exposure keeps what is of one colour from clipping") {
+  const auto of = [](const glm::vec3& colour) {
+    Picture picture = sample_picture();
+    for (std::size_t i = 0; i < picture.alpha.size(); ++i) {
+      picture.alpha[i] = 1;
+      for (std::size_t c = 0; c < 3; ++c) {
+        picture.scattered[3 * i + c] = colour[static_cast<int>(c)];
+        picture.specular[3 * i + c] = picture.unscattered[3 * i + c] = 0;
+      }
+    }
+    return auto_exposure(picture);
+  };
+  CHECK(of(glm::vec3(0.5f)) == doctest::Approx(std::log2(exposure_bright / 0.5)));
+  CHECK(of({1, 0.7f, 0.5f}) == doctest::Approx(std::log2(exposure_bright / (0.2126 + 0.7 * 0.7152 + 0.5 * 0.0722))));
+  CHECK(of({2, 0.01f, 0.01f}) == doctest::Approx(std::log2(exposure_most / 2)));
+}
+
 TEST_CASE("a black picture is shown black on its background, which is seen through it as it lets light through") {
   Picture picture = sample_picture();
   for (auto* layer : {&picture.scattered, &picture.specular, &picture.unscattered}) layer->assign(layer->size(), 0);
