@@ -3,11 +3,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <optional>
+#include <random>
 #include <string>
+#include <utility>
 
 #include "engine/graph/error.h"
 #include "engine/graph/polygrid.h"
@@ -23,8 +27,9 @@ constexpr std::array<Method, 2> grid_methods = {Method::polygrid, Method::polygr
 
 using Links = std::vector<std::uint32_t>;
 
-// The refusal after `change` was made to the links of the finest level.
-std::string refusal(const std::function<void(Links&, const Level&)>& change) {
+// The refusal after `change` was made to the links of the finest level; else the file goes to `taken`.
+std::string refusal(const std::function<void(Links&, const Level&)>& change,
+                    std::optional<QuadGraph>* taken = nullptr) {
   std::vector<std::byte> bytes(std::filesystem::file_size(grid_path));
   std::ifstream(grid_path, std::ios::binary)
       .read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
@@ -39,7 +44,8 @@ std::string refusal(const std::function<void(Links&, const Level&)>& change) {
   }
   seal(bytes);
   try {
-    QuadGraph::parse(bytes, "test.qgraph");
+    QuadGraph graph = QuadGraph::parse(bytes, "test.qgraph");
+    if (taken != nullptr) taken->emplace(std::move(graph));
   } catch (const FormatError& error) {
     return error.what();
   }
@@ -79,6 +85,30 @@ TEST_CASE("links of a polygrid that break a rule are refused") {
                }
              }),
              "not linked to the surface");
+}
+
+TEST_CASE("random links are refused or harmless") {
+  const QuadGraph whole = QuadGraph::load(grid_path);
+  const Level& level = whole.levels()[0];
+  std::mt19937 random(2008);
+  int accepted = 0;
+  for (int i = 0; i < 300; ++i) {
+    const auto damage = [&](Links& links, const Level&) {
+      links[random() % links.size()] = static_cast<std::uint32_t>(random() % (level.vertex_count() + 2));
+    };
+    std::optional<QuadGraph> graph;
+    if (!refusal(damage, &graph).empty()) continue;
+    ++accepted;
+    const Level& changed = graph->levels()[0];
+    const Opticals optical = uniform(changed, 0.3f, 0.01f);
+    const auto q = everywhere(changed, glm::vec3(1));
+    SolveOptions options = solving(Method::polygrid, Source::buried, Model::diffusion);
+    options.max_iterations = 3;
+    const ReferenceSolution solution = solve_reference(changed, optical, 1.3, lambertian(q), options);
+    for (const glm::dvec3& phi : solution.phi) CHECK(std::isfinite(phi.x));
+  }
+  CHECK(accepted > 0);
+  CHECK(accepted < 300);
 }
 
 TEST_CASE("layers ascend from the surface, and its vertices have one neighbour") {
