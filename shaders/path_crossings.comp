@@ -7,11 +7,14 @@ layout(push_constant, scalar) uniform Block { PathCrossingsPush push; };
 #define GRID push.grid
 #include "path_crossings.glsl"
 
+uint triangle;
+
 void crossed(Crossing crossing) {
   uvec3 cell = crossing.column;
   float end = float(GRID.size[crossing.axis]);
   cell[crossing.axis] = uint(clamp(floor(crossing.at), 0.0, end - 1.0));
   atomicOr(push.flags.at[cell_number(GRID, cell)], CELL_SURFACE);
+  atomicMax(push.triangle.at[cell_number(GRID, cell)], 1u + triangle);
   float behind = max(floor(crossing.at + 0.5), 0.0);
   if (behind >= end) return;
   cell[crossing.axis] = uint(behind);
@@ -22,7 +25,8 @@ void crossed(Crossing crossing) {
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= 3u * push.stripes * push.triangle_count) return;
-  uvec3 ids = load_uvec3(push.triangles, i / (3u * push.stripes));
+  triangle = i / (3u * push.stripes);
+  uvec3 ids = load_uvec3(push.triangles, triangle);
   uint rest = i % (3u * push.stripes);
   cross_triangle(rounded(load_vec3(push.vertices, ids.x)), rounded(load_vec3(push.vertices, ids.y)),
                  rounded(load_vec3(push.vertices, ids.z)), rest / push.stripes, rest % push.stripes, push.stripes);

@@ -3,7 +3,7 @@
 #ifndef QUADGRAPH_PATH_SHARED_H
 #define QUADGRAPH_PATH_SHARED_H
 
-#include "shared.h"
+#include "edits.h"
 
 // Cells along the side of a block, which one workgroup of its square relaxes.
 #define PATH_BLOCK 8
@@ -66,6 +66,7 @@ struct PathCrossingsPush {
   QG_REF(Uvec3s) triangles;
   QG_REF(Uints) crossings;  // 3 per cell, axis after axis; added to
   QG_REF(Uints) flags;      // CELL_SURFACE, or-ed
+  QG_REF(Uints) triangle;   // per cell that the surface crosses: 1 + the largest of the triangles that do
   uint triangle_count;
   uint stripes;  // invocations per triangle and axis
 };
@@ -94,6 +95,52 @@ struct PathSolidPush {
   QG_REF(Uints) counts;  // PathCounts
 };
 
+// path_flood.comp: for all cells one that the surface crosses, the nearest but for rare exceptions, by jump flooding
+// (Rong and Tan 2006): the nearest of those that the 27 cells in steps of `step` know. With step 0: the cell itself.
+struct PathFloodPush {
+  PathGrid grid;
+  QG_REF(Uints) triangle;
+  QG_REF(Uints) from;
+  QG_REF(Uints) to;  // number of a cell; NO_CELL
+  uint step;
+};
+const uint NO_CELL = 0xffffffffu;
+
+const uint COST_TRANSPORT = 0u;
+const uint COST_EXTINCTION = 1u;
+
+// Of what the cells are made. Places are those of the mesh at rest.
+struct PathMaterial {
+  Material material;
+  // Instead of it where there are any, x fastest: of points at `spacing` mm from `first` on; beside them the nearest's.
+  QG_REF(Opticals) optical;
+  uvec3 optical_size;
+  vec3 optical_spacing;
+  vec3 optical_first;
+  QG_REF(MaterialEdits) edits;
+  QG_REF(Vec3s) points;  // of their strokes
+  QG_REF(Vec3s) texels;  // of their images
+  uint edit_count;
+  uint cost;  // COST_*
+};
+
+#ifndef __cplusplus
+QG_ARRAY(PathMaterials, PathMaterial);
+#endif
+
+// path_cost.comp: what the cells cost.
+struct PathCostPush {
+  PathGrid grid;
+  QG_REF(Uints) flags;
+  QG_REF(Uints) nearest;   // path_flood.comp; null: cells lie where they do at rest, and depth does not matter
+  QG_REF(Uints) triangle;  // path_crossings.comp
+  QG_REF(Uvec3s) triangles;
+  QG_REF(Vec3s) vertices;  // mm
+  QG_REF(Vec3s) rest;      // the same at rest
+  QG_REF(PathMaterials) body;
+  QG_REF(Floats) cost;  // written
+};
+
 // path_start.comp: lengths before the first step: -ln of what enters.
 struct PathStartPush {
   PathGrid grid;
@@ -117,6 +164,35 @@ struct PathRelaxPush {
   QG_REF(Uints) groups;  // workgroup counts, 3 per round
   uint round;
 };
+
+// path_field.comp: what leaves the surface: exp(-length) in the cells that it crosses. Deeper cells are darker or
+// brighter by what a cell costs, and the cells around have no paths: both count only where no other cell is near.
+struct PathFieldPush {
+  PathGrid grid;
+  QG_REF(Uints) flags;
+  QG_REF(Floats) paths;
+  QG_REF(Vec4s) field;  // W/mm^2 times weight, and the weight; written
+};
+const float FIELD_BELOW = 1e-3f;   // weight of solid cells below the surface
+const float FIELD_BESIDE = 1e-6f;  // of the cells around, which hold means of the solid ones beside them
+
+// What the display needs.
+struct PathField {
+  PathGrid grid;
+  QG_REF(Vec4s) field;
+};
+
+#ifndef __cplusplus
+QG_ARRAY(PathFields, PathField);
+
+// The only one of an array.
+PathField load_path_field(PathFields a) {
+  if (!TEXELS) return a.at[0];
+  uint t = texel_of(uvec2(a));
+  PathGrid grid = PathGrid(uintBitsToFloat(texels3(t)), uintBitsToFloat(texel(t + 3u)), texels3(t + 4u));
+  return PathField(grid, Vec4s(texels2(t + 8u)));
+}
+#endif
 
 #ifdef __cplusplus
 }  // namespace quadgraph::gpu

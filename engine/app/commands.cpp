@@ -62,7 +62,7 @@ void next(T& value, const All& all) {
 }
 
 void next_method(S s, W) {
-  next(s.scene.solve.method, s.methods);
+  next(s.scene.solve.method, s.all_methods());
   if (!on_grid(s.scene.solve.method)) s.scene.solve.active_layers = 0;
 }
 
@@ -100,7 +100,7 @@ void move_plane(S s, W w, float steps) {
 }
 
 void next_level(S s, W w) {
-  s.scene.render.show.level = (s.scene.render.show.level + 1) % w.levels;
+  if (w.levels > 0) s.scene.render.show.level = (s.scene.render.show.level + 1) % w.levels;
 }
 
 void reset_view(S s, W) {

@@ -53,7 +53,7 @@ int write_one(const AppOptions& options) {
   stage.show(options.scene);
   Engine& engine = stage.engine();
   stages.end("load");
-  engine.update_irradiance();
+  if (options.scene.solve.method != Method::shortest_path) engine.update_irradiance();
   stages.end("irradiance");
   const SolveReport solve = stage.solve();
   stages.end("solve");

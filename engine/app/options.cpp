@@ -22,6 +22,8 @@ struct Typed {
   float fov = 30;
   std::string method = "fem", solver = "fmg-pcg", source = "buried", model = "auto";
   std::string tolerance = "0.001", error = "0";
+  std::string path_cost = "transport", path_solver = "eikonal";
+  std::uint32_t path_cells = 64;
   std::uint32_t cycles = 0;
   std::uint32_t max_iterations = 5000, bounces = 0, active_layers = 0;
   std::string size = "1024x1024", exposure = "auto", background = "studio";
@@ -63,7 +65,8 @@ void declare_scene(CLI::App& app, Typed& typed) {
 }
 
 void declare_solver(CLI::App& app, Typed& typed) {
-  app.add_option("--method", typed.method, "fem, quadgraph-fv, quadgraph-fdm, polygrid or polygrid-divergence")
+  app.add_option("--method", typed.method,
+                 "fem, quadgraph-fv, quadgraph-fdm, polygrid, polygrid-divergence or shortest-path")
       ->capture_default_str()
       ->group("Solver");
   app.add_option("--solver", typed.solver, "fmg-pcg, vcycle, dpcg, cascade, jacobi or auto (fmg-pcg or dpcg)")
@@ -99,6 +102,20 @@ void declare_solver(CLI::App& app, Typed& typed) {
   app.add_option("--bounces", typed.bounces, "of that light; 0: until they change nothing")
       ->capture_default_str()
       ->group("Solver");
+}
+
+void declare_path(CLI::App& app, Typed& typed) {
+  app.add_option("--path-cost", typed.path_cost,
+                 "of a mm of path: transport (the effective transport coefficient), or extinction as published")
+      ->capture_default_str()
+      ->group("Method shortest-path");
+  app.add_option("--path-solver", typed.path_solver,
+                 "eikonal (any path), or lattice: steps between the 26 neighbours of a voxel, as published")
+      ->capture_default_str()
+      ->group("Method shortest-path");
+  app.add_option("--path-cells", typed.path_cells, "voxels along the longest side, 8 to 150")
+      ->capture_default_str()
+      ->group("Method shortest-path");
 }
 
 void declare_picture(CLI::App& app, Typed& typed) {
@@ -146,6 +163,7 @@ void declare(CLI::App& app, Typed& typed) {
                "write a picture and open no window; without a display there is no other way");
   declare_scene(app, typed);
   declare_solver(app, typed);
+  declare_path(app, typed);
   declare_picture(app, typed);
   app.add_option("--device", typed.device, "part of the Vulkan device's name")->group("Run");
   app.add_flag("--validation", typed.validation, "load the Vulkan validation layer; any message is an error")
@@ -210,6 +228,9 @@ void take_solve(const Typed& typed, const Given& given, SolveOptions& solve) {
   if (given("--model")) solve.model = model_from_name(typed.model);
   if (given("--tolerance")) solve.tolerance = parse_share(typed.tolerance, "tolerance");
   if (given("--error")) solve.error = parse_share(typed.error, "error");
+  if (given("--path-cost")) solve.path.cost = path_cost_from_name(typed.path_cost);
+  if (given("--path-solver")) solve.path.solver = path_solver_from_name(typed.path_solver);
+  if (given("--path-cells")) solve.path.cells = typed.path_cells;
   if (given("--cycles")) solve.cycles = typed.cycles;
   if (given("--max-iterations")) solve.max_iterations = typed.max_iterations;
   if (given("--no-inter-reflection")) solve.inter_reflection = !typed.no_inter_reflection;

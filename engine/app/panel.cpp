@@ -125,10 +125,18 @@ void draw_shape(State& state) {
   draw_deformer(state.scene, "stretch", DeformerKind::stretch);
 }
 
+void draw_path(PathOptions& path) {
+  choose("cost", path.cost, std::array{PathCost::transport, PathCost::extinction});
+  choose("paths", path.solver, std::array{PathSolver::eikonal, PathSolver::lattice});
+  auto cells = static_cast<int>(path.cells);
+  if (ImGui::SliderInt("voxels", &cells, 16, most_path_cells)) path.cells = static_cast<std::uint32_t>(cells);
+}
+
 void draw_solver(State& state) {
   if (!section("Solve")) return;
   SolveOptions& solve = state.scene.solve;
-  if (choose("method", solve.method, state.methods) && !on_grid(solve.method)) solve.active_layers = 0;
+  if (choose("method", solve.method, state.all_methods()) && !on_grid(solve.method)) solve.active_layers = 0;
+  if (solve.method == Method::shortest_path) return draw_path(solve.path);
   choose("solver", solve.solver,
          std::array{SolverKind::fmg_pcg, SolverKind::vcycle, SolverKind::dpcg, SolverKind::cascade, SolverKind::jacobi,
                     SolverKind::automatic});
@@ -196,6 +204,7 @@ void draw_passes(const std::vector<PassStats>& passes) {
 }
 
 std::string error_text(const SolveReport& report) {
+  if (report.path) return "not estimated";
   if (!report.error) return "not known, a single level";
   const std::string unlit = report.error->unlit > 0 ? percent(report.error->unlit) : "–";
   return percent(report.error->whole) + " whole, " + unlit + " unlit";
@@ -210,13 +219,14 @@ void draw_frame(const Measured& measured) {
   tell("state",
        measured.settled ? "converged" : formatted("in motion, at %.0f%% of the size", 100.0 * double(measured.share)));
   tell("error", error_text(report));
-  tell("energy", "balanced to " + percent(worst));
+  tell("energy", report.path ? "not conserved" : "balanced to " + percent(worst));
   tell("memory", bytes_text(measured.device_bytes) + ", at most " + bytes_text(measured.peak_device_bytes));
   if (!report.levels.empty()) {
     const LevelReport& last = report.levels.back();
     tell("solved", formatted("%u unknowns, %u cycles", last.unknowns, last.iterations));
     tell("with", std::string(name_of(report.model)) + ", " + std::string(name_of(report.solver)));
   }
+  if (report.path) tell("solved", formatted("%u voxels, %u rounds", report.path->solid, report.path->rounds));
   for (const std::string& text : {report.replaced, report.missed, report.mesh_warning, report.model_warning}) {
     if (!text.empty()) ImGui::TextWrapped("%s", text.c_str());
   }

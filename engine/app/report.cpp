@@ -24,6 +24,7 @@ Json as_json(const SolveReport& report) {
   json["solver"] = name_of(report.solver);
   json["source"] = name_of(report.source);
   json["model"] = name_of(report.model);
+  json["levels"] = Json::array();
   for (const LevelReport& level : report.levels) {
     json["levels"].push_back({{"level", level.level},
                               {"unknowns", level.unknowns},
@@ -41,6 +42,17 @@ Json as_json(const SolveReport& report) {
   json["bounces_W"] = Json::array();
   for (const glm::dvec3& bounce : report.bounces) json["bounces_W"].push_back(as_json(bounce));
   json["clipped"] = as_json(report.clipped);
+  if (report.path) {
+    const PathReport& path = *report.path;
+    json["path"] = {{"cost", name_of(path.options.cost)},
+                    {"solver", name_of(path.options.solver)},
+                    {"cells", path.options.cells},
+                    {"size", {path.size.x, path.size.y, path.size.z}},
+                    {"cell_mm", path.cell},
+                    {"solid", path.solid},
+                    {"lit", path.lit},
+                    {"rounds", path.rounds}};
+  }
   json["finest"] = report.finest;
   json["work"] = report.work;
   json["algebraic"] = as_json(report.algebraic);
@@ -91,12 +103,21 @@ std::string json_report(const RunReport& report) {
   return json.dump(2);
 }
 
-std::string text_report(const RunReport& report) {
+namespace {
+
+void tell_paths(std::ostream& out, const RunReport& report) {
+  const PathReport& path = *report.solve.path;
+  out << "object   " << report.engine.graph().display().triangles.size() << " triangles\n"
+      << "solve    " << name_of(report.solve.method) << ", cost " << name_of(path.options.cost) << ", "
+      << name_of(path.options.solver) << ": " << value_of(report.metadata, "voxels") << ", " << path.lit << " lit, "
+      << path.rounds << " rounds\n"
+      << "error    not estimated, and energy is not conserved\n";
+}
+
+void tell_levels(std::ostream& out, const RunReport& report) {
   const Level& finest = report.engine.graph().levels().front();
   const LevelReport& solved = report.solve.levels.back();
-  std::ostringstream out;
-  out << "device   " << report.engine.context().info().name << "\n"
-      << "object   " << report.engine.graph().levels().size() << " levels, finest " << finest.tet_count() << " tets, "
+  out << "object   " << report.engine.graph().levels().size() << " levels, finest " << finest.tet_count() << " tets, "
       << finest.face_count() << " faces, " << finest.vertex_count() << " vertices\n"
       << "solve    " << name_of(report.solve.method) << ", " << name_of(report.solve.model) << ", "
       << name_of(report.solve.source) << " source, with " << name_of(report.solve.solver) << ": " << solved.iterations
@@ -107,6 +128,18 @@ std::string text_report(const RunReport& report) {
     const double unlit = report.solve.error->unlit;
     out << "error    " << decimals(100 * report.solve.error->whole, 2) << "% over the surface, "
         << (unlit > 0 ? decimals(100 * unlit, 2) + "% over the unlit part" : "nothing unlit") << " (estimated)\n";
+  }
+}
+
+}  // namespace
+
+std::string text_report(const RunReport& report) {
+  std::ostringstream out;
+  out << "device   " << report.engine.context().info().name << "\n";
+  if (report.solve.path) {
+    tell_paths(out, report);
+  } else {
+    tell_levels(out, report);
   }
   if (!report.solve.replaced.empty()) out << "solver   " << report.solve.replaced << "\n";
   if (!report.solve.missed.empty()) out << "missed   " << report.solve.missed << "\n";

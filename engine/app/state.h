@@ -26,7 +26,7 @@ struct Measured {
 
 struct State {
   Scene scene;
-  std::vector<Method> methods;  // that the file serves
+  std::vector<Method> methods;  // that the file's levels serve
   std::size_t light = 0;        // the selected one
   Brush brush;
   bool can_undo = false, can_redo = false;
@@ -39,6 +39,13 @@ struct State {
   // Wishes that the viewer fulfils.
   bool focus_panel = false, focus_picture = false;
   bool screenshot = false, save = false, undo = false, redo = false, full_screen = false, quit = false;
+
+  // The same and shortest-path, which needs no levels.
+  std::vector<Method> all_methods() const {
+    std::vector<Method> all = methods;
+    all.push_back(Method::shortest_path);
+    return all;
+  }
 
   void say(std::string text, bool complaint = false) {
     message = std::move(text);

@@ -39,7 +39,7 @@ Viewer::Viewer(Window& window, Stage& stage, std::filesystem::path stem)
       stem_(std::move(stem)),
       history_(stage.scene()) {
   state_.scene = stage.scene();
-  state_.methods = methods_of(engine_.graph().levels()[0]);
+  if (!engine_.graph().levels().empty()) state_.methods = methods_of(engine_.graph().levels()[0]);
   state_.brush = Brush::for_body(engine_.bounds().radius);
 }
 
@@ -209,6 +209,7 @@ void Viewer::keep_up() {
 SolveOptions Viewer::options_of_solve(bool settle) const {
   SolveOptions options = state_.scene.solve;
   if (settle) return options;
+  if (options.method == Method::shortest_path) return options;
   const bool cycles = options.method == Method::fem;
   options.solver = cycles ? SolverKind::fmg_pcg : symmetric(options.method) ? SolverKind::dpcg : SolverKind::cascade;
   options.cycles = cycles ? 1 : graph_steps;

@@ -55,10 +55,17 @@ Level read_level(const SectionTable& table, std::uint32_t index, bool coarsest) 
   return level;
 }
 
-DisplayMesh read_display(const SectionTable& table) {
-  return {vectors<glm::vec3>(table, "display/vertices"), vectors<glm::vec3>(table, "display/normals"),
-          vectors<glm::uvec3>(table, "display/triangles"), table.rows<std::uint32_t>("display/face", 1),
-          vectors<glm::vec3>(table, "display/barycentric")};
+// Without levels it is tied to nothing.
+DisplayMesh read_display(const SectionTable& table, bool tied) {
+  DisplayMesh mesh{vectors<glm::vec3>(table, "display/vertices"),
+                   vectors<glm::vec3>(table, "display/normals"),
+                   vectors<glm::uvec3>(table, "display/triangles"),
+                   {},
+                   {}};
+  if (!tied) return mesh;
+  mesh.face = table.rows<std::uint32_t>("display/face", 1);
+  mesh.barycentric = vectors<glm::vec3>(table, "display/barycentric");
+  return mesh;
 }
 
 // Names of all sections of a file with `levels` levels, in file order; those of `table` where they are optional.
@@ -84,14 +91,15 @@ std::vector<std::string> section_names(const SectionTable& table, std::uint32_t 
   for (const char* field : {"vertices", "normals", "triangles", "face", "barycentric"}) {
     names.push_back(std::string("display/") + field);
   }
+  if (levels == 0) names.resize(names.size() - 2);
   return names;
 }
 
 std::uint32_t count_levels(const SectionTable& table) {
   std::uint32_t count = 0;
   while (count <= qgraph_max_levels && table.has("level" + std::to_string(count) + "/vertices")) ++count;
-  if (count == 0 || count > qgraph_max_levels) {
-    fail_format(table.file(), "levels", "found " + std::to_string(count) + ", allowed are 1 to 16");
+  if (count > qgraph_max_levels) {
+    fail_format(table.file(), "levels", "found " + std::to_string(count) + ", allowed are 0 to 16");
   }
   const std::vector<std::string> expected = section_names(table, count);
   for (std::size_t i = 0; i < std::max(expected.size(), table.names().size()); ++i) {
@@ -163,7 +171,7 @@ void QuadGraph::read(const std::string& name) {
   metadata_ = table.text("metadata");
   check_metadata(table, metadata_, count);
   for (std::uint32_t i = 0; i < count; ++i) levels_.push_back(read_level(table, i, i + 1 == count));
-  display_ = read_display(table);
+  display_ = read_display(table, count > 0);
   for (std::uint32_t i = 0; i < count; ++i) {
     validate_level(levels_[i], i + 1 < count ? &levels_[i + 1] : nullptr, name, i);
     levels_[i].surface_vertex_count = count_surface_vertices(levels_[i]);
@@ -171,7 +179,7 @@ void QuadGraph::read(const std::string& name) {
   }
   validate_grid_everywhere(levels_, name);
   validate_seen_once(levels_, name);
-  validate_display(display_, levels_[0], name);
+  validate_display(display_, levels_.empty() ? nullptr : &levels_[0], name);
 }
 
 }  // namespace quadgraph

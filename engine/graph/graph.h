@@ -59,7 +59,7 @@ struct Level {
   std::uint32_t node_count() const { return static_cast<std::uint32_t>(nodes.size()); }
 };
 
-// The surface that is drawn, tied to the outside faces of level 0.
+// The surface that is drawn, tied to the outside faces of level 0 where there is one.
 struct DisplayMesh {
   std::span<const glm::vec3> vertices;  // mm
   std::span<const glm::vec3> normals;   // unit
@@ -77,7 +77,7 @@ class QuadGraph {
   // The same from bytes in memory; `name` stands for the file in messages.
   static QuadGraph parse(std::span<const std::byte> bytes, const std::string& name);
 
-  const std::vector<Level>& levels() const { return levels_; }  // finest first, never empty
+  const std::vector<Level>& levels() const { return levels_; }  // finest first; empty: a surface alone
   const DisplayMesh& display() const { return display_; }
   const std::string& metadata() const { return metadata_; }  // JSON text, checked to be an object
   std::size_t byte_size() const { return byte_size_; }

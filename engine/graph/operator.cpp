@@ -51,8 +51,10 @@ std::vector<glm::dvec3> surface_load(const Level& level, const Problem& problem,
     case Method::polygrid:
     case Method::polygrid_divergence:
       return surface_load_fem(level, q);
+    case Method::shortest_path:
+      break;
   }
-  throw InputError("unknown method");
+  throw InputError("method: no system of linear equations");
 }
 
 }  // namespace
@@ -106,8 +108,10 @@ Rows assemble(const Level& level, const Problem& problem) {
     case Method::polygrid:
     case Method::polygrid_divergence:
       return assemble_polygrid(level, problem);
+    case Method::shortest_path:
+      break;
   }
-  throw InputError("unknown method");
+  throw InputError("method: no system of linear equations");
 }
 
 std::vector<Field> diffuse_load(const Level& level, const Problem& problem, std::span<const glm::vec3> q) {

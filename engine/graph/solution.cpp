@@ -11,12 +11,13 @@
 namespace quadgraph {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, Method>, 5> methods = {
+constexpr std::array<std::pair<std::string_view, Method>, 6> methods = {
     {{"quadgraph-fdm", Method::quadgraph_fdm},
      {"quadgraph-fv", Method::quadgraph_fv},
      {"fem", Method::fem},
      {"polygrid", Method::polygrid},
-     {"polygrid-divergence", Method::polygrid_divergence}}};
+     {"polygrid-divergence", Method::polygrid_divergence},
+     {"shortest-path", Method::shortest_path}}};
 constexpr std::array<std::pair<std::string_view, SolverKind>, 6> solvers = {{{"fmg-pcg", SolverKind::fmg_pcg},
                                                                              {"vcycle", SolverKind::vcycle},
                                                                              {"dpcg", SolverKind::dpcg},
@@ -63,6 +64,7 @@ void check_options(const SolveOptions& options) {
     throw InputError("smoothing: " + std::to_string(options.smoothing) +
                      " steps, allowed are 1 and 2, and 0 for either");
   }
+  check_options(options.path);
 }
 
 Method method_from_name(std::string_view name) {

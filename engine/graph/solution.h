@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/graph/path_options.h"
+
 namespace quadgraph {
 
 struct Level;
@@ -18,6 +20,7 @@ enum class Method {
   fem,                  // linear elements on the tet vertices, consistent mass
   polygrid,             // the published differences of kappa*phi along the links of a polygrid [PG Eq. 9, Appendix B]
   polygrid_divergence,  // the same of the flux kappa grad phi, harmonic means of kappa
+  shortest_path,  // no linear system: the light of the shortest optical path, through voxels (docs/shortest-path.md)
 };
 
 // Whether a method's carriers are the tet vertices, else the nodes of the QuadGraph.
@@ -56,8 +59,9 @@ enum class Model {
   automatic,  // "auto": diffusion where its known error is small (engine/graph/model.h), else sp3
 };
 
-// "quadgraph-fdm", "quadgraph-fv", "fem", "polygrid", "polygrid-divergence"; "fmg-pcg", "vcycle", "dpcg", "cascade",
-// "jacobi", "auto"; "buried", "diffuse"; "diffusion", "sp3", "auto". Throw InputError listing the allowed names.
+// "quadgraph-fdm", "quadgraph-fv", "fem", "polygrid", "polygrid-divergence", "shortest-path"; "fmg-pcg", "vcycle",
+// "dpcg", "cascade", "jacobi", "auto"; "buried", "diffuse"; "diffusion", "sp3", "auto". Throw InputError listing the
+// allowed names.
 Method method_from_name(std::string_view name);
 SolverKind solver_from_name(std::string_view name);
 Source source_from_name(std::string_view name);
@@ -96,6 +100,7 @@ struct SolveOptions {
   // n > 0, with the links of a polygrid: on all levels but the coarsest only the first n layers of vertices below the
   // surface are solved for, the others keep what the coarser level has [PG Section 5.3, Fig. 8]; 0: all are.
   std::uint32_t active_layers = 0;
+  PathOptions path{};  // of Method::shortest_path, which looks at nothing else
 
   bool operator==(const SolveOptions&) const = default;
 };
@@ -133,6 +138,16 @@ struct ErrorEstimate {
   double unlit = 0;  // over the faces with less than a tenth of the mean q; 0 if there are none
 };
 
+// What Method::shortest_path did.
+struct PathReport {
+  PathOptions options;
+  glm::uvec3 size{0};        // cells of the grid along x, y, z
+  double cell = 0;           // mm, side of a cell
+  std::uint32_t solid = 0;   // cells that are nodes
+  std::uint32_t lit = 0;     // of them, those that light enters
+  std::uint32_t rounds = 0;  // of blocks, until none had anything to gain
+};
+
 struct SolveReport {
   Method method = Method::fem;
   SolverKind solver = SolverKind::fmg_pcg;  // the one that was used, never `automatic`
@@ -160,6 +175,7 @@ struct SolveReport {
   std::string mesh_warning, model_warning;
   std::string deformed;             // tets of level 0 that a deformation has spoilt; empty if none is
   std::vector<glm::dvec3> bounces;  // W per channel that each bounce brought in
+  std::optional<PathReport> path;   // of Method::shortest_path; it has no levels, no energy balance and no estimates
   std::uint32_t exchange_age = 0;   // solves that what some face sees has been behind the shape; 0: nothing is
 };
 

@@ -257,19 +257,22 @@ void validate_seen_once(std::span<const Level> levels, const std::string& file) 
   }
 }
 
-void validate_display(const DisplayMesh& display, const Level& finest, const std::string& file) {
+void validate_display(const DisplayMesh& display, const Level* finest, const std::string& file) {
   const Place place{file, "display/"};
   const std::size_t count = display.vertices.size();
   expect_rows(place, "normals", display.normals.size(), count);
-  expect_rows(place, "face", display.face.size(), count);
-  expect_rows(place, "barycentric", display.barycentric.size(), count);
+  if (finest != nullptr) {
+    expect_rows(place, "face", display.face.size(), count);
+    expect_rows(place, "barycentric", display.barycentric.size(), count);
+  }
   check_finite(place, "vertices", display.vertices);
   check_finite(place, "normals", display.normals);
   check_indices(place, "triangles", display.triangles, count);
   for (std::size_t i = 0; i < count; ++i) {
-    if (display.face[i] >= finest.faces.size()) place.fail("face", i, "index out of range");
+    if (finest != nullptr && display.face[i] >= finest->faces.size()) place.fail("face", i, "index out of range");
     if (std::abs(glm::length(display.normals[i]) - 1.0f) > 1e-3f) place.fail("normals", i, "not of unit length");
   }
+  if (finest == nullptr) return;
   const auto* weights = reinterpret_cast<const float*>(display.barycentric.data());
   check_weights(place, "barycentric", {weights, 3 * count}, 3);
 }

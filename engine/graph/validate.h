@@ -24,6 +24,7 @@ void validate_seen_once(std::span<const Level> levels, const std::string& file);
 // Largest vertex index in `faces` plus one.
 std::uint32_t count_surface_vertices(const Level& level);
 
-void validate_display(const DisplayMesh& display, const Level& finest, const std::string& file);
+// `finest` null: a surface alone.
+void validate_display(const DisplayMesh& display, const Level* finest, const std::string& file);
 
 }  // namespace quadgraph

@@ -32,6 +32,10 @@ Voxels::Voxels(vk::Context& context)
       box_(context, 6 * sizeof(std::uint32_t), vk::Place::read, "path/box"),
       counts_(context, sizeof(gpu::PathCounts), vk::Place::read, "path/counts of cells") {}
 
+std::uint32_t Voxels::stripes(const PathMesh& mesh) {
+  return std::max(least_invocations / std::max(mesh.triangle_count, 1u), 1u);
+}
+
 void Voxels::fit(const PathMesh& mesh, std::uint32_t cells, std::vector<PassStats>& passes) {
   constexpr std::array<std::uint32_t, 6> none = {~0u, ~0u, ~0u, 0, 0, 0};
   run_pass(context_, "box", mesh.vertices.size(), passes, [&](vk::Commands& commands) {
@@ -54,19 +58,22 @@ void Voxels::update(const PathMesh& mesh, std::uint32_t cells, std::vector<PassS
   const std::uint64_t count = gpu::cell_count(grid_), blocks = block_count(grid_), word = sizeof(std::uint32_t);
   make_room(context_, crossings_, 3 * count * word, vk::Place::read, "path/crossings");
   make_room(context_, flags_, count * word, vk::Place::read, "path/flags");
+  make_room(context_, triangle_, count * word, vk::Place::read, "path/triangles of cells");
   make_room(context_, stamps_, 3 * blocks * word, vk::Place::device, "path/stamps");
-  const std::uint32_t stripes = std::max(least_invocations / std::max(mesh.triangle_count, 1u), 1u);
+  const std::uint32_t stripes = Voxels::stripes(mesh);
   const gpu::PathCrossingsPush crossings{grid_,
                                          mesh.vertices.address(),
                                          mesh.triangles.address(),
                                          crossings_.address(),
                                          flags_.address(),
+                                         triangle_.address(),
                                          mesh.triangle_count,
                                          stripes};
   const std::uint64_t bytes = mesh.triangles.size() + 36ull * mesh.triangle_count + 8 * 3 * count * word;
   run_pass(context_, "voxels", bytes, passes, [&](vk::Commands& commands) {
     commands.fill(crossings_, 0);
     commands.fill(flags_, 0);
+    commands.fill(triangle_, 0);
     commands.fill(stamps_, ~0u);
     commands.fill(counts_, 0);
     commands.barrier();

@@ -41,12 +41,18 @@ class Voxels {
   SolidCells cells() const { return {grid_, flags_, stamps_}; }
   std::uint32_t solid() const { return solid_; }  // cells
 
+  // uint per cell: 1 + the largest of the triangles that cross it, 0 without one.
+  const vk::Buffer& triangle() const { return triangle_; }
+
+  // Invocations for each triangle and axis of passes over crossings.
+  static std::uint32_t stripes(const PathMesh& mesh);
+
  private:
   void fit(const PathMesh& mesh, std::uint32_t cells, std::vector<PassStats>& passes);
 
   vk::Context& context_;
   vk::ComputePass box_pass_, crossings_pass_, winding_pass_, solid_pass_;
-  vk::Buffer box_, crossings_, flags_, stamps_, counts_;
+  vk::Buffer box_, crossings_, flags_, triangle_, stamps_, counts_;
   gpu::PathGrid grid_{};
   std::uint32_t solid_ = 0;
 };

@@ -21,6 +21,9 @@ class DisplayMotion {
   // Vertices and normals of `buffers`; an empty list puts back those of the file.
   void record(Workspace& work, std::span<const Deformer> list, const DisplayBuffers& buffers);
 
+  // vec3 per vertex, mm; after a list that was not empty has been recorded.
+  const vk::Buffer& rest() const { return vertices_.rest(); }
+
   // Of what has been recorded and has run; the list then was not empty.
   Sphere bounds() const;
 

@@ -2,18 +2,10 @@
 
 #include <algorithm>
 
-#include "engine/graph/error.h"
 #include "engine/graph/material.h"
-#include "engine/render/display_faces.h"
-#include "engine/render/display_motion.h"
-#include "engine/render/ground.h"
-#include "engine/render/hidden_sky.h"
-#include "engine/render/inside.h"
-#include "engine/render/irradiance.h"
+#include "engine/render/engine_implementation.h"
 #include "engine/render/legend.h"
 #include "engine/render/metadata.h"
-#include "engine/render/rasteriser.h"
-#include "engine/render/surroundings.h"
 #include "engine/render/text.h"
 
 namespace quadgraph {
@@ -40,92 +32,6 @@ constexpr std::pair<Radiance, std::string_view> radiance_names[] = {
     {Radiance::gathered, "gathered"}, {Radiance::lambertian, "lambertian"}, {Radiance::automatic, "auto"}};
 
 }  // namespace
-
-struct Engine::Implementation {
-  Implementation(const std::filesystem::path& path, const vk::ContextOptions& device)
-      : source(path.filename().string()),
-        graph(QuadGraph::load(path)),
-        bounds(bounding_sphere(graph.display().vertices)),
-        context(device),
-        simulation(context, graph),
-        mesh(upload_display(context, graph.display())),
-        motion(graph.display()),
-        images(context),
-        shadows(context),
-        irradiance(context),
-        rasteriser(context) {
-    shadows.update(mesh, {{}, bounds});
-  }
-
-  std::string source;
-  QuadGraph graph;
-  Sphere bounds;
-  vk::Context context;
-  Simulation simulation;
-  DisplayBuffers mesh;
-  DisplayMotion motion;
-  LightImages images;
-  ShadowMaps shadows;
-  IrradiancePass irradiance;
-  std::optional<HiddenSky> hidden;  // where there is an environment, made at first use
-  Rasteriser rasteriser;
-
-  std::string material;
-  std::vector<Light> lights;
-  bool irradiance_stale = false;
-  SolveOptions options;
-  std::optional<SolveReport> report;
-  std::optional<View> view;
-  Radiance radiance = Radiance::automatic;  // of the last picture
-  std::optional<RadianceProbe> probe;       // made at first use
-  vk::Buffer triangle_face;                 // display_faces.h, made at first use
-  std::vector<PassStats> deformation_passes, irradiance_passes, gather_passes, render_passes;
-  bool deformed = false;                                // since the last solve
-  std::string deformation;                              // in words
-  std::optional<Ground> ground;                         // made at first use
-  std::optional<Surroundings> surroundings;             // made at first use
-  std::shared_ptr<const ImagePyramid> roughness_image;  // of the last picture
-  vk::Buffer roughness_texels, rest_vertices;           // at first use
-  std::optional<Legend> legend;                         // of the last picture
-  FalseColours false_colours;                           // the same
-
-  void draw_inside(const Camera& camera, const RenderOptions& render) {
-    const Inside inside = inside_of({context, simulation, graph, *report, options, bounds, camera.eye}, render.show);
-    false_colours = {};  // two need not fit beside each other
-    false_colours = upload_false_colours(context, inside.mesh, inside.plane, inside.legend.diverging);
-    legend = inside.legend;
-    render_passes = rasteriser.run(false_colours, camera, render.width, render.height);
-  }
-
-  PlacedRoughness placed_roughness(const RoughnessMap& map) {
-    if (rest_vertices.size() == 0) {
-      rest_vertices = vk::upload<glm::vec3>(context, graph.display().vertices, "display/at rest");
-    }
-    if (roughness_image != map.image) {
-      roughness_texels = vk::upload<glm::vec3>(context, map.image->texels, "picture/roughness image");
-      roughness_image = map.image;
-    }
-    return {roughness_texels,
-            rest_vertices,
-            image_box(map.placement),
-            {0, map.image->columns, map.image->rows, map.image->levels},
-            map.roughness};
-  }
-
-  const GatherField& gather() {
-    std::vector<PassStats> passes;
-    const GatherField& field = simulation.gather(passes);
-    if (!passes.empty()) gather_passes = std::move(passes);
-    display_room();
-    return field;
-  }
-
-  void display_room() {
-    if (triangle_face.size() > 0) return;
-    triangle_face = vk::upload<std::uint32_t>(context, display_faces(graph.display(), graph.levels()[0]),
-                                              "display/faces of triangles");
-  }
-};
 
 void check_options(const RenderOptions& options) {
   for (std::uint32_t side : {options.width, options.height}) {
@@ -168,7 +74,7 @@ vk::Context& Engine::context() const {
 }
 
 Simulation& Engine::simulation() {
-  return implementation_->simulation;
+  return implementation_->levels();
 }
 
 const Sphere& Engine::bounds() const {
@@ -182,27 +88,51 @@ void Engine::set_material(std::string_view text) {
 
 void Engine::set_material(const gpu::Material& material) {
   auto& self = *implementation_;
-  self.simulation.set_material(material);
+  check_material(material);
+  if (self.simulation) self.simulation->set_material(material);
+  self.paths.set(material);
   self.material = material_text(material);
-  self.irradiance_stale = self.irradiance_stale || !self.lights.empty();
+  self.eta = material.eta;
+  self.stale();
 }
 
 void Engine::set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta) {
   auto& self = *implementation_;
-  self.simulation.set_optical(level, optical, eta);
+  self.levels().set_optical(level, optical, eta);
+  self.paths.clear();
   self.material = "coefficients per node, eta=" + number_text(eta);
-  self.irradiance_stale = self.irradiance_stale || !self.lights.empty();
+  self.eta = eta;
+  self.stale();
+}
+
+void Engine::set_optical(const OpticalGrid& grid) {
+  auto& self = *implementation_;
+  check_optical(grid.optical, grid.optical.size());
+  check_eta(static_cast<double>(grid.eta));
+  self.paths.set(grid);
+  self.material = "coefficients on a grid, eta=" + number_text(grid.eta);
+  self.eta = grid.eta;
+  self.stale();
 }
 
 void Engine::set_edits(std::span<const Edit> edits) {
-  implementation_->simulation.set_edits(edits);
+  for (std::size_t i = 0; i < edits.size(); ++i) {
+    try {
+      check_edit(edits[i]);
+    } catch (const InputError& error) {
+      throw InputError("edit " + std::to_string(i) + ", " + error.what());
+    }
+  }
+  if (implementation_->simulation) implementation_->simulation->set_edits(edits);
+  implementation_->paths.set(edits);
 }
 
 void Engine::set_lights(std::vector<Light> lights) {
   for (const Light& light : lights) check_light(light);
   implementation_->images.load(lights);
   implementation_->lights = std::move(lights);
-  implementation_->irradiance_stale = true;
+  implementation_->irradiance_given = false;
+  implementation_->shadows_stale = implementation_->irradiance_stale = true;
 }
 
 void Engine::set_deformation(std::span<const Deformer> list) {
@@ -210,9 +140,17 @@ void Engine::set_deformation(std::span<const Deformer> list) {
   for (const Deformer& deformer : list) check_deformer(deformer);
   check_shapes(list, self.graph);
   const auto also = [&](Workspace& work) { self.motion.record(work, list, self.mesh); };
-  if (!self.simulation.set_deformation(list, self.motion.rest_box(), also)) return;
+  if (!self.simulation) {
+    if (!self.motion_work) self.motion_work.emplace(self.context, self.mesh.vertex_count);
+    self.motion_work->recorder.clear();
+    also(*self.motion_work);
+    self.motion_work->recorder.submit();
+  } else if (!self.simulation->set_deformation(list, self.motion.rest_box(), also)) {
+    return;
+  }
+  self.moved = !list.empty();
   self.bounds = list.empty() ? bounding_sphere(self.graph.display().vertices) : self.motion.bounds();
-  self.irradiance_stale = self.irradiance_stale || !self.lights.empty();
+  self.stale();
   self.deformed = true;
   self.deformation = summary_of(list);
   if (self.ground) self.ground->invalidate();
@@ -222,55 +160,66 @@ void Engine::set_deformation(std::span<const Deformer> list) {
 void Engine::set_irradiance(std::uint32_t level, std::span<const glm::vec3> q,
                             const std::optional<glm::vec3>& direction) {
   auto& self = *implementation_;
-  self.simulation.set_irradiance(level, q, direction);
+  self.levels().set_irradiance(level, q, direction);
   if (!self.lights.empty()) self.shadows.update(self.mesh, {{}, self.bounds});
   self.lights.clear();
+  self.irradiance_given = true;
   self.irradiance_stale = false;
 }
 
 void Engine::update_irradiance() {
   auto& self = *implementation_;
   if (self.material.empty()) throw InputError("irradiance: set a material first; the light that enters depends on eta");
-  self.images.set_eta(self.simulation.eta());
-  const LightSet lights(self.lights, self.bounds, &self.images);
-  self.irradiance_passes = {self.shadows.update(self.mesh, lights)};
-  self.simulation.set_beams(lights.beams);
+  Simulation& simulation = self.levels();
+  const LightSet lights = self.cast_shadows();
+  simulation.set_beams(lights.beams);
   if (lights.environments > 0) {
     if (!self.hidden) self.hidden.emplace(self.context, self.graph);
-    self.irradiance_passes.push_back(
-        self.hidden->run(self.simulation, self.shadows, lights.environments, self.simulation.eta()));
+    self.irradiance_passes.push_back(self.hidden->run(simulation, self.shadows, lights.environments, self.eta));
   }
-  for (std::uint32_t level = 0; level < self.simulation.level_count(); ++level) {
-    add(self.irradiance_passes,
-        self.irradiance.run(self.simulation.level(level), level, self.shadows, self.simulation.eta(),
-                            self.hidden ? self.hidden->hidden(level) : 0));
+  for (std::uint32_t level = 0; level < simulation.level_count(); ++level) {
+    add(self.irradiance_passes, self.irradiance.run(simulation.level(level), level, self.shadows, self.eta,
+                                                    self.hidden ? self.hidden->hidden(level) : 0));
   }
-  self.simulation.irradiance_changed();
+  simulation.irradiance_changed();
   self.irradiance_stale = false;
 }
 
 void Engine::make_room(const SolveOptions& options) {
   auto& self = *implementation_;
+  if (options.method == Method::shortest_path) return static_cast<void>(solve(options));
   if (self.irradiance_stale) update_irradiance();
   const bool gathered = options.method == Method::fem && options.source == Source::buried;
-  self.simulation.make_room(options, gathered);
+  self.levels().make_room(options, gathered);
   if (gathered) self.display_room();
 }
 
 SolveReport Engine::solve(const SolveOptions& options) {
   auto& self = *implementation_;
-  if (self.irradiance_stale) update_irradiance();
+  const bool by_path = options.method == Method::shortest_path;
   self.gather_passes.clear();
   self.deformation_passes.clear();
-  if (self.deformed) self.deformation_passes = self.simulation.deformation_passes();
+  if (!by_path && self.irradiance_stale) update_irradiance();
+  if (self.deformed && self.simulation) self.deformation_passes = self.simulation->deformation_passes();
   self.deformed = false;
-  self.report = self.simulation.solve(options);
+  self.report.reset();
+  self.report = by_path ? self.solve_paths(options) : self.levels().solve(options);
   self.options = options;
   return *self.report;
 }
 
 SurfaceField Engine::surface_field() const {
-  return implementation_->simulation.surface_field();
+  const auto& self = *implementation_;
+  if (self.report && self.report->path) {
+    throw InputError("surface field: shortest-path has none; exitance_at tells what leaves at any point");
+  }
+  return self.levels().surface_field();
+}
+
+std::vector<glm::vec3> Engine::exitance_at(std::span<const glm::vec3> points) const {
+  const auto& self = *implementation_;
+  if (!self.report || !self.report->path) throw InputError("exitance at points: solve with shortest-path first");
+  return self.paths.exitance_at(points);
 }
 
 const PictureBuffers& Engine::draw(const View& view, const RenderOptions& options) {
@@ -285,27 +234,10 @@ const PictureBuffers& Engine::draw(const View& view, const RenderOptions& option
     return self.rasteriser.picture();
   }
   self.legend.reset();
-  std::optional<GatherView> gather;
-  if (options.radiance == Radiance::gathered ||
-      (options.radiance == Radiance::automatic && self.simulation.can_gather())) {
-    const GatherField& field = self.gather();
-    gather.emplace(field, self.triangle_face);
-  }
   const auto& map = options.roughness_map;
   self.images.set_roughness(options.roughness, map ? map->roughness : 0);
-  std::optional<PlacedRoughness> placed;
-  if (map) placed.emplace(self.placed_roughness(*map));
-  self.render_passes = self.rasteriser.run({.mesh = self.mesh,
-                                            .finest = self.simulation.level(0),
-                                            .vertex_exitance = self.simulation.vertex_exitance(),
-                                            .vertex_unscattered = self.simulation.vertex_unscattered(),
-                                            .shadows = self.shadows,
-                                            .eta = self.simulation.eta(),
-                                            .roughness = options.roughness,
-                                            .placed_roughness = placed ? &*placed : nullptr,
-                                            .gather = gather ? &*gather : nullptr},
-                                           camera, options.width, options.height);
-  self.radiance = gather ? Radiance::gathered : Radiance::lambertian;
+  const bool gathered = self.draw_surface(camera, options);
+  self.radiance = gathered ? Radiance::gathered : Radiance::lambertian;
   if (options.ground) {
     if (!self.ground) self.ground.emplace(self.context);
     self.render_passes.push_back(self.ground->run(self.mesh, self.bounds, view, camera, self.rasteriser.picture()));
@@ -342,14 +274,17 @@ Leaving Engine::leaving(std::span<const std::uint32_t> face, std::span<const glm
   if (!self.report) throw InputError("radiance: solve first");
   const GatherField& field = self.gather();
   if (!self.probe) self.probe.emplace(self.context);
-  return self.probe->run(self.simulation.present_level(), field, self.simulation.eta(), face, direction);
+  return self.probe->run(self.levels().present_level(), field, self.eta, face, direction);
 }
 
 std::vector<PassStats> Engine::passes() const {
   const auto& self = *implementation_;
   std::vector<PassStats> all;
-  for (const auto* passes : {&self.deformation_passes, &self.irradiance_passes, &self.simulation.passes(),
-                             &self.gather_passes, &self.render_passes}) {
+  const bool by_path = self.report && self.report->path;
+  const std::vector<PassStats> none;
+  const auto& solved = by_path ? self.paths.passes() : self.simulation ? self.simulation->passes() : none;
+  for (const auto* passes :
+       {&self.deformation_passes, &self.irradiance_passes, &solved, &self.gather_passes, &self.render_passes}) {
     all.insert(all.end(), passes->begin(), passes->end());
   }
   return all;

@@ -13,6 +13,7 @@
 
 #include "engine/graph/deformer.h"
 #include "engine/graph/graph.h"
+#include "engine/graph/optical_grid.h"
 #include "engine/render/camera.h"
 #include "engine/render/lights.h"
 #include "engine/render/pick.h"
@@ -64,7 +65,7 @@ class Engine {
 
   const QuadGraph& graph() const;
   vk::Context& context() const;
-  Simulation& simulation();
+  Simulation& simulation();      // throws InputError where the file is a surface without levels
   const Sphere& bounds() const;  // of the display mesh in its present shape
 
   // Text as parse_material reads it, or a material. Throws InputError.
@@ -73,6 +74,9 @@ class Engine {
 
   // Coefficients instead of a material, as Simulation::set_optical.
   void set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta);
+
+  // The same everywhere, which shortest-path takes instead of what nodes have. Throws InputError.
+  void set_optical(const OpticalGrid& grid);
 
   // As Simulation::set_edits.
   void set_edits(std::span<const Edit> edits);
@@ -102,8 +106,11 @@ class Engine {
   // Calls update_irradiance if lights or material changed since, then solves. Throws as Simulation::solve.
   SolveReport solve(const SolveOptions& options = {});
 
-  // Level 0 of the last solve.
+  // Level 0 of the last solve. Throws InputError after one by shortest-path.
   SurfaceField surface_field() const;
+
+  // What leaves the surface at points, mm, W/mm^2, by the last solve with shortest-path. Throws InputError otherwise.
+  std::vector<glm::vec3> exitance_at(std::span<const glm::vec3> points) const;
 
   // The last solve seen from `view`, left on the device until the next one. Throws InputError before a solve, on an
   // option out of range, or if radiance is to be gathered and cannot be.

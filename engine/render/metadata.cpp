@@ -46,7 +46,43 @@ std::string material_text(const gpu::Material& material) {
   return text;
 }
 
+namespace {
+
+void describe_view(const PictureFacts& facts, Metadata& metadata) {
+  if (!facts.deformation.empty()) metadata.emplace_back("deformation", facts.deformation);
+  if (!facts.report.deformed.empty()) metadata.emplace_back("deformed", facts.report.deformed);
+  if (!facts.view) return;
+  metadata.emplace_back("camera", camera_text(*facts.view));
+  metadata.emplace_back("radiance", std::string(facts.radiance));
+}
+
+std::string path_text(const PathReport& path) {
+  std::string size;
+  for (int axis = 0; axis < 3; ++axis) size += (axis > 0 ? " x " : "") + std::to_string(path.size[axis]);
+  return std::to_string(path.solid) + " solid of " + size + " cells of " + number_text(path.cell) + " mm";
+}
+
+Metadata describe_path(const PictureFacts& facts) {
+  const PathReport& path = *facts.report.path;
+  Metadata metadata = {{"software", "quadgraph-engine"},
+                       {"source", facts.source},
+                       {"material", facts.material},
+                       {"lights", joined(facts.lights)},
+                       {"method", std::string(name_of(facts.report.method))},
+                       {"path cost", std::string(name_of(path.options.cost))},
+                       {"path solver", std::string(name_of(path.options.solver))},
+                       {"voxels", path_text(path)},
+                       {"error", "unknown (no error is estimated)"},
+                       {"units", "W/(mm^2 sr)"},
+                       {"device", facts.device.name + ", " + facts.device.driver}};
+  describe_view(facts, metadata);
+  return metadata;
+}
+
+}  // namespace
+
 Metadata describe(const PictureFacts& facts) {
+  if (facts.report.path) return describe_path(facts);
   const LevelReport& finest = facts.report.levels.back();
   Metadata metadata = {{"software", "quadgraph-engine"},
                        {"source", facts.source},
@@ -65,12 +101,7 @@ Metadata describe(const PictureFacts& facts) {
                        {"error", error_text(facts.report.error)},
                        {"units", "W/(mm^2 sr)"},
                        {"device", facts.device.name + ", " + facts.device.driver}};
-  if (!facts.deformation.empty()) metadata.emplace_back("deformation", facts.deformation);
-  if (!facts.report.deformed.empty()) metadata.emplace_back("deformed", facts.report.deformed);
-  if (facts.view) {
-    metadata.emplace_back("camera", camera_text(*facts.view));
-    metadata.emplace_back("radiance", std::string(facts.radiance));
-  }
+  describe_view(facts, metadata);
   return metadata;
 }
 

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "engine/graph/fresnel.h"
+#include "shaders/path_light_shared.h"
 #include "spirv/false_colour.frag.h"
 #include "spirv/false_colour.vert.h"
 #include "spirv/gather.comp.h"
@@ -14,6 +15,8 @@
 #include "spirv/surface.frag.h"
 #include "spirv/surface.vert.h"
 #include "spirv/surface_gathered.frag.h"
+#include "spirv/surface_path.frag.h"
+#include "spirv/surface_path.vert.h"
 
 namespace quadgraph {
 namespace {
@@ -61,6 +64,28 @@ gpu::SurfacePush surface_push(std::uint64_t scene, const PlacedRoughness* placed
   push.box = placed->box;
   push.roughness = placed->roughness;
   return push;
+}
+
+gpu::SurfaceScene scene(const PathInput& input, const Camera& camera) {
+  gpu::SurfaceScene scene{};
+  scene.clip_from_world = camera.clip_from_world;
+  scene.eye = camera.eye;
+  scene.eta = input.eta;
+  scene.roughness = input.roughness;
+  scene.radiance_norm = static_cast<float>(radiance_norm(input.eta));
+  scene.light_count = input.shadows.light_count();
+  scene.vertices = input.mesh.vertices.address();
+  scene.normals = input.mesh.normals.address();
+  scene.lights = input.shadows.lights().address();
+  scene.shapes = input.shadows.shapes().address();
+  scene.views = input.shadows.views().address();
+  return scene;
+}
+
+template <typename Input>
+std::uint32_t variant_of(const Input& input) {
+  return (input.shadows.shaped() ? VARIANT_SHAPED : 0u) |
+         (input.placed_roughness != nullptr ? VARIANT_PLACED_ROUGHNESS : 0u);
 }
 
 vk::GraphicsOptions pass_options(vk::Spirv fragment, std::uint32_t variant = 0) {
@@ -118,12 +143,22 @@ Rasteriser::Rasteriser(vk::Context& context)
 
 const vk::GraphicsPass& Rasteriser::surface(const RasterInput& input) {
   const bool gathered = input.gather != nullptr;
-  const std::uint32_t variant = (input.shadows.shaped() ? VARIANT_SHAPED : 0u) |
-                                (input.placed_roughness != nullptr ? VARIANT_PLACED_ROUGHNESS : 0u);
+  const std::uint32_t variant = variant_of(input);
   auto& pass = surfaces_[(gathered ? 1 : 0) + 2 * variant];
   if (pass) return *pass;
   const vk::Spirv fragment = gathered ? vk::Spirv(surface_gathered_frag) : vk::Spirv(surface_frag);
   return pass.emplace(context_, pass_options(fragment, variant), gathered ? "surface gathered" : "surface");
+}
+
+const vk::GraphicsPass& Rasteriser::surface(const PathInput& input) {
+  const std::uint32_t variant = variant_of(input);
+  auto& pass = paths_[variant];
+  if (pass) return *pass;
+  vk::GraphicsOptions options = pass_options(surface_path_frag, variant);
+  options.vertex = surface_path_vert;
+  options.push_size = sizeof(gpu::SurfacePathPush);
+  options.cull = VK_CULL_MODE_NONE;
+  return pass.emplace(context_, options, "surface of cells");
 }
 
 const vk::ComputePass& Rasteriser::resolve(const RasterInput& input) {
@@ -194,6 +229,15 @@ void Rasteriser::record(vk::Commands& commands, const RasterInput& input, const 
   record_resolve(commands, input.gather != nullptr ? "gather" : "resolve", resolve(input), scene_.address(), tile);
 }
 
+void Rasteriser::record(vk::Commands& commands, const PathInput& input, const Tile& tile) {
+  commands.begin_pass("surface");
+  draw(commands, target(tile), viewport(tile), surface(input),
+       gpu::SurfacePathPush{surface_push(scene_.address(), input.placed_roughness), input.field.address()},
+       input.mesh.triangles, 3 * input.mesh.triangle_count);
+  commands.end_pass();
+  record_resolve(commands, "resolve", resolve_, scene_.address(), tile);
+}
+
 void Rasteriser::record(vk::Commands& commands, const FalseColours& input, const Camera& camera, const Tile& tile) {
   const gpu::FalseColourPush push{.clip_from_world = camera.clip_from_world,
                                   .vertices = input.vertices.address(),
@@ -230,11 +274,24 @@ std::vector<PassStats> Rasteriser::run_tiles(std::uint32_t width, std::uint32_t 
   return passes;
 }
 
+void Rasteriser::write_scene(const gpu::SurfaceScene& scene) {
+  if (scene_.size() == 0) scene_ = {context_, sizeof(gpu::SurfaceScene), vk::Place::read, "picture/scene"};
+  vk::write_bytes(context_, scene_, std::as_bytes(std::span(&scene, 1)));
+}
+
+std::vector<PassStats> Rasteriser::run(const PathInput& input, const Camera& camera, std::uint32_t width,
+                                       std::uint32_t height) {
+  write_scene(scene(input, camera));
+  auto passes =
+      run_tiles(width, height, [&](vk::Commands& commands, const Tile& tile) { record(commands, input, tile); });
+  picture_.false_colour = false;
+  passes[0].bytes += passes[0].count * (64ull * input.mesh.vertex_count + input.mesh.triangles.size());
+  return passes;
+}
+
 std::vector<PassStats> Rasteriser::run(const RasterInput& input, const Camera& camera, std::uint32_t width,
                                        std::uint32_t height) {
-  const gpu::SurfaceScene constants = scene(input, camera);
-  if (scene_.size() == 0) scene_ = {context_, sizeof(gpu::SurfaceScene), vk::Place::read, "picture/scene"};
-  vk::write_bytes(context_, scene_, std::as_bytes(std::span(&constants, 1)));
+  write_scene(scene(input, camera));
   auto passes =
       run_tiles(width, height, [&](vk::Commands& commands, const Tile& tile) { record(commands, input, tile); });
   picture_.false_colour = false;

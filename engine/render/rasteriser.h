@@ -50,6 +50,16 @@ struct RasterInput {
   const GatherView* gather = nullptr;                 // null: radiance as of a diffuser
 };
 
+// For radiance from the cells of the shortest-path method.
+struct PathInput {
+  const DisplayBuffers& mesh;
+  const vk::Buffer& field;  // gpu::PathField
+  const ShadowMaps& shadows;
+  float eta = 1;
+  float roughness = 0.3f;                             // alpha of GGX
+  const PlacedRoughness* placed_roughness = nullptr;  // as in RasterInput
+};
+
 // A view of the inside on the device.
 struct FalseColours {
   vk::Buffer vertices;  // gpu::FalseVertex, three per triangle
@@ -70,6 +80,8 @@ class Rasteriser {
 
   std::vector<PassStats> run(const RasterInput& input, const Camera& camera, std::uint32_t width, std::uint32_t height);
 
+  std::vector<PassStats> run(const PathInput& input, const Camera& camera, std::uint32_t width, std::uint32_t height);
+
   // The same of a view of the inside.
   std::vector<PassStats> run(const FalseColours& input, const Camera& camera, std::uint32_t width,
                              std::uint32_t height);
@@ -87,6 +99,7 @@ class Rasteriser {
   DrawTarget target(const Tile& tile) const;
   gpu::ResolvePush resolve_push(std::uint64_t scene, const Tile& tile) const;
   void record(vk::Commands& commands, const RasterInput& input, const Tile& tile);
+  void record(vk::Commands& commands, const PathInput& input, const Tile& tile);
   void record(vk::Commands& commands, const FalseColours& input, const Camera& camera, const Tile& tile);
   void record_resolve(vk::Commands& commands, const char* name, const vk::ComputePass& pass, std::uint64_t scene,
                       const Tile& tile);
@@ -94,11 +107,14 @@ class Rasteriser {
   template <typename Record>
   std::vector<PassStats> run_tiles(std::uint32_t width, std::uint32_t height, const Record& record_tile);
 
+  void write_scene(const gpu::SurfaceScene& scene);
   const vk::GraphicsPass& surface(const RasterInput& input);
+  const vk::GraphicsPass& surface(const PathInput& input);
   const vk::ComputePass& resolve(const RasterInput& input);
 
   vk::Context& context_;
   std::array<std::optional<vk::GraphicsPass>, 8> surfaces_;  // gathered or not, by variant; at first use
+  std::array<std::optional<vk::GraphicsPass>, 4> paths_;     // from cells, by variant; the same
   vk::ComputePass resolve_;
   std::array<std::optional<vk::ComputePass>, 2> gathers_;  // without shaped lights and with; at first use
   std::optional<vk::GraphicsPass> false_colour_;           // made at first use

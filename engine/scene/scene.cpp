@@ -62,9 +62,22 @@ Json view_json(const View& view) {
   return json;
 }
 
+PathOptions path_from(const JsonField& field) {
+  field.allow({"cost", "solver", "cells"});
+  PathOptions path;
+  if (const auto cost = field.find("cost")) {
+    path.cost = cost->within([&] { return path_cost_from_name(cost->text()); });
+  }
+  if (const auto solver = field.find("solver")) {
+    path.solver = solver->within([&] { return path_solver_from_name(solver->text()); });
+  }
+  if (const auto cells = field.find("cells")) path.cells = cells->whole(least_path_cells, most_path_cells);
+  return path;
+}
+
 SolveOptions solve_from(const JsonField& field) {
   field.allow({"method", "solver", "source", "model", "tolerance", "error", "cycles", "max_iterations",
-               "inter_reflection", "bounces", "active_layers"});
+               "inter_reflection", "bounces", "active_layers", "path"});
   SolveOptions options;
   const auto named = [&](std::string_view key, auto& value, const auto& parse) {
     if (const auto name = field.find(key)) value = name->within([&] { return parse(name->text()); });
@@ -80,8 +93,13 @@ SolveOptions solve_from(const JsonField& field) {
   if (const auto light = field.find("inter_reflection")) options.inter_reflection = light->truth();
   if (const auto bounces = field.find("bounces")) options.bounces = bounces->whole(0, many);
   if (const auto layers = field.find("active_layers")) options.active_layers = layers->whole(0, many);
+  if (const auto path = field.find("path")) options.path = path_from(*path);
   field.within([&] { check_options(options); });
   return options;
+}
+
+Json path_json(const PathOptions& path) {
+  return {{"cost", name_of(path.cost)}, {"solver", name_of(path.solver)}, {"cells", path.cells}};
 }
 
 Json solve_json(const SolveOptions& options) {
@@ -95,7 +113,8 @@ Json solve_json(const SolveOptions& options) {
           {"max_iterations", options.max_iterations},
           {"inter_reflection", options.inter_reflection},
           {"bounces", options.bounces},
-          {"active_layers", options.active_layers}};
+          {"active_layers", options.active_layers},
+          {"path", path_json(options.path)}};
 }
 
 void background_from(const JsonField& field, ToneOptions& tone) {

@@ -93,6 +93,11 @@ gpu::Optical mixed(const gpu::Optical& a, const gpu::Optical& b, float t) {
   return {glm::mix(a.sigma_s_prime, b.sigma_s_prime, t), glm::mix(a.sigma_a, b.sigma_a, t)};
 }
 
+glm::dvec3 last_cell(const Volume& volume) {
+  return {static_cast<double>(volume.cells[0] - 1), static_cast<double>(volume.cells[1] - 1),
+          static_cast<double>(volume.cells[2] - 1)};
+}
+
 }  // namespace
 
 bool is_volume(std::string_view material) {
@@ -138,10 +143,12 @@ Volume read_volume(const std::filesystem::path& path) {
   return volume;
 }
 
+glm::dvec3 Volume::first(const glm::dvec3& centre) const {
+  return origin.value_or(centre - 0.5 * spacing * last_cell(*this));
+}
+
 std::vector<gpu::Optical> Volume::at(std::span<const glm::vec3> points, const glm::dvec3& centre) const {
-  const glm::dvec3 last(static_cast<double>(cells[0] - 1), static_cast<double>(cells[1] - 1),
-                        static_cast<double>(cells[2] - 1));
-  const glm::dvec3 first = origin.value_or(centre - 0.5 * spacing * last);
+  const glm::dvec3 last = last_cell(*this), first = this->first(centre);
   const auto cell = [&](std::size_t x, std::size_t y, std::size_t z) -> const gpu::Optical& {
     return optical[x + cells[0] * (y + cells[1] * z)];
   };
@@ -168,10 +175,17 @@ void set_material(Engine& engine, std::string_view text) {
   if (!is_volume(text)) return engine.set_material(text);
   const Volume volume = read_volume(text);
   const std::span<const Level> levels = engine.graph().levels();
-  const RestBox box = rest_box(levels[0].vertices);
+  const RestBox box = rest_box(levels.empty() ? engine.graph().display().vertices : levels[0].vertices);
+  const glm::dvec3 centre = 0.5 * (box.low + box.high);
   for (std::uint32_t i = 0; i < levels.size(); ++i) {
-    engine.set_optical(i, volume.at(levels[i].nodes, 0.5 * (box.low + box.high)), volume.eta);
+    engine.set_optical(i, volume.at(levels[i].nodes, centre), volume.eta);
   }
+  const glm::uvec3 size(volume.cells[0], volume.cells[1], volume.cells[2]);
+  engine.set_optical(OpticalGrid{.size = size,
+                                 .optical = volume.optical,
+                                 .spacing = glm::vec3(volume.spacing),
+                                 .first = glm::vec3(volume.first(centre)),
+                                 .eta = volume.eta});
 }
 
 }  // namespace quadgraph

@@ -19,6 +19,9 @@ struct Volume {
   std::optional<glm::dvec3> origin;    // mm, the middle of the first cell; without one the grid is centred on the body
   float eta = 1.3f;
 
+  // Where the middle of the first cell lies in a body around `centre`, mm.
+  glm::dvec3 first(const glm::dvec3& centre) const;
+
   // At each point, mm, of a body around `centre`: linear between the middles of cells, beside them the nearest cell's.
   std::vector<gpu::Optical> at(std::span<const glm::vec3> points, const glm::dvec3& centre) const;
 };

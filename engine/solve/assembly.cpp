@@ -254,6 +254,8 @@ void record_assembly(Workspace& work, const LevelBuffers& level, Method method, 
     case Method::polygrid:
     case Method::polygrid_divergence:
       return assemble_polygrid(work, level, method, boundary, even, op);
+    case Method::shortest_path:
+      break;  // refused by Simulation::solve
   }
 }
 
@@ -280,6 +282,8 @@ void record_diffuse_load(Workspace& work, const LevelBuffers& level, Method meth
     case Method::polygrid:
     case Method::polygrid_divergence:
       return load_fem(work, level, boundary, op);
+    case Method::shortest_path:
+      break;
   }
 }
 

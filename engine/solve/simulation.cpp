@@ -159,6 +159,7 @@ struct Simulation::Implementation {
   }
 
   OperatorKey key_of(const SolveOptions& options) {
+    if (options.method == Method::shortest_path) throw InputError("shortest-path: has no levels to solve on");
     check_method(shape.levels()[0], options.method);
     coefficients.check();
     return {options.method, coefficients.resolve(work, options.model, options.method, options.source, levels)};

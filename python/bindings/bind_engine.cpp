@@ -133,10 +133,23 @@ void set_lights(Engine& engine, const std::vector<std::string>& texts) {
   engine.set_lights(std::move(lights));
 }
 
+std::vector<gpu::Optical> optical_in_cells(const FloatArray& sigma_s_prime, const FloatArray& sigma_a) {
+  const auto count = static_cast<std::size_t>(sigma_s_prime.size()) / 3;
+  if (sigma_s_prime.shape(3) != 3 || sigma_a.size() != sigma_s_prime.size()) {
+    throw InputError("sigma_s_prime and sigma_a: two arrays (nz, ny, nx, 3) are wanted");
+  }
+  const auto* scattering = reinterpret_cast<const glm::vec3*>(sigma_s_prime.data());
+  const auto* absorption = reinterpret_cast<const glm::vec3*>(sigma_a.data());
+  std::vector<gpu::Optical> optical;
+  for (std::size_t i = 0; i < count; ++i) optical.push_back({scattering[i], absorption[i]});
+  return optical;
+}
+
 py::dict solve(Engine& engine, const std::string& method, const std::string& solver, const std::string& source,
                const std::string& model, double tolerance, double error, std::uint32_t cycles, bool warm,
                std::uint32_t max_iterations, bool inter_reflection, std::uint32_t bounces, std::uint32_t smoothing,
-               std::uint32_t exchange_rows, std::uint32_t active_layers) {
+               std::uint32_t exchange_rows, std::uint32_t active_layers, const std::string& path_cost,
+               const std::string& path_solver, std::uint32_t path_cells) {
   SolveOptions options = options_from(method, solver, source, model, tolerance, max_iterations);
   options.error = error;
   options.cycles = cycles;
@@ -146,6 +159,7 @@ py::dict solve(Engine& engine, const std::string& method, const std::string& sol
   options.smoothing = smoothing;
   options.exchange_rows = exchange_rows;
   options.active_layers = active_layers;
+  options.path = {path_cost_from_name(path_cost), path_solver_from_name(path_solver), path_cells};
   const SolveReport report = [&] {
     const py::gil_scoped_release release;
     return engine.solve(options);
@@ -307,12 +321,38 @@ void bind_engine(py::module_& module) {
            py::arg("model") = "auto", py::arg("tolerance") = 1e-3, py::arg("error") = 0.0, py::arg("cycles") = 0,
            py::arg("warm") = false, py::arg("max_iterations") = 5000, py::arg("inter_reflection") = true,
            py::arg("bounces") = 0, py::arg("smoothing") = 0, py::arg("exchange_rows") = 0, py::arg("active_layers") = 0,
+           py::arg("path_cost") = "transport", py::arg("path_solver") = "eikonal", py::arg("path_cells") = 64,
            "Solves for the present material and light (engine/graph/solution.h); a report. tolerance: estimated "
            "algebraic error of the exitance; error: target for it and that of the mesh together, 0: none; cycles: so "
            "many iterations on the finest level, 0: as many as it takes; warm: from the last solution; exchange_rows: "
            "of a body that deforms so many faces look anew at what they see, "
            "0: all of them; active_layers: of a polygrid that are solved for on all levels but the coarsest, 0: all. "
-           "Raises InputError, SolverError.")
+           "path_...: of method shortest-path (docs/shortest-path.md). Raises InputError, SolverError.")
+      .def(
+          "set_grid",
+          [](Engine& engine, const FloatArray& sigma_s_prime, const FloatArray& sigma_a,
+             const std::array<float, 3>& spacing, const std::array<float, 3>& first, float eta) {
+            if (sigma_s_prime.ndim() != 4) throw InputError("sigma_s_prime: an array (nz, ny, nx, 3) is wanted");
+            const auto side = [&](int axis) { return static_cast<std::uint32_t>(sigma_s_prime.shape(axis)); };
+            const std::vector<gpu::Optical> optical = optical_in_cells(sigma_s_prime, sigma_a);
+            engine.set_optical(OpticalGrid{.size = {side(2), side(1), side(0)},
+                                           .optical = optical,
+                                           .spacing = {spacing[0], spacing[1], spacing[2]},
+                                           .first = {first[0], first[1], first[2]},
+                                           .eta = eta});
+          },
+          py::arg("sigma_s_prime"), py::arg("sigma_a"), py::arg("spacing"), py::arg("first"), py::arg("eta"),
+          "Coefficients (nz, ny, nx, 3), 1/mm, at points `spacing` (3,) mm apart along x, y, z from `first` (3,) on, "
+          "in "
+          "the body at rest: what shortest-path takes in place of a material. The other methods keep theirs.")
+      .def(
+          "exitance_at",
+          [](const Engine& engine, const FloatArray& points) {
+            const auto count = static_cast<std::size_t>(points.ndim() == 2 ? points.shape(0) : 0);
+            return own(engine.exitance_at(vectors(points, count, "points")));
+          },
+          py::arg("points"),
+          "What leaves the surface at points (n, 3), mm, by the last solve with shortest-path; (n, 3) W/mm^2.")
       .def(
           "surface_field", [](const Engine& engine) { return field_dict(engine.surface_field()); },
           "Per outside face of level 0: position, normal, area, q, phi, exitance of scattered and of unscattered light "

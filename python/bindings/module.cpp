@@ -81,6 +81,19 @@ py::object error_dict(const std::optional<ErrorEstimate>& estimate) {
   return d;
 }
 
+py::dict path_dict(const PathReport& path) {
+  py::dict d;
+  d["cost"] = std::string(name_of(path.options.cost));
+  d["solver"] = std::string(name_of(path.options.solver));
+  d["cells"] = path.options.cells;
+  d["size"] = py::make_tuple(path.size.x, path.size.y, path.size.z);
+  d["cell"] = path.cell;
+  d["solid"] = path.solid;
+  d["lit"] = path.lit;
+  d["rounds"] = path.rounds;
+  return d;
+}
+
 }  // namespace
 
 py::dict as_dict(const SolveReport& report) {
@@ -104,6 +117,7 @@ py::dict as_dict(const SolveReport& report) {
   d["model_warning"] = report.model_warning;
   d["deformed"] = report.deformed;
   d["exchange_age"] = report.exchange_age;
+  d["path"] = report.path ? py::object(path_dict(*report.path)) : py::object(py::none());
   d["finest"] = report.finest;
   d["work"] = report.work;
   d["algebraic"] = error_dict(report.algebraic);

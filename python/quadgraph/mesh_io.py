@@ -64,6 +64,7 @@ _READERS: dict[str, Callable[[Path], Arrays]] = {
     ".gltf": _read_gltf,
     ".glb": _read_gltf,
 }
+SUFFIXES = tuple(_READERS)
 
 
 def read_surface(path: str | Path, *, unit: str | None = None, height_mm: float | None = None) -> SourceMesh:

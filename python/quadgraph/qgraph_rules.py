@@ -45,6 +45,7 @@ _DISPLAY = {
     "face": (_U32, ("n_d",)),
     "barycentric": (_F32, ("n_d", 3)),
 }
+_DISPLAY_ALONE = {field: _DISPLAY[field] for field in ("vertices", "normals", "triangles")}
 
 
 def level_count(sections: dict[str, np.ndarray]) -> int:
@@ -59,7 +60,7 @@ def section_names(levels: int, present: Collection[str] = ()) -> list[str]:
         optional = [group for group in _OPTIONAL if any(f"level{i}/{field}" in present for field in group)]
         fields = [*_LEVEL, *(field for group in optional for field in group), *(_TRANSFERS if i + 1 < levels else ())]
         names += [f"level{i}/{field}" for field in fields]
-    return names + [f"display/{field}" for field in _DISPLAY]
+    return names + [f"display/{field}" for field in (_DISPLAY if levels else _DISPLAY_ALONE)]
 
 
 def check(sections: dict[str, np.ndarray], metadata: dict[str, Any], name: str) -> None:
@@ -68,7 +69,7 @@ def check(sections: dict[str, np.ndarray], metadata: dict[str, Any], name: str) 
     Raises FormatError that names the file (`name`), the section and the rule.
     """
     levels = level_count(sections)
-    _require(1 <= levels <= MAX_LEVELS, name, f"{levels} levels found, 1 to {MAX_LEVELS} allowed")
+    _require(levels <= MAX_LEVELS, name, f"{levels} levels found, 0 to {MAX_LEVELS} allowed")
     _check_names(list(sections), section_names(levels, sections), name)
     for i in range(levels):
         counts = _level_counts(sections, i)
@@ -86,7 +87,7 @@ def check(sections: dict[str, np.ndarray], metadata: dict[str, Any], name: str) 
             prefix = f"level{i}/{transfer}"
             _check_range(sections[f"{prefix}_index"], coarse[key], f"{name}: {prefix}_index")
             _check_weights(sections[f"{prefix}_weight"], f"{name}: {prefix}_weight")
-    _check_display(sections, _level_counts(sections, 0)["n_f"], name)
+    _check_display(sections, _level_counts(sections, 0)["n_f"] if levels else None, name)
     _check_metadata(metadata, levels, name)
 
 
@@ -238,10 +239,12 @@ def _check_seen_rows(seen: np.ndarray, rays: int, n_f: int, where: str) -> None:
     _require(bool((np.diff(rows * n_f + faces) >= 0).all()), where, "faces of a row are not in ascending order")
 
 
-def _check_display(sections: dict[str, np.ndarray], n_f: int, name: str) -> None:
+def _check_display(sections: dict[str, np.ndarray], n_f: int | None, name: str) -> None:
     counts = {"n_d": len(sections["display/vertices"]), "n_p": len(sections["display/triangles"])}
-    _check_fields(sections, "display/", _DISPLAY, counts, name)
+    _check_fields(sections, "display/", _DISPLAY_ALONE if n_f is None else _DISPLAY, counts, name)
     _check_range(sections["display/triangles"], counts["n_d"], f"{name}: display/triangles")
+    if n_f is None:
+        return
     _check_range(sections["display/face"], n_f, f"{name}: display/face")
     _check_weights(sections["display/barycentric"], f"{name}: display/barycentric")
 

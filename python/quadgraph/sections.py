@@ -63,6 +63,15 @@ def display(surface: Surface, finest: Graph) -> dict[str, np.ndarray]:
     }
 
 
+def display_alone(surface: Surface, normals: np.ndarray) -> dict[str, np.ndarray]:
+    """Sections of a file without levels; normals (n, 3), unit."""
+    return {
+        "display/vertices": _f32(surface.vertices),
+        "display/normals": _f32(normals),
+        "display/triangles": _u32(surface.triangles),
+    }
+
+
 def exchange(seen: Seen) -> dict[str, np.ndarray]:
     """Sections of what the faces of one level see of each other."""
     prefix = f"level{seen.level}/seen"

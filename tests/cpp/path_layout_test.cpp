@@ -2,7 +2,10 @@
 // them.
 #include "shaders/path_shared.h"
 #include "spirv/path_box.comp.h"
+#include "spirv/path_cost.comp.h"
 #include "spirv/path_crossings.comp.h"
+#include "spirv/path_field.comp.h"
+#include "spirv/path_flood.comp.h"
 #include "spirv/path_relax.comp.h"
 #include "spirv/path_solid.comp.h"
 #include "spirv/path_start.comp.h"
@@ -19,7 +22,7 @@ TEST_CASE("the grid and the push constants of paths") {
           {MEMBER(PathBoxPush, vertices), MEMBER(PathBoxPush, box), MEMBER(PathBoxPush, count)});
   compare(path_crossings_comp, "PathCrossingsPush",
           {MEMBER(PathCrossingsPush, grid), MEMBER(PathCrossingsPush, vertices), MEMBER(PathCrossingsPush, triangles),
-           MEMBER(PathCrossingsPush, crossings), MEMBER(PathCrossingsPush, flags),
+           MEMBER(PathCrossingsPush, crossings), MEMBER(PathCrossingsPush, flags), MEMBER(PathCrossingsPush, triangle),
            MEMBER(PathCrossingsPush, triangle_count), MEMBER(PathCrossingsPush, stripes)});
   compare(path_winding_comp, "PathWindingPush",
           {MEMBER(PathWindingPush, grid), MEMBER(PathWindingPush, crossings), MEMBER(PathWindingPush, axis)});
@@ -34,4 +37,19 @@ TEST_CASE("the grid and the push constants of paths") {
           {MEMBER(PathRelaxPush, grid), MEMBER(PathRelaxPush, cost), MEMBER(PathRelaxPush, paths),
            MEMBER(PathRelaxPush, stamps), MEMBER(PathRelaxPush, list), MEMBER(PathRelaxPush, next),
            MEMBER(PathRelaxPush, groups), MEMBER(PathRelaxPush, round)});
+  compare(path_flood_comp, "PathFloodPush",
+          {MEMBER(PathFloodPush, grid), MEMBER(PathFloodPush, triangle), MEMBER(PathFloodPush, from),
+           MEMBER(PathFloodPush, to), MEMBER(PathFloodPush, step)});
+  compare(path_cost_comp, "PathCostPush",
+          {MEMBER(PathCostPush, grid), MEMBER(PathCostPush, flags), MEMBER(PathCostPush, nearest),
+           MEMBER(PathCostPush, triangle), MEMBER(PathCostPush, triangles), MEMBER(PathCostPush, vertices),
+           MEMBER(PathCostPush, rest), MEMBER(PathCostPush, body), MEMBER(PathCostPush, cost)});
+  compare(path_cost_comp, "PathMaterial",
+          {MEMBER(PathMaterial, material), MEMBER(PathMaterial, optical), MEMBER(PathMaterial, optical_size),
+           MEMBER(PathMaterial, optical_spacing), MEMBER(PathMaterial, optical_first), MEMBER(PathMaterial, edits),
+           MEMBER(PathMaterial, points), MEMBER(PathMaterial, texels), MEMBER(PathMaterial, edit_count),
+           MEMBER(PathMaterial, cost)});
+  compare(path_field_comp, "PathFieldPush",
+          {MEMBER(PathFieldPush, grid), MEMBER(PathFieldPush, flags), MEMBER(PathFieldPush, paths),
+           MEMBER(PathFieldPush, field)});
 }

@@ -2,6 +2,7 @@
 #include "shaders/display_shared.h"
 #include "shaders/false_colour_shared.h"
 #include "shaders/ground_shared.h"
+#include "shaders/path_light_shared.h"
 #include "shaders/render_shared.h"
 #include "shaders/surroundings_shared.h"
 #include "spirv/false_colour.frag.h"
@@ -10,11 +11,14 @@
 #include "spirv/ground_map.comp.h"
 #include "spirv/irradiance.comp.h"
 #include "spirv/luminance.comp.h"
+#include "spirv/path_enter.comp.h"
 #include "spirv/resolve.comp.h"
 #include "spirv/shadow.vert.h"
 #include "spirv/surface.frag.h"
 #include "spirv/surface.vert.h"
 #include "spirv/surface_gathered.frag.h"
+#include "spirv/surface_path.frag.h"
+#include "spirv/surface_path.vert.h"
 #include "spirv/surroundings.comp.h"
 #include "spirv/tone_map.comp.h"
 #include "tests/cpp/layout_compare.h"
@@ -123,4 +127,17 @@ TEST_CASE("the ground") {
           {MEMBER(GroundPush, shadow), MEMBER(GroundPush, alpha), MEMBER(GroundPush, eye), MEMBER(GroundPush, corner),
            MEMBER(GroundPush, right), MEMBER(GroundPush, down), MEMBER(GroundPush, half_width),
            MEMBER(GroundPush, z_up), MEMBER(GroundPush, width), MEMBER(GroundPush, height)});
+}
+
+TEST_CASE("what lights and shows the cells of shortest paths") {
+  compare(path_enter_comp, "PathEnterPush",
+          {MEMBER(PathEnterPush, grid), MEMBER(PathEnterPush, vertices), MEMBER(PathEnterPush, triangles),
+           MEMBER(PathEnterPush, flags), MEMBER(PathEnterPush, entering), MEMBER(PathEnterPush, lights),
+           MEMBER(PathEnterPush, shapes), MEMBER(PathEnterPush, views), MEMBER(PathEnterPush, triangle_count),
+           MEMBER(PathEnterPush, stripes), MEMBER(PathEnterPush, light_count), MEMBER(PathEnterPush, eta),
+           MEMBER(PathEnterPush, diffuse_transmittance)});
+  compare(surface_path_frag, "PathField", {MEMBER(PathField, grid), MEMBER(PathField, field)});
+  for (const vk::Spirv code : {vk::Spirv(surface_path_vert), vk::Spirv(surface_path_frag)}) {
+    compare(code, "SurfacePathPush", {MEMBER(SurfacePathPush, surface), MEMBER(SurfacePathPush, field)});
+  }
 }

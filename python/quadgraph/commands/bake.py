@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,13 +12,11 @@ from rich.console import Console
 from rich.table import Table
 
 from quadgraph.commands import budget
-from quadgraph.commands.scene import positive_float, positive_int, share
+from quadgraph.commands.scene import UNITS_MM, length_mm, positive_float, positive_int, share
 from quadgraph.errors import InputError
 
 if TYPE_CHECKING:
     from quadgraph.bake import BakeReport
-
-_UNITS_MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0}
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -28,7 +25,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument("mesh", metavar="MESH", type=Path, help="OBJ, PLY, STL, OFF, glTF or GLB")
     parser.add_argument("-o", "--output", metavar="FILE", type=Path, required=True, help="the .qgraph to write")
     size = parser.add_mutually_exclusive_group()
-    size.add_argument("--unit", choices=tuple(_UNITS_MM), help="unit of the mesh file's coordinates")
+    size.add_argument("--unit", choices=tuple(UNITS_MM), help="unit of the mesh file's coordinates")
     size.add_argument("--height", type=length_mm, metavar="L", help="height of the object along y, like 100mm or 1.8m")
     _add_mesh_options(parser)
     parser.add_argument(
@@ -41,6 +38,11 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--memory-limit", type=positive_float, metavar="GB", help="memory for each run of the mesher (default: 4)"
     )
     parser.add_argument("--json", action="store_true", help="print the report as JSON on standard output")
+    parser.add_argument(
+        "--surface-only",
+        action="store_true",
+        help="no levels, nothing repaired, at once: for --method shortest-path, which takes any mesh",
+    )
     _add_error_options(parser.add_argument_group("no more than an error needs"))
 
 
@@ -105,14 +107,6 @@ def _add_mesh_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def length_mm(text: str) -> float:
-    """Argument type: a positive length with its unit, in mm."""
-    found = re.fullmatch(r"\s*([0-9.eE+-]+)\s*(mm|cm|m)\s*", text)
-    if not found:
-        raise argparse.ArgumentTypeError(f"{text}: must be a number and mm, cm or m, like 100mm")
-    return positive_float(found.group(1)) * _UNITS_MM[found.group(2)]
-
-
 def steps(text: str) -> int:
     """Argument type: an integer of at least zero."""
     value = int(text)
@@ -123,6 +117,8 @@ def steps(text: str) -> int:
 
 def run(args: argparse.Namespace) -> int:
     """Bake, telling the progress on standard error; 3 if an error was asked for and is not kept, else 0."""
+    if args.surface_only:
+        return _write_surface(args)
     _check_error_options(args)
     errors = Console(stderr=True, highlight=False)
     with errors.status(f"baking {args.mesh.name}"):
@@ -132,6 +128,22 @@ def run(args: argparse.Namespace) -> int:
     else:
         _print_report(report)
     return 3 if report.budget and not report.budget["reached"] else 0
+
+
+def _write_surface(args: argparse.Namespace) -> int:
+    """Write a file without levels."""
+    from quadgraph import bare
+
+    left_alone = {"mesh", "output", "unit", "height", "surface_only", "command", "mesher", "order", "device"}
+    for name, value in vars(args).items():
+        if name not in left_alone and value:
+            raise InputError(f"--{name.replace('_', '-')}: found with --surface-only, which makes no levels")
+    source = bare.write(args.mesh, args.output, args.unit, args.height)
+    Console(highlight=False).print(
+        f"{args.output}: the surface alone, {source.triangles:,} triangles; --method shortest-path shows it",
+        soft_wrap=True,
+    )
+    return 0
 
 
 def _check_error_options(args: argparse.Namespace) -> None:

@@ -85,8 +85,11 @@ def _print_facts(name: str, facts: dict[str, Any]) -> None:
     console.print(exchange_line(facts["exchange"]), soft_wrap=True)
     for sentence in budget.sentences(metadata["budget"], name) if "budget" in metadata else []:
         console.print(sentence, markup=False, soft_wrap=True)
-    console.print(level_table(metadata["levels"]))
-    console.print(_quality_table(facts["levels"]))
+    if facts["levels"]:
+        console.print(level_table(metadata["levels"]))
+        console.print(_quality_table(facts["levels"]))
+    else:
+        console.print("levels: none, a surface alone: only --method shortest-path shows it", soft_wrap=True)
     console.print(_section_table(facts["sections"]))
     memory = facts["device_memory"]
     if memory["unknown"] is not None:

@@ -19,7 +19,9 @@ WRITERS = (".png", ".exr")
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Register the subcommand."""
     parser = subparsers.add_parser("render", help="a picture of a baked object, or of a scene", description=__doc__)
-    scene.add_scene_arguments(parser, "a baked .qgraph, or a scene (docs/scene.md), .json")
+    scene.add_scene_arguments(
+        parser, "a baked .qgraph, a scene .json (docs/scene.md), or a mesh for --method shortest-path"
+    )
     parser.add_argument(
         "-o",
         "--output",
@@ -124,7 +126,8 @@ def print_summary(engine, report: dict, unmet: list[str], outputs: list[Path]) -
     console.print(
         f"frame: {frame_ms:.0f} ms on the device, {report['seconds']:.1f} s all told with loading and start-up"
     )
-    console.print(f"{text.error_text(report)}, energy balance {100 * worst:+.3f}%")
+    balance = "energy is not conserved" if report["path"] else f"energy balance {100 * worst:+.3f}%"
+    console.print(f"{text.error_text(report)}, {balance}")
     for sentence in text.solver_texts(report) + unmet:
         console.print(sentence)
     for path in outputs:

@@ -87,6 +87,8 @@ def bandwidth(entry: dict) -> float:
 
 def error_text(report: dict) -> str:
     """Estimated error of the exitance in words."""
+    if report.get("path"):
+        return "error: not estimated"
     algebraic = f"algebraic {two_parts(report['algebraic'])}"
     if report["error"] is None:
         return f"error: of the mesh not estimated (a single level); {algebraic} (estimate)"
@@ -101,11 +103,21 @@ def two_parts(error: dict | None) -> str:
     return f"{100 * error['whole']:.2g}% whole, {of_unlit}"
 
 
+def path_text(path: dict) -> str:
+    """What the shortest-path method did in words."""
+    size = " x ".join(map(str, path["size"]))
+    return (
+        f"paths: {path['solver']}, cost {path['cost']}, through {path['solid']:,} voxels of {path['cell']:.3g} mm "
+        f"({size}), {path['lit']:,} of them lit, {path['rounds']} rounds"
+    )
+
+
 def solver_texts(report: dict) -> list[str]:
     """Say what the bake knows of the error, which solver took another one's place, what warns of the answer, and where
     it stopped if not on the finest level.
     """
     texts = [report["budget"]] if report["budget"] else []
+    texts += [path_text(report["path"])] if report.get("path") else []
     if report["replaced"]:
         texts.append(f"solver: {report['replaced']}")
     texts += [f"warning: {report[name]}" for name in ("mesh_warning", "model_warning", "deformed") if report.get(name)]
@@ -117,7 +129,7 @@ def solver_texts(report: dict) -> list[str]:
 def size_text(engine: Engine) -> str:
     """Nodes, levels and device memory in words."""
     levels = engine.graph.levels
-    return (
-        f"nodes: {len(levels[0].nodes):,} (finest of {len(levels)} levels), tets: {len(levels[0].tets):,}, "
-        f"memory: {engine.peak_device_bytes / 1e6:.0f} MB on {engine.device_name}"
-    )
+    memory = f"memory: {engine.peak_device_bytes / 1e6:.0f} MB on {engine.device_name}"
+    if not levels:
+        return f"surface: {len(engine.graph.display['triangles']):,} triangles, no levels, {memory}"
+    return f"nodes: {len(levels[0].nodes):,} (finest of {len(levels)} levels), tets: {len(levels[0].tets):,}, {memory}"

@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
+import re
+import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,6 +18,8 @@ if TYPE_CHECKING:
     from quadgraph._core import Engine
 
 
+UNITS_MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0}
+METHODS = ("fem", "quadgraph-fv", "quadgraph-fdm", "polygrid", "polygrid-divergence", "shortest-path")
 DEFAULT_MATERIAL = "marble"
 VARIED_MATERIAL = "marble-veins"
 
@@ -43,6 +49,14 @@ def positive_int(text: str) -> int:
     if value <= 0:
         raise argparse.ArgumentTypeError(f"{text}: must be a positive integer")
     return value
+
+
+def length_mm(text: str) -> float:
+    """Argument type: a positive length with its unit, in mm."""
+    found = re.fullmatch(r"\s*([0-9.eE+-]+)\s*(mm|cm|m)\s*", text)
+    if not found:
+        raise argparse.ArgumentTypeError(f"{text}: must be a number and mm, cm or m, like 100mm")
+    return positive_float(found.group(1)) * UNITS_MM[found.group(2)]
 
 
 def share(text: str) -> float:
@@ -106,7 +120,7 @@ def add_scene_arguments(parser: argparse.ArgumentParser, file_help: str = "a bak
     )
     parser.add_argument(
         "--method",
-        choices=("fem", "quadgraph-fv", "quadgraph-fdm", "polygrid", "polygrid-divergence"),
+        choices=METHODS,
         default="fem",
         help="polygrid needs a file baked with --mesher polygrid (default: %(default)s)",
     )
@@ -177,6 +191,39 @@ def add_scene_arguments(parser: argparse.ArgumentParser, file_help: str = "a bak
         metavar="N",
         help="of that light (default: until they change nothing)",
     )
+    add_path_arguments(parser.add_argument_group("of --method shortest-path"))
+
+
+def add_path_arguments(group: argparse._ArgumentGroup) -> None:
+    """Add what only the shortest-path method asks (docs/shortest-path.md)."""
+    group.add_argument(
+        "--path-cost",
+        choices=("transport", "extinction"),
+        default="transport",
+        help="of a mm of path: the effective transport coefficient, or the extinction coefficient as published "
+        "(default: %(default)s)",
+    )
+    group.add_argument(
+        "--path-solver",
+        choices=("eikonal", "lattice"),
+        default="eikonal",
+        help="any path, or steps between the 26 neighbours of a voxel as published (default: %(default)s)",
+    )
+    group.add_argument(
+        "--path-cells",
+        type=positive_int,
+        default=64,
+        metavar="N",
+        help="voxels along the longest side, 8 to 150 (default: %(default)s)",
+    )
+    size = group.add_mutually_exclusive_group()
+    size.add_argument("--unit", choices=tuple(UNITS_MM), help="of the coordinates, where FILE is a mesh without bake")
+    size.add_argument(
+        "--height",
+        type=length_mm,
+        metavar="L",
+        help="of such a mesh along y, like 100mm or 1.8m (default: 100mm)",
+    )
 
 
 def add_device_arguments(parser: argparse.ArgumentParser) -> None:
@@ -187,10 +234,29 @@ def add_device_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
+@contextlib.contextmanager
+def baked_or_bare(file: Path, unit: str | None, height_mm: float | None) -> Iterator[Path]:
+    """The file, or if it is a mesh, one without levels made of it, which is there as long as the block runs."""
+    from quadgraph import bare
+
+    if not bare.is_mesh(file):
+        if unit is not None or height_mm is not None:
+            raise InputError(f"{file}: --unit and --height are for meshes; a baked file knows its size")
+        yield file
+        return
+    if unit is None and height_mm is None:
+        height_mm = bare.HEIGHT_MM
+    with tempfile.TemporaryDirectory(prefix="quadgraph-") as folder:
+        path = Path(folder) / f"{file.stem}.qgraph"
+        bare.write(file, path, unit, height_mm)
+        yield path
+
+
 def make_engine(args: argparse.Namespace) -> Engine:
     """Load `args.file` and set material and lights. Raises FormatError, InputError, VulkanError."""
     core = load_core()
-    engine = core.Engine(args.file, device=args.device, validation=args.validation)
+    with baked_or_bare(args.file, getattr(args, "unit", None), getattr(args, "height", None)) as path:
+        engine = core.Engine(path, device=args.device, validation=args.validation)
     engine.set_material(args.material)
     engine.set_lights(args.light or core.default_lights(getattr(args, "view", ""), getattr(args, "up", "y")))
     return engine
@@ -211,6 +277,9 @@ def solve(engine: Engine, args: argparse.Namespace) -> dict:
         "inter_reflection": not args.no_inter_reflection,
         "bounces": args.bounces,
         "active_layers": args.active_layers,
+        "path_cost": args.path_cost,
+        "path_solver": args.path_solver,
+        "path_cells": args.path_cells,
     }
     if taken and taken.options:
         options |= taken.options

@@ -42,13 +42,11 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         atomic_file.write_json(args.json, report)
     console = Console(highlight=False)
-    for table in (
-        text.solve_table(report),
-        text.energy_table(report),
-        text.pass_table(report["passes"]),
-    ):
-        console.print(table)
-    console.print(text.inter_reflection_text(report, not args.no_inter_reflection))
+    if not report["path"]:
+        console.print(text.solve_table(report))
+        console.print(text.energy_table(report))
+        console.print(text.inter_reflection_text(report, not args.no_inter_reflection))
+    console.print(text.pass_table(report["passes"]))
     console.print(text.error_text(report))
     unmet = scene.unmet(report)
     for sentence in text.solver_texts(report) + unmet:

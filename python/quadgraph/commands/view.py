@@ -9,6 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+from quadgraph.commands.scene import UNITS_MM, baked_or_bare, length_mm
 from quadgraph.errors import InputError
 
 PROGRAM = "quadgraph-engine"
@@ -23,7 +24,9 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         epilog=f"F1 in the window lists the keys. What may follow FILE, `{PROGRAM} --help` tells: --material, --light, "
         "--view, --method and so on, as of `quadgraph render`.",
     )
-    parser.add_argument("file", metavar="FILE", type=Path, help="a baked .qgraph, or a scene .json")
+    parser.add_argument("file", metavar="FILE", type=Path, help="a baked .qgraph, a scene .json, or a mesh")
+    parser.add_argument("--unit", choices=tuple(UNITS_MM), help="of a mesh; stands before FILE")
+    parser.add_argument("--height", type=length_mm, metavar="L", help="of a mesh along y (default: 100mm); the same")
     parser.add_argument("options", nargs=argparse.REMAINDER, metavar="OPTION", help=f"of {PROGRAM}")
 
 
@@ -39,4 +42,10 @@ def find_program() -> str:
 
 def run(args: argparse.Namespace) -> int:
     """Open the window; the program's exit status once it is closed."""
-    return subprocess.run([find_program(), args.file, *args.options], check=False).returncode
+    from quadgraph import bare
+
+    if not bare.is_mesh(args.file):
+        return subprocess.run([find_program(), args.file, *args.options], check=False).returncode
+    method = [] if "--method" in args.options else ["--method", "shortest-path"]
+    with baked_or_bare(args.file, args.unit, args.height) as path:
+        return subprocess.run([find_program(), path, *method, *args.options], check=False).returncode

@@ -1,0 +1,47 @@
+// What a mm of path costs in the cells: the material where they lie in the body at rest.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/graph/edit.h"
+#include "engine/graph/optical_grid.h"
+#include "engine/graph/path_options.h"
+#include "engine/path/voxels.h"
+
+namespace quadgraph {
+
+class CellCosts {
+ public:
+  explicit CellCosts(vk::Context& context);
+
+  // A material, or a grid of coefficients; nothing, for coefficients that only the nodes of levels have.
+  void set(const gpu::Material& material);
+  void set(const OpticalGrid& grid);
+  void clear();
+
+  // Of the one or the other, as in engine/graph/edit.h; checked before.
+  void set(std::span<const Edit> edits);
+
+  // Evaluates the coefficients into `cost` (PathRelaxation::cost). `rest`: vertices of the mesh at rest, null where it
+  // lies there. Throws InputError where nothing is set.
+  void run(const Voxels& voxels, const PathMesh& mesh, const vk::Buffer* rest, PathCost kind, const vk::Buffer& cost,
+           std::vector<PassStats>& passes);
+
+ private:
+  const vk::Buffer& flood(const Voxels& voxels, std::vector<PassStats>& passes);
+
+  vk::Context& context_;
+  vk::ComputePass cost_pass_;
+  std::optional<vk::ComputePass> flood_pass_;  // made at first use
+  std::optional<gpu::Material> material_;
+  gpu::PathMaterial grid_{};  // its part of it
+  vk::Buffer optical_, edits_, points_, texels_;
+  std::uint32_t edit_count_ = 0;
+  bool wants_depth_ = false;  // of the edits
+  vk::Buffer body_;           // gpu::PathMaterial
+  vk::Buffer nearest_[2];     // PathFloodPush
+};
+
+}  // namespace quadgraph

@@ -1,0 +1,29 @@
+// What leaves the surface, as a grid that shaders and the host interpolate in.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/path/path_relaxation.h"
+
+namespace quadgraph {
+
+class ExitField {
+ public:
+  explicit ExitField(vk::Context& context);
+
+  void run(const Voxels& voxels, const PathRelaxation& paths, std::vector<PassStats>& passes);
+
+  const vk::Buffer& field() const { return record_; }  // gpu::PathField, one
+
+  // W/mm^2 at points, mm, as path_field.glsl has it.
+  std::vector<glm::vec3> at(std::span<const glm::vec3> points) const;
+
+ private:
+  vk::Context& context_;
+  vk::ComputePass pass_;
+  gpu::PathGrid grid_{};
+  vk::Buffer cells_, record_;
+};
+
+}  // namespace quadgraph

@@ -1,0 +1,182 @@
+// What an engine holds.
+#pragma once
+
+#include "engine/graph/error.h"
+#include "engine/render/display_faces.h"
+#include "engine/render/display_motion.h"
+#include "engine/render/engine.h"
+#include "engine/render/ground.h"
+#include "engine/render/hidden_sky.h"
+#include "engine/render/inside.h"
+#include "engine/render/irradiance.h"
+#include "engine/render/path_method.h"
+#include "engine/render/rasteriser.h"
+#include "engine/render/surroundings.h"
+
+namespace quadgraph {
+
+struct Engine::Implementation {
+  Implementation(const std::filesystem::path& path, const vk::ContextOptions& device)
+      : source(path.filename().string()),
+        graph(QuadGraph::load(path)),
+        bounds(bounding_sphere(graph.display().vertices)),
+        context(device),
+        simulation(graph.levels().empty() ? nullptr : std::make_unique<Simulation>(context, graph)),
+        mesh(upload_display(context, graph.display())),
+        motion(graph.display()),
+        images(context),
+        shadows(context),
+        irradiance(context),
+        rasteriser(context),
+        paths(context) {
+    shadows.update(mesh, {{}, bounds});
+  }
+
+  std::string source;
+  QuadGraph graph;
+  Sphere bounds;
+  vk::Context context;
+  std::unique_ptr<Simulation> simulation;  // none of a surface without levels
+  DisplayBuffers mesh;
+  DisplayMotion motion;
+  LightImages images;
+  ShadowMaps shadows;
+  IrradiancePass irradiance;
+  std::optional<HiddenSky> hidden;  // where there is an environment, made at first use
+  Rasteriser rasteriser;
+
+  std::string material;
+  std::vector<Light> lights;
+  float eta = 1;                  // of the material
+  bool shadows_stale = false;     // they are not those of the present lights and shape
+  bool irradiance_stale = false;  // nor is q on the levels
+  bool irradiance_given = false;  // q is not that of lights
+  SolveOptions options;
+  std::optional<SolveReport> report;
+  std::optional<View> view;
+  Radiance radiance = Radiance::automatic;  // of the last picture
+  std::optional<RadianceProbe> probe;       // made at first use
+  vk::Buffer triangle_face;                 // display_faces.h, made at first use
+  std::vector<PassStats> deformation_passes, irradiance_passes, gather_passes, render_passes;
+  bool deformed = false;                                // since the last solve
+  std::string deformation;                              // in words
+  std::optional<Ground> ground;                         // made at first use
+  std::optional<Surroundings> surroundings;             // made at first use
+  std::shared_ptr<const ImagePyramid> roughness_image;  // of the last picture
+  vk::Buffer roughness_texels, rest_vertices;           // at first use
+  std::optional<Legend> legend;                         // of the last picture
+  FalseColours false_colours;                           // the same
+  PathMethod paths;
+  std::optional<Workspace> motion_work;  // of a surface without levels, made at first use
+  bool moved = false;                    // the display mesh is not at rest
+
+  // Throws InputError where there are none.
+  Simulation& levels() const {
+    if (simulation) return *simulation;
+    throw InputError(source + ": a surface without levels, which only the method shortest-path can show; " +
+                     "'quadgraph bake' makes the others' levels");
+  }
+
+  void stale() {
+    shadows_stale = true;
+    irradiance_stale = irradiance_stale || !lights.empty();
+  }
+
+  // Shadow maps of the present lights.
+  LightSet cast_shadows() {
+    images.set_eta(eta);
+    LightSet set(lights, bounds, &images);
+    irradiance_passes = {shadows.update(mesh, set)};
+    shadows_stale = false;
+    return set;
+  }
+
+  SolveReport solve_paths(const SolveOptions& wanted) {
+    check_options(wanted);
+    if (irradiance_given) throw InputError("shortest-path: the irradiance has been given; it needs lights instead");
+    if (material.empty()) throw InputError("no material has been set");
+    if (shadows_stale) cast_shadows();
+    SolveReport found;
+    found.method = Method::shortest_path;
+    found.path = paths.solve(mesh, moved ? &motion.rest() : nullptr, shadows, eta, wanted.path);
+    return found;
+  }
+
+  void draw_inside(const Camera& camera, const RenderOptions& render) {
+    if (report->path)
+      throw InputError("show: with shortest-path only 'picture', found '" + to_string(render.show) + "'");
+    const Inside inside = inside_of({context, levels(), graph, *report, options, bounds, camera.eye}, render.show);
+    false_colours = {};  // two need not fit beside each other
+    false_colours = upload_false_colours(context, inside.mesh, inside.plane, inside.legend.diverging);
+    legend = inside.legend;
+    render_passes = rasteriser.run(false_colours, camera, render.width, render.height);
+  }
+
+  PlacedRoughness placed_roughness(const RoughnessMap& map) {
+    if (rest_vertices.size() == 0) {
+      rest_vertices = vk::upload<glm::vec3>(context, graph.display().vertices, "display/at rest");
+    }
+    if (roughness_image != map.image) {
+      roughness_texels = vk::upload<glm::vec3>(context, map.image->texels, "picture/roughness image");
+      roughness_image = map.image;
+    }
+    return {roughness_texels,
+            rest_vertices,
+            image_box(map.placement),
+            {0, map.image->columns, map.image->rows, map.image->levels},
+            map.roughness};
+  }
+
+  const GatherField& gather() {
+    std::vector<PassStats> passes;
+    const GatherField& field = levels().gather(passes);
+    if (!passes.empty()) gather_passes = std::move(passes);
+    display_room();
+    return field;
+  }
+
+  // The body as it looks; whether its radiance was gathered.
+  bool draw_surface(const Camera& camera, const RenderOptions& render) {
+    std::optional<PlacedRoughness> placed;
+    if (render.roughness_map) placed.emplace(placed_roughness(*render.roughness_map));
+    const PlacedRoughness* there = placed ? &*placed : nullptr;
+    if (report->path) {
+      if (render.radiance == Radiance::gathered) {
+        throw InputError("radiance: with shortest-path it cannot be gathered, allowed are lambertian, auto");
+      }
+      if (shadows_stale) cast_shadows();
+      render_passes = rasteriser.run(PathInput{.mesh = mesh,
+                                               .field = paths.field(),
+                                               .shadows = shadows,
+                                               .eta = eta,
+                                               .roughness = render.roughness,
+                                               .placed_roughness = there},
+                                     camera, render.width, render.height);
+      return false;
+    }
+    std::optional<GatherView> view_rays;
+    if (render.radiance == Radiance::gathered || (render.radiance == Radiance::automatic && simulation->can_gather())) {
+      const GatherField& field = gather();
+      view_rays.emplace(field, triangle_face);
+    }
+    render_passes = rasteriser.run(RasterInput{.mesh = mesh,
+                                               .finest = simulation->level(0),
+                                               .vertex_exitance = simulation->vertex_exitance(),
+                                               .vertex_unscattered = simulation->vertex_unscattered(),
+                                               .shadows = shadows,
+                                               .eta = eta,
+                                               .roughness = render.roughness,
+                                               .placed_roughness = there,
+                                               .gather = view_rays ? &*view_rays : nullptr},
+                                   camera, render.width, render.height);
+    return view_rays.has_value();
+  }
+
+  void display_room() {
+    if (triangle_face.size() > 0) return;
+    triangle_face = vk::upload<std::uint32_t>(context, display_faces(graph.display(), graph.levels()[0]),
+                                              "display/faces of triangles");
+  }
+};
+
+}  // namespace quadgraph

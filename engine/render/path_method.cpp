@@ -1,0 +1,123 @@
+#include "engine/render/path_method.h"
+
+#include <array>
+#include <optional>
+
+#include "engine/graph/fresnel.h"
+#include "engine/path/cell_costs.h"
+#include "engine/path/exit_field.h"
+#include "engine/path/path_pass.h"
+#include "engine/path/path_relaxation.h"
+#include "shaders/path_light_shared.h"
+#include "spirv/path_enter.comp.h"
+
+namespace quadgraph {
+
+struct PathMethod::Parts {
+  Voxels voxels;
+  CellCosts costs;
+  PathRelaxation paths;
+  ExitField field;
+  std::array<std::optional<vk::ComputePass>, 2> enter;  // without shaped lights and with; made at first use
+
+  explicit Parts(vk::Context& context) : voxels(context), costs(context), paths(context), field(context) {}
+
+  const vk::ComputePass& enter_pass(vk::Context& context, bool shaped) {
+    auto& pass = enter[shaped ? 1 : 0];
+    if (pass) return *pass;
+    return pass.emplace(context, path_enter_comp, static_cast<std::uint32_t>(sizeof(gpu::PathEnterPush)), "path enter",
+                        vk::ComputePass::default_workgroup_size, shaped ? 1u : 0u);
+  }
+};
+
+PathMethod::PathMethod(vk::Context& context) : context_(context) {}
+
+PathMethod::~PathMethod() = default;
+
+void PathMethod::set(const gpu::Material& material) {
+  clear();
+  material_ = material;
+}
+
+void PathMethod::set(const OpticalGrid& grid) {
+  clear();
+  grid_ = GivenGrid{grid, {grid.optical.begin(), grid.optical.end()}};
+}
+
+void PathMethod::clear() {
+  material_.reset();
+  grid_.reset();
+  stale_ = true;
+}
+
+void PathMethod::set(std::span<const Edit> edits) {
+  edits_.assign(edits.begin(), edits.end());
+  stale_ = true;
+}
+
+PathMethod::Parts& PathMethod::parts() {
+  if (!parts_) parts_ = std::make_unique<Parts>(context_);
+  if (!stale_) return *parts_;
+  parts_->costs.clear();
+  if (material_) parts_->costs.set(*material_);
+  if (grid_) {
+    grid_->grid.optical = grid_->optical;
+    parts_->costs.set(grid_->grid);
+  }
+  parts_->costs.set(edits_);
+  stale_ = false;
+  return *parts_;
+}
+
+void PathMethod::light(const DisplayBuffers& mesh, const ShadowMaps& shadows, float eta) {
+  Parts& own = *parts_;
+  const std::uint32_t stripes = Voxels::stripes({mesh.vertices, mesh.triangles, 0, mesh.triangle_count});
+  const gpu::PathEnterPush push{.grid = own.voxels.grid(),
+                                .vertices = mesh.vertices.address(),
+                                .triangles = mesh.triangles.address(),
+                                .flags = own.voxels.cells().flags.address(),
+                                .entering = own.paths.entering().address(),
+                                .lights = shadows.lights().address(),
+                                .shapes = shadows.shapes().address(),
+                                .views = shadows.views().address(),
+                                .triangle_count = mesh.triangle_count,
+                                .stripes = stripes,
+                                .light_count = shadows.light_count(),
+                                .eta = eta,
+                                .diffuse_transmittance = static_cast<float>(diffuse_transmittance(eta))};
+  run_pass(context_, "path light", mesh.triangles.size() + 36ull * mesh.triangle_count, passes_,
+           [&](vk::Commands& commands) {
+             commands.fill(own.paths.entering(), 0);
+             commands.barrier();
+             commands.dispatch(own.enter_pass(context_, shadows.shaped()), push, 3ull * stripes * mesh.triangle_count);
+           });
+}
+
+PathReport PathMethod::solve(const DisplayBuffers& mesh, const vk::Buffer* rest, const ShadowMaps& shadows, float eta,
+                             const PathOptions& options) {
+  Parts& own = parts();
+  passes_.clear();
+  const PathMesh triangles{mesh.vertices, mesh.triangles, mesh.vertex_count, mesh.triangle_count};
+  own.voxels.update(triangles, options.cells, passes_);
+  own.paths.make_room(own.voxels.grid());
+  own.costs.run(own.voxels, triangles, rest, options.cost, own.paths.cost(), passes_);
+  light(mesh, shadows, eta);
+  own.paths.solve(own.voxels.cells(), options.solver, passes_);
+  own.field.run(own.voxels, own.paths, passes_);
+  return {.options = options,
+          .size = own.voxels.grid().size,
+          .cell = static_cast<double>(own.voxels.grid().cell),
+          .solid = own.voxels.solid(),
+          .lit = own.paths.lit(),
+          .rounds = own.paths.rounds()};
+}
+
+const vk::Buffer& PathMethod::field() const {
+  return parts_->field.field();
+}
+
+std::vector<glm::vec3> PathMethod::exitance_at(std::span<const glm::vec3> points) const {
+  return parts_->field.at(points);
+}
+
+}  // namespace quadgraph

@@ -1,0 +1,61 @@
+// The shortest-path method: what the display mesh, the material and the lights are now, to what leaves the surface
+// (docs/shortest-path.md).
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/graph/edit.h"
+#include "engine/graph/optical_grid.h"
+#include "engine/graph/solution.h"
+#include "engine/render/display_buffers.h"
+#include "engine/render/shadow_maps.h"
+
+namespace quadgraph {
+
+// An OpticalGrid that keeps what it has been given.
+struct GivenGrid {
+  OpticalGrid grid;
+  std::vector<gpu::Optical> optical;
+};
+
+// Makes what it needs of the device at the first solve.
+class PathMethod {
+ public:
+  explicit PathMethod(vk::Context& context);
+  ~PathMethod();
+
+  // As CellCosts.
+  void set(const gpu::Material& material);
+  void set(const OpticalGrid& grid);
+  void clear();
+  void set(std::span<const Edit> edits);
+
+  // Voxels, costs, light and paths of the mesh as it is now. `rest`: its vertices at rest, null where they are there.
+  // Throws InputError as CellCosts and check_options, SolverError as PathRelaxation.
+  PathReport solve(const DisplayBuffers& mesh, const vk::Buffer* rest, const ShadowMaps& shadows, float eta,
+                   const PathOptions& options);
+
+  // Of the last solve.
+  const std::vector<PassStats>& passes() const { return passes_; }
+  const vk::Buffer& field() const;                                              // gpu::PathField
+  std::vector<glm::vec3> exitance_at(std::span<const glm::vec3> points) const;  // W/mm^2
+
+ private:
+  struct Parts;
+
+  Parts& parts();
+  void light(const DisplayBuffers& mesh, const ShadowMaps& shadows, float eta);
+
+  vk::Context& context_;
+  std::vector<Edit> edits_;
+  std::optional<gpu::Material> material_;
+  std::optional<GivenGrid> grid_;
+  bool stale_ = true;  // the parts do not know the present coefficients
+  std::unique_ptr<Parts> parts_;
+  std::vector<PassStats> passes_;
+};
+
+}  // namespace quadgraph

@@ -1,0 +1,47 @@
+"""A mesh file as a .qgraph without levels: a surface to look at, which only the shortest-path method can show."""
+
+from __future__ import annotations
+
+import platform
+from pathlib import Path
+
+import numpy as np
+
+from quadgraph import __version__, display_map, mesh_io, qgraph_file, sections
+from quadgraph.surface import SourceMesh
+
+HEIGHT_MM = 100.0  # of a mesh that is shown without a word on its size
+SUFFIXES = mesh_io.SUFFIXES
+
+
+def is_mesh(path: Path) -> bool:
+    """Whether a file is a mesh, by its name."""
+    return path.suffix.lower() in SUFFIXES
+
+
+def write(mesh: Path, output: Path, unit: str | None = None, height_mm: float | None = None) -> SourceMesh:
+    """Write a mesh as it is, open, broken or not, with nothing repaired.
+
+    unit, height_mm: as mesh_io.read_surface. Raises InputError for a file that cannot be read.
+    """
+    source = mesh_io.read_surface(mesh, unit=unit, height_mm=height_mm)
+    surface = source.surface.compacted()
+    normals = display_map.vertex_normals(surface)
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    normals = np.where(length > 0.5, normals, [0.0, 0.0, 1.0])  # of vertices whose triangles have no area
+    metadata = {
+        "generator": f"quadgraph {__version__}",
+        "source": {
+            "name": source.name,
+            "sha256": source.sha256,
+            "vertices": source.vertices,
+            "triangles": source.triangles,
+        },
+        "unit_mm": source.unit_mm,
+        "mesher": {"name": "none", "version": "", "options": "", "grading": None},
+        "repairs": [],
+        "levels": [],
+        "tools": {"python": platform.python_version()},
+    }
+    qgraph_file.write(output, metadata, sections.display_alone(surface, normals))
+    return source
