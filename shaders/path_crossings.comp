@@ -6,6 +6,7 @@ layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { PathCrossingsPush push; };
 #define GRID push.grid
 #include "path_crossings.glsl"
+#include "path_tools.glsl"
 
 uint triangle;
 
@@ -13,7 +14,7 @@ void crossed(Crossing crossing) {
   uvec3 cell = crossing.column;
   float end = float(GRID.size[crossing.axis]);
   cell[crossing.axis] = uint(clamp(floor(crossing.at), 0.0, end - 1.0));
-  atomicOr(push.flags.at[cell_number(GRID, cell)], CELL_SURFACE);
+  if (!cut_away(push.tools, crossing_point(crossing))) atomicOr(push.flags.at[cell_number(GRID, cell)], CELL_SURFACE);
   atomicMax(push.triangle.at[cell_number(GRID, cell)], 1u + triangle);
   float behind = max(floor(crossing.at + 0.5), 0.0);
   if (behind >= end) return;

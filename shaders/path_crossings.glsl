@@ -9,6 +9,13 @@ struct Crossing {
 };
 void crossed(Crossing crossing);
 
+// mm.
+vec3 crossing_point(Crossing crossing) {
+  vec3 place = vec3(crossing.column) + 0.5;
+  place[crossing.axis] = crossing.at;
+  return GRID.origin + GRID.cell * place;
+}
+
 // Rounded as all passes round them, 1/PATH_SUBCELLS of a cell.
 ivec3 rounded(vec3 position) {
   return ivec3(round((position - GRID.origin) * (float(PATH_SUBCELLS) / GRID.cell)));

@@ -20,7 +20,7 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= cell_count(push.grid)) return;
   if (solid(i)) {
-    bool surface = (load_uint(push.flags, i) & CELL_SURFACE) != 0u;
+    bool surface = (load_uint(push.flags, i) & (CELL_SURFACE | CELL_CUT)) != 0u;
     push.field.at[i] = (surface ? 1.0 : FIELD_BELOW) * vec4(leaving(i), 1.0);
     return;
   }

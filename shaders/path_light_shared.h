@@ -26,7 +26,10 @@ struct PathEnterPush {
   uint light_count;
   float eta;
   float diffuse_transmittance;  // of a smooth surface under even light from outside
+  PathTools tools;  // where there are any, cells hide the light and not shadow maps, which know nothing of them
 };
+
+// The same push for path_enter_cut.comp: what enters the cells beside what is cut away.
 
 // surface_path.vert, surface_path.frag: radiance of the display mesh, from the cells.
 struct SurfacePathPush {

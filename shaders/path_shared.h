@@ -4,6 +4,7 @@
 #define QUADGRAPH_PATH_SHARED_H
 
 #include "edits.h"
+#include "path_tools.h"
 
 // Cells along the side of a block, which one workgroup of its square relaxes.
 #define PATH_BLOCK 8
@@ -25,6 +26,7 @@ const float PATH_FAR = 1e30f;
 const uint CELL_SOLID = 1u;    // a node of the graph
 const uint CELL_INSIDE = 2u;   // its middle is inside the surface
 const uint CELL_SURFACE = 4u;  // the surface crosses one of the three lines through its middle, within the cell
+const uint CELL_CUT = 8u;      // solid beside what is cut away
 
 // Cubes along the axes; cell (x, y, z) is number x + size.x (y + size.y z). Sizes are multiples of PATH_BLOCK.
 struct PathGrid {
@@ -69,6 +71,7 @@ struct PathCrossingsPush {
   QG_REF(Uints) triangle;   // per cell that the surface crosses: 1 + the largest of the triangles that do
   uint triangle_count;
   uint stripes;  // invocations per triangle and axis
+  PathTools tools;
 };
 
 // path_winding.comp: along the lines of one axis, in how many of its two directions a cell's middle is inside: where
@@ -93,6 +96,7 @@ struct PathSolidPush {
   QG_REF(Uints) flags;
   QG_REF(Uints) stamps;  // per block and channel; 0 where a cell of the block is solid
   QG_REF(Uints) counts;  // PathCounts
+  PathTools tools;
 };
 
 // path_flood.comp: for all cells one that the surface crosses, the nearest but for rare exceptions, by jump flooding
@@ -180,6 +184,7 @@ const float FIELD_BESIDE = 1e-6f;  // of the cells around, which hold means of t
 struct PathField {
   PathGrid grid;
   QG_REF(Vec4s) field;
+  PathTools tools;
 };
 
 #ifndef __cplusplus
@@ -190,7 +195,8 @@ PathField load_path_field(PathFields a) {
   if (!TEXELS) return a.at[0];
   uint t = texel_of(uvec2(a));
   PathGrid grid = PathGrid(uintBitsToFloat(texels3(t)), uintBitsToFloat(texel(t + 3u)), texels3(t + 4u));
-  return PathField(grid, Vec4s(texels2(t + 8u)));
+  PathTools tools = PathTools(PathToolList(texels2(t + 10u)), texel(t + 12u));
+  return PathField(grid, Vec4s(texels2(t + 8u)), tools);
 }
 #endif
 

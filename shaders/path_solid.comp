@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "path_shared.h"
+#include "path_tools.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { PathSolidPush push; };
@@ -17,7 +18,14 @@ void main() {
   if (i >= cell_count(push.grid)) return;
   uint flags = load_uint(push.flags, i);
   if (inside(i)) flags |= CELL_INSIDE;
-  if ((flags & (CELL_INSIDE | CELL_SURFACE)) == 0u) return;
+  vec3 middle = middle_of(push.grid, cell_at(push.grid, i));
+  if (cut_away(push.tools, middle)) flags = 0u;
+  if ((flags & (CELL_INSIDE | CELL_SURFACE)) == 0u) {
+    push.flags.at[i] = 0u;
+    return;
+  }
+  uint tool = nearest_tool(push.tools, middle);
+  if (tool != NO_TOOL && tool_distance(push.tools.at.at[tool], middle) < push.grid.cell) flags |= CELL_CUT;
   push.flags.at[i] = flags | CELL_SOLID;
   atomicAdd(push.counts.at[0], 1u);
   uvec3 blocks = push.grid.size / PATH_BLOCK, block = cell_at(push.grid, i) / PATH_BLOCK;

@@ -16,18 +16,70 @@ layout(location = 2) out vec4 unscattered;         // none, 1
 SurfaceScene scene;
 #include "environment.glsl"
 #include "path_field.glsl"
+#include "path_tools.glsl"
 #include "specular.glsl"
 
-// Open surfaces are seen from both sides.
+// Where a ray from the eye to `end` last leaves a tool: the point, and there the direction out of what is left; false
+// where it meets none.
+bool last_cut(PathTools tools, vec3 end, out vec3 point, out vec3 outward) {
+  vec3 way = end - scene.eye;
+  float latest = 0.0;
+  for (uint k = 0u; k < tools.count; ++k) {
+    PathTool tool = tools.at.at[k];
+    float from = 0.0, to = 1.0;
+    if (tool.kind == TOOL_SPHERE) {
+      vec3 off = scene.eye - tool.a;
+      float a = dot(way, way), b = dot(off, way), rest = b * b - a * (dot(off, off) - tool.b.x * tool.b.x);
+      if (rest <= 0.0) continue;
+      to = (sqrt(rest) - b) / a;
+      from = -(sqrt(rest) + b) / a;
+    } else {
+      // Between planes: one in front of it, two, or three pairs.
+      bool box = tool.kind == TOOL_BOX;
+      from = -1e30;
+      to = 1e30;
+      for (int axis = 0; axis < (box ? 3 : 1); ++axis) {
+        vec3 n = box ? vec3(axis == 0, axis == 1, axis == 2) : tool.a;
+        float middle = box ? tool.a[axis] : tool.b.x, half_width = box ? tool.b[axis] : tool.b.y;
+        float speed = dot(n, way), place = dot(n, scene.eye) - middle;
+        float inverse = abs(speed) > 1e-20 ? 1.0 / speed : 1e20;
+        float near = tool.kind == TOOL_PLANE ? (speed > 0.0 ? -place * inverse : -1e30) : -1e30;
+        float far = tool.kind == TOOL_PLANE ? (speed > 0.0 ? 1e30 : -place * inverse) : 1e30;
+        if (tool.kind != TOOL_PLANE) {
+          near = min((half_width - place) * inverse, (-half_width - place) * inverse);
+          far = max((half_width - place) * inverse, (-half_width - place) * inverse);
+        }
+        from = max(from, near);
+        to = min(to, far);
+      }
+    }
+    if (from >= to || to <= latest || to >= 1.0) continue;
+    latest = to;
+    point = scene.eye + to * way;
+    outward = -tool_gradient(tool, point);
+  }
+  return latest > 0.0;
+}
+
+// Open surfaces are seen from both sides. A side that is turned away from the eye is seen through a hole, or because
+// what lay before it has been cut away: then the cut face is what is seen, and it lies on the same ray.
 void main() {
   scene = load_scene(push.scene);
+  PathField field = load_path_field(path_push.field);
+  if (field.tools.count > 0u && cut_away(field.tools, position)) discard;
   place_roughness(rest);
-  vec3 v = normalize(scene.eye - position);
-  vec3 n = normalize(normal);
+  vec3 at = position, n = normalize(normal);
+  if (field.tools.count > 0u && !gl_FrontFacing) {
+    vec3 point, outward;
+    if (last_cut(field.tools, position, point, outward)) {
+      at = point;
+      n = outward;
+    }
+  }
+  vec3 v = normalize(scene.eye - at);
   if (dot(n, v) < 0.0) n = gl_FrontFacing ? normalize(n - 1.001 * dot(n, v) * v) : -n;
   float share = fresnel_transmittance(clamp(dot(n, v), 0.0, 1.0), scene.eta) / scene.radiance_norm;
-  vec3 exitance = path_exitance(load_path_field(path_push.field), position);
-  scattered_coverage = vec4(share * exitance, 1.0);
-  specular = vec4(specular_radiance(position, n, v, 1.0), 1.0);
+  scattered_coverage = vec4(share * path_exitance(field, at), 1.0);
+  specular = vec4(specular_radiance(at, n, v, 1.0), 1.0);
   unscattered = vec4(0.0, 0.0, 0.0, 1.0);
 }

@@ -13,11 +13,12 @@ ExitField::ExitField(vk::Context& context)
       pass_(context, path_field_comp, sizeof(gpu::PathFieldPush), "path field"),
       record_(context, sizeof(gpu::PathField), vk::Place::read, "path/field") {}
 
-void ExitField::run(const Voxels& voxels, const PathRelaxation& paths, std::vector<PassStats>& passes) {
+void ExitField::run(const Voxels& voxels, const PathRelaxation& paths, const gpu::PathTools& tools,
+                    std::vector<PassStats>& passes) {
   grid_ = voxels.grid();
   const std::uint64_t count = gpu::cell_count(grid_);
   make_room(context_, cells_, count * sizeof(glm::vec4), vk::Place::read, "path/field of cells");
-  const gpu::PathField record{grid_, cells_.address()};
+  const gpu::PathField record{grid_, cells_.address(), tools};
   const gpu::PathFieldPush push{grid_, voxels.cells().flags.address(), paths.lengths().address(), cells_.address()};
   run_pass(context_, "path field", 32 * count, passes, [&](vk::Commands& commands) {
     commands.update(record_, std::as_bytes(std::span(&record, 1)));

@@ -12,7 +12,8 @@ class ExitField {
  public:
   explicit ExitField(vk::Context& context);
 
-  void run(const Voxels& voxels, const PathRelaxation& paths, std::vector<PassStats>& passes);
+  void run(const Voxels& voxels, const PathRelaxation& paths, const gpu::PathTools& tools,
+           std::vector<PassStats>& passes);
 
   const vk::Buffer& field() const { return record_; }  // gpu::PathField, one
 

@@ -45,7 +45,7 @@ GivenVoxels voxels_of(vk::Context& context, std::span<const glm::vec3> vertices,
   std::vector<PassStats> passes;
   voxels.update({vertex_buffer, triangle_buffer, static_cast<std::uint32_t>(vertices.size()),
                  static_cast<std::uint32_t>(triangles.size())},
-                cells, passes);
+                cells, {}, passes);
   return {voxels.grid(), vk::download<std::uint32_t>(context, voxels.cells().flags)};
 }
 

@@ -53,7 +53,8 @@ void Voxels::fit(const PathMesh& mesh, std::uint32_t cells, std::vector<PassStat
   grid_ = grid_around(low, high, cells);
 }
 
-void Voxels::update(const PathMesh& mesh, std::uint32_t cells, std::vector<PassStats>& passes) {
+void Voxels::update(const PathMesh& mesh, std::uint32_t cells, const gpu::PathTools& tools,
+                    std::vector<PassStats>& passes) {
   fit(mesh, cells, passes);
   const std::uint64_t count = gpu::cell_count(grid_), blocks = block_count(grid_), word = sizeof(std::uint32_t);
   make_room(context_, crossings_, 3 * count * word, vk::Place::read, "path/crossings");
@@ -68,7 +69,8 @@ void Voxels::update(const PathMesh& mesh, std::uint32_t cells, std::vector<PassS
                                          flags_.address(),
                                          triangle_.address(),
                                          mesh.triangle_count,
-                                         stripes};
+                                         stripes,
+                                         tools};
   const std::uint64_t bytes = mesh.triangles.size() + 36ull * mesh.triangle_count + 8 * 3 * count * word;
   run_pass(context_, "voxels", bytes, passes, [&](vk::Commands& commands) {
     commands.fill(crossings_, 0);
@@ -84,7 +86,8 @@ void Voxels::update(const PathMesh& mesh, std::uint32_t cells, std::vector<PassS
     }
     commands.dispatch(
         solid_pass_,
-        gpu::PathSolidPush{grid_, crossings_.address(), flags_.address(), stamps_.address(), counts_.address()}, count);
+        gpu::PathSolidPush{grid_, crossings_.address(), flags_.address(), stamps_.address(), counts_.address(), tools},
+        count);
   });
   solid_ = vk::download<std::uint32_t>(context_, counts_)[0];
 }

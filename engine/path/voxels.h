@@ -34,8 +34,8 @@ class Voxels {
  public:
   explicit Voxels(vk::Context& context);
 
-  // Of a mesh, `cells` along its longest side. `passes` gets what it took.
-  void update(const PathMesh& mesh, std::uint32_t cells, std::vector<PassStats>& passes);
+  // Of a mesh, `cells` along its longest side, without what is cut away. `passes` gets what it took.
+  void update(const PathMesh& mesh, std::uint32_t cells, const gpu::PathTools& tools, std::vector<PassStats>& passes);
 
   const gpu::PathGrid& grid() const { return grid_; }
   SolidCells cells() const { return {grid_, flags_, stamps_}; }

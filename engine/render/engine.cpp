@@ -127,6 +127,18 @@ void Engine::set_edits(std::span<const Edit> edits) {
   implementation_->paths.set(edits);
 }
 
+void Engine::set_cuts(std::span<const BodyCut> cuts) {
+  for (std::size_t i = 0; i < cuts.size(); ++i) {
+    try {
+      check_cut(cuts[i]);
+    } catch (const InputError& error) {
+      throw InputError("cut " + std::to_string(i) + ", " + error.what());
+    }
+  }
+  implementation_->paths.set(cuts);
+  implementation_->cut = !cuts.empty();
+}
+
 void Engine::set_lights(std::vector<Light> lights) {
   for (const Light& light : lights) check_light(light);
   implementation_->images.load(lights);
@@ -197,6 +209,7 @@ void Engine::make_room(const SolveOptions& options) {
 SolveReport Engine::solve(const SolveOptions& options) {
   auto& self = *implementation_;
   const bool by_path = options.method == Method::shortest_path;
+  if (self.cut && !by_path) throw InputError("cuts: only the method shortest-path knows them");
   self.gather_passes.clear();
   self.deformation_passes.clear();
   if (!by_path && self.irradiance_stale) update_irradiance();

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/graph/cut.h"
 #include "engine/graph/deformer.h"
 #include "engine/graph/graph.h"
 #include "engine/graph/optical_grid.h"
@@ -80,6 +81,10 @@ class Engine {
 
   // As Simulation::set_edits.
   void set_edits(std::span<const Edit> edits);
+
+  // What is cut away, in the shape as it is shown; only shortest-path can. Throws InputError naming the cut and as
+  // check_cut.
+  void set_cuts(std::span<const BodyCut> cuts);
 
   // Reads the images of lights that have them, unless that has been done. Throws InputError as check_light and
   // read_image do.

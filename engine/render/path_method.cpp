@@ -10,6 +10,7 @@
 #include "engine/path/path_relaxation.h"
 #include "shaders/path_light_shared.h"
 #include "spirv/path_enter.comp.h"
+#include "spirv/path_enter_cut.comp.h"
 
 namespace quadgraph {
 
@@ -18,9 +19,16 @@ struct PathMethod::Parts {
   CellCosts costs;
   PathRelaxation paths;
   ExitField field;
-  std::array<std::optional<vk::ComputePass>, 2> enter;  // without shaped lights and with; made at first use
+  std::array<std::optional<vk::ComputePass>, 2> enter, enter_cut;  // without shaped lights and with; made at first use
 
   explicit Parts(vk::Context& context) : voxels(context), costs(context), paths(context), field(context) {}
+
+  const vk::ComputePass& enter_cut_pass(vk::Context& context, bool shaped) {
+    auto& pass = enter_cut[shaped ? 1 : 0];
+    if (pass) return *pass;
+    return pass.emplace(context, path_enter_cut_comp, static_cast<std::uint32_t>(sizeof(gpu::PathEnterPush)),
+                        "path enter cut", vk::ComputePass::default_workgroup_size, shaped ? 1u : 0u);
+  }
 
   const vk::ComputePass& enter_pass(vk::Context& context, bool shaped) {
     auto& pass = enter[shaped ? 1 : 0];
@@ -55,6 +63,12 @@ void PathMethod::set(std::span<const Edit> edits) {
   stale_ = true;
 }
 
+void PathMethod::set(std::span<const BodyCut> cuts) {
+  const std::vector<gpu::PathTool> tools = path_tools(cuts);
+  tool_count_ = static_cast<std::uint32_t>(tools.size());
+  tools_ = vk::upload<gpu::PathTool>(context_, tools, "path/cuts");
+}
+
 PathMethod::Parts& PathMethod::parts() {
   if (!parts_) parts_ = std::make_unique<Parts>(context_);
   if (!stale_) return *parts_;
@@ -84,12 +98,16 @@ void PathMethod::light(const DisplayBuffers& mesh, const ShadowMaps& shadows, fl
                                 .stripes = stripes,
                                 .light_count = shadows.light_count(),
                                 .eta = eta,
-                                .diffuse_transmittance = static_cast<float>(diffuse_transmittance(eta))};
+                                .diffuse_transmittance = static_cast<float>(diffuse_transmittance(eta)),
+                                .tools = tools()};
   run_pass(context_, "path light", mesh.triangles.size() + 36ull * mesh.triangle_count, passes_,
            [&](vk::Commands& commands) {
              commands.fill(own.paths.entering(), 0);
              commands.barrier();
              commands.dispatch(own.enter_pass(context_, shadows.shaped()), push, 3ull * stripes * mesh.triangle_count);
+             if (tool_count_ == 0) return;
+             commands.dispatch(own.enter_cut_pass(context_, shadows.shaped()), push,
+                               gpu::cell_count(own.voxels.grid()));
            });
 }
 
@@ -98,12 +116,12 @@ PathReport PathMethod::solve(const DisplayBuffers& mesh, const vk::Buffer* rest,
   Parts& own = parts();
   passes_.clear();
   const PathMesh triangles{mesh.vertices, mesh.triangles, mesh.vertex_count, mesh.triangle_count};
-  own.voxels.update(triangles, options.cells, passes_);
+  own.voxels.update(triangles, options.cells, tools(), passes_);
   own.paths.make_room(own.voxels.grid());
   own.costs.run(own.voxels, triangles, rest, options.cost, own.paths.cost(), passes_);
   light(mesh, shadows, eta);
   own.paths.solve(own.voxels.cells(), options.solver, passes_);
-  own.field.run(own.voxels, own.paths, passes_);
+  own.field.run(own.voxels, own.paths, tools(), passes_);
   return {.options = options,
           .size = own.voxels.grid().size,
           .cell = static_cast<double>(own.voxels.grid().cell),

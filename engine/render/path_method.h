@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/graph/cut.h"
 #include "engine/graph/edit.h"
 #include "engine/graph/optical_grid.h"
 #include "engine/graph/solution.h"
@@ -33,6 +34,9 @@ class PathMethod {
   void clear();
   void set(std::span<const Edit> edits);
 
+  // What is cut away from now on; checked before.
+  void set(std::span<const BodyCut> cuts);
+
   // Voxels, costs, light and paths of the mesh as it is now. `rest`: its vertices at rest, null where they are there.
   // Throws InputError as CellCosts and check_options, SolverError as PathRelaxation.
   PathReport solve(const DisplayBuffers& mesh, const vk::Buffer* rest, const ShadowMaps& shadows, float eta,
@@ -46,6 +50,7 @@ class PathMethod {
  private:
   struct Parts;
 
+  gpu::PathTools tools() const { return {tools_.address(), tool_count_}; }
   Parts& parts();
   void light(const DisplayBuffers& mesh, const ShadowMaps& shadows, float eta);
 
@@ -53,6 +58,8 @@ class PathMethod {
   std::vector<Edit> edits_;
   std::optional<gpu::Material> material_;
   std::optional<GivenGrid> grid_;
+  vk::Buffer tools_;  // gpu::PathTool
+  std::uint32_t tool_count_ = 0;
   bool stale_ = true;  // the parts do not know the present coefficients
   std::unique_ptr<Parts> parts_;
   std::vector<PassStats> passes_;

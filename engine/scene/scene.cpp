@@ -2,6 +2,7 @@
 
 #include "engine/graph/material.h"
 #include "engine/render/text.h"
+#include "engine/scene/cut_json.h"
 #include "engine/scene/deformer_json.h"
 #include "engine/scene/edit_json.h"
 #include "engine/scene/light_json.h"
@@ -191,6 +192,9 @@ Scene scene_from(const JsonField& document) {
   if (const auto deformation = document.find("deformation")) {
     for (const JsonField& deformer : deformation->items()) scene.deformation.push_back(deformer_from(deformer));
   }
+  if (const auto cuts = document.find("cuts")) {
+    for (const JsonField& cut : cuts->items()) scene.cuts.push_back(cut_from(cut));
+  }
   if (const auto camera = document.find("camera")) scene.view = view_from(*camera);
   if (const auto solver = document.find("solver")) scene.solve = solve_from(*solver);
   if (const auto picture = document.find("picture")) picture_from(*picture, scene.render, scene.tone);
@@ -198,9 +202,10 @@ Scene scene_from(const JsonField& document) {
 }
 
 Json to_json(const Scene& scene) {
-  Json edits = Json::array(), lights = Json::array(), deformation = Json::array();
+  Json edits = Json::array(), lights = Json::array(), deformation = Json::array(), cuts = Json::array();
   for (const Edit& edit : scene.edits) edits.push_back(to_json(edit));
   for (const Deformer& deformer : scene.deformation) deformation.push_back(to_json(deformer));
+  for (const BodyCut& cut : scene.cuts) cuts.push_back(to_json(cut));
   for (const Light& light : scene.lights) lights.push_back(to_json(light));
   return {{"quadgraph_scene", 1},
           {"body", scene.body.string()},
@@ -208,6 +213,7 @@ Json to_json(const Scene& scene) {
           {"edits", std::move(edits)},
           {"lights", std::move(lights)},
           {"deformation", std::move(deformation)},
+          {"cuts", std::move(cuts)},
           {"camera", view_json(scene.view)},
           {"solver", solve_json(scene.solve)},
           {"picture", picture_json(scene.render, scene.tone)}};

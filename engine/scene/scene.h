@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/graph/cut.h"
 #include "engine/graph/deformer.h"
 #include "engine/graph/edit.h"
 #include "engine/render/camera.h"
@@ -21,6 +22,7 @@ struct Scene {
   std::vector<Edit> edits{};              // of the material, one after the other
   std::vector<Light> lights{};
   std::vector<Deformer> deformation{};  // one after the other
+  std::vector<BodyCut> cuts{};          // away from the body as it is shown; only with shortest-path
   View view{};
   SolveOptions solve{};
   RenderOptions render{};

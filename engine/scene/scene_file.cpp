@@ -80,8 +80,8 @@ SceneFile SceneFile::load(const std::filesystem::path& path) {
 
 void SceneFile::check() {
   const JsonField field(document_, "");
-  field.allow({"quadgraph_scene", "body", "material", "edits", "lights", "deformation", "camera", "solver", "picture",
-               "frames", "frames_per_second", "tracks"});
+  field.allow({"quadgraph_scene", "body", "material", "edits", "lights", "deformation", "cuts", "camera", "solver",
+               "picture", "frames", "frames_per_second", "tracks"});
   if (const auto version = field.find("quadgraph_scene")) version->whole(format_version, format_version);
   tracks_.clear();
   first_view_.reset();

@@ -29,6 +29,10 @@ void Stage::show(const Scene& scene) {
     engine_->set_deformation(scene.deformation);
     scene_.deformation = scene.deformation;
   }
+  if (scene.cuts != scene_.cuts) {
+    engine_->set_cuts(scene.cuts);
+    scene_.cuts = scene.cuts;
+  }
   scene_ = scene;
 }
 

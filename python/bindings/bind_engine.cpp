@@ -7,6 +7,7 @@
 #include "engine/graph/error.h"
 #include "engine/render/default_lights.h"
 #include "engine/render/engine.h"
+#include "engine/scene/cut_json.h"
 #include "engine/scene/volume.h"
 #include "engine/vk/context.h"
 #include "engine/vk/copy_bandwidth.h"
@@ -345,6 +346,17 @@ void bind_engine(py::module_& module) {
           "Coefficients (nz, ny, nx, 3), 1/mm, at points `spacing` (3,) mm apart along x, y, z from `first` (3,) on, "
           "in "
           "the body at rest: what shortest-path takes in place of a material. The other methods keep theirs.")
+      .def(
+          "set_cuts",
+          [](Engine& engine, const std::string& json) {
+            const Json list = Json::parse(json, nullptr, false);
+            std::vector<BodyCut> cuts;
+            for (const JsonField& cut : JsonField(list, "cuts").items()) cuts.push_back(cut_from(cut));
+            engine.set_cuts(cuts);
+          },
+          py::arg("json"),
+          "What shortest-path cuts away, in the shape as it is shown: the JSON text of a list as in a scene file "
+          "(docs/shortest-path.md). Raises InputError.")
       .def(
           "exitance_at",
           [](const Engine& engine, const FloatArray& points) {

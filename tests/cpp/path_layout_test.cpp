@@ -23,12 +23,13 @@ TEST_CASE("the grid and the push constants of paths") {
   compare(path_crossings_comp, "PathCrossingsPush",
           {MEMBER(PathCrossingsPush, grid), MEMBER(PathCrossingsPush, vertices), MEMBER(PathCrossingsPush, triangles),
            MEMBER(PathCrossingsPush, crossings), MEMBER(PathCrossingsPush, flags), MEMBER(PathCrossingsPush, triangle),
-           MEMBER(PathCrossingsPush, triangle_count), MEMBER(PathCrossingsPush, stripes)});
+           MEMBER(PathCrossingsPush, tools), MEMBER(PathCrossingsPush, triangle_count),
+           MEMBER(PathCrossingsPush, stripes)});
   compare(path_winding_comp, "PathWindingPush",
           {MEMBER(PathWindingPush, grid), MEMBER(PathWindingPush, crossings), MEMBER(PathWindingPush, axis)});
   compare(path_solid_comp, "PathSolidPush",
           {MEMBER(PathSolidPush, grid), MEMBER(PathSolidPush, votes), MEMBER(PathSolidPush, flags),
-           MEMBER(PathSolidPush, stamps), MEMBER(PathSolidPush, counts)});
+           MEMBER(PathSolidPush, stamps), MEMBER(PathSolidPush, counts), MEMBER(PathSolidPush, tools)});
   compare(path_start_comp, "PathStartPush",
           {MEMBER(PathStartPush, grid), MEMBER(PathStartPush, flags), MEMBER(PathStartPush, entering),
            MEMBER(PathStartPush, paths), MEMBER(PathStartPush, stamps), MEMBER(PathStartPush, list),
@@ -52,4 +53,7 @@ TEST_CASE("the grid and the push constants of paths") {
   compare(path_field_comp, "PathFieldPush",
           {MEMBER(PathFieldPush, grid), MEMBER(PathFieldPush, flags), MEMBER(PathFieldPush, paths),
            MEMBER(PathFieldPush, field)});
+  compare(path_solid_comp, "PathTool", {MEMBER(PathTool, kind), MEMBER(PathTool, a), MEMBER(PathTool, b)});
+  compare(path_solid_comp, "PathTools", {MEMBER(PathTools, at), MEMBER(PathTools, count)});
+  CHECK(SpirvLayout(path_solid_comp).stride.at("PathTool") == sizeof(gpu::PathTool));
 }

@@ -133,10 +133,11 @@ TEST_CASE("what lights and shows the cells of shortest paths") {
   compare(path_enter_comp, "PathEnterPush",
           {MEMBER(PathEnterPush, grid), MEMBER(PathEnterPush, vertices), MEMBER(PathEnterPush, triangles),
            MEMBER(PathEnterPush, flags), MEMBER(PathEnterPush, entering), MEMBER(PathEnterPush, lights),
-           MEMBER(PathEnterPush, shapes), MEMBER(PathEnterPush, views), MEMBER(PathEnterPush, triangle_count),
-           MEMBER(PathEnterPush, stripes), MEMBER(PathEnterPush, light_count), MEMBER(PathEnterPush, eta),
-           MEMBER(PathEnterPush, diffuse_transmittance)});
-  compare(surface_path_frag, "PathField", {MEMBER(PathField, grid), MEMBER(PathField, field)});
+           MEMBER(PathEnterPush, shapes), MEMBER(PathEnterPush, views), MEMBER(PathEnterPush, tools),
+           MEMBER(PathEnterPush, triangle_count), MEMBER(PathEnterPush, stripes), MEMBER(PathEnterPush, light_count),
+           MEMBER(PathEnterPush, eta), MEMBER(PathEnterPush, diffuse_transmittance)});
+  compare(surface_path_frag, "PathField",
+          {MEMBER(PathField, grid), MEMBER(PathField, field), MEMBER(PathField, tools)});
   for (const vk::Spirv code : {vk::Spirv(surface_path_vert), vk::Spirv(surface_path_frag)}) {
     compare(code, "SurfacePathPush", {MEMBER(SurfacePathPush, surface), MEMBER(SurfacePathPush, field)});
   }

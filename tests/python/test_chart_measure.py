@@ -13,6 +13,7 @@ from quadgraph.chart.body import STEP_DEGREES, Body, light_at
 from quadgraph.chart.engine_methods import EngineMethod, engine_methods
 from quadgraph.chart.judge import Judge
 from quadgraph.chart.method import SWING, Chain
+from quadgraph.chart.path_method import PathMethod, path_methods
 from quadgraph.errors import InputError, SolverError, ToolError
 from quadgraph.reference.scene_bakes import Choice
 from quadgraph.reference.scenes import PIXELS, SCENES, Scene, View, pale
@@ -211,3 +212,27 @@ def test_default_methods_have_names_of_their_own_and_stay_on_the_chain(chain):
     assert any(method.inter_reflection for method in found) == (chain.seen is not None)
     assert {method.method for method in found} == {"fem", "quadgraph-fv", "quadgraph-fdm"}
     assert {method.solver for method in found} == {"fmg-pcg", "vcycle", "dpcg", "cascade", "jacobi"}
+
+
+def test_shortest_paths_are_on_the_chart(body):
+    methods = list(path_methods(body.chain))
+    assert [(m.cost, m.paths, m.cells) for m in methods[:4]] == [
+        ("transport", "eikonal", 64),
+        ("transport", "lattice", 64),
+        ("extinction", "eikonal", 64),
+        ("extinction", "lattice", 64),
+    ]
+    coarse, fine = (PathMethod(cells=cells) for cells in (16, 24))
+    for method in (coarse, fine):
+        method.prepare(body)
+        passes = method.frame(SWING[-1])
+        assert {"voxels", "path cost", "path light", "shortest paths", "surface"} <= set(passes)
+        assert method.exitance().shape == (1280, 3)
+    shown = fine.picture("A")
+    assert shown.shape == (PIXELS, PIXELS, 3)
+    assert (shown[body.coverage("A") > 0.999] > 0).mean() > 0.99
+    # The ball's coefficients: straight through it costs what they say.
+    along = body.engine(0, ("shortest-path",)).exitance_at([[0, 0, RADIUS], [0, 0, -RADIUS]])[:, 0]
+    sigma_s, sigma_a = (float(value[0, 0]) for value in BALL.in_channels(np.zeros((1, 3))))
+    sigma_tr = np.sqrt(3 * sigma_a * (sigma_a + sigma_s))
+    assert np.log(along[0] / along[1]) == pytest.approx(2 * RADIUS * sigma_tr, rel=0.15)

@@ -112,7 +112,7 @@ def test_material_moves_with_the_body(bare_engine):
     engine.set_deformation([{"type": "transform", "axis": [0, 1, 0], "degrees": 90, "translate": [30, 0, 5]}])
     engine.set_lights(["directional:1,0,0:1"])  # z turns into x
     solve(engine)
-    moved = engine.exitance_at(np.column_stack([points[:, 2], points[:, 1], -points[:, 0]]) + [30, 0, 5])
+    moved = engine.exitance_at(np.column_stack([points[:, 2], points[:, 1], -points[:, 0]]) + np.array([30, 0, 5]))
     assert np.sqrt(((moved - still) ** 2).mean()) < 0.02 * np.sqrt((still**2).mean())
     engine.set_deformation([])
     engine.set_lights(["directional:0,0,1:1"])

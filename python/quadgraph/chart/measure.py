@@ -19,9 +19,9 @@ Progress = Callable[[str], None]
 
 # What a frame consists of, by the passes of the engine and of others; the rest is the solver's.
 STAGES = {
-    "light": ("shadow maps", "irradiance"),
+    "light": ("shadow maps", "irradiance", "path light"),
     "source": ("source walk", "surface share", "right-hand side"),
-    "exitance": ("exitance", "energy"),
+    "exitance": ("exitance", "energy", "path field"),
     "picture": ("gather points", "uncollided", "gathered exitance", "gather scale", "surface", "resolve", "gather"),
 }
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from quadgraph.chart import dipole_method, engine_methods  # noqa: F401  registers them
+from quadgraph.chart import dipole_method, engine_methods, path_method  # noqa: F401  registers them
 from quadgraph.chart.body import Body
 from quadgraph.chart.judge import Judge, PdeTruths
 from quadgraph.chart.method import CHAIN, Method, methods
