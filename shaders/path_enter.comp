@@ -17,6 +17,16 @@ bool inside(uvec3 cell, uint axis, float at) {
   return (load_uint(push.flags, cell_number(GRID, cell)) & CELL_INSIDE) != 0u;
 }
 
+// Whether a cell or one that it shares a corner with is inside: then the surface here is no sheet.
+bool beside_inside(uvec3 cell) {
+  for (int k = 0; k < 27; ++k) {
+    ivec3 other = ivec3(cell) + ivec3(k % 3, k / 3 % 3, k / 9) - 1;
+    if (any(lessThan(other, ivec3(0))) || any(greaterThanEqual(other, ivec3(GRID.size)))) continue;
+    if ((load_uint(push.flags, cell_number(GRID, uvec3(other))) & CELL_INSIDE) != 0u) return true;
+  }
+  return false;
+}
+
 void crossed(Crossing crossing) {
   uvec3 cell = crossing.column;
   cell[crossing.axis] = uint(clamp(floor(crossing.at), 0.0, float(GRID.size[crossing.axis]) - 1.0));
@@ -27,7 +37,7 @@ void crossed(Crossing crossing) {
   bool behind = inside(crossing.column, crossing.axis, floor(crossing.at + 0.5));
   vec3 outward = (normal[crossing.axis] > 0.0) == before ? normal : -normal;
   vec3 entering = entering_at(position, before == behind ? normal : outward);
-  if (before == behind) entering = max(entering, entering_at(position, -normal));
+  if (before == behind && !beside_inside(cell)) entering = max(entering, entering_at(position, -normal));
   enter(cell_number(GRID, cell), entering);
 }
 
