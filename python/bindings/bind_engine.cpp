@@ -57,73 +57,6 @@ py::list as_list(const std::vector<PassStats>& passes) {
   return list;
 }
 
-ToneOptions tone_options(const std::string& exposure, const std::string& background) {
-  ToneOptions options;
-  options.exposure_stops = parse_exposure(exposure);
-  parse_background(background, options);
-  return options;
-}
-
-py::array pixels(const Picture& picture, const std::vector<float>& values, py::ssize_t channels, py::handle owner) {
-  std::vector<py::ssize_t> shape = {picture.height, picture.width};
-  if (channels > 1) shape.push_back(channels);
-  return view(values.data(), std::move(shape), owner);
-}
-
-// One of the RGB layers of a picture.
-template <std::vector<float> Picture::* layer>
-py::array rgb_layer(py::object self) {
-  const auto& picture = self.cast<const Picture&>();
-  return pixels(picture, picture.*layer, 3, self);
-}
-
-void bind_picture(py::module_& module) {
-  py::class_<Picture>(module, "Picture", "Linear radiance in W/(mm^2 sr), premultiplied by alpha; top row first.")
-      .def_property_readonly("scattered", &rgb_layer<&Picture::scattered>,
-                             "(h, w, 3): light that was scattered in the body.")
-      .def_property_readonly("specular", &rgb_layer<&Picture::specular>, "(h, w, 3): light reflected by the surface.")
-      .def_property_readonly("unscattered", &rgb_layer<&Picture::unscattered>,
-                             "(h, w, 3): light that crossed the body without being scattered.")
-      .def_property_readonly("transmittance", &rgb_layer<&Picture::transmittance>,
-                             "(h, w, 3): share of what is behind the body that is seen through it.")
-      .def_property_readonly(
-          "alpha",
-          [](py::object self) {
-            const auto& picture = self.cast<const Picture&>();
-            return pixels(picture, picture.alpha, 1, self);
-          },
-          "(h, w): share of the pixel that the object covers.")
-      .def_property_readonly(
-          "surroundings",
-          [](py::object self) -> py::object {
-            const auto& picture = self.cast<const Picture&>();
-            if (picture.surroundings.empty()) return py::none();
-            return pixels(picture, picture.surroundings, 3, self);
-          },
-          "(h, w, 3), W/(mm^2 sr): what is behind the body where environment lights are seen, else None.")
-      .def(
-          "srgb",
-          [](const Picture& picture, const std::string& exposure, const std::string& background) {
-            return srgb_array(picture, tone_options(exposure, background));
-          },
-          py::arg("exposure") = "auto", py::arg("background") = "studio", "Tone mapped, (h, w, 3) uint8 sRGB.")
-      .def(
-          "write_png",
-          [](const Picture& picture, const std::filesystem::path& path, const Metadata& metadata,
-             const std::string& exposure,
-             const std::string& background) { write_png(path, picture, tone_options(exposure, background), metadata); },
-          py::arg("path"), py::arg("metadata") = Metadata{}, py::arg("exposure") = "auto",
-          py::arg("background") = "studio")
-      .def(
-          "write_exr",
-          [](const Picture& picture, const std::filesystem::path& path, const Metadata& metadata,
-             const std::string& exposure) {
-            write_exr(path, picture, {.exposure_stops = parse_exposure(exposure)}, metadata);
-          },
-          py::arg("path"), py::arg("metadata") = Metadata{}, py::arg("exposure") = "auto",
-          "Linear and not exposed; `exposure` is only noted in its attributes.");
-}
-
 std::unique_ptr<Engine> make_engine(const std::filesystem::path& path, const std::string& device, bool validation) {
   return std::make_unique<Engine>(path, vk::ContextOptions{validation, device});
 }
@@ -246,15 +179,7 @@ py::dict copy_bandwidth(const std::string& device) {
 
 }  // namespace
 
-py::array_t<std::uint8_t> srgb_array(const Picture& picture, const ToneOptions& options) {
-  const std::vector<std::uint8_t> rgb = to_srgb8(picture, options);
-  py::array_t<std::uint8_t> array({py::ssize_t{picture.height}, py::ssize_t{picture.width}, py::ssize_t{3}});
-  std::copy(rgb.begin(), rgb.end(), array.mutable_data());
-  return array;
-}
-
 void bind_engine(py::module_& module) {
-  bind_picture(module);
   module.def(
       "default_lights", &default_light_texts, py::arg("view") = "", py::arg("up") = "y",
       "The lights a picture gets when nobody asks for others: warm from behind `view`, cool from the side, a little "

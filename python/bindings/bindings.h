@@ -22,6 +22,7 @@ namespace quadgraph::python {
 void bind_graph(pybind11::module_& module);
 void bind_materials(pybind11::module_& module);
 void bind_reference(pybind11::module_& module);
+void bind_picture(pybind11::module_& module);
 void bind_engine(pybind11::module_& module);
 void bind_scene(pybind11::module_& module);
 void bind_path(pybind11::module_& module);

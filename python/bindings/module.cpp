@@ -158,6 +158,7 @@ PYBIND11_MODULE(_core, module) {
   quadgraph::python::bind_reference(module);
   quadgraph::python::bind_deformation(module);
   quadgraph::python::bind_path(module);
+  quadgraph::python::bind_picture(module);
   quadgraph::python::bind_engine(module);
   quadgraph::python::bind_scene(module);
 }
