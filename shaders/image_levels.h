@@ -47,7 +47,13 @@ QG_INLINE ImageTap image_tap(ImageLevels image, vec2 place, float texels) {
   uvec2 high = min(low + uvec2(1u), size - uvec2(1u));
   uint upper = first + low.y * size.x;
   uint lower = first + high.y * size.x;
-  return ImageTap(upper + low.x, upper + high.x, lower + low.x, lower + high.x, texel - vec2(low));
+  ImageTap tap;
+  tap.upper_left = upper + low.x;
+  tap.upper_right = upper + high.x;
+  tap.lower_left = lower + low.x;
+  tap.lower_right = lower + high.x;
+  tap.share = texel - vec2(low);
+  return tap;
 }
 
 QG_INLINE vec3 mixed(ImageTap tap, vec3 upper_left, vec3 upper_right, vec3 lower_left, vec3 lower_right) {
