@@ -108,7 +108,7 @@ class Hand:
         seen = time.monotonic() + 3
         while not self.busy() and time.monotonic() < seen:
             time.sleep(0.02)
-        deadline = time.monotonic() + 20
+        deadline = time.monotonic() + 60
         while self.busy():
             assert time.monotonic() < deadline, "the picture does not settle"
             time.sleep(0.05)
