@@ -23,17 +23,11 @@ struct PathMethod::Parts {
 
   explicit Parts(vk::Context& context) : voxels(context), costs(context), paths(context), field(context) {}
 
-  const vk::ComputePass& enter_cut_pass(vk::Context& context, bool shaped) {
-    auto& pass = enter_cut[shaped ? 1 : 0];
+  const vk::ComputePass& enter_pass(vk::Context& context, bool cuts, bool shaped) {
+    auto& pass = (cuts ? enter_cut : enter)[shaped ? 1 : 0];
     if (pass) return *pass;
-    return pass.emplace(context, path_enter_cut_comp, static_cast<std::uint32_t>(sizeof(gpu::PathEnterPush)),
-                        "path enter cut", vk::ComputePass::default_workgroup_size, shaped ? 1u : 0u);
-  }
-
-  const vk::ComputePass& enter_pass(vk::Context& context, bool shaped) {
-    auto& pass = enter[shaped ? 1 : 0];
-    if (pass) return *pass;
-    return pass.emplace(context, path_enter_comp, static_cast<std::uint32_t>(sizeof(gpu::PathEnterPush)), "path enter",
+    return pass.emplace(context, cuts ? std::span<const std::uint32_t>(path_enter_cut_comp) : path_enter_comp,
+                        static_cast<std::uint32_t>(sizeof(gpu::PathEnterPush)), cuts ? "path enter cut" : "path enter",
                         vk::ComputePass::default_workgroup_size, shaped ? 1u : 0u);
   }
 };
@@ -104,9 +98,10 @@ void PathMethod::light(const DisplayBuffers& mesh, const ShadowMaps& shadows, fl
            [&](vk::Commands& commands) {
              commands.fill(own.paths.entering(), 0);
              commands.barrier();
-             commands.dispatch(own.enter_pass(context_, shadows.shaped()), push, 3ull * stripes * mesh.triangle_count);
+             commands.dispatch(own.enter_pass(context_, false, shadows.shaped()), push,
+                               3ull * stripes * mesh.triangle_count);
              if (tool_count_ == 0) return;
-             commands.dispatch(own.enter_cut_pass(context_, shadows.shaped()), push,
+             commands.dispatch(own.enter_pass(context_, true, shadows.shaped()), push,
                                gpu::cell_count(own.voxels.grid()));
            });
 }

@@ -289,12 +289,7 @@ def _metadata(prepared: Prepared, levels: list[Level], options: BakeOptions) -> 
         grading = DEFAULT_GRADING if options.grading is None else options.grading
     return {
         "generator": f"quadgraph {__version__}",
-        "source": {
-            "name": source.name,
-            "sha256": source.sha256,
-            "vertices": source.vertices,
-            "triangles": source.triangles,
-        },
+        "source": source.metadata(),
         "unit_mm": source.unit_mm,
         "mesher": {"name": mesher.name, "version": mesher.version, "options": mesher.options, "grading": grading},
         "options": {key: getattr(options, key) for key in _OPTIONS},

@@ -31,12 +31,7 @@ def write(mesh: Path, output: Path, unit: str | None = None, height_mm: float | 
     normals = np.where(length > 0.5, normals, [0.0, 0.0, 1.0])  # of vertices whose triangles have no area
     metadata = {
         "generator": f"quadgraph {__version__}",
-        "source": {
-            "name": source.name,
-            "sha256": source.sha256,
-            "vertices": source.vertices,
-            "triangles": source.triangles,
-        },
+        "source": source.metadata(),
         "unit_mm": source.unit_mm,
         "mesher": {"name": "none", "version": "", "options": "", "grading": None},
         "repairs": [],

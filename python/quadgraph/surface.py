@@ -175,6 +175,10 @@ class SourceMesh:
     vertices: int
     triangles: int
 
+    def metadata(self) -> dict[str, str | int]:
+        """What a .qgraph keeps of it as `source`."""
+        return {key: getattr(self, key) for key in ("name", "sha256", "vertices", "triangles")}
+
 
 @dataclass(frozen=True)
 class Repair:

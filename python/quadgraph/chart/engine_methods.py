@@ -10,6 +10,7 @@ import numpy as np
 
 from quadgraph.chart.body import Body, light_at
 from quadgraph.chart.method import SETTLED, SWING, Chain, Method, bake_settings, register
+from quadgraph.commands.report import ms_by_pass
 from quadgraph.reference.scene_bakes import Choice
 from quadgraph.reference.scenes import FOV, PIXELS
 
@@ -80,10 +81,7 @@ class EngineMethod:
         self._engine.set_lights([light_at(self._body.scene, step)])
         self._engine.solve(**self._options)
         self._show(next(iter(self._body.scene.views.values())).text, self._body.pixels)
-        passes: dict[str, float] = {}
-        for entry in self._engine.passes:
-            passes[entry["name"]] = passes.get(entry["name"], 0.0) + entry["time_ms"]
-        return passes
+        return ms_by_pass(self._engine.passes)
 
     def exitance(self) -> np.ndarray:
         """(n_f, 3) W/mm^2."""

@@ -10,6 +10,7 @@ import numpy as np
 
 from quadgraph.chart.body import Body, light_at
 from quadgraph.chart.method import SWING, Chain, Method, bake_settings, register
+from quadgraph.commands.report import ms_by_pass
 from quadgraph.reference.scenes import FOV, PIXELS, bounding_sphere
 
 if TYPE_CHECKING:
@@ -64,10 +65,7 @@ class PathMethod:
         self._engine.set_lights([light_at(self._body.scene, step)])
         self._engine.solve(method="shortest-path", path_cost=self.cost, path_solver=self.paths, path_cells=self.cells)
         self._show(next(iter(self._body.scene.views.values())).text, self._body.pixels)
-        passes: dict[str, float] = {}
-        for entry in self._engine.passes:
-            passes[entry["name"]] = passes.get(entry["name"], 0.0) + entry["time_ms"]
-        return passes
+        return ms_by_pass(self._engine.passes)
 
     def exitance(self) -> np.ndarray:
         """(n_f, 3) W/mm^2, at the middles of the faces of level 0."""

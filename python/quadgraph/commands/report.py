@@ -80,6 +80,14 @@ def pass_table(passes: list[dict]) -> Table:
     return table
 
 
+def ms_by_pass(passes: list[dict]) -> dict[str, float]:
+    """Of passes that a frame has more than once, together."""
+    total: dict[str, float] = {}
+    for entry in passes:
+        total[entry["name"]] = total.get(entry["name"], 0.0) + entry["time_ms"]
+    return total
+
+
 def bandwidth(entry: dict) -> float:
     """GB/s of a pass; 0 if it took no measurable time."""
     return entry["bytes"] / entry["time_ms"] * 1e-6 if entry["time_ms"] > 0 else 0.0

@@ -20,6 +20,7 @@ from quadgraph.benchmark.passes import PICTURE_PASSES
 from quadgraph.chart.measure import stages
 from quadgraph.chart.method import SWING
 from quadgraph.commands.device_memory import SHOWN
+from quadgraph.commands.report import ms_by_pass
 from quadgraph.commands.scene import load_core
 from quadgraph.errors import SolverError
 from quadgraph.reference.surface_errors import unlit_part
@@ -120,10 +121,7 @@ class Runner:
         self.engine.set_lights([light(step)])
         self.report = self.engine.solve(**self.way.frame)
         self.engine.render(width=self.pixels, height=self.pixels, radiance=self.way.radiance)
-        passes: dict[str, float] = {}
-        for entry in self.engine.passes:
-            passes[entry["name"]] = passes.get(entry["name"], 0.0) + entry["time_ms"]
-        return passes
+        return ms_by_pass(self.engine.passes)
 
     def error(self, judged: Judge) -> dict[str, float]:
         """Of the last solve, against the same equations solved."""
