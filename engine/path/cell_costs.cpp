@@ -39,9 +39,9 @@ void CellCosts::set(std::span<const Edit> edits) {
   const EditArrays arrays(edits);
   edit_count_ = static_cast<std::uint32_t>(arrays.edits.size());
   wants_depth_ = arrays.wants_depth();
-  edits_ = vk::upload<gpu::MaterialEdit>(context_, arrays.edits, "path/edits");
-  points_ = vk::upload<glm::vec3>(context_, arrays.points, "path/strokes");
-  texels_ = vk::upload<glm::vec3>(context_, arrays.texels, "path/images");
+  vk::rewrite<gpu::MaterialEdit>(context_, arrays.edits, "path/edits", edits_);
+  vk::rewrite<glm::vec3>(context_, arrays.points, "path/strokes", points_);
+  vk::rewrite<glm::vec3>(context_, arrays.texels, "path/images", texels_);
 }
 
 const vk::Buffer& CellCosts::flood(const Voxels& voxels, std::vector<PassStats>& passes) {

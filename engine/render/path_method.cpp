@@ -60,7 +60,7 @@ void PathMethod::set(std::span<const Edit> edits) {
 void PathMethod::set(std::span<const BodyCut> cuts) {
   const std::vector<gpu::PathTool> tools = path_tools(cuts);
   tool_count_ = static_cast<std::uint32_t>(tools.size());
-  tools_ = vk::upload<gpu::PathTool>(context_, tools, "path/cuts");
+  vk::rewrite<gpu::PathTool>(context_, tools, "path/cuts", tools_);
 }
 
 PathMethod::Parts& PathMethod::parts() {
