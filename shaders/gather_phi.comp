@@ -9,5 +9,5 @@ layout(push_constant, scalar) uniform Block { GatherPhiPush push; };
 void main() {
   uint v = gl_GlobalInvocationID.x;
   if (v >= push.count) return;
-  push.points.at[v].phi = load_field(push.x, v).phi * load_scale(push.scale).scale;
+  push.points.at[v].phi = load_vec3_or_one(push.to_phi, v) * load_field(push.x, v).phi * load_scale(push.scale).scale;
 }

@@ -94,9 +94,10 @@ GatherScale load_gather_scale(GatherScales a, uint i) {
 }
 #endif
 
-// gather_phi.comp: phi of the points from the solution of linear elements.
+// gather_phi.comp: phi of the points from a solution at the vertices.
 struct GatherPhiPush {
   QG_REF(Fields) x;
+  QG_REF(Vec3s) to_phi;  // null: 1
   QG_REF(Scales) scale;
   QG_REF(GatherPoints) points;
   uint count;
@@ -142,6 +143,13 @@ struct GatherScalePush {
   QG_REF(Uints) face_incidence;
   QG_REF(Vec3s) gathered;
   QG_REF(GatherNodes) nodes;
+  QG_REF(GatherScales) scale;
+  uint count;
+};
+
+// gather_single.comp: scale at surface vertices that adds what is gathered, as it is, to the exitance.
+struct GatherSinglePush {
+  QG_REF(Vec3s) exitance;  // W/mm^2 per surface vertex
   QG_REF(GatherScales) scale;
   uint count;
 };

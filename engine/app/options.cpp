@@ -129,7 +129,8 @@ void declare_picture(CLI::App& app, Typed& typed) {
       ->group("Picture");
   app.add_option("--radiance", typed.radiance,
                  "gathered (one more step of transport along every view ray), lambertian (the same from every side but "
-                 "for Fresnel), or auto: gathered where it can be (fem, buried)")
+                 "for Fresnel), single (that, and light scattered once along the view ray), or auto: gathered where it "
+                 "can be (fem and polygrids, buried)")
       ->capture_default_str()
       ->group("Picture");
   app.add_option(

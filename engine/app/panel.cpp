@@ -152,7 +152,7 @@ void draw_solver(State& state) {
 void draw_picture(State& state, const Measured& measured) {
   if (!section("Picture", false)) return;
   choose("radiance", state.scene.render.radiance,
-         std::array{Radiance::automatic, Radiance::gathered, Radiance::lambertian});
+         std::array{Radiance::automatic, Radiance::gathered, Radiance::lambertian, Radiance::single});
   ImGui::Checkbox("ground", &state.scene.render.ground);
   ImGui::SameLine();
   ImGui::Checkbox("surroundings", &state.scene.render.surroundings);

@@ -28,8 +28,10 @@ void check_roughness(float roughness) {
                    " to 1");
 }
 
-constexpr std::pair<Radiance, std::string_view> radiance_names[] = {
-    {Radiance::gathered, "gathered"}, {Radiance::lambertian, "lambertian"}, {Radiance::automatic, "auto"}};
+constexpr std::pair<Radiance, std::string_view> radiance_names[] = {{Radiance::gathered, "gathered"},
+                                                                    {Radiance::lambertian, "lambertian"},
+                                                                    {Radiance::single, "single"},
+                                                                    {Radiance::automatic, "auto"}};
 
 }  // namespace
 
@@ -51,7 +53,7 @@ Radiance radiance_from_name(std::string_view name) {
   for (const auto& [radiance, text] : radiance_names) {
     if (text == name) return radiance;
   }
-  throw InputError("radiance '" + std::string(name) + "': allowed are gathered, lambertian, auto");
+  throw InputError("radiance '" + std::string(name) + "': allowed are gathered, lambertian, single, auto");
 }
 
 std::string_view name_of(Radiance radiance) {
@@ -201,7 +203,7 @@ void Engine::make_room(const SolveOptions& options) {
   auto& self = *implementation_;
   if (options.method == Method::shortest_path) return static_cast<void>(solve(options));
   if (self.irradiance_stale) update_irradiance();
-  const bool gathered = options.method == Method::fem && options.source == Source::buried;
+  const bool gathered = gathers(options.method, options.source);
   self.levels().make_room(options, gathered);
   if (gathered) self.display_room();
 }
@@ -249,8 +251,7 @@ const PictureBuffers& Engine::draw(const View& view, const RenderOptions& option
   self.legend.reset();
   const auto& map = options.roughness_map;
   self.images.set_roughness(options.roughness, map ? map->roughness : 0);
-  const bool gathered = self.draw_surface(camera, options);
-  self.radiance = gathered ? Radiance::gathered : Radiance::lambertian;
+  self.radiance = self.draw_surface(camera, options);
   if (options.ground) {
     if (!self.ground) self.ground.emplace(self.context);
     self.render_passes.push_back(self.ground->run(self.mesh, self.bounds, view, camera, self.rasteriser.picture()));
@@ -285,7 +286,7 @@ std::optional<Picked> Engine::pick(const View& view, float aspect, const glm::ve
 Leaving Engine::leaving(std::span<const std::uint32_t> face, std::span<const glm::vec3> direction) {
   auto& self = *implementation_;
   if (!self.report) throw InputError("radiance: solve first");
-  const GatherField& field = self.gather();
+  const GatherField& field = self.gather(Gather::scaled);
   if (!self.probe) self.probe.emplace(self.context);
   return self.probe->run(self.levels().present_level(), field, self.eta, face, direction);
 }

@@ -30,12 +30,13 @@ namespace quadgraph {
 
 // How radiance leaves the surface.
 enum class Radiance {
-  gathered,    // one more step of transport along every view ray, scaled to the exitance; fem with the buried source
+  gathered,    // one more step of transport along every view ray, scaled to the exitance; where that is possible
   lambertian,  // the same from every side but for Fresnel
-  automatic,   // "auto": gathered where that is possible
+  single,      // that, and light scattered once along the view ray, as the polygrid paper adds it
+  automatic,   // "auto": gathered, else lambertian
 };
 
-// "gathered", "lambertian", "auto". Throws InputError listing the allowed names.
+// "gathered", "lambertian", "single", "auto". Throws InputError listing the allowed names.
 Radiance radiance_from_name(std::string_view name);
 std::string_view name_of(Radiance radiance);
 

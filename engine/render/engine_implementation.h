@@ -128,22 +128,22 @@ struct Engine::Implementation {
             map.roughness};
   }
 
-  const GatherField& gather() {
+  const GatherField& gather(Gather what) {
     std::vector<PassStats> passes;
-    const GatherField& field = levels().gather(passes);
+    const GatherField& field = levels().gather(what, passes);
     if (!passes.empty()) gather_passes = std::move(passes);
     display_room();
     return field;
   }
 
-  // The body as it looks; whether its radiance was gathered.
-  bool draw_surface(const Camera& camera, const RenderOptions& render) {
+  // The body as it looks; how its radiance left, never automatic.
+  Radiance draw_surface(const Camera& camera, const RenderOptions& render) {
     std::optional<PlacedRoughness> placed;
     if (render.roughness_map) placed.emplace(placed_roughness(*render.roughness_map));
     const PlacedRoughness* there = placed ? &*placed : nullptr;
     if (report->path) {
-      if (render.radiance == Radiance::gathered) {
-        throw InputError("radiance: with shortest-path it cannot be gathered, allowed are lambertian, auto");
+      if (render.radiance == Radiance::gathered || render.radiance == Radiance::single) {
+        throw InputError("radiance: with shortest-path nothing is gathered, allowed are lambertian, auto");
       }
       if (shadows_stale) cast_shadows();
       render_passes = rasteriser.run(PathInput{.mesh = mesh,
@@ -153,11 +153,15 @@ struct Engine::Implementation {
                                                .roughness = render.roughness,
                                                .placed_roughness = there},
                                      camera, render.width, render.height);
-      return false;
+      return Radiance::lambertian;
     }
     std::optional<GatherView> view_rays;
-    if (render.radiance == Radiance::gathered || (render.radiance == Radiance::automatic && simulation->can_gather())) {
-      const GatherField& field = gather();
+    Radiance leaves = render.radiance;
+    if (leaves == Radiance::automatic) {
+      leaves = simulation->can_gather() ? Radiance::gathered : Radiance::lambertian;
+    }
+    if (leaves != Radiance::lambertian) {
+      const GatherField& field = gather(leaves == Radiance::single ? Gather::single : Gather::scaled);
       view_rays.emplace(field, triangle_face);
     }
     render_passes = rasteriser.run(RasterInput{.mesh = mesh,
@@ -170,7 +174,7 @@ struct Engine::Implementation {
                                                .placed_roughness = there,
                                                .gather = view_rays ? &*view_rays : nullptr},
                                    camera, render.width, render.height);
-    return view_rays.has_value();
+    return leaves;
   }
 
   void display_room() {

@@ -35,10 +35,26 @@ GatherField::GatherField(vk::Context& context, const Level& level, const BodyTre
 }
 
 void GatherField::record(Workspace& work, const GatherInput& input) {
+  record_body(work, input);
+  record_points(work, input);
+  record_uncollided(work, input);
+  record_scale(work, input);
+}
+
+void GatherField::record_single(Workspace& work, const GatherInput& input) {
+  record_body(work, input);
+  work.recorder.fill(points_, 0);
+  record_uncollided(work, input);
+  const gpu::GatherSinglePush single{.exitance = input.vertex_exitance.address(),
+                                     .scale = scale_.address(),
+                                     .count = input.level.surface_vertex_count};
+  work.recorder.dispatch(work.passes.gather_single, single, single.count, "gather scale",
+                         single.count * (vec3_bytes + sizeof(gpu::GatherScale)));
+}
+
+void GatherField::record_body(Workspace& work, const GatherInput& input) {
   write_solid(work.recorder.context(), {input.body, input.tree.ref()});
   input.tree.record(work, input.level);
-  record_points(work, input);
-  record_scale(work, input);
 }
 
 void GatherField::write_solid(vk::Context& context, const gpu::SolidRef& solid) {
@@ -50,11 +66,16 @@ void GatherField::write_solid(vk::Context& context, const gpu::SolidRef& solid) 
 void GatherField::record_points(Workspace& work, const GatherInput& input) {
   const LevelBuffers& level = input.level;
   const gpu::GatherPhiPush phi{.x = input.op.x.address(),
+                               .to_phi = input.op.to_phi.address(),
                                .scale = work.scale.address(),
                                .points = points_.address(),
                                .count = level.vertex_count};
   work.recorder.dispatch(work.passes.gather_phi.of(input.op.model), phi, level.vertex_count, "gather points",
                          level.vertex_count * (vec3_bytes + input.op.field_bytes()));
+}
+
+void GatherField::record_uncollided(Workspace& work, const GatherInput& input) {
+  const LevelBuffers& level = input.level;
   const gpu::UncollidedPush uncollided{.body = solid_on_device_.address(),
                                        .start = start_.address(),
                                        .nearest = nearest_.address(),

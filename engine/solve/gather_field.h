@@ -15,7 +15,7 @@
 
 namespace quadgraph {
 
-// A solved buried source by linear elements, on the finest level.
+// What was solved, on the finest level.
 struct GatherInput {
   const LevelBuffers& level;
   const OperatorBuffers& op;
@@ -33,6 +33,10 @@ class GatherField {
   // Fluence of both kinds at the vertices, exitance of what is gathered, and their scale.
   void record(Workspace& work, const GatherInput& input);
 
+  // Unscattered fluence alone, as it is, beside the exitance: what view rays then gather is scattered once (Jensen et
+  // al. 2001, Eq. 6, along one refracted ray and with an isotropic phase function).
+  void record_single(Workspace& work, const GatherInput& input);
+
   const gpu::SolidRef& solid() const { return solid_; }  // as it was last recorded
   const vk::Buffer& solid_on_device() const { return solid_on_device_; }
   const vk::Buffer& points() const { return points_; }      // GatherPoint per vertex
@@ -41,7 +45,9 @@ class GatherField {
 
  private:
   void write_solid(vk::Context& context, const gpu::SolidRef& solid);
+  void record_body(Workspace& work, const GatherInput& input);
   void record_points(Workspace& work, const GatherInput& input);
+  void record_uncollided(Workspace& work, const GatherInput& input);
   void record_scale(Workspace& work, const GatherInput& input);
   void record_nodes(Workspace& work, const GatherInput& input);
 

@@ -60,6 +60,7 @@
 #include "spirv/gather_phi.comp.h"
 #include "spirv/gather_phi_sp3.comp.h"
 #include "spirv/gather_scale.comp.h"
+#include "spirv/gather_single.comp.h"
 #include "spirv/grid_material.comp.h"
 #include "spirv/irradiance_scale.comp.h"
 #include "spirv/prolong.comp.h"
@@ -123,6 +124,7 @@ Passes::Passes()
       ONE_PASS(gather_exitance, GatherExitancePush, each),
       ONE_PASS(gather_nodes, GatherNodesPush, each),
       ONE_PASS(gather_scale, GatherScalePush, each),
+      ONE_PASS(gather_single, GatherSinglePush, each),
       ONE_PASS(exchange, ExchangePush, each),
       ONE_PASS(exchange_finer, ExchangeFinerPush, each),
       ONE_PASS(exchange_enter, ExchangeEnterPush, each),

@@ -57,8 +57,8 @@ struct Passes {
 
   LazyPass evaluate_material, edit_material, shape, irradiance_scale, walk_source, vertex_exitance, display_scale,
       vertex_unscattered, energy_total, surface_share, uncollided, gather_exitance, gather_nodes, gather_scale,
-      exchange, exchange_finer, exchange_enter, exchange_boxes, exchange_rays, deform, deform_nodes, deform_normals,
-      deform_bounds, shape_state, grid_material;
+      gather_single, exchange, exchange_finer, exchange_enter, exchange_boxes, exchange_rays, deform, deform_nodes,
+      deform_normals, deform_bounds, shape_state, grid_material;
   EntryPass assemble_fdm, assemble_fv, assemble_polygrid, assemble_edges, assemble_even, assemble_fem, eigenvalue_bound,
       cg_start, cg_multiply, cg_update, cg_direction, sweep, residual, chebyshev, coarse_solve, right_hand_side_fdm,
       right_hand_side_fv, right_hand_side_fem, right_hand_side_buried;

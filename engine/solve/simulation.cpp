@@ -34,7 +34,7 @@ struct Simulation::Implementation {
   InterReflection exchange;
   std::optional<BodyTree> tree;       // of level 0, made at first use
   std::optional<GatherField> gather;  // the same
-  bool gather_stale = true;
+  std::optional<Gather> gathers_now;  // of the last solution
   std::vector<PassStats> passes;      // of the last solve
   bool scaled = false;                // the scale is that of the present q
   std::optional<OperatorKey> solved;  // by the last solve
@@ -152,7 +152,7 @@ struct Simulation::Implementation {
     warn(options.source, report);
     report.deformed = shape.spoilt();
     passes = work.recorder.passes();
-    gather_stale = true;
+    gathers_now.reset();
     solved = key;
     solved_source = options.source;
     return report;
@@ -221,16 +221,21 @@ struct Simulation::Implementation {
     return *solved;
   }
 
-  const GatherField& gathered(std::vector<PassStats>& gather_passes) {
+  const GatherField& gathered(Gather what, std::vector<PassStats>& gather_passes) {
     gather_passes.clear();
     gather_room();
-    if (!gather_stale) return *gather;
+    if (gathers_now == what) return *gather;
     work.recorder.clear();
-    gather->record(work, {levels[0], operators.at(*solved, 0), beams, results.vertex_exitance(),
-                          walks[0].body(levels[0], coefficients.eta(), coefficients.even()), *tree});
+    const GatherInput input{levels[0],
+                            operators.at(solved_key(), 0),
+                            beams,
+                            results.vertex_exitance(),
+                            walks[0].body(levels[0], coefficients.eta(), coefficients.even()),
+                            *tree};
+    what == Gather::single ? gather->record_single(work, input) : gather->record(work, input);
     work.recorder.submit();
     gather_passes = work.recorder.passes();
-    gather_stale = false;
+    gathers_now = what;
     return *gather;
   }
 
@@ -384,16 +389,21 @@ const vk::Buffer& Simulation::vertex_unscattered() const {
   return implementation_->results.vertex_unscattered();
 }
 
-bool Simulation::can_gather() const {
-  return implementation_->solved_key().method == Method::fem && implementation_->solved_source == Source::buried;
+bool gathers(Method method, Source source) {
+  return on_vertices(method) && source == Source::buried;
 }
 
-const GatherField& Simulation::gather(std::vector<PassStats>& passes) {
-  if (!can_gather()) {
+bool Simulation::can_gather() const {
+  return gathers(implementation_->solved_key().method, implementation_->solved_source);
+}
+
+const GatherField& Simulation::gather(Gather what, std::vector<PassStats>& passes) {
+  if (what == Gather::scaled && !can_gather()) {
     throw InputError(
-        "radiance: gathering needs --method fem and --source buried; 'lambertian' is there for every method");
+        "radiance: gathering needs --method fem, polygrid or polygrid-divergence and --source buried; 'lambertian' and "
+        "'single' are there for every method");
   }
-  return implementation_->gathered(passes);
+  return implementation_->gathered(what, passes);
 }
 
 }  // namespace quadgraph

@@ -69,6 +69,15 @@ struct SeenRows {
 class GatherField;
 struct Workspace;
 
+// What view rays gather.
+enum class Gather {
+  scaled,  // all light scattered once more, scaled to the exitance
+  single,  // light that is scattered once in all, beside the exitance of a diffuser
+};
+
+// Whether Gather::scaled can be had: fluence at the vertices of tets, and a source below the surface.
+bool gathers(Method method, Source source);
+
 class Simulation {
  public:
   // `graph` is copied to the device; it must stay alive (its spans are used to set up row structures lazily).
@@ -151,12 +160,12 @@ class Simulation {
   const vk::Buffer& vertex_exitance() const;
   const vk::Buffer& vertex_unscattered() const;
 
-  // Whether the last solve's radiance can be gathered along view rays: linear elements and the buried source.
+  // Whether all of the last solve's radiance can be gathered along view rays (see gathers).
   bool can_gather() const;
 
-  // What view rays gather in the last solve, computed at the first call after it; `passes` gets what that took. Throws
-  // InputError unless can_gather.
-  const GatherField& gather(std::vector<PassStats>& passes);
+  // What view rays gather in the last solve, computed when it is first asked for; `passes` gets what that took. Throws
+  // InputError for Gather::scaled unless can_gather.
+  const GatherField& gather(Gather what, std::vector<PassStats>& passes);
 
  private:
   struct Implementation;

@@ -320,7 +320,8 @@ void bind_engine(py::module_& module) {
            py::arg("radiance") = "auto", py::arg("show") = "picture", py::arg("ground") = false,
            py::arg("surroundings") = false,
            "The last solve seen from 'azimuth,elevation[,distance]' (degrees, mm). radiance: gathered, lambertian, "
-           "auto. show: picture, or what is inside, in false colour (engine/render/show.h). ground: with a shadow "
+           "single, auto. show: picture, or what is inside, in false colour (engine/render/show.h). ground: with a "
+           "shadow "
            "where the body stands, as coverage "
            "without light. surroundings: environment lights are seen behind it, in the picture's surroundings.")
       .def_property_readonly(

@@ -5,6 +5,7 @@
 #include "spirv/gather_phi.comp.h"
 #include "spirv/gather_phi_sp3.comp.h"
 #include "spirv/gather_scale.comp.h"
+#include "spirv/gather_single.comp.h"
 #include "spirv/radiance_probe.comp.h"
 #include "spirv/uncollided.comp.h"
 #include "tests/cpp/layout_compare.h"
@@ -31,8 +32,8 @@ TEST_CASE("what the gather keeps at vertices") {
 TEST_CASE("push constants of the gather") {
   for (const vk::Spirv code : {vk::Spirv(gather_phi_comp), vk::Spirv(gather_phi_sp3_comp)}) {
     compare(code, "GatherPhiPush",
-            {MEMBER(GatherPhiPush, x), MEMBER(GatherPhiPush, scale), MEMBER(GatherPhiPush, points),
-             MEMBER(GatherPhiPush, count)});
+            {MEMBER(GatherPhiPush, x), MEMBER(GatherPhiPush, to_phi), MEMBER(GatherPhiPush, scale),
+             MEMBER(GatherPhiPush, points), MEMBER(GatherPhiPush, count)});
   }
   compare(uncollided_comp, "UncollidedPush",
           {MEMBER(UncollidedPush, body), MEMBER(UncollidedPush, start), MEMBER(UncollidedPush, nearest),
@@ -48,6 +49,8 @@ TEST_CASE("push constants of the gather") {
           {MEMBER(GatherScalePush, solid), MEMBER(GatherScalePush, face_offset),
            MEMBER(GatherScalePush, face_incidence), MEMBER(GatherScalePush, gathered), MEMBER(GatherScalePush, nodes),
            MEMBER(GatherScalePush, scale), MEMBER(GatherScalePush, count)});
+  compare(gather_single_comp, "GatherSinglePush",
+          {MEMBER(GatherSinglePush, exitance), MEMBER(GatherSinglePush, scale), MEMBER(GatherSinglePush, count)});
   compare(radiance_probe_comp, "RadianceProbePush",
           {MEMBER(RadianceProbePush, solid), MEMBER(RadianceProbePush, points), MEMBER(RadianceProbePush, scale),
            MEMBER(RadianceProbePush, face), MEMBER(RadianceProbePush, direction), MEMBER(RadianceProbePush, radiance),

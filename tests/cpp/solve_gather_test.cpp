@@ -28,7 +28,7 @@ struct Gathering {
 
   const GatherField& field() {
     std::vector<PassStats> passes;
-    return scene.simulation.gather(passes);
+    return scene.simulation.gather(Gather::scaled, passes);
   }
 
   Problem problem() const { return {Method::fem, Source::buried, Model::sp3, optical, material.eta}; }
@@ -156,17 +156,18 @@ TEST_CASE("a body that has moved is scaled as one that was there") {
   CHECK(relative_difference(factor, expected) < 1e-2);
 }
 
-TEST_CASE("only linear elements with the buried source are gathered") {
+TEST_CASE("only fluence at vertices with the buried source is gathered, and light scattered once with every method") {
   Scene scene({3});
   scene.simulation.set_material(homogeneous());
   scene.light(one_side);
   std::vector<PassStats> passes;
-  CHECK_THROWS_AS(scene.simulation.gather(passes), InputError);  // not solved yet
+  CHECK_THROWS_AS(scene.simulation.gather(Gather::scaled, passes), InputError);  // not solved yet
   for (const Case& what : all_cases()) {
     CAPTURE(what);
     scene.simulation.solve(what.options(SolverKind::dpcg, 1e-3));
     const bool can = what.method == Method::fem && what.source == Source::buried;
     CHECK(scene.simulation.can_gather() == can);
-    if (!can) CHECK_THROWS_AS(scene.simulation.gather(passes), InputError);
+    if (!can) CHECK_THROWS_AS(scene.simulation.gather(Gather::scaled, passes), InputError);
+    CHECK_NOTHROW(scene.simulation.gather(Gather::single, passes));
   }
 }

@@ -146,7 +146,8 @@ TEST_CASE("view rays gather the same") {
     solution(texels, material, options);
     solution(references, material, options);
     std::vector<PassStats> passes;
-    const GatherField &a = texels.simulation.gather(passes), &b = references.simulation.gather(passes);
+    const GatherField &a = texels.simulation.gather(Gather::scaled, passes),
+                      &b = references.simulation.gather(Gather::scaled, passes);
     const auto points = [](Body& body, const GatherField& field) {
       return vk::download<glm::vec3>(body.context, field.points());  // three per point
     };

@@ -38,18 +38,14 @@ def record(scenes: tuple[str, ...] = ("bunny", "sphere")) -> dict:
     failed = {"name": "jacobi", "family": FAMILIES[1], "settings": points[0]["settings"], "failed": "does not converge"}
     noise = {"pde": {"sp3, buried": {"whole": 0.002, "unlit": 0.004}}, "transport": {"whole": 0.005, "unlit": 0.01}}
     levels = [{"surface_vertices": 7000 // 4**k, "tets": 30000 // 4**k, "faces": 14000 // 4**k} for k in range(3)]
+    run = {"device": "a device (256 bits)", "driver": "1.0", "cores": 2, "load": 0.1, "commit": "0123456789ab"}
+    run |= {"repeats": 3, "frame": {"pixels": 256, "light_turns_degrees": 5.0, "even_light_dims": 0.05}}
     return {
         "format": FORMAT,
-        "device": "a device (256 bits)",
-        "driver": "1.0",
-        "cores": 2,
-        "load": 0.1,
-        "commit": "0123456789ab",
-        "repeats": 3,
-        "frame": {"pixels": 256, "light_turns_degrees": 5.0, "even_light_dims": 0.05},
         "scenes": [
             {
                 "name": name,
+                "run": run,
                 "height_mm": 100,
                 "eta": 1.3,
                 "light": "ambient:1",

@@ -7,6 +7,7 @@ import json
 import pytest
 
 from baked import write_levels
+from chart_records import record
 from quadgraph import cli
 from quadgraph.chart import record as records
 from quadgraph.chart import truths
@@ -54,9 +55,10 @@ def test_the_record_tells_machine_frame_levels_stages_and_errors(small, tmp_path
     assert cli.main(["chart", *arguments]) == 0
     assert {file.name for file in drawn.iterdir()} == {"chart-sphere.png", "chart-sphere.svg", "chart.html"}
     found = records.read(path)
-    assert all(found[key] for key in ("device", "driver", "commit", "version", "cores"))
-    assert found["frame"] == {"pixels": 64, "light_turns_degrees": 5.0, "even_light_dims": 0.05}
     (scene,) = found["scenes"]
+    run = scene["run"]
+    assert all(run[key] for key in ("device", "driver", "commit", "version", "cores"))
+    assert run["frame"] == {"pixels": 64, "light_turns_degrees": 5.0, "even_light_dims": 0.05}
     assert [level["faces"] for level in scene["levels"]] == [1280, 320]
     assert [point["name"] for point in scene["points"]] == [method.name for method in METHODS]
     for point in scene["points"]:
@@ -81,6 +83,20 @@ def test_a_truth_that_is_not_there_is_asked_for_by_its_command(tmp_path, capsys)
     assert "quadgraph reference sphere --kind transport" in said
     assert cli.main(["chart", "--scene", "teapot"]) == 1
     assert "allowed are bunny" in capsys.readouterr().err
+
+
+def test_scenes_are_added_to_a_record_and_replaced_in_it(small, tmp_path, capsys):
+    """One scene is one run, so a record may hold scenes of several."""
+    path = tmp_path / "chart.json"
+    path.write_text(json.dumps(record()))
+    measured = ["chart", "--scene", "sphere", "--repeats", "1", "--pixels", "64", "--add"]
+    assert cli.main([*measured, "--json", str(path)]) == 0
+    bunny, sphere = records.read(path)["scenes"]
+    assert bunny == record()["scenes"][0]
+    assert sphere["run"]["frame"]["pixels"] == 64
+    assert [point["name"] for point in sphere["points"]] == [method.name for method in METHODS]
+    assert cli.main(measured) == 1
+    assert "--add: needs --json" in capsys.readouterr().err
 
 
 @pytest.mark.long

@@ -111,8 +111,9 @@ def test_tables_tell_times_errors_the_best_and_what_failed(record_path, capsys):
     ("change", "message"),
     [
         (lambda r: r.pop("scenes"), "scenes: not there"),
-        (lambda r: r.update(format=7), "format: 7 found, 2 allowed"),
+        (lambda r: r.update(format=7), "format: 7 found, 3 allowed"),
         (lambda r: r["scenes"][0]["points"][0].pop("errors"), "scenes: KeyError of 'errors'"),
+        (lambda r: r["scenes"][1].pop("run"), "scenes: KeyError of 'run'"),
     ],
 )
 def test_what_is_no_record_is_refused_with_its_field(record_path, change, message, capsys):

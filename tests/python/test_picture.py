@@ -83,9 +83,9 @@ def test_what_cannot_be_gathered_is_lambertian_or_refused(engine):
         shown, plain = engine.render(**FAR), engine.render(**FAR, radiance="lambertian")
         assert (shown.scattered == plain.scattered).all()
         assert ("radiance", "lambertian") in engine.metadata
-        with pytest.raises(QuadGraphError, match=r"--method fem and --source buried"):
+        with pytest.raises(QuadGraphError, match=r"gathering needs --method fem, polygrid or .* --source buried"):
             engine.render(**FAR, radiance="gathered")
-    with pytest.raises(QuadGraphError, match="allowed are gathered, lambertian, auto"):
+    with pytest.raises(QuadGraphError, match="allowed are gathered, lambertian, single, auto"):
         engine.render(**FAR, radiance="shiny")
 
 

@@ -216,6 +216,68 @@ def test_linear_fields_are_solved_exactly():
         assert np.allclose(found, exact, atol=1e-8)
 
 
+def errors_by_cells(graphs: list[Graph], radius: float) -> np.ndarray:
+    """Relative RMS errors (n, 2), over all nodes and over those deeper than half the body, of u = exp(r a x), which
+    solves kappa lap u = sigma_a u, with its own flux through the boundary nodes' links as the load.
+    """
+    kappa, sigma_a, outflow, axis = 0.5, 0.005, 0.25, np.array([0.6, 0.64, 0.48])
+    rate = np.sqrt(sigma_a / kappa)
+    errors = []
+    for graph in graphs:
+        count, first = len(graph.vertices), graph.surface_vertex_count
+        exact = np.exp(rate * graph.vertices @ axis)
+        outward = graph.vertices[:first] - graph.vertices[reference.neighbours(graph)]
+        outward /= np.linalg.norm(outward, axis=1, keepdims=True)
+        load = kappa * rate * exact[:first] * (outward @ axis) + outflow * exact[:first]
+        found = reference.solve(graph, np.full(count, kappa), np.full(count, sigma_a), outflow, load, published=True)
+        parts = np.ones(count, bool), np.abs(graph.vertices).max(axis=1) < radius / 2
+        errors.append([np.linalg.norm((found - exact)[part]) / np.linalg.norm(exact[part]) for part in parts])
+    return np.array(errors)
+
+
+def order(errors: np.ndarray) -> np.ndarray:
+    """Of convergence, where every step halves the cells."""
+    return -np.polyfit(np.arange(len(errors)), np.log2(errors), 1)[0]
+
+
+def test_a_box_converges_and_a_mapped_ball_does_not():
+    """Straight links: first order, second away from the edges. Skewed ones leave out mixed derivatives: no order."""
+    boxes = []
+    for cells in (4, 8, 16):
+        grid = grids.one_cube(cells)
+        low, high = grid.positions.min(axis=0), grid.positions.max(axis=0)
+        boxes.append(build.as_graph(grid, RADIUS * (2 * (grid.positions - low) / (high - low) - 1)))
+    box, mapped = (errors_by_cells(graphs, RADIUS) for graphs in (boxes, [ball(4), ball(8)]))
+    print(f"errors: box {box.tolist()}, ball {mapped.tolist()}; orders: {order(box)}, {order(mapped)}")
+    assert order(box)[0] > 1
+    assert order(box)[1] > 1.7
+    assert order(mapped).max() < 0.5
+    assert mapped.max() < 0.05
+
+
+def test_a_slab_against_its_closed_form():
+    """Light on one side of a plate three times as wide as thick, in its middle: first order, as the boundary's rows."""
+    thickness, kappa, sigma_a, outflow, load = 10.0, 0.5, 0.08, 0.25, 0.25
+    rate = np.sqrt(sigma_a / kappa)
+    even, odd = np.cosh(rate * thickness), np.sinh(rate * thickness)
+    rows = [[outflow, -kappa * rate], [kappa * rate * odd + outflow * even, kappa * rate * even + outflow * odd]]
+    share = np.linalg.solve(rows, [0, load])
+    errors = []
+    for cells in (2, 4, 8):
+        grid = lattice.build(np.ones((3, 3, 1), bool), cells)
+        positions = thickness / cells * (grid.positions - grid.positions.min(axis=0))
+        graph = build.as_graph(grid, positions - [1.5 * thickness, 1.5 * thickness, 0])
+        height, count = graph.vertices[:, 2], len(graph.vertices)
+        lit = np.where(height[: graph.surface_vertex_count] > 0.999 * thickness, load, 0)
+        found = reference.solve(graph, np.full(count, kappa), np.full(count, sigma_a), outflow, lit, published=True)
+        exact = share[0] * np.cosh(rate * height) + share[1] * np.sinh(rate * height)
+        middle = np.abs(graph.vertices[:, :2]).max(axis=1) < thickness / 2
+        errors.append(np.linalg.norm((found - exact)[middle]) / np.linalg.norm(exact[middle]))
+    print(f"errors: {errors}, order {order(np.array(errors)):.2f}")
+    assert errors[-1] < 0.05
+    assert order(np.array(errors)) > 0.85
+
+
 @pytest.fixture(scope="module")
 def baked(tmp_path_factory) -> tuple[bake.BakeReport, qgraph_file.QGraphFile]:
     folder: Path = tmp_path_factory.mktemp("polygrid")

@@ -57,6 +57,7 @@ class EngineMethod:
         parts += [f"{self.cycles} cycle{'s' if self.cycles > 1 else ''} a frame"] if self.cycles else []
         parts += [f"{self.active_layers} layers"] if self.active_layers else []
         parts += ["Lambertian"] if self.radiance == "lambertian" and self._can_gather else []
+        parts += ["single scattering"] if self.radiance == "single" else []
         return " · ".join(parts)
 
     @property
@@ -103,7 +104,7 @@ class EngineMethod:
 
     @property
     def _can_gather(self) -> bool:
-        return self.method == "fem" and self.source == "buried"
+        return self.method in ("fem", "polygrid", "polygrid-divergence") and self.source == "buried"
 
     @property
     def _engine(self) -> Engine:
@@ -117,7 +118,7 @@ class EngineMethod:
         return {name: getattr(self, name) for name in names} | options
 
     def _show(self, view: str, pixels: int) -> Any:
-        radiance = self.radiance if self._can_gather else "lambertian"
+        radiance = self.radiance if self._can_gather or self.radiance == "single" else "lambertian"
         return self._engine.render(view=view, vertical_fov=FOV, width=pixels, height=pixels, radiance=radiance)
 
 
@@ -146,7 +147,7 @@ def engine_methods(chain: Chain) -> Iterator[Method]:
     for choice in chain.others:
         if choice.cells is not None:
             grid = replace(published, method="polygrid", solver="cascade", choice=choice)
-            yield from (grid, replace(grid, active_layers=2))
+            yield from (grid, replace(grid, active_layers=2), replace(grid, radiance="single"))
             yield replace(diffusion, method="polygrid-divergence", solver="cascade", choice=choice)
             yield replace(diffusion, choice=choice)
             continue

@@ -114,6 +114,6 @@ def _bakes(body: Body, points: Sequence[Point]) -> list[dict[str, Any]]:
 
 
 def conditions(repeats: int, pixels: int) -> dict[str, Any]:
-    """What holds for all points, for the record."""
+    """What holds for all points of a scene, for the record."""
     frame = {"pixels": pixels, "light_turns_degrees": STEP_DEGREES, "even_light_dims": STEP_SHARE}
     return {"repeats": repeats, "settled": SETTLED, "frame": frame}

@@ -28,10 +28,10 @@ def load_plotly():
 def write(path: Path, record: dict[str, Any]) -> Path:
     """Write the page. The same record gives the same bytes. Raises InputError without plotly."""
     plotly = load_plotly()
-    parts = [_header(record)]
+    parts = [_HEADER]
     for number, scene in enumerate(record["scenes"]):
         figure = _figure(plotly, record, scene)
-        parts.append(f"<h2>{scene['name']}</h2>\n<p>{_scene_text(scene)}</p>")
+        parts.append(f"<h2>{scene['name']}</h2>\n<p>{_scene_text(scene)}</p>\n<p>{records.run_text(scene)}</p>")
         inline = {"include_plotlyjs": number == 0, "full_html": False, "div_id": f"chart-{scene['name']}"}
         parts.append(figure.to_html(config=_CONFIG, **inline))
         parts += [f"<p class='failed'>{p['name']}: {p['failed']}</p>" for p in scene["points"] if p.get("failed")]
@@ -52,17 +52,12 @@ BODY
 """
 
 
-def _header(record: dict[str, Any]) -> str:
-    frame = record["frame"]
-    return (
-        "<h1>Speed against accuracy</h1>\n<p>Milliseconds a frame (the light has turned by "
-        f"{frame['light_turns_degrees']:g}°: irradiance, source walk, warm solve, exitance, a picture of "
-        f"{frame['pixels']}² pixels; median) against the relative RMS error. The black steps join what nothing beats "
-        "in both; grey: closer than the truth knows itself. Hover tells a point; a click on the legend hides a family, "
-        "a double click all others.</p>\n"
-        f"<p>{record['device']}, {record['driver']}, {record['cores']} cores under load {record['load']}, "
-        f"commit {record['commit']}.</p>"
-    )
+_HEADER = (
+    "<h1>Speed against accuracy</h1>\n<p>Milliseconds a frame (the light has moved a step: irradiance, source walk, "
+    "warm solve, exitance, a picture; median) against the relative RMS error. The black steps join what nothing beats "
+    "in both; grey: closer than the truth knows itself. Hover tells a point; a click on the legend hides a family, a "
+    "double click all others. Times compare within a scene, which is measured in one run.</p>"
+)
 
 
 def _scene_text(scene: dict[str, Any]) -> str:
@@ -75,7 +70,7 @@ def _scene_text(scene: dict[str, Any]) -> str:
 
 
 def _bake_name(bake: dict[str, Any]) -> str:
-    return "by default" if bake["K"] is None else f"K = {bake['K']:g}"
+    return f"K = {bake['K']:g}" if bake["K"] is not None else {"default": "by default"}.get(bake["bake"], bake["bake"])
 
 
 def _figure(plotly: Any, record: dict[str, Any], scene: dict[str, Any]) -> Any:

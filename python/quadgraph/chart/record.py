@@ -1,4 +1,4 @@
-"""The chart's record: what one run measured, and all that the drawings are made from."""
+"""The chart's record: scenes, each measured in one run, and all that the drawings are made from."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from typing import Any
 from quadgraph.chart.pareto import front
 from quadgraph.errors import InputError
 
-FORMAT = 2
+FORMAT = 3
 PARTS = ("whole", "unlit")
 TRUTHS = {"pde": "PDE truth: error of mesh and solver", "transport": "path tracing: error of the picture"}
-_NEEDED = ("format", "device", "driver", "commit", "frame", "scenes")
+_NEEDED = ("format", "scenes")
 
 
 @dataclass(frozen=True)
@@ -92,10 +92,20 @@ def read(path: Path) -> dict[str, Any]:
     try:
         for scene in record["scenes"]:
             panels(scene)
-            families(record)
+            run_text(scene)
+        families(record)
     except (KeyError, TypeError, AttributeError) as error:
         raise InputError(f"{path}: scenes: {type(error).__name__} of {error}, which a record has") from error
     return record
+
+
+def added(record: dict[str, Any], more: dict[str, Any]) -> dict[str, Any]:
+    """A record with the scenes of another, which replace those of the same name.
+
+    Times are compared within a scene alone, and each scene is of one run: so nothing is mixed.
+    """
+    scenes = {scene["name"]: scene for scene in (*record["scenes"], *more["scenes"])}
+    return record | {"scenes": list(scenes.values())}
 
 
 # What labels leave out: what is the default, or clear from the rest.
@@ -163,7 +173,17 @@ def colours(names: list[str]) -> dict[str, str]:
     return _COLOURS | {name: _MORE[i % len(_MORE)] for i, name in enumerate(unknown)}
 
 
-def device_text(record: dict[str, Any]) -> str:
-    """What the times are of, in words."""
-    machine = f"{record['device'].split(' (')[0]}, {record['cores']} cores under load {record['load']}"
-    return f"{machine}, pictures of {record['frame']['pixels']}² pixels"
+def device_text(scene: dict[str, Any]) -> str:
+    """What the times of a scene are of, in words."""
+    run = scene["run"]
+    machine = f"{run['device'].split(' (')[0]}, {run['cores']} cores under load {run['load']}"
+    return f"{machine}, pictures of {run['frame']['pixels']}² pixels"
+
+
+def run_text(scene: dict[str, Any]) -> str:
+    """By what a scene was measured, in words."""
+    run = scene["run"]
+    return (
+        f"{run['device']}, {run['driver']}, {run['cores']} cores under load {run['load']}, pictures of "
+        f"{run['frame']['pixels']}² pixels, commit {run['commit']}"
+    )

@@ -47,7 +47,7 @@ def _figure(pyplot: Any, record: dict[str, Any], scene: dict[str, Any]) -> Any:
     colours = records.colours(records.families(record))
     level = scene["levels"][0]
     size = f"{level['surface_vertices']:,} vertices on the finest of {len(scene['levels'])} levels"
-    figure.suptitle(f"{scene['name']}: {size}; {records.device_text(record)}", fontsize=11)
+    figure.suptitle(f"{scene['name']}: {size}; {records.device_text(scene)}", fontsize=11)
     for axis, panel in zip(axes, shown, strict=False):
         _panel(axis, panel, colours)
         axis.set_xlabel(panel.time_words)

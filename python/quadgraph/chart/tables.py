@@ -14,12 +14,12 @@ _WORDS = {"pde": "PDE", "transport": "transport"}
 
 def all_of(record: dict[str, Any]) -> list[Table]:
     """One table per scene, by time."""
-    return [_table(record, scene) for scene in record["scenes"]]
+    return [_table(scene) for scene in record["scenes"]]
 
 
-def _table(record: dict[str, Any], scene: dict[str, Any]) -> Table:
+def _table(scene: dict[str, Any]) -> Table:
     table = Table("method", "ms", "without picture", "solve", *(f"{_WORDS[truth]}, {part}" for truth, part in _COLUMNS))
-    table.title = f"{scene['name']} on {records.device_text(record)}; *: best at its time"
+    table.title = f"{scene['name']} on {records.device_text(scene)}; *: best at its time"
     table.columns[0].no_wrap = True
     best = {
         (panel.truth, panel.part): [panel.points[i]["name"] for i in panel.front] for panel in records.panels(scene)

@@ -27,6 +27,11 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     )
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the record here")
     parser.add_argument(
+        "--add",
+        action="store_true",
+        help="keep the other scenes that the file of --json has: times are compared within a scene alone",
+    )
+    parser.add_argument(
         "--from",
         dest="record",
         type=Path,
@@ -78,7 +83,9 @@ def run(args: argparse.Namespace) -> int:
     from quadgraph.chart import record as records
     from quadgraph.chart import tables
 
+    kept = records.read(args.json) if args.add and args.json.exists() else None
     record = records.read(args.record) if args.record else json.loads(json.dumps(_measured(args)))
+    record = records.added(kept, record) if kept else record
     console = Console(highlight=False)
     console.width = max(console.width, _TABLE_WIDTH)
     for table in tables.all_of(record):
@@ -95,6 +102,8 @@ def run(args: argparse.Namespace) -> int:
 
 def _check(args: argparse.Namespace) -> None:
     """Refuse before the work what would fail after it."""
+    if args.add and not args.json:
+        raise InputError("--add: needs --json FILE, whose scenes are kept")
     if args.record and (args.json or args.scene or args.method or args.against):
         raise InputError(
             "--from draws a record as it is: --json, --scene, --method and --against cannot be given with it"
@@ -126,13 +135,13 @@ def _measured(args: argparse.Namespace) -> dict[str, Any]:
             for one in scenes.chosen(args.scene)
         ]
         copied = scene.load_core().copy_bandwidth(args.device)
-        record = {"format": FORMAT} | machine(copied) | measure.conditions(args.repeats, args.pixels)
         found = []
         while subjects:
             # Each with its engines is let go before the next.
             body, judge, methods = subjects.pop(0)
+            run = machine(copied) | measure.conditions(args.repeats, args.pixels)
             points = measure.measure(body, judge, methods, args.repeats, status.update)
-            found.append(measure.scene_record(body, judge, points))
+            found.append({"run": run} | measure.scene_record(body, judge, points))
             if args.output:
                 pictures.write(args.output, judge, points)
-        return record | {"scenes": found}
+        return {"format": FORMAT, "scenes": found}

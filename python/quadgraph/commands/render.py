@@ -49,10 +49,11 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     )
     parser.add_argument(
         "--radiance",
-        choices=("gathered", "lambertian", "auto"),
+        choices=("gathered", "lambertian", "single", "auto"),
         default="auto",
         help="gathered: one more step of transport along every view ray, scaled to the exitance; lambertian: the same "
-        "from every side but for Fresnel; auto: gathered where it can be (fem, buried) (default: %(default)s)",
+        "from every side but for Fresnel; single: that, and light scattered once along the refracted view ray (Jensen "
+        "et al. 2001, Eq. 6); auto: gathered where it can be (fem and polygrids, buried) (default: %(default)s)",
     )
     parser.add_argument(
         "--show",
