@@ -16,7 +16,8 @@ struct Ray {
   uint tet;
   vec3 direction;
   vec3 power;
-  vec3 carry;  // of power, that rounding kept back
+  vec3 carry;    // of power, that rounding kept back
+  float slope;   // length of the way that it stands for, over its own
 };
 
 vec3 absorbed;     // by this invocation's rays
@@ -90,7 +91,7 @@ void walk(Ray ray) {
     Exit exit = find_exit(ray.direction);
     if (!exit.found) break;
     vec4 l = exit_point(exit);
-    cross_tet(ray, exit.path, l);
+    cross_tet(ray, ray.slope * exit.path, l);
     move_to(l);
     bool spent = all(lessThanEqual(ray.power, end));
     if (spent && extinction() != vec3(0)) break;

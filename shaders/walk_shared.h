@@ -30,7 +30,7 @@ struct WalkSourcePush {
   QG_REF(Uints) deposit;      // fixed point, per vertex (fem) or tet: power scattered for the first time
   QG_REF(Uints) unscattered;  // fixed point, per face: power that leaves
   QG_REF(Uints) sums;         // fixed point, WALK_SUMS times two: absorbed; left, or still under way at the end
-  uint rays;                  // per origin: 1, or LAMBERTIAN_RAYS
+  uint rays;                  // per origin: 1, or LAMBERTIAN_RAYS; a Lambertian beam may have either
   uint fem;
 };
 

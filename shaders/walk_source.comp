@@ -28,11 +28,15 @@ bool one_ray_does(vec3 least, vec3 largest, mat3 corners, float area) {
   return longest <= 8.0 * area && all(lessThanEqual(largest - least, largest / 16.0));
 }
 
+struct Frame {
+  vec3 position, normal, tangent;
+};
+
 // The way light travels outside, at a point of a face.
-vec3 incoming(BeamRecord beam, uint ray, vec3 position, vec3 normal, vec3 tangent) {
+vec3 incoming(BeamRecord beam, uint ray, Frame at) {
   if (beam.kind == BEAM_DIRECTIONAL) return beam.vector;
-  if (beam.kind == BEAM_POINT) return normalize(position - beam.vector);
-  return lambertian_incoming(ray, normal, tangent);
+  if (beam.kind == BEAM_POINT) return normalize(at.position - beam.vector);
+  return lambertian_incoming(ray, at.normal, at.tangent);
 }
 
 // Share of the power of a face that one ray takes, by its number.
@@ -40,11 +44,26 @@ float share_of(uint ray, uint rays) {
   return rays == 1u ? 1.0 : 0.5 * lambertian(push.body.eta).share[ray / 2u];
 }
 
+float mean_cosine() {
+  Lambertian light = lambertian(push.body.eta);
+  return dot(light.share, light.cosine);
+}
+
 // Inside direction of BEAM_MEAN.
 vec3 mean_direction(vec3 normal, vec3 tangent) {
-  Lambertian light = lambertian(push.body.eta);
-  float cosine = dot(light.share, light.cosine);
+  float cosine = mean_cosine();
   return normalize(sqrt(1.0 - cosine * cosine) * tangent - cosine * normal);
+}
+
+// A Lambertian beam by one ray goes straight down, as deep as the mean of its directions: askew it would take light
+// aside, each face to its own side.
+Ray start(BeamRecord way, uint ray, uint tet, Frame at, vec3 power) {
+  if (way.kind == BEAM_LAMBERTIAN && push.rays == 1u) {
+    return Ray(tet, -at.normal, power, vec3(0), 1.0 / mean_cosine());
+  }
+  vec3 inside = way.kind == BEAM_MEAN ? mean_direction(at.normal, at.tangent)
+                                      : refracted(incoming(way, ray, at), at.normal, push.body.eta);
+  return Ray(tet, inside, power, vec3(0), 1.0);
 }
 
 // Ray `ray` of every origin on a face.
@@ -75,10 +94,7 @@ void walk_from(uint face, uint ray) {
     if (power == vec3(0)) continue;
     vec3 l = quarter_centre(k);
     start_on_face(tet, ids, corners, l);
-    vec3 inside = beam.way.kind == BEAM_MEAN
-                      ? mean_direction(normal, tangent)
-                      : refracted(incoming(beam.way, ray, corners * l, normal, tangent), normal, push.body.eta);
-    walk(Ray(tet, inside, power, vec3(0)));
+    walk(start(beam.way, ray, tet, Frame(corners * l, normal, tangent), power));
   }
 }
 

@@ -10,6 +10,7 @@
 #include "engine/app/overlays.h"
 #include "engine/app/panel.h"
 #include "engine/graph/error.h"
+#include "engine/graph/motion.h"
 #include "engine/render/metadata.h"
 #include "engine/scene/scene_file.h"
 
@@ -20,7 +21,6 @@ constexpr double budget_ms = 400;             // of a picture in motion
 constexpr double settle_after = 0.25;         // seconds without a change
 constexpr double idle_wait = 0.5;             // seconds
 constexpr float degrees_per_height = 180.0f;  // of a drag over the height of the picture
-constexpr std::uint32_t graph_steps = 20;     // of conjugate gradients a picture, for methods without cycles
 
 double milliseconds(std::chrono::steady_clock::duration duration) {
   return std::chrono::duration<double, std::milli>(duration).count();
@@ -205,18 +205,9 @@ void Viewer::keep_up() {
   frames_wanted_ = 3;
 }
 
-// In motion one cycle from the last solution.
 SolveOptions Viewer::options_of_solve(bool settle) const {
-  SolveOptions options = state_.scene.solve;
-  if (settle) return options;
-  if (options.method == Method::shortest_path) return options;
-  const bool cycles = options.method == Method::fem;
-  options.solver = cycles ? SolverKind::fmg_pcg : symmetric(options.method) ? SolverKind::dpcg : SolverKind::cascade;
-  options.cycles = cycles ? 1 : graph_steps;
-  options.bounces = 1;
-  options.warm = true;
-  options.error = 0;
-  return options;
+  const SolveOptions& options = state_.scene.solve;
+  return settle ? options : in_motion(options, engine_.graph().levels());
 }
 
 void Viewer::remake(bool settle) {

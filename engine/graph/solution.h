@@ -97,6 +97,9 @@ struct SolveOptions {
   // Where the shape has changed: what the faces see of each other is found anew, for as many of them in each solve, in
   // turn; 0: for all.
   std::uint32_t exchange_rows = 0;
+  // Even light (ambient, of environments) goes in along one ray from an origin, straight down with the optical depth of
+  // the mean inside cosine, instead of eight: an eighth of that work. What that does to the exitance: docs/window.md.
+  bool mean_rays = false;
   // n > 0, with the links of a polygrid: on all levels but the coarsest only the first n layers of vertices below the
   // surface are solved for, the others keep what the coarser level has [PG Section 5.3, Fig. 8]; 0: all are.
   std::uint32_t active_layers = 0;

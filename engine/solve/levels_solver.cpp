@@ -110,26 +110,30 @@ Solved LevelsSolver::solved(std::uint32_t level) {
   return {parts_.levels[level], op(level), key_.method, boundary_, buried ? &parts_.walks[level] : nullptr};
 }
 
+WalkTask LevelsSolver::walk_task() const {
+  return {key_.method, parts_.coefficients.eta(), parts_.coefficients.even(), options_.mean_rays};
+}
+
 void LevelsSolver::record_load(std::uint32_t level) {
   OperatorBuffers& rows = op(level);
-  if (rows.loaded == options_.source) return;
+  const Load load{options_.source, options_.mean_rays};
+  if (rows.loaded == load) return;
   const LevelBuffers& buffers = parts_.levels[level];
   if (options_.source == Source::buried) {
     SourceWalk& walk = parts_.walks[level];
-    walk.record(parts_.work, buffers, parts_.beams, key_.method, parts_.coefficients.eta(), parts_.coefficients.even());
+    walk.record(parts_.work, buffers, parts_.beams, walk_task());
     walk.record_right_hand_side(parts_.work, buffers, key_.method, rows);
   } else {
     record_diffuse_load(parts_.work, buffers, key_.method, boundary_, rows);
   }
-  rows.loaded = options_.source;
+  rows.loaded = load;
 }
 
 // b with the light that enters again.
 void LevelsSolver::record_load_again(std::uint32_t level) {
   SourceWalk& walk = parts_.walks[level];
   const LevelBuffers& buffers = parts_.levels[level];
-  walk.record_again(parts_.work, buffers, parts_.beams, key_.method, parts_.coefficients.eta(),
-                    parts_.coefficients.even());
+  walk.record_again(parts_.work, buffers, parts_.beams, walk_task());
   walk.record_right_hand_side(parts_.work, buffers, key_.method, op(level));
   op(level).loaded.reset();
 }
@@ -306,8 +310,7 @@ void LevelsSolver::record_results() {
     record_solved(level);
   }
   if (finest_ > 0 && options_.source == Source::buried) {
-    parts_.walks[0].record(parts_.work, parts_.levels[0], parts_.beams, key_.method, parts_.coefficients.eta(),
-                           parts_.coefficients.even());
+    parts_.walks[0].record(parts_.work, parts_.levels[0], parts_.beams, walk_task());
   }
   parts_.results.record(parts_.work, solved(0));
 }

@@ -45,6 +45,7 @@ class LevelsSolver {
   bool bounces_on(std::uint32_t level) const;
   bool cycles() const { return uses_cycles(report_.solver); }
   Solved solved(std::uint32_t level);
+  WalkTask walk_task() const;
   Energy energy() const;
   double unbalanced() const;
   double algebraic_wanted() const;

@@ -13,6 +13,14 @@
 
 namespace quadgraph {
 
+// How light comes into b.
+struct Load {
+  Source source;
+  bool mean_rays;
+
+  bool operator==(const Load&) const = default;
+};
+
 struct OperatorBuffers {
   Model model = Model::diffusion;
   EntryFormat format = EntryFormat::packed;
@@ -50,7 +58,7 @@ struct OperatorBuffers {
 
   std::optional<Boundary> assembled;  // for the present material, with this boundary
   bool damped = false;                // `damping` belongs to these rows
-  std::optional<Source> loaded;       // b is that of the present light and rows, with this source
+  std::optional<Load> loaded;         // b is that of the present light and rows, by this way in
   bool weighed = false;               // surface_share belongs to the present light and vertices
   bool solved = false;                // x has been solved for, if for other light or coefficients
 

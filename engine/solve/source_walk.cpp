@@ -14,8 +14,8 @@ std::uint32_t carriers(const LevelBuffers& level, Method method) {
   return on_vertices(method) ? level.vertex_count : level.tet_count;
 }
 
-std::uint32_t rays(std::uint32_t beam_kind) {
-  return beam_kind == gpu::BEAM_LAMBERTIAN ? gpu::LAMBERTIAN_RAYS : 1;
+std::uint32_t rays(std::uint32_t beam_kind, bool mean_rays) {
+  return beam_kind == gpu::BEAM_LAMBERTIAN && !mean_rays ? gpu::LAMBERTIAN_RAYS : 1;
 }
 
 constexpr std::uint64_t sums_bytes = 2 * gpu::WALK_SUMS * power_bytes;
@@ -125,32 +125,33 @@ void SourceWalk::make_room(vk::Context& context, const LevelBuffers& level, cons
 }
 
 gpu::WalkSourcePush SourceWalk::push(const Workspace& work, const LevelBuffers& level, const BeamBuffers& beams,
-                                     Method method, double eta, bool even) const {
-  return {.body = body(level, eta, even),
+                                     const WalkTask& task) const {
+  return {.body = body(level, task.eta, task.even),
           .beam = beams.on_device.address(),
           .beam_q = level.beam_q.address(),
           .scale = work.scale.address(),
-          .deposit = deposit(method).address(),
+          .deposit = deposit(task.method).address(),
           .unscattered = unscattered().address(),
           .sums = sums_.device.address(),
           .rays = 1,
-          .fem = on_vertices(method) ? 1u : 0u};
+          .fem = on_vertices(task.method) ? 1u : 0u};
 }
 
-void SourceWalk::record(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, Method method, double eta,
-                        bool even) {
-  if (walked_[carrier(method)]) return;
-  walked_[carrier(method)] = true;
-  make_room(work.recorder.context(), level, beams, method, false);
-  work.recorder.fill(deposits_[carrier(method)], 0);
+void SourceWalk::record(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, const WalkTask& task) {
+  if (mean_rays_ != task.mean_rays) invalidate();
+  mean_rays_ = task.mean_rays;
+  if (walked_[carrier(task.method)]) return;
+  walked_[carrier(task.method)] = true;
+  make_room(work.recorder.context(), level, beams, task.method, false);
+  work.recorder.fill(deposits_[carrier(task.method)], 0);
   work.recorder.fill(unscattered_, 0);
   if (sums_.device.size() == 0) return;
   work.recorder.fill(sums_.device, 0);
-  gpu::WalkSourcePush push = this->push(work, level, beams, method, eta, even);
+  gpu::WalkSourcePush push = this->push(work, level, beams, task);
   for (const gpu::Beam& beam : beams.beams) {
     const std::uint32_t kind = beam.way.kind;
     if (kind == gpu::BEAM_MEAN) continue;
-    push.rays = rays(kind);
+    push.rays = rays(kind, task.mean_rays);
     work.recorder.dispatch(work.passes.walk_source, push, std::uint64_t{level.face_count} * push.rays, "source walk",
                            walk_bytes(level, push.rays));
     push.beam += sizeof(gpu::Beam);
@@ -159,15 +160,15 @@ void SourceWalk::record(Workspace& work, const LevelBuffers& level, const BeamBu
   sums_.read_back(work);
 }
 
-void SourceWalk::record_again(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, Method method,
-                              double eta, bool even) {
-  make_room(work.recorder.context(), level, beams, method, true);
-  const vk::Buffer& deposit = deposits_[carrier(method)];
-  work.recorder.copy(deposit, all_deposits_[carrier(method)], deposit.size());
+void SourceWalk::record_again(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams,
+                              const WalkTask& task) {
+  make_room(work.recorder.context(), level, beams, task.method, true);
+  const vk::Buffer& deposit = deposits_[carrier(task.method)];
+  work.recorder.copy(deposit, all_deposits_[carrier(task.method)], deposit.size());
   work.recorder.copy(unscattered_, all_unscattered_, unscattered_.size());
   work.recorder.fill(sums_again_.device, 0);
   again_ = true;
-  gpu::WalkSourcePush push = this->push(work, level, beams, method, eta, even);
+  gpu::WalkSourcePush push = this->push(work, level, beams, task);
   push.beam += (beams.beams.size() - 1) * sizeof(gpu::Beam);
   push.sums = sums_again_.device.address();
   work.recorder.dispatch(work.passes.walk_source, push, level.face_count, "source walk", walk_bytes(level, 1));

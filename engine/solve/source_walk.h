@@ -26,6 +26,14 @@ struct WalkPower {
 // Sums in fixed point (walk_shared.h) as numbers, W.
 std::vector<glm::dvec3> powers(std::span<const std::uint32_t> words, const glm::dvec3& scale);
 
+// How the light of a level is walked.
+struct WalkTask {
+  Method method = Method::fem;
+  double eta = 1;
+  bool even = false;       // the coefficients are the same everywhere
+  bool mean_rays = false;  // SolveOptions
+};
+
 class SourceWalk {
  public:
   // Throws InputError if the level has too many tets and faces.
@@ -40,17 +48,15 @@ class SourceWalk {
   // Room for what `record` and, with `again`, `record_again` write, as far as the beams go, unless it is there.
   void make_room(vk::Context& context, const LevelBuffers& level, const BeamBuffers& beams, Method method, bool again);
 
-  // Walks, unless that has been done for the present light: level.beam_q of every beam of the scene, scaled by
-  // work.scale. The graph methods share their deposits.
-  void record(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, Method method, double eta,
-              bool even);
+  // Walks, unless that has been done for the present light by the same rays: level.beam_q of every beam of the scene,
+  // scaled by work.scale. The graph methods share their deposits.
+  void record(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, const WalkTask& task);
 
   // The results are without light that entered again, until record_again.
   void forget_again() { again_ = false; }
 
   // Adds the beam of light that enters again to the deposits of a walk recorded before; every call anew.
-  void record_again(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, Method method, double eta,
-                    bool even);
+  void record_again(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, const WalkTask& task);
 
   // b of the solve, and its norm, from the deposits of a walk recorded before.
   void record_right_hand_side(Workspace& work, const LevelBuffers& level, Method method, OperatorBuffers& op) const;
@@ -77,11 +83,12 @@ class SourceWalk {
 
   static std::size_t carrier(Method method) { return on_vertices(method) ? 0 : 1; }
 
-  gpu::WalkSourcePush push(const Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, Method method,
-                           double eta, bool even) const;
+  gpu::WalkSourcePush push(const Workspace& work, const LevelBuffers& level, const BeamBuffers& beams,
+                           const WalkTask& task) const;
 
   std::string prefix_;
   std::array<bool, 2> walked_ = {false, false};  // by carrier
+  bool mean_rays_ = false;                       // in what was walked
   bool again_ = false;                           // light that entered again is in the results
   vk::Buffer crossings_;                         // walk_shared.h
   // Of the scene's light; by carrier, made at first use.

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "engine/graph/error.h"
+#include "engine/graph/motion.h"
 #include "engine/render/default_lights.h"
 #include "engine/render/engine.h"
 #include "engine/scene/cut_json.h"
@@ -83,7 +84,7 @@ py::dict solve(Engine& engine, const std::string& method, const std::string& sol
                const std::string& model, double tolerance, double error, std::uint32_t cycles, bool warm,
                std::uint32_t max_iterations, bool inter_reflection, std::uint32_t bounces, std::uint32_t smoothing,
                std::uint32_t exchange_rows, std::uint32_t active_layers, const std::string& path_cost,
-               const std::string& path_solver, std::uint32_t path_cells) {
+               const std::string& path_solver, std::uint32_t path_cells, bool mean_rays, bool motion) {
   SolveOptions options = options_from(method, solver, source, model, tolerance, max_iterations);
   options.error = error;
   options.cycles = cycles;
@@ -93,10 +94,11 @@ py::dict solve(Engine& engine, const std::string& method, const std::string& sol
   options.smoothing = smoothing;
   options.exchange_rows = exchange_rows;
   options.active_layers = active_layers;
+  options.mean_rays = mean_rays;
   options.path = {path_cost_from_name(path_cost), path_solver_from_name(path_solver), path_cells};
   const SolveReport report = [&] {
     const py::gil_scoped_release release;
-    return engine.solve(options);
+    return engine.solve(motion ? in_motion(options, engine.graph().levels()) : options);
   }();
   return as_dict(report);
 }
@@ -248,12 +250,16 @@ void bind_engine(py::module_& module) {
            py::arg("warm") = false, py::arg("max_iterations") = 5000, py::arg("inter_reflection") = true,
            py::arg("bounces") = 0, py::arg("smoothing") = 0, py::arg("exchange_rows") = 0, py::arg("active_layers") = 0,
            py::arg("path_cost") = "transport", py::arg("path_solver") = "eikonal", py::arg("path_cells") = 64,
+           py::arg("mean_rays") = false, py::arg("motion") = false,
            "Solves for the present material and light (engine/graph/solution.h); a report. tolerance: estimated "
            "algebraic error of the exitance; error: target for it and that of the mesh together, 0: none; cycles: so "
            "many iterations on the finest level, 0: as many as it takes; warm: from the last solution; exchange_rows: "
            "of a body that deforms so many faces look anew at what they see, "
            "0: all of them; active_layers: of a polygrid that are solved for on all levels but the coarsest, 0: all. "
-           "path_...: of method shortest-path (docs/shortest-path.md). Raises InputError, SolverError.")
+           "path_...: of method shortest-path (docs/shortest-path.md). mean_rays: even light by one ray from an origin "
+           "instead of eight; motion: as the window does while something "
+           "changes (docs/window.md), whatever the other options say of it. Raises "
+           "InputError, SolverError.")
       .def(
           "set_grid",
           [](Engine& engine, const FloatArray& sigma_s_prime, const FloatArray& sigma_a,

@@ -32,7 +32,8 @@ struct WalkInput {
   gpu::BeamRecord beam{gpu::BEAM_DIRECTIONAL, {1, 0, 0}};
   Method method = Method::fem;
   double eta = 1;
-  bool even = false;  // `optical` is constant
+  bool even = false;       // `optical` is constant
+  bool mean_rays = false;  // WalkTask
 };
 
 struct GpuWalk {
@@ -89,10 +90,9 @@ inline GpuWalk walk(vk::Context& context, const WalkInput& input) {
   Workspace work(context, buffers.node_count);
   SourceWalk walk(context, level.view(), 0);
   record_scale(work, buffers);
-  walk.record(work, buffers, beams, input.method, input.eta, input.even);
-  if (again) {
-    walk.record_again(work, buffers, beams, input.method, input.eta, input.even);
-  }
+  const WalkTask task{input.method, input.eta, input.even, input.mean_rays};
+  walk.record(work, buffers, beams, task);
+  if (again) walk.record_again(work, buffers, beams, task);
   work.recorder.submit();
   const glm::dvec3 scale(vk::download<gpu::Scale>(context, work.scale)[0].scale);
   const auto deposit = vk::download<std::uint32_t>(context, walk.deposit(input.method));

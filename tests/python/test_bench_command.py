@@ -58,7 +58,12 @@ def test_live_frames_do_more_the_more_changes(sphere, tmp_path, capsys):
     assert "assembly" in names[1]
     assert names[0] < names[1] < names[2]
     assert all(kind["wall_ms"] >= sum(entry["time_ms"] for entry in kind["passes"]) > 0 for kind in live["kinds"])
-    assert "light, material and shape changing" in capsys.readouterr().out
+    for kind in live["kinds"]:
+        assert 0 < kind["off"]["median"] <= kind["off"]["most"] < 0.1
+        assert kind["off"]["rms"] < 0.03
+    printed = capsys.readouterr().out
+    assert "light, material and shape changing" in printed
+    assert "off by" in printed
 
 
 def test_solvers_have_curves_and_targets_and_are_drawn(sphere, tmp_path, capsys):

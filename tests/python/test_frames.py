@@ -93,3 +93,37 @@ def test_frames_touch_only_what_they_must(engine):
     assert "source walk" in lit
     assert not {"assembly", "eigenvalue bound"} & lit
     assert {"assembly", "eigenvalue bound", "source walk"} <= edited
+
+
+def test_frames_in_motion_are_near_and_leave_nothing_behind(engine):
+    """Even light by one ray from an origin; what is solved afterwards is what it would have been without them."""
+    engine.set_material("marble")
+    engine.set_lights([*light(0), "ambient:1"])
+    engine.solve()
+    alone = engine.surface_field()["exitance"]
+    for frame in range(6, -1, -1):
+        engine.set_lights([*light(5.0 * frame), "ambient:1"])
+        report = engine.solve(motion=True)
+    assert len(report["bounces"]) == 1
+    moving = engine.surface_field()
+    again = engine.solve()
+    settled = engine.surface_field()
+    whole = relative(moving, settled, np.full(len(settled["area"]), True))
+    print(f"turning light and even light, in motion: {100 * whole:.2f}%")
+    assert 0 < whole < 0.01
+    assert len(again["bounces"]) > 1
+    assert np.array_equal(settled["exitance"], alone)
+
+
+def test_one_ray_of_even_light_does_for_eight(engine):
+    """On a body alone in it, by how much the exitance differs; power is kept either way."""
+    engine.set_material("marble")
+    engine.set_lights(["ambient:1"])
+    engine.solve(tolerance=1e-4)
+    eight = engine.surface_field()
+    report = engine.solve(tolerance=1e-4, mean_rays=True)
+    one = engine.surface_field()
+    assert np.abs(report["energy"]["balance"]).max() < 1e-4
+    whole = relative(one, eight, np.full(len(eight["area"]), True))
+    print(f"even light by one ray: {100 * whole:.2f}%")
+    assert 1e-5 < whole < 0.005
