@@ -11,10 +11,11 @@ layout(push_constant, scalar) uniform Block { PathEnterPush push; };
 
 vec3 normal;  // unit, of the triangle, as its corners turn
 
-bool inside(uvec3 cell, uint axis, float at) {
-  if (at < 0.0 || at >= float(GRID.size[axis])) return false;
-  cell[axis] = uint(at);
-  return (load_uint(push.flags, cell_number(GRID, cell)) & CELL_INSIDE) != 0u;
+// Whether the cell at a point is inside; in cells.
+bool inside(vec3 place) {
+  ivec3 cell = ivec3(floor(place));
+  if (any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, ivec3(GRID.size)))) return false;
+  return (load_uint(push.flags, cell_number(GRID, uvec3(cell))) & CELL_INSIDE) != 0u;
 }
 
 // Whether a cell or one that it shares a corner with is inside: then the surface here is no sheet.
@@ -32,11 +33,11 @@ void crossed(Crossing crossing) {
   cell[crossing.axis] = uint(clamp(floor(crossing.at), 0.0, float(GRID.size[crossing.axis]) - 1.0));
   vec3 position = crossing_point(crossing);
   if (cut_away(push.tools, position)) return;
-  // Out is where the cells are not inside, whatever the corners say; a sheet is lit from both sides.
-  bool before = inside(crossing.column, crossing.axis, floor(crossing.at + 0.5) - 1.0);
-  bool behind = inside(crossing.column, crossing.axis, floor(crossing.at + 0.5));
-  vec3 outward = (normal[crossing.axis] > 0.0) == before ? normal : -normal;
-  vec3 entering = entering_at(position, before == behind ? normal : outward);
+  // Out is where the cells are not inside, whatever the corners say; a sheet is lit from both sides. A cell away along
+  // the normal: along a line that grazes the surface, which side comes first is a matter of chance.
+  vec3 place = (position - GRID.origin) / GRID.cell;
+  bool before = inside(place - normal), behind = inside(place + normal);
+  vec3 entering = entering_at(position, behind && !before ? -normal : normal);
   if (before == behind && !beside_inside(cell)) entering = max(entering, entering_at(position, -normal));
   enter(cell_number(GRID, cell), entering);
 }

@@ -5,30 +5,46 @@
 #include "path_update.h"
 
 // A block of one channel per workgroup. Lengths only fall, and whatever mixture of old and new ones a workgroup sees of
-// its neighbours, each is the length of a path; a block is relaxed again in the round after a neighbour's side has
-// changed. What is left when no block is listed is the one solution, whatever the order.
-layout(local_size_x = PATH_GROUP) in;
+// its neighbours, each is the length of a path; a block is relaxed again in a round after a neighbour's side has
+// changed so that it may matter. What is left when no block is listed is the one solution, whatever the order.
+layout(local_size_x = PATH_GROUP, local_size_x_id = 7) in;
 layout(push_constant, scalar) uniform Block { PathRelaxPush push; };
 // 1: paths go from middle to middle; 0: from any point between.
 layout(constant_id = 1) const uint LATTICE = 0u;
 
 const int WIDE = PATH_BLOCK + 2;  // with a cell of the neighbours on either side
-const int ROUNDS = 6;             // of sweeps at a time
-const uint SELF = 13u;            // of 27 blocks
+const int WIDE_CELLS = WIDE * WIDE * WIDE, CELLS = PATH_BLOCK * PATH_BLOCK * PATH_BLOCK;
+const int STRIDES[3] = {1, WIDE, WIDE * WIDE};
+const uint MOST_SWEEPS = 48u;
+const uint NONE = 0xffffffffu;
+const uint OWN_BITS = 0x1feu;  // of WIDE bits along an axis
 
-shared float lengths[WIDE * WIDE * WIDE];
-shared float costs[WIDE * WIDE * WIDE];  // of a cell's side
-shared float before[PATH_BLOCK * PATH_BLOCK * PATH_BLOCK];
-shared uint falls;
-shared uint changed_sides;
+shared float lengths[WIDE_CELLS];
+shared float costs[WIDE_CELLS];  // of a cell's side
+shared float before[CELLS];      // lengths; in the end those that have fallen, of others PATH_FAR
+// Where lengths have fallen since the last sweep in each of the ways, 0 to 2 up and 3 to 5 down the axes: bits of x in
+// a cube of WIDE, and WIDE higher of y and of z.
+shared uint dirty[6];
+shared uint fallen[3];  // what a sweep makes fall in a plane, by turns: bits of rows, and WIDE higher across
+shared uint wanted, arrived, crossed;  // what this block is listed for
+shared uint changed_blocks;
+shared uint arrivals[27], crossings[27];  // of the blocks around, of numbers that order as the lengths do
 
 int at(ivec3 cell) {
   return (cell.x + 1) + WIDE * ((cell.y + 1) + WIDE * (cell.z + 1));
 }
 
+int own_number(ivec3 cell) {
+  return cell.x + PATH_BLOCK * (cell.y + PATH_BLOCK * cell.z);
+}
+
+ivec3 own_cell(uint number) {
+  return ivec3(number % PATH_BLOCK, number / PATH_BLOCK % PATH_BLOCK, number / (PATH_BLOCK * PATH_BLOCK));
+}
+
 void load_block(ivec3 first, uint channel) {
   uint offset = channel * cell_count(push.grid);
-  for (uint k = gl_LocalInvocationID.x; k < WIDE * WIDE * WIDE; k += PATH_GROUP) {
+  for (uint k = gl_LocalInvocationID.x; k < WIDE_CELLS; k += gl_WorkGroupSize.x) {
     ivec3 local = ivec3(k % WIDE, k / WIDE % WIDE, k / (WIDE * WIDE)) - 1;
     ivec3 cell = first + local;
     bool there = all(greaterThanEqual(cell, ivec3(0))) && all(lessThan(cell, ivec3(push.grid.size)));
@@ -36,101 +52,117 @@ void load_block(ivec3 first, uint channel) {
     costs[k] = there ? push.grid.cell * load_float(push.cost, number) : -1.0;
     lengths[k] = there ? load_float(push.paths, number) : PATH_FAR;
     bool own = all(greaterThanEqual(local, ivec3(0))) && all(lessThan(local, ivec3(PATH_BLOCK)));
-    if (own) before[local.x + PATH_BLOCK * (local.y + PATH_BLOCK * local.z)] = lengths[k];
+    if (own) before[own_number(local)] = lengths[k];
   }
 }
 
-// Of a step of the lattice, over its length: the mean of both ends. Other paths cost what the cell does that they lead
-// to, so that all points of a side are weighed alike, and no order of updates matters.
-float step_cost(float cost, int neighbour) {
-  return 0.5 * (cost + costs[neighbour]);
-}
+#include "path_sweep.glsl"
 
-// The least, and through triangles, of the lengths around the corner t2 of a side of which t0 is the middle one.
-float through_corner(float t0, float t1, float other, float t2, float cost) {
-  float best = min(from_edge(t0, t2, cost, 1.0, sqrt(2.0)), from_edge(t0, t1, cost, 1.0, 1.0));
-  best = min(best, min(from_edge(t1, t2, cost, sqrt(2.0), 1.0), from_edge(other, t2, cost, sqrt(2.0), 1.0)));
-  return min(best, min(from_triangle(t0, t1, t2, cost), from_triangle(t0, other, t2, cost)));
-}
-
-// Through the nine neighbours of one side, `centre` the middle one; PATH_FAR where none of them is near enough to make
-// `old` shorter.
-float through_side(int centre, int u, int v, float cost, float old) {
-  float t0 = lengths[centre];
-  float u0 = lengths[centre - u], u1 = lengths[centre + u], v0 = lengths[centre - v], v1 = lengths[centre + v];
-  float t00 = lengths[centre - u - v], t10 = lengths[centre + u - v];
-  float t01 = lengths[centre - u + v], t11 = lengths[centre + u + v];
-  float sides = min(min(u0, u1), min(v0, v1)), corners = min(min(t00, t10), min(t01, t11));
-  if (min(t0, min(sides, corners)) + 0.5 * cost >= old) return PATH_FAR;
-  if (LATTICE == 1u) {
-    float best = t0 + step_cost(cost, centre);
-    best = min(best, u0 + sqrt(2.0) * step_cost(cost, centre - u));
-    best = min(best, u1 + sqrt(2.0) * step_cost(cost, centre + u));
-    best = min(best, v0 + sqrt(2.0) * step_cost(cost, centre - v));
-    best = min(best, v1 + sqrt(2.0) * step_cost(cost, centre + v));
-    best = min(best, t00 + sqrt(3.0) * step_cost(cost, centre - u - v));
-    best = min(best, t10 + sqrt(3.0) * step_cost(cost, centre + u - v));
-    best = min(best, t01 + sqrt(3.0) * step_cost(cost, centre - u + v));
-    return min(best, t11 + sqrt(3.0) * step_cost(cost, centre + u + v));
-  }
-  float best = min(t0 + cost, min(sides + sqrt(2.0) * cost, corners + sqrt(3.0) * cost));
-  // Each of the four sides is the first of one corner.
-  best = min(best, through_corner(t0, u0, v0, t00, cost));
-  best = min(best, through_corner(t0, v0, u1, t10, cost));
-  best = min(best, through_corner(t0, v1, u0, t01, cost));
-  return min(best, through_corner(t0, u1, v1, t11, cost));
-}
-
-// One plane after the other along an axis, each from the one before.
-void sweep(int axis, int direction, ivec2 place) {
-  int along = axis == 0 ? 1 : axis == 1 ? WIDE : WIDE * WIDE;
-  int u = axis == 0 ? WIDE : axis == 1 ? WIDE * WIDE : 1;
-  int v = axis == 0 ? WIDE * WIDE : axis == 1 ? 1 : WIDE;
-  [[dont_unroll]] for (int k = 0; k < PATH_BLOCK; ++k) {
-    int step = direction > 0 ? k : PATH_BLOCK - 1 - k;
-    int cell = (step + 1) * along + (place.x + 1) * u + (place.y + 1) * v;
-    float cost = costs[cell], old = lengths[cell];
-    if (cost >= 0.0) {
-      float found = through_side(cell - direction * along, u, v, max(cost, 1e-30), old);
-      if (found < old) {
-        lengths[cell] = found;
-        falls = 1u;
-      }
-    }
-    barrier();
-  }
-}
-
-// Bits of the other blocks that a cell is beside: of 3 x 3 x 3, this one in their middle.
-uint sides_of(ivec3 cell) {
-  uint x = 2u | (cell.x == 0 ? 1u : 0u) | (cell.x == PATH_BLOCK - 1 ? 4u : 0u);
-  uint xy = x * (8u | (cell.y == 0 ? 1u : 0u) | (cell.y == PATH_BLOCK - 1 ? 64u : 0u));
-  uint xyz = xy * (512u | (cell.z == 0 ? 1u : 0u) | (cell.z == PATH_BLOCK - 1 ? 262144u : 0u));
-  return xyz & ~(1u << SELF);
-}
-
-void store_block(ivec3 first, uint channel, ivec2 place) {
-  uint offset = channel * cell_count(push.grid), bits = 0u;
-  for (int z = 0; z < PATH_BLOCK; ++z) {
-    ivec3 cell = ivec3(place, z);
+void store_block(ivec3 first, uint channel) {
+  uint offset = channel * cell_count(push.grid);
+  for (uint k = gl_LocalInvocationID.x; k < CELLS; k += gl_WorkGroupSize.x) {
+    ivec3 cell = own_cell(k);
     float now = lengths[at(cell)];
-    if (now >= before[cell.x + PATH_BLOCK * (cell.y + PATH_BLOCK * cell.z)]) continue;
-    push.paths.at[offset + cell_number(push.grid, uvec3(first + cell))] = now;
-    bits |= sides_of(cell);
+    bool fallen = now < before[k];
+    before[k] = fallen ? now : PATH_FAR;
+    if (fallen) push.paths.at[offset + cell_number(push.grid, uvec3(first + cell))] = now;
   }
-  atomicOr(changed_sides, bits);
 }
 
-// Puts those blocks into the next round's list that are not there yet and have solid cells.
-void list_blocks(ivec3 block, ivec3 blocks, uint channel) {
-  uint k = gl_LocalInvocationID.x;
-  if (k >= 27u || (changed_sides & (1u << k)) == 0u) return;
-  ivec3 other = block + ivec3(k % 3u, k / 3u % 3u, k / 9u) - 1;
-  if (any(lessThan(other, ivec3(0))) || any(greaterThanEqual(other, blocks))) return;
-  uint item = uint(other.x + blocks.x * (other.y + blocks.y * other.z)) + channel * uint(blocks.x * blocks.y * blocks.z);
-  uint stamp = push.round + 2u;
-  if (atomicMax(push.stamps.at[item], stamp) >= stamp) return;
-  push.next.at[atomicAdd(push.groups.at[3u * (push.round + 1u)], 1u)] = item;
+// A number that is larger for a larger x.
+uint sortable(float x) {
+  uint bits = floatBitsToUint(x);
+  return (bits & 0x80000000u) != 0u ? ~bits : bits | 0x80000000u;
+}
+
+ivec3 way_to(uint number) {
+  return ivec3(number % 3u, number / 3u % 3u, number / 9u) - 1;
+}
+
+// Whether what has fallen may shorten paths to the cells of a block around that are beside it; and from where on.
+void look_at(uint number) {
+  ivec3 way = way_to(number);
+  bvec3 beyond = notEqual(way, ivec3(0));
+  ivec3 wide = mix(ivec3(PATH_BLOCK), ivec3(1), beyond);
+  uint across = beyond.x ? 0u : beyond.y ? 1u : 2u, count = uint(wide.x * wide.y * wide.z);
+  [[dont_unroll]] for (uint k = gl_LocalInvocationID.x; k < count; k += gl_WorkGroupSize.x) {
+    ivec3 place = ivec3(k % wide.x, k / wide.x % wide.y, k / (wide.x * wide.y));
+    ivec3 cell = mix(place, mix(ivec3(-1), ivec3(PATH_BLOCK), equal(way, ivec3(1))), beyond);
+    float least = PATH_FAR;
+    for (int n = 0; n < 9; ++n) {
+      ivec3 other = cell;
+      other[(across + 1u) % 3u] += n % 3 - 1;
+      other[(across + 2u) % 3u] += n / 3 - 1;
+      least = min(least, before[own_number(clamp(other, ivec3(0), ivec3(PATH_BLOCK - 1)))]);
+    }
+    float cost = costs[at(cell)];
+    if (cost < 0.0 || at_least(least, cost) >= lengths[at(cell)]) continue;
+    atomicOr(changed_blocks, 1u << number);
+    atomicMin(arrivals[number], sortable(least));
+    atomicMin(crossings[number], sortable(least + float(PATH_BLOCK) * cost));
+  }
+}
+
+// Puts a block into the next round's list, if it has solid cells: changed at those of the 27 blocks around, from that
+// length on, and crossed at that one.
+void list(uint item, uint all, uint from, uint arrival, uint crossing) {
+  uint next = push.round + 1u, there = next % 2u * 3u * all + item;
+  if ((push.wanted.at[there] & PATH_NEVER) != 0u) return;
+  atomicMin(push.arrivals.at[there].x, arrival);
+  atomicMin(push.arrivals.at[there].y, crossing);
+  atomicMin(push.fronts.at[3u * next + item / all], crossing);
+  if (atomicOr(push.wanted.at[there], from) == 0u) push.next.at[atomicAdd(push.groups.at[3u * next], 1u)] = item;
+}
+
+void list_blocks(ivec3 block, ivec3 blocks, uint channel, uint moved) {
+  // Of 27 blocks those that have something fallen beside them.
+  uint near = 0u;
+  for (uint k = 0u; k < 27u; ++k) {
+    bool all = k != PATH_SELF && moved != 0u;
+    for (uint axis = 0u; axis < 3u; ++axis) {
+      int way = way_to(k)[axis];
+      all = all && (way == 0 || (bits_along(moved, axis) & (way < 0 ? 2u : 1u << PATH_BLOCK)) != 0u);
+    }
+    if (all) near |= 1u << k;
+  }
+  [[dont_unroll]] for (uint rest = near; rest != 0u; rest &= rest - 1u) look_at(uint(findLSB(rest)));
+  barrier();
+  uint all = uint(blocks.x * blocks.y * blocks.z);
+  for (uint k = gl_LocalInvocationID.x; k < 27u; k += gl_WorkGroupSize.x) {
+    ivec3 other = block + way_to(k);
+    if ((changed_blocks & 1u << k) == 0u || any(lessThan(other, ivec3(0))) || any(greaterThanEqual(other, blocks)))
+      continue;
+    uint item = uint(other.x + blocks.x * (other.y + blocks.y * other.z)) + channel * all;
+    // From there this one lies the other way.
+    list(item, all, 1u << (26u - k), arrivals[k], crossings[k]);
+  }
+}
+
+// Takes what the block of this workgroup is listed for, and says where it is dirty.
+void start(uint here) {
+  if (gl_LocalInvocationID.x == 0u) {
+    wanted = push.wanted.at[here];
+    arrived = push.arrivals.at[here].x;
+    crossed = push.arrivals.at[here].y;
+    push.wanted.at[here] = 0u;
+    push.arrivals.at[here] = uvec2(NONE);
+    changed_blocks = 0u;
+  }
+  for (uint k = gl_LocalInvocationID.x; k < 27u; k += gl_WorkGroupSize.x) arrivals[k] = crossings[k] = NONE;
+  barrier();
+  uint mask = 0u;
+  for (uint k = 0u; k < 27u; ++k) {
+    ivec3 way = way_to(k);
+    for (uint axis = 0u; axis < 3u; ++axis) {
+      uint bits = way[axis] == 0 ? OWN_BITS : way[axis] < 0 ? 1u : 1u << (PATH_BLOCK + 1);
+      if ((wanted & 1u << k) != 0u) mask |= bits << uint(WIDE) * axis;
+    }
+  }
+  for (uint way = gl_LocalInvocationID.x; way < 6u; way += gl_WorkGroupSize.x) dirty[way] = mask;
+  if (gl_LocalInvocationID.x == 0u) {
+    arrivals[PATH_SELF] = arrived;
+    crossings[PATH_SELF] = crossed;
+  }
 }
 
 void main() {
@@ -140,20 +172,15 @@ void main() {
   int number = int(item % all);
   ivec3 block = ivec3(number % blocks.x, number / blocks.x % blocks.y, number / (blocks.x * blocks.y));
   ivec3 first = PATH_BLOCK * block;
-  ivec2 place = ivec2(gl_LocalInvocationID.x % PATH_BLOCK, gl_LocalInvocationID.x / PATH_BLOCK);
-  if (gl_LocalInvocationID.x == 0u) changed_sides = 0u;
+  start(push.round % 2u * 3u * all + item);
+  if (arrived > push.fronts.at[3u * push.round + channel]) {
+    if (gl_LocalInvocationID.x == 0u) list(item, all, wanted, arrived, crossed);
+    return;
+  }
   load_block(first, channel);
   barrier();
-  uint more = 1u;
-  [[dont_unroll]] for (int k = 0; k < ROUNDS && more == 1u; ++k) {
-    if (gl_LocalInvocationID.x == 0u) falls = 0u;
-    barrier();
-    [[dont_unroll]] for (int way = 0; way < 6; ++way) sweep(way / 2, way % 2 == 0 ? 1 : -1, place);
-    more = falls;
-    barrier();
-  }
-  store_block(first, channel, place);
-  if (more == 1u && gl_LocalInvocationID.x == 0u) atomicOr(changed_sides, 1u << SELF);
+  uint moved = relax();
+  store_block(first, channel);
   barrier();
-  list_blocks(block, blocks, channel);
+  list_blocks(block, blocks, channel, moved);
 }

@@ -94,7 +94,7 @@ struct PathSolidPush {
   PathGrid grid;
   QG_REF(Uints) votes;  // path_winding.comp's, axis after axis
   QG_REF(Uints) flags;
-  QG_REF(Uints) stamps;  // per block and channel; 0 where a cell of the block is solid
+  QG_REF(Uints) wanted;  // PathRelaxPush; 0 where a cell of the block is solid
   QG_REF(Uints) counts;  // PathCounts
   PathTools tools;
 };
@@ -145,27 +145,37 @@ struct PathCostPush {
   QG_REF(Floats) cost;  // written
 };
 
+const uint PATH_NEVER = 0x80000000u;
+const uint PATH_SELF = 13u;  // of 27 blocks, x fastest
+
 // path_start.comp: lengths before the first step: -ln of what enters.
 struct PathStartPush {
   PathGrid grid;
   QG_REF(Uints) flags;
   QG_REF(Uints) entering;  // 3 per cell, channel after channel: bits of W/mm^2
   QG_REF(Floats) paths;    // the same order, written
-  QG_REF(Uints) stamps;
+  QG_REF(Uints) wanted;
   QG_REF(Uints) list;    // blocks of round 0: block + blocks * channel
   QG_REF(Uints) groups;  // of round 0
   QG_REF(Uints) counts;  // PathCounts
 };
 
-// path_relax.comp: relaxes the blocks of a list.
+// path_relax.comp: relaxes the blocks of a list; those that light arrives at later than it has crossed one of them wait
+// for another round, as it may not have come on its shortest way yet.
 struct PathRelaxPush {
   PathGrid grid;
   QG_REF(Floats) cost;   // 3 per cell, channel after channel, 1/mm; below 0: not solid
   QG_REF(Floats) paths;  // the same order; falls
-  QG_REF(Uints) stamps;  // last round that a block is in, by block and channel
+  // Of even rounds and then of odd ones, per block and channel: bits of the 27 blocks around that have changed, the
+  // block itself in their middle; 0 where it is not listed, PATH_NEVER too where no cell is solid.
+  QG_REF(Uints) wanted;
   QG_REF(Uints) list;    // of this round
   QG_REF(Uints) next;    // of the next one
   QG_REF(Uints) groups;  // workgroup counts, 3 per round
+  // The same of the blocks' lengths where light arrives and where it has crossed, as numbers that order as they do;
+  // without one and begun at the largest.
+  QG_REF(Uvec2s) arrivals;
+  QG_REF(Uints) fronts;  // 3 per round: least at which a listed block is crossed; the same
   uint round;
 };
 

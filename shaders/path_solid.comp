@@ -30,5 +30,5 @@ void main() {
   atomicAdd(push.counts.at[0], 1u);
   uvec3 blocks = push.grid.size / PATH_BLOCK, block = cell_at(push.grid, i) / PATH_BLOCK;
   uint number = block.x + blocks.x * (block.y + blocks.y * block.z);
-  for (uint c = 0u; c < 3u; ++c) push.stamps.at[number + c * blocks.x * blocks.y * blocks.z] = 0u;
+  for (uint c = 0u; c < 6u; ++c) push.wanted.at[number + c * blocks.x * blocks.y * blocks.z] = 0u;
 }

@@ -18,7 +18,7 @@ void main() {
     if (!here) continue;
     lit = true;
     uint item = number + c * all;
-    if (atomicMax(push.stamps.at[item], 1u) >= 1u) continue;
+    if (atomicOr(push.wanted.at[item], 1u << PATH_SELF) != 0u) continue;
     push.list.at[atomicAdd(push.groups.at[0], 1u)] = item;
   }
   if (lit) atomicAdd(push.counts.at[1], 1u);

@@ -67,10 +67,11 @@ double through_triangles(const Neighbours& n, double cost) {
     const int first = k % 3, second = (first + 1 + k / 3 % 2) % 3, third = 3 - first - second;
     const auto towards = [&](int axis, int bit) { return ((k / 6) >> bit & 1) != 0 ? strides[axis] : -strides[axis]; };
     const int i0 = 13 + towards(first, 0), i1 = i0 + towards(second, 1), i2 = i1 + towards(third, 2);
-    const double t0 = n[i0], t1 = n[i1], t2 = n[i2];
+    const double t0 = n[i0], t1 = n[i1], t2 = n[i2], a = (t0 - t1) / cost, b = (t1 - t2) / cost;
     for (const double found :
-         {gpu::from_triangle(t0, t1, t2, cost), gpu::from_edge(t0, t1, cost, 1, 1),
-          gpu::from_edge(t1, t2, cost, std::sqrt(2.0), 1), gpu::from_edge(t0, t2, cost, 1, std::sqrt(2.0))}) {
+         {t0 + cost * std::sqrt(gpu::triangle_rest(a, b)), t0 + cost * std::sqrt(gpu::edge_rest(a, 1, 1)),
+          t1 + cost * std::sqrt(2 * gpu::edge_rest(b, 2, 1)),
+          t0 + cost * std::sqrt(gpu::edge_rest((t0 - t2) / cost, 1, 2))}) {
       best = std::min(best, found);
     }
   }

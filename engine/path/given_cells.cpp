@@ -25,15 +25,15 @@ std::vector<float> paths_through(vk::Context& context, const glm::uvec3& size, f
   }
   std::vector<std::uint32_t> flags(count);
   for (std::size_t i = 0; i < count; ++i) flags[i] = cost[i] >= 0 ? gpu::CELL_SOLID : 0;
-  const std::vector<std::uint32_t> stamps(3 * block_count(grid), 0);
+  const std::vector<std::uint32_t> wanted(6 * block_count(grid), 0);
   const vk::Buffer flag_buffer = vk::upload<std::uint32_t>(context, flags, "path/flags");
-  const vk::Buffer stamp_buffer = vk::upload<std::uint32_t>(context, stamps, "path/stamps", vk::Place::device);
+  const vk::Buffer wanted_buffer = vk::upload<std::uint32_t>(context, wanted, "path/wanted", vk::Place::device);
   PathRelaxation relaxation(context);
   relaxation.make_room(grid);
   vk::write_bytes(context, relaxation.cost(), std::as_bytes(cost));
   vk::write_bytes(context, relaxation.entering(), std::as_bytes(entering));
   std::vector<PassStats> passes;
-  relaxation.solve({grid, flag_buffer, stamp_buffer}, solver, passes);
+  relaxation.solve({grid, flag_buffer, wanted_buffer}, solver, passes);
   return vk::download<float>(context, relaxation.lengths());
 }
 

@@ -20,6 +20,7 @@ constexpr std::uint64_t word = sizeof(std::uint32_t);
 PathRelaxation::PathRelaxation(vk::Context& context)
     : context_(context),
       start_pass_(context, path_start_comp, sizeof(gpu::PathStartPush), "path start"),
+      fronts_(context, 3 * (most_rounds + 1) * word, vk::Place::device, "path/fronts"),
       groups_(context, (most_rounds + 1) * sizeof(glm::uvec3), vk::Place::device, "path/groups"),
       counts_(context, sizeof(gpu::PathCounts), vk::Place::device, "path/counts of lit cells") {}
 
@@ -27,8 +28,10 @@ const vk::ComputePass& PathRelaxation::pass(PathSolver solver) {
   const std::uint32_t lattice = solver == PathSolver::lattice ? 1 : 0;
   auto& pass = passes_[lattice];
   if (pass) return *pass;
+  // llvmpipe runs eight invocations at a time, which then need not wait for others.
+  const bool few = vk::few_workgroups(context_);
   return pass.emplace(context_, path_relax_comp, static_cast<std::uint32_t>(sizeof(gpu::PathRelaxPush)), "path relax",
-                      std::uint32_t{PATH_GROUP}, lattice);
+                      few ? std::uint32_t{PATH_BLOCK} : std::uint32_t{PATH_GROUP}, lattice);
 }
 
 void PathRelaxation::make_room(const gpu::PathGrid& grid) {
@@ -36,6 +39,8 @@ void PathRelaxation::make_room(const gpu::PathGrid& grid) {
   quadgraph::make_room(context_, cost_, bytes, vk::Place::read, "path/cost");
   quadgraph::make_room(context_, entering_, bytes, vk::Place::read, "path/entering");
   quadgraph::make_room(context_, lengths_, bytes, vk::Place::read, "path/lengths");
+  quadgraph::make_room(context_, arrivals_, 6 * sizeof(glm::uvec2) * block_count(grid), vk::Place::device,
+                       "path/arrivals");
   for (vk::Buffer& list : lists_) {
     quadgraph::make_room(context_, list, 3 * word * block_count(grid), vk::Place::device, "path/blocks to relax");
   }
@@ -56,21 +61,25 @@ void PathRelaxation::solve(const SolidCells& cells, PathSolver solver, std::vect
       if (rounds_ == 0) {
         commands.update(groups_, std::as_bytes(std::span(no_groups)));
         commands.fill(counts_, 0);
+        commands.fill(fronts_, ~0u);
+        commands.fill(arrivals_, ~0u);
         commands.barrier();
         commands.dispatch(
             start_pass_,
             gpu::PathStartPush{grid, cells.flags.address(), entering_.address(), lengths_.address(),
-                               cells.stamps.address(), lists_[0].address(), groups_.address(), counts_.address()},
+                               cells.wanted.address(), lists_[0].address(), groups_.address(), counts_.address()},
             count);
       }
       for (std::uint32_t k = rounds_; k < rounds_ + rounds_at_once; ++k) {
         const gpu::PathRelaxPush push{grid,
                                       cost_.address(),
                                       lengths_.address(),
-                                      cells.stamps.address(),
+                                      cells.wanted.address(),
                                       lists_[k % 2].address(),
                                       lists_[(k + 1) % 2].address(),
                                       groups_.address(),
+                                      arrivals_.address(),
+                                      fronts_.address(),
                                       k};
         commands.dispatch_indirect(relax, push, groups_, k * sizeof(glm::uvec3));
       }

@@ -10,9 +10,11 @@
 namespace quadgraph {
 
 // A block of 8^3 cells of one channel is relaxed by one workgroup: planes of cells take, one after the other, what is
-// shortest through the plane before, in the six directions along the axes, until the block has nothing left to gain.
-// Then the blocks beside a side that has changed are listed for the next round. Rounds are recorded beforehand with
-// workgroup counts from the device. The lattice's answer is Dijkstra's but for rounding.
+// shortest through the plane before, where that has changed, in the six directions along the axes, until the block has
+// nothing left to gain. Then the blocks around that what has changed can make shorter are listed for the next round.
+// There those wait that light arrives at later than it has crossed another one, which comes close to Dijkstra's order.
+// Rounds are recorded beforehand with workgroup counts from the device. The lattice's answer is Dijkstra's but for
+// rounding.
 class PathRelaxation {
  public:
   explicit PathRelaxation(vk::Context& context);
@@ -25,12 +27,12 @@ class PathRelaxation {
   const vk::Buffer& cost() const { return cost_; }
   const vk::Buffer& entering() const { return entering_; }
 
-  // Lengths from -ln(entering) on. The stamps of the cells are used up. Throws SolverError if rounds do not end.
+  // Lengths from -ln(entering) on. Throws SolverError if rounds do not end.
   void solve(const SolidCells& cells, PathSolver solver, std::vector<PassStats>& passes);
 
   const vk::Buffer& lengths() const { return lengths_; }  // as cost; PATH_FAR: no light gets there
   std::uint32_t rounds() const { return rounds_; }        // of the last solve
-  std::uint32_t relaxed() const { return relaxed_; }      // blocks of a channel, over all rounds
+  std::uint32_t relaxed() const { return relaxed_; }      // blocks of a channel, over all rounds, and waited
   std::uint32_t lit() const { return lit_; }              // cells that light enters
 
  private:
@@ -39,7 +41,7 @@ class PathRelaxation {
   vk::Context& context_;
   vk::ComputePass start_pass_;
   std::optional<vk::ComputePass> passes_[2];  // by PathSolver, made at first use
-  vk::Buffer cost_, entering_, lengths_, lists_[2], groups_, counts_;
+  vk::Buffer cost_, entering_, lengths_, lists_[2], arrivals_, fronts_, groups_, counts_;
   std::uint32_t rounds_ = 0, relaxed_ = 0, lit_ = 0;
 };
 

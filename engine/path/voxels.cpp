@@ -60,7 +60,7 @@ void Voxels::update(const PathMesh& mesh, std::uint32_t cells, const gpu::PathTo
   make_room(context_, crossings_, 3 * count * word, vk::Place::read, "path/crossings");
   make_room(context_, flags_, count * word, vk::Place::read, "path/flags");
   make_room(context_, triangle_, count * word, vk::Place::read, "path/triangles of cells");
-  make_room(context_, stamps_, 3 * blocks * word, vk::Place::device, "path/stamps");
+  make_room(context_, wanted_, 6 * blocks * word, vk::Place::device, "path/wanted");
   const std::uint32_t stripes = Voxels::stripes(mesh);
   const gpu::PathCrossingsPush crossings{grid_,
                                          mesh.vertices.address(),
@@ -76,7 +76,7 @@ void Voxels::update(const PathMesh& mesh, std::uint32_t cells, const gpu::PathTo
     commands.fill(crossings_, 0);
     commands.fill(flags_, 0);
     commands.fill(triangle_, 0);
-    commands.fill(stamps_, ~0u);
+    commands.fill(wanted_, ~0u);
     commands.fill(counts_, 0);
     commands.barrier();
     commands.dispatch(crossings_pass_, crossings, 3ull * stripes * mesh.triangle_count);
@@ -86,7 +86,7 @@ void Voxels::update(const PathMesh& mesh, std::uint32_t cells, const gpu::PathTo
     }
     commands.dispatch(
         solid_pass_,
-        gpu::PathSolidPush{grid_, crossings_.address(), flags_.address(), stamps_.address(), counts_.address(), tools},
+        gpu::PathSolidPush{grid_, crossings_.address(), flags_.address(), wanted_.address(), counts_.address(), tools},
         count);
   });
   solid_ = vk::download<std::uint32_t>(context_, counts_)[0];

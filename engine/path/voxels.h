@@ -21,9 +21,8 @@ struct PathMesh {
 // The nodes of the graph.
 struct SolidCells {
   gpu::PathGrid grid;
-  const vk::Buffer& flags;  // uint per cell, CELL_*
-  const vk::Buffer&
-      stamps;  // uint per block and channel: 0 where a cell of the block is solid, else the largest number
+  const vk::Buffer& flags;   // uint per cell, CELL_*
+  const vk::Buffer& wanted;  // gpu::PathRelaxPush, of blocks that are not listed: 0, or that they never are
 };
 
 // A cell is solid where its middle is inside the surface or the surface crosses, within the cell, one of the three
@@ -38,7 +37,7 @@ class Voxels {
   void update(const PathMesh& mesh, std::uint32_t cells, const gpu::PathTools& tools, std::vector<PassStats>& passes);
 
   const gpu::PathGrid& grid() const { return grid_; }
-  SolidCells cells() const { return {grid_, flags_, stamps_}; }
+  SolidCells cells() const { return {grid_, flags_, wanted_}; }
   std::uint32_t solid() const { return solid_; }  // cells
 
   // uint per cell: 1 + the largest of the triangles that cross it, 0 without one.
@@ -52,7 +51,7 @@ class Voxels {
 
   vk::Context& context_;
   vk::ComputePass box_pass_, crossings_pass_, winding_pass_, solid_pass_;
-  vk::Buffer box_, crossings_, flags_, triangle_, stamps_, counts_;
+  vk::Buffer box_, crossings_, flags_, triangle_, wanted_, counts_;
   gpu::PathGrid grid_{};
   std::uint32_t solid_ = 0;
 };

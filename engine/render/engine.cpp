@@ -167,6 +167,7 @@ void Engine::set_deformation(std::span<const Deformer> list) {
   self.stale();
   self.deformed = true;
   self.deformation = summary_of(list);
+  self.paths.set_moved();
   if (self.ground) self.ground->invalidate();
   self.report.reset();
 }

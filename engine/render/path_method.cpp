@@ -59,6 +59,7 @@ void PathMethod::set(std::span<const Edit> edits) {
 
 void PathMethod::set(std::span<const BodyCut> cuts) {
   const std::vector<gpu::PathTool> tools = path_tools(cuts);
+  body_.reset();
   tool_count_ = static_cast<std::uint32_t>(tools.size());
   vk::rewrite<gpu::PathTool>(context_, tools, "path/cuts", tools_);
 }
@@ -74,6 +75,7 @@ PathMethod::Parts& PathMethod::parts() {
   }
   parts_->costs.set(edits_);
   stale_ = false;
+  body_.reset();
   return *parts_;
 }
 
@@ -106,14 +108,21 @@ void PathMethod::light(const DisplayBuffers& mesh, const ShadowMaps& shadows, fl
            });
 }
 
+void PathMethod::make_body(const PathMesh& mesh, const vk::Buffer* rest, const PathOptions& options) {
+  Parts& own = *parts_;
+  if (body_ && body_->cells == options.cells && body_->cost == options.cost) return;
+  body_.reset();
+  own.voxels.update(mesh, options.cells, tools(), passes_);
+  own.paths.make_room(own.voxels.grid());
+  own.costs.run(own.voxels, mesh, rest, options.cost, own.paths.cost(), passes_);
+  body_ = options;
+}
+
 PathReport PathMethod::solve(const DisplayBuffers& mesh, const vk::Buffer* rest, const ShadowMaps& shadows, float eta,
                              const PathOptions& options) {
   Parts& own = parts();
   passes_.clear();
-  const PathMesh triangles{mesh.vertices, mesh.triangles, mesh.vertex_count, mesh.triangle_count};
-  own.voxels.update(triangles, options.cells, tools(), passes_);
-  own.paths.make_room(own.voxels.grid());
-  own.costs.run(own.voxels, triangles, rest, options.cost, own.paths.cost(), passes_);
+  make_body({mesh.vertices, mesh.triangles, mesh.vertex_count, mesh.triangle_count}, rest, options);
   light(mesh, shadows, eta);
   own.paths.solve(own.voxels.cells(), options.solver, passes_);
   own.field.run(own.voxels, own.paths, tools(), passes_);

@@ -11,6 +11,7 @@
 #include "engine/graph/edit.h"
 #include "engine/graph/optical_grid.h"
 #include "engine/graph/solution.h"
+#include "engine/path/voxels.h"
 #include "engine/render/display_buffers.h"
 #include "engine/render/shadow_maps.h"
 
@@ -37,8 +38,12 @@ class PathMethod {
   // What is cut away from now on; checked before.
   void set(std::span<const BodyCut> cuts);
 
-  // Voxels, costs, light and paths of the mesh as it is now. `rest`: its vertices at rest, null where they are there.
-  // Throws InputError as CellCosts and check_options, SolverError as PathRelaxation.
+  // The mesh is no longer what it was at the last solve.
+  void set_moved() { body_.reset(); }
+
+  // Voxels and costs of the mesh as it is now, if anything about them has changed since the last solve, light and
+  // paths. `rest`: its vertices at rest, null where they are there. Throws InputError as CellCosts and check_options,
+  // SolverError as PathRelaxation.
   PathReport solve(const DisplayBuffers& mesh, const vk::Buffer* rest, const ShadowMaps& shadows, float eta,
                    const PathOptions& options);
 
@@ -52,6 +57,7 @@ class PathMethod {
 
   gpu::PathTools tools() const { return {tools_.address(), tool_count_}; }
   Parts& parts();
+  void make_body(const PathMesh& mesh, const vk::Buffer* rest, const PathOptions& options);
   void light(const DisplayBuffers& mesh, const ShadowMaps& shadows, float eta);
 
   vk::Context& context_;
@@ -60,7 +66,8 @@ class PathMethod {
   std::optional<GivenGrid> grid_;
   vk::Buffer tools_;  // gpu::PathTool
   std::uint32_t tool_count_ = 0;
-  bool stale_ = true;  // the parts do not know the present coefficients
+  bool stale_ = true;                // the parts do not know the present coefficients
+  std::optional<PathOptions> body_;  // of which voxels and costs are; none: not of the present body
   std::unique_ptr<Parts> parts_;
   std::vector<PassStats> passes_;
 };

@@ -3,15 +3,20 @@
 
 #include <doctest/doctest.h>
 
+#include <cstdint>
+#include <optional>
+
 #include "engine/vk/context.h"
 
 namespace quadgraph {
 
 // A context whose validation messages fail the test that made it.
 struct CheckedContext {
-  vk::Context context{{.validation = true, .device = ""}};
+  vk::Context context;
 
-  CheckedContext() = default;
+  // `texel_bytes`: vk::ContextOptions.
+  explicit CheckedContext(std::optional<std::uint64_t> texel_bytes = std::nullopt)
+      : context({.validation = true, .device = "", .texel_bytes = texel_bytes}) {}
   CheckedContext(const CheckedContext&) = delete;
   CheckedContext& operator=(const CheckedContext&) = delete;
   ~CheckedContext() {

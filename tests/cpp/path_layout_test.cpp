@@ -29,15 +29,16 @@ TEST_CASE("the grid and the push constants of paths") {
           {MEMBER(PathWindingPush, grid), MEMBER(PathWindingPush, crossings), MEMBER(PathWindingPush, axis)});
   compare(path_solid_comp, "PathSolidPush",
           {MEMBER(PathSolidPush, grid), MEMBER(PathSolidPush, votes), MEMBER(PathSolidPush, flags),
-           MEMBER(PathSolidPush, stamps), MEMBER(PathSolidPush, counts), MEMBER(PathSolidPush, tools)});
+           MEMBER(PathSolidPush, wanted), MEMBER(PathSolidPush, counts), MEMBER(PathSolidPush, tools)});
   compare(path_start_comp, "PathStartPush",
           {MEMBER(PathStartPush, grid), MEMBER(PathStartPush, flags), MEMBER(PathStartPush, entering),
-           MEMBER(PathStartPush, paths), MEMBER(PathStartPush, stamps), MEMBER(PathStartPush, list),
+           MEMBER(PathStartPush, paths), MEMBER(PathStartPush, wanted), MEMBER(PathStartPush, list),
            MEMBER(PathStartPush, groups), MEMBER(PathStartPush, counts)});
   compare(path_relax_comp, "PathRelaxPush",
           {MEMBER(PathRelaxPush, grid), MEMBER(PathRelaxPush, cost), MEMBER(PathRelaxPush, paths),
-           MEMBER(PathRelaxPush, stamps), MEMBER(PathRelaxPush, list), MEMBER(PathRelaxPush, next),
-           MEMBER(PathRelaxPush, groups), MEMBER(PathRelaxPush, round)});
+           MEMBER(PathRelaxPush, wanted), MEMBER(PathRelaxPush, list), MEMBER(PathRelaxPush, next),
+           MEMBER(PathRelaxPush, groups), MEMBER(PathRelaxPush, arrivals), MEMBER(PathRelaxPush, fronts),
+           MEMBER(PathRelaxPush, round)});
   compare(path_flood_comp, "PathFloodPush",
           {MEMBER(PathFloodPush, grid), MEMBER(PathFloodPush, triangle), MEMBER(PathFloodPush, from),
            MEMBER(PathFloodPush, to), MEMBER(PathFloodPush, step)});

@@ -7,11 +7,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 
 from baked import write_levels
 from quadgraph import bare, qgraph_file
 from quadgraph.cli import main
 from quadgraph.errors import FormatError, InputError
+from quadgraph.surface import Surface
 from shapes import cube, icosphere
 
 _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
@@ -101,6 +103,21 @@ def test_shadow_and_colour(bare_engine):
     assert far[0] == pytest.approx(straight * lit[0], rel=0.2)
 
 
+def test_ripples_let_no_light_in_behind(bare_engine):
+    """A plate with ripples behind, in which a plane of middles of cells lies: what is lit there is lit from before."""
+    flat = trimesh.creation.box((8, 8, 3.81))
+    for _ in range(5):
+        flat = flat.subdivide()
+    points = np.array(flat.vertices)
+    behind = points[:, 2] > 1.9
+    points[behind, 2] += 0.06 * np.sin(5 * points[behind, 0]) * np.sin(4 * points[behind, 1])
+    engine = bare_engine(Surface(points, np.array(flat.faces)))
+    cell = solve(engine, path_cells=32)["path"]["cell"]
+    inner = behind & (np.abs(points[:, :2]).max(axis=1) < 3)
+    most = float(engine.exitance_at(points[inner])[:, 0].max())
+    assert most < np.exp(-COSTS["transport"] * (3.75 - 1.5 * cell))
+
+
 def test_material_moves_with_the_body(bare_engine):
     pattern = "sigma_s_prime=1,sigma_a=.01,eta=1,pattern=checker,period=2,second_sigma_s_prime=1,second_sigma_a=.5"
     body = cube(8.0)
@@ -118,6 +135,31 @@ def test_material_moves_with_the_body(bare_engine):
     engine.set_lights(["directional:0,0,1:1"])
     solve(engine)
     assert np.array_equal(engine.exitance_at(points), still)
+
+
+def test_what_is_kept_from_frame_to_frame_changes_nothing(bare_engine):
+    """After any change the frame is what it is with all made anew, as after a change of the voxels' size."""
+    spots = "sigma_s_prime=1,sigma_a=.01,eta=1,pattern=checker,period=3,second_sigma_s_prime=1,second_sigma_a=.5"
+    slab = json.dumps([{"type": "slab", "normal": [0, 0, 1], "offset": 1, "thickness": 1}])
+    turn = [{"type": "transform", "axis": [0, 1, 0], "degrees": 40, "scale": [1, 0.8, 1]}]
+    changes = (
+        lambda engine: engine.set_lights(["directional:1,1,0:2/1/1"]),
+        lambda engine: engine.set_material(spots),
+        lambda engine: engine.set_deformation(turn),
+        lambda engine: engine.set_cuts(slab),
+        lambda engine: engine.set_grid(*np.full((2, 2, 2, 2, 3), 0.4), (9, 9, 9), (-5, -5, -5), 1.0),
+    )
+    engine, points = bare_engine(icosphere(3, 5.0)), icosphere(2, 5.0).vertices
+    solve(engine)
+    for change in changes:
+        before = engine.exitance_at(points)
+        change(engine)
+        solve(engine)
+        after = engine.exitance_at(points)
+        assert not np.array_equal(after, before)
+        solve(engine, path_cells=24)
+        solve(engine)
+        assert np.array_equal(engine.exitance_at(points), after)
 
 
 def test_layers_are_as_deep_as_they_say(bare_engine):
