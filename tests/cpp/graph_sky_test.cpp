@@ -11,8 +11,12 @@ TEST_CASE("every level sees the sky as it would by its own rays, but for what tr
   const std::vector<OwnedLevel> slabs = {facing_slabs(6, 12.0f, 6.0f, 1.0f), facing_slabs(5, 12.0f, 6.0f, 1.0f),
                                          facing_slabs(4, 12.0f, 6.0f, 1.0f)};
   std::vector<OwnedLevel> own = slabs;
-  for (OwnedLevel& level : own) bake_seen(level, 64);
-  for (std::size_t known = 0; known < 3; ++known) {
+  std::vector<std::vector<double>> expected;
+  for (OwnedLevel& level : own) {
+    bake_seen(level, 16);
+    expected.push_back(sky_visibility(level.view()));
+  }
+  for (const std::size_t known : {0, 2}) {
     std::vector<OwnedLevel> levels = slabs;
     levels[known] = own[known];
     const QuadGraph graph = QuadGraph::parse(graph_of(levels), "slabs");
@@ -21,11 +25,11 @@ TEST_CASE("every level sees the sky as it would by its own rays, but for what tr
     for (std::size_t i = 0; i < 3; ++i) {
       CAPTURE(known);
       CAPTURE(i);
-      const std::vector<double> expected = sky_visibility(own[i].view());
+      const auto faces = static_cast<double>(expected[i].size());
       double difference = 0, hidden = 0;
-      for (std::size_t f = 0; f < expected.size(); ++f) {
-        difference += std::abs(double{sky[i][f]} - expected[f]) / static_cast<double>(expected.size());
-        hidden += (1 - expected[f]) / static_cast<double>(expected.size());
+      for (std::size_t f = 0; f < expected[i].size(); ++f) {
+        difference += std::abs(double{sky[i][f]} - expected[i][f]) / faces;
+        hidden += (1 - expected[i][f]) / faces;
       }
       CHECK(hidden > 0.1);
       CHECK(difference < (i == known ? 1e-6 : hidden / 3));

@@ -20,10 +20,9 @@ def dipole(medium) -> Dipole:
 @pytest.mark.parametrize("medium", MEDIA)
 def test_reflectance_over_the_plane_is_the_closed_form(medium):
     found = dipole(medium)
-    nodes, weights = np.polynomial.legendre.leggauss(4000)
-    logarithm = np.log(1e-5) + (np.log(1e4) - np.log(1e-5)) * (nodes + 1) / 2
-    r, dr = np.exp(logarithm), (np.log(1e4) - np.log(1e-5)) / 2
-    integral = weights @ (2 * np.pi * r**2 * found.reflectance(r)) * dr
+    logarithm = np.linspace(np.log(1e-5), np.log(1e4), 2000)  # where it vanishes at both ends, sums are exact
+    r = np.exp(logarithm)
+    integral = (2 * np.pi * r**2 * found.reflectance(r)).sum() * (logarithm[1] - logarithm[0])
     assert integral == pytest.approx(float(found.total()), rel=1e-6)
 
 
