@@ -100,5 +100,5 @@ void main() {
   vec3 factor = mix(vec3(0), min(means.exitance / means.gathered, vec3(GATHER_FACTOR_MAX)),
                     greaterThan(means.gathered, vec3(0)));
   vec3 rest = max(means.exitance - factor * means.gathered, vec3(0)) / max(means.weight, vec3(1e-30));
-  push.scale.at[v] = GatherScale(factor, rest);
+  push.scale.at[v] = GatherScale(factor, rest, GATHER_FLOOR * load_vec3(push.exitance, v));
 }

@@ -17,10 +17,12 @@ struct GatherPoint {
   vec3 depth;  // optical depth of that way
 };
 
-// At a surface vertex: radiance is `factor` times what is gathered, and a Lambertian exitance `rest`.
+// At a surface vertex: radiance is `factor` times what is gathered, and a Lambertian exitance `rest`, but at least that
+// of a Lambertian exitance `least`.
 struct GatherScale {
   vec3 factor;
-  vec3 rest;  // W/mm^2
+  vec3 rest;   // W/mm^2
+  vec3 least;  // W/mm^2
 };
 
 // Sums over the open faces below a node of the tree over a body's faces, or one of these.
@@ -46,6 +48,10 @@ const float GATHER_ALIKE = 1e-3f;
 const float GATHER_NODE = 1.0f;
 // The largest factor: where the fluence of a coarse mesh is far too low, gathering has nothing to scale.
 const float GATHER_FACTOR_MAX = 4.0f;
+// What of the exitance, as a diffuser would send it, radiance is at least. Where elements are longer than a few mean
+// free paths the fluence beside an edge between light and shadow undershoots, and what is gathered there can be nothing
+// or less; where they are not, no angle has so little.
+const float GATHER_FLOOR = 0.4f;
 // A view ray ends where every channel keeps at most GATHER_END, and what lies behind, if it is as bright as the last
 // tet, adds at most GATHER_END to what is gathered; or keeps at most GATHER_LEAST. What lies behind then counts as
 // even. Seen from the unlit side the fluence grows inwards almost as fast as it is attenuated: the first condition
@@ -89,7 +95,10 @@ GatherPoint load_gather_point(GatherPoints a, uint i) {
 }
 
 GatherScale load_gather_scale(GatherScales a, uint i) {
-  if (TEXELS) return GatherScale(load_vec3(Vec3s(uvec2(a)), 2u * i), load_vec3(Vec3s(uvec2(a)), 2u * i + 1u));
+  if (TEXELS) {
+    Vec3s parts = Vec3s(uvec2(a));
+    return GatherScale(load_vec3(parts, 3u * i), load_vec3(parts, 3u * i + 1u), load_vec3(parts, 3u * i + 2u));
+  }
   return a.at[i];
 }
 #endif
@@ -142,6 +151,7 @@ struct GatherScalePush {
   QG_REF(Uints) face_offset;
   QG_REF(Uints) face_incidence;
   QG_REF(Vec3s) gathered;
+  QG_REF(Vec3s) exitance;  // W/mm^2 per surface vertex
   QG_REF(GatherNodes) nodes;
   QG_REF(GatherScales) scale;
   uint count;

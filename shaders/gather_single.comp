@@ -7,5 +7,5 @@ layout(push_constant, scalar) uniform Block { GatherSinglePush push; };
 
 void main() {
   uint v = gl_GlobalInvocationID.x;
-  if (v < push.count) push.scale.at[v] = GatherScale(vec3(1), load_vec3(push.exitance, v));
+  if (v < push.count) push.scale.at[v] = GatherScale(vec3(1), load_vec3(push.exitance, v), vec3(0));
 }

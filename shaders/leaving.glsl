@@ -37,7 +37,9 @@ Leaving leaving(uint face, vec3 l, vec3 outward, vec3 n, GatherScales scale, flo
                 c = load_gather_scale(scale, ids.z);
     vec3 factor = l.x * a.factor + l.y * b.factor + l.z * c.factor;
     vec3 rest = l.x * a.rest + l.y * b.rest + l.z * c.rest;
-    sum.radiance += share * (factor * inside.radiance / (BODY.eta * BODY.eta) + rest / radiance_norm);
+    vec3 least = l.x * a.least + l.y * b.least + l.z * c.least;
+    vec3 radiance = factor * inside.radiance / (BODY.eta * BODY.eta) + rest / radiance_norm;
+    sum.radiance += share * max(radiance, least / radiance_norm);
     sum.seen += share * (inside.seen - inside.escape.share);
     share *= inside.escape.share;
     if (largest(share) <= GATHER_END) break;

@@ -102,6 +102,7 @@ std::vector<VertexScale> gather_scale(const Level& level, const Problem& problem
       weights += weight * source.area;
     }
     VertexScale at_vertex;
+    at_vertex.least = double{gpu::GATHER_FLOOR} * exitance[scale.size()];
     for (int c = 0; c < 3 && at.area > 0; ++c) {
       if (found[c] > 0) at_vertex.factor[c] = std::min(wanted[c] / found[c], double{gpu::GATHER_FACTOR_MAX});
       if (weights[c] > 0) at_vertex.rest[c] = std::max(wanted[c] - at_vertex.factor[c] * found[c], 0.0) / weights[c];

@@ -15,15 +15,17 @@
 
 namespace quadgraph {
 
-// At a surface vertex radiance is `factor` times what is gathered, and a Lambertian exitance `rest`.
+// At a surface vertex radiance is `factor` times what is gathered, and a Lambertian exitance `rest`, but at least that
+// of a Lambertian exitance `least`.
 struct VertexScale {
   glm::dvec3 factor{0};
-  glm::dvec3 rest{0};  // W/mm^2
+  glm::dvec3 rest{0};   // W/mm^2
+  glm::dvec3 least{0};  // W/mm^2
 };
 
 // Of every surface vertex: factor = mean of the exitance over that of what is gathered, with the weights that
-// shaders/gather_shared.h states, at most GATHER_FACTOR_MAX; rest: what is then missing. `gathered`: W/mm^2 per outside
-// face (radiance.h); `exitance`: W/mm^2 per surface vertex.
+// shaders/gather_shared.h states, at most GATHER_FACTOR_MAX; rest: what is then missing; least: GATHER_FLOOR of the
+// exitance there. `gathered`: W/mm^2 per outside face (radiance.h); `exitance`: W/mm^2 per surface vertex.
 std::vector<VertexScale> gather_scale(const Level& level, const Problem& problem, std::span<const glm::dvec3> gathered,
                                       std::span<const glm::dvec3> exitance);
 

@@ -49,12 +49,14 @@ LeavingLight leaving(const Level& level, const Problem& problem, const InsideLig
     const glm::dvec3 normal = frame_of(level, f).normal;
     share *= fresnel_transmittance(std::clamp(glm::dot(outside, normal), 0.0, 1.0), problem.eta);
     const Gathered inside = gather(level, problem, light, f, barycentric, refract(-outside, normal, problem.eta));
-    glm::dvec3 factor(0), rest(0);
+    glm::dvec3 factor(0), rest(0), least(0);
     for (int k = 0; k < 3; ++k) {
       factor += barycentric[k] * scale[level.faces[f][k]].factor;
       rest += barycentric[k] * scale[level.faces[f][k]].rest;
+      least += barycentric[k] * scale[level.faces[f][k]].least;
     }
-    sum.radiance += share * (factor * inside.radiance / (problem.eta * problem.eta) + rest / radiance_norm);
+    const glm::dvec3 radiance = factor * inside.radiance / (problem.eta * problem.eta) + rest / radiance_norm;
+    sum.radiance += share * glm::max(radiance, least / radiance_norm);
     sum.seen += share * (inside.seen - inside.escape.share);
     share *= inside.escape.share;
     if (glm::compMax(share) <= double{gpu::GATHER_END}) break;

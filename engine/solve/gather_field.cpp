@@ -102,6 +102,7 @@ void GatherField::record_scale(Workspace& work, const GatherInput& input) {
                                    .face_offset = level.face_offset.address(),
                                    .face_incidence = level.face_incidence.address(),
                                    .gathered = gathered_.address(),
+                                   .exitance = input.vertex_exitance.address(),
                                    .nodes = nodes_.address(),
                                    .scale = scale_.address(),
                                    .count = level.surface_vertex_count};

@@ -77,6 +77,15 @@ TEST_CASE("behind a thick slab nothing is seen, and behind nothing all that come
   CHECK(beside.radiance.x == doctest::Approx(0.8 * 1.1 * (1 - left)).epsilon(1e-5));
 }
 
+TEST_CASE("radiance is at least that of the least exitance, also where the fluence undershoots") {
+  const glm::dvec3 up = glm::normalize(glm::dvec3(0.1, 1, -0.15));
+  Slabs slabs(4.0f);
+  for (VertexScale& scale : slabs.scale) scale.least = glm::dvec3(0.4 * pi);
+  CHECK(slabs.along(1.0, up).radiance.x == doctest::Approx(0.8 * 1.1).epsilon(1e-3));
+  for (glm::dvec3& phi : slabs.phi) phi = -phi;
+  CHECK(slabs.along(1.0, up).radiance.x == doctest::Approx(0.4).epsilon(1e-3));
+}
+
 TEST_CASE("a refracting slab takes its Fresnel share at every surface on the way") {
   const Slabs slabs(0.4f);
   const glm::dvec3 up(0, 1, 0);

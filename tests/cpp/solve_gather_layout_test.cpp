@@ -16,7 +16,8 @@ TEST_CASE("what the gather keeps at vertices") {
   const SpirvLayout layout((vk::Spirv(radiance_probe_comp)));
   compare(radiance_probe_comp, "GatherPoint",
           {MEMBER(GatherPoint, phi), MEMBER(GatherPoint, entry), MEMBER(GatherPoint, depth)});
-  compare(radiance_probe_comp, "GatherScale", {MEMBER(GatherScale, factor), MEMBER(GatherScale, rest)});
+  compare(radiance_probe_comp, "GatherScale",
+          {MEMBER(GatherScale, factor), MEMBER(GatherScale, rest), MEMBER(GatherScale, least)});
   CHECK(layout.stride.at("GatherPoint") == sizeof(gpu::GatherPoint));
   CHECK(layout.stride.at("GatherScale") == sizeof(gpu::GatherScale));
   CHECK(layout.stride.at("SolidRef") == sizeof(gpu::SolidRef));
@@ -45,10 +46,11 @@ TEST_CASE("push constants of the gather") {
   compare(gather_nodes_comp, "GatherNodesPush",
           {MEMBER(GatherNodesPush, solid), MEMBER(GatherNodesPush, gathered), MEMBER(GatherNodesPush, exitance),
            MEMBER(GatherNodesPush, nodes), MEMBER(GatherNodesPush, first), MEMBER(GatherNodesPush, count)});
-  compare(gather_scale_comp, "GatherScalePush",
-          {MEMBER(GatherScalePush, solid), MEMBER(GatherScalePush, face_offset),
-           MEMBER(GatherScalePush, face_incidence), MEMBER(GatherScalePush, gathered), MEMBER(GatherScalePush, nodes),
-           MEMBER(GatherScalePush, scale), MEMBER(GatherScalePush, count)});
+  compare(
+      gather_scale_comp, "GatherScalePush",
+      {MEMBER(GatherScalePush, solid), MEMBER(GatherScalePush, face_offset), MEMBER(GatherScalePush, face_incidence),
+       MEMBER(GatherScalePush, gathered), MEMBER(GatherScalePush, exitance), MEMBER(GatherScalePush, nodes),
+       MEMBER(GatherScalePush, scale), MEMBER(GatherScalePush, count)});
   compare(gather_single_comp, "GatherSinglePush",
           {MEMBER(GatherSinglePush, exitance), MEMBER(GatherSinglePush, scale), MEMBER(GatherSinglePush, count)});
   compare(radiance_probe_comp, "RadianceProbePush",
