@@ -65,6 +65,34 @@ def test_the_committed_record_can_be_drawn_and_says_what_the_readme_does(request
         assert min(point["errors"]["transport"][part] for point in dipoles) > least
 
 
+# Rows of docs/methods.md, to the names of their points.
+ROWS = {
+    "`fem`, SP₃, one cycle": "fem, SP₃ · level 0 · fmg-pcg · 1 cycle a frame",
+    "`quadgraph-fv`, SP₃": "quadgraph-fv, SP₃ · level 0 · dpcg",
+    "`quadgraph-fdm`, as published": "quadgraph-fdm, as published · level 0 · cascade",
+    "`polygrid`, as published": "polygrid, as published · polygrid · level 0 · cascade",
+    "`polygrid-divergence`": "polygrid-divergence, diffusion · polygrid · level 0 · cascade",
+    "`shortest-path`, transport cost": "shortest-path · transport · eikonal · 64 cells",
+    "`shortest-path`, as published": "shortest-path · extinction · lattice · 64 cells",
+    "dipole, a quarter of the vertices": "dipole per vertex · level 1 · numpy",
+}
+
+
+def test_the_page_on_methods_says_what_the_record_does(request):
+    docs = request.config.rootpath / "docs"
+    scenes = {scene["name"]: scene for scene in records.read(docs / "benchmarks" / "chart.json")["scenes"]}
+    lines = (docs / "methods.md").read_text().splitlines()
+    for row, name in ROWS.items():
+        (line,) = [line for line in lines if line.startswith(f"| {row} | ")]
+        cells = [cell.strip() for cell in line.split("|")[2:-1]]
+        for index, scene in enumerate(("sphere", "bunny")):
+            (point,) = [point for point in scenes[scene]["points"] if point["name"] == name]
+            for cell, truth in zip(cells[3 * index :], ("pde", "transport"), strict=False):
+                errors = point["errors"][truth]
+                told = " / ".join(f"{100 * errors[part]:.3g}%" for part in records.PARTS) if errors else "\N{EN DASH}"
+                assert cell == told, (row, scene, truth)
+
+
 def test_the_picture_has_four_panels_at_the_width_of_the_readme(record_path, tmp_path):
     assert [panel.part for panel in records.panels(record()["scenes"][0])] == ["whole", "unlit"] * 2
     static.write(tmp_path, record(("bunny",)))

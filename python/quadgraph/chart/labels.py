@@ -3,42 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import product
 from typing import Any
 
 import numpy as np
 
 _DISTANCES = (7, 16, 28, 44, 64, 90)  # points
-_DIRECTIONS = tuple(np.radians([225, 180, 270, 200, 250, 45, 0, 90, 135, 315, 20, 340]))
+_DIRECTIONS = tuple(np.radians([180, 190, 200, 212, 225, 250, 270, 168, 45, 0, 90, 135, 315, 20, 340]))
 _FONT = 8.5
 
 
 def place(axis: Any, named: Sequence[tuple[float, float, str, str]]) -> None:
     """Write the texts of (x, y, text, colour) beside their points, each at the first place around it that is free.
 
-    All scattered points and lines in steps of the panel are kept free; if there is no free place, the one that covers
-    least is taken. Below and left of a front nothing is: places there come first.
+    All scattered points and lines in steps of the panel are kept free; a text for which there is no free place is left
+    out. Below and left of a front nothing is: places there come first.
     """
     renderer = axis.figure.canvas.get_renderer()
     inside = axis.get_window_extent(renderer).padded(-4)
     taken = [box for path in axis.collections for box in _marker_boxes(axis, path)]
     taken += [box for line in axis.lines if line.get_drawstyle() == "steps-post" for box in _step_boxes(axis, line)]
     for x, y, text, colour in named:
-        candidates = []
-        for distance in _DISTANCES:
-            for angle in _DIRECTIONS:
-                label = _label(axis, (x, y), text, colour, distance, angle)
-                box = label.get_window_extent(renderer).padded(1.5)
-                cost = _outside(box, inside) + sum(_shared(box, other) for other in taken)
-                candidates.append((cost, label, box))
-                if cost == 0:
-                    break
-            if candidates[-1][0] == 0:
+        for distance, angle in product(_DISTANCES, _DIRECTIONS):
+            label = _label(axis, (x, y), text, colour, distance, angle)
+            box = label.get_window_extent(renderer).padded(1.5)
+            if _outside(box, inside) + sum(_shared(box, other) for other in taken) == 0:
+                taken.append(box)
                 break
-        _, best, box = min(candidates, key=lambda candidate: candidate[0])
-        for _, label, _ in candidates:
-            if label is not best:
-                label.remove()
-        taken.append(box)
+            label.remove()
 
 
 def _label(axis: Any, at: tuple[float, float], text: str, colour: str, distance: float, angle: float) -> Any:

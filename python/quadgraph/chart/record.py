@@ -110,12 +110,15 @@ def added(record: dict[str, Any], more: dict[str, Any]) -> dict[str, Any]:
 
 # What labels leave out: what is the default, or clear from the rest.
 _USUAL = (" · fmg-pcg", " · numpy", " a frame", "fem, ")
+_PUBLISHED = (", as published", " · cascade")  # together
 
 
 def short(point: dict[str, Any]) -> str:
     """A point's name for a label: without what is usual."""
     name = point["name"]
-    for usual in (*_USUAL, *([] if point["settings"]["bake"] == "chain" else [" · level 0"])):
+    elsewhere = () if point["settings"]["bake"] == "chain" else (" · level 0",)
+    elsewhere += (" · polygrid",) if name.startswith("polygrid") else ()
+    for usual in (*_USUAL, *elsewhere, *(_PUBLISHED if all(part in name for part in _PUBLISHED) else ())):
         name = name.replace(usual, "")
     return name.replace(" · ", ", ")
 

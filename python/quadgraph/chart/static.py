@@ -16,6 +16,8 @@ from quadgraph.reference.figures import load_pyplot
 _DPI = 110
 _SIZE = 70.0  # points^2 of the finest level's markers
 _COARSER = 0.55  # of that per level
+_DECADES = 2000.0  # times as much at the end of an axis: more ticks would run together
+_ROOM = 0.65  # of the width of all points, on the left
 _MOST_LABELS = 9  # in a panel; of a longer front those are named that fall most below the one before
 _WORTH = 1.05  # times lower than the one before is what is named
 
@@ -91,7 +93,8 @@ def _panel(axis: Any, panel: Panel, colours: dict[str, str]) -> None:
 def _front(axis: Any, panel: Panel) -> None:
     """What is reached at each time, as steps to the edges of the panel, which has room for labels."""
     times, errors = panel.times, panel.errors
-    axis.set_xlim(min(times) / 3.5, max(times) * 2)
+    room = max(3.5, (max(times) / min(times)) ** _ROOM)
+    axis.set_xlim(min(times) / room, max(times) * 1.5)
     axis.set_ylim(min([*errors, panel.noise or errors[0]]) / 1.8, max(errors) * 2)
     x, y = zip(*((times[i], errors[i]) for i in panel.front), strict=True)
     x, y = (x[0], *x, axis.get_xlim()[1]), (axis.get_ylim()[1], *y, y[-1])
@@ -134,9 +137,10 @@ def _legend(figure: Any, scene: dict[str, Any], colours: dict[str, str]) -> None
 
 
 def _plain(axis: Any, text: Callable) -> None:
-    """1, 2, 5 of every decade, in plain numbers."""
+    """1, 2, 5 of every decade, or of many 1 and 3, in plain numbers."""
     from matplotlib.ticker import LogLocator, NullFormatter
 
-    axis.set_major_locator(LogLocator(subs=(1, 2, 5), numticks=12))
+    low, high = axis.get_view_interval()
+    axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < _DECADES * low else (1, 3), numticks=12))
     axis.set_major_formatter(text)
     axis.set_minor_formatter(NullFormatter())
