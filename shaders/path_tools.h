@@ -10,6 +10,7 @@ namespace quadgraph::gpu {
 using glm::abs;
 using glm::dot;
 using glm::max;
+using glm::min;
 using glm::sqrt;
 #endif
 
@@ -49,6 +50,31 @@ QG_INLINE vec3 tool_gradient(PathTool tool, vec3 p) {
   if (over.x == most) return vec3(away.x < 0.0f ? -1.0f : 1.0f, 0.0f, 0.0f);
   if (over.y == most) return vec3(0.0f, away.y < 0.0f ? -1.0f : 1.0f, 0.0f);
   return vec3(0.0f, 0.0f, away.z < 0.0f ? -1.0f : 1.0f);
+}
+
+// Between which shares of `way` from `start` on it is in the tool; the first is not below the second where it never is.
+QG_INLINE vec2 tool_span(PathTool tool, vec3 start, vec3 way) {
+  if (tool.kind == TOOL_SPHERE) {
+    vec3 off = start - tool.a;
+    float a = dot(way, way), b = dot(off, way), rest = b * b - a * (dot(off, off) - tool.b.x * tool.b.x);
+    if (rest <= 0.0f) return vec2(0.0f);
+    return vec2(-(sqrt(rest) + b) / a, (sqrt(rest) - b) / a);
+  }
+  // Between planes: one in front of it, two, or three pairs.
+  bool box = tool.kind == TOOL_BOX;
+  vec2 span = vec2(-1e30f, 1e30f);
+  for (int axis = 0; axis < (box ? 3 : 1); ++axis) {
+    float speed = box ? way[axis] : dot(tool.a, way);
+    float place = box ? start[axis] - tool.a[axis] : dot(tool.a, start) - tool.b.x;
+    float half_width = box ? tool.b[axis] : tool.b.y, inverse = abs(speed) > 1e-20f ? 1.0f / speed : 1e20f;
+    vec2 here = speed > 0.0f ? vec2(-place * inverse, 1e30f) : vec2(-1e30f, -place * inverse);
+    if (tool.kind != TOOL_PLANE) {
+      float one = (half_width - place) * inverse, other = (-half_width - place) * inverse;
+      here = vec2(min(one, other), max(one, other));
+    }
+    span = vec2(max(span.x, here.x), min(span.y, here.y));
+  }
+  return span;
 }
 
 // All that is cut away.

@@ -26,36 +26,10 @@ bool last_cut(PathTools tools, vec3 end, out vec3 point, out vec3 outward) {
   float latest = 0.0;
   for (uint k = 0u; k < tools.count; ++k) {
     PathTool tool = tools.at.at[k];
-    float from = 0.0, to = 1.0;
-    if (tool.kind == TOOL_SPHERE) {
-      vec3 off = scene.eye - tool.a;
-      float a = dot(way, way), b = dot(off, way), rest = b * b - a * (dot(off, off) - tool.b.x * tool.b.x);
-      if (rest <= 0.0) continue;
-      to = (sqrt(rest) - b) / a;
-      from = -(sqrt(rest) + b) / a;
-    } else {
-      // Between planes: one in front of it, two, or three pairs.
-      bool box = tool.kind == TOOL_BOX;
-      from = -1e30;
-      to = 1e30;
-      for (int axis = 0; axis < (box ? 3 : 1); ++axis) {
-        vec3 n = box ? vec3(axis == 0, axis == 1, axis == 2) : tool.a;
-        float middle = box ? tool.a[axis] : tool.b.x, half_width = box ? tool.b[axis] : tool.b.y;
-        float speed = dot(n, way), place = dot(n, scene.eye) - middle;
-        float inverse = abs(speed) > 1e-20 ? 1.0 / speed : 1e20;
-        float near = tool.kind == TOOL_PLANE ? (speed > 0.0 ? -place * inverse : -1e30) : -1e30;
-        float far = tool.kind == TOOL_PLANE ? (speed > 0.0 ? 1e30 : -place * inverse) : 1e30;
-        if (tool.kind != TOOL_PLANE) {
-          near = min((half_width - place) * inverse, (-half_width - place) * inverse);
-          far = max((half_width - place) * inverse, (-half_width - place) * inverse);
-        }
-        from = max(from, near);
-        to = min(to, far);
-      }
-    }
-    if (from >= to || to <= latest || to >= 1.0) continue;
-    latest = to;
-    point = scene.eye + to * way;
+    vec2 span = tool_span(tool, scene.eye, way);
+    if (span.x >= span.y || span.y <= latest || span.y >= 1.0) continue;
+    latest = span.y;
+    point = scene.eye + latest * way;
     outward = -tool_gradient(tool, point);
   }
   return latest > 0.0;

@@ -138,7 +138,7 @@ void Engine::set_cuts(std::span<const BodyCut> cuts) {
     }
   }
   implementation_->paths.set(cuts);
-  implementation_->cut = !cuts.empty();
+  implementation_->cut_tools = path_tools(cuts);
 }
 
 void Engine::set_lights(std::vector<Light> lights) {
@@ -212,7 +212,7 @@ void Engine::make_room(const SolveOptions& options) {
 SolveReport Engine::solve(const SolveOptions& options) {
   auto& self = *implementation_;
   const bool by_path = options.method == Method::shortest_path;
-  if (self.cut && !by_path) throw InputError("cuts: only the method shortest-path knows them");
+  if (!self.cut_tools.empty() && !by_path) throw InputError("cuts: only the method shortest-path knows them");
   self.gather_passes.clear();
   self.deformation_passes.clear();
   if (!by_path && self.irradiance_stale) update_irradiance();
@@ -281,7 +281,7 @@ std::optional<Picked> Engine::pick(const View& view, float aspect, const glm::ve
   auto& self = *implementation_;
   const auto vertices = vk::download<glm::vec3>(self.context, self.mesh.vertices);
   return quadgraph::pick(self.graph.display(), vertices, place_camera(view, self.bounds, aspect), view.vertical_fov,
-                         aspect, at);
+                         aspect, at, self.cut_tools);
 }
 
 Leaving Engine::leaving(std::span<const std::uint32_t> face, std::span<const glm::vec3> direction) {

@@ -68,7 +68,7 @@ struct Engine::Implementation {
   FalseColours false_colours;                           // the same
   PathMethod paths;
   std::optional<Workspace> motion_work;  // of a surface without levels, made at first use
-  bool cut = false;                      // something is cut away
+  std::vector<gpu::PathTool> cut_tools;  // what is cut away
   bool moved = false;                    // the display mesh is not at rest
 
   // Throws InputError where there are none.

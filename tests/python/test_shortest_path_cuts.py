@@ -104,6 +104,31 @@ def test_cut_face_is_seen(engine_of):
     assert (np.abs(inner * np.pi - 1) < 0.01).mean() > 0.9
 
 
+def test_cut_face_is_picked(engine_of):
+    engine = engine_of(icosphere(4, 10.0))
+    seen = {"view": "180,0", "up": "y"}  # from -z
+    assert engine.pick((0, 0), **seen)["position"][2] == pytest.approx(-10, rel=1e-2)
+    cut(engine, {"type": "plane", "normal": [0, 0, -1], "offset": -2})
+    face = engine.pick((0, 0), **seen)
+    assert np.allclose(face["position"], (0, 0, 2), atol=1e-4)
+    assert np.allclose(face["at_rest"], (0, 0, 2), atol=1e-4)
+    assert np.allclose(face["normal"], (0, 0, -1))
+    assert engine.pick((0, 0), view="0,0")["position"][2] == pytest.approx(10, rel=1e-2)
+    # The bottom of a hole; beside it the body.
+    cut(engine, {"type": "sphere", "centre": [0, 0, -10], "radius": 4})
+    hole = engine.pick((0, 0), **seen)
+    assert np.allclose(hole["position"], (0, 0, -6), atol=1e-3)
+    assert np.allclose(hole["normal"], (0, 0, -1), atol=1e-3)
+    assert np.linalg.norm(engine.pick((0.5, 0), **seen)["position"]) == pytest.approx(10, rel=1e-2)
+    # A box that lets the ray through to nothing.
+    cut(engine, {"type": "box", "centre": [0, 0, 0], "size": [2, 2, 40]})
+    assert engine.pick((0, 0), **seen) is None
+    # As the body has moved, so has what lies below its surface.
+    cut(engine, {"type": "plane", "normal": [0, 0, -1], "offset": -2})
+    engine.set_deformation([{"type": "transform", "translate": [0, 0, 1]}])
+    assert np.allclose(engine.pick((0, 0), **seen)["at_rest"], (0, 0, 1), atol=1e-3)
+
+
 def test_wrong_cuts_are_refused(engine_of):
     engine = engine_of(cube(4.0))
     for wrong, message in (
