@@ -12,6 +12,7 @@ struct Around {
   vec3 place, normal;  // mm, unit
   vec3 variance;       // mm^2 per channel
   vec3 gathered;       // W/mm^2
+  vec3 edge;           // optical length of the mean edge
 };
 
 Around around_vertex(uint v) {
@@ -35,7 +36,8 @@ Around around_vertex(uint v) {
   size = max(size, 1e-30);
   vec3 path = 1.0 / max(extinction / size, vec3(1e-6));
   return Around(load_vec3(solid.body.vertices, v), normal / max(length(normal), 1e-30),
-                GATHER_PATH * path * path + GATHER_EDGE * edges / size, gathered / size);
+                GATHER_PATH * path * path + GATHER_EDGE * edges / size, gathered / size,
+                sqrt(edges / size) / path);
 }
 
 struct Means {
@@ -92,13 +94,17 @@ Means means_around(Around around) {
   return means;
 }
 
+// Per channel, of edges of that optical length.
+vec3 gather_floor(vec3 edge) { return GATHER_FLOOR * clamp(2.0 * edge / GATHER_LONG - 1.0, vec3(0), vec3(1)); }
+
 void main() {
   uint v = gl_GlobalInvocationID.x;
   if (v >= push.count) return;
   solid = load_solid(push.solid);
-  Means means = means_around(around_vertex(v));
+  Around around = around_vertex(v);
+  Means means = means_around(around);
   vec3 factor = mix(vec3(0), min(means.exitance / means.gathered, vec3(GATHER_FACTOR_MAX)),
                     greaterThan(means.gathered, vec3(0)));
   vec3 rest = max(means.exitance - factor * means.gathered, vec3(0)) / max(means.weight, vec3(1e-30));
-  push.scale.at[v] = GatherScale(factor, rest, GATHER_FLOOR * load_vec3(push.exitance, v));
+  push.scale.at[v] = GatherScale(factor, rest, gather_floor(around.edge) * load_vec3(push.exitance, v));
 }

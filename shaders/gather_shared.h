@@ -48,10 +48,11 @@ const float GATHER_ALIKE = 1e-3f;
 const float GATHER_NODE = 1.0f;
 // The largest factor: where the fluence of a coarse mesh is far too low, gathering has nothing to scale.
 const float GATHER_FACTOR_MAX = 4.0f;
-// What of the exitance, as a diffuser would send it, radiance is at least. Where elements are longer than a few mean
-// free paths the fluence beside an edge between light and shadow undershoots, and what is gathered there can be nothing
-// or less; where they are not, no angle has so little.
+// What of the exitance, as a diffuser would send it, radiance is at least where edges are GATHER_LONG mean free paths
+// or longer; nothing where they are half as long. Beside an edge between light and shadow the fluence of long elements
+// undershoots, and what is gathered there can be nothing or less.
 const float GATHER_FLOOR = 0.4f;
+const float GATHER_LONG = 4.0f;
 // A view ray ends where every channel keeps at most GATHER_END, and what lies behind, if it is as bright as the last
 // tet, adds at most GATHER_END to what is gathered; or keeps at most GATHER_LEAST. What lies behind then counts as
 // even. Seen from the unlit side the fluence grows inwards almost as fast as it is attenuated: the first condition

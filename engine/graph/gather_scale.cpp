@@ -57,6 +57,11 @@ std::vector<Around> around_vertices(const Level& level, const Problem& problem, 
   return around;
 }
 
+// Per channel, of edges of that optical length.
+glm::dvec3 floor_of(const glm::dvec3& edge) {
+  return double{gpu::GATHER_FLOOR} * glm::clamp(2.0 * edge / double{gpu::GATHER_LONG} - 1.0, 0.0, 1.0);
+}
+
 std::vector<FaceShare> sources_of(const Level& level, std::span<const glm::dvec3> gathered,
                                   std::span<const glm::dvec3> exitance) {
   std::vector<FaceShare> sources;
@@ -102,7 +107,7 @@ std::vector<VertexScale> gather_scale(const Level& level, const Problem& problem
       weights += weight * source.area;
     }
     VertexScale at_vertex;
-    at_vertex.least = double{gpu::GATHER_FLOOR} * exitance[scale.size()];
+    at_vertex.least = floor_of(std::sqrt(at.edges) / path) * exitance[scale.size()];
     for (int c = 0; c < 3 && at.area > 0; ++c) {
       if (found[c] > 0) at_vertex.factor[c] = std::min(wanted[c] / found[c], double{gpu::GATHER_FACTOR_MAX});
       if (weights[c] > 0) at_vertex.rest[c] = std::max(wanted[c] - at_vertex.factor[c] * found[c], 0.0) / weights[c];

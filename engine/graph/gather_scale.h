@@ -25,7 +25,8 @@ struct VertexScale {
 
 // Of every surface vertex: factor = mean of the exitance over that of what is gathered, with the weights that
 // shaders/gather_shared.h states, at most GATHER_FACTOR_MAX; rest: what is then missing; least: GATHER_FLOOR of the
-// exitance there. `gathered`: W/mm^2 per outside face (radiance.h); `exitance`: W/mm^2 per surface vertex.
+// exitance there, where edges are long. `gathered`: W/mm^2 per outside face (radiance.h); `exitance`: W/mm^2 per
+// surface vertex.
 std::vector<VertexScale> gather_scale(const Level& level, const Problem& problem, std::span<const glm::dvec3> gathered,
                                       std::span<const glm::dvec3> exitance);
 

@@ -2,6 +2,8 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "engine/graph/gather_scale.h"
 #include "shaders/gather_shared.h"
@@ -36,6 +38,21 @@ TEST_CASE("an even ratio is kept, up to the largest factor, and what is then mis
       CHECK(scale.rest.y == doctest::Approx(8.0 - double{gpu::GATHER_FACTOR_MAX}).epsilon(1e-6));
       CHECK(scale.factor.z == 0.0);
       CHECK(scale.rest.z == doctest::Approx(0.5).epsilon(1e-9));
+    }
+  }
+}
+
+TEST_CASE("radiance has a floor where edges are long, and none where they resolve a few mean free paths") {
+  const OwnedLevel owned = box_level(4, 10.0f);
+  const Level level = owned.view();
+  const std::vector<glm::dvec3> gathered(level.faces.size(), glm::dvec3(1));
+  const std::vector<glm::dvec3> exitance(level.surface_vertex_count, glm::dvec3(3));
+  const double rms_edge = 2.5 * std::sqrt(4.0 / 3);  // of a square's halves
+  for (const auto& [lengths, least] :
+       {std::pair(1.9, 0.0), std::pair(3.0, 0.6), std::pair(4.0, 1.2), std::pair(40.0, 1.2)}) {
+    const Opticals optical = medium(level, static_cast<float>(lengths / rms_edge));
+    for (const VertexScale& scale : gather_scale(level, problem_of(optical), gathered, exitance)) {
+      CHECK(scale.least.x == doctest::Approx(least).epsilon(1e-5));
     }
   }
 }
