@@ -103,6 +103,18 @@ void next_level(S s, W w) {
   if (w.levels > 0) s.scene.render.show.level = (s.scene.render.show.level + 1) % w.levels;
 }
 
+void take_brush(S s, W) {
+  s.brush.on = !s.brush.on;
+  s.knife.on = false;
+}
+
+// Only shortest paths know cuts.
+void take_knife(S s, W) {
+  s.knife.on = !s.knife.on;
+  s.brush.on = false;
+  if (s.knife.on) s.scene.solve.method = Method::shortest_path;
+}
+
 void reset_view(S s, W) {
   const View old = s.scene.view;
   s.scene.view = View{.up = old.up, .vertical_fov = old.vertical_fov};
@@ -134,7 +146,8 @@ constexpr auto table = std::to_array<Command>({
     {"B", GLFW_KEY_B, 0, 0, "the other source: buried, diffuse", next_source},
     {"O", GLFW_KEY_O, 0, 0, "the next model", next_model},
     {"E", GLFW_KEY_E, 0, 0, "the next error to aim at: none, 10, 5, 2, 1%", next_error},
-    {"P", GLFW_KEY_P, 0, 0, "take the brush, or lay it down", [](S s, W) { s.brush.on = !s.brush.on; }},
+    {"P", GLFW_KEY_P, 0, 0, "take the brush, or lay it down", take_brush},
+    {"K", GLFW_KEY_K, 0, 0, "take the knife, with shortest paths, or lay it down", take_knife},
     {"V", GLFW_KEY_V, 0, 0, "show the next quantity inside", [](S s, W) { next_quantity(s, 1); }},
     {"Shift+V", GLFW_KEY_V, 0, shift, "the quantity before", [](S s, W) { next_quantity(s, -1); }},
     {"X", GLFW_KEY_X, 0, 0, "turn the cutting plane: x, y, z", next_axis},

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <glm/trigonometric.hpp>
 #include <numbers>
 
@@ -99,6 +100,17 @@ Light faced(Light rectangle, const glm::vec3& direction, UpAxis up) {
   rectangle.u = glm::length(rectangle.u) * right;
   rectangle.v = glm::length(rectangle.v) * glm::cross(direction, right);
   return rectangle;
+}
+
+BodyCut cut_along(const View& view, const Sphere& bounds, float aspect, const glm::vec2& from, const glm::vec2& to) {
+  const Camera camera = place_camera(view, bounds, aspect);
+  const glm::mat4 world_from_clip = glm::inverse(camera.clip_from_world);
+  const auto ray = [&](const glm::vec2& at) {
+    const glm::vec4 point = world_from_clip * glm::vec4(at, 0.5f, 1);
+    return glm::normalize(glm::vec3(point) / point.w - camera.eye);
+  };
+  const glm::vec3 normal = glm::normalize(glm::cross(ray(from), ray(to)));
+  return {.normal = normal, .offset = glm::dot(normal, camera.eye)};
 }
 
 Bearing bearing_of(const glm::vec3& towards, UpAxis up) {

@@ -1,6 +1,9 @@
 // What dragging and turning do to a camera and to a light.
 #pragma once
 
+#include <glm/vec2.hpp>
+
+#include "engine/graph/cut.h"
 #include "engine/render/camera.h"
 #include "engine/render/lights.h"
 
@@ -23,6 +26,10 @@ Light as_kind(const Light& light, LightKind kind, const Sphere& bounds);
 
 // The same rectangle, shining along a unit direction that is not upright, with two of its edges level.
 Light faced(Light rectangle, const glm::vec3& direction, UpAxis up);
+
+// The plane through the eye and a stroke over the picture, between two points in clip coordinates (right and up, -1 to
+// 1) that are not the same. What lies to the right of the hand's way goes.
+BodyCut cut_along(const View& view, const Sphere& bounds, float aspect, const glm::vec2& from, const glm::vec2& to);
 
 // As degrees of azimuth and elevation, as of a View, from where a light comes; and towards there.
 struct Bearing {

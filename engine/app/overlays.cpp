@@ -19,7 +19,8 @@ void draw_help(State& state, float unit) {
                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoMove);
   ImGui::TextUnformatted("Left drag turns the object, right or middle drag moves it, the wheel brings it nearer.");
   ImGui::TextUnformatted(
-      "With Ctrl or Shift a drag turns the selected light; with the brush in hand a left drag paints.");
+      "With Ctrl or Shift a drag turns the selected light; a left drag with the brush in hand paints, with the knife "
+      "cuts.");
   ImGui::Separator();
   const auto commands = all_commands();
   const std::size_t rows = (commands.size() + 1) / 2;
@@ -86,6 +87,15 @@ void draw_message(const State& state, float left, float unit) {
   ImGui::PopStyleColor();
   ImGui::PopTextWrapPos();
   ImGui::End();
+}
+
+void draw_knife(const Knife& knife, float left, float unit) {
+  if (!knife.cuts()) return;
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const auto place = [&](const glm::vec2& clip) {
+    return ImVec2(left + (size.x - left) * 0.5f * (1 + clip.x), size.y * 0.5f * (1 - clip.y));
+  };
+  ImGui::GetForegroundDrawList()->AddLine(place(*knife.from), place(*knife.to), IM_COL32(255, 170, 80, 255), 2 * unit);
 }
 
 }  // namespace quadgraph

@@ -15,4 +15,7 @@ void draw_colour_bar(const Legend& legend, float left, float unit);
 // The last thing to tell the user, in the picture's lower left corner.
 void draw_message(const State& state, float left, float unit);
 
+// The way of the knife over the picture, which begins at `left`.
+void draw_knife(const Knife& knife, float left, float unit);
+
 }  // namespace quadgraph

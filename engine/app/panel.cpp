@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "engine/app/cut_section.h"
 #include "engine/app/light_section.h"
 #include "engine/app/panel_widgets.h"
 #include "engine/graph/material.h"
@@ -87,7 +88,7 @@ void draw_edits(State& state, const Sphere& bounds) {
   ImGui::SameLine();
   if (ImGui::Button("scene to file")) state.save = true;
   Edit& edit = state.brush.edit;
-  ImGui::Checkbox("a left drag paints", &state.brush.on);
+  if (ImGui::Checkbox("a left drag paints", &state.brush.on) && state.brush.on) state.knife.on = false;
   constexpr std::array<const char*, 3> names = {"multiply", "add", "set"};
   auto operation = static_cast<int>(edit.operation);
   if (ImGui::Combo("operation", &operation, names.data(), 3)) edit.operation = static_cast<Edit::Operation>(operation);
@@ -260,6 +261,7 @@ void draw_panel(State& state, const PanelFacts& facts) {
   draw_edits(state, facts.engine.bounds());
   draw_lights(state, facts.engine.bounds());
   draw_solver(state);
+  if (state.scene.solve.method == Method::shortest_path) draw_cuts(state, facts.engine.bounds());
   draw_shape(state);
   draw_picture(state, facts.measured);
   draw_camera(state, facts.engine.bounds());

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,11 +26,22 @@ struct Measured {
   std::uint64_t device_bytes = 0, peak_device_bytes = 0;
 };
 
+// Cutting what is shown by shortest paths.
+struct Knife {
+  bool on = false;                      // a left drag cuts along the way from where it begins to where it ends
+  std::optional<glm::vec2> from{}, to;  // of the drag, clip coordinates
+
+  // Not by a slip of the hand.
+  bool cuts() const { return from && to && glm::distance(*from, *to) > 0.05f; }
+};
+
 struct State {
   Scene scene;
   std::vector<Method> methods;  // that the file's levels serve
   std::size_t light = 0;        // the selected one
   Brush brush;
+  Knife knife;
+  std::size_t cut = 0;  // the selected one
   bool can_undo = false, can_redo = false;
   std::string material_text, image_text;     // being typed
   std::optional<LightKind> kind_with_image;  // what the selected light is to be once its image is known

@@ -89,19 +89,31 @@ void Viewer::handle(const std::vector<Event>& events) {
     } else if (const auto* motion = std::get_if<MotionEvent>(&event)) {
       handle_motion(*motion);
     } else if (const auto* button = std::get_if<ButtonEvent>(&event)) {
-      dragging_ = button->action == GLFW_PRESS && !interface_.has_pointer();
-      drag_button_ = button->button;
-      drag_mods_ = button->mods;
-      if (dragging_) state_.focus_picture = true;
-      const bool plain = button->button == GLFW_MOUSE_BUTTON_LEFT && button->mods == 0;
-      const auto place = dragging_ && plain && state_.brush.on ? pointed_at() : std::nullopt;
-      painting_ = place.has_value();
-      if (place) state_.brush.begin(state_.scene, *place);
+      begin_or_end_drag(*button);
     } else if (const auto* scroll = std::get_if<ScrollEvent>(&event); scroll != nullptr && !interface_.has_pointer()) {
       const Surroundings around = surroundings();
       state_.scene.view = zoomed(state_.scene.view, around.bounds, around.aspect, static_cast<float>(scroll->y));
     }
   }
+}
+
+void Viewer::begin_or_end_drag(const ButtonEvent& event) {
+  dragging_ = event.action == GLFW_PRESS && !interface_.has_pointer();
+  drag_button_ = event.button;
+  drag_mods_ = event.mods;
+  if (dragging_) state_.focus_picture = true;
+  const bool plain = event.button == GLFW_MOUSE_BUTTON_LEFT && event.mods == 0;
+  const auto place = dragging_ && plain && state_.brush.on ? pointed_at() : std::nullopt;
+  painting_ = place.has_value();
+  if (place) state_.brush.begin(state_.scene, *place);
+  Knife& knife = state_.knife;
+  if (!dragging_ && knife.cuts()) {
+    const Surroundings around = surroundings();
+    state_.cut = state_.scene.cuts.size();
+    state_.scene.cuts.push_back(cut_along(state_.scene.view, around.bounds, around.aspect, *knife.from, *knife.to));
+  }
+  knife.from = dragging_ && plain && knife.on ? std::optional(pointer()) : std::nullopt;
+  knife.to.reset();
 }
 
 void Viewer::handle_key(const KeyEvent& event) {
@@ -133,6 +145,10 @@ void Viewer::handle_motion(const MotionEvent& event) {
     if (const auto place = pointed_at()) state_.brush.lead(state_.scene, *place);
     return;
   }
+  if (state_.knife.from) {
+    state_.knife.to = pointer();
+    return;
+  }
   View& view = state_.scene.view;
   if (drag_button_ != GLFW_MOUSE_BUTTON_LEFT) {
     view = panned(view, around.bounds, around.aspect, right, up);
@@ -144,11 +160,16 @@ void Viewer::handle_motion(const MotionEvent& event) {
   }
 }
 
-// The place on the body under the pointer, mm, as it lies at rest.
-std::optional<glm::vec3> Viewer::pointed_at() const {
+// In clip coordinates.
+glm::vec2 Viewer::pointer() const {
   const Part now = part();
   const glm::vec2 share((pointer_x_ - now.left) / std::max(now.width, 1u), pointer_y_ / std::max(now.height, 1u));
-  const auto found = engine_.pick(state_.scene.view, surroundings().aspect, {2 * share.x - 1, 1 - 2 * share.y});
+  return {2 * share.x - 1, 1 - 2 * share.y};
+}
+
+// The place on the body under the pointer, mm, as it lies at rest.
+std::optional<glm::vec3> Viewer::pointed_at() const {
+  const auto found = engine_.pick(state_.scene.view, surroundings().aspect, pointer());
   return found ? std::optional(found->at_rest) : std::nullopt;
 }
 
@@ -162,6 +183,7 @@ void Viewer::build_widgets(const std::vector<Event>& events) {
   const float left = static_cast<float>(part().left) / window_.pixels_per_unit();
   if (const auto& legend = engine_.legend()) draw_colour_bar(*legend, left, interface_.unit());
   draw_message(state_, left, interface_.unit());
+  draw_knife(state_.knife, left, interface_.unit());
   if (!dragging_ && !ImGui::IsAnyItemActive()) history_.note(state_.scene);
   ImGui::Render();
   state_.focus_panel = state_.focus_picture = false;

@@ -44,6 +44,8 @@ class Viewer {
   void handle(const std::vector<Event>& events);
   void handle_key(const KeyEvent& event);
   void handle_motion(const MotionEvent& event);
+  void begin_or_end_drag(const ButtonEvent& event);
+  glm::vec2 pointer() const;
   std::optional<glm::vec3> pointed_at() const;
   void fulfil_wishes();
   void build_widgets(const std::vector<Event>& events);

@@ -39,6 +39,23 @@ TEST_CASE("what is dragged follows the hand") {
   }
 }
 
+TEST_CASE("a cut goes through the stroke, and takes what lies to the right of the hand's way") {
+  for (const glm::vec2 to : {glm::vec2(0.1f, 0.6f), glm::vec2(-0.5f, -0.3f)}) {
+    const View view{.azimuth = 30, .elevation = 20};
+    const glm::vec2 from(0.1f, -0.2f), way = glm::normalize(to - from), right(way.y, -way.x);
+    const BodyCut cut = cut_along(view, bounds, 1, from, to);
+    CHECK_NOTHROW(check_cut(cut));
+    const Camera camera = place_camera(view, bounds, 1);
+    for (const float depth : {-0.5f, 0.0f, 0.5f}) {
+      for (const float across : {-0.6f, 0.1f, 0.7f}) {
+        const glm::vec3 point = bounds.centre + bounds.radius * (depth * camera.backward + across * camera.right);
+        const float beside = glm::dot(seen(view, point) - from, right);
+        CHECK((glm::dot(cut.normal, point) > cut.offset) == (beside > 0));
+      }
+    }
+  }
+}
+
 TEST_CASE("a view can be turned, moved and zoomed for ever and stays one that can be shown") {
   View view;
   for (int i = 0; i < 400; ++i) {
@@ -130,7 +147,8 @@ TEST_CASE("every key does something, and no two share one") {
     CHECK(run_command(commands[i].key, commands[i].mods, state, {bounds, 1.5f, 4}));
     const bool wished = state.quit || state.full_screen || state.undo || state.redo || state.save || state.screenshot ||
                         state.focus_panel || state.help != before.help || state.panel != before.panel ||
-                        state.light != before.light || state.brush.on != before.brush.on;
+                        state.light != before.light || state.brush.on != before.brush.on ||
+                        state.knife.on != before.knife.on;
     CHECK_MESSAGE((wished || state.scene != before.scene), commands[i].keys);
   }
   State state;

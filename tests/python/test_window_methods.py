@@ -1,4 +1,4 @@
-"""The window's key G: every method in turn, while a hand goes on turning the light."""
+"""Every method in one window: key G while a hand goes on turning the light, and cuts by the knife."""
 
 from __future__ import annotations
 
@@ -75,4 +75,35 @@ def test_one_key_goes_through_all_methods_while_the_light_is_dragged(open_window
         found = [pictures[name] for name in (one, other)]
         mirrored = METHODS.index(one) % 2 != METHODS.index(other) % 2
         assert np.abs(found[0] - (found[1][:, ::-1] if mirrored else found[1])).max() > 8
+    hand.close()
+
+
+def test_the_knife_cuts_along_a_stroke_and_undo_heals(open_window, tmp_path: Path):
+    """Downwards from the middle of a ball: what lies to the right of the hand's way is the half to the left.
+
+    Paths are equal to rounding, pictures therefore to a code, whatever was relaxed first.
+    """
+    look = ["--view", "0,0", "--no-ground", "--exposure", "-1", "--path-cells", "24", "--method", "shortest-path"]
+    light = ["--light", "directional:-0.1,0,-1:1"]
+    hand = open_window("--material", "sigma_s_prime=2,sigma_a=.3,eta=1.3", *look, *light, body=grids.PATH)
+    whole = hand.picture()
+    hand.keys("k")
+    hand.drag(0, 200)
+    cut = hand.picture()
+    column = whole.shape[1] // 2
+    changed = np.abs(cut - whole).max(axis=2) > 8
+    ball = np.abs(whole - whole[5, 5]).max(axis=2) > 60
+    assert ball[:, : column - 5].any()
+    assert changed[:, : column - 5][ball[:, : column - 5]].mean() > 0.9
+    assert changed[:, column + 60 :].mean() < 0.02  # far from the cut the other half is as it was
+    hand.keys("ctrl+z")
+    assert np.abs(hand.picture() - whole).max() <= 1
+    hand.drag(0, 3)  # a slip of the hand
+    assert np.abs(hand.picture() - whole).max() <= 1
+    hand.drag(0, 200)
+    assert np.abs(hand.picture() - cut).max() <= 1
+    hand.keys("ctrl+s")
+    found = written(tmp_path, 1)["cuts"]
+    assert [each["type"] for each in found] == ["plane"]
+    assert np.allclose(found[0]["normal"], [-1, 0, 0], atol=1e-3)
     hand.close()
