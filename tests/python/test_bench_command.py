@@ -61,7 +61,7 @@ def test_live_frames_do_more_the_more_changes(sphere, tmp_path, capsys):
     for kind in live["kinds"]:
         assert 0 < kind["off"]["median"] <= kind["off"]["most"] < 0.1
         assert kind["off"]["rms"] < 0.03
-    printed = capsys.readouterr().out
+    printed = " ".join(capsys.readouterr().out.split())
     assert "light, material and shape changing" in printed
     assert "off by" in printed
 
