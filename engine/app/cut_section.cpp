@@ -65,7 +65,8 @@ void draw_cuts(State& state, const Sphere& bounds) {
   if (ImGui::Checkbox("a left drag cuts", &state.knife.on) && state.knife.on) state.brush.on = false;
   for (std::size_t i = 0; i < cuts.size(); ++i) {
     ImGui::PushID(static_cast<int>(i));
-    const std::string name = formatted("%zu  %s##cuts", i + 1, kind_name(static_cast<std::size_t>(cuts[i].kind)).data());
+    const std::string name =
+        formatted("%zu  %s##cuts", i + 1, kind_name(static_cast<std::size_t>(cuts[i].kind)).data());
     if (ImGui::RadioButton(name.c_str(), state.cut == i)) state.cut = i;
     ImGui::PopID();
   }
