@@ -100,6 +100,10 @@ bool on_vertices(Method method) {
   return method == Method::fem || on_grid(method);
 }
 
+bool gathers(Method method, Source source) {
+  return on_vertices(method) && source == Source::buried;
+}
+
 bool symmetric(Method method) {
   return !on_grid(method);
 }

@@ -53,6 +53,9 @@ enum class Source {
   diffuse,  // at the surface, as published [QG Eq. 2, PG Eq. 4]
 };
 
+// Whether view rays can gather all of its light: fluence at the vertices of tets, and a source below the surface.
+bool gathers(Method method, Source source);
+
 enum class Model {
   diffusion,  // one unknown per carrier: fluence phi
   sp3,        // simplified spherical harmonics: phi and its second moment phi2 (engine/graph/operator.h)

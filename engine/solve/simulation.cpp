@@ -223,15 +223,10 @@ struct Simulation::Implementation {
 
   const GatherField& gathered(Gather what, std::vector<PassStats>& gather_passes) {
     gather_passes.clear();
-    gather_room();
-    if (gathers_now == what) return *gather;
+    if (gather_room(); gathers_now == what) return *gather;
     work.recorder.clear();
-    const GatherInput input{levels[0],
-                            operators.at(solved_key(), 0),
-                            beams,
-                            results.vertex_exitance(),
-                            walks[0].body(levels[0], coefficients.eta(), coefficients.even()),
-                            *tree};
+    const auto body = walks[0].body(levels[0], coefficients.eta(), coefficients.even());
+    const GatherInput input{levels[0], operators.at(solved_key(), 0), beams, results.vertex_exitance(), body, *tree};
     what == Gather::single ? gather->record_single(work, input) : gather->record(work, input);
     work.recorder.submit();
     gather_passes = work.recorder.passes();
@@ -387,10 +382,6 @@ const vk::Buffer& Simulation::vertex_exitance() const {
 
 const vk::Buffer& Simulation::vertex_unscattered() const {
   return implementation_->results.vertex_unscattered();
-}
-
-bool gathers(Method method, Source source) {
-  return on_vertices(method) && source == Source::buried;
 }
 
 bool Simulation::can_gather() const {

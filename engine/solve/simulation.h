@@ -75,9 +75,6 @@ enum class Gather {
   single,  // light that is scattered once in all, beside the exitance of a diffuser
 };
 
-// Whether Gather::scaled can be had: fluence at the vertices of tets, and a source below the surface.
-bool gathers(Method method, Source source);
-
 class Simulation {
  public:
   // `graph` is copied to the device; it must stay alive (its spans are used to set up row structures lazily).
