@@ -117,7 +117,8 @@ void take_knife(S s, W) {
 
 void reset_view(S s, W) {
   const View old = s.scene.view;
-  s.scene.view = View{.up = old.up, .vertical_fov = old.vertical_fov};
+  s.scene.view = first_view(s.front, old.up);
+  s.scene.view.vertical_fov = old.vertical_fov;
 }
 
 constexpr auto table = std::to_array<Command>({
@@ -131,7 +132,7 @@ constexpr auto table = std::to_array<Command>({
     {"Shift+Down", GLFW_KEY_DOWN, 0, shift, "down", [](S s, W w) { pan(s, w, 0, -share); }},
     {"Page Up, =", GLFW_KEY_PAGE_UP, GLFW_KEY_EQUAL, 0, "nearer", [](S s, W w) { zoom(s, w, 1); }},
     {"Page Down, -", GLFW_KEY_PAGE_DOWN, GLFW_KEY_MINUS, 0, "farther", [](S s, W w) { zoom(s, w, -1); }},
-    {"Home", GLFW_KEY_HOME, 0, 0, "the whole object from the front", reset_view},
+    {"Home", GLFW_KEY_HOME, 0, 0, "the whole object from its front", reset_view},
     {"L", GLFW_KEY_L, 0, 0, "select the next light", next_light},
     {"Ctrl+Left", GLFW_KEY_LEFT, 0, control, "turn the light to the left", [](S s, W w) { turn(s, w, -degrees, 0); }},
     {"Ctrl+Right", GLFW_KEY_RIGHT, 0, control, "to the right", [](S s, W w) { turn(s, w, degrees, 0); }},

@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "engine/graph/error.h"
+#include "engine/graph/front.h"
 #include "engine/graph/material.h"
 #include "engine/render/default_lights.h"
 #include "engine/render/text.h"
@@ -18,7 +19,7 @@ struct Typed {
   std::string file, output;
   std::string material = "marble";
   std::vector<std::string> lights;
-  std::string view = "0,10", up = "y";
+  std::string view, up = "y";
   float fov = 30;
   std::string method = "fem", solver = "fmg-pcg", source = "buried", model = "auto";
   std::string tolerance = "0.001", error = "0";
@@ -54,8 +55,8 @@ void declare_scene(CLI::App& app, Typed& typed) {
       ->group("Scene");
   app.add_option("--view", typed.view,
                  "azimuth,elevation[,distance] in degrees and mm from the object's centre; azimuth 0 looks along -z, "
-                 "90 along -x; without a distance the object fits the picture")
-      ->capture_default_str()
+                 "90 along -x; without a distance the object fits the picture. Default: elevation 10 from the front, "
+                 "as the bake found or was told it")
       ->group("Scene");
   app.add_option("--up", typed.up, "y or z; with z, azimuth 0 looks along +y")
       ->check(CLI::IsMember({"y", "z"}))
@@ -216,7 +217,7 @@ class Given {
 void take_view(const Typed& typed, const Given& given, View& view) {
   if (given("--up")) view.up = typed.up == "z" ? UpAxis::z : UpAxis::y;
   if (given("--fov")) view.vertical_fov = typed.fov;
-  if (given("--view")) {
+  if (given("--view") && !typed.view.empty()) {
     view.distance.reset();
     view = parse_view(typed.view, view);
   }
@@ -258,6 +259,7 @@ Scene scene_of(const Typed& typed, const CLI::App& app) {
   if (from_file) scene = SceneFile::load(file).at(0);
   if (!from_file) scene.body = file;
   if (given("--material")) scene.material = typed.material;
+  if (!from_file) scene.view = first_view(front_of(file), typed.up == "z" ? UpAxis::z : UpAxis::y);
   take_view(typed, given, scene.view);
   if (given("--light")) scene.lights.clear();
   for (const std::string& light : typed.lights) scene.lights.push_back(parse_light(light));

@@ -38,6 +38,7 @@ struct Knife {
 struct State {
   Scene scene;
   std::vector<Method> methods;  // that the file's levels serve
+  float front = 0;              // of the body, degrees
   std::size_t light = 0;        // the selected one
   Brush brush;
   Knife knife;

@@ -39,6 +39,7 @@ Viewer::Viewer(Window& window, Stage& stage, std::filesystem::path stem)
       stem_(std::move(stem)),
       history_(stage.scene()) {
   state_.scene = stage.scene();
+  state_.front = engine_.graph().front();
   if (!engine_.graph().levels().empty()) state_.methods = methods_of(engine_.graph().levels()[0]);
   state_.brush = Brush::for_body(engine_.bounds().radius);
 }

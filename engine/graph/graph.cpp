@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/graph/error.h"
+#include "engine/graph/front.h"
 #include "engine/graph/section_table.h"
 #include "engine/graph/validate.h"
 
@@ -170,6 +171,7 @@ void QuadGraph::read(const std::string& name) {
   const std::uint32_t count = count_levels(table);
   metadata_ = table.text("metadata");
   check_metadata(table, metadata_, count);
+  front_ = front_from(metadata_, name);
   for (std::uint32_t i = 0; i < count; ++i) levels_.push_back(read_level(table, i, i + 1 == count));
   display_ = read_display(table, count > 0);
   for (std::uint32_t i = 0; i < count; ++i) {

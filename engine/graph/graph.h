@@ -80,6 +80,7 @@ class QuadGraph {
   const std::vector<Level>& levels() const { return levels_; }  // finest first; empty: a surface alone
   const DisplayMesh& display() const { return display_; }
   const std::string& metadata() const { return metadata_; }  // JSON text, checked to be an object
+  float front() const { return front_; }  // degrees about y from where it is shown when nobody says so
   std::size_t byte_size() const { return byte_size_; }
 
  private:
@@ -96,6 +97,7 @@ class QuadGraph {
   std::vector<Level> levels_;
   DisplayMesh display_;
   std::string metadata_;
+  float front_ = 0;
 };
 
 }  // namespace quadgraph

@@ -20,6 +20,10 @@ glm::vec3 turned(const glm::vec3& v, UpAxis up) {
 
 }  // namespace
 
+View first_view(float front, UpAxis up) {
+  return {.azimuth = up == UpAxis::y ? front : 0, .up = up};
+}
+
 void check_view(const View& view) {
   const auto refuse = [](const char* field, float found, const char* expected) {
     throw InputError(std::string("view, ") + field + ": found " + number_text(found) + ", expected " + expected);

@@ -34,6 +34,9 @@ struct View {
   bool operator==(const View&) const = default;
 };
 
+// Where a body whose front is at that azimuth (about y) is seen from when nobody says so.
+View first_view(float front, UpAxis up);
+
 // Throws InputError if an angle or the distance is out of range.
 void check_view(const View& view);
 

@@ -6,6 +6,7 @@
 #include <set>
 #include <sstream>
 
+#include "engine/graph/front.h"
 #include "engine/render/atomic_file.h"
 #include "engine/render/default_lights.h"
 #include "engine/scene/volume.h"
@@ -84,6 +85,7 @@ void SceneFile::check() {
                "picture", "frames", "frames_per_second", "tracks"});
   if (const auto version = field.find("quadgraph_scene")) version->whole(format_version, format_version);
   tracks_.clear();
+  front_ = 0;
   first_view_.reset();
   std::set<double> keys{0};
   if (const auto tracks = field.find("tracks")) {
@@ -95,6 +97,7 @@ void SceneFile::check() {
   frames_ = static_cast<std::uint32_t>(std::clamp(std::ceil(*keys.rbegin()) + 1, 1.0, double{most_frames}));
   if (const auto frames = field.find("frames")) frames_ = frames->whole(1, most_frames);
   if (const auto rate = field.find("frames_per_second")) frames_per_second_ = rate->number(1, 1000);
+  front_ = front_of(at(0).body);
   first_view_ = at(0).view;
   for (double frame : keys) at(frame);
 }
@@ -113,6 +116,8 @@ Scene SceneFile::at(double frame) const {
   each_file(document,
             [&](const std::filesystem::path& file) { return file.is_relative() ? path_.parent_path() / file : file; });
   Scene scene = scene_from(JsonField(document, ""));
+  if (!document.contains("/camera/azimuth"_json_pointer))
+    scene.view.azimuth = first_view(front_, scene.view.up).azimuth;
   if (!document.contains("lights")) scene.lights = default_lights(first_view_.value_or(scene.view));
   return scene;
 }

@@ -14,8 +14,8 @@ namespace quadgraph {
 
 class SceneFile {
  public:
-  // Reads a JSON file and checks the scene at every key of its tracks. A relative body and relative images
-  // of lights are looked for beside the file; a
+  // Reads a JSON file and checks the scene at every key of its tracks. A relative body and relative images of lights
+  // are looked for beside the file; a camera without azimuth looks at the body's front (engine/graph/front.h), and a
   // scene that says nothing of lights gets default_lights of its first view.
   // Throws InputError naming the file, the path into it, what was found and what is allowed.
   static SceneFile load(const std::filesystem::path& path);
@@ -47,6 +47,7 @@ class SceneFile {
   std::vector<Track> tracks_;
   std::uint32_t frames_ = 1;
   double frames_per_second_ = 24;
+  float front_ = 0;  // of the body at frame 0, degrees: the azimuth of a camera that names none
   std::optional<View> first_view_;
 };
 

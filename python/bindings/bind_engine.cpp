@@ -114,24 +114,24 @@ void make_room(Engine& engine, const std::string& method, const std::string& sou
   engine.make_room(options);
 }
 
-View view_from(const std::string& text, const std::string& up, float vertical_fov) {
+View view_from(const std::string& text, const std::string& up, float vertical_fov, float front) {
   if (up != "y" && up != "z") throw InputError("up '" + up + "': allowed are y and z");
-  View view;
-  view.up = up == "z" ? UpAxis::z : UpAxis::y;
+  View view = first_view(front, up == "z" ? UpAxis::z : UpAxis::y);
   view.vertical_fov = vertical_fov;
   return text.empty() ? view : parse_view(text, view);
 }
 
-std::vector<std::string> default_light_texts(const std::string& view, const std::string& up) {
+std::vector<std::string> default_light_texts(const std::string& view, const std::string& up, float front) {
   std::vector<std::string> texts;
-  for (const Light& light : default_lights(view_from(view, up, View{}.vertical_fov))) texts.push_back(to_string(light));
+  for (const Light& light : default_lights(view_from(view, up, View{}.vertical_fov, front)))
+    texts.push_back(to_string(light));
   return texts;
 }
 
 Picture render(Engine& engine, const std::string& view_text, const std::string& up, float vertical_fov,
                std::uint32_t width, std::uint32_t height, float roughness, const std::string& radiance,
                const std::string& show, bool ground, bool surroundings) {
-  const View view = view_from(view_text, up, vertical_fov);
+  const View view = view_from(view_text, up, vertical_fov, engine.graph().front());
   const RenderOptions options{.width = width,
                               .height = height,
                               .roughness = roughness,
@@ -145,7 +145,7 @@ Picture render(Engine& engine, const std::string& view_text, const std::string& 
 
 py::object pick(const Engine& engine, const std::array<float, 2>& at, const std::string& view, const std::string& up,
                 float vertical_fov, float aspect) {
-  const auto found = engine.pick(view_from(view, up, vertical_fov), aspect, {at[0], at[1]});
+  const auto found = engine.pick(view_from(view, up, vertical_fov, engine.graph().front()), aspect, {at[0], at[1]});
   if (!found) return py::none();
   py::dict d;
   d["position"] = as_tuple(glm::dvec3(found->position));
@@ -182,10 +182,10 @@ py::dict copy_bandwidth(const std::string& device) {
 }  // namespace
 
 void bind_engine(py::module_& module) {
-  module.def(
-      "default_lights", &default_light_texts, py::arg("view") = "", py::arg("up") = "y",
-      "The lights a picture gets when nobody asks for others: warm from behind `view`, cool from the side, a little "
-      "from all around.");
+  module.def("default_lights", &default_light_texts, py::arg("view") = "", py::arg("up") = "y", py::arg("front") = 0.0f,
+             "The lights a picture gets when nobody asks for others: warm from behind `view` (without one the azimuth "
+             "`front`, "
+             "degrees, of QuadGraph.front), cool from the side, a little from all around.");
   module.def(
       "copy_bandwidth", &copy_bandwidth, py::arg("device") = "",
       "GB/s, read and written, at which a device copies one buffer into another: kernel (a compute pass), transfer "
@@ -325,7 +325,8 @@ void bind_engine(py::module_& module) {
            py::arg("width") = 1024, py::arg("height") = 1024, py::arg("roughness") = RenderOptions{}.roughness,
            py::arg("radiance") = "auto", py::arg("show") = "picture", py::arg("ground") = false,
            py::arg("surroundings") = false,
-           "The last solve seen from 'azimuth,elevation[,distance]' (degrees, mm). radiance: gathered, lambertian, "
+           "The last solve seen from 'azimuth,elevation[,distance]' (degrees, mm), or from the front. radiance: "
+           "gathered, lambertian, "
            "single, auto. show: picture, or what is inside, in false colour (engine/render/show.h). ground: with a "
            "shadow "
            "where the body stands, as coverage "

@@ -116,6 +116,8 @@ void bind_graph(py::module_& module) {
           },
           "The display mesh: vertices, normals, triangles, face, barycentric.")
       .def_property_readonly("metadata", &QuadGraph::metadata, "JSON text.")
+      .def_property_readonly("front", &QuadGraph::front,
+                             "Azimuth in degrees about y from where the body is shown when nobody says so.")
       .def_property_readonly("byte_size", &QuadGraph::byte_size);
   module.def("load", &QuadGraph::load, py::arg("path"),
              "Read and validate a .qgraph file. Raises FormatError naming the section and the broken rule, InputError "

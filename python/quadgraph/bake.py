@@ -19,6 +19,7 @@ from quadgraph import (
     __version__,
     child_process,
     exchange,
+    front,
     graph,
     lod,
     mesh_io,
@@ -54,7 +55,8 @@ class BakeOptions:
     field, for cgal; cubes and cells: of a polygrid (`quadgraph.polygrid.build`), None for the usual; relax_nodes: steps
     that spread the inner nodes; order: "blocks" or "random"; surface_vertices: about how many the finest simulation
     surface has, None for all of the input's; visibility_rays: from each face of one level, to find what sees what, 0
-    for none; limits hold for each run of the mesher.
+    for none; limits hold for each run of the mesher; front: azimuth in degrees from where the body is shown when nobody
+    says so, None for `quadgraph.front.azimuth`.
     """
 
     unit: str | None = None
@@ -70,6 +72,7 @@ class BakeOptions:
     visibility_rays: int = exchange.DEFAULT_RAYS
     time_limit_s: float = DEFAULT_TIME_LIMIT_S
     memory_limit_bytes: int = DEFAULT_MEMORY_LIMIT_BYTES
+    front: float | None = None
 
 
 @dataclass
@@ -167,11 +170,18 @@ def write(
     with report.timed("transfers"):
         content = sections.whole_file(graphs, prepared.surface, seen)
     metadata = _metadata(prepared, levels, options) | ({} if budget is None else {"budget": budget})
+    with report.timed("front"):
+        metadata["front"] = front_of(prepared, options)
     if report.polygrid is not None:
         metadata["polygrid"] = report.polygrid
     with report.timed("write"):
         report.byte_size = qgraph_file.write(Path(report.output), metadata, content)
     _complete(report, metadata, levels)
+
+
+def front_of(prepared: Prepared, options: BakeOptions) -> float:
+    """Azimuth in degrees from where the body is shown when nobody says so."""
+    return front.azimuth(prepared.surface) if options.front is None else options.front
 
 
 def check_options(output: Path, options: BakeOptions) -> None:
@@ -181,6 +191,7 @@ def check_options(output: Path, options: BakeOptions) -> None:
     if options.relax_nodes < 0:
         raise InputError(f"relax_nodes: {options.relax_nodes} found, 0 or more allowed")
     exchange.check_rays(options.visibility_rays)
+    front.check(options.front)
     _check_polygrid_options(options)
     if not output.parent.is_dir():
         raise InputError(f"{output}: the folder {output.parent} does not exist")

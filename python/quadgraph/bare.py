@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from quadgraph import __version__, display_map, mesh_io, qgraph_file, sections
+from quadgraph import __version__, display_map, front, mesh_io, qgraph_file, sections
 from quadgraph.surface import SourceMesh
 
 HEIGHT_MM = 100.0  # of a mesh that is shown without a word on its size
@@ -19,11 +19,19 @@ def is_mesh(path: Path) -> bool:
     return path.suffix.lower() in SUFFIXES
 
 
-def write(mesh: Path, output: Path, unit: str | None = None, height_mm: float | None = None) -> SourceMesh:
+def write(
+    mesh: Path,
+    output: Path,
+    unit: str | None = None,
+    height_mm: float | None = None,
+    front_degrees: float | None = None,
+) -> SourceMesh:
     """Write a mesh as it is, open, broken or not, with nothing repaired.
 
-    unit, height_mm: as mesh_io.read_surface. Raises InputError for a file that cannot be read.
+    unit, height_mm: as mesh_io.read_surface. front_degrees: azimuth from where it is shown when nobody says so; found
+    out if it is None. Raises InputError for a file that cannot be read.
     """
+    front.check(front_degrees)
     source = mesh_io.read_surface(mesh, unit=unit, height_mm=height_mm)
     surface = source.surface.compacted()
     normals = display_map.vertex_normals(surface)
@@ -36,6 +44,7 @@ def write(mesh: Path, output: Path, unit: str | None = None, height_mm: float | 
         "mesher": {"name": "none", "version": "", "options": "", "grading": None},
         "repairs": [],
         "levels": [],
+        "front": front.azimuth(surface) if front_degrees is None else front_degrees,
         "tools": {"python": platform.python_version()},
     }
     qgraph_file.write(output, metadata, sections.display_alone(surface, normals))

@@ -252,6 +252,12 @@ def _check_display(sections: dict[str, np.ndarray], n_f: int | None, name: str) 
 def _check_metadata(metadata: dict[str, Any], levels: int, name: str) -> None:
     missing = [key for key in METADATA_KEYS if key not in metadata]
     _require(not missing, f"{name}: metadata", f"key {missing[0] if missing else ''!r} is missing")
+    front = metadata.get("front", 0)
+    _require(
+        isinstance(front, (int, float)) and not isinstance(front, bool) and -180 <= front <= 360,
+        f"{name}: metadata",
+        f"'front' is {front!r}, allowed are -180 to 360 degrees",
+    )
     stated = metadata["levels"]
     _require(
         isinstance(stated, list) and len(stated) == levels, f"{name}: metadata", f"'levels' must list {levels} levels"

@@ -103,6 +103,13 @@ def _add_mesh_options(parser: argparse.ArgumentParser) -> None:
         "leaves one enters another (default: 256; 0: none)",
     )
     parser.add_argument(
+        "--front",
+        type=float,
+        metavar="DEG",
+        help="azimuth about y from where the body is shown when nobody says so (default: 0, from +z, unless another of "
+        "eight shows plainly more of its relief)",
+    )
+    parser.add_argument(
         "--order", choices=("blocks", "random"), default="blocks", help="of nodes in memory (default: %(default)s)"
     )
 
@@ -134,11 +141,11 @@ def _write_surface(args: argparse.Namespace) -> int:
     """Write a file without levels."""
     from quadgraph import bare
 
-    left_alone = {"mesh", "output", "unit", "height", "surface_only", "command", "mesher", "order", "device"}
+    left_alone = {"mesh", "output", "unit", "height", "surface_only", "command", "mesher", "order", "device", "front"}
     for name, value in vars(args).items():
         if name not in left_alone and value:
             raise InputError(f"--{name.replace('_', '-')}: found with --surface-only, which makes no levels")
-    source = bare.write(args.mesh, args.output, args.unit, args.height)
+    source = bare.write(args.mesh, args.output, args.unit, args.height, args.front)
     Console(highlight=False).print(
         f"{args.output}: the surface alone, {source.triangles:,} triangles; --method shortest-path shows it",
         soft_wrap=True,
@@ -185,6 +192,7 @@ def _options(args: argparse.Namespace):
         "order": args.order,
         "surface_vertices": args.surface_vertices,
         "visibility_rays": args.visibility_rays,
+        "front": args.front,
         "time_limit_s": args.time_limit,
         "memory_limit_bytes": int(args.memory_limit * 1e9) if args.memory_limit else None,
     }

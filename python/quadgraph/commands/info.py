@@ -78,6 +78,7 @@ def _print_facts(name: str, facts: dict[str, Any]) -> None:
         f"mesher: {mesher['name']} {mesher['version']} {mesher['options']}{grading}",
         f"options: {options}",
         f"repairs: {repairs}",
+        f"front: azimuth {metadata.get('front', 0):g} degrees",
         f"tools: {tools}",
     ]
     for line in lines:

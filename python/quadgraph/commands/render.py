@@ -35,7 +35,8 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--view",
         default="",
         metavar="A,E[,D]",
-        help="azimuth and elevation in degrees, distance in mm (default: fitted)",
+        help="azimuth and elevation in degrees, distance in mm (default: fitted); without it elevation 10 from the "
+        "front, as the bake found or was told it",
     )
     parser.add_argument("--up", choices=("y", "z"), default="y", help="axis that points up (default: %(default)s)")
     parser.add_argument(

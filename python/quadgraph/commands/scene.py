@@ -258,7 +258,8 @@ def make_engine(args: argparse.Namespace) -> Engine:
     with baked_or_bare(args.file, getattr(args, "unit", None), getattr(args, "height", None)) as path:
         engine = core.Engine(path, device=args.device, validation=args.validation)
     engine.set_material(args.material)
-    engine.set_lights(args.light or core.default_lights(getattr(args, "view", ""), getattr(args, "up", "y")))
+    seen_from = {"view": getattr(args, "view", ""), "up": getattr(args, "up", "y"), "front": engine.graph.front}
+    engine.set_lights(args.light or core.default_lights(**seen_from))
     return engine
 
 
