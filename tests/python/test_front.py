@@ -44,7 +44,8 @@ def test_without_plainly_more_it_is_z():
 
 
 @pytest.mark.parametrize(
-    ("mesh", "azimuths"), [("armadillo", (180,)), ("bunny", (0,)), ("fandisk", (135,)), ("igea", (0,)), ("spot", (45, 315))]
+    ("mesh", "azimuths"),
+    [("armadillo", (180,)), ("bunny", (0,)), ("fandisk", (135,)), ("igea", (0,)), ("spot", (45, 315))],
 )
 def test_real_bodies_show_their_faces(mesh, azimuths, shared):
     """The armadillo lies in its file with its back to +z, the CAD part with its plain side; the cow is symmetric."""
