@@ -115,7 +115,7 @@ BodyCut cut_along(const View& view, const Sphere& bounds, float aspect, const gl
 
 Bearing bearing_of(const glm::vec3& towards, UpAxis up) {
   const glm::vec3 y_up = up == UpAxis::y ? towards : glm::vec3(towards.x, towards.z, -towards.y);
-  const glm::vec3 unit = glm::normalize(y_up);
+  const glm::vec3 unit = glm::normalize(y_up) + glm::vec3(0);  // no -0
   return {glm::degrees(std::atan2(unit.x, unit.z)), glm::degrees(std::asin(std::clamp(unit.y, -1.0f, 1.0f)))};
 }
 

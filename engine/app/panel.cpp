@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "engine/app/cut_section.h"
+#include "engine/app/edit_section.h"
 #include "engine/app/light_section.h"
 #include "engine/app/panel_widgets.h"
 #include "engine/graph/material.h"
@@ -65,40 +66,6 @@ void draw_material(State& state) {
     }
   }
   ImGui::PopItemWidth();
-}
-
-// A coefficient that the brush may leave alone.
-void draw_coefficient(const char* name, std::optional<glm::vec3>& by, Edit::Operation operation) {
-  bool changed = by.has_value();
-  ImGui::PushID(name);
-  if (ImGui::Checkbox(name, &changed)) by = changed ? std::optional(glm::vec3(1)) : std::nullopt;
-  if (by) {
-    const bool factor = operation == Edit::Operation::multiply;
-    const float least = operation == Edit::Operation::add ? -10.0f : 0.0f;
-    ImGui::DragFloat3(factor ? "times" : "1/mm", &by->x, 0.01f, least, 100, "%.2f");
-  }
-  ImGui::PopID();
-}
-
-void draw_edits(State& state, const Sphere& bounds) {
-  if (!section("Edit", false)) return;
-  if (ImGui::Button("undo") && state.can_undo) state.undo = true;
-  ImGui::SameLine();
-  if (ImGui::Button("redo") && state.can_redo) state.redo = true;
-  ImGui::SameLine();
-  if (ImGui::Button("scene to file")) state.save = true;
-  Edit& edit = state.brush.edit;
-  if (ImGui::Checkbox("a left drag paints", &state.brush.on) && state.brush.on) state.knife.on = false;
-  constexpr std::array<const char*, 3> names = {"multiply", "add", "set"};
-  auto operation = static_cast<int>(edit.operation);
-  if (ImGui::Combo("operation", &operation, names.data(), 3)) edit.operation = static_cast<Edit::Operation>(operation);
-  draw_coefficient("absorption", edit.sigma_a, edit.operation);
-  draw_coefficient("scattering", edit.sigma_s_prime, edit.operation);
-  slide("radius", edit.radius, 0.005f * bounds.radius, 0.5f * bounds.radius, "%.1f mm");
-  slide("from depth", edit.depth_from, 0, bounds.radius, "%.1f mm");
-  slide("to depth", edit.depth_to, edit.depth_from + 1e-3f * bounds.radius, 2 * bounds.radius, "%.1f mm");
-  slide("softness", edit.softness, 0, edit.radius, "%.1f mm");
-  tell("strokes", formatted("%zu", state.scene.edits.size()));
 }
 
 // A slider over the deformer of a kind, which is in the list while it does something.

@@ -104,9 +104,9 @@ void Viewer::begin_or_end_drag(const ButtonEvent& event) {
   drag_mods_ = event.mods;
   if (dragging_) state_.focus_picture = true;
   const bool plain = event.button == GLFW_MOUSE_BUTTON_LEFT && event.mods == 0;
-  const auto place = dragging_ && plain && state_.brush.on ? pointed_at() : std::nullopt;
-  painting_ = place.has_value();
-  if (place) state_.brush.begin(state_.scene, *place);
+  const auto touch = dragging_ && plain && state_.brush.on ? pointed_at() : std::nullopt;
+  painting_ = touch.has_value();
+  if (touch) state_.brush.begin(state_.scene, *touch);
   Knife& knife = state_.knife;
   if (!dragging_ && knife.cuts()) {
     const Surroundings around = surroundings();
@@ -143,7 +143,7 @@ void Viewer::handle_motion(const MotionEvent& event) {
   pointer_y_ = event.y;
   if (!dragging_) return;
   if (painting_) {
-    if (const auto place = pointed_at()) state_.brush.lead(state_.scene, *place);
+    if (const auto touch = pointed_at()) state_.brush.lead(state_.scene, *touch);
     return;
   }
   if (state_.knife.from) {
@@ -168,10 +168,12 @@ glm::vec2 Viewer::pointer() const {
   return {2 * share.x - 1, 1 - 2 * share.y};
 }
 
-// The place on the body under the pointer, mm, as it lies at rest.
-std::optional<glm::vec3> Viewer::pointed_at() const {
-  const auto found = engine_.pick(state_.scene.view, surroundings().aspect, pointer());
-  return found ? std::optional(found->at_rest) : std::nullopt;
+// Where the pointer meets the body.
+std::optional<Touch> Viewer::pointed_at() const {
+  const Surroundings around = surroundings();
+  const auto found = engine_.pick(state_.scene.view, around.aspect, pointer());
+  if (!found) return std::nullopt;
+  return touched(*found, place_camera(state_.scene.view, around.bounds, around.aspect));
 }
 
 void Viewer::build_widgets(const std::vector<Event>& events) {

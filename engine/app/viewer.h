@@ -46,7 +46,7 @@ class Viewer {
   void handle_motion(const MotionEvent& event);
   void begin_or_end_drag(const ButtonEvent& event);
   glm::vec2 pointer() const;
-  std::optional<glm::vec3> pointed_at() const;
+  std::optional<Touch> pointed_at() const;
   void fulfil_wishes();
   void build_widgets(const std::vector<Event>& events);
   void keep_up();

@@ -71,6 +71,7 @@ std::optional<Picked> pick(const DisplayMesh& mesh, std::span<const glm::vec3> v
     found = Picked{position, share.x * mesh.vertices[t.x] + share.y * mesh.vertices[t.y] + share.z * mesh.vertices[t.z],
                    glm::vec3(glm::normalize(glm::cross(ab, ac)))};
   }
+  if (found) found->to_rest = glm::mat3(frame_of(mesh.vertices, triangle) * glm::inverse(frame_of(vertices, triangle)));
   if (found) move_to_cut(*found, mesh, vertices, triangle, camera.eye, tools);
   return found;
 }

@@ -1,6 +1,7 @@
 // What lies under a point of a picture.
 #pragma once
 
+#include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
@@ -16,6 +17,7 @@ struct Picked {
   glm::vec3 position{0};  // mm, where the surface is now
   glm::vec3 at_rest{0};   // mm, where that point lies in the file
   glm::vec3 normal{0};    // unit, of the triangle, now
+  glm::mat3 to_rest{1};   // directions now to those in the file, as the triangle was deformed
 };
 
 // The nearest point of the display mesh, whose vertices are now at `vertices`, mm, on the ray through `at`: of a

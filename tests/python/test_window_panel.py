@@ -1,4 +1,4 @@
-"""The window's panel under a hand: a body that deforms, and lights by their images."""
+"""The window's panel under a hand: a body that deforms, lights by their images, and stamps."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ TALL = 890  # a window in which the section Shape is seen
 FRAME = 84  # height of a section to close; then, in the same way:
 SHAPE, TWIST = 658, 683  # a section to open and its first slider, with two lights
 IMAGE = 333  # the name of an image, of the only light
+EDIT, MASK, RADIUS, TO_DEPTH = 233, 433, 458, 508  # a section to open, and in it
 
 
 def press(hand: Hand, y: int, *held: str) -> None:
@@ -26,6 +27,14 @@ def press(hand: Hand, y: int, *held: str) -> None:
     hand.settle()
     down, up = (["keydown", *held], ["keyup", *held]) if held else ([], [])
     hand.do("mousemove", "100", str(y), *down, "click", "1", *up, "sleep", "0.3")
+
+
+def put(hand: Hand, y: int, text: str, *held: str) -> None:
+    """Type into what is at that height, in place of what it said."""
+    press(hand, y, *held)
+    hand.keys("ctrl+a")
+    hand.do("type", "--delay", "20", text)
+    hand.keys("Return", "Escape")
 
 
 def width_at(picture: np.ndarray, share: float) -> int:
@@ -86,10 +95,7 @@ def test_a_projector_takes_the_image_that_is_typed(open_window, tmp_path: Path):
     whole = hand.picture()
 
     def choose(name: str) -> np.ndarray:
-        press(hand, IMAGE)
-        hand.keys("ctrl+a")
-        hand.do("type", "--delay", "20", name)
-        hand.keys("Return", "Escape")
+        put(hand, IMAGE, name)
         return hand.picture()
 
     half = choose("half.png")
@@ -103,4 +109,57 @@ def test_a_projector_takes_the_image_that_is_typed(open_window, tmp_path: Path):
     assert np.array_equal(none[:-80], half[:-80])
     hand.keys("ctrl+z")
     assert np.abs(hand.picture()[:-80] - whole[:-80]).max() <= 1
+    hand.close()
+
+
+def test_a_stamp_prints_its_mask_where_the_hand_lets_it_go(open_window, tmp_path: Path):
+    """The upper half of a square of 8 mm, at first on the middle of a ball, then to its right and there undone."""
+    body = write_levels(tmp_path / "ball.qgraph", [icosphere(5, 10), icosphere(4, 10)])
+    texels = np.zeros((32, 32), np.uint8)
+    texels[:16] = 255
+    Image.fromarray(texels).save(tmp_path / "upper.png")
+    look = ["--view", "0,0", "--radiance", "lambertian", "--light", "directional:0,0,-1:1", "--light", "ambient:.3"]
+    hand = open_window("--material", "skin1", "--exposure", "1", "--no-ground", *look, body=body)
+    hand.do("windowsize", "--sync", hand.window, str(SIZE[0]), str(TALL))
+    press(hand, FRAME)
+    press(hand, EDIT)
+    put(hand, MASK, "none.png")
+    told = hand.screen()[:TALL, 340 : SIZE[0]]
+    put(hand, MASK, "upper.png")
+    put(hand, RADIUS, "4", "ctrl")
+    put(hand, TO_DEPTH, "3", "ctrl")
+    before = hand.screen()[:TALL, 340 : SIZE[0]]
+    assert np.abs(told[-60:, :400] - before[-60:, :400]).max() > 60
+    hand.keys("p")
+
+    def stamp(right: int) -> np.ndarray:
+        """Pressed down in the middle, let go so many pixels beside it: how much darker each pixel is then."""
+        hand.do("mousemove", str(620), str(TALL // 2), "mousedown", "1", "sleep", "0.2")
+        hand.do("mousemove_relative", "--", str(right), "0", "sleep", "0.2", "mouseup", "1")
+        return (before - hand.screen()[:TALL, 340 : SIZE[0]]).sum(axis=2)
+
+    def printed(darker: np.ndarray, column: int) -> tuple[float, float]:
+        row = TALL // 2
+        columns = np.s_[column - 40 : column + 40]
+        return darker[row - 70 : row - 30, columns].mean(), darker[row + 30 : row + 70, columns].mean()
+
+    upper, lower = printed(stamp(0), 280)
+    assert upper > 60
+    assert lower < 0.2 * upper
+    hand.keys("ctrl+z")
+    darker = stamp(130)
+    upper, lower = printed(darker, 410)
+    assert upper > 60
+    assert lower < 0.2 * upper
+    assert printed(darker, 230)[0] < 0.2 * upper
+    hand.keys("ctrl+s")
+    hand.settle()
+    (edit,) = json.loads((tmp_path / "ball-1.json").read_text())["edits"]
+    assert edit["mask"] == "upper.png"
+    centre, direction = np.array(edit["placement"]["centre"]), np.array(edit["placement"]["direction"])
+    assert np.allclose(np.linalg.norm(centre), 10, atol=0.1)
+    assert 3.5 < centre[0] < 7
+    assert np.allclose(direction, -centre / 10, atol=0.05)
+    hand.keys("ctrl+z")
+    assert np.abs(hand.screen()[: TALL - 80, 340 : SIZE[0]] - before[:-80]).max() <= 1
     hand.close()

@@ -1,0 +1,64 @@
+#include "engine/app/edit_section.h"
+
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <array>
+
+#include "engine/app/panel_widgets.h"
+#include "engine/render/image_file.h"
+
+namespace quadgraph {
+namespace {
+
+// A coefficient that the brush may leave alone.
+void draw_coefficient(const char* name, std::optional<glm::vec3>& by, Edit::Operation operation) {
+  bool changed = by.has_value();
+  ImGui::PushID(name);
+  if (ImGui::Checkbox(name, &changed)) by = changed ? std::optional(glm::vec3(1)) : std::nullopt;
+  if (by) {
+    const bool factor = operation == Edit::Operation::multiply;
+    const float least = operation == Edit::Operation::add ? -10.0f : 0.0f;
+    ImGui::DragFloat3(factor ? "times" : "1/mm", &by->x, 0.01f, least, 100, "%.2f");
+  }
+  ImGui::PopID();
+}
+
+// A picture that is typed by name, or taken away by leaving none.
+void draw_image(State& state, const char* name, std::shared_ptr<const ImagePyramid>& image) {
+  std::string text = image ? image->file.string() : std::string();
+  if (!ImGui::InputTextWithHint(name, "picture.png, .exr, .hdr", &text, ImGuiInputTextFlags_EnterReturnsTrue)) return;
+  try {
+    image = text.empty() ? nullptr : load_pyramid(text);
+    state.say("");
+  } catch (const std::exception& error) {
+    state.say(error.what(), true);
+  }
+}
+
+}  // namespace
+
+void draw_edits(State& state, const Sphere& bounds) {
+  if (!section("Edit", false)) return;
+  if (ImGui::Button("undo") && state.can_undo) state.undo = true;
+  ImGui::SameLine();
+  if (ImGui::Button("redo") && state.can_redo) state.redo = true;
+  ImGui::SameLine();
+  if (ImGui::Button("scene to file")) state.save = true;
+  Edit& edit = state.brush.edit;
+  if (ImGui::Checkbox("a left drag paints", &state.brush.on) && state.brush.on) state.knife.on = false;
+  constexpr std::array<const char*, 3> names = {"multiply", "add", "set"};
+  auto operation = static_cast<int>(edit.operation);
+  if (ImGui::Combo("operation", &operation, names.data(), 3)) edit.operation = static_cast<Edit::Operation>(operation);
+  draw_coefficient("absorption", edit.sigma_a, edit.operation);
+  draw_coefficient("scattering", edit.sigma_s_prime, edit.operation);
+  draw_image(state, "pattern", edit.image);
+  draw_image(state, "mask", edit.mask);
+  slide("radius", edit.radius, 0.005f * bounds.radius, 0.5f * bounds.radius, "%.1f mm");
+  slide("from depth", edit.depth_from, 0, bounds.radius, "%.1f mm");
+  slide("to depth", edit.depth_to, edit.depth_from + 1e-3f * bounds.radius, 2 * bounds.radius, "%.1f mm");
+  slide("softness", edit.softness, 0, edit.radius, "%.1f mm");
+  tell("edits", formatted("%zu", state.scene.edits.size()));
+}
+
+}  // namespace quadgraph
