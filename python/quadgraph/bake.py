@@ -120,11 +120,12 @@ class Level:
 
 @dataclass(frozen=True)
 class Prepared:
-    """A mesh file's surface, mm, fit for the mesher, and what was repaired for that."""
+    """A mesh file's surface, mm, fit for the mesher, what was repaired for that, and its front, degrees."""
 
     source: SourceMesh
     surface: Surface
     repairs: list[Repair]
+    front: float
 
 
 def bake(mesh: Path, output: Path, options: BakeOptions, progress: Progress | None = None) -> BakeReport:
@@ -152,7 +153,9 @@ def prepare(mesh: Path, options: BakeOptions, report: BakeReport, tell: Progress
         surface, repairs = repair.repair(source.surface, source.name)
     for entry in repairs:
         tell(f"repaired: {entry.what}: {entry.count:,}")
-    return Prepared(source, surface, repairs)
+    with report.timed("front"):
+        seen_from = front.azimuth(surface) if options.front is None else options.front
+    return Prepared(source, surface, repairs, seen_from)
 
 
 def write(
@@ -170,18 +173,11 @@ def write(
     with report.timed("transfers"):
         content = sections.whole_file(graphs, prepared.surface, seen)
     metadata = _metadata(prepared, levels, options) | ({} if budget is None else {"budget": budget})
-    with report.timed("front"):
-        metadata["front"] = front_of(prepared, options)
     if report.polygrid is not None:
         metadata["polygrid"] = report.polygrid
     with report.timed("write"):
         report.byte_size = qgraph_file.write(Path(report.output), metadata, content)
     _complete(report, metadata, levels)
-
-
-def front_of(prepared: Prepared, options: BakeOptions) -> float:
-    """Azimuth in degrees from where the body is shown when nobody says so."""
-    return front.azimuth(prepared.surface) if options.front is None else options.front
 
 
 def check_options(output: Path, options: BakeOptions) -> None:
@@ -305,6 +301,7 @@ def _metadata(prepared: Prepared, levels: list[Level], options: BakeOptions) -> 
         "mesher": {"name": mesher.name, "version": mesher.version, "options": mesher.options, "grading": grading},
         "options": {key: getattr(options, key) for key in _OPTIONS},
         "repairs": [asdict(entry) for entry in prepared.repairs],
+        "front": prepared.front,
         "levels": [sections.level_metadata(level.graph) for level in levels],
         "tools": {
             "python": platform.python_version(),

@@ -129,7 +129,7 @@ def bake_for(
     load_core().Material(material)
     report, start = BakeReport(str(output)), time.perf_counter()
     prepared = bake.prepare(mesh, options, report, tell)
-    scene = _scene(prepared, options, material, lights)
+    scene = _scene(prepared, material, lights)
     with tempfile.TemporaryDirectory(prefix="quadgraph-budget-") as folder:
         levels, budget = _planned(prepared, options, scene, error, Path(folder), device, report, tell)
     chosen = replace(options, surface_vertices=budget["surface_vertices"])
@@ -147,10 +147,10 @@ def _check(options: BakeOptions, error: float) -> None:
             raise InputError(f"{name}: {getattr(options, name)} found, but an error is asked for, which chooses it")
 
 
-def _scene(prepared: Prepared, options: BakeOptions, material: str, lights: Sequence[str]) -> Scene:
+def _scene(prepared: Prepared, material: str, lights: Sequence[str]) -> Scene:
     if lights:
         return Scene(material, {"given": list(lights)}, True)
-    usual = {"usual": load_core().default_lights(front=bake.front_of(prepared, options))}
+    usual = {"usual": load_core().default_lights(front=prepared.front)}
     return Scene(
         material, usual | {name: lights_around(name, prepared.surface.vertices) for name in ("sun", "lamp")}, False
     )
