@@ -93,6 +93,28 @@ def test_the_page_on_methods_says_what_the_record_does(request):
                 assert cell == told, (row, scene, truth)
 
 
+# Columns of the table of scenes in docs/chart.md.
+COLUMNS = (
+    "dipole per vertex · level 1 · numpy",
+    "quadgraph-fdm, as published · default bake · level 0 · cascade",
+    "polygrid, as published · polygrid · level 0 · cascade",
+    "polygrid-divergence, diffusion · polygrid · level 0 · cascade",
+    "shortest-path · transport · eikonal · 64 cells",
+    "fem, SP₃, inter-reflection · default bake · level 0 · fmg-pcg · 1 cycle a frame",
+)
+
+
+def test_the_page_on_the_chart_says_what_the_record_does(request):
+    docs = request.config.rootpath / "docs"
+    lines = (docs / "chart.md").read_text().splitlines()
+    for scene in records.read(docs / "benchmarks" / "chart.json")["scenes"]:
+        points = {point["name"]: point["errors"]["transport"] for point in scene["points"]}
+        (line,) = [line for line in lines if line.split(",")[0].split(" |")[0] == f"| {scene['name']}"]
+        told = [cell.strip() for cell in line.split("|")[2:-1]]
+        found = [[points[name].get(part) for part in records.PARTS] for name in COLUMNS]
+        assert told == [" / ".join(f"{100 * error:.3g}%" for error in errors if error) for errors in found]
+
+
 def test_the_picture_has_four_panels_at_the_width_of_the_readme(record_path, tmp_path):
     assert [panel.part for panel in records.panels(record()["scenes"][0])] == ["whole", "unlit"] * 2
     static.write(tmp_path, record(("bunny",)))
