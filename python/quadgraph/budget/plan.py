@@ -3,7 +3,8 @@
 The whole mesh's own chain of levels is baked, and its finest level cut in eight: the truth, solved with SP3. Levels of
 the chain, and then surfaces of sizes between them, are solved with every model and number of cycles and held against it
 on the displayed triangles, which counts relief that a simplified surface lacks as well as the error of the elements.
-The error falls with the number of vertices, smoothly enough that three surfaces of chosen sizes are enough.
+The error falls with the number of vertices, smoothly enough that three surfaces of chosen sizes are enough. What would
+be cheaper and is so near to the error that this truth leaves it in doubt is held against a finer one.
 """
 
 from __future__ import annotations
@@ -32,7 +33,6 @@ from quadgraph.budget.trials import (
     measure,
     trial,
 )
-from quadgraph.commands.budget import ENOUGH
 from quadgraph.commands.scene import load_core
 from quadgraph.errors import InputError, ToolError
 from quadgraph.reference.judged import lights as lights_around
@@ -46,6 +46,10 @@ _ROUNDS = 3
 _CLOSE = 1.1  # of the expected cost: what costs no more than this is not tried to be bettered
 _STEPS, _STEP = 3, 0.8  # at most so many surfaces, each with this share of the vertices of the cheapest so far
 _SAME = 0.03  # of the number of vertices: two surfaces nearer than this are one
+_DOUBT = 1.03  # times the error: what was measured to have no more may keep it
+_DOUBTS = 3  # so many are settled, the cheapest first
+_SURE = 0.98  # ENOUGH by a truth that was cut twice
+_MOST_CUT_TWICE = 4000  # vertices of a mesh that is
 DEEP = 2.0  # diffusion lengths: .1% of the whole and .35% of the unlit surface know what is deeper (design.md)
 
 
@@ -84,12 +88,21 @@ class Bench:
         self.trials += found
         return found
 
-    def judge(self, path: Path, model: str, cycles: int) -> Trial:
+    def judge(self, path: Path, model: str, cycles: int, deep: bool = False) -> Trial:
         """Measure one setting on a file."""
         subject = Subject(path, self.scene.material, self._device)
         assemble(subject, self.scene, model)
         known = known_share(subject, self.truth_vertices)
-        return trial(subject, self.scene, self._truths, known, model, cycles)
+        return trial(subject, self.scene, self._truths, known, model, cycles, deep)
+
+    def settle(self, doubtful: Sequence[Trial], error: float, finer: Bench) -> None:
+        """Measure trials again, by the truth of another bench, until one keeps the error."""
+        for old in doubtful:
+            path = self._written(self.candidates[old.surface_vertices, old.levels], "trial.qgraph")
+            new = replace(finer.judge(path, old.model, old.cycles, old.deep), share=_SURE)
+            self.trials[self.trials.index(old)] = new
+            if new.keeps(error):
+                return
 
     def _written(self, levels: list[Level], name: str) -> Path:
         report = BakeReport(str(self._folder / name))
@@ -102,8 +115,19 @@ class Bench:
         self.models = kept or MODELS
 
     def best(self, error: float) -> Trial | None:
-        """The cheapest that keeps it."""
+        """The cheapest that was measured to have no more."""
         return min((t for t in self.trials if t.error <= error), key=lambda t: t.cost, default=None)
+
+    def kept(self, error: float) -> Trial | None:
+        """The cheapest that keeps it with certainty."""
+        return min((t for t in self.trials if t.keeps(error)), key=lambda t: t.cost, default=None)
+
+    def doubtful(self, error: float) -> list[Trial]:
+        """What would be cheaper than that and may keep it, the cheapest first."""
+        kept = self.kept(error)
+        most = kept.cost if kept else np.inf
+        found = [t for t in self.trials if not t.keeps(error) and t.error <= _DOUBT * error and t.cost < most]
+        return sorted(found, key=lambda t: t.cost)[:_DOUBTS]
 
 
 def bake_for(
@@ -180,8 +204,13 @@ def _planned(
         bench.narrow(AIM * error)
     predicted = _refine(bench, whole, options, error, report, tell)
     _descend(bench, whole, options, error, report, tell)
-    best = bench.best(ENOUGH * error)
-    chosen = best or min(bench.trials, key=lambda t: (-t.surface_vertices, t.error))
+    if count <= _MOST_CUT_TWICE and (doubtful := bench.doubtful(error)):
+        tell(f"error: {len(doubtful)} cheaper settings are in doubt, the truth is made finer")
+        with report.timed("error"):
+            finer = Bench(whole, options, scene, folder, device)
+            finer.find_truth(levels, 2)
+            bench.settle(doubtful, error, finer)
+    chosen = bench.kept(error) or min(bench.trials, key=lambda t: (-t.surface_vertices, t.error))
     budget = _record(bench, chosen, predicted, len(prepared.surface.vertices), count, error)
     return bench.candidates[chosen.surface_vertices, chosen.levels], budget
 
@@ -228,7 +257,7 @@ def _refine(
     for _ in range(_ROUNDS):
         expected = forecast(bench.trials, AIM * error)
         first = first or expected
-        best = bench.best(ENOUGH * error)
+        best = bench.kept(error)
         if expected is None or (best and best.cost <= _CLOSE * expected.cost):
             return first
         count = _apart(bench, max(round(expected.surface_vertices), LEAST_VERTICES))
@@ -245,13 +274,13 @@ def _descend(
     What a surface loses besides its number of vertices is of its own: expectations are a tenth off in the error.
     """
     for _ in range(_STEPS):
-        best = bench.best(ENOUGH * error)
+        best = bench.kept(error)
         if best is None:
             return
         count = round(_STEP * best.surface_vertices)
         if count < LEAST_VERTICES or count != _apart(bench, count):
             return
-        if not _sized(bench, whole, options, count, report, tell) or bench.best(ENOUGH * error) is best:
+        if not _sized(bench, whole, options, count, report, tell) or bench.kept(error) is best:
             return
 
 
@@ -282,7 +311,7 @@ def _record(
     finest = max(t.surface_vertices for t in diffusion)
     return {
         "error": error,
-        "reached": bool(chosen.error <= ENOUGH * error),
+        "reached": bool(chosen.keeps(error)),
         "measured": chosen.error,
         "errors": chosen.errors,
         "material": bench.scene.material,

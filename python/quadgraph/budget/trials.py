@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from quadgraph.budget.judge import Subject, Truth
+from quadgraph.commands.budget import ENOUGH
 
 MODELS = ("diffusion", "sp3")
 CYCLES = (1, 2, 3, 4, 6)  # on the finest level
@@ -31,7 +32,8 @@ class Scene:
 class Trial:
     """One setting on one file. errors: relative RMS by light and part; cost: bytes read and written a frame, mean.
 
-    levels: of the file; deep: whether they go down as far as they can.
+    levels: of the file; deep: whether they go down as far as they can; share: of an error that these may have and
+    count as keeping it, for the truth that they were measured by has an error, too.
     """
 
     surface_vertices: int
@@ -41,11 +43,16 @@ class Trial:
     cycles: int
     cost: float
     errors: dict[str, dict[str, float]]
+    share: float = ENOUGH
 
     @property
     def error(self) -> float:
         """The largest."""
         return max(max(parts.values()) for parts in self.errors.values())
+
+    def keeps(self, error: float) -> bool:
+        """With certainty."""
+        return self.error <= self.share * error
 
     @property
     def setting(self) -> tuple[bool, str, int]:

@@ -160,7 +160,9 @@ def _taken(budget: dict[str, Any], args: argparse.Namespace) -> Taken:
     kept = [
         trial
         for trial in budget["trials"]
-        if _of_file(trial, budget) and args.model in ("auto", trial["model"]) and worst(trial) <= ENOUGH * args.error
+        if _of_file(trial, budget)
+        and args.model in ("auto", trial["model"])
+        and worst(trial) <= float(trial.get("share", ENOUGH)) * args.error
     ]
     if not kept:
         least = percent(min(worst(trial) for trial in budget["trials"] if _of_file(trial, budget)))
