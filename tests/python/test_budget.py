@@ -138,7 +138,7 @@ def record(baked) -> dict:
 
 
 def test_the_true_error_is_kept(judged):
-    """The study's truth is the mesh cut twice, of which the bake knows nothing."""
+    """The study's truth is the mesh cut twice, of which the bake knows nothing unless that settled a doubt."""
     assert judged["reached"]
     assert judged["truth_vertices"] > 15 * judged["vertices"]
     true = max(judged["chosen"]["errors"].values())
