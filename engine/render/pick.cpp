@@ -36,9 +36,7 @@ void move_to_cut(Picked& found, const DisplayMesh& mesh, std::span<const glm::ve
     found.normal = -gpu::tool_gradient(tool, found.position);
   }
   if (latest == 0) return;
-  const glm::dvec3 in_frame =
-      glm::inverse(frame_of(vertices, t)) * (glm::dvec3(found.position) - glm::dvec3(vertices[t.x]));
-  found.at_rest = glm::vec3(glm::dvec3(mesh.vertices[t.x]) + frame_of(mesh.vertices, t) * in_frame);
+  found.at_rest = mesh.vertices[t.x] + found.to_rest * (found.position - vertices[t.x]);
 }
 
 }  // namespace

@@ -184,8 +184,7 @@ py::dict copy_bandwidth(const std::string& device) {
 void bind_engine(py::module_& module) {
   module.def("default_lights", &default_light_texts, py::arg("view") = "", py::arg("up") = "y", py::arg("front") = 0.0f,
              "The lights a picture gets when nobody asks for others: warm from behind `view` (without one the azimuth "
-             "`front`, "
-             "degrees, of QuadGraph.front), cool from the side, a little from all around.");
+             "`front`, degrees, of QuadGraph.front), cool from the side, a little from all around.");
   module.def(
       "copy_bandwidth", &copy_bandwidth, py::arg("device") = "",
       "GB/s, read and written, at which a device copies one buffer into another: kernel (a compute pass), transfer "
