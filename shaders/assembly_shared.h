@@ -193,7 +193,7 @@ struct RightHandSideFemPush {
 
 // eigenvalue_bound.comp: damping = 2 / bound of the eigenvalues of D^-1 A, per channel: the largest step of a
 // relaxation that cannot diverge. With N = |D^-1 A| entry by entry and any y > 0, z = N y, the largest z_i / y_i is
-// such a bound (Collatz and Wielandt); z as the next y gives a better one. `first`: y = 1, without reading it.
+// such a bound (Collatz 1942, Wielandt 1950); z as the next y gives a better one. `first`: y = 1, without reading it.
 struct EigenvalueBoundPush {
   RowsRef rows;
   QG_REF(Fields) y;

@@ -2,7 +2,7 @@
 // code on the GPU, in single precision, and in the CPU reference, in double.
 //
 // Between the middles of neighbours the length is taken as linear, and the path leaves from the best point of the side:
-// Tsitsiklis 1995, section III; OLIM26 of Potter and Cameron 2021. Plane fronts are exact, in whatever direction.
+// Tsitsiklis 1995, section III; OLIM26 of Potter and Cameron 2019. Plane fronts are exact, in whatever direction.
 #ifndef QUADGRAPH_PATH_UPDATE_H
 #define QUADGRAPH_PATH_UPDATE_H
 

@@ -1,4 +1,4 @@
-// Light that leaves one part of a body and enters another (physics.md, "Inter-reflection"), on the CPU in double
+// Light that leaves one part of a body and enters another (docs/physics.md, "Inter-reflection"), on the CPU in double
 // precision, over the rows `seen` of a level: the answer the GPU is compared with.
 //
 // What leaves a face, its radiosity J, arrives elsewhere as irradiance E along the rays of docs/qgraph-format.md. Of E

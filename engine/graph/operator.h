@@ -4,9 +4,9 @@
 // Every discretisation is a system A x = b per channel, symmetric but for polygrids, (phi, phi2) = to_phi * x, whose
 // entries are blocks.
 //
-// SP3 (Klose and Larsen 2006; physics.md, "SP3"), written for phi = phi1 - 2/3 phi2, the fluence of scattered light,
-// and phi2, is: stiffness of kappa times G = [[1, 2/3], [2/3, 55/63]], mass of diag(sigma_a, 5/9 sigma_t), boundary
-// matrix K, source (S, 0). So a method only says four scalars per pair of carriers (Terms, engine/graph/block.h), and
+// SP3 (Klose and Larsen 2006; docs/physics.md, "SP3"), written for phi = phi1 - 2/3 phi2, the fluence of scattered
+// light, and phi2, is: stiffness of kappa times G = [[1, 2/3], [2/3, 55/63]], mass of diag(sigma_a, 5/9 sigma_t),
+// boundary matrix K, source (S, 0). So a method only says four scalars per pair of carriers (Terms, engine/graph/block.h), and
 // diffusion is the corner a11 of the same block.
 //
 // fem: carriers are the tet vertices; to_phi = 1. Coefficients are constant per tet (the value at its inner node);
@@ -22,7 +22,8 @@
 //
 // quadgraph-fv: carriers are the nodes; to_phi = 1. Two-point flux across every face, d measured along its normal; the
 //   boundary condition in series at the surface. With diffusion an M-matrix: phi is never negative. Conserves energy;
-//   exact in layers whose links cross the interfaces at right angles, not consistent on general tets (physics.md).
+//   exact in layers whose links cross the interfaces at right angles, not consistent on general tets (docs/physics.md,
+//   "Discretisations").
 //     inner i:    sum_j g_ij (phi_i - phi_j) + sigma_a V phi_i = integral of S,   g_ij = area / (d_i/kappa_i +
 //     d_j/kappa_j) surface s:  (g + area/(2A)) phi_s - g phi_k = area Q / (2A),                g = area kappa_k / d_k
 //

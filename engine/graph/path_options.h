@@ -9,13 +9,13 @@ namespace quadgraph {
 // What a mm of path costs.
 enum class PathCost {
   transport,   // sigma_tr = sqrt(sigma_a / kappa): the diffusion equation's own
-  extinction,  // sigma_t' = sigma_a + sigma_s', as published [DP 2.1]
+  extinction,  // sigma_t' = sigma_a + sigma_s', as published [SOP 2.1]
 };
 
 // What a path is.
 enum class PathSolver {
   eikonal,  // any line: |grad length| = cost, first order
-  lattice,  // steps to the 26 neighbours, as published [DP 2.1]; up to 13% too long
+  lattice,  // steps to the 26 neighbours, as published [SOP 2.1]; up to 13% too long
 };
 
 // "transport", "extinction"; "eikonal", "lattice". Throw InputError listing the allowed names.

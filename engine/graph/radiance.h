@@ -1,5 +1,5 @@
 // Gathered radiance on the CPU, in double precision: one more transport step, along the view ray into the body
-// (physics.md, "Exitant radiance is not Lambertian"). The GPU does the same in shaders/gather.glsl.
+// (docs/physics.md, "Gathered radiance"). The GPU does the same in shaders/gather.glsl.
 //
 //   L = integral of sigma_s' / (4 pi) (phi + entry exp(-depth)) exp(-tau) ds      W/(mm^2 sr), inside
 //

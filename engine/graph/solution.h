@@ -50,7 +50,7 @@ enum class SolverKind {
 // How light enters the body.
 enum class Source {
   buried,   // scattered along refracted rays inside; the surface only reflects and lets out
-  diffuse,  // at the surface, as published [QG Eq. 2, PG Eq. 4]
+  diffuse,  // at the surface, as published [QG Eq. 2, PG Eq. 2]
 };
 
 // Whether view rays can gather all of its light: fluence at the vertices of tets, and a source below the surface.

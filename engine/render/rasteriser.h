@@ -20,7 +20,7 @@
 namespace quadgraph {
 
 // Integral of F_t(cos, eta) cos over the hemisphere, sr: what exitance is divided by to give radiance along F_t, so
-// that it integrates back to the exitance (physics.md). pi for eta = 1.
+// that it integrates back to the exitance (docs/physics.md, "Gathered radiance"). pi for eta = 1.
 double radiance_norm(double eta);
 
 // For radiance gathered along view rays.

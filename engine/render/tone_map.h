@@ -19,7 +19,7 @@ struct ToneOptions {
   bool operator==(const ToneOptions&) const = default;
 };
 
-// Filmic curve per channel: K. Narkowicz, "ACES Filmic Tone Mapping Curve" (2015), a rational fit to the ACES reference
+// Filmic curve per channel: "ACES Filmic Tone Mapping Curve" (Narkowicz 2015), a rational fit to the ACES reference
 // transform. 0 at 0, monotone, clamped to [0, 1].
 float filmic(float radiance);
 

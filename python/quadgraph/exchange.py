@@ -1,7 +1,7 @@
 """Which outside faces see which others, by rays from each: the matrix of light from part to part of one level.
 
 Light that leaves a face reaches another along straight lines outside the body, so that the matrix depends on the shape
-alone and moves with it (physics.md, "Inter-reflection"). The rays and the arrays are those of docs/qgraph-format.md.
+alone and moves with it (docs/physics.md, "Inter-reflection"). Rays and arrays: docs/qgraph-format.md.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Removal of thin triangles: slivers of a fraction of a degree make multigrid cycles explode (design.md)."""
+"""Removal of thin triangles: slivers of a fraction of a degree make multigrid cycles diverge."""
 
 from __future__ import annotations
 

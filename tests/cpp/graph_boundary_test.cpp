@@ -29,7 +29,7 @@ TEST_CASE("reflectance from inside is that from outside along the refracted ray,
   CHECK(internal_reflectance(0.3, 1.0) == 0.0);
 }
 
-TEST_CASE("moments of the internal reflectance: reciprocity with the light from outside, and physics.md's numbers") {
+TEST_CASE("moments of the internal reflectance: reciprocity, and the numbers of docs/physics.md, \"Fresnel terms\"") {
   // Isotropic light from outside and from inside exchange the same power: eta^2 (1 - 2 R1) = the outside transmittance.
   for (const double eta : {1.05, 1.3, 1.5, 3.0}) {
     double outside = 0;
@@ -58,7 +58,7 @@ TEST_CASE("diffusion: two-moment 1/(2A), and the published one for the published
   CHECK(buried.k11 == doctest::Approx(two_moment.k11));
 }
 
-TEST_CASE("SP3: the matrix of physics.md in (phi, phi2)") {
+TEST_CASE("SP3: the matrix of docs/physics.md, \"Boundary matrix\", in (phi, phi2)") {
   // K of (phi1, phi2): [[.5, -.125], [-.125, .29167]] at eta = 1, and T^T K T with T = [[1, 2/3], [0, 1]].
   const Boundary matched = boundary_of(Method::fem, Source::buried, Model::sp3, 1.0);
   CHECK(matched.k11 == doctest::Approx(0.5));

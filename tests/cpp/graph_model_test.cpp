@@ -49,7 +49,7 @@ TEST_CASE("the error of diffusion grows as the albedo falls, without a break at 
   CHECK(diffusion_error(0.0, 1.3) == 1.0);
 }
 
-TEST_CASE("half-spaces of physics.md: diffusion is off by what it is there") {
+TEST_CASE("half-spaces of docs/truth.md, \"Reference values\": diffusion is off by what it is there") {
   // Albedo .7, eta 1.3: Monte Carlo .125, buried diffusion .136; SP3 is within 1% of Monte Carlo.
   CHECK(diffusion_error(0.7, 1.3) > 0.08);
   CHECK(diffusion_error(0.98, 1.3) < 0.03);

@@ -1,4 +1,4 @@
-"""The closed forms against the numbers and formulae of physics.md, and against each other."""
+"""The closed forms against the numbers and formulae of docs/physics.md, "Closed forms", and against each other."""
 
 from __future__ import annotations
 

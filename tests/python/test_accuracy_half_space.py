@@ -39,7 +39,7 @@ def block(albedo: float, wavelength: float) -> bodies.Body:
     ],
 )
 def test_the_answer_follows_transport(eta, albedo, wavelengths, scheme):
-    """The rows of physics.md, "Boundary models", in the models that `auto` takes; truth is a longer random walk."""
+    """The rows of docs/truth.md, "Reference values", in the models of `auto`; truth is a longer random walk."""
     truth = monte_carlo.half_space(half_space.medium_of(albedo), eta, np.array(wavelengths), WALKS, seed=4)
     assert (truth.error < 0.01 * truth.mean).all()
     for wavelength, expected in zip(wavelengths, truth.mean, strict=True):

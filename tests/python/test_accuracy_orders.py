@@ -33,7 +33,7 @@ def sphere():
 
 
 def test_fv_is_between_fem_and_the_published_differences(sphere):
-    """Two-point flux is conservative but not consistent on general tets (physics.md): a plateau, lower than FDM's."""
+    """Two-point flux is conservative, not consistent (docs/physics.md, "Discretisations"): a plateau below FDM's."""
     print(sphere)
     for fem, fv in zip(orders.FEM, orders.FV, strict=True):
         assert sphere[fem.name][-1] < sphere[fv.name][-1] < 0.05
@@ -41,7 +41,7 @@ def test_fv_is_between_fem_and_the_published_differences(sphere):
 
 
 def test_the_published_differences_do_not_converge(sphere, record_property):
-    """They are inconsistent on irregular tets (physics.md): the error is recorded, bounded, and stays."""
+    """They are inconsistent (docs/physics.md, "Discretisations"): the error is recorded, bounded, and stays."""
     errors = sphere[PUBLISHED.name]
     record_property("quadgraph-fdm errors", errors)
     assert max(errors) < 0.5

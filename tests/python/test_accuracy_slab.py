@@ -79,8 +79,9 @@ def test_layers_are_joined_as_the_closed_form_joins_them(source, model):
     assert found == pytest.approx([exact.reflectance, exact.transmittance], rel=0.003)
 
 
-# Errors in % of R and T from physics.md, per row of coarse.LAYERS and column of coarse.CASES. Its truncation of R and
-# T to one digit and its elements, one-dimensional, leave 0.2; its slabs of five and three elements are not these.
+# Errors in % of R and T from docs/truth.md, "Reference values", per row of coarse.LAYERS and column of coarse.CASES.
+# That table's rounding to one digit and its elements, one-dimensional, leave 0.2; its slabs of five and three elements
+# are not these.
 COARSE = [
     [(0.3, -0.9), (0.0, -0.1), (0.0, 0.6)],
     [(0.3, -0.9), (0.1, -0.2), (0.1, 0.6)],

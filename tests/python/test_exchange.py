@@ -220,7 +220,7 @@ def test_the_bake_stores_it_once_and_the_same_every_time(ring, tmp_path):
 
 
 def test_the_bunny_sees_itself_at_little_cost(tmp_path):
-    """9% of all directions (physics.md, on a finer surface); within 10 s and 8 MB."""
+    """9% of all directions (docs/physics.md, "Inter-reflection", on a finer surface); within 10 s and 8 MB."""
     options = bake.BakeOptions(height_mm=100.0, surface_vertices=3000)
     report = bake.bake(pymeshlab_samples() / "bunny.obj", tmp_path / "bunny.qgraph", options)
     print(report.exchange, report.seconds)

@@ -1,4 +1,4 @@
-"""Random walks and discrete ordinates against each other and against published numbers of physics.md and truth.md."""
+"""Random walks and discrete ordinates against each other and against docs/truth.md, "Reference values"."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from quadgraph.reference.slab import discrete_ordinates
 
 THICKNESS = 5.0  # mm
 
-# R and T of scattered light per unit of light that arrives from outside: (eta, Lambertian) in the order of truth.md.
+# R and T of scattered light per unit of light that arrives from outside: (eta, Lambertian) as docs/truth.md has them.
 CASES = [(1.0, False), (1.0, True), (1.3, False), (1.3, True)]
 TABLE = {
     "marble": [

@@ -117,7 +117,7 @@ def test_furnace(engine, method):
 
 
 def exact_fluence(vertices: np.ndarray, kappa: float, sigma_a: float, outflow: float, degrees: list[float]):
-    """Fluence in the ball where the surface's source is a sum of Legendre polynomials (physics.md)."""
+    """Fluence in a ball whose surface source is a sum of Legendre polynomials (docs/physics.md, "Closed forms")."""
     rate, radius = np.sqrt(sigma_a / kappa), np.linalg.norm(vertices, axis=1)
     cosine = vertices[:, 2] / np.maximum(radius, 1e-12)
     total = np.zeros(len(vertices))

@@ -50,7 +50,7 @@ _DOUBT = 1.03  # times the error: what was measured to have no more may keep it
 _DOUBTS = 3  # so many are settled, the cheapest first
 _SURE = 0.98  # ENOUGH by a truth that was cut twice
 _MOST_CUT_TWICE = 4000  # vertices of a mesh that is
-DEEP = 2.0  # diffusion lengths: .1% of the whole and .35% of the unlit surface know what is deeper (design.md)
+DEEP = 2.0  # diffusion lengths: what lies deeper decides .1% of the whole exitance and .35% of the unlit one
 
 
 class Bench:

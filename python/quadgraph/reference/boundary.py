@@ -1,4 +1,4 @@
-"""Boundary conditions of the diffusion and SP3 equations (physics.md, "Boundary models" and "SP3")."""
+"""Boundary conditions of the diffusion and SP3 equations (docs/physics.md, "Diffusion" and "Boundary matrix")."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def sp3(eta: float, diffuse_source: bool = False) -> Boundary:
 
 
 def klose_larsen(eta: float) -> np.ndarray:
-    """K (2, 2) of physics.md in (phi1, phi2), as it is: not symmetric for eta > 1."""
+    """K (2, 2) of docs/physics.md, "Boundary matrix", in (phi1, phi2), as it is: not symmetric for eta > 1."""
     r = [moment(order, eta) if order else 0.0 for order in range(7)]
     a2 = -9 / 4 * r[1] + 15 / 2 * r[3] - 25 / 4 * r[5]
     b2 = 63 / 4 * r[2] - 105 / 2 * r[4] + 175 / 4 * r[6]

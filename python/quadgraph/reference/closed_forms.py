@@ -1,4 +1,4 @@
-"""Exact solutions in slabs and the half-space, for either model, boundary and source (physics.md, "Closed forms")."""
+"""Exact solutions in slabs and the half-space: either model, boundary and source (docs/physics.md, "Closed forms")."""
 
 from __future__ import annotations
 

@@ -66,7 +66,7 @@ def inside_cosines(count: int, eta: float, parts: int = 1) -> tuple[np.ndarray, 
 
 @lru_cache(maxsize=256)
 def moment(order: int, eta: float) -> float:
-    """R_n, the integral of R(mu) mu^n over the inside cosine from 0 to 1 (physics.md, "SP3")."""
+    """R_n, the integral of R(mu) mu^n over the inside cosine from 0 to 1 (docs/physics.md, "Fresnel terms")."""
     critical = critical_cosine(eta)
     # The outside cosine squared: R falls from 1 within a cosine of sqrt(eta - 1), which is narrow for eta near 1.
     root, weights = gauss(200)

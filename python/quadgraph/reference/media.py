@@ -1,4 +1,4 @@
-"""Measured media (Jensen et al. 2001, table in physics.md) that the studies use; kept apart from the engine's list."""
+"""Measured media (Jensen et al. 2001, Figure 5) that the studies use; kept apart from the engine's list."""
 
 from __future__ import annotations
 

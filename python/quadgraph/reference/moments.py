@@ -1,4 +1,4 @@
-"""Diffusion and SP3 as one system of m moments with constant coefficients (physics.md, "SP3").
+"""Diffusion and SP3 as one system of m moments with constant coefficients (docs/physics.md, "SP3").
 
     -div(stiffness grad u) + mass u = (S, 0),   u = (phi) or (phi, phi2)
 

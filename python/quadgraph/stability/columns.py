@@ -24,7 +24,7 @@ ETA = 1.3
 ELEMENT = 1.0  # mm
 LAYERS = 16
 LEVELS = 3
-SMALL_OF_MODEL = 0.04  # what SP3 is off by at most where it is meant (physics.md)
+SMALL_OF_MODEL = 0.04  # what SP3 is off by at most where it is meant (docs/physics.md, "Limits")
 PATTERN_MEDIUM = (0.8, 1.0)  # albedo, mean free path in mm
 INWARD = (0.0, 0.0, 1.0)
 
