@@ -6,8 +6,8 @@
 //
 // SP3 (Klose and Larsen 2006; docs/physics.md, "SP3"), written for phi = phi1 - 2/3 phi2, the fluence of scattered
 // light, and phi2, is: stiffness of kappa times G = [[1, 2/3], [2/3, 55/63]], mass of diag(sigma_a, 5/9 sigma_t),
-// boundary matrix K, source (S, 0). So a method only says four scalars per pair of carriers (Terms, engine/graph/block.h), and
-// diffusion is the corner a11 of the same block.
+// boundary matrix K, source (S, 0). So a method only says four scalars per pair of carriers (Terms,
+// engine/graph/block.h), and diffusion is the corner a11 of the same block.
 //
 // fem: carriers are the tet vertices; to_phi = 1. Coefficients are constant per tet (the value at its inner node);
 //   consistent masses. b of the diffuse source = integral of (k11, k12) source q against the basis, q constant per
