@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import re
-import subprocess
 from pathlib import Path
 from urllib.parse import unquote
 
@@ -14,7 +13,7 @@ ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
 DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(DOCS.rglob("*.md"))]
 CODE_FOLDERS = ("engine", "shaders", "python", "tools", "tests")
-CODE_SUFFIXES = {".h", ".cpp", ".glsl", ".comp", ".vert", ".frag", ".py", ".txt", ".md", ""}
+CODE_SUFFIXES = {".h", ".cpp", ".glsl", ".comp", ".vert", ".frag", ".py", ""}
 
 FENCE = re.compile(r"^(```|~~~).*?^\1", re.MULTILINE | re.DOTALL)
 CODE_SPAN = re.compile(r"`([^`\n]+)`")
@@ -35,16 +34,11 @@ NOT_AUTHORS = {"Eurographics", "Schema"}
 NAMED_PAGE = re.compile(r"(?:(docs/)|\b)([a-z]+(?:-[a-z]+)*\.md)\b(?:, \\?\"([^\"\\\n]+)\\?\")?")
 
 
-def tracked() -> list[str]:
-    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
-    return [name for name in listed.split("\0") if name]
-
-
 def code_files() -> list[Path]:
-    """Files whose comments are read: all of the code that is under version control."""
-    names = (name for name in tracked() if name.split("/")[0] in CODE_FOLDERS)
-    paths = (ROOT / name for name in names if Path(name).suffix in CODE_SUFFIXES)
-    return [path for path in paths if path.is_file() and path != Path(__file__).resolve()]
+    """All files whose comments are read, but this one."""
+    paths = (path for folder in CODE_FOLDERS for path in sorted((ROOT / folder).rglob("*")))
+    sources = (path for path in paths if path.suffix in CODE_SUFFIXES and path.is_file())
+    return [path for path in sources if path != Path(__file__).resolve()]
 
 
 def prose(path: Path) -> str:
@@ -161,7 +155,7 @@ def test_every_reference_is_cited():
 
 def test_every_page_is_in_the_index():
     linked = {(DOCS / target.partition("#")[0]).resolve() for target in LINK.findall(prose(DOCS / "index.md"))}
-    assert not sorted(str(path.relative_to(ROOT)) for path in DOCUMENTS if path.name != "index.md" and path not in linked)
+    assert not sorted(str(path) for path in set(DOCUMENTS) - linked if path.name != "index.md")
 
 
 def test_the_glossary_is_in_order():
