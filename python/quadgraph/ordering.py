@@ -76,7 +76,7 @@ def in_blocks(graph: Graph) -> Graph:
 def by_degree(graph: Graph, window: int = WINDOW) -> np.ndarray:
     """Order (n_v,) int64 of the vertices in which those with most neighbours come first in every window.
 
-    Rows of linear elements are padded to the longest of 32 neighbouring ones (shaders/solve_shared.h): in the order of
+    Rows of linear elements are padded to the longest of 32 neighbouring ones (shaders/solver/solve_shared.h): in the order of
     first use that adds a third, sorted in windows a twentieth. Surface vertices stay first.
     """
     vertex = np.arange(len(graph.vertices))
