@@ -1,4 +1,5 @@
-// From which side a body is shown when nobody says so: python/quadgraph/front.py chooses it, a .qgraph file keeps it.
+// From which side a body is shown when nobody says so: python/quadgraph/mesh/front.py chooses it, a .qgraph file keeps
+// it.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,5 @@
 // Byte layout of a .qgraph file, version 1: docs/qgraph-format.md in C++. The Python side is
-// python/quadgraph/qgraph_file.py; tests/python/test_layout.py compares the two.
+// python/quadgraph/file/qgraph_file.py; tests/python/file/test_layout.py compares the two.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // Weights of the Laplacian at the nodes of a polygrid [PG Appendix B], by the same code on the GPU, in single
-// precision, and in the CPU reference, in double. python/quadgraph/polygrid/weights.py tells what they are.
+// precision, and in the CPU reference, in double. python/quadgraph/tets/polygrid/weights.py tells what they are.
 #ifndef QUADGRAPH_POLYGRID_H
 #define QUADGRAPH_POLYGRID_H
 
