@@ -19,7 +19,7 @@ _TRUTH_ITERATIONS = 100_000
 
 
 @dataclass(frozen=True)
-class Judge:
+class AlgebraicJudge:
     """Area (n,) mm^2 and exitance (n, 3) W/mm^2 of the exact solution at the outside faces; unlit (n,) bool."""
 
     area: np.ndarray
@@ -36,7 +36,7 @@ class Judge:
         }
 
 
-def judge(engine: Engine, **way: object) -> Judge:
+def judge(engine: Engine, **way: object) -> AlgebraicJudge:
     """Solve the same system far beyond what is asked of the solvers; `way` as for Engine.solve, less the solver.
 
     Raises SolverError if that does not converge.
@@ -49,4 +49,4 @@ def judge(engine: Engine, **way: object) -> Judge:
         raise SolverError(f"the exact solution: residual {residual:.1e} found, {_TRUTH_RESIDUAL:.0e} wanted")
     field = engine.surface_field()
     area = np.asarray(field["area"], np.float64)
-    return Judge(area, unlit_part(area, field["q"]), np.asarray(field["exitance"], np.float64))
+    return AlgebraicJudge(area, unlit_part(area, field["q"]), np.asarray(field["exitance"], np.float64))

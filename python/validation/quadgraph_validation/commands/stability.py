@@ -94,7 +94,7 @@ def _solved(args: argparse.Namespace) -> dict[str, Any]:
 
     from quadgraph_validation.base.machine import machine
     from quadgraph_validation.stability import stability_suite
-    from quadgraph_validation.stability.stability_maps import Setting
+    from quadgraph_validation.stability.stability_maps import StabilitySetting
 
     copied = load_core().copy_bandwidth(args.device)
     maps = stability_suite.maps_with(args.axis)
@@ -103,4 +103,6 @@ def _solved(args: argparse.Namespace) -> dict[str, Any]:
     if not any(stability_suite.chosen(each.methods, args.method) for each in maps):
         raise InputError(f"--method {args.method}: no map of {args.axis} has it")
     with Console(stderr=True).status("stability") as status:
-        return machine(copied) | stability_suite.run(maps, args.method, Setting(args.device, args.truth), status.update)
+        return machine(copied) | stability_suite.run(
+            maps, args.method, StabilitySetting(args.device, args.truth), status.update
+        )
