@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from rich.table import Table
 
+from quadgraph.base.relative_error import relative_rms
 from quadgraph.tets.graph import Graph
 from quadgraph_validation.bodies import meshes
 from quadgraph_validation.bodies.media import Medium
@@ -74,7 +75,7 @@ def surface_error(body: StudyBody, case: OrdersCase, scheme: Scheme) -> float:
     answer = body.piecewise([[shell.medium] * 3 for shell in case.shells], region, ETA, light, scheme)
     exact = case.fluence(body.centre, scheme)
     area = body.area * (np.ones_like(exact) if body.mesh.face_kinds is None else body.mesh.face_kinds == meshes.OPEN)
-    return float(np.sqrt(area @ (answer.phi[:, 0] - exact) ** 2 / (area @ exact**2)))
+    return relative_rms(area, (answer.phi[:, 0] - exact)[:, None], exact[:, None])
 
 
 def fitted_order(sizes: Sequence[float], errors: Sequence[float]) -> float:

@@ -8,6 +8,7 @@ import numpy as np
 from rich.table import Table
 from scipy.special import eval_legendre
 
+from quadgraph.base.relative_error import relative_rms
 from quadgraph_validation.bodies import meshes
 from quadgraph_validation.bodies.media import Medium
 from quadgraph_validation.truth import monte_carlo, round_bodies
@@ -65,8 +66,8 @@ def published(eta: float) -> np.ndarray:
 
 def halves(found: np.ndarray, truth: np.ndarray) -> tuple[float, float]:
     """Relative RMS errors over the lit and over the dark half."""
-    dark, lit = slice(0, ZONES // 2), slice(ZONES // 2, ZONES)
-    return tuple(float(np.sqrt(((found - truth)[half] ** 2).sum() / (truth[half] ** 2).sum())) for half in (lit, dark))
+    lit = np.arange(ZONES) >= ZONES // 2
+    return tuple(relative_rms(half, (found - truth)[:, None], truth[:, None]) for half in (lit, ~lit))
 
 
 def run(body_of: BodyOf) -> dict[str, Any]:

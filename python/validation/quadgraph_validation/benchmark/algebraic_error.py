@@ -9,6 +9,7 @@ import numpy as np
 
 from quadgraph.bake.budget.surface_errors import unlit_part
 from quadgraph.base.errors import SolverError
+from quadgraph.base.relative_error import relative_rms
 
 if TYPE_CHECKING:
     from quadgraph.core import Engine
@@ -28,12 +29,8 @@ class AlgebraicJudge:
 
     def error(self, exitance: np.ndarray) -> dict[str, float]:
         """Relative RMS over area of the difference to the truth, channels together: "whole" surface, "unlit" part."""
-        squared = self.area * ((exitance - self.exitance) ** 2).sum(axis=1)
-        size = self.area * (self.exitance**2).sum(axis=1)
-        return {
-            "whole": float(np.sqrt(squared.sum() / size.sum())),
-            "unlit": float(np.sqrt(squared[self.unlit].sum() / size[self.unlit].sum())),
-        }
+        weights = {"whole": self.area, "unlit": self.area * self.unlit}
+        return {part: relative_rms(weight, exitance - self.exitance, self.exitance) for part, weight in weights.items()}
 
 
 def judge(engine: Engine, **way: object) -> AlgebraicJudge:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import os
 from pathlib import Path
 from typing import Any
 
 from quadgraph.base import atomic_file
 from quadgraph.base.arguments import add_device_arguments, positive_int
+from quadgraph.base.cache_folder import cache_folder
 from quadgraph.base.errors import InputError
 from quadgraph.core import load_core
 
@@ -41,7 +41,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--truth",
         type=Path,
-        default=_cache(),
+        default=cache_folder(),
         metavar="FOLDER",
         help="true solutions are kept there, a few MB (default: %(default)s)",
     )
@@ -53,10 +53,6 @@ def _several(text: str) -> int:
     if value < 2:
         raise argparse.ArgumentTypeError(f"{text}: both ends of an axis are kept, at least 2 is wanted")
     return value
-
-
-def _cache() -> Path:
-    return Path(os.environ.get("XDG_CACHE_HOME", "~/.cache")).expanduser() / "quadgraph"
 
 
 def run(args: argparse.Namespace) -> int:

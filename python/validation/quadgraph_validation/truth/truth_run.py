@@ -12,6 +12,7 @@ import numpy as np
 from rich.console import Console
 from rich.progress import Progress, TaskID
 
+from quadgraph.base.relative_error import relative_rms
 from quadgraph.mesh import mesh_io
 from quadgraph.mesh.surface import Surface
 from quadgraph_validation.bodies import scenes
@@ -70,7 +71,7 @@ def noise(image: StoredTruth) -> tuple[float, float]:
     values, errors = blocks.means(image.mean), blocks.errors(image.error)
     some = values > 0
     bright = values >= blocks.BRIGHT * np.quantile(values[some], 0.95)
-    return tuple(float(np.sqrt((errors[at] ** 2).sum() / (values[at] ** 2).sum())) for at in (bright, some))
+    return tuple(relative_rms(at.ravel(), errors.reshape(-1, 1), values.reshape(-1, 1)) for at in (bright, some))
 
 
 def render(subjects: list[TracedSubject], folder: Path, samples: int, console: Console) -> None:
