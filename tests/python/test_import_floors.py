@@ -89,7 +89,7 @@ def test_arrows_that_go_up_are_seen(tmp_path):
         ("quadgraph.tets.graph", "quadgraph.file.qgraph_file"),
         ("quadgraph.bake.pipeline", "quadgraph.commands.bake"),
         ("quadgraph_validation.commands.chart", "quadgraph.commands.bake"),
-        ("quadgraph.bake.pipeline", "quadgraph_validation.truth.media"),
+        ("quadgraph.bake.pipeline", "quadgraph_validation.bodies.media"),
         ("quadgraph_validation.truth.fresnel", "quadgraph_validation.chart.pixels"),
         ("quadgraph.bake.pipeline", "quadgraph._core"),
     ]

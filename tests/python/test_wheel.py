@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import sys
 import tomllib
 from pathlib import Path
@@ -10,8 +11,6 @@ from pathlib import Path
 from quadgraph import cli
 
 ROOT = Path(__file__).resolve().parents[2]
-# Distribution to the module that it brings, where the two differ.
-MODULES = {"fast-simplification": "fast_simplification"}
 
 
 def project(path: Path) -> dict:
@@ -32,8 +31,7 @@ def imported(folder: Path) -> set[str]:
 
 def names(requirements: list[str]) -> set[str]:
     """The modules of requirements."""
-    plain = {text.split(";")[0].split(">")[0].split("=")[0].split("[")[0].strip() for text in requirements}
-    return {MODULES.get(name, name) for name in plain}
+    return {re.split(r"[;>=\[]", text)[0].strip() for text in requirements}
 
 
 def test_the_wheel_is_the_package_alone():
@@ -50,8 +48,8 @@ def test_the_product_imports_what_it_declares_and_no_more():
     optional = names(package["optional-dependencies"]["film"]) | {"openvdb", "pyopenvdb"}
     others = imported(ROOT / "python" / "quadgraph") - set(sys.stdlib_module_names) - {"quadgraph"}
     assert others <= needed | optional
-    # What trimesh traces rays and simplifies with.
-    assert needed - others <= {"embreex", "fast_simplification"}
+    # What trimesh traces rays with.
+    assert needed - others <= {"embreex"}
 
 
 def test_all_subcommands_of_the_validation_are_its_entry_points():
