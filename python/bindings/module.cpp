@@ -131,7 +131,7 @@ namespace {
 void register_errors() {
   py::register_exception_translator([](std::exception_ptr error) {
     const auto raise = [](const char* name, const std::exception& e) {
-      PyErr_SetString(py::module_::import("quadgraph.errors").attr(name).ptr(), e.what());
+      PyErr_SetString(py::module_::import("quadgraph.base.errors").attr(name).ptr(), e.what());
     };
     try {
       if (error) std::rethrow_exception(error);

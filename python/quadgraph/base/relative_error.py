@@ -6,7 +6,10 @@ import numpy as np
 
 
 def relative_rms(weight: np.ndarray, difference: np.ndarray, truth: np.ndarray) -> float:
-    """Root of the weighted mean square of a difference (n, 3) over that of the truth (n, 3), channels together."""
+    """Root of the weighted mean square of a difference (n, c) over that of the truth (n, c), channels together.
+
+    weight: (n,), such as areas, or bool for a part that counts.
+    """
     return float(np.sqrt(_squares(weight, difference) / _squares(weight, truth)))
 
 

@@ -20,7 +20,7 @@ _QUALITY = (0.3, 1.0, 0.6)  # pymeshlab's penalty on thin triangles, tried in th
 _GUARD_RINGS = (1.0, 2.0, 4.0)  # radius kept at full resolution around crossings, in coarse edge lengths
 
 
-class Chain(list[Surface]):
+class SurfaceChain(list[Surface]):
     """Surfaces, finest first; `ended` says why there are no more."""
 
     def __init__(self, finest: Surface) -> None:
@@ -34,7 +34,7 @@ def build_chain(
     levels: int | None = None,
     min_angle_degrees: float = DEFAULT_MIN_ANGLE_DEGREES,
     progress: ProgressCallback | None = None,
-) -> Chain:
+) -> SurfaceChain:
     """Simplify a closed 2-manifold (mm) level by level; element 0 is the surface itself, unchanged.
 
     Every further level has about a quarter of the vertices of the one before, the same genus and components, no
@@ -47,7 +47,7 @@ def build_chain(
         raise InputError(f"levels: {levels} found, allowed are 1 to {MAX_LEVELS}")
     if not 0 <= min_angle_degrees <= 30:
         raise InputError(f"minimum angle: {min_angle_degrees:g} degrees found, allowed are 0 to 30")
-    chain = Chain(surface)
+    chain = SurfaceChain(surface)
     while len(chain) < (levels or MAX_LEVELS):
         target = round(len(chain[-1].vertices) / _RATIO)
         if levels is None and target < _SMALLEST:

@@ -126,7 +126,7 @@ def mesh(tmp_path_factory) -> Path:
 @pytest.fixture(scope="module")
 def judged(mesh) -> dict:
     """A row of the study, whose file stays behind."""
-    return study.judge(mesh, 8, study.Case("lobes", "skin1", "sun", ERROR), mesh.parent, "")
+    return study.judge(mesh, 8, study.BudgetCase("lobes", "skin1", "sun", ERROR), mesh.parent, "")
 
 
 @pytest.fixture(scope="module")
@@ -257,7 +257,7 @@ def test_a_file_without_coarser_levels_is_measured_too(tmp_path):
     pipeline.bake(source, path, BakeOptions(height_mm=5, levels=1, visibility_rays=0))
     reference = Reference(path, 1, tmp_path)
     truths = {"given": reference.truth("ketchup", [SUN])}
-    scene = trials.Scene("ketchup", {"given": [SUN]}, True)
+    scene = trials.BudgetScene("ketchup", {"given": [SUN]}, True)
     found = trials.measure(path, scene, truths, reference.surface_vertices, "", ("sp3",))
     assert found[-1].error < 0.1
     assert found[-1].error > 0.97 * found[-2].error

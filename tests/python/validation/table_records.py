@@ -28,7 +28,7 @@ def _way(number: int, tets: int) -> dict:
     }
 
 
-def _row(subject: table_bodies.Subject, tets: int) -> dict:
+def _row(subject: table_bodies.TableSubject, tets: int) -> dict:
     nodes = [{"surface": tets // 4 // 4**level, "inner": tets // 4**level} for level in range(2)]
     told = {"body": subject.name, "paper": subject.paper, "other": subject.other, "grading": 0.4, "nodes": nodes}
     ways = {name: _way(number, tets) for number, name in enumerate(NAMES)}

@@ -13,19 +13,19 @@ from quadgraph.bake.budget.surface_errors import PARTS
 from quadgraph.bake.budget.usual_lights import lights
 from quadgraph.bake.pipeline import BakeOptions, bake
 from quadgraph_validation.accuracy import estimate_study, target_study
-from quadgraph_validation.accuracy.judged_levels import Case, Judged
+from quadgraph_validation.accuracy.judged_levels import Judged, LevelCase
 from quadgraph_validation.bodies import level_chains
-from quadgraph_validation.bodies.level_chains import Subject
+from quadgraph_validation.bodies.level_chains import ChainSubject
 
 core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 
 # The bounds of the issue.
 FACTOR, MOST, WORST = 2.0, 0.9, 0.25
-LOBES = Subject("lobes", "lobes", 30, detail=5)
+LOBES = ChainSubject("lobes", "lobes", 30, detail=5)
 CASES = (
-    Case("lobes", "marble", "sun"),
-    Case("lobes", "skin1", "sun and sky"),
-    Case("lobes", "ketchup", "three"),
+    LevelCase("lobes", "marble", "sun"),
+    LevelCase("lobes", "skin1", "sun and sky"),
+    LevelCase("lobes", "ketchup", "three"),
 )
 
 

@@ -24,7 +24,7 @@ def response(eta: float, albedo: float, wavelength: float, scheme: Scheme) -> tu
 
 
 @lru_cache(maxsize=64)
-def block(albedo: float, wavelength: float) -> schemes.Body:
+def block(albedo: float, wavelength: float) -> schemes.StudyBody:
     return half_space_study.block(schemes.on_reference, half_space_study.medium_of(albedo), wavelength)
 
 

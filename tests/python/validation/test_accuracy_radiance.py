@@ -9,7 +9,7 @@ import pytest
 
 from quadgraph.base.errors import InputError
 from quadgraph_validation.accuracy import radiance_study
-from quadgraph_validation.accuracy.radiance_study import ALBEDOS, CASES, COARSE, FINE, MEDIA, SIDES, Case
+from quadgraph_validation.accuracy.radiance_study import ALBEDOS, CASES, COARSE, FINE, MEDIA, SIDES, RadianceCase
 from quadgraph_validation.truth import exit_angles, schemes
 from quadgraph_validation.truth.exit_angles import BIN_AREA, Estimate
 from quadgraph_validation.truth.schemes import DIFFUSION, SP3
@@ -25,17 +25,17 @@ FAINT = 1e-4
 WALKS = (200_000, 200_000, 400_000)  # per albedo
 
 
-def name_of(case: Case) -> str:
+def name_of(case: RadianceCase) -> str:
     return f"{case.depth:g} mm, eta {case.eta:g}, cosine {case.cosine:g}"
 
 
 @lru_cache
-def exact(case: Case) -> list[np.ndarray]:
+def exact(case: RadianceCase) -> list[np.ndarray]:
     return [radiance_by_angle(medium, case.depth, case.eta, case.cosine) for medium in MEDIA]
 
 
 @lru_cache
-def walks(case: Case) -> list[tuple[Estimate, Estimate]]:
+def walks(case: RadianceCase) -> list[tuple[Estimate, Estimate]]:
     found = [
         exit_angles.slab(medium, case.depth, case.eta, case.cosine, count, seed=11)
         for medium, count in zip(MEDIA, WALKS, strict=True)
@@ -44,13 +44,13 @@ def walks(case: Case) -> list[tuple[Estimate, Estimate]]:
 
 
 @lru_cache
-def sides(case: Case, kind: str, layers_per_mm: int = FINE, model: str = "sp3") -> list[radiance_study.Found]:
+def sides(case: RadianceCase, kind: str, layers_per_mm: int = FINE, model: str = "sp3") -> list[radiance_study.Found]:
     body_of = schemes.on_reference if kind == "reference" else schemes.on_engine()
     scheme = SP3 if model == "sp3" else DIFFUSION
     return radiance_study.gathered(radiance_study.column(body_of, case.depth, layers_per_mm), case, scheme)
 
 
-def bright_rows(case: Case) -> list[tuple[int, int]]:
+def bright_rows(case: RadianceCase) -> list[tuple[int, int]]:
     """(side, channel) of all but the faint."""
     rows = [(side, channel) for side in range(2) for channel in range(3)]
     return [(s, c) for s, c in rows if np.pi * BIN_AREA @ exact(case)[c][s] > FAINT]

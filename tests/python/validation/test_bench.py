@@ -12,9 +12,15 @@ from baked import write_levels
 from quadgraph.bake.budget.surface_errors import unlit_part
 from quadgraph.base.errors import InputError, SolverError
 from quadgraph_validation.benchmark import bench_charts, frame_passes, scaling
-from quadgraph_validation.benchmark.algebraic_error import Judge, judge
+from quadgraph_validation.benchmark.algebraic_error import AlgebraicJudge, judge
 from quadgraph_validation.benchmark.bench_scene import LIGHT, Device
-from quadgraph_validation.benchmark.solver_convergence import DIAGONAL, MOST_ITERATIONS, TARGETS, Runner, Way
+from quadgraph_validation.benchmark.solver_convergence import (
+    DIAGONAL,
+    MOST_ITERATIONS,
+    TARGETS,
+    SolverRunner,
+    SolverWay,
+)
 from shapes import icosphere
 
 _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
@@ -27,8 +33,8 @@ def sphere(tmp_path_factory):
     return Device().open(write_levels(path, [icosphere(3, 10), icosphere(2, 10)]), "marble", [LIGHT])
 
 
-def runner_of(engine, way: Way) -> Runner:
-    return Runner(engine, way, judge(engine, **way.system))
+def runner_of(engine, way: SolverWay) -> SolverRunner:
+    return SolverRunner(engine, way, judge(engine, **way.system))
 
 
 def test_copying_is_measured_both_ways_and_the_faster_counts():
@@ -53,7 +59,7 @@ def test_unlit_is_what_lets_in_less_than_a_tenth_of_the_mean_by_area():
 
 
 def test_error_is_relative_rms_by_area_over_both_parts():
-    true = Judge(np.array([1.0, 3.0]), np.array([False, True]), np.array([[3.0, 0, 0], [0, 1.0, 0]]))
+    true = AlgebraicJudge(np.array([1.0, 3.0]), np.array([False, True]), np.array([[3.0, 0, 0], [0, 1.0, 0]]))
     assert true.error(1.1 * true.exitance) == pytest.approx({"whole": 0.1, "unlit": 0.1})
     found = true.exitance + np.array([[0, 0, 0], [0, 0, 0.5]])
     assert true.error(found) == pytest.approx({"whole": 0.5 * (3 / 12) ** 0.5, "unlit": 0.5})
@@ -61,7 +67,7 @@ def test_error_is_relative_rms_by_area_over_both_parts():
 
 @pytest.mark.parametrize("solver", ["fmg-pcg", "vcycle", "dpcg", "cascade", "jacobi"])
 def test_more_iterations_are_more_work_and_less_error(sphere, solver):
-    runner = runner_of(sphere, Way(solver))
+    runner = runner_of(sphere, SolverWay(solver))
     few, some, many = (runner.at(n, 1e-3) for n in (1, 4, 12))
     assert 0 < few.work < some.work < many.work
     assert many.unlit < some.unlit < few.unlit
@@ -142,7 +148,7 @@ def test_charts_without_matplotlib_name_the_extra(tmp_path, monkeypatch):
 
 def test_a_solver_that_never_arrives_is_cut_off(sphere, monkeypatch):
     monkeypatch.setattr("quadgraph_validation.benchmark.solver_convergence.MOST_ITERATIONS", 3)
-    runner = runner_of(sphere, Way("jacobi"))
+    runner = runner_of(sphere, SolverWay("jacobi"))
     runner.explore()
     assert runner.reaching(TARGETS[-1]) is None
     assert runner.front()[-1].iterations <= 3 < MOST_ITERATIONS

@@ -11,9 +11,9 @@ from scipy.sparse.linalg import spsolve
 from baked import write_levels
 from quadgraph.base.errors import InputError, SolverError
 from quadgraph_validation.benchmark import linear_system, rivals
-from quadgraph_validation.benchmark.bench_scene import DIRECTION, LIGHT, Device, Scene
+from quadgraph_validation.benchmark.bench_scene import DIRECTION, LIGHT, BenchScene, Device
 from quadgraph_validation.benchmark.contest import Contest, History, counts_for_residual
-from quadgraph_validation.benchmark.solver_convergence import DIAGONAL, TARGETS, Way
+from quadgraph_validation.benchmark.solver_convergence import DIAGONAL, TARGETS, SolverWay
 from shapes import icosphere
 
 _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
@@ -90,7 +90,7 @@ def test_iterations_for_an_error_may_differ_by_channel_and_no_more_than_all_alik
 
 def test_a_run_has_everybody_at_the_target_and_agrees(path):
     pytest.importorskip("pyamg", reason="pyamg is not installed: pip install -e 'python/validation[bench]'")
-    record = rivals.run(Scene("sphere", path), Device(), 1, lambda text: None, (DIAGONAL,))
+    record = rivals.run(BenchScene("sphere", path), Device(), 1, lambda text: None, (DIAGONAL,))
     assert record["agreement"]["unlit"] < TARGETS[-1]
     assert set(record["set_up_ms"]) == {rival.name for rival in rivals.RIVALS}
     for target in record["targets"]:
@@ -103,7 +103,7 @@ def test_ours_that_never_arrives_is_an_error(path, monkeypatch):
     pytest.importorskip("pyamg", reason="pyamg is not installed: pip install -e 'python/validation[bench]'")
     monkeypatch.setattr("quadgraph_validation.benchmark.solver_convergence.MOST_ITERATIONS", 2)
     with pytest.raises(SolverError, match="not reached"):
-        rivals.run(Scene("sphere", path), Device(), 1, lambda text: None, (Way("jacobi"),))
+        rivals.run(BenchScene("sphere", path), Device(), 1, lambda text: None, (SolverWay("jacobi"),))
 
 
 def test_without_pyamg_the_way_to_get_it_is_told(monkeypatch):

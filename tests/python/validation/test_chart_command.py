@@ -12,8 +12,8 @@ from quadgraph import cli
 from quadgraph_validation.bodies.scenes import SCENES
 from quadgraph_validation.chart import chart_record as records
 from quadgraph_validation.chart import chart_truths
-from quadgraph_validation.chart.chart_body import Body
-from quadgraph_validation.chart.chart_judge import Judge
+from quadgraph_validation.chart.chart_body import ChartBody
+from quadgraph_validation.chart.chart_judge import ChartJudge
 from quadgraph_validation.chart.engine_methods import EngineMethod
 from shapes import icosphere
 
@@ -42,9 +42,9 @@ def small(tmp_path, monkeypatch):
     path = write_levels(tmp_path / "sphere.qgraph", [icosphere(3, 10), icosphere(2, 10)])
 
     def subject(scene, where, against, wanted, working, device, pixels):
-        body = Body(scene, path, working, device, pixels)
+        body = ChartBody(scene, path, working, device, pixels)
         pde = {(model, source): KnownTruth() for model in ("sp3", "diffusion") for source in ("buried", "diffuse")}
-        return body, Judge(body, pde, {}), METHODS
+        return body, ChartJudge(body, pde, {}), METHODS
 
     monkeypatch.setattr(chart_truths, "subject", subject)
 

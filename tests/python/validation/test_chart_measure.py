@@ -8,29 +8,29 @@ import pytest
 from baked import write_levels
 from quadgraph.base.errors import InputError, SolverError, ToolError
 from quadgraph_validation.bodies.scene_bakes import Choice
-from quadgraph_validation.bodies.scenes import PIXELS, SCENES, Scene, View, pale
+from quadgraph_validation.bodies.scenes import PIXELS, SCENES, StudyScene, View, pale
 from quadgraph_validation.chart import chart_measure as measuring
 from quadgraph_validation.chart import chart_method as registry
 from quadgraph_validation.chart import chart_record as records
-from quadgraph_validation.chart.chart_body import STEP_DEGREES, Body, light_at
-from quadgraph_validation.chart.chart_judge import Judge
-from quadgraph_validation.chart.chart_method import SWING, Chain
+from quadgraph_validation.chart.chart_body import STEP_DEGREES, ChartBody, light_at
+from quadgraph_validation.chart.chart_judge import ChartJudge
+from quadgraph_validation.chart.chart_method import SWING, MethodChain
 from quadgraph_validation.chart.engine_methods import EngineMethod, engine_methods
 from quadgraph_validation.chart.path_method import PathMethod, path_methods
-from quadgraph_validation.truth.stored_truth import Truth
+from quadgraph_validation.truth.stored_truth import StoredTruth
 from shapes import icosphere
 
 pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 
 RADIUS = 10.0  # mm
-BALL = Scene("ball", "", 1.0, pale, 4.0, (0.0, 0.0, -1.0), {"A": View(70, 15, 46, ())}, height=2 * RADIUS)
+BALL = StudyScene("ball", "", 1.0, pale, 4.0, (0.0, 0.0, -1.0), {"A": View(70, 15, 46, ())}, height=2 * RADIUS)
 
 
 @pytest.fixture(scope="module")
-def body(tmp_path_factory) -> Body:
+def body(tmp_path_factory) -> ChartBody:
     folder = tmp_path_factory.mktemp("chart")
     path = write_levels(folder / "ball.qgraph", [icosphere(3, RADIUS), icosphere(2, RADIUS)])
-    return Body(BALL, path, folder, "", 32)
+    return ChartBody(BALL, path, folder, "", 32)
 
 
 class SomeTruth:
@@ -135,10 +135,10 @@ class Baked:
 def test_the_body_baked_in_another_way_is_judged_by_path_tracing_alone(body, tmp_path):
     fine, coarse = Choice(), Choice(7000, grading=3.0)
     path = write_levels(tmp_path / "fine.qgraph", [icosphere(4, RADIUS), icosphere(3, RADIUS)])
-    both = Body(BALL, body.path, tmp_path, "", 32, {fine: Baked(path), coarse: Baked(None)})
+    both = ChartBody(BALL, body.path, tmp_path, "", 32, {fine: Baked(path), coarse: Baked(None)})
     methods = [EngineMethod(radiance="lambertian", choice=choice) for choice in (fine, coarse)]
     assert [(method.settings["bake"], method.settings["K"]) for method in methods] == [("default", None), ("K", 3.0)]
-    judge = Judge(both, {("sp3", "buried"): SomeTruth()}, {})
+    judge = ChartJudge(both, {("sp3", "buried"): SomeTruth()}, {})
     points = measuring.measure(both, judge, methods, 1, lambda text: None)
     told = measuring.scene_record(both, judge, points)
     assert points[0].errors["pde"] is None
@@ -154,7 +154,7 @@ def test_the_body_baked_in_another_way_is_judged_by_path_tracing_alone(body, tmp
 def test_methods_take_turns_and_one_that_fails_is_told_and_left_out(body):
     log = []
     methods = [Told("a", log), Told("bad", log, fails=True), Told("b", log)]
-    judge = Judge(body, {("sp3", "buried"): SomeTruth()}, {})
+    judge = ChartJudge(body, {("sp3", "buried"): SomeTruth()}, {})
     points = measuring.measure(body, judge, methods, 2, lambda text: None)
     turn = [("a", "prepare"), ("a", 1), ("a", 0), ("bad", "prepare"), ("b", "prepare"), ("b", 1), ("b", 0)]
     assert log == turn + [entry for entry in turn if entry[0] != "bad"]
@@ -171,10 +171,10 @@ def test_a_picture_that_is_the_truth_has_no_error_and_another_has_its_own(body):
     method.prepare(body)
     method.frame(0)
     shown = method.picture("A")
-    image = Truth.empty({}, PIXELS, PIXELS)
+    image = StoredTruth.empty({}, PIXELS, PIXELS)
     for _ in range(2):
         image.add(shown[..., 0])
-    judge = Judge(body, {("diffusion", "buried"): SomeTruth()}, {"A": image})
+    judge = ChartJudge(body, {("diffusion", "buried"): SomeTruth()}, {"A": image})
     found = judge.errors(method, {"A": shown})
     assert found["transport"] == pytest.approx({"whole": 0, "unlit": 0}, abs=1e-6)
     assert judge.errors(method, {"A": 1.1 * shown})["transport"] == pytest.approx({"whole": 0.1, "unlit": 0.1})
@@ -194,7 +194,7 @@ def test_half_of_a_ball_in_parallel_light_is_unlit(body):
 
 def test_a_registered_method_is_in_every_chart_and_found_by_its_name(monkeypatch):
     monkeypatch.setattr(registry, "_PROVIDERS", [engine_methods])
-    chain = Chain((14000, 3500, 900), 1)
+    chain = MethodChain((14000, 3500, 900), 1)
     before = registry.methods(chain)
     registry.register(lambda chain: [Told(f"told, {len(chain.faces)} levels", [])])
     assert len(registry.methods(chain)) == len(before) + 1
@@ -203,7 +203,7 @@ def test_a_registered_method_is_in_every_chart_and_found_by_its_name(monkeypatch
         registry.methods(chain, ["teapot"])
 
 
-@pytest.mark.parametrize("chain", [Chain((14000, 3500, 900, 200), 1), Chain((900,), None)])
+@pytest.mark.parametrize("chain", [MethodChain((14000, 3500, 900, 200), 1), MethodChain((900,), None)])
 def test_default_methods_have_names_of_their_own_and_stay_on_the_chain(chain):
     found = list(engine_methods(chain))
     assert len({method.name for method in found}) == len(found) <= 40

@@ -15,7 +15,7 @@ from quadgraph_validation.bodies.media import Medium, media
 from quadgraph_validation.bodies.scenes import SCENES
 from quadgraph_validation.truth import cross_checks, monte_carlo, path_tracing, pmmc_walk, truth_run, walk_truth
 from quadgraph_validation.truth.slab_transport import discrete_ordinates
-from quadgraph_validation.truth.truth_run import Subject, stored
+from quadgraph_validation.truth.truth_run import TracedSubject, stored
 from quadgraph_validation.truth.walk_truth import BATCH
 
 QUIET = Console(quiet=True)
@@ -88,7 +88,7 @@ def test_an_interrupted_picture_goes_on_to_the_same_picture(tmp_path, monkeypatc
     pytest.importorskip("mitsuba", reason="Mitsuba is not installed: pip install -e 'python/validation[truth]'")
     scene = replace(thin(SPHERE), views={"A": SPHERE.views["A"]})
     body = meshes.ball(10.0, 0).boundary
-    subject = Subject(scene, None, body, (walk_truth.scenes.grid_of(scene, body),), "")
+    subject = TracedSubject(scene, None, body, (walk_truth.scenes.grid_of(scene, body),), "")
     whole, broken = tmp_path / "whole", tmp_path / "broken"
     truth_run.render([subject], whole, 4 * path_tracing.BATCH, QUIET)
     batch = path_tracing.Tracer.batch

@@ -17,7 +17,7 @@ from quadgraph.file import qgraph_file
 from quadgraph.tets import exchange, refine
 from quadgraph_validation.bodies import meshes, scenes
 from quadgraph_validation.bodies.media import Medium
-from quadgraph_validation.bodies.scenes import Scene
+from quadgraph_validation.bodies.scenes import StudyScene
 from quadgraph_validation.truth import pde_solve, pde_truth, round_bodies
 from quadgraph_validation.truth.fresnel import entering_share
 from quadgraph_validation.truth.irradiance import Occluder, entering
@@ -31,10 +31,10 @@ RADIUS, ETA = 10.0, 1.3
 QUIET = Console(quiet=True)
 
 
-def ball_scene(direction=None) -> Scene:
+def ball_scene(direction=None) -> StudyScene:
     """A small even ball; its mesh is `ball.ply` of 162 vertices."""
     coefficients = scenes.of_medium([MEDIUM.sigma_s_prime] * 3, [MEDIUM.sigma_a] * 3)
-    return Scene("ball", "ball.ply", ETA, coefficients, 4.0, direction, {}, height=2 * RADIUS, coloured=True)
+    return StudyScene("ball", "ball.ply", ETA, coefficients, 4.0, direction, {}, height=2 * RADIUS, coloured=True)
 
 
 def write_ball(folder):

@@ -19,17 +19,17 @@ from quadgraph_validation.base import store
 from quadgraph_validation.base.study_folders import shared_meshes
 from quadgraph_validation.bodies import meshes, scene_meshes, scenes
 from quadgraph_validation.bodies.media import Medium
-from quadgraph_validation.bodies.scenes import FOV, PIXELS, SCENES, Scene, View
+from quadgraph_validation.bodies.scenes import FOV, PIXELS, SCENES, StudyScene, View
 from quadgraph_validation.truth import blocks, monte_carlo, path_tracing, stored_truth, truth_run
-from quadgraph_validation.truth.stored_truth import Truth
-from quadgraph_validation.truth.truth_run import Subject
+from quadgraph_validation.truth.stored_truth import StoredTruth
+from quadgraph_validation.truth.truth_run import TracedSubject
 
 KEY = {"mesh": {"name": "a.ply", "sha256": "12"}, "path_tracing": {"mitsuba": "3.9.1", "batch": 16}}
 MEDIUM = Medium(0.4, 0.02)
 RADIUS = 10.0  # mm
 
 
-def ball(direction, views) -> Subject:
+def ball(direction, views) -> TracedSubject:
     """A homogeneous ball, index-matched."""
     mesh = meshes.ball(RADIUS, 0)
     surface = Surface(mesh.boundary.vertices[: mesh.surface_vertex_count], mesh.boundary.triangles)
@@ -38,16 +38,16 @@ def ball(direction, views) -> Subject:
         shape = position.shape[:-1]
         return np.full(shape, MEDIUM.sigma_s_prime), np.full(shape, MEDIUM.sigma_a)
 
-    scene = Scene("ball", "", 1.0, coefficients, 4.0, direction, views)
-    return Subject(scene, Path(), surface, (scenes.grid_of(scene, surface),), "")
+    scene = StudyScene("ball", "", 1.0, coefficients, 4.0, direction, views)
+    return TracedSubject(scene, Path(), surface, (scenes.grid_of(scene, surface),), "")
 
 
 def batches(count: int) -> np.ndarray:
     return np.random.default_rng(3).gamma(4.0, 0.5, (count, 8, 8))
 
 
-def added(key, images) -> Truth:
-    found = Truth.empty(key, 8, 8)
+def added(key, images) -> StoredTruth:
+    found = StoredTruth.empty(key, 8, 8)
     for image in images:
         found.add(image)
     return found
@@ -92,8 +92,8 @@ def test_the_key_holds_whatever_a_picture_depends_on():
     denser = scenes.Grid(grid.low, grid.voxel, grid.sigma_s_prime * 2, grid.sigma_a)
     turned = {"A": View(21, 10, 60, (1,))}
     others = [
-        Subject(scene, Path(), one.surface, (grid,), "another mesh"),
-        Subject(scene, Path(), one.surface, (denser,), ""),
+        TracedSubject(scene, Path(), one.surface, (grid,), "another mesh"),
+        TracedSubject(scene, Path(), one.surface, (denser,), ""),
         ball((0.0, 1.0, 0.0), scene.views),
         ball(scene.direction, turned),
     ]
@@ -178,7 +178,7 @@ def test_path_tracing_has_the_studys_camera(view):
     normal = np.cross(*(BOX[triangles[:, k]] - BOX[triangles[:, 0]] for k in (1, 2)))
     inward = ((BOX[triangles].mean(axis=1) - centre) * normal).sum(axis=1) < 0
     triangles[inward] = triangles[inward][:, ::-1]
-    scene = Scene("box", "", 1.0, opaque, 12.0, None, {"A": view})
+    scene = StudyScene("box", "", 1.0, opaque, 12.0, None, {"A": view})
     surface = Surface(BOX, triangles)
     with path_tracing.tracer(scene, surface, scenes.grid_of(scene, surface), "A") as tracer:
         found = 1 - np.pi * tracer.batch(0)

@@ -21,8 +21,8 @@ from quadgraph_validation.stability import (
     stability_suite,
 )
 from quadgraph_validation.stability.error_classes import ACCURATE, HONEST, REFUSED, SILENT, Errors, classify
-from quadgraph_validation.stability.fine_truths import Truth
-from quadgraph_validation.stability.stability_maps import Setting
+from quadgraph_validation.stability.fine_truths import FineTruth
+from quadgraph_validation.stability.stability_maps import StabilitySetting
 
 _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 
@@ -54,13 +54,13 @@ def test_an_error_counts_where_there_is_light_and_by_the_means_that_are_asked_fo
     lit = columns._sides(chain) < 0
     truth = np.where(lit, 0.5, 0.1)
     found = truth * np.where(lit, 1.02, 0.9)
-    case = judged_points.Case(
+    case = judged_points.StabilityCase(
         chain,
         solids.even(1, 1),
         columns._lit_below,
         columns.INWARD,
         1.3,
-        lambda _: Truth(truth),
+        lambda _: FineTruth(truth),
         regions=columns._sides,
     )
     errors = judged_points.errors(case, found, truth)
@@ -79,7 +79,7 @@ def test_an_error_counts_where_there_is_light_and_by_the_means_that_are_asked_fo
         judged_points.errors(case, found, truth * np.nan)
 
 
-def _by_face(case: judged_points.Case) -> judged_points.Case:
+def _by_face(case: judged_points.StabilityCase) -> judged_points.StabilityCase:
     return replace(case, regions=None)
 
 
@@ -89,7 +89,7 @@ def record():
     maps = [
         each.thinned(3 if each.name in ("albedo", "thickness", "tolerance") else 2) for each in stability_suite.MAPS
     ]
-    return stability_suite.run(maps, ["fem"], Setting())
+    return stability_suite.run(maps, ["fem"], StabilitySetting())
 
 
 def test_the_default_method_is_nowhere_wrong_silently(record):
@@ -197,5 +197,5 @@ def test_moved_vertices_are_refused_where_tets_fold_over_and_the_body_stays_as_i
         chain.take(lambda points: points * np.array([1.0, 1.0, -1.0]))
     with pytest.raises(InputError, match="expected"):
         chain.engine.set_vertices(0, np.zeros((3, 3)))
-    case = solids.MAPS[0].cases(Setting(), (1.0,), (1.0,))(1.0, 1.0)
+    case = solids.MAPS[0].cases(StabilitySetting(), (1.0,), (1.0,))(1.0, 1.0)
     assert judged_points.judge(case, stability_methods.DEFAULT)["class"] == ACCURATE

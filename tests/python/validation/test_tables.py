@@ -168,7 +168,7 @@ def test_an_interrupted_run_goes_on_and_a_finished_one_is_measured_anew(tmp_path
                 raise KeyboardInterrupt
             return {"body": key}
 
-        return table_plan.Row(key, key, missing, measure)
+        return table_plan.TableRow(key, key, missing, measure)
 
     path, settings = tmp_path / "tables.json", {"scale": 1}
 

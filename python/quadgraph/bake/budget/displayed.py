@@ -45,7 +45,7 @@ class Solved:
     report: dict[str, Any]
 
 
-class Subject:
+class DisplayedFile:
     """A baked file on the device, seen as its displayed triangles."""
 
     def __init__(self, path: Path, material: str, device: str = "") -> None:
@@ -82,7 +82,7 @@ class Subject:
 
 
 @dataclass(frozen=True)
-class Truth:
+class DisplayedTruth:
     """Exitance on the displayed triangles, (n, 3) W/mm^2, their areas (n,) mm^2 and which are unlit (n,)."""
 
     exitance: np.ndarray
@@ -114,7 +114,7 @@ class Reference:
         self.surface_vertices = finest.surface_vertex_count
         self._pieces = _pieces(finest, corners, cuts)
 
-    def truth(self, material: str, lights: Sequence[str]) -> Truth:
+    def truth(self, material: str, lights: Sequence[str]) -> DisplayedTruth:
         """Solve SP3, which is the nearer one to transport."""
         self._engine.set_material(material)
         self._engine.set_lights(list(lights))
@@ -123,7 +123,7 @@ class Reference:
         pieces = np.asarray(field["area"], np.float64)[self._pieces]
         area = pieces.sum(axis=1)
         exitance, q = (self._mean(pieces / area[:, None], field[name]) for name in ("exitance", "q"))
-        return Truth(exitance, area, surface_errors.unlit_part(area, q))
+        return DisplayedTruth(exitance, area, surface_errors.unlit_part(area, q))
 
     def _mean(self, share: np.ndarray, values: np.ndarray) -> np.ndarray:
         return np.einsum("ij,ijc->ic", share, np.asarray(values, np.float64)[self._pieces])

@@ -20,8 +20,18 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from quadgraph.bake import pipeline
-from quadgraph.bake.budget.displayed import Reference, Subject, Truth
-from quadgraph.bake.budget.trials import MODELS, Forecast, Scene, Trial, assemble, forecast, known_share, measure, trial
+from quadgraph.bake.budget.displayed import DisplayedFile, DisplayedTruth, Reference
+from quadgraph.bake.budget.trials import (
+    MODELS,
+    BudgetScene,
+    Forecast,
+    Trial,
+    assemble,
+    forecast,
+    known_share,
+    measure,
+    trial,
+)
 from quadgraph.bake.budget.usual_lights import lights as lights_around
 from quadgraph.bake.pipeline import BakeOptions, BakeReport, Level, Prepared
 from quadgraph.base.errors import InputError, ToolError
@@ -48,13 +58,13 @@ DEEP = 2.0  # diffusion lengths: what lies deeper decides .1% of the whole exita
 class Bench:
     """The files of one bake, and what was measured on them."""
 
-    def __init__(self, whole: Prepared, options: BakeOptions, scene: Scene, folder: Path, device: str) -> None:
+    def __init__(self, whole: Prepared, options: BakeOptions, scene: BudgetScene, folder: Path, device: str) -> None:
         self._whole, self._options, self.scene = whole, options, scene
         self._folder, self._device = folder, device
         self.candidates: dict[tuple[int, int], list[Level]] = {}  # by vertices on the surface and number of levels
         self.trials: list[Trial] = []
         self.models: Sequence[str] = MODELS
-        self._truths: dict[str, Truth] = {}
+        self._truths: dict[str, DisplayedTruth] = {}
 
     def find_truth(self, levels: list[Level], cuts: int = 1) -> None:
         """Of the levels of the whole mesh, cut so many times."""
@@ -82,7 +92,7 @@ class Bench:
 
     def judge(self, path: Path, model: str, cycles: int, deep: bool = False) -> Trial:
         """Measure one setting on a file."""
-        subject = Subject(path, self.scene.material, self._device)
+        subject = DisplayedFile(path, self.scene.material, self._device)
         assemble(subject, self.scene, model)
         known = known_share(subject, self.truth_vertices)
         return trial(subject, self.scene, self._truths, known, model, cycles, deep)
@@ -163,11 +173,11 @@ def _check(options: BakeOptions, error: float) -> None:
             raise InputError(f"{name}: {getattr(options, name)} found, but an error is asked for, which chooses it")
 
 
-def _scene(prepared: Prepared, material: str, lights: Sequence[str]) -> Scene:
+def _scene(prepared: Prepared, material: str, lights: Sequence[str]) -> BudgetScene:
     if lights:
-        return Scene(material, {"given": list(lights)}, True)
+        return BudgetScene(material, {"given": list(lights)}, True)
     usual = {"usual": load_core().default_lights(front=prepared.front)}
-    return Scene(
+    return BudgetScene(
         material, usual | {name: lights_around(name, prepared.surface.vertices) for name in ("sun", "lamp")}, False
     )
 
@@ -175,7 +185,7 @@ def _scene(prepared: Prepared, material: str, lights: Sequence[str]) -> Scene:
 def _planned(
     prepared: Prepared,
     options: BakeOptions,
-    scene: Scene,
+    scene: BudgetScene,
     error: float,
     folder: Path,
     device: str,

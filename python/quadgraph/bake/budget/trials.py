@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from quadgraph.bake.budget.displayed import Subject, Truth
+from quadgraph.bake.budget.displayed import DisplayedFile, DisplayedTruth
 from quadgraph.bake.budget.record import ENOUGH
 
 MODELS = ("diffusion", "sp3")
@@ -20,7 +20,7 @@ _LOWEST_ORDER, _HIGHEST_ORDER = 0.25, 1.0  # of the error in the number of verti
 
 
 @dataclass(frozen=True)
-class Scene:
+class BudgetScene:
     """What a budget is for. material, lights: as the engine reads them, lights by a name; given: not the usual ones."""
 
     material: str
@@ -66,8 +66,8 @@ class Trial:
 
 def measure(
     path: Path,
-    scene: Scene,
-    truths: Mapping[str, Truth],
+    scene: BudgetScene,
+    truths: Mapping[str, DisplayedTruth],
     truth_vertices: int,
     device: str,
     models: Iterable[str] = MODELS,
@@ -77,7 +77,7 @@ def measure(
 
     truth_vertices: on the surface that the truth was solved on; deep: as in Trial.
     """
-    subject = Subject(path, scene.material, device)
+    subject = DisplayedFile(path, scene.material, device)
     known = known_share(subject, truth_vertices)
     trials: list[Trial] = []
     for model in models:
@@ -91,12 +91,12 @@ def measure(
     return trials
 
 
-def assemble(subject: Subject, scene: Scene, model: str) -> None:
+def assemble(subject: DisplayedFile, scene: BudgetScene, model: str) -> None:
     """Solve once, so that later solves under new light only do what new light takes."""
     subject.solve(next(iter(scene.lights.values())), model=model)
 
 
-def known_share(subject: Subject, truth_vertices: int) -> float:
+def known_share(subject: DisplayedFile, truth_vertices: int) -> float:
     """Share of a file's error that a truth with so many vertices on its surface shows.
 
     Errors of two solutions add by their squares, which fall no slower than the number of vertices rises
@@ -106,9 +106,9 @@ def known_share(subject: Subject, truth_vertices: int) -> float:
 
 
 def trial(
-    subject: Subject,
-    scene: Scene,
-    truths: Mapping[str, Truth],
+    subject: DisplayedFile,
+    scene: BudgetScene,
+    truths: Mapping[str, DisplayedTruth],
     known: float,
     model: str,
     cycles: int,

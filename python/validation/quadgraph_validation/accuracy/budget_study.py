@@ -15,14 +15,14 @@ from rich.table import Table
 
 from quadgraph.bake import pipeline
 from quadgraph.bake.budget import plan
-from quadgraph.bake.budget.displayed import Subject as File
+from quadgraph.bake.budget.displayed import DisplayedFile as File
 from quadgraph.bake.budget.plan import Bench
-from quadgraph.bake.budget.trials import Scene, Trial, forecast
+from quadgraph.bake.budget.trials import BudgetScene, Trial, forecast
 from quadgraph.bake.budget.usual_lights import lights
 from quadgraph.bake.pipeline import BakeOptions, BakeReport, Level, Prepared
 from quadgraph.mesh import lod, mesh_io, repair
 from quadgraph_validation.bodies import level_chains
-from quadgraph_validation.bodies.level_chains import Subject
+from quadgraph_validation.bodies.level_chains import ChainSubject
 
 BUNNY = "pymeshlab/bunny.obj"  # bundled there
 MOST_CUT_TWICE = 8000  # vertices of a body; the truth of larger ones is cut once
@@ -30,23 +30,23 @@ SPREAD = 2.0 ** np.array([-0.5, -0.25, 0.0, 0.25])  # numbers of vertices that a
 ALTERNATIONS = 4  # of the chosen and the cheapest setting, when they are timed
 
 SUBJECTS = (
-    Subject("spot", "spot.ply", 8, 3000),
-    Subject("fertility", "fertility.ply", 7, 3000),
-    Subject("igea", "igea.ply", 6, 3000),
-    Subject("armadillo", "armadillo.ply", 8, 3000),
-    Subject("twirl", "twirl.ply", 8, 3000),
-    Subject("fandisk", "fandisk.ply", 5, 3000),
-    Subject("gargoyle", "gargoyle.ply", 8, 3000),
-    Subject("bunny", BUNNY, 8, 3000),
-    Subject("sphere", "sphere", 6, detail=4),
-    Subject("torus", "torus", 3, detail=5),
-    Subject("coarse torus", "torus", 3, detail=4),
-    Subject("lobes", "lobes", 5, detail=4),
+    ChainSubject("spot", "spot.ply", 8, 3000),
+    ChainSubject("fertility", "fertility.ply", 7, 3000),
+    ChainSubject("igea", "igea.ply", 6, 3000),
+    ChainSubject("armadillo", "armadillo.ply", 8, 3000),
+    ChainSubject("twirl", "twirl.ply", 8, 3000),
+    ChainSubject("fandisk", "fandisk.ply", 5, 3000),
+    ChainSubject("gargoyle", "gargoyle.ply", 8, 3000),
+    ChainSubject("bunny", BUNNY, 8, 3000),
+    ChainSubject("sphere", "sphere", 6, detail=4),
+    ChainSubject("torus", "torus", 3, detail=5),
+    ChainSubject("coarse torus", "torus", 3, detail=4),
+    ChainSubject("lobes", "lobes", 5, detail=4),
 )
 
 
 @dataclass(frozen=True)
-class Case:
+class BudgetCase:
     """A subject's name, a material as the engine reads it, a name in judged.LIGHTS, and the error asked for."""
 
     subject: str
@@ -56,27 +56,27 @@ class Case:
 
 
 CASES = (
-    Case("spot", "skin1", "sun", 0.02),
-    Case("spot", "marble", "sun and sky", 0.05),
-    Case("fertility", "ketchup", "sun", 0.02),
-    Case("fertility", "skin2", "lamp", 0.05),
-    Case("igea", "skin1", "lamp", 0.02),
-    Case("igea", "potato", "sun", 0.05),
-    Case("armadillo", "ketchup", "near lamp and sky", 0.02),
-    Case("armadillo", "skin1", "sun", 0.05),
-    Case("twirl", "ketchup", "sun", 0.02),
-    Case("twirl", "potato", "lamp", 0.05),
-    Case("fandisk", "skin1", "sun", 0.05),
-    Case("fandisk", "ketchup", "three", 0.02),
-    Case("gargoyle", "chicken1", "sun", 0.05),
-    Case("gargoyle", "wholemilk", "lamp", 0.05),
-    Case("bunny", "skin1", "sun and sky", 0.02),
-    Case("bunny", "apple", "lamp", 0.05),
-    Case("sphere", "wholemilk", "sun", 0.02),
-    Case("sphere", "ketchup", "lamp", 0.01),
-    Case("torus", "ketchup", "lamp", 0.01),
-    Case("coarse torus", "ketchup", "lamp", 0.01),  # whose mesh does not have it
-    Case("lobes", "chicken2", "sun", 0.01),
+    BudgetCase("spot", "skin1", "sun", 0.02),
+    BudgetCase("spot", "marble", "sun and sky", 0.05),
+    BudgetCase("fertility", "ketchup", "sun", 0.02),
+    BudgetCase("fertility", "skin2", "lamp", 0.05),
+    BudgetCase("igea", "skin1", "lamp", 0.02),
+    BudgetCase("igea", "potato", "sun", 0.05),
+    BudgetCase("armadillo", "ketchup", "near lamp and sky", 0.02),
+    BudgetCase("armadillo", "skin1", "sun", 0.05),
+    BudgetCase("twirl", "ketchup", "sun", 0.02),
+    BudgetCase("twirl", "potato", "lamp", 0.05),
+    BudgetCase("fandisk", "skin1", "sun", 0.05),
+    BudgetCase("fandisk", "ketchup", "three", 0.02),
+    BudgetCase("gargoyle", "chicken1", "sun", 0.05),
+    BudgetCase("gargoyle", "wholemilk", "lamp", 0.05),
+    BudgetCase("bunny", "skin1", "sun and sky", 0.02),
+    BudgetCase("bunny", "apple", "lamp", 0.05),
+    BudgetCase("sphere", "wholemilk", "sun", 0.02),
+    BudgetCase("sphere", "ketchup", "lamp", 0.01),
+    BudgetCase("torus", "ketchup", "lamp", 0.01),
+    BudgetCase("coarse torus", "ketchup", "lamp", 0.01),  # whose mesh does not have it
+    BudgetCase("lobes", "chicken2", "sun", 0.01),
 )
 
 
@@ -99,7 +99,7 @@ def run(
     return {"rows": rows}
 
 
-def original(subject: Subject, meshes: Path, folder: Path) -> Path:
+def original(subject: ChainSubject, meshes: Path, folder: Path) -> Path:
     """Write the mesh that is taken for the whole one: with the subject's number of vertices."""
     path = folder / f"{subject.name}.ply"
     if subject.mesh in level_chains.SHAPES:
@@ -115,14 +115,14 @@ def original(subject: Subject, meshes: Path, folder: Path) -> Path:
     return path
 
 
-def judge(mesh: Path, height: float, case: Case, folder: Path, device: str) -> dict[str, Any]:
+def judge(mesh: Path, height: float, case: BudgetCase, folder: Path, device: str) -> dict[str, Any]:
     """Bake for the case's error, hold the file against a truth of its own, and search for cheaper settings."""
     options = BakeOptions(height_mm=height, visibility_rays=0)
     output = folder / "chosen.qgraph"
     prepared = pipeline.prepare(mesh, options, BakeReport(""), lambda text: None)
     around = lights(case.light, prepared.surface.vertices)
     found = plan.bake_for(mesh, output, options, case.error, case.material, around, device)
-    search = Search(prepared, options, Scene(case.material, {"given": around}, True), folder, device)
+    search = Search(prepared, options, BudgetScene(case.material, {"given": around}, True), folder, device)
     chosen = search.bench.judge(output, found.budget["model"], found.budget["cycles"])
     cheapest = search.cheapest(case.error, chosen)
     return asdict(case) | {
@@ -146,7 +146,7 @@ def _facts(trial: Trial) -> dict[str, Any]:
 class Search:
     """Settings and surfaces of one case, against the mesh cut once more often than the bake has it."""
 
-    def __init__(self, whole: Prepared, options: BakeOptions, scene: Scene, folder: Path, device: str) -> None:
+    def __init__(self, whole: Prepared, options: BakeOptions, scene: BudgetScene, folder: Path, device: str) -> None:
         self._whole, self._options = whole, options
         self._folder, self._device = folder, device
         count = len(whole.surface.vertices)

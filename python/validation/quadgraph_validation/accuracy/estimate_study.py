@@ -10,9 +10,9 @@ import numpy as np
 from rich.table import Table
 
 from quadgraph.bake.budget.surface_errors import PARTS
-from quadgraph_validation.accuracy.judged_levels import Case, Judged, judged
+from quadgraph_validation.accuracy.judged_levels import Judged, LevelCase, judged
 from quadgraph_validation.bodies import level_chains
-from quadgraph_validation.bodies.level_chains import Subject
+from quadgraph_validation.bodies.level_chains import ChainSubject
 
 FINER = (2, 1)  # of the two levels that are judged: the truth has sixteen, or four, times the vertices
 CONFIDENCE = 0.95
@@ -20,91 +20,91 @@ CONFIDENCE = 0.95
 MODES: dict[str, dict[str, float]] = {"--tolerance": {}, "--error": {"error": 0.002}}
 
 SUBJECTS = (
-    Subject("sphere", "sphere", 20),
-    Subject("torus", "torus", 10),
-    Subject("box", "box", 30),
-    Subject("lobes", "lobes", 60),
-    Subject("bunny", "bunny.ply", 80, 28000),
-    Subject("small bunny", "bunny.ply", 30, 28000),
-    Subject("armadillo", "armadillo.ply", 80, 28000),
-    Subject("fertility", "fertility.ply", 60),
-    Subject("igea", "igea.ply", 100, 28000),
-    Subject("spot", "spot.ply", 50),
-    Subject("twirl", "twirl.ply", 80),
-    Subject("fandisk", "fandisk.ply", 40),
+    ChainSubject("sphere", "sphere", 20),
+    ChainSubject("torus", "torus", 10),
+    ChainSubject("box", "box", 30),
+    ChainSubject("lobes", "lobes", 60),
+    ChainSubject("bunny", "bunny.ply", 80, 28000),
+    ChainSubject("small bunny", "bunny.ply", 30, 28000),
+    ChainSubject("armadillo", "armadillo.ply", 80, 28000),
+    ChainSubject("fertility", "fertility.ply", 60),
+    ChainSubject("igea", "igea.ply", 100, 28000),
+    ChainSubject("spot", "spot.ply", 50),
+    ChainSubject("twirl", "twirl.ply", 80),
+    ChainSubject("fandisk", "fandisk.ply", 40),
     # Thin in mean free paths, where errors of 1% are within reach.
-    Subject("thin spot", "spot.ply", 6.25),
-    Subject("thin fertility", "fertility.ply", 7.5),
-    Subject("thin twirl", "twirl.ply", 10),
-    Subject("thin fandisk", "fandisk.ply", 5),
-    Subject("thin armadillo", "armadillo.ply", 10, 28000),
-    Subject("thin bunny", "bunny.ply", 10, 28000),
-    Subject("thin igea", "igea.ply", 6.25, 28000),
-    Subject("thin lobes", "lobes", 7.5),
+    ChainSubject("thin spot", "spot.ply", 6.25),
+    ChainSubject("thin fertility", "fertility.ply", 7.5),
+    ChainSubject("thin twirl", "twirl.ply", 10),
+    ChainSubject("thin fandisk", "fandisk.ply", 5),
+    ChainSubject("thin armadillo", "armadillo.ply", 10, 28000),
+    ChainSubject("thin bunny", "bunny.ply", 10, 28000),
+    ChainSubject("thin igea", "igea.ply", 6.25, 28000),
+    ChainSubject("thin lobes", "lobes", 7.5),
 )
 
 CASES = (
-    Case("sphere", "marble", "sun", "diffusion"),
-    Case("sphere", "skin1", "sun"),
-    Case("sphere", "wholemilk", "sun and sky"),
-    Case("torus", "marble", "sun and sky", "sp3"),
-    Case("torus", "potato", "lamp"),
-    Case("torus", "marble-veins", "three"),
-    Case("box", "marble", "sun"),
-    Case("box", "skin1", "sun and sky"),
-    Case("box", "ketchup", "lamp"),
-    Case("lobes", "marble", "lamp"),
-    Case("lobes", "chicken2", "sun"),
-    Case("lobes", "marble-veins", "sun"),
-    Case("bunny", "marble", "sun", "diffusion"),
-    Case("bunny", "skin1", "sun and sky"),
-    Case("bunny", "marble-veins", "lamp"),
-    Case("bunny", "ketchup", "three"),
-    Case("small bunny", "marble", "sun and sky"),
-    Case("small bunny", "skin1", "sun"),
-    Case("small bunny", "apple", "lamp", "diffusion"),
-    Case("armadillo", "marble", "sun", "sp3"),
-    Case("armadillo", "skin2", "near lamp and sky"),
-    Case("armadillo", "ketchup", "sun"),
-    Case("fertility", "marble", "lamp", "sp3"),
-    Case("fertility", "wholemilk", "sun and sky"),
-    Case("fertility", "skin1", "three"),
-    Case("igea", "skin1", "sun"),
-    Case("igea", "marble", "near lamp and sky"),
-    Case("igea", "chicken1", "sun and sky"),
-    Case("spot", "skimmilk", "sun"),
-    Case("spot", "ketchup", "lamp"),
-    Case("spot", "marble-veins", "sun and sky"),
-    Case("twirl", "skin2", "sun"),
-    Case("twirl", "marble", "sun and sky", "diffusion"),
-    Case("fandisk", "marble", "sun"),
-    Case("fandisk", "potato", "three"),
-    Case("thin spot", "skin1", "sun"),
-    Case("thin spot", "ketchup", "sun and sky"),
-    Case("thin fertility", "ketchup", "sun"),
-    Case("thin fertility", "skin2", "lamp"),
-    Case("thin twirl", "ketchup", "sun"),
-    Case("thin twirl", "skin1", "lamp"),
-    Case("thin fandisk", "potato", "sun"),
-    Case("thin fandisk", "skin1", "lamp"),
-    Case("thin armadillo", "skin1", "lamp"),
-    Case("thin armadillo", "ketchup", "near lamp and sky"),
-    Case("thin bunny", "skin1", "sun"),
-    Case("thin bunny", "potato", "lamp"),
-    Case("thin igea", "skin1", "lamp"),
-    Case("thin igea", "ketchup", "sun"),
-    Case("thin lobes", "skin1", "sun and sky"),
-    Case("thin lobes", "ketchup", "lamp"),
+    LevelCase("sphere", "marble", "sun", "diffusion"),
+    LevelCase("sphere", "skin1", "sun"),
+    LevelCase("sphere", "wholemilk", "sun and sky"),
+    LevelCase("torus", "marble", "sun and sky", "sp3"),
+    LevelCase("torus", "potato", "lamp"),
+    LevelCase("torus", "marble-veins", "three"),
+    LevelCase("box", "marble", "sun"),
+    LevelCase("box", "skin1", "sun and sky"),
+    LevelCase("box", "ketchup", "lamp"),
+    LevelCase("lobes", "marble", "lamp"),
+    LevelCase("lobes", "chicken2", "sun"),
+    LevelCase("lobes", "marble-veins", "sun"),
+    LevelCase("bunny", "marble", "sun", "diffusion"),
+    LevelCase("bunny", "skin1", "sun and sky"),
+    LevelCase("bunny", "marble-veins", "lamp"),
+    LevelCase("bunny", "ketchup", "three"),
+    LevelCase("small bunny", "marble", "sun and sky"),
+    LevelCase("small bunny", "skin1", "sun"),
+    LevelCase("small bunny", "apple", "lamp", "diffusion"),
+    LevelCase("armadillo", "marble", "sun", "sp3"),
+    LevelCase("armadillo", "skin2", "near lamp and sky"),
+    LevelCase("armadillo", "ketchup", "sun"),
+    LevelCase("fertility", "marble", "lamp", "sp3"),
+    LevelCase("fertility", "wholemilk", "sun and sky"),
+    LevelCase("fertility", "skin1", "three"),
+    LevelCase("igea", "skin1", "sun"),
+    LevelCase("igea", "marble", "near lamp and sky"),
+    LevelCase("igea", "chicken1", "sun and sky"),
+    LevelCase("spot", "skimmilk", "sun"),
+    LevelCase("spot", "ketchup", "lamp"),
+    LevelCase("spot", "marble-veins", "sun and sky"),
+    LevelCase("twirl", "skin2", "sun"),
+    LevelCase("twirl", "marble", "sun and sky", "diffusion"),
+    LevelCase("fandisk", "marble", "sun"),
+    LevelCase("fandisk", "potato", "three"),
+    LevelCase("thin spot", "skin1", "sun"),
+    LevelCase("thin spot", "ketchup", "sun and sky"),
+    LevelCase("thin fertility", "ketchup", "sun"),
+    LevelCase("thin fertility", "skin2", "lamp"),
+    LevelCase("thin twirl", "ketchup", "sun"),
+    LevelCase("thin twirl", "skin1", "lamp"),
+    LevelCase("thin fandisk", "potato", "sun"),
+    LevelCase("thin fandisk", "skin1", "lamp"),
+    LevelCase("thin armadillo", "skin1", "lamp"),
+    LevelCase("thin armadillo", "ketchup", "near lamp and sky"),
+    LevelCase("thin bunny", "skin1", "sun"),
+    LevelCase("thin bunny", "potato", "lamp"),
+    LevelCase("thin igea", "skin1", "lamp"),
+    LevelCase("thin igea", "ketchup", "sun"),
+    LevelCase("thin lobes", "skin1", "sun and sky"),
+    LevelCase("thin lobes", "ketchup", "lamp"),
 )
 
 
-def judge(body: Judged, case: Case) -> list[dict[str, Any]]:
+def judge(body: Judged, case: LevelCase) -> list[dict[str, Any]]:
     """A row per level and mode: the engine's estimate of its error and the true one, by part."""
     body.light(case)
     return [_row(body, case, finer, mode) for finer in FINER for mode in MODES]
 
 
-def _row(body: Judged, case: Case, finer: int, mode: str) -> dict[str, Any]:
+def _row(body: Judged, case: LevelCase, finer: int, mode: str) -> dict[str, Any]:
     report = body.solve(finer, **MODES[mode])
     true = body.true_error(finer, report["finest"])
     return asdict(case) | {

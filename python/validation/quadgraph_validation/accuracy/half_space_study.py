@@ -10,7 +10,7 @@ from rich.table import Table
 from quadgraph_validation.bodies import meshes
 from quadgraph_validation.bodies.media import Medium
 from quadgraph_validation.truth import closed_forms, monte_carlo
-from quadgraph_validation.truth.schemes import DIFFUSION, PUBLISHED, SP3, Body, BodyOf, Light, Scheme
+from quadgraph_validation.truth.schemes import DIFFUSION, PUBLISHED, SP3, BodyOf, Light, Scheme, StudyBody
 
 # Index, albedo, and wavelengths in mean free paths, which are 1 mm here.
 CASES = (
@@ -31,14 +31,14 @@ def medium_of(albedo: float) -> Medium:
     return Medium(albedo, 1 - albedo)
 
 
-def block(body_of: BodyOf, medium: Medium, wavelength: float) -> Body:
+def block(body_of: BodyOf, medium: Medium, wavelength: float) -> StudyBody:
     """Half a period of the half-space, deep enough that nothing reaches the bottom."""
     width = min(wavelength, WIDEST)
     depth = 8 + 6 / max(medium.sigma_tr, 0.15)
     return body_of(meshes.half_period(width, ACROSS, meshes.graded(width / ACROSS / 4, 1.15, depth)))
 
 
-def response(body: Body, medium: Medium, eta: float, wavelength: float, scheme: Scheme) -> tuple[float, float]:
+def response(body: StudyBody, medium: Medium, eta: float, wavelength: float, scheme: Scheme) -> tuple[float, float]:
     """M/q of a block, and its least exitance, W/mm^2, under q = 1 + cos(2 pi x / wavelength), which is never negative.
 
     M/q is the share of the exitance that follows the cosine.

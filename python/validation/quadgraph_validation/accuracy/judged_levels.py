@@ -15,7 +15,7 @@ from quadgraph.base.errors import InputError
 from quadgraph.base.relative_error import relative_rms
 from quadgraph.core import load_core
 from quadgraph_validation.bodies import level_chains
-from quadgraph_validation.bodies.level_chains import Subject
+from quadgraph_validation.bodies.level_chains import ChainSubject
 
 if TYPE_CHECKING:
     from quadgraph.core import Engine, QuadGraph
@@ -24,7 +24,7 @@ TRUTH_TOLERANCE = 1e-4  # of errors of .1% and more
 
 
 @dataclass(frozen=True)
-class Case:
+class LevelCase:
     """A subject's name, a material and a model as the engine reads them, and a name in LIGHTS."""
 
     subject: str
@@ -46,7 +46,7 @@ class Judged:
         self.graph: QuadGraph = core.load(path)
         if len(self.graph.levels) < max(finer) + 2:
             raise InputError(f"{path}: {len(self.graph.levels)} levels found, at least {max(finer) + 2} needed")
-        self._case: Case | None = None
+        self._case: LevelCase | None = None
         self._fine: Engine = core.Engine(path, device=device)
         self._coarse: dict[int, Engine] = {}
         for count in finer:
@@ -57,7 +57,7 @@ class Judged:
         """Vertices on the surface of a level of the whole chain."""
         return self.graph.levels[level].surface_vertex_count
 
-    def light(self, case: Case) -> None:
+    def light(self, case: LevelCase) -> None:
         """Set the case's material and lights on all, and find the truth."""
         for engine in (self._fine, *self._coarse.values()):
             engine.set_material(case.material)
@@ -92,11 +92,11 @@ Body = TypeVar("Body")
 
 
 def judged(
-    subjects: Sequence[Subject],
-    cases: Sequence[Case],
+    subjects: Sequence[ChainSubject],
+    cases: Sequence[LevelCase],
     meshes: Path,
     body_of: Callable[[Path], Body],
-    rows_of: Callable[[Body, Case], list[dict[str, Any]]],
+    rows_of: Callable[[Body, LevelCase], list[dict[str, Any]]],
 ) -> list[dict[str, Any]]:
     """Bake each subject with mesh files from the folder `meshes`, and collect the rows of its cases.
 

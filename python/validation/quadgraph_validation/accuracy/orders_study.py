@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 from rich.table import Table
 
+from quadgraph.base.relative_error import relative_rms
 from quadgraph.tets.graph import Graph
 from quadgraph_validation.bodies import meshes
 from quadgraph_validation.bodies.media import Medium
 from quadgraph_validation.truth import manufactured, round_bodies
 from quadgraph_validation.truth.round_bodies import Shell
-from quadgraph_validation.truth.schemes import PUBLISHED, Body, BodyOf, Light, Scheme
+from quadgraph_validation.truth.schemes import PUBLISHED, BodyOf, Light, Scheme, StudyBody
 
 ETA = 1.3
 COEFFICIENTS = (0.5, 0.6, 0.4, 0.3)  # of q in Legendre polynomials or cosines, W/mm^2; q is positive everywhere
@@ -27,7 +28,7 @@ GRAPH_METHODS = (*FV, PUBLISHED)
 
 
 @dataclass(frozen=True)
-class Case:
+class OrdersCase:
     """A body of known solution. mesh: from the number of refinements; exact: moments at points (n, 3) mm."""
 
     name: str
@@ -55,18 +56,18 @@ class Case:
 
 
 CASES = (
-    Case("sphere", (Shell(SOFT, RADIUS),), lambda n: meshes.ball(RADIUS, n), round_bodies.sphere),
-    Case(
+    OrdersCase("sphere", (Shell(SOFT, RADIUS),), lambda n: meshes.ball(RADIUS, n), round_bodies.sphere),
+    OrdersCase(
         "two-layer sphere",
         (Shell(DENSE, CORE_RADIUS), Shell(SOFT, RADIUS)),
         lambda n: meshes.two_layer_ball(CORE_RADIUS, RADIUS, n),
         round_bodies.sphere,
     ),
-    Case("cylinder", (Shell(SOFT, RADIUS),), lambda n: meshes.cylinder(RADIUS, 8 * 2**n), round_bodies.cylinder),
+    OrdersCase("cylinder", (Shell(SOFT, RADIUS),), lambda n: meshes.cylinder(RADIUS, 8 * 2**n), round_bodies.cylinder),
 )
 
 
-def surface_error(body: Body, case: Case, scheme: Scheme) -> float:
+def surface_error(body: StudyBody, case: OrdersCase, scheme: Scheme) -> float:
     """Relative area-weighted L2 error of the fluence on the open surface."""
     centre = np.concatenate([body.mesh.inner, body.centre])
     region = (np.linalg.norm(centre, axis=1) > case.shells[0].radius) * (len(case.shells) - 1)
@@ -74,7 +75,7 @@ def surface_error(body: Body, case: Case, scheme: Scheme) -> float:
     answer = body.piecewise([[shell.medium] * 3 for shell in case.shells], region, ETA, light, scheme)
     exact = case.fluence(body.centre, scheme)
     area = body.area * (np.ones_like(exact) if body.mesh.face_kinds is None else body.mesh.face_kinds == meshes.OPEN)
-    return float(np.sqrt(area @ (answer.phi[:, 0] - exact) ** 2 / (area @ exact**2)))
+    return relative_rms(area, (answer.phi[:, 0] - exact)[:, None], exact[:, None])
 
 
 def fitted_order(sizes: Sequence[float], errors: Sequence[float]) -> float:
@@ -82,7 +83,7 @@ def fitted_order(sizes: Sequence[float], errors: Sequence[float]) -> float:
     return float(np.polyfit(np.log(sizes), np.log(errors), 1)[0])
 
 
-def study(body_of: BodyOf, case: Case, refinements: int, schemes: Sequence[Scheme]) -> dict[str, Any]:
+def study(body_of: BodyOf, case: OrdersCase, refinements: int, schemes: Sequence[Scheme]) -> dict[str, Any]:
     """Errors and fitted orders of one case over meshes of halving element size."""
     bodies = [body_of(case.mesh(n)) for n in range(refinements)]
     sizes = [0.5**n for n in range(refinements)]

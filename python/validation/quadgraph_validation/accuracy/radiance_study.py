@@ -13,7 +13,7 @@ from quadgraph_validation.bodies.media import Medium
 from quadgraph_validation.truth import exit_angles
 from quadgraph_validation.truth.exit_angles import BIN_AREA, BINS
 from quadgraph_validation.truth.fresnel import composite_gauss, entering_share, transmittance_from_outside
-from quadgraph_validation.truth.schemes import DIFFUSION, SP3, Answer, Body, BodyOf, Light, Scheme
+from quadgraph_validation.truth.schemes import DIFFUSION, SP3, Answer, BodyOf, Light, Scheme, StudyBody
 from quadgraph_validation.truth.slab_transport import radiance_by_angle
 
 ALBEDOS = (0.999, 0.9, 0.5)  # one per channel
@@ -28,7 +28,7 @@ _PER_BIN, _AZIMUTHS = 3, 4
 
 
 @dataclass(frozen=True)
-class Case:
+class RadianceCase:
     """A slab `depth` mm thick and the light on it."""
 
     depth: float
@@ -36,7 +36,7 @@ class Case:
     cosine: float
 
 
-CASES = [Case(depth, eta, cosine) for eta in ETAS for depth in DEPTHS for cosine in COSINES]
+CASES = [RadianceCase(depth, eta, cosine) for eta in ETAS for depth in DEPTHS for cosine in COSINES]
 
 
 @dataclass(frozen=True)
@@ -52,20 +52,20 @@ class Found:
         return np.pi * BIN_AREA @ self.radiance / self.exitance
 
 
-def column(body_of: BodyOf, depth: float, layers_per_mm: int) -> Body:
+def column(body_of: BodyOf, depth: float, layers_per_mm: int) -> StudyBody:
     """A column of elements with reflecting walls: a slanted beam stands for itself and its mirror images."""
     thicknesses = np.full(round(depth * layers_per_mm), 1 / layers_per_mm)
     return body_of(meshes.column(thicknesses, 2 * thicknesses[0]))
 
 
-def solved(body: Body, case: Case, scheme: Scheme) -> Answer:
+def solved(body: StudyBody, case: RadianceCase, scheme: Scheme) -> Answer:
     """Light that enters evenly at z = 0."""
     lit = body.normal[:, 2] < -0.5
     direction = (float(np.sqrt(1 - case.cosine**2)), 0.0, case.cosine)
     return body.homogeneous(MEDIA, case.eta, Light(np.outer(lit, np.ones(3)), direction), scheme)
 
 
-def gathered(body: Body, case: Case, scheme: Scheme) -> list[Found]:
+def gathered(body: StudyBody, case: RadianceCase, scheme: Scheme) -> list[Found]:
     """The lit and the unlit side; means over azimuths and the faces of the side."""
     answer = solved(body, case, scheme)
     cosine, weight = composite_gauss(_PER_BIN, BINS)

@@ -13,7 +13,7 @@ import numpy as np
 
 from quadgraph.base import atomic_file
 from quadgraph_validation.base.pyplot import load_pyplot
-from quadgraph_validation.bodies.scenes import Scene
+from quadgraph_validation.bodies.scenes import StudyScene
 from quadgraph_validation.truth import blocks
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ _TRUTH = "#222222"
 _COLOURS = ("#c44e52", "#1f77b4", "#8a8a8a", "#e6953a")  # of scan lines, in the order of what is shown
 
 
-def write(path: Path, scene: Scene, compared: Mapping[str, Comparison], shown: Mapping[str, str]) -> None:
+def write(path: Path, scene: StudyScene, compared: Mapping[str, Comparison], shown: Mapping[str, str]) -> None:
     """Draw images of a scene by their names: a row of pictures and a row of scan lines for each.
 
     shown: titles to the names of those pictures of each comparison that stand beside path tracing, up to four. Raises

@@ -16,11 +16,11 @@ from quadgraph.base.errors import InputError
 from quadgraph.core import load_core
 from quadgraph_validation.base import store
 from quadgraph_validation.bodies import scene_meshes, scenes
-from quadgraph_validation.bodies.scenes import FOV, PIXELS, Scene
+from quadgraph_validation.bodies.scenes import FOV, PIXELS, StudyScene
 from quadgraph_validation.truth import blocks, truth_run
 from quadgraph_validation.truth.path_tracing import BATCH
-from quadgraph_validation.truth.stored_truth import Truth
-from quadgraph_validation.truth.truth_run import Subject
+from quadgraph_validation.truth.stored_truth import StoredTruth
+from quadgraph_validation.truth.truth_run import TracedSubject
 
 if TYPE_CHECKING:
     from quadgraph.core import Engine
@@ -30,7 +30,7 @@ _FEW = 10  # blocks: a part with fewer is not printed
 
 
 @dataclass(frozen=True)
-class Setting:
+class PictureSetting:
     """How the engine solves, always with `fem`, and shows a scene, by the names it uses; its default tolerance."""
 
     name: str
@@ -41,12 +41,12 @@ class Setting:
     tolerance: float = 1e-3
 
 
-PUBLISHED = Setting("published, solved exactly", "diffuse", "diffusion", "lambertian", False, 1e-5)
-OURS = Setting("SP3, gathered, inter-reflection", "buried", "sp3", "gathered", True)
+PUBLISHED = PictureSetting("published, solved exactly", "diffuse", "diffusion", "lambertian", False, 1e-5)
+OURS = PictureSetting("SP3, gathered, inter-reflection", "buried", "sp3", "gathered", True)
 SETTINGS = (
     PUBLISHED,
-    Setting("diffusion, Lambertian", "buried", "diffusion", "lambertian", False),
-    Setting("SP3, gathered", "buried", "sp3", "gathered", False),
+    PictureSetting("diffusion, Lambertian", "buried", "diffusion", "lambertian", False),
+    PictureSetting("SP3, gathered", "buried", "sp3", "gathered", False),
     OURS,
 )
 # In figures: title to setting.
@@ -57,7 +57,7 @@ SHOWN = {"published": PUBLISHED.name, "ours": OURS.name}
 class Comparison:
     """One image: the truth, the coverage (h, w) of the engine's pixels, and its pictures (h, w) by setting's name."""
 
-    image: Truth
+    image: StoredTruth
     alpha: np.ndarray
     pictures: dict[str, np.ndarray]
 
@@ -88,7 +88,7 @@ def run(
     return {"block": blocks.BLOCK, "bright": blocks.BRIGHT, "scenes": record}
 
 
-def compare(found: Subject, stored: dict[str, Truth], device: str = "") -> dict[str, Comparison]:
+def compare(found: TracedSubject, stored: dict[str, StoredTruth], device: str = "") -> dict[str, Comparison]:
     """Bake a scene's mesh, and solve and render it in every setting; by image."""
     with tempfile.TemporaryDirectory(prefix="quadgraph-study-") as folder:
         file = Path(folder) / "scene.qgraph"
@@ -105,7 +105,7 @@ def compare(found: Subject, stored: dict[str, Truth], device: str = "") -> dict[
     }
 
 
-def set_scene(engine: Engine, scene: Scene) -> None:
+def set_scene(engine: Engine, scene: StudyScene) -> None:
     """Give the engine the coefficients, in the middle of every node, and the light."""
     for index, level in enumerate(engine.graph.levels):
         values = scene.in_channels(np.asarray(level.nodes, np.float64))
@@ -113,7 +113,7 @@ def set_scene(engine: Engine, scene: Scene) -> None:
     engine.set_lights([scene.light])
 
 
-def solve(engine: Engine, setting: Setting) -> dict[str, Any]:
+def solve(engine: Engine, setting: PictureSetting) -> dict[str, Any]:
     """Solve; the engine's report. Raises SolverError."""
     return engine.solve(
         source=setting.source,
@@ -124,7 +124,7 @@ def solve(engine: Engine, setting: Setting) -> dict[str, Any]:
     )
 
 
-def picture(engine: Engine, scene: Scene, image: str, setting: Setting) -> tuple[np.ndarray, np.ndarray]:
+def picture(engine: Engine, scene: StudyScene, image: str, setting: PictureSetting) -> tuple[np.ndarray, np.ndarray]:
     """Radiance of light that was in the body, W/(mm^2 sr), and coverage, both (h, w), after a solve; image: its name.
 
     Parallel light that crosses the body unscattered stays parallel: no camera sees it.
@@ -155,7 +155,7 @@ def tables(record: dict[str, Any]) -> list[Table]:
     return [_table(name, views) for name, views in record["scenes"].items()]
 
 
-def _stored(found: Subject, folder: Path, name: str) -> Truth:
+def _stored(found: TracedSubject, folder: Path, name: str) -> StoredTruth:
     image = truth_run.stored(found, folder, name)
     if image.batches < 2:
         command = f"quadgraph reference {found.scene.name} --kind transport --samples N"

@@ -10,7 +10,7 @@ from rich.table import Table
 from quadgraph_validation.bodies import meshes
 from quadgraph_validation.bodies.media import CHANNELS, NAMES, Medium, media
 from quadgraph_validation.truth import closed_forms
-from quadgraph_validation.truth.schemes import DIFFUSION, PUBLISHED, SP3, Body, BodyOf, Light, Scheme
+from quadgraph_validation.truth.schemes import DIFFUSION, PUBLISHED, SP3, BodyOf, Light, Scheme, StudyBody
 from quadgraph_validation.truth.slab_transport import SlabLight, discrete_ordinates, entry
 
 THICKNESS = 5.0  # mm
@@ -18,13 +18,13 @@ LAYERS = 40  # of elements
 SCHEMES = (PUBLISHED, DIFFUSION, SP3)
 
 
-def column(body_of: BodyOf, layers: int = LAYERS) -> Body:
+def column(body_of: BodyOf, layers: int = LAYERS) -> StudyBody:
     """A column of `layers` layers of elements that stands for the infinite slab."""
     thicknesses = np.full(layers, THICKNESS / layers)
     return body_of(meshes.column(thicknesses, 2 * thicknesses[0]))
 
 
-def solved(body: Body, channels: list[Medium], eta: float, lambertian: bool, scheme: Scheme) -> list[SlabLight]:
+def solved(body: StudyBody, channels: list[Medium], eta: float, lambertian: bool, scheme: Scheme) -> list[SlabLight]:
     """What a column does, per channel, to light that entered at z = 0, collimated or Lambertian."""
     lit, unlit = body.normal[:, 2] < -0.5, body.normal[:, 2] > 0.5
     light = Light(np.outer(lit, np.ones(3)), None if lambertian else (0.0, 0.0, 1.0))

@@ -8,12 +8,13 @@ import numpy as np
 from rich.table import Table
 from scipy.special import eval_legendre
 
+from quadgraph.base.relative_error import relative_rms
 from quadgraph_validation.bodies import meshes
 from quadgraph_validation.bodies.media import Medium
 from quadgraph_validation.truth import monte_carlo, round_bodies
 from quadgraph_validation.truth.fresnel import transmittance_from_outside
 from quadgraph_validation.truth.round_bodies import Shell
-from quadgraph_validation.truth.schemes import DIFFUSION, PUBLISHED, SP3, Body, BodyOf, Light, Scheme
+from quadgraph_validation.truth.schemes import DIFFUSION, PUBLISHED, SP3, BodyOf, Light, Scheme, StudyBody
 
 RADIUS = 10.0  # mm
 MEDIUM = Medium(2.0, 0.01)
@@ -28,7 +29,7 @@ _SAMPLES = 400 * ZONES  # of cos(theta)
 _PARTS = 6  # of an edge: a face that straddles zones is shared between them
 
 
-def by_zone(body: Body, values: np.ndarray) -> np.ndarray:
+def by_zone(body: StudyBody, values: np.ndarray) -> np.ndarray:
     """Area-weighted mean (zones,) of values per face (n_f,)."""
     i, j = (part.ravel() for part in np.mgrid[:_PARTS, :_PARTS])
     inside = i + j < _PARTS
@@ -42,7 +43,7 @@ def by_zone(body: Body, values: np.ndarray) -> np.ndarray:
     return total / np.bincount(zone.ravel(), area.ravel(), ZONES)
 
 
-def exitance(body: Body, eta: float, scheme: Scheme) -> np.ndarray:
+def exitance(body: StudyBody, eta: float, scheme: Scheme) -> np.ndarray:
     """Scattered exitance (zones,), W/mm^2, from the dark side to the lit one, in 1 W/mm^2 along -z."""
     cosine = np.clip(body.normal[:, 2], 0, 1)
     q = cosine * transmittance_from_outside(cosine, eta)
@@ -65,8 +66,8 @@ def published(eta: float) -> np.ndarray:
 
 def halves(found: np.ndarray, truth: np.ndarray) -> tuple[float, float]:
     """Relative RMS errors over the lit and over the dark half."""
-    dark, lit = slice(0, ZONES // 2), slice(ZONES // 2, ZONES)
-    return tuple(float(np.sqrt(((found - truth)[half] ** 2).sum() / (truth[half] ** 2).sum())) for half in (lit, dark))
+    lit = np.arange(ZONES) >= ZONES // 2
+    return tuple(relative_rms(half, (found - truth)[:, None], truth[:, None]) for half in (lit, ~lit))
 
 
 def run(body_of: BodyOf) -> dict[str, Any]:

@@ -10,28 +10,28 @@ from rich.table import Table
 
 from quadgraph.bake.budget import finer_levels
 from quadgraph.bake.budget.surface_errors import PARTS
-from quadgraph_validation.accuracy.judged_levels import Case, Judged, judged
+from quadgraph_validation.accuracy.judged_levels import Judged, LevelCase, judged
 from quadgraph_validation.bodies import level_chains
-from quadgraph_validation.bodies.level_chains import Subject
+from quadgraph_validation.bodies.level_chains import ChainSubject
 
 FINER = 1  # the truth has four times the vertices: so few are left where errors of 1% are
 ASKED = (0.05, 0.02, 0.01)  # relative RMS error of M
 
 SUBJECTS = (
-    Subject("spot", "spot.ply", 4),
-    Subject("fertility", "fertility.ply", 6),
-    Subject("igea", "igea.ply", 5, 28000),
-    Subject("armadillo", "armadillo.ply", 6, 28000),
-    Subject("twirl", "twirl.ply", 5),
-    Subject("fandisk", "fandisk.ply", 4),
+    ChainSubject("spot", "spot.ply", 4),
+    ChainSubject("fertility", "fertility.ply", 6),
+    ChainSubject("igea", "igea.ply", 5, 28000),
+    ChainSubject("armadillo", "armadillo.ply", 6, 28000),
+    ChainSubject("twirl", "twirl.ply", 5),
+    ChainSubject("fandisk", "fandisk.ply", 4),
 )
 CASES = (
-    Case("spot", "skin1", "sun and sky"),
-    Case("fertility", "ketchup", "three"),
-    Case("igea", "skin2", "sun"),
-    Case("armadillo", "ketchup", "sun"),
-    Case("twirl", "potato", "lamp"),
-    Case("fandisk", "ketchup", "sun and sky"),
+    LevelCase("spot", "skin1", "sun and sky"),
+    LevelCase("fertility", "ketchup", "three"),
+    LevelCase("igea", "skin2", "sun"),
+    LevelCase("armadillo", "ketchup", "sun"),
+    LevelCase("twirl", "potato", "lamp"),
+    LevelCase("fandisk", "ketchup", "sun and sky"),
 )
 
 
@@ -52,19 +52,19 @@ class Pair:
         own = finer_levels.refined(judged_file, FINER, path.with_name(f"{path.stem}-refined.qgraph"))
         return cls(Judged(own, device, FINER), Judged(path, device, FINER))
 
-    def light(self, case: Case) -> None:
+    def light(self, case: LevelCase) -> None:
         """Set the case's material and lights, and find the truths."""
         self.own.light(case)
         self.original.light(case)
 
 
-def judge(body: Pair, case: Case) -> list[dict[str, Any]]:
+def judge(body: Pair, case: LevelCase) -> list[dict[str, Any]]:
     """A row per error asked for: whether the engine says that it got there, and the true error by part."""
     body.light(case)
     return [_row(body, case, asked) for asked in ASKED]
 
 
-def _row(body: Pair, case: Case, asked: float) -> dict[str, Any]:
+def _row(body: Pair, case: LevelCase, asked: float) -> dict[str, Any]:
     report = body.own.solve(FINER, error=asked)
     beside = body.original.solve(FINER, error=asked)
     return asdict(case) | {

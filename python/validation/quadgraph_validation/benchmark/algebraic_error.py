@@ -9,6 +9,7 @@ import numpy as np
 
 from quadgraph.bake.budget.surface_errors import unlit_part
 from quadgraph.base.errors import SolverError
+from quadgraph.base.relative_error import relative_rms
 
 if TYPE_CHECKING:
     from quadgraph.core import Engine
@@ -19,7 +20,7 @@ _TRUTH_ITERATIONS = 100_000
 
 
 @dataclass(frozen=True)
-class Judge:
+class AlgebraicJudge:
     """Area (n,) mm^2 and exitance (n, 3) W/mm^2 of the exact solution at the outside faces; unlit (n,) bool."""
 
     area: np.ndarray
@@ -28,15 +29,11 @@ class Judge:
 
     def error(self, exitance: np.ndarray) -> dict[str, float]:
         """Relative RMS over area of the difference to the truth, channels together: "whole" surface, "unlit" part."""
-        squared = self.area * ((exitance - self.exitance) ** 2).sum(axis=1)
-        size = self.area * (self.exitance**2).sum(axis=1)
-        return {
-            "whole": float(np.sqrt(squared.sum() / size.sum())),
-            "unlit": float(np.sqrt(squared[self.unlit].sum() / size[self.unlit].sum())),
-        }
+        weights = {"whole": self.area, "unlit": self.area * self.unlit}
+        return {part: relative_rms(weight, exitance - self.exitance, self.exitance) for part, weight in weights.items()}
 
 
-def judge(engine: Engine, **way: object) -> Judge:
+def judge(engine: Engine, **way: object) -> AlgebraicJudge:
     """Solve the same system far beyond what is asked of the solvers; `way` as for Engine.solve, less the solver.
 
     Raises SolverError if that does not converge.
@@ -49,4 +46,4 @@ def judge(engine: Engine, **way: object) -> Judge:
         raise SolverError(f"the exact solution: residual {residual:.1e} found, {_TRUTH_RESIDUAL:.0e} wanted")
     field = engine.surface_field()
     area = np.asarray(field["area"], np.float64)
-    return Judge(area, unlit_part(area, field["q"]), np.asarray(field["exitance"], np.float64))
+    return AlgebraicJudge(area, unlit_part(area, field["q"]), np.asarray(field["exitance"], np.float64))

@@ -11,7 +11,7 @@ from quadgraph.core import load_core
 from quadgraph_validation.benchmark import frame_passes as passes
 from quadgraph_validation.benchmark import live_frames as live
 from quadgraph_validation.benchmark import rivals, scaling, solver_convergence
-from quadgraph_validation.benchmark.bench_scene import Device, Scene, bake_bunny
+from quadgraph_validation.benchmark.bench_scene import BenchScene, Device, bake_bunny
 
 _HEIGHTS_MM = (30, 100)  # of the bunny that the solvers are compared on
 _PASSES_HEIGHT_MM = 60  # of the one whose passes are timed, in both orders
@@ -67,10 +67,10 @@ class Parts:
             return {order: self._bunny(_PASSES_HEIGHT_MM, order) for order in ("blocks", "random")}
         return {"blocks": self.file} | ({"random": self.random_order} if self.random_order else {})
 
-    def _scenes(self) -> list[Scene]:
+    def _scenes(self) -> list[BenchScene]:
         if self.file is not None:
-            return [Scene(self.file.stem, self.file, self.material)]
-        return [Scene(f"bunny, {h} mm", self._bunny(h, "blocks"), self.material) for h in _HEIGHTS_MM]
+            return [BenchScene(self.file.stem, self.file, self.material)]
+        return [BenchScene(f"bunny, {h} mm", self._bunny(h, "blocks"), self.material) for h in _HEIGHTS_MM]
 
     def _bunny(self, height_mm: float, order: str) -> Path:
         path = self.folder / f"bunny-{height_mm:g}mm-{order}.qgraph"

@@ -32,7 +32,7 @@ class Device:
 
 
 @dataclass(frozen=True)
-class Scene:
+class BenchScene:
     """A baked body under the one light, as the solvers are compared on."""
 
     name: str

@@ -11,7 +11,7 @@ from scipy.sparse.linalg import cg
 
 from quadgraph.bake.budget.surface_errors import unlit_part
 from quadgraph.base.errors import SolverError
-from quadgraph_validation.benchmark.algebraic_error import Judge
+from quadgraph_validation.benchmark.algebraic_error import AlgebraicJudge
 from quadgraph_validation.benchmark.linear_system import System
 
 _MOST_ITERATIONS = 1000
@@ -39,7 +39,7 @@ class Contest:
     def __init__(self, system: System, q: np.ndarray) -> None:
         self.system = system
         self.exact = np.column_stack([self._solve_exactly(c) for c in range(3)])
-        self.judge = Judge(system.area, unlit_part(system.area, q), system.exitance(self.exact))
+        self.judge = AlgebraicJudge(system.area, unlit_part(system.area, q), system.exitance(self.exact))
         weight = system.area[self.judge.unlit]
         self._weight = weight
         self.sizes = (weight[:, None] * self.judge.exitance[self.judge.unlit] ** 2).sum(axis=0)

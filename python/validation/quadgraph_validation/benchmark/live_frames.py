@@ -15,6 +15,7 @@ import numpy as np
 from rich.table import Table
 
 from quadgraph.base import pass_report
+from quadgraph.base.relative_error import relative_rms
 from quadgraph.core import load_core
 from quadgraph_validation.benchmark.bench_scene import Device
 from quadgraph_validation.benchmark.frame_passes import median_passes
@@ -76,8 +77,8 @@ def _off(engine: Any) -> dict[str, float]:
     field = engine.surface_field()
     exact = field["exitance"].mean(axis=1)
     relative = np.abs(shown - exact) / exact
-    square = np.average((shown - exact) ** 2, weights=field["area"]) / np.average(exact**2, weights=field["area"])
-    return {"median": float(np.median(relative)), "most": float(np.quantile(relative, 0.99)), "rms": float(square**0.5)}
+    rms = relative_rms(np.asarray(field["area"], np.float64), (shown - exact)[:, None], exact[:, None])
+    return {"median": float(np.median(relative)), "most": float(np.quantile(relative, 0.99)), "rms": rms}
 
 
 def _changed(part: str, frame: int) -> list[dict]:

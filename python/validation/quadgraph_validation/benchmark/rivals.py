@@ -23,10 +23,17 @@ from scipy.sparse.linalg import cg
 from quadgraph.base.errors import InputError, SolverError
 from quadgraph.base.progress import ProgressCallback
 from quadgraph_validation.benchmark import linear_system as systems
-from quadgraph_validation.benchmark.bench_scene import DIRECTION, Device, Scene
+from quadgraph_validation.benchmark.bench_scene import DIRECTION, BenchScene, Device
 from quadgraph_validation.benchmark.contest import Contest, Iterate, counts_for_residual
 from quadgraph_validation.benchmark.linear_system import System
-from quadgraph_validation.benchmark.solver_convergence import DIAGONAL, OURS, TARGETS, Point, Runner, Way
+from quadgraph_validation.benchmark.solver_convergence import (
+    DIAGONAL,
+    OURS,
+    TARGETS,
+    CurvePoint,
+    SolverRunner,
+    SolverWay,
+)
 
 
 @dataclass(frozen=True)
@@ -113,7 +120,11 @@ class Entrant:
 
 
 def run(
-    scene: Scene, device: Device, repeats: int, tell: ProgressCallback, ways: Sequence[Way] = (OURS, DIAGONAL)
+    scene: BenchScene,
+    device: Device,
+    repeats: int,
+    tell: ProgressCallback,
+    ways: Sequence[SolverWay] = (OURS, DIAGONAL),
 ) -> dict[str, Any]:
     """Our solvers by `ways` and the rivals, each to the targets of convergence.py; times are medians of `repeats`.
 
@@ -126,7 +137,7 @@ def run(
     contest = Contest(systems.assemble(engine.graph, scene.material, q, DIRECTION), q)
     runners = []
     for way in ways:
-        runners.append(Runner(engine, way, contest.judge))
+        runners.append(SolverRunner(engine, way, contest.judge))
         tell(f"{scene.name}: {way.label}")
         runners[-1].explore()
     entrants = []
@@ -151,7 +162,7 @@ def run(
 def _to_target(
     target: float,
     contest: Contest,
-    runners: Sequence[Runner],
+    runners: Sequence[SolverRunner],
     entrants: Sequence[Entrant],
     repeats: int,
     tell: ProgressCallback,
@@ -180,7 +191,7 @@ def _to_target(
     }
 
 
-def _reached(runner: Runner, target: float) -> Point:
+def _reached(runner: SolverRunner, target: float) -> CurvePoint:
     point = runner.reaching(target)
     if point is None:
         raise SolverError(f"{runner.way.label}: error {target:g} not reached")

@@ -18,7 +18,7 @@ import numpy as np
 from quadgraph.base.progress import ProgressCallback
 from quadgraph_validation.benchmark.algebraic_error import judge
 from quadgraph_validation.benchmark.bench_scene import LIGHT, Device
-from quadgraph_validation.benchmark.solver_convergence import OURS, Runner, Way
+from quadgraph_validation.benchmark.solver_convergence import OURS, SolverRunner, SolverWay
 from quadgraph_validation.bodies.bunny import bunny_mesh
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ _LIMITS = {"time_limit_s": 3600.0, "memory_limit_bytes": 24 << 30}
 
 
 def run(
-    folder: Path, sizes: tuple[int, ...], device: Device, repeats: int, tell: ProgressCallback, way: Way = OURS
+    folder: Path, sizes: tuple[int, ...], device: Device, repeats: int, tell: ProgressCallback, way: SolverWay = OURS
 ) -> dict[str, Any]:
     """Bake into `folder` what is not there from an earlier run, count cycles, take times (medians of `repeats`).
 
@@ -106,9 +106,9 @@ def _subdivided(folder: Path, size: int, steps: int) -> Path:
     return path
 
 
-def _measure(engine: Engine, way: Way, repeats: int) -> dict[str, Any]:
+def _measure(engine: Engine, way: SolverWay, repeats: int) -> dict[str, Any]:
     """Least cycles to the tolerance in the unlit part, by the true error, and by the solver's own; work; time of it."""
-    runner = Runner(engine, way, judge(engine, **way.system))
+    runner = SolverRunner(engine, way, judge(engine, **way.system))
     point = next((point for n in range(1, _MOST_CYCLES) if (point := runner.at(n, TOLERANCE)).unlit <= TOLERANCE), None)
     report = engine.solve(**way.system, solver=way.solver, tolerance=TOLERANCE, inter_reflection=False)
     found = {"cycles_by_estimate": report["levels"][-1]["iterations"]}

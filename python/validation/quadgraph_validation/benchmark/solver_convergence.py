@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 from quadgraph.base.errors import SolverError
 from quadgraph.base.progress import ProgressCallback
-from quadgraph_validation.benchmark.algebraic_error import Judge, judge
-from quadgraph_validation.benchmark.bench_scene import Device, Scene
+from quadgraph_validation.benchmark.algebraic_error import AlgebraicJudge, judge
+from quadgraph_validation.benchmark.bench_scene import BenchScene, Device
 from quadgraph_validation.benchmark.frame_passes import PICTURE_PASSES
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ _LADDER = (1, 2, 3, 5, 8, 13, 21, 34, 55, 89, 144, 233, 377, 610, 987, 1597)
 
 
 @dataclass(frozen=True)
-class Way:
+class SolverWay:
     """A solver and what it solves, in the words of Engine.solve."""
 
     solver: str
@@ -52,21 +52,21 @@ class Way:
         return {"method": self.method, "source": self.source, "model": self.model}
 
 
-PUBLISHED = Way("cascade", "quadgraph-fdm", "diffuse", COARSE_TOLERANCES, "published")
-OURS = Way("fmg-pcg")
-DIAGONAL = Way("dpcg", coarse_tolerances=COARSE_TOLERANCES)
+PUBLISHED = SolverWay("cascade", "quadgraph-fdm", "diffuse", COARSE_TOLERANCES, "published")
+OURS = SolverWay("fmg-pcg")
+DIAGONAL = SolverWay("dpcg", coarse_tolerances=COARSE_TOLERANCES)
 WAYS = (
     OURS,
-    Way("vcycle"),
+    SolverWay("vcycle"),
     DIAGONAL,
-    Way("cascade", coarse_tolerances=COARSE_TOLERANCES),
-    Way("jacobi"),
+    SolverWay("cascade", coarse_tolerances=COARSE_TOLERANCES),
+    SolverWay("jacobi"),
     PUBLISHED,
 )
 
 
 @dataclass
-class Point:
+class CurvePoint:
     """One solve: iterations on the finest level after coarser ones to `tolerance`; what came out; times of all repeats.
 
     residual: sqrt(r^T D^-1 r / b^T D^-1 b) of the worst channel.
@@ -86,44 +86,44 @@ class Point:
         return vars(self) | {"time_ms": median(self.time_ms), "wall_ms": median(self.wall_ms)}
 
 
-class Runner:
+class SolverRunner:
     """Runs one way on one engine; remembers every point it has seen."""
 
-    def __init__(self, engine: Engine, way: Way, judged: Judge) -> None:
+    def __init__(self, engine: Engine, way: SolverWay, judged: AlgebraicJudge) -> None:
         self.way = way
         self._engine = engine
         self._judge = judged
-        self._points: dict[tuple[int, float], Point] = {}
+        self._points: dict[tuple[int, float], CurvePoint] = {}
 
-    def at(self, iterations: int, tolerance: float) -> Point:
+    def at(self, iterations: int, tolerance: float) -> CurvePoint:
         """The point, run once if it is new."""
         key = (iterations, tolerance)
         if key not in self._points:
             report, _ = self._solve(*key)
             error = self._judge.error(self._engine.surface_field()["exitance"])
-            self._points[key] = Point(*key, report["work"], report["levels"][-1]["residual"], **error)
+            self._points[key] = CurvePoint(*key, report["work"], report["levels"][-1]["residual"], **error)
         return self._points[key]
 
-    def time(self, point: Point) -> None:
+    def time(self, point: CurvePoint) -> None:
         """Run a point again and keep its times."""
         _, wall_ms = self._solve(point.iterations, point.tolerance)
         point.wall_ms.append(wall_ms)
         passes = [p for p in self._engine.passes if p["name"] not in PICTURE_PASSES]
         point.time_ms.append(sum(p["time_ms"] for p in passes))
 
-    def reaching(self, target: float) -> Point | None:
+    def reaching(self, target: float) -> CurvePoint | None:
         """The point of least work whose error of the unlit part is no larger."""
         return next((point for point in self.front() if point.unlit <= target), None)
 
-    def front(self) -> list[Point]:
+    def front(self) -> list[CurvePoint]:
         """Points that none other beats in both work and error of the unlit part, by growing work."""
-        chosen: list[Point] = []
+        chosen: list[CurvePoint] = []
         for point in sorted(self._points.values(), key=lambda p: (p.work, p.unlit)):
             if not chosen or point.unlit < chosen[-1].unlit:
                 chosen.append(point)
         return chosen
 
-    def curve(self) -> list[Point]:
+    def curve(self) -> list[CurvePoint]:
         """What is worth timing: the front without what bisection tried on the way."""
         wanted = [self.reaching(target) for target in TARGETS]
         return [point for point in self.front() if point.iterations in _LADDER or point in wanted]
@@ -138,8 +138,8 @@ class Runner:
             for target in TARGETS:
                 self._bisect(rungs, tolerance, target)
 
-    def _climb(self, tolerance: float) -> list[Point]:
-        rungs: list[Point] = []
+    def _climb(self, tolerance: float) -> list[CurvePoint]:
+        rungs: list[CurvePoint] = []
         for iterations in _LADDER:
             arrived = self.reaching(END)
             if iterations > MOST_ITERATIONS or (rungs and arrived and rungs[-1].work >= arrived.work):
@@ -149,7 +149,7 @@ class Runner:
                 break
         return rungs
 
-    def _bisect(self, rungs: list[Point], tolerance: float, target: float) -> None:
+    def _bisect(self, rungs: list[CurvePoint], tolerance: float, target: float) -> None:
         reached = next((i for i, point in enumerate(rungs) if point.unlit <= target), 0)
         low, high = (rungs[reached - 1], rungs[reached]) if reached else (rungs[0], rungs[0])
         while high.iterations - low.iterations > 1 and low.work < self.reaching(target).work:
@@ -172,20 +172,20 @@ class Runner:
 
 
 def run(
-    scene: Scene, device: Device, repeats: int, tell: ProgressCallback, ways: tuple[Way, ...] = WAYS
+    scene: BenchScene, device: Device, repeats: int, tell: ProgressCallback, ways: tuple[SolverWay, ...] = WAYS
 ) -> dict[str, Any]:
     """Curves and targets of every way on a scene; times are medians of `repeats` rounds over all of them in turn.
 
     Each system has an engine of its own, so that no solve assembles. Raises InputError, SolverError.
     """
-    engines: dict[tuple, tuple[Engine, Judge]] = {}
+    engines: dict[tuple, tuple[Engine, AlgebraicJudge]] = {}
     runners = []
     for way in ways:
         key = tuple(way.system.values())
         if key not in engines:
             engine = device.open(scene.path, scene.material, scene.lights)
             engines[key] = engine, judge(engine, **way.system)
-        runners.append(Runner(engines[key][0], way, engines[key][1]))
+        runners.append(SolverRunner(engines[key][0], way, engines[key][1]))
     for runner in runners:
         tell(f"{scene.name}: {runner.way.label}")
         runner.explore()
@@ -206,7 +206,7 @@ def run(
     }
 
 
-def _entry(runner: Runner) -> dict[str, Any]:
+def _entry(runner: SolverRunner) -> dict[str, Any]:
     reached = [(target, runner.reaching(target)) for target in TARGETS]
     return {"name": runner.way.label, "solver": runner.way.solver, **runner.way.system} | {
         "points": [point.record() for point in runner.curve()],

@@ -45,7 +45,7 @@ SHAPES: dict[str, Callable[[int], trimesh.Trimesh]] = {"sphere": _sphere, "torus
 
 
 @dataclass(frozen=True)
-class Subject:
+class ChainSubject:
     """A body to bake. mesh: a file of the meshes' folder, or a name in SHAPES with `detail`.
 
     height: mm along y; vertices: about how many the finest surface gets, None for all; levels: how many at most.
@@ -59,7 +59,7 @@ class Subject:
     detail: int = 6
 
 
-def chosen(subjects: Sequence[Subject], names: Sequence[str]) -> list[Subject]:
+def chosen(subjects: Sequence[ChainSubject], names: Sequence[str]) -> list[ChainSubject]:
     """Those of the given names, all if there are none. Raises InputError for a name that is not among them."""
     known = {subject.name: subject for subject in subjects}
     for name in names:
@@ -68,7 +68,7 @@ def chosen(subjects: Sequence[Subject], names: Sequence[str]) -> list[Subject]:
     return [known[name] for name in names or known]
 
 
-def baked(subject: Subject, mesh_folder: Path, folder: Path) -> Path:
+def baked(subject: ChainSubject, mesh_folder: Path, folder: Path) -> Path:
     """Bake a subject into `folder`, without what its faces see. Raises as quadgraph.bake.pipeline.bake does."""
     source = mesh_folder / subject.mesh
     if subject.mesh in SHAPES:

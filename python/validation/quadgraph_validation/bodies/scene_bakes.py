@@ -11,7 +11,7 @@ from quadgraph.file import qgraph_file
 from quadgraph.mesh import mesh_io
 from quadgraph_validation.base import store
 from quadgraph_validation.bodies import scene_meshes
-from quadgraph_validation.bodies.scenes import Scene
+from quadgraph_validation.bodies.scenes import StudyScene
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class SceneBake:
         return store.kept(self.path, lambda working: bake(self.source, working, self.options))
 
 
-def of(scene: Scene, choice: Choice, meshes: Path, folder: Path) -> SceneBake:
+def of(scene: StudyScene, choice: Choice, meshes: Path, folder: Path) -> SceneBake:
     """A scene's body baked that way, to be kept in `folder`. Raises InputError if its mesh cannot be read."""
     mesh = scene_meshes.file(scene, meshes)
     source = mesh_io.read_surface(mesh, height_mm=scene.height)

@@ -8,12 +8,12 @@ import trimesh
 
 from quadgraph.base import atomic_file
 from quadgraph.base.cache_folder import cache_folder
-from quadgraph_validation.bodies.scenes import Scene
+from quadgraph_validation.bodies.scenes import StudyScene
 
 _SUBDIVISIONS = 5  # 10,242 vertices
 
 
-def file(scene: Scene, meshes: Path) -> Path:
+def file(scene: StudyScene, meshes: Path) -> Path:
     """The mesh file of a scene: `icosphere`, which is written to the default folder, `pymeshlab/NAME`, one of that
     package's samples, or a file of the folder `meshes`. It need not exist.
     """

@@ -50,7 +50,7 @@ class Image:
 
 
 @dataclass(frozen=True)
-class Scene:
+class StudyScene:
     """A body, its optical properties, one grey light of 1 W/mm^2 and the views.
 
     mesh: as scene_meshes.file finds it; voxel: mm, edge of the cubes within which path tracing takes the coefficients
@@ -106,7 +106,7 @@ class Grid:
         return self.voxel * np.array(self.sigma_a.shape[::-1])
 
 
-def grid_of(scene: Scene, surface: Surface, channel: int = 0) -> Grid:
+def grid_of(scene: StudyScene, surface: Surface, channel: int = 0) -> Grid:
     """Sample the scene's coefficients in the middle of every cube; cubes begin at multiples of their edge."""
     low = np.floor(surface.vertices.min(axis=0) / scene.voxel) * scene.voxel
     count = np.ceil((surface.vertices.max(axis=0) - low) / scene.voxel).astype(int)
@@ -132,7 +132,7 @@ def camera_axes(view: View) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return np.cross(up, backward), up, backward
 
 
-def description(scene: Scene, image: str, mesh_sha256: str, grid: Grid) -> dict[str, Any]:
+def description(scene: StudyScene, image: str, mesh_sha256: str, grid: Grid) -> dict[str, Any]:
     """Everything of the scene that one of its images depends on, ready for JSON; grid: of the image's channel."""
     digest = hashlib.sha256()
     for values in (grid.low.astype(np.float64), grid.sigma_s_prime, grid.sigma_a):
@@ -197,7 +197,7 @@ def pale(position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 SCENES = {
     scene.name: scene
     for scene in (
-        Scene(
+        StudyScene(
             "bunny",
             "bunny.ply",
             1.0,
@@ -206,7 +206,7 @@ SCENES = {
             (-0.5, -0.5, -0.7),
             {"A": View(20, 15, 230, (38, 90)), "B": View(245, 20, 230, (24, 50), effort=4)},
         ),
-        Scene(
+        StudyScene(
             "fertility",
             "fertility.ply",
             1.0,
@@ -215,8 +215,8 @@ SCENES = {
             (-0.6, -0.5, -0.6),
             {"A": View(15, 20, 280, (46, 78)), "B": View(150, 15, 280, (46, 74), effort=3)},
         ),
-        Scene("spot", "spot.ply", 1.3, even, 12.0, None, {"A": View(35, 10, 265, (40, 84))}),
-        Scene(
+        StudyScene("spot", "spot.ply", 1.3, even, 12.0, None, {"A": View(35, 10, 265, (40, 84))}),
+        StudyScene(
             "sphere",
             "icosphere",
             1.0,
@@ -226,7 +226,7 @@ SCENES = {
             {"A": View(40, 15, 46, (44, 64)), "B": View(140, 15, 46, (44, 64), effort=3)},
             height=20.0,
         ),
-        Scene(
+        StudyScene(
             "skin",
             "pymeshlab/bunny.obj",
             1.0,
@@ -241,7 +241,7 @@ SCENES = {
 }
 
 
-def chosen(names: Sequence[str]) -> list[Scene]:
+def chosen(names: Sequence[str]) -> list[StudyScene]:
     """Scenes of the given names, all if there are none. Raises InputError for a name that is not among them."""
     for name in names:
         if name not in SCENES:

@@ -16,8 +16,8 @@ from quadgraph.file import qgraph_file, sections
 from quadgraph.mesh.surface import Surface
 from quadgraph_validation.bodies import level_chains
 from quadgraph_validation.bodies.scene_bakes import Choice, SceneBake
-from quadgraph_validation.bodies.scenes import Scene
-from quadgraph_validation.chart.chart_method import Chain
+from quadgraph_validation.bodies.scenes import StudyScene
+from quadgraph_validation.chart.chart_method import MethodChain
 from quadgraph_validation.chart.pixels import Hits, hits
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ STEP_DEGREES = 5.0  # by which a parallel light turns from frame to frame
 STEP_SHARE = 0.05  # by which an even light dims, which has no direction to turn
 
 
-def light_at(scene: Scene, step: int) -> str:
+def light_at(scene: StudyScene, step: int) -> str:
     """The scene's light as the engine reads it, `step` frames before it has arrived."""
     if scene.direction is None:
         return f"ambient:{1 - STEP_SHARE * step:g}"
@@ -48,7 +48,7 @@ class Display:
 
 
 @dataclass
-class Body:
+class ChartBody:
     """A scene's baked chain, at `path`; files of its coarser levels go to `folder`. pixels: edge of a frame's picture;
     others: the same body baked in further ways, made when they are first asked for.
 
@@ -56,7 +56,7 @@ class Body:
     alone share it.
     """
 
-    scene: Scene
+    scene: StudyScene
     path: Path
     folder: Path
     device: str
@@ -71,11 +71,11 @@ class Body:
         return qgraph_file.read(self.path)
 
     @cached_property
-    def chain(self) -> Chain:
+    def chain(self) -> MethodChain:
         """What there is to choose methods by."""
         seen = sections.read_exchange(self.file)
         faces = (len(self.file.sections[f"level{level}/faces"]) for level in range(self.file.level_count))
-        return Chain(tuple(faces), None if seen is None else seen.level, tuple(self.others))
+        return MethodChain(tuple(faces), None if seen is None else seen.level, tuple(self.others))
 
     def level_path(self, level: int, choice: Choice | None = None) -> Path:
         """A file whose finest level that is, of the chain or of the body baked in another way.

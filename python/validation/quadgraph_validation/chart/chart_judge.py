@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from quadgraph.bake.budget import surface_errors
-from quadgraph_validation.chart.chart_body import Body
-from quadgraph_validation.chart.chart_method import CHAIN, Method
+from quadgraph_validation.chart.chart_body import ChartBody
+from quadgraph_validation.chart.chart_method import CHAIN, ChartMethod
 from quadgraph_validation.truth import blocks
 from quadgraph_validation.truth.pde_truth import PdeTruth
-from quadgraph_validation.truth.stored_truth import Truth
+from quadgraph_validation.truth.stored_truth import StoredTruth
 
 _FEW = 10  # blocks: fewer are no part
 
@@ -23,18 +23,18 @@ PdeTruths = Mapping[tuple[str, str], PdeTruth]
 
 
 @dataclass
-class Judge:
+class ChartJudge:
     """One scene's truths: of each PDE, and path-traced by name of Scene.images.
 
     A PDE truth knows no light from part to part, and no surface but its own chain's: what follows that light, or lives
     on another mesh, is judged by transport alone.
     """
 
-    body: Body
+    body: ChartBody
     pde: PdeTruths
-    images: Mapping[str, Truth]
+    images: Mapping[str, StoredTruth]
 
-    def errors(self, method: Method, pictures: Mapping[str, np.ndarray]) -> dict[str, dict[str, float] | None]:
+    def errors(self, method: ChartMethod, pictures: Mapping[str, np.ndarray]) -> dict[str, dict[str, float] | None]:
         """Relative RMS errors by truth and part, those of too small a part left out; None where a truth cannot tell.
 
         pictures: the method's by view, (PIXELS, PIXELS, 3).

@@ -11,9 +11,9 @@ import numpy as np
 
 from quadgraph.base.errors import SolverError, ToolError
 from quadgraph.base.progress import ProgressCallback
-from quadgraph_validation.chart.chart_body import STEP_DEGREES, STEP_SHARE, Body
-from quadgraph_validation.chart.chart_judge import Judge
-from quadgraph_validation.chart.chart_method import SETTLED, SWING, Method, bake_settings
+from quadgraph_validation.chart.chart_body import STEP_DEGREES, STEP_SHARE, ChartBody
+from quadgraph_validation.chart.chart_judge import ChartJudge
+from quadgraph_validation.chart.chart_method import SETTLED, SWING, ChartMethod, bake_settings
 from quadgraph_validation.truth.path_tracing import BATCH
 
 # What a frame consists of, by the passes of the engine and of others; the rest is the solver's.
@@ -26,10 +26,10 @@ STAGES = {
 
 
 @dataclass
-class Point:
+class ChartPoint:
     """A method, the passes of all its frames in ms, its errors and pictures, or why there are none."""
 
-    method: Method
+    method: ChartMethod
     frames: list[dict[str, float]] = field(default_factory=list)
     errors: dict[str, dict[str, float] | None] = field(default_factory=dict)
     pictures: dict[str, np.ndarray] = field(default_factory=dict)
@@ -60,11 +60,13 @@ def stages(passes: dict[str, float]) -> dict[str, float]:
     return spent
 
 
-def measure(body: Body, judge: Judge, methods: Sequence[Method], repeats: int, tell: ProgressCallback) -> list[Point]:
+def measure(
+    body: ChartBody, judge: ChartJudge, methods: Sequence[ChartMethod], repeats: int, tell: ProgressCallback
+) -> list[ChartPoint]:
     """Every method's point. Rounds alternate between all methods, so that a slower minute slows them all."""
     tell(f"{body.scene.name}: truth")
     judge.noise()  # what is unlit is found on an engine that methods share: before they do
-    points = [Point(method) for method in methods]
+    points = [ChartPoint(method) for method in methods]
     for number in range(repeats):
         for index, point in enumerate(points):
             progress = f"round {number + 1} of {repeats}, method {index + 1} of {len(points)}"
@@ -74,7 +76,7 @@ def measure(body: Body, judge: Judge, methods: Sequence[Method], repeats: int, t
     return points
 
 
-def _round(body: Body, judge: Judge, point: Point) -> None:
+def _round(body: ChartBody, judge: ChartJudge, point: ChartPoint) -> None:
     try:
         point.method.prepare(body)
         point.frames += [point.method.frame(step) for step in SWING[1:]]
@@ -85,7 +87,7 @@ def _round(body: Body, judge: Judge, point: Point) -> None:
         point.failed = str(error)
 
 
-def scene_record(body: Body, judge: Judge, points: Sequence[Point]) -> dict[str, Any]:
+def scene_record(body: ChartBody, judge: ChartJudge, points: Sequence[ChartPoint]) -> dict[str, Any]:
     """One scene of the record."""
     samples = {name: image.batches * BATCH for name, image in judge.images.items()}
     return {
@@ -101,7 +103,7 @@ def scene_record(body: Body, judge: Judge, points: Sequence[Point]) -> dict[str,
     }
 
 
-def _bakes(body: Body, points: Sequence[Point]) -> list[dict[str, Any]]:
+def _bakes(body: ChartBody, points: Sequence[ChartPoint]) -> list[dict[str, Any]]:
     """Levels of the chains other than the truth's that points were measured on."""
     used = [point.method.settings for point in points if not point.failed]
     ways = [(bake_settings(choice), choice) for choice in body.others]

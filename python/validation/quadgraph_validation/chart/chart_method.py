@@ -12,7 +12,7 @@ from quadgraph.base.errors import InputError
 from quadgraph_validation.bodies.scene_bakes import Choice
 
 if TYPE_CHECKING:
-    from quadgraph_validation.chart.chart_body import Body
+    from quadgraph_validation.chart.chart_body import ChartBody
 
 SWING = (2, 1, 0)  # steps of the light: a method is settled at the first, frames follow it to the scene's own, step 0
 CHAIN = "chain"  # `bake` of the chain that the PDE truth knows
@@ -29,7 +29,7 @@ def bake_settings(choice: Choice | None) -> dict[str, Any]:
     return {"bake": "default" if choice.grading is None else "K", "K": choice.grading}
 
 
-class Method(Protocol):
+class ChartMethod(Protocol):
     """One way to answer a scene; one point of the chart.
 
     family: what it is a setting of, for colour and filter; settings: everything it depends on, ready for JSON, of which
@@ -42,7 +42,7 @@ class Method(Protocol):
     family: str
     settings: dict[str, Any]
 
-    def prepare(self, body: Body) -> None:
+    def prepare(self, body: ChartBody) -> None:
         """Settle at the light of SWING[0]: whatever a running program would have done before. Not timed.
 
         Raises SolverError where the method cannot answer this body.
@@ -59,7 +59,7 @@ class Method(Protocol):
 
 
 @dataclass(frozen=True)
-class Chain:
+class MethodChain:
     """What default methods are chosen by: faces of each level, finest first, and the level whose faces know what they
     see of each other, None if there is none; others: further ways in which the body is baked.
     """
@@ -69,7 +69,7 @@ class Chain:
     others: tuple[Choice, ...] = ()
 
 
-Provider = Callable[[Chain], Iterable[Method]]
+Provider = Callable[[MethodChain], Iterable[ChartMethod]]
 _PROVIDERS: list[Provider] = []
 
 
@@ -79,7 +79,7 @@ def register(provider: Provider) -> Provider:
     return provider
 
 
-def methods(chain: Chain, wanted: Iterable[str] = ()) -> list[Method]:
+def methods(chain: MethodChain, wanted: Iterable[str] = ()) -> list[ChartMethod]:
     """All registered methods for a chain; with `wanted`, those whose names have any of these texts in them.
 
     Raises InputError for a text that no name has.

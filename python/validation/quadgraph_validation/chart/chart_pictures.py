@@ -7,14 +7,14 @@ from pathlib import Path
 
 from quadgraph_validation.accuracy import scene_figures
 from quadgraph_validation.accuracy.scenes_study import Comparison
-from quadgraph_validation.chart.chart_judge import Judge
-from quadgraph_validation.chart.chart_measure import Point
+from quadgraph_validation.chart.chart_judge import ChartJudge
+from quadgraph_validation.chart.chart_measure import ChartPoint
 
 # Title to the family whose picture is shown, of all its points the one that is closest; None: of all families.
 SHOWN = {"published": "quadgraph-fdm, as published", "ours": None, "dipole": "dipole per vertex"}
 
 
-def write(folder: Path, judge: Judge, points: Sequence[Point]) -> list[Path]:
+def write(folder: Path, judge: ChartJudge, points: Sequence[ChartPoint]) -> list[Path]:
     """Draw pictures-SCENE.png with those of SHOWN that were measured; nothing without path-traced pictures.
 
     Raises InputError without matplotlib.
@@ -32,6 +32,6 @@ def write(folder: Path, judge: Judge, points: Sequence[Point]) -> list[Path]:
     return [path]
 
 
-def _closest(points: Sequence[Point], family: str | None) -> Point | None:
+def _closest(points: Sequence[ChartPoint], family: str | None) -> ChartPoint | None:
     known = [point for point in points if point.errors.get("transport") and family in (None, point.method.family)]
     return min(known, key=lambda point: point.errors["transport"]["whole"], default=None)

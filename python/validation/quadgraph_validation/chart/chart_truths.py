@@ -10,15 +10,15 @@ from quadgraph.base.cache_folder import cache_folder
 from quadgraph.base.errors import InputError
 from quadgraph_validation.base.study_folders import COMMITTED_TRUTH
 from quadgraph_validation.bodies import scene_bakes, scene_meshes
-from quadgraph_validation.bodies.scenes import Scene
+from quadgraph_validation.bodies.scenes import StudyScene
 from quadgraph_validation.chart import (
     path_method,  # noqa: F401  registers them
 )
-from quadgraph_validation.chart.chart_body import Body
-from quadgraph_validation.chart.chart_judge import Judge, PdeTruths
-from quadgraph_validation.chart.chart_method import CHAIN, Method, methods
+from quadgraph_validation.chart.chart_body import ChartBody
+from quadgraph_validation.chart.chart_judge import ChartJudge, PdeTruths
+from quadgraph_validation.chart.chart_method import CHAIN, ChartMethod, methods
 from quadgraph_validation.truth import pde_truth, truth_run
-from quadgraph_validation.truth.stored_truth import Truth
+from quadgraph_validation.truth.stored_truth import StoredTruth
 
 # Only path tracing can judge them: as `bake` does by default, by the paper's mesher from fine to coarse, on a polygrid.
 OTHER_BAKES = (
@@ -43,14 +43,14 @@ def folders(meshes: Path, truth: Path | None) -> Folders:
 
 
 def subject(
-    scene: Scene,
+    scene: StudyScene,
     where: Folders,
     against: Sequence[str],
     wanted: Sequence[str],
     working: Path,
     device: str,
     pixels: int,
-) -> tuple[Body, Judge, list[Method]]:
+) -> tuple[ChartBody, ChartJudge, list[ChartMethod]]:
     """A scene with its judge and its methods, those that `wanted` names.
 
     Bakes the chain if it is not there; raises InputError if a truth in `against` is absent or stale.
@@ -58,13 +58,13 @@ def subject(
     images = _images(scene, where) if "transport" in against else {}
     ways = OTHER_BAKES if "transport" in against else ()
     others = {choice: scene_bakes.of(scene, choice, where.meshes, where.pde) for choice in ways}
-    body = Body(scene, pde_truth.chain(scene, where.meshes, where.pde), working, device, pixels, others)
+    body = ChartBody(scene, pde_truth.chain(scene, where.meshes, where.pde), working, device, pixels, others)
     chosen = methods(body.chain, wanted)
     pde = _pde(scene, where, chosen) if "pde" in against else {}
-    return body, Judge(body, pde, images), chosen
+    return body, ChartJudge(body, pde, images), chosen
 
 
-def _images(scene: Scene, where: Folders) -> dict[str, Truth]:
+def _images(scene: StudyScene, where: Folders) -> dict[str, StoredTruth]:
     found = truth_run.subject(scene, scene_meshes.file(scene, where.meshes))
     images = {name: truth_run.stored(found, where.transport, name) for name in scene.images}
     for name, image in images.items():
@@ -74,7 +74,7 @@ def _images(scene: Scene, where: Folders) -> dict[str, Truth]:
     return images
 
 
-def _pde(scene: Scene, where: Folders, chosen: Sequence[Method]) -> PdeTruths:
+def _pde(scene: StudyScene, where: Folders, chosen: Sequence[ChartMethod]) -> PdeTruths:
     """Of the equations that methods solve, in their order."""
     judged = [method.settings for method in chosen if not method.settings["inter_reflection"]]
     judged = [settings for settings in judged if settings["bake"] == CHAIN]

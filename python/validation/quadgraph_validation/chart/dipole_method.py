@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from quadgraph_validation.chart.chart_body import Body, light_at
-from quadgraph_validation.chart.chart_method import SWING, Chain, Method, bake_settings, register
+from quadgraph_validation.chart.chart_body import ChartBody, light_at
+from quadgraph_validation.chart.chart_method import SWING, ChartMethod, MethodChain, bake_settings, register
 from quadgraph_validation.chart.dipole import Dipole, transport
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ class DipoleMethod:
     level: int
     name: str = ""
     family: str = "dipole per vertex"
-    _body: Body | None = field(default=None, repr=False)
+    _body: ChartBody | None = field(default=None, repr=False)
     _matrices: list[np.ndarray] = field(default_factory=list, repr=False)
     _exitance: np.ndarray | None = field(default=None, repr=False)
 
@@ -56,7 +56,7 @@ class DipoleMethod:
         }
         return told | bake_settings(None) | {"runs_on": "CPU (numpy); light and picture on the device"}
 
-    def prepare(self, body: Body) -> None:
+    def prepare(self, body: ChartBody) -> None:
         """Make the matrix, and an engine that has something to show."""
         if self._body is not body:
             self._body = body
@@ -113,7 +113,7 @@ class DipoleMethod:
 
 
 @register
-def dipole_methods(chain: Chain) -> Iterator[Method]:
+def dipole_methods(chain: MethodChain) -> Iterator[ChartMethod]:
     """On every level whose matrix is not too large: a closed surface has half as many vertices as faces."""
     for level, faces in enumerate(chain.faces):
         if faces * (faces // 2 + 2) * 4 <= _MOST_BYTES:

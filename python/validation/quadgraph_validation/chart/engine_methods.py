@@ -11,8 +11,8 @@ import numpy as np
 from quadgraph.base.pass_report import ms_by_pass
 from quadgraph_validation.bodies.scene_bakes import Choice
 from quadgraph_validation.bodies.scenes import FOV, PIXELS
-from quadgraph_validation.chart.chart_body import Body, light_at
-from quadgraph_validation.chart.chart_method import SETTLED, SWING, Chain, Method, bake_settings, register
+from quadgraph_validation.chart.chart_body import ChartBody, light_at
+from quadgraph_validation.chart.chart_method import SETTLED, SWING, ChartMethod, MethodChain, bake_settings, register
 
 if TYPE_CHECKING:
     from quadgraph.core import Engine
@@ -39,7 +39,7 @@ class EngineMethod:
     cycles: int = 0
     active_layers: int = 0
     choice: Choice | None = None
-    _body: Body | None = field(default=None, repr=False)
+    _body: ChartBody | None = field(default=None, repr=False)
 
     @property
     def family(self) -> str:
@@ -67,7 +67,7 @@ class EngineMethod:
         del told["choice"]
         return told | bake_settings(self.choice) | {"tolerance": None if self.cycles else SETTLED, "runs_on": "device"}
 
-    def prepare(self, body: Body) -> None:
+    def prepare(self, body: ChartBody) -> None:
         """Solve for the light two frames ago."""
         first, self._body = self._body is not body, body
         self._engine.set_lights([light_at(body.scene, SWING[0])])
@@ -123,7 +123,7 @@ class EngineMethod:
 
 
 @register
-def engine_methods(chain: Chain) -> Iterator[Method]:
+def engine_methods(chain: MethodChain) -> Iterator[ChartMethod]:
     """Every axis once from the default of each model, not their product."""
     levels = range(len(chain.faces))
     for model in ("sp3", "diffusion"):

@@ -10,8 +10,8 @@ import numpy as np
 
 from quadgraph.base.pass_report import ms_by_pass
 from quadgraph_validation.bodies.scenes import FOV, PIXELS, bounding_sphere
-from quadgraph_validation.chart.chart_body import Body, light_at
-from quadgraph_validation.chart.chart_method import SWING, Chain, Method, bake_settings, register
+from quadgraph_validation.chart.chart_body import ChartBody, light_at
+from quadgraph_validation.chart.chart_method import SWING, ChartMethod, MethodChain, bake_settings, register
 
 if TYPE_CHECKING:
     from quadgraph.core import Engine
@@ -26,7 +26,7 @@ class PathMethod:
     cost: str = "transport"
     paths: str = "eikonal"
     cells: int = 64
-    _body: Body | None = field(default=None, repr=False)
+    _body: ChartBody | None = field(default=None, repr=False)
 
     @property
     def family(self) -> str:
@@ -46,7 +46,7 @@ class PathMethod:
         display = {"level": 0, "inter_reflection": False, "radiance": "lambertian", "cycles": 0, "tolerance": None}
         return told | equations | display | bake_settings(None) | {"runs_on": "device"}
 
-    def prepare(self, body: Body) -> None:
+    def prepare(self, body: ChartBody) -> None:
         """Give it the coefficients on a grid; a first frame compiles shaders and makes room."""
         if self._body is body:
             return
@@ -85,7 +85,7 @@ class PathMethod:
 
 
 @register
-def path_methods(chain: Chain) -> Iterator[Method]:
+def path_methods(chain: MethodChain) -> Iterator[ChartMethod]:
     """As published, as we have it, each change alone, and finer and coarser voxels."""
     yield from (PathMethod(cost, paths) for cost in ("transport", "extinction") for paths in ("eikonal", "lattice"))
     yield from (PathMethod(cells=cells) for cells in (32, 96))

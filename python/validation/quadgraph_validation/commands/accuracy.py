@@ -15,7 +15,7 @@ from quadgraph.core import load_core
 from quadgraph_validation.base.machine import commit
 from quadgraph_validation.base.study_folders import COMMITTED_TRUTH, add_meshes_argument
 
-# Study to its module of quadgraph_validation.accuracy.
+# Study to its module of quadgraph_validation.accuracy, less "_study".
 STUDIES = {
     "slab": "slab",
     "sphere": "sphere",
@@ -72,7 +72,7 @@ def run(args: argparse.Namespace) -> int:
     from quadgraph_validation.truth import schemes
 
     load_core()
-    study = importlib.import_module(f"quadgraph_validation.accuracy.{STUDIES[args.study]}")
+    study = importlib.import_module(f"quadgraph_validation.accuracy.{STUDIES[args.study]}_study")
     if args.study in ON_ENGINE:
         if args.reference:
             raise InputError(f"{args.study}: --reference found, but only the engine {ON_ENGINE[args.study]}")

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import os
 from pathlib import Path
 from typing import Any
 
 from quadgraph.base import atomic_file
 from quadgraph.base.arguments import add_device_arguments, positive_int
+from quadgraph.base.cache_folder import cache_folder
 from quadgraph.base.errors import InputError
 from quadgraph.core import load_core
 
@@ -41,7 +41,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--truth",
         type=Path,
-        default=_cache(),
+        default=cache_folder(),
         metavar="FOLDER",
         help="true solutions are kept there, a few MB (default: %(default)s)",
     )
@@ -53,10 +53,6 @@ def _several(text: str) -> int:
     if value < 2:
         raise argparse.ArgumentTypeError(f"{text}: both ends of an axis are kept, at least 2 is wanted")
     return value
-
-
-def _cache() -> Path:
-    return Path(os.environ.get("XDG_CACHE_HOME", "~/.cache")).expanduser() / "quadgraph"
 
 
 def run(args: argparse.Namespace) -> int:
@@ -94,7 +90,7 @@ def _solved(args: argparse.Namespace) -> dict[str, Any]:
 
     from quadgraph_validation.base.machine import machine
     from quadgraph_validation.stability import stability_suite
-    from quadgraph_validation.stability.stability_maps import Setting
+    from quadgraph_validation.stability.stability_maps import StabilitySetting
 
     copied = load_core().copy_bandwidth(args.device)
     maps = stability_suite.maps_with(args.axis)
@@ -103,4 +99,6 @@ def _solved(args: argparse.Namespace) -> dict[str, Any]:
     if not any(stability_suite.chosen(each.methods, args.method) for each in maps):
         raise InputError(f"--method {args.method}: no map of {args.axis} has it")
     with Console(stderr=True).status("stability") as status:
-        return machine(copied) | stability_suite.run(maps, args.method, Setting(args.device, args.truth), status.update)
+        return machine(copied) | stability_suite.run(
+            maps, args.method, StabilitySetting(args.device, args.truth), status.update
+        )

@@ -138,12 +138,12 @@ def _measured(args: argparse.Namespace) -> dict[str, Any]:
     from quadgraph_validation.tables import table_plan
     from quadgraph_validation.tables import table_record as records
     from quadgraph_validation.tables.table_bodies import Store
-    from quadgraph_validation.tables.table_row import Setting
+    from quadgraph_validation.tables.table_row import TableSetting
 
     scale = 1.0 if args.full else args.scale
     pixels = args.pixels or (1024 if args.full else 256)
     store = Store(args.meshes, args.bodies or cache_folder() / "tables")
-    setting = Setting(scale, args.repeats, pixels, args.device, store, args.truth)
+    setting = TableSetting(scale, args.repeats, pixels, args.device, store, args.truth)
     start = time.perf_counter()
     chosen = {table: table_plan.rows(table, setting, args.body) for table in args.table or TABLES}
     if not any(chosen.values()):

@@ -12,11 +12,11 @@ from quadgraph.base.errors import QuadGraphError
 from quadgraph_validation.bodies import meshes
 from quadgraph_validation.bodies.media import Medium
 from quadgraph_validation.stability.error_classes import Errors, classify
-from quadgraph_validation.stability.fine_truths import Truth, TruthOf
-from quadgraph_validation.stability.judged_points import Case, errors, point, refusal, solve
-from quadgraph_validation.stability.scaled_chains import Chain, even
-from quadgraph_validation.stability.stability_maps import Axis, CaseOf, Map, Setting
-from quadgraph_validation.stability.stability_methods import Method
+from quadgraph_validation.stability.fine_truths import FineTruth, TruthOf
+from quadgraph_validation.stability.judged_points import StabilityCase, errors, point, refusal, solve
+from quadgraph_validation.stability.scaled_chains import ScaledChain, even
+from quadgraph_validation.stability.stability_maps import Axis, CaseOf, Map, StabilitySetting
+from quadgraph_validation.stability.stability_methods import StabilityMethod
 from quadgraph_validation.truth import closed_forms
 from quadgraph_validation.truth.schemes import Scheme
 from quadgraph_validation.truth.slab_transport import discrete_ordinates, entry
@@ -38,7 +38,7 @@ def medium(albedo: float, mean_free_path: float) -> Medium:
     return Medium(albedo / mean_free_path, (1 - albedo) / mean_free_path)
 
 
-def _slab(layers: int, device: str) -> Chain:
+def _slab(layers: int, device: str) -> ScaledChain:
     """A column of `layers` elements of 1 mm, and coarser levels; at least one element is left."""
     thickness, width = layers * ELEMENT, 4 * ELEMENT
 
@@ -46,20 +46,20 @@ def _slab(layers: int, device: str) -> Chain:
         counts = [(max(layers >> level, 1), max(4 >> level, 1)) for level in range(LEVELS)]
         return [meshes.column(np.full(n, thickness / n), width, across) for n, across in counts]
 
-    return Chain(graphs, device)
+    return ScaledChain(graphs, device)
 
 
 def _lit_below(centre: np.ndarray, normal: np.ndarray) -> np.ndarray:
     return (normal[:, 2] < -0.5).astype(np.float64)
 
 
-def _both_sides(chain: Chain, reflectance: float, transmittance: float) -> Truth:
+def _both_sides(chain: ScaledChain, reflectance: float, transmittance: float) -> FineTruth:
     normal = meshes.face_frames(chain.graphs[0])[1][:, 2]
-    return Truth(np.where(normal < -0.5, reflectance, np.where(normal > 0.5, transmittance, 0.0)))
+    return FineTruth(np.where(normal < -0.5, reflectance, np.where(normal > 0.5, transmittance, 0.0)))
 
 
-def _closed_truth(chain: Chain, inside: Medium, layers: int) -> TruthOf:
-    def truth(scheme: Scheme) -> Truth:
+def _closed_truth(chain: ScaledChain, inside: Medium, layers: int) -> TruthOf:
+    def truth(scheme: Scheme) -> FineTruth:
         light = entry(False, ETA) if scheme.source == "buried" else None
         parts = (inside, layers * ELEMENT, scheme.model_of, scheme.boundary(ETA), ETA, light)
         found = closed_forms.slab(*parts)
@@ -68,45 +68,45 @@ def _closed_truth(chain: Chain, inside: Medium, layers: int) -> TruthOf:
     return truth
 
 
-def _sides(chain: Chain) -> np.ndarray:
+def _sides(chain: ScaledChain) -> np.ndarray:
     """Its walls cut the column's surface otherwise than a slab's: what a side lets out is compared as a whole."""
     return np.sign(np.round(meshes.face_frames(chain.graphs[0])[1][:, 2]))
 
 
-def _slab_case(chain: Chain, inside: Medium, truth: TruthOf) -> Case:
+def _slab_case(chain: ScaledChain, inside: Medium, truth: TruthOf) -> StabilityCase:
     medium_of = even(inside.sigma_s_prime, inside.sigma_a)
-    return Case(chain, medium_of, _lit_below, INWARD, ETA, truth, regions=_sides)
+    return StabilityCase(chain, medium_of, _lit_below, INWARD, ETA, truth, regions=_sides)
 
 
-def _by_albedo(setting: Setting, albedos: Sequence[float], paths: Sequence[float]) -> CaseOf:
+def _by_albedo(setting: StabilitySetting, albedos: Sequence[float], paths: Sequence[float]) -> CaseOf:
     chain = _slab(LAYERS, setting.device)
 
-    def case(albedo: float, path: float) -> Case:
+    def case(albedo: float, path: float) -> StabilityCase:
         inside = medium(albedo, path * ELEMENT)
         return _slab_case(chain, inside, _closed_truth(chain, inside, LAYERS))
 
     return case
 
 
-def _by_thickness(setting: Setting, thicknesses: Sequence[float], layers: Sequence[float]) -> CaseOf:
+def _by_thickness(setting: StabilitySetting, thicknesses: Sequence[float], layers: Sequence[float]) -> CaseOf:
     chains = {count: _slab(int(count), setting.device) for count in layers}
 
-    def case(thickness: float, count: float) -> Case:
+    def case(thickness: float, count: float) -> StabilityCase:
         inside = medium(0.9, count * ELEMENT / thickness)
         return _slab_case(chains[count], inside, _closed_truth(chains[count], inside, int(count)))
 
     return case
 
 
-def _of_transport(setting: Setting, albedos: Sequence[float], thicknesses: Sequence[float]) -> CaseOf:
+def _of_transport(setting: StabilitySetting, albedos: Sequence[float], thicknesses: Sequence[float]) -> CaseOf:
     """Enough elements to tell the model's error alone."""
     count = 32
     chain = _slab(count, setting.device)
 
-    def case(albedo: float, thickness: float) -> Case:
+    def case(albedo: float, thickness: float) -> StabilityCase:
         inside = medium(albedo, count * ELEMENT / thickness)
 
-        def truth(scheme: Scheme) -> Truth:
+        def truth(scheme: Scheme) -> FineTruth:
             found = discrete_ordinates(inside, count * ELEMENT, ETA, lambertian=False)
             return _both_sides(chain, found.reflectance, found.transmittance)
 
@@ -115,7 +115,7 @@ def _of_transport(setting: Setting, albedos: Sequence[float], thicknesses: Seque
     return case
 
 
-def judge_model(case: Case, method: Method) -> dict[str, Any]:
+def judge_model(case: StabilityCase, method: StabilityMethod) -> dict[str, Any]:
     """The model's error, of which no estimate is made: small, or said to be large, or neither."""
     try:
         report = solve(case, method)
@@ -127,7 +127,7 @@ def judge_model(case: Case, method: Method) -> dict[str, Any]:
     return point(name, true, None, report) | {"said": said}
 
 
-def _half_space(wavelength: float, across: int, device: str) -> Chain:
+def _half_space(wavelength: float, across: int, device: str) -> ScaledChain:
     """Half a period wide and `across` elements across, eight mean free paths deep or more: six diffusion lengths."""
     path = PATTERN_MEDIUM[1]
 
@@ -139,38 +139,38 @@ def _half_space(wavelength: float, across: int, device: str) -> Chain:
             levels.append(meshes.half_period(wavelength, cells, meshes.graded(first, 1.3, 8 * path + 2 * first)))
         return levels
 
-    return Chain(graphs, device)
+    return ScaledChain(graphs, device)
 
 
-def _by_frequency(setting: Setting, wavelengths: Sequence[float], elements: Sequence[float]) -> CaseOf:
+def _by_frequency(setting: StabilitySetting, wavelengths: Sequence[float], elements: Sequence[float]) -> CaseOf:
     albedo, path = PATTERN_MEDIUM
     inside = medium(albedo, path)
 
     @cache
-    def chain_of(wavelength: float, per_period: float) -> Chain:
+    def chain_of(wavelength: float, per_period: float) -> ScaledChain:
         return _half_space(wavelength * path, int(per_period) // 2, setting.device)
 
-    def case(wavelength: float, per_period: float) -> Case:
+    def case(wavelength: float, per_period: float) -> StabilityCase:
         chain, wave = chain_of(wavelength, per_period), 2 * np.pi / (wavelength * path)
 
         def q(centre: np.ndarray, normal: np.ndarray) -> np.ndarray:
             return np.where(normal[:, 2] < -0.5, 1 + np.cos(wave * centre[:, 0]), 0.0)
 
-        def truth(scheme: Scheme) -> Truth:
+        def truth(scheme: Scheme) -> FineTruth:
             waves = np.array([np.inf, wavelength * path])
             parts = (scheme.model_of, scheme.boundary(ETA), scheme.source == "buried")
             flat, patterned = closed_forms.half_space_response(inside, waves, *parts)
             mesh = chain.graphs[0]
             corners = np.asarray(mesh.vertices)[mesh.faces][:, :, 0]
             lit = meshes.face_frames(mesh)[1][:, 2] < -0.5
-            return Truth(np.where(lit, flat + patterned * _mean_cosine(wave * corners), 0.0))
+            return FineTruth(np.where(lit, flat + patterned * _mean_cosine(wave * corners), 0.0))
 
-        def strips(of: Chain) -> np.ndarray:
+        def strips(of: ScaledChain) -> np.ndarray:
             centre, normal, _ = meshes.face_frames(of.graphs[0])
             strip = np.floor(centre[:, 0] / (wavelength * path / per_period))
             return np.where(normal[:, 2] < -0.5, strip, -1)
 
-        return Case(chain, even(inside.sigma_s_prime, inside.sigma_a), q, INWARD, ETA, truth, regions=strips)
+        return StabilityCase(chain, even(inside.sigma_s_prime, inside.sigma_a), q, INWARD, ETA, truth, regions=strips)
 
     return case
 

@@ -17,14 +17,14 @@ from quadgraph_validation.truth.schemes import Scheme
 
 
 @dataclass(frozen=True, eq=False)
-class Truth:
+class FineTruth:
     """exitance: (n,) W/mm^2; noise: how far it may itself be off, relative RMS."""
 
     exitance: np.ndarray
     noise: float = 0.0
 
 
-TruthOf = Callable[[Scheme], Truth]
+TruthOf = Callable[[Scheme], FineTruth]
 
 
 class FineTruths:
@@ -45,14 +45,14 @@ class FineTruths:
         """The truth for media[index]."""
         return lambda scheme: self._truth(index, scheme)
 
-    def _truth(self, index: int, scheme: Scheme) -> Truth:
+    def _truth(self, index: int, scheme: Scheme) -> FineTruth:
         group, channel = divmod(index, CHANNELS)
         fine, less = (self._exitance(fine, group, scheme)[:, channel] for fine in self._fine)
         _, _, area = meshes.face_frames(self._fine[0].coarse)
         size = float(area @ fine**2)
         # Halfway between first and second order: the finer of two meshes keeps half of what lies between them.
         noise = 0.5 * float(np.sqrt(area @ (fine - less) ** 2 / size)) if size > 0 else 0.0
-        return Truth(fine, noise)
+        return FineTruth(fine, noise)
 
     def _exitance(self, fine: Fine, group: int, scheme: Scheme) -> np.ndarray:
         key = fine.count, group, scheme.source, scheme.model

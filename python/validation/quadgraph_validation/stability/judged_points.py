@@ -13,33 +13,33 @@ from quadgraph.base.errors import QuadGraphError
 from quadgraph_validation.bodies import meshes
 from quadgraph_validation.stability.error_classes import REFUSED, Errors, classify
 from quadgraph_validation.stability.fine_truths import TruthOf
-from quadgraph_validation.stability.scaled_chains import Chain, Irradiance, Medium, Shape
-from quadgraph_validation.stability.stability_methods import Method
+from quadgraph_validation.stability.scaled_chains import Irradiance, Medium, ScaledChain, Shape
+from quadgraph_validation.stability.stability_methods import StabilityMethod
 from quadgraph_validation.truth.schemes import Scheme
 
 DARK = 1e-4  # of the whole's exitance (RMS): an unlit part below it is black in any picture, and not judged
 
 
 @dataclass(frozen=True, eq=False)
-class Case:
+class StabilityCase:
     """A scene and its truth.
 
     shape: that the body takes, None: it is at rest; regions: from the chain to labels (n,) of the finest level's faces,
     whose means are compared, None: every face is; options: of the solve, beside method, source, model and solver.
     """
 
-    chain: Chain
+    chain: ScaledChain
     medium: Medium
     q: Irradiance
     direction: tuple[float, float, float] | None
     eta: float
     truth: TruthOf
     shape: Shape | None = None
-    regions: Callable[[Chain], np.ndarray] | None = None
+    regions: Callable[[ScaledChain], np.ndarray] | None = None
     options: Mapping[str, Any] = field(default_factory=dict)
 
 
-def judge(case: Case, method: Method) -> dict[str, Any]:
+def judge(case: StabilityCase, method: StabilityMethod) -> dict[str, Any]:
     """Class, errors, estimate and words of a point, as the record has them."""
     try:
         report = solve(case, method)
@@ -50,7 +50,7 @@ def judge(case: Case, method: Method) -> dict[str, Any]:
     return point(classify(true, expected, words(report)), true, expected, report) | {"noise": truth.noise}
 
 
-def solve(case: Case, method: Method) -> dict[str, Any]:
+def solve(case: StabilityCase, method: StabilityMethod) -> dict[str, Any]:
     """The engine's report. Raises as it does."""
     if case.shape is not None:
         case.chain.take(case.shape)
@@ -81,7 +81,7 @@ def estimate(part: dict[str, float] | None) -> Errors | None:
     return None if part is None else Errors(part["whole"], part["unlit"] or None)
 
 
-def errors(case: Case, found: np.ndarray, truth: np.ndarray) -> Errors:
+def errors(case: StabilityCase, found: np.ndarray, truth: np.ndarray) -> Errors:
     """Relative RMS errors of exitances (n,) per outside face of the finest level."""
     if not np.isfinite(truth).all():
         raise ValueError("the truth is not finite")

@@ -35,7 +35,7 @@ def even(sigma_s_prime: float, sigma_a: float) -> Medium:
     return lambda points: (np.full(len(points), sigma_s_prime), np.full(len(points), sigma_a))
 
 
-class Chain:
+class ScaledChain:
     """Levels of one body, finest first, on the Vulkan device whose name contains `device`.
 
     Raises as quadgraph.tets.graph.build and the engine do, at first use.

@@ -11,9 +11,9 @@ from quadgraph.tets.graph import Graph
 from quadgraph_validation.bodies import meshes
 from quadgraph_validation.stability import deformed_shapes
 from quadgraph_validation.stability.fine_truths import FineTruths
-from quadgraph_validation.stability.judged_points import Case
-from quadgraph_validation.stability.scaled_chains import Chain, Medium, Shape, even
-from quadgraph_validation.stability.stability_maps import Axis, CaseOf, Map, Setting
+from quadgraph_validation.stability.judged_points import StabilityCase
+from quadgraph_validation.stability.scaled_chains import Medium, ScaledChain, Shape, even
+from quadgraph_validation.stability.stability_maps import Axis, CaseOf, Map, StabilitySetting
 
 ETA = 1.0  # there the published boundary condition is the same as ours
 SLANTED = (0.48, 0.0, -0.8772684879784524)  # the way light travels
@@ -30,17 +30,17 @@ def slanted_light(centre: np.ndarray, normal: np.ndarray) -> np.ndarray:
 class _Scenes:
     """Cases of several media in one body, whose truths share solves."""
 
-    def __init__(self, setting: Setting, chain: Chain, media: Sequence[Medium]) -> None:
+    def __init__(self, setting: StabilitySetting, chain: ScaledChain, media: Sequence[Medium]) -> None:
         self.chain, self.media = chain, media
         self.truths = FineTruths(chain.rest[0], media, slanted_light, SLANTED, ETA, setting.kept)
 
-    def case(self, index: int) -> Case:
-        return Case(self.chain, self.media[index], slanted_light, SLANTED, ETA, self.truths.of(index))
+    def case(self, index: int) -> StabilityCase:
+        return StabilityCase(self.chain, self.media[index], slanted_light, SLANTED, ETA, self.truths.of(index))
 
 
-def ball(device: str) -> Chain:
+def ball(device: str) -> ScaledChain:
     """A sphere of 5 mm radius, on elements of about 1 mm and coarser ones."""
-    return Chain(lambda: [meshes.ball(RADIUS, 0, subdivisions) for subdivisions in (3, 2, 1)], device)
+    return ScaledChain(lambda: [meshes.ball(RADIUS, 0, subdivisions) for subdivisions in (3, 2, 1)], device)
 
 
 def pillar(kappa_jump: float, absorption_jump: float) -> Medium:
@@ -56,38 +56,38 @@ def pillar(kappa_jump: float, absorption_jump: float) -> Medium:
     return medium
 
 
-def _by_jumps(setting: Setting, kappa_jumps: Sequence[float], absorption_jumps: Sequence[float]) -> CaseOf:
+def _by_jumps(setting: StabilitySetting, kappa_jumps: Sequence[float], absorption_jumps: Sequence[float]) -> CaseOf:
     pairs = [(x, y) for y in absorption_jumps for x in kappa_jumps]
     scenes = _Scenes(setting, ball(setting.device), [pillar(*pair) for pair in pairs])
     return lambda x, y: scenes.case(pairs.index((x, y)))
 
 
-def _by_needles(setting: Setting, aspects: Sequence[float], paths: Sequence[float]) -> CaseOf:
+def _by_needles(setting: StabilitySetting, aspects: Sequence[float], paths: Sequence[float]) -> CaseOf:
     media = [even(0.95 / path, 0.05 / path) for path in paths]
 
     @cache
     def scenes(aspect: float) -> _Scenes:
-        return _Scenes(setting, Chain(lambda: deformed_shapes.rod(aspect), setting.device), media)
+        return _Scenes(setting, ScaledChain(lambda: deformed_shapes.rod(aspect), setting.device), media)
 
     return lambda x, y: scenes(x).case(paths.index(y))
 
 
-def _by_genus(setting: Setting, genera: Sequence[float], paths: Sequence[float]) -> CaseOf:
+def _by_genus(setting: StabilitySetting, genera: Sequence[float], paths: Sequence[float]) -> CaseOf:
     media = [even(0.95 / path, 0.05 / path) for path in paths]
 
     @cache
     def scenes(genus: float) -> _Scenes:
-        return _Scenes(setting, Chain(lambda: deformed_shapes.lattice(int(genus)), setting.device), media)
+        return _Scenes(setting, ScaledChain(lambda: deformed_shapes.lattice(int(genus)), setting.device), media)
 
     return lambda x, y: scenes(x).case(paths.index(y))
 
 
-def _by_quality(setting: Setting, angles: Sequence[float], volumes: Sequence[float]) -> CaseOf:
+def _by_quality(setting: StabilitySetting, angles: Sequence[float], volumes: Sequence[float]) -> CaseOf:
     medium = even(0.475, 0.025)
 
     @cache
-    def chain(angle: float) -> Chain:
-        return Chain(lambda: deformed_shapes.with_slivers(deformed_shapes.block(), angle), setting.device)
+    def chain(angle: float) -> ScaledChain:
+        return ScaledChain(lambda: deformed_shapes.with_slivers(deformed_shapes.block(), angle), setting.device)
 
     @cache
     def shape(volume: float) -> Shape:
@@ -99,9 +99,9 @@ def _by_quality(setting: Setting, angles: Sequence[float], volumes: Sequence[flo
         mesh: Graph = meshes.moved(deformed_shapes.block()[0], shape(volume))
         return FineTruths(mesh, [medium], slanted_light, SLANTED, ETA, setting.kept)
 
-    def case(angle: float, volume: float) -> Case:
+    def case(angle: float, volume: float) -> StabilityCase:
         of_chain = chain(angle), medium, slanted_light, SLANTED, ETA
-        return Case(*of_chain, lambda scheme: truths(volume).of(0)(scheme), shape(volume))
+        return StabilityCase(*of_chain, lambda scheme: truths(volume).of(0)(scheme), shape(volume))
 
     return case
 

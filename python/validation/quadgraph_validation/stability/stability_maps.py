@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from quadgraph_validation.stability.judged_points import Case, judge
-from quadgraph_validation.stability.stability_methods import METHODS, Method
+from quadgraph_validation.stability.judged_points import StabilityCase, judge
+from quadgraph_validation.stability.stability_methods import METHODS, StabilityMethod
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Axis:
 
 
 @dataclass(frozen=True)
-class Setting:
+class StabilitySetting:
     """device: part of its name; kept: a folder for true solutions, None: they are found anew."""
 
     device: str = ""
@@ -41,7 +41,7 @@ class Setting:
 
 
 # From values of both axes to a case.
-CaseOf = Callable[[float, float], Case]
+CaseOf = Callable[[float, float], StabilityCase]
 
 
 @dataclass(frozen=True)
@@ -56,9 +56,9 @@ class Map:
     truth: str
     x: Axis
     y: Axis
-    cases: Callable[[Setting, Sequence[float], Sequence[float]], CaseOf]
-    methods: tuple[Method, ...] = METHODS
-    judge: Callable[[Case, Method], dict[str, Any]] = judge
+    cases: Callable[[StabilitySetting, Sequence[float], Sequence[float]], CaseOf]
+    methods: tuple[StabilityMethod, ...] = METHODS
+    judge: Callable[[StabilityCase, StabilityMethod], dict[str, Any]] = judge
 
     def thinned(self, count: int) -> Map:
         """The map with at most `count` values on either axis."""

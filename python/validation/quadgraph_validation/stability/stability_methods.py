@@ -9,7 +9,7 @@ from quadgraph_validation.truth.schemes import Scheme
 
 
 @dataclass(frozen=True)
-class Method:
+class StabilityMethod:
     """A scheme, whose model may be "auto", and a solver, by the names the engine uses."""
 
     name: str
@@ -17,20 +17,23 @@ class Method:
     solver: str = "fmg-pcg"
 
 
-DEFAULT = Method("fem", Scheme("fem", "buried", "auto"))
+DEFAULT = StabilityMethod("fem", Scheme("fem", "buried", "auto"))
 METHODS = (
     DEFAULT,
-    Method("fem diffusion", Scheme("fem", "buried", "diffusion")),
-    Method("quadgraph-fv", Scheme("quadgraph-fv", "buried", "auto")),
-    Method("quadgraph-fdm", Scheme("quadgraph-fdm", "diffuse", "diffusion")),
+    StabilityMethod("fem diffusion", Scheme("fem", "buried", "diffusion")),
+    StabilityMethod("quadgraph-fv", Scheme("quadgraph-fv", "buried", "auto")),
+    StabilityMethod("quadgraph-fdm", Scheme("quadgraph-fdm", "diffuse", "diffusion")),
 )
 # The default method with each solver: where iterations end, not where meshes do.
-SOLVERS = (DEFAULT, *(Method(f"fem {name}", DEFAULT.scheme, name) for name in ("vcycle", "dpcg", "cascade", "jacobi")))
+SOLVERS = (
+    DEFAULT,
+    *(StabilityMethod(f"fem {name}", DEFAULT.scheme, name) for name in ("vcycle", "dpcg", "cascade", "jacobi")),
+)
 # What has packed entries.
-MODELS = (Method("fem", Scheme("fem", "buried", "sp3")), METHODS[1])
+MODELS = (StabilityMethod("fem", Scheme("fem", "buried", "sp3")), METHODS[1])
 
 
-def chosen(methods: tuple[Method, ...], names: list[str]) -> list[Method]:
+def chosen(methods: tuple[StabilityMethod, ...], names: list[str]) -> list[StabilityMethod]:
     """Those of the given names, all if there are none."""
     return [method for method in methods if not names or method.name in names]
 

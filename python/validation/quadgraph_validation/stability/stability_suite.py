@@ -12,8 +12,8 @@ from quadgraph.base.errors import InputError
 from quadgraph.base.progress import ProgressCallback
 from quadgraph_validation.stability import arithmetic, columns, solids
 from quadgraph_validation.stability.error_classes import CLASSES, FACTOR, SILENT, SMALL, USABLE, USELESS
-from quadgraph_validation.stability.stability_maps import Map, Setting
-from quadgraph_validation.stability.stability_methods import DEFAULT, Method, chosen
+from quadgraph_validation.stability.stability_maps import Map, StabilitySetting
+from quadgraph_validation.stability.stability_methods import DEFAULT, StabilityMethod, chosen
 
 MAPS: tuple[Map, ...] = (*columns.MAPS, *solids.MAPS, columns.TRANSPORT, *arithmetic.MAPS)
 
@@ -36,7 +36,7 @@ def maps_with(names: Sequence[str]) -> list[Map]:
 
 
 def run(
-    maps: Sequence[Map], methods: Sequence[str], setting: Setting, tell: ProgressCallback = lambda text: None
+    maps: Sequence[Map], methods: Sequence[str], setting: StabilitySetting, tell: ProgressCallback = lambda text: None
 ) -> dict:
     """The record of all maps; methods: names, all if there are none."""
     limits = {"small": SMALL, "factor": FACTOR, "usable": USABLE, "useless": USELESS}
@@ -45,7 +45,9 @@ def run(
     return {"limits": limits, "maps": found, "counts": counts(found)}
 
 
-def run_map(each: Map, methods: Sequence[Method], setting: Setting, tell: ProgressCallback) -> dict[str, Any]:
+def run_map(
+    each: Map, methods: Sequence[StabilityMethod], setting: StabilitySetting, tell: ProgressCallback
+) -> dict[str, Any]:
     """The points of a map, row by row from its first y, of every method."""
     record = {"name": each.name, "title": each.title, "truth": each.truth}
     for axis, name in ((each.x, "x"), (each.y, "y")):

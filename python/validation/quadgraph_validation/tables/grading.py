@@ -21,16 +21,16 @@ from quadgraph.mesh import display_map
 from quadgraph.mesh.surface import Surface
 from quadgraph_validation.bodies import scene_meshes
 from quadgraph_validation.bodies.scenes import SCENES as KNOWN
-from quadgraph_validation.bodies.scenes import Scene
-from quadgraph_validation.chart.chart_body import Body
-from quadgraph_validation.chart.chart_judge import Judge
+from quadgraph_validation.bodies.scenes import StudyScene
+from quadgraph_validation.chart.chart_body import ChartBody
+from quadgraph_validation.chart.chart_judge import ChartJudge
 from quadgraph_validation.chart.chart_method import SWING
 from quadgraph_validation.chart.engine_methods import EngineMethod
 from quadgraph_validation.tables.table_bodies import Baked
-from quadgraph_validation.tables.table_row import Row, Setting
+from quadgraph_validation.tables.table_row import TableRow, TableSetting
 from quadgraph_validation.tables.table_ways import DEFAULT
 from quadgraph_validation.truth import truth_run
-from quadgraph_validation.truth.stored_truth import Truth
+from quadgraph_validation.truth.stored_truth import StoredTruth
 
 if TYPE_CHECKING:
     from quadgraph.core import Engine
@@ -43,7 +43,7 @@ _EXACT = {"tolerance": 1e-4, "max_iterations": 100_000, "inter_reflection": Fals
 
 
 @dataclass(frozen=True)
-class Way:
+class GradingWay:
     """A method for its picture, solved to the chart's tolerance, and its own equations for the error of the mesh
     alone.
     """
@@ -57,25 +57,25 @@ class Way:
         return {"model": self.method.model, "source": self.method.source}
 
 
-def _ways() -> dict[str, Way]:
+def _ways() -> dict[str, GradingWay]:
     published = EngineMethod("quadgraph-fdm", "diffusion", "diffuse", "cascade")
     return {
-        "published": Way(published, "dpcg"),
-        "ours, diffusion": Way(EngineMethod(model="diffusion"), "fmg-pcg"),
-        "ours, SP₃": Way(EngineMethod(), "fmg-pcg"),
-        DEFAULT: Way(EngineMethod(inter_reflection=True), "fmg-pcg"),
+        "published": GradingWay(published, "dpcg"),
+        "ours, diffusion": GradingWay(EngineMethod(model="diffusion"), "fmg-pcg"),
+        "ours, SP₃": GradingWay(EngineMethod(), "fmg-pcg"),
+        DEFAULT: GradingWay(EngineMethod(inter_reflection=True), "fmg-pcg"),
     }
 
 
-def rows(setting: Setting) -> Iterator[Row]:
+def rows(setting: TableSetting) -> Iterator[TableRow]:
     """One per scene."""
     for name in SCENES:
         mesh = scene_meshes.file(KNOWN[name], setting.store.meshes)
         missing = "" if mesh.is_file() else f"{mesh}: no such file"
-        yield Row(name, name, missing, lambda tell, scene=KNOWN[name]: measure(scene, setting, tell))
+        yield TableRow(name, name, missing, lambda tell, scene=KNOWN[name]: measure(scene, setting, tell))
 
 
-def measure(scene: Scene, setting: Setting, tell: ProgressCallback) -> dict[str, Any]:
+def measure(scene: StudyScene, setting: TableSetting, tell: ProgressCallback) -> dict[str, Any]:
     """Errors of every way at every K. Raises InputError if path-traced pictures are not there, ToolError without
     CGAL.
     """
@@ -95,17 +95,17 @@ def measure(scene: Scene, setting: Setting, tell: ProgressCallback) -> dict[str,
 
 
 def _errors(
-    scene: Scene,
+    scene: StudyScene,
     baked: Baked,
-    images: dict[str, Truth],
+    images: dict[str, StoredTruth],
     reference: _Reference,
-    setting: Setting,
+    setting: TableSetting,
     folder: Path,
     tell: ProgressCallback,
 ) -> dict[str, Any]:
     """By way, of its picture against path tracing and of its exitance against its own equations solved; by part."""
-    body = Body(scene, baked.path, folder, setting.device, _PIXELS)
-    judge = Judge(body, {}, images)
+    body = ChartBody(scene, baked.path, folder, setting.device, _PIXELS)
+    judge = ChartJudge(body, {}, images)
     judge.noise()  # what is unlit is found on an engine that methods share: before they do
     found = {}
     for name, way in _ways().items():
@@ -127,10 +127,10 @@ def _errors(
 class _Reference:
     """Exitance from the finest mesh cut once more, by equations, at the vertices of the displayed surface."""
 
-    def __init__(self, scene: Scene, path: Path, folder: Path, device: str) -> None:
+    def __init__(self, scene: StudyScene, path: Path, folder: Path, device: str) -> None:
         fine = finer_levels.refined(path, 1, folder / f"{scene.name}-fine.qgraph")
-        self._body = Body(scene, fine, folder, device, _PIXELS)
-        self._display = Body(scene, path, folder, device, _PIXELS).display
+        self._body = ChartBody(scene, fine, folder, device, _PIXELS)
+        self._display = ChartBody(scene, path, folder, device, _PIXELS).display
         corners = self._display.triangles.ravel()
         share = np.repeat(np.linalg.norm(self._display.doubled_normals, axis=1) / 6, 3)
         self._area = np.bincount(corners, share, len(self._display.vertices))
@@ -168,7 +168,7 @@ def _places(engine: Engine, display: Surface) -> tuple[np.ndarray, np.ndarray]:
     return display_map.nearest_faces(display.vertices, Surface(surface, np.asarray(level.faces, np.int64)))
 
 
-def _images(scene: Scene, setting: Setting) -> dict[str, Truth]:
+def _images(scene: StudyScene, setting: TableSetting) -> dict[str, StoredTruth]:
     found = truth_run.subject(scene, scene_meshes.file(scene, setting.store.meshes))
     images = {name: truth_run.stored(found, setting.truth, name) for name in scene.images}
     for name, image in images.items():

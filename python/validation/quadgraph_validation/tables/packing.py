@@ -11,8 +11,8 @@ from quadgraph.base.progress import ProgressCallback
 from quadgraph.core import load_core
 from quadgraph_validation.benchmark.frame_passes import SOLVER_PASSES
 from quadgraph_validation.tables import published, table_ways
-from quadgraph_validation.tables.table_bodies import BUNNY, DONUT, Subject
-from quadgraph_validation.tables.table_row import Row, Setting
+from quadgraph_validation.tables.table_bodies import BUNNY, DONUT, TableSubject
+from quadgraph_validation.tables.table_row import TableRow, TableSetting
 
 _FACES = 280_000  # surface nodes at scale 1
 _ORDERS = ("blocks", "random")
@@ -20,13 +20,13 @@ _ROUNDS = 3  # for each of the setting's: what is compared differs by less than 
 _CYCLES = 10  # of ours; only the ratio of equal work counts
 
 
-def rows(setting: Setting) -> Iterator[Row]:
+def rows(setting: TableSetting) -> Iterator[TableRow]:
     """One per body."""
     for subject in (BUNNY, DONUT):
-        yield Row(subject.name, subject.name, "", lambda tell, subject=subject: _measure(subject, setting, tell))
+        yield TableRow(subject.name, subject.name, "", lambda tell, subject=subject: _measure(subject, setting, tell))
 
 
-def _measure(subject: Subject, setting: Setting, tell: ProgressCallback) -> dict[str, Any]:
+def _measure(subject: TableSubject, setting: TableSetting, tell: ProgressCallback) -> dict[str, Any]:
     faces = setting.nodes(_FACES)
     # Blocks are what the bake makes by default, which Figure 12 has too.
     baked = {

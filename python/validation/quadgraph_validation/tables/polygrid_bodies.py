@@ -23,7 +23,7 @@ _FACES = 20_000  # of a generated body
 
 
 @dataclass(frozen=True)
-class Body:
+class PolygridBody:
     """paper: its row of Table III; mesh: a file of the folder of meshes, "bunny" or a name in shapes.GENERATED; cubes
     along its longest side and cells along a cube's.
     """
@@ -37,15 +37,15 @@ class Body:
 
 # The paper's number of cubes where the cells are then few enough for a processor.
 ALL = (
-    Body("Bunny", "bunny", "bunny", 10, 4),
-    Body("Bust", "igea", "igea.ply", 4, 8),
-    Body("Bird", "spot", "spot.ply", 9, 4),
-    Body("Hole", "donut", "donut", 8, 4),
-    Body("Snail", "gargoyle", "gargoyle.ply", 8, 4),
+    PolygridBody("Bunny", "bunny", "bunny", 10, 4),
+    PolygridBody("Bust", "igea", "igea.ply", 4, 8),
+    PolygridBody("Bird", "spot", "spot.ply", 9, 4),
+    PolygridBody("Hole", "donut", "donut", 8, 4),
+    PolygridBody("Snail", "gargoyle", "gargoyle.ply", 8, 4),
 )
 
 
-def chosen(names: Sequence[str], meshes: Path) -> list[Body]:
+def chosen(names: Sequence[str], meshes: Path) -> list[PolygridBody]:
     """Those of that row or name, all without any, whose mesh files are there. Raises InputError for an unknown name."""
     for name in names:
         if not any(name in (body.paper, body.name) for body in ALL):
@@ -57,7 +57,7 @@ def chosen(names: Sequence[str], meshes: Path) -> list[Body]:
     return present
 
 
-def baked(body: Body, meshes: Path, folder: Path) -> Path:
+def baked(body: PolygridBody, meshes: Path, folder: Path) -> Path:
     """Its file in `folder`, made if it is not there. Raises as quadgraph.bake.pipeline.bake does."""
     surface = _surface(body, meshes)
     digest = hashlib.sha256(surface.vertices.tobytes() + f"{body}{__version__}".encode()).hexdigest()
@@ -73,7 +73,7 @@ def baked(body: Body, meshes: Path, folder: Path) -> Path:
     return store.kept(folder / f"{body.name}-{digest[:12]}.qgraph", make)
 
 
-def _surface(body: Body, meshes: Path) -> Surface:
+def _surface(body: PolygridBody, meshes: Path) -> Surface:
     if body.mesh in generated_shapes.GENERATED:
         return scaled(generated_shapes.smooth(body.mesh, _FACES))
     path = bunny_mesh() if body.mesh == "bunny" else meshes / body.mesh

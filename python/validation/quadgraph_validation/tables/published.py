@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Scene:
+class PublishedScene:
     """A row of Table 1: nodes on the surface and inside in thousands, K, levels, MB of textures over all levels,
     minutes of preprocessing, iterations of the solver at each level, frames per second.
     """
@@ -26,14 +26,14 @@ class Scene:
 
 
 TABLE_1 = (
-    Scene("Thai", 157, 369, 1.0, 4, 35, 24, 40, 21.8),
-    Scene("Gargoyle", 62, 139, 0.5, 3, 18, 10, 50, 46.4),
-    Scene("Topmod", 121, 260, 0.2, 3, 36, 15, 40, 29.4),
-    Scene("Buddha", 66, 120, 0.5, 3, 17, 9, 30, 57.6),
-    Scene("Fertility", 82, 182, 0.3, 3, 25, 12, 50, 34.4),
-    Scene("Twirl", 82, 226, 0.1, 3, 27, 16, 60, 22.1),
-    Scene("Heptoroid", 82, 178, 0.2, 2, 24, 11, 80, 21.6),
-    Scene("Lucy", 150, 363, 0.2, 4, 33, 20, 40, 21.0),
+    PublishedScene("Thai", 157, 369, 1.0, 4, 35, 24, 40, 21.8),
+    PublishedScene("Gargoyle", 62, 139, 0.5, 3, 18, 10, 50, 46.4),
+    PublishedScene("Topmod", 121, 260, 0.2, 3, 36, 15, 40, 29.4),
+    PublishedScene("Buddha", 66, 120, 0.5, 3, 17, 9, 30, 57.6),
+    PublishedScene("Fertility", 82, 182, 0.3, 3, 25, 12, 50, 34.4),
+    PublishedScene("Twirl", 82, 226, 0.1, 3, 27, 16, 60, 22.1),
+    PublishedScene("Heptoroid", 82, 178, 0.2, 2, 24, 11, 80, 21.6),
+    PublishedScene("Lucy", 150, 363, 0.2, 4, 33, 20, 40, 21.0),
 )
 USUAL_ITERATIONS = 50  # for bodies of which the paper tells none; Table 1 has 30 to 80
 
@@ -50,6 +50,6 @@ FIGURE_14 = "the use of a multi-resolution solver significantly increases conver
 PACKING = "this localized storage of the QuadGraph in textures results in a 30 % to 60 % speedup over random storage"
 
 
-def scene(name: str) -> Scene:
+def scene(name: str) -> PublishedScene:
     """The row of Table 1 of that name."""
     return next(row for row in TABLE_1 if row.name == name)

@@ -24,7 +24,7 @@ from quadgraph.mesh.surface import Surface
 from quadgraph_validation.base import store
 from quadgraph_validation.bodies import generated_shapes, scene_meshes
 from quadgraph_validation.bodies.bunny import bunny_mesh
-from quadgraph_validation.bodies.scenes import Scene
+from quadgraph_validation.bodies.scenes import StudyScene
 
 EXTENT_MM = 60.0  # largest edge of a body's bounding box
 _ENOUGH = 0.9  # share of the wanted surface vertices from which a mesh is taken as it is
@@ -33,7 +33,7 @@ _GRADED_LIMITS = {"time_limit_s": 900.0, "memory_limit_bytes": 8 << 30}  # CGAL'
 
 
 @dataclass(frozen=True)
-class Subject:
+class TableSubject:
     """A body. mesh: a file of the folder of meshes, "bunny" (pymeshlab's) or a name in shapes.GENERATED; paper: its
     row of Table 1, "" if it has none; other: in what it is not the paper's body, "" if it is.
     """
@@ -49,17 +49,17 @@ class Subject:
 
 
 TABLE_1 = (
-    Subject("armadillo", "armadillo.ply", "Thai", "no copy of the Thai statue could be had"),
-    Subject("gargoyle", "gargoyle.ply", "Gargoyle"),
-    Subject("shell", "shell", "Topmod", "no copy of the Topmod ball could be had: a perforated shell of genus 23"),
-    Subject("buddha", "buddha.ply", "Buddha"),
-    Subject("fertility", "fertility.ply", "Fertility"),
-    Subject("twirl", "twirl.ply", "Twirl"),
-    Subject("heptoroid", "heptoroid.ply", "Heptoroid"),
-    Subject("lucy", "lucy.ply", "Lucy"),
+    TableSubject("armadillo", "armadillo.ply", "Thai", "no copy of the Thai statue could be had"),
+    TableSubject("gargoyle", "gargoyle.ply", "Gargoyle"),
+    TableSubject("shell", "shell", "Topmod", "no copy of the Topmod ball could be had: a perforated shell of genus 23"),
+    TableSubject("buddha", "buddha.ply", "Buddha"),
+    TableSubject("fertility", "fertility.ply", "Fertility"),
+    TableSubject("twirl", "twirl.ply", "Twirl"),
+    TableSubject("heptoroid", "heptoroid.ply", "Heptoroid"),
+    TableSubject("lucy", "lucy.ply", "Lucy"),
 )
-BUNNY = Subject("bunny", "bunny")
-DONUT = Subject("donut", "donut")
+BUNNY = TableSubject("bunny", "bunny")
+DONUT = TableSubject("donut", "donut")
 FERTILITY = TABLE_1[4]
 
 
@@ -78,7 +78,7 @@ class Store:
     meshes: Path
     folder: Path
 
-    def body(self, subject: Subject, faces: int, tell: ProgressCallback, **options: Any) -> Baked:
+    def body(self, subject: TableSubject, faces: int, tell: ProgressCallback, **options: Any) -> Baked:
         """The subject with about `faces` surface nodes and further options of the bake, made if it is not there yet.
 
         Raises as quadgraph.bake.pipeline.bake does.
@@ -99,7 +99,7 @@ class Store:
 
         return self._kept(f"{subject.name}-{faces}", {"mesh": digest, "count": count} | options, run, tell)
 
-    def graded(self, scene: Scene, vertices: int, grading: float, tell: ProgressCallback) -> Baked:
+    def graded(self, scene: StudyScene, vertices: int, grading: float, tell: ProgressCallback) -> Baked:
         """A scene's body as path tracing sees it, with about so many vertices on the finest surface, by the CGAL
         mesher with that K.
 
@@ -130,7 +130,7 @@ class Store:
         store.kept(path, make)
         return Baked(path, json.loads(told.read_text()))
 
-    def _surface(self, subject: Subject, faces: int) -> Surface:
+    def _surface(self, subject: TableSubject, faces: int) -> Surface:
         """Its mesh, subdivided where it has too few faces, with a largest extent of EXTENT_MM."""
         if subject.mesh in generated_shapes.GENERATED:
             return scaled(generated_shapes.smooth(subject.mesh, faces))

@@ -8,8 +8,8 @@ from typing import Any
 from quadgraph.base.errors import InputError
 from quadgraph.base.progress import ProgressCallback
 from quadgraph_validation.tables import grading, packing, published, table_bodies, table_convergence, table_ways
-from quadgraph_validation.tables.table_bodies import BUNNY, DONUT, FERTILITY, Subject
-from quadgraph_validation.tables.table_row import Row, Setting
+from quadgraph_validation.tables.table_bodies import BUNNY, DONUT, FERTILITY, TableSubject
+from quadgraph_validation.tables.table_row import TableRow, TableSetting
 
 # Surface nodes at scale 1 of the bodies that Figure 12 has several tetrahedralisations of.
 GROWTH = {
@@ -19,7 +19,7 @@ GROWTH = {
 }
 
 
-def rows(table: str, setting: Setting, wanted: Sequence[str]) -> list[Row]:
+def rows(table: str, setting: TableSetting, wanted: Sequence[str]) -> list[TableRow]:
     """Of a table, those on the bodies in `wanted`, all if there are none."""
     made = {"1": _scenes, "12": _growth, "13": grading.rows, "14": table_convergence.rows, "packing": packing.rows}[
         table
@@ -40,20 +40,20 @@ def check(wanted: Sequence[str]) -> None:
             raise InputError(f"body '{name}': allowed are {', '.join(names())}")
 
 
-def _missing(subject: Subject, setting: Setting) -> str:
+def _missing(subject: TableSubject, setting: TableSetting) -> str:
     if subject.present(setting.store.meshes):
         return ""
     return f"{setting.store.meshes / subject.mesh}: no such file"
 
 
-def _scenes(setting: Setting) -> Iterator[Row]:
+def _scenes(setting: TableSetting) -> Iterator[TableRow]:
     for subject in table_bodies.TABLE_1:
         paper = published.scene(subject.paper)
         faces = setting.nodes(1000 * paper.surface_nodes)
         yield _row(subject, faces, paper.iterations, setting, subject.name)
 
 
-def _growth(setting: Setting) -> Iterator[Row]:
+def _growth(setting: TableSetting) -> Iterator[TableRow]:
     for subject, sizes in GROWTH.items():
         iterations = published.scene(subject.paper).iterations if subject.paper else published.USUAL_ITERATIONS
         for size in sizes:
@@ -61,7 +61,7 @@ def _growth(setting: Setting) -> Iterator[Row]:
             yield _row(subject, faces, iterations, setting, f"{subject.name}-{faces}")
 
 
-def _row(subject: Subject, faces: int, iterations: int, setting: Setting, key: str) -> Row:
+def _row(subject: TableSubject, faces: int, iterations: int, setting: TableSetting, key: str) -> TableRow:
     def measure(tell: ProgressCallback) -> dict[str, Any]:
         found = setting.store.body(subject, faces, tell)
         told = {"body": subject.name, "mesh": subject.mesh, "paper": subject.paper, "other": subject.other}
@@ -70,4 +70,4 @@ def _row(subject: Subject, faces: int, iterations: int, setting: Setting, key: s
         )
         return told | found.report | {"published_iterations": iterations} | measured
 
-    return Row(key, subject.name, _missing(subject, setting), measure)
+    return TableRow(key, subject.name, _missing(subject, setting), measure)

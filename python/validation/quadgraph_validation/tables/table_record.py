@@ -10,7 +10,7 @@ from typing import Any
 from quadgraph.base import atomic_file
 from quadgraph.base.errors import InputError, QuadGraphError
 from quadgraph.base.progress import ProgressCallback
-from quadgraph_validation.tables.table_row import Row
+from quadgraph_validation.tables.table_row import TableRow
 
 FORMAT = 1
 TITLES = {"1": "Table 1", "12": "Figure 12", "13": "Figure 13", "14": "Figure 14", "packing": "Packed order"}
@@ -32,7 +32,12 @@ def begin(path: Path, settings: dict[str, Any]) -> dict[str, Any]:
 
 
 def fill(
-    path: Path, record: dict[str, Any], table: str, rows: Sequence[Row], machine: dict[str, Any], tell: ProgressCallback
+    path: Path,
+    record: dict[str, Any],
+    table: str,
+    rows: Sequence[TableRow],
+    machine: dict[str, Any],
+    tell: ProgressCallback,
 ) -> None:
     """Measure a table's rows into the record and save it after each.
 

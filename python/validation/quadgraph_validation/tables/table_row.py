@@ -14,7 +14,7 @@ _FEWEST = 200  # surface nodes
 
 
 @dataclass(frozen=True)
-class Setting:
+class TableSetting:
     """What all rows share. scale: of the paper's numbers of surface nodes; pixels: edge of a frame's picture; truth:
     folder of path-traced pictures.
     """
@@ -37,7 +37,7 @@ class Setting:
 
 
 @dataclass(frozen=True)
-class Row:
+class TableRow:
     """key: unique in its table; body: what it is about; missing: what it needs and is not there, "" if nothing;
     measure: it, telling its progress, to what JSON can hold.
     """

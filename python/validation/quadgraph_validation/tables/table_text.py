@@ -115,7 +115,7 @@ _METHOD_HEAD = [
 ]  # fmt: skip
 
 
-def _method(row: dict[str, Any], paper: published.Scene, way: str) -> list[str]:
+def _method(row: dict[str, Any], paper: published.PublishedScene, way: str) -> list[str]:
     entry = row["ways"][way]
     if entry.get("failed"):
         return [paper.name, way, entry["failed"], *[""] * (len(_METHOD_HEAD) - 3)]

@@ -19,7 +19,7 @@ from quadgraph.base.errors import SolverError
 from quadgraph.base.pass_report import PICTURE_PURPOSES, ms_by_pass
 from quadgraph.base.progress import ProgressCallback
 from quadgraph.core import load_core
-from quadgraph_validation.benchmark.algebraic_error import Judge
+from quadgraph_validation.benchmark.algebraic_error import AlgebraicJudge
 from quadgraph_validation.benchmark.frame_passes import PICTURE_PASSES
 from quadgraph_validation.chart.chart_measure import stages
 from quadgraph_validation.chart.chart_method import SWING
@@ -38,7 +38,7 @@ _MOST = 3000  # iterations to TARGET after which a search gives up
 
 
 @dataclass(frozen=True)
-class Way:
+class TableWay:
     """A method as it runs in every frame.
 
     system: what is solved, in the words of Engine.solve; iterations: on every level, 0 for as many as `tolerance`
@@ -70,16 +70,16 @@ class Way:
 _PUBLISHED = {"method": "quadgraph-fdm", "model": "diffusion", "source": "diffuse", "inter_reflection": False}
 
 
-def ways(iterations: int) -> tuple[Way, ...]:
+def ways(iterations: int) -> tuple[TableWay, ...]:
     """The published method with its iterations per level; ours for the same equation, and for SP₃; and our default,
     which follows light from part to part too.
     """
     ours = {"model": "sp3", "inter_reflection": False}
     return (
-        Way("published", _PUBLISHED, "cascade", _NEVER, iterations, "lambertian"),
-        Way("ours, diffusion", {"model": "diffusion", "inter_reflection": False}, "fmg-pcg", 1e-3),
-        Way("ours, SP₃", ours, "fmg-pcg", 1e-3),
-        Way(DEFAULT, ours | {"inter_reflection": True}, "fmg-pcg", 1e-3),
+        TableWay("published", _PUBLISHED, "cascade", _NEVER, iterations, "lambertian"),
+        TableWay("ours, diffusion", {"model": "diffusion", "inter_reflection": False}, "fmg-pcg", 1e-3),
+        TableWay("ours, SP₃", ours, "fmg-pcg", 1e-3),
+        TableWay(DEFAULT, ours | {"inter_reflection": True}, "fmg-pcg", 1e-3),
     )
 
 
@@ -94,10 +94,10 @@ def light(step: int) -> str:
 
 
 @dataclass
-class Runner:
+class TableRunner:
     """One way on an engine of its own."""
 
-    way: Way
+    way: TableWay
     engine: Engine
     pixels: int
     frames: list[dict[str, float]] = field(default_factory=list)
@@ -122,11 +122,11 @@ class Runner:
         self.engine.render(width=self.pixels, height=self.pixels, radiance=self.way.radiance)
         return ms_by_pass(self.engine.passes)
 
-    def error(self, judged: Judge) -> dict[str, float]:
+    def error(self, judged: AlgebraicJudge) -> dict[str, float]:
         """Of the last solve, against the same equations solved."""
         return judged.error(np.asarray(self.engine.surface_field()["exitance"], np.float64))
 
-    def judge(self) -> Judge:
+    def judge(self) -> AlgebraicJudge:
         """The same equations under the light of step 0, solved far beyond. Raises SolverError if that fails."""
         self.engine.set_lights([light(0)])
         report = self.engine.solve(**self.way.system | _TRUTH)
@@ -137,9 +137,9 @@ class Runner:
             )
         found = self.engine.surface_field()
         area = np.asarray(found["area"], np.float64)
-        return Judge(area, unlit_part(area, found["q"]), np.asarray(found["exitance"], np.float64))
+        return AlgebraicJudge(area, unlit_part(area, found["q"]), np.asarray(found["exitance"], np.float64))
 
-    def least(self, judged: Judge) -> dict[str, Any] | None:
+    def least(self, judged: AlgebraicJudge) -> dict[str, Any] | None:
         """The fewest iterations, from zero, after which neither error exceeds TARGET, with work and errors; None if
         _MOST are not enough. That more iterations leave less is taken for granted.
         """
@@ -199,7 +199,7 @@ def measure(
 
     A way that fails says why. Raises FormatError, VulkanError.
     """
-    runners = [Runner(way, _engine(path, device), pixels) for way in ways(iterations)]
+    runners = [TableRunner(way, _engine(path, device), pixels) for way in ways(iterations)]
     for number in range(repeats):
         for runner in runners:
             tell(f"frames, round {number + 1} of {repeats}: {runner.way.name}")
@@ -215,14 +215,14 @@ def measure(
     return {"load": load, "ways": found | failed}
 
 
-def _judged(runner: Runner, entry: dict[str, Any]) -> None:
+def _judged(runner: TableRunner, entry: dict[str, Any]) -> None:
     settled = np.asarray(runner.engine.surface_field()["exitance"], np.float64)
     judged = runner.judge()
     entry["error"] = judged.error(settled)
     entry["least"] = runner.least(judged)
 
 
-def _time_least(runners: list[Runner], found: dict[str, Any], repeats: int, tell: ProgressCallback) -> None:
+def _time_least(runners: list[TableRunner], found: dict[str, Any], repeats: int, tell: ProgressCallback) -> None:
     ready = [(runner, found[runner.way.name].get("least")) for runner in runners]
     ready = [(runner, least) for runner, least in ready if least and not runner.failed]
     times: dict[str, list[float]] = {runner.way.name: [] for runner, _ in ready}
@@ -234,7 +234,7 @@ def _time_least(runners: list[Runner], found: dict[str, Any], repeats: int, tell
         least["ms"] = round(min(times[runner.way.name]), 3)
 
 
-def _guarded(runner: Runner, work: Callable[[], None]) -> None:
+def _guarded(runner: TableRunner, work: Callable[[], None]) -> None:
     if runner.failed:
         return
     try:

@@ -25,7 +25,7 @@ class Layer:
 
 
 @dataclass(frozen=True)
-class Beam:
+class ClosedFormBeam:
     """Unscattered light in a layer, fluence amplitude e^(start + rate z) at depth z mm, the exponent at most 0."""
 
     amplitude: float
@@ -88,7 +88,7 @@ class _Slab:
             float(k.matrix[0] @ lit - k.reflected), float(k.matrix[0] @ unlit), float(absorbed), unscattered
         )
 
-    def _beams(self, mu: float, eta: float) -> tuple[list[list[Beam]], float]:
+    def _beams(self, mu: float, eta: float) -> tuple[list[list[ClosedFormBeam]], float]:
         """Unscattered light down and up in each layer; the share that leaves."""
         depths = np.cumsum([0.0] + [layer.medium.sigma_t * layer.thickness for layer in self.layers]) / mu
         inside = float(reflectance_from_inside(mu, eta))
@@ -98,7 +98,9 @@ class _Slab:
         for layer, top in zip(self.layers, depths, strict=False):
             rate = layer.medium.sigma_t / mu
             whole = amplitude / mu
-            beams.append([Beam(whole, -top, -rate), Beam(whole * inside, top - 2 * depths[-1], rate)])
+            beams.append(
+                [ClosedFormBeam(whole, -top, -rate), ClosedFormBeam(whole * inside, top - 2 * depths[-1], rate)]
+            )
         return beams, float((1 - inside) * once * (1 + inside * once) * amplitude)
 
     def _particular(self, index: int, rate: float) -> np.ndarray:
@@ -109,7 +111,7 @@ class _Slab:
         return np.linalg.solve(system.mass - rate**2 * system.stiffness, source)
 
     def _field(
-        self, index: int, z: float, coefficients: np.ndarray, beams: list[list[Beam]]
+        self, index: int, z: float, coefficients: np.ndarray, beams: list[list[ClosedFormBeam]]
     ) -> tuple[np.ndarray, np.ndarray]:
         """The moments (m,) and their slope at depth z of a layer."""
         values, slopes = _even_and_odd(self.systems[index], z, self.layers[index].thickness)
@@ -119,16 +121,16 @@ class _Slab:
             value, slope = value + part, slope + beam.rate * part
         return value, slope
 
-    def _coefficients(self, beams: list[list[Beam]]) -> np.ndarray:
+    def _coefficients(self, beams: list[list[ClosedFormBeam]]) -> np.ndarray:
         """(layers, 2 m): the conditions are linear, so their matrix is what unit coefficients do to them."""
         size = 2 * self.count * len(self.layers)
-        none: list[list[Beam]] = [[] for _ in self.layers]
+        none: list[list[ClosedFormBeam]] = [[] for _ in self.layers]
         matrix = [self._conditions(unit.reshape(len(self.layers), -1), none) for unit in np.eye(size)]
         right = -self._conditions(np.zeros((len(self.layers), 2 * self.count)), beams)
         right[: self.count] += self.boundary.matrix[:, 0] * self.boundary.source
         return np.linalg.solve(np.column_stack(matrix), right).reshape(len(self.layers), -1)
 
-    def _conditions(self, coefficients: np.ndarray, beams: list[list[Beam]]) -> np.ndarray:
+    def _conditions(self, coefficients: np.ndarray, beams: list[list[ClosedFormBeam]]) -> np.ndarray:
         """What must equal the diffuse source at z = 0, and 0 elsewhere."""
         k = self.boundary.matrix
         value, slope = self._field(0, 0.0, coefficients, beams)
@@ -143,7 +145,7 @@ class _Slab:
                 rows += [value - below, flux - self.systems[index + 1].stiffness @ slope]
         return np.concatenate(rows)
 
-    def _absorbed(self, index: int, coefficients: np.ndarray, beams: list[list[Beam]]) -> float:
+    def _absorbed(self, index: int, coefficients: np.ndarray, beams: list[list[ClosedFormBeam]]) -> float:
         layer = self.layers[index]
         # Nodes gather at both ends, where the light changes over a mean free path.
         angle, weights = gauss(_DEPTHS, 0, np.pi)

@@ -26,7 +26,7 @@ _CUTS = 1  # of the ball's tets
 
 
 @dataclass(frozen=True)
-class Row:
+class CheckRow:
     """One quantity: ours, by random walks, and by whom else it is known, with a standard error of 0 where exact."""
 
     quantity: str
@@ -41,7 +41,7 @@ class Row:
         }
 
 
-def slabs(walks: int, pmmc: bool) -> list[Row]:
+def slabs(walks: int, pmmc: bool) -> list[CheckRow]:
     """Reflected and transmitted by slabs in collimated light: beside discrete ordinates and, if asked for, pmmc."""
     rows = []
     for name, channel, eta in SLABS:
@@ -53,11 +53,11 @@ def slabs(walks: int, pmmc: bool) -> list[Row]:
             others = {"discrete ordinates": (getattr(exact, field), 0.0)}
             others |= {"pmmc": _at(theirs, k)} if theirs else {}
             title = f"slab, {name} {'RGB'[channel]}, eta {eta:g}: {field}"
-            rows.append(Row(title, _at(ours, k), others))
+            rows.append(CheckRow(title, _at(ours, k), others))
     return rows
 
 
-def sphere(walks: int, folder: Path, pictures: Path, console: Console, pmmc: bool) -> list[Row]:
+def sphere(walks: int, folder: Path, pictures: Path, console: Console, pmmc: bool) -> list[CheckRow]:
     """The scene `sphere`: what leaves either half, beside pmmc, and what reaches the eyes, beside path tracing.
 
     folder: of our walks, which are gone on with; pictures: of the path-traced ones. Raises InputError if either is
@@ -73,7 +73,7 @@ def sphere(walks: int, folder: Path, pictures: Path, console: Console, pmmc: boo
         theirs = pmmc_walk.sphere(body, medium, scene.eta, zones, _BEAMS, walks, _SEED)
     halves = {"dark half": slice(0, zones // 2), "lit half": slice(zones // 2, zones)}
     rows = [
-        Row(
+        CheckRow(
             f"sphere: exitance of the {name}",
             _mean(found.exitance, part),
             {"pmmc": _mean(theirs, part)} if theirs else {},
@@ -84,7 +84,7 @@ def sphere(walks: int, folder: Path, pictures: Path, console: Console, pmmc: boo
     for k, view in enumerate(scene.views):
         picture = walk_truth.seen(truth_run.stored(subject, pictures, view))
         seen = float(picture.mean), float(picture.error)
-        rows.append(Row(f"sphere: irradiance at eye {view}", _at(found.at_eyes, k), {"path tracing": seen}))
+        rows.append(CheckRow(f"sphere: irradiance at eye {view}", _at(found.at_eyes, k), {"path tracing": seen}))
     return rows
 
 

@@ -9,7 +9,7 @@ from quadgraph.mesh.surface import Surface
 from quadgraph.tets import exchange
 from quadgraph.tets.graph import Graph
 from quadgraph_validation.bodies.meshes import face_frames
-from quadgraph_validation.bodies.scenes import Scene
+from quadgraph_validation.bodies.scenes import StudyScene
 from quadgraph_validation.truth.fresnel import entering_share, transmittance_from_outside
 
 _LIFT = 1e-6  # of the body's size, by which rays start above their face
@@ -40,7 +40,7 @@ class Occluder:
         return free
 
 
-def entering(scene: Scene, mesh: Graph, occluder: Occluder, parts: int, rays: int) -> np.ndarray:
+def entering(scene: StudyScene, mesh: Graph, occluder: Occluder, parts: int, rays: int) -> np.ndarray:
     """q (n_f, 3) W/mm^2 that the outside faces of a mesh on the occluder's surface let in, a mean over each face.
 
     A beam's shadow is sampled at the middles of parts^2 similar triangles of every face; of even light, as much enters
@@ -53,7 +53,7 @@ def entering(scene: Scene, mesh: Graph, occluder: Occluder, parts: int, rays: in
     return np.repeat(share[:, None], 3, axis=1)
 
 
-def _beam(scene: Scene, mesh: Graph, occluder: Occluder, parts: int, frames: tuple) -> np.ndarray:
+def _beam(scene: StudyScene, mesh: Graph, occluder: Occluder, parts: int, frames: tuple) -> np.ndarray:
     _, normal, _ = frames
     way = np.array(scene.direction) / np.linalg.norm(scene.direction)
     cosine = np.clip(-normal @ way, 0, 1)
@@ -67,7 +67,7 @@ def _beam(scene: Scene, mesh: Graph, occluder: Occluder, parts: int, frames: tup
     return share
 
 
-def _sky(scene: Scene, mesh: Graph, occluder: Occluder, rays: int) -> np.ndarray:
+def _sky(scene: StudyScene, mesh: Graph, occluder: Occluder, rays: int) -> np.ndarray:
     centre, normal, _ = face_frames(mesh)
     frames = exchange.frames(mesh)
     share = np.empty(len(centre))

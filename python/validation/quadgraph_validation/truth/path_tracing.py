@@ -17,7 +17,7 @@ import trimesh
 
 from quadgraph.base.errors import InputError
 from quadgraph.mesh.surface import Surface
-from quadgraph_validation.bodies.scenes import FOV, PIXELS, Grid, Scene, bounding_sphere, camera_axes
+from quadgraph_validation.bodies.scenes import FOV, PIXELS, Grid, StudyScene, bounding_sphere, camera_axes
 
 MITSUBA = "3.9.1"
 BATCH = 16  # samples a pixel
@@ -46,7 +46,7 @@ def load_mitsuba():
 
 
 @contextmanager
-def tracer(scene: Scene, surface: Surface, grid: Grid, view: str) -> Iterator[Tracer]:
+def tracer(scene: StudyScene, surface: Surface, grid: Grid, view: str) -> Iterator[Tracer]:
     """Set up one view of a scene; its meshes live in a temporary folder."""
     with tempfile.TemporaryDirectory(prefix="quadgraph-truth-") as folder:
         yield Tracer(load_mitsuba(), scene, surface, grid, view, Path(folder))
@@ -55,7 +55,7 @@ def tracer(scene: Scene, surface: Surface, grid: Grid, view: str) -> Iterator[Tr
 class Tracer:
     """One view of a scene, ready to render batch after batch."""
 
-    def __init__(self, mitsuba: Any, scene: Scene, surface: Surface, grid: Grid, view: str, folder: Path) -> None:
+    def __init__(self, mitsuba: Any, scene: StudyScene, surface: Surface, grid: Grid, view: str, folder: Path) -> None:
         self._mitsuba = mitsuba
         self._scene = scene
         # Mitsuba moves rays off a surface by a share of the coordinates: they are kept small.

@@ -12,7 +12,7 @@ from quadgraph.mesh.surface import TetMesh
 from quadgraph.tets import graph, refine
 from quadgraph.tets.graph import Graph
 from quadgraph_validation.bodies import meshes
-from quadgraph_validation.bodies.scenes import Scene
+from quadgraph_validation.bodies.scenes import StudyScene
 from quadgraph_validation.truth import schemes
 from quadgraph_validation.truth.interruptible import interruptible
 from quadgraph_validation.truth.irradiance import Occluder, entering
@@ -31,7 +31,7 @@ class Ladder:
     weight (n, 3).
     """
 
-    def __init__(self, scene: Scene, chain: Path) -> None:
+    def __init__(self, scene: StudyScene, chain: Path) -> None:
         sections = qgraph_file.read(chain).sections
         vertices, faces = (sections[f"level0/{name}"] for name in ("vertices", "faces"))
         vertices, faces = vertices.astype(np.float64), faces.astype(np.int64)

@@ -24,7 +24,7 @@ from quadgraph.base.relative_error import relative_rms
 from quadgraph.core import load_core
 from quadgraph_validation.base import store
 from quadgraph_validation.bodies import level_chains, scene_bakes
-from quadgraph_validation.bodies.scenes import Scene
+from quadgraph_validation.bodies.scenes import StudyScene
 from quadgraph_validation.truth.pde_solve import REFINEMENTS, SKY_RAYS, Ladder
 from quadgraph_validation.truth.schemes import Scheme
 
@@ -106,12 +106,12 @@ class PdeTruth:
         return {part: relative_rms(area, difference, self.exitance) for part, area in self.parts.items()}
 
 
-def chain(scene: Scene, meshes: Path, folder: Path) -> Path:
+def chain(scene: StudyScene, meshes: Path, folder: Path) -> Path:
     """The scene's baked chain of levels in `folder`, baked if it is not there. Raises as pipeline.bake does."""
     return _baked(scene, meshes, folder).made()
 
 
-def stored(scene: Scene, model: str, meshes: Path, folder: Path, source: str = "buried") -> PdeTruth:
+def stored(scene: StudyScene, model: str, meshes: Path, folder: Path, source: str = "buried") -> PdeTruth:
     """The truth that `make` made. Raises InputError if it is absent, unfinished or stale, naming what differs."""
     path, chain_path = _path(folder, scene, model, source), _baked(scene, meshes, folder).path
     command = f"quadgraph reference {scene.name} --kind pde --model {model} --source {source}"
@@ -124,7 +124,9 @@ def stored(scene: Scene, model: str, meshes: Path, folder: Path, source: str = "
     return found
 
 
-def make(scene: Scene, model: str, meshes: Path, folder: Path, console: Console, source: str = "buried") -> PdeTruth:
+def make(
+    scene: StudyScene, model: str, meshes: Path, folder: Path, console: Console, source: str = "buried"
+) -> PdeTruth:
     """Make the truth of a scene for one model and source, or go on where it was interrupted, and keep it in `folder`.
 
     Saved after every mesh; KeyboardInterrupt passes through. Raises InputError if what is stored is stale, as `bake`
@@ -159,18 +161,18 @@ def _load(path: Path, key: dict[str, Any], chain_path: Path) -> PdeTruth:
     return PdeTruth(key, chain_path, **store.load(path, key, _ARRAYS, "a PDE truth"))
 
 
-def _path(folder: Path, scene: Scene, model: str, source: str) -> Path:
+def _path(folder: Path, scene: StudyScene, model: str, source: str) -> Path:
     for name, found, allowed in (("model", model, MODELS), ("source", source, SOURCES)):
         if found not in allowed:
             raise InputError(f"{name} '{found}': allowed are {', '.join(allowed)}")
     return folder / f"{scene.name}-{model}-{source}.npz"
 
 
-def _baked(scene: Scene, meshes: Path, folder: Path) -> scene_bakes.SceneBake:
+def _baked(scene: StudyScene, meshes: Path, folder: Path) -> scene_bakes.SceneBake:
     return scene_bakes.of(scene, scene_bakes.Choice(VERTICES), meshes, folder)
 
 
-def _key(scene: Scene, model: str, source: str, chain_path: Path) -> dict[str, Any]:
+def _key(scene: StudyScene, model: str, source: str, chain_path: Path) -> dict[str, Any]:
     """Everything that the truth depends on, ready for JSON."""
     level = load_core().load(chain_path).levels[0]
     coefficients = hashlib.sha256()

@@ -77,7 +77,7 @@ class Answer:
 
 
 @dataclass(frozen=True, eq=False)
-class Body:
+class StudyBody:
     """A mesh with the centroids (n_f, 3) mm, outward unit normals and areas (n_f,) mm^2 of its outside faces."""
 
     mesh: Graph
@@ -104,10 +104,10 @@ class Body:
 
 
 # Makes a body of a mesh; which of the two solvers stands behind it is the caller's choice.
-BodyOf = Callable[[Graph], Body]
+BodyOf = Callable[[Graph], StudyBody]
 
 
-def on_reference(mesh: Graph) -> Body:
+def on_reference(mesh: Graph) -> StudyBody:
     """A body that the CPU reference solves, in double precision."""
     core = load_core()
     with tempfile.TemporaryDirectory(prefix="quadgraph-study-") as folder:
@@ -136,13 +136,13 @@ def on_reference(mesh: Graph) -> Body:
         return _answer(result["phi_face"], result, result["energy"], result["clipped"], leaving)
 
     frames = meshes.face_frames(mesh)
-    return Body(mesh, *frames, solve)
+    return StudyBody(mesh, *frames, solve)
 
 
 def on_engine(device: str = "") -> BodyOf:
     """Bodies that the engine solves on the Vulkan device whose name contains `device`."""
 
-    def body_of(mesh: Graph) -> Body:
+    def body_of(mesh: Graph) -> StudyBody:
         with tempfile.TemporaryDirectory(prefix="quadgraph-study-") as folder:
             engine = load_core().Engine(graph_file.write(Path(folder) / "study.qgraph", [mesh]), device=device)
 
@@ -163,7 +163,7 @@ def on_engine(device: str = "") -> BodyOf:
 
             return _answer(field["phi"], field, report["energy"], report["clipped"], leaving)
 
-        return Body(mesh, *meshes.face_frames(mesh), solve)
+        return StudyBody(mesh, *meshes.face_frames(mesh), solve)
 
     return body_of
 

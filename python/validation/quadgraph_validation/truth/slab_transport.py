@@ -44,7 +44,7 @@ class SlabLight:
 
 
 @dataclass(frozen=True)
-class Beam:
+class SlabBeam:
     """Unscattered light inside a slab: fluence down e^(-tau/mu) + up e^(-(depth-tau)/mu) per unit that entered."""
 
     mu: float
@@ -53,12 +53,12 @@ class Beam:
     out: float  # share that leaves unscattered, through both surfaces
 
 
-def beam(mu: float, depth: float, eta: float) -> Beam:
+def beam(mu: float, depth: float, eta: float) -> SlabBeam:
     """Sum of all reflections between the surfaces of a slab of optical depth `depth` at inside cosine mu."""
     inside = float(reflectance_from_inside(mu, eta))
     once = np.exp(-depth / mu)
     amplitude = 1 / (1 - (inside * once) ** 2)
-    return Beam(
+    return SlabBeam(
         mu, amplitude / mu, amplitude * inside * once / mu, (1 - inside) * once * (1 + inside * once) * amplitude
     )
 
@@ -116,7 +116,7 @@ class _Modes:
         end = np.exp(-self.rate * depth)
         self.conditions = linalg.lu_factor(np.block([[near, far * end], [far * end, near]]))
 
-    def collided(self, light: Beam) -> tuple[float, float, float]:
+    def collided(self, light: SlabBeam) -> tuple[float, float, float]:
         """Shares reflected, transmitted and absorbed of the light that entered as `light`."""
         own = self._particular(light.mu)
         up, down, (falling, rising) = self._surfaces(light, own)
@@ -126,12 +126,14 @@ class _Modes:
         absorbed = (1 - self.albedo) * (modes.sum() + (1 + self.weight @ own) * uncollided)
         return float(leaving @ up), float(leaving @ down), float(absorbed)
 
-    def arriving(self, light: Beam) -> tuple[np.ndarray, np.ndarray]:
+    def arriving(self, light: SlabBeam) -> tuple[np.ndarray, np.ndarray]:
         """psi of collided light that meets the lit and the unlit surface from inside, by angle."""
         up, down, _ = self._surfaces(light, self._particular(light.mu))
         return up, down
 
-    def _surfaces(self, light: Beam, own: np.ndarray) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, np.ndarray]]:
+    def _surfaces(
+        self, light: SlabBeam, own: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, np.ndarray]]:
         """psi towards the lit surface there and towards the unlit one there, and the modes' amplitudes."""
         once = np.exp(-self.depth / light.mu)
         p = own * np.array([light.down + light.up * once, light.down * once + light.up])[:, None]

@@ -12,7 +12,7 @@ from quadgraph_validation.base import store
 
 
 @dataclass
-class Truth:
+class StoredTruth:
     """Batches of equal size added up: `total` and `squares` (h, w) float64 are the sums of their means and of the
     squares of these, W/(mm^2 sr).
     """
@@ -23,7 +23,7 @@ class Truth:
     squares: np.ndarray
 
     @classmethod
-    def empty(cls, key: dict[str, Any], height: int, width: int) -> Truth:
+    def empty(cls, key: dict[str, Any], height: int, width: int) -> StoredTruth:
         """Nothing yet."""
         return cls(key, 0, np.zeros((height, width)), np.zeros((height, width)))
 
@@ -45,13 +45,13 @@ class Truth:
         self.squares += batch**2
 
 
-def save(path: Path, truth: Truth) -> None:
+def save(path: Path, truth: StoredTruth) -> None:
     """Write at least two batches, whole or not at all. Raises InputError if `path` cannot be written."""
     arrays = {"mean": truth.mean.astype(np.float32), "error": truth.error.astype(np.float32)}
     store.save(path, truth.key, arrays | {"batches": np.int64(truth.batches)})
 
 
-def load(path: Path, key: dict[str, Any]) -> Truth:
+def load(path: Path, key: dict[str, Any]) -> StoredTruth:
     """Read what `save` wrote for this very key.
 
     Raises InputError if the file cannot be read or was made for anything else, naming what differs.
@@ -60,4 +60,4 @@ def load(path: Path, key: dict[str, Any]) -> Truth:
     mean, error = arrays["mean"].astype(np.float64), arrays["error"].astype(np.float64)
     batches = int(arrays["batches"])
     spread = error**2 * (batches - 1)
-    return Truth(key, batches, mean * batches, (spread + mean**2) * batches)
+    return StoredTruth(key, batches, mean * batches, (spread + mean**2) * batches)

@@ -12,23 +12,24 @@ import numpy as np
 from rich.console import Console
 from rich.progress import Progress, TaskID
 
+from quadgraph.base.relative_error import relative_rms
 from quadgraph.mesh import mesh_io
 from quadgraph.mesh.surface import Surface
 from quadgraph_validation.bodies import scenes
-from quadgraph_validation.bodies.scenes import PIXELS, Grid, Scene
+from quadgraph_validation.bodies.scenes import PIXELS, Grid, StudyScene
 from quadgraph_validation.truth import blocks, path_tracing, stored_truth
 from quadgraph_validation.truth.path_tracing import BATCH, Tracer
-from quadgraph_validation.truth.stored_truth import Truth
+from quadgraph_validation.truth.stored_truth import StoredTruth
 
 
 @dataclass(frozen=True)
-class Subject:
+class TracedSubject:
     """A scene with its mesh read: what both path tracing and the engine start from.
 
     mesh: its file; grids: the coefficients by channel, one of a grey scene and three of a coloured one.
     """
 
-    scene: Scene
+    scene: StudyScene
     mesh: Path
     surface: Surface
     grids: tuple[Grid, ...]
@@ -46,21 +47,23 @@ class Subject:
         return folder / f"{self.scene.name}-{image}.npz"
 
 
-def subject(scene: Scene, mesh: Path) -> Subject:
+def subject(scene: StudyScene, mesh: Path) -> TracedSubject:
     """Read the scene's mesh file and sample its coefficients. Raises InputError."""
     source = mesh_io.read_surface(mesh, height_mm=scene.height)
     surface = source.surface.rounded()
     channels = range(3 if scene.coloured else 1)
-    return Subject(scene, mesh, surface, tuple(scenes.grid_of(scene, surface, c) for c in channels), source.sha256)
+    return TracedSubject(
+        scene, mesh, surface, tuple(scenes.grid_of(scene, surface, c) for c in channels), source.sha256
+    )
 
 
-def stored(found: Subject, folder: Path, image: str) -> Truth:
+def stored(found: TracedSubject, folder: Path, image: str) -> StoredTruth:
     """One of the scene's images (Scene.images) as far as it has come. Raises InputError if it is stale."""
     path, key = found.path(folder, image), found.key(image)
-    return stored_truth.load(path, key) if path.exists() else Truth.empty(key, PIXELS, PIXELS)
+    return stored_truth.load(path, key) if path.exists() else StoredTruth.empty(key, PIXELS, PIXELS)
 
 
-def noise(image: Truth) -> tuple[float, float]:
+def noise(image: StoredTruth) -> tuple[float, float]:
     """Standard error of the means of blocks over their size: where the picture is bright, and wherever it is not black.
 
     Both root mean squares; bright as in `blocks`, without the engine's coverage.
@@ -68,10 +71,10 @@ def noise(image: Truth) -> tuple[float, float]:
     values, errors = blocks.means(image.mean), blocks.errors(image.error)
     some = values > 0
     bright = values >= blocks.BRIGHT * np.quantile(values[some], 0.95)
-    return tuple(float(np.sqrt((errors[at] ** 2).sum() / (values[at] ** 2).sum())) for at in (bright, some))
+    return tuple(relative_rms(at.ravel(), errors.reshape(-1, 1), values.reshape(-1, 1)) for at in (bright, some))
 
 
-def render(subjects: list[Subject], folder: Path, samples: int, console: Console) -> None:
+def render(subjects: list[TracedSubject], folder: Path, samples: int, console: Console) -> None:
     """Bring every image to `samples` samples a pixel, those of views of more effort to as many times more.
 
     Saved after every round of an image; KeyboardInterrupt passes through with every finished batch kept. Raises
@@ -92,7 +95,7 @@ def render(subjects: list[Subject], folder: Path, samples: int, console: Console
 class _Job:
     """One image at work."""
 
-    image: Truth
+    image: StoredTruth
     path: Path
     tracer: Tracer
     effort: int
@@ -113,7 +116,7 @@ class _Job:
                 stored_truth.save(self.path, self.image)
 
 
-def _job(stack: ExitStack, progress: Progress, found: Subject, folder: Path, name: str, rounds: int) -> _Job:
+def _job(stack: ExitStack, progress: Progress, found: TracedSubject, folder: Path, name: str, rounds: int) -> _Job:
     image = found.scene.images[name]
     begun, effort = stored(found, folder, name), found.scene.views[image.view].effort
     tracer = stack.enter_context(

@@ -17,10 +17,10 @@ from quadgraph.base.errors import InputError
 from quadgraph_validation.base import store
 from quadgraph_validation.bodies import scenes
 from quadgraph_validation.bodies.media import Medium
-from quadgraph_validation.bodies.scenes import FOV, PIXELS, Scene
+from quadgraph_validation.bodies.scenes import FOV, PIXELS, StudyScene
 from quadgraph_validation.truth import monte_carlo
 from quadgraph_validation.truth.monte_carlo import Estimate
-from quadgraph_validation.truth.stored_truth import Truth
+from quadgraph_validation.truth.stored_truth import StoredTruth
 
 ZONES = 20  # of equal cos(theta), theta from the way to the light
 BATCH = 50_000  # walks
@@ -37,7 +37,7 @@ class WalkTruth:
     """
 
     key: dict[str, Any]
-    scene: Scene
+    scene: StudyScene
     batches: int
     zones: np.ndarray
     eyes: np.ndarray
@@ -87,17 +87,17 @@ class WalkTruth:
         self.batches += 1
 
 
-def radius_of(scene: Scene) -> float:
+def radius_of(scene: StudyScene) -> float:
     """mm."""
     return scene.height / 2
 
 
-def medium_of(scene: Scene) -> Medium:
+def medium_of(scene: StudyScene) -> Medium:
     """What fills the scene's body, the same everywhere."""
     return Medium(*(float(value[0]) for value in scene.coefficients(np.zeros((1, 3)))))
 
 
-def make(scene: Scene, walks: int, folder: Path, console: Console) -> WalkTruth:
+def make(scene: StudyScene, walks: int, folder: Path, console: Console) -> WalkTruth:
     """Bring the walks through a round scene to `walks`, and keep them in `folder`; an interruption loses one batch.
 
     scene: even and grey, lit along -z. Raises InputError if what is stored is stale.
@@ -117,7 +117,7 @@ def make(scene: Scene, walks: int, folder: Path, console: Console) -> WalkTruth:
     return found
 
 
-def stored(scene: Scene, folder: Path) -> WalkTruth:
+def stored(scene: StudyScene, folder: Path) -> WalkTruth:
     """The walks that there are. Raises InputError if they were made for anything else."""
     medium, path = medium_of(scene), _path(scene, folder)
     key = {
@@ -135,7 +135,7 @@ def stored(scene: Scene, folder: Path) -> WalkTruth:
     return WalkTruth(key, scene, int(arrays["batches"]), arrays["zones"], arrays["eyes"], int(arrays["absorbed"]))
 
 
-def seen(image: Truth) -> Estimate:
+def seen(image: StoredTruth) -> Estimate:
     """W/mm^2 that a path-traced picture says arrive at its eye, on the plane that faces the body."""
     if image.batches < 2:
         raise InputError(f"{image.key['scene']} {image.key['view']}: no path-traced picture to compare with")
@@ -145,7 +145,7 @@ def seen(image: Truth) -> Estimate:
     return Estimate((image.mean * weight).sum(), np.sqrt(((image.error * weight) ** 2).sum()))
 
 
-def _path(scene: Scene, folder: Path) -> Path:
+def _path(scene: StudyScene, folder: Path) -> Path:
     return folder / f"{scene.name}-walks.npz"
 
 

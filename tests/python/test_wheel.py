@@ -1,0 +1,75 @@
+"""What is in the wheel of the product: no study, no chart, no other people's solver."""
+
+from __future__ import annotations
+
+import ast
+import re
+import sys
+import tomllib
+from pathlib import Path
+
+from quadgraph import cli
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def project(path: Path) -> dict:
+    return tomllib.loads(path.read_text())
+
+
+def imported(folder: Path) -> set[str]:
+    """The top-level modules that files of a folder import, wherever in them."""
+    found = set()
+    for path in folder.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Import):
+                found |= {alias.name.partition(".")[0] for alias in node.names}
+            elif isinstance(node, ast.ImportFrom):
+                found.add(str(node.module).partition(".")[0])
+    return found
+
+
+def names(requirements: list[str]) -> set[str]:
+    """The modules of requirements."""
+    return {re.split(r"[;>=\[]", text)[0].strip() for text in requirements}
+
+
+def test_the_wheel_is_the_package_alone():
+    packages = project(ROOT / "pyproject.toml")["tool"]["scikit-build"]["wheel"]["packages"]
+    assert packages == ["python/quadgraph"]
+    rooms = {path.name for path in (ROOT / packages[0]).iterdir() if (path / "__init__.py").is_file()}
+    assert rooms == {"base", "mesh", "tets", "file", "bake", "commands"}
+    assert not {path.stem for path in (ROOT / packages[0] / "commands").glob("*.py")} & set(cli.VALIDATION)
+
+
+def test_the_product_imports_what_it_declares_and_no_more():
+    package = project(ROOT / "pyproject.toml")["project"]
+    needed = names(package["dependencies"])
+    optional = names(package["optional-dependencies"]["film"]) | {"openvdb", "pyopenvdb"}
+    others = imported(ROOT / "python" / "quadgraph") - set(sys.stdlib_module_names) - {"quadgraph"}
+    assert others <= needed | optional
+    # What trimesh traces rays with.
+    assert needed - others <= {"embreex"}
+
+
+def test_all_subcommands_of_the_validation_are_its_entry_points():
+    validation = project(ROOT / "python" / "validation" / "pyproject.toml")["project"]
+    assert set(validation["entry-points"]["quadgraph.commands"]) == set(cli.VALIDATION)
+
+
+def test_help_has_the_validation_in_a_group_of_its_own():
+    added = cli.added_commands()
+    first, _, second = (
+        cli.build_parser({}, added).format_help().partition("validation (quadgraph-validation is installed)")
+    )
+    assert set(added) == set(cli.VALIDATION)
+    assert all(f"    {name} " in second and f"    {name} " not in first for name in cli.VALIDATION)
+    assert "validation" not in cli.build_parser({}, {}).format_help()
+
+
+def test_without_it_its_subcommands_say_what_to_install(monkeypatch, capsys):
+    monkeypatch.setattr(cli, "added_commands", dict)
+    assert cli.main(["chart", "--json", "a.json"]) == 1
+    text = capsys.readouterr().err
+    assert "quadgraph[validation]" in text
+    assert text.count("\n") == 1
