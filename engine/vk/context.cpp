@@ -134,7 +134,10 @@ Context::~Context() {
 
 void Context::destroy() noexcept {
   arenas_.reset();
-  if (device_ != VK_NULL_HANDLE) vkDestroyDevice(device_, nullptr);
+  if (device_ != VK_NULL_HANDLE) {
+    vkDestroyDevice(device_, nullptr);
+    count_closed(device_);
+  }
   if (surface_ != VK_NULL_HANDLE) vkDestroySurfaceKHR(instance_, surface_, nullptr);
   if (messenger_ != VK_NULL_HANDLE) {
     auto destroy_messenger = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
@@ -268,6 +271,7 @@ void Context::create_device() {
   info.enabledExtensionCount = surface_ != VK_NULL_HANDLE ? 1 : 0;
   info.ppEnabledExtensionNames = &swapchain;
   check(vkCreateDevice(physical_device_, &info, nullptr, &device_), "vkCreateDevice");
+  count_opened(device_);
   vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
   if (debug_utils_) {
     set_object_name_ = reinterpret_cast<PFN_vkSetDebugUtilsObjectNameEXT>(
