@@ -31,5 +31,6 @@ def nothing_left_on_devices(request):
         return
     first, failed = _core.contexts_made(), request.session.testsfailed
     yield
+    request.node.funcargs.clear()  # values of its fixtures, which are over by now but for this one
     if request.session.testsfailed == failed:
         assert not (left := left_behind(first)), f"left behind on devices: {left}"

@@ -26,11 +26,18 @@ kept = []
 def shared():
     return _core.Engine({tiny!r})
 
+@pytest.fixture
+def own():
+    yield _core.Engine({tiny!r})
+
 def test_uses_a_shared_one(shared):
     shared.set_material("marble")
 
 def test_drops_its_own(shared):
     _core.Engine({tiny!r})
+
+def test_has_one_from_a_fixture(own):
+    own.set_material("marble")
 
 def test_drops_a_circle(shared):
     circle = [_core.Engine({tiny!r})]
@@ -85,6 +92,6 @@ def test_a_test_that_keeps_an_engine_fails_and_no_other(tmp_path):
         text=True,
         timeout=300,
     )
-    assert "5 passed, 1 error" in run.stdout, run.stdout + run.stderr
+    assert "6 passed, 1 error" in run.stdout, run.stdout + run.stderr
     assert "ERROR test_kept.py::test_keeps_its_own" in run.stdout
     assert "left behind on devices: {'allocat" in run.stdout
