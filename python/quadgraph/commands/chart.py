@@ -6,11 +6,16 @@ import argparse
 import json
 import tempfile
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from quadgraph import atomic_file
 from quadgraph.commands import scene
 from quadgraph.errors import InputError
+
+if TYPE_CHECKING:
+    from quadgraph.chart.body import Body
+    from quadgraph.chart.judge import Judge
+    from quadgraph.chart.method import Method
 
 TRUTHS = ("pde", "transport")
 _TABLE_WIDTH = 190  # characters; narrower, the tables cannot be read
@@ -135,13 +140,13 @@ def _measured(args: argparse.Namespace) -> dict[str, Any]:
             for one in scenes.chosen(args.scene)
         ]
         copied = scene.load_core().copy_bandwidth(args.device)
-        found = []
-        while subjects:
-            # Each with its engines is let go before the next.
-            body, judge, methods = subjects.pop(0)
+
+        def measured(body: Body, judge: Judge, methods: list[Method]) -> dict[str, Any]:
             run = machine(copied) | measure.conditions(args.repeats, args.pixels)
             points = measure.measure(body, judge, methods, args.repeats, status.update)
-            found.append({"run": run} | measure.scene_record(body, judge, points))
             if args.output:
                 pictures.write(args.output, judge, points)
-        return {"format": FORMAT, "scenes": found}
+            return {"run": run} | measure.scene_record(body, judge, points)
+
+        # Popped, and measured in a function: each with its engines is let go before the next.
+        return {"format": FORMAT, "scenes": [measured(*subjects.pop(0)) for _ in range(len(subjects))]}
