@@ -6,6 +6,7 @@
 
 #include "engine/base/error.h"
 #include "engine/vk/arena.h"
+#include "engine/vk/features.h"
 
 namespace quadgraph::vk {
 namespace {
@@ -66,36 +67,6 @@ std::optional<std::uint32_t> find_family(VkPhysicalDevice device, VkSurfaceKHR s
   }
   return std::nullopt;
 }
-
-// The features the engine relies on, chained so that one call queries or enables them all.
-struct Features {
-  VkPhysicalDeviceVulkan13Features v13{};
-  VkPhysicalDeviceVulkan12Features v12{};
-  VkPhysicalDeviceFeatures2 base{};
-
-  Features() {
-    v13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
-    v12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
-    base.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
-    base.pNext = &v12;
-    v12.pNext = &v13;
-  }
-  Features(const Features&) = delete;
-  Features& operator=(const Features&) = delete;
-
-  std::vector<std::pair<const char*, VkBool32*>> required() {
-    return {{"bufferDeviceAddress", &v12.bufferDeviceAddress},
-            {"scalarBlockLayout", &v12.scalarBlockLayout},
-            {"dynamicRendering", &v13.dynamicRendering},
-            {"synchronization2", &v13.synchronization2},
-            {"maintenance4", &v13.maintenance4},
-            {"hostQueryReset", &v12.hostQueryReset},
-            {"maintenance4", &v13.maintenance4},
-            {"shaderInt64", &base.features.shaderInt64},
-            // gl_PrimitiveID in fragment shaders
-            {"geometryShader", &base.features.geometryShader}};
-  }
-};
 
 int preference(VkPhysicalDeviceType type) {
   switch (type) {
@@ -163,7 +134,10 @@ Context::~Context() {
 
 void Context::destroy() noexcept {
   arenas_.reset();
-  if (device_ != VK_NULL_HANDLE) vkDestroyDevice(device_, nullptr);
+  if (device_ != VK_NULL_HANDLE) {
+    vkDestroyDevice(device_, nullptr);
+    count_closed(device_);
+  }
   if (surface_ != VK_NULL_HANDLE) vkDestroySurfaceKHR(instance_, surface_, nullptr);
   if (messenger_ != VK_NULL_HANDLE) {
     auto destroy_messenger = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
@@ -297,6 +271,7 @@ void Context::create_device() {
   info.enabledExtensionCount = surface_ != VK_NULL_HANDLE ? 1 : 0;
   info.ppEnabledExtensionNames = &swapchain;
   check(vkCreateDevice(physical_device_, &info, nullptr, &device_), "vkCreateDevice");
+  count_opened(device_);
   vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
   if (debug_utils_) {
     set_object_name_ = reinterpret_cast<PFN_vkSetDebugUtilsObjectNameEXT>(

@@ -21,6 +21,8 @@ Allocation::Allocation(Context& context, const VkMemoryRequirements& requirement
     : context_(&context), size_(requirements.size), purpose_(name.substr(0, name.find('/'))), place_(place) {
   const bool in_arena = arena_of(place) < arena_count && take_range(requirements);
   if (!in_arena) allocate(requirements, place, device_address);
+  count_made(context.device(), "allocation");
+  count_made(context.device(), "allocated byte", size_);
   context.allocated_bytes_ += size_;
   context.allocated_by_purpose_[purpose_] += size_;
   ++context.allocation_count_;
@@ -74,6 +76,8 @@ Allocation& Allocation::operator=(Allocation&& other) noexcept {
 Allocation::~Allocation() {
   if (context_ == nullptr || memory_ == VK_NULL_HANDLE) return;
   if (own_.get() == VK_NULL_HANDLE) context_->arenas()[arena_of(place_)].release(offset_, size_);
+  count_gone(context_->device(), "allocation");
+  count_gone(context_->device(), "allocated byte", size_);
   context_->allocated_bytes_ -= size_;
   const auto of_purpose = context_->allocated_by_purpose_.find(purpose_);
   of_purpose->second -= size_;

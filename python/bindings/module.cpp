@@ -160,5 +160,6 @@ PYBIND11_MODULE(_core, module) {
   quadgraph::python::bind_path(module);
   quadgraph::python::bind_picture(module);
   quadgraph::python::bind_engine(module);
+  quadgraph::python::bind_live_objects(module);
   quadgraph::python::bind_scene(module);
 }

@@ -6,6 +6,7 @@ layout(push_constant, scalar) uniform Block { SurfacePush push; };
 #define SURFACE push
 layout(location = 0) in vec3 position;  // mm
 layout(location = 1) in vec3 normal;
+layout(location = 2) flat in uint face;  // outside face of level 0
 layout(location = 4) in float sky;  // share that is not hidden by the body
 layout(location = 5) in vec3 rest;  // mm, the position at rest
 layout(location = 0) out vec4 position_coverage;  // mm, 1
@@ -18,7 +19,6 @@ void main() {
   scene = load_scene(push.scene);
   place_roughness(rest);
   vec3 n = normalize(normal);
-  uint face = load_uint(scene.triangle_face, gl_PrimitiveID);
   position_coverage = vec4(position, 1.0);
   specular_face = vec4(specular_radiance(position, n, normalize(scene.eye - position), sky), face / FACE_HALF);
   normal_face = vec4(n, face % FACE_HALF);

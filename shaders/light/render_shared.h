@@ -192,6 +192,7 @@ struct SurfaceScene {
   QG_REF(LightRecords) lights;
   QG_REF(LightShapes) shapes;  // per light
   QG_REF(ShadowViews) views;
+  QG_REF(Uints) triangles;      // of the display mesh: three display vertices each
   QG_REF(Uints) triangle_face;  // per display triangle: outside face of level 0
   QG_REF(GatherPoints) points;
   QG_REF(GatherScales) scale;
@@ -223,15 +224,17 @@ SurfaceScene load_scene(SurfaceScenes a) {
   scene.lights = LightRecords(texels2(t + 40u));
   scene.shapes = LightShapes(texels2(t + 42u));
   scene.views = ShadowViews(texels2(t + 44u));
-  scene.triangle_face = Uints(texels2(t + 46u));
-  scene.points = GatherPoints(texels2(t + 48u));
-  scene.scale = GatherScales(texels2(t + 50u));
-  scene.solid = solid_in_texels(t + 52u);
+  scene.triangles = Uints(texels2(t + 46u));
+  scene.triangle_face = Uints(texels2(t + 48u));
+  scene.points = GatherPoints(texels2(t + 50u));
+  scene.scale = GatherScales(texels2(t + 52u));
+  scene.solid = solid_in_texels(t + 54u);
   return scene;
 }
 #endif
 
-// surface.vert, surface.frag: radiance of the display mesh. surface_gathered.frag: what is needed to gather it.
+// surface.vert, surface.frag: radiance of the display mesh. surface_gathered.vert, surface_gathered.frag: what is
+// needed to gather it.
 struct SurfacePush {
   QG_REF(SurfaceScenes) scene;  // one
   // With VARIANT_PLACED_ROUGHNESS: engine/render/display/surface_roughness.h.

@@ -54,8 +54,8 @@ void set_viewport(vk::Commands& commands, const DrawTarget& target, const Viewpo
 }  // namespace
 
 void draw_bytes(vk::Commands& commands, const DrawTarget& target, const Viewport& viewport,
-                const vk::GraphicsPass& pass, const void* push, std::uint32_t push_size, const vk::Buffer& indices,
-                std::uint32_t index_count) {
+                const vk::GraphicsPass& pass, const void* push, std::uint32_t push_size, const vk::Buffer* indices,
+                std::uint32_t vertex_count) {
   assert(push_size == pass.push_size());
   begin_rendering(commands, target);
   set_viewport(commands, target, viewport);
@@ -65,8 +65,12 @@ void draw_bytes(vk::Commands& commands, const DrawTarget& target, const Viewport
                      push);
   const VkDescriptorSet texels = commands.context().arenas().set();
   vkCmdBindDescriptorSets(handle, VK_PIPELINE_BIND_POINT_GRAPHICS, pass.layout(), 0, 1, &texels, 0, nullptr);
-  vkCmdBindIndexBuffer(handle, indices.handle(), 0, VK_INDEX_TYPE_UINT32);
-  vkCmdDrawIndexed(handle, index_count, 1, 0, 0, 0);
+  if (indices == nullptr) {
+    vkCmdDraw(handle, vertex_count, 1, 0, 0);
+  } else {
+    vkCmdBindIndexBuffer(handle, indices->handle(), 0, VK_INDEX_TYPE_UINT32);
+    vkCmdDrawIndexed(handle, vertex_count, 1, 0, 0, 0);
+  }
   vkCmdEndRendering(handle);
   for (const vk::Image* image : target.colours) {
     commands.transition(*image, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);

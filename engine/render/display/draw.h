@@ -19,16 +19,16 @@ struct DrawTarget {
   std::uint32_t width = 0, height = 0;  // of the upper left part that is cleared and drawn into, pixels; 0: all
 };
 
-// Clears the images (colour 0, depth 1; contents before are dropped), draws an indexed triangle list with y up, and
-// leaves the images in TRANSFER_SRC_OPTIMAL. `indices` holds `index_count` u32.
+// Clears the images (colour 0, depth 1; contents before are dropped), draws a triangle list with y up, and leaves the
+// images in TRANSFER_SRC_OPTIMAL. `indices` holds `vertex_count` u32; without them vertices are numbered in order.
 void draw_bytes(vk::Commands& commands, const DrawTarget& target, const Viewport& viewport,
-                const vk::GraphicsPass& pass, const void* push, std::uint32_t push_size, const vk::Buffer& indices,
-                std::uint32_t index_count);
+                const vk::GraphicsPass& pass, const void* push, std::uint32_t push_size, const vk::Buffer* indices,
+                std::uint32_t vertex_count);
 
 template <typename Push>
 void draw(vk::Commands& commands, const DrawTarget& target, const Viewport& viewport, const vk::GraphicsPass& pass,
-          const Push& push, const vk::Buffer& indices, std::uint32_t index_count) {
-  draw_bytes(commands, target, viewport, pass, &push, sizeof(Push), indices, index_count);
+          const Push& push, const vk::Buffer* indices, std::uint32_t vertex_count) {
+  draw_bytes(commands, target, viewport, pass, &push, sizeof(Push), indices, vertex_count);
 }
 
 }  // namespace quadgraph

@@ -35,7 +35,7 @@ PassStats ShadowMaps::update(const DisplayBuffers& mesh, const LightSet& lights)
     if (image == images_.end()) image = images_.emplace(view.size, depth_image(context_, view.size)).first;
     const auto size = static_cast<float>(view.size);
     draw(commands, {{}, &image->second}, {0, 0, size, size}, pass_,
-         gpu::ShadowPush{view.clip_from_world, mesh.vertices.address()}, mesh.triangles, 3 * mesh.triangle_count);
+         gpu::ShadowPush{view.clip_from_world, mesh.vertices.address()}, &mesh.triangles, 3 * mesh.triangle_count);
     vk::Buffer& depth = depths_[number++];
     if (depth.size() != map_bytes) depth = {context_, map_bytes, vk::Place::read, "shadows/map"};
     view.depth = depth.address();

@@ -66,7 +66,7 @@ void Ground::make_map(const DisplayBuffers& mesh, const Sphere& bounds, UpAxis u
   const float far = 2.02f * bounds.radius, size = gpu::GROUND_SIZE;
   vk::Commands commands(context_);
   draw(commands, {{}, &image_}, {0, 0, size, size}, below_,
-       gpu::ShadowPush{from_below(middle_, half_width_, far, axis), mesh.vertices.address()}, mesh.triangles,
+       gpu::ShadowPush{from_below(middle_, half_width_, far, axis), mesh.vertices.address()}, &mesh.triangles,
        3 * mesh.triangle_count);
   commands.copy(image_, depth_);
   commands.dispatch(

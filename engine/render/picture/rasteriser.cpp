@@ -15,6 +15,7 @@
 #include "spirv/surface.frag.h"
 #include "spirv/surface.vert.h"
 #include "spirv/surface_gathered.frag.h"
+#include "spirv/surface_gathered.vert.h"
 #include "spirv/surface_path.frag.h"
 #include "spirv/surface_path.vert.h"
 
@@ -42,6 +43,7 @@ gpu::SurfaceScene scene(const RasterInput& input, const Camera& camera) {
                           .lights = input.shadows.lights().address(),
                           .shapes = input.shadows.shapes().address(),
                           .views = input.shadows.views().address(),
+                          .triangles = input.mesh.triangles.address(),
                           .triangle_face = 0,
                           .points = 0,
                           .scale = 0,
@@ -146,8 +148,12 @@ const vk::GraphicsPass& Rasteriser::surface(const RasterInput& input) {
   const std::uint32_t variant = variant_of(input);
   auto& pass = surfaces_[(gathered ? 1 : 0) + 2 * variant];
   if (pass) return *pass;
-  const vk::Spirv fragment = gathered ? vk::Spirv(surface_gathered_frag) : vk::Spirv(surface_frag);
-  return pass.emplace(context_, pass_options(fragment, variant), gathered ? "surface gathered" : "surface");
+  vk::GraphicsOptions options = pass_options(surface_frag, variant);
+  if (gathered) {
+    options.vertex = surface_gathered_vert;
+    options.fragment = surface_gathered_frag;
+  }
+  return pass.emplace(context_, options, gathered ? "surface gathered" : "surface");
 }
 
 const vk::GraphicsPass& Rasteriser::surface(const PathInput& input) {
@@ -224,7 +230,7 @@ void Rasteriser::record_resolve(vk::Commands& commands, const char* name, const 
 void Rasteriser::record(vk::Commands& commands, const RasterInput& input, const Tile& tile) {
   commands.begin_pass("surface");
   draw(commands, target(tile), viewport(tile), surface(input), surface_push(scene_.address(), input.placed_roughness),
-       input.mesh.triangles, 3 * input.mesh.triangle_count);
+       input.gather != nullptr ? nullptr : &input.mesh.triangles, 3 * input.mesh.triangle_count);
   commands.end_pass();
   record_resolve(commands, input.gather != nullptr ? "gather" : "resolve", resolve(input), scene_.address(), tile);
 }
@@ -233,7 +239,7 @@ void Rasteriser::record(vk::Commands& commands, const PathInput& input, const Ti
   commands.begin_pass("surface");
   draw(commands, target(tile), viewport(tile), surface(input),
        gpu::SurfacePathPush{surface_push(scene_.address(), input.placed_roughness), input.field.address()},
-       input.mesh.triangles, 3 * input.mesh.triangle_count);
+       &input.mesh.triangles, 3 * input.mesh.triangle_count);
   commands.end_pass();
   record_resolve(commands, "resolve", resolve_, scene_.address(), tile);
 }
@@ -245,7 +251,7 @@ void Rasteriser::record(vk::Commands& commands, const FalseColours& input, const
                                   .plane = input.plane,
                                   .diverging = input.diverging ? 1u : 0u};
   commands.begin_pass("false colour");
-  draw(commands, target(tile), viewport(tile), *false_colour_, push, input.indices, input.vertex_count);
+  draw(commands, target(tile), viewport(tile), *false_colour_, push, &input.indices, input.vertex_count);
   commands.end_pass();
   record_resolve(commands, "resolve", resolve_, scene_.address(), tile);
 }

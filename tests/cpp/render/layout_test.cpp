@@ -17,6 +17,7 @@
 #include "spirv/surface.frag.h"
 #include "spirv/surface.vert.h"
 #include "spirv/surface_gathered.frag.h"
+#include "spirv/surface_gathered.vert.h"
 #include "spirv/surface_path.frag.h"
 #include "spirv/surface_path.vert.h"
 #include "spirv/surroundings.comp.h"
@@ -46,29 +47,32 @@ TEST_CASE("lights and shadow views") {
 }
 
 TEST_CASE("the scene of the display") {
-  for (const vk::Spirv code : {vk::Spirv(surface_vert), vk::Spirv(surface_frag), vk::Spirv(surface_gathered_frag)}) {
+  for (const vk::Spirv code : {vk::Spirv(surface_vert), vk::Spirv(surface_frag), vk::Spirv(surface_gathered_vert),
+                               vk::Spirv(surface_gathered_frag)}) {
     const SpirvLayout layout(code);
-    compare(code, "SurfaceScene", {MEMBER(SurfaceScene, clip_from_world),
-                                   MEMBER(SurfaceScene, eye),
-                                   MEMBER(SurfaceScene, eta),
-                                   MEMBER(SurfaceScene, roughness),
-                                   MEMBER(SurfaceScene, radiance_norm),
-                                   MEMBER(SurfaceScene, light_count),
-                                   MEMBER(SurfaceScene, vertices),
-                                   MEMBER(SurfaceScene, normals),
-                                   MEMBER(SurfaceScene, face),
-                                   MEMBER(SurfaceScene, barycentric),
-                                   MEMBER(SurfaceScene, faces),
-                                   MEMBER(SurfaceScene, exitance),
-                                   MEMBER(SurfaceScene, unscattered),
-                                   MEMBER(SurfaceScene, sky),
-                                   MEMBER(SurfaceScene, lights),
-                                   MEMBER(SurfaceScene, shapes),
-                                   MEMBER(SurfaceScene, views),
-                                   MEMBER(SurfaceScene, triangle_face),
-                                   MEMBER(SurfaceScene, points),
-                                   MEMBER(SurfaceScene, scale),
-                                   MEMBER(SurfaceScene, solid)});
+    compare(code, "SurfaceScene",
+            {MEMBER(SurfaceScene, clip_from_world),
+             MEMBER(SurfaceScene, eye),
+             MEMBER(SurfaceScene, eta),
+             MEMBER(SurfaceScene, roughness),
+             MEMBER(SurfaceScene, radiance_norm),
+             MEMBER(SurfaceScene, light_count),
+             MEMBER(SurfaceScene, vertices),
+             MEMBER(SurfaceScene, normals),
+             MEMBER(SurfaceScene, face),
+             MEMBER(SurfaceScene, barycentric),
+             MEMBER(SurfaceScene, faces),
+             MEMBER(SurfaceScene, exitance),
+             MEMBER(SurfaceScene, unscattered),
+             MEMBER(SurfaceScene, sky),
+             MEMBER(SurfaceScene, lights),
+             MEMBER(SurfaceScene, shapes),
+             MEMBER(SurfaceScene, views),
+             MEMBER(SurfaceScene, triangles),
+             MEMBER(SurfaceScene, triangle_face),
+             MEMBER(SurfaceScene, points),
+             MEMBER(SurfaceScene, scale),
+             MEMBER(SurfaceScene, solid)});
     CHECK(layout.stride.at("SurfaceScene") == sizeof(gpu::SurfaceScene));
     compare(code, "SurfacePush",
             {MEMBER(SurfacePush, scene), MEMBER(SurfacePush, rest), MEMBER(SurfacePush, texels),

@@ -6,6 +6,7 @@
 #include "engine/base/error.h"
 #include "engine/vk/arena.h"
 #include "engine/vk/commands.h"
+#include "engine/vk/live_objects.h"
 
 using namespace quadgraph;
 
@@ -108,4 +109,34 @@ TEST_CASE("ranges of the arena are given back and taken again, and the first tha
   CHECK(!complete(vk::Place::read));
   CHECK(in_arena(read(256)));
   for (const auto& message : context.validation_messages()) FAIL_CHECK(message);
+}
+
+TEST_CASE("objects are counted by kind, by context, and gone with their owner") {
+  const std::uint64_t first = vk::contexts_made();
+  const vk::LiveObjects others = vk::live_objects();
+  {
+    vk::Context context({.validation = true, .device = "", .texel_bytes = 0});
+    CHECK(vk::contexts_made() == first + 1);
+    const vk::LiveObjects bare = vk::live_objects(first);
+    CHECK(bare.at("context") == 1);
+    CHECK(bare.count("image") == 0);
+    {
+      const vk::Buffer buffer(context, 256, vk::Place::device, "buffer");
+      const vk::Image image(context, {.layers = 2, .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT}, "image");
+      vk::Buffer given(context, 256, vk::Place::device, "given");
+      const vk::Buffer taken = std::move(given);
+      vk::LiveObjects expected = bare;
+      expected["buffer"] += 2;
+      expected["image"] = 1;
+      expected["image view"] = 2;
+      expected["device memory"] += 3;
+      expected["allocation"] = 3;
+      expected["allocated byte"] = context.allocated_bytes();
+      CHECK(vk::live_objects(first) == expected);
+      CHECK(vk::live_objects(first + 1).empty());
+    }
+    CHECK(vk::live_objects(first) == bare);
+  }
+  CHECK(vk::live_objects(first).empty());
+  CHECK(vk::live_objects() == others);
 }

@@ -5,8 +5,11 @@ from __future__ import annotations
 import ctypes
 import gc
 import json
+import os
 import random
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +22,14 @@ _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is no
 
 MATERIALS = ("marble", "skin1", "ketchup", "wholemilk", "spectralon", "jade", "wood", "marble-veins", "chicken1,eta=1")
 HOST_SLACK = 24 << 20  # bytes: what allocators keep, and books of the validation layer (1.2 to 1.6 kB a frame)
-OWN_SLACK = 128 << 10  # bytes, without that layer: buffers of the interpreter that come and go
+OWN_SLACK = 4 << 10  # bytes, without that layer, in a STILL process: what the interpreter keeps, up to 800 in 60 rounds
+WARM = 2  # rounds that may make room and compile
+# One thread for all of llvmpipe, which otherwise holds up to seven blocks of 64 KiB at a time until its threads come to
+# free them; freed memory counted as free at once; no pages of their own, rounded up, for some arrays some of the time.
+STILL = {
+    "LP_NUM_THREADS": "0",
+    "GLIBC_TUNABLES": "glibc.malloc.tcache_count=0:glibc.malloc.mmap_threshold=1073741824",
+}
 
 
 class _Mallinfo2(ctypes.Structure):
@@ -29,9 +39,7 @@ class _Mallinfo2(ctypes.Structure):
 
 def allocated() -> int:
     """Host memory that is allocated and not freed, bytes."""
-    mallinfo2 = getattr(ctypes.CDLL(None), "mallinfo2", None)
-    if mallinfo2 is None:
-        pytest.skip("the C library has no mallinfo2 (glibc 2.33)")
+    mallinfo2 = ctypes.CDLL(None).mallinfo2
     mallinfo2.restype = _Mallinfo2
     gc.collect()
     info = mallinfo2()
@@ -132,18 +140,36 @@ def test_frames_stay_finite_and_memory_flat(tmp_path, rounds, frames):
     assert max(host[1:]) <= host[1] + HOST_SLACK
 
 
-@pytest.mark.parametrize(("rounds", "frames"), [(4, 20), pytest.param(5, 2000, marks=pytest.mark.long)])
+@pytest.mark.parametrize(("rounds", "frames"), [(10, 8), pytest.param(5, 2000, marks=pytest.mark.long)])
 def test_the_engine_keeps_nothing_of_a_frame(tmp_path, rounds, frames):
-    """Bytes allocated and not freed, to the size of what comes and goes: the validation layer's books left out."""
-    scene, stage, kept = scene_of_a_sphere(tmp_path), _core.Stage(), []
+    """The same frames again and again leave as much behind as they found, once two rounds have made room for them.
+
+    Vulkan objects by kind and bytes of device memory: exactly, so that one object or byte kept in a round is found.
+    Host memory, on llvmpipe only, as other drivers keep books of their own: bytes allocated and not freed, to OWN_SLACK
+    in all rounds after the warm ones: found is a leak of 64 bytes a frame (the default 10 rounds), or of 0.7 (long).
+    """
+    if getattr(ctypes.CDLL(None), "mallinfo2", None) is None:
+        pytest.skip("the C library has no mallinfo2 (glibc 2.33)")
+    command = [sys.executable, __file__, str(tmp_path), str(rounds), str(frames)]
+    run = subprocess.run(command, env=os.environ | STILL, stdout=subprocess.PIPE, text=True, check=True)
+    after = json.loads(run.stdout)
+    print(f"{rounds} rounds of {frames} frames: {[r['host'] for r in after['rounds']]} bytes allocated")
+    warm, *later = after["rounds"][WARM - 1 :]
+    assert [r["live"] for r in later] == [warm["live"]] * len(later)
+    if "llvmpipe" in after["device"]:
+        assert max(r["host"] for r in later) <= warm["host"] + OWN_SLACK
+
+
+def rounds_of_frames(folder: Path, rounds: int, frames: int) -> dict:
+    """What there is after every round of the same frames: live, Vulkan objects by kind; host, bytes; and the device."""
+    scene, stage, after = scene_of_a_sphere(folder), _core.Stage(), []
     for _ in range(rounds):
         file, changes = _core.SceneFile(scene), Changes(frames)
         for _ in range(frames):
             changes.change(file)
             show(stage, file.at(0))
-        kept.append(allocated())
-    print(f"{rounds} rounds of {frames} frames: {kept} bytes allocated")
-    assert max(kept[2:]) <= kept[1] + OWN_SLACK
+        after.append({"live": _core.live_objects(), "host": allocated()})
+    return {"device": stage.engine.device_name, "rounds": after}
 
 
 def show(stage, scene) -> bool:
@@ -155,3 +181,7 @@ def show(stage, scene) -> bool:
     for layer in (picture.scattered, picture.specular, picture.unscattered, picture.transmittance):
         assert np.isfinite(layer).all(), scene.json()
     return bool(report["deformed"])
+
+
+if __name__ == "__main__":
+    print(json.dumps(rounds_of_frames(Path(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3]))))

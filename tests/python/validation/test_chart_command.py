@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass, replace
 
 import pytest
 
@@ -17,7 +18,7 @@ from quadgraph_validation.chart.chart_judge import ChartJudge
 from quadgraph_validation.chart.engine_methods import EngineMethod
 from shapes import icosphere
 
-pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
+_core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 
 SPHERE = SCENES["sphere"]
 METHODS = [
@@ -44,7 +45,7 @@ def small(tmp_path, monkeypatch):
     def subject(scene, where, against, wanted, working, device, pixels):
         body = ChartBody(scene, path, working, device, pixels)
         pde = {(model, source): KnownTruth() for model in ("sp3", "diffusion") for source in ("buried", "diffuse")}
-        return body, ChartJudge(body, pde, {}), METHODS
+        return body, ChartJudge(body, pde, {}), [replace(method) for method in METHODS]
 
     monkeypatch.setattr(chart_truths, "subject", subject)
 
@@ -97,6 +98,21 @@ def test_scenes_are_added_to_a_record_and_replaced_in_it(small, tmp_path, capsys
     assert [point["name"] for point in sphere["points"]] == [method.name for method in METHODS]
     assert cli.main(measured) == 1
     assert "--add: needs --json" in capsys.readouterr().err
+
+
+def test_engines_of_a_scene_are_gone_before_the_next_scene(small, monkeypatch):
+    first, there = _core.contexts_made(), []
+
+    @dataclass
+    class Looking(EngineMethod):
+        def prepare(self, body):
+            there.append(_core.live_objects(first))
+            super().prepare(body)
+
+    monkeypatch.setattr(f"{__name__}.METHODS", [Looking(level=1, model="diffusion")])
+    scenes = ["--scene", "sphere", "--scene", "bunny"]
+    assert cli.main(["chart", *scenes, "--repeats", "1", "--pixels", "16"]) == 0
+    assert there == [{}, {}]
 
 
 @pytest.mark.long

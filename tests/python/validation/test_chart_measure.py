@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -27,10 +29,13 @@ BALL = StudyScene("ball", "", 1.0, pale, 4.0, (0.0, 0.0, -1.0), {"A": View(70, 1
 
 
 @pytest.fixture(scope="module")
-def body(tmp_path_factory) -> ChartBody:
-    folder = tmp_path_factory.mktemp("chart")
-    path = write_levels(folder / "ball.qgraph", [icosphere(3, RADIUS), icosphere(2, RADIUS)])
-    return ChartBody(BALL, path, folder, "", 32)
+def ball(tmp_path_factory) -> Path:
+    return write_levels(tmp_path_factory.mktemp("chart") / "ball.qgraph", [icosphere(3, RADIUS), icosphere(2, RADIUS)])
+
+
+@pytest.fixture
+def body(ball) -> ChartBody:
+    return ChartBody(BALL, ball, ball.parent, "", 32)
 
 
 class SomeTruth:

@@ -6,13 +6,18 @@ import argparse
 import json
 import tempfile
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from quadgraph.base import atomic_file
 from quadgraph.base.arguments import positive_int
 from quadgraph.base.errors import InputError
 from quadgraph.core import load_core
 from quadgraph_validation.base.study_folders import COMMITTED_TRUTH, add_meshes_argument
+
+if TYPE_CHECKING:
+    from quadgraph_validation.chart.chart_body import ChartBody
+    from quadgraph_validation.chart.chart_judge import ChartJudge
+    from quadgraph_validation.chart.chart_method import ChartMethod
 
 TRUTHS = ("pde", "transport")
 _TABLE_WIDTH = 190  # characters; narrower, the tables cannot be read
@@ -137,13 +142,13 @@ def _measured(args: argparse.Namespace) -> dict[str, Any]:
             for one in scenes.chosen(args.scene)
         ]
         copied = load_core().copy_bandwidth(args.device)
-        found = []
-        while subjects:
-            # Each with its engines is let go before the next.
-            body, judge, methods = subjects.pop(0)
+
+        def measured(body: ChartBody, judge: ChartJudge, methods: list[ChartMethod]) -> dict[str, Any]:
             run = machine(copied) | chart_measure.conditions(args.repeats, args.pixels)
             points = chart_measure.measure(body, judge, methods, args.repeats, status.update)
-            found.append({"run": run} | chart_measure.scene_record(body, judge, points))
             if args.output:
                 chart_pictures.write(args.output, judge, points)
-        return {"format": FORMAT, "scenes": found}
+            return {"run": run} | chart_measure.scene_record(body, judge, points)
+
+        # Popped, and measured in a function: each with its engines is let go before the next.
+        return {"format": FORMAT, "scenes": [measured(*subjects.pop(0)) for _ in range(len(subjects))]}

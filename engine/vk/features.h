@@ -1,0 +1,26 @@
+// What the engine requires of a device beyond Vulkan 1.3 itself, and enables: no more than compiled shaders and the
+// calls of vk/ need, so that no device is refused without a reason (tests/cpp/vk_features_test.cpp).
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <utility>
+#include <vector>
+
+namespace quadgraph::vk {
+
+// Chained, so that one call queries or enables them all. All are off at first.
+struct Features {
+  VkPhysicalDeviceVulkan13Features v13{};
+  VkPhysicalDeviceVulkan12Features v12{};
+  VkPhysicalDeviceFeatures2 base{};
+
+  Features();
+  Features(const Features&) = delete;
+  Features& operator=(const Features&) = delete;
+
+  // By the names that Vulkan gives them.
+  std::vector<std::pair<const char*, VkBool32*>> required();
+};
+
+}  // namespace quadgraph::vk

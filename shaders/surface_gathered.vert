@@ -1,0 +1,24 @@
+// Drawn without an index buffer, so that a triangle's number is known here: gl_PrimitiveID in a fragment shader would
+// require the feature geometryShader of the device.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaped.glsl"
+
+layout(push_constant, scalar) uniform Block { SurfacePush push; };
+layout(location = 0) out vec3 position;  // mm
+layout(location = 1) out vec3 normal;
+layout(location = 2) flat out uint face;  // outside face of level 0
+layout(location = 4) out float sky;       // share that is not hidden by the body
+layout(location = 5) out vec3 rest;       // mm, the position at rest
+
+void main() {
+  SurfaceScene scene = load_scene(push.scene);
+  uint vertex = load_uint(scene.triangles, gl_VertexIndex);
+  position = load_vec3(scene.vertices, vertex);
+  rest = vec3(0);
+  if (PLACED_ROUGHNESS) rest = load_vec3(push.rest, vertex);
+  normal = load_vec3(scene.normals, vertex);
+  face = load_uint(scene.triangle_face, gl_VertexIndex / 3);
+  sky = load_float(scene.sky, load_uint(scene.face, vertex));
+  gl_Position = scene.clip_from_world * vec4(position, 1.0);
+}
