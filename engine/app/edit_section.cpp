@@ -6,7 +6,7 @@
 #include <array>
 
 #include "engine/app/panel_widgets.h"
-#include "engine/render/image_file.h"
+#include "engine/render/light/image_file.h"
 
 namespace quadgraph {
 namespace {

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <iostream>
 
-#include "engine/graph/error.h"
-#include "engine/graph/front.h"
-#include "engine/graph/material.h"
-#include "engine/render/default_lights.h"
-#include "engine/render/text.h"
+#include "engine/base/error.h"
+#include "engine/base/text.h"
+#include "engine/file/front.h"
+#include "engine/optics/material.h"
+#include "engine/render/light/default_lights.h"
 #include "engine/scene/scene_file.h"
 
 namespace quadgraph {

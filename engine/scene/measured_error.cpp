@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "engine/graph/section_table.h"
+#include "engine/file/section_table.h"
 #include "engine/scene/json_field.h"
 #include "engine/solve/asked_error.h"
 

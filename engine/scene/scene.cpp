@@ -1,7 +1,7 @@
 #include "engine/scene/scene.h"
 
-#include "engine/graph/material.h"
-#include "engine/render/text.h"
+#include "engine/base/text.h"
+#include "engine/optics/material.h"
 #include "engine/scene/cut_json.h"
 #include "engine/scene/deformer_json.h"
 #include "engine/scene/edit_json.h"

@@ -1,6 +1,6 @@
 #include "engine/scene/stage.h"
 
-#include "engine/graph/error.h"
+#include "engine/base/error.h"
 #include "engine/scene/measured_error.h"
 #include "engine/scene/volume.h"
 

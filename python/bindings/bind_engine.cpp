@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "engine/graph/error.h"
-#include "engine/graph/motion.h"
-#include "engine/render/default_lights.h"
+#include "engine/base/error.h"
+#include "engine/deform/motion.h"
 #include "engine/render/engine.h"
+#include "engine/render/light/default_lights.h"
 #include "engine/scene/cut_json.h"
 #include "engine/scene/measured_error.h"
 #include "engine/scene/volume.h"
@@ -200,7 +200,7 @@ void bind_engine(py::module_& module) {
           "As --material reads it: names and numbers, or a .npz of coefficients (docs/scene.md). Raises InputError.")
       .def("set_material", py::overload_cast<const gpu::Material&>(&Engine::set_material), py::arg("material"))
       .def("set_lights", &set_lights, py::arg("lights"),
-           "Texts as --light takes them (engine/render/lights.h); replaces all lights.")
+           "Texts as --light takes them (engine/render/light/lights.h); replaces all lights.")
       .def(
           "set_deformation",
           [](Engine& engine, const py::object& list) {
@@ -251,7 +251,7 @@ void bind_engine(py::module_& module) {
            py::arg("bounces") = 0, py::arg("smoothing") = 0, py::arg("exchange_rows") = 0, py::arg("active_layers") = 0,
            py::arg("path_cost") = "transport", py::arg("path_solver") = "eikonal", py::arg("path_cells") = 64,
            py::arg("mean_rays") = false, py::arg("motion") = false,
-           "Solves for the present material and light (engine/graph/solution.h); a report. tolerance: estimated "
+           "Solves for the present material and light (engine/reference/solution.h); a report. tolerance: estimated "
            "algebraic error of the exitance; error: target for it and that of the mesh together, 0: none; cycles: so "
            "many iterations on the finest level, 0: as many as it takes; warm: from the last solution; exchange_rows: "
            "of a body that deforms so many faces look anew at what they see, "
@@ -327,7 +327,8 @@ void bind_engine(py::module_& module) {
            py::arg("surroundings") = false,
            "The last solve seen from 'azimuth,elevation[,distance]' (degrees, mm), or from the front. radiance: "
            "gathered, lambertian, "
-           "single, auto. show: picture, or what is inside, in false colour (engine/render/show.h). ground: with a "
+           "single, auto. show: picture, or what is inside, in false colour (engine/render/inside/show.h). ground: "
+           "with a "
            "shadow "
            "where the body stands, as coverage "
            "without light. surroundings: environment lights are seen behind it, in the picture's surroundings.")

@@ -1,7 +1,7 @@
 // quadgraph._core: the module, its errors, and the gate between NumPy arrays and spans.
 #include <pybind11/stl.h>
 
-#include "engine/graph/error.h"
+#include "engine/base/error.h"
 #include "python/bindings/bindings.h"
 
 namespace py = pybind11;

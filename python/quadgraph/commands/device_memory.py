@@ -7,11 +7,10 @@ from typing import Any
 
 from rich.table import Table
 
-from quadgraph.commands.scene import DEFAULT_MATERIAL, VARIED_MATERIAL, load_core
-from quadgraph.errors import QuadGraphError
-
-# What lights and a picture need beyond the solution.
-SHOWN = ("display", "gather", "shadows")
+from quadgraph.base.errors import QuadGraphError
+from quadgraph.base.pass_report import PICTURE_PURPOSES
+from quadgraph.commands.scene_options import DEFAULT_MATERIAL, VARIED_MATERIAL
+from quadgraph.core import load_core
 
 
 def ask(path: Path) -> dict[str, Any]:
@@ -39,7 +38,7 @@ def measure(path: Path) -> list[dict[str, Any]]:
             engine.make_room(model=model)
             purposes = {use["purpose"]: use["bytes"] for use in engine.memory()}
             total = sum(purposes.values())
-            solve = total - sum(purposes.get(purpose, 0) for purpose in SHOWN)
+            solve = total - sum(purposes.get(purpose, 0) for purpose in PICTURE_PURPOSES)
             entries.append({"model": model, "material": material, "purposes": purposes, "solve": solve, "total": total})
     return entries
 

@@ -8,10 +8,11 @@ from pathlib import Path
 
 from rich.console import Console
 
-from quadgraph import atomic_file
-from quadgraph.commands import render_scene, scene
-from quadgraph.commands import report as text
-from quadgraph.errors import InputError
+from quadgraph.base import atomic_file
+from quadgraph.base.arguments import positive_float
+from quadgraph.base.errors import InputError
+from quadgraph.commands import render_scene, scene_options
+from quadgraph.commands import solve_report as text
 
 WRITERS = (".png", ".exr")
 
@@ -19,7 +20,7 @@ WRITERS = (".png", ".exr")
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Register the subcommand."""
     parser = subparsers.add_parser("render", help="a picture of a baked object, or of a scene", description=__doc__)
-    scene.add_scene_arguments(
+    scene_options.add_scene_arguments(
         parser, "a baked .qgraph, a scene .json (docs/scene.md), or a mesh for --method shortest-path"
     )
     parser.add_argument(
@@ -39,14 +40,12 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "front, as the bake found or was told it",
     )
     parser.add_argument("--up", choices=("y", "z"), default="y", help="axis that points up (default: %(default)s)")
-    parser.add_argument(
-        "--fov", type=scene.positive_float, default=30.0, help="vertical, degrees (default: %(default)s)"
-    )
+    parser.add_argument("--fov", type=positive_float, default=30.0, help="vertical, degrees (default: %(default)s)")
     parser.add_argument(
         "--size", type=image_size, default=(1024, 1024), metavar="WxH", help="pixels (default: 1024x1024)"
     )
     parser.add_argument(
-        "--roughness", type=scene.positive_float, default=0.3, help="of the surface, GGX alpha (default: %(default)s)"
+        "--roughness", type=positive_float, default=0.3, help="of the surface, GGX alpha (default: %(default)s)"
     )
     parser.add_argument(
         "--radiance",
@@ -90,8 +89,8 @@ def run(args: argparse.Namespace) -> int:
         if path.suffix.lower() not in WRITERS:
             raise InputError(f"{path}: output must end in {' or '.join(WRITERS)}")
     start = time.perf_counter()
-    engine = scene.make_engine(args)
-    report = scene.solve(engine, args)
+    engine = scene_options.make_engine(args)
+    report = scene_options.solve(engine, args)
     picture = engine.render(
         view=args.view,
         up=args.up,
@@ -104,7 +103,7 @@ def run(args: argparse.Namespace) -> int:
         ground=args.ground,
         surroundings=args.surroundings,
     )
-    scene.check_validation(engine)
+    scene_options.check_validation(engine)
     for path in args.output:
         if path.suffix.lower() == ".png":
             picture.write_png(path, engine.metadata, args.exposure, args.background)

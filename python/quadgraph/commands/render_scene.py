@@ -11,10 +11,13 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import Progress
 
-from quadgraph import atomic_file, film
-from quadgraph.commands import report as text
-from quadgraph.commands import scene
-from quadgraph.errors import InputError
+from quadgraph.base import atomic_file
+from quadgraph.base.arguments import positive_int
+from quadgraph.base.errors import InputError
+from quadgraph.commands import scene_options
+from quadgraph.commands import solve_report as text
+from quadgraph.core import load_core
+from quadgraph.file import film
 
 # Options that a scene file says, and where it says them.
 STATED = {
@@ -63,7 +66,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--frame", type=float, default=0.0, metavar="F", help="the one to render (default: 0)")
     group.add_argument(
         "--frames",
-        type=scene.positive_int,
+        type=positive_int,
         nargs="?",
         const=0,
         metavar="N",
@@ -87,7 +90,7 @@ def refuse(args: argparse.Namespace) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Render and write; 3 if a tolerance or an error was not met in some frame, else 0."""
-    core = scene.load_core()
+    core = load_core()
     for name, pointer in STATED.items():
         if getattr(args, name) != args.unstated[name]:
             option = name.replace("_", "-")
@@ -135,7 +138,7 @@ def render(stage, file, frames: Iterable[float], outputs: list[Path]) -> list[di
                 stage.show(file.at(frame))
                 report = stage.solve()
                 picture = stage.render()
-                scene.check_validation(stage.engine)
+                scene_options.check_validation(stage.engine)
                 for path in outputs:
                     write(stage, picture, path, frame, films)
                 report |= {"frame": frame, "seconds": time.perf_counter() - start}
