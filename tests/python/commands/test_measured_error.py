@@ -191,7 +191,15 @@ def test_both_fail_where_the_finest_level_stops_early(sphere, tmp_path):
     options = ["--light", SUN, "--solver", "cascade", "--max-iterations", 2, "--size", "16x16"]
     found = by_command(tmp_path, sphere, *options)
     assert found.status == 3
-    assert [sentence.split(" at residual")[0] for sentence in found.unmet] == [
-        "not converged: level 0 stopped after 2 iterations"
-    ]
+    assert [sentence.split(" after ")[0] for sentence in found.unmet] == ["not converged: level 0 stopped"]
     assert by_engine(tmp_path, sphere, *options) == found
+
+
+def test_a_coarser_level_that_stops_early_fails_no_solve(sphere, tmp_path):
+    scene = ["--material", "ketchup", "--light", SUN, "--solver", "cascade", "--tolerance", "1%", "--size", "16x16"]
+    report = tmp_path / "report.json"
+    options = [str(sphere), *scene, "--max-iterations", "48", "-o", str(tmp_path / "a.png"), "--json", str(report)]
+    assert cli.main(["render", *options]) == 0
+    levels = json.loads(report.read_text())["levels"]
+    assert [(level["level"], level["converged"]) for level in levels] == [(1, False), (0, True)]
+    assert by_engine(tmp_path, sphere, *scene, "--max-iterations", 48).status == 0
