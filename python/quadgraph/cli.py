@@ -8,7 +8,7 @@ import os
 import re
 import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from quadgraph import __version__
 from quadgraph.errors import QuadGraphError
@@ -33,13 +33,28 @@ SUBCOMMANDS = (
 INTERRUPTED = 128 + signal.SIGINT
 
 
+class CommandParser(argparse.ArgumentParser):
+    """The parser of a subcommand. One whose arguments need the compiled engine has `declare` add them when it is used,
+    so that all others, and the list of subcommands, do without it.
+    """
+
+    declare: Callable[[argparse.ArgumentParser], None] | None = None
+
+    def parse_known_args(self, args=None, namespace=None):
+        """As ArgumentParser does, with all arguments declared."""
+        declare, self.declare = self.declare, None
+        if declare is not None:
+            declare(self)
+        return super().parse_known_args(args, namespace)
+
+
 def build_parser() -> argparse.ArgumentParser:
     """Return the parser of the whole command line."""
     parser = argparse.ArgumentParser(
         prog="quadgraph", description="Real-time rendering of heterogeneous translucent objects."
     )
     parser.add_argument("--version", action="version", version=f"%(prog)s {__version__}")
-    subparsers = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    subparsers = parser.add_subparsers(dest="command", metavar="COMMAND", required=True, parser_class=CommandParser)
     for name in SUBCOMMANDS:
         importlib.import_module(f"quadgraph.commands.{name}").add_parser(subparsers)
     return parser
@@ -58,10 +73,9 @@ def join_negative_values(arguments: Sequence[str]) -> list[str]:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command line and return its exit status: 1 for an error, 2 for wrong usage, 130 for Ctrl-C."""
-    args = build_parser().parse_args(join_negative_values(sys.argv[1:] if arguments is None else arguments))
-    command = importlib.import_module(f"quadgraph.commands.{args.command}")
     try:
-        status = command.run(args)
+        args = build_parser().parse_args(join_negative_values(sys.argv[1:] if arguments is None else arguments))
+        status = importlib.import_module(f"quadgraph.commands.{args.command}").run(args)
         sys.stdout.flush()
         return status
     except QuadGraphError as error:

@@ -7,7 +7,7 @@ from typing import Any
 
 from rich.table import Table
 
-from quadgraph.commands.scene import DEFAULT_MATERIAL, VARIED_MATERIAL, load_core
+from quadgraph.commands.scene import VARIED_MATERIAL, default_of, load_core
 from quadgraph.errors import QuadGraphError
 
 # What lights and a picture need beyond the solution.
@@ -31,7 +31,7 @@ def measure(path: Path) -> list[dict[str, Any]]:
     """
     core = load_core()
     entries = []
-    for material in (DEFAULT_MATERIAL, VARIED_MATERIAL):
+    for material in (default_of("material"), VARIED_MATERIAL):
         for model in ("diffusion", "sp3"):
             engine = core.Engine(path)
             engine.set_material(material)
