@@ -1,8 +1,8 @@
 // Painting a material onto a body.
 #pragma once
 
-#include "engine/graph/edit.h"
-#include "engine/render/pick.h"
+#include "engine/optics/edit.h"
+#include "engine/render/display/pick.h"
 #include "engine/scene/scene.h"
 
 namespace quadgraph {

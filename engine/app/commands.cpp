@@ -6,7 +6,7 @@
 #include <array>
 
 #include "engine/app/gestures.h"
-#include "engine/graph/material.h"
+#include "engine/optics/material.h"
 
 namespace quadgraph {
 namespace {

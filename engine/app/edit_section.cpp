@@ -4,7 +4,7 @@
 #include <imgui_stdlib.h>
 
 #include "engine/app/panel_widgets.h"
-#include "engine/render/image_file.h"
+#include "engine/render/light/image_file.h"
 
 namespace quadgraph {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <glm/vec2.hpp>
 
-#include "engine/graph/cut.h"
-#include "engine/render/camera.h"
-#include "engine/render/lights.h"
+#include "engine/deform/cut.h"
+#include "engine/render/display/camera.h"
+#include "engine/render/light/lights.h"
 
 namespace quadgraph {
 

@@ -7,7 +7,7 @@
 
 #include <filesystem>
 
-#include "engine/graph/error.h"
+#include "engine/base/error.h"
 #include "engine/vk/commands.h"
 
 namespace quadgraph {

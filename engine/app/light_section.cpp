@@ -9,7 +9,7 @@
 
 #include "engine/app/gestures.h"
 #include "engine/app/panel_widgets.h"
-#include "engine/render/default_lights.h"
+#include "engine/render/light/default_lights.h"
 
 namespace quadgraph {
 namespace {

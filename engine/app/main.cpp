@@ -8,8 +8,8 @@
 #include "engine/app/options.h"
 #include "engine/app/report.h"
 #include "engine/app/viewer.h"
-#include "engine/graph/error.h"
-#include "engine/render/metadata.h"
+#include "engine/base/error.h"
+#include "engine/render/picture/metadata.h"
 #include "engine/scene/stage.h"
 
 using namespace quadgraph;

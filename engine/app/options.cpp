@@ -3,9 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <map>
 
-#include "engine/graph/error.h"
-#include "engine/graph/front.h"
-#include "engine/render/default_lights.h"
+#include "engine/base/error.h"
+#include "engine/file/front.h"
+#include "engine/render/light/default_lights.h"
 #include "engine/scene/options.h"
 #include "engine/scene/scene_file.h"
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "engine/app/commands.h"
-#include "engine/render/tone_map.h"
-#include "shaders/colour_map.h"
+#include "engine/render/picture/tone_map.h"
+#include "shaders/display/colour_map.h"
 
 namespace quadgraph {
 

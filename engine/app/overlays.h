@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/app/state.h"
-#include "engine/render/legend.h"
+#include "engine/render/picture/legend.h"
 
 namespace quadgraph {
 

@@ -11,7 +11,7 @@
 #include "engine/app/edit_section.h"
 #include "engine/app/light_section.h"
 #include "engine/app/panel_widgets.h"
-#include "engine/graph/material.h"
+#include "engine/optics/material.h"
 #include "engine/scene/volume.h"
 
 namespace quadgraph {

@@ -9,9 +9,9 @@
 #include "engine/app/gestures.h"
 #include "engine/app/overlays.h"
 #include "engine/app/panel.h"
-#include "engine/graph/error.h"
-#include "engine/graph/motion.h"
-#include "engine/render/metadata.h"
+#include "engine/base/error.h"
+#include "engine/deform/motion.h"
+#include "engine/render/picture/metadata.h"
 #include "engine/scene/scene_file.h"
 
 namespace quadgraph {

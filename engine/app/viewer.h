@@ -10,7 +10,7 @@
 #include "engine/app/pace.h"
 #include "engine/app/state.h"
 #include "engine/app/window.h"
-#include "engine/render/tone_mapper.h"
+#include "engine/render/picture/tone_mapper.h"
 #include "engine/scene/stage.h"
 #include "engine/vk/swapchain.h"
 

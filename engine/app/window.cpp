@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <set>
 
-#include "engine/graph/error.h"
+#include "engine/base/error.h"
 
 namespace quadgraph {
 namespace {

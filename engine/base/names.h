@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/graph/error.h"
+#include "engine/base/error.h"
 
 namespace quadgraph {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "engine/graph/error.h"
+#include "engine/base/error.h"
 #include "engine/path/path_pass.h"
 #include "spirv/path_cost.comp.h"
 #include "spirv/path_flood.comp.h"

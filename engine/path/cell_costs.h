@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "engine/graph/edit.h"
-#include "engine/graph/optical_grid.h"
-#include "engine/graph/path_options.h"
+#include "engine/base/path_options.h"
+#include "engine/optics/edit.h"
+#include "engine/optics/optical_grid.h"
 #include "engine/path/voxels.h"
 
 namespace quadgraph {
@@ -21,7 +21,7 @@ class CellCosts {
   void set(const OpticalGrid& grid);
   void clear();
 
-  // Of the one or the other, as in engine/graph/edit.h; checked before.
+  // Of the one or the other, as in engine/optics/edit.h; checked before.
   void set(std::span<const Edit> edits);
 
   // Evaluates the coefficients into `cost` (PathRelaxation::cost). `rest`: vertices of the mesh at rest, null where it

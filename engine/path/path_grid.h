@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 
-#include "shaders/path_shared.h"
+#include "shaders/path/path_shared.h"
 
 namespace quadgraph {
 

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/solve/simulation.h"
+#include "engine/base/pass_stats.h"
 #include "engine/vk/commands.h"
 
 namespace quadgraph {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "engine/graph/error.h"
+#include "engine/base/error.h"
 #include "engine/path/path_pass.h"
 #include "spirv/path_relax.comp.h"
 #include "spirv/path_start.comp.h"

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "engine/graph/path_options.h"
+#include "engine/base/path_options.h"
 #include "engine/path/voxels.h"
 
 namespace quadgraph {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/base/pass_stats.h"
 #include "engine/path/path_grid.h"
-#include "engine/solve/simulation.h"
 #include "engine/vk/memory.h"
 #include "engine/vk/pipeline.h"
 
@@ -27,8 +27,8 @@ struct SolidCells {
 
 // A cell is solid where its middle is inside the surface or the surface crosses, within the cell, one of the three
 // lines through its middle: so thin sheets are not lost. Inside is what more than three of the six directions along
-// these lines say (shaders/path_shared.h): holes, flaps, intersections and triangles that are turned around mislead
-// single lines, not the majority.
+// these lines say (shaders/path/path_shared.h): holes, flaps, intersections and triangles that are turned around
+// mislead single lines, not the majority.
 class Voxels {
  public:
   explicit Voxels(vk::Context& context);

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-#include "engine/graph/material.h"
+#include "engine/base/text.h"
+#include "engine/optics/material.h"
 #include "engine/render/engine_implementation.h"
-#include "engine/render/legend.h"
-#include "engine/render/metadata.h"
-#include "engine/render/text.h"
+#include "engine/render/picture/legend.h"
+#include "engine/render/picture/metadata.h"
 
 namespace quadgraph {
 namespace {

@@ -14,18 +14,18 @@
 
 #include "engine/base/names.h"
 #include "engine/base/range.h"
-#include "engine/graph/cut.h"
-#include "engine/graph/deformer.h"
-#include "engine/graph/graph.h"
-#include "engine/graph/optical_grid.h"
-#include "engine/render/camera.h"
-#include "engine/render/lights.h"
-#include "engine/render/pick.h"
-#include "engine/render/picture.h"
-#include "engine/render/picture_buffers.h"
-#include "engine/render/radiance_probe.h"
-#include "engine/render/show.h"
-#include "engine/render/surface_roughness.h"
+#include "engine/deform/cut.h"
+#include "engine/deform/deformer.h"
+#include "engine/file/graph.h"
+#include "engine/optics/optical_grid.h"
+#include "engine/render/display/camera.h"
+#include "engine/render/display/pick.h"
+#include "engine/render/display/surface_roughness.h"
+#include "engine/render/inside/show.h"
+#include "engine/render/light/lights.h"
+#include "engine/render/picture/picture.h"
+#include "engine/render/picture/picture_buffers.h"
+#include "engine/render/picture/radiance_probe.h"
 #include "engine/solve/simulation.h"
 #include "engine/vk/context.h"
 
@@ -139,7 +139,7 @@ class Engine {
   // The same as `draw`, read back, with the legend in it.
   Picture render(const View& view, const RenderOptions& options = {});
 
-  // What a picture of this view and shape (width / height) shows at `at` (engine/render/pick.h).
+  // What a picture of this view and shape (width / height) shows at `at` (engine/render/display/pick.h).
   std::optional<Picked> pick(const View& view, float aspect, const glm::vec2& at) const;
 
   // Gathered radiance of the last solve that leaves the centroids of outside faces of level 0 along unit directions.

@@ -1,17 +1,17 @@
 // What an engine holds.
 #pragma once
 
-#include "engine/graph/error.h"
-#include "engine/render/display_faces.h"
-#include "engine/render/display_motion.h"
+#include "engine/base/error.h"
+#include "engine/render/display/display_faces.h"
+#include "engine/render/display/display_motion.h"
 #include "engine/render/engine.h"
-#include "engine/render/ground.h"
-#include "engine/render/hidden_sky.h"
-#include "engine/render/inside.h"
-#include "engine/render/irradiance.h"
+#include "engine/render/inside/inside.h"
+#include "engine/render/light/hidden_sky.h"
+#include "engine/render/light/irradiance.h"
 #include "engine/render/path_method.h"
-#include "engine/render/rasteriser.h"
-#include "engine/render/surroundings.h"
+#include "engine/render/picture/ground.h"
+#include "engine/render/picture/rasteriser.h"
+#include "engine/render/picture/surroundings.h"
 
 namespace quadgraph {
 

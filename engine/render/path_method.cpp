@@ -3,12 +3,12 @@
 #include <array>
 #include <optional>
 
-#include "engine/graph/fresnel.h"
+#include "engine/optics/fresnel.h"
 #include "engine/path/cell_costs.h"
 #include "engine/path/exit_field.h"
 #include "engine/path/path_pass.h"
 #include "engine/path/path_relaxation.h"
-#include "shaders/path_light_shared.h"
+#include "shaders/path/path_light_shared.h"
 #include "spirv/path_enter.comp.h"
 #include "spirv/path_enter_cut.comp.h"
 

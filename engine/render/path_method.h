@@ -7,13 +7,13 @@
 #include <span>
 #include <vector>
 
-#include "engine/graph/cut.h"
-#include "engine/graph/edit.h"
-#include "engine/graph/optical_grid.h"
-#include "engine/graph/solution.h"
+#include "engine/deform/cut.h"
+#include "engine/optics/edit.h"
+#include "engine/optics/optical_grid.h"
 #include "engine/path/voxels.h"
-#include "engine/render/display_buffers.h"
-#include "engine/render/shadow_maps.h"
+#include "engine/reference/solution.h"
+#include "engine/render/display/display_buffers.h"
+#include "engine/render/light/shadow_maps.h"
 
 namespace quadgraph {
 

@@ -1,7 +1,7 @@
 // A cut in a scene file.
 #pragma once
 
-#include "engine/graph/cut.h"
+#include "engine/deform/cut.h"
 #include "engine/scene/json_field.h"
 
 namespace quadgraph {

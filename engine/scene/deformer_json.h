@@ -1,7 +1,7 @@
 // Deformers in a scene file.
 #pragma once
 
-#include "engine/graph/deformer.h"
+#include "engine/deform/deformer.h"
 #include "engine/scene/json_field.h"
 
 namespace quadgraph {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/render/text.h"
+#include "engine/base/text.h"
 
 namespace quadgraph {
 namespace {

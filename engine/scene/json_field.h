@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/error.h"
 #include "engine/base/names.h"
-#include "engine/graph/error.h"
 
 namespace quadgraph {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 
-#include "engine/render/camera.h"
+#include "engine/render/display/camera.h"
 
 namespace quadgraph {
 namespace {

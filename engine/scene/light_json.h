@@ -1,7 +1,7 @@
 // Lights in a scene file.
 #pragma once
 
-#include "engine/render/lights.h"
+#include "engine/render/light/lights.h"
 #include "engine/scene/json_field.h"
 
 namespace quadgraph {

@@ -7,7 +7,7 @@
 #include <memory>
 #include <regex>
 
-#include "engine/graph/error.h"
+#include "engine/base/error.h"
 
 namespace quadgraph {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "engine/graph/error.h"
-#include "engine/graph/material.h"
-#include "engine/render/text.h"
+#include "engine/base/error.h"
+#include "engine/base/text.h"
+#include "engine/optics/material.h"
 #include "engine/scene/option_members.h"
 
 namespace quadgraph {

@@ -4,7 +4,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "engine/render/text.h"
+#include "engine/base/text.h"
 #include "engine/scene/options.h"
 
 namespace quadgraph {

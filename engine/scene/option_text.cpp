@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/render/text.h"
+#include "engine/base/text.h"
 #include "engine/scene/options.h"
 
 namespace quadgraph {

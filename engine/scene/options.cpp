@@ -239,8 +239,7 @@ void add_tone(OptionTable& table) {
               .own_form = true,
               .metavar = "COLOUR",
               .help = "studio, black, white, linear grey or R/G/B in [0, 1] (PNG)"},
-             background_of,
-             set_background);
+             background_of, set_background);
 }
 
 std::vector<SceneOption> made() {

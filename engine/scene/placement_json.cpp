@@ -1,6 +1,6 @@
 #include "engine/scene/placement_json.h"
 
-#include "engine/render/image_file.h"
+#include "engine/render/light/image_file.h"
 
 namespace quadgraph {
 

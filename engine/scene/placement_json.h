@@ -1,7 +1,7 @@
 // Where pictures lie in a body, in a scene file.
 #pragma once
 
-#include "engine/graph/edit.h"
+#include "engine/optics/edit.h"
 #include "engine/scene/json_field.h"
 
 namespace quadgraph {

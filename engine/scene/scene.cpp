@@ -3,8 +3,8 @@
 #include <limits>
 #include <type_traits>
 
-#include "engine/graph/material.h"
-#include "engine/render/text.h"
+#include "engine/base/text.h"
+#include "engine/optics/material.h"
 #include "engine/scene/cut_json.h"
 #include "engine/scene/deformer_json.h"
 #include "engine/scene/edit_json.h"

@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "engine/graph/cut.h"
-#include "engine/graph/deformer.h"
-#include "engine/graph/edit.h"
-#include "engine/render/camera.h"
+#include "engine/deform/cut.h"
+#include "engine/deform/deformer.h"
+#include "engine/optics/edit.h"
+#include "engine/render/display/camera.h"
 #include "engine/render/engine.h"
-#include "engine/render/lights.h"
-#include "engine/render/tone_map.h"
+#include "engine/render/light/lights.h"
+#include "engine/render/picture/tone_map.h"
 #include "engine/scene/json_field.h"
 
 namespace quadgraph {

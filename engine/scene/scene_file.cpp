@@ -6,9 +6,9 @@
 #include <set>
 #include <sstream>
 
-#include "engine/graph/front.h"
-#include "engine/render/atomic_file.h"
-#include "engine/render/default_lights.h"
+#include "engine/base/atomic_file.h"
+#include "engine/file/front.h"
+#include "engine/render/light/default_lights.h"
 #include "engine/scene/volume.h"
 
 namespace quadgraph {

@@ -15,7 +15,7 @@ namespace quadgraph {
 class SceneFile {
  public:
   // Reads a JSON file and checks the scene at every key of its tracks. A relative body and relative images of lights
-  // are looked for beside the file; a camera without azimuth looks at the body's front (engine/graph/front.h), and a
+  // are looked for beside the file; a camera without azimuth looks at the body's front (engine/file/front.h), and a
   // scene that says nothing of lights gets default_lights of its first view.
   // Throws InputError naming the file, the path into it, what was found and what is allowed.
   static SceneFile load(const std::filesystem::path& path);

@@ -1,6 +1,6 @@
 #include "engine/scene/stage.h"
 
-#include "engine/graph/error.h"
+#include "engine/base/error.h"
 #include "engine/scene/volume.h"
 
 namespace quadgraph {

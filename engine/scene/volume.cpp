@@ -6,10 +6,10 @@
 #include <glm/common.hpp>
 #include <map>
 
-#include "engine/graph/error.h"
-#include "engine/graph/fresnel.h"
-#include "engine/graph/material.h"
-#include "engine/render/text.h"
+#include "engine/base/error.h"
+#include "engine/base/text.h"
+#include "engine/optics/fresnel.h"
+#include "engine/optics/material.h"
 #include "engine/scene/npz.h"
 
 namespace quadgraph {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "engine/graph/solution.h"
+#include "engine/reference/solution.h"
 
 namespace quadgraph {
 

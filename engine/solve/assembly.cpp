@@ -4,8 +4,8 @@
 #include <bit>
 #include <utility>
 
-#include "shaders/assembly_shared.h"
-#include "shaders/edits.h"
+#include "shaders/assemble/assembly_shared.h"
+#include "shaders/material/edits.h"
 
 namespace quadgraph {
 namespace {

@@ -1,9 +1,9 @@
 // Records the passes that fill an operator with values.
 #pragma once
 
-#include "engine/graph/boundary.h"
+#include "engine/optics/boundary.h"
+#include "engine/solve/level_buffers.h"
 #include "engine/solve/operator_buffers.h"
-#include "engine/solve/simulation.h"
 #include "engine/solve/workspace.h"
 
 namespace quadgraph {

@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <string>
 
-#include "engine/graph/error.h"
+#include "engine/base/error.h"
 #include "engine/vk/commands.h"
 
 namespace quadgraph {

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "engine/solve/simulation.h"
-#include "shaders/solve_shared.h"
+#include "engine/solve/level_buffers.h"
+#include "shaders/solver/solve_shared.h"
 
 namespace quadgraph {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/graph/moved_levels.h"
+#include "engine/deform/moved_levels.h"
 #include "engine/solve/deformed_levels.h"
 
 namespace quadgraph {

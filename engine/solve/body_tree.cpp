@@ -1,7 +1,7 @@
 #include "engine/solve/body_tree.h"
 
-#include "engine/graph/face_tree.h"
-#include "shaders/exchange_shared.h"
+#include "engine/file/face_tree.h"
+#include "shaders/exchange/exchange_shared.h"
 
 namespace quadgraph {
 

@@ -1,14 +1,14 @@
-// The tree over the outside faces of one level (engine/graph/face_tree.h) on the device. Which faces lie together
+// The tree over the outside faces of one level (engine/file/face_tree.h) on the device. Which faces lie together
 // stays; their boxes follow the shape.
 #pragma once
 
 #include <cstdint>
 #include <string>
 
-#include "engine/graph/graph.h"
-#include "engine/solve/simulation.h"
+#include "engine/file/graph.h"
+#include "engine/solve/level_buffers.h"
 #include "engine/solve/workspace.h"
-#include "shaders/body_shared.h"
+#include "shaders/shared/body_shared.h"
 
 namespace quadgraph {
 

@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <string>
 
-#include "engine/graph/depth.h"
-#include "engine/graph/error.h"
-#include "engine/graph/fresnel.h"
-#include "engine/graph/geometry.h"
-#include "engine/graph/material.h"
-#include "engine/graph/model.h"
-#include "engine/graph/operator.h"
+#include "engine/base/error.h"
+#include "engine/file/geometry.h"
+#include "engine/optics/depth.h"
+#include "engine/optics/fresnel.h"
+#include "engine/optics/material.h"
+#include "engine/optics/model.h"
+#include "engine/reference/operator.h"
 #include "engine/solve/assembly.h"
 #include "engine/vk/commands.h"
-#include "shaders/material.h"
+#include "shaders/material/material.h"
 
 namespace quadgraph {
 

@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "engine/graph/edit.h"
-#include "engine/graph/resolution.h"
-#include "engine/graph/solution.h"
+#include "engine/base/solve_options.h"
+#include "engine/optics/edit.h"
+#include "engine/reference/resolution.h"
 #include "engine/solve/assembly.h"
-#include "engine/solve/simulation.h"
+#include "engine/solve/level_buffers.h"
 #include "engine/solve/workspace.h"
 
 namespace quadgraph {

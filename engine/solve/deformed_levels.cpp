@@ -8,7 +8,7 @@
 #include <glm/vec4.hpp>
 #include <string>
 
-#include "shaders/deform_shared.h"
+#include "shaders/deform/deform_shared.h"
 
 namespace quadgraph {
 namespace {

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "engine/graph/resolution.h"
+#include "engine/reference/resolution.h"
 #include "engine/solve/deformed_mesh.h"
-#include "engine/solve/simulation.h"
+#include "engine/solve/level_buffers.h"
 #include "engine/solve/workspace.h"
 
 namespace quadgraph {
@@ -17,7 +17,7 @@ struct ShapeState {
   std::uint32_t inverted = 0;            // turned inside out
   std::uint32_t flat = 0;                // flatter than least_quality, inverted ones left out
   double worst = 1;                      // least quality of a tet: 1 regular, 0 flat, below 0 inside out
-  double conduction = 0;                 // mean, as format_of takes it (engine/graph/stored_entries.h)
+  double conduction = 0;                 // mean, as format_of takes it (engine/reference/stored_entries.h)
   double chord = 0;                      // mm, as mean_chord
   std::vector<SurfaceSample> samples{};  // as surface_samples
 };

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/graph/deform.h"
+#include "engine/deform/deform.h"
 #include "engine/solve/workspace.h"
 #include "engine/vk/memory.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "shaders/exchange_shared.h"
+#include "shaders/exchange/exchange_shared.h"
 
 namespace quadgraph {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/solve/body_tree.h"
-#include "engine/solve/simulation.h"
+#include "engine/solve/level_buffers.h"
 #include "engine/solve/workspace.h"
 
 namespace quadgraph {

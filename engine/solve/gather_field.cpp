@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "engine/graph/vertex_starts.h"
+#include "engine/reference/vertex_starts.h"
 
 namespace quadgraph {
 namespace {

@@ -5,13 +5,13 @@
 #include <span>
 #include <vector>
 
-#include "engine/graph/graph.h"
+#include "engine/file/graph.h"
 #include "engine/solve/beams.h"
 #include "engine/solve/body_tree.h"
+#include "engine/solve/level_buffers.h"
 #include "engine/solve/operator_buffers.h"
-#include "engine/solve/simulation.h"
 #include "engine/solve/workspace.h"
-#include "shaders/gather_shared.h"
+#include "shaders/gather/gather_shared.h"
 
 namespace quadgraph {
 
@@ -51,7 +51,7 @@ class GatherField {
   void record_scale(Workspace& work, const GatherInput& input);
   void record_nodes(Workspace& work, const GatherInput& input);
 
-  vk::Buffer start_, nearest_;  // engine/graph/vertex_starts.h
+  vk::Buffer start_, nearest_;  // engine/reference/vertex_starts.h
   vk::Buffer solid_on_device_, points_, gathered_, nodes_, scale_;
   gpu::SolidRef solid_{};
 };

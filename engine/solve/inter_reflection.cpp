@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <bit>
 
-#include "engine/graph/exchange.h"
-#include "engine/graph/fresnel.h"
-#include "engine/graph/sky.h"
-#include "shaders/exchange_shared.h"
+#include "engine/optics/fresnel.h"
+#include "engine/reference/exchange.h"
+#include "engine/reference/sky.h"
+#include "shaders/exchange/exchange_shared.h"
 
 namespace quadgraph {
 namespace {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "engine/graph/error.h"
+#include "engine/base/error.h"
 #include "engine/solve/assembly.h"
-#include "shaders/surface_shared.h"
+#include "shaders/surface/surface_shared.h"
 
 namespace quadgraph {
 namespace {

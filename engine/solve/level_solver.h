@@ -4,7 +4,8 @@
 
 #include <optional>
 
-#include "engine/graph/boundary.h"
+#include "engine/optics/boundary.h"
+#include "engine/reference/solution.h"
 #include "engine/solve/multigrid.h"
 #include "engine/solve/operators.h"
 #include "engine/solve/workspace.h"

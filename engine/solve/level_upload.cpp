@@ -1,6 +1,6 @@
 #include "engine/solve/level_upload.h"
 
-#include "engine/graph/sky.h"
+#include "engine/reference/sky.h"
 #include "engine/solve/row_structure.h"
 #include "engine/vk/commands.h"
 

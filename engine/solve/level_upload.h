@@ -3,7 +3,9 @@
 
 #include <vector>
 
-#include "engine/solve/simulation.h"
+#include "engine/base/solve_options.h"
+#include "engine/file/graph.h"
+#include "engine/solve/level_buffers.h"
 
 namespace quadgraph {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/graph/exchange.h"
+#include "engine/reference/exchange.h"
 #include "engine/solve/asked_error.h"
 #include "engine/solve/assembly.h"
 #include "engine/solve/mesh_error.h"

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/graph/resolution.h"
+#include "engine/reference/resolution.h"
 #include "engine/solve/coefficients.h"
 #include "engine/solve/inter_reflection.h"
 #include "engine/solve/level_solver.h"

@@ -11,7 +11,7 @@
 #include <glm/vec2.hpp>
 #include <optional>
 
-#include "engine/graph/solution.h"
+#include "engine/reference/solution.h"
 
 namespace quadgraph {
 

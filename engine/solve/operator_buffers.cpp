@@ -1,11 +1,11 @@
 #include "engine/solve/operator_buffers.h"
 
-#include "engine/graph/operator.h"
-#include "engine/graph/polygrid.h"
+#include "engine/file/polygrid.h"
+#include "engine/reference/operator.h"
 #include "engine/solve/row_structure.h"
-#include "shaders/assembly_shared.h"
-#include "shaders/packing.h"
-#include "shaders/surface_shared.h"
+#include "shaders/assemble/assembly_shared.h"
+#include "shaders/solver/packing.h"
+#include "shaders/surface/surface_shared.h"
 
 namespace quadgraph {
 namespace {

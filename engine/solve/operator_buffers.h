@@ -4,12 +4,12 @@
 #include <optional>
 #include <vector>
 
-#include "engine/graph/boundary.h"
-#include "engine/graph/graph.h"
-#include "engine/graph/solution.h"
-#include "engine/graph/stored_entries.h"
+#include "engine/base/solve_options.h"
+#include "engine/file/graph.h"
+#include "engine/optics/boundary.h"
+#include "engine/reference/stored_entries.h"
 #include "engine/vk/memory.h"
-#include "shaders/solve_shared.h"
+#include "shaders/solver/solve_shared.h"
 
 namespace quadgraph {
 
@@ -74,7 +74,8 @@ struct OperatorBuffers {
   bool by_entry(bool even) const { return even && !moved; }
 
   std::uint64_t field_bytes() const { return (model == Model::sp3 ? 2 : 1) * sizeof(glm::vec3); }
-  // Whether the sum of a row and its diagonal are both found from one record in row_sum (shaders/stored_rows.glsl).
+  // Whether the sum of a row and its diagonal are both found from one record in row_sum
+  // (shaders/solver/stored_rows.glsl).
   bool compact_rows() const { return model == Model::sp3 && format == EntryFormat::packed; }
 
   // Read for the diagonal of a row, and of a row's sum and diagonal together.

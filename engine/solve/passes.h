@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "engine/graph/solution.h"
-#include "engine/graph/stored_entries.h"
+#include "engine/base/solve_options.h"
+#include "engine/reference/stored_entries.h"
 #include "engine/vk/pipeline.h"
 
 namespace quadgraph {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/pass_stats.h"
 #include "engine/solve/passes.h"
-#include "engine/solve/simulation.h"
 #include "engine/vk/commands.h"
 
 namespace quadgraph {

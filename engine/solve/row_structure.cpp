@@ -6,9 +6,9 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "engine/graph/geometry.h"
-#include "engine/graph/polygrid.h"
-#include "shaders/assembly_shared.h"
+#include "engine/file/geometry.h"
+#include "engine/file/polygrid.h"
+#include "shaders/assemble/assembly_shared.h"
 
 namespace quadgraph {
 namespace {

@@ -1,5 +1,5 @@
-// What an operator's rows look like on one level before any value is known: columns in slices (shaders/solve_shared.h,
-// RowsRef), and which tets and faces contribute to which entry.
+// What an operator's rows look like on one level before any value is known: columns in slices
+// (shaders/solver/solve_shared.h, RowsRef), and which tets and faces contribute to which entry.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "engine/graph/graph.h"
-#include "engine/graph/solution.h"
+#include "engine/base/solve_options.h"
+#include "engine/file/graph.h"
 
 namespace quadgraph {
 

@@ -5,9 +5,9 @@
 #include <glm/geometric.hpp>
 #include <map>
 
-#include "engine/graph/error.h"
-#include "engine/graph/exchange.h"
-#include "engine/graph/operator.h"
+#include "engine/base/error.h"
+#include "engine/reference/exchange.h"
+#include "engine/reference/operator.h"
 #include "engine/solve/beams.h"
 #include "engine/solve/body_shape.h"
 #include "engine/solve/coefficients.h"
@@ -17,7 +17,7 @@
 #include "engine/solve/levels_solver.h"
 #include "engine/solve/solver_choice.h"
 #include "engine/solve/surface_results.h"
-#include "shaders/surface_shared.h"
+#include "shaders/surface/surface_shared.h"
 
 namespace quadgraph {
 struct Simulation::Implementation {

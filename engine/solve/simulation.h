@@ -14,57 +14,17 @@
 #include <string>
 #include <vector>
 
-#include "engine/graph/deformer.h"
-#include "engine/graph/edit.h"
-#include "engine/graph/graph.h"
-#include "engine/graph/solution.h"
+#include "engine/base/pass_stats.h"
+#include "engine/deform/deformer.h"
+#include "engine/file/graph.h"
+#include "engine/optics/edit.h"
+#include "engine/reference/solution.h"
+#include "engine/solve/level_buffers.h"
 #include "engine/vk/context.h"
 #include "engine/vk/memory.h"
-#include "shaders/solve_shared.h"
+#include "shaders/solver/solve_shared.h"
 
 namespace quadgraph {
-
-// One kind of pass in a frame.
-struct PassStats {
-  std::string name;
-  double time_ms = 0;       // device time, all dispatches together
-  std::uint64_t bytes = 0;  // bytes the algorithm reads and writes, all dispatches together
-  std::uint32_t count = 0;  // dispatches that did work
-};
-
-// Geometry and fields of one level on the device. Counts as in Level.
-struct LevelBuffers {
-  std::uint32_t vertex_count = 0, tet_count = 0, face_count = 0, node_count = 0, surface_vertex_count = 0;
-  vk::Buffer vertices;   // vec3, mm
-  vk::Buffer tets;       // uvec4
-  vk::Buffer faces;      // uvec3
-  vk::Buffer face_tets;  // uint
-  vk::Buffer face_kind;  // uint; 0 open, 1 reflecting
-  // The open faces at surface vertex v: face_incidence[k], k from face_offset[v] to face_offset[v + 1].
-  vk::Buffer face_offset, face_incidence;
-  vk::Buffer links;       // uvec4; for the graph methods, made at first use
-  vk::Buffer nodes;       // vec3, mm; inner nodes, then surface nodes; for the graph methods, made at first use
-  vk::Buffer rest;        // the same where the file has them, as far as optical goes: the material moves with the body
-  vk::Buffer optical;     // Optical per node; of the tets alone, or one for all (Coefficients), where that is enough
-  bool even = false;      // optical is the same everywhere, and read from the first
-  gpu::LeastTet least{};  // of the tets in the present shape
-  bool inverted = false;  // some of them are turned inside out
-  vk::Buffer q;           // vec3 per face, W/mm^2: written by the lights or by set_irradiance
-  vk::Buffer beam_q;      // float, per beam (BeamBuffers) gpu::Beam::floats per face: what q is made of
-  vk::Buffer sky;         // float per face: share of even light from outside that no other part of the body hides
-
-  // Where the last beam begins in beam_q, that of light that enters again, bytes.
-  std::uint64_t beam_again() const { return beam_q.size() - face_count * gpu::BEAM_RGB * sizeof(float); }
-};
-
-// What the faces of one level see of each other, on the device: per face the first of its entries and one past the
-// last, uvec2; entries, the faces that `rays` cosine-weighted rays met (docs/qgraph-format.md).
-struct SeenRows {
-  std::uint32_t level;
-  const vk::Buffer& rows;
-  const vk::Buffer& entries;
-  std::uint32_t rays;
-};
 
 class GatherField;
 struct Workspace;

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdio>
 
-#include "engine/graph/error.h"
+#include "engine/base/error.h"
 #include "engine/solve/level_solver.h"
 #include "engine/solve/multigrid.h"
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "engine/reference/solution.h"
 #include "engine/solve/operators.h"
 #include "engine/solve/recorder.h"
 

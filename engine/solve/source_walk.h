@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "engine/graph/solution.h"
+#include "engine/base/solve_options.h"
 #include "engine/solve/beams.h"
+#include "engine/solve/level_buffers.h"
 #include "engine/solve/operator_buffers.h"
-#include "engine/solve/simulation.h"
 #include "engine/solve/workspace.h"
-#include "shaders/walk_shared.h"
+#include "shaders/source/walk_shared.h"
 
 namespace quadgraph {
 

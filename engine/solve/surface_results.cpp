@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "engine/solve/assembly.h"
-#include "shaders/surface_shared.h"
+#include "shaders/surface/surface_shared.h"
 
 namespace quadgraph {
 namespace {

@@ -3,9 +3,10 @@
 
 #include <optional>
 
-#include "engine/graph/boundary.h"
+#include "engine/optics/boundary.h"
+#include "engine/reference/solution.h"
+#include "engine/solve/level_buffers.h"
 #include "engine/solve/operator_buffers.h"
-#include "engine/solve/simulation.h"
 #include "engine/solve/source_walk.h"
 #include "engine/solve/workspace.h"
 

@@ -1,6 +1,6 @@
 #include "engine/solve/surface_share.h"
 
-#include "shaders/surface_shared.h"
+#include "shaders/surface/surface_shared.h"
 
 namespace quadgraph {
 

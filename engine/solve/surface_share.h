@@ -1,9 +1,9 @@
 // What every carrier on the surface stands for in an error of the exitance.
 #pragma once
 
-#include "engine/graph/boundary.h"
+#include "engine/optics/boundary.h"
+#include "engine/solve/level_buffers.h"
 #include "engine/solve/operator_buffers.h"
-#include "engine/solve/simulation.h"
 #include "engine/solve/workspace.h"
 
 namespace quadgraph {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "shaders/solve_shared.h"
+#include "shaders/solver/solve_shared.h"
 
 namespace quadgraph {
 namespace {

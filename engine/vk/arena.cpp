@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "engine/graph/error.h"
+#include "engine/base/error.h"
 #include "engine/vk/context.h"
 
 namespace quadgraph::vk {

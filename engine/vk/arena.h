@@ -1,4 +1,5 @@
-// Memory that shaders read as buffers of 32-bit texels (shaders/load.glsl), and the descriptor set that shows it.
+// Memory that shaders read as buffers of 32-bit texels (shaders/shared/load.glsl), and the descriptor set that shows
+// it.
 //
 // llvmpipe, Mesa's device on the CPU, follows a buffer reference one invocation after the other, but fetches the texels
 // of eight at once: products with an operator's rows take a ninth of the time. So on devices of type CPU all buffers

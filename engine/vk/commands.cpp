@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "engine/graph/error.h"
+#include "engine/base/error.h"
 #include "engine/vk/arena.h"
 
 namespace quadgraph::vk {

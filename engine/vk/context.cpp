@@ -4,7 +4,7 @@
 #include <cctype>
 #include <cstring>
 
-#include "engine/graph/error.h"
+#include "engine/base/error.h"
 #include "engine/vk/arena.h"
 
 namespace quadgraph::vk {

@@ -7,7 +7,7 @@
 #include "engine/vk/commands.h"
 #include "engine/vk/memory.h"
 #include "engine/vk/pipeline.h"
-#include "shaders/shared.h"
+#include "shaders/shared/shared.h"
 #include "spirv/copy.comp.h"
 
 namespace quadgraph::vk {

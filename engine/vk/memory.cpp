@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "engine/graph/error.h"
+#include "engine/base/error.h"
 #include "engine/vk/arena.h"
 #include "engine/vk/commands.h"
 

@@ -17,7 +17,7 @@ namespace quadgraph::vk {
 
 enum class Place {
   // Fastest for the GPU, and in the arena of that name where there is one with room: arrays that shaders load, by the
-  // type they have there (shaders/load.glsl).
+  // type they have there (shaders/shared/load.glsl).
   read,      // Uints, Floats and all that is not one of the following
   rows,      // Entries, RowUints, RowFloats: operators and the transfers between their levels
   fields,    // Fields, Opticals: what carriers have

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "engine/graph/error.h"
+#include "engine/base/error.h"
 #include "engine/vk/arena.h"
 
 namespace quadgraph::vk {
@@ -50,7 +50,8 @@ VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits bit, const UniqueSha
   return info;
 }
 
-// Specialization constants by their number: how shaders load arrays (shaders/load.glsl), and a variant of their own.
+// Specialization constants by their number: how shaders load arrays (shaders/shared/load.glsl), and a variant of their
+// own.
 struct Constants {
   static constexpr std::uint32_t count = 4 + arena_count;
   std::array<std::uint32_t, count> values;
@@ -74,7 +75,7 @@ struct Constants {
   Constants& operator=(const Constants&) = delete;
 };
 
-// shaders/part.glsl.
+// shaders/shared/part.glsl.
 constexpr std::uint32_t part_whole = 0, part_sums = 1, part_conclusion = 2;
 
 // On two to dozens of cores: enough to share out, few enough that starting and reducing them costs nothing.

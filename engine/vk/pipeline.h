@@ -22,9 +22,9 @@ using LoadingPipelines = std::map<std::uint32_t, UniquePipeline>;
 // How the invocations of a pass share its elements.
 enum class Work {
   each,        // one element each
-  strided,     // shaders/stride.glsl: several each, where few workgroups are fastest
+  strided,     // shaders/shared/stride.glsl: several each, where few workgroups are fastest
   reducing,    // the same, and what comes of a reduction is for a dispatch of its own there
-  conclusion,  // that dispatch, of one workgroup (shaders/part.glsl)
+  conclusion,  // that dispatch, of one workgroup (shaders/shared/part.glsl)
 };
 
 // Whether few workgroups with long loops are fastest: on a device of type CPU, unless it was told to have no arenas.
@@ -40,7 +40,7 @@ class ComputePass {
   ComputePass(Context& context, Spirv code, std::uint32_t push_size, const std::string& name,
               std::uint32_t workgroup_size = default_workgroup_size, std::uint32_t variant = 0, Work work = Work::each);
 
-  static constexpr std::uint32_t default_workgroup_size = 256;  // WORKGROUP_SIZE in shaders/shared.h
+  static constexpr std::uint32_t default_workgroup_size = 256;  // WORKGROUP_SIZE in shaders/shared/shared.h
 
   // For what the arenas hold now.
   VkPipeline pipeline() const;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/graph/error.h"
+#include "engine/base/error.h"
 
 namespace quadgraph::vk {
 namespace {

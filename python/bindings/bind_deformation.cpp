@@ -2,8 +2,8 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include "engine/graph/deform.h"
-#include "engine/graph/error.h"
+#include "engine/base/error.h"
+#include "engine/deform/deform.h"
 #include "engine/scene/deformer_json.h"
 #include "python/bindings/bindings.h"
 

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "engine/graph/error.h"
-#include "engine/graph/motion.h"
-#include "engine/render/default_lights.h"
+#include "engine/base/error.h"
+#include "engine/deform/motion.h"
 #include "engine/render/engine.h"
+#include "engine/render/light/default_lights.h"
 #include "engine/scene/cut_json.h"
 #include "engine/scene/options.h"
 #include "engine/scene/volume.h"
@@ -194,7 +194,7 @@ void bind_engine(py::module_& module) {
           "As --material reads it: names and numbers, or a .npz of coefficients (docs/scene.md). Raises InputError.")
       .def("set_material", py::overload_cast<const gpu::Material&>(&Engine::set_material), py::arg("material"))
       .def("set_lights", &set_lights, py::arg("lights"),
-           "Texts as --light takes them (engine/render/lights.h); replaces all lights.")
+           "Texts as --light takes them (engine/render/light/lights.h); replaces all lights.")
       .def(
           "set_deformation",
           [](Engine& engine, const py::object& list) {

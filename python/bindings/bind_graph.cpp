@@ -2,8 +2,8 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include "engine/graph/graph.h"
-#include "engine/graph/qgraph_layout.h"
+#include "engine/file/graph.h"
+#include "engine/file/qgraph_layout.h"
 #include "python/bindings/bindings.h"
 
 namespace py = pybind11;

@@ -1,8 +1,8 @@
 // Materials and the Fresnel quantities of the boundary.
 #include <pybind11/stl.h>
 
-#include "engine/graph/fresnel.h"
-#include "engine/graph/material.h"
+#include "engine/optics/fresnel.h"
+#include "engine/optics/material.h"
 #include "python/bindings/bindings.h"
 
 namespace py = pybind11;

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "engine/graph/error.h"
+#include "engine/base/error.h"
 #include "python/bindings/bindings.h"
 #include "python/bindings/scene_keywords.h"
 

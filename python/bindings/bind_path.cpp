@@ -1,9 +1,9 @@
 // The shortest-path method's parts: shortest paths through given cells, on the device and on the CPU, and voxels.
 #include <pybind11/stl.h>
 
-#include "engine/graph/error.h"
-#include "engine/graph/path_reference.h"
+#include "engine/base/error.h"
 #include "engine/path/given_cells.h"
+#include "engine/reference/path_reference.h"
 #include "python/bindings/bindings.h"
 
 namespace py = pybind11;

@@ -1,12 +1,12 @@
 // The operators and the CPU reference solver, double precision.
 #include <pybind11/stl.h>
 
-#include "engine/graph/error.h"
-#include "engine/graph/fresnel.h"
-#include "engine/graph/radiance.h"
-#include "engine/graph/reference.h"
-#include "engine/graph/source_walk.h"
-#include "engine/graph/stored_entries.h"
+#include "engine/base/error.h"
+#include "engine/optics/fresnel.h"
+#include "engine/reference/radiance.h"
+#include "engine/reference/reference.h"
+#include "engine/reference/source_walk.h"
+#include "engine/reference/stored_entries.h"
 #include "engine/solve/beams.h"
 #include "python/bindings/bindings.h"
 
@@ -193,7 +193,7 @@ void bind_reference(py::module_& module) {
   module.def("assemble", &assemble_dict, py::arg("graph"), py::arg("level"), py::arg("method"),
              py::arg("sigma_s_prime"), py::arg("sigma_a"), py::arg("eta"), py::arg("source") = "buried",
              py::arg("model") = "diffusion",
-             "Rows of the symmetric system A x = b, (phi, phi2) = to_phi * x (engine/graph/operator.h): offset, "
+             "Rows of the symmetric system A x = b, (phi, phi2) = to_phi * x (engine/reference/operator.h): offset, "
              "column, to_phi (n, 3), and weight and diagonal, (m, 3) with diffusion, (m, 3, 3) of a11, a12, a22 with "
              "sp3.");
   module.def("diffuse_load", &diffuse_load_array, py::arg("graph"), py::arg("level"), py::arg("method"),
@@ -218,7 +218,7 @@ void bind_reference(py::module_& module) {
   module.def("radiance_reference", &radiance_dict, py::arg("graph"), py::arg("level"), py::arg("sigma_s_prime"),
              py::arg("sigma_a"), py::arg("eta"), py::arg("q"), py::arg("direction"), py::arg("phi"), py::arg("faces"),
              py::arg("outside"),
-             "Gathered radiance on the CPU (engine/graph/radiance.h), unscaled. sigma_s_prime, sigma_a, eta, q and "
+             "Gathered radiance on the CPU (engine/reference/radiance.h), unscaled. sigma_s_prime, sigma_a, eta, q and "
              "direction as for solve_reference; phi (n_v, 3) of its solution with fem; faces (n,) and outside (n, 3), "
              "the unit directions into which light leaves their centroids. Returns radiance (n, 3) in W/(mm^2 sr), "
              "exitance (n_f, 3), entry (n_v, 3) in W/mm^2 and depth (n_v, 3). Raises InputError.");
@@ -232,7 +232,7 @@ void bind_reference(py::module_& module) {
       "How a device stores the entries of the operator: 'packed', with a shared exponent, or 'plain', in single "
       "precision.");
   module.def("boundary", &boundary_dict, py::arg("method"), py::arg("source"), py::arg("model"), py::arg("eta"),
-             "k11, k12, k22, source, reflected (engine/graph/boundary.h).");
+             "k11, k12, k22, source, reflected (engine/optics/boundary.h).");
   module.def("fresnel_moment", &fresnel_moment, py::arg("n"), py::arg("eta"),
              "R_n: integral of the internal reflectance times mu^n over the inside cosine.");
 }

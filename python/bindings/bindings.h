@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
-#include "engine/graph/deformer.h"
-#include "engine/graph/graph.h"
-#include "engine/graph/solution.h"
-#include "engine/render/picture.h"
-#include "shaders/shared.h"
+#include "engine/deform/deformer.h"
+#include "engine/file/graph.h"
+#include "engine/reference/solution.h"
+#include "engine/render/picture/picture.h"
+#include "shaders/shared/shared.h"
 
 namespace quadgraph::python {
 

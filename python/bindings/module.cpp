@@ -1,5 +1,5 @@
 // quadgraph._core: the module, its errors, and the gate between NumPy arrays and spans.
-#include "engine/graph/error.h"
+#include "engine/base/error.h"
 #include "python/bindings/bindings.h"
 
 namespace py = pybind11;

@@ -1,3 +1,5 @@
 """Real-time rendering of heterogeneous translucent objects, with an error that is known."""
 
-__version__ = "0.1.0"
+from quadgraph.base.version import __version__
+
+__all__ = ["__version__"]

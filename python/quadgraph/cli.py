@@ -1,4 +1,6 @@
-"""The command line `quadgraph`. Each subcommand is a module of quadgraph.commands with add_parser and run."""
+"""The command line `quadgraph`. Each subcommand is a module with add_parser and run: those of quadgraph.commands, and
+those that an installed distribution names under the entry point group `quadgraph.commands`.
+"""
 
 from __future__ import annotations
 
@@ -9,27 +11,16 @@ import re
 import signal
 import sys
 from collections.abc import Callable, Sequence
+from importlib.metadata import entry_points
+from types import ModuleType
 
-from quadgraph import __version__
-from quadgraph.errors import QuadGraphError
+from quadgraph.base.errors import InputError, QuadGraphError
+from quadgraph.base.version import __version__
 
 # Modules that import nothing heavy: what a subcommand needs, it imports when it runs.
-SUBCOMMANDS = (
-    "bake",
-    "shapes",
-    "volume",
-    "info",
-    "view",
-    "render",
-    "solve",
-    "bench",
-    "accuracy",
-    "reference",
-    "chart",
-    "tables",
-    "polygrid",
-    "stability",
-)
+SUBCOMMANDS = ("bake", "shapes", "volume", "info", "view", "render", "solve")
+# The subcommands that quadgraph-validation brings along; their modules come through its entry points.
+VALIDATION = ("bench", "accuracy", "reference", "chart", "tables", "polygrid", "stability")
 INTERRUPTED = 128 + signal.SIGINT
 
 
@@ -48,16 +39,58 @@ class CommandParser(argparse.ArgumentParser):
         return super().parse_known_args(args, namespace)
 
 
-def build_parser() -> argparse.ArgumentParser:
-    """Return the parser of the whole command line."""
+class Added:
+    """The subparsers as a module of the second group sees them: help lines are kept for a heading apart."""
+
+    def __init__(self, subparsers: argparse._SubParsersAction) -> None:
+        self._subparsers = subparsers
+        self._lines: list[str] = []
+
+    def add_parser(self, name: str, help: str, **options: object) -> argparse.ArgumentParser:
+        """Add a subcommand that the list of the first group does not show."""
+        self._lines.append(f"    {name:<10}{help}")
+        return self._subparsers.add_parser(name, **options)
+
+    def text(self) -> str:
+        """The group for the end of the help, nothing where nothing was added."""
+        if not self._lines:
+            return ""
+        return "\n".join(["validation (quadgraph-validation is installed):", *self._lines])
+
+
+def added_commands() -> dict[str, ModuleType]:
+    """The modules of installed entry points by the names of their subcommands, in the order of VALIDATION."""
+    found = {each.name: each for each in entry_points(group="quadgraph.commands")}
+    order = [name for name in VALIDATION if name in found] + sorted(found.keys() - set(VALIDATION))
+    return {name: found[name].load() for name in order}
+
+
+def build_parser(commands: dict[str, ModuleType], added: dict[str, ModuleType]) -> argparse.ArgumentParser:
+    """Return the parser of the whole command line: the package's own subcommands, and those that are added to them."""
     parser = argparse.ArgumentParser(
-        prog="quadgraph", description="Real-time rendering of heterogeneous translucent objects."
+        prog="quadgraph",
+        description="Real-time rendering of heterogeneous translucent objects.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--version", action="version", version=f"%(prog)s {__version__}")
     subparsers = parser.add_subparsers(dest="command", metavar="COMMAND", required=True, parser_class=CommandParser)
-    for name in SUBCOMMANDS:
-        importlib.import_module(f"quadgraph.commands.{name}").add_parser(subparsers)
+    for module in commands.values():
+        module.add_parser(subparsers)
+    second = Added(subparsers)
+    for module in added.values():
+        module.add_parser(second)
+    parser.epilog = second.text()
     return parser
+
+
+def check_installed(arguments: Sequence[str], added: dict[str, ModuleType]) -> None:
+    """Raise InputError, saying what to install, if the subcommand asked for is one of a distribution that is absent."""
+    command = next(iter(arguments), "")
+    if command in VALIDATION and command not in added:
+        raise InputError(
+            f"{command} belongs to quadgraph-validation, which is not installed: pip install 'quadgraph[validation]', "
+            "or pip install -e python/validation in the source tree"
+        )
 
 
 def join_negative_values(arguments: Sequence[str]) -> list[str]:
@@ -73,9 +106,13 @@ def join_negative_values(arguments: Sequence[str]) -> list[str]:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command line and return its exit status: 1 for an error, 2 for wrong usage, 130 for Ctrl-C."""
+    given = join_negative_values(sys.argv[1:] if arguments is None else arguments)
+    commands = {name: importlib.import_module(f"quadgraph.commands.{name}") for name in SUBCOMMANDS}
     try:
-        args = build_parser().parse_args(join_negative_values(sys.argv[1:] if arguments is None else arguments))
-        status = importlib.import_module(f"quadgraph.commands.{args.command}").run(args)
+        added = added_commands()
+        check_installed(given, added)
+        args = build_parser(commands, added).parse_args(given)
+        status = (commands | added)[args.command].run(args)
         sys.stdout.flush()
         return status
     except QuadGraphError as error:

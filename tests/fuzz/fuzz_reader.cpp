@@ -2,11 +2,11 @@
 #include <cstdint>
 #include <span>
 
-#include "engine/graph/error.h"
-#include "engine/graph/exchange.h"
-#include "engine/graph/graph.h"
-#include "engine/graph/reference.h"
-#include "tests/cpp/qgraph_bytes.h"
+#include "engine/base/error.h"
+#include "engine/file/graph.h"
+#include "engine/reference/exchange.h"
+#include "engine/reference/reference.h"
+#include "tests/cpp/fixtures/qgraph_bytes.h"
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
 

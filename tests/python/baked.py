@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from quadgraph import graph
-from quadgraph.reference.meshes import face_frames, write
-from quadgraph.surface import Surface
-from quadgraph.tetrahedralise import tetrahedralise
+from quadgraph.file.graph_file import write
+from quadgraph.mesh.surface import Surface
+from quadgraph.tets import graph
+from quadgraph.tets.tetrahedralise import tetrahedralise
+from quadgraph_validation.bodies.meshes import face_frames
 
 __all__ = ["face_frames", "write_levels"]
 

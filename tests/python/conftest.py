@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from quadgraph.bake import BakeOptions, bake
-from quadgraph.surface import Surface
+from quadgraph.bake.pipeline import BakeOptions, bake
+from quadgraph.mesh.surface import Surface
 from shapes import pymeshlab_samples, read_ply
 
 ROOT = Path(__file__).resolve().parents[2]

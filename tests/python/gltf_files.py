@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from quadgraph.surface import Surface
+from quadgraph.mesh.surface import Surface
 
 _KINDS = {"uint8": 5121, "uint16": 5123, "uint32": 5125, "float32": 5126}
 _TYPES = {1: "SCALAR", 3: "VEC3", 4: "VEC4", 16: "MAT4"}

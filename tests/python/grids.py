@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from quadgraph import qgraph_file, sections
-from quadgraph.graph import Graph
-from quadgraph.polygrid import build, lattice, placement
+from quadgraph.file import qgraph_file, sections
+from quadgraph.tets.graph import Graph
+from quadgraph.tets.polygrid import build, lattice, placement
 from tiny import metadata
 
 PATH = Path(__file__).parents[1] / "data" / "polygrid.qgraph"

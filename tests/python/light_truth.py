@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 import trimesh
 
-from quadgraph.reference.fresnel import gauss, transmittance_from_outside
-from quadgraph.surface import Surface
+from quadgraph.mesh.surface import Surface
+from quadgraph_validation.truth.fresnel import gauss, transmittance_from_outside
 
 # Per point (n, 3) mm, and place (n, 2) in [0, 1)^2 on the light: where what falls on the point begins (n, 3), mm or, at
 # infinity, far away, and what irradiance (n, 3) W/mm^2 it brings to a plane that faces it, as if all began there.

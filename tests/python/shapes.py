@@ -8,7 +8,7 @@ import numpy as np
 import pymeshlab
 import trimesh
 
-from quadgraph.surface import Surface
+from quadgraph.mesh.surface import Surface
 
 
 def pymeshlab_samples() -> Path:
@@ -53,3 +53,9 @@ def join(*surfaces: Surface) -> Surface:
 def moved(surface: Surface, *offset: float) -> Surface:
     """The surface displaced by (x, y, z) mm."""
     return Surface(surface.vertices + np.array(offset), surface.triangles)
+
+
+def write_obj(surface: Surface, path: Path) -> Path:
+    """Write a surface, mm, with nine digits."""
+    trimesh.Trimesh(surface.vertices, surface.triangles, process=False).export(path, digits=9)
+    return path

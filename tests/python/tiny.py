@@ -5,8 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
-from quadgraph import graph, qgraph_file, sections
-from quadgraph.surface import MesherInfo, TetMesh
+from quadgraph.file import qgraph_file, sections
+from quadgraph.mesh.surface import MesherInfo, TetMesh
+from quadgraph.tets import graph
 
 PATH = Path(__file__).parents[1] / "data" / "tiny.qgraph"
 

@@ -1,9 +1,9 @@
-// The kernels of shaders/layouts, as tools/layouts/CMakeLists.txt lists them.
+// The kernels of tools/layouts/shaders, as tools/layouts/CMakeLists.txt lists them.
 #pragma once
 
 #include <string>
 
-#include "engine/graph/solution.h"
+#include "engine/base/solve_options.h"
 #include "engine/vk/pipeline.h"
 
 namespace quadgraph::layouts {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/graph/operator.h"
+#include "engine/reference/operator.h"
 
 namespace quadgraph::layouts {
 

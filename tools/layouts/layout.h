@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "shaders/layouts/layout_shared.h"
 #include "tools/layouts/matrix.h"
+#include "tools/layouts/shaders/layout_shared.h"
 
 namespace quadgraph::layouts {
 
-// The names are those of shaders/layouts/layout_shared.h.
+// The names are those of tools/layouts/shaders/layout_shared.h.
 struct Layout {
   int rows = ROWS_SLICED;
   std::uint32_t slice = 32;  // rows

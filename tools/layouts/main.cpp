@@ -7,7 +7,7 @@
 #include <fstream>
 #include <iostream>
 
-#include "engine/graph/error.h"
+#include "engine/base/error.h"
 #include "engine/vk/copy_bandwidth.h"
 #include "tools/layouts/report.h"
 

@@ -4,9 +4,9 @@
 #include <array>
 #include <utility>
 
-#include "engine/graph/discretisation.h"
-#include "engine/graph/geometry.h"
-#include "shaders/optics.h"
+#include "engine/file/geometry.h"
+#include "engine/reference/discretisation.h"
+#include "shaders/material/optics.h"
 
 namespace quadgraph::layouts {
 namespace {

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/graph/error.h"
-#include "engine/graph/geometry.h"
-#include "engine/graph/material.h"
-#include "engine/graph/reference.h"
-#include "engine/graph/source_walk.h"
+#include "engine/base/error.h"
+#include "engine/file/geometry.h"
+#include "engine/optics/material.h"
+#include "engine/reference/reference.h"
+#include "engine/reference/source_walk.h"
 
 namespace quadgraph::layouts {
 namespace {

@@ -29,7 +29,7 @@ struct Variant {
 
 std::vector<Variant> all_variants();
 
-// The layout of the engine (shaders/solve_shared.h).
+// The layout of the engine (shaders/solver/solve_shared.h).
 inline constexpr Layout present{};
 
 }  // namespace quadgraph::layouts

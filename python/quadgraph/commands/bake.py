@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 from rich.table import Table
 
-from quadgraph.commands import budget
-from quadgraph.commands.scene import UNITS_MM, length_mm, positive_float, positive_int, share
-from quadgraph.errors import InputError
+from quadgraph.bake.budget import record
+from quadgraph.base.arguments import length_mm, positive_float, positive_int, share
+from quadgraph.base.errors import InputError
+from quadgraph.base.units import UNITS_MM
 
 if TYPE_CHECKING:
-    from quadgraph.bake import BakeReport
+    from quadgraph.bake.pipeline import BakeReport
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -139,7 +140,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _write_surface(args: argparse.Namespace) -> int:
     """Write a file without levels."""
-    from quadgraph import bare
+    from quadgraph.bake import bare
 
     left_alone = {"mesh", "output", "unit", "height", "surface_only", "command", "mesher", "order", "device", "front"}
     for name, value in vars(args).items():
@@ -167,10 +168,10 @@ def _check_error_options(args: argparse.Namespace) -> None:
 
 def _bake(args: argparse.Namespace, tell: Callable[[str], None]) -> BakeReport:
     if args.error is None:
-        from quadgraph.bake import bake
+        from quadgraph.bake.pipeline import bake
 
         return bake(args.mesh, args.output, _options(args), tell)
-    from quadgraph.budget.plan import bake_for
+    from quadgraph.bake.budget.plan import bake_for
 
     return bake_for(
         args.mesh, args.output, _options(args), args.error, args.material, args.light or (), args.device, tell
@@ -178,7 +179,7 @@ def _bake(args: argparse.Namespace, tell: Callable[[str], None]) -> BakeReport:
 
 
 def _options(args: argparse.Namespace):
-    from quadgraph.bake import BakeOptions
+    from quadgraph.bake.pipeline import BakeOptions
 
     given = {
         "unit": args.unit,
@@ -207,12 +208,12 @@ def _print_report(report: BakeReport) -> None:
     for note in report.notes:
         console.print(note, markup=False)
     if report.polygrid:
-        from quadgraph.polygrid.quality import sentences
+        from quadgraph.tets.polygrid.grid_report import sentences
 
         for sentence in sentences(report.polygrid):
             console.print(sentence, markup=False, soft_wrap=True)
     if report.budget:
-        for sentence in budget.sentences(report.budget, report.output):
+        for sentence in record.sentences(report.budget, report.output):
             console.print(sentence, markup=False, soft_wrap=True)
     variation = report.levels[0]["link_length_variation"]
     console.print(

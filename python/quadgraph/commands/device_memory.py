@@ -7,11 +7,12 @@ from typing import Any
 
 from rich.table import Table
 
-from quadgraph.commands.scene import VARIED_MATERIAL, default_of, load_core
-from quadgraph.errors import QuadGraphError
+from quadgraph.base.errors import QuadGraphError
+from quadgraph.base.pass_report import PICTURE_PURPOSES
+from quadgraph.commands.scene_options import default_of
+from quadgraph.core import load_core
 
-# What lights and a picture need beyond the solution.
-SHOWN = ("display", "gather", "shadows")
+VARIED_MATERIAL = "marble-veins"
 
 
 def ask(path: Path) -> dict[str, Any]:
@@ -39,7 +40,7 @@ def measure(path: Path) -> list[dict[str, Any]]:
             engine.make_room(model=model)
             purposes = {use["purpose"]: use["bytes"] for use in engine.memory()}
             total = sum(purposes.values())
-            solve = total - sum(purposes.get(purpose, 0) for purpose in SHOWN)
+            solve = total - sum(purposes.get(purpose, 0) for purpose in PICTURE_PURPOSES)
             entries.append({"model": model, "material": material, "purposes": purposes, "solve": solve, "total": total})
     return entries
 

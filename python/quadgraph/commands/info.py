@@ -11,8 +11,10 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from quadgraph.commands import budget, device_memory
+from quadgraph.bake.budget import record
+from quadgraph.commands import device_memory
 from quadgraph.commands.bake import exchange_line, level_table
+from quadgraph.file import sections
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -24,7 +26,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Read, validate and tell; 0 on success."""
-    from quadgraph import qgraph_file
+    from quadgraph.file import qgraph_file
 
     file = qgraph_file.read(args.file)
     facts = describe(file) | {"device_memory": device_memory.ask(args.file)}
@@ -40,9 +42,10 @@ def describe(file) -> dict[str, Any]:
 
     Angles in degrees, lengths in mm; node counts and dihedral angles per level; `exchange.summary` or None.
     """
-    from quadgraph import exchange, quality
+    from quadgraph.file import level_quality
+    from quadgraph.tets import exchange
 
-    seen = exchange.from_file(file)
+    seen = sections.read_exchange(file)
 
     return {
         "byte_size": file.byte_size,
@@ -51,8 +54,8 @@ def describe(file) -> dict[str, Any]:
             {"name": name, "type": array.dtype.name, "shape": list(array.shape), "bytes": array.nbytes}
             for name, array in file.sections.items()
         ],
-        "levels": [quality.of_level(file, number) for number in range(file.level_count)],
-        "exchange": None if seen is None else exchange.summary(seen, quality.boundary(file, seen.level)),
+        "levels": [level_quality.of_level(file, number) for number in range(file.level_count)],
+        "exchange": None if seen is None else exchange.summary(seen, level_quality.boundary(file, seen.level)),
         "display": {
             "vertices": len(file.sections["display/vertices"]),
             "triangles": len(file.sections["display/triangles"]),
@@ -84,7 +87,7 @@ def _print_facts(name: str, facts: dict[str, Any]) -> None:
     for line in lines:
         console.print(line, markup=False, soft_wrap=True)
     console.print(exchange_line(facts["exchange"]), soft_wrap=True)
-    for sentence in budget.sentences(metadata["budget"], name) if "budget" in metadata else []:
+    for sentence in record.sentences(metadata["budget"], name) if "budget" in metadata else []:
         console.print(sentence, markup=False, soft_wrap=True)
     if facts["levels"]:
         console.print(level_table(metadata["levels"]))

@@ -8,10 +8,11 @@ from pathlib import Path
 
 from rich.console import Console
 
-from quadgraph import atomic_file
-from quadgraph.commands import render_scene, scene
-from quadgraph.commands import report as text
-from quadgraph.errors import InputError
+from quadgraph.base import atomic_file
+from quadgraph.base.arguments import positive_float
+from quadgraph.base.errors import InputError
+from quadgraph.commands import render_scene, scene_options
+from quadgraph.commands import solve_report as text
 
 WRITERS = (".png", ".exr")
 
@@ -23,11 +24,11 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add all arguments, which follow from the engine's options of a scene."""
-    scene.add_scene_arguments(
+    """Add all arguments, which follow from the engine's options of a scene_options."""
+    scene_options.add_scene_arguments(
         parser,
         "a baked .qgraph, a scene .json (docs/scene.md), or a mesh for --method shortest-path",
-        (*scene.SOLVE_GROUPS, *scene.PICTURE_GROUPS),
+        (*scene_options.SOLVE_GROUPS, *scene_options.PICTURE_GROUPS),
     )
     parser.add_argument(
         "-o",
@@ -51,10 +52,10 @@ def run(args: argparse.Namespace) -> int:
         if path.suffix.lower() not in WRITERS:
             raise InputError(f"{path}: output must end in {' or '.join(WRITERS)}")
     start = time.perf_counter()
-    engine = scene.make_engine(args)
-    report = scene.solve(engine, args)
-    picture = engine.render(**scene.keywords(args, scene.PICTURE_GROUPS))
-    scene.check_validation(engine)
+    engine = scene_options.make_engine(args)
+    report = scene_options.solve(engine, args)
+    picture = engine.render(**scene_options.keywords(args, scene_options.PICTURE_GROUPS))
+    scene_options.check_validation(engine)
     for path in args.output:
         if path.suffix.lower() == ".png":
             picture.write_png(path, engine.metadata, args.exposure, args.background)
@@ -64,7 +65,7 @@ def run(args: argparse.Namespace) -> int:
     report["seconds"] = time.perf_counter() - start
     if args.json:
         atomic_file.write_json(args.json, report)
-    unmet = scene.unmet(report)
+    unmet = scene_options.unmet(report)
     print_summary(engine, report, unmet, args.output)
     return 3 if unmet else 0
 

@@ -11,16 +11,19 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import Progress
 
-from quadgraph import atomic_file, film
-from quadgraph.commands import report as text
-from quadgraph.commands import scene
-from quadgraph.errors import InputError
+from quadgraph.base import atomic_file
+from quadgraph.base.arguments import positive_int
+from quadgraph.base.errors import InputError
+from quadgraph.commands import scene_options
+from quadgraph.commands import solve_report as text
+from quadgraph.core import load_core
+from quadgraph.file import film
 
 
 def stated() -> dict[str, str]:
     """Arguments that a scene file says, and where it says them."""
-    said = scene.options((*scene.SOLVE_GROUPS, *scene.PICTURE_GROUPS))
-    return {scene.destination(option): option.member for option in said} | {"unit": "/body", "height": "/body"}
+    said = scene_options.options((*scene_options.SOLVE_GROUPS, *scene_options.PICTURE_GROUPS))
+    return {scene_options.destination(option): option.member for option in said} | {"unit": "/body", "height": "/body"}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -36,7 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--frame", type=float, default=0.0, metavar="F", help="the one to render (default: 0)")
     group.add_argument(
         "--frames",
-        type=scene.positive_int,
+        type=positive_int,
         nargs="?",
         const=0,
         metavar="N",
@@ -60,7 +63,7 @@ def refuse(args: argparse.Namespace) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Render and write; 3 if a tolerance or an error was not met in some frame, else 0."""
-    core = scene.load_core()
+    core = load_core()
     for name, pointer in stated().items():
         if getattr(args, name) != args.unstated[name]:
             option = name.replace("_", "-")
@@ -108,7 +111,7 @@ def render(stage, file, frames: Iterable[float], outputs: list[Path]) -> list[di
                 stage.show(file.at(frame))
                 report = stage.solve()
                 picture = stage.render()
-                scene.check_validation(stage.engine)
+                scene_options.check_validation(stage.engine)
                 for path in outputs:
                     write(stage, picture, path, frame, films)
                 report |= {"frame": frame, "cycles": 0, "budget": "", "seconds": time.perf_counter() - start}
@@ -143,9 +146,9 @@ def summarise(stage, reports: list[dict], outputs: list[Path]) -> int:
     else:
         console.print(f"frames: {len(reports)} in {seconds:.1f} s; the worst of them is number {worst['frame']:g}")
     console.print(text.error_text(worst))
-    missed = scene.unmet(worst)
+    missed = scene_options.unmet(worst)
     for sentence in text.solver_texts(worst) + missed:
         console.print(sentence)
     for path in outputs:
         console.print(f"{'film' if film.is_film(path) else 'picture'}: {path}")
-    return 3 if any(scene.unmet(report) for report in reports) else 0
+    return 3 if any(scene_options.unmet(report) for report in reports) else 0

@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from quadgraph.commands.scene import positive_float
-from quadgraph.errors import InputError
+from quadgraph.base.arguments import positive_float
+from quadgraph.base.errors import InputError
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -37,14 +37,14 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Read, carry to the tets, write; 0 on success."""
-    from quadgraph import shapes
+    from quadgraph.file import shapes_file
 
     if len(args.frames) == 1 and args.frames[0].suffix.lower() in (".glb", ".gltf"):
         if args.rest:
             raise InputError("--rest: a glTF file has its own")
-        found = shapes.from_gltf(args.body, args.frames[0], args.frames_per_second, args.animation)
+        found = shapes_file.from_gltf(args.body, args.frames[0], args.frames_per_second, args.animation)
     else:
-        found = shapes.from_frames(args.body, args.rest or args.frames[0], args.frames)
+        found = shapes_file.from_frames(args.body, args.rest or args.frames[0], args.frames)
     size = found.write(args.output)
     print(f"{args.output}: {len(found.display)} shapes of {len(found.levels)} levels, {size / 1e6:.1f} MB")
     return 0

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 from rich.console import Console
 
-from quadgraph import atomic_file
-from quadgraph.commands import report as text
-from quadgraph.commands import scene
-from quadgraph.errors import InputError
+from quadgraph.base import atomic_file, pass_report
+from quadgraph.base.errors import InputError
+from quadgraph.commands import scene_options
+from quadgraph.commands import solve_report as text
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -22,7 +22,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add all arguments, which follow from the engine's options of a scene."""
-    scene.add_scene_arguments(parser)
+    scene_options.add_scene_arguments(parser)
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the report here")
     parser.add_argument(
         "--field",
@@ -37,9 +37,9 @@ def run(args: argparse.Namespace) -> int:
     """Solve and report; 3 if a tolerance or an error was not met, else 0."""
     if args.field and args.field.suffix != ".npz":
         raise InputError(f"{args.field}: --field must end in .npz")
-    engine = scene.make_engine(args)
-    report = scene.solve(engine, args)
-    scene.check_validation(engine)
+    engine = scene_options.make_engine(args)
+    report = scene_options.solve(engine, args)
+    scene_options.check_validation(engine)
     report |= {"passes": engine.passes, "device": engine.device_name, "driver": engine.driver}
     if args.field:
         with atomic_file.replacing(args.field) as stream:
@@ -51,9 +51,9 @@ def run(args: argparse.Namespace) -> int:
         console.print(text.solve_table(report))
         console.print(text.energy_table(report))
         console.print(text.inter_reflection_text(report, args.inter_reflection))
-    console.print(text.pass_table(report["passes"]))
+    console.print(pass_report.pass_table(report["passes"]))
     console.print(text.error_text(report))
-    unmet = scene.unmet(report)
+    unmet = scene_options.unmet(report)
     for sentence in text.solver_texts(report) + unmet:
         console.print(sentence)
     return 3 if unmet else 0

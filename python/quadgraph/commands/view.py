@@ -9,8 +9,10 @@ import subprocess
 import sys
 from pathlib import Path
 
-from quadgraph.commands.scene import UNITS_MM, baked_or_bare, length_mm
-from quadgraph.errors import InputError
+from quadgraph.base.arguments import length_mm
+from quadgraph.base.errors import InputError
+from quadgraph.base.units import UNITS_MM
+from quadgraph.commands.scene_options import baked_or_bare
 
 PROGRAM = "quadgraph-engine"
 
@@ -42,7 +44,7 @@ def find_program() -> str:
 
 def run(args: argparse.Namespace) -> int:
     """Open the window; the program's exit status once it is closed."""
-    from quadgraph import bare
+    from quadgraph.bake import bare
 
     if not bare.is_mesh(args.file):
         return subprocess.run([find_program(), args.file, *args.options], check=False).returncode

@@ -9,10 +9,10 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from quadgraph.errors import InputError
+from quadgraph.base.errors import InputError
 
 if TYPE_CHECKING:
-    from quadgraph.openvdb import Field
+    from quadgraph.file.openvdb import Field
 
 _UNITS_MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0}
 
@@ -36,7 +36,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Read, combine, write; 0 on success."""
-    from quadgraph import openvdb
+    from quadgraph.file import openvdb
 
     suffixes = args.file.suffix.lower(), args.output.suffix.lower()
     if suffixes == (".npz", ".vdb"):
@@ -67,7 +67,7 @@ def _field(text: str) -> Field:
     """Argument type: GRID, GRID*NUMBER, GRID*R/G/B, NUMBER or R/G/B."""
     import numpy as np
 
-    from quadgraph.openvdb import Field
+    from quadgraph.file.openvdb import Field
 
     grid, _, factor = text.rpartition("*")
     if not grid:

@@ -1,0 +1,54 @@
+#include "engine/base/solve_options.h"
+
+#include <string>
+
+#include "engine/base/error.h"
+
+namespace quadgraph {
+void check_options(const SolveOptions& options) {
+  if (!tolerance_range.contains(options.tolerance)) {
+    throw InputError("tolerance: " + std::to_string(options.tolerance) + ", a number between 0 and 1 is wanted");
+  }
+  if (!error_range.contains(options.error)) {
+    throw InputError("error: " + std::to_string(options.error) + ", a number from 0 (no target) to below 1 is wanted");
+  }
+  if (options.active_layers > 0 && !on_grid(options.method)) {
+    throw InputError("active_layers: " + std::to_string(options.active_layers) + " with method " +
+                     std::string(name_of(options.method)) + ", which has no layers: allowed is 0");
+  }
+  if (options.smoothing > 2) {
+    throw InputError("smoothing: " + std::to_string(options.smoothing) +
+                     " steps, allowed are 1 and 2, and 0 for either");
+  }
+  check_options(options.path);
+}
+
+bool on_grid(Method method) {
+  return method == Method::polygrid || method == Method::polygrid_divergence;
+}
+
+bool on_vertices(Method method) {
+  return method == Method::fem || on_grid(method);
+}
+
+bool gathers(Method method, Source source) {
+  return on_vertices(method) && source == Source::buried;
+}
+
+bool symmetric(Method method) {
+  return !on_grid(method);
+}
+
+bool conserves(Method method) {
+  return method == Method::fem || method == Method::quadgraph_fv;
+}
+
+bool published(Method method) {
+  return method == Method::quadgraph_fdm || method == Method::polygrid;
+}
+
+bool bounces_wanted(const SolveOptions& options) {
+  return options.inter_reflection && options.source == Source::buried && conserves(options.method);
+}
+
+}  // namespace quadgraph

@@ -1,0 +1,280 @@
+#include "engine/file/validate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <vector>
+
+#include "engine/file/geometry.h"
+#include "engine/file/section_table.h"
+
+namespace quadgraph {
+namespace {
+
+constexpr std::uint64_t max_nodes = std::uint64_t{1} << 31;
+constexpr double weight_sum_tolerance = 1e-5;
+
+// Where a message points: file and level prefix.
+struct Place {
+  const std::string& file;
+  std::string prefix;
+
+  [[noreturn]] void fail(const std::string& section, const std::string& rule) const {
+    fail_format(file, prefix + section, rule);
+  }
+  [[noreturn]] void fail(const std::string& section, std::size_t row, const std::string& rule) const {
+    fail(section, "row " + std::to_string(row) + ": " + rule);
+  }
+};
+
+void expect_rows(const Place& place, const std::string& section, std::size_t found, std::size_t expected) {
+  if (found != expected) {
+    place.fail(section, std::to_string(found) + " rows, expected " + std::to_string(expected));
+  }
+}
+
+template <typename Vector>
+void check_finite(const Place& place, const std::string& section, std::span<const Vector> values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    for (int c = 0; c < Vector::length(); ++c) {
+      if (!std::isfinite(values[i][c])) place.fail(section, i, "a value is not finite");
+    }
+  }
+}
+
+template <typename Vector>
+void check_indices(const Place& place, const std::string& section, std::span<const Vector> values, std::size_t limit) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    for (int c = 0; c < Vector::length(); ++c) {
+      if (values[i][c] >= limit) {
+        place.fail(section, i, "index " + std::to_string(values[i][c]) + ", allowed is below " + std::to_string(limit));
+      }
+    }
+  }
+}
+
+void check_weights(const Place& place, const std::string& section, std::span<const float> weights,
+                   std::uint32_t width) {
+  for (std::size_t row = 0; row * width < weights.size(); ++row) {
+    double sum = 0;
+    for (std::uint32_t k = 0; k < width; ++k) {
+      const float w = weights[row * width + k];
+      if (!(w >= 0 && std::isfinite(w))) place.fail(section, row, "a weight is negative or not finite");
+      sum += w;
+    }
+    if (std::abs(sum - 1.0) > weight_sum_tolerance) {
+      place.fail(section, row, "weights sum to " + std::to_string(sum) + ", expected 1");
+    }
+  }
+}
+
+void check_transfer(const Place& place, const std::string& name, const Transfer& transfer, std::size_t rows,
+                    std::size_t sources) {
+  expect_rows(place, name + "_index", transfer.index.size() / transfer.width, rows);
+  expect_rows(place, name + "_weight", transfer.weight.size() / transfer.width, rows);
+  for (std::size_t i = 0; i < transfer.index.size(); ++i) {
+    if (transfer.index[i] >= sources) {
+      place.fail(name + "_index", i / transfer.width,
+                 "index " + std::to_string(transfer.index[i]) + ", allowed is below " + std::to_string(sources));
+    }
+  }
+  check_weights(place, name + "_weight", transfer.weight, transfer.width);
+}
+
+void check_shapes(const Place& place, const Level& level) {
+  if (level.tets.size() + level.faces.size() >= max_nodes) place.fail("tets", "too many nodes, allowed are below 2^31");
+  expect_rows(place, "face_tets", level.face_tets.size(), level.faces.size());
+  expect_rows(place, "links", level.links.size(), level.tets.size());
+  expect_rows(place, "nodes", level.nodes.size(), level.tets.size() + level.faces.size());
+}
+
+void check_orientation(const Place& place, const Level& level) {
+  for (std::size_t t = 0; t < level.tets.size(); ++t) {
+    if (!(tet_determinant(level, level.tets[t]) > 0)) place.fail("tets", t, "not positively oriented");
+  }
+}
+
+// The row of a vertex without a tet would be empty, and the fem system singular.
+void check_vertices_used(const Place& place, const Level& level) {
+  std::vector<bool> used(level.vertices.size(), false);
+  for (const glm::uvec4& tet : level.tets) {
+    for (int k = 0; k < 4; ++k) used[tet[k]] = true;
+  }
+  const auto lonely = std::find(used.begin(), used.end(), false);
+  if (lonely != used.end()) {
+    place.fail("vertices", static_cast<std::size_t>(lonely - used.begin()), "no tet uses this vertex");
+  }
+}
+
+void check_face_kinds(const Place& place, const Level& level) {
+  if (level.face_kinds.empty()) return;
+  expect_rows(place, "face_kinds", level.face_kinds.size(), level.faces.size());
+  for (std::size_t f = 0; f < level.face_kinds.size(); ++f) {
+    if (level.face_kinds[f] > face_reflecting) place.fail("face_kinds", f, "allowed are 0 (open) and 1 (reflecting)");
+  }
+}
+
+// Rows begin one after the other, behind their own n_f + 1 beginnings, and end where the section does.
+void check_seen_rows(const Place& place, const Level& level) {
+  const std::size_t faces = level.faces.size();
+  if (level.seen.size() < faces + 1) {
+    place.fail("seen", std::to_string(level.seen.size()) + " values, expected at least " + std::to_string(faces + 1));
+  }
+  if (level.seen[0] != faces + 1) place.fail("seen", 0, "must begin at " + std::to_string(faces + 1));
+  if (level.seen[faces] != level.seen.size()) {
+    place.fail("seen", "the last row ends at " + std::to_string(level.seen[faces]) + ", the section at " +
+                           std::to_string(level.seen.size()));
+  }
+  for (std::size_t f = 0; f < faces; ++f) {
+    if (level.seen[f + 1] < level.seen[f]) place.fail("seen", f, "ends before it begins");
+    if (level.seen[f + 1] - level.seen[f] > level.seen_rays) place.fail("seen", f, "more entries than seen_rays");
+  }
+}
+
+void check_seen(const Place& place, const Level& level) {
+  if (level.seen.empty()) return;
+  if (level.seen_rays == 0) place.fail("seen_rays", "0 found, 1 or more allowed");
+  check_seen_rows(place, level);
+  for (std::size_t f = 0; f < level.faces.size(); ++f) {
+    const auto row = level.seen.subspan(level.seen[f], level.seen[f + 1] - level.seen[f]);
+    if (!std::is_sorted(row.begin(), row.end())) place.fail("seen", f, "faces are not in ascending order");
+    for (const std::uint32_t face : row) {
+      if (face >= level.faces.size()) {
+        place.fail("seen", f,
+                   "face " + std::to_string(face) + ", allowed is below " + std::to_string(level.faces.size()));
+      }
+      if (face == f) place.fail("seen", f, "a face does not see itself");
+    }
+  }
+}
+
+// Vertices of the face opposite to vertex k of a positive tet, counter-clockwise seen from outside.
+glm::uvec3 outward_face(const glm::uvec4& tet, int k) {
+  switch (k) {
+    case 0:
+      return {tet[1], tet[2], tet[3]};
+    case 1:
+      return {tet[0], tet[3], tet[2]};
+    case 2:
+      return {tet[0], tet[1], tet[3]};
+    default:
+      return {tet[0], tet[2], tet[1]};
+  }
+}
+
+bool equal_up_to_rotation(const glm::uvec3& a, const glm::uvec3& b) {
+  return a == b || a == glm::uvec3(b.y, b.z, b.x) || a == glm::uvec3(b.z, b.x, b.y);
+}
+
+void check_outside_link(const Place& place, const Level& level, std::size_t t, int k) {
+  const std::size_t f = level.links[t][k] - level.tets.size();
+  if (level.face_tets[f] != t) place.fail("face_tets", f, "does not name the tet that links it");
+  if (!equal_up_to_rotation(level.faces[f], outward_face(level.tets[t], k))) {
+    place.fail("faces", f, "not the outward face of its tet opposite to the linking vertex");
+  }
+}
+
+// The neighbour across face k must link back, across a face with the same three vertices.
+void check_inner_link(const Place& place, const Level& level, std::size_t t, int k) {
+  const std::uint32_t other = level.links[t][k];
+  const glm::uvec3 face = outward_face(level.tets[t], k);
+  for (int back = 0; back < 4; ++back) {
+    if (level.links[other][back] != t) continue;
+    const glm::uvec3 seen = outward_face(level.tets[other], back);
+    if (equal_up_to_rotation(face, glm::uvec3(seen.x, seen.z, seen.y))) return;
+  }
+  place.fail("links", t, "no link back from tet " + std::to_string(other) + " across the same face");
+}
+
+void check_links(const Place& place, const Level& level) {
+  std::vector<bool> linked(level.faces.size(), false);
+  for (std::size_t t = 0; t < level.tets.size(); ++t) {
+    int outside = 0;
+    for (int k = 0; k < 4; ++k) {
+      if (level.links[t][k] < level.tets.size()) {
+        check_inner_link(place, level, t, k);
+        continue;
+      }
+      check_outside_link(place, level, t, k);
+      linked[level.links[t][k] - level.tets.size()] = true;
+      ++outside;
+    }
+    if (outside > 1) place.fail("links", t, "more than one outside face");
+  }
+  const auto lonely = std::find(linked.begin(), linked.end(), false);
+  if (lonely != linked.end()) {
+    place.fail("faces", static_cast<std::size_t>(lonely - linked.begin()), "no tet links this surface node");
+  }
+}
+
+void check_surface_vertices(const Place& place, const Level& level) {
+  std::vector<bool> used(count_surface_vertices(level), false);
+  for (const glm::uvec3& face : level.faces) used[face.x] = used[face.y] = used[face.z] = true;
+  const auto gap = std::find(used.begin(), used.end(), false);
+  if (gap != used.end()) {
+    place.fail("vertices", static_cast<std::size_t>(gap - used.begin()),
+               "surface vertices must come first, but no outside face uses this one");
+  }
+}
+
+}  // namespace
+
+std::uint32_t count_surface_vertices(const Level& level) {
+  std::uint32_t largest = 0;
+  for (const glm::uvec3& face : level.faces) largest = std::max({largest, face.x, face.y, face.z});
+  return largest + 1;
+}
+
+void validate_level(const Level& level, const Level* coarser, const std::string& file, std::uint32_t index) {
+  const Place place{file, "level" + std::to_string(index) + "/"};
+  check_shapes(place, level);
+  check_finite(place, "vertices", level.vertices);
+  check_finite(place, "nodes", level.nodes);
+  check_indices(place, "tets", level.tets, level.vertices.size());
+  check_indices(place, "faces", level.faces, level.vertices.size());
+  check_indices(place, "links", level.links, level.nodes.size());
+  for (std::size_t f = 0; f < level.face_tets.size(); ++f) {
+    if (level.face_tets[f] >= level.tets.size()) place.fail("face_tets", f, "index out of range");
+  }
+  check_face_kinds(place, level);
+  check_seen(place, level);
+  check_orientation(place, level);
+  check_vertices_used(place, level);
+  check_links(place, level);
+  check_surface_vertices(place, level);
+  if (coarser == nullptr) return;
+  check_transfer(place, "inner", level.inner, level.tets.size(), coarser->tets.size());
+  check_transfer(place, "surface", level.surface, level.faces.size(), coarser->faces.size());
+  check_transfer(place, "barycentric", level.barycentric, level.vertices.size(), coarser->vertices.size());
+}
+
+void validate_seen_once(std::span<const Level> levels, const std::string& file) {
+  bool found = false;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    if (levels[i].seen.empty()) continue;
+    if (found) fail_format(file, "level" + std::to_string(i) + "/seen", "only one level may have it");
+    found = true;
+  }
+}
+
+void validate_display(const DisplayMesh& display, const Level* finest, const std::string& file) {
+  const Place place{file, "display/"};
+  const std::size_t count = display.vertices.size();
+  expect_rows(place, "normals", display.normals.size(), count);
+  if (finest != nullptr) {
+    expect_rows(place, "face", display.face.size(), count);
+    expect_rows(place, "barycentric", display.barycentric.size(), count);
+  }
+  check_finite(place, "vertices", display.vertices);
+  check_finite(place, "normals", display.normals);
+  check_indices(place, "triangles", display.triangles, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (finest != nullptr && display.face[i] >= finest->faces.size()) place.fail("face", i, "index out of range");
+    if (std::abs(glm::length(display.normals[i]) - 1.0f) > 1e-3f) place.fail("normals", i, "not of unit length");
+  }
+  if (finest == nullptr) return;
+  const auto* weights = reinterpret_cast<const float*>(display.barycentric.data());
+  check_weights(place, "barycentric", {weights, 3 * count}, 3);
+}
+
+}  // namespace quadgraph

@@ -1,0 +1,150 @@
+#include "engine/reference/operator.h"
+
+#include <cmath>
+#include <string>
+
+#include "engine/base/error.h"
+#include "engine/file/geometry.h"
+#include "engine/optics/fresnel.h"
+#include "engine/reference/discretisation.h"
+#include "shaders/material/optics.h"
+
+namespace quadgraph {
+namespace {
+
+bool in_range(const gpu::Optical& optical) {
+  for (int c = 0; c < 3; ++c) {
+    if (!(optical.sigma_s_prime[c] >= 0 && std::isfinite(optical.sigma_s_prime[c]))) return false;
+    if (!(optical.sigma_a[c] >= 0 && std::isfinite(optical.sigma_a[c]))) return false;
+  }
+  return true;
+}
+
+void check_problem(const Level& level, const Problem& problem) {
+  check_optical(problem.optical, level.nodes.size());
+  check_eta(problem.eta);
+  if (problem.model == Model::automatic) throw InputError("model 'auto': resolve it before assembling");
+  check_method(level, problem.method);
+}
+
+void check_irradiance(const Level& level, std::span<const glm::vec3> q) {
+  if (q.size() != level.faces.size()) {
+    throw InputError("q: " + std::to_string(q.size()) + " entries, the level has " +
+                     std::to_string(level.faces.size()) + " surface nodes");
+  }
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      if (!(q[i][c] >= 0 && std::isfinite(q[i][c]))) {
+        throw InputError("q[" + std::to_string(i) + "]: " + std::to_string(q[i][c]) + ", allowed is a number >= 0");
+      }
+    }
+  }
+}
+
+std::vector<glm::dvec3> surface_load(const Level& level, const Problem& problem, std::span<const glm::vec3> q) {
+  switch (problem.method) {
+    case Method::quadgraph_fdm:
+      return surface_load_fdm(level, problem, q);
+    case Method::quadgraph_fv:
+      return surface_load_fv(level, q);
+    case Method::fem:
+    case Method::polygrid:
+    case Method::polygrid_divergence:
+      return surface_load_fem(level, q);
+    case Method::shortest_path:
+      break;
+  }
+  throw InputError("method: no system of linear equations");
+}
+
+}  // namespace
+
+void check_optical(std::span<const gpu::Optical> optical, std::size_t count) {
+  if (optical.size() != count) {
+    throw InputError("optical: " + std::to_string(optical.size()) + " entries, the level has " + std::to_string(count) +
+                     " nodes");
+  }
+  for (std::size_t i = 0; i < optical.size(); ++i) {
+    if (!in_range(optical[i])) {
+      throw InputError("optical[" + std::to_string(i) + "]: sigma_s_prime and sigma_a must be finite numbers >= 0");
+    }
+  }
+}
+
+std::vector<Method> methods_of(const Level& level) {
+  std::vector<Method> methods = all_values<Method>();
+  std::erase_if(methods, [&](Method method) {
+    return method == Method::shortest_path || (on_grid(method) && level.grid_links.empty());
+  });
+  return methods;
+}
+
+void check_method(const Level& level, Method method) {
+  if (on_grid(method) && level.grid_links.empty()) {
+    throw InputError("method " + std::string(name_of(method)) +
+                     ": the file has no polygrid; bake it with --mesher polygrid");
+  }
+}
+
+void check_eta(double eta) {
+  if (!(eta >= min_eta && eta <= max_eta)) throw InputError("eta " + std::to_string(eta) + ": allowed is 1 to 3");
+}
+
+glm::dvec3 relaxation_of(const gpu::Optical& optical) {
+  return 5.0 / 9.0 * glm::dvec3(gpu::sigma_t(optical));
+}
+
+std::uint32_t carrier_count(const Level& level, Method method) {
+  return on_vertices(method) ? level.vertex_count() : level.node_count();
+}
+
+Rows assemble(const Level& level, const Problem& problem) {
+  check_problem(level, problem);
+  switch (problem.method) {
+    case Method::quadgraph_fdm:
+      return assemble_fdm(level, problem);
+    case Method::quadgraph_fv:
+      return assemble_fv(level, problem);
+    case Method::fem:
+      return assemble_fem(level, problem);
+    case Method::polygrid:
+    case Method::polygrid_divergence:
+      return assemble_polygrid(level, problem);
+    case Method::shortest_path:
+      break;
+  }
+  throw InputError("method: no system of linear equations");
+}
+
+std::vector<Field> diffuse_load(const Level& level, const Problem& problem, std::span<const glm::vec3> q) {
+  check_problem(level, problem);
+  check_irradiance(level, q);
+  const Boundary boundary = problem.boundary();
+  std::vector<Field> b;
+  for (const glm::dvec3& load : surface_load(level, problem, q)) {
+    b.push_back({boundary.k11 * boundary.source * load, boundary.k12 * boundary.source * load});
+  }
+  return b;
+}
+
+std::vector<Field> buried_load(const Level& level, const Problem& problem, std::span<const glm::dvec3> scattered) {
+  std::vector<Field> b(carrier_count(level, problem.method));
+  for (std::size_t i = 0; i < scattered.size(); ++i) {
+    // The published rows are per volume (operator.h), all others integrals.
+    const bool density = problem.method == Method::quadgraph_fdm && i < level.tets.size();
+    b[i].phi = density ? scattered[i] / tet_volume(level, level.tets[i]) : scattered[i];
+  }
+  return b;
+}
+
+std::vector<Field> apply(const Rows& rows, std::span<const Field> x) {
+  std::vector<Field> y(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    Field sum = rows.diagonal[i] * x[i];
+    for (std::uint32_t k = rows.offset[i]; k < rows.offset[i + 1]; ++k) sum = sum + rows.weight[k] * x[rows.column[k]];
+    y[i] = sum;
+  }
+  return y;
+}
+
+}  // namespace quadgraph

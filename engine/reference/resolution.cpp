@@ -1,0 +1,144 @@
+#include "engine/reference/resolution.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <glm/geometric.hpp>
+
+#include "engine/file/geometry.h"
+#include "engine/optics/boundary.h"
+#include "engine/optics/half_space.h"
+#include "shaders/material/optics.h"
+
+namespace quadgraph {
+namespace {
+
+constexpr std::size_t most_samples = 256;
+
+// Irregular elements do better than layers as deep: .4 to 1.0 of their error on tets in spheres, at mean free paths of
+// .1 to 1 element and albedos of .02 to .99.
+constexpr double irregular = 0.7;
+
+// Depth in decay lengths from which the discrete modes change their sign from vertex to vertex: the element's mass then
+// outweighs its conduction.
+const double oscillating = std::sqrt(6.0);
+
+// In slabs SP3 is within 4% of transport from one mean free path of thickness on, a mean chord of two; at half of that
+// it is off by 5 to 10%, but where next to nothing is absorbed.
+constexpr double thin_chord = 1.5, thin_albedo = 0.97;
+
+double channel(const glm::vec3& v, int c) {
+  return static_cast<double>(v[c]);
+}
+
+struct Local {
+  double albedo, sigma_t;  // 1/mm
+};
+
+Local local_of(const gpu::Optical& optical, int c) {
+  const double scattering = channel(optical.sigma_s_prime, c), sigma_t = scattering + channel(optical.sigma_a, c);
+  return {sigma_t > 0 ? scattering / sigma_t : 0.0, sigma_t};
+}
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.2g", value);
+  return text;
+}
+
+double least_albedo_of(std::span<const gpu::Optical> optical) {
+  double least = 1;
+  for (const gpu::Optical& o : optical) {
+    for (int c = 0; c < 3; ++c) {
+      const Local local = local_of(o, c);
+      if (local.albedo > 0) least = std::min(least, local.albedo);
+    }
+  }
+  return least;
+}
+
+// Of the channel in which the body is thinnest and absorbs, in mean free paths; infinite if there is none.
+double least_thickness(std::span<const gpu::Optical> optical, double chord) {
+  double least = HUGE_VAL;
+  for (int c = 0; c < 3; ++c) {
+    double sigma_t = 0, scattering = 0;
+    for (const gpu::Optical& o : optical) {
+      sigma_t += local_of(o, c).sigma_t / static_cast<double>(optical.size());
+      scattering += channel(o.sigma_s_prime, c) / static_cast<double>(optical.size());
+    }
+    if (scattering > 0 && scattering < thin_albedo * sigma_t) least = std::min(least, sigma_t * chord);
+  }
+  return least;
+}
+
+}  // namespace
+
+std::uint32_t surface_sample_step(const Level& level) {
+  return static_cast<std::uint32_t>(std::max<std::size_t>(1, (level.faces.size() + most_samples - 1) / most_samples));
+}
+
+std::vector<SurfaceSample> surface_samples(const Level& level) {
+  std::vector<SurfaceSample> samples;
+  const std::size_t step = surface_sample_step(level);
+  for (std::size_t f = 0; f < level.faces.size(); f += step) {
+    if (level.reflecting(static_cast<std::uint32_t>(f))) continue;
+    const std::uint32_t tet = level.face_tets[f];
+    const double area = face_area(level, level.faces[f]);
+    samples.push_back({3 * tet_volume(level, level.tets[tet]) / area, area, tet});
+  }
+  return samples;
+}
+
+double mean_chord(const Level& level) {
+  double volume = 0, area = 0;
+  for (const glm::uvec4& tet : level.tets) volume += tet_volume(level, tet);
+  for (std::size_t f = 0; f < level.faces.size(); ++f) {
+    if (!level.reflecting(static_cast<std::uint32_t>(f))) area += face_area(level, level.faces[f]);
+  }
+  return area > 0 ? 4 * volume / area : HUGE_VAL;
+}
+
+Resolution resolution_of(std::span<const SurfaceSample> samples, std::span<const gpu::Optical> optical, double eta,
+                         Model model) {
+  const Boundary boundary = boundary_of(Method::fem, Source::buried, model, eta);
+  double squares = 0, sizes = 0, area = 0;
+  glm::dvec3 decay(0);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    area += samples[i].area;
+    for (int c = 0; c < 3; ++c) {
+      const Local local = local_of(optical[i], c);
+      if (!(local.sigma_t > 0)) continue;
+      const auto found = layered_half_space(local.albedo, boundary, samples[i].depth * local.sigma_t, model);
+      const double off = irregular * (found.reflectance - found.exact);
+      if (std::isfinite(off)) squares += samples[i].area * off * off;
+      sizes += samples[i].area * found.exact * found.exact;
+      decay[c] += samples[i].area * found.decay;
+    }
+  }
+  Resolution result;
+  if (sizes > 0) result.error = std::sqrt(squares / sizes);
+  if (area > 0) result.decay = std::max({decay.x, decay.y, decay.z}) / area;
+  return result;
+}
+
+std::string mesh_warning(const Resolution& resolution) {
+  if (!(resolution.decay > oscillating)) return "";
+  return "elements at the surface are " + number(resolution.decay) +
+         " decay lengths of the light deep: where it does not fall it is not resolved; a file with more vertices would";
+}
+
+std::string model_warning(std::span<const gpu::Optical> optical, double eta, double chord, Source source, Model model) {
+  const double thickness = least_thickness(optical, chord);
+  if (thickness < thin_chord) {
+    return "light crosses the body in " + number(thickness) +
+           " mean free paths on average: no model here is near transport in a body as thin as that";
+  }
+  const double albedo = least_albedo_of(optical);
+  if (model != Model::diffusion || source != Source::buried || albedo >= 1) return "";
+  const double off = diffusion_error(albedo, eta);
+  if (!(off > model_tolerance)) return "";
+  return "diffusion is off by " + number(100 * off) + "% at albedo " + number(albedo) + ", sp3 is not";
+}
+
+}  // namespace quadgraph

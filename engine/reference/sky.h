@@ -1,0 +1,21 @@
+// How much of the sky the faces of every level see, from the one level that knows.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/file/graph.h"
+
+namespace quadgraph {
+
+// Share of the cosine-weighted directions that meet no other part of the body, per outside face of every level. `sky`
+// is that of level `known`; finer levels get it by their surface transfers, coarser ones as the mean over the finer
+// faces that take from theirs, by area and weight, 1 where none does.
+std::vector<std::vector<float>> sky_of_levels(std::span<const Level> levels, std::uint32_t known,
+                                              std::span<const float> sky);
+
+// The same from Level::seen; all 1 without it.
+std::vector<std::vector<float>> sky_of_levels(std::span<const Level> levels);
+
+}  // namespace quadgraph

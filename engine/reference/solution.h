@@ -1,0 +1,98 @@
+// What a solve answers; the GPU solver and the CPU reference share it.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/solve_options.h"
+
+namespace quadgraph {
+
+struct Level;
+
+// Power per channel. What enters, of the scene's light or again after leaving, is scattered out, absorbed, or leaves
+// unscattered, for a conservative method.
+struct Energy {
+  glm::dvec3 entered{0};          // W, integral of the scene's q over the surface
+  glm::dvec3 re_entered{0};       // W, of light that had left another part of the body
+  glm::dvec3 scattered_out{0};    // W, integral of M over the surface
+  glm::dvec3 absorbed{0};         // W, integral of sigma_a times all fluence over the volume
+  glm::dvec3 unscattered_out{0};  // W, of the buried source's rays, where they meet the surface from inside
+
+  // (entered + re_entered - scattered_out - absorbed - unscattered_out) / entered; 0 in a channel without light.
+  glm::dvec3 balance() const;
+};
+
+struct LevelReport {
+  std::uint32_t level = 0;  // 0 is the finest
+  std::uint32_t unknowns = 0;
+  std::uint32_t iterations = 0;
+  double residual = 0;  // sqrt(r^T D^-1 r / b^T D^-1 b), worst channel
+  bool converged = false;
+};
+
+// Relative RMS error of the exitance, weighted by area, channels together.
+struct ErrorEstimate {
+  double whole = 0;  // over the whole surface
+  double unlit = 0;  // over the faces with less than a tenth of the mean q; 0 if there are none
+};
+
+// What Method::shortest_path did.
+struct PathReport {
+  PathOptions options;
+  glm::uvec3 size{0};        // cells of the grid along x, y, z
+  double cell = 0;           // mm, side of a cell
+  std::uint32_t solid = 0;   // cells that are nodes
+  std::uint32_t lit = 0;     // of them, those that light enters
+  std::uint32_t rounds = 0;  // of blocks, until none had anything to gain
+};
+
+struct SolveReport {
+  Method method = Method::fem;
+  SolverKind solver = SolverKind::fmg_pcg;  // the one that was used, never `automatic`
+  std::string replaced;                     // why it is not the one that was asked for; empty if it is
+  Source source = Source::buried;
+  Model model = Model::diffusion;   // the one that was solved, never `automatic`
+  std::vector<LevelReport> levels;  // coarsest first, in the order solved
+  std::uint32_t finest = 0;         // the level that was solved last; what leaves level 0 is carried there
+  double work = 0;                  // products of all levels, in products of level 0
+  Energy energy;                    // on the finest level
+  // Share of the exitance, per channel, that linear elements put below zero and that was taken from the rest instead;
+  // 0 with Source::diffuse, whose exitance stays as it is.
+  glm::dvec3 clipped{0};
+  // What further iterations would change, and no less than the share of the light that is unaccounted for; empty if
+  // that cannot be told yet.
+  std::optional<ErrorEstimate> algebraic;
+  // The algebraic error and that of the mesh: the difference between the exitance of the two finest levels, times the
+  // share of it that is the finer one's own, and no less than what elements as deep as those at the surface leave
+  // (engine/reference/resolution.h). Empty with a single level.
+  std::optional<ErrorEstimate> error;
+  bool inter_reflection = false;  // whether light from part to part was followed
+  std::string missed;             // what was wanted of the error and is not met; empty if all is
+  // What else is to be said against the answer, of elements and of the model (engine/reference/resolution.h); empty if
+  // nothing.
+  std::string mesh_warning, model_warning;
+  std::string deformed;             // tets of level 0 that a deformation has spoilt; empty if none is
+  std::vector<glm::dvec3> bounces;  // W per channel that each bounce brought in
+  std::optional<PathReport> path;   // of Method::shortest_path; it has no levels, no energy balance and no estimates
+  std::uint32_t exchange_age = 0;   // solves that what some face sees has been behind the shape; 0: nothing is
+};
+
+// Surface samples of one level: one per outside face, at its surface node.
+struct SurfaceField {
+  std::vector<glm::vec3> position;     // mm
+  std::vector<glm::vec3> normal;       // unit, outward
+  std::vector<float> area;             // mm^2
+  std::vector<glm::vec3> q;            // W/mm^2
+  std::vector<glm::vec3> phi;          // W/mm^2
+  std::vector<glm::vec3> exitance;     // W/mm^2, of light that was scattered
+  std::vector<glm::vec3> unscattered;  // W/mm^2, of light that was not
+};
+
+// Position, normal and area of the samples of a level.
+SurfaceField surface_of(const Level& level);
+
+}  // namespace quadgraph

@@ -1,0 +1,159 @@
+#include "engine/render/light/image_file.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <png.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <glm/common.hpp>
+
+#include "engine/base/error.h"
+#include "engine/file/file_cache.h"
+
+namespace quadgraph {
+namespace {
+
+constexpr std::int64_t largest_side = 16384;  // texels
+constexpr std::uint32_t largest_kept = 2048;  // the same
+
+std::string extension_of(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  return extension;
+}
+
+void check_values(const std::filesystem::path& path, Image& image) {
+  for (std::size_t i = 0; i < image.texels.size(); ++i) {
+    glm::vec3& texel = image.texels[i];
+    for (int c = 0; c < 3; ++c) {
+      if (std::isfinite(texel[c])) continue;
+      throw InputError(path.string() + ": texel (" + std::to_string(i % image.width) + ", " +
+                       std::to_string(i / image.width) + ") is not a finite number");
+    }
+    texel = glm::max(texel, glm::vec3(0));
+  }
+}
+
+// Reads a channel of `file` into component c of every texel.
+void add_slice(Imf::FrameBuffer& frame, const char* name, Image& image, const Imath::Box2i& window, int c) {
+  constexpr std::size_t step = sizeof(glm::vec3);
+  const std::size_t row = step * image.width;
+  char* base = reinterpret_cast<char*>(image.texels.data()) + static_cast<std::size_t>(c) * sizeof(float);
+  base -= window.min.x * static_cast<std::ptrdiff_t>(step) + window.min.y * static_cast<std::ptrdiff_t>(row);
+  frame.insert(name, Imf::Slice(Imf::FLOAT, base, step, row));
+}
+
+Image read_channels(const std::filesystem::path& path) {
+  Imf::InputFile file(path.c_str());
+  const Imath::Box2i window = file.header().dataWindow();
+  const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
+  const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
+  check_image_size(path, width, height);
+  Image image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
+  image.texels.resize(static_cast<std::size_t>(width * height));
+  const auto has = [&](const char* name) { return file.header().channels().findChannel(name) != nullptr; };
+  const bool grey = !has("R") && has("Y");
+  if (!grey && !(has("R") && has("G") && has("B"))) {
+    throw InputError(path.string() + ": no channels R, G and B, and no Y");
+  }
+  Imf::FrameBuffer frame;
+  for (int c = 0; c < (grey ? 1 : 3); ++c) {
+    constexpr const char* names[] = {"R", "G", "B"};
+    add_slice(frame, grey ? "Y" : names[c], image, window, c);
+  }
+  file.setFrameBuffer(frame);
+  file.readPixels(window.min.y, window.max.y);
+  if (grey) {
+    for (glm::vec3& texel : image.texels) texel = glm::vec3(texel.x);
+  }
+  return image;
+}
+
+// Of a byte of a PNG; the inverse of srgb_encode (tone_map.h).
+float srgb_decode(std::uint8_t value) {
+  const float encoded = static_cast<float>(value) / 255;
+  return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
+}
+
+template <typename Value, typename Decode>
+Image image_of(const png_image& png, const Value* values, const Decode& decode) {
+  Image image{png.width, png.height, {}};
+  for (std::size_t i = 0; i < std::size_t{png.width} * png.height; ++i) {
+    image.texels.emplace_back(decode(values[3 * i]), decode(values[3 * i + 1]), decode(values[3 * i + 2]));
+  }
+  return image;
+}
+
+}  // namespace
+
+void check_image_size(const std::filesystem::path& path, std::int64_t width, std::int64_t height) {
+  if (width >= 1 && height >= 1 && width <= largest_side && height <= largest_side) return;
+  throw InputError(path.string() + ": found " + std::to_string(width) + "x" + std::to_string(height) +
+                   " texels, expected 1 to " + std::to_string(largest_side) + " a side");
+}
+
+Image read_exr(const std::filesystem::path& path) {
+  try {
+    return read_channels(path);
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw InputError(path.string() + ": " + error.what());
+  }
+}
+
+Image read_png(const std::filesystem::path& path) {
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  const auto failed = [&] {
+    const std::string message = png.message;
+    png_image_free(&png);
+    return InputError(path.string() + ": " + message);
+  };
+  if (png_image_begin_read_from_file(&png, path.c_str()) == 0) throw failed();
+  try {
+    check_image_size(path, png.width, png.height);
+  } catch (...) {
+    png_image_free(&png);
+    throw;
+  }
+  // libpng's own way from sRGB is a power of 2.2.
+  const bool linear = (png.format & PNG_FORMAT_FLAG_LINEAR) != 0;
+  png.format = linear ? PNG_FORMAT_LINEAR_RGB : PNG_FORMAT_RGB;
+  std::vector<std::uint8_t> bytes(PNG_IMAGE_SIZE(png));
+  const png_color black{};
+  if (png_image_finish_read(&png, &black, bytes.data(), 0, nullptr) == 0) throw failed();
+  return linear ? image_of(png, reinterpret_cast<const std::uint16_t*>(bytes.data()),
+                           [](std::uint16_t value) { return static_cast<float>(value) / 65535; })
+                : image_of(png, bytes.data(), srgb_decode);
+}
+
+Image read_image(const std::filesystem::path& path) {
+  const std::string extension = extension_of(path);
+  const auto read = extension == ".exr"   ? read_exr
+                    : extension == ".hdr" ? read_hdr
+                    : extension == ".png" ? read_png
+                                          : nullptr;
+  if (read == nullptr) {
+    throw InputError(path.string() + ": expected an image whose name ends in .exr, .hdr or .png");
+  }
+  if (!std::filesystem::is_regular_file(path)) throw InputError(path.string() + ": no such file");
+  Image image = read(path);
+  check_values(path, image);
+  return image;
+}
+
+std::shared_ptr<const ImagePyramid> load_pyramid(const std::filesystem::path& path) {
+  static FileCache<ImagePyramid> known(8);
+  return known.load(path, [](const std::filesystem::path& file) {
+    auto pyramid = std::make_shared<ImagePyramid>(pyramid_of(read_image(file), largest_kept));
+    pyramid->file = file;
+    return pyramid;
+  });
+}
+
+}  // namespace quadgraph

@@ -1,0 +1,29 @@
+// Files of pictures that lights, edits and surfaces are made of.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+
+#include "engine/base/image.h"
+
+namespace quadgraph {
+
+// Reads .exr (channels R, G, B, or Y), Radiance .hdr, or .png (decoded from its gamma; alpha is left out), of at most
+// 16384 texels a side. Values below 0 count as 0. Throws InputError naming the file, what was found and what is
+// allowed.
+Image read_image(const std::filesystem::path& path);
+
+// The same with smaller ones, of at most 2048 texels a side. What was read
+// before if the file is still the same.
+std::shared_ptr<const ImagePyramid> load_pyramid(const std::filesystem::path& path);
+
+// The parts of read_image.
+Image read_exr(const std::filesystem::path& path);
+Image read_hdr(const std::filesystem::path& path);
+Image read_png(const std::filesystem::path& path);
+
+// Throws InputError unless the sides are 1 to 16384 texels.
+void check_image_size(const std::filesystem::path& path, std::int64_t width, std::int64_t height);
+
+}  // namespace quadgraph

@@ -1,0 +1,58 @@
+#include "engine/render/light/irradiance.h"
+
+#include "engine/optics/fresnel.h"
+#include "engine/vk/commands.h"
+#include "spirv/irradiance.comp.h"
+
+namespace quadgraph {
+namespace {
+
+// 16 samples on a face of the finest level, and two more rows per level: faces get twice as long, but a coarse level
+// only starts the finer one and estimates its error.
+constexpr std::uint32_t finest_subdivision = 4;
+constexpr std::uint32_t more_per_level = 2;
+static_assert(finest_subdivision % 2 == 0 && more_per_level % 2 == 0, "a sample lies in one quarter of its face");
+
+}  // namespace
+
+IrradiancePass::IrradiancePass(vk::Context& context)
+    : context_(context), pass_(context, irradiance_comp, sizeof(gpu::IrradiancePush), "irradiance") {}
+
+const vk::ComputePass& IrradiancePass::pass(bool shaped) {
+  if (!shaped) return pass_;
+  if (!shaped_) {
+    shaped_.emplace(context_, irradiance_comp, static_cast<std::uint32_t>(sizeof(gpu::IrradiancePush)),
+                    "irradiance of shaped lights", vk::ComputePass::default_workgroup_size, 1u);
+  }
+  return *shaped_;
+}
+
+PassStats IrradiancePass::run(const LevelBuffers& buffers, std::uint32_t level, const ShadowMaps& shadows, float eta,
+                              VkDeviceAddress hidden) {
+  const std::uint32_t subdivision = finest_subdivision + more_per_level * level;
+  const gpu::IrradiancePush push{.vertices = buffers.vertices.address(),
+                                 .faces = buffers.faces.address(),
+                                 .q = buffers.q.address(),
+                                 .beam_q = buffers.beam_q.address(),
+                                 .sky = buffers.sky.address(),
+                                 .hidden = hidden,
+                                 .lights = shadows.lights().address(),
+                                 .shapes = shadows.shapes().address(),
+                                 .views = shadows.views().address(),
+                                 .face_count = buffers.face_count,
+                                 .light_count = shadows.light_count(),
+                                 .subdivision = subdivision,
+                                 .eta = eta,
+                                 .diffuse_transmittance = static_cast<float>(diffuse_transmittance(eta))};
+  vk::Commands commands(context_, 1);
+  commands.begin_pass("irradiance");
+  commands.dispatch(pass(shadows.shaped()), push, buffers.face_count);
+  commands.end_pass();
+  const auto times = commands.submit_and_wait();
+  // Per face: three indices, three corners, q; per light its quarters, and four texels per sample.
+  const std::uint64_t light_bytes = sizeof(float) * FACE_QUARTERS + 16ull * subdivision * subdivision;
+  return {times[0].name, times[0].time_ms,
+          buffers.face_count * (12 + 36 + 12 + 4 + shadows.light_count() * light_bytes), 1};
+}
+
+}  // namespace quadgraph

@@ -1,0 +1,90 @@
+#include "engine/render/light/light_images.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/base/error.h"
+#include "shaders/light/render_shared.h"
+
+namespace quadgraph {
+namespace {
+
+constexpr std::uint32_t largest_projected = 4096;  // texels a side; beyond, no face or pixel sees them apart
+
+ProjectedImage upload_projected(vk::Context& context, Image&& picture) {
+  const ImagePyramid pyramid = pyramid_of(std::move(picture), largest_projected);
+  return {vk::upload<glm::vec3>(context, pyramid.texels, "light/projected image"), pyramid.columns, pyramid.rows,
+          pyramid.levels};
+}
+
+constexpr std::size_t picture_texels = std::size_t{gpu::ENVIRONMENT_COLUMNS} * gpu::ENVIRONMENT_ROWS;
+// Beyond this degree irradiance has nothing left: docs/lights.md.
+constexpr int irradiance_degree = 8;
+
+void write_picture(vk::Context& context, EnvironmentImage& image, std::uint32_t number,
+                   std::span<const double> degrees) {
+  const auto picture =
+      sphere_picture(image.environment.series, degrees, gpu::ENVIRONMENT_COLUMNS, gpu::ENVIRONMENT_ROWS);
+  std::copy(picture.begin(), picture.end(),
+            image.pictures.begin() + static_cast<std::ptrdiff_t>(number * picture_texels));
+  vk::write_bytes(context, image.texels, std::as_bytes(std::span(image.pictures)));
+}
+
+EnvironmentImage upload_environment(vk::Context& context, Image&& picture) {
+  EnvironmentImage image{
+      environment_of(std::move(picture)), std::vector<glm::vec3>(gpu::ENVIRONMENT_PICTURES * picture_texels), {}};
+  image.texels = {context, image.pictures.size() * sizeof(glm::vec3), vk::Place::read, "light/environment"};
+  write_picture(context, image, gpu::ENVIRONMENT_RAYS, ray_degrees(environment_degree));
+  return image;
+}
+
+}  // namespace
+
+template <typename T, typename Upload>
+void LightImages::load(const Light& light, Images<T>& old, Images<T>& images, const Upload& upload) {
+  if (images.contains(light.file)) return;
+  std::error_code missing;
+  const auto changed = std::filesystem::last_write_time(light.file, missing);
+  const auto found = old.find(light.file);
+  if (!missing && found != old.end() && found->second.changed == changed) {
+    images.insert(old.extract(found));
+    return;
+  }
+  try {
+    images.emplace(light.file, Loaded<T>{changed, upload(context_, read_image(light.file))});
+  } catch (const InputError& error) {
+    throw InputError("light '" + to_string(light) + "', file: " + error.what());
+  }
+}
+
+void LightImages::load(std::span<const Light> lights) {
+  Images<ProjectedImage> projected;
+  Images<EnvironmentImage> environments;
+  for (const Light& light : lights) {
+    const LightImage image = form_of(light.kind).image;
+    if (image == LightImage::projected) load(light, projected_, projected, upload_projected);
+    if (image == LightImage::around) load(light, environments_, environments, upload_environment);
+  }
+  projected_ = std::move(projected);
+  environments_ = std::move(environments);
+}
+
+void LightImages::set_eta(float eta) {
+  for (auto& [file, loaded] : environments_) {
+    if (std::exchange(loaded.image.eta, eta) == eta) continue;
+    write_picture(context_, loaded.image, gpu::ENVIRONMENT_ENTERING, irradiance_degrees(eta, irradiance_degree));
+  }
+}
+
+void LightImages::set_roughness(float roughness, float placed) {
+  const auto write = [&](EnvironmentImage& image, std::uint32_t number, float& known, float wanted) {
+    if (wanted == 0 || std::exchange(known, wanted) == wanted) return;
+    write_picture(context_, image, number, reflection_degrees(wanted, environment_degree));
+  };
+  for (auto& [file, loaded] : environments_) {
+    write(loaded.image, gpu::ENVIRONMENT_REFLECTED, loaded.image.roughness, roughness);
+    write(loaded.image, gpu::ENVIRONMENT_REFLECTED_PLACED, loaded.image.placed_roughness, placed);
+  }
+}
+
+}  // namespace quadgraph

@@ -1,0 +1,66 @@
+// The images that lights are made of, on the device; each file is read once.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+
+#include "engine/render/light/environment.h"
+#include "engine/render/light/image_file.h"
+#include "engine/render/light/lights.h"
+#include "engine/vk/memory.h"
+
+namespace quadgraph {
+
+// Levels as gpu::LightShape says.
+struct ProjectedImage {
+  vk::Buffer texels;
+  std::uint32_t columns = 0, rows = 0, levels = 0;
+};
+
+// Pictures as shaders/light/render_shared.h says (ENVIRONMENT_*).
+struct EnvironmentImage {
+  Environment environment;
+  std::vector<glm::vec3> pictures;
+  vk::Buffer texels;                                   // the same
+  float eta = 0, roughness = 0, placed_roughness = 0;  // what the pictures are for; 0: none yet
+};
+
+class LightImages {
+ public:
+  explicit LightImages(vk::Context& context) : context_(context) {}
+
+  // Reads the files that `lights` name and that have not been read or have changed since, and forgets all others.
+  // Throws InputError naming the light.
+  void load(std::span<const Light> lights);
+
+  // Of a light given to the last `load`.
+  const ProjectedImage& projected(const std::string& file) const { return projected_.at(file).image; }
+  const EnvironmentImage& environment(const std::string& file) const { return environments_.at(file).image; }
+
+  // Brings the pictures of environments up to date that depend on the index of refraction; on the roughness of the
+  // surface, and on that where an image says so, 0 without one.
+  void set_eta(float eta);
+  void set_roughness(float roughness, float placed);
+
+ private:
+  template <typename T>
+  struct Loaded {
+    std::filesystem::file_time_type changed;
+    T image;
+  };
+
+  template <typename T>
+  using Images = std::map<std::string, Loaded<T>>;
+
+  template <typename T, typename Upload>
+  void load(const Light& light, Images<T>& old, Images<T>& images, const Upload& upload);
+
+  vk::Context& context_;
+  Images<ProjectedImage> projected_;
+  Images<EnvironmentImage> environments_;
+};
+
+}  // namespace quadgraph

@@ -1,0 +1,103 @@
+#include "engine/render/picture/ground.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/trigonometric.hpp>
+
+#include "engine/render/display/draw.h"
+#include "shaders/display/ground_shared.h"
+#include "spirv/ground.comp.h"
+#include "spirv/ground_map.comp.h"
+#include "spirv/shadow.vert.h"
+
+namespace quadgraph {
+namespace {
+
+constexpr float margin = 1.4f;  // of the map over the bounding sphere: where the shadow fades
+constexpr float reach = 0.15f;  // radii
+
+constexpr std::uint64_t texels = std::uint64_t{gpu::GROUND_SIZE} * gpu::GROUND_SIZE;
+
+int axis_of(UpAxis up) {
+  return up == UpAxis::z ? 2 : 1;
+}
+
+float lowest(vk::Context& context, const DisplayBuffers& mesh, int axis) {
+  float least = INFINITY;
+  for (const glm::vec3& vertex : vk::download<glm::vec3>(context, mesh.vertices)) least = std::min(least, vertex[axis]);
+  return least;
+}
+
+// Seen from below, first coordinate to the right, second (z, with y up) down the rows: depth 0 on the ground.
+glm::mat4 from_below(const glm::vec3& middle, float half_width, float far, int axis) {
+  const int second = axis == 1 ? 2 : 1;
+  glm::mat4 clip(0);
+  clip[0][0] = 1 / half_width;
+  clip[second][1] = -1 / half_width;  // clip y is up, rows go down
+  clip[axis][2] = 1 / far;
+  clip[3] = {-middle.x / half_width, middle[second] / half_width, -middle[axis] / far, 1};
+  return clip;
+}
+
+}  // namespace
+
+Ground::Ground(vk::Context& context)
+    : context_(context),
+      below_(context,
+             {.vertex = shadow_vert,
+              .fragment = {},
+              .push_size = sizeof(gpu::ShadowPush),
+              .colour_formats = {},
+              .cull = VK_CULL_MODE_NONE},
+             "ground from below"),
+      map_(context, ground_map_comp, sizeof(gpu::GroundMapPush), "ground map"),
+      ground_(context, ground_comp, sizeof(gpu::GroundPush), "ground"),
+      image_(context,
+             {VK_FORMAT_D32_SFLOAT, gpu::GROUND_SIZE, gpu::GROUND_SIZE, 1, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT},
+             "picture/ground"),
+      depth_(context, sizeof(float) * texels, vk::Place::read, "picture/ground depth"),
+      shadow_(context, sizeof(float) * texels, vk::Place::device, "picture/ground shadow") {}
+
+void Ground::make_map(const DisplayBuffers& mesh, const Sphere& bounds, UpAxis up) {
+  const int axis = axis_of(up);
+  middle_ = bounds.centre;
+  middle_[axis] = lowest(context_, mesh, axis);
+  half_width_ = margin * bounds.radius;
+  const float far = 2.02f * bounds.radius, size = gpu::GROUND_SIZE;
+  vk::Commands commands(context_);
+  draw(commands, {{}, &image_}, {0, 0, size, size}, below_,
+       gpu::ShadowPush{from_below(middle_, half_width_, far, axis), mesh.vertices.address()}, mesh.triangles,
+       3 * mesh.triangle_count);
+  commands.copy(image_, depth_);
+  commands.dispatch(
+      map_,
+      gpu::GroundMapPush{
+          .depth = depth_.address(), .shadow = shadow_.address(), .far = far, .reach = reach * bounds.radius},
+      texels);
+  commands.submit_and_wait();
+  made_for_ = up;
+}
+
+PassStats Ground::run(const DisplayBuffers& mesh, const Sphere& bounds, const View& view, const Camera& camera,
+                      const PictureBuffers& picture) {
+  if (made_for_ != view.up) make_map(mesh, bounds, view.up);
+  const float half_height = std::tan(0.5f * glm::radians(view.vertical_fov));
+  const float half_width = half_height * static_cast<float>(picture.width) / static_cast<float>(picture.height);
+  const gpu::GroundPush push{.shadow = shadow_.address(),
+                             .alpha = picture.alpha.address(),
+                             .eye = camera.eye - middle_,
+                             .corner = -camera.backward - half_width * camera.right + half_height * camera.up,
+                             .right = 2 * half_width * camera.right,
+                             .down = -2 * half_height * camera.up,
+                             .half_width = half_width_,
+                             .z_up = view.up == UpAxis::z ? 1u : 0u,
+                             .width = picture.width,
+                             .height = picture.height};
+  vk::Commands commands(context_, 1);
+  commands.begin_pass("ground");
+  commands.dispatch(ground_, push, picture.pixels());
+  commands.end_pass();
+  return {"ground", commands.submit_and_wait()[0].time_ms, 2 * sizeof(float) * picture.pixels(), 1};
+}
+
+}  // namespace quadgraph

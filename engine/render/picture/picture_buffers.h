@@ -1,0 +1,31 @@
+// A picture on the device: what the rasteriser leaves there, and what is read back as a Picture.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "engine/render/picture/picture.h"
+#include "engine/vk/memory.h"
+#include "shaders/light/render_shared.h"
+
+namespace quadgraph {
+
+// The layers of Picture, row after row, the top one first. Buffers may be longer than the picture.
+struct PictureBuffers {
+  std::uint32_t width = 0, height = 0;            // pixels
+  std::array<vk::Buffer, PICTURE_LAYERS> layers;  // vec3 per pixel: scattered, specular, unscattered, transmittance
+  vk::Buffer alpha;                               // float per pixel
+  vk::Buffer around;                              // vec3 per pixel: surroundings, if has_surroundings
+  bool has_surroundings = false;
+  bool false_colour = false;  // as in Picture
+
+  std::uint64_t pixels() const { return std::uint64_t{width} * height; }
+
+  // Takes the size, and memory for it where there is too little.
+  void resize(vk::Context& context, std::uint32_t new_width, std::uint32_t new_height);
+  void make_room_around(vk::Context& context);
+};
+
+Picture read_picture(vk::Context& context, const PictureBuffers& buffers);
+
+}  // namespace quadgraph

@@ -1,0 +1,62 @@
+#include "engine/render/picture/radiance_probe.h"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <string>
+
+#include "engine/base/error.h"
+#include "engine/render/picture/rasteriser.h"
+#include "engine/vk/commands.h"
+#include "spirv/radiance_probe.comp.h"
+
+namespace quadgraph {
+namespace {
+
+void check(const Level& level, std::span<const std::uint32_t> face, std::span<const glm::vec3> direction) {
+  if (face.size() != direction.size() || face.empty()) {
+    throw InputError("radiance: " + std::to_string(face.size()) + " faces and " + std::to_string(direction.size()) +
+                     " directions, as many of both are wanted, at least one");
+  }
+  for (std::size_t i = 0; i < face.size(); ++i) {
+    const std::string where = "radiance " + std::to_string(i);
+    if (face[i] >= level.face_count()) {
+      throw InputError(where + ": face " + std::to_string(face[i]) + ", there are " +
+                       std::to_string(level.face_count()));
+    }
+    const glm::uvec3& ids = level.faces[face[i]];
+    const glm::vec3 p = level.vertices[ids.x];
+    const glm::vec3 normal = glm::cross(level.vertices[ids.y] - p, level.vertices[ids.z] - p);
+    if (!(std::abs(glm::length(direction[i]) - 1) < 1e-3f) || !(glm::dot(direction[i], normal) > 0)) {
+      throw InputError(where + ": the direction must be of length 1 and point out of face " + std::to_string(face[i]));
+    }
+  }
+}
+
+}  // namespace
+
+RadianceProbe::RadianceProbe(vk::Context& context)
+    : context_(context), pass_(context, radiance_probe_comp, sizeof(gpu::RadianceProbePush), "radiance probe") {}
+
+Leaving RadianceProbe::run(const Level& level, const GatherField& field, float eta, std::span<const std::uint32_t> face,
+                           std::span<const glm::vec3> direction) {
+  check(level, face, direction);
+  const vk::Buffer faces = vk::upload(context_, face, "probe/faces");
+  const vk::Buffer directions = vk::upload(context_, direction, "probe/directions");
+  const vk::Buffer radiance(context_, direction.size_bytes(), vk::Place::device, "probe/radiance");
+  const vk::Buffer transmittance(context_, direction.size_bytes(), vk::Place::device, "probe/transmittance");
+  const gpu::RadianceProbePush push{.solid = field.solid_on_device().address(),
+                                    .points = field.points().address(),
+                                    .scale = field.scale().address(),
+                                    .face = faces.address(),
+                                    .direction = directions.address(),
+                                    .radiance = radiance.address(),
+                                    .transmittance = transmittance.address(),
+                                    .count = static_cast<std::uint32_t>(face.size()),
+                                    .radiance_norm = static_cast<float>(radiance_norm(eta))};
+  vk::Commands commands(context_);
+  commands.dispatch(pass_, push, face.size());
+  commands.submit_and_wait();
+  return {vk::download<glm::vec3>(context_, radiance), vk::download<glm::vec3>(context_, transmittance)};
+}
+
+}  // namespace quadgraph

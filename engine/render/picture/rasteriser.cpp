@@ -1,0 +1,332 @@
+#include "engine/render/picture/rasteriser.h"
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <numeric>
+#include <span>
+
+#include "engine/optics/fresnel.h"
+#include "shaders/path/path_light_shared.h"
+#include "spirv/false_colour.frag.h"
+#include "spirv/false_colour.vert.h"
+#include "spirv/gather.comp.h"
+#include "spirv/resolve.comp.h"
+#include "spirv/surface.frag.h"
+#include "spirv/surface.vert.h"
+#include "spirv/surface_gathered.frag.h"
+#include "spirv/surface_path.frag.h"
+#include "spirv/surface_path.vert.h"
+
+namespace quadgraph {
+namespace {
+
+constexpr std::uint32_t tile_pixels = 512;  // per side; 96 MiB of samples
+constexpr VkFormat sample_format = VK_FORMAT_R32G32B32A32_SFLOAT;
+
+gpu::SurfaceScene scene(const RasterInput& input, const Camera& camera) {
+  gpu::SurfaceScene scene{.clip_from_world = camera.clip_from_world,
+                          .eye = camera.eye,
+                          .eta = input.eta,
+                          .roughness = input.roughness,
+                          .radiance_norm = static_cast<float>(radiance_norm(input.eta)),
+                          .light_count = input.shadows.light_count(),
+                          .vertices = input.mesh.vertices.address(),
+                          .normals = input.mesh.normals.address(),
+                          .face = input.mesh.face.address(),
+                          .barycentric = input.mesh.barycentric.address(),
+                          .faces = input.finest.faces.address(),
+                          .exitance = input.vertex_exitance.address(),
+                          .unscattered = input.vertex_unscattered.address(),
+                          .sky = input.finest.sky.address(),
+                          .lights = input.shadows.lights().address(),
+                          .shapes = input.shadows.shapes().address(),
+                          .views = input.shadows.views().address(),
+                          .triangle_face = 0,
+                          .points = 0,
+                          .scale = 0,
+                          .solid = {}};
+  if (input.gather != nullptr) {
+    scene.triangle_face = input.gather->triangle_face.address();
+    scene.points = input.gather->field.points().address();
+    scene.scale = input.gather->field.scale().address();
+    scene.solid = input.gather->field.solid();
+  }
+  return scene;
+}
+
+gpu::SurfacePush surface_push(std::uint64_t scene, const PlacedRoughness* placed) {
+  gpu::SurfacePush push{.scene = scene, .rest = 0, .texels = 0, .image = {}, .box = {}, .roughness = 0};
+  if (placed == nullptr) return push;
+  push.rest = placed->rest.address();
+  push.texels = placed->texels.address();
+  push.image = placed->image;
+  push.box = placed->box;
+  push.roughness = placed->roughness;
+  return push;
+}
+
+gpu::SurfaceScene scene(const PathInput& input, const Camera& camera) {
+  gpu::SurfaceScene scene{};
+  scene.clip_from_world = camera.clip_from_world;
+  scene.eye = camera.eye;
+  scene.eta = input.eta;
+  scene.roughness = input.roughness;
+  scene.radiance_norm = static_cast<float>(radiance_norm(input.eta));
+  scene.light_count = input.shadows.light_count();
+  scene.vertices = input.mesh.vertices.address();
+  scene.normals = input.mesh.normals.address();
+  scene.lights = input.shadows.lights().address();
+  scene.shapes = input.shadows.shapes().address();
+  scene.views = input.shadows.views().address();
+  return scene;
+}
+
+template <typename Input>
+std::uint32_t variant_of(const Input& input) {
+  return (input.shadows.shaped() ? VARIANT_SHAPED : 0u) |
+         (input.placed_roughness != nullptr ? VARIANT_PLACED_ROUGHNESS : 0u);
+}
+
+vk::GraphicsOptions pass_options(vk::Spirv fragment, std::uint32_t variant = 0) {
+  return {.vertex = surface_vert,
+          .fragment = fragment,
+          .push_size = sizeof(gpu::SurfacePush),
+          .colour_formats = std::vector<VkFormat>(SAMPLE_LAYERS, sample_format),
+          .variant = variant};
+}
+
+}  // namespace
+
+struct Rasteriser::Tile {
+  std::uint32_t x, y, width, height;  // pixels inside the picture
+
+  std::uint64_t sample_bytes() const { return 64ull * width * height; }
+};
+
+// For tiles of up to as many pixels.
+struct Rasteriser::Targets {
+  Targets(vk::Context& context, std::uint32_t tile_width, std::uint32_t tile_height)
+      : width(tile_width),
+        height(tile_height),
+        depth(context, image_options(VK_FORMAT_D32_SFLOAT, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT),
+              "picture/depth") {
+    for (int k = 0; k < SAMPLE_LAYERS; ++k) {
+      images.emplace_back(context, image_options(sample_format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT),
+                          "picture/samples");
+      samples.emplace_back(context, 64ull * width * height, vk::Place::read, "picture/samples");
+    }
+  }
+
+  vk::ImageOptions image_options(VkFormat format, VkImageUsageFlags usage) const {
+    return {format, 2 * width, 2 * height, 1, usage};
+  }
+
+  std::uint32_t width, height;  // pixels of 2 x 2 samples
+  std::vector<vk::Image> images;
+  vk::Image depth;
+  std::vector<vk::Buffer> samples;  // the same
+};
+
+double radiance_norm(double eta) {
+  constexpr int steps = 4096;
+  double sum = 0;
+  for (int i = 0; i < steps; ++i) {
+    const double cos_o = (i + 0.5) / steps;
+    sum += fresnel_transmittance(cos_o, eta) * cos_o;
+  }
+  return 2 * std::numbers::pi * sum / steps;
+}
+
+Rasteriser::Rasteriser(vk::Context& context)
+    : context_(context), resolve_(context, resolve_comp, sizeof(gpu::ResolvePush), "resolve") {}
+
+const vk::GraphicsPass& Rasteriser::surface(const RasterInput& input) {
+  const bool gathered = input.gather != nullptr;
+  const std::uint32_t variant = variant_of(input);
+  auto& pass = surfaces_[(gathered ? 1 : 0) + 2 * variant];
+  if (pass) return *pass;
+  const vk::Spirv fragment = gathered ? vk::Spirv(surface_gathered_frag) : vk::Spirv(surface_frag);
+  return pass.emplace(context_, pass_options(fragment, variant), gathered ? "surface gathered" : "surface");
+}
+
+const vk::GraphicsPass& Rasteriser::surface(const PathInput& input) {
+  const std::uint32_t variant = variant_of(input);
+  auto& pass = paths_[variant];
+  if (pass) return *pass;
+  vk::GraphicsOptions options = pass_options(surface_path_frag, variant);
+  options.vertex = surface_path_vert;
+  options.push_size = sizeof(gpu::SurfacePathPush);
+  options.cull = VK_CULL_MODE_NONE;
+  return pass.emplace(context_, options, "surface of cells");
+}
+
+const vk::ComputePass& Rasteriser::resolve(const RasterInput& input) {
+  if (input.gather == nullptr) return resolve_;
+  const std::uint32_t shaped = input.shadows.shaped() ? 1 : 0;
+  auto& pass = gathers_[shaped];
+  if (pass) return *pass;
+  return pass.emplace(context_, gather_comp, static_cast<std::uint32_t>(sizeof(gpu::ResolvePush)), "gather",
+                      vk::ComputePass::default_workgroup_size, shaped);
+}
+
+Rasteriser::~Rasteriser() = default;
+
+void Rasteriser::make_room(std::uint32_t width, std::uint32_t height) {
+  picture_.resize(context_, width, height);
+  std::uint32_t tile_width = std::min(width, tile_pixels), tile_height = std::min(height, tile_pixels);
+  if (targets_ && targets_->width >= tile_width && targets_->height >= tile_height) return;
+  if (targets_) {
+    tile_width = std::max(tile_width, targets_->width);
+    tile_height = std::max(tile_height, targets_->height);
+    targets_.reset();
+  }
+  targets_ = std::make_unique<Targets>(context_, tile_width, tile_height);
+}
+
+Viewport Rasteriser::viewport(const Tile& tile) const {
+  return {-2.0f * static_cast<float>(tile.x), -2.0f * static_cast<float>(tile.y),
+          2.0f * static_cast<float>(picture_.width), 2.0f * static_cast<float>(picture_.height)};
+}
+
+DrawTarget Rasteriser::target(const Tile& tile) const {
+  DrawTarget target{{}, &targets_->depth, 2 * tile.width, 2 * tile.height};
+  for (const vk::Image& image : targets_->images) target.colours.push_back(&image);
+  return target;
+}
+
+gpu::ResolvePush Rasteriser::resolve_push(std::uint64_t scene, const Tile& tile) const {
+  gpu::ResolvePush resolve{.scene = scene,
+                           .samples = {},
+                           .layers = {},
+                           .alpha = picture_.alpha.address(),
+                           .tile_x = tile.x,
+                           .tile_y = tile.y,
+                           .tile_width = tile.width,
+                           .tile_height = tile.height,
+                           .sample_stride = 2 * tile.width,
+                           .picture_width = picture_.width};
+  for (std::size_t k = 0; k < PICTURE_LAYERS; ++k) resolve.layers[k] = picture_.layers[k].address();
+  for (std::size_t k = 0; k < SAMPLE_LAYERS; ++k) resolve.samples[k] = targets_->samples[k].address();
+  return resolve;
+}
+
+void Rasteriser::record_resolve(vk::Commands& commands, const char* name, const vk::ComputePass& pass,
+                                std::uint64_t scene, const Tile& tile) {
+  commands.begin_pass(name);
+  for (std::size_t k = 0; k < SAMPLE_LAYERS; ++k) {
+    commands.copy(targets_->images[k], targets_->samples[k], 2 * tile.width, 2 * tile.height);
+  }
+  commands.dispatch(pass, resolve_push(scene, tile), std::uint64_t{tile.width} * tile.height);
+  commands.end_pass();
+}
+
+void Rasteriser::record(vk::Commands& commands, const RasterInput& input, const Tile& tile) {
+  commands.begin_pass("surface");
+  draw(commands, target(tile), viewport(tile), surface(input), surface_push(scene_.address(), input.placed_roughness),
+       input.mesh.triangles, 3 * input.mesh.triangle_count);
+  commands.end_pass();
+  record_resolve(commands, input.gather != nullptr ? "gather" : "resolve", resolve(input), scene_.address(), tile);
+}
+
+void Rasteriser::record(vk::Commands& commands, const PathInput& input, const Tile& tile) {
+  commands.begin_pass("surface");
+  draw(commands, target(tile), viewport(tile), surface(input),
+       gpu::SurfacePathPush{surface_push(scene_.address(), input.placed_roughness), input.field.address()},
+       input.mesh.triangles, 3 * input.mesh.triangle_count);
+  commands.end_pass();
+  record_resolve(commands, "resolve", resolve_, scene_.address(), tile);
+}
+
+void Rasteriser::record(vk::Commands& commands, const FalseColours& input, const Camera& camera, const Tile& tile) {
+  const gpu::FalseColourPush push{.clip_from_world = camera.clip_from_world,
+                                  .vertices = input.vertices.address(),
+                                  .eye = camera.eye,
+                                  .plane = input.plane,
+                                  .diverging = input.diverging ? 1u : 0u};
+  commands.begin_pass("false colour");
+  draw(commands, target(tile), viewport(tile), *false_colour_, push, input.indices, input.vertex_count);
+  commands.end_pass();
+  record_resolve(commands, "resolve", resolve_, scene_.address(), tile);
+}
+
+// Adds up what the two passes of every tile took.
+template <typename Record>
+std::vector<PassStats> Rasteriser::run_tiles(std::uint32_t width, std::uint32_t height, const Record& record_tile) {
+  make_room(width, height);
+  std::vector<PassStats> passes(2);
+  for (std::uint32_t y = 0; y < height; y += tile_pixels) {
+    for (std::uint32_t x = 0; x < width; x += tile_pixels) {
+      const Tile tile{x, y, std::min(tile_pixels, width - x), std::min(tile_pixels, height - y)};
+      vk::Commands commands(context_, 2);
+      record_tile(commands, tile);
+      const auto times = commands.submit_and_wait();
+      for (std::size_t k = 0; k < passes.size(); ++k) {
+        passes[k].name = times[k].name;
+        passes[k].time_ms += times[k].time_ms;
+        ++passes[k].count;
+      }
+      passes[0].bytes += (2 * SAMPLE_LAYERS + 1) * tile.sample_bytes() / 2;
+      passes[1].bytes += 3 * SAMPLE_LAYERS * tile.sample_bytes();  // copied, then read
+    }
+  }
+  passes[1].bytes += (12 * PICTURE_LAYERS + 4) * picture_.pixels();
+  return passes;
+}
+
+void Rasteriser::write_scene(const gpu::SurfaceScene& scene) {
+  if (scene_.size() == 0) scene_ = {context_, sizeof(gpu::SurfaceScene), vk::Place::read, "picture/scene"};
+  vk::write_bytes(context_, scene_, std::as_bytes(std::span(&scene, 1)));
+}
+
+std::vector<PassStats> Rasteriser::run(const PathInput& input, const Camera& camera, std::uint32_t width,
+                                       std::uint32_t height) {
+  write_scene(scene(input, camera));
+  auto passes =
+      run_tiles(width, height, [&](vk::Commands& commands, const Tile& tile) { record(commands, input, tile); });
+  picture_.false_colour = false;
+  passes[0].bytes += passes[0].count * (64ull * input.mesh.vertex_count + input.mesh.triangles.size());
+  return passes;
+}
+
+std::vector<PassStats> Rasteriser::run(const RasterInput& input, const Camera& camera, std::uint32_t width,
+                                       std::uint32_t height) {
+  write_scene(scene(input, camera));
+  auto passes =
+      run_tiles(width, height, [&](vk::Commands& commands, const Tile& tile) { record(commands, input, tile); });
+  picture_.false_colour = false;
+  picture_.has_surroundings = false;
+  passes[0].bytes += passes[0].count * (64ull * input.mesh.vertex_count + input.mesh.triangles.size());
+  // Of the body, as if every vertex were read once.
+  if (input.gather != nullptr) passes[1].bytes += passes[1].count * input.gather->field.points().size();
+  return passes;
+}
+
+std::vector<PassStats> Rasteriser::run(const FalseColours& input, const Camera& camera, std::uint32_t width,
+                                       std::uint32_t height) {
+  if (!false_colour_) {
+    vk::GraphicsOptions options = pass_options(false_colour_frag);
+    options.vertex = false_colour_vert;
+    options.push_size = sizeof(gpu::FalseColourPush);
+    options.cull = VK_CULL_MODE_NONE;
+    false_colour_.emplace(context_, options, "false colour");
+  }
+  auto passes = run_tiles(width, height,
+                          [&](vk::Commands& commands, const Tile& tile) { record(commands, input, camera, tile); });
+  picture_.false_colour = true;
+  picture_.has_surroundings = false;
+  passes[0].bytes += passes[0].count * input.vertices.size();
+  return passes;
+}
+
+FalseColours upload_false_colours(vk::Context& context, const FalseMesh& mesh, const Plane& plane, bool diverging) {
+  std::vector<std::uint32_t> indices(mesh.size());
+  std::iota(indices.begin(), indices.end(), 0u);
+  return {.vertices = vk::upload<gpu::FalseVertex>(context, mesh, "picture/inside", vk::Place::device),
+          .indices = vk::upload<std::uint32_t>(context, indices, "picture/inside", vk::Place::device),
+          .vertex_count = static_cast<std::uint32_t>(mesh.size()),
+          .plane = plane,
+          .diverging = diverging};
+}
+
+}  // namespace quadgraph

@@ -1,0 +1,62 @@
+#include "engine/render/picture/surroundings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/trigonometric.hpp>
+
+#include "engine/render/light/image_file.h"
+#include "engine/vk/commands.h"
+#include "shaders/display/surroundings_shared.h"
+#include "spirv/surroundings.comp.h"
+
+namespace quadgraph {
+
+Surroundings::Surroundings(vk::Context& context)
+    : context_(context), pass_(context, surroundings_comp, sizeof(gpu::SurroundingsPush), "surroundings") {}
+
+const Surroundings::Seen& Surroundings::seen(const std::string& file) {
+  auto image = load_pyramid(file);
+  Seen& known = seen_[file];
+  if (known.image == image) return known;
+  known.texels = vk::upload<glm::vec3>(context_, image->texels, "picture/surroundings image");
+  known.image = std::move(image);
+  return known;
+}
+
+bool Surroundings::run(std::span<const Light> lights, const View& view, const Camera& camera, PictureBuffers& picture,
+                       PassStats& pass) {
+  const auto around = [](const Light& light) { return form_of(light.kind).image == LightImage::around; };
+  std::erase_if(seen_, [&](const auto& known) {
+    return std::none_of(lights.begin(), lights.end(), [&](const Light& l) { return l.file == known.first; });
+  });
+  if (std::none_of(lights.begin(), lights.end(), around)) return false;
+  picture.make_room_around(context_);
+  const float half_height = std::tan(0.5f * glm::radians(view.vertical_fov));
+  const float half_width = half_height * static_cast<float>(picture.width) / static_cast<float>(picture.height);
+  vk::Commands commands(context_, 1);
+  commands.begin_pass("surroundings");
+  bool first = true;
+  for (const Light& light : lights) {
+    if (!around(light)) continue;
+    const Seen& image = seen(light.file);
+    const glm::mat3 into = glm::transpose(environment_frame(light));
+    const gpu::SurroundingsPush push{
+        .texels = image.texels.address(),
+        .surroundings = picture.around.address(),
+        .image = {0, image.image->columns, image.image->rows, image.image->levels},
+        .corner = into * (-camera.backward - half_width * camera.right + half_height * camera.up),
+        .right = into * (2 * half_width * camera.right),
+        .down = into * (-2 * half_height * camera.up),
+        .power = light.power,
+        .width = picture.width,
+        .height = picture.height,
+        .first = first ? 1u : 0u};
+    commands.dispatch(pass_, push, picture.pixels());
+    first = false;
+  }
+  commands.end_pass();
+  pass = {"surroundings", commands.submit_and_wait()[0].time_ms, sizeof(glm::vec3) * picture.pixels(), 1};
+  return true;
+}
+
+}  // namespace quadgraph

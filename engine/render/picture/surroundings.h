@@ -1,0 +1,38 @@
+// What lies around the body, behind it in a picture.
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+
+#include "engine/base/pass_stats.h"
+#include "engine/render/display/camera.h"
+#include "engine/render/light/light_set.h"
+#include "engine/render/picture/picture_buffers.h"
+#include "engine/vk/pipeline.h"
+
+namespace quadgraph {
+
+class Surroundings {
+ public:
+  explicit Surroundings(vk::Context& context);
+
+  // Writes picture.surroundings, the sum of all environment lights as sharp as their files are; false, and nothing, if
+  // there is none. Throws InputError as read_image.
+  bool run(std::span<const Light> lights, const View& view, const Camera& camera, PictureBuffers& picture,
+           PassStats& pass);
+
+ private:
+  struct Seen {
+    std::shared_ptr<const ImagePyramid> image;
+    vk::Buffer texels;
+  };
+
+  const Seen& seen(const std::string& file);
+
+  vk::Context& context_;
+  vk::ComputePass pass_;
+  std::map<std::string, Seen> seen_;
+};
+
+}  // namespace quadgraph

@@ -1,0 +1,83 @@
+#include "engine/render/picture/tone_mapper.h"
+
+#include <cmath>
+
+#include "engine/vk/commands.h"
+#include "shaders/display/display_shared.h"
+#include "spirv/luminance.comp.h"
+#include "spirv/tone_map.comp.h"
+
+namespace quadgraph {
+namespace {
+
+constexpr std::uint64_t bin_bytes = sizeof(std::uint32_t) * 2 * gpu::LUMINANCE_BINS;
+
+// The middle of the bin that holds the quantile, 0 for the first one.
+double quantile_of(std::span<const std::uint32_t> bins) {
+  std::uint64_t count = 0;
+  for (const std::uint32_t bin : bins) count += bin;
+  const auto rank = static_cast<std::uint64_t>(exposure_quantile * static_cast<double>(count));
+  std::uint64_t below = 0;
+  for (std::size_t i = 0; i < bins.size() && count > 0; ++i) {
+    below += bins[i];
+    if (below <= rank) continue;
+    return i == 0 ? 0 : std::exp2(gpu::LEAST_STOP + (static_cast<double>(i) + 0.5) / gpu::BINS_PER_STOP);
+  }
+  return 0;
+}
+
+float exposure_from(std::span<const std::uint32_t> bins) {
+  return exposure_for({quantile_of(bins.first(gpu::LUMINANCE_BINS)), quantile_of(bins.last(gpu::LUMINANCE_BINS))});
+}
+
+}  // namespace
+
+ToneMapper::ToneMapper(vk::Context& context)
+    : context_(context),
+      luminance_(context, luminance_comp, sizeof(gpu::LuminancePush), "luminance"),
+      tone_map_(context, tone_map_comp, sizeof(gpu::ToneMapPush), "tone map"),
+      bins_(context, bin_bytes, vk::Place::device, "screen/luminance"),
+      bins_on_host_(context, bin_bytes, vk::Place::host, "screen/luminance, read back") {}
+
+float ToneMapper::exposure(const PictureBuffers& picture, const ToneOptions& options) {
+  if (options.exposure_stops) return *options.exposure_stops;
+  if (picture.false_colour) return 0;
+  gpu::LuminancePush push{.layers = {},
+                          .alpha = picture.alpha.address(),
+                          .bins = bins_.address(),
+                          .count = static_cast<std::uint32_t>(picture.pixels())};
+  for (std::size_t k = 0; k < PICTURE_LAYERS; ++k) push.layers[k] = picture.layers[k].address();
+  vk::Commands commands(context_);
+  commands.fill(bins_, 0);
+  commands.dispatch(luminance_, push, picture.pixels());
+  commands.copy(bins_, bins_on_host_, bin_bytes);
+  commands.submit_and_wait();
+  return exposure_from(bins_on_host_.mapped_as<std::uint32_t>());
+}
+
+const vk::Buffer& ToneMapper::run(const PictureBuffers& picture, const ToneOptions& options, float exposure_stops,
+                                  const ScreenPart& part) {
+  const std::uint64_t count = std::uint64_t{part.width} * part.height;
+  if (pixels_.size() < 4 * count) pixels_ = vk::Buffer(context_, 4 * count, vk::Place::device, "screen/pixels");
+  gpu::ToneMapPush push{.layers = {},
+                        .alpha = picture.alpha.address(),
+                        .surroundings = picture.around.address(),
+                        .target = pixels_.address(),
+                        .background_top = options.background_top,
+                        .background_bottom = options.background_bottom,
+                        .exposure = std::exp2(exposure_stops),
+                        .picture_width = picture.width,
+                        .picture_height = picture.height,
+                        .width = part.width,
+                        .height = part.height,
+                        .false_colour = picture.false_colour ? 1u : 0u,
+                        .blue_first = part.blue_first ? 1u : 0u,
+                        .surrounded = picture.has_surroundings ? 1u : 0u};
+  for (std::size_t k = 0; k < PICTURE_LAYERS; ++k) push.layers[k] = picture.layers[k].address();
+  vk::Commands commands(context_);
+  commands.dispatch(tone_map_, push, count);
+  commands.submit_and_wait();
+  return pixels_;
+}
+
+}  // namespace quadgraph

@@ -1,0 +1,186 @@
+"""What a bake for an error measured, in words, and what a solve of its file takes from that."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from dataclasses import dataclass
+from typing import Any
+
+from quadgraph.base.errors import FormatError
+
+BOUNCE_TOLERANCE = 0.25  # share of an error that bounces are solved to, as the engine has it (levels_solver.cpp)
+ENOUGH = 0.95  # share of an error that a measured one may have: the truth that it was measured by has an error, too
+
+# Words for the shares of a record; docs/accuracy.md says how each is measured.
+_PARTS = {"whole": "of the surface", "unlit": "of its unlit part"}
+
+
+# What reading a record can raise that no bake wrote.
+_BROKEN = (KeyError, TypeError, ValueError, AttributeError, ZeroDivisionError)
+MOST_CYCLES = 256
+
+
+def sentences(budget: dict[str, Any], file: str) -> list[str]:
+    """What was chosen, what was left out, and why.
+
+    budget: as quadgraph.bake.budget.plan writes it. Raises FormatError.
+    """
+    try:
+        return [
+            _verdict(budget),
+            _surface(budget),
+            _model(budget),
+            _cycles(budget),
+            _interior(budget),
+            "not in this error: of the model against transport, of light from part to part (docs/accuracy.md)",
+        ]
+    except _BROKEN as error:
+        raise _no_record(file, error) from error
+
+
+def _no_record(file: str, error: Exception) -> FormatError:
+    return FormatError(f"{file}: metadata: 'budget' is not what a bake writes ({error!r})")
+
+
+def percent(value: float) -> str:
+    """Two digits."""
+    return f"{100 * value:.2g}%"
+
+
+def _verdict(budget: dict[str, Any]) -> str:
+    worst: dict[str, float] = {}
+    for parts in budget["errors"].values():
+        for part, error in parts.items():
+            worst[part] = max(error, worst.get(part, 0))
+    found = ", ".join(f"{percent(error)} {_PARTS[part]}" for part, error in worst.items())
+    lights = "the given light" if budget["lights_given"] else f"{len(budget['lights'])} sets of lights"
+    head = f"error {percent(budget['error'])}"
+    if budget["reached"]:
+        return f"{head}: kept, {found}, measured for {budget['material']} in {lights}"
+    vertices = f"all of its {budget['judged_vertices']:,} vertices"
+    return f"{head}: out of this mesh's reach: {vertices} have {found}, measured for {budget['material']} in {lights}"
+
+
+def _surface(budget: dict[str, Any]) -> str:
+    text = f"surface: {budget['surface_vertices']:,} of {budget['mesh_vertices']:,} vertices"
+    if budget["predicted_vertices"] is not None:
+        text += f", {budget['predicted_vertices']:,.0f} were expected to do from coarser and finer levels"
+    text += f"; the picture shows all {budget['mesh_vertices']:,}"
+    if budget["judged_vertices"] < budget["mesh_vertices"]:
+        text += f", of which {budget['judged_vertices']:,} stood for it: finer relief was not judged"
+    finer = [t for t in budget["trials"] if t["surface_vertices"] > budget["surface_vertices"]]
+    same = [t for t in finer if t["model"] == budget["model"]]
+    if same:
+        best = min(same, key=worst)
+        text += (
+            f"; {best['surface_vertices']:,} would have {percent(worst(best))} for "
+            f"{best['cost'] / budget['cost_bytes']:.1f} times the work"
+        )
+    return text
+
+
+def _model(budget: dict[str, Any]) -> str:
+    diffusion = percent(budget["diffusion_error"])
+    if budget["model"] == "sp3":
+        return f"model: sp3; diffusion is {diffusion} off on the finest surface tried"
+    rows = [t for t in budget["trials"] if t["model"] == "sp3" and worst(t) <= budget["error"]]
+    text = f"model: diffusion instead of sp3, {diffusion} off on the finest surface tried"
+    if rows:
+        dearer = min(t["cost"] for t in rows) / budget["cost_bytes"]
+        text += f"; the cheapest sp3 that keeps the error takes {dearer:.1f} times the work"
+    return text
+
+
+def _cycles(budget: dict[str, Any]) -> str:
+    text = f"cycles: {budget['cycles']} on {len(budget['levels'])} levels of {_listed(budget['levels'])} vertices"
+    more = [
+        t
+        for t in budget["trials"]
+        if _of_file(t, budget) and t["model"] == budget["model"] and t["cycles"] > budget["cycles"]
+    ]
+    if more:
+        best = min(more, key=worst)
+        dearer = best["cost"] / budget["cost_bytes"]
+        text += f"; {best['cycles']} would leave {percent(worst(best))} for {dearer:.1f} times the work"
+    return text
+
+
+def _listed(counts: list[int]) -> str:
+    return ", ".join(f"{count:,}" for count in counts)
+
+
+def _interior(budget: dict[str, Any]) -> str:
+    share = budget["deep_share"]
+    if share == 0:
+        return "interior: all of it is within two diffusion lengths of the surface, and stays"
+    return (
+        f"interior: {percent(share)} of the vertices are deeper than two diffusion lengths and would hardly be missed; "
+        "they stay, for a hollow shell is not baked"
+    )
+
+
+def _of_file(trial: dict[str, Any], budget: dict[str, Any]) -> bool:
+    """Whether it was measured on the file that was kept."""
+    return (trial["surface_vertices"], trial["levels"]) == (budget["surface_vertices"], len(budget["levels"]))
+
+
+def worst(trial: dict[str, Any]) -> float:
+    return max(max(parts.values()) for parts in trial["errors"].values())
+
+
+@dataclass(frozen=True)
+class Taken:
+    """What a solve takes from its file's record: options of Engine.solve, None if there is nothing, and a sentence."""
+
+    options: dict[str, Any] | None
+    sentence: str
+
+
+def taken(metadata: str, args: argparse.Namespace) -> Taken | None:
+    """Settings that the bake measured to keep `args.error` in this scene, or why it does not know any.
+
+    metadata: of the file, JSON; args: of scene.add_scene_arguments. None without an error or a record. Raises
+    FormatError where the record is none.
+    """
+    budget = json.loads(metadata).get("budget")
+    if not args.error or budget is None:
+        return None
+    try:
+        return _taken(budget, args)
+    except _BROKEN as error:
+        raise _no_record(str(args.file), error) from error
+
+
+def _taken(budget: dict[str, Any], args: argparse.Namespace) -> Taken:
+    head = f"error {percent(args.error)}: the bake measured"
+    if args.material != budget["material"]:
+        return Taken(None, f"{head} {budget['material']}, not {args.material}: the solve's own estimate decides")
+    if budget["lights_given"] and sorted(args.light or ()) != sorted(budget["lights"]["given"]):
+        return Taken(None, f"{head} under other light: the solve's own estimate decides")
+    if (args.method, args.source, args.solver, args.cycles) != ("fem", "buried", "fmg-pcg", 0):
+        return Taken(None, f"{head} fem with the buried source and fmg-pcg: the solve's own estimate decides")
+    kept = [
+        trial
+        for trial in budget["trials"]
+        if _of_file(trial, budget)
+        and args.model in ("auto", trial["model"])
+        and worst(trial) <= float(trial.get("share", ENOUGH)) * args.error
+    ]
+    if not kept:
+        least = percent(min(worst(trial) for trial in budget["trials"] if _of_file(trial, budget)))
+        return Taken(None, f"{head} no less than {least} on this file: the solve's own estimate decides")
+    best = min(kept, key=lambda trial: float(trial["cost"]))
+    if not 1 <= best["cycles"] <= MOST_CYCLES:
+        raise ValueError(f"cycles {best['cycles']} found, 1 to {MOST_CYCLES} allowed")
+    lights = "in this light" if budget["lights_given"] else f"under {len(budget['lights'])} usual sets of lights"
+    setting = f"{best['model']} and {best['cycles']} cycles"
+    return Taken(
+        {
+            "error": 0.0,
+            "tolerance": BOUNCE_TOLERANCE * args.error,
+            "model": str(best["model"]),
+            "cycles": int(best["cycles"]),
+        },
+        f"error {percent(args.error)}: kept, the bake measured {percent(worst(best))} {lights} with {setting}",
+    )

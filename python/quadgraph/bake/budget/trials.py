@@ -1,0 +1,164 @@
+"""What settings of a solve cost on a baked file, and how far each is from the truth."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from quadgraph.bake.budget.displayed import Subject, Truth
+from quadgraph.bake.budget.record import ENOUGH
+
+MODELS = ("diffusion", "sp3")
+CYCLES = (1, 2, 3, 4, 6)  # on the finest level
+STEPS = (8, 16, 32, 64, 128, 256)  # of conjugate gradients, where there is no coarser level
+_GAIN = 0.97  # of an error: more cycles than those that leave more of it are not tried
+_LOWEST_ORDER, _HIGHEST_ORDER = 0.25, 1.0  # of the error in the number of vertices, where it is not between two trials
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What a budget is for. material, lights: as the engine reads them, lights by a name; given: not the usual ones."""
+
+    material: str
+    lights: Mapping[str, Sequence[str]]
+    given: bool
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One setting on one file. errors: relative RMS by light and part; cost: bytes read and written a frame, mean.
+
+    levels: of the file; deep: whether they go down as far as they can; share: of an error that these may have and
+    count as keeping it, for the truth that they were measured by has an error, too.
+    """
+
+    surface_vertices: int
+    levels: int
+    deep: bool
+    model: str
+    cycles: int
+    cost: float
+    errors: dict[str, dict[str, float]]
+    share: float = ENOUGH
+
+    @property
+    def error(self) -> float:
+        """The largest."""
+        return max(max(parts.values()) for parts in self.errors.values())
+
+    def keeps(self, error: float) -> bool:
+        """With certainty."""
+        return self.error <= self.share * error
+
+    @property
+    def setting(self) -> tuple[bool, str, int]:
+        """What is the same on another file."""
+        return self.deep, self.model, self.cycles
+
+    def as_dict(self) -> dict[str, Any]:
+        """Ready for JSON."""
+        return asdict(self)
+
+
+def measure(
+    path: Path,
+    scene: Scene,
+    truths: Mapping[str, Truth],
+    truth_vertices: int,
+    device: str,
+    models: Iterable[str] = MODELS,
+    deep: bool = False,
+) -> list[Trial]:
+    """Every setting on one file, until more cycles bring nothing.
+
+    truth_vertices: on the surface that the truth was solved on; deep: as in Trial.
+    """
+    subject = Subject(path, scene.material, device)
+    known = known_share(subject, truth_vertices)
+    trials: list[Trial] = []
+    for model in models:
+        least = np.inf
+        assemble(subject, scene, model)
+        for cycles in CYCLES if subject.levels > 1 else STEPS:
+            trials.append(trial(subject, scene, truths, known, model, cycles, deep))
+            if trials[-1].error > _GAIN * least:
+                break
+            least = trials[-1].error
+    return trials
+
+
+def assemble(subject: Subject, scene: Scene, model: str) -> None:
+    """Solve once, so that later solves under new light only do what new light takes."""
+    subject.solve(next(iter(scene.lights.values())), model=model)
+
+
+def known_share(subject: Subject, truth_vertices: int) -> float:
+    """Share of a file's error that a truth with so many vertices on its surface shows.
+
+    Errors of two solutions add by their squares, which fall no slower than the number of vertices rises
+    (docs/accuracy.md).
+    """
+    return float(np.sqrt(1 - min(subject.surface_vertices / truth_vertices, 0.5)))
+
+
+def trial(
+    subject: Subject,
+    scene: Scene,
+    truths: Mapping[str, Truth],
+    known: float,
+    model: str,
+    cycles: int,
+    deep: bool = False,
+) -> Trial:
+    """One setting on one file; known: of `known_share`."""
+    errors, costs = {}, []
+    for name, lights in scene.lights.items():
+        solved = subject.solve(lights, model=model, cycles=cycles)
+        errors[name] = {part: error / known for part, error in truths[name].error(solved.exitance).items()}
+        costs.append(solved.cost)
+    return Trial(subject.surface_vertices, subject.levels, deep, model, cycles, float(np.mean(costs)), errors)
+
+
+@dataclass(frozen=True)
+class Forecast:
+    """A setting at the number of vertices where it is expected to meet an error, and its expected cost."""
+
+    deep: bool
+    model: str
+    cycles: int
+    surface_vertices: float
+    cost: float
+
+
+def forecast(trials: Sequence[Trial], wanted: float) -> Forecast | None:
+    """The cheapest setting that meets an error, by lines through the logarithms; None if none does.
+
+    Beyond the trials of a setting its error falls, with fewer vertices rises, by the order of the nearest two.
+    """
+    found = []
+    for setting in sorted({trial.setting for trial in trials}):
+        of = sorted((t for t in trials if t.setting == setting), key=lambda t: t.surface_vertices)
+        if len(of) > 1 and (meets := _meets(of, wanted)) is not None:
+            found.append(Forecast(*setting, *meets))
+    return min(found, key=lambda f: f.cost, default=None)
+
+
+def _meets(trials: list[Trial], wanted: float) -> tuple[float, float] | None:
+    """Vertices and cost where the error of one setting comes down to `wanted`, not beyond its finest trial."""
+    if trials[-1].error > wanted:
+        return None
+    fine = len(trials) - 1
+    while fine > 1 and trials[fine - 1].error <= wanted:
+        fine -= 1
+    a, b = trials[fine - 1], trials[fine]
+    n, cost, error = (np.log([getattr(t, name) for t in (a, b)]) for name in ("surface_vertices", "cost", "error"))
+    order = -(error[1] - error[0]) / (n[1] - n[0])
+    if not a.error > wanted:
+        order = np.clip(order, _LOWEST_ORDER, _HIGHEST_ORDER)
+    at = n[1] + (error[1] - np.log(wanted)) / order
+    growth = (cost[1] - cost[0]) / (n[1] - n[0])
+    return float(np.exp(at)), float(np.exp(cost[1] + growth * (at - n[1])))

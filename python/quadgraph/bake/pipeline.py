@@ -1,0 +1,314 @@
+"""The whole way from a mesh file to a `.qgraph` file."""
+
+from __future__ import annotations
+
+import contextvars
+import importlib.metadata
+import platform
+import resource
+import sys
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+from quadgraph.base import child_process
+from quadgraph.base.errors import InputError, QuadGraphError
+from quadgraph.base.progress import ProgressCallback
+from quadgraph.base.version import __version__
+from quadgraph.file import qgraph_file, sections
+from quadgraph.mesh import front, lod, mesh_io, repair
+from quadgraph.mesh.surface import MesherInfo, Repair, SourceMesh, Surface
+from quadgraph.tets import exchange, graph, ordering, relax
+from quadgraph.tets.polygrid import build as polygrid
+from quadgraph.tets.tetrahedralise import (
+    DEFAULT_GRADING,
+    DEFAULT_MEMORY_LIMIT_BYTES,
+    DEFAULT_TIME_LIMIT_S,
+    tetrahedralise,
+)
+
+ORDERS = {"blocks": ordering.in_blocks, "random": ordering.at_random}
+WORKERS = 2  # levels filled with tets at the same time
+_PACKAGES = ("numpy", "scipy", "pymeshlab", "trimesh")
+_OPTIONS = ("levels", "surface_vertices", "relax_nodes", "order", "visibility_rays", "cubes", "cells")
+
+
+@dataclass(frozen=True)
+class BakeOptions:
+    """What a bake can be told. Exactly one of `unit` ("mm", "cm", "m") and `height_mm` must be given.
+
+    levels: None for as many as make sense; mesher: "tetgen", "cgal" or "polygrid"; grading: K of the paper's sizing
+    field, for cgal; cubes and cells: of a polygrid (tets/polygrid/build.py), None for the usual; relax_nodes: steps
+    that spread the inner nodes; order: "blocks" or "random"; surface_vertices: about how many the finest simulation
+    surface has, None for all of the input's; visibility_rays: from each face of one level, to find what sees what, 0
+    for none; limits hold for each run of the mesher; front: azimuth in degrees from where the body is shown when nobody
+    says so, None for `quadgraph.mesh.front.azimuth`.
+    """
+
+    unit: str | None = None
+    height_mm: float | None = None
+    levels: int | None = None
+    mesher: str = "tetgen"
+    grading: float | None = None
+    cubes: int | None = None
+    cells: int | None = None
+    relax_nodes: int = relax.DEFAULT_STEPS
+    order: str = "blocks"
+    surface_vertices: int | None = None
+    visibility_rays: int = exchange.DEFAULT_RAYS
+    time_limit_s: float = DEFAULT_TIME_LIMIT_S
+    memory_limit_bytes: int = DEFAULT_MEMORY_LIMIT_BYTES
+    front: float | None = None
+
+
+@dataclass
+class BakeReport:
+    """What a bake did. Times in s; of levels, `seconds` per step; memory in bytes, children apart.
+
+    exchange: what faces see of each other, as `exchange.summary` tells; None if left out. budget: what was measured and
+    chosen for an error that was asked for (`quadgraph.bake.budget.plan`). polygrid: how good it is
+    (`quadgraph.tets.polygrid.grid_report`), None of other meshers.
+    """
+
+    output: str
+    byte_size: int = 0
+    source: dict[str, Any] = field(default_factory=dict)
+    unit_mm: float = 0.0
+    repairs: list[dict[str, Any]] = field(default_factory=list)
+    levels: list[dict[str, Any]] = field(default_factory=list)
+    exchange: dict[str, Any] | None = None
+    budget: dict[str, Any] | None = None
+    polygrid: dict[str, Any] | None = None
+    notes: list[str] = field(default_factory=list)
+    seconds: dict[str, float] = field(default_factory=dict)
+    peak_memory: dict[str, int] = field(default_factory=dict)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Everything, ready for JSON."""
+        return asdict(self)
+
+    @contextmanager
+    def timed(self, stage: str) -> Iterator[None]:
+        """Book the time of the block under `stage`."""
+        start = time.perf_counter()
+        yield
+        self.seconds[stage] = self.seconds.get(stage, 0.0) + time.perf_counter() - start
+
+
+@dataclass(frozen=True)
+class Level:
+    """A level's graph, what made its tets, and what the report tells of it."""
+
+    graph: graph.Graph
+    mesher: MesherInfo
+    report: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A mesh file's surface, mm, fit for the mesher, what was repaired for that, and its front, degrees."""
+
+    source: SourceMesh
+    surface: Surface
+    repairs: list[Repair]
+    front: float
+
+
+def bake(mesh: Path, output: Path, options: BakeOptions, progress: ProgressCallback | None = None) -> BakeReport:
+    """Bake `mesh` into `output` and report.
+
+    The chain of levels ends where a coarser level cannot be made, which a note of the report tells. Raises InputError
+    for unusable input or options, ToolError if the finest level cannot be filled with tets. `output` is written last
+    and at once: whatever interrupts the bake, it is untouched, and no child program is left.
+    """
+    tell = progress or (lambda text: None)
+    check_options(output, options)
+    report, start = BakeReport(str(output)), time.perf_counter()
+    prepared = prepare(mesh, options, report, tell)
+    write(prepared, make_levels(prepared.surface, options, report, tell), options, report)
+    report.seconds["total"] = time.perf_counter() - start
+    return report
+
+
+def prepare(mesh: Path, options: BakeOptions, report: BakeReport, tell: ProgressCallback) -> Prepared:
+    """Read and repair. Raises InputError."""
+    with report.timed("read"):
+        source = mesh_io.read_surface(mesh, unit=options.unit, height_mm=options.height_mm)
+    tell(f"read {source.name}: {source.vertices:,} vertices, {source.triangles:,} triangles")
+    with report.timed("repair"):
+        surface, repairs = repair.repair(source.surface, source.name)
+    for entry in repairs:
+        tell(f"repaired: {entry.what}: {entry.count:,}")
+    with report.timed("front"):
+        seen_from = front.azimuth(surface) if options.front is None else options.front
+    return Prepared(source, surface, repairs, seen_from)
+
+
+def write(
+    prepared: Prepared, levels: list[Level], options: BakeOptions, report: BakeReport, budget: dict | None = None
+) -> None:
+    """Write `levels` below the displayed surface to the report's output, and complete the report.
+
+    budget: what the bake measured for an error that was asked for, kept in the file.
+    """
+    graphs = [level.graph for level in levels]
+    with report.timed("exchange"):
+        seen = exchange.bake(graphs, options.visibility_rays)
+    if seen is not None:
+        report.exchange = exchange.summary(seen, graphs[seen.level].boundary)
+    with report.timed("transfers"):
+        content = sections.whole_file(graphs, prepared.surface, seen)
+    metadata = _metadata(prepared, levels, options) | ({} if budget is None else {"budget": budget})
+    if report.polygrid is not None:
+        metadata["polygrid"] = report.polygrid
+    with report.timed("write"):
+        report.byte_size = qgraph_file.write(Path(report.output), metadata, content)
+    _complete(report, metadata, levels)
+
+
+def check_options(output: Path, options: BakeOptions) -> None:
+    """Refuse at once what would otherwise be found out after the work."""
+    if options.order not in ORDERS:
+        raise InputError(f"order: {options.order!r} found, allowed are {', '.join(ORDERS)}")
+    if options.relax_nodes < 0:
+        raise InputError(f"relax_nodes: {options.relax_nodes} found, 0 or more allowed")
+    exchange.check_rays(options.visibility_rays)
+    front.check(options.front)
+    _check_polygrid_options(options)
+    if not output.parent.is_dir():
+        raise InputError(f"{output}: the folder {output.parent} does not exist")
+    if output.is_dir():
+        raise InputError(f"{output}: is a folder, a file name is needed")
+
+
+def _check_polygrid_options(options: BakeOptions) -> None:
+    if options.mesher == "polygrid":
+        for name in ("surface_vertices", "grading"):
+            if getattr(options, name) is not None:
+                raise InputError(f"{name}: found with mesher 'polygrid', whose cubes and cells say how fine it is")
+        return
+    for name in ("cubes", "cells"):
+        if getattr(options, name) is not None:
+            raise InputError(f"{name}: found with mesher {options.mesher!r}, only 'polygrid' has them")
+
+
+def make_levels(surface: Surface, options: BakeOptions, report: BakeReport, tell: ProgressCallback) -> list[Level]:
+    """Levels of a surface, finest first. Raises InputError or ToolError where there is no finest one."""
+    surface = surface.rounded()
+    if options.mesher == "polygrid":
+        return _polygrid_levels(surface, options, report, tell)
+    with _workers() as submit:
+        with report.timed("simplify"):
+            finest = lod.simplify(surface, options.surface_vertices) if options.surface_vertices else surface
+        # The finest level takes longest: its tets are made while the chain below it is.
+        jobs = [submit(_make_level, finest, options)]
+        with report.timed("simplify"):
+            chain = lod.build_chain(finest, levels=options.levels, progress=tell)
+        report.notes.append(f"the chain ends after level {len(chain) - 1}: {chain.ended}")
+        jobs += [submit(_make_level, coarse, options) for coarse in chain[1:]]
+        with report.timed("tetrahedra and graphs"):
+            return _collect(jobs, report, tell)
+
+
+@contextmanager
+def _workers() -> Iterator[Callable[..., Future]]:
+    """Threads for the block's work; what has not begun at its end never does, and child programs are stopped."""
+    pool = ThreadPoolExecutor(WORKERS)
+    with child_process.stopped_on_exit():
+        try:
+            yield lambda *call: pool.submit(contextvars.copy_context().run, *call)
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _collect(jobs: list[Future[Level]], report: BakeReport, tell: ProgressCallback) -> list[Level]:
+    levels: list[Level] = []
+    for number, job in enumerate(jobs):
+        try:
+            levels.append(job.result())
+        except QuadGraphError as error:
+            if not levels:
+                raise
+            report.notes.append(f"level {number} was left out, and all below it: {error}")
+            break
+        tell(f"level {number}: {len(levels[-1].graph.tets):,} tets")
+    return levels
+
+
+def _polygrid_levels(surface: Surface, options: BakeOptions, report: BakeReport, tell: ProgressCallback) -> list[Level]:
+    with report.timed("polygrid"):
+        made = polygrid.build(surface, options.cubes, options.cells, options.levels, tell)
+    report.polygrid = made.report
+    return [_ordered_level(built, made.mesher, len(built.tets), {}, options) for built in made.graphs]
+
+
+def _make_level(surface: Surface, options: BakeOptions) -> Level:
+    """Tets, graph, even nodes, cache-local order."""
+    clock = [time.perf_counter()]
+    limits = {"time_limit_s": options.time_limit_s, "memory_limit_bytes": options.memory_limit_bytes}
+    mesh = tetrahedralise(surface, mesher=options.mesher, grading=options.grading, **limits)
+    clock.append(time.perf_counter())
+    built = graph.build(mesh)
+    clock.append(time.perf_counter())
+    seconds = {"tetrahedra": clock[1] - clock[0], "graph": clock[2] - clock[1]}
+    return _ordered_level(built, mesh.mesher, len(mesh.tets), seconds, options)
+
+
+def _ordered_level(
+    built: graph.Graph, mesher: MesherInfo, mesher_tets: int, seconds: dict[str, float], options: BakeOptions
+) -> Level:
+    clock = [time.perf_counter()]
+    relaxed = relax.relax(built, options.relax_nodes)
+    clock.append(time.perf_counter())
+    ordered = ORDERS[options.order](relaxed)
+    if ordered.grid_links is not None:
+        ordered = polygrid.by_layers(ordered)
+    clock.append(time.perf_counter())
+    variation = {when: relax.link_length_variation(which) for when, which in (("before", built), ("after", relaxed))}
+    report = {
+        "mesher_tets": mesher_tets,
+        "seconds": seconds | {"relax": clock[1] - clock[0], "order": clock[2] - clock[1]},
+        "link_length_variation": variation,
+        "locality": ordering.inner_locality(ordered),
+    }
+    return Level(ordered, mesher, report)
+
+
+def _metadata(prepared: Prepared, levels: list[Level], options: BakeOptions) -> dict[str, Any]:
+    source, mesher = prepared.source, levels[0].mesher
+    packages = (*_PACKAGES, "embreex") if options.visibility_rays else _PACKAGES
+    grading = None
+    if options.mesher == "cgal":
+        grading = DEFAULT_GRADING if options.grading is None else options.grading
+    return {
+        "generator": f"quadgraph {__version__}",
+        "source": source.metadata(),
+        "unit_mm": source.unit_mm,
+        "mesher": {"name": mesher.name, "version": mesher.version, "options": mesher.options, "grading": grading},
+        "options": {key: getattr(options, key) for key in _OPTIONS},
+        "repairs": [asdict(entry) for entry in prepared.repairs],
+        "front": prepared.front,
+        "levels": [sections.level_metadata(level.graph) for level in levels],
+        "tools": {
+            "python": platform.python_version(),
+            mesher.name: mesher.version,
+            **{package: importlib.metadata.version(package) for package in packages},
+        },
+    }
+
+
+def _complete(report: BakeReport, metadata: dict[str, Any], levels: list[Level]) -> None:
+    # Linux counts ru_maxrss in KiB, macOS in bytes.
+    unit = 1 if sys.platform == "darwin" else 1024
+    report.source = metadata["source"]
+    report.unit_mm = metadata["unit_mm"]
+    report.repairs = metadata["repairs"]
+    report.levels = [entry | level.report for entry, level in zip(metadata["levels"], levels, strict=True)]
+    report.peak_memory = {
+        "self": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit,
+        "largest_child": resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * unit,
+    }

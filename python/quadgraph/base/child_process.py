@@ -1,0 +1,173 @@
+"""Child programs under a time and memory limit: they may abort, hang or grow, and must not outlive us."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+import os
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from contextvars import ContextVar
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from quadgraph.base.errors import ToolError
+
+_PR_SET_PDEATHSIG = 1
+_LAST_WORDS = 600  # characters of a failed program's output that its error repeats
+_WAITING = 4  # times its limit that a program may take by the clock: other programs want the processor too
+_LIBC = ctypes.CDLL(None, use_errno=True)
+
+
+@dataclass(frozen=True)
+class Program:
+    """A program we start, and where to get it when it is missing."""
+
+    name: str
+    source: str
+    environment: str | None = None
+
+    def path(self) -> Path:
+        """Look beside the Python interpreter, then in PATH, then in the environment variable.
+
+        Raises ToolError that says what to install.
+        """
+        beside = Path(sys.executable).parent / self.name
+        if os.access(beside, os.X_OK):
+            return beside
+        found = shutil.which(self.name) or (os.environ.get(self.environment) if self.environment else None)
+        if not found or not os.access(found, os.X_OK):
+            hint = f" (or set {self.environment} to its path)" if self.environment else ""
+            raise ToolError(f"{self.name}: program not found; {self.source}{hint}")
+        return Path(found)
+
+
+@dataclass(frozen=True)
+class Finished:
+    """What a program left: its exit status (negative: signal) and its output, both streams together."""
+
+    status: int
+    output: str
+
+
+@dataclass
+class _Family:
+    """The programs that run in one context, and whether it has ended."""
+
+    members: set[subprocess.Popen] = field(default_factory=set)
+    ended: bool = False
+
+
+_FAMILY: ContextVar[_Family | None] = ContextVar("family", default=None)
+
+
+@contextmanager
+def stopped_on_exit() -> Iterator[None]:
+    """Kill, at the block's end, programs started in it by threads that run in a copy of its context.
+
+    A main thread that is interrupted would otherwise wait for its workers, and they for their programs.
+    """
+    family = _Family()
+    token = _FAMILY.set(family)
+    try:
+        yield
+    finally:
+        _FAMILY.reset(token)
+        family.ended = True
+        for process in tuple(family.members):
+            _kill_group(process)
+
+
+@contextmanager
+def workspace() -> Iterator[Path]:
+    """A temporary directory for a program's files, gone afterwards."""
+    with tempfile.TemporaryDirectory(prefix="quadgraph-") as name:
+        yield Path(name)
+
+
+def _child_setup(parent: int, time_limit_s: float, memory_limit_bytes: int | None) -> Callable[[], None]:
+    processor_s = math.ceil(time_limit_s)
+
+    def setup() -> None:
+        # A killed parent takes its children along; the second line covers a parent that died before the first.
+        _LIBC.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+        if os.getppid() != parent:
+            os._exit(1)
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        resource.setrlimit(resource.RLIMIT_CPU, (processor_s, processor_s + 1))
+        if memory_limit_bytes is not None:
+            resource.setrlimit(resource.RLIMIT_AS, (memory_limit_bytes, memory_limit_bytes))
+
+    return setup
+
+
+def _last_words(output: str) -> str:
+    words = " / ".join(line.strip() for line in output.splitlines() if line.strip())
+    return words[-_LAST_WORDS:] or "no output"
+
+
+def _kill_group(process: subprocess.Popen) -> None:
+    with suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+
+
+def run(
+    program: Program,
+    arguments: list[str],
+    *,
+    directory: Path,
+    time_limit_s: float,
+    memory_limit_bytes: int | None,
+    accept: tuple[int, ...] = (0,),
+) -> Finished:
+    """Run a program in `directory` to its end, unbuffered, in its own process group.
+
+    Raises ToolError when it is missing, ends with a status not in `accept`, or takes more than `time_limit_s` of the
+    processor, in whole seconds, or four times as much by the clock; the message carries its last words. Whatever ends
+    the call, interrupts included, the group is dead afterwards.
+    """
+    # Without stdbuf an aborting TetGen loses its messages.
+    prefix = [stdbuf, "-o0", "-e0"] if (stdbuf := shutil.which("stdbuf")) else []
+    log = directory / "output.log"
+    with log.open("wb") as stream:
+        process = subprocess.Popen(
+            [*prefix, str(program.path()), *arguments],
+            cwd=directory,
+            stdin=subprocess.DEVNULL,
+            stdout=stream,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
+            preexec_fn=_child_setup(os.getpid(), time_limit_s, memory_limit_bytes),
+        )
+        family = _FAMILY.get() or _Family()
+        family.members.add(process)
+        try:
+            # Joined first, asked second: stopped_on_exit does the opposite, so that no program is missed.
+            if family.ended:
+                raise ToolError(f"{program.name}: stopped, the work it belongs to has ended")
+            status = process.wait(timeout=_WAITING * time_limit_s)
+        except subprocess.TimeoutExpired:
+            status = -signal.SIGXCPU
+        finally:
+            _kill_group(process)
+            family.members.discard(process)
+    output = log.read_text(errors="replace")
+    if status == -signal.SIGXCPU:
+        raise ToolError(f"{program.name}: stopped after {time_limit_s:g} s, its time limit: {_last_words(output)}")
+    if status not in accept:
+        raise ToolError(_failure(program, status, output, memory_limit_bytes))
+    return Finished(status, output)
+
+
+def _failure(program: Program, status: int, output: str, memory_limit_bytes: int | None) -> str:
+    how = f"ended by {signal.Signals(-status).name}" if status < 0 else f"failed with exit status {status}"
+    starved = "bad_alloc" in output or "out of memory" in output.lower()
+    limit = f", memory limit {memory_limit_bytes / 2**20:.0f} MiB" if starved and memory_limit_bytes else ""
+    return f"{program.name}: {how}{limit}: {_last_words(output)}"

@@ -1,0 +1,160 @@
+"""What `render`, `solve` and `bench` share: options that describe a scene, and the engine set up from them."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import tempfile
+from collections.abc import Callable, Collection, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from quadgraph.bake.budget import record
+from quadgraph.base.arguments import add_device_arguments, length_mm
+from quadgraph.base.errors import InputError
+from quadgraph.base.units import UNITS_MM
+from quadgraph.core import load_core
+
+if TYPE_CHECKING:
+    from quadgraph.core import Engine, SceneOption
+
+
+# Groups of the engine's scene options: what a solve takes, and a picture besides.
+SOLVE_GROUPS = ("Scene", "Solver", "Method shortest-path")
+PICTURE_GROUPS = ("Camera", "Picture")
+
+
+def options(groups: Collection[str]) -> list[SceneOption]:
+    """The engine's scene options of these groups that command lines have."""
+    return [option for option in load_core().scene_options() if option.on_command_line and option.group in groups]
+
+
+def default_of(name: str) -> Any:
+    """The default of a scene option."""
+    return next(option.default for option in load_core().scene_options() if option.name == name)
+
+
+def destination(option: SceneOption) -> str:
+    """The attribute of parsed arguments that holds an option."""
+    return option.name.replace("-", "_")
+
+
+def keywords(args: argparse.Namespace, groups: Collection[str]) -> dict[str, Any]:
+    """Keyword arguments of Engine.solve or Engine.render that the arguments say."""
+    given = {option.keyword: getattr(args, destination(option)) for option in options(groups) if option.keyword}
+    return {keyword: value for keyword, value in given.items() if value is not None}
+
+
+def add_scene_arguments(
+    parser: argparse.ArgumentParser, file_help: str = "a baked .qgraph", groups: Collection[str] = SOLVE_GROUPS
+) -> None:
+    """Add FILE, the device options and the engine's scene options of these groups."""
+    parser.add_argument("file", metavar="FILE", type=Path, help=file_help)
+    add_device_arguments(parser)
+    for name in groups:
+        group = parser.add_argument_group(name)
+        for option in options((name,)):
+            add_option(group, option)
+    add_size_arguments(parser.add_argument_group("Mesh without bake"))
+
+
+def add_option(group: argparse._ArgumentGroup, option: SceneOption) -> None:
+    """Add one scene option, with the engine's default, allowed values and help."""
+    described = option.full_help.replace("%", "%%")
+    if option.default_text:
+        described += f" (default: {option.default_text})"
+    name = f"--{option.name}"
+    if option.kind == "flag":
+        # Given later, so that argparse does not tell the default in words of its own.
+        flag = group.add_argument(
+            name, action=argparse.BooleanOptionalAction, default=argparse.SUPPRESS, help=described
+        )
+        flag.default = option.default
+    elif option.kind == "texts":
+        group.add_argument(name, action="append", metavar=option.metavar, help=described)
+    elif option.choices:
+        group.add_argument(name, choices=tuple(option.choices), default=option.default, help=described)
+    else:
+        group.add_argument(name, type=value_of(option), default=option.default, metavar=option.metavar, help=described)
+
+
+def value_of(option: SceneOption) -> Callable[[str], Any]:
+    """Argument type: what the engine makes of an option's text."""
+
+    def value(text: str) -> Any:
+        try:
+            return option.parse(text)
+        except InputError as error:
+            raise argparse.ArgumentTypeError(str(error)) from error
+
+    return value
+
+
+def add_size_arguments(group: argparse._ArgumentGroup) -> None:
+    """Add the size of a mesh that is shown without a bake."""
+    size = group.add_mutually_exclusive_group()
+    size.add_argument("--unit", choices=tuple(UNITS_MM), help="of the coordinates, where FILE is a mesh without bake")
+    size.add_argument(
+        "--height",
+        type=length_mm,
+        metavar="L",
+        help="of such a mesh along y, like 100mm or 1.8m (default: 100mm)",
+    )
+
+
+@contextlib.contextmanager
+def baked_or_bare(file: Path, unit: str | None, height_mm: float | None) -> Iterator[Path]:
+    """The file, or if it is a mesh, one without levels made of it, which is there as long as the block runs."""
+    from quadgraph.bake import bare
+
+    if not bare.is_mesh(file):
+        if unit is not None or height_mm is not None:
+            raise InputError(f"{file}: --unit and --height are for meshes; a baked file knows its size")
+        yield file
+        return
+    if unit is None and height_mm is None:
+        height_mm = bare.HEIGHT_MM
+    with tempfile.TemporaryDirectory(prefix="quadgraph-") as folder:
+        path = Path(folder) / f"{file.stem}.qgraph"
+        bare.write(file, path, unit, height_mm)
+        yield path
+
+
+def make_engine(args: argparse.Namespace) -> Engine:
+    """Load `args.file` and set material and lights. Raises FormatError, InputError, VulkanError."""
+    core = load_core()
+    with baked_or_bare(args.file, getattr(args, "unit", None), getattr(args, "height", None)) as path:
+        engine = core.Engine(path, device=args.device, validation=args.validation)
+    engine.set_material(args.material)
+    seen_from = {name: value for name in ("view", "up") if (value := getattr(args, name, None)) is not None}
+    engine.set_lights(args.light or core.default_lights(**seen_from, front=engine.graph.front))
+    return engine
+
+
+def solve(engine: Engine, args: argparse.Namespace) -> dict:
+    """Solve as the options say; the report of `Engine.solve`, and in `budget` what the bake has to say of the error."""
+    taken = record.taken(engine.graph.metadata, args)
+    given = keywords(args, SOLVE_GROUPS)
+    if taken and taken.options:
+        given |= taken.options
+    return engine.solve(**given) | {"cycles": given["cycles"], "budget": taken.sentence if taken else ""}
+
+
+def check_validation(engine: Engine) -> None:
+    """Raise InputError if the validation layer had anything to say."""
+    messages = engine.validation_messages
+    if messages:
+        raise InputError("Vulkan validation: " + " | ".join(messages))
+
+
+def unmet(report: dict) -> list[str]:
+    """One sentence per level that stopped before the tolerance was met, unless so asked, and one for the error."""
+    missed = [report["missed"]] if report["missed"] else []
+    if report["cycles"] > 0:
+        return missed
+    return missed + [
+        f"not converged: level {level['level']} stopped after {level['iterations']} iterations "
+        f"at residual {level['residual']:.2e}"
+        for level in report["levels"]
+        if not level["converged"]
+    ]

@@ -1,0 +1,113 @@
+"""Tables for people: what a solve did, and where the time went."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rich.table import Table
+
+if TYPE_CHECKING:
+    from quadgraph.core import Engine
+
+
+def solve_table(report: dict) -> Table:
+    """Return one row per level: unknowns, iterations, residual, converged."""
+    table = Table(
+        "level",
+        "unknowns",
+        "iterations",
+        "residual",
+        "converged",
+        title=f"{report['method']} / {report['model']} / {report['source']} / {report['solver']}",
+    )
+    for level in report["levels"]:
+        table.add_row(
+            str(level["level"]),
+            f"{level['unknowns']:,}",
+            str(level["iterations"]),
+            f"{level['residual']:.1e}",
+            "yes" if level["converged"] else "no",
+        )
+    return table
+
+
+def energy_table(report: dict) -> Table:
+    """Return the power that entered, entered again with each bounce, left and was absorbed, per channel.
+
+    Last the share of exitance that was clipped.
+    """
+    energy = report["energy"]
+    table = Table("W", "R", "G", "B", title="energy")
+
+    def add(name: str, power: tuple[float, float, float]) -> None:
+        table.add_row(name, *(f"{value:.5g}" for value in power))
+
+    add("entered", energy["entered"])
+    if report["inter_reflection"]:
+        add("entered again", energy["re_entered"])
+    for number, bounce in enumerate(report["bounces"], 1):
+        add(f"  bounce {number}", bounce)
+    for name in ("scattered_out", "absorbed", "unscattered_out"):
+        add(name.replace("_", " "), energy[name])
+    table.add_row("balance", *(f"{100 * value:+.3f}%" for value in energy["balance"]))
+    table.add_row("below zero, clipped", *(f"{100 * value:.3f}%" for value in report["clipped"]))
+    return table
+
+
+def inter_reflection_text(report: dict, wanted: bool) -> str:
+    """Say whether light from part to part was followed, and if not, why."""
+    if report["inter_reflection"]:
+        return f"inter-reflection: {len(report['bounces'])} bounces"
+    if not wanted or report["source"] != "buried" or report["method"] not in ("fem", "quadgraph-fv"):
+        return "inter-reflection: left out"
+    return "inter-reflection: left out, the file does not say what the faces see (bake it again)"
+
+
+def error_text(report: dict) -> str:
+    """Estimated error of the exitance in words."""
+    if report.get("path"):
+        return "error: not estimated"
+    algebraic = f"algebraic {two_parts(report['algebraic'])}"
+    if report["error"] is None:
+        return f"error: of the mesh not estimated (a single level); {algebraic} (estimate)"
+    return f"error: {two_parts(report['error'])}; of that {algebraic} (estimate)"
+
+
+def two_parts(error: dict | None) -> str:
+    """Return the error over the whole surface and over its unlit part in words."""
+    if error is None:
+        return "unknown"
+    of_unlit = f"{100 * error['unlit']:.2g}% unlit" if error["unlit"] > 0 else "nothing unlit"
+    return f"{100 * error['whole']:.2g}% whole, {of_unlit}"
+
+
+def path_text(path: dict) -> str:
+    """What the shortest-path method did in words."""
+    size = " x ".join(map(str, path["size"]))
+    return (
+        f"paths: {path['solver']}, cost {path['cost']}, through {path['solid']:,} voxels of {path['cell']:.3g} mm "
+        f"({size}), {path['lit']:,} of them lit, {path['rounds']} rounds"
+    )
+
+
+def solver_texts(report: dict) -> list[str]:
+    """Say what the bake knows of the error, which solver took another one's place, what warns of the answer, and where
+    it stopped if not on the finest level.
+    """
+    texts = [report["budget"]] if report["budget"] else []
+    texts += [path_text(report["path"])] if report.get("path") else []
+    if report["replaced"]:
+        texts.append(f"solver: {report['replaced']}")
+    texts += [f"warning: {report[name]}" for name in ("mesh_warning", "model_warning", "deformed") if report.get(name)]
+    if report["finest"] > 0:
+        texts.append(f"level: {report['finest']} suffices; its solution is carried to the finest")
+    return texts
+
+
+def size_text(engine: Engine) -> str:
+    """Nodes, levels and device memory in words."""
+    levels = engine.graph.levels
+    memory = f"memory: {engine.peak_device_bytes / 1e6:.0f} MB on {engine.device_name}"
+    if not levels:
+        return f"surface: {len(engine.graph.display['triangles']):,} triangles, no levels, {memory}"
+    return f"nodes: {len(levels[0].nodes):,} (finest of {len(levels)} levels), tets: {len(levels[0].tets):,}, {memory}"

@@ -1,0 +1,1 @@
+"""Files that the engine reads and writes beside: .qgraph, .qshapes, volumes, films."""

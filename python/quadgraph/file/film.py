@@ -1,0 +1,68 @@
+"""Films of rendered frames, encoded by PyAV (H.264 in .mp4, VP9 in .webm)."""
+
+from __future__ import annotations
+
+import importlib.util
+from contextlib import suppress
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+
+from quadgraph.base.errors import InputError
+
+_CODECS = {".mp4": "libx264", ".webm": "libvpx-vp9"}
+SUFFIXES = tuple(_CODECS)
+
+
+def is_film(path: Path) -> bool:
+    """Whether a file is to be a film, by its name."""
+    return path.suffix.lower() in _CODECS
+
+
+def check() -> None:
+    """Raise InputError if films cannot be encoded here."""
+    if importlib.util.find_spec("av") is None:
+        raise InputError("films need PyAV: pip install 'quadgraph[film]', or render into frames/%04d.png")
+
+
+class Film:
+    """A film under a temporary name beside `path`, which it becomes when it is finished."""
+
+    def __init__(self, path: Path, size: tuple[int, int], frames_per_second: float) -> None:
+        """size: width and height, pixels, both even. Raises InputError if there is no room or right to write."""
+        import av
+
+        if size[0] % 2 or size[1] % 2:
+            raise InputError(f"{path}: a film wants an even width and height, found {size[0]}x{size[1]}")
+        self.path = path
+        self._temporary = path.with_name(f".{path.stem}.part{path.suffix.lower()}")
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            self._container = av.open(self._temporary, "w")
+        except OSError as error:
+            raise InputError(f"{path}: cannot be written ({error.strerror})") from error
+        rate = Fraction(frames_per_second).limit_denominator(1001)
+        self._stream = self._container.add_stream(_CODECS[path.suffix.lower()], rate=rate, options={"crf": "18"})
+        self._stream.width, self._stream.height = size
+        self._stream.pix_fmt = "yuv420p"
+
+    def add(self, srgb: np.ndarray) -> None:
+        """Add a frame, (height, width, 3) uint8."""
+        import av
+
+        for packet in self._stream.encode(av.VideoFrame.from_ndarray(srgb, format="rgb24")):
+            self._container.mux(packet)
+
+    def finish(self) -> None:
+        """End the film and give it its name."""
+        for packet in self._stream.encode():
+            self._container.mux(packet)
+        self._container.close()
+        self._temporary.replace(self.path)
+
+    def discard(self) -> None:
+        """Remove what is left of a film that was not finished."""
+        self._container.close()
+        with suppress(FileNotFoundError):
+            self._temporary.unlink()

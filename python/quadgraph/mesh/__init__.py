@@ -1,0 +1,1 @@
+"""Triangle surfaces: read, repaired, simplified, and mapped to what is displayed."""

@@ -1,0 +1,106 @@
+"""The display mesh: normals, and where each of its vertices lies on the simulation surface."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from quadgraph.mesh.surface import Surface
+
+_NEAR_FACES = 12  # nearest face centroids tried per point
+_NEAR_VERTICES = 3  # nearest vertices, all of whose faces are tried
+
+
+def vertex_normals(surface: Surface) -> np.ndarray:
+    """(n, 3) unit normals, the mean of the adjacent faces weighted by area; +z where they cancel or there are none."""
+    normals = np.zeros_like(surface.vertices)
+    for corner in range(3):
+        np.add.at(normals, surface.triangles[:, corner], surface.doubled_normals)
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    return np.where(length > 0, normals / np.where(length > 0, length, 1), [0.0, 0.0, 1.0])
+
+
+def nearest_faces(points: np.ndarray, surface: Surface) -> tuple[np.ndarray, np.ndarray]:
+    """Nearest face of each of (n, 3) `points`, mm: face index (n,) int64 and barycentric coordinates (n, 3).
+
+    Points that are vertices of `surface` are matched exactly; for the others the closest point of the faces around
+    the nearest vertices and the nearest face centroids is taken.
+    """
+    face, coordinates = np.zeros(len(points), np.int64), np.zeros((len(points), 3))
+    distance, vertex = cKDTree(surface.vertices).query(points)
+    same = distance == 0
+    incident_face, corner = _a_face_of_each_vertex(surface)
+    face[same] = incident_face[vertex[same]]
+    coordinates[same, corner[vertex[same]]] = 1
+    if not same.all():
+        face[~same], coordinates[~same] = _search(points[~same], surface)
+    return face, coordinates
+
+
+def _a_face_of_each_vertex(surface: Surface) -> tuple[np.ndarray, np.ndarray]:
+    flat = surface.triangles.ravel()
+    where = np.zeros(len(surface.vertices), np.int64)
+    where[flat[::-1]] = np.arange(len(flat))[::-1]
+    return where // 3, where % 3
+
+
+def _search(points: np.ndarray, surface: Surface) -> tuple[np.ndarray, np.ndarray]:
+    best = np.full(len(points), np.inf)
+    face, coordinates = np.zeros(len(points), np.int64), np.zeros((len(points), 3))
+    for candidates in _candidates(points, surface):
+        found = closest_point_coordinates(points, surface.corners[candidates])
+        reached = np.einsum("ij,ijk->ik", found, surface.corners[candidates])
+        distance = ((points - reached) ** 2).sum(axis=1)
+        better = distance < best
+        best[better], face[better], coordinates[better] = distance[better], candidates[better], found[better]
+    return face, coordinates
+
+
+def _candidates(points: np.ndarray, surface: Surface) -> list[np.ndarray]:
+    """One face index per point in each array of the list."""
+    count = min(_NEAR_FACES, len(surface.triangles))
+    faces = cKDTree(surface.corners.mean(axis=1)).query(points, k=count)[1].reshape(-1, count)
+    used = np.unique(surface.triangles)
+    near = min(_NEAR_VERTICES, len(used))
+    vertices = used[cKDTree(surface.vertices[used]).query(points, k=near)[1].reshape(-1, near)]
+    flat = surface.triangles.ravel()
+    order = np.argsort(flat, kind="stable")
+    degree = np.bincount(flat, minlength=len(surface.vertices))
+    start = np.concatenate([[0], np.cumsum(degree)])
+    around = [
+        order[start[vertices[:, k]] + turn % degree[vertices[:, k]]] // 3
+        for k in range(near)
+        for turn in range(int(degree[vertices[:, k]].max()))
+    ]
+    return [*faces.T, *around]
+
+
+def closest_point_coordinates(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """Barycentric coordinates (n, 3) of the point of each triangle (n, 3, 3) closest to each of (n, 3) `points`."""
+    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+    inside = _plane_coordinates(points - a, b - a, c - a)
+    best = np.where((inside >= 0).all(axis=1), _squared_distance(points, corners, inside), np.inf)
+    coordinates = inside.copy()
+    for start in range(3):
+        end = (start + 1) % 3
+        edge = corners[:, end] - corners[:, start]
+        length = np.maximum((edge**2).sum(axis=1), np.finfo(float).tiny)
+        along = np.clip(((points - corners[:, start]) * edge).sum(axis=1) / length, 0, 1)
+        on_edge = np.zeros_like(inside)
+        on_edge[:, start], on_edge[:, end] = 1 - along, along
+        distance = _squared_distance(points, corners, on_edge)
+        better = distance < best
+        best[better], coordinates[better] = distance[better], on_edge[better]
+    return coordinates
+
+
+def _plane_coordinates(offset: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    normal = np.cross(u, v)
+    area = np.maximum((normal**2).sum(axis=1), np.finfo(float).tiny)
+    second = (np.cross(offset, v) * normal).sum(axis=1) / area
+    third = (np.cross(u, offset) * normal).sum(axis=1) / area
+    return np.stack([1 - second - third, second, third], axis=1)
+
+
+def _squared_distance(points: np.ndarray, corners: np.ndarray, coordinates: np.ndarray) -> np.ndarray:
+    return ((points - np.einsum("ij,ijk->ik", coordinates, corners)) ** 2).sum(axis=1)

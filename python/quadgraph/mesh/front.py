@@ -1,0 +1,81 @@
+"""From which side a body is shown when nobody says so.
+
+Files do not tell which side of a body is its front; +z by convention. Bodies that show little from there are shown from
+where most of their relief is seen: how much the normals of what is visible turn from pixel to pixel. (Measures of what
+is seen from a viewpoint, of which this is one: Polonsky, Patane, Biasotti, Gotsman, Spagnuolo, "What's in an image?
+Towards the computation of the best view of an object", 2005.)
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from quadgraph.base.errors import InputError
+from quadgraph.mesh import display_map
+from quadgraph.mesh.surface import Surface
+
+AZIMUTHS = tuple(range(0, 360, 45))  # degrees about y; 0 is seen from +z
+ELEVATION = 10.0  # degrees, of pictures that nobody chose a view for
+PLAINLY_MORE = 1.12  # relief that another view must show of the front's to be taken
+PIXELS = 96
+POINTS = 200_000  # samples of the surface: some ten for each pixel it covers
+
+
+def azimuth(surface: Surface) -> float:
+    """Degrees about y from which to look: 0, unless another of AZIMUTHS shows plainly more relief."""
+    seen = reliefs(surface)
+    best = int(np.argmax(seen))
+    return float(AZIMUTHS[best]) if seen[best] > PLAINLY_MORE * seen[0] else 0.0
+
+
+def check(degrees: float | None) -> None:
+    """Raise InputError unless it is an azimuth, or None."""
+    if degrees is not None and not -180 <= degrees <= 360:
+        raise InputError(f"front: {degrees} found, allowed are -180 to 360 degrees")
+
+
+def reliefs(surface: Surface) -> np.ndarray:
+    """Sum of the differences between the normals of neighbouring pixels, by azimuth: (8,)."""
+    points, normals = _samples(surface)
+    if not len(points):
+        return np.zeros(len(AZIMUTHS))
+    points = points - 0.5 * (surface.vertices.min(axis=0) + surface.vertices.max(axis=0))
+    points /= np.linalg.norm(points, axis=1).max()
+    return np.array([_relief(points @ axes.T, normals @ axes.T) for axes in map(_axes, AZIMUTHS)])
+
+
+def _samples(surface: Surface) -> tuple[np.ndarray, np.ndarray]:
+    """Points spread evenly over the surface, and its smooth normals there."""
+    area = np.linalg.norm(surface.doubled_normals, axis=1)
+    if not area.sum() > 0:
+        return np.zeros((0, 3)), np.zeros((0, 3))
+    random = np.random.default_rng(1)
+    end = np.cumsum(area)
+    chosen = np.searchsorted(end, (np.arange(POINTS) + random.random(POINTS)) / POINTS * end[-1], side="right")
+    corners = surface.triangles[np.minimum(chosen, len(area) - 1)]
+    u, v = np.sqrt(random.random(POINTS)), random.random(POINTS)
+    weights = np.stack((1 - u, u * (1 - v), u * v), axis=1)[:, :, None]
+    normals = (display_map.vertex_normals(surface)[corners] * weights).sum(axis=1)
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    return (surface.vertices[corners] * weights).sum(axis=1), normals / np.where(length > 0, length, 1)
+
+
+def _axes(degrees: float) -> np.ndarray:
+    """Rows to the right, up and towards the eye."""
+    a, e = math.radians(degrees), math.radians(ELEVATION)
+    right = (math.cos(a), 0, -math.sin(a))
+    up = (-math.sin(a) * math.sin(e), math.cos(e), -math.cos(a) * math.sin(e))
+    backward = (math.sin(a) * math.cos(e), math.sin(e), math.cos(a) * math.cos(e))
+    return np.array((right, up, backward))
+
+
+def _relief(points: np.ndarray, normals: np.ndarray) -> float:
+    """Points within the unit sphere and their normals, as seen along the last axis without perspective."""
+    pixel = np.clip(((points[:, :2] + 1) * (PIXELS / 2)).astype(int), 0, PIXELS - 1) @ (1, PIXELS)
+    order = np.argsort(points[:, 2])
+    shown = np.full(PIXELS * PIXELS, -1)
+    shown[pixel[order]] = order  # the last is the nearest
+    image = np.where((shown >= 0)[:, None], normals[shown], np.nan).reshape(PIXELS, PIXELS, 3)
+    return float(sum(np.nansum(np.linalg.norm(np.diff(image, axis=axis), axis=2)) for axis in (0, 1)))

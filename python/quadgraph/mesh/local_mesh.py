@@ -1,0 +1,155 @@
+"""A closed triangle mesh under local change: flip an edge, collapse an edge, move a vertex, never breaking it.
+
+Plain Python numbers: the stars that change hold a handful of triangles, too few for NumPy to pay.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from quadgraph.mesh.surface import Surface
+
+Point = tuple[float, float, float]
+Face = tuple[int, int, int]
+
+
+def subtract(p: Point, q: Point) -> Point:
+    """p - q."""
+    return (p[0] - q[0], p[1] - q[1], p[2] - q[2])
+
+
+def dot(p: Point, q: Point) -> float:
+    """p . q."""
+    return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
+
+
+def cross(p: Point, q: Point) -> Point:
+    """p x q."""
+    return (p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0])
+
+
+def along(p: Point, q: Point, share: float) -> Point:
+    """The point `share` of the way from p to q."""
+    return (p[0] + share * (q[0] - p[0]), p[1] + share * (q[1] - p[1]), p[2] + share * (q[2] - p[2]))
+
+
+def unit(p: Point) -> Point:
+    """p at length 1, or zero."""
+    length = math.sqrt(dot(p, p))
+    return (p[0] / length, p[1] / length, p[2] / length) if length > 0 else (0.0, 0.0, 0.0)
+
+
+def normal(p: Point, q: Point, r: Point) -> Point:
+    """Twice the area of the triangle, along its normal."""
+    return cross(subtract(q, p), subtract(r, p))
+
+
+def min_angle(p: Point, q: Point, r: Point) -> float:
+    """Smallest angle of the triangle, degrees."""
+    n = normal(p, q, r)
+    doubled = math.sqrt(dot(n, n))
+    a, b, c = subtract(q, p), subtract(r, q), subtract(p, r)
+    # The smallest angle lies opposite to the shortest edge, between the other two.
+    return math.degrees(math.atan2(doubled, max(-dot(a, b), -dot(b, c), -dot(c, a))))
+
+
+@dataclass
+class Change:
+    """A possible change: faces to drop, faces to add, vertices at new places, and the smallest angle after it."""
+
+    dropped: list[int]
+    added: list[Face]
+    places: dict[int, Point] = field(default_factory=dict)
+    after: float = 0.0
+
+
+class LocalMesh:
+    """Faces by number, the faces around each vertex, and the changes that keep the surface a closed 2-manifold."""
+
+    def __init__(self, surface: Surface) -> None:
+        self.points: list[Point] = [tuple(p) for p in surface.vertices.tolist()]
+        self.faces: dict[int, Face] = {i: tuple(t) for i, t in enumerate(surface.triangles.tolist())}
+        self.star: list[set[int]] = [set() for _ in self.points]
+        for i, face in self.faces.items():
+            for vertex in face:
+                self.star[vertex].add(i)
+        self._next = len(self.faces)
+
+    def surface(self) -> Surface:
+        """The mesh as it is now, without unreferenced vertices."""
+        return Surface(np.array(self.points), np.array(list(self.faces.values()), np.int64)).compacted()
+
+    def angle(self, face: int) -> float:
+        """Smallest angle of a face, degrees."""
+        return min_angle(*(self.points[v] for v in self.faces[face]))
+
+    def neighbours(self, vertex: int) -> set[int]:
+        """Vertices joined to `vertex` by an edge."""
+        return {v for f in self.star[vertex] for v in self.faces[f]} - {vertex}
+
+    def vertex_normal(self, vertex: int) -> Point:
+        """Area-weighted unit normal."""
+        normals = [normal(*(self.points[v] for v in self.faces[f])) for f in self.star[vertex]]
+        return unit(tuple(map(sum, zip(*normals, strict=True))))
+
+    def flip(self, face: int, corner: int) -> Change | None:
+        """Swap the diagonal of the two faces at the edge from `corner` on; None if the new edge exists already."""
+        u, v, w = (self.faces[face][(corner + k) % 3] for k in range(3))
+        other = next(f for f in self.star[u] & self.star[v] if f != face)
+        x = next(k for k in self.faces[other] if k not in (u, v))
+        if self.star[w] & self.star[x] or min(len(self.star[u]), len(self.star[v])) < 4:
+            return None
+        return Change([face, other], [(u, x, w), (x, v, w)])
+
+    def collapse(self, face: int, corner: int, share: float) -> Change | None:
+        """Merge the ends of the edge from `corner` on, at `share` of its length; None if that breaks the manifold."""
+        u, v = self.faces[face][corner], self.faces[face][(corner + 1) % 3]
+        both = self.star[u] & self.star[v]
+        opposite = {k for f in both for k in self.faces[f]} - {u, v}
+        # The link condition: the only common neighbours are the two vertices opposite to the edge.
+        if self.neighbours(u) & self.neighbours(v) != opposite or min(len(self.star[k]) for k in opposite) < 4:
+            return None
+        moving = (self.star[u] | self.star[v]) - both
+        added = [tuple(u if k == v else k for k in self.faces[f]) for f in sorted(moving)]
+        return Change(sorted(moving) + sorted(both), added, {u: along(self.points[u], self.points[v], share)})
+
+    def relocate(self, vertex: int, place: Point) -> Change:
+        """Move one vertex."""
+        around = sorted(self.star[vertex])
+        return Change(around, [self.faces[f] for f in around], {vertex: place})
+
+    def angles_before(self, change: Change) -> float:
+        """Smallest angle of the faces that the change drops, degrees."""
+        return min(self.angle(f) for f in change.dropped)
+
+    def assess(self, change: Change, max_turn_cosine: float) -> bool:
+        """Fill in `change.after`; False if a new face leans too far from the surface it replaces.
+
+        The surface replaced is the area-weighted normal of all dropped faces for a flip and a collapse, so that a
+        sliver's own meaningless normal does not count.
+        """
+        old = [normal(*(self.points[v] for v in self.faces[f])) for f in change.dropped]
+        mean = unit(tuple(map(sum, zip(*old, strict=True))))
+        change.after = 180.0
+        for face in change.added:
+            corners = tuple(change.places.get(v, self.points[v]) for v in face)
+            change.after = min(change.after, min_angle(*corners))
+            if dot(unit(normal(*corners)), mean) < max_turn_cosine:
+                return False
+        return True
+
+    def apply(self, change: Change) -> None:
+        """Carry the change out."""
+        for f in change.dropped:
+            for vertex in self.faces.pop(f):
+                self.star[vertex].discard(f)
+        for face in change.added:
+            self.faces[self._next] = face
+            for vertex in face:
+                self.star[vertex].add(self._next)
+            self._next += 1
+        for vertex, place in change.places.items():
+            self.points[vertex] = place

@@ -1,0 +1,145 @@
+"""Mesh files into surfaces in millimetres: formats, unit, and everything that makes a file unusable."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pymeshlab
+import trimesh
+
+from quadgraph.base.errors import InputError
+from quadgraph.base.units import UNITS_MM
+from quadgraph.mesh.mesh_text import read_obj, read_off
+from quadgraph.mesh.surface import SourceMesh, Surface
+
+_HEIGHT_AXIS = 1  # y: height is the extent along it
+
+Arrays = tuple[np.ndarray, np.ndarray]
+
+
+def _read_ply(path: Path) -> Arrays:
+    meshes = pymeshlab.MeshSet()
+    with contextlib.chdir(os.curdir):  # where a file that cannot be read would leave us in its folder
+        meshes.load_new_mesh(str(path))
+    mesh = meshes.current_mesh()
+    if not mesh.face_number():
+        return mesh.vertex_matrix(), np.empty((0, 3), np.int64)
+    return mesh.vertex_matrix(), mesh.face_matrix().astype(np.int64)
+
+
+def _weld(vertices: np.ndarray, triangles: np.ndarray) -> Arrays:
+    """Join vertices at the same position: these formats cannot share, or split at seams of normals and texture."""
+    # Adding zero makes -0 and +0 one position.
+    unique, inverse = np.unique(vertices + 0.0, axis=0, return_inverse=True)
+    return unique, inverse.reshape(-1)[triangles]
+
+
+def _read_stl(path: Path) -> Arrays:
+    mesh = trimesh.load(path, process=False, force="mesh")
+    return _weld(np.asarray(mesh.vertices, np.float64), np.asarray(mesh.faces, np.int64))
+
+
+def _read_gltf(path: Path) -> Arrays:
+    """All triangle meshes of the scene under their nodes' transforms, as one."""
+    scene = trimesh.load_scene(path, process=False)
+    parts = [part for part in scene.dump() if isinstance(part, trimesh.Trimesh)]
+    if not parts:
+        return np.empty((0, 3)), np.empty((0, 3), np.int64)
+    offsets = np.cumsum([0] + [len(part.vertices) for part in parts])
+    vertices = np.concatenate([np.asarray(part.vertices, np.float64) for part in parts])
+    triangles = [np.asarray(part.faces, np.int64) + offset for part, offset in zip(parts, offsets, strict=False)]
+    return _weld(vertices, np.concatenate(triangles))
+
+
+_READERS: dict[str, Callable[[Path], Arrays]] = {
+    ".obj": read_obj,
+    ".off": read_off,
+    ".ply": _read_ply,
+    ".stl": _read_stl,
+    ".gltf": _read_gltf,
+    ".glb": _read_gltf,
+}
+SUFFIXES = tuple(_READERS)
+
+
+def read_surface(path: str | Path, *, unit: str | None = None, height_mm: float | None = None) -> SourceMesh:
+    """Read a mesh and scale it to millimetres.
+
+    Exactly one of the two must be given: unit "mm", "cm" or "m" of the file's coordinates, or the object's height_mm
+    (its extent along y). Polygons are cut into triangles; STL and glTF vertices at one position are joined. Nothing
+    is repaired. Raises InputError for a file or option that cannot be used, naming file and field.
+    """
+    path = Path(path)
+    reader = _READERS.get(path.suffix.lower())
+    if reader is None:
+        raise InputError(f"{path}: extension '{path.suffix}' found, allowed are {', '.join(_READERS)}")
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+    vertices, triangles = _guarded(reader, path)
+    _check(path, vertices, triangles)
+    unit_mm = _unit_mm(path, vertices, triangles, unit, height_mm)
+    surface = Surface(vertices * unit_mm, triangles)
+    digest = hashlib.sha256(content).hexdigest()
+    return SourceMesh(surface, path.name, digest, unit_mm, len(vertices), len(triangles))
+
+
+def _guarded(reader: Callable[[Path], Arrays], path: Path) -> Arrays:
+    try:
+        return reader(path)
+    except InputError:
+        raise
+    except Exception as error:  # the libraries raise whatever their parsers meet
+        words = " ".join(str(error).split()) or type(error).__name__
+        raise InputError(f"{path}: cannot be read as {path.suffix[1:].upper()}: {words[:300]}") from error
+
+
+def _check(path: Path, vertices: np.ndarray, triangles: np.ndarray) -> None:
+    if not len(vertices) or not len(triangles):
+        raise InputError(f"{path}: {len(vertices)} vertices and {len(triangles)} triangles found, a mesh needs both")
+    bad = np.flatnonzero(~np.isfinite(vertices).all(axis=1))
+    if len(bad):
+        raise InputError(f"{path}, vertex {bad[0]}: position {vertices[bad[0]].tolist()} found, must be finite")
+    wrong = np.flatnonzero(((triangles < 0) | (triangles >= len(vertices))).any(axis=1))
+    if len(wrong):
+        found, last = triangles[wrong[0]].tolist(), len(vertices) - 1
+        raise InputError(f"{path}, triangle {wrong[0]}: vertex indices {found} found, allowed are 0 to {last}")
+
+
+def _unit_mm(
+    path: Path, vertices: np.ndarray, triangles: np.ndarray, unit: str | None, height_mm: float | None
+) -> float:
+    used = vertices[np.unique(triangles)]
+    low, high = used.min(axis=0), used.max(axis=0)
+    if unit is not None and height_mm is not None:
+        raise InputError(f"{path}: both unit and height given; state one")
+    if unit is not None:
+        if unit not in UNITS_MM:
+            raise InputError(f"{path}, unit: '{unit}' found, allowed are {', '.join(UNITS_MM)}")
+        return UNITS_MM[unit]
+    if height_mm is None:
+        raise InputError(_unit_question(path, low, high))
+    extent = float(high[_HEIGHT_AXIS] - low[_HEIGHT_AXIS])
+    if not (np.isfinite(height_mm) and height_mm > 0):
+        raise InputError(f"{path}, height: {height_mm!r} mm found, allowed is a finite number above 0")
+    if extent <= 0:
+        raise InputError(f"{path}, height: the mesh has no extent along y; state its unit instead")
+    return float(height_mm) / extent
+
+
+def _unit_question(path: Path, low: np.ndarray, high: np.ndarray) -> str:
+    """What to say when neither unit nor height was given: the box, and what each choice would make of it."""
+    box = " to ".join("(" + ", ".join(f"{x:.6g}" for x in corner) + ")" for corner in (low, high))
+    choices = ", ".join(
+        f"{unit} makes it {' x '.join(f'{x * scale:.4g}' for x in high - low)} mm" for unit, scale in UNITS_MM.items()
+    )
+    return (
+        f"{path}: state its unit (--unit mm, cm or m) or its height along y (--height 100mm); "
+        f"its bounding box is {box}: {choices}"
+    )

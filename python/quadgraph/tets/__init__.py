@@ -1,0 +1,1 @@
+"""Tetrahedra and the graph of their nodes, with what faces see of each other."""

@@ -1,0 +1,1 @@
+"""Studies of QuadGraph: independent truth, accuracy, stability, charts, the papers' tables, other solvers."""

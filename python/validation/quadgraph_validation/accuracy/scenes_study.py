@@ -1,0 +1,180 @@
+"""Real bodies against path tracing: pictures of the published model and of the engine's, block by block."""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from quadgraph.bake import pipeline
+from quadgraph.base.errors import InputError
+from quadgraph.core import load_core
+from quadgraph_validation.base import store
+from quadgraph_validation.bodies import scene_meshes, scenes
+from quadgraph_validation.bodies.scenes import FOV, PIXELS, Scene
+from quadgraph_validation.truth import blocks, truth_run
+from quadgraph_validation.truth.path_tracing import BATCH
+from quadgraph_validation.truth.stored_truth import Truth
+from quadgraph_validation.truth.truth_run import Subject
+
+if TYPE_CHECKING:
+    from quadgraph.core import Engine
+
+PARTS = ("all", "bright", "dark")
+_FEW = 10  # blocks: a part with fewer is not printed
+
+
+@dataclass(frozen=True)
+class Setting:
+    """How the engine solves, always with `fem`, and shows a scene, by the names it uses; its default tolerance."""
+
+    name: str
+    source: str
+    model: str
+    radiance: str
+    inter_reflection: bool
+    tolerance: float = 1e-3
+
+
+PUBLISHED = Setting("published, solved exactly", "diffuse", "diffusion", "lambertian", False, 1e-5)
+OURS = Setting("SP3, gathered, inter-reflection", "buried", "sp3", "gathered", True)
+SETTINGS = (
+    PUBLISHED,
+    Setting("diffusion, Lambertian", "buried", "diffusion", "lambertian", False),
+    Setting("SP3, gathered", "buried", "sp3", "gathered", False),
+    OURS,
+)
+# In figures: title to setting.
+SHOWN = {"published": PUBLISHED.name, "ours": OURS.name}
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """One image: the truth, the coverage (h, w) of the engine's pixels, and its pictures (h, w) by setting's name."""
+
+    image: Truth
+    alpha: np.ndarray
+    pictures: dict[str, np.ndarray]
+
+
+def run(
+    device: str,
+    meshes: Path,
+    truths: Path,
+    names: list[str],
+    images: Path | None = None,
+) -> dict[str, Any]:
+    """Compare the scenes of the given names, all if there are none.
+
+    meshes: folder of the mesh files; truths: folder of the path-traced pictures; images: folder for figures, none
+    without it. Raises InputError.
+    """
+    subjects = [truth_run.subject(scene, scene_meshes.file(scene, meshes)) for scene in scenes.chosen(names)]
+    record = {}
+    for found in subjects:
+        stored = {image: _stored(found, truths, image) for image in found.scene.images}
+        with Console(stderr=True).status(f"scene: {found.scene.name}"):
+            compared = compare(found, stored, device)
+        record[found.scene.name] = {image: measured(one) for image, one in compared.items()}
+        if images:
+            from quadgraph_validation.accuracy import scene_figures
+
+            scene_figures.write(images / f"scenes-{found.scene.name}.png", found.scene, compared, SHOWN)
+    return {"block": blocks.BLOCK, "bright": blocks.BRIGHT, "scenes": record}
+
+
+def compare(found: Subject, stored: dict[str, Truth], device: str = "") -> dict[str, Comparison]:
+    """Bake a scene's mesh, and solve and render it in every setting; by image."""
+    with tempfile.TemporaryDirectory(prefix="quadgraph-study-") as folder:
+        file = Path(folder) / "scene.qgraph"
+        pipeline.bake(found.mesh, file, pipeline.BakeOptions(height_mm=found.scene.height))
+        engine = load_core().Engine(file, device=device)
+    set_scene(engine, found.scene)
+    shown = {}
+    for setting in SETTINGS:
+        solve(engine, setting)
+        shown[setting.name] = {name: picture(engine, found.scene, name, setting) for name in stored}
+    return {
+        name: Comparison(image, shown[OURS.name][name][1], {key: value[name][0] for key, value in shown.items()})
+        for name, image in stored.items()
+    }
+
+
+def set_scene(engine: Engine, scene: Scene) -> None:
+    """Give the engine the coefficients, in the middle of every node, and the light."""
+    for index, level in enumerate(engine.graph.levels):
+        values = scene.in_channels(np.asarray(level.nodes, np.float64))
+        engine.set_optical(index, *(value.astype(np.float32) for value in values), scene.eta)
+    engine.set_lights([scene.light])
+
+
+def solve(engine: Engine, setting: Setting) -> dict[str, Any]:
+    """Solve; the engine's report. Raises SolverError."""
+    return engine.solve(
+        source=setting.source,
+        model=setting.model,
+        inter_reflection=setting.inter_reflection,
+        tolerance=setting.tolerance,
+        max_iterations=100_000,
+    )
+
+
+def picture(engine: Engine, scene: Scene, image: str, setting: Setting) -> tuple[np.ndarray, np.ndarray]:
+    """Radiance of light that was in the body, W/(mm^2 sr), and coverage, both (h, w), after a solve; image: its name.
+
+    Parallel light that crosses the body unscattered stays parallel: no camera sees it.
+    """
+    chosen = scene.images[image]
+    found = engine.render(
+        view=scene.views[chosen.view].text, vertical_fov=FOV, width=PIXELS, height=PIXELS, radiance=setting.radiance
+    )
+    shown = np.asarray(found.scattered, np.float64)[..., chosen.channel]
+    if scene.direction is None:
+        shown = shown + np.asarray(found.unscattered, np.float64)[..., chosen.channel]
+    return shown, np.array(found.alpha, np.float64)
+
+
+def measured(compared: Comparison) -> dict[str, Any]:
+    """What the record holds of an image: deviations by setting and part of the picture."""
+    image = compared.image
+    chosen = blocks.parts(image.mean, compared.alpha)
+    deviations = {
+        name: {part: asdict(blocks.deviation(shown, image.mean, image.error, chosen[part])) for part in PARTS}
+        for name, shown in compared.pictures.items()
+    }
+    return {"samples": image.batches * BATCH, "truth": store.digest(image.key), "settings": deviations}
+
+
+def tables(record: dict[str, Any]) -> list[Table]:
+    """One table per scene."""
+    return [_table(name, views) for name, views in record["scenes"].items()]
+
+
+def _stored(found: Subject, folder: Path, name: str) -> Truth:
+    image = truth_run.stored(found, folder, name)
+    if image.batches < 2:
+        command = f"quadgraph reference {found.scene.name} --kind transport --samples N"
+        raise InputError(f"{found.path(folder, name)}: not there; '{command}' makes it with Mitsuba")
+    return image
+
+
+def _table(name: str, views: dict[str, Any]) -> Table:
+    table = Table("view", "setting", *PARTS, "mean", title=f"{name}: RMS of {blocks.BLOCK} x {blocks.BLOCK} blocks")
+    for view, found in views.items():
+        for setting, deviations in found["settings"].items():
+            means = " / ".join(f"{deviations[p]['mean']:.3f}" for p in PARTS if deviations[p]["blocks"] >= _FEW)
+            table.add_row(view, setting, *(_percent(deviations[part], "rms") for part in PARTS), means)
+        noise = found["settings"][OURS.name]
+        counts = " / ".join(str(noise[part]["blocks"]) for part in PARTS)
+        row = [view, f"path tracing's noise, {found['samples']:,} samples"]
+        table.add_row(*row, *(_percent(noise[part], "noise") for part in PARTS), f"{counts} blocks", end_section=True)
+    return table
+
+
+def _percent(deviation: dict[str, Any], field: str) -> str:
+    return f"{100 * deviation[field]:.1f}%" if deviation["blocks"] >= _FEW else ""

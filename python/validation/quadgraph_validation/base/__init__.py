@@ -1,0 +1,1 @@
+"""What every room of the validation uses: a record's machine, its files, its folders."""

@@ -1,0 +1,118 @@
+"""The chart's measurements: methods settle in turn, round after round, and each draws its frames of a moving light."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from statistics import median
+from typing import Any
+
+import numpy as np
+
+from quadgraph.base.errors import SolverError, ToolError
+from quadgraph.base.progress import ProgressCallback
+from quadgraph_validation.chart.chart_body import STEP_DEGREES, STEP_SHARE, Body
+from quadgraph_validation.chart.chart_judge import Judge
+from quadgraph_validation.chart.chart_method import SETTLED, SWING, Method, bake_settings
+from quadgraph_validation.truth.path_tracing import BATCH
+
+# What a frame consists of, by the passes of the engine and of others; the rest is the solver's.
+STAGES = {
+    "light": ("shadow maps", "irradiance", "path light"),
+    "source": ("source walk", "surface share", "right-hand side"),
+    "exitance": ("exitance", "energy", "path field"),
+    "picture": ("gather points", "uncollided", "gathered exitance", "gather scale", "surface", "resolve", "gather"),
+}
+
+
+@dataclass
+class Point:
+    """A method, the passes of all its frames in ms, its errors and pictures, or why there are none."""
+
+    method: Method
+    frames: list[dict[str, float]] = field(default_factory=list)
+    errors: dict[str, dict[str, float] | None] = field(default_factory=dict)
+    pictures: dict[str, np.ndarray] = field(default_factory=dict)
+    failed: str = ""
+
+    def record(self) -> dict[str, Any]:
+        """Ready for JSON: ms of the median frame, and by stage and pass the medians over all frames."""
+        told = {"name": self.method.name, "family": self.method.family, "settings": self.method.settings}
+        if self.failed:
+            return told | {"failed": self.failed}
+        passes = {name: median(frame.get(name, 0.0) for frame in self.frames) for name in self.frames[0]}
+        whole = [sum(frame.values()) for frame in self.frames]
+        return told | {
+            "ms": round(median(whole), 4),
+            "ms_range": [round(min(whole), 4), round(max(whole), 4)],
+            "stages": {name: round(ms, 4) for name, ms in stages(passes).items()},
+            "passes": {name: round(ms, 4) for name, ms in passes.items()},
+            "errors": self.errors,
+        }
+
+
+def stages(passes: dict[str, float]) -> dict[str, float]:
+    """Time by stage of a frame, ms."""
+    stage_of = {name: stage for stage, names in STAGES.items() for name in names}
+    spent = dict.fromkeys(("light", "source", "solve", "exitance", "picture"), 0.0)
+    for name, ms in passes.items():
+        spent[stage_of.get(name, "solve")] += ms
+    return spent
+
+
+def measure(body: Body, judge: Judge, methods: Sequence[Method], repeats: int, tell: ProgressCallback) -> list[Point]:
+    """Every method's point. Rounds alternate between all methods, so that a slower minute slows them all."""
+    tell(f"{body.scene.name}: truth")
+    judge.noise()  # what is unlit is found on an engine that methods share: before they do
+    points = [Point(method) for method in methods]
+    for number in range(repeats):
+        for index, point in enumerate(points):
+            progress = f"round {number + 1} of {repeats}, method {index + 1} of {len(points)}"
+            tell(f"{body.scene.name}: {progress}: {point.method.name}")
+            if not point.failed:
+                _round(body, judge, point)
+    return points
+
+
+def _round(body: Body, judge: Judge, point: Point) -> None:
+    try:
+        point.method.prepare(body)
+        point.frames += [point.method.frame(step) for step in SWING[1:]]
+        if not point.errors:
+            point.pictures = {view: point.method.picture(view) for view in body.scene.views}
+            point.errors = judge.errors(point.method, point.pictures)
+    except (SolverError, ToolError) as error:
+        point.failed = str(error)
+
+
+def scene_record(body: Body, judge: Judge, points: Sequence[Point]) -> dict[str, Any]:
+    """One scene of the record."""
+    samples = {name: image.batches * BATCH for name, image in judge.images.items()}
+    return {
+        "name": body.scene.name,
+        "mesh": body.scene.mesh,
+        "height_mm": body.scene.height,
+        "eta": body.scene.eta,
+        "light": body.scene.light,
+        "levels": body.levels(),
+        "bakes": _bakes(body, points),
+        "truth": judge.noise() | {"samples": samples},
+        "points": [point.record() for point in points],
+    }
+
+
+def _bakes(body: Body, points: Sequence[Point]) -> list[dict[str, Any]]:
+    """Levels of the chains other than the truth's that points were measured on."""
+    used = [point.method.settings for point in points if not point.failed]
+    ways = [(bake_settings(choice), choice) for choice in body.others]
+    return [
+        told | {"levels": body.levels(choice)}
+        for told, choice in ways
+        if any(told.items() <= settings.items() for settings in used)
+    ]
+
+
+def conditions(repeats: int, pixels: int) -> dict[str, Any]:
+    """What holds for all points of a scene, for the record."""
+    frame = {"pixels": pixels, "light_turns_degrees": STEP_DEGREES, "even_light_dims": STEP_SHARE}
+    return {"repeats": repeats, "settled": SETTLED, "frame": frame}

@@ -1,0 +1,91 @@
+"""What a method is to the chart, and the registry that others plug into."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+from quadgraph.base.errors import InputError
+from quadgraph_validation.bodies.scene_bakes import Choice
+
+if TYPE_CHECKING:
+    from quadgraph_validation.chart.chart_body import Body
+
+SWING = (2, 1, 0)  # steps of the light: a method is settled at the first, frames follow it to the scene's own, step 0
+CHAIN = "chain"  # `bake` of the chain that the PDE truth knows
+POLYGRID = "polygrid"  # `bake` of a polygrid of the body
+SETTLED = 1e-3  # algebraic error of the exitance to which solvers iterate, unless a number of cycles is given
+
+
+def bake_settings(choice: Choice | None) -> dict[str, Any]:
+    """What a method's settings say of how its body is baked; None: the chain that the PDE truth knows."""
+    if choice is None:
+        return {"bake": CHAIN, "K": None}
+    if choice.cells is not None:
+        return {"bake": POLYGRID, "K": None}
+    return {"bake": "default" if choice.grading is None else "K", "K": choice.grading}
+
+
+class Method(Protocol):
+    """One way to answer a scene; one point of the chart.
+
+    family: what it is a setting of, for colour and filter; settings: everything it depends on, ready for JSON, of which
+    `model` and `source` name the PDE that it solves, `level` the level whose surface it answers on, `bake` of which
+    chain, with `K` if it is the paper's, `inter_reflection` whether it follows light from part to part, and `runs_on`
+    what its times are of.
+    """
+
+    name: str
+    family: str
+    settings: dict[str, Any]
+
+    def prepare(self, body: Body) -> None:
+        """Settle at the light of SWING[0]: whatever a running program would have done before. Not timed.
+
+        Raises SolverError where the method cannot answer this body.
+        """
+
+    def frame(self, step: int) -> dict[str, float]:
+        """Move the light to a step and do all that a live frame does, a picture included; ms by pass."""
+
+    def exitance(self) -> np.ndarray:
+        """Of scattered light after the last frame per face of the level, (n_f, 3) W/mm^2."""
+
+    def picture(self, view: str) -> np.ndarray:
+        """Radiance of light that was in the body, (PIXELS, PIXELS, 3) W/(mm^2 sr), after the last frame."""
+
+
+@dataclass(frozen=True)
+class Chain:
+    """What default methods are chosen by: faces of each level, finest first, and the level whose faces know what they
+    see of each other, None if there is none; others: further ways in which the body is baked.
+    """
+
+    faces: tuple[int, ...]
+    seen: int | None
+    others: tuple[Choice, ...] = ()
+
+
+Provider = Callable[[Chain], Iterable[Method]]
+_PROVIDERS: list[Provider] = []
+
+
+def register(provider: Provider) -> Provider:
+    """Add a function that makes the methods for a chain; what it makes is in every chart from then on."""
+    _PROVIDERS.append(provider)
+    return provider
+
+
+def methods(chain: Chain, wanted: Iterable[str] = ()) -> list[Method]:
+    """All registered methods for a chain; with `wanted`, those whose names have any of these texts in them.
+
+    Raises InputError for a text that no name has.
+    """
+    known = [method for provider in _PROVIDERS for method in provider(chain)]
+    for text in wanted:
+        if not any(text in method.name for method in known):
+            raise InputError(f"method '{text}': in no name; they are {'; '.join(method.name for method in known)}")
+    return [method for method in known if not wanted or any(text in method.name for text in wanted)]

@@ -1,0 +1,37 @@
+"""Pictures of a few methods beside path tracing, with differences and scan lines (accuracy/scene_figures.py)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from quadgraph_validation.accuracy import scene_figures
+from quadgraph_validation.accuracy.scenes_study import Comparison
+from quadgraph_validation.chart.chart_judge import Judge
+from quadgraph_validation.chart.chart_measure import Point
+
+# Title to the family whose picture is shown, of all its points the one that is closest; None: of all families.
+SHOWN = {"published": "quadgraph-fdm, as published", "ours": None, "dipole": "dipole per vertex"}
+
+
+def write(folder: Path, judge: Judge, points: Sequence[Point]) -> list[Path]:
+    """Draw pictures-SCENE.png with those of SHOWN that were measured; nothing without path-traced pictures.
+
+    Raises InputError without matplotlib.
+    """
+    chosen = {title: _closest(points, family) for title, family in SHOWN.items()}
+    chosen = {title: point for title, point in chosen.items() if point is not None}
+    if not (judge.images and chosen):
+        return []
+    compared = {}
+    for name, image in judge.images.items():
+        pictures = {title: judge.of_picture(name, point.pictures) for title, point in chosen.items()}
+        compared[name] = Comparison(image, judge.body.coverage(judge.body.scene.images[name].view), pictures)
+    path = folder / f"pictures-{judge.body.scene.name}.png"
+    scene_figures.write(path, judge.body.scene, compared, {title: title for title in chosen})
+    return [path]
+
+
+def _closest(points: Sequence[Point], family: str | None) -> Point | None:
+    known = [point for point in points if point.errors.get("transport") and family in (None, point.method.family)]
+    return min(known, key=lambda point: point.errors["transport"]["whole"], default=None)

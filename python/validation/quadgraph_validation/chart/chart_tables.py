@@ -1,0 +1,45 @@
+"""The chart in words: every point with its time and errors, the best at its time marked."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rich.table import Table
+
+from quadgraph_validation.chart import chart_record as records
+
+_COLUMNS = tuple((truth, part) for truth in records.TRUTHS for part in records.PARTS)
+_WORDS = {"pde": "PDE", "transport": "transport"}
+
+
+def all_of(record: dict[str, Any]) -> list[Table]:
+    """One table per scene, by time."""
+    return [_table(scene) for scene in record["scenes"]]
+
+
+def _table(scene: dict[str, Any]) -> Table:
+    table = Table("method", "ms", "without picture", "solve", *(f"{_WORDS[truth]}, {part}" for truth, part in _COLUMNS))
+    table.title = f"{scene['name']} on {records.device_text(scene)}; *: best at its time"
+    table.columns[0].no_wrap = True
+    best = {
+        (panel.truth, panel.part): [panel.points[i]["name"] for i in panel.front] for panel in records.panels(scene)
+    }
+    done = [point for point in scene["points"] if not point.get("failed")]
+    for point in sorted(done, key=lambda point: point["ms"]):
+        cells = [_cell(point, column, best.get(column, [])) for column in _COLUMNS]
+        table.add_row(point["name"], *(f"{ms:.3g}" for ms in _times(point)), *cells)
+    failed = [f"{point['name']}: {point['failed']}" for point in scene["points"] if point.get("failed")]
+    table.caption = "\n".join(failed)
+    return table
+
+
+def _cell(point: dict[str, Any], column: tuple[str, str], best: list[str]) -> str:
+    truth, part = column
+    errors = point["errors"][truth] or {}
+    if part not in errors:
+        return ""
+    return f"{100 * errors[part]:.3g}%" + ("*" if point["name"] in best else "")
+
+
+def _times(point: dict[str, Any]) -> tuple[float, float, float]:
+    return point["ms"], records.without_picture(point), point["stages"]["solve"]

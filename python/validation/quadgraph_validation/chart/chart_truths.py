@@ -1,0 +1,84 @@
+"""A scene's truths as they are stored, and all that is measured against them, found before anything is measured."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from quadgraph.base.cache_folder import cache_folder
+from quadgraph.base.errors import InputError
+from quadgraph_validation.base.study_folders import COMMITTED_TRUTH
+from quadgraph_validation.bodies import scene_bakes, scene_meshes
+from quadgraph_validation.bodies.scenes import Scene
+from quadgraph_validation.chart import (
+    path_method,  # noqa: F401  registers them
+)
+from quadgraph_validation.chart.chart_body import Body
+from quadgraph_validation.chart.chart_judge import Judge, PdeTruths
+from quadgraph_validation.chart.chart_method import CHAIN, Method, methods
+from quadgraph_validation.truth import pde_truth, truth_run
+from quadgraph_validation.truth.stored_truth import Truth
+
+# Only path tracing can judge them: as `bake` does by default, by the paper's mesher from fine to coarse, on a polygrid.
+OTHER_BAKES = (
+    scene_bakes.Choice(),
+    *(scene_bakes.Choice(pde_truth.VERTICES, grading) for grading in (0.3, 1.0, 3.0)),
+    scene_bakes.Choice(cells=4),
+)
+
+
+@dataclass(frozen=True)
+class Folders:
+    """Of mesh files, of path-traced pictures, and of PDE truths with the chains that they belong to."""
+
+    meshes: Path
+    transport: Path
+    pde: Path
+
+
+def folders(meshes: Path, truth: Path | None) -> Folders:
+    """The default ones, or one for all truths."""
+    return Folders(meshes, truth or COMMITTED_TRUTH, truth or cache_folder())
+
+
+def subject(
+    scene: Scene,
+    where: Folders,
+    against: Sequence[str],
+    wanted: Sequence[str],
+    working: Path,
+    device: str,
+    pixels: int,
+) -> tuple[Body, Judge, list[Method]]:
+    """A scene with its judge and its methods, those that `wanted` names.
+
+    Bakes the chain if it is not there; raises InputError if a truth in `against` is absent or stale.
+    """
+    images = _images(scene, where) if "transport" in against else {}
+    ways = OTHER_BAKES if "transport" in against else ()
+    others = {choice: scene_bakes.of(scene, choice, where.meshes, where.pde) for choice in ways}
+    body = Body(scene, pde_truth.chain(scene, where.meshes, where.pde), working, device, pixels, others)
+    chosen = methods(body.chain, wanted)
+    pde = _pde(scene, where, chosen) if "pde" in against else {}
+    return body, Judge(body, pde, images), chosen
+
+
+def _images(scene: Scene, where: Folders) -> dict[str, Truth]:
+    found = truth_run.subject(scene, scene_meshes.file(scene, where.meshes))
+    images = {name: truth_run.stored(found, where.transport, name) for name in scene.images}
+    for name, image in images.items():
+        if image.batches < 2:
+            command = f"quadgraph reference {scene.name} --kind transport --samples N"
+            raise InputError(f"{found.path(where.transport, name)}: not there; '{command}' makes it with Mitsuba")
+    return images
+
+
+def _pde(scene: Scene, where: Folders, chosen: Sequence[Method]) -> PdeTruths:
+    """Of the equations that methods solve, in their order."""
+    judged = [method.settings for method in chosen if not method.settings["inter_reflection"]]
+    judged = [settings for settings in judged if settings["bake"] == CHAIN]
+    equations = dict.fromkeys((settings["model"], settings["source"]) for settings in judged)
+    return {
+        (model, source): pde_truth.stored(scene, model, where.meshes, where.pde, source) for model, source in equations
+    }

@@ -1,0 +1,1 @@
+"""The subcommands of `quadgraph` that the validation brings along."""

@@ -1,0 +1,96 @@
+"""`quadgraph accuracy`: the engine against closed forms, exact transport and random walks (docs/accuracy.md)."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+from pathlib import Path
+from types import ModuleType
+
+from rich.console import Console
+
+from quadgraph.base import atomic_file
+from quadgraph.base.errors import InputError
+from quadgraph.core import load_core
+from quadgraph_validation.base.machine import commit
+from quadgraph_validation.base.study_folders import COMMITTED_TRUTH, add_meshes_argument
+
+# Study to its module of quadgraph_validation.accuracy.
+STUDIES = {
+    "slab": "slab",
+    "sphere": "sphere",
+    "half-space": "half_space",
+    "orders": "orders",
+    "coarse": "coarse",
+    "radiance": "radiance",
+    "scenes": "scenes",
+    "estimate": "estimate",
+    "target": "target",
+    "budget": "budget",
+}
+
+# Studies of real bodies, which the CPU reference cannot stand in for, because only the engine does what they judge.
+ON_ENGINE = {
+    "scenes": "makes pictures",
+    "estimate": "estimates its error",
+    "target": "stops at an error",
+    "budget": "is baked for",
+}
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Register the subcommand."""
+    parser = subparsers.add_parser("accuracy", help="measure the error against independent truth", description=__doc__)
+    parser.add_argument("study", choices=STUDIES, metavar="STUDY", help=", ".join(STUDIES))
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write the record here")
+    parser.add_argument(
+        "--reference", action="store_true", help="solve with the CPU reference in double precision instead of the GPU"
+    )
+    parser.add_argument("--device", default="", metavar="NAME", help="part of the Vulkan device's name")
+    _add_bodies_options(parser.add_argument_group("scenes, estimate, target, budget"))
+    _add_scenes_options(parser.add_argument_group("scenes"))
+
+
+def _add_bodies_options(group: argparse._ArgumentGroup) -> None:
+    group.add_argument("--scene", action="append", default=[], metavar="NAME", help="only this one; several allowed")
+    add_meshes_argument(group)
+
+
+def _add_scenes_options(group: argparse._ArgumentGroup) -> None:
+    group.add_argument(
+        "--truth",
+        type=Path,
+        default=COMMITTED_TRUTH,
+        metavar="FOLDER",
+        help="of the path-traced pictures (default: %(default)s)",
+    )
+    group.add_argument("--images", type=Path, metavar="FOLDER", help="draw figures there, with matplotlib")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Run one study; 0 on success."""
+    from quadgraph_validation.truth import schemes
+
+    load_core()
+    study = importlib.import_module(f"quadgraph_validation.accuracy.{STUDIES[args.study]}")
+    if args.study in ON_ENGINE:
+        if args.reference:
+            raise InputError(f"{args.study}: --reference found, but only the engine {ON_ENGINE[args.study]}")
+        record = _run_on_engine(study, args)
+    else:
+        body_of = schemes.on_reference if args.reference else schemes.on_engine(args.device)
+        with Console(stderr=True).status(f"study: {args.study}"):
+            record = study.run(body_of)
+    console = Console(highlight=False)
+    for table in study.tables(record):
+        console.print(table)
+    if args.json:
+        atomic_file.write_json(args.json, {"study": args.study, "commit": commit()} | record)
+    return 0
+
+
+def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
+    if args.study == "scenes":
+        return study.run(args.device, args.meshes, args.truth, args.scene, args.images)
+    with Console(stderr=True).status(f"study: {args.study}"):
+        return study.run(args.device, args.meshes, args.scene)

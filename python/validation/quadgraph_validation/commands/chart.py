@@ -1,0 +1,149 @@
+"""`quadgraph chart`: scenes x methods to milliseconds a frame and errors against both truths (docs/chart.md)."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from quadgraph.base import atomic_file
+from quadgraph.base.arguments import positive_int
+from quadgraph.base.errors import InputError
+from quadgraph.core import load_core
+from quadgraph_validation.base.study_folders import COMMITTED_TRUTH, add_meshes_argument
+
+TRUTHS = ("pde", "transport")
+_TABLE_WIDTH = 190  # characters; narrower, the tables cannot be read
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Register the subcommand."""
+    parser = subparsers.add_parser("chart", help="speed against accuracy of all methods", description=__doc__)
+    parser.add_argument(
+        "--output",
+        type=Path,
+        metavar="FOLDER",
+        help="draw chart-SCENE.png, .svg, pictures-SCENE.png and chart.html there",
+    )
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write the record here")
+    parser.add_argument(
+        "--add",
+        action="store_true",
+        help="keep the other scenes that the file of --json has: times are compared within a scene alone",
+    )
+    parser.add_argument(
+        "--from",
+        dest="record",
+        type=Path,
+        metavar="FILE",
+        help="draw the charts of that record again, the same to the byte, instead of measuring; needs no device",
+    )
+    _add_measure_options(parser.add_argument_group("what is measured"))
+    _add_truth_options(parser.add_argument_group("truth"))
+
+
+def _add_measure_options(group: argparse._ArgumentGroup) -> None:
+    group.add_argument("--scene", action="append", default=[], metavar="NAME", help="only this one; several allowed")
+    group.add_argument(
+        "--method",
+        action="append",
+        default=[],
+        metavar="TEXT",
+        help="only methods with this text in their names; several allowed",
+    )
+    group.add_argument("--repeats", type=positive_int, default=3, metavar="N", help="default: %(default)s")
+    group.add_argument(
+        "--pixels",
+        type=positive_int,
+        default=256,
+        metavar="N",
+        help="edge of the picture that a frame draws (default: %(default)s)",
+    )
+    group.add_argument("--device", default="", metavar="NAME", help="part of the Vulkan device's name")
+
+
+def _add_truth_options(group: argparse._ArgumentGroup) -> None:
+    group.add_argument(
+        "--against", choices=TRUTHS, action="append", help="only this truth (default: both; `reference` makes them)"
+    )
+    add_meshes_argument(group)
+    group.add_argument(
+        "--truth",
+        type=Path,
+        metavar="FOLDER",
+        help=f"where truths are (default: {COMMITTED_TRUTH} for transport, ~/.cache/quadgraph for pde)",
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Measure or read, print, draw; 0 on success."""
+    _check(args)
+    from rich.console import Console
+
+    from quadgraph_validation.chart import chart_record as records
+    from quadgraph_validation.chart import chart_tables
+
+    kept = records.read(args.json) if args.add and args.json.exists() else None
+    record = records.read(args.record) if args.record else json.loads(json.dumps(_measured(args)))
+    record = records.added(kept, record) if kept else record
+    console = Console(highlight=False)
+    console.width = max(console.width, _TABLE_WIDTH)
+    for table in chart_tables.all_of(record):
+        console.print(table)
+    if args.json and not args.record:
+        atomic_file.write_json(args.json, record)
+    if args.output:
+        from quadgraph_validation.chart import chart_page, static_chart
+
+        for path in (*static_chart.write(args.output, record), chart_page.write(args.output / "chart.html", record)):
+            print(f"wrote {path}")
+    return 0
+
+
+def _check(args: argparse.Namespace) -> None:
+    """Refuse before the work what would fail after it."""
+    if args.add and not args.json:
+        raise InputError("--add: needs --json FILE, whose scenes are kept")
+    if args.record and (args.json or args.scene or args.method or args.against):
+        raise InputError(
+            "--from draws a record as it is: --json, --scene, --method and --against cannot be given with it"
+        )
+    if args.output:
+        from quadgraph_validation.base.pyplot import load_pyplot
+        from quadgraph_validation.chart.chart_page import load_plotly
+
+        load_pyplot("chart")
+        load_plotly()
+
+
+def _measured(args: argparse.Namespace) -> dict[str, Any]:
+    from rich.console import Console
+
+    from quadgraph_validation.base.machine import machine
+    from quadgraph_validation.bodies import scenes
+    from quadgraph_validation.chart import chart_measure, chart_pictures, chart_truths
+    from quadgraph_validation.chart.chart_record import FORMAT
+
+    folders = chart_truths.folders(args.meshes, args.truth)
+    against = tuple(args.against or TRUTHS)
+    with (
+        tempfile.TemporaryDirectory(prefix="quadgraph-chart-") as working,
+        Console(stderr=True).status("truths") as status,
+    ):
+        subjects = [
+            chart_truths.subject(one, folders, against, args.method, Path(working), args.device, args.pixels)
+            for one in scenes.chosen(args.scene)
+        ]
+        copied = load_core().copy_bandwidth(args.device)
+        found = []
+        while subjects:
+            # Each with its engines is let go before the next.
+            body, judge, methods = subjects.pop(0)
+            run = machine(copied) | chart_measure.conditions(args.repeats, args.pixels)
+            points = chart_measure.measure(body, judge, methods, args.repeats, status.update)
+            found.append({"run": run} | chart_measure.scene_record(body, judge, points))
+            if args.output:
+                chart_pictures.write(args.output, judge, points)
+        return {"format": FORMAT, "scenes": found}

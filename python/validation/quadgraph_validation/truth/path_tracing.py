@@ -1,0 +1,121 @@
+"""Pictures of real bodies by path tracing with Mitsuba, in batches that add up: the transport truth.
+
+Isotropic phase function; an index-matched surface (eta 1) or a smooth dielectric. Nothing of the package's own
+equations enters but the place of the camera.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import trimesh
+
+from quadgraph.base.errors import InputError
+from quadgraph.mesh.surface import Surface
+from quadgraph_validation.bodies.scenes import FOV, PIXELS, Grid, Scene, bounding_sphere, camera_axes
+
+MITSUBA = "3.9.1"
+BATCH = 16  # samples a pixel
+# Russian roulette off: with it, thick bodies of high albedo get heavy tails.
+INTEGRATOR = {"type": "volpath", "max_depth": -1, "rr_depth": 100_000}
+_BLACK = 1e3  # 1/mm, absorption of the body whose surface reflection is taken away
+
+
+def settings() -> dict[str, Any]:
+    """What a picture depends on beside the scene, ready for JSON."""
+    return {"mitsuba": MITSUBA, "variant": "scalar_rgb", "integrator": INTEGRATOR, "batch": BATCH}
+
+
+def load_mitsuba():
+    """Import Mitsuba in the variant that is used. Raises InputError if it is absent or of another version."""
+    try:
+        import mitsuba
+    except ImportError as error:
+        raise InputError(
+            f"Mitsuba cannot be loaded ({error}); pip install -e 'python/validation[truth]' installs it"
+        ) from error
+    if mitsuba.__version__ != MITSUBA:
+        raise InputError(f"Mitsuba: version {mitsuba.__version__} found, the truth is made with {MITSUBA}")
+    mitsuba.set_variant("scalar_rgb")
+    return mitsuba
+
+
+@contextmanager
+def tracer(scene: Scene, surface: Surface, grid: Grid, view: str) -> Iterator[Tracer]:
+    """Set up one view of a scene; its meshes live in a temporary folder."""
+    with tempfile.TemporaryDirectory(prefix="quadgraph-truth-") as folder:
+        yield Tracer(load_mitsuba(), scene, surface, grid, view, Path(folder))
+
+
+class Tracer:
+    """One view of a scene, ready to render batch after batch."""
+
+    def __init__(self, mitsuba: Any, scene: Scene, surface: Surface, grid: Grid, view: str, folder: Path) -> None:
+        self._mitsuba = mitsuba
+        self._scene = scene
+        # Mitsuba moves rays off a surface by a share of the coordinates: they are kept small.
+        centre, _ = bounding_sphere(surface)
+        mesh = folder / "body.ply"
+        trimesh.Trimesh(surface.vertices - centre, surface.triangles, process=False).export(mesh)
+        common = {"type": "scene", "integrator": INTEGRATOR, "light": self._light(), "camera": self._camera(view)}
+        body = {"type": "ply", "filename": str(mesh), "face_normals": True, "bsdf": self._surface()}
+        self._whole = mitsuba.load_dict(common | {"body": body | {"interior": self._medium(grid, centre)}})
+        self._black = None
+        if scene.eta != 1:
+            black = {"type": "homogeneous", "albedo": 0.0, "sigma_t": _BLACK}
+            self._black = mitsuba.load_dict(common | {"body": body | {"interior": black}})
+
+    def batch(self, number: int) -> np.ndarray:
+        """Radiance (h, w) W/(mm^2 sr), float64, top row first, of light that was inside the body: a mean over BATCH
+        samples a pixel, each number with samples of its own.
+        """
+        inside = self._render(self._whole, 2 * number)
+        return inside if self._black is None else inside - self._render(self._black, 2 * number + 1)
+
+    def _render(self, scene: Any, seed: int) -> np.ndarray:
+        return np.array(self._mitsuba.render(scene, spp=BATCH, seed=seed), np.float64)[..., 0]
+
+    def _light(self) -> dict[str, Any]:
+        if self._scene.direction is None:
+            return {"type": "constant", "radiance": {"type": "rgb", "value": 1 / np.pi}}
+        one = {"type": "rgb", "value": 1.0}
+        return {"type": "directional", "direction": list(self._scene.direction), "irradiance": one}
+
+    def _camera(self, view: str) -> dict[str, Any]:
+        _, up, backward = camera_axes(self._scene.views[view])
+        eye = backward * self._scene.views[view].distance
+        place = self._mitsuba.ScalarTransform4f().look_at(origin=eye.tolist(), target=[0, 0, 0], up=up.tolist())
+        film = {"type": "hdrfilm", "width": PIXELS, "height": PIXELS, "rfilter": {"type": "box"}}
+        film |= {"pixel_format": "luminance", "component_format": "float32"}
+        shape = {"type": "perspective", "fov": FOV, "fov_axis": "y", "near_clip": 1.0, "far_clip": 1e4}
+        return shape | {"to_world": place, "film": film, "sampler": {"type": "independent"}}
+
+    def _surface(self) -> dict[str, Any]:
+        if self._scene.eta == 1:
+            return {"type": "null"}
+        return {"type": "dielectric", "int_ior": self._scene.eta, "ext_ior": 1.0}
+
+    def _medium(self, grid: Grid, centre: np.ndarray) -> dict[str, Any]:
+        sigma_t = grid.sigma_s_prime + grid.sigma_a
+        albedo = grid.sigma_s_prime / sigma_t
+        return {
+            "type": "heterogeneous",
+            "albedo": self._volume(albedo, grid, centre),
+            "sigma_t": self._volume(sigma_t, grid, centre),
+            "phase": {"type": "isotropic"},
+        }
+
+    def _volume(self, values: np.ndarray, grid: Grid, centre: np.ndarray) -> dict[str, Any]:
+        place = self._mitsuba.ScalarTransform4f().translate((grid.low - centre).tolist()).scale(grid.extent.tolist())
+        return {
+            "type": "gridvolume",
+            "grid": self._mitsuba.VolumeGrid(np.ascontiguousarray(values[..., None], np.float32)),
+            "filter_type": "nearest",
+            "raw": True,
+            "to_world": place,
+        }

@@ -1,0 +1,111 @@
+// What the passes that move a body share with C++, in scalar layout; see shared.h.
+#ifndef QUADGRAPH_DEFORM_SHARED_H
+#define QUADGRAPH_DEFORM_SHARED_H
+
+#include "solver/solve_shared.h"
+
+#ifdef __cplusplus
+namespace quadgraph::gpu {
+#endif
+
+const uint DEFORM_TWIST = 0u;
+const uint DEFORM_BEND = 1u;
+const uint DEFORM_TAPER = 2u;
+const uint DEFORM_STRETCH = 3u;
+const uint DEFORM_TRANSFORM = 4u;
+const uint DEFORM_LATTICE = 5u;
+const uint DEFORM_CAGE = 6u;
+const uint DEFORM_DISPLACED = 7u;
+
+// Control points of a lattice along a side at most.
+#define LATTICE_MOST 16
+const uint LATTICE_BEZIER = 0u;
+const uint LATTICE_LINEAR = 1u;
+
+// A deformer (engine/deform/deformer.h) as deform.h takes it. In C++ `control` is the address of dvec3 in memory.
+struct DeformRecord {
+  // Lattice: displacement of the control points, x fastest; cage: of its vertices; displaced: of every vertex, mm.
+  QG_REF(Vec3s) control;
+  QG_REF(Floats) weight;  // cage: of control k at vertex v, at k * vertices + v
+  vec3 a;                 // axis, unit; transform: first row; lattice: its low corner, mm
+  vec3 b;                 // bend: unit, across the axis; transform: second row; lattice: its size, mm
+  vec3 c;                 // a point of the axis, mm; transform: third row
+  vec3 d;                 // transform: added, mm
+  float begin;            // mm along the axis from its point
+  float extent;           // mm
+  float amount;           // twist, bend: radians over the extent; taper, stretch: factor - 1
+  uint kind;              // DEFORM_*
+  uint count;             // cage: its vertices; lattice: points in x, y, z, and LATTICE_*, a byte each
+};
+
+// deform.comp: target[v] = source[v], moved. They may be the same.
+struct DeformPush {
+  DeformRecord record;
+  QG_REF(Vec3s) source;  // mm
+  QG_REF(Vec3s) target;  // mm
+  uint count;
+};
+
+// deform_nodes.comp: a node keeps its barycentric coordinates in its tet.
+struct DeformNodesPush {
+  QG_REF(Vec3s) vertices;  // mm
+  QG_REF(Uvec4s) tets;
+  QG_REF(Uints) face_tets;
+  QG_REF(Vec4s) place;  // per node
+  QG_REF(Vec3s) nodes;  // mm, written
+  uint tet_count;
+  uint count;
+};
+
+// deform_normals.comp: the triangles around vertex v are incidence[k], k from offset[v] to offset[v + 1].
+struct DeformNormalsPush {
+  QG_REF(Vec3s) rest;   // vertices, mm
+  QG_REF(Vec3s) moved;  // the same
+  QG_REF(Vec3s) rest_normals;
+  QG_REF(Vec3s) normals;  // written
+  QG_REF(Uvec3s) triangles;
+  QG_REF(Uints) offset;
+  QG_REF(Uints) incidence;
+  uint count;
+};
+
+// deform_bounds.comp: one workgroup; the sphere around the middle of the bounding box, mm.
+struct DeformBoundsPush {
+  QG_REF(Vec3s) vertices;
+  QG_REF(Vec4s) sphere;  // centre and radius, written
+  uint count;
+};
+
+// Sums over the tets and open faces that one workgroup looked at.
+struct ShapeSums {
+  float inverted;    // tets turned inside out
+  float flat_count;  // tets below the least quality, inverted ones left out
+  float worst;       // least quality, signed
+  float conduction;  // engine/reference/stored_entries.h, mm^3
+  float volume;      // mm^3
+  float area;        // mm^2
+};
+
+#ifndef __cplusplus
+QG_ARRAY(ShapeSumsArray, ShapeSums);
+#endif
+
+// shape_state.comp: looks at all tets and faces.
+struct ShapeStatePush {
+  QG_REF(Vec3s) vertices;
+  QG_REF(Uvec4s) tets;
+  QG_REF(Uvec3s) faces;
+  QG_REF(Uints) face_kinds;
+  QG_REF(Uints) face_tets;
+  QG_REF(ShapeSumsArray) sums;  // per workgroup, written
+  QG_REF(Vec2s) samples;        // depth (mm) and area (mm^2) of every `step`-th face, written
+  uint tet_count;
+  uint face_count;
+  uint step;
+  LeastTet least;
+};
+
+#ifdef __cplusplus
+}  // namespace quadgraph::gpu
+#endif
+#endif

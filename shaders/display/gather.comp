@@ -1,0 +1,97 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "light/shaped.glsl"
+#include "material/fresnel.glsl"
+#include "light/environment.glsl"
+
+layout(local_size_x = WORKGROUP_SIZE) in;
+#include "display/pixel.glsl"
+
+SurfaceScene scene;
+#define BODY scene.solid.body
+#define TREE_BODY scene.solid.body
+#define TREE scene.solid.tree
+#define POINTS scene.points
+#include "gather/leaving.glsl"
+
+const float PI = 3.14159265;
+
+struct Sample {
+  uint face;
+  vec3 position, normal, specular;
+};
+
+Sample sample_at(uint i) {
+  vec4 specular = load_vec4(push.samples[1], i), normal = load_vec4(push.samples[2], i);
+  uint face = uint(specular.w) * FACE_HALF + uint(normal.w);
+  return Sample(face, load_vec4(push.samples[0], i).xyz, normal.xyz, specular.rgb);
+}
+
+// Whether one ray does for two samples of a pixel. Between faces what is seen can change too much.
+bool together(Sample a, Sample b) {
+  return a.face == b.face;
+}
+
+// Barycentric coordinates of the point of a face that lies below or above `point`.
+vec3 coordinates_in(uint face, vec3 point) {
+  uvec3 ids = load_uvec3(BODY.faces, face);
+  vec3 a = load_vec3(BODY.vertices, ids.x);
+  vec3 u = load_vec3(BODY.vertices, ids.y) - a, v = load_vec3(BODY.vertices, ids.z) - a, offset = point - a;
+  vec3 normal = cross(u, v);
+  float area = max(dot(normal, normal), 1e-30);
+  float second = dot(cross(offset, v), normal) / area, third = dot(cross(u, offset), normal) / area;
+  vec3 l = max(vec3(1.0 - second - third, second, third), vec3(0));
+  return l / (l.x + l.y + l.z);
+}
+
+// Radiance of what is behind the body along a ray from the eye, W/(mm^2 sr).
+vec3 radiance_behind(vec3 ray) {
+  vec3 sum = vec3(0);
+  for (uint i = 0u; i < scene.light_count; ++i) {
+    LightRecord light = load_light(scene.lights, i);
+    if (light.kind == LIGHT_AMBIENT) sum += light.power / PI;
+    if (SHAPED && light.kind == LIGHT_ENVIRONMENT) {
+      sum += light.power * environment_at(load_light_shape(scene.shapes, i), ENVIRONMENT_RAYS, ray);
+    }
+  }
+  return sum;
+}
+
+Leaving towards_eye(uint face, vec3 position, vec3 normal) {
+  vec3 v = normalize(scene.eye - position);
+  return leaving(face, coordinates_in(face, position), v, normalize(normal), scene.scale,
+                 scene.radiance_norm);
+}
+
+// One view ray for all samples that lie together: where faces are larger than pixels, one per pixel. Samples are read
+// again where they are needed: an array of them would be slow to index.
+void main() {
+  Pixel pixel;
+  if (!find_pixel(pixel)) return;
+  scene = load_scene(push.scene);
+  uint waiting = 0u;
+  for (uint k = 0u; k < 4u; ++k) waiting |= load_vec4(push.samples[0], sample_of(pixel, k)).w > 0.0 ? 1u << k : 0u;
+  vec3 scattered = vec3(0), specular = vec3(0), seen = vec3(0), unscattered = vec3(0);
+  float alpha = 0.0;
+  while (waiting != 0u) {
+    Sample first = sample_at(sample_of(pixel, findLSB(waiting)));
+    float share = 0.0;
+    vec3 position = vec3(0), normal = vec3(0);
+    for (uint k = 0u; k < 4u; ++k) {
+      Sample other = sample_at(sample_of(pixel, k));
+      bool taken = (waiting >> k & 1u) == 1u && together(first, other);
+      if (!taken) continue;
+      waiting &= ~(1u << k);
+      share += 0.25;
+      position += other.position;
+      normal += other.normal;
+      specular += 0.25 * other.specular;
+    }
+    Leaving light = towards_eye(first.face, 0.25 / share * position, normal);
+    scattered += share * light.radiance;
+    seen += share * light.seen;
+    unscattered += share * light.seen * radiance_behind(normalize(0.25 / share * position - scene.eye));
+    alpha += share;
+  }
+  write_pixel(pixel, vec3[](scattered, specular, unscattered, seen), alpha);
+}

@@ -1,0 +1,33 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "display/ground_shared.h"
+
+layout(local_size_x = WORKGROUP_SIZE) in;
+layout(push_constant, scalar) uniform Block { GroundPush push; };
+
+float shadow_of(ivec2 texel) {
+  if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(GROUND_SIZE)))) return 0.0;
+  return push.shadow.at[texel.y * GROUND_SIZE + texel.x];
+}
+
+// Between texels; `place` from -1 to 1 over the map.
+float shadow_at(vec2 place) {
+  if (any(greaterThan(abs(place), vec2(1.1)))) return 0.0;
+  vec2 texel = (0.5 + 0.5 * place) * float(GROUND_SIZE) - 0.5;
+  ivec2 low = ivec2(floor(texel));
+  vec2 f = texel - floor(texel);
+  return mix(mix(shadow_of(low), shadow_of(low + ivec2(1, 0)), f.x),
+             mix(shadow_of(low + ivec2(0, 1)), shadow_of(low + ivec2(1, 1)), f.x), f.y);
+}
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= push.width * push.height || push.alpha.at[i] >= 1.0) return;
+  vec2 at = (vec2(i % push.width, i / push.width) + 0.5) / vec2(push.width, push.height);
+  vec3 ray = push.corner + at.x * push.right + at.y * push.down;
+  uint axis = push.z_up != 0u ? 2u : 1u;
+  if (push.eye[axis] <= 0.0 || ray[axis] >= 0.0) return;
+  vec3 hit = push.eye - push.eye[axis] / ray[axis] * ray;
+  float shadow = shadow_at((push.z_up != 0u ? hit.xy : hit.xz) / push.half_width);
+  push.alpha.at[i] += (1.0 - push.alpha.at[i]) * shadow;
+}

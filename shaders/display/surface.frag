@@ -1,0 +1,29 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "light/render_shared.h"
+
+layout(push_constant, scalar) uniform Block { SurfacePush push; };
+#define SURFACE push
+layout(location = 0) in vec3 position;  // mm
+layout(location = 1) in vec3 normal;
+layout(location = 4) in float sky;  // share that is not hidden by the body
+layout(location = 5) in vec3 rest;  // mm, the position at rest
+layout(location = 2) in vec3 exitance;             // W/mm^2
+layout(location = 3) in vec3 unscattered_exitance;  // W/mm^2
+layout(location = 0) out vec4 scattered_coverage;  // W/(mm^2 sr), 1
+layout(location = 1) out vec4 specular;            // W/(mm^2 sr), 1
+layout(location = 2) out vec4 unscattered;         // W/(mm^2 sr), 1
+
+#include "display/specular.glsl"
+
+// As of a diffuser behind the surface: the same from every side but for Fresnel.
+void main() {
+  scene = load_scene(push.scene);
+  place_roughness(rest);
+  vec3 n = normalize(normal);
+  vec3 v = normalize(scene.eye - position);
+  float share = fresnel_transmittance(clamp(dot(n, v), 0.0, 1.0), scene.eta) / scene.radiance_norm;
+  scattered_coverage = vec4(exitance * share, 1.0);
+  specular = vec4(specular_radiance(position, n, v, sky), 1.0);
+  unscattered = vec4(unscattered_exitance * share, 1.0);
+}

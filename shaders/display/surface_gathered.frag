@@ -1,0 +1,25 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "light/render_shared.h"
+
+layout(push_constant, scalar) uniform Block { SurfacePush push; };
+#define SURFACE push
+layout(location = 0) in vec3 position;  // mm
+layout(location = 1) in vec3 normal;
+layout(location = 4) in float sky;  // share that is not hidden by the body
+layout(location = 5) in vec3 rest;  // mm, the position at rest
+layout(location = 0) out vec4 position_coverage;  // mm, 1
+layout(location = 1) out vec4 specular_face;      // W/(mm^2 sr), high half of the face
+layout(location = 2) out vec4 normal_face;        // unit, low half of the face
+
+#include "display/specular.glsl"
+
+void main() {
+  scene = load_scene(push.scene);
+  place_roughness(rest);
+  vec3 n = normalize(normal);
+  uint face = load_uint(scene.triangle_face, gl_PrimitiveID);
+  position_coverage = vec4(position, 1.0);
+  specular_face = vec4(specular_radiance(position, n, normalize(scene.eye - position), sky), face / FACE_HALF);
+  normal_face = vec4(n, face % FACE_HALF);
+}

@@ -1,0 +1,55 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "path/path_light_shared.h"
+
+layout(push_constant, scalar) uniform Block { SurfacePathPush push; };
+#define SURFACE push.surface
+layout(location = 0) in vec3 position;  // mm
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec3 rest;  // mm, the position at rest
+layout(location = 0) out vec4 scattered_coverage;  // W/(mm^2 sr), 1
+layout(location = 1) out vec4 specular;            // W/(mm^2 sr), 1
+layout(location = 2) out vec4 unscattered;         // none, 1
+
+#include "path/path_field.glsl"
+#include "path/path_tools.glsl"
+#include "display/specular.glsl"
+
+// Where a ray from the eye to `end` last leaves a tool: the point, and there the direction out of what is left; false
+// where it meets none.
+bool last_cut(PathTools tools, vec3 end, out vec3 point, out vec3 outward) {
+  vec3 way = end - scene.eye;
+  float latest = 0.0;
+  for (uint k = 0u; k < tools.count; ++k) {
+    PathTool tool = tools.at.at[k];
+    vec2 span = tool_span(tool, scene.eye, way);
+    if (span.x >= span.y || span.y <= latest || span.y >= 1.0) continue;
+    latest = span.y;
+    point = scene.eye + latest * way;
+    outward = -tool_gradient(tool, point);
+  }
+  return latest > 0.0;
+}
+
+// Open surfaces are seen from both sides. A side that is turned away from the eye is seen through a hole, or because
+// what lay before it has been cut away: then the cut face is what is seen, and it lies on the same ray.
+void main() {
+  scene = load_scene(SURFACE.scene);
+  PathField field = load_path_field(push.field);
+  if (field.tools.count > 0u && cut_away(field.tools, position)) discard;
+  place_roughness(rest);
+  vec3 at = position, n = normalize(normal);
+  if (field.tools.count > 0u && !gl_FrontFacing) {
+    vec3 point, outward;
+    if (last_cut(field.tools, position, point, outward)) {
+      at = point;
+      n = outward;
+    }
+  }
+  vec3 v = normalize(scene.eye - at);
+  if (dot(n, v) < 0.0) n = gl_FrontFacing ? normalize(n - 1.001 * dot(n, v) * v) : -n;
+  float share = fresnel_transmittance(clamp(dot(n, v), 0.0, 1.0), scene.eta) / scene.radiance_norm;
+  scattered_coverage = vec4(share * path_exitance(field, at), 1.0);
+  specular = vec4(specular_radiance(at, n, v, 1.0), 1.0);
+  unscattered = vec4(0.0, 0.0, 0.0, 1.0);
+}

@@ -1,0 +1,39 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "gather/gather_shared.h"
+#include "material/fresnel.glsl"
+#include "source/face_azimuth.glsl"
+#include "source/lambertian.glsl"
+
+layout(local_size_x = WORKGROUP_SIZE) in;
+layout(push_constant, scalar) uniform Block { GatherExitancePush push; };
+
+BodyRef body;
+#define BODY body
+#define POINTS push.points
+#include "gather/gather.glsl"
+
+const float PI = 3.14159265;
+
+void main() {
+  uint face = gl_GlobalInvocationID.x;
+  body = load_body(push.body);
+  if (face >= BODY.face_count) return;
+  push.exitance.at[face] = vec3(0);
+  if (load_uint(BODY.face_kinds, face) != FACE_OPEN) return;
+  uvec3 ids = load_uvec3(BODY.faces, face);
+  mat3 corners = corners_of(ids);
+  vec3 doubled = cross(corners[1] - corners[0], corners[2] - corners[0]);
+  if (doubled == vec3(0)) return;
+  vec3 normal = normalize(doubled);
+  vec3 tangent = face_tangent(face, normal, corners[1] - corners[0]);
+  uint tet = load_uint(BODY.face_tets, face);
+  vec3 exitance = vec3(0);
+  for (uint node = 0u; node < LAMBERTIAN_NODES; ++node) {
+    start_on_face(tet, ids, corners, vec3(1.0 / 3.0));
+    vec3 incoming = lambertian_incoming(2u * node + (node >> 1u), normal, tangent);
+    vec3 radiance = gather(tet, refracted(incoming, normal, BODY.eta)).radiance;
+    exitance += LAMBERTIAN_W[node] * fresnel_transmittance(sqrt(LAMBERTIAN_U[node]), BODY.eta) * radiance;
+  }
+  push.exitance.at[face] = PI / (BODY.eta * BODY.eta) * exitance;
+}

@@ -1,0 +1,184 @@
+// What the passes of gathered radiance share with C++, in scalar layout; see shared.h. Equations: docs/accuracy.md.
+#ifndef QUADGRAPH_GATHER_SHARED_H
+#define QUADGRAPH_GATHER_SHARED_H
+
+#include "shared/body_shared.h"
+#include "solver/solve_shared.h"
+
+#ifdef __cplusplus
+namespace quadgraph::gpu {
+#endif
+
+// Light at a vertex. All three are linear between vertices; uncollided fluence is entry exp(-depth), which is exact for
+// a beam behind a flat face.
+struct GatherPoint {
+  vec3 phi;    // W/mm^2, fluence of light that has scattered
+  vec3 entry;  // W/mm^2, fluence of light that has not, as if nothing had been lost on its way
+  vec3 depth;  // optical depth of that way
+};
+
+// At a surface vertex: radiance is `factor` times what is gathered, and a Lambertian exitance `rest`, but at least that
+// of a Lambertian exitance `least`.
+struct GatherScale {
+  vec3 factor;
+  vec3 rest;   // W/mm^2
+  vec3 least;  // W/mm^2
+};
+
+// Sums over the open faces below a node of the tree over a body's faces, or one of these.
+struct GatherNode {
+  vec3 exitance;  // W, of the solve
+  vec3 gathered;  // W, of what is gathered
+  vec3 normal;    // mm^2, area times normal
+  vec3 place;     // mm^3, area times centroid
+  float area;     // mm^2
+};
+
+// The solve's exitance follows the surface less closely than light does: within a mean free path the shape is that of
+// what is gathered. The factor of a vertex is therefore a ratio of means, with weights
+//   (exp(-d^2 / (2 s^2)) - end) (1 + n n') / 2 alike,   s^2 = GATHER_PATH / sigma_t^2 + GATHER_EDGE mean squared edge,
+// at distance d, where `end` brings them to zero at GATHER_REACH s, and `alike`, the smaller over the larger of what is
+// gathered here and there but at least GATHER_ALIKE, keeps bright faces from speaking for dark ones. Nodes whose
+// diagonal is at most GATHER_NODE s are taken whole. A centroid is at most sqrt(2/3) of a face's root mean squared edge
+// away from a corner: GATHER_EDGE GATHER_REACH^2 > 2/3 leaves no vertex without a face.
+const float GATHER_PATH = 1.4f;
+const float GATHER_EDGE = 0.12f;
+const float GATHER_REACH = 2.4f;
+const float GATHER_ALIKE = 1e-3f;
+const float GATHER_NODE = 1.0f;
+// The largest factor: where the fluence of a coarse mesh is far too low, gathering has nothing to scale.
+const float GATHER_FACTOR_MAX = 4.0f;
+// What of the exitance, as a diffuser would send it, radiance is at least where edges are GATHER_LONG mean free paths
+// or longer; nothing where they are half as long. Beside an edge between light and shadow the fluence of long elements
+// undershoots, and what is gathered there can be nothing or less.
+const float GATHER_FLOOR = 0.4f;
+const float GATHER_LONG = 4.0f;
+// A view ray ends where every channel keeps at most GATHER_END, and what lies behind, if it is as bright as the last
+// tet, adds at most GATHER_END to what is gathered; or keeps at most GATHER_LEAST. What lies behind then counts as
+// even. Seen from the unlit side the fluence grows inwards almost as fast as it is attenuated: the first condition
+// alone loses 5%.
+const float GATHER_END = 1e-2f;
+const float GATHER_LEAST = 1e-6f;
+// Tets that a view ray crosses at most.
+const uint GATHER_STEPS = 1024u;
+// Parts of a body behind each other that a view ray goes through at most.
+const uint VIEW_PARTS = 8u;
+// Optical depth from which on light that has not scattered counts as none, and tets on the way back to where it
+// entered.
+const float UNCOLLIDED_DEPTH = 16.0f;
+const uint UNCOLLIDED_STEPS = 512u;
+// Least inside cosine of light at the face where it enters.
+const float LEAST_COSINE = 0.02f;
+// A refracted view ray keeps at least this cosine with the face that it enters, whose normal is not that of the
+// display.
+const float LEAST_VIEW_COSINE = 0.02f;
+
+#ifndef __cplusplus
+QG_ARRAY(GatherPoints, GatherPoint);
+QG_ARRAY(GatherScales, GatherScale);
+QG_ARRAY(GatherNodes, GatherNode);
+
+GatherNode load_gather_node(GatherNodes a, uint i) {
+  if (TEXELS) {
+    uint t = texel_of(uvec2(a)) + 13u * i;
+    return GatherNode(uintBitsToFloat(texels3(t)), uintBitsToFloat(texels3(t + 3u)), uintBitsToFloat(texels3(t + 6u)),
+                      uintBitsToFloat(texels3(t + 9u)), uintBitsToFloat(texel(t + 12u)));
+  }
+  return a.at[i];
+}
+
+GatherPoint load_gather_point(GatherPoints a, uint i) {
+  if (TEXELS) {
+    Vec3s parts = Vec3s(uvec2(a));
+    return GatherPoint(load_vec3(parts, 3u * i), load_vec3(parts, 3u * i + 1u), load_vec3(parts, 3u * i + 2u));
+  }
+  return a.at[i];
+}
+
+GatherScale load_gather_scale(GatherScales a, uint i) {
+  if (TEXELS) {
+    Vec3s parts = Vec3s(uvec2(a));
+    return GatherScale(load_vec3(parts, 3u * i), load_vec3(parts, 3u * i + 1u), load_vec3(parts, 3u * i + 2u));
+  }
+  return a.at[i];
+}
+#endif
+
+// gather_phi.comp: phi of the points from a solution at the vertices.
+struct GatherPhiPush {
+  QG_REF(Fields) x;
+  QG_REF(Vec3s) to_phi;  // null: 1
+  QG_REF(Scales) scale;
+  QG_REF(GatherPoints) points;
+  uint count;
+};
+
+// uncollided.comp: entry and depth of the points.
+struct UncollidedPush {
+  QG_REF(BodyRefs) body;      // one
+  QG_REF(Uints) start;        // a tet at each vertex
+  QG_REF(Uints) nearest;      // surface vertex
+  QG_REF(Uints) face_offset;  // faces around each surface vertex
+  QG_REF(Uints) face_incidence;
+  QG_REF(Beams) beams;
+  QG_REF(Floats) beam_q;
+  QG_REF(GatherPoints) points;
+  uint beam_count;
+  uint vertex_count;
+  uint surface_vertex_count;
+};
+
+// gather_exitance.comp: exitance of what is gathered, per face.
+struct GatherExitancePush {
+  QG_REF(BodyRefs) body;  // one
+  QG_REF(GatherPoints) points;
+  QG_REF(Vec3s) exitance;  // W/mm^2, written
+};
+
+// gather_nodes.comp: nodes `first` to `first` + `count` - 1 of the tree, leaves before their parents; and, behind all
+// nodes, every face by its place in TreeRef::order.
+struct GatherNodesPush {
+  QG_REF(SolidRefs) solid;  // one
+  QG_REF(Vec3s) gathered;   // W/mm^2 per face
+  QG_REF(Vec3s) exitance;   // W/mm^2 per surface vertex
+  QG_REF(GatherNodes) nodes;
+  uint first;
+  uint count;
+};
+
+// gather_scale.comp: scale at surface vertices.
+struct GatherScalePush {
+  QG_REF(SolidRefs) solid;  // one
+  QG_REF(Uints) face_offset;
+  QG_REF(Uints) face_incidence;
+  QG_REF(Vec3s) gathered;
+  QG_REF(Vec3s) exitance;  // W/mm^2 per surface vertex
+  QG_REF(GatherNodes) nodes;
+  QG_REF(GatherScales) scale;
+  uint count;
+};
+
+// gather_single.comp: scale at surface vertices that adds what is gathered, as it is, to the exitance.
+struct GatherSinglePush {
+  QG_REF(Vec3s) exitance;  // W/mm^2 per surface vertex
+  QG_REF(GatherScales) scale;
+  uint count;
+};
+
+// radiance_probe.comp: radiance that leaves the centroids of faces.
+struct RadianceProbePush {
+  QG_REF(SolidRefs) solid;  // one
+  QG_REF(GatherPoints) points;
+  QG_REF(GatherScales) scale;
+  QG_REF(Uints) face;
+  QG_REF(Vec3s) direction;      // unit, outward
+  QG_REF(Vec3s) radiance;       // W/(mm^2 sr), written: scattered
+  QG_REF(Vec3s) transmittance;  // written
+  uint count;
+  float radiance_norm;  // integral of F_t cos over the hemisphere, sr
+};
+
+#ifdef __cplusplus
+}  // namespace quadgraph::gpu
+#endif
+#endif

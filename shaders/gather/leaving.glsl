@@ -1,0 +1,62 @@
+// Light that leaves a body along a view ray, and what is seen through it. The shader that
+// includes it defines first POINTS (gather_fields.glsl) and BODY, TREE and TREE_BODY (face_tree.glsl), which belong
+// together.
+#ifndef QUADGRAPH_LEAVING_GLSL
+#define QUADGRAPH_LEAVING_GLSL
+
+#include "exchange/face_tree.glsl"
+#include "gather/gather.glsl"
+#include "material/fresnel.glsl"
+
+// The direction inside of light that leaves along `outward` at a surface of normal `n`, turned around; into the face of
+// normal `face_normal` in any case.
+vec3 view_ray(vec3 outward, vec3 n, vec3 face_normal) {
+  float cos_o = clamp(dot(outward, n), 0.0, 1.0);
+  float cos_i = sqrt(max(1.0 - (1.0 - cos_o * cos_o) / (BODY.eta * BODY.eta), 0.0));
+  vec3 ray = normalize((cos_o / BODY.eta - cos_i) * n - outward / BODY.eta);
+  return normalize(ray - max(dot(ray, face_normal) + LEAST_VIEW_COSINE, 0.0) * face_normal);
+}
+
+struct Leaving {
+  vec3 radiance;  // W/(mm^2 sr)
+  vec3 seen;      // share of the light behind all parts of the body that comes through
+};
+
+// Light that leaves face `face` at barycentric coordinates `l` along `outward`, at a surface of normal `n`. Fresnel and
+// refraction included: radiance over eta^2 is kept. Where enough of the ray comes out behind, it goes on to the next
+// part of the body, of whose surface only the face is known.
+Leaving leaving(uint face, vec3 l, vec3 outward, vec3 n, GatherScales scale, float radiance_norm) {
+  Leaving sum = Leaving(vec3(0), vec3(0));
+  vec3 share = vec3(1);
+  for (uint part = 0u; part < VIEW_PARTS; ++part) {
+    uvec3 ids = load_uvec3(BODY.faces, face);
+    mat3 corners = corners_of(ids);
+    vec3 doubled = cross(corners[1] - corners[0], corners[2] - corners[0]);
+    vec3 face_normal = doubled / max(length(doubled), 1e-30);
+    if (part > 0u) n = face_normal;
+    share *= fresnel_transmittance(clamp(dot(outward, n), 0.0, 1.0), BODY.eta);
+    uint tet = load_uint(BODY.face_tets, face);
+    start_on_face(tet, ids, corners, l);
+    Gathered inside = gather(tet, view_ray(outward, n, face_normal));
+    GatherScale a = load_gather_scale(scale, ids.x), b = load_gather_scale(scale, ids.y),
+                c = load_gather_scale(scale, ids.z);
+    vec3 factor = l.x * a.factor + l.y * b.factor + l.z * c.factor;
+    vec3 rest = l.x * a.rest + l.y * b.rest + l.z * c.rest;
+    vec3 least = l.x * a.least + l.y * b.least + l.z * c.least;
+    vec3 radiance = factor * inside.radiance / (BODY.eta * BODY.eta) + rest / radiance_norm;
+    sum.radiance += share * max(radiance, least / radiance_norm);
+    sum.seen += share * (inside.seen - inside.escape.share);
+    share *= inside.escape.share;
+    if (largest(share) <= GATHER_END) break;
+    Hit hit = first_met(line_along(inside.escape.point, inside.escape.direction), inside.escape.face, FAR);
+    if (!hit.outside) break;
+    face = hit.face;
+    l = max(vec3(1.0 - hit.place.x - hit.place.y, hit.place), vec3(0));
+    l /= l.x + l.y + l.z;
+    outward = -inside.escape.direction;
+  }
+  sum.seen += share;
+  return sum;
+}
+
+#endif

@@ -1,0 +1,200 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "gather/gather_shared.h"
+#include "material/fresnel.glsl"
+#include "source/face_azimuth.glsl"
+#include "source/lambertian.glsl"
+#include "source/beam_light.glsl"
+
+layout(local_size_x = WORKGROUP_SIZE) in;
+layout(push_constant, scalar) uniform Block { UncollidedPush push; };
+
+BodyRef body;
+#define BODY body
+
+struct Payload {
+  uint unused;
+};
+
+Payload payload(uint id) {
+  return Payload(0u);
+}
+
+#include "source/tet_ray.glsl"
+
+// Light that has not scattered: what it would be without loss, and the optical depth of its way.
+struct Light {
+  vec3 entry, depth;
+};
+
+const Light NO_LIGHT = Light(vec3(0), vec3(UNCOLLIDED_DEPTH));
+const uint FACE_CENTRE = 3u;  // the quarter in the middle
+
+// Where a ray back to the light meets the surface.
+struct Met {
+  bool found;
+  uint face, quarter;
+  vec3 tau;
+};
+
+// Puts the ray's point on vertex v. The corner that the ray moves towards fastest is none of those it can leave
+// opposite of.
+void start_at_vertex(uint v, uint tet, vec3 direction) {
+  uvec4 ids = load_uvec4(BODY.tets, tet);
+  optical = load_optical(BODY.optical, (BODY.flags & BODY_EVEN) != 0u ? 0u : tet);
+  corner_0 = Corner(ids.x, 0u, load_vec3(BODY.vertices, ids.x), float(ids.x == v), Payload(0u));
+  corner_1 = Corner(ids.y, 1u, load_vec3(BODY.vertices, ids.y), float(ids.y == v), Payload(0u));
+  corner_2 = Corner(ids.z, 2u, load_vec3(BODY.vertices, ids.z), float(ids.z == v), Payload(0u));
+  corner_3 = Corner(ids.w, 3u, load_vec3(BODY.vertices, ids.w), float(ids.w == v), Payload(0u));
+  vec4 rate = find_exit(direction).rate;
+  float most = max(max(rate.x, rate.y), max(rate.z, rate.w));
+  if (rate.x == most) {
+    swap_with_3(corner_0);
+  } else if (rate.y == most) {
+    swap_with_3(corner_1);
+  } else if (rate.z == most) {
+    swap_with_3(corner_2);
+  }
+}
+
+// The quarter of a face that the ray's point lies in, once the corner opposite is in slot 3.
+uint quarter_here(uint face) {
+  uvec3 ids = load_uvec3(BODY.faces, face);
+  if (max(corner_0.l, max(corner_1.l, corner_2.l)) <= 0.5) return FACE_CENTRE;
+  uint near = corner_0.l > 0.5 ? corner_0.id : corner_1.l > 0.5 ? corner_1.id : corner_2.id;
+  return near == ids.x ? 0u : near == ids.y ? 1u : 2u;
+}
+
+Met back_to_surface(uint v, vec3 direction) {
+  uint tet = load_uint(push.start, v);
+  start_at_vertex(v, tet, direction);
+  vec3 tau = vec3(0);
+  for (uint step = 0u; step < UNCOLLIDED_STEPS; ++step) {
+    Exit exit = find_exit(direction);
+    if (!exit.found) break;
+    tau += extinction() * exit.path;
+    if (all(greaterThan(tau, vec3(UNCOLLIDED_DEPTH)))) break;
+    move_to(exit_point(exit));
+    uvec2 crossing = turn(tet, exit.slot);
+    if (crossing.x < BODY.tet_count) {
+      tet = crossing.x;
+      enter(crossing);
+      continue;
+    }
+    uint face = crossing.x - BODY.tet_count;
+    if (load_uint(BODY.face_kinds, face) == FACE_OPEN) return Met(true, face, quarter_here(face), tau);
+    vec3 n = exit.outward / length(exit.outward);
+    direction = normalize(direction - 2.0 * dot(direction, n) * n);
+  }
+  return Met(false, 0u, 0u, vec3(0));
+}
+
+vec3 doubled_normal(uint face) {
+  uvec3 ids = load_uvec3(BODY.faces, face);
+  vec3 p = load_vec3(BODY.vertices, ids.x);
+  return cross(load_vec3(BODY.vertices, ids.y) - p, load_vec3(BODY.vertices, ids.z) - p);
+}
+
+vec3 q_at(uint beam, uint face, uint quarter) {
+  return beam_light(load_beam(push.beams, beam), push.beam_q, BODY.face_count, face, quarter);
+}
+
+// Unit, but 0 of a face without area.
+vec3 normal_of(uint face) {
+  vec3 doubled = doubled_normal(face);
+  return doubled / max(length(doubled), 1e-30);
+}
+
+// The quarter of face `face` at its corner v.
+uint quarter_at(uint face, uint v) {
+  uvec3 ids = load_uvec3(BODY.faces, face);
+  return v == ids.x ? 0u : v == ids.y ? 1u : 2u;
+}
+
+float inside_cosine(float cosine) {
+  return max(sqrt(max(1.0 - (1.0 - cosine * cosine) / (BODY.eta * BODY.eta), 0.0)), LEAST_COSINE);
+}
+
+// Fluence behind a face that `q` enters by, of light that travels along `incoming` outside.
+vec3 entry_fluence(vec3 q, vec3 incoming, vec3 normal) {
+  return q / inside_cosine(min(-dot(incoming, normal), 1.0));
+}
+
+// Light at a surface vertex from the open faces around it that it enters by. Returns whether there are any.
+bool lit_at_surface(uint beam, uint v, vec3 incoming, bool directed, out vec3 entry) {
+  float area = 0.0;
+  entry = vec3(0);
+  for (uint k = load_uint(push.face_offset, v); k < load_uint(push.face_offset, v + 1u); ++k) {
+    uint face = load_uint(push.face_incidence, k);
+    vec3 normal = doubled_normal(face);
+    float size = length(normal);
+    if (directed && dot(incoming, normal) >= 0.0) continue;
+    vec3 q = q_at(beam, face, quarter_at(face, v));
+    entry += size * (directed ? entry_fluence(q, incoming, normal / size) : q);
+    area += size;
+  }
+  entry = area > 0.0 ? entry / area : vec3(0);
+  return area > 0.0;
+}
+
+Light directed_light(uint beam, uint v, vec3 incoming) {
+  vec3 entry;
+  if (v < push.surface_vertex_count && lit_at_surface(beam, v, incoming, true, entry)) return Light(entry, vec3(0));
+  Met met = back_to_surface(v, -incoming);
+  if (met.found && BODY.eta > 1.0) {
+    // By the normal where the straight way ends one knows how the light was bent.
+    met = back_to_surface(v, -refracted(incoming, normal_of(met.face), BODY.eta));
+  }
+  if (!met.found) return NO_LIGHT;
+  vec3 q = q_at(beam, met.face, met.quarter);
+  return Light(entry_fluence(q, incoming, normal_of(met.face)), met.tau);
+}
+
+vec3 surface_normal(uint v) {
+  vec3 sum = vec3(0);
+  for (uint k = load_uint(push.face_offset, v); k < load_uint(push.face_offset, v + 1u); ++k) {
+    sum += doubled_normal(load_uint(push.face_incidence, k));
+  }
+  return sum / max(length(sum), 1e-30);
+}
+
+// Fluence over q at a depth of tau below the surface.
+vec3 fluence_below(Lambertian light, vec3 tau) {
+  vec3 sum = vec3(0);
+  for (uint k = 0u; k < LAMBERTIAN_NODES; ++k) sum += light.share[k] / light.cosine[k] * exp(-tau / light.cosine[k]);
+  return sum;
+}
+
+Light lambertian_light(uint beam, uint kind, uint v) {
+  Lambertian light = lambertian(BODY.eta);
+  if (kind == BEAM_MEAN) light = Lambertian(vec4(0.25), vec4(dot(light.share, light.cosine)));
+  vec3 whole = fluence_below(light, vec3(0)), entry;
+  if (v < push.surface_vertex_count && lit_at_surface(beam, v, vec3(0), false, entry)) {
+    return Light(whole * entry, vec3(0));
+  }
+  Met met = back_to_surface(v, surface_normal(load_uint(push.nearest, v)));
+  if (!met.found) return NO_LIGHT;
+  return Light(whole * q_at(beam, met.face, met.quarter), -log(fluence_below(light, met.tau) / whole));
+}
+
+Light light_of(uint beam, uint v) {
+  BeamRecord record = load_beam(push.beams, beam).way;
+  if (record.kind == BEAM_DIRECTIONAL) return directed_light(beam, v, record.travel_or_from);
+  if (record.kind == BEAM_POINT) return directed_light(beam, v, normalize(load_vec3(BODY.vertices, v) - record.travel_or_from));
+  return lambertian_light(beam, record.kind, v);
+}
+
+void main() {
+  uint v = gl_GlobalInvocationID.x;
+  if (v >= push.vertex_count) return;
+  body = load_body(push.body);
+  vec3 entry = vec3(0), left = vec3(0), least = vec3(UNCOLLIDED_DEPTH);
+  for (uint beam = 0u; beam < push.beam_count; ++beam) {
+    Light light = light_of(beam, v);
+    entry += light.entry;
+    left += light.entry * exp(-light.depth);
+    least = min(least, light.depth);
+  }
+  push.points.at[v].entry = entry;
+  push.points.at[v].depth = mix(least, -log(max(left, vec3(1e-37)) / entry), greaterThan(left, vec3(0)));
+}

@@ -1,0 +1,19 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "light/render_shared.h"
+
+layout(local_size_x = WORKGROUP_SIZE) in;
+layout(push_constant, scalar) uniform Block { EnvironmentFinerPush push; };
+
+void main() {
+  uint f = gl_GlobalInvocationID.x;
+  if (f >= push.face_count) return;
+  for (uint environment = 0u; environment < push.environments; ++environment) {
+    uint coarse = environment * push.coarse_count;
+    vec3 sum = vec3(0);
+    for (uint k = f * push.width; k < (f + 1u) * push.width; ++k) {
+      sum += load_float(push.weight, k) * load_vec3(push.coarse, coarse + load_uint(push.index, k));
+    }
+    push.hidden.at[environment * push.face_count + f] = sum;
+  }
+}

@@ -1,0 +1,96 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "light/lights.glsl"
+#include "material/fresnel.glsl"
+#include "light/environment.glsl"
+
+layout(local_size_x = WORKGROUP_SIZE) in;
+layout(push_constant, scalar) uniform Block { IrradiancePush push; };
+#define ENTERED push
+#include "light/entering.glsl"
+
+// The quarter of a face that its point a + u ab + v ac lies in, away from their boundaries.
+uint quarter_of(float u, float v) {
+  return u + v < 0.5 ? 0u : u > 0.5 ? 1u : v > 0.5 ? 2u : 3u;
+}
+
+// The same on the quarters of the face a, a + ab, a + ac.
+vec4 quarters_of(Lamp lamp, vec3 a, vec3 ab, vec3 ac, vec3 normal) {
+  vec4 quarter = vec4(0);
+  uint n = push.subdivision;
+  float h = 1.0 / float(n);
+  // Row i, column j: an upright triangle, and beside it an inverted one where the row has room.
+  for (uint i = 0u; i < n; ++i) {
+    for (uint j = 0u; i + j < n; ++j) {
+      for (uint inverted = 0u; inverted < (i + j + 1u < n ? 2u : 1u); ++inverted) {
+        float u = h * (float(i) + (inverted == 1u ? 2.0 : 1.0) / 3.0);
+        float v = h * (float(j) + (inverted == 1u ? 2.0 : 1.0) / 3.0);
+        quarter[quarter_of(u, v)] +=
+            float(FACE_QUARTERS) * h * h * share_at(lamp, a + u * ab + v * ac, normal);
+      }
+    }
+  }
+  return quarter;
+}
+
+// What of an environment enters a face, over its power.
+vec3 environment_share(LightShape shape, vec3 normal, uint hidden, uint face) {
+  vec3 all = environment_at(shape, ENVIRONMENT_ENTERING, normal);
+  if (uvec2(push.hidden) == uvec2(0)) return load_float(push.sky, face) * all;
+  return max(all - load_vec3(push.hidden, hidden), vec3(0));
+}
+
+void main() {
+  uint f = gl_GlobalInvocationID.x;
+  if (f >= push.face_count) return;
+  uvec3 face = load_uvec3(push.faces, f);
+  vec3 a = load_vec3(push.vertices, face.x);
+  vec3 ab = load_vec3(push.vertices, face.y) - a;
+  vec3 ac = load_vec3(push.vertices, face.z) - a;
+  vec3 doubled = cross(ab, ac);
+  vec3 normal = doubled / max(length(doubled), 1e-30);  // none of a face without area
+
+  vec3 q = vec3(0);
+  uint beam = 0u;  // of the light
+  uint environment = 0u;
+  vec4 quarter = vec4(0);
+  for (uint i = 0u; i < push.light_count; ++i) {
+    LightRecord light = load_light(push.lights, i);
+    if (light.kind == LIGHT_AMBIENT) {
+      float share = load_float(push.sky, f) * push.diffuse_transmittance;
+      push.beam_q.at[beam + f] = share;
+      q += share * light.power;
+      beam += BEAM_FACE * push.face_count;
+      continue;
+    }
+    Lamp lamp = Lamp(light, no_shape(), 0u, 0.0);
+    if (SHAPED) {
+      lamp.shape = load_light_shape(push.shapes, i);
+      lamp.width = sqrt(0.5 * length(cross(ab, ac))) / float(push.subdivision);
+    }
+    if (SHAPED && light.kind == LIGHT_ENVIRONMENT) {
+      vec3 share = environment_share(lamp.shape, normal, environment++ * push.face_count + f, f);
+      for (uint c = 0u; c < 3u; ++c) push.beam_q.at[beam + BEAM_RGB * f + c] = share[c] * light.power[c];
+      q += share * light.power;
+      beam += BEAM_RGB * push.face_count;
+      continue;
+    }
+    if (SHAPED && light.kind == LIGHT_PROJECTOR) {
+      for (lamp.channel = 0u; lamp.channel < 3u; ++lamp.channel) {
+        vec4 image = quarters_of(lamp, a, ab, ac, normal);
+        uint at = beam + BEAM_RGB_QUARTERS * f + lamp.channel;
+        for (uint k = 0u; k < FACE_QUARTERS; ++k) push.beam_q.at[at + 3u * k] = image[k];
+        q[lamp.channel] += dot(image, vec4(0.25)) * light.power[lamp.channel];
+      }
+      beam += BEAM_RGB_QUARTERS * push.face_count;
+      continue;
+    }
+    quarter += quarters_of(lamp, a, ab, ac, normal);
+    if (lamp.shape.more_follow == 1u) continue;
+    for (uint k = 0u; k < FACE_QUARTERS; ++k) push.beam_q.at[beam + FACE_QUARTERS * f + k] = quarter[k];
+    q += dot(quarter, vec4(0.25)) * light.power;
+    quarter = vec4(0);
+    beam += BEAM_QUARTERS * push.face_count;
+  }
+  push.q.at[f] = q;
+}

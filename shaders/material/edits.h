@@ -1,0 +1,105 @@
+// Edits of a material field, applied by the same code on the GPU and in the CPU reference; see shared.h.
+#ifndef QUADGRAPH_EDITS_H
+#define QUADGRAPH_EDITS_H
+
+#include "shared/image_levels.h"
+
+#ifdef __cplusplus
+namespace quadgraph::gpu {
+using glm::sqrt;
+#endif
+
+const uint EDIT_MULTIPLY = 0u;  // coefficient times the edit's
+const uint EDIT_ADD = 1u;       // plus it, not below 0
+const uint EDIT_SET = 2u;       // becomes it
+// Which coefficients it changes.
+const uint EDIT_SCATTERING = 1u;
+const uint EDIT_ABSORPTION = 2u;
+
+// One edit: what it does, and where; engine/optics/edit.h says it in a user's words.
+struct MaterialEdit {
+  vec3 sigma_s_prime;
+  vec3 sigma_a;
+  vec3 low;          // mm, box of the places that it reaches, with point_count > 0
+  vec3 high;         // mm
+  float depth_from;  // mm below the surface
+  float depth_to;    // mm
+  float radius;      // mm around the stroke
+  float softness;    // mm over which it fades at its bounds
+  uint operation;    // EDIT_MULTIPLY, EDIT_ADD, EDIT_SET
+  uint coefficients;
+  uint first_point;  // of the stroke
+  uint point_count;  // 0: everywhere
+  uint placed;       // 1: only in the box
+  ImageBox box;
+  ImageLevels image;  // of it: what the coefficients above are multiplied by
+  ImageLevels mask;   // of it: the luminance is how much of the edit arrives
+};
+
+QG_INLINE float segment_distance(vec3 p, vec3 a, vec3 b) {
+  vec3 ab = b - a;
+  float t = clamp(dot(p - a, ab) / max(dot(ab, ab), 1e-20f), 0.0f, 1.0f);
+  vec3 away = p - a - t * ab;
+  return sqrt(dot(away, away));
+}
+
+// 1 where x is well below 0, 0 where it is well above, in between over `softness`.
+QG_INLINE float inside(float x, float softness) {
+  float t = clamp(0.5f - x / max(softness, 1e-6f), 0.0f, 1.0f);
+  return t * t * (3.0f - 2.0f * t);
+}
+
+// How much of an edit arrives at `distance` from its stroke, mm, `depth` below the surface, mm; 0 to 1.
+QG_INLINE float edit_weight(MaterialEdit e, float distance, float depth) {
+  float weight = inside(depth - e.depth_to, e.softness);
+  if (e.depth_from > 0.0f) weight *= inside(e.depth_from - depth, e.softness);
+  if (e.point_count > 0u) weight *= inside(distance - e.radius, e.softness);
+  return weight;
+}
+
+// The same of its box, at `place` in it (in_box).
+QG_INLINE float box_weight(MaterialEdit e, vec3 place) {
+  vec3 over = max(place, -place) - e.box.half_size;
+  return inside(max(over.x, max(over.y, over.z)), e.softness);
+}
+
+QG_INLINE vec3 edited_coefficient(uint operation, vec3 value, vec3 by, float weight) {
+  if (operation == EDIT_MULTIPLY) return value * mix(vec3(1.0f), by, weight);
+  if (operation == EDIT_ADD) return max(value + weight * by, vec3(0.0f));
+  return mix(value, by, weight);
+}
+
+// `factor`: what its image makes of its coefficients.
+QG_INLINE Optical edited(Optical optical, MaterialEdit e, vec3 factor, float weight) {
+  if ((e.coefficients & EDIT_SCATTERING) != 0u) {
+    optical.sigma_s_prime = edited_coefficient(e.operation, optical.sigma_s_prime, factor * e.sigma_s_prime, weight);
+  }
+  if ((e.coefficients & EDIT_ABSORPTION) != 0u) {
+    optical.sigma_a = edited_coefficient(e.operation, optical.sigma_a, factor * e.sigma_a, weight);
+  }
+  return optical;
+}
+
+#ifndef __cplusplus
+QG_ARRAY(MaterialEdits, MaterialEdit);
+#endif
+
+// edit_material.comp: optical[i] = base[i] after all edits, one after the other.
+struct EditMaterialPush {
+  QG_REF(Opticals) base;  // may be `optical`
+  QG_REF(Opticals) optical;
+  QG_REF(Vec3s) nodes;   // mm, at rest; not read without edits
+  QG_REF(Floats) depth;  // mm, of the nodes
+  QG_REF(MaterialEdits) edits;
+  QG_REF(Vec3s) points;  // mm, of all strokes
+  QG_REF(Vec3s) texels;  // of all images
+  float spacing;         // mm from node to node: what is finer in an image is taken together
+  uint edit_count;
+  uint with_depth;  // 0: depth is not read
+  uint count;
+};
+
+#ifdef __cplusplus
+}  // namespace quadgraph::gpu
+#endif
+#endif

@@ -1,0 +1,24 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "solver/solve_shared.h"
+#include "solver/fields.glsl"
+#include "material/optics.h"
+#include "solver/stored_rows.glsl"
+#include "shared/stride.glsl"
+
+layout(push_constant, scalar) uniform Block { CgDirectionPush push; };
+
+void main() {
+  vec3 beta = push.state.at[0].beta;
+  EACH(i, push.count) {
+    Field direction;
+    if (push.multigrid == 1u) {
+      direction = load_field(push.z, i);
+    } else {
+      direction = solved(load_diagonal(push.diagonal, i), load_field(push.r, i));
+    }
+    // The old direction of the first iteration is no number one may count on.
+    if (beta != vec3(0)) direction = add_scaled(direction, beta, load_field(push.p, i));
+    push.p.at[i] = direction;
+  }
+}

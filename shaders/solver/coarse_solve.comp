@@ -1,0 +1,71 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "solver/solve_shared.h"
+#include "solver/fields.glsl"
+#include "material/optics.h"
+#include "solver/stored_rows.glsl"
+#include "shared/reduce.glsl"
+#include "solver/convergence.glsl"
+
+layout(local_size_x = WORKGROUP_SIZE) in;
+layout(push_constant, scalar) uniform Block { CoarseSolvePush push; };
+
+Field residual_at(CoherentFields x, Entry row_sum, uint i) {
+  uint slice = i / SLICE_ROWS;
+  uint end = load_row_uint(push.rows.slice_offset, slice + 1u);
+  Field own = load_coherent(x, i);
+  Field sum = times(row_sum, own);
+  for (uint e = load_row_uint(push.rows.slice_offset, slice) + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
+    StoredEntry stored = stored_entry(push.rows, e);
+    sum = add(sum, times(entry_in(stored), difference(load_coherent(x, column_of(stored)), own)));
+  }
+  return difference(load_field(push.f, i), sum);
+}
+
+// One step on all rows; the writes are seen by all before the next.
+void iterate(CoherentFields from, CoherentFields to, bool zero, float keep, vec3 add_share) {
+  for (uint i = gl_LocalInvocationID.x; i < push.count; i += WORKGROUP_SIZE) {
+    Row row = load_row(push.rows, i);
+    Field r;
+    if (zero) {
+      r = load_field(push.f, i);
+    } else {
+      r = residual_at(from, row.sum, i);
+    }
+    Field d = scaled(add_share, solved(row.diagonal, r));
+    if (!zero) d = add_scaled(d, vec3(keep), load_coherent(push.d, i));
+    push.d.at[i] = d;
+    if (zero) {
+      to.at[i] = d;
+    } else {
+      to.at[i] = add(load_coherent(from, i), d);
+    }
+  }
+  memoryBarrierBuffer();
+  barrier();
+}
+
+void main() {
+  vec3 inverse = 0.5 * load_vec3(push.damping, 0);  // 1/lambda
+  float middle = 0.5 * (1.0 + push.ratio), radius = 0.5 * (1.0 - push.ratio);
+  float rho = radius / middle;
+  iterate(push.z, push.other, true, 0.0, inverse / middle);
+  for (uint k = 1u; k < push.steps; ++k) {
+    float next = 1.0 / (2.0 * middle / radius - rho);
+    bool odd = k % 2u == 1u;
+    CoherentFields from = push.z, to = push.other;
+    if (odd) {
+      from = push.other;
+      to = push.z;
+    }
+    iterate(from, to, false, next * rho, 2.0 * next / radius * inverse);
+    rho = next;
+  }
+  if (push.reduce == 0u) return;
+  vec3 own = vec3(0);
+  for (uint i = gl_LocalInvocationID.x; i < push.count; i += WORKGROUP_SIZE) {
+    own += product(load_field(push.f, i), load_coherent(push.z, i));
+  }
+  vec3 rz = reduce_workgroup(own);
+  if (gl_LocalInvocationID.x == 0u) take_preconditioned(push.state, rz);
+}

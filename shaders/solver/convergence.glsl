@@ -1,0 +1,63 @@
+// What the last workgroup of a solver pass decides. Loops stay loops, as in reduce.glsl: llvmpipe walks through this code
+// in every workgroup, with nothing to do.
+#ifndef QUADGRAPH_CONVERGENCE_GLSL
+#define QUADGRAPH_CONVERGENCE_GLSL
+
+#extension GL_EXT_control_flow_attributes : require
+
+#include "solver/solve_shared.h"
+
+bvec3 not_finite(vec3 v) {
+  return bvec3(isnan(v.x) || isinf(v.x), isnan(v.y) || isinf(v.y), isnan(v.z) || isinf(v.z));
+}
+
+// Below this residual a channel is left alone: nothing that single precision holds would change.
+const float SOLVED = 1e-8;
+
+// Channels that still have a residual; one without light has none.
+bvec3 unsolved(vec3 square, vec3 norm) {
+  return greaterThan(square, SOLVED * SOLVED * norm);
+}
+
+float worst_residual(vec3 square, vec3 norm) {
+  vec3 ratio = mix(vec3(0), square / norm, greaterThan(norm, vec3(0)));
+  return sqrt(max(ratio.x, max(ratio.y, ratio.z)));
+}
+
+uint first_channel(bvec3 flags) {
+  return flags.x ? 0u : flags.y ? 1u : 2u;
+}
+
+void open(SolveStates state) {
+  [[dont_unroll]] for (uint l = 0u; l < MAX_LEVELS; ++l) state.at[0].gate[l] = uvec3(state.at[0].groups[l], 1u, 1u);
+  state.at[0].coarse = uvec3(1);
+  state.at[0].surface = uvec3(state.at[0].surface_groups, 1u, 1u);
+  state.at[0].check = uvec3(0);
+  state.at[0].status = SOLVE_RUNNING;
+}
+
+void close(SolveStates state) {
+  [[dont_unroll]] for (uint l = 0u; l < MAX_LEVELS; ++l) state.at[0].gate[l] = uvec3(0);
+  state.at[0].coarse = uvec3(0);
+  state.at[0].surface = uvec3(0);
+  state.at[0].check = uvec3(0);
+}
+
+void stop(SolveStates state, uint status, uint channel) {
+  close(state);
+  state.at[0].status = status;
+  state.at[0].channel = channel;
+}
+
+// r^T z of a preconditioned residual z, which makes the next direction.
+void take_preconditioned(SolveStates state, vec3 rz) {
+  vec3 before = state.at[0].rz;
+  bvec3 open_channel = unsolved(state.at[0].square, state.at[0].norm);
+  state.at[0].beta = mix(vec3(0), rz / before, bvec3(open_channel.x && before.x > 0.0, open_channel.y && before.y > 0.0,
+                                                      open_channel.z && before.z > 0.0));
+  state.at[0].rz = rz;
+  bvec3 failed = bvec3(open_channel.x && !(rz.x > 0.0), open_channel.y && !(rz.y > 0.0), open_channel.z && !(rz.z > 0.0));
+  if (any(failed)) stop(state, SOLVE_NOT_POSITIVE, first_channel(failed));
+}
+
+#endif

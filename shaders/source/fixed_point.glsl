@@ -1,0 +1,31 @@
+// Sums of power in fixed point; see POWER_UNIT.
+#ifndef QUADGRAPH_FIXED_POINT_GLSL
+#define QUADGRAPH_FIXED_POINT_GLSL
+
+#include "source/walk_shared.h"
+
+// Adds `value` >= 0, scaled, to element `i`. A float times a power of two splits into two words without loss, but for
+// the bits below the unit.
+void add_power(Uints sums, uint i, vec3 value) {
+  vec3 units = value / POWER_UNIT;
+  vec3 high = floor(units * exp2(-32.0));
+  uvec3 low_word = uvec3(roundEven(units - high * exp2(32.0)));
+  uvec3 high_word = uvec3(high);
+  for (uint c = 0u; c < 3u; ++c) {
+    if (low_word[c] == 0u && high_word[c] == 0u) continue;
+    uint before = atomicAdd(sums.at[FIXED_WORDS * i + c], low_word[c]);
+    uint carried = high_word[c] + (before + low_word[c] < before ? 1u : 0u);
+    if (carried != 0u) atomicAdd(sums.at[FIXED_WORDS * i + 3u + c], carried);
+  }
+}
+
+vec3 power_at(Uints sums, uint i) {
+  vec3 value;
+  for (uint c = 0u; c < 3u; ++c) {
+    uint low = load_uint(sums, FIXED_WORDS * i + c), high = load_uint(sums, FIXED_WORDS * i + 3u + c);
+    value[c] = (float(high) * exp2(32.0) + float(low)) * POWER_UNIT;
+  }
+  return value;
+}
+
+#endif

@@ -1,0 +1,33 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "source/walk_shared.h"
+#include "solver/fields.glsl"
+#include "material/optics.h"
+#include "solver/stored_rows.glsl"
+#include "source/fixed_point.glsl"
+#include "shared/stride.glsl"
+#include "shared/reduce.glsl"
+
+layout(push_constant, scalar) uniform Block { RightHandSideBuriedPush push; };
+
+float volume_of(uint tet) {
+  uvec4 corners = load_uvec4(push.tets, tet);
+  vec3 p = load_vec3(push.vertices, corners.x);
+  vec3 e1 = load_vec3(push.vertices, corners.y) - p, e2 = load_vec3(push.vertices, corners.z) - p;
+  vec3 e3 = load_vec3(push.vertices, corners.w) - p;
+  return abs(dot(e1, cross(e2, e3))) / 6.0;
+}
+
+void main() {
+  vec3 square = vec3(0);
+  EACH(i, push.count) {
+    vec3 power = i < push.deposit_count ? power_at(push.deposit, i) : vec3(0);
+    if (push.per_volume == 1u && power != vec3(0)) power /= volume_of(i);
+    Field b = lit(power);
+    push.b.at[i] = b;
+    square += product(b, solved(load_diagonal(push.diagonal, i), b));
+  }
+  vec3 norm;
+  if (!reduce_dispatch(push.reduction, square, norm)) return;
+  if (gl_LocalInvocationID.x == 0u) push.state.at[0].norm = norm;
+}

@@ -1,0 +1,150 @@
+// A ray through the tets of a level. The shader that includes it defines first
+//   BODY                     where the BodyRef is, e.g. push.body
+//   struct Payload           what a corner carries
+//   Payload payload(uint id) that of vertex `id`, when the ray first sees it
+//
+// The ray's point is carried in barycentric coordinates, which pass from tet to tet with the shared corners: it then
+// never leaves the mesh by rounding. The corner that the next tet does not share always sits in slot 3, opposite the
+// face that the ray comes in through. Nearly all of the time goes to loads (lavapipe: some 3 loads cost as much as all
+// arithmetic of a tet), so that a tet is read only as far as it is new: its crossing, one vertex and, in a varied
+// material, its coefficients.
+#ifndef QUADGRAPH_TET_RAY_GLSL
+#define QUADGRAPH_TET_RAY_GLSL
+
+#include "shared/body_shared.h"
+
+#ifndef BODY
+#error "tet_ray.glsl: BODY is not defined"
+#endif
+
+struct Corner {
+  uint id;
+  uint place;     // among the corners of the present tet
+  vec3 position;  // mm
+  float l;        // barycentric coordinate of the ray's point
+  Payload payload;
+};
+
+// Where a ray leaves a tet.
+struct Exit {
+  uint slot;     // of the corner opposite, 0 to 2
+  bool found;    // false in a tet so flat that its faces have no side, and in one that is turned inside out
+  float time;    // length over six volumes, 1/mm^2
+  float path;    // mm
+  vec4 rate;     // of the barycentric coordinates per time
+  vec3 outward;  // normal, not of unit length
+};
+
+Corner corner_0, corner_1, corner_2, corner_3;
+Optical optical;  // of the present tet
+
+const float NEVER = 1e37;
+
+// Share of the power that is lost along `tau`, 1 - e^-tau, and the mean place of the loss, 0 at entry to 1 at exit,
+// 1/tau - 1/(e^tau - 1). Series where these cancel.
+void attenuate(vec3 tau, out vec3 lost, out vec3 place) {
+  bvec3 small = lessThan(tau, vec3(0.25));
+  vec3 t = min(tau, vec3(0.25));
+  vec3 series = t * (1.0 - t / 2.0 * (1.0 - t / 3.0 * (1.0 - t / 4.0 * (1.0 - t / 5.0 * (1.0 - t / 6.0)))));
+  lost = mix(1.0 - exp(-tau), series, small);
+  place = mix(1.0 / tau - (1.0 - lost) / lost, 0.5 - t / 12.0 * (1.0 - t * t / 60.0), small);
+}
+
+vec3 extinction() {
+  return optical.sigma_s_prime + optical.sigma_a;
+}
+
+uint place_of(uint id, uvec4 tet) {
+  return id == tet.x ? 0u : id == tet.y ? 1u : id == tet.z ? 2u : 3u;
+}
+
+// Of an outside face, as columns.
+mat3 corners_of(uvec3 ids) {
+  return mat3(load_vec3(BODY.vertices, ids.x), load_vec3(BODY.vertices, ids.y), load_vec3(BODY.vertices, ids.z));
+}
+
+// Puts the ray's point on an outside face of `tet`, at the barycentric coordinates `l`.
+void start_on_face(uint tet, uvec3 ids, mat3 corners, vec3 l) {
+  uvec4 all = load_uvec4(BODY.tets, tet);
+  uint apex = all.x + all.y + all.z + all.w - ids.x - ids.y - ids.z;
+  optical = load_optical(BODY.optical, (BODY.flags & BODY_EVEN) != 0u ? 0u : tet);
+  corner_0 = Corner(ids.x, place_of(ids.x, all), corners[0], l.x, payload(ids.x));
+  corner_1 = Corner(ids.y, place_of(ids.y, all), corners[1], l.y, payload(ids.y));
+  corner_2 = Corner(ids.z, place_of(ids.z, all), corners[2], l.z, payload(ids.z));
+  corner_3 = Corner(apex, place_of(apex, all), load_vec3(BODY.vertices, apex), 0.0, payload(apex));
+}
+
+// Whether the present tet, of this signed volume as find_exit takes it, is turned inside out.
+bool inside_out(float six_volume) {
+  uint p_0 = corner_0.place, p_1 = corner_1.place, p_2 = corner_2.place, p_3 = corner_3.place;
+  bool odd = (((p_0 > p_1) != (p_0 > p_2)) != ((p_0 > p_3) != (p_1 > p_2))) != ((p_1 > p_3) != (p_2 > p_3));
+  return odd != (six_volume > 0.0);
+}
+
+Exit find_exit(vec3 direction) {
+  vec3 a = corner_0.position - corner_3.position;
+  vec3 b = corner_1.position - corner_3.position;
+  vec3 c = corner_2.position - corner_3.position;
+  vec3 n_0 = cross(b, c), n_1 = cross(c, a), n_2 = cross(a, b);
+  float six_volume = dot(a, n_0);
+  float side = six_volume < 0.0 ? -1.0 : 1.0;
+  vec3 rate = side * vec3(dot(n_0, direction), dot(n_1, direction), dot(n_2, direction));
+  vec3 l = vec3(corner_0.l, corner_1.l, corner_2.l);
+  vec3 time = mix(vec3(NEVER), l / -rate, lessThan(rate, vec3(0)));
+  Exit exit;
+  exit.time = min(time.x, min(time.y, time.z));
+  exit.slot = time.x == exit.time ? 0u : time.y == exit.time ? 1u : 2u;
+  exit.found = exit.time < NEVER && ((BODY.flags & BODY_INVERTED) == 0u || !inside_out(six_volume));
+  exit.path = exit.time * abs(six_volume);
+  exit.rate = vec4(rate, -(rate.x + rate.y + rate.z));
+  exit.outward = -side * (exit.slot == 0u ? n_0 : exit.slot == 1u ? n_1 : n_2);
+  return exit;
+}
+
+// Barycentric coordinates at the exit.
+vec4 exit_point(Exit exit) {
+  vec4 l = vec4(corner_0.l, corner_1.l, corner_2.l, corner_3.l) + exit.time * exit.rate;
+  l = max(l, vec4(0));
+  l[exit.slot] = 0.0;
+  return l / (l.x + l.y + l.z + l.w);
+}
+
+void move_to(vec4 l) {
+  corner_0.l = l.x;
+  corner_1.l = l.y;
+  corner_2.l = l.z;
+  corner_3.l = l.w;
+}
+
+void swap_with_3(inout Corner corner) {
+  Corner other = corner_3;
+  corner_3 = corner;
+  corner = other;
+}
+
+// Puts the corner opposite the exit into slot 3 and returns what lies across, and the places of all corners in it.
+uvec2 turn(uint tet, uint slot) {
+  if (slot == 0u) {
+    swap_with_3(corner_0);
+  } else if (slot == 1u) {
+    swap_with_3(corner_1);
+  } else {
+    swap_with_3(corner_2);
+  }
+  uint crossing = load_uint(BODY.crossings, 4u * tet + corner_3.place);
+  uint last = (crossing ^ crossing >> 2u ^ crossing >> 4u) & 3u;
+  return uvec2(crossing >> CROSSING_BITS, crossing & 63u | last << 6u);
+}
+
+// Enters the tet across, whose new corner replaces that in slot 3.
+void enter(uvec2 crossing) {
+  if ((BODY.flags & BODY_EVEN) == 0u) optical = load_optical(BODY.optical, crossing.x);
+  corner_0.place = crossing.y >> 2u * corner_0.place & 3u;
+  corner_1.place = crossing.y >> 2u * corner_1.place & 3u;
+  corner_2.place = crossing.y >> 2u * corner_2.place & 3u;
+  uint place = crossing.y >> 2u * corner_3.place & 3u;
+  uint id = load_component(BODY.tets, crossing.x, place);
+  corner_3 = Corner(id, place, load_vec3(BODY.vertices, id), 0.0, payload(id));
+}
+
+#endif

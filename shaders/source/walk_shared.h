@@ -1,0 +1,69 @@
+// What the walk of the buried source shares with C++, in scalar layout; see shared.h.
+#ifndef QUADGRAPH_WALK_SHARED_H
+#define QUADGRAPH_WALK_SHARED_H
+
+#include "shared/body_shared.h"
+#include "solver/solve_shared.h"
+
+#ifdef __cplusplus
+namespace quadgraph::gpu {
+#endif
+
+// Power is added up in fixed point, so that the order of additions does not matter: 64 bits in units of the scale times
+// this. Per element six u32: the low words of the channels, then the high ones.
+const float POWER_UNIT = 1.4210854715202004e-14f;  // 2^-46
+#define FIXED_WORDS 6
+
+// Per origin of a Lambertian beam.
+const uint LAMBERTIAN_RAYS = 2u * LAMBERTIAN_NODES;
+
+// Pairs of sums that the workgroups of a walk share: few to read back, many enough to be seldom waited for.
+const uint WALK_SUMS = 256u;
+
+// walk_source.comp: follows the rays of one beam. One invocation per face; of a Lambertian beam, one per face and ray
+// of the bundle.
+struct WalkSourcePush {
+  BodyRef body;
+  QG_REF(Beams) beam;     // one
+  QG_REF(Floats) beam_q;  // of all
+  QG_REF(Scales) scale;
+  QG_REF(Uints) deposit;      // fixed point, per vertex (fem) or tet: power scattered for the first time
+  QG_REF(Uints) unscattered;  // fixed point, per face: power that leaves
+  QG_REF(Uints) sums;         // fixed point, WALK_SUMS times two: absorbed; left, or still under way at the end
+  uint rays;                  // per origin: 1, or LAMBERTIAN_RAYS; a Lambertian beam may have either
+  uint fem;
+};
+
+// right_hand_side_buried.comp: scaled b from the deposits, and its norm. Surface nodes of the graph methods have none.
+struct RightHandSideBuriedPush {
+  QG_REF(Uints) deposit;
+  QG_REF(Vec3s) vertices;  // those of the tets, where b is power per volume
+  QG_REF(Uvec4s) tets;
+  QG_REF(Entries) diagonal;
+  QG_REF(Fields) b;
+  QG_REF(SolveStates) state;
+  QG_REF(Reduction) reduction;
+  uint count;
+  uint deposit_count;  // elements with a deposit: the first ones
+  uint per_volume;     // 1: quadgraph-fdm
+};
+
+// vertex_unscattered.comp: multiplies the exitance at surface vertices by a factor, and gives that of unscattered
+// light.
+struct VertexUnscatteredPush {
+  QG_REF(Vec3s) vertices;
+  QG_REF(Uvec3s) faces;
+  QG_REF(Uints) face_offset;
+  QG_REF(Uints) face_incidence;
+  QG_REF(Uints) unscattered;
+  QG_REF(Scales) scale;
+  QG_REF(Vec3s) factor;  // one
+  QG_REF(Vec3s) exitance;
+  QG_REF(Vec3s) vertex_unscattered;  // W/mm^2, written
+  uint count;
+};
+
+#ifdef __cplusplus
+}  // namespace quadgraph::gpu
+#endif
+#endif

@@ -1,0 +1,64 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "surface/surface_shared.h"
+#include "solver/fields.glsl"
+#include "shared/stride.glsl"
+#include "shared/reduce.glsl"
+
+layout(push_constant, scalar) uniform Block { ExitancePush push; };
+
+// phi, and the outward flux as it is and without what is negative at the carriers, in units of the scale.
+struct Surface {
+  vec3 phi, raw, positive;
+};
+
+Surface at_face(uint f) {
+  if (push.fem == 0u) {
+    uint node = push.tet_count + f;
+    Field x = scaled(load_vec3_or_one(push.to_phi, node), load_field(push.x, node));
+    vec3 flux = outward_flux(push.boundary, x);
+    return Surface(x.phi, flux, max(flux, vec3(0)));
+  }
+  Surface mean = Surface(vec3(0), vec3(0), vec3(0));
+  uvec3 corners = load_uvec3(push.faces, f);
+  for (int k = 0; k < 3; ++k) {
+    Field x = scaled(load_vec3_or_one(push.to_phi, corners[k]), load_field(push.x, corners[k]));
+    vec3 flux = outward_flux(push.boundary, x);
+    mean.phi += x.phi / 3.0;
+    mean.raw += flux / 3.0;
+    mean.positive += max(flux, vec3(0)) / 3.0;
+  }
+  return mean;
+}
+
+float area_of(uint f) {
+  uvec3 corners = load_uvec3(push.faces, f);
+  vec3 p = load_vec3(push.vertices, corners.x);
+  return 0.5 * length(cross(load_vec3(push.vertices, corners.y) - p, load_vec3(push.vertices, corners.z) - p));
+}
+
+void main() {
+  vec3 negative = vec3(0), positive = vec3(0);  // integrals over the face
+  EACH(f, push.count) {
+    Surface surface = Surface(vec3(0), vec3(0), vec3(0));
+    if (load_uint(push.face_kinds, f) == FACE_OPEN) surface = at_face(f);
+    vec3 scale = load_scale(push.scale).scale;
+    push.phi.at[f] = surface.phi * scale;
+    if (push.clipped == 1u) {
+      float area = area_of(f);
+      negative += area * (surface.positive - surface.raw);
+      positive += area * surface.positive;
+      push.exitance.at[f] = surface.positive * scale;
+    } else {
+      bool open = load_uint(push.face_kinds, f) == FACE_OPEN;
+      vec3 reflected = open ? push.boundary.reflected * load_vec3(push.q, f) : vec3(0);
+      push.exitance.at[f] = surface.raw * scale - reflected;
+    }
+  }
+  vec3 total_negative, total_positive;
+  if (!reduce_dispatch_pair(push.reduction, negative, positive, total_negative, total_positive)) return;
+  if (gl_LocalInvocationID.x != 0u) return;
+  // What linear elements put below zero is taken from all that is above, so that the power stays what was solved for.
+  vec3 share = mix(vec3(0), min(total_negative / total_positive, vec3(1)), greaterThan(total_positive, vec3(0)));
+  push.clip.at[0] = Clip(1.0 - share, share);
+}

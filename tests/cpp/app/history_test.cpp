@@ -1,0 +1,103 @@
+// Going back and forth between scenes, and what the brush does.
+#include "engine/app/history.h"
+
+#include <doctest/doctest.h>
+
+#include "engine/app/brush.h"
+
+using namespace quadgraph;
+
+TEST_CASE("scenes come back in turn, and are seen from where the eye is") {
+  Scene scene;
+  History history(scene);
+  CHECK(!history.can_undo());
+  CHECK(history.undo(scene) == scene);
+  for (const char* material : {"jade", "skin1", "wax"}) {
+    scene.material = material;
+    history.note(scene);
+    history.note(scene);  // the same again is no step
+  }
+  scene.view.azimuth = 33;
+  history.note(scene);  // nor is another view
+  scene = history.undo(scene);
+  CHECK(scene.material == "skin1");
+  scene.view.azimuth = 66;
+  scene = history.undo(scene);
+  CHECK(scene.material == "jade");
+  CHECK(scene.view.azimuth == 66);
+  scene = history.redo(scene);
+  CHECK(scene.material == "skin1");
+  CHECK(history.can_redo());
+  scene.material = "ketchup";
+  history.note(scene);
+  CHECK(!history.can_redo());  // what was taken back is gone once something else is done
+  scene = history.undo(history.undo(history.undo(scene)));
+  CHECK(scene.material == Scene().material);
+  CHECK(!history.can_undo());
+}
+
+TEST_CASE("what could not be shown is no step to go back to") {
+  Scene scene;
+  History history(scene);
+  scene.material = "jade";
+  history.note(scene);
+  Scene refused = scene;
+  refused.material = "none.npz";
+  history.note(refused);
+  history.refuse(refused);
+  history.note(scene);
+  CHECK(history.undo(scene).material == Scene().material);
+  history.refuse(refused);  // which is not what was noted last
+  CHECK(history.can_redo());
+}
+
+TEST_CASE("a stroke follows the hand in steps of the brush's size") {
+  const Brush brush = Brush::for_body(15);
+  Scene scene;
+  brush.begin(scene, {.at = {0, 0, 0}});
+  REQUIRE(scene.edits.size() == 1);
+  check_edit(scene.edits[0]);
+  for (int i = 1; i <= 100; ++i) brush.lead(scene, {.at = {0.05f * static_cast<float>(i), 0, 0}});
+  const auto& stroke = scene.edits[0].stroke;
+  CHECK(stroke.size() > 12);
+  CHECK(stroke.size() < 20);
+  CHECK(stroke.back().x > 5 - 0.4f);
+  brush.begin(scene, {.at = {0, 3, 0}});
+  CHECK(scene.edits.size() == 2);
+}
+
+TEST_CASE("a stamp lies on the surface where the brush touches it, the way up that is seen") {
+  ImagePyramid image{.columns = 40, .rows = 20, .levels = 1, .texels = std::vector<glm::vec3>(800, glm::vec3(1))};
+  Brush brush = Brush::for_body(15);
+  brush.edit.image = std::make_shared<const ImagePyramid>(image);
+  brush.edit.softness = 100;
+  Scene scene;
+  const glm::vec3 there(0, 0, 10);
+  brush.begin(scene, {there, {0, 0, -1}, {0, 1, 0}});
+  brush.lead(scene, {there + glm::vec3(0.01f, 0, 0), {0, 0, -1}, {0, 1, 0}});
+  REQUIRE(scene.edits.size() == 1);
+  check_edit(scene.edits[0]);
+  const Placement placement = scene.edits[0].placement.value();
+  CHECK(placement.centre.x == 0.01f);
+  CHECK(placement.size.x == doctest::Approx(2 * brush.edit.radius));
+  CHECK(placement.size.y == doctest::Approx(brush.edit.radius));
+  CHECK(scene.edits[0].softness <= 0.25f * placement.size.y);
+  CHECK(scene.edits[0].stroke.empty());
+}
+
+TEST_CASE("what the brush touches goes with a body that has been turned and stretched") {
+  // At rest a triangle in the plane x = 2, seen from +x; now it lies in z = 7, twice as high.
+  const std::vector<glm::vec3> rest = {{2, 0, 0}, {2, 0, -1}, {2, 1, 0}}, now = {{0, 0, 7}, {1, 0, 7}, {0, 2, 7}};
+  const std::vector<glm::uvec3> triangles = {{0, 1, 2}};
+  const DisplayMesh mesh{rest, {}, triangles, {}, {}};
+  const Camera camera = place_camera({.elevation = 0}, {{0.3f, 0.5f, 7}, 1}, 1);
+  const auto picked = pick(mesh, now, camera, View{}.vertical_fov, 1, {0, 0});
+  REQUIRE(picked.has_value());
+  const Touch touch = touched(*picked, camera);
+  CHECK(glm::distance(touch.at, glm::vec3(2, 0.25f, -0.3f)) < 1e-5f);
+  CHECK(glm::distance(touch.inward, glm::vec3(-1, 0, 0)) < 1e-5f);
+  CHECK(glm::distance(touch.upright, glm::vec3(0, 1, 0)) < 1e-5f);
+  const Camera above = place_camera({.elevation = 90}, {{0.3f, 0.5f, 7}, 1}, 1);  // upright is then across what is seen
+  const Picked flat{.position = {0, 0, 0}, .at_rest = {0, 0, 0}, .normal = above.up};
+  CHECK(glm::distance(touched(flat, above).upright, -above.backward) < 1e-5f);
+}

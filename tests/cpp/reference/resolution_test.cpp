@@ -1,0 +1,95 @@
+// What is known of an answer before it is solved for: elements that are too deep, bodies that are too thin.
+#include "engine/reference/resolution.h"
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "engine/optics/half_space.h"
+#include "tests/cpp/fixtures/graph_cases.h"
+
+using namespace quadgraph;
+
+namespace {
+
+double error_of(double albedo, double depth, Model model) {
+  const LayeredHalfSpace found = layered_half_space(albedo, 1.3, depth, model);
+  return found.reflectance / found.exact - 1;
+}
+
+gpu::Optical medium(float sigma_s_prime, float sigma_a) {
+  return {glm::vec3(sigma_s_prime), glm::vec3(sigma_a)};
+}
+
+}  // namespace
+
+// What the blocks of the system of 60 mean free paths of layers, solved directly in NumPy, leave.
+TEST_CASE("layers of elements reflect what their linear system says") {
+  struct Case {
+    double albedo, depth;
+    Model model;
+    double error;
+  };
+  const std::array<Case, 8> cases = {{{.9, 1 / .3, Model::sp3, .1038},
+                                      {.99, 10, Model::sp3, .0713},
+                                      {.5, 10, Model::sp3, -.1386},
+                                      {.02, 1, Model::sp3, .0432},
+                                      {.7, 100, Model::sp3, -.8458},
+                                      {.5, 1 / .3, Model::diffusion, .1013},
+                                      {.2, 10, Model::diffusion, -.3693},
+                                      {.9, 1 / 3., Model::diffusion, .0016}}};
+  for (const Case& one : cases) {
+    CAPTURE(one.albedo);
+    CAPTURE(one.depth);
+    CHECK(std::abs(error_of(one.albedo, one.depth, one.model) - one.error) < 1e-4);
+  }
+}
+
+TEST_CASE("thin layers are of second order, and without absorption all light comes back from any") {
+  for (const Model model : {Model::diffusion, Model::sp3}) {
+    const double coarse = error_of(.8, .2, model), fine = error_of(.8, .1, model);
+    CHECK(std::log2(coarse / fine) == doctest::Approx(2).epsilon(.05));
+    for (const double depth : {.01, 1., 100., 1e4}) {
+      CHECK(std::abs(error_of(1, depth, model)) < 1e-3);
+      CHECK(std::isfinite(layered_half_space(0, 1.3, depth, model).decay));
+      CHECK(std::isfinite(error_of(2. / 3, depth, model)));
+    }
+  }
+}
+
+TEST_CASE("the depth of elements is measured over open faces, the chord over the whole body") {
+  const OwnedLevel owned = box_level(3, 6.0f, 0.0f);
+  Level level = owned.view();
+  const std::vector<SurfaceSample> samples = surface_samples(level);
+  CHECK(samples.size() == level.faces.size());
+  double area = 0;
+  for (const SurfaceSample& sample : samples) {
+    CHECK(sample.depth <= doctest::Approx(2));
+    area += sample.area;
+  }
+  CHECK(area == doctest::Approx(6 * 6 * 6));
+  CHECK(mean_chord(level) == doctest::Approx(4));
+  const std::vector<std::uint32_t> kinds(level.faces.size(), face_reflecting);
+  level.face_kinds = kinds;
+  CHECK(surface_samples(level).empty());
+  CHECK(std::isinf(mean_chord(level)));
+}
+
+TEST_CASE(
+    "words are said of elements deeper than the modes can follow, of thin bodies, and of diffusion that absorbs") {
+  const std::vector<SurfaceSample> samples = {{2.0, 1.0, 0}};
+  const std::vector<gpu::Optical> clear = {medium(.9f, .1f)}, dark = {medium(.2f, 1.8f)};
+  CHECK(mesh_warning(resolution_of(samples, clear, 1.3, Model::sp3)).empty());
+  CHECK(mesh_warning(resolution_of(samples, dark, 1.3, Model::sp3)).find("decay lengths") != std::string::npos);
+  CHECK(resolution_of(samples, dark, 1.3, Model::sp3).error > .05);
+  CHECK(model_warning(clear, 1.3, 10, Source::buried, Model::sp3).empty());
+  CHECK(model_warning(clear, 1.3, .5, Source::buried, Model::sp3).find("0.5 mean free paths") != std::string::npos);
+  CHECK(model_warning(dark, 1.3, 10, Source::buried, Model::sp3).empty());
+  CHECK(model_warning(dark, 1.3, 10, Source::buried, Model::diffusion).find("sp3 is not") != std::string::npos);
+  const std::vector<gpu::Optical> white = {medium(1, 0)}, none = {medium(0, 0)};
+  CHECK(model_warning(white, 1.3, .1, Source::buried, Model::diffusion).empty());
+  CHECK(model_warning(none, 1.3, .1, Source::buried, Model::sp3).empty());
+  CHECK(resolution_of(samples, none, 1.3, Model::sp3).error == 0);
+}

@@ -1,0 +1,272 @@
+"""The real window on a display in memory, under a hand (xdotool) and an eye (ImageMagick)."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import shutil
+import subprocess
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import tiny
+from baked import write_levels
+from engine_program import ENGINE
+from shapes import icosphere
+
+PROGRAMS = ("Xvfb", "xdotool", "import")
+MISSING = [name for name in PROGRAMS if shutil.which(name) is None]
+pytestmark = [
+    pytest.mark.skipif(ENGINE is None, reason="quadgraph-engine is not built: run tools/setup"),
+    pytest.mark.skipif(bool(MISSING), reason=f"not installed: {', '.join(MISSING)} (tools/packages.txt)"),
+]
+
+PANEL = 340  # pixels of the panel's width at a scale of 1
+FIELD = 342  # height at which materials are typed
+SIZE = (900, 600)
+LIGHTS = ["--light", "directional:-0.94,-0.1,0.34:1"]  # from azimuth 110
+
+
+@contextlib.contextmanager
+def display() -> Iterator[str]:
+    """An X server that draws into memory; its name."""
+    read, write = os.pipe()
+    server = subprocess.Popen(
+        ["Xvfb", "-displayfd", str(write), "-screen", "0", "1280x900x24", "-nolisten", "tcp"],
+        pass_fds=[write],
+        stderr=subprocess.DEVNULL,
+    )
+    os.close(write)
+    try:
+        with os.fdopen(read) as pipe:
+            yield f":{pipe.readline().strip()}"
+    finally:
+        server.terminate()
+        server.wait(timeout=10)
+
+
+class Hand:
+    """A running window and what can be done to it."""
+
+    def __init__(self, server: str, folder: Path, *arguments: str, body: Path = tiny.PATH):
+        self.environment = os.environ | {"DISPLAY": server}
+        self.environment.pop("WAYLAND_DISPLAY", None)
+        self.folder = folder
+        self.process = subprocess.Popen(
+            [ENGINE, str(body), "--validation", *arguments],
+            env=self.environment,
+            cwd=folder,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        self.window = self.do("search", "--sync", "--onlyvisible", "--name", "QuadGraph").split()[0]
+        self.do("windowmove", self.window, "0", "0", "windowsize", "--sync", self.window, *map(str, SIZE))
+
+    def do(self, *arguments: str) -> str:
+        """Run xdotool."""
+        return subprocess.run(
+            ["xdotool", *arguments], env=self.environment, capture_output=True, text=True, check=True, timeout=30
+        ).stdout
+
+    def keys(self, *keys: str) -> None:
+        """Press keys one after the other."""
+        self.do("key", "--delay", "30", *keys)
+
+    def drag(self, x: int, y: int, button: int = 1, held: str | None = None) -> None:
+        """From the middle of the picture by so many pixels, with a key held down."""
+        middle = (PANEL + (SIZE[0] - PANEL) // 2, SIZE[1] // 2)
+        press = ["keydown", held] if held else []
+        release = ["keyup", held] if held else []
+        self.do(
+            "mousemove", *map(str, middle), *press, "mousedown", str(button), "sleep", "0.05",
+            "mousemove_relative", "--", str(x // 2), str(y // 2), "sleep", "0.05",
+            "mousemove_relative", "--", str(x - x // 2), str(y - y // 2), "sleep", "0.05",
+            "mouseup", str(button), *release,
+        )  # fmt: skip
+
+    def look(self) -> np.ndarray:
+        """What is on the screen, (height, width, 3), of the window's size."""
+        path = self.folder / "screen.png"
+        subprocess.run(["import", "-window", "root", str(path)], env=self.environment, check=True, timeout=30)
+        with Image.open(path) as image:
+            return np.asarray(image.convert("RGB")).astype(int)
+
+    def busy(self) -> bool:
+        """Whether it says in its title that the picture is not the converged one."""
+        assert self.process.poll() is None, self.process.communicate()
+        return self.do("getwindowname", self.window).rstrip().endswith("...")
+
+    def settle(self) -> None:
+        """Wait until the last thing done is seen and the picture has converged."""
+        seen = time.monotonic() + 3
+        while not self.busy() and time.monotonic() < seen:
+            time.sleep(0.02)
+        deadline = time.monotonic() + 60
+        while self.busy():
+            assert time.monotonic() < deadline, "the picture does not settle"
+            time.sleep(0.05)
+
+    def screen(self) -> np.ndarray:
+        """The whole screen once it has settled."""
+        self.settle()
+        return self.look()
+
+    def picture(self) -> np.ndarray:
+        """The part without the panel, once it has settled."""
+        return self.screen()[: SIZE[1], PANEL : SIZE[0]]
+
+    def close(self, key: str = "q") -> None:
+        """Quit by key; the program must end well."""
+        self.keys(key)
+        output, errors = self.process.communicate(timeout=20)
+        assert (self.process.returncode, output, errors) == (0, "", "")
+
+
+@pytest.fixture(scope="module")
+def server() -> Iterator[str]:
+    """A display for all tests."""
+    with display() as name:
+        yield name
+
+
+@pytest.fixture
+def open_window(server: str, tmp_path: Path) -> Iterator:
+    """Opens windows, and closes what a failed test has left open."""
+    hands: list[Hand] = []
+
+    def start(*arguments: str, body: Path = tiny.PATH) -> Hand:
+        hands.append(Hand(server, tmp_path, *arguments, body=body))
+        return hands[-1]
+
+    yield start
+    for hand in hands:
+        if hand.process.poll() is None:
+            hand.process.kill()
+            hand.process.communicate()
+
+
+def sides(picture: np.ndarray) -> tuple[float, float]:
+    """Mean brightness left and right of the upright edge that a cube turns to the viewer."""
+    row, column = picture.shape[0] // 2, picture.shape[1] // 2
+    rows = slice(row - 40, row + 40)
+    return picture[rows, column - 100 : column - 30].mean(), picture[rows, column + 30 : column + 100].mean()
+
+
+def test_a_hand_at_the_window(open_window, tmp_path: Path):
+    """Light dragged, material, view, size, picture to file, quit: each changes what it should, where it should."""
+    hand = open_window(
+        "--material", "sigma_s_prime=2,sigma_a=.3,eta=1.3", "--exposure", "2", "--view", "45,15", *LIGHTS
+    )
+    first = hand.picture()
+    left, right = sides(first)
+    assert right > 1.2 * left
+
+    hand.drag(-320, 0, held="ctrl")
+    dragged = hand.picture()
+    left, right = sides(dragged)
+    assert left > 1.2 * right
+    corner = np.s_[:40, -40:]  # the background does not know the light
+    assert np.array_equal(first[corner], dragged[corner])
+
+    hand.keys("m")
+    stone = hand.picture()
+    changed = np.abs(stone - dragged).max(axis=2) > 8
+    assert changed.mean() > 0.05
+    assert not changed[corner].any()
+
+    hand.drag(120, 60)
+    turned = hand.picture()
+    assert (np.abs(turned - stone).max(axis=2) > 8).mean() > 0.05
+
+    hand.keys("v", "v", "v", "v", "v", "v")  # fluence on a plane: colours of their own, with a bar
+    inside = hand.picture()
+    saturation = inside.max(axis=2) - inside.min(axis=2)
+    assert (saturation > 60).mean() > 0.05
+    hand.keys("shift+v", "shift+v", "shift+v", "shift+v", "shift+v", "shift+v")
+    assert np.array_equal(hand.picture(), turned)
+
+    hand.keys("F12")
+    written = tmp_path / "tiny-1.png"
+    deadline = time.monotonic() + 20
+    while not (written.exists() and written.with_suffix(".exr").exists()) and time.monotonic() < deadline:
+        time.sleep(0.1)
+    with Image.open(written) as image:
+        assert image.size == (SIZE[0] - PANEL, SIZE[1])
+        shot = np.asarray(image).astype(int)
+    above_message = np.s_[: SIZE[1] - 80]
+    assert np.abs(shot[above_message] - hand.picture()[above_message]).max() <= 1
+    hand.close()
+
+
+def test_a_stroke_of_the_brush_shows_where_it_went_and_can_be_taken_back(open_window, tmp_path: Path):
+    """Painted to the right of the middle of a sphere, undone, redone, and written into a scene file."""
+    body = write_levels(tmp_path / "ball.qgraph", [icosphere(4, 10), icosphere(3, 10)])
+    front = ["--view", "0,0", "--light", "directional:0,0,-1:1"]
+    hand = open_window("--material", "skin1", "--exposure", "1", *front, body=body)
+    before = hand.picture()
+    hand.keys("p")
+    hand.drag(100, 0)
+    painted = hand.picture()
+    darker = before.sum(axis=2) - painted.sum(axis=2)
+    row, column = darker.shape[0] // 2, darker.shape[1] // 2
+    stroke, beside = (
+        darker[row - 4 : row + 4, column : column + 100],
+        darker[row - 4 : row + 4, column - 100 : column - 60],
+    )
+    assert stroke.mean() > 20
+    assert stroke.mean() > 3 * beside.mean()
+
+    hand.keys("ctrl+z")
+    assert np.abs(hand.picture() - before).max() <= 1
+    hand.keys("ctrl+y")
+    assert np.abs(hand.picture() - painted).max() <= 1
+    hand.keys("ctrl+s")
+    hand.settle()
+    scene = json.loads((tmp_path / "ball-1.json").read_text())
+    (edit,) = scene["edits"]
+    ends = np.array([edit["stroke"][0], edit["stroke"][-1]])
+    assert np.allclose(np.linalg.norm(ends, axis=1), 10, atol=0.1)
+    assert np.allclose(ends[0], [0, 0, 10], atol=0.1)
+    assert ends[1, 0] > 2
+    hand.close()
+
+
+def test_the_window_changes_its_size(open_window):
+    """Smaller, larger, full screen and back, without the panel: the body stays whole and in the middle."""
+    hand = open_window("--material", "wholemilk")
+    hand.picture()
+    for width, height in ((640, 480), (1200, 700)):
+        hand.do("windowsize", "--sync", hand.window, str(width), str(height))
+        body = hand.screen()[:height, PANEL:width].max(axis=2) > 90
+        columns = np.flatnonzero(body.any(axis=0))
+        assert abs((columns[0] + columns[-1]) / 2 - (width - PANEL) / 2) < 12
+        assert body[height // 2, (width - PANEL) // 2]
+    hand.keys("F10")
+    body = hand.screen()[:700, :1200].max(axis=2) > 90
+    columns = np.flatnonzero(body.any(axis=0))
+    assert abs((columns[0] + columns[-1]) / 2 - 600) < 12
+    hand.keys("F11")
+    hand.settle()
+    hand.keys("F11")
+    hand.settle()
+    hand.close("Escape")
+
+
+def test_a_wrong_material_is_told_and_changes_nothing(open_window):
+    """Typed into the panel."""
+    hand = open_window("--material", "wholemilk")
+    before = hand.picture()
+    hand.do("mousemove", "150", str(FIELD), "click", "--repeat", "2", "1", "type", "--delay", "20", "granite")
+    hand.keys("Return")
+    after = hand.picture()
+    message = np.s_[-60:, :400]
+    assert np.abs(after[message] - before[message]).max() > 60
+    assert np.array_equal(after[:-80], before[:-80])
+    hand.close()

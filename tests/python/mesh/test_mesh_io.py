@@ -1,0 +1,162 @@
+"""Every format gives the same surface; every unusable file is refused with its name and the place."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from quadgraph.base.errors import InputError
+from quadgraph.mesh.mesh_io import read_surface
+from quadgraph.mesh.surface import Surface
+from shapes import cube, icosphere
+
+QUAD_CUBE = """
+v 0 0 0
+v 0 0 1
+v 0 1 0
+v 0 1 1
+v 1 0 0
+v 1 0 1
+v 1 1 0
+v 1 1 1
+vt 0 0
+vt 1 1
+"""
+QUADS = [(1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4)]
+
+
+def write(surface: Surface, path: Path) -> Path:
+    trimesh.Trimesh(surface.vertices, surface.triangles, process=False).export(path)
+    return path
+
+
+@pytest.mark.parametrize("extension", ["obj", "ply", "stl", "off", "glb", "gltf"])
+def test_formats_agree(tmp_path: Path, extension: str) -> None:
+    sphere = icosphere(2, 3)
+    path = write(sphere, tmp_path / f"ball.{extension}")
+    source = read_surface(path, unit="cm")
+    assert (source.vertices, source.triangles, source.unit_mm) == (162, 320, 10.0)
+    assert source.surface.volume == pytest.approx(1000 * sphere.volume, rel=1e-6)
+    assert source.surface.is_closed_manifold
+    assert source.name == path.name
+    assert source.sha256 == hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def test_height_is_the_extent_along_y(tmp_path: Path) -> None:
+    path = write(Surface(cube().vertices * (5, 2, 7), cube().triangles), tmp_path / "box.ply")
+    source = read_surface(path, height_mm=100)
+    assert source.unit_mm == pytest.approx(50)
+    assert np.ptp(source.surface.vertices, axis=0) == pytest.approx([250, 100, 350])
+
+
+def test_polygons_and_texture_seams_of_obj(tmp_path: Path) -> None:
+    path = tmp_path / "cube.obj"
+    faces = "".join("f " + " ".join(f"{i}/{1 + k % 2}" for k, i in enumerate(quad)) + "\n" for quad in QUADS)
+    path.write_text(QUAD_CUBE + faces)
+    source = read_surface(path, unit="m")
+    assert source.vertices == 8
+    assert source.triangles == 12
+    assert source.surface.is_closed_manifold
+    assert source.surface.volume == pytest.approx(1e9)
+
+
+def test_negative_indices_of_obj(tmp_path: Path) -> None:
+    path = tmp_path / "cube.obj"
+    path.write_text(QUAD_CUBE + "".join("f " + " ".join(str(i - 9) for i in quad) + "\n" for quad in QUADS))
+    assert read_surface(path, unit="mm").surface.volume == pytest.approx(1)
+
+
+def test_gltf_nodes_are_placed(tmp_path: Path) -> None:
+    scene = trimesh.Scene()
+    box = trimesh.creation.box(extents=(1, 1, 1))
+    scene.add_geometry(box, transform=trimesh.transformations.translation_matrix((0, 0, 0)))
+    scene.add_geometry(box, transform=trimesh.transformations.scale_and_translate(2, (10, 0, 0)))
+    scene.export(tmp_path / "two.glb")
+    source = read_surface(tmp_path / "two.glb", unit="mm")
+    assert source.surface.components == 2
+    assert source.surface.volume == pytest.approx(1 + 8)
+    assert source.surface.vertices[:, 0].max() == pytest.approx(11)
+
+
+def test_unit_is_asked_for(tmp_path: Path) -> None:
+    path = write(cube(2), tmp_path / "cube.ply")
+    with pytest.raises(InputError) as refusal:
+        read_surface(path)
+    words = str(refusal.value)
+    for part in ("cube.ply", "--unit", "--height", "(-1, -1, -1) to (1, 1, 1)", "cm makes it 20 x 20 x 20 mm"):
+        assert part in words
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"unit": "inch"}, "inch"),
+        ({"unit": "mm", "height_mm": 3.0}, "both"),
+        ({"height_mm": 0.0}, "height"),
+        ({"height_mm": float("nan")}, "height"),
+    ],
+)
+def test_bad_options(tmp_path: Path, options: dict, words: str) -> None:
+    path = write(cube(2), tmp_path / "cube.ply")
+    with pytest.raises(InputError, match=words):
+        read_surface(path, **options)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "words"),
+    [
+        ("a.txt", "x", "extension"),
+        ("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n", "0 triangles"),
+        ("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "triangle 0"),
+        ("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -9\n", "line 4"),
+        ("a.obj", "v 0 0\n", "line 1"),
+        ("a.obj", "v 0 0 0\nv 1 0 inf\nv 0 1 0\nf 1 2 3\n", "vertex 1"),
+        ("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n", "triangle 0"),
+        ("a.off", "OFF\n3 9 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "9 faces announced"),
+        ("a.off", "OFF\n3 1 0\n0 0 nan\n1 0 0\n0 1 0\n3 0 1 2\n", "vertex 0"),
+        ("a.off", "", "OFF"),
+        ("a.ply", "", "PLY"),
+        ("a.ply", "ply\nformat ascii 1.0\nend_header\n", "0 vertices|PLY"),
+        ("a.stl", "solid nothing", "STL|0 triangles"),
+        ("a.glb", "glTF", "GLB"),
+        ("a.gltf", "{}", "GLTF|0 triangles"),
+    ],
+)
+def test_unusable_files_are_refused(tmp_path: Path, name: str, content: str, words: str) -> None:
+    path = tmp_path / name
+    path.write_text(content)
+    with pytest.raises(InputError, match=words) as refusal:
+        read_surface(path, unit="mm")
+    assert str(path) in str(refusal.value)
+
+
+def test_truncated_binary_files_are_refused(tmp_path: Path) -> None:
+    for extension in ("ply", "stl", "glb"):
+        path = write(icosphere(1), tmp_path / f"ball.{extension}")
+        path.write_bytes(path.read_bytes()[:-40])
+        with pytest.raises(InputError, match=f"ball.{extension}"):
+            read_surface(path, unit="mm")
+
+
+def test_a_file_that_cannot_be_read_leaves_us_where_we_are(tmp_path: Path) -> None:
+    path, here = tmp_path / "bad.ply", Path.cwd()
+    path.write_text("ply\nformat ascii 1.0\n")
+    with pytest.raises(InputError):
+        read_surface(path, unit="mm")
+    assert Path.cwd() == here
+
+
+def test_missing_file(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="No such file"):
+        read_surface(tmp_path / "none.ply", unit="mm")
+
+
+def test_bundled_bunny(bunny_path: Path) -> None:
+    source = read_surface(bunny_path, height_mm=100)
+    assert source.surface.is_closed_manifold
+    assert source.surface.volume > 0
+    assert np.ptp(source.surface.vertices[:, 1]) == pytest.approx(100)

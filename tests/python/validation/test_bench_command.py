@@ -1,0 +1,117 @@
+"""`quadgraph bench` as a user runs it: what is printed and what the record holds."""
+
+from __future__ import annotations
+
+import json
+from itertools import pairwise
+
+import pytest
+
+from baked import write_levels
+from quadgraph import cli
+from quadgraph_validation.benchmark import scaling
+from quadgraph_validation.benchmark.bench_scene import Device
+from quadgraph_validation.benchmark.frame_passes import METHODS
+from quadgraph_validation.benchmark.solver_convergence import TARGETS, WAYS
+from shapes import icosphere
+
+pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
+
+
+@pytest.fixture(scope="module")
+def sphere(tmp_path_factory):
+    """A sphere of two levels, radius 10 mm."""
+    path = tmp_path_factory.mktemp("bench") / "sphere.qgraph"
+    return str(write_levels(path, [icosphere(2, 10), icosphere(1, 10)]))
+
+
+def bench(tmp_path, *arguments: str) -> dict:
+    """Run and return the record."""
+    path = tmp_path / "record.json"
+    assert cli.main(["bench", *arguments, "--repeats", "1", "--json", str(path)]) == 0
+    record = json.loads(path.read_text())
+    assert all(record[key] for key in ("device", "driver", "commit", "version", "cores"))
+    return record
+
+
+def test_passes_have_time_bytes_and_a_share_of_copying_in_both_orders(sphere, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("quadgraph_validation.benchmark.frame_passes.METHODS", METHODS[:2])
+    record = bench(tmp_path, sphere, "--passes", "--random-order", sphere)
+    assert len(record["passes"]) == 2
+    assert {entry["model"] for entry in record["passes"]} == {"diffusion", "sp3"}
+    for method in record["passes"]:
+        assert "assembly" in [entry["name"] for entry in method["passes"]]
+        for entry in method["passes"] + method["random_order_passes"]:
+            assert entry["time_ms"] >= 0
+            assert entry["bytes"] > 0
+            assert entry["copy_share"] * record["copy"]["gb_per_s"] == pytest.approx(entry["gb_per_s"])
+    printed = capsys.readouterr().out
+    for words in ("in blocks, and at random", "of copying", "cost of a solution", record["device"]):
+        assert words in printed
+
+
+def test_live_frames_do_more_the_more_changes(sphere, tmp_path, capsys):
+    live = bench(tmp_path, sphere, "--live")["live"]
+    names = [{entry["name"] for entry in kind["passes"]} for kind in live["kinds"]]
+    assert "source walk" in names[0]
+    assert "assembly" not in names[0]
+    assert "assembly" in names[1]
+    assert names[0] < names[1] < names[2]
+    assert all(kind["wall_ms"] >= sum(entry["time_ms"] for entry in kind["passes"]) > 0 for kind in live["kinds"])
+    for kind in live["kinds"]:
+        assert 0 < kind["off"]["median"] <= kind["off"]["most"] < 0.1
+        assert kind["off"]["rms"] < 0.03
+    printed = " ".join(capsys.readouterr().out.split())
+    assert "light, material and shape changing" in printed
+    assert "off by" in printed
+
+
+def test_solvers_have_curves_and_targets_and_are_drawn(sphere, tmp_path, capsys):
+    pytest.importorskip("matplotlib", reason="matplotlib is not installed: pip install -e 'python/validation[bench]'")
+    record = bench(tmp_path, sphere, "--solvers", "--chart", str(tmp_path / "images"))
+    (scene,) = record["solvers"]
+    assert [way["name"] for way in scene["ways"]] == [way.label for way in WAYS]
+    for way in scene["ways"]:
+        for before, after in pairwise(way["points"]):
+            assert before["work"] < after["work"]
+            assert before["unlit"] > after["unlit"]
+        assert [entry["unlit"] for entry in way["targets"]] == list(TARGETS)
+        for entry in way["targets"]:
+            assert entry["reached"]["unlit"] <= entry["unlit"]
+            assert entry["reached"]["wall_ms"] >= 0.9 * entry["reached"]["time_ms"] > 0
+    printed = capsys.readouterr().out
+    for words in (*(way.label for way in WAYS), "error-work.png", "error-time.png"):
+        assert words in printed
+
+
+def test_rivals_are_beside_ours(sphere, tmp_path, capsys):
+    pytest.importorskip("pyamg", reason="pyamg is not installed: pip install -e 'python/validation[bench]'")
+    (scene,) = bench(tmp_path, sphere, "--rivals")["rivals"]
+    assert scene["agreement"]["whole"] < 1e-3
+    assert {"fmg-pcg", "dpcg"} <= set(scene["targets"][0]["ours"])
+    assert "PyAMG" in capsys.readouterr().out
+
+
+def cycles(record: dict) -> dict[str, list[int]]:
+    """Per model, to the tolerance, of every size."""
+    return {model: [body["models"][model]["cycles"] for body in record["bodies"]] for model in scaling.MODELS}
+
+
+def test_cycles_do_not_depend_on_the_size(tmp_path):
+    record = bench(tmp_path, "--scaling", "--sizes", "500,1800,8500", "--bodies", str(tmp_path / "bodies"))["scaling"]
+    assert len(list((tmp_path / "bodies").glob("*.qgraph"))) == 3
+    sizes = [body["tets"] for body in record["bodies"]]
+    assert sizes[0] < 4000
+    assert sizes[-1] > 40_000
+    for counts in cycles(record).values():
+        assert max(counts) - min(counts) <= 2  # one more or less than a middle value
+
+
+@pytest.mark.long
+def test_cycles_do_not_depend_on_the_size_and_time_is_linear_up_to_two_million_tets(tmp_path):
+    record = scaling.run(tmp_path, scaling.SURFACE_VERTICES, Device(), 3, print)
+    assert record["bodies"][-1]["tets"] > 1.9e6
+    for counts in cycles(record).values():
+        assert max(counts) - min(counts) <= 2  # one more or less than a middle value
+    for exponent in record["exponents"].values():
+        assert exponent <= 1.05
