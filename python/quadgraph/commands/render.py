@@ -9,7 +9,6 @@ from pathlib import Path
 from rich.console import Console
 
 from quadgraph.base import atomic_file
-from quadgraph.base.arguments import positive_float
 from quadgraph.base.errors import InputError
 from quadgraph.commands import render_scene, scene_options
 from quadgraph.commands import solve_report as text
