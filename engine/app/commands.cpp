@@ -67,16 +67,15 @@ void next_method(S s, W) {
 }
 
 void next_solver(S s, W) {
-  next(s.scene.solve.solver, std::array{SolverKind::fmg_pcg, SolverKind::vcycle, SolverKind::dpcg, SolverKind::cascade,
-                                        SolverKind::jacobi, SolverKind::automatic});
+  next(s.scene.solve.solver, all_values<SolverKind>());
 }
 
 void next_source(S s, W) {
-  next(s.scene.solve.source, std::array{Source::buried, Source::diffuse});
+  next(s.scene.solve.source, all_values<Source>());
 }
 
 void next_model(S s, W) {
-  next(s.scene.solve.model, std::array{Model::automatic, Model::diffusion, Model::sp3});
+  next(s.scene.solve.model, all_values<Model>());
 }
 
 void next_error(S s, W) {
@@ -84,10 +83,11 @@ void next_error(S s, W) {
 }
 
 void next_quantity(S s, int by) {
-  constexpr int count = std::size(quantities);
+  const std::vector<Quantity> all = all_values<Quantity>();
+  const auto count = static_cast<int>(all.size());
   Quantity& quantity = s.scene.render.show.quantity;
-  const auto at = static_cast<int>(std::find(std::begin(quantities), std::end(quantities), quantity) - quantities);
-  quantity = quantities[(at + by + count) % count];
+  const auto at = static_cast<int>(std::find(all.begin(), all.end(), quantity) - all.begin());
+  quantity = all[static_cast<std::size_t>((at + by + count) % count)];
 }
 
 void next_axis(S s, W) {

@@ -3,18 +3,12 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <array>
 
 #include "engine/app/gestures.h"
 #include "engine/app/panel_widgets.h"
 
 namespace quadgraph {
 namespace {
-
-std::string_view kind_name(std::size_t kind) {
-  constexpr std::string_view names[] = {"plane", "slab", "sphere", "box"};
-  return names[kind];
-}
 
 // A sphere out of the side that is seen; what other kinds would need is of the same size.
 BodyCut fresh_cut(const View& view, const Sphere& bounds) {
@@ -40,8 +34,7 @@ void draw_plane(BodyCut& cut, const Sphere& bounds, UpAxis up) {
 }
 
 void draw_cut(BodyCut& cut, const Sphere& bounds, UpAxis up) {
-  auto kind = static_cast<std::size_t>(cut.kind);
-  if (choose("kind##cut", kind, kind_name, 4)) cut.kind = static_cast<CutKind>(kind);
+  choose("kind##cut", cut.kind);
   const float least = 1e-3f * bounds.radius, most = 2 * bounds.radius;
   if (cut.kind == CutKind::plane || cut.kind == CutKind::slab) {
     draw_plane(cut, bounds, up);
@@ -65,8 +58,7 @@ void draw_cuts(State& state, const Sphere& bounds) {
   if (ImGui::Checkbox("a left drag cuts", &state.knife.on) && state.knife.on) state.brush.on = false;
   for (std::size_t i = 0; i < cuts.size(); ++i) {
     ImGui::PushID(static_cast<int>(i));
-    const std::string name =
-        formatted("%zu  %s##cuts", i + 1, kind_name(static_cast<std::size_t>(cuts[i].kind)).data());
+    const std::string name = formatted("%zu  %s##cuts", i + 1, std::string(name_of(cuts[i].kind)).c_str());
     if (ImGui::RadioButton(name.c_str(), state.cut == i)) state.cut = i;
     ImGui::PopID();
   }

@@ -3,8 +3,6 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
-#include <array>
-
 #include "engine/app/panel_widgets.h"
 #include "engine/render/light/image_file.h"
 
@@ -47,9 +45,7 @@ void draw_edits(State& state, const Sphere& bounds) {
   if (ImGui::Button("scene to file")) state.save = true;
   Edit& edit = state.brush.edit;
   if (ImGui::Checkbox("a left drag paints", &state.brush.on) && state.brush.on) state.knife.on = false;
-  constexpr std::array<const char*, 3> names = {"multiply", "add", "set"};
-  auto operation = static_cast<int>(edit.operation);
-  if (ImGui::Combo("operation", &operation, names.data(), 3)) edit.operation = static_cast<Edit::Operation>(operation);
+  choose("operation", edit.operation);
   draw_coefficient("absorption", edit.sigma_a, edit.operation);
   draw_coefficient("scattering", edit.sigma_s_prime, edit.operation);
   draw_image(state, "pattern", edit.image);

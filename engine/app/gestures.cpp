@@ -18,30 +18,6 @@ float distance_of(const View& view, const Sphere& bounds, float aspect) {
   return glm::distance(place_camera(view, bounds, aspect).eye, bounds.centre + view.target);
 }
 
-// Power of a light at that distance over its irradiance at the object's centre, mm^2; 1 for those that are told by
-// their irradiance.
-float power_over_irradiance(const Light& light, float distance) {
-  const float sphere = 4 * std::numbers::pi_v<float> * distance * distance;
-  switch (light.kind) {
-    case LightKind::point:
-      return sphere;
-    case LightKind::spot: {
-      const SpotCosines cosines = spot_cosines(light);
-      return 0.25f * sphere * (2 - cosines.inner - cosines.outer);
-    }
-    case LightKind::rectangle:
-      return 0.25f * sphere;
-    case LightKind::projector: {  // of a square image
-      const float side = 2 * distance * std::tan(0.5f * glm::radians(light.angle));
-      return side * side;
-    }
-    case LightKind::environment:
-      return 1 / std::numbers::pi_v<float>;
-    default:
-      return 1;
-  }
-}
-
 }  // namespace
 
 View orbited(View view, float right, float up) {
@@ -73,15 +49,16 @@ Light turned(Light light, const View& view, const Sphere& bounds, float right, f
   light.position = bounds.centre + glm::vec3(turn * glm::vec4(light.position - bounds.centre, 0));
   light.u = glm::vec3(turn * glm::vec4(light.u, 0));
   light.v = glm::vec3(turn * glm::vec4(light.v, 0));
-  if (light.kind == LightKind::projector) light.up = glm::vec3(turn * glm::vec4(light.up, 0));
-  if (light.kind == LightKind::environment) light.turn = std::remainder(light.turn + right, 360.0f);
+  const LightForm& form = form_of(light.kind);
+  if (form.has(FieldForm::top)) light.up = glm::vec3(turn * glm::vec4(light.up, 0));
+  if (form.has(FieldForm::turn)) light.turn = std::remainder(light.turn + right, 360.0f);
   return light;
 }
 
 Light as_kind(const Light& light, LightKind kind, const Sphere& bounds) {
-  const bool placed = light.kind == LightKind::point || light.kind == LightKind::spot ||
-                      light.kind == LightKind::rectangle || light.kind == LightKind::projector;
-  const glm::vec3 from = placed ? light.position - bounds.centre : -3 * bounds.radius * light.direction;
+  const LightForm &old = form_of(light.kind), &form = form_of(kind);
+  const glm::vec3 from =
+      old.has(FieldForm::point) ? light.position - bounds.centre : -3 * bounds.radius * light.direction;
   const float distance = std::max(glm::length(from), 0.1f * bounds.radius);
   Light result{.kind = kind};
   result.direction = -glm::normalize(from);
@@ -89,8 +66,9 @@ Light as_kind(const Light& light, LightKind kind, const Sphere& bounds) {
   const glm::vec3 side = std::abs(result.direction.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
   result.u = bounds.radius * glm::normalize(glm::cross(result.direction, side));
   result.v = glm::cross(result.direction, result.u);
-  if (kind == LightKind::projector) result.up = side;
-  result.power = light.power * (power_over_irradiance(result, distance) / power_over_irradiance(light, distance));
+  if (form.has(FieldForm::top)) result.up = side;
+  result.power =
+      light.power * (form.power_over_irradiance(result, distance) / old.power_over_irradiance(light, distance));
   return result;
 }
 

@@ -4,7 +4,6 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -15,15 +14,21 @@
 namespace quadgraph {
 namespace {
 
+// A unit of the table with the signs that the window's font has.
+std::string window_text(std::string_view unit) {
+  std::string text(unit);
+  for (std::size_t at; (at = text.find("^2")) != std::string::npos;) text.replace(at, 2, "²");
+  return text;
+}
+
 // Brightness and tint of a light whose numbers span many decades.
-void draw_power(Light& light, const char* unit) {
+void draw_power(Light& light, const LightField& field) {
   float most = std::max({light.power.x, light.power.y, light.power.z, 1e-9f});
   glm::vec3 tint = light.power / most;
   // A text without a conversion: the slider moves along decades and tells the power.
-  const std::string told = formatted("%.3g ", static_cast<double>(most)) + unit;
+  const std::string told = formatted("%.3g ", static_cast<double>(most)) + window_text(field.unit);
   float decades = std::log10(most);
-  if (slide("power", decades, -6,
-            light.kind == LightKind::directional || light.kind == LightKind::ambient ? 1.0f : 6.0f, told.c_str())) {
+  if (slide("power", decades, -6, field.name == "irradiance" ? 1.0f : 6.0f, told.c_str())) {
     most = std::pow(10.0f, decades);
     light.power = most * tint;
   }
@@ -43,27 +48,24 @@ bool draw_bearing(glm::vec3& direction, UpAxis up) {
 }
 
 bool has_image(LightKind kind) {
-  return kind == LightKind::projector || kind == LightKind::environment;
+  return form_of(kind).image != LightImage::none;
 }
 
 // A light that needs an image becomes one when that has been typed.
 void draw_kind(State& state, Light& light, const Sphere& bounds) {
-  constexpr std::array kinds = {LightKind::directional, LightKind::point,     LightKind::ambient,    LightKind::spot,
-                                LightKind::rectangle,   LightKind::projector, LightKind::environment};
-  const LightKind shown = state.kind_with_image.value_or(light.kind);
-  auto chosen = static_cast<std::size_t>(std::find(kinds.begin(), kinds.end(), shown) - kinds.begin());
-  const auto name = [](std::size_t i) {
-    constexpr std::string_view names[] = {"directional", "point",     "ambient",    "spot",
-                                          "rectangle",   "projector", "environment"};
-    return names[i];
-  };
-  if (!choose("kind", chosen, name, kinds.size())) return;
+  const auto kinds = light_kinds();
+  std::vector<std::string_view> names;
+  for (const LightForm& form : kinds) names.push_back(form.name);
+  const LightForm& shown = form_of(state.kind_with_image.value_or(light.kind));
+  auto chosen = static_cast<std::size_t>(&shown - kinds.data());
+  if (!choose("kind", chosen, names)) return;
+  const LightKind kind = kinds[chosen].kind;
   state.kind_with_image.reset();
-  if (kinds[chosen] == light.kind) return;
-  if (has_image(kinds[chosen])) {
-    state.kind_with_image = kinds[chosen];
+  if (kind == light.kind) return;
+  if (has_image(kind)) {
+    state.kind_with_image = kind;
   } else {
-    light = as_kind(light, kinds[chosen], bounds);
+    light = as_kind(light, kind, bounds);
   }
 }
 
@@ -93,33 +95,48 @@ void draw_edges(Light& light, const Sphere& bounds, UpAxis up) {
   draw_edge("height", light.v);
 }
 
+// A slider of a number that keeps off ends that are not allowed.
+void draw_number(Light& light, const LightField& field) {
+  const bool degrees = field.unit == "degrees";
+  const auto high = static_cast<float>(field.range.high), low = static_cast<float>(field.range.low);
+  const std::string label = std::string(field.name) + "##light";
+  slide(label.c_str(), light.*std::get<float Light::*>(field.member), field.range.above ? low + 1 : low,
+        field.range.below ? high - 10 : high, degrees ? "%.0f°" : "%.2f");
+}
+
+void draw_field(Light& light, const LightField& field, const Sphere& bounds, UpAxis up) {
+  switch (field.form) {
+    case FieldForm::direction:
+      draw_bearing(light.direction, up);
+      break;
+    case FieldForm::point:
+      ImGui::DragFloat3("at, mm", &light.position.x, 0.01f * bounds.radius, 0, 0, "%.1f");
+      break;
+    case FieldForm::number:
+      draw_number(light, field);
+      break;
+    case FieldForm::turn:
+      slide("turn##light", light.turn, -180, 180, "%.0f°");
+      break;
+    case FieldForm::power:
+      draw_power(light, field);
+      break;
+    case FieldForm::edge:
+    case FieldForm::top:
+    case FieldForm::axis:
+    case FieldForm::file:
+      break;
+  }
+}
+
 void draw_light(State& state, const Sphere& bounds) {
   Light& light = state.scene.lights[state.light];
   const UpAxis up = state.scene.view.up;
   draw_kind(state, light, bounds);
   draw_image(state, light, bounds);
-  switch (light.kind) {
-    case LightKind::directional:
-      draw_bearing(light.direction, up);
-      return draw_power(light, "W/mm²");
-    case LightKind::ambient:
-      return draw_power(light, "W/mm²");
-    case LightKind::spot:
-    case LightKind::projector:
-      draw_bearing(light.direction, up);
-      slide("angle##light", light.angle, 1, light.kind == LightKind::spot ? 90 : 160, "%.0f°");
-      break;
-    case LightKind::rectangle:
-      draw_edges(light, bounds, up);
-      break;
-    case LightKind::environment:
-      slide("turn##light", light.turn, -180, 180, "%.0f°");
-      return draw_power(light, "W/(mm² sr)");
-    case LightKind::point:
-      break;
-  }
-  ImGui::DragFloat3("at, mm", &light.position.x, 0.01f * bounds.radius, 0, 0, "%.1f");
-  draw_power(light, "W");
+  const LightForm& form = form_of(light.kind);
+  if (form.has(FieldForm::edge)) draw_edges(light, bounds, up);
+  for (const LightField& field : form.fields) draw_field(light, field, bounds, up);
 }
 
 }  // namespace
@@ -133,8 +150,7 @@ void draw_lights(State& state, const Sphere& bounds) {
   };
   for (std::size_t i = 0; i < lights.size(); ++i) {
     ImGui::PushID(static_cast<int>(i));
-    const std::string text = to_string(lights[i]);
-    const std::string name = formatted("%zu  %s", i + 1, text.substr(0, text.find(':')).c_str());
+    const std::string name = formatted("%zu  %s", i + 1, std::string(form_of(lights[i].kind).name).c_str());
     if (ImGui::RadioButton(name.c_str(), state.light == i)) select(i);
     ImGui::PopID();
   }

@@ -28,7 +28,7 @@ void draw_plane(Show& show, const Sphere& bounds) {
 void draw_show(State& state, const Engine& engine) {
   if (!section("View")) return;
   Show& show = state.scene.render.show;
-  choose("show", show.quantity, std::to_array(quantities));
+  choose("show", show.quantity);
   if (has_plane(show.quantity)) draw_plane(show, engine.bounds());
   if (has_level(show.quantity)) {
     auto level = static_cast<int>(show.level);
@@ -94,10 +94,11 @@ void draw_shape(State& state) {
 }
 
 void draw_path(PathOptions& path) {
-  choose("cost", path.cost, std::array{PathCost::transport, PathCost::extinction});
-  choose("paths", path.solver, std::array{PathSolver::eikonal, PathSolver::lattice});
+  choose("cost", path.cost);
+  choose("paths", path.solver);
   auto cells = static_cast<int>(path.cells);
-  if (ImGui::SliderInt("voxels", &cells, 16, most_path_cells)) path.cells = static_cast<std::uint32_t>(cells);
+  if (ImGui::SliderInt("voxels", &cells, 16, static_cast<int>(path_cells_range.high)))
+    path.cells = static_cast<std::uint32_t>(cells);
 }
 
 void draw_solver(State& state) {
@@ -105,11 +106,9 @@ void draw_solver(State& state) {
   SolveOptions& solve = state.scene.solve;
   if (choose("method", solve.method, state.all_methods()) && !on_grid(solve.method)) solve.active_layers = 0;
   if (solve.method == Method::shortest_path) return draw_path(solve.path);
-  choose("solver", solve.solver,
-         std::array{SolverKind::fmg_pcg, SolverKind::vcycle, SolverKind::dpcg, SolverKind::cascade, SolverKind::jacobi,
-                    SolverKind::automatic});
-  choose("source", solve.source, std::array{Source::buried, Source::diffuse});
-  choose("model", solve.model, std::array{Model::automatic, Model::diffusion, Model::sp3});
+  choose("solver", solve.solver);
+  choose("source", solve.source);
+  choose("model", solve.model);
   auto error = static_cast<float>(100 * solve.error);
   if (slide("error", error, 0, 20, error > 0 ? "at most %.1f%%" : "no target")) {
     solve.error = error < 0.1f ? 0 : static_cast<double>(error) / 100;
@@ -119,12 +118,11 @@ void draw_solver(State& state) {
 
 void draw_picture(State& state, const Measured& measured) {
   if (!section("Picture", false)) return;
-  choose("radiance", state.scene.render.radiance,
-         std::array{Radiance::automatic, Radiance::gathered, Radiance::lambertian, Radiance::single});
+  choose("radiance", state.scene.render.radiance);
   ImGui::Checkbox("ground", &state.scene.render.ground);
   ImGui::SameLine();
   ImGui::Checkbox("surroundings", &state.scene.render.surroundings);
-  slide("roughness", state.scene.render.roughness, 0.02f, 1, "%.2f");
+  slide("roughness", state.scene.render.roughness, roughness_range, "%.2f");
   auto& stops = state.scene.tone.exposure_stops;
   bool automatic = !stops;
   if (ImGui::Checkbox("exposure by itself", &automatic)) {
@@ -140,7 +138,7 @@ void draw_camera(State& state, const Sphere& bounds) {
   if (!section("Camera", false)) return;
   View& view = state.scene.view;
   slide("around", view.azimuth, -180, 180, "%.0f°");
-  slide("above##camera", view.elevation, -90, 90, "%.0f°");
+  slide("above##camera", view.elevation, elevation_range, "%.0f°");
   slide("angle", view.vertical_fov, 5, 90, "%.0f°");
   float distance = view.distance.value_or(0);
   const char* format = view.distance ? "%.0f mm" : "the whole object";

@@ -12,11 +12,12 @@ bool section(const char* name, bool open) {
   return ImGui::CollapsingHeader(name, open ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None);
 }
 
-bool choose(const char* label, std::size_t& chosen, std::string_view (*name)(std::size_t), std::size_t count) {
+bool choose(const char* label, std::size_t& chosen, const std::vector<std::string_view>& names) {
   bool changed = false;
-  if (!ImGui::BeginCombo(label, std::string(name(chosen)).c_str(), ImGuiComboFlags_HeightLarge)) return false;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (ImGui::Selectable(std::string(name(i)).c_str(), i == chosen) && i != chosen) {
+  const std::string shown(chosen < names.size() ? names[chosen] : "");
+  if (!ImGui::BeginCombo(label, shown.c_str(), ImGuiComboFlags_HeightLarge)) return false;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (ImGui::Selectable(std::string(names[i]).c_str(), i == chosen) && i != chosen) {
       chosen = i;
       changed = true;
     }
@@ -29,6 +30,10 @@ bool choose(const char* label, std::size_t& chosen, std::string_view (*name)(std
 bool slide(const char* label, float& value, float low, float high, const char* format, bool logarithmic) {
   const ImGuiSliderFlags flags = logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None;
   return ImGui::SliderFloat(label, &value, low, high, format, flags);
+}
+
+bool slide(const char* label, float& value, const Range& range, const char* format) {
+  return slide(label, value, static_cast<float>(range.low), static_cast<float>(range.high), format);
 }
 
 void tell(const char* name, const std::string& value) {

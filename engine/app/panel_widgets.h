@@ -1,11 +1,13 @@
 // Widgets that the panel has more than one of.
 #pragma once
 
-#include <array>
-#include <glm/vec3.hpp>
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "engine/base/names.h"
+#include "engine/base/range.h"
 
 namespace quadgraph {
 
@@ -13,32 +15,27 @@ namespace quadgraph {
 bool section(const char* name, bool open = true);
 
 // A list to choose from, with the label to its right; whether another entry was chosen.
-bool choose(const char* label, std::size_t& chosen, std::string_view (*name)(std::size_t), std::size_t count);
+bool choose(const char* label, std::size_t& chosen, const std::vector<std::string_view>& names);
 
-// The same over values that name_of knows.
-template <typename T, std::size_t n>
-bool choose(const char* label, T& value, const std::array<T, n>& all) {
-  static const std::array<T, n> values = all;
-  std::size_t at = 0;
-  while (at + 1 < n && values[at] != value) ++at;
-  if (!choose(label, at, [](std::size_t i) { return name_of(values[i]); }, n)) return false;
+// The same over some values of an enum, by their names, or over all of them.
+template <HasNames Enum>
+bool choose(const char* label, Enum& value, const std::vector<Enum>& values) {
+  std::vector<std::string_view> names;
+  for (const Enum entry : values) names.push_back(name_of(entry));
+  auto at = static_cast<std::size_t>(std::find(values.begin(), values.end(), value) - values.begin());
+  if (!choose(label, at, names)) return false;
   value = values[at];
   return true;
 }
 
-template <typename T>
-bool choose(const char* label, T& value, const std::vector<T>& all) {
-  static std::vector<T> values;
-  values = all;
-  std::size_t at = 0;
-  while (at + 1 < values.size() && values[at] != value) ++at;
-  if (!choose(label, at, [](std::size_t i) { return name_of(values[i]); }, values.size())) return false;
-  value = values[at];
-  return true;
+template <HasNames Enum>
+bool choose(const char* label, Enum& value) {
+  return choose(label, value, all_values<Enum>());
 }
 
 // A slider; whether it was moved. The format is printf's.
 bool slide(const char* label, float& value, float low, float high, const char* format, bool logarithmic = false);
+bool slide(const char* label, float& value, const Range& range, const char* format);
 
 // A dim name and a value after it.
 void tell(const char* name, const std::string& value);

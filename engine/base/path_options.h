@@ -1,8 +1,12 @@
 // What the shortest-path method is asked (docs/shortest-path.md).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string_view>
+
+#include "engine/base/names.h"
+#include "engine/base/range.h"
 
 namespace quadgraph {
 
@@ -18,21 +22,31 @@ enum class PathSolver {
   lattice,  // steps to the 26 neighbours, as published [SOP 2.1]; up to 13% too long
 };
 
-// "transport", "extinction"; "eikonal", "lattice". Throw InputError listing the allowed names.
-PathCost path_cost_from_name(std::string_view name);
-PathSolver path_solver_from_name(std::string_view name);
-std::string_view name_of(PathCost cost);
-std::string_view name_of(PathSolver solver);
+template <>
+struct Names<PathCost> {
+  static constexpr std::string_view what = "path cost";
+  static constexpr auto values = std::to_array<Named<PathCost>>(
+      {{PathCost::transport, "transport", "the effective transport coefficient"},
+       {PathCost::extinction, "extinction", "the reduced extinction coefficient, as published"}});
+};
+
+template <>
+struct Names<PathSolver> {
+  static constexpr std::string_view what = "path solver";
+  static constexpr auto values = std::to_array<Named<PathSolver>>(
+      {{PathSolver::eikonal, "eikonal", "any path"},
+       {PathSolver::lattice, "lattice", "steps between the 26 neighbours of a voxel, as published"}});
+};
 
 struct PathOptions {
   PathCost cost = PathCost::transport;
   PathSolver solver = PathSolver::eikonal;
-  std::uint32_t cells = 64;  // along the longest side of the body, 8 to most_path_cells
+  std::uint32_t cells = 64;  // along the longest side of the body, in path_cells_range
 
   bool operator==(const PathOptions&) const = default;
 };
 
-inline constexpr std::uint32_t least_path_cells = 8, most_path_cells = 150;
+inline constexpr Range path_cells_range{.low = 8, .high = 150};
 
 // Throws InputError naming what is out of range.
 void check_options(const PathOptions& options);

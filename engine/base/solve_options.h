@@ -1,10 +1,13 @@
 // What a solve is asked; the GPU solver and the CPU reference share it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string_view>
 
+#include "engine/base/names.h"
 #include "engine/base/path_options.h"
+#include "engine/base/range.h"
 
 namespace quadgraph {
 
@@ -56,17 +59,50 @@ enum class Model {
   automatic,  // "auto": diffusion where its known error is small (engine/optics/model.h), else sp3
 };
 
-// "quadgraph-fdm", "quadgraph-fv", "fem", "polygrid", "polygrid-divergence", "shortest-path"; "fmg-pcg", "vcycle",
-// "dpcg", "cascade", "jacobi", "auto"; "buried", "diffuse"; "diffusion", "sp3", "auto". Throw InputError listing the
-// allowed names.
-Method method_from_name(std::string_view name);
-SolverKind solver_from_name(std::string_view name);
-Source source_from_name(std::string_view name);
-Model model_from_name(std::string_view name);
-std::string_view name_of(Method method);
-std::string_view name_of(SolverKind solver);
-std::string_view name_of(Source source);
-std::string_view name_of(Model model);
+template <>
+struct Names<Method> {
+  static constexpr std::string_view what = "method";
+  static constexpr auto values = std::to_array<Named<Method>>(
+      {{Method::fem, "fem", "linear finite elements on the tets"},
+       {Method::quadgraph_fv, "quadgraph-fv", "finite volumes between the nodes of the QuadGraph, conservative"},
+       {Method::quadgraph_fdm, "quadgraph-fdm", "finite differences between the nodes of the QuadGraph, as published"},
+       {Method::polygrid, "polygrid",
+        "finite differences along the links of a polygrid, as published, of a file baked with --mesher polygrid"},
+       {Method::polygrid_divergence, "polygrid-divergence", "differences of the flux along the same links"},
+       {Method::shortest_path, "shortest-path", "light along the shortest optical paths through voxels"}});
+};
+
+template <>
+struct Names<SolverKind> {
+  static constexpr std::string_view what = "solver";
+  static constexpr auto values = std::to_array<Named<SolverKind>>(
+      {{SolverKind::fmg_pcg, "fmg-pcg", "full multigrid, then conjugate gradients with V-cycles"},
+       {SolverKind::vcycle, "vcycle", "full multigrid, then V-cycles"},
+       {SolverKind::dpcg, "dpcg", "conjugate gradients with the diagonal"},
+       {SolverKind::cascade, "cascade", "relaxation from the coarsest level to the finest, as published"},
+       {SolverKind::jacobi, "jacobi", "relaxation on the finest level alone"},
+       {SolverKind::automatic, "auto", "fmg-pcg or dpcg, whichever is quicker on this body and material"}});
+};
+
+template <>
+struct Names<Source> {
+  static constexpr std::string_view what = "source";
+  static constexpr auto values =
+      std::to_array<Named<Source>>({{Source::buried, "buried", "light scatters along refracted rays inside"},
+                                    {Source::diffuse, "diffuse", "light enters at the surface, as published"}});
+};
+
+template <>
+struct Names<Model> {
+  static constexpr std::string_view what = "model";
+  static constexpr auto values = std::to_array<Named<Model>>(
+      {{Model::diffusion, "diffusion", "the diffusion equation"},
+       {Model::sp3, "sp3", "simplified spherical harmonics of third order"},
+       {Model::automatic, "auto", "diffusion where it is within 1% of sp3, and for the published baseline"}});
+};
+
+inline constexpr Range tolerance_range{.low = 0, .high = 1, .above = true, .below = true};
+inline constexpr Range error_range{.low = 0, .high = 1, .below = true};
 
 struct SolveOptions {
   Method method = Method::fem;

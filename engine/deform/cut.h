@@ -1,15 +1,27 @@
 // What a user cuts away from a body that is shown by shortest paths.
 #pragma once
 
+#include <array>
 #include <glm/vec3.hpp>
 #include <span>
 #include <vector>
 
+#include "engine/base/names.h"
 #include "shaders/path/path_tools.h"
 
 namespace quadgraph {
 
 enum class CutKind { plane, slab, sphere, box };
+
+template <>
+struct Names<CutKind> {
+  static constexpr std::string_view what = "cut";
+  static constexpr auto values =
+      std::to_array<Named<CutKind>>({{CutKind::plane, "plane", "what lies in front of a plane"},
+                                     {CutKind::slab, "slab", "what lies within half its thickness of a plane"},
+                                     {CutKind::sphere, "sphere", "what lies in a sphere"},
+                                     {CutKind::box, "box", "what lies in a box along the axes"}});
+};
 
 // In the shape as it is shown. Members that a kind does not name are not used.
 struct BodyCut {

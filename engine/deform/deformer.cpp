@@ -16,17 +16,6 @@
 namespace quadgraph {
 namespace {
 
-constexpr std::array<std::pair<DeformerKind, std::string_view>, 8> names = {{
-    {DeformerKind::twist, "twist"},
-    {DeformerKind::bend, "bend"},
-    {DeformerKind::taper, "taper"},
-    {DeformerKind::stretch, "stretch"},
-    {DeformerKind::transform, "transform"},
-    {DeformerKind::lattice, "lattice"},
-    {DeformerKind::cage, "cage"},
-    {DeformerKind::displaced, "displaced"},
-}};
-
 // Up to here an angle in single precision moves points to a millionth of the body.
 constexpr double most_degrees = 3600;
 constexpr double most_factor = 1000;
@@ -158,19 +147,6 @@ void check_displaced(const Deformer& deformer) {
 }
 
 }  // namespace
-
-DeformerKind deformer_kind_from_name(std::string_view name) {
-  std::string allowed;
-  for (const auto& [kind, text] : names) {
-    if (text == name) return kind;
-    allowed += (allowed.empty() ? "" : ", ") + std::string(text);
-  }
-  throw InputError("deformer '" + std::string(name) + "': allowed are " + allowed);
-}
-
-std::string_view name_of(DeformerKind kind) {
-  return names[static_cast<std::size_t>(kind)].second;
-}
 
 RestBox rest_box(std::span<const glm::vec3> vertices) {
   RestBox box{glm::dvec3(HUGE_VAL), glm::dvec3(-HUGE_VAL)};

@@ -2,6 +2,7 @@
 // file. docs/deformation.md describes them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <memory>
@@ -11,17 +12,35 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/names.h"
 #include "engine/file/shapes.h"
 
 namespace quadgraph {
 
 enum class DeformerKind { twist, bend, taper, stretch, transform, lattice, cage, displaced };
 
-// "twist", "bend", ...; throws InputError listing the allowed names.
-DeformerKind deformer_kind_from_name(std::string_view name);
-std::string_view name_of(DeformerKind kind);
+template <>
+struct Names<DeformerKind> {
+  static constexpr std::string_view what = "deformer";
+  static constexpr auto values = std::to_array<Named<DeformerKind>>(
+      {{DeformerKind::twist, "twist", "sections across the axis turn about it"},
+       {DeformerKind::bend, "bend", "the axis becomes an arc"},
+       {DeformerKind::taper, "taper", "sections across the axis are scaled"},
+       {DeformerKind::stretch, "stretch", "the body becomes longer along the axis"},
+       {DeformerKind::transform, "transform", "scaled, turned and moved"},
+       {DeformerKind::lattice, "lattice", "control points in a box are displaced"},
+       {DeformerKind::cage, "cage", "the body follows the vertices of a mesh around it"},
+       {DeformerKind::displaced, "displaced", "shapes that a file has of every vertex"}});
+};
 
 enum class LatticeBasis { bezier, linear };
+
+template <>
+struct Names<LatticeBasis> {
+  static constexpr std::string_view what = "basis";
+  static constexpr auto values = std::to_array<Named<LatticeBasis>>(
+      {{LatticeBasis::bezier, "bezier", "of degree size - 1"}, {LatticeBasis::linear, "linear", "between neighbours"}});
+};
 
 // Around the display mesh at rest, mm.
 struct RestBox {

@@ -1,6 +1,7 @@
 // Changes that a user makes to a material: painted with a brush, at a depth, or everywhere.
 #pragma once
 
+#include <array>
 #include <glm/vec3.hpp>
 #include <limits>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "engine/base/image.h"
+#include "engine/base/names.h"
 #include "shaders/material/edits.h"
 
 namespace quadgraph {
@@ -29,11 +31,22 @@ void check_placement(const Placement& placement);
 
 gpu::ImageBox image_box(const Placement& placement);
 
+enum class EditOperation { multiply, add, set };
+
+template <>
+struct Names<EditOperation> {
+  static constexpr std::string_view what = "operation";
+  static constexpr auto values =
+      std::to_array<Named<EditOperation>>({{EditOperation::multiply, "multiply", "times the factor"},
+                                           {EditOperation::add, "add", "plus the number, not below zero"},
+                                           {EditOperation::set, "set", "the number itself"}});
+};
+
 // Where: all of the body, or what lies within `radius` of the stroke; of that what lies between two depths below the
 // surface, and in the box of a placement. Places and depths are those of the shape at rest: an edit moves with the
 // body.
 struct Edit {
-  enum class Operation { multiply, add, set };
+  using Operation = EditOperation;
 
   Operation operation = Operation::multiply;
   // Factor, 1/mm to add (also below 0), or 1/mm; without one it stays.

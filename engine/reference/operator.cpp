@@ -72,8 +72,10 @@ void check_optical(std::span<const gpu::Optical> optical, std::size_t count) {
 }
 
 std::vector<Method> methods_of(const Level& level) {
-  std::vector<Method> methods = {Method::fem, Method::quadgraph_fv, Method::quadgraph_fdm};
-  if (!level.grid_links.empty()) methods.insert(methods.end(), {Method::polygrid, Method::polygrid_divergence});
+  std::vector<Method> methods = all_values<Method>();
+  std::erase_if(methods, [&](Method method) {
+    return method == Method::shortest_path || (on_grid(method) && level.grid_links.empty());
+  });
   return methods;
 }
 

@@ -49,7 +49,7 @@ class Beam {
     result_.entered += power;
     if (beam_.kind == gpu::BEAM_LAMBERTIAN) return lambertian(f, frame, barycentric, power);
     if (beam_.kind == gpu::BEAM_MEAN) return ray_.run(f, barycentric, mean_direction(frame, f, problem_.eta), power);
-    const glm::dvec3 vector(beam_.vector);
+    const glm::dvec3 vector(beam_.travel_or_from);
     const glm::dvec3 outside =
         beam_.kind == gpu::BEAM_DIRECTIONAL ? vector : glm::normalize(point_at(frame, barycentric) - vector);
     ray_.run(f, barycentric, refract(outside, frame.normal, problem_.eta), power);

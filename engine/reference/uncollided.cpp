@@ -94,7 +94,7 @@ class Follower {
   }
 
   Light directed(std::uint32_t v, const BeamLight& light) const {
-    const glm::dvec3 vector(light.beam.vector);
+    const glm::dvec3 vector(light.beam.travel_or_from);
     const glm::dvec3 omega =
         light.beam.kind == gpu::BEAM_DIRECTIONAL ? vector : glm::normalize(glm::dvec3(level_.vertices[v]) - vector);
     if (const auto lit = on_lit_surface(v, omega, light)) return *lit;

@@ -11,8 +11,6 @@
 namespace quadgraph {
 namespace {
 
-constexpr float least_roughness = 0.02f;
-
 // Adds to the entry of the same name.
 void add(std::vector<PassStats>& passes, const PassStats& more) {
   auto same = std::find_if(passes.begin(), passes.end(), [&](const auto& p) { return p.name == more.name; });
@@ -23,23 +21,17 @@ void add(std::vector<PassStats>& passes, const PassStats& more) {
 }
 
 void check_roughness(float roughness) {
-  if (roughness >= least_roughness && roughness <= 1) return;
-  throw InputError("roughness: found " + number_text(roughness) + ", expected " + number_text(least_roughness) +
-                   " to 1");
+  if (roughness_range.contains(roughness)) return;
+  throw InputError("roughness: found " + number_text(roughness) + ", expected " + roughness_range.text());
 }
-
-constexpr std::pair<Radiance, std::string_view> radiance_names[] = {{Radiance::gathered, "gathered"},
-                                                                    {Radiance::lambertian, "lambertian"},
-                                                                    {Radiance::single, "single"},
-                                                                    {Radiance::automatic, "auto"}};
 
 }  // namespace
 
 void check_options(const RenderOptions& options) {
   for (std::uint32_t side : {options.width, options.height}) {
-    if (side < 1 || side > largest_side) {
+    if (!side_range.contains(side)) {
       throw InputError("size: found " + std::to_string(options.width) + "x" + std::to_string(options.height) +
-                       ", expected 1 to " + std::to_string(largest_side) + " pixels a side");
+                       ", expected " + side_range.text() + " pixels a side");
     }
   }
   check_roughness(options.roughness);
@@ -47,19 +39,6 @@ void check_options(const RenderOptions& options) {
   if (!options.roughness_map->image) throw InputError("roughness_map, image: found none");
   check_roughness(options.roughness_map->roughness);
   check_placement(options.roughness_map->placement);
-}
-
-Radiance radiance_from_name(std::string_view name) {
-  for (const auto& [radiance, text] : radiance_names) {
-    if (text == name) return radiance;
-  }
-  throw InputError("radiance '" + std::string(name) + "': allowed are gathered, lambertian, single, auto");
-}
-
-std::string_view name_of(Radiance radiance) {
-  return std::find_if(std::begin(radiance_names), std::end(radiance_names),
-                      [&](const auto& entry) { return entry.first == radiance; })
-      ->second;
 }
 
 Engine::Engine(const std::filesystem::path& path, const vk::ContextOptions& device)

@@ -1,6 +1,7 @@
 // One object, its material, lights and picture on one device: what the executable and the Python module drive.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -11,6 +12,8 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/names.h"
+#include "engine/base/range.h"
 #include "engine/deform/cut.h"
 #include "engine/deform/deformer.h"
 #include "engine/file/graph.h"
@@ -36,15 +39,23 @@ enum class Radiance {
   automatic,   // "auto": gathered, else lambertian
 };
 
-// "gathered", "lambertian", "single", "auto". Throws InputError listing the allowed names.
-Radiance radiance_from_name(std::string_view name);
-std::string_view name_of(Radiance radiance);
+template <>
+struct Names<Radiance> {
+  static constexpr std::string_view what = "radiance";
+  static constexpr auto values = std::to_array<Named<Radiance>>(
+      {{Radiance::gathered, "gathered", "one more step of transport along every view ray, scaled to the exitance"},
+       {Radiance::lambertian, "lambertian", "the same from every side but for Fresnel"},
+       {Radiance::single, "single",
+        "as lambertian, and light scattered once along the refracted view ray (Jensen et al. 2001, Eq. 6)"},
+       {Radiance::automatic, "auto", "gathered where it can be (fem and polygrids, buried), else lambertian"}});
+};
 
-constexpr std::uint32_t largest_side = 16384;  // of a picture, pixels
+inline constexpr Range side_range{.low = 1, .high = 16384};  // of a picture, pixels
+inline constexpr Range roughness_range{.low = 0.02, .high = 1};
 
 struct RenderOptions {
-  std::uint32_t width = 1024, height = 1024;  // pixels, 1 to largest_side; every one is the mean of 2 x 2 samples
-  float roughness = 0.3f;                     // alpha of the GGX distribution of the surface, 0.02 to 1
+  std::uint32_t width = 1024, height = 1024;  // pixels, in side_range; every one is the mean of 2 x 2 samples
+  float roughness = 0.3f;                     // alpha of the GGX distribution of the surface, in roughness_range
   Radiance radiance = Radiance::automatic;
   Show show{};                // what is to be seen
   bool ground = false;        // with a shadow where the body stands, which counts as coverage without light

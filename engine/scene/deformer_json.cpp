@@ -71,10 +71,7 @@ void lattice_from(const JsonField& field, Deformer& deformer) {
   field.allow({"type", "size", "basis", "displacements", "box"});
   deformer.size = counts_from(field.at("size"), 1, most_points);
   deformer.displacements = points_from(field.at("displacements"));
-  if (const auto basis = field.find("basis")) {
-    if (basis->text() != "bezier" && basis->text() != "linear") basis->refuse("\"bezier\" or \"linear\"");
-    deformer.basis = basis->text() == "linear" ? LatticeBasis::linear : LatticeBasis::bezier;
-  }
+  if (const auto basis = field.find("basis")) deformer.basis = basis->named<LatticeBasis>();
   if (const auto box = field.find("box")) {
     box->allow({"low", "high"});
     deformer.box = RestBox{precise(box->at("low")), precise(box->at("high"))};
@@ -121,7 +118,7 @@ void put_axis(const Deformer& deformer, Json& json) {
 
 void put_lattice(const Deformer& deformer, Json& json) {
   json["size"] = {deformer.size.x, deformer.size.y, deformer.size.z};
-  json["basis"] = deformer.basis == LatticeBasis::linear ? "linear" : "bezier";
+  json["basis"] = name_of(deformer.basis);
   json["displacements"] = points_json(deformer.displacements);
   if (deformer.box) json["box"] = {{"low", point_json(deformer.box->low)}, {"high", point_json(deformer.box->high)}};
 }
@@ -143,8 +140,7 @@ void put_displaced(const Deformer& deformer, Json& json) {
 Deformer deformer_from(const JsonField& field) {
   if (!field.value().is_object()) field.refuse("an object with a type");
   Deformer deformer;
-  const JsonField type = field.at("type");
-  deformer.kind = type.within([&] { return deformer_kind_from_name(type.text()); });
+  deformer.kind = field.at("type").named<DeformerKind>();
   using enum DeformerKind;
   switch (deformer.kind) {
     case twist:

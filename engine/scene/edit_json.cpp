@@ -1,30 +1,13 @@
 #include "engine/scene/edit_json.h"
 
-#include <array>
-
 #include "engine/scene/placement_json.h"
 
 namespace quadgraph {
-namespace {
-
-constexpr std::array<std::pair<std::string_view, Edit::Operation>, 3> operations = {
-    {{"multiply", Edit::Operation::multiply}, {"add", Edit::Operation::add}, {"set", Edit::Operation::set}}};
-
-Edit::Operation operation_from(const JsonField& field) {
-  const std::string text = field.text();
-  for (const auto& [name, operation] : operations) {
-    if (name == text) return operation;
-  }
-  field.refuse("\"multiply\", \"add\" or \"set\"");
-}
-
-}  // namespace
-
 Edit edit_from(const JsonField& field) {
   field.allow(
       {"operation", "sigma_s_prime", "sigma_a", "stroke", "radius", "depth", "softness", "placement", "image", "mask"});
   Edit edit;
-  edit.operation = operation_from(field.at("operation"));
+  edit.operation = field.at("operation").named<EditOperation>();
   if (const auto scattering = field.find("sigma_s_prime")) edit.sigma_s_prime = scattering->rgb();
   if (const auto absorption = field.find("sigma_a")) edit.sigma_a = absorption->rgb();
   if (const auto stroke = field.find("stroke")) {
@@ -46,10 +29,7 @@ Edit edit_from(const JsonField& field) {
 }
 
 Json to_json(const Edit& edit) {
-  Json json;
-  for (const auto& [name, operation] : operations) {
-    if (operation == edit.operation) json["operation"] = name;
-  }
+  Json json{{"operation", name_of(edit.operation)}};
   if (edit.sigma_s_prime) json["sigma_s_prime"] = rgb_json(*edit.sigma_s_prime);
   if (edit.sigma_a) json["sigma_a"] = rgb_json(*edit.sigma_a);
   for (const glm::vec3& point : edit.stroke) json["stroke"].push_back(triple_json(point));

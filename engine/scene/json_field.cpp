@@ -57,7 +57,7 @@ void JsonField::refuse(const std::string& allowed) const {
                    allowed);
 }
 
-void JsonField::allow(std::initializer_list<std::string_view> keys) const {
+void JsonField::allow(std::span<const std::string_view> keys) const {
   std::string all;
   for (std::string_view key : keys) all += (all.empty() ? "" : ", ") + std::string(key);
   if (!value_->is_object()) refuse("an object of " + all);

@@ -5,11 +5,13 @@
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "engine/base/error.h"
+#include "engine/base/names.h"
 
 namespace quadgraph {
 
@@ -27,7 +29,8 @@ class JsonField {
   [[noreturn]] void refuse(const std::string& allowed) const;
 
   // Throws unless this is an object with no other keys.
-  void allow(std::initializer_list<std::string_view> keys) const;
+  void allow(std::span<const std::string_view> keys) const;
+  void allow(std::initializer_list<std::string_view> keys) const { allow(std::span(keys.begin(), keys.size())); }
 
   // Of an object; `at` throws if it is not there.
   std::optional<JsonField> find(std::string_view key) const;
@@ -46,6 +49,8 @@ class JsonField {
   std::uint32_t whole(std::uint32_t low, std::uint32_t high) const;
   bool truth() const;
   std::string text() const;
+  template <HasNames Enum>
+  Enum named() const;  // the value of one of its names
   glm::vec3 triple() const;
   glm::vec3 rgb() const;  // one number or three
 
@@ -63,6 +68,17 @@ class JsonField {
   const Json* value_;
   std::string path_;
 };
+
+template <HasNames Enum>
+Enum JsonField::named() const {
+  const std::string found = text();
+  std::string allowed;
+  for (const Named<Enum>& named : Names<Enum>::values) {
+    if (named.name == found) return named.value;
+    allowed += (allowed.empty() ? "" : ", ") + std::string(named.name);
+  }
+  refuse(allowed);
+}
 
 // [x, y, z], in the shortest numbers that read back the same.
 Json triple_json(const glm::vec3& value);

@@ -1,17 +1,12 @@
 #include "engine/scene/light_json.h"
 
+#include <algorithm>
 #include <glm/geometric.hpp>
+
+#include "engine/render/display/camera.h"
 
 namespace quadgraph {
 namespace {
-
-// One type of light: how it is read and written, besides its type.
-struct Form {
-  std::string_view type;
-  LightKind kind;
-  void (*read)(const JsonField& field, Light& light);
-  void (*write)(const Light& light, Json& json);
-};
 
 glm::vec3 direction_from(const JsonField& field) {
   const glm::dvec3 direction(field.triple());
@@ -19,143 +14,72 @@ glm::vec3 direction_from(const JsonField& field) {
   return glm::vec3(glm::normalize(direction));
 }
 
-void read_directional(const JsonField& field, Light& light) {
-  field.allow({"type", "direction", "irradiance"});
-  light.direction = direction_from(field.at("direction"));
-  light.power = field.at("irradiance").rgb();
+glm::vec3 vector_from(FieldForm form, const JsonField& field) {
+  if (form == FieldForm::direction) return direction_from(field);
+  if (form == FieldForm::power) return field.rgb();
+  if (form != FieldForm::axis) return field.triple();
+  return field.named<UpAxis>() == UpAxis::y ? glm::vec3(0, 1, 0) : glm::vec3(0, 0, 1);
 }
 
-void write_directional(const Light& light, Json& json) {
-  json["direction"] = triple_json(light.direction);
-  json["irradiance"] = rgb_json(light.power);
-}
-
-void read_point(const JsonField& field, Light& light) {
-  field.allow({"type", "position", "power"});
-  light.position = field.at("position").triple();
-  light.power = field.at("power").rgb();
-}
-
-void write_point(const Light& light, Json& json) {
-  json["position"] = triple_json(light.position);
-  json["power"] = rgb_json(light.power);
-}
-
-void read_ambient(const JsonField& field, Light& light) {
-  field.allow({"type", "irradiance"});
-  light.power = field.at("irradiance").rgb();
-}
-
-void write_ambient(const Light& light, Json& json) {
-  json["irradiance"] = rgb_json(light.power);
-}
-
-void read_spot(const JsonField& field, Light& light) {
-  field.allow({"type", "position", "direction", "angle", "edge", "power"});
-  light.position = field.at("position").triple();
-  light.direction = direction_from(field.at("direction"));
-  light.angle = field.at("angle").real();
-  if (const auto edge = field.find("edge")) light.edge = edge->real();
-  light.power = field.at("power").rgb();
-}
-
-void write_spot(const Light& light, Json& json) {
-  json["position"] = triple_json(light.position);
-  json["direction"] = triple_json(light.direction);
-  json["angle"] = real_json(light.angle);
-  json["edge"] = real_json(light.edge);
-  json["power"] = rgb_json(light.power);
-}
-
-void read_rectangle(const JsonField& field, Light& light) {
-  field.allow({"type", "centre", "u", "v", "power"});
-  light.position = field.at("centre").triple();
-  light.u = field.at("u").triple();
-  light.v = field.at("v").triple();
-  light.power = field.at("power").rgb();
-}
-
-void write_rectangle(const Light& light, Json& json) {
-  json["centre"] = triple_json(light.position);
-  json["u"] = triple_json(light.u);
-  json["v"] = triple_json(light.v);
-  json["power"] = rgb_json(light.power);
-}
-
-void read_projector(const JsonField& field, Light& light) {
-  field.allow({"type", "position", "direction", "up", "angle", "file", "power"});
-  light.position = field.at("position").triple();
-  light.direction = direction_from(field.at("direction"));
-  if (const auto up = field.find("up")) light.up = up->triple();
-  light.angle = field.at("angle").real();
-  light.file = field.at("file").text();
-  light.power = field.at("power").rgb();
-}
-
-void write_projector(const Light& light, Json& json) {
-  json["position"] = triple_json(light.position);
-  json["direction"] = triple_json(light.direction);
-  json["up"] = triple_json(light.up);
-  json["angle"] = real_json(light.angle);
-  json["file"] = light.file;
-  json["power"] = rgb_json(light.power);
-}
-
-void read_environment(const JsonField& field, Light& light) {
-  field.allow({"type", "file", "turn", "up", "radiance"});
-  light.file = field.at("file").text();
-  if (const auto turn = field.find("turn")) light.turn = turn->real();
-  if (const auto up = field.find("up")) {
-    if (up->text() != "y" && up->text() != "z") up->refuse("y or z");
-    light.up = up->text() == "y" ? glm::vec3(0, 1, 0) : glm::vec3(0, 0, 1);
+void read_field(const LightField& known, const JsonField& field, Light& light) {
+  if (const auto* number = std::get_if<float Light::*>(&known.member)) {
+    light.** number = field.real();
+  } else if (const auto* file = std::get_if<std::string Light::*>(&known.member)) {
+    light.** file = field.text();
+  } else {
+    light.*std::get<glm::vec3 Light::*>(known.member) = vector_from(known.form, field);
   }
-  light.power = field.at("radiance").rgb();
 }
 
-void write_environment(const Light& light, Json& json) {
-  json["file"] = light.file;
-  json["turn"] = real_json(light.turn);
-  json["up"] = light.up.z > 0 ? "z" : "y";
-  json["radiance"] = rgb_json(light.power);
+Json field_json(const LightField& known, const Light& light) {
+  if (const auto* number = std::get_if<float Light::*>(&known.member)) return real_json(light.**number);
+  if (const auto* file = std::get_if<std::string Light::*>(&known.member)) return light.**file;
+  const glm::vec3& vector = light.*std::get<glm::vec3 Light::*>(known.member);
+  if (known.form == FieldForm::power) return rgb_json(vector);
+  if (known.form == FieldForm::axis) return name_of(vector.z > 0 ? UpAxis::z : UpAxis::y);
+  return triple_json(vector);
 }
-
-constexpr Form forms[] = {{"directional", LightKind::directional, read_directional, write_directional},
-                          {"point", LightKind::point, read_point, write_point},
-                          {"ambient", LightKind::ambient, read_ambient, write_ambient},
-                          {"spot", LightKind::spot, read_spot, write_spot},
-                          {"rectangle", LightKind::rectangle, read_rectangle, write_rectangle},
-                          {"projector", LightKind::projector, read_projector, write_projector},
-                          {"environment", LightKind::environment, read_environment, write_environment}};
 
 std::string allowed_types() {
   std::string text;
-  for (const Form& form : forms) text += (text.empty() ? "" : ", ") + std::string(form.type);
+  for (const LightForm& form : light_kinds()) text += (text.empty() ? "" : ", ") + std::string(form.name);
   return text;
+}
+
+Light read_form(const LightForm& form, const JsonField& field) {
+  std::vector<std::string_view> names{"type"};
+  for (const LightField& known : form.fields) names.push_back(known.name);
+  field.allow(names);
+  Light light;
+  light.kind = form.kind;
+  for (const LightField& known : form.fields) {
+    if (!known.optional) {
+      read_field(known, field.at(known.name), light);
+    } else if (const auto given = field.find(known.name)) {
+      read_field(known, *given, light);
+    }
+  }
+  return light;
 }
 
 }  // namespace
 
 Light light_from(const JsonField& field) {
   if (!field.value().is_object()) field.refuse("an object with a type");
-  const std::string type = field.at("type").text();
-  for (const Form& form : forms) {
-    if (form.type != type) continue;
-    Light light;
-    light.kind = form.kind;
-    form.read(field, light);
-    field.within([&] { check_light(light); });
-    return light;
-  }
-  field.at("type").refuse(allowed_types());
+  const JsonField type = field.at("type");
+  const auto kinds = light_kinds();
+  const auto form =
+      std::find_if(kinds.begin(), kinds.end(), [name = type.text()](const LightForm& f) { return f.name == name; });
+  if (form == kinds.end()) type.refuse(allowed_types());
+  const Light light = read_form(*form, field);
+  field.within([&] { check_light(light); });
+  return light;
 }
 
 Json to_json(const Light& light) {
-  Json json;
-  for (const Form& form : forms) {
-    if (form.kind != light.kind) continue;
-    json["type"] = std::string(form.type);
-    form.write(light, json);
-  }
+  const LightForm& form = form_of(light.kind);
+  Json json{{"type", form.name}};
+  for (const LightField& known : form.fields) json[std::string(known.name)] = field_json(known, light);
   return json;
 }
 

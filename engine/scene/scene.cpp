@@ -1,18 +1,20 @@
 #include "engine/scene/scene.h"
 
+#include <limits>
+#include <type_traits>
+
 #include "engine/base/text.h"
 #include "engine/optics/material.h"
 #include "engine/scene/cut_json.h"
 #include "engine/scene/deformer_json.h"
 #include "engine/scene/edit_json.h"
 #include "engine/scene/light_json.h"
+#include "engine/scene/options.h"
 #include "engine/scene/placement_json.h"
 #include "engine/scene/volume.h"
 
 namespace quadgraph {
 namespace {
-
-constexpr std::uint32_t many = 1000000;  // iterations, bounces
 
 // As a text of numbers joined by '/'.
 std::string numbers(const JsonField& field) {
@@ -38,84 +40,98 @@ std::string material_from(const JsonField& field) {
   return text;
 }
 
-View view_from(const JsonField& field) {
-  field.allow({"azimuth", "elevation", "distance", "up", "fov", "target"});
-  View view;
-  if (const auto azimuth = field.find("azimuth")) view.azimuth = azimuth->real();
-  if (const auto elevation = field.find("elevation")) view.elevation = elevation->real();
-  if (const auto distance = field.find("distance")) view.distance = distance->real();
-  if (const auto fov = field.find("fov")) view.vertical_fov = fov->real();
-  if (const auto target = field.find("target")) view.target = target->triple();
-  if (const auto up = field.find("up")) {
-    if (up->text() != "y" && up->text() != "z") up->refuse("\"y\" or \"z\"");
-    view.up = up->text() == "z" ? UpAxis::z : UpAxis::y;
+OptionValue value_from(const SceneOption& option, const JsonField& field) {
+  constexpr double all = std::numeric_limits<float>::max();
+  switch (option.kind) {
+    case OptionKind::flag:
+      return field.truth();
+    case OptionKind::whole:
+      return field.whole(static_cast<std::uint32_t>(option.range.low), static_cast<std::uint32_t>(option.range.high));
+    case OptionKind::share:
+    case OptionKind::number:
+      return field.number(-all, all);
+    case OptionKind::number_or_text:
+      return field.value().is_number() ? OptionValue(field.number(-all, all)) : OptionValue(field.text());
+    default:
+      return field.text();
   }
-  field.within([&] { check_view(view); });
-  return view;
 }
 
-Json view_json(const View& view) {
-  Json json{{"azimuth", real_json(view.azimuth)}, {"elevation", real_json(view.elevation)}};
-  if (view.distance) json["distance"] = real_json(*view.distance);
-  json["up"] = view.up == UpAxis::z ? "z" : "y";
-  json["fov"] = real_json(view.vertical_fov);
-  if (view.target != glm::vec3(0)) json["target"] = triple_json(view.target);
+Json value_json(const OptionValue& value) {
+  return std::visit(
+      [](const auto& alternative) -> Json {
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(alternative)>, std::monostate>) {
+          return nullptr;
+        } else {
+          return alternative;
+        }
+      },
+      value);
+}
+
+// The options that a scene file has directly in the object at `pointer`, but for those of a form of their own.
+std::vector<const SceneOption*> members_of(std::string_view pointer) {
+  std::vector<const SceneOption*> members;
+  for (const SceneOption& option : scene_options()) {
+    const std::size_t end = option.member.rfind('/');
+    if (end != std::string_view::npos && !option.own_form && option.member.substr(0, end) == pointer) {
+      members.push_back(&option);
+    }
+  }
+  return members;
+}
+
+std::string_view key_of(const SceneOption& option) {
+  return option.member.substr(option.member.rfind('/') + 1);
+}
+
+// Those in `field`, which has besides no members but `others`.
+void read_members(const JsonField& field, std::string_view pointer, std::initializer_list<std::string_view> others,
+                  Scene& scene) {
+  const std::vector<const SceneOption*> members = members_of(pointer);
+  std::vector<std::string_view> keys;
+  for (const SceneOption* option : members) keys.push_back(key_of(*option));
+  keys.insert(keys.end(), others.begin(), others.end());
+  field.allow(keys);
+  for (const SceneOption* option : members) {
+    const auto given = field.find(key_of(*option));
+    if (!given) continue;
+    const OptionValue value = value_from(*option, *given);
+    given->within([&] { option->set(scene, value); });
+  }
+}
+
+Json members_json(std::string_view pointer, const Scene& scene) {
+  Json json = Json::object();
+  for (const SceneOption* option : members_of(pointer)) {
+    const OptionValue value = option->get(scene);
+    if (value.index() > 0) json[std::string(key_of(*option))] = value_json(value);
+  }
   return json;
 }
 
-PathOptions path_from(const JsonField& field) {
-  field.allow({"cost", "solver", "cells"});
-  PathOptions path;
-  if (const auto cost = field.find("cost")) {
-    path.cost = cost->within([&] { return path_cost_from_name(cost->text()); });
-  }
-  if (const auto solver = field.find("solver")) {
-    path.solver = solver->within([&] { return path_solver_from_name(solver->text()); });
-  }
-  if (const auto cells = field.find("cells")) path.cells = cells->whole(least_path_cells, most_path_cells);
-  return path;
+void view_from(const JsonField& field, Scene& scene) {
+  read_members(field, "/camera", {"target"}, scene);
+  if (const auto target = field.find("target")) scene.view.target = target->triple();
+  field.within([&] { check_view(scene.view); });
 }
 
-SolveOptions solve_from(const JsonField& field) {
-  field.allow({"method", "solver", "source", "model", "tolerance", "error", "cycles", "max_iterations",
-               "inter_reflection", "bounces", "active_layers", "path"});
-  SolveOptions options;
-  const auto named = [&](std::string_view key, auto& value, const auto& parse) {
-    if (const auto name = field.find(key)) value = name->within([&] { return parse(name->text()); });
-  };
-  named("method", options.method, method_from_name);
-  named("solver", options.solver, solver_from_name);
-  named("source", options.source, source_from_name);
-  named("model", options.model, model_from_name);
-  if (const auto tolerance = field.find("tolerance")) options.tolerance = tolerance->number();
-  if (const auto error = field.find("error")) options.error = error->number();
-  if (const auto cycles = field.find("cycles")) options.cycles = cycles->whole(0, many);
-  if (const auto most = field.find("max_iterations")) options.max_iterations = most->whole(1, many);
-  if (const auto light = field.find("inter_reflection")) options.inter_reflection = light->truth();
-  if (const auto bounces = field.find("bounces")) options.bounces = bounces->whole(0, many);
-  if (const auto layers = field.find("active_layers")) options.active_layers = layers->whole(0, many);
-  if (const auto path = field.find("path")) options.path = path_from(*path);
-  field.within([&] { check_options(options); });
-  return options;
+Json view_json(const Scene& scene) {
+  Json json = members_json("/camera", scene);
+  if (scene.view.target != glm::vec3(0)) json["target"] = triple_json(scene.view.target);
+  return json;
 }
 
-Json path_json(const PathOptions& path) {
-  return {{"cost", name_of(path.cost)}, {"solver", name_of(path.solver)}, {"cells", path.cells}};
+void solve_from(const JsonField& field, Scene& scene) {
+  read_members(field, "/solver", {"path"}, scene);
+  if (const auto path = field.find("path")) read_members(*path, "/solver/path", {}, scene);
+  field.within([&] { check_options(scene.solve); });
 }
 
-Json solve_json(const SolveOptions& options) {
-  return {{"method", name_of(options.method)},
-          {"solver", name_of(options.solver)},
-          {"source", name_of(options.source)},
-          {"model", name_of(options.model)},
-          {"tolerance", options.tolerance},
-          {"error", options.error},
-          {"cycles", options.cycles},
-          {"max_iterations", options.max_iterations},
-          {"inter_reflection", options.inter_reflection},
-          {"bounces", options.bounces},
-          {"active_layers", options.active_layers},
-          {"path", path_json(options.path)}};
+Json solve_json(const Scene& scene) {
+  Json json = members_json("/solver", scene);
+  json["path"] = members_json("/solver/path", scene);
+  return json;
 }
 
 void background_from(const JsonField& field, ToneOptions& tone) {
@@ -132,47 +148,28 @@ void background_from(const JsonField& field, ToneOptions& tone) {
   field.within([&] { parse_background(text, tone); });
 }
 
-void picture_from(const JsonField& field, RenderOptions& render, ToneOptions& tone) {
-  field.allow({"width", "height", "roughness", "radiance", "exposure", "background", "show", "ground", "surroundings",
-               "roughness_map"});
-  if (const auto width = field.find("width")) render.width = width->whole(1, largest_side);
-  if (const auto height = field.find("height")) render.height = height->whole(1, largest_side);
-  if (const auto roughness = field.find("roughness")) render.roughness = roughness->real();
-  if (const auto radiance = field.find("radiance")) {
-    render.radiance = radiance->within([&] { return radiance_from_name(radiance->text()); });
-  }
-  if (const auto ground = field.find("ground")) render.ground = ground->truth();
-  if (const auto around = field.find("surroundings")) render.surroundings = around->truth();
-  if (const auto map = field.find("roughness_map")) {
-    map->allow({"image", "placement", "roughness"});
-    render.roughness_map = {image_from(map->at("image")), placement_from(map->at("placement"))};
-    if (const auto roughness = map->find("roughness")) render.roughness_map->roughness = roughness->real();
-  }
-  if (const auto show = field.find("show")) {
-    render.show = show->within([&] { return parse_show(show->text()); });
-  }
-  if (const auto exposure = field.find("exposure")) {
-    const std::string text = numbers(*exposure);
-    tone.exposure_stops = exposure->within([&] { return parse_exposure(text); });
-  }
-  if (const auto background = field.find("background")) background_from(*background, tone);
-  field.within([&] { check_options(render); });
+RoughnessMap roughness_map_from(const JsonField& field) {
+  field.allow({"image", "placement", "roughness"});
+  RoughnessMap map{image_from(field.at("image")), placement_from(field.at("placement"))};
+  if (const auto roughness = field.find("roughness")) map.roughness = roughness->real();
+  return map;
 }
 
-Json picture_json(const RenderOptions& render, const ToneOptions& tone) {
-  Json json{{"width", render.width},
-            {"height", render.height},
-            {"roughness", real_json(render.roughness)},
-            {"radiance", name_of(render.radiance)},
-            {"show", to_string(render.show)},
-            {"ground", render.ground},
-            {"surroundings", render.surroundings}};
-  if (const auto& map = render.roughness_map) {
+void picture_from(const JsonField& field, Scene& scene) {
+  read_members(field, "/picture", {"roughness_map", "background"}, scene);
+  if (const auto map = field.find("roughness_map")) scene.render.roughness_map = roughness_map_from(*map);
+  if (const auto background = field.find("background")) background_from(*background, scene.tone);
+  field.within([&] { check_options(scene.render); });
+}
+
+Json picture_json(const Scene& scene) {
+  Json json = members_json("/picture", scene);
+  if (const auto& map = scene.render.roughness_map) {
     json["roughness_map"] = {{"image", to_json(*map->image)},
                              {"placement", to_json(map->placement)},
                              {"roughness", real_json(map->roughness)}};
   }
-  json["exposure"] = tone.exposure_stops ? real_json(*tone.exposure_stops) : Json("auto");
+  const ToneOptions& tone = scene.tone;
   json["background"] = {{"top", rgb_json(tone.background_top)}, {"bottom", rgb_json(tone.background_bottom)}};
   return json;
 }
@@ -195,9 +192,9 @@ Scene scene_from(const JsonField& document) {
   if (const auto cuts = document.find("cuts")) {
     for (const JsonField& cut : cuts->items()) scene.cuts.push_back(cut_from(cut));
   }
-  if (const auto camera = document.find("camera")) scene.view = view_from(*camera);
-  if (const auto solver = document.find("solver")) scene.solve = solve_from(*solver);
-  if (const auto picture = document.find("picture")) picture_from(*picture, scene.render, scene.tone);
+  if (const auto camera = document.find("camera")) view_from(*camera, scene);
+  if (const auto solver = document.find("solver")) solve_from(*solver, scene);
+  if (const auto picture = document.find("picture")) picture_from(*picture, scene);
   return scene;
 }
 
@@ -207,16 +204,10 @@ Json to_json(const Scene& scene) {
   for (const Deformer& deformer : scene.deformation) deformation.push_back(to_json(deformer));
   for (const BodyCut& cut : scene.cuts) cuts.push_back(to_json(cut));
   for (const Light& light : scene.lights) lights.push_back(to_json(light));
-  return {{"quadgraph_scene", 1},
-          {"body", scene.body.string()},
-          {"material", scene.material},
-          {"edits", std::move(edits)},
-          {"lights", std::move(lights)},
-          {"deformation", std::move(deformation)},
-          {"cuts", std::move(cuts)},
-          {"camera", view_json(scene.view)},
-          {"solver", solve_json(scene.solve)},
-          {"picture", picture_json(scene.render, scene.tone)}};
+  return {{"quadgraph_scene", 1},          {"body", scene.body.string()}, {"material", scene.material},
+          {"edits", std::move(edits)},     {"lights", std::move(lights)}, {"deformation", std::move(deformation)},
+          {"cuts", std::move(cuts)},       {"camera", view_json(scene)},  {"solver", solve_json(scene)},
+          {"picture", picture_json(scene)}};
 }
 
 }  // namespace quadgraph

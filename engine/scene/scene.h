@@ -17,9 +17,9 @@
 namespace quadgraph {
 
 struct Scene {
-  std::filesystem::path body;             // .qgraph
-  std::string material = "marble-veins";  // as parse_material reads it, or a volume's file
-  std::vector<Edit> edits{};              // of the material, one after the other
+  std::filesystem::path body;       // .qgraph
+  std::string material = "marble";  // as parse_material reads it, or a volume's file
+  std::vector<Edit> edits{};        // of the material, one after the other
   std::vector<Light> lights{};
   std::vector<Deformer> deformation{};  // one after the other
   std::vector<BodyCut> cuts{};          // away from the body as it is shown; only with shortest-path

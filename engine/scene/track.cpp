@@ -36,18 +36,10 @@ void put(Json& document, const std::string& pointer, const Json& value) {
   }
 }
 
-Track::Between Track::between_from(const JsonField& field) {
-  const std::string name = field.text();
-  if (name == "linear") return Between::linear;
-  if (name == "smooth") return Between::smooth;
-  if (name != "step") field.refuse("\"linear\", \"smooth\" or \"step\"");
-  return Between::step;
-}
-
 Track::Track(const JsonField& field) : where_(field.path()) {
   field.allow({"path", "keys", "between"});
   target_ = field.at("path").text();
-  if (const auto between = field.find("between")) between_ = between_from(*between);
+  if (const auto between = field.find("between")) between_ = between->named<Between>();
   for (const JsonField& key : field.at("keys").items()) {
     const auto parts = key.items();
     if (parts.size() != 2) key.refuse("[FRAME, VALUE]");

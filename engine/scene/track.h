@@ -1,6 +1,7 @@
 // A value of a scene file that changes from frame to frame.
 #pragma once
 
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -11,6 +12,17 @@ namespace quadgraph {
 // Puts `value` where `pointer` (RFC 6901) leads to: in place of what is there, or as a new member of an object, whose
 // own parents are made if need be. Throws InputError, and changes nothing, if it leads nowhere.
 void put(Json& document, const std::string& pointer, const Json& value);
+
+enum class Between { linear, smooth, step };
+
+template <>
+struct Names<Between> {
+  static constexpr std::string_view what = "between";
+  static constexpr auto values =
+      std::to_array<Named<Between>>({{Between::linear, "linear", "evenly from key to key"},
+                                     {Between::smooth, "smooth", "starting and ending slowly at every key"},
+                                     {Between::step, "step", "the value of the key before"}});
+};
 
 class Track {
  public:
@@ -26,9 +38,6 @@ class Track {
   const std::vector<std::pair<double, Json>>& keys() const { return keys_; }
 
  private:
-  enum class Between { linear, smooth, step };
-
-  static Between between_from(const JsonField& field);
   Json at(double frame) const;
 
   std::string where_;  // the track's own path

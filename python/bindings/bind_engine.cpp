@@ -10,11 +10,13 @@
 #include "engine/render/light/default_lights.h"
 #include "engine/scene/cut_json.h"
 #include "engine/scene/measured_error.h"
+#include "engine/scene/options.h"
 #include "engine/scene/volume.h"
 #include "engine/vk/context.h"
 #include "engine/vk/copy_bandwidth.h"
 #include "engine/vk/memory.h"
 #include "python/bindings/bindings.h"
+#include "python/bindings/scene_keywords.h"
 
 namespace py = pybind11;
 
@@ -81,22 +83,12 @@ std::vector<gpu::Optical> optical_in_cells(const FloatArray& sigma_s_prime, cons
   return optical;
 }
 
-py::dict solve(Engine& engine, const std::string& method, const std::string& solver, const std::string& source,
-               const std::string& model, double tolerance, double error, std::uint32_t cycles, bool warm,
-               std::uint32_t max_iterations, bool inter_reflection, std::uint32_t bounces, std::uint32_t smoothing,
-               std::uint32_t exchange_rows, std::uint32_t active_layers, const std::string& path_cost,
-               const std::string& path_solver, std::uint32_t path_cells, bool mean_rays, bool motion) {
-  SolveOptions options = options_from(method, solver, source, model, tolerance, max_iterations);
-  options.error = error;
-  options.cycles = cycles;
-  options.warm = warm;
-  options.inter_reflection = inter_reflection;
-  options.bounces = bounces;
-  options.smoothing = smoothing;
-  options.exchange_rows = exchange_rows;
-  options.active_layers = active_layers;
-  options.mean_rays = mean_rays;
-  options.path = {path_cost_from_name(path_cost), path_solver_from_name(path_solver), path_cells};
+SolveOptions solve_options(const char* function, const py::kwargs& given) {
+  return scene_of(function, given, {solver_group, path_group}).solve;
+}
+
+py::dict solve(Engine& engine, bool motion, const py::kwargs& given) {
+  const SolveOptions options = solve_options("solve", given);
   const SolveReport report = [&] {
     const py::gil_scoped_release release;
     return solve_measured(engine, motion ? in_motion(options, engine.graph().levels()) : options);
@@ -104,20 +96,14 @@ py::dict solve(Engine& engine, const std::string& method, const std::string& sol
   return as_dict(report);
 }
 
-void make_room(Engine& engine, const std::string& method, const std::string& source, const std::string& model,
-               bool inter_reflection) {
-  SolveOptions options;
-  options.method = method_from_name(method);
-  options.source = source_from_name(source);
-  options.model = model_from_name(model);
-  options.inter_reflection = inter_reflection;
+void make_room(Engine& engine, const py::kwargs& given) {
+  const SolveOptions options = solve_options("make_room", given);
   const py::gil_scoped_release release;
   engine.make_room(options);
 }
 
 View view_from(const std::string& text, const std::string& up, float vertical_fov, float front) {
-  if (up != "y" && up != "z") throw InputError("up '" + up + "': allowed are y and z");
-  View view = first_view(front, up == "z" ? UpAxis::z : UpAxis::y);
+  View view = first_view(front, from_name<UpAxis>(up));
   view.vertical_fov = vertical_fov;
   return text.empty() ? view : parse_view(text, view);
 }
@@ -129,19 +115,15 @@ std::vector<std::string> default_light_texts(const std::string& view, const std:
   return texts;
 }
 
-Picture render(Engine& engine, const std::string& view_text, const std::string& up, float vertical_fov,
-               std::uint32_t width, std::uint32_t height, float roughness, const std::string& radiance,
-               const std::string& show, bool ground, bool surroundings) {
-  const View view = view_from(view_text, up, vertical_fov, engine.graph().front());
-  const RenderOptions options{.width = width,
-                              .height = height,
-                              .roughness = roughness,
-                              .radiance = radiance_from_name(radiance),
-                              .show = parse_show(show),
-                              .ground = ground,
-                              .surroundings = surroundings};
+Picture render(Engine& engine, const std::string& view, const py::kwargs& given) {
+  Scene scene = scene_of("render", given, {camera_group, picture_group});
+  if (view.empty()) {
+    scene.view.azimuth = first_view(engine.graph().front(), scene.view.up).azimuth;
+  } else {
+    scene.view = parse_view(view, scene.view);
+  }
   const py::gil_scoped_release release;
-  return engine.render(view, options);
+  return engine.render(scene.view, scene.render);
 }
 
 py::object pick(const Engine& engine, const std::array<float, 2>& at, const std::string& view, const std::string& up,
@@ -180,10 +162,23 @@ py::dict copy_bandwidth(const std::string& device) {
   return d;
 }
 
+std::string solve_help() {
+  return "Solves for the present material and light; a report. motion: as the window does while something changes "
+         "(docs/window.md), whatever the other options say of it. Raises InputError, SolverError. Keywords:" +
+         keywords_help({solver_group, path_group});
+}
+
+std::string render_help() {
+  return "The last solve as a picture, seen from `view`, else from the front. Raises InputError. Keywords:" +
+         keywords_help({camera_group, picture_group});
+}
+
 }  // namespace
 
 void bind_engine(py::module_& module) {
-  module.def("default_lights", &default_light_texts, py::arg("view") = "", py::arg("up") = "y", py::arg("front") = 0.0f,
+  const std::string usual_up(name_of(View{}.up));
+  module.def("default_lights", &default_light_texts, py::arg("view") = "", py::arg("up") = usual_up,
+             py::arg("front") = 0.0f,
              "The lights a picture gets when nobody asks for others: warm from behind `view` (without one the azimuth "
              "`front`, degrees, of QuadGraph.front), cool from the side, a little from all around.");
   module.def(
@@ -245,21 +240,7 @@ void bind_engine(py::module_& module) {
           "lights are evaluated again by update_irradiance. Raises InputError, and moves nothing, where a tet would be "
           "turned inside out.")
       .def("update_irradiance", &Engine::update_irradiance, py::call_guard<py::gil_scoped_release>())
-      .def("solve", &solve, py::arg("method") = "fem", py::arg("solver") = "fmg-pcg", py::arg("source") = "buried",
-           py::arg("model") = "auto", py::arg("tolerance") = 1e-3, py::arg("error") = 0.0, py::arg("cycles") = 0,
-           py::arg("warm") = false, py::arg("max_iterations") = 5000, py::arg("inter_reflection") = true,
-           py::arg("bounces") = 0, py::arg("smoothing") = 0, py::arg("exchange_rows") = 0, py::arg("active_layers") = 0,
-           py::arg("path_cost") = "transport", py::arg("path_solver") = "eikonal", py::arg("path_cells") = 64,
-           py::arg("mean_rays") = false, py::arg("motion") = false,
-           "Solves for the present material and light (engine/reference/solution.h); a report. tolerance: estimated "
-           "algebraic error of the exitance; error: target for it and that of the mesh together, 0: none; cycles: so "
-           "many iterations on the finest level, 0: as many as it takes; warm: from the last solution; exchange_rows: "
-           "of a body that deforms so many faces look anew at what they see, "
-           "0: all of them; active_layers: of a polygrid that are solved for on all levels but the coarsest, 0: all. "
-           "path_...: of method shortest-path (docs/shortest-path.md). mean_rays: even light by one ray from an origin "
-           "instead of eight; motion: as the window does while something "
-           "changes (docs/window.md), whatever the other options say of it. Raises "
-           "InputError, SolverError.")
+      .def("solve", &solve, py::kw_only(), py::arg("motion") = false, solve_help().c_str())
       .def(
           "set_grid",
           [](Engine& engine, const FloatArray& sigma_s_prime, const FloatArray& sigma_a,
@@ -312,7 +293,7 @@ void bind_engine(py::module_& module) {
             return own(vk::download<glm::vec3>(engine.context(), engine.simulation().vertex_unscattered()));
           },
           "The same of light that left without having scattered.")
-      .def("pick", &pick, py::arg("at"), py::arg("view") = "", py::arg("up") = "y",
+      .def("pick", &pick, py::arg("at"), py::arg("view") = "", py::arg("up") = usual_up,
            py::arg("vertical_fov") = View{}.vertical_fov, py::arg("aspect") = 1.0f,
            "What a picture of this view and shape shows at (x, y), -1 to 1 from left to right and from bottom to top: "
            "position, at_rest (mm; edits are placed by it) and normal; None where there is nothing.")
@@ -321,25 +302,15 @@ void bind_engine(py::module_& module) {
            "outward directions (n, 3): radiance (n, 3) of scattered light, transmittance (n, 3) of the body.")
       .def(
           "phi", [](Engine& engine) { return own(engine.simulation().phi()); }, "Per carrier of level 0, W/mm^2.")
-      .def("render", &render, py::arg("view") = "", py::arg("up") = "y", py::arg("vertical_fov") = 30.0f,
-           py::arg("width") = 1024, py::arg("height") = 1024, py::arg("roughness") = RenderOptions{}.roughness,
-           py::arg("radiance") = "auto", py::arg("show") = "picture", py::arg("ground") = false,
-           py::arg("surroundings") = false,
-           "The last solve seen from 'azimuth,elevation[,distance]' (degrees, mm), or from the front. radiance: "
-           "gathered, lambertian, "
-           "single, auto. show: picture, or what is inside, in false colour (engine/render/inside/show.h). ground: "
-           "with a "
-           "shadow "
-           "where the body stands, as coverage "
-           "without light. surroundings: environment lights are seen behind it, in the picture's surroundings.")
+      .def("render", &render, py::arg("view") = "", render_help().c_str())
       .def_property_readonly(
           "passes", [](const Engine& engine) { return as_list(engine.passes()); },
           "Device time and bytes per pass of the last frame.")
       .def_property_readonly("metadata", &Engine::metadata)
       .def_property_readonly("device_bytes", &Engine::device_bytes)
-      .def("make_room", &make_room, py::arg("method") = "fem", py::arg("source") = "buried", py::arg("model") = "auto",
-           py::arg("inter_reflection") = true,
-           "Allocates what a solve for the present material and light, and a picture of it, will take.")
+      .def("make_room", &make_room,
+           "Allocates what a solve for the present material and light with these options of `solve`, and a picture of "
+           "it, will take.")
       .def_property_readonly("allocation_count", &Engine::allocation_count,
                              "Allocations of device memory ever made; staging for large arrays among them.")
       .def("memory", &memory_list, "What device_bytes consists of: {purpose, bytes}, largest first.")

@@ -39,7 +39,7 @@ void check_messages(const vk::Context& context) {
 py::array paths(const FloatArray& cost, const FloatArray& entering, float cell, const std::string& solver,
                 const std::string& device, bool validation) {
   const glm::uvec3 size = cells_of(cost, "cost");
-  const PathSolver kind = path_solver_from_name(solver);
+  const PathSolver kind = from_name<PathSolver>(solver);
   vk::Context context(vk::ContextOptions{validation, device});
   const std::vector<float> found = paths_through(context, size, cell, values(cost), values(entering), kind);
   check_messages(context);
@@ -56,7 +56,7 @@ py::array reference(const FloatArray& cost, const FloatArray& start, float cell,
                                        .cell = static_cast<double>(cell),
                                        .cost = values(cost).subspan(c * count, count),
                                        .start = values(start).subspan(c * count, count)},
-                                      path_solver_from_name(solver));
+                                      from_name<PathSolver>(solver));
     all.insert(all.end(), found.begin(), found.end());
   }
   return in_cells(all, size, 3);
@@ -88,18 +88,19 @@ py::dict voxels(const FloatArray& vertices, const IndexArray& triangles, std::ui
 }  // namespace
 
 void bind_path(py::module_& module) {
+  const std::string solver(name_of(PathOptions{}.solver));
   module.attr("PATH_FAR") = gpu::PATH_FAR;
   module.attr("CELL_SOLID") = gpu::CELL_SOLID;
   module.attr("CELL_INSIDE") = gpu::CELL_INSIDE;
   module.attr("CELL_SURFACE") = gpu::CELL_SURFACE;
   module.def("shortest_paths", &paths, py::arg("cost"), py::arg("entering"), py::arg("cell"),
-             py::arg("solver") = "eikonal", py::arg("device") = "", py::arg("validation") = false,
+             py::arg("solver") = solver, py::arg("device") = "", py::arg("validation") = false,
              "Lengths (3, nz, ny, nx) float32 of the shortest optical paths on the device; PATH_FAR: none. cost, as "
              "large: 1/mm, below 0 where a cell is not solid (in all channels alike); entering: W/mm^2, of which the "
              "negative logarithm is the length at the start, 0: none; cell: mm; solver: eikonal or lattice. Sides are "
              "multiples of 8. Raises InputError, VulkanError.");
   module.def("shortest_paths_reference", &reference, py::arg("cost"), py::arg("start"), py::arg("cell"),
-             py::arg("solver") = "eikonal",
+             py::arg("solver") = solver,
              "The same in double precision on the CPU, from lengths at the start, PATH_FAR: none.");
   module.def("voxels", &voxels, py::arg("vertices"), py::arg("triangles"), py::arg("cells"), py::arg("device") = "",
              py::arg("validation") = false,

@@ -3,6 +3,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "engine/render/engine.h"
+#include "engine/scene/options.h"
 #include "python/bindings/bindings.h"
 
 namespace py = pybind11;
@@ -40,6 +41,8 @@ py::array_t<std::uint8_t> srgb_array(const Picture& picture, const ToneOptions& 
 }
 
 void bind_picture(py::module_& module) {
+  const std::string usual_exposure = value_text(option_named("exposure").get(Scene{}));
+  const std::string usual_background = value_text(option_named("background").get(Scene{}));
   py::class_<Picture>(module, "Picture", "Linear radiance in W/(mm^2 sr), premultiplied by alpha; top row first.")
       .def_property_readonly("scattered", &rgb_layer<&Picture::scattered>,
                              "(h, w, 3): light that was scattered in the body.")
@@ -68,21 +71,21 @@ void bind_picture(py::module_& module) {
           [](const Picture& picture, const std::string& exposure, const std::string& background) {
             return srgb_array(picture, tone_options(exposure, background));
           },
-          py::arg("exposure") = "auto", py::arg("background") = "studio", "Tone mapped, (h, w, 3) uint8 sRGB.")
+          py::arg("exposure") = usual_exposure, py::arg("background") = usual_background, "Tone mapped, (h, w, 3) uint8 sRGB.")
       .def(
           "write_png",
           [](const Picture& picture, const std::filesystem::path& path, const Metadata& metadata,
              const std::string& exposure,
              const std::string& background) { write_png(path, picture, tone_options(exposure, background), metadata); },
-          py::arg("path"), py::arg("metadata") = Metadata{}, py::arg("exposure") = "auto",
-          py::arg("background") = "studio")
+          py::arg("path"), py::arg("metadata") = Metadata{}, py::arg("exposure") = usual_exposure,
+          py::arg("background") = usual_background)
       .def(
           "write_exr",
           [](const Picture& picture, const std::filesystem::path& path, const Metadata& metadata,
              const std::string& exposure) {
             write_exr(path, picture, {.exposure_stops = parse_exposure(exposure)}, metadata);
           },
-          py::arg("path"), py::arg("metadata") = Metadata{}, py::arg("exposure") = "auto",
+          py::arg("path"), py::arg("metadata") = Metadata{}, py::arg("exposure") = usual_exposure,
           "Linear and not exposed; `exposure` is only noted in its attributes.");
 }
 

@@ -55,7 +55,7 @@ py::dict rows_dict(Rows&& rows, Model model) {
 
 Problem problem_of(const std::string& method, const std::string& source, const std::string& model,
                    std::span<const gpu::Optical> optical, double eta) {
-  return {method_from_name(method), source_from_name(source), model_from_name(model), optical, eta};
+  return {from_name<Method>(method), from_name<Source>(source), from_name<Model>(model), optical, eta};
 }
 
 py::dict assemble_dict(const QuadGraph& graph, std::uint32_t index, const std::string& method,
@@ -164,7 +164,7 @@ py::dict radiance_dict(const QuadGraph& graph, std::uint32_t index, const FloatA
 
 py::dict boundary_dict(const std::string& method, const std::string& source, const std::string& model, double eta) {
   const Boundary boundary =
-      boundary_of(method_from_name(method), source_from_name(source), model_from_name(model), eta);
+      boundary_of(from_name<Method>(method), from_name<Source>(source), from_name<Model>(model), eta);
   py::dict d;
   d["k11"] = boundary.k11;
   d["k12"] = boundary.k12;
@@ -225,7 +225,7 @@ void bind_reference(py::module_& module) {
   module.def(
       "entry_format",
       [](const QuadGraph& graph, std::uint32_t level, const std::string& method) {
-        const EntryFormat format = format_of(level_of(graph, level), method_from_name(method));
+        const EntryFormat format = format_of(level_of(graph, level), from_name<Method>(method));
         return format == EntryFormat::packed ? "packed" : "plain";
       },
       py::arg("graph"), py::arg("level"), py::arg("method"),

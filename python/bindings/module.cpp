@@ -35,10 +35,10 @@ const Level& level_of(const QuadGraph& graph, std::uint32_t index) {
 
 SolveOptions options_from(const std::string& method, const std::string& solver, const std::string& source,
                           const std::string& model, double tolerance, std::uint32_t max_iterations) {
-  return {.method = method_from_name(method),
-          .solver = solver_from_name(solver),
-          .source = source_from_name(source),
-          .model = model_from_name(model),
+  return {.method = from_name<Method>(method),
+          .solver = from_name<SolverKind>(solver),
+          .source = from_name<Source>(source),
+          .model = from_name<Model>(model),
           .tolerance = tolerance,
           .max_iterations = max_iterations};
 }
@@ -164,6 +164,7 @@ PYBIND11_MODULE(_core, module) {
   quadgraph::python::bind_deformation(module);
   quadgraph::python::bind_path(module);
   quadgraph::python::bind_picture(module);
+  quadgraph::python::bind_options(module);
   quadgraph::python::bind_engine(module);
   quadgraph::python::bind_live_objects(module);
   quadgraph::python::bind_scene(module);

@@ -10,7 +10,7 @@ import os
 import re
 import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib.metadata import entry_points
 from types import ModuleType
 
@@ -22,6 +22,21 @@ SUBCOMMANDS = ("bake", "shapes", "volume", "info", "view", "render", "solve")
 # The subcommands that quadgraph-validation brings along; their modules come through its entry points.
 VALIDATION = ("bench", "accuracy", "reference", "chart", "tables", "polygrid", "stability")
 INTERRUPTED = 128 + signal.SIGINT
+
+
+class CommandParser(argparse.ArgumentParser):
+    """The parser of a subcommand. One whose arguments need the compiled engine has `declare` add them when it is used,
+    so that all others, and the list of subcommands, do without it.
+    """
+
+    declare: Callable[[argparse.ArgumentParser], None] | None = None
+
+    def parse_known_args(self, args=None, namespace=None):
+        """As ArgumentParser does, with all arguments declared."""
+        declare, self.declare = self.declare, None
+        if declare is not None:
+            declare(self)
+        return super().parse_known_args(args, namespace)
 
 
 class Added:
@@ -58,7 +73,7 @@ def build_parser(commands: dict[str, ModuleType], added: dict[str, ModuleType]) 
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--version", action="version", version=f"%(prog)s {__version__}")
-    subparsers = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    subparsers = parser.add_subparsers(dest="command", metavar="COMMAND", required=True, parser_class=CommandParser)
     for module in commands.values():
         module.add_parser(subparsers)
     second = Added(subparsers)

@@ -46,7 +46,7 @@ float cook_torrance(vec3 n, vec3 v, vec3 l, float alpha2) {
 // Square of the roughness that blurs the highlight of a patch over its width: as much as makes the highlights of
 // neighbours run into one.
 float blurred(LightRecord light, LightShape shape, vec3 position) {
-  vec3 away = position - light.vector;
+  vec3 away = position - light.towards_or_at;
   return scene.roughness * scene.roughness + shape.width * shape.width / (8.0 * dot(away, away));
 }
 

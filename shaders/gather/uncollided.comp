@@ -179,8 +179,8 @@ Light lambertian_light(uint beam, uint kind, uint v) {
 
 Light light_of(uint beam, uint v) {
   BeamRecord record = load_beam(push.beams, beam).way;
-  if (record.kind == BEAM_DIRECTIONAL) return directed_light(beam, v, record.vector);
-  if (record.kind == BEAM_POINT) return directed_light(beam, v, normalize(load_vec3(BODY.vertices, v) - record.vector));
+  if (record.kind == BEAM_DIRECTIONAL) return directed_light(beam, v, record.travel_or_from);
+  if (record.kind == BEAM_POINT) return directed_light(beam, v, normalize(load_vec3(BODY.vertices, v) - record.travel_or_from));
   return lambertian_light(beam, record.kind, v);
 }
 

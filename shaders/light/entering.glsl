@@ -24,7 +24,7 @@ float share_from(Lamp lamp, vec3 position, vec3 normal) {
   float cos_i = min(dot(normal, incident.direction), 1.0);
   if (cos_i <= 0.0 || incident.share <= 0.0) return 0.0;
   if (SHAPED && lamp.light.kind == LIGHT_PROJECTOR) {
-    float width = lamp.width / distance(lamp.light.vector, position);
+    float width = lamp.width / distance(lamp.light.towards_or_at, position);
     incident.share *= projected(lamp.shape, -incident.direction, width)[lamp.channel];
   }
   return cos_i * fresnel_transmittance(cos_i, ENTERED.eta) * incident.share;
@@ -32,12 +32,12 @@ float share_from(Lamp lamp, vec3 position, vec3 normal) {
 
 // The same of a patch, the mean over its parts.
 float share_from_parts(Lamp lamp, vec3 position, vec3 normal) {
-  vec3 middle = lamp.light.vector;
+  vec3 middle = lamp.light.towards_or_at;
   uint n = lamp.shape.parts;
   float sum = 0.0;
   for (uint k = 0u; k < n * n; ++k) {
     vec2 place = (vec2(k % n, k / n) + 0.5) / float(n) - 0.5;
-    lamp.light.vector = middle + place.x * lamp.shape.right + place.y * lamp.shape.up;
+    lamp.light.towards_or_at = middle + place.x * lamp.shape.right + place.y * lamp.shape.up;
     sum += share_from(lamp, position, normal);
   }
   return sum / float(n * n);

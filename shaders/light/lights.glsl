@@ -10,23 +10,6 @@ struct Incident {
   float share;     // irradiance on a plane facing the light, over its power; point: 1/mm^2
 };
 
-// Share of the intensity on the axis of a spot light in a direction at that cosine from it.
-float spot_share(LightShape shape, float cosine) {
-  float s = clamp((cosine - shape.outer) / max(shape.inner - shape.outer, 1e-7), 0.0, 1.0);
-  return s * s * (3.0 - 2.0 * s);
-}
-
-// Share of the intensity on the axis of light that a flat image sends out evenly: 1 / cosine^3.
-float projected_share(float cosine) {
-  return cosine > 0.0 ? 1.0 / (cosine * cosine * cosine) : 0.0;
-}
-
-float shaped_share(uint kind, LightShape shape, float cosine) {
-  if (kind == LIGHT_SPOT) return spot_share(shape, cosine);
-  if (kind == LIGHT_PATCH) return shape.share * max(cosine, 0.0);
-  return projected_share(cosine);
-}
-
 // The image of a projector in a direction away from it; black beside it. `width` is that of a sample there, mm over the
 // distance from the light: texels that are finer are taken together.
 vec3 projected(LightShape shape, vec3 away, float width) {
@@ -38,8 +21,8 @@ vec3 projected(LightShape shape, vec3 away, float width) {
 }
 
 Incident incident_light(LightRecord light, LightShape shape, vec3 position) {
-  if (light.kind == LIGHT_DIRECTIONAL) return Incident(light.vector, 1.0);
-  vec3 to_light = light.vector - position;
+  if (light.kind == LIGHT_DIRECTIONAL) return Incident(light.towards_or_at, 1.0);
+  vec3 to_light = light.towards_or_at - position;
   float distance_squared = max(dot(to_light, to_light), 1e-12);
   Incident incident = Incident(to_light * inversesqrt(distance_squared), 1.0 / distance_squared);
   if (SHAPED && light.kind >= LIGHT_FIRST_SHAPED) {
@@ -83,7 +66,7 @@ float filtered(ShadowView view, bool perspective, vec2 texel, float depth, int r
 // Share of the light that reaches `position` (mm) on a surface of unit normal `normal`.
 float light_visibility(LightRecord light, ShadowViews views, vec3 position, vec3 normal, int radius) {
   bool perspective = light.kind != LIGHT_DIRECTIONAL;
-  uint index = light.first_view + (light.view_count == 6u ? cube_view(position - light.vector) : 0u);
+  uint index = light.first_view + (light.view_count == 6u ? cube_view(position - light.towards_or_at) : 0u);
   ShadowView view = load_shadow_view(views, index);
   float w = (view.clip_from_world * vec4(position, 1.0)).w;
   float texel_mm = view.texel * (perspective ? max(w, view.near) : 1.0);

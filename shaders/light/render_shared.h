@@ -4,6 +4,7 @@
 #define QUADGRAPH_RENDER_SHARED_H
 
 #include "gather/gather_shared.h"
+#include "light/light_kinds.h"
 #include "shared/image_levels.h"
 
 #ifdef __cplusplus
@@ -13,17 +14,6 @@ namespace quadgraph::gpu {
 // Bits of the variant of a pipeline, which is a specialization constant (shaped.glsl).
 #define VARIANT_SHAPED 1
 #define VARIANT_PLACED_ROUGHNESS 2
-
-const uint LIGHT_DIRECTIONAL = 0u;
-const uint LIGHT_POINT = 1u;
-const uint LIGHT_AMBIENT = 2u;
-// Kinds from here on have a LightShape. Passes that know them are pipelines of their own, by a specialization constant
-// (lights.glsl): llvmpipe walks through code that no light needs.
-const uint LIGHT_FIRST_SHAPED = 3u;
-const uint LIGHT_SPOT = 3u;
-const uint LIGHT_PATCH = 4u;  // of a rectangle
-const uint LIGHT_PROJECTOR = 5u;
-const uint LIGHT_ENVIRONMENT = 6u;
 
 // Pictures of an environment, one after the other in its texels (environment.h).
 const uint ENVIRONMENT_COLUMNS = 256u;
@@ -54,37 +44,6 @@ struct ShadowView {
   float near;            // mm
   float far;             // mm
   float texel;           // directional: mm; point: mm at 1 mm from the light
-};
-
-struct LightRecord {
-  uint kind;    // LIGHT_*
-  vec3 vector;  // directional: unit, towards the light; ambient, environment: unused; others: its position, mm
-  vec3 power;   // directional, ambient: irradiance, W/mm^2; environment: radiance of what is 1 in its texels, W/(mm^2
-                // sr); point: intensity, W/sr; spot: the same on the axis; patch: the same of its whole rectangle;
-                // projector: the same where the image is white
-  uint first_view;  // into the array of ShadowView
-  uint view_count;  // 0 (ambient), 1, or 6 in the order +x -x +y -y +z -z
-};
-
-// How the light is spread over directions.
-struct LightShape {
-  vec3 axis;         // unit, the way the light travels
-  float inner;       // spot: cosine of the angle from the axis at which it begins to fade
-  float outer;       // spot: cosine at which it ends
-  float share;       // patch: of its rectangle
-  float width;       // patch: of its longer side, mm
-  uint more_follow;  // 1: the next record is part of the same beam
-  // Environment: unit vectors, axis to the middle of its picture (environment.h: ahead); its texels are the pictures
-  // above. Projector: a direction d is (dot(right, d), dot(up, d)) / dot(axis, d) of the way from the image's middle to
-  // its right and upper edge. Its levels of columns x rows texels, RGB, top row first, each half as large as the one
-  // before, rounded down.
-  vec3 right;  // patch: its sides, mm
-  vec3 up;
-  QG_REF(Vec3s) texels;
-  uint columns;
-  uint rows;
-  uint levels;
-  uint parts;  // patch: along either side, that send out light apart, though hidden as one
 };
 
 #ifndef __cplusplus

@@ -13,7 +13,7 @@ layout(push_constant, scalar) uniform Block { PathEnterPush push; };
 
 // Whether solid cells lie between a point of the surface and a light.
 bool hidden_by_cells(LightRecord light, vec3 position, vec3 normal) {
-  vec3 way = light.kind == LIGHT_DIRECTIONAL ? light.vector : light.vector - position;
+  vec3 way = light.kind == LIGHT_DIRECTIONAL ? light.towards_or_at : light.towards_or_at - position;
   float far = light.kind == LIGHT_DIRECTIONAL ? 1e30 : length(way) / push.grid.cell;
   way = normalize(way);
   vec3 place = (position - push.grid.origin) / push.grid.cell + 1.5 * normal;

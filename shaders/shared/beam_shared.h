@@ -15,8 +15,8 @@ const uint BEAM_MEAN = 3u;
 
 // How the light of one source comes in, wherever it does.
 struct BeamRecord {
-  uint kind;    // BEAM_*
-  vec3 vector;  // directional: unit, the way the light travels; point: where it comes from, mm; others: unused
+  uint kind;            // BEAM_*
+  vec3 travel_or_from;  // directional: unit, the way the light travels; point: where it comes from, mm; others: unused
 };
 
 // How much of a beam is stored per face, floats: one, one per quarter or three per quarter, to be multiplied by its

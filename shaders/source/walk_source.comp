@@ -32,8 +32,8 @@ struct Frame {
 
 // The way light travels outside, at a point of a face.
 vec3 incoming(BeamRecord beam, uint ray, Frame at) {
-  if (beam.kind == BEAM_DIRECTIONAL) return beam.vector;
-  if (beam.kind == BEAM_POINT) return normalize(at.position - beam.vector);
+  if (beam.kind == BEAM_DIRECTIONAL) return beam.travel_or_from;
+  if (beam.kind == BEAM_POINT) return normalize(at.position - beam.travel_or_from);
   return lambertian_incoming(ray, at.normal, at.tangent);
 }
 

@@ -91,7 +91,7 @@ void run(const Options& options) {
     for (const std::string& model : options.models) {
       record.studies.push_back(layouts::study(context, graph.levels()[options.level],
                                               {.material = material,
-                                               .model = model_from_name(model),
+                                               .model = from_name<Model>(model),
                                                .repeats = options.repeats,
                                                .copies = options.copies}));
       std::cout << layouts::text_of(record.studies.back(), record.copy_GBps) << std::flush;

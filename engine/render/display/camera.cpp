@@ -25,20 +25,17 @@ View first_view(float front, UpAxis up) {
 }
 
 void check_view(const View& view) {
-  const auto refuse = [](const char* field, float found, const char* expected) {
-    throw InputError(std::string("view, ") + field + ": found " + number_text(found) + ", expected " + expected);
+  const auto check = [](const char* field, float found, const Range& allowed, const char* unit) {
+    if (allowed.contains(found)) return;
+    const std::string expected = allowed == Range{} ? "a finite number of" : allowed.text();
+    throw InputError(std::string("view, ") + field + ": found " + number_text(found) + ", expected " + expected + " " +
+                     unit);
   };
-  if (!std::isfinite(view.azimuth)) refuse("azimuth", view.azimuth, "a finite number of degrees");
-  if (!(std::abs(view.elevation) <= 90)) refuse("elevation", view.elevation, "-90 to 90 degrees");
-  if (!(view.vertical_fov >= 1 && view.vertical_fov <= 150)) {
-    refuse("field of view", view.vertical_fov, "1 to 150 degrees");
-  }
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!std::isfinite(view.target[axis])) refuse("target", view.target[axis], "a finite number of mm");
-  }
-  if (view.distance && !(*view.distance > 0 && std::isfinite(*view.distance))) {
-    refuse("distance", *view.distance, "more than 0 mm");
-  }
+  check("azimuth", view.azimuth, {}, "degrees");
+  check("elevation", view.elevation, elevation_range, "degrees");
+  check("field of view", view.vertical_fov, fov_range, "degrees");
+  for (int axis = 0; axis < 3; ++axis) check("target", view.target[axis], {}, "mm");
+  if (view.distance) check("distance", *view.distance, distance_range, "mm");
 }
 
 Sphere bounding_sphere(std::span<const glm::vec3> points) {

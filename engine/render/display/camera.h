@@ -1,12 +1,16 @@
 // Where the picture is taken from.
 #pragma once
 
+#include <array>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+
+#include "engine/base/names.h"
+#include "engine/base/range.h"
 
 namespace quadgraph {
 
@@ -20,15 +24,26 @@ Sphere bounding_sphere(std::span<const glm::vec3> points);
 
 enum class UpAxis { y, z };
 
+template <>
+struct Names<UpAxis> {
+  static constexpr std::string_view what = "up";
+  static constexpr auto values =
+      std::to_array<Named<UpAxis>>({{UpAxis::y, "y", "azimuth 0 looks along -z, 90 along -x"},
+                                    {UpAxis::z, "z", "azimuth 0 looks along +y, 90 along -x"}});
+};
+
+inline constexpr Range elevation_range{.low = -90, .high = 90}, fov_range{.low = 1, .high = 150};  // degrees
+inline constexpr Range distance_range{.low = 0, .above = true};                                    // mm
+
 // A view of the object's centre, or of a point beside it. With y up, azimuth 0 looks along -z (from +z), azimuth 90
 // looks along -x (from +x). With z up, azimuth 0 looks along +y (from -y), azimuth 90 along -x. Positive elevation
 // looks from above.
 struct View {
   float azimuth = 0;                // degrees
-  float elevation = 10;             // degrees, -90 to 90
+  float elevation = 10;             // degrees, in elevation_range
   std::optional<float> distance{};  // mm from the centre; without it the bounding sphere fits the picture
   UpAxis up = UpAxis::y;
-  float vertical_fov = 30;  // degrees, 1 to 150
+  float vertical_fov = 30;  // degrees, in fov_range
   glm::vec3 target{0};      // mm from the object's centre: what the middle of the picture shows
 
   bool operator==(const View&) const = default;

@@ -1,7 +1,6 @@
 #include "engine/render/inside/show.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "engine/base/error.h"
@@ -10,16 +9,8 @@
 namespace quadgraph {
 namespace {
 
-constexpr std::array<std::string_view, std::size(quantities)> names = {
-    "picture", "q", "exitance", "error", "difference", "levels", "phi", "tets", "links"};
-
-constexpr const char* allowed =
-    "allowed are picture, q, exitance, error, difference[:METHOD], levels[:N], phi[:AXIS[,MM]], tets[:AXIS[,MM[,N]]] "
-    "and "
-    "links[:AXIS[,MM[,N]]]; AXIS x, y or z, MM from the object's centre, N a level, 0 the finest";
-
 [[noreturn]] void refuse(std::string_view text) {
-  throw InputError("show '" + std::string(text) + "': " + allowed);
+  throw InputError("show '" + std::string(text) + "': allowed are " + show_forms);
 }
 
 std::uint32_t parse_level(std::string_view text, std::string_view whole) {
@@ -41,10 +32,9 @@ void parse_plane(std::string_view rest, std::string_view whole, Show& show) {
 
 }  // namespace
 
-std::string_view name_of(Quantity quantity) {
-  const auto at = std::find(std::begin(quantities), std::end(quantities), quantity) - std::begin(quantities);
-  return names[static_cast<std::size_t>(at)];
-}
+const char* const show_forms =
+    "picture, q, exitance, error, difference[:METHOD], levels[:N], phi[:AXIS[,MM]], tets[:AXIS[,MM[,N]]] and "
+    "links[:AXIS[,MM[,N]]]; AXIS x, y or z, MM from the object's centre, N a level, 0 the finest";
 
 bool has_plane(Quantity quantity) {
   return quantity == Quantity::phi || quantity == Quantity::tets || quantity == Quantity::links;
@@ -56,9 +46,11 @@ bool has_level(Quantity quantity) {
 
 Show parse_show(std::string_view text) {
   const std::size_t colon = text.find(':');
-  const auto name = std::find(names.begin(), names.end(), text.substr(0, colon));
-  if (name == names.end()) refuse(text);
-  Show show{.quantity = quantities[name - names.begin()]};
+  const auto& known = Names<Quantity>::values;
+  const auto found = std::find_if(known.begin(), known.end(),
+                                  [&](const Named<Quantity>& named) { return named.name == text.substr(0, colon); });
+  if (found == known.end()) refuse(text);
+  Show show{.quantity = found->value};
   if (colon == std::string_view::npos) return show;
   const std::string_view rest = text.substr(colon + 1);
   if (has_plane(show.quantity)) {
@@ -66,7 +58,7 @@ Show parse_show(std::string_view text) {
   } else if (show.quantity == Quantity::levels) {
     show.level = parse_level(rest, text);
   } else if (show.quantity == Quantity::difference) {
-    show.other = method_from_name(rest);
+    show.other = from_name<Method>(rest);
   } else {
     refuse(text);
   }

@@ -1,10 +1,12 @@
 // What a picture shows: the body as it looks, or what is inside the computation, as false colour.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
 
+#include "engine/base/names.h"
 #include "engine/base/solve_options.h"
 
 namespace quadgraph {
@@ -21,11 +23,20 @@ enum class Quantity {
   links,       // nodes and links of the QuadGraph at a cutting plane
 };
 
-// All, in the order in which they are offered; "picture", "q", "exitance", ...
-inline constexpr Quantity quantities[] = {Quantity::picture, Quantity::q,          Quantity::exitance,
-                                          Quantity::error,   Quantity::difference, Quantity::levels,
-                                          Quantity::phi,     Quantity::tets,       Quantity::links};
-std::string_view name_of(Quantity quantity);
+template <>
+struct Names<Quantity> {
+  static constexpr std::string_view what = "show";
+  static constexpr auto values = std::to_array<Named<Quantity>>(
+      {{Quantity::picture, "picture", "the body as it looks"},
+       {Quantity::q, "q", "irradiance that enters"},
+       {Quantity::exitance, "exitance", "light that leaves"},
+       {Quantity::error, "error", "estimated error of the exitance"},
+       {Quantity::difference, "difference", "exitance by another method, less ours"},
+       {Quantity::levels, "levels", "outside faces of a level, by their edges"},
+       {Quantity::phi, "phi", "fluence on a cutting plane"},
+       {Quantity::tets, "tets", "the tets of a level on a cutting plane"},
+       {Quantity::links, "links", "nodes and links of the QuadGraph at a cutting plane"}});
+};
 
 struct Show {
   Quantity quantity = Quantity::picture;
@@ -39,6 +50,9 @@ struct Show {
 
 bool has_plane(Quantity quantity);
 bool has_level(Quantity quantity);
+
+// All that parse_show reads, for help and errors.
+extern const char* const show_forms;
 
 // "NAME", with a plane "NAME:AXIS" or "NAME:AXIS,MM", with a level "levels:N", "tets:z,0,N", "difference:METHOD".
 // Throws InputError that lists what is allowed.

@@ -61,8 +61,9 @@ void LightImages::load(std::span<const Light> lights) {
   Images<ProjectedImage> projected;
   Images<EnvironmentImage> environments;
   for (const Light& light : lights) {
-    if (light.kind == LightKind::projector) load(light, projected_, projected, upload_projected);
-    if (light.kind == LightKind::environment) load(light, environments_, environments, upload_environment);
+    const LightImage image = form_of(light.kind).image;
+    if (image == LightImage::projected) load(light, projected_, projected, upload_projected);
+    if (image == LightImage::around) load(light, environments_, environments, upload_environment);
   }
   projected_ = std::move(projected);
   environments_ = std::move(environments);

@@ -161,10 +161,10 @@ void LightSet::add_patches(const Light& rectangle) {
   for (int i = 0; i < patches_per_side; ++i) {
     for (int j = 0; j < patches_per_side; ++j) {
       gpu::LightRecord record = light_record(rectangle);
-      record.vector += 0.5f * (patch_node[i] * rectangle.u + patch_node[j] * rectangle.v);
+      record.towards_or_at += 0.5f * (patch_node[i] * rectangle.u + patch_node[j] * rectangle.v);
       gpu::LightShape shape = patch_shape(rectangle, i, j);
-      shape.parts = parts_of(shape.width, record.vector, bounds_);
-      add(record, shape, patch_views(record.vector, shape.axis, bounds_));
+      shape.parts = parts_of(shape.width, record.towards_or_at, bounds_);
+      add(record, shape, patch_views(record.towards_or_at, shape.axis, bounds_));
     }
   }
 }

@@ -3,6 +3,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
+#include "engine/render/display/camera.h"
 #include "engine/render/light/lights.h"
 
 namespace quadgraph {
@@ -10,137 +11,119 @@ namespace {
 
 using Parts = std::vector<std::string_view>;
 
-// One kind of light as text: NAME, then `parts` more between colons, the power last.
-struct Form {
-  std::string_view name;
-  LightKind kind;
-  std::size_t parts;
-  void (*read)(const Parts& parts, const std::string& where, Light& light);
-  std::string (*write)(const Light& light);
-};
-
-glm::vec3 parse_direction(std::string_view text, const std::string& field) {
-  const glm::dvec3 direction(parse_triple(text, ',', field));
+glm::vec3 parse_direction(std::string_view text, const std::string& what) {
+  const glm::dvec3 direction(parse_triple(text, ',', what));
   const double length = glm::length(direction);
-  if (length == 0) throw InputError(field + ": found length 0, expected a direction");
+  if (length == 0) throw InputError(what + ": found length 0, expected a direction");
   return glm::vec3(direction / length);
 }
 
-void read_directional(const Parts& parts, const std::string& where, Light& light) {
-  light.direction = parse_direction(parts[1], where + ", direction");
+glm::vec3 parse_vector(FieldForm form, std::string_view text, const std::string& what) {
+  if (form == FieldForm::direction) return parse_direction(text, what);
+  if (form == FieldForm::power) return parse_rgb(text, what);
+  if (form != FieldForm::axis) return parse_triple(text, ',', what);
+  if (text == name_of(UpAxis::y)) return {0, 1, 0};
+  if (text == name_of(UpAxis::z)) return {0, 0, 1};
+  throw InputError(what + ": found '" + std::string(text) + "', expected y or z");
 }
 
-std::string write_directional(const Light& light) {
-  return triple_text(light.direction, ',') + ":";
-}
-
-void read_point(const Parts& parts, const std::string& where, Light& light) {
-  light.position = parse_triple(parts[1], ',', where + ", position");
-}
-
-std::string write_point(const Light& light) {
-  return triple_text(light.position, ',') + ":";
-}
-
-void read_ambient(const Parts&, const std::string&, Light&) {}
-
-std::string write_ambient(const Light&) {
-  return "";
-}
-
-void read_spot(const Parts& parts, const std::string& where, Light& light) {
-  read_point(parts, where, light);
-  light.direction = parse_direction(parts[2], where + ", direction");
-  const auto numbers = split(parts[3], ',');
-  if (numbers.size() > 2)
-    throw InputError(where + ", angle: found '" + std::string(parts[3]) + "', expected ANGLE,EDGE");
-  light.angle = static_cast<float>(parse_number(numbers[0], where + ", angle"));
-  if (numbers.size() > 1) light.edge = static_cast<float>(parse_number(numbers[1], where + ", edge"));
-}
-
-std::string write_spot(const Light& light) {
-  return write_point(light) + write_directional(light) + number_text(light.angle) + "," + number_text(light.edge) + ":";
-}
-
-void read_rectangle(const Parts& parts, const std::string& where, Light& light) {
-  read_point(parts, where, light);
-  light.u = parse_triple(parts[2], ',', where + ", first edge");
-  light.v = parse_triple(parts[3], ',', where + ", second edge");
-}
-
-std::string write_rectangle(const Light& light) {
-  return write_point(light) + triple_text(light.u, ',') + ":" + triple_text(light.v, ',') + ":";
-}
-
-void read_projector(const Parts& parts, const std::string& where, Light& light) {
-  read_point(parts, where, light);
-  light.direction = parse_direction(parts[2], where + ", direction");
-  const auto comma = parts[3].find(',');
-  light.angle = static_cast<float>(parse_number(parts[3].substr(0, comma), where + ", angle"));
-  if (comma != std::string_view::npos) light.up = parse_triple(parts[3].substr(comma + 1), ',', where + ", up");
-  light.file = parts[4];
-}
-
-std::string write_projector(const Light& light) {
-  return write_point(light) + write_directional(light) + number_text(light.angle) + "," + triple_text(light.up, ',') +
-         ":" + light.file + ":";
-}
-
-void read_environment(const Parts& parts, const std::string& where, Light& light) {
-  light.file = parts[1];
-  const auto values = split(parts[2], ',');
-  light.turn = static_cast<float>(parse_number(values[0], where + ", turn"));
-  const std::string_view up = values.size() > 1 ? values[1] : "y";
-  if (values.size() > 2 || (up != "y" && up != "z")) {
-    throw InputError(where + ", turn: found '" + std::string(parts[2]) + "', expected TURN, TURN,y or TURN,z");
+void parse_field(const LightField& field, std::string_view text, const std::string& where, Light& light) {
+  const std::string what = where + ", " + std::string(field.name);
+  if (const auto* number = std::get_if<float Light::*>(&field.member)) {
+    light.** number = static_cast<float>(parse_number(text, what));
+  } else if (const auto* file = std::get_if<std::string Light::*>(&field.member)) {
+    light.** file = text;
+  } else {
+    light.*std::get<glm::vec3 Light::*>(field.member) = parse_vector(field.form, text, what);
   }
-  light.up = up == "y" ? glm::vec3(0, 1, 0) : glm::vec3(0, 0, 1);
 }
 
-std::string write_environment(const Light& light) {
-  return light.file + ":" + number_text(light.turn) + (light.up.z > 0 ? ",z:" : ",y:");
+std::string field_text(const LightField& field, const Light& light) {
+  if (const auto* number = std::get_if<float Light::*>(&field.member)) return number_text(light.**number);
+  if (const auto* file = std::get_if<std::string Light::*>(&field.member)) return light.**file;
+  const glm::vec3& vector = light.*std::get<glm::vec3 Light::*>(field.member);
+  if (field.form == FieldForm::power) return rgb_text(vector);
+  if (field.form == FieldForm::axis) return std::string(name_of(vector.z > 0 ? UpAxis::z : UpAxis::y));
+  return triple_text(vector, ',');
 }
 
-constexpr Form forms[] = {{"directional", LightKind::directional, 3, read_directional, write_directional},
-                          {"point", LightKind::point, 3, read_point, write_point},
-                          {"ambient", LightKind::ambient, 2, read_ambient, write_ambient},
-                          {"spot", LightKind::spot, 5, read_spot, write_spot},
-                          {"rectangle", LightKind::rectangle, 5, read_rectangle, write_rectangle},
-                          {"projector", LightKind::projector, 6, read_projector, write_projector},
-                          {"environment", LightKind::environment, 4, read_environment, write_environment}};
+std::size_t parts_of(const LightForm& form) {
+  std::size_t count = 1;
+  for (const LightField& field : form.fields) count += field.joined ? 0 : 1;
+  return count;
+}
+
+// A field and, in the same part of the text, the one that is joined to it, which may be missing.
+void parse_pair(const LightField& field, const LightField& joined, std::string_view text, const std::string& where,
+                Light& light) {
+  const std::size_t comma = text.find(',');
+  parse_field(field, text.substr(0, comma), where, light);
+  if (comma != std::string_view::npos) parse_field(joined, text.substr(comma + 1), where, light);
+}
+
+Light parse_form(const LightForm& form, const Parts& parts, const std::string& where) {
+  Light light;
+  light.kind = form.kind;
+  std::size_t part = 1;
+  for (std::size_t i = 0; i < form.fields.size(); ++i, ++part) {
+    const bool pair = i + 1 < form.fields.size() && form.fields[i + 1].joined;
+    if (pair) {
+      parse_pair(form.fields[i], form.fields[i + 1], parts[part], where, light);
+      ++i;
+    } else {
+      parse_field(form.fields[i], parts[part], where, light);
+    }
+  }
+  return light;
+}
 
 }  // namespace
 
-const char* const light_forms =
-    "directional:DX,DY,DZ:IRRADIANCE (the way the light travels; W/mm^2), point:X,Y,Z:POWER (mm; W), "
-    "ambient:IRRADIANCE (W/mm^2), spot:X,Y,Z:DX,DY,DZ:ANGLE[,EDGE]:POWER (ANGLE in degrees from the axis to where "
-    "the light ends, EDGE the share of it over which it fades, 0.2; W in the whole cone), "
-    "rectangle:X,Y,Z:UX,UY,UZ:VX,VY,VZ:POWER (centre and edges, mm; it shines to where U x V "
-    "points; W in all), projector:X,Y,Z:DX,DY,DZ:ANGLE[,UX,UY,UZ]:FILE:POWER (ANGLE is the height of the image in "
-    "degrees, U where its top lies, y; .png, .exr or .hdr; W if it is white all over) or "
-    "environment:FILE:TURN[,UP]:RADIANCE (a picture of all that is around by longitude and latitude, degrees "
-    "counter-clockwise about UP, y or z; W/(mm^2 sr) of what is 1 in it); the last one number or R/G/B";
+std::string text_form(const LightForm& form) {
+  std::string text(form.name);
+  for (const LightField& field : form.fields) {
+    text += field.joined ? "[," + std::string(field.text) + "]" : ":" + std::string(field.text);
+  }
+  return text;
+}
+
+std::string default_text(const LightField& field) {
+  return field.optional ? field_text(field, Light{}) : std::string();
+}
+
+const std::string& light_forms() {
+  static const std::string all = [] {
+    std::string text;
+    for (const LightForm& form : light_kinds()) {
+      text += text_form(form) + " (" + std::string(form.help);
+      for (const LightField& field : form.fields) {
+        text += "; " + std::string(field.text) + " " + std::string(field.help);
+        if (!field.unit.empty()) text += ", " + std::string(field.unit);
+      }
+      text += "), ";
+    }
+    return text + "the last one number or R/G/B";
+  }();
+  return all;
+}
 
 Light parse_light(std::string_view text) {
   const Parts parts = split(text, ':');
   const std::string where = "light '" + std::string(text) + "'";
-  for (const Form& form : forms) {
-    if (form.name != parts[0] || form.parts != parts.size()) continue;
-    Light light;
-    light.kind = form.kind;
-    light.power = parse_rgb(parts.back(), where + ", power");
-    form.read(parts, where, light);
+  for (const LightForm& form : light_kinds()) {
+    if (form.name != parts[0] || parts_of(form) != parts.size()) continue;
+    const Light light = parse_form(form, parts, where);
     check_light(light);
     return light;
   }
-  throw InputError(where + ": expected " + light_forms);
+  throw InputError(where + ": expected " + light_forms());
 }
 
 std::string to_string(const Light& light) {
-  for (const Form& form : forms) {
-    if (form.kind == light.kind) return std::string(form.name) + ":" + form.write(light) + rgb_text(light.power);
-  }
-  return "";
+  const LightForm& form = form_of(light.kind);
+  std::string text(form.name);
+  for (const LightField& field : form.fields) text += (field.joined ? "," : ":") + field_text(field, light);
+  return text;
 }
 
 }  // namespace quadgraph

@@ -17,66 +17,51 @@ bool finite(const glm::vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-void check_spot(const Light& light, const std::string& where) {
-  if (!(light.angle > 0 && light.angle <= 90)) {
-    throw InputError(where + ", angle: found " + number_text(light.angle) +
-                     ", expected more than 0, at most 90 degrees");
-  }
-  if (!(light.edge >= 0 && light.edge <= 1)) {
-    throw InputError(where + ", edge: found " + number_text(light.edge) + ", expected 0 to 1");
-  }
-}
-
-void check_rectangle(const Light& light, const std::string& where) {
-  const float area = glm::length(glm::cross(light.u, light.v));
-  if (!finite(light.u) || !finite(light.v) || !(area > 0) || !std::isfinite(area)) {
-    throw InputError(where + ": expected two finite edges that are not parallel");
-  }
-}
-
-void check_file(const Light& light, const std::string& where) {
-  if (light.file.empty() || light.file.find(':') != std::string::npos) {
-    throw InputError(where + ", file: found '" + light.file + "', expected a name without ':'");
+// What is expected of a vector that is not, or null.
+const char* wrong_vector(FieldForm form, const glm::vec3& v, const Light& light) {
+  switch (form) {
+    case FieldForm::power:
+      return finite(v) && !glm::any(glm::lessThan(v, glm::vec3(0))) ? nullptr : "finite numbers >= 0";
+    case FieldForm::direction:
+      return std::abs(glm::length(v) - 1.0f) < 1e-3f ? nullptr : "unit length";
+    case FieldForm::axis:
+      return v == glm::vec3(0, 1, 0) || v == glm::vec3(0, 0, 1) ? nullptr : "y or z";
+    case FieldForm::top:
+      return finite(v) && glm::length(glm::cross(light.direction, v)) > 1e-3f * glm::length(v)
+                 ? nullptr
+                 : "a vector that is not along the direction";
+    default:
+      return finite(v) ? nullptr : "finite numbers";
   }
 }
 
-void check_projector(const Light& light, const std::string& where) {
-  if (!(light.angle > 0 && light.angle < 170)) {
-    throw InputError(where + ", angle: found " + number_text(light.angle) +
-                     ", expected more than 0, below 170 degrees");
+void check_field(const LightField& field, const Light& light, const std::string& where) {
+  const std::string what = where + ", " + std::string(field.name) + ": ";
+  if (const auto* number = std::get_if<float Light::*>(&field.member)) {
+    const float found = light.**number;
+    if (field.range.contains(found)) return;
+    const std::string unit = field.unit.empty() ? "" : " " + std::string(field.unit);
+    const std::string allowed = field.range == Range{} ? "a finite number" : field.range.text() + unit;
+    throw InputError(what + "found " + number_text(found) + ", expected " + allowed);
   }
-  if (!finite(light.up) || !(glm::length(glm::cross(light.direction, light.up)) > 1e-3f * glm::length(light.up))) {
-    throw InputError(where + ", up: found " + triple_text(light.up, ',') +
-                     ", expected a vector that is not along the direction");
+  if (const auto* file = std::get_if<std::string Light::*>(&field.member)) {
+    const std::string& name = light.**file;
+    if (!name.empty() && name.find(':') == std::string::npos) return;
+    throw InputError(what + "found '" + name + "', expected a name without ':'");
   }
-  check_file(light, where);
-}
-
-void check_environment(const Light& light, const std::string& where) {
-  if (!std::isfinite(light.turn)) throw InputError(where + ", turn: expected a finite number");
-  if (light.up != glm::vec3(0, 1, 0) && light.up != glm::vec3(0, 0, 1)) {
-    throw InputError(where + ", up: found " + triple_text(light.up, ',') + ", expected y or z");
+  const glm::vec3& found = light.*std::get<glm::vec3 Light::*>(field.member);
+  if (const char* expected = wrong_vector(field.form, found, light)) {
+    throw InputError(what + "found " + triple_text(found, ',') + ", expected " + expected);
   }
-  check_file(light, where);
 }
 
 }  // namespace
 
 void check_light(const Light& light) {
+  const LightForm& form = form_of(light.kind);
   const std::string where = "light '" + to_string(light) + "'";
-  if (!finite(light.power) || glm::any(glm::lessThan(light.power, glm::vec3(0)))) {
-    throw InputError(where + ", power: expected finite numbers >= 0");
-  }
-  if (!finite(light.position)) throw InputError(where + ", position: expected finite numbers");
-  const bool directed =
-      light.kind == LightKind::directional || light.kind == LightKind::spot || light.kind == LightKind::projector;
-  if (directed && !(std::abs(glm::length(light.direction) - 1.0f) < 1e-3f)) {
-    throw InputError(where + ", direction: expected unit length");
-  }
-  if (light.kind == LightKind::spot) check_spot(light, where);
-  if (light.kind == LightKind::rectangle) check_rectangle(light, where);
-  if (light.kind == LightKind::projector) check_projector(light, where);
-  if (light.kind == LightKind::environment) check_environment(light, where);
+  for (const LightField& field : form.fields) check_field(field, light, where);
+  if (form.check) form.check(light, where);
 }
 
 SpotCosines spot_cosines(const Light& spot) {

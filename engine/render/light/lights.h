@@ -1,47 +1,108 @@
-// Lights: what a user states, in physical units.
+// Lights: what a user states, in physical units. The table `light_kinds` says all there is to say of a kind but how
+// its light travels (engine/render/light/light_set.h) and is spread (shaders/light/light_kinds.h): texts, scene files, checks,
+// help, the window, Python, docs/scene.schema.json and the tables of docs/lights.md follow from it.
 #pragma once
 
+#include <array>
 #include <glm/vec3.hpp>
+#include <span>
 #include <string>
 #include <string_view>
+#include <variant>
+#include <vector>
+
+#include "engine/base/names.h"
+#include "engine/base/range.h"
 
 namespace quadgraph {
 
 enum class LightKind { directional, point, ambient, spot, rectangle, projector, environment };
 
+// Members that a kind does not name are not used.
 struct Light {
   LightKind kind = LightKind::directional;
-  glm::vec3 direction{0, 0, -1};  // directional, spot, projector: unit, the way the light travels, along the axis
-  glm::vec3 position{0};          // point, spot, projector: mm; rectangle: its centre
-  // Directional: irradiance on a plane perpendicular to the light, W/mm^2. Point: power, W, sent out evenly in all
-  // directions, so that the irradiance facing it at distance d is power / (4 pi d^2). Ambient: irradiance, W/mm^2, of
-  // light that comes evenly from all sides; where the file says what the faces see, from where the body does not hide
-  // it. Spot: power, W, sent out in the cone (axis_intensity). Rectangle: power, W, sent out from its one side, with
-  // the same radiance power / (pi |u x v|) everywhere and in all directions.
-  // Projector: power, W, sent out if the image is white (1) all over; a plane across the axis is lit as the image is.
-  // Environment: radiance of a texel of 1, W/(mm^2 sr).
-  glm::vec3 power{0};
-  float angle = 30;   // degrees; spot: from the axis to where the light ends, above 0, at most 90; projector: height of
-                      // the image as seen from there, above 0, below 170
-  float edge = 0.2f;  // spot: share of the angle over which it fades, 0 to 1
-  glm::vec3 u{1, 0, 0}, v{0, 1, 0};  // rectangle: its edges, mm; it shines to where u x v points
-  glm::vec3 up{0, 1, 0};             // projector: to where the image's top lies; not along its direction;
-  // environment: unit y or z, to where the top row lies
-  std::string file{};  // projector, environment: its image, .png, .exr or .hdr
-  // Environment: counter-clockwise seen from above, degrees. At 0 the middle of the image lies at -z, or for up z at y:
-  // behind the object as seen from azimuth 0; what is on the right of the image lies to the right of that.
-  float turn = 0;
+  glm::vec3 direction{0, 0, -1};     // unit, the way the light travels, along the axis
+  glm::vec3 position{0};             // mm; of a rectangle its centre
+  glm::vec3 power{0};                // of the quantity that the kind's last field names; >= 0
+  float angle = 30;                  // degrees
+  float edge = 0.2f;                 // share of the angle
+  glm::vec3 u{1, 0, 0}, v{0, 1, 0};  // edges, mm
+  glm::vec3 up{0, 1, 0};             // to where the top of an image lies
+  std::string file{};                // image: .png, .exr or .hdr
+  float turn = 0;                    // degrees
 
   bool operator==(const Light&) const = default;
 };
 
-// What parse_light reads, for help and errors.
-extern const char* const light_forms;
+// How a field of a light is written, checked and turned.
+enum class FieldForm {
+  direction,  // a vector of any length but 0, kept at unit length
+  point,      // mm
+  edge,       // a vector, mm
+  top,        // a vector, not along the direction
+  axis,       // y or z
+  number,     // in the field's range
+  turn,       // degrees about the axis
+  file,       // a name without ':'
+  power,      // >= 0, one number or R/G/B
+};
 
-// Parses "directional:DX,DY,DZ:IRRADIANCE", "point:X,Y,Z:POWER", "ambient:IRRADIANCE",
-// "spot:X,Y,Z:DX,DY,DZ:ANGLE[,EDGE]:POWER", "rectangle:X,Y,Z:UX,UY,UZ:VX,VY,VZ:POWER",
-// "projector:X,Y,Z:DX,DY,DZ:ANGLE[,UX,UY,UZ]:FILE:POWER" or "environment:FILE:TURN[,UP]:RADIANCE", the last one number
-// or R/G/B. A direction need not be of unit length. Throws InputError naming what was found and what is allowed.
+template <>
+struct Names<FieldForm> {
+  static constexpr std::string_view what = "form";
+  static constexpr auto values =
+      std::to_array<Named<FieldForm>>({{FieldForm::direction, "direction", "a vector of any length but 0"},
+                                       {FieldForm::point, "point", "three coordinates"},
+                                       {FieldForm::edge, "edge", "a vector"},
+                                       {FieldForm::top, "top", "a vector that is not along the direction"},
+                                       {FieldForm::axis, "axis", "y or z"},
+                                       {FieldForm::number, "number", "a number in its range"},
+                                       {FieldForm::turn, "turn", "an angle about the axis"},
+                                       {FieldForm::file, "file", "the name of an image"},
+                                       {FieldForm::power, "power", "one number or R/G/B"}});
+};
+
+struct LightField {
+  std::string_view name;  // in a scene file
+  std::string_view text;  // what stands for it in the form of `parse_light`
+  FieldForm form;
+  std::variant<glm::vec3 Light::*, float Light::*, std::string Light::*> member;
+  std::string_view unit, help;
+  bool optional = false;  // may be left out of a scene file
+  bool joined = false;    // in a text it may follow the field before, after a comma
+  Range range{};
+};
+
+enum class LightImage { none, projected, around };
+
+struct LightForm {
+  LightKind kind;
+  std::string_view name, help;
+  std::vector<LightField> fields;  // in the order of a text; the last one is the power
+  LightImage image;
+  // Power over the irradiance, mm^2 or sr, that it causes at that distance, mm, on a plane that faces the light.
+  float (*power_over_irradiance)(const Light& light, float distance);
+  // Throws InputError, beginning with `where`, for what no field alone tells; may be null.
+  void (*check)(const Light& light, const std::string& where);
+
+  bool has(FieldForm form) const;
+};
+
+// All kinds, in the order in which they are offered.
+std::span<const LightForm> light_kinds();
+const LightForm& form_of(LightKind kind);
+
+// "spot:X,Y,Z:DX,DY,DZ:ANGLE[,EDGE]:POWER": what parse_light reads for a kind.
+std::string text_form(const LightForm& form);
+
+// What an optional field has where nobody says it, as parse_light reads it; empty for one that is required.
+std::string default_text(const LightField& field);
+
+// The same of all kinds, with their help, for help and errors.
+const std::string& light_forms();
+
+// Parses one of the text forms; the power is one number or R/G/B. A direction need not be of unit length. Throws
+// InputError naming what was found and what is allowed.
 Light parse_light(std::string_view text);
 
 // The text that parse_light reads back as the same light.

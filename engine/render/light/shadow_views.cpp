@@ -93,19 +93,10 @@ std::vector<gpu::ShadowView> spot_views(const Light& light, const Sphere& bounds
 }  // namespace
 
 std::vector<gpu::ShadowView> shadow_views(const Light& light, const Sphere& bounds) {
-  switch (light.kind) {
-    case LightKind::ambient:
-    case LightKind::rectangle:
-    case LightKind::environment:
-      return {};
-    case LightKind::directional:
-      return {directional_view(light, bounds)};
-    case LightKind::spot:
-      return spot_views(light, bounds);
-    case LightKind::point:
-    case LightKind::projector:
-      break;
-  }
+  if (light.kind == LightKind::directional) return {directional_view(light, bounds)};
+  if (light.kind == LightKind::spot) return spot_views(light, bounds);
+  const LightForm& form = form_of(light.kind);
+  if (!form.has(FieldForm::point) || form.has(FieldForm::edge)) return {};
   return point_views(light.position, bounds);
 }
 

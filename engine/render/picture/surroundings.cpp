@@ -25,7 +25,7 @@ const Surroundings::Seen& Surroundings::seen(const std::string& file) {
 
 bool Surroundings::run(std::span<const Light> lights, const View& view, const Camera& camera, PictureBuffers& picture,
                        PassStats& pass) {
-  const auto around = [](const Light& light) { return light.kind == LightKind::environment; };
+  const auto around = [](const Light& light) { return form_of(light.kind).image == LightImage::around; };
   std::erase_if(seen_, [&](const auto& known) {
     return std::none_of(lights.begin(), lights.end(), [&](const Light& l) { return l.file == known.first; });
   });

@@ -9,8 +9,10 @@ from rich.table import Table
 
 from quadgraph.base.errors import QuadGraphError
 from quadgraph.base.pass_report import PICTURE_PURPOSES
-from quadgraph.commands.scene_options import DEFAULT_MATERIAL, VARIED_MATERIAL
+from quadgraph.commands.scene_options import default_of
 from quadgraph.core import load_core
+
+VARIED_MATERIAL = "marble-veins"
 
 
 def ask(path: Path) -> dict[str, Any]:
@@ -30,7 +32,7 @@ def measure(path: Path) -> list[dict[str, Any]]:
     """
     core = load_core()
     entries = []
-    for material in (DEFAULT_MATERIAL, VARIED_MATERIAL):
+    for material in (default_of("material"), VARIED_MATERIAL):
         for model in ("diffusion", "sp3"):
             engine = core.Engine(path)
             engine.set_material(material)

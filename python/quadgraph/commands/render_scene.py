@@ -19,38 +19,11 @@ from quadgraph.commands import solve_report as text
 from quadgraph.core import load_core
 from quadgraph.file import film
 
-# Options that a scene file says, and where it says them.
-STATED = {
-    "material": "/material",
-    "light": "/lights",
-    "method": "/solver/method",
-    "solver": "/solver/solver",
-    "source": "/solver/source",
-    "model": "/solver/model",
-    "tolerance": "/solver/tolerance",
-    "error": "/solver/error",
-    "cycles": "/solver/cycles",
-    "max_iterations": "/solver/max_iterations",
-    "no_inter_reflection": "/solver/inter_reflection",
-    "bounces": "/solver/bounces",
-    "active_layers": "/solver/active_layers",
-    "path_cost": "/solver/path/cost",
-    "path_solver": "/solver/path/solver",
-    "path_cells": "/solver/path/cells",
-    "unit": "/body",
-    "height": "/body",
-    "view": "/camera/azimuth",
-    "up": "/camera/up",
-    "fov": "/camera/fov",
-    "size": "/picture/width",
-    "roughness": "/picture/roughness",
-    "radiance": "/picture/radiance",
-    "show": "/picture/show",
-    "ground": "/picture/ground",
-    "surroundings": "/picture/surroundings",
-    "exposure": "/picture/exposure",
-    "background": "/picture/background",
-}
+
+def stated() -> dict[str, str]:
+    """Arguments that a scene file says, and where it says them."""
+    said = scene_options.options((*scene_options.SOLVE_GROUPS, *scene_options.PICTURE_GROUPS))
+    return {scene_options.destination(option): option.member for option in said} | {"unit": "/body", "height": "/body"}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -73,7 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="render the first N, without N all of the scene, into a numbered OUT, e.g. frames/%%04d.png or .exr, or a "
         "film, e.g. turn.mp4",
     )
-    parser.set_defaults(unstated={name: parser.get_default(name) for name in STATED})
+    parser.set_defaults(unstated={name: parser.get_default(name) for name in stated()})
 
 
 def is_scene(path: Path) -> bool:
@@ -91,7 +64,7 @@ def refuse(args: argparse.Namespace) -> None:
 def run(args: argparse.Namespace) -> int:
     """Render and write; 3 if a tolerance or an error was not met in some frame, else 0."""
     core = load_core()
-    for name, pointer in STATED.items():
+    for name, pointer in stated().items():
         if getattr(args, name) != args.unstated[name]:
             option = name.replace("_", "-")
             raise InputError(f"--{option}: not beside a scene file; change it there, or with --set {pointer}=...")

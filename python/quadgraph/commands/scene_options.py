@@ -5,152 +5,92 @@ from __future__ import annotations
 import argparse
 import contextlib
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from quadgraph.base.arguments import add_device_arguments, length_mm, positive_int, share
+from quadgraph.base.arguments import add_device_arguments, length_mm
 from quadgraph.base.errors import InputError
 from quadgraph.base.units import UNITS_MM
 from quadgraph.core import load_core
 
 if TYPE_CHECKING:
-    from quadgraph.core import Engine
+    from quadgraph.core import Engine, SceneOption
 
 
-METHODS = ("fem", "quadgraph-fv", "quadgraph-fdm", "polygrid", "polygrid-divergence", "shortest-path")
-DEFAULT_MATERIAL = "marble"
-VARIED_MATERIAL = "marble-veins"
+# Groups of the engine's scene options: what a solve takes, and a picture besides.
+SOLVE_GROUPS = ("Scene", "Solver", "Method shortest-path")
+PICTURE_GROUPS = ("Camera", "Picture")
 
 
-# What each is: docs/architecture.md, "Solvers".
-SOLVERS = ("fmg-pcg", "vcycle", "dpcg", "cascade", "jacobi", "auto")
+def options(groups: Collection[str]) -> list[SceneOption]:
+    """The engine's scene options of these groups that command lines have."""
+    return [option for option in load_core().scene_options() if option.on_command_line and option.group in groups]
 
 
-def add_scene_arguments(parser: argparse.ArgumentParser, file_help: str = "a baked .qgraph") -> None:
-    """Add FILE, material, lights, method, solver and device options."""
+def default_of(name: str) -> Any:
+    """The default of a scene option."""
+    return next(option.default for option in load_core().scene_options() if option.name == name)
+
+
+def destination(option: SceneOption) -> str:
+    """The attribute of parsed arguments that holds an option."""
+    return option.name.replace("-", "_")
+
+
+def keywords(args: argparse.Namespace, groups: Collection[str]) -> dict[str, Any]:
+    """Keyword arguments of Engine.solve or Engine.render that the arguments say."""
+    given = {option.keyword: getattr(args, destination(option)) for option in options(groups) if option.keyword}
+    return {keyword: value for keyword, value in given.items() if value is not None}
+
+
+def add_scene_arguments(
+    parser: argparse.ArgumentParser, file_help: str = "a baked .qgraph", groups: Collection[str] = SOLVE_GROUPS
+) -> None:
+    """Add FILE, the device options and the engine's scene options of these groups."""
     parser.add_argument("file", metavar="FILE", type=Path, help=file_help)
     add_device_arguments(parser)
-    parser.add_argument(
-        "--material",
-        default=DEFAULT_MATERIAL,
-        metavar="M",
-        help="a name (marble, skin1, wholemilk, ..., marble-veins, jade, agate, wax, wood, checker, layered-skin), or "
-        "sigma_s_prime=S,sigma_a=A,eta=E in 1/mm, or reflectance=C,mean_free_path=L,eta=E: the colour that a thick "
-        "body shows, below 1, and a length in mm; one value or R/G/B each; and pattern=P,period=D,sharpness=K with a "
-        "second set, second_sigma_a and so on; or a file .npz of sigma_s_prime and sigma_a on a grid (z, y, x) with "
-        "its spacing in mm (default: %(default)s)",
-    )
-    parser.add_argument(
-        "--light",
-        action="append",
-        metavar="L",
-        help="directional:DX,DY,DZ:IRRADIANCE (the way the light travels; W/mm^2), point:X,Y,Z:POWER (mm; W), "
-        "ambient:IRRADIANCE, spot:X,Y,Z:DX,DY,DZ:ANGLE[,EDGE]:POWER (degrees from axis to edge of the light, the "
-        "share over which it fades), rectangle:X,Y,Z:UX,UY,UZ:VX,VY,VZ:POWER (centre and edges), "
-        "projector:X,Y,Z:DX,DY,DZ:ANGLE[,UX,UY,UZ]:FILE:POWER (an image, degrees high), "
-        "environment:FILE:TURN[,UP]:RADIANCE (a picture of all that is around); the last one number or "
-        "R/G/B; docs/lights.md tells more; several allowed (default: warm from behind the view, cool from the side, a "
-        "little from all around)",
-    )
-    parser.add_argument(
-        "--method",
-        choices=METHODS,
-        default="fem",
-        help="polygrid needs a file baked with --mesher polygrid (default: %(default)s)",
-    )
-    parser.add_argument(
-        "--solver",
-        choices=SOLVERS,
-        default="fmg-pcg",
-        help="fmg-pcg: full multigrid, then conjugate gradients with V-cycles; vcycle: without conjugate gradients; "
-        "dpcg: conjugate gradients with the diagonal; cascade: relaxation from coarse to fine, as published; jacobi: "
-        "on the finest level alone; auto: fmg-pcg or dpcg, whichever is quicker here (default: %(default)s)",
-    )
-    parser.add_argument(
-        "--source",
-        choices=("buried", "diffuse"),
-        default="buried",
-        help="buried: light scatters along refracted rays inside; diffuse: it enters at the surface, as published "
-        "(default: %(default)s)",
-    )
-    parser.add_argument(
-        "--model",
-        choices=("diffusion", "sp3", "auto"),
-        default="auto",
-        help="auto: diffusion where it is within 1%% of sp3, and for the published baseline (default: %(default)s)",
-    )
-    parser.add_argument(
-        "--tolerance",
-        type=share,
-        default=1e-3,
-        metavar="T",
-        help="stop when the exitance is estimated to be solved to this relative RMS error, over the whole surface and "
-        "over its unlit part (default: %(default)s)",
-    )
-    parser.add_argument(
-        "--error",
-        type=share,
-        default=0.0,
-        metavar="E",
-        help="stop when that error and the mesh's together are estimated to be below E, e.g. 1%%, on a level of the "
-        "file as coarse as that allows; exit 3 if no level does (default: no target, the finest level)",
-    )
-    parser.add_argument(
-        "--cycles",
-        type=positive_int,
-        default=0,
-        metavar="N",
-        help="exactly N iterations on the finest level (default: as many as the tolerance takes)",
-    )
-    parser.add_argument(
-        "--max-iterations", type=positive_int, default=5000, metavar="N", help="per level (default: %(default)s)"
-    )
-    parser.add_argument(
-        "--no-inter-reflection",
-        action="store_true",
-        help="leave out light that leaves one part of the object and enters another",
-    )
-    parser.add_argument(
-        "--active-layers",
-        type=positive_int,
-        default=0,
-        metavar="N",
-        help="of a polygrid that are solved for on all levels but the coarsest, the rest being taken from the coarser "
-        "level, as published (default: all)",
-    )
-    parser.add_argument(
-        "--bounces",
-        type=positive_int,
-        default=0,
-        metavar="N",
-        help="of that light (default: until they change nothing)",
-    )
-    add_path_arguments(parser.add_argument_group("of --method shortest-path"))
+    for name in groups:
+        group = parser.add_argument_group(name)
+        for option in options((name,)):
+            add_option(group, option)
+    add_size_arguments(parser.add_argument_group("Mesh without bake"))
 
 
-def add_path_arguments(group: argparse._ArgumentGroup) -> None:
-    """Add what only the shortest-path method asks (docs/shortest-path.md)."""
-    group.add_argument(
-        "--path-cost",
-        choices=("transport", "extinction"),
-        default="transport",
-        help="of a mm of path: the effective transport coefficient, or the extinction coefficient as published "
-        "(default: %(default)s)",
-    )
-    group.add_argument(
-        "--path-solver",
-        choices=("eikonal", "lattice"),
-        default="eikonal",
-        help="any path, or steps between the 26 neighbours of a voxel as published (default: %(default)s)",
-    )
-    group.add_argument(
-        "--path-cells",
-        type=positive_int,
-        default=64,
-        metavar="N",
-        help="voxels along the longest side, 8 to 150 (default: %(default)s)",
-    )
+def add_option(group: argparse._ArgumentGroup, option: SceneOption) -> None:
+    """Add one scene option, with the engine's default, allowed values and help."""
+    described = option.full_help.replace("%", "%%")
+    if option.default_text:
+        described += f" (default: {option.default_text})"
+    name = f"--{option.name}"
+    if option.kind == "flag":
+        # Given later, so that argparse does not tell the default in words of its own.
+        flag = group.add_argument(
+            name, action=argparse.BooleanOptionalAction, default=argparse.SUPPRESS, help=described
+        )
+        flag.default = option.default
+    elif option.kind == "texts":
+        group.add_argument(name, action="append", metavar=option.metavar, help=described)
+    elif option.choices:
+        group.add_argument(name, choices=tuple(option.choices), default=option.default, help=described)
+    else:
+        group.add_argument(name, type=value_of(option), default=option.default, metavar=option.metavar, help=described)
+
+
+def value_of(option: SceneOption) -> Callable[[str], Any]:
+    """Argument type: what the engine makes of an option's text."""
+
+    def value(text: str) -> Any:
+        try:
+            return option.parse(text)
+        except InputError as error:
+            raise argparse.ArgumentTypeError(str(error)) from error
+
+    return value
+
+
+def add_size_arguments(group: argparse._ArgumentGroup) -> None:
+    """Add the size of a mesh that is shown without a bake."""
     size = group.add_mutually_exclusive_group()
     size.add_argument("--unit", choices=tuple(UNITS_MM), help="of the coordinates, where FILE is a mesh without bake")
     size.add_argument(
@@ -185,29 +125,14 @@ def make_engine(args: argparse.Namespace) -> Engine:
     with baked_or_bare(args.file, getattr(args, "unit", None), getattr(args, "height", None)) as path:
         engine = core.Engine(path, device=args.device, validation=args.validation)
     engine.set_material(args.material)
-    seen_from = {"view": getattr(args, "view", ""), "up": getattr(args, "up", "y"), "front": engine.graph.front}
-    engine.set_lights(args.light or core.default_lights(**seen_from))
+    seen_from = {name: value for name in ("view", "up") if (value := getattr(args, name, None)) is not None}
+    engine.set_lights(args.light or core.default_lights(**seen_from, front=engine.graph.front))
     return engine
 
 
 def solve(engine: Engine, args: argparse.Namespace) -> dict:
     """Solve as the options say; the report of `Engine.solve`."""
-    return engine.solve(
-        method=args.method,
-        solver=args.solver,
-        source=args.source,
-        model=args.model,
-        tolerance=args.tolerance,
-        error=args.error,
-        cycles=args.cycles,
-        max_iterations=args.max_iterations,
-        inter_reflection=not args.no_inter_reflection,
-        bounces=args.bounces,
-        active_layers=args.active_layers,
-        path_cost=args.path_cost,
-        path_solver=args.path_solver,
-        path_cells=args.path_cells,
-    )
+    return engine.solve(**keywords(args, SOLVE_GROUPS))
 
 
 def check_validation(engine: Engine) -> None:

@@ -17,6 +17,11 @@ from quadgraph.commands import solve_report as text
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Register the subcommand."""
     parser = subparsers.add_parser("solve", help="fluence and exitance as numbers", description=__doc__)
+    parser.declare = add_arguments
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add all arguments, which follow from the engine's options of a scene."""
     scene_options.add_scene_arguments(parser)
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the report here")
     parser.add_argument(
@@ -45,7 +50,7 @@ def run(args: argparse.Namespace) -> int:
     if not report["path"]:
         console.print(text.solve_table(report))
         console.print(text.energy_table(report))
-        console.print(text.inter_reflection_text(report, not args.no_inter_reflection))
+        console.print(text.inter_reflection_text(report, args.inter_reflection))
     console.print(pass_report.pass_table(report["passes"]))
     console.print(text.error_text(report))
     for sentence in text.solver_texts(report) + report["unmet"]:

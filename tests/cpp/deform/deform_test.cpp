@@ -168,5 +168,5 @@ TEST_CASE("deformers that make no sense are refused by field") {
   cage.moved.pop_back();
   refused(cage, "moved");
   refused({.kind = DeformerKind::displaced}, "shapes");
-  CHECK_THROWS_WITH_AS(deformer_kind_from_name("melt"), doctest::Contains("twist, bend"), InputError);
+  CHECK_THROWS_WITH_AS(from_name<DeformerKind>("melt"), doctest::Contains("twist, bend"), InputError);
 }

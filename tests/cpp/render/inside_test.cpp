@@ -85,7 +85,7 @@ TEST_CASE("every view of the inside shows the body and names its unit; a picture
   const View view{.azimuth = 25, .elevation = 20};
   RenderOptions options{.width = 200, .height = 160};
   const std::vector<float> before = engine.render(view, options).scattered;
-  for (const Quantity quantity : quantities) {
+  for (const Quantity quantity : all_values<Quantity>()) {
     if (quantity == Quantity::picture) continue;
     options.show = {.quantity = quantity, .offset = 0.2f};
     const Picture picture = engine.render(view, options);

@@ -33,7 +33,7 @@ TEST_CASE("lights and shadow views") {
             {MEMBER(ShadowView, clip_from_world), MEMBER(ShadowView, depth), MEMBER(ShadowView, size),
              MEMBER(ShadowView, near), MEMBER(ShadowView, far), MEMBER(ShadowView, texel)});
     compare(code, "LightRecord",
-            {MEMBER(LightRecord, kind), MEMBER(LightRecord, vector), MEMBER(LightRecord, power),
+            {MEMBER(LightRecord, kind), MEMBER(LightRecord, towards_or_at), MEMBER(LightRecord, power),
              MEMBER(LightRecord, first_view), MEMBER(LightRecord, view_count)});
     compare(code, "LightShape",
             {MEMBER(LightShape, axis), MEMBER(LightShape, inner), MEMBER(LightShape, outer), MEMBER(LightShape, share),

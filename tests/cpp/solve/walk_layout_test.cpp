@@ -21,7 +21,7 @@ using Members = std::map<std::string, std::uint32_t>;
 
 TEST_CASE("the walk and C++ agree on their structs") {
   const SpirvLayout walk((vk::Spirv(walk_source_comp)));
-  CHECK(walk.offset.at("BeamRecord") == Members{MEMBER(BeamRecord, kind), MEMBER(BeamRecord, vector)});
+  CHECK(walk.offset.at("BeamRecord") == Members{MEMBER(BeamRecord, kind), MEMBER(BeamRecord, travel_or_from)});
   CHECK(walk.offset.at("Beam") ==
         Members{MEMBER(Beam, way), MEMBER(Beam, colour), MEMBER(Beam, floats), MEMBER(Beam, offset)});
   CHECK(walk.block_stride.at("Beams") == sizeof(gpu::Beam));

@@ -10,7 +10,7 @@ import trimesh
 
 from quadgraph import cli
 from quadgraph.bake import pipeline
-from quadgraph.commands import device_memory
+from quadgraph.commands import device_memory, scene_options
 from shapes import icosphere, torus
 
 _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
@@ -52,7 +52,7 @@ def test_info_tells_what_is_allocated_to_the_byte(files, name, capsys):
         assert not engine.validation_messages
     by_way = {(entry["model"], entry["material"]): entry["solve"] for entry in entries}
     for model in ("diffusion", "sp3"):
-        uneven, even = by_way[model, device_memory.VARIED_MATERIAL], by_way[model, device_memory.DEFAULT_MATERIAL]
+        uneven, even = by_way[model, device_memory.VARIED_MATERIAL], by_way[model, scene_options.default_of("material")]
         assert even < uneven
     assert by_way["diffusion", "marble"] < by_way["sp3", "marble"]
 

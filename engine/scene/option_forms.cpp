@@ -1,0 +1,97 @@
+#include "engine/scene/option_forms.h"
+
+#include <cmath>
+
+#include "engine/base/error.h"
+#include "engine/base/text.h"
+#include "engine/optics/material.h"
+#include "engine/scene/option_members.h"
+
+namespace quadgraph {
+
+const std::string& text_in(const OptionValue& value) {
+  return std::get<std::string>(value);
+}
+
+std::string material_help() {
+  std::string names;
+  for (const std::string& name : material_names()) names += (names.empty() ? "" : ", ") + name;
+  return "a name (" + names +
+         "); or sigma_s_prime=S,sigma_a=A,eta=E in 1/mm, one value or R/G/B each; or reflectance=C,mean_free_path=L: "
+         "the colour that a thick body shows, below 1, and a length in mm; or NAME,key=value; "
+         "pattern=P,period=D,sharpness=K mixes in a second set, second_sigma_a and so on; or a file .npz of "
+         "coefficients on a grid (docs/scene.md)";
+}
+
+OptionValue lights_of(const Scene& scene) {
+  std::vector<std::string> texts;
+  for (const Light& light : scene.lights) texts.push_back(to_string(light));
+  return texts;
+}
+
+void set_lights(Scene& scene, const OptionValue& value) {
+  scene.lights.clear();
+  for (const std::string& text : std::get<std::vector<std::string>>(value)) scene.lights.push_back(parse_light(text));
+}
+
+OptionValue view_of(const Scene& scene) {
+  const View &view = scene.view, usual;
+  const bool same = view.azimuth == usual.azimuth && view.elevation == usual.elevation && !view.distance;
+  return same ? OptionValue() : OptionValue(to_string(view));
+}
+
+void set_view(Scene& scene, const OptionValue& value) {
+  scene.view.distance.reset();
+  scene.view = parse_view(text_in(value), scene.view);
+}
+
+OptionValue size_of(const Scene& scene) {
+  return std::to_string(scene.render.width) + "x" + std::to_string(scene.render.height);
+}
+
+namespace {
+
+std::uint32_t parse_side(std::string_view text, const std::string& whole) {
+  const double side = parse_number(text, "size '" + whole + "'");
+  if (side < 1 || side > 65535 || side != std::floor(side)) {
+    throw InputError("size: found '" + whole + "', expected WIDTHxHEIGHT in whole pixels");
+  }
+  return static_cast<std::uint32_t>(side);
+}
+
+}  // namespace
+
+void set_size(Scene& scene, const OptionValue& value) {
+  const std::string& text = text_in(value);
+  const auto sides = split(text, text.find('X') == std::string::npos ? 'x' : 'X');
+  if (sides.size() != 2) throw InputError("size: found '" + text + "', expected WIDTHxHEIGHT");
+  scene.render.width = parse_side(sides[0], text);
+  scene.render.height = parse_side(sides[1], text);
+}
+
+OptionValue stops_of(const Scene& scene) {
+  const auto& stops = scene.tone.exposure_stops;
+  return stops ? OptionValue(as_written(*stops)) : OptionValue(std::string("auto"));
+}
+
+void set_stops(Scene& scene, const OptionValue& value) {
+  if (const auto* stops = std::get_if<double>(&value)) {
+    scene.tone.exposure_stops = static_cast<float>(*stops);
+  } else {
+    scene.tone.exposure_stops = parse_exposure(text_in(value));
+  }
+}
+
+OptionValue background_of(const Scene& scene) {
+  const ToneOptions &tone = scene.tone, usual;
+  if (tone.background_top == usual.background_top && tone.background_bottom == usual.background_bottom) {
+    return std::string("studio");
+  }
+  return tone.background_top == tone.background_bottom ? OptionValue(rgb_text(tone.background_top)) : OptionValue();
+}
+
+void set_background(Scene& scene, const OptionValue& value) {
+  parse_background(text_in(value), scene.tone);
+}
+
+}  // namespace quadgraph

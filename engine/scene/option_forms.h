@@ -1,0 +1,33 @@
+// Options of a scene that are one text on a command line and several members of the scene, or members of another form.
+#pragma once
+
+#include "engine/scene/options.h"
+
+namespace quadgraph {
+
+const std::string& text_in(const OptionValue& value);
+
+// What --material takes, with all names.
+std::string material_help();
+
+// One text per light.
+OptionValue lights_of(const Scene& scene);
+void set_lights(Scene& scene, const OptionValue& value);
+
+// As parse_view reads it; nothing for the default one, whose azimuth is the front of the body.
+OptionValue view_of(const Scene& scene);
+void set_view(Scene& scene, const OptionValue& value);
+
+// "1024x768".
+OptionValue size_of(const Scene& scene);
+void set_size(Scene& scene, const OptionValue& value);
+
+// "auto", or stops as a number.
+OptionValue stops_of(const Scene& scene);
+void set_stops(Scene& scene, const OptionValue& value);
+
+// As parse_background reads it; nothing for one that changes from top to bottom, but for the usual one.
+OptionValue background_of(const Scene& scene);
+void set_background(Scene& scene, const OptionValue& value);
+
+}  // namespace quadgraph

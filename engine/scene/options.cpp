@@ -1,0 +1,267 @@
+#include "engine/scene/options.h"
+
+#include "engine/scene/option_forms.h"
+#include "engine/scene/option_members.h"
+
+namespace quadgraph {
+namespace {
+
+constexpr Range up_to_a_million{.low = 0, .high = 1000000};
+
+void add_scene(OptionTable& table) {
+  table.group(scene_group);
+  table.text(
+      OptionKind::text,
+      {.name = "material", .member = "/material", .own_form = true, .metavar = "M", .help = material_help()},
+      [](const Scene& scene) { return scene.material; },
+      [](Scene& scene, const OptionValue& value) { scene.material = text_in(value); });
+  table.text(OptionKind::texts,
+             {.name = "light",
+              .member = "/lights",
+              .own_form = true,
+              .metavar = "L",
+              .help = light_forms() + ". May be repeated. Default: warm from behind the view, cool from the side, a "
+                                      "little from all around"},
+             lights_of, set_lights);
+}
+
+void add_camera(OptionTable& table) {
+  table.group(camera_group);
+  table.text(OptionKind::text,
+             {.name = "view",
+              .member = "/camera/azimuth",
+              .keyword = "view",
+              .own_form = true,
+              .metavar = "A,E[,D]",
+              .help = "azimuth and elevation in degrees, and distance in mm from the object's centre; without a "
+                      "distance the object fits the picture. Default: elevation 10 from the front, as the bake found "
+                      "or was told it"},
+             view_of, set_view);
+  table.member<&Scene::view, &View::azimuth>({.name = "azimuth",
+                                              .member = "/camera/azimuth",
+                                              .on_command_line = false,
+                                              .help = "degrees; left out: the front of the body"});
+  table.member<&Scene::view, &View::elevation>({.name = "elevation",
+                                                .member = "/camera/elevation",
+                                                .on_command_line = false,
+                                                .range = elevation_range,
+                                                .help = "degrees"});
+  table.member<&Scene::view, &View::distance>(
+      {.name = "distance",
+       .member = "/camera/distance",
+       .on_command_line = false,
+       .range = distance_range,
+       .help = "mm from the middle of what the picture shows; left out: the body fits the picture"});
+  table.member<&Scene::view, &View::up>(
+      {.name = "up", .member = "/camera/up", .keyword = "up", .help = "the axis that points up"});
+  table.member<&Scene::view, &View::vertical_fov>({.name = "fov",
+                                                   .member = "/camera/fov",
+                                                   .keyword = "vertical_fov",
+                                                   .metavar = "DEGREES",
+                                                   .range = fov_range,
+                                                   .help = "vertical field of view, degrees"});
+}
+
+void add_solver(OptionTable& table) {
+  table.group(solver_group);
+  table.member<&Scene::solve, &SolveOptions::method>(
+      {.name = "method", .member = "/solver/method", .keyword = "method", .help = "how light in the body is computed"});
+  table.member<&Scene::solve, &SolveOptions::solver>(
+      {.name = "solver", .member = "/solver/solver", .keyword = "solver", .help = "of the linear system"});
+  table.member<&Scene::solve, &SolveOptions::source>(
+      {.name = "source", .member = "/solver/source", .keyword = "source", .help = "how light enters the body"});
+  table.member<&Scene::solve, &SolveOptions::model>(
+      {.name = "model", .member = "/solver/model", .keyword = "model", .help = "of light transport"});
+}
+
+void add_accuracy(OptionTable& table) {
+  table
+      .member<&Scene::solve, &SolveOptions::tolerance>(
+          {.name = "tolerance",
+           .member = "/solver/tolerance",
+           .keyword = "tolerance",
+           .metavar = "T",
+           .range = tolerance_range,
+           .help = "stop when the exitance is estimated to be solved to this relative RMS error, over the whole "
+                   "surface and over its unlit part"})
+      .kind = OptionKind::share;
+  table
+      .member<&Scene::solve, &SolveOptions::error>(
+          {.name = "error",
+           .member = "/solver/error",
+           .keyword = "error",
+           .metavar = "E",
+           .range = error_range,
+           .help = "stop when that error and the mesh's together are estimated to be below E, e.g. 1%, on a level of "
+                   "the file as coarse as that allows; exit 3 if no level does; 0: no target, the finest level"})
+      .kind = OptionKind::share;
+  table.member<&Scene::solve, &SolveOptions::cycles>(
+      {.name = "cycles",
+       .member = "/solver/cycles",
+       .keyword = "cycles",
+       .range = up_to_a_million,
+       .help = "exactly N iterations on the finest level; 0: as many as the tolerance takes"});
+  table.member<&Scene::solve, &SolveOptions::max_iterations>({.name = "max-iterations",
+                                                              .member = "/solver/max_iterations",
+                                                              .keyword = "max_iterations",
+                                                              .range = {.low = 1, .high = up_to_a_million.high},
+                                                              .help = "per level"});
+}
+
+void add_light_paths(OptionTable& table) {
+  table.member<&Scene::solve, &SolveOptions::inter_reflection>(
+      {.name = "inter-reflection",
+       .member = "/solver/inter_reflection",
+       .keyword = "inter_reflection",
+       .help = "light that leaves one part of the object and enters another"});
+  table.member<&Scene::solve, &SolveOptions::bounces>({.name = "bounces",
+                                                       .member = "/solver/bounces",
+                                                       .keyword = "bounces",
+                                                       .range = up_to_a_million,
+                                                       .help = "of that light; 0: until they change nothing"});
+  table.member<&Scene::solve, &SolveOptions::active_layers>(
+      {.name = "active-layers",
+       .member = "/solver/active_layers",
+       .keyword = "active_layers",
+       .range = up_to_a_million,
+       .help = "of a polygrid that are solved for on all levels but the coarsest, the rest being taken from the "
+               "coarser level, as published; 0: all"});
+}
+
+void add_path(OptionTable& table) {
+  table.group(path_group);
+  table.member<&Scene::solve, &SolveOptions::path, &PathOptions::cost>(
+      {.name = "path-cost", .member = "/solver/path/cost", .keyword = "path_cost", .help = "of a mm of path"});
+  table.member<&Scene::solve, &SolveOptions::path, &PathOptions::solver>(
+      {.name = "path-solver", .member = "/solver/path/solver", .keyword = "path_solver", .help = "what a path is"});
+  table.member<&Scene::solve, &SolveOptions::path, &PathOptions::cells>(
+      {.name = "path-cells",
+       .member = "/solver/path/cells",
+       .keyword = "path_cells",
+       .range = path_cells_range,
+       .help = "voxels along the longest side, " + path_cells_range.text()});
+}
+
+// Of bodies in motion, which programs and the window know, and neither command lines nor files.
+void add_motion(OptionTable& table) {
+  table.group(solver_group);
+  table.member<&Scene::solve, &SolveOptions::warm>(
+      {.name = "warm",
+       .keyword = "warm",
+       .on_command_line = false,
+       .help = "start from the last solution of the same method and model"});
+  table.member<&Scene::solve, &SolveOptions::smoothing>(
+      {.name = "smoothing",
+       .keyword = "smoothing",
+       .on_command_line = false,
+       .range = {.low = 0, .high = 2},
+       .help = "steps of a cycle before and after its correction; 0: what is cheapest"});
+  table.member<&Scene::solve, &SolveOptions::exchange_rows>(
+      {.name = "exchange-rows",
+       .keyword = "exchange_rows",
+       .on_command_line = false,
+       .range = {.low = 0},
+       .help = "faces of a body that deforms which look anew at what they see, in each solve; 0: all of them"});
+  table.member<&Scene::solve, &SolveOptions::mean_rays>({.name = "mean-rays",
+                                                         .keyword = "mean_rays",
+                                                         .on_command_line = false,
+                                                         .help = "isotropic light by one ray from an origin instead of "
+                                                                 "eight"});
+}
+
+void add_size(OptionTable& table) {
+  table.group(picture_group);
+  table.text(OptionKind::text,
+             {.name = "size",
+              .member = "/picture/width",
+              .keyword = "size",
+              .own_form = true,
+              .metavar = "WxH",
+              .help = "width and height in pixels; a window has its own"},
+             size_of, set_size);
+  table.member<&Scene::render, &RenderOptions::width>({.name = "width",
+                                                       .member = "/picture/width",
+                                                       .keyword = "width",
+                                                       .on_command_line = false,
+                                                       .range = side_range,
+                                                       .help = "pixels"});
+  table.member<&Scene::render, &RenderOptions::height>({.name = "height",
+                                                        .member = "/picture/height",
+                                                        .keyword = "height",
+                                                        .on_command_line = false,
+                                                        .range = side_range,
+                                                        .help = "pixels"});
+}
+
+void add_picture(OptionTable& table) {
+  table.member<&Scene::render, &RenderOptions::roughness>(
+      {.name = "roughness",
+       .member = "/picture/roughness",
+       .keyword = "roughness",
+       .metavar = "ALPHA",
+       .range = roughness_range,
+       .help = "of the surface, GGX alpha, " + roughness_range.text()});
+  table.member<&Scene::render, &RenderOptions::radiance>({.name = "radiance",
+                                                          .member = "/picture/radiance",
+                                                          .keyword = "radiance",
+                                                          .help = "how light leaves the surface"});
+  table.text(
+      OptionKind::text,
+      {.name = "show",
+       .member = "/picture/show",
+       .keyword = "show",
+       .metavar = "WHAT",
+       .help = std::string("the picture, or what is inside in false colour: ") + show_forms},
+      [](const Scene& scene) { return to_string(scene.render.show); },
+      [](Scene& scene, const OptionValue& value) { scene.render.show = parse_show(text_in(value)); });
+  table.member<&Scene::render, &RenderOptions::ground>(
+      {.name = "ground",
+       .member = "/picture/ground",
+       .keyword = "ground",
+       .help = "a shadow on the ground where the object stands; a window has it without being asked"});
+  table.member<&Scene::render, &RenderOptions::surroundings>(
+      {.name = "surroundings",
+       .member = "/picture/surroundings",
+       .keyword = "surroundings",
+       .help = "what environment lights show, behind the object"});
+}
+
+void add_tone(OptionTable& table) {
+  table.text(OptionKind::number_or_text,
+             {.name = "exposure",
+              .member = "/picture/exposure",
+              .metavar = "STOPS",
+              .help = "auto, or stops: radiance times 2^stops"},
+             stops_of, set_stops);
+  table.text(OptionKind::text,
+             {.name = "background",
+              .member = "/picture/background",
+              .own_form = true,
+              .metavar = "COLOUR",
+              .help = "studio, black, white, linear grey or R/G/B in [0, 1] (PNG)"},
+             background_of, set_background);
+}
+
+std::vector<SceneOption> made() {
+  OptionTable table;
+  add_scene(table);
+  add_camera(table);
+  add_solver(table);
+  add_accuracy(table);
+  add_light_paths(table);
+  add_path(table);
+  add_motion(table);
+  add_size(table);
+  add_picture(table);
+  add_tone(table);
+  return table.take();
+}
+
+}  // namespace
+
+std::span<const SceneOption> scene_options() {
+  static const std::vector<SceneOption> all = made();
+  return all;
+}
+
+}  // namespace quadgraph

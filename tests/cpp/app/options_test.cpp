@@ -1,0 +1,62 @@
+// The command line of quadgraph-engine against the table of scene options.
+#include <doctest/doctest.h>
+
+#include <string>
+#include <vector>
+
+#include "engine/app/options.h"
+#include "engine/base/error.h"
+#include "engine/render/light/default_lights.h"
+#include "engine/scene/options.h"
+
+using namespace quadgraph;
+
+namespace {
+
+const std::string cube = std::string(QUADGRAPH_TEST_DATA) + "/tiny.qgraph";
+
+Scene parsed(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), {"quadgraph-engine", cube, "--headless", "-o", "a.png"});
+  std::vector<const char*> argv;
+  for (const std::string& argument : arguments) argv.push_back(argument.c_str());
+  int code = 0;
+  const auto options = parse_command_line(static_cast<int>(argv.size()), argv.data(), code);
+  REQUIRE(options);
+  return options->scene;
+}
+
+}  // namespace
+
+TEST_CASE("without options the command line shows the default scene") {
+  Scene expected;
+  expected.body = cube;
+  expected.lights = default_lights(expected.view);
+  CHECK(parsed({}) == expected);
+}
+
+TEST_CASE("every option of the table is one of the command line and does what its text says") {
+  for (const SceneOption& option : scene_options()) {
+    if (!option.on_command_line) continue;
+    CAPTURE(option.name);
+    const std::string name = "--" + std::string(option.name);
+    if (option.kind == OptionKind::flag) {
+      for (const bool on : {true, false}) {
+        const Scene scene = parsed({on ? name : "--no-" + std::string(option.name)});
+        CHECK(std::get<bool>(option.get(scene)) == on);
+      }
+    } else if (option.kind == OptionKind::texts) {
+      CHECK(value_text(option.get(parsed({name, "ambient:1", name, "ambient:2"}))) == "ambient:1 ambient:2");
+    } else {
+      const std::string usual = value_text(option.get(Scene{}));
+      const std::string text = option.choices.empty() ? usual : std::string(option.choices.back().name);
+      CHECK(value_text(option.get(parsed({name, text.empty() ? "10,20" : text}))) == (text.empty() ? "10,20" : text));
+    }
+  }
+}
+
+TEST_CASE("a window has a ground without being asked, a picture has not") {
+  int code = 0;
+  const char* argv[] = {"quadgraph-engine", cube.c_str()};
+  CHECK(parse_command_line(2, argv, code)->scene.render.ground);
+  CHECK_FALSE(parsed({}).render.ground);
+}
