@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from quadgraph.bake.pipeline import BakeOptions, bake
+from quadgraph.baking.pipeline import BakeOptions, bake
 from quadgraph.mesh.surface import Surface
 from shapes import pymeshlab_samples, read_ply
 

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from quadgraph.bake.budget import record
+from quadgraph.baking.budget import record
 from quadgraph.base.arguments import add_device_arguments, length_mm, positive_int, share
 from quadgraph.base.errors import InputError
 from quadgraph.base.units import UNITS_MM
@@ -165,7 +165,7 @@ def add_path_arguments(group: argparse._ArgumentGroup) -> None:
 @contextlib.contextmanager
 def baked_or_bare(file: Path, unit: str | None, height_mm: float | None) -> Iterator[Path]:
     """The file, or if it is a mesh, one without levels made of it, which is there as long as the block runs."""
-    from quadgraph.bake import bare
+    from quadgraph.baking import bare
 
     if not bare.is_mesh(file):
         if unit is not None or height_mm is not None:

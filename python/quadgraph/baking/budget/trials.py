@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from quadgraph.bake.budget.displayed import Subject, Truth
-from quadgraph.bake.budget.record import ENOUGH
+from quadgraph.baking.budget.displayed import Subject, Truth
+from quadgraph.baking.budget.record import ENOUGH
 
 MODELS = ("diffusion", "sp3")
 CYCLES = (1, 2, 3, 4, 6)  # on the finest level

@@ -24,7 +24,7 @@ MOST_CYCLES = 256
 def sentences(budget: dict[str, Any], file: str) -> list[str]:
     """What was chosen, what was left out, and why.
 
-    budget: as quadgraph.bake.budget.plan writes it. Raises FormatError.
+    budget: as quadgraph.baking.budget.plan writes it. Raises FormatError.
     """
     try:
         return [
