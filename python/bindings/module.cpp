@@ -160,5 +160,7 @@ PYBIND11_MODULE(_core, module) {
   quadgraph::python::bind_path(module);
   quadgraph::python::bind_picture(module);
   quadgraph::python::bind_engine(module);
+  quadgraph::python::bind_fluence(module);
   quadgraph::python::bind_scene(module);
+  quadgraph::python::bind_values(module);
 }
