@@ -16,7 +16,7 @@ using namespace quadgraph;
 
 namespace {
 
-// The picture has been written, but its error is not what was asked for.
+// The picture has been written, but what was asked of the solve is not met.
 constexpr int exit_missed = 3;
 
 // Wall time of the stages of a run.
@@ -65,7 +65,7 @@ int write_one(const AppOptions& options) {
   const Metadata metadata = with_exposure(engine.metadata(), picture, options.scene.tone);
   const RunReport report{engine, solve, metadata, options.output.string(), stages.wall_ms};
   std::cout << (options.json ? json_report(report) : text_report(report)) << "\n";
-  return solve.missed.empty() ? EXIT_SUCCESS : exit_missed;
+  return unmet(solve).empty() ? EXIT_SUCCESS : exit_missed;
 }
 
 int show_window(const AppOptions& options) {

@@ -195,7 +195,8 @@ void draw_frame(const Measured& measured) {
     tell("with", std::string(name_of(report.model)) + ", " + std::string(name_of(report.solver)));
   }
   if (report.path) tell("solved", formatted("%u voxels, %u rounds", report.path->solid, report.path->rounds));
-  for (const std::string& text : {report.replaced, report.missed, report.mesh_warning, report.model_warning}) {
+  for (const std::string& text :
+       {report.budget, report.replaced, report.missed, report.stopped, report.mesh_warning, report.model_warning}) {
     if (!text.empty()) ImGui::TextWrapped("%s", text.c_str());
   }
 }

@@ -24,6 +24,7 @@ Json as_json(const SolveReport& report) {
   json["solver"] = name_of(report.solver);
   json["source"] = name_of(report.source);
   json["model"] = name_of(report.model);
+  json["cycles"] = report.cycles;
   json["levels"] = Json::array();
   for (const LevelReport& level : report.levels) {
     json["levels"].push_back({{"level", level.level},
@@ -59,6 +60,8 @@ Json as_json(const SolveReport& report) {
   json["error"] = as_json(report.error);
   json["replaced"] = report.replaced;
   json["missed"] = report.missed;
+  json["unmet"] = unmet(report);
+  json["budget"] = report.budget;
   json["mesh_warning"] = report.mesh_warning;
   json["model_warning"] = report.model_warning;
   json["deformed"] = report.deformed;
@@ -142,7 +145,8 @@ std::string text_report(const RunReport& report) {
     tell_levels(out, report);
   }
   if (!report.solve.replaced.empty()) out << "solver   " << report.solve.replaced << "\n";
-  if (!report.solve.missed.empty()) out << "missed   " << report.solve.missed << "\n";
+  if (!report.solve.budget.empty()) out << "budget   " << report.solve.budget << "\n";
+  for (const std::string& sentence : unmet(report.solve)) out << "missed   " << sentence << "\n";
   for (const std::string& warning : {report.solve.mesh_warning, report.solve.model_warning, report.solve.deformed}) {
     if (!warning.empty()) out << "warning  " << warning << "\n";
   }

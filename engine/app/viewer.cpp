@@ -247,7 +247,7 @@ void Viewer::remake(bool settle) {
   const bool solving = !shown_ || lit != scene || (settle && !solved_exactly_);
   if (solving) {
     stage_.show(scene);
-    measured_.solve = engine_.solve(options_of_solve(settle));
+    measured_.solve = stage_.solve(options_of_solve(settle));
     solved_exactly_ = settle;
   }
   const Clock::time_point solved = Clock::now();

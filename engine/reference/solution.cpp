@@ -17,6 +17,14 @@ glm::dvec3 Energy::balance() const {
   return result;
 }
 
+std::vector<std::string> unmet(const SolveReport& report) {
+  std::vector<std::string> all;
+  for (const std::string& sentence : {report.missed, report.stopped}) {
+    if (!sentence.empty()) all.push_back(sentence);
+  }
+  return all;
+}
+
 SurfaceField surface_of(const Level& level) {
   SurfaceField field;
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {

@@ -56,6 +56,7 @@ struct SolveReport {
   std::string replaced;                     // why it is not the one that was asked for; empty if it is
   Source source = Source::buried;
   Model model = Model::diffusion;   // the one that was solved, never `automatic`
+  std::uint32_t cycles = 0;         // that were asked for; 0: as many as the tolerance took
   std::vector<LevelReport> levels;  // coarsest first, in the order solved
   std::uint32_t finest = 0;         // the level that was solved last; what leaves level 0 is carried there
   double work = 0;                  // products of all levels, in products of level 0
@@ -72,6 +73,10 @@ struct SolveReport {
   std::optional<ErrorEstimate> error;
   bool inter_reflection = false;  // whether light from part to part was followed
   std::string missed;             // what was wanted of the error and is not met; empty if all is
+  // How the level that was solved last stopped short of the tolerance; empty if it did not, if a number of cycles was
+  // asked for, or if the error that was asked for is met all the same. Coarser levels only start it.
+  std::string stopped;
+  std::string budget;  // what the bake of the file has to say of the error that was asked for; empty if nothing
   // What else is to be said against the answer, of elements and of the model (engine/reference/resolution.h); empty if
   // nothing.
   std::string mesh_warning, model_warning;
@@ -80,6 +85,9 @@ struct SolveReport {
   std::optional<PathReport> path;   // of Method::shortest_path; it has no levels, no energy balance and no estimates
   std::uint32_t exchange_age = 0;   // solves that what some face sees has been behind the shape; 0: nothing is
 };
+
+// What was asked for and is not met, in words: `missed` and `stopped`, as far as there are.
+std::vector<std::string> unmet(const SolveReport& report);
 
 // Surface samples of one level: one per outside face, at its surface node.
 struct SurfaceField {

@@ -127,6 +127,7 @@ void Engine::set_edits(std::span<const Edit> edits) {
   }
   if (implementation_->simulation) implementation_->simulation->set_edits(edits);
   implementation_->paths.set(edits);
+  implementation_->edited = !edits.empty();
 }
 
 void Engine::set_cuts(std::span<const BodyCut> cuts) {
@@ -147,6 +148,12 @@ void Engine::set_lights(std::vector<Light> lights) {
   implementation_->lights = std::move(lights);
   implementation_->irradiance_given = false;
   implementation_->shadows_stale = implementation_->irradiance_stale = true;
+}
+
+PresentScene Engine::present_scene() const {
+  const auto& self = *implementation_;
+  const bool at_rest = self.simulation ? self.simulation->at_rest() : !self.moved;
+  return {.file = self.source, .material = self.material, .lights = self.lights, .as_baked = at_rest && !self.edited};
 }
 
 void Engine::set_deformation(std::span<const Deformer> list) {

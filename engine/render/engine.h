@@ -57,6 +57,14 @@ struct RenderOptions {
 // Throws InputError naming what is out of range.
 void check_options(const RenderOptions& options);
 
+// What has been set on an engine, as far as a bake can have measured it.
+struct PresentScene {
+  std::string file;      // name of the body's file
+  std::string material;  // the text that was set, or in words what was set instead
+  std::vector<Light> lights{};
+  bool as_baked = true;  // the body is at rest and has no edits
+};
+
 class Engine {
  public:
   // Loads a .qgraph onto a device. Throws FormatError, InputError, VulkanError.
@@ -90,6 +98,8 @@ class Engine {
   // Reads the images of lights that have them, unless that has been done. Throws InputError as check_light and
   // read_image do.
   void set_lights(std::vector<Light> lights);
+
+  PresentScene present_scene() const;
 
   // Moves the body and what is shown of it by a list of deformers from where it lies in the file; an empty list puts it
   // back there exactly. Bounds, shadows and what the body sees of itself follow; the material stays with the body.

@@ -70,6 +70,7 @@ struct Engine::Implementation {
   std::optional<Workspace> motion_work;  // of a surface without levels, made at first use
   std::vector<gpu::PathTool> cut_tools;  // what is cut away
   bool moved = false;                    // the display mesh is not at rest
+  bool edited = false;                   // the material has edits
 
   // Throws InputError where there are none.
   Simulation& levels() const {

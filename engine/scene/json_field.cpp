@@ -18,12 +18,43 @@ std::string escaped(std::string_view key) {
   return text;
 }
 
+std::string written(const Json& value) {
+  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+// Adds to `text` what `value` looks like, as far as it is shown: however deep a value is nested, every level adds a
+// character.
+void show(const Json& value, std::string& text) {
+  if (!value.is_structured()) {
+    text += written(value);
+    return;
+  }
+  text += value.is_array() ? "[" : "{";
+  const std::size_t begun = text.size();
+  for (const auto& [key, item] : value.items()) {
+    if (text.size() > shown_characters) return;
+    if (text.size() > begun) text += ",";
+    if (value.is_object()) text += written(key) + ":";
+    show(item, text);
+  }
+  text += value.is_array() ? "]" : "}";
+}
+
+// Not within a character of UTF-8.
+std::string beginning(std::string text) {
+  if (text.size() <= shown_characters) return text;
+  std::size_t end = shown_characters;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0u) == 0x80u) --end;
+  return text.substr(0, end) + "...";
+}
+
 }  // namespace
 
 void JsonField::refuse(const std::string& allowed) const {
-  std::string found = value_->dump(-1, ' ', false, Json::error_handler_t::replace);
-  if (found.size() > shown_characters) found = found.substr(0, shown_characters) + "...";
-  throw InputError((path_.empty() ? "/" : path_) + ": found " + found + ", allowed is " + allowed);
+  std::string found;
+  show(*value_, found);
+  throw InputError((path_.empty() ? "/" : path_) + ": found " + beginning(std::move(found)) + ", allowed is " +
+                   allowed);
 }
 
 void JsonField::allow(std::initializer_list<std::string_view> keys) const {
@@ -52,6 +83,13 @@ std::vector<JsonField> JsonField::items() const {
   if (!value_->is_array()) refuse("an array");
   std::vector<JsonField> fields;
   for (std::size_t i = 0; i < value_->size(); ++i) fields.emplace_back((*value_)[i], path_ + "/" + std::to_string(i));
+  return fields;
+}
+
+std::vector<JsonField> JsonField::members(const std::string& allowed) const {
+  if (!value_->is_object()) refuse(allowed);
+  std::vector<JsonField> fields;
+  for (const auto& [key, value] : value_->items()) fields.emplace_back(value, path_ + "/" + escaped(key));
   return fields;
 }
 

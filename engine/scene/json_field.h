@@ -36,6 +36,9 @@ class JsonField {
   // Of an array.
   std::vector<JsonField> items() const;
 
+  // Of an object, in order; `allowed` is what a complaint asks for.
+  std::vector<JsonField> members(const std::string& allowed) const;
+
   // Finite, from `low` to `high`.
   double number(double low, double high) const;
   double number() const;

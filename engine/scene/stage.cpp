@@ -1,6 +1,7 @@
 #include "engine/scene/stage.h"
 
 #include "engine/base/error.h"
+#include "engine/scene/measured_error.h"
 #include "engine/scene/volume.h"
 
 namespace quadgraph {
@@ -37,7 +38,11 @@ void Stage::show(const Scene& scene) {
 }
 
 SolveReport Stage::solve() {
-  return engine().solve(scene_.solve);
+  return solve(scene_.solve);
+}
+
+SolveReport Stage::solve(const SolveOptions& options) {
+  return solve_measured(engine(), options);
 }
 
 Picture Stage::render() {

@@ -15,8 +15,10 @@ class Stage {
   // InputError, VulkanError; the scene before then stays as far as it was not changed.
   void show(const Scene& scene);
 
-  // Of the scene that is shown; as Engine::solve and Engine::render. Throw InputError before there is one.
+  // Of the scene that is shown; as solve_measured, with its options or others, and Engine::render. Throw InputError
+  // before there is one.
   SolveReport solve();
+  SolveReport solve(const SolveOptions& options);
   Picture render();
   Engine& engine();
   const Scene& scene() const { return scene_; }

@@ -18,11 +18,11 @@ std::string two_digits(double value) {
   return text;
 }
 
-std::string percent(double share) {
+}  // namespace
+
+std::string percent_text(double share) {
   return two_digits(100 * share) + "%";
 }
-
-}  // namespace
 
 double unbalanced(const Energy& energy, const Energy& collided) {
   double squares = 0, sizes = 0;
@@ -41,11 +41,18 @@ bool certain(const ErrorEstimate& estimate, double wanted) {
 }
 
 std::string missed(const std::optional<ErrorEstimate>& estimate, double wanted) {
-  const std::string asked = "error " + percent(wanted);
+  const std::string asked = "error " + percent_text(wanted);
   if (!estimate) return asked + ": a file with a single level cannot tell its error";
-  return asked + " is not certain: the estimate is " + percent(estimate->whole) + " of the surface, " +
-         percent(estimate->unlit) + " of its unlit part, and the error may be " + two_digits(confidence) +
+  return asked + " is not certain: the estimate is " + percent_text(estimate->whole) + " of the surface, " +
+         percent_text(estimate->unlit) + " of its unlit part, and the error may be " + two_digits(confidence) +
          " times that; a file with more vertices on its surface would come closer";
+}
+
+std::string stopped(const LevelReport& level) {
+  char residual[32];
+  std::snprintf(residual, sizeof(residual), "%.2e", level.residual);
+  return "not converged: level " + std::to_string(level.level) + " stopped after " + std::to_string(level.iterations) +
+         " iterations at residual " + residual;
 }
 
 }  // namespace quadgraph

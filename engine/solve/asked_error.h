@@ -9,6 +9,9 @@
 
 namespace quadgraph {
 
+// Share of an error that is asked for which is left to the algebraic one.
+inline constexpr double algebraic_share = 0.25;
+
 // Share of the light that scattered which a solution neither lets out nor absorbs, as a relative RMS error of the
 // exitance: an error that is the same everywhere, which looks at the surface are slow to see where cycles are slow to
 // remove it, is just that. energy: of all light; collided: of what scattered, as the surface and the volume have it.
@@ -17,7 +20,13 @@ double unbalanced(const Energy& energy, const Energy& collided);
 // With `confidence` (engine/solve/mesh_error.h).
 bool certain(const ErrorEstimate& estimate, double wanted);
 
+// Two digits.
+std::string percent_text(double share);
+
 // In words, of an error that is not certain; no estimate: of a file that has none.
 std::string missed(const std::optional<ErrorEstimate>& estimate, double wanted);
+
+// In words, of a level that did not converge.
+std::string stopped(const LevelReport& level);
 
 }  // namespace quadgraph

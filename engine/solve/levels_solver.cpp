@@ -32,9 +32,6 @@ constexpr double exchange_share = 5;
 // A bounce that brings in no more than this share of all light is the last: single precision would not tell another.
 constexpr double least_bounce = 1e-6;
 
-// Share of a target for the whole error that is left to the algebraic one.
-constexpr double algebraic_share = 0.25;
-
 // Rounds of iterations behind a solution that leaves more light unaccounted for than the tolerance, and the tolerance
 // down to which that is asked: below it single precision is what is left.
 constexpr std::uint32_t most_rounds = 4;
@@ -356,7 +353,9 @@ void LevelsSolver::finish() {
     entries += solvers_[i]->entries();
   }
   report_.finest = finest_;
+  report_.cycles = options_.cycles;
   if (options_.error > 0 && !reached()) report_.missed = missed(report_.error, options_.error);
+  if (stopped_short()) report_.stopped = stopped(report_.levels.back());
   report_.work = entries / op(0).entries;
   report_.bounces = parts_.exchange.bounces();
   report_.energy = energy();
@@ -365,6 +364,12 @@ void LevelsSolver::finish() {
 
 bool LevelsSolver::reached() const {
   return report_.error && certain(*report_.error, options_.error);
+}
+
+// Whether the level that was solved last did not get to its tolerance, and no estimate says that it is good enough.
+bool LevelsSolver::stopped_short() const {
+  if (options_.cycles > 0 || report_.levels.back().converged) return false;
+  return options_.error == 0 || !report_.algebraic || !reached();
 }
 
 // The light that is unaccounted for on level 0, where all of it can be told.

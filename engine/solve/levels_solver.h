@@ -66,6 +66,7 @@ class LevelsSolver {
   void solve_down_to(std::uint32_t finest);
   bool bounced_enough() const;
   bool reached() const;
+  bool stopped_short() const;
   void bounce(std::uint32_t bounces);
   void bounce_more();
   void settle();

@@ -1,8 +1,6 @@
 #include "engine/solve/simulation.h"
 
 #include <algorithm>
-#include <cmath>
-#include <glm/geometric.hpp>
 #include <map>
 
 #include "engine/base/error.h"
@@ -198,9 +196,7 @@ struct Simulation::Implementation {
   }
 
   void warn(Source source, SolveReport& report) {
-    if (report.method == Method::fem) {
-      report.mesh_warning = mesh_warning(resolution_with(report.model)[report.finest]);
-    }
+    if (report.method == Method::fem) report.mesh_warning = mesh_warning(resolution_with(report.model)[report.finest]);
     report.model_warning =
         model_warning(optical_at(0), static_cast<double>(coefficients.eta()), shape.chord(), source, report.model);
   }
@@ -325,6 +321,10 @@ void Simulation::set_vertices(std::uint32_t level, std::span<const glm::vec3> po
 bool Simulation::set_deformation(std::span<const Deformer> list, const RestBox& rest,
                                  const std::function<void(Workspace&)>& also) {
   return implementation_->deform(list, rest, also);
+}
+
+bool Simulation::at_rest() const {
+  return implementation_->shape.is({});
 }
 
 const std::vector<PassStats>& Simulation::deformation_passes() const {

@@ -88,6 +88,9 @@ class Simulation {
   bool set_deformation(std::span<const Deformer> list, const RestBox& rest,
                        const std::function<void(Workspace&)>& also = {});
 
+  // Whether all vertices are where they are in the file.
+  bool at_rest() const;
+
   // Passes of the last set_deformation that changed anything.
   const std::vector<PassStats>& deformation_passes() const;
 

@@ -9,6 +9,7 @@
 #include "engine/render/engine.h"
 #include "engine/render/light/default_lights.h"
 #include "engine/scene/cut_json.h"
+#include "engine/scene/measured_error.h"
 #include "engine/scene/volume.h"
 #include "engine/vk/context.h"
 #include "engine/vk/copy_bandwidth.h"
@@ -98,7 +99,7 @@ py::dict solve(Engine& engine, const std::string& method, const std::string& sol
   options.path = {path_cost_from_name(path_cost), path_solver_from_name(path_solver), path_cells};
   const SolveReport report = [&] {
     const py::gil_scoped_release release;
-    return engine.solve(motion ? in_motion(options, engine.graph().levels()) : options);
+    return solve_measured(engine, motion ? in_motion(options, engine.graph().levels()) : options);
   }();
   return as_dict(report);
 }

@@ -1,4 +1,6 @@
 // quadgraph._core: the module, its errors, and the gate between NumPy arrays and spans.
+#include <pybind11/stl.h>
+
 #include "engine/base/error.h"
 #include "python/bindings/bindings.h"
 
@@ -102,6 +104,7 @@ py::dict as_dict(const SolveReport& report) {
   d["solver"] = std::string(name_of(report.solver));
   d["source"] = std::string(name_of(report.source));
   d["model"] = std::string(name_of(report.model));
+  d["cycles"] = report.cycles;
   py::list levels;
   for (const LevelReport& level : report.levels) levels.append(as_dict(level));
   d["levels"] = levels;
@@ -113,6 +116,8 @@ py::dict as_dict(const SolveReport& report) {
   d["bounces"] = bounces;
   d["replaced"] = report.replaced;
   d["missed"] = report.missed;
+  d["unmet"] = unmet(report);
+  d["budget"] = report.budget;
   d["mesh_warning"] = report.mesh_warning;
   d["model_warning"] = report.model_warning;
   d["deformed"] = report.deformed;

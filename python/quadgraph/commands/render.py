@@ -113,12 +113,11 @@ def run(args: argparse.Namespace) -> int:
     report["seconds"] = time.perf_counter() - start
     if args.json:
         atomic_file.write_json(args.json, report)
-    unmet = scene_options.unmet(report)
-    print_summary(engine, report, unmet, args.output)
-    return 3 if unmet else 0
+    print_summary(engine, report, args.output)
+    return 3 if report["unmet"] else 0
 
 
-def print_summary(engine, report: dict, unmet: list[str], outputs: list[Path]) -> None:
+def print_summary(engine, report: dict, outputs: list[Path]) -> None:
     """Say what was made and what it took."""
     console = Console(highlight=False, soft_wrap=True)
     frame_ms = sum(entry["time_ms"] for entry in report["passes"])
@@ -129,7 +128,7 @@ def print_summary(engine, report: dict, unmet: list[str], outputs: list[Path]) -
     )
     balance = "energy is not conserved" if report["path"] else f"energy balance {100 * worst:+.3f}%"
     console.print(f"{text.error_text(report)}, {balance}")
-    for sentence in text.solver_texts(report) + unmet:
+    for sentence in text.solver_texts(report) + report["unmet"]:
         console.print(sentence)
     for path in outputs:
         console.print(f"picture: {path}")

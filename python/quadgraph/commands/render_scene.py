@@ -141,7 +141,7 @@ def render(stage, file, frames: Iterable[float], outputs: list[Path]) -> list[di
                 scene_options.check_validation(stage.engine)
                 for path in outputs:
                     write(stage, picture, path, frame, films)
-                report |= {"frame": frame, "cycles": 0, "budget": "", "seconds": time.perf_counter() - start}
+                report |= {"frame": frame, "seconds": time.perf_counter() - start}
                 reports.append(report | {"passes": stage.engine.passes})
         for open_film in films.values():
             open_film.finish()
@@ -173,9 +173,8 @@ def summarise(stage, reports: list[dict], outputs: list[Path]) -> int:
     else:
         console.print(f"frames: {len(reports)} in {seconds:.1f} s; the worst of them is number {worst['frame']:g}")
     console.print(text.error_text(worst))
-    missed = scene_options.unmet(worst)
-    for sentence in text.solver_texts(worst) + missed:
+    for sentence in text.solver_texts(worst) + worst["unmet"]:
         console.print(sentence)
     for path in outputs:
         console.print(f"{'film' if film.is_film(path) else 'picture'}: {path}")
-    return 3 if any(scene_options.unmet(report) for report in reports) else 0
+    return 3 if any(report["unmet"] for report in reports) else 0

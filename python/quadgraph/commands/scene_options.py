@@ -9,7 +9,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from quadgraph.baking.budget import record
 from quadgraph.base.arguments import add_device_arguments, length_mm, positive_int, share
 from quadgraph.base.errors import InputError
 from quadgraph.base.units import UNITS_MM
@@ -192,27 +191,23 @@ def make_engine(args: argparse.Namespace) -> Engine:
 
 
 def solve(engine: Engine, args: argparse.Namespace) -> dict:
-    """Solve as the options say; the report of `Engine.solve`, and in `budget` what the bake has to say of the error."""
-    taken = record.taken(engine.graph.metadata, args)
-    options = {
-        "method": args.method,
-        "solver": args.solver,
-        "source": args.source,
-        "model": args.model,
-        "tolerance": args.tolerance,
-        "error": args.error,
-        "cycles": args.cycles,
-        "max_iterations": args.max_iterations,
-        "inter_reflection": not args.no_inter_reflection,
-        "bounces": args.bounces,
-        "active_layers": args.active_layers,
-        "path_cost": args.path_cost,
-        "path_solver": args.path_solver,
-        "path_cells": args.path_cells,
-    }
-    if taken and taken.options:
-        options |= taken.options
-    return engine.solve(**options) | {"cycles": options["cycles"], "budget": taken.sentence if taken else ""}
+    """Solve as the options say; the report of `Engine.solve`."""
+    return engine.solve(
+        method=args.method,
+        solver=args.solver,
+        source=args.source,
+        model=args.model,
+        tolerance=args.tolerance,
+        error=args.error,
+        cycles=args.cycles,
+        max_iterations=args.max_iterations,
+        inter_reflection=not args.no_inter_reflection,
+        bounces=args.bounces,
+        active_layers=args.active_layers,
+        path_cost=args.path_cost,
+        path_solver=args.path_solver,
+        path_cells=args.path_cells,
+    )
 
 
 def check_validation(engine: Engine) -> None:
@@ -220,16 +215,3 @@ def check_validation(engine: Engine) -> None:
     messages = engine.validation_messages
     if messages:
         raise InputError("Vulkan validation: " + " | ".join(messages))
-
-
-def unmet(report: dict) -> list[str]:
-    """One sentence per level that stopped before the tolerance was met, unless so asked, and one for the error."""
-    missed = [report["missed"]] if report["missed"] else []
-    if report["cycles"] > 0:
-        return missed
-    return missed + [
-        f"not converged: level {level['level']} stopped after {level['iterations']} iterations "
-        f"at residual {level['residual']:.2e}"
-        for level in report["levels"]
-        if not level["converged"]
-    ]

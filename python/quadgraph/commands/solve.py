@@ -48,7 +48,6 @@ def run(args: argparse.Namespace) -> int:
         console.print(text.inter_reflection_text(report, not args.no_inter_reflection))
     console.print(pass_report.pass_table(report["passes"]))
     console.print(text.error_text(report))
-    unmet = scene_options.unmet(report)
-    for sentence in text.solver_texts(report) + unmet:
+    for sentence in text.solver_texts(report) + report["unmet"]:
         console.print(sentence)
-    return 3 if unmet else 0
+    return 3 if report["unmet"] else 0

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
-import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -26,12 +24,6 @@ core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not
 
 SUN = "directional:0.3,-0.2,-0.9:1"
 ERROR = 0.05
-SETTINGS = {"method": "fem", "source": "buried", "solver": "fmg-pcg", "cycles": 0, "model": "auto"}
-
-
-def arguments(**given) -> argparse.Namespace:
-    values = SETTINGS | {"file": Path("x.qgraph"), "material": "skin1", "light": [SUN], "error": ERROR}
-    return argparse.Namespace(**(values | given))
 
 
 def law(vertices: int, model: str = "sp3", cycles: int = 2, *, order: float = 0.8, floor: float = 0.0) -> Trial:
@@ -77,7 +69,7 @@ class Measured(plan.Bench):
 def test_smaller_surfaces_are_measured_for_as_long_as_they_keep_the_error(monkeypatch, at, tried):
     monkeypatch.setattr(plan, "_levels", lambda whole, options, report: options.surface_vertices)
     bench = Measured(1000)
-    wanted = law(round(1000 * at)).error / budget.ENOUGH
+    wanted = law(round(1000 * at)).error / trials.ENOUGH
     plan._descend(bench, None, BakeOptions(), wanted, pipeline.BakeReport(""), lambda text: None)
     assert [count for count, _ in bench.candidates] == [1000, *tried]
     assert bench.kept(wanted).surface_vertices == min(c for c, _ in bench.candidates if c >= 1000 * at)
@@ -168,36 +160,19 @@ def test_less_than_the_mesh_is_baked(record):
 
 
 def test_the_file_tells_a_solve_what_keeps_the_error(baked, record):
-    taken = budget.taken(core.load(baked).metadata, arguments())
-    expected = {"error": 0.0, "model": record["model"], "cycles": record["cycles"]}
-    assert taken.options == expected | {"tolerance": pytest.approx(ERROR / 4)}
+    engine = core.Engine(baked)
+    engine.set_material("skin1")
+    engine.set_lights([SUN])
+    report = engine.solve(error=ERROR)
+    assert (report["model"], report["cycles"]) == (record["model"], record["cycles"])
+    assert report["levels"][-1]["iterations"] == record["cycles"]
+    assert "error 5%: kept, the bake measured" in report["budget"]
+    assert not report["unmet"]
 
 
-@pytest.mark.parametrize(
-    ("given", "word"),
-    [
-        ({"material": "marble"}, "skin1, not marble"),
-        ({"light": None}, "other light"),
-        ({"solver": "dpcg"}, "fmg-pcg"),
-        ({"error": 0.001}, "no less than"),
-    ],
-)
-def test_what_was_not_measured_is_left_to_the_estimate(baked, given, word):
-    taken = budget.taken(core.load(baked).metadata, arguments(**given))
-    assert taken.options is None
-    assert word in taken.sentence
-
-
-def test_a_record_that_no_bake_wrote_is_refused(record):
-    broken = json.dumps({"budget": record | {"trials": [{"surface_vertices": 1}]}})
-    with pytest.raises(FormatError, match="budget"):
-        budget.taken(broken, arguments())
+def test_words_of_a_record_that_no_bake_wrote_are_refused():
     with pytest.raises(FormatError, match="budget"):
         budget.sentences({"error": 0.02}, "x.qgraph")
-    endless = record | {"trials": [trial | {"cycles": 10**9} for trial in record["trials"]]}
-    with pytest.raises(FormatError, match="cycles"):
-        budget.taken(json.dumps({"budget": endless}), arguments())
-    assert budget.taken(json.dumps({}), arguments()) is None
 
 
 def test_what_was_left_out_is_said(record):

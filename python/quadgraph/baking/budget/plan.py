@@ -21,7 +21,17 @@ from scipy.spatial import cKDTree
 
 from quadgraph.baking import pipeline
 from quadgraph.baking.budget.displayed import Reference, Subject, Truth
-from quadgraph.baking.budget.trials import MODELS, Forecast, Scene, Trial, assemble, forecast, known_share, measure, trial
+from quadgraph.baking.budget.trials import (
+    MODELS,
+    Forecast,
+    Scene,
+    Trial,
+    assemble,
+    forecast,
+    known_share,
+    measure,
+    trial,
+)
 from quadgraph.baking.budget.usual_lights import lights as lights_around
 from quadgraph.baking.pipeline import BakeOptions, BakeReport, Level, Prepared
 from quadgraph.base.errors import InputError, ToolError

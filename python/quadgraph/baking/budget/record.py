@@ -1,16 +1,10 @@
-"""What a bake for an error measured, in words, and what a solve of its file takes from that."""
+"""What a bake for an error measured, in words; what a solve of its file takes is engine/scene/measured_error.h."""
 
 from __future__ import annotations
 
-import argparse
-import json
-from dataclasses import dataclass
 from typing import Any
 
 from quadgraph.base.errors import FormatError
-
-BOUNCE_TOLERANCE = 0.25  # share of an error that bounces are solved to, as the engine has it (levels_solver.cpp)
-ENOUGH = 0.95  # share of an error that a measured one may have: the truth that it was measured by has an error, too
 
 # Words for the shares of a record; docs/accuracy.md says how each is measured.
 _PARTS = {"whole": "of the surface", "unlit": "of its unlit part"}
@@ -18,7 +12,6 @@ _PARTS = {"whole": "of the surface", "unlit": "of its unlit part"}
 
 # What reading a record can raise that no bake wrote.
 _BROKEN = (KeyError, TypeError, ValueError, AttributeError, ZeroDivisionError)
-MOST_CYCLES = 256
 
 
 def sentences(budget: dict[str, Any], file: str) -> list[str]:
@@ -127,60 +120,3 @@ def _of_file(trial: dict[str, Any], budget: dict[str, Any]) -> bool:
 
 def worst(trial: dict[str, Any]) -> float:
     return max(max(parts.values()) for parts in trial["errors"].values())
-
-
-@dataclass(frozen=True)
-class Taken:
-    """What a solve takes from its file's record: options of Engine.solve, None if there is nothing, and a sentence."""
-
-    options: dict[str, Any] | None
-    sentence: str
-
-
-def taken(metadata: str, args: argparse.Namespace) -> Taken | None:
-    """Settings that the bake measured to keep `args.error` in this scene, or why it does not know any.
-
-    metadata: of the file, JSON; args: of scene.add_scene_arguments. None without an error or a record. Raises
-    FormatError where the record is none.
-    """
-    budget = json.loads(metadata).get("budget")
-    if not args.error or budget is None:
-        return None
-    try:
-        return _taken(budget, args)
-    except _BROKEN as error:
-        raise _no_record(str(args.file), error) from error
-
-
-def _taken(budget: dict[str, Any], args: argparse.Namespace) -> Taken:
-    head = f"error {percent(args.error)}: the bake measured"
-    if args.material != budget["material"]:
-        return Taken(None, f"{head} {budget['material']}, not {args.material}: the solve's own estimate decides")
-    if budget["lights_given"] and sorted(args.light or ()) != sorted(budget["lights"]["given"]):
-        return Taken(None, f"{head} under other light: the solve's own estimate decides")
-    if (args.method, args.source, args.solver, args.cycles) != ("fem", "buried", "fmg-pcg", 0):
-        return Taken(None, f"{head} fem with the buried source and fmg-pcg: the solve's own estimate decides")
-    kept = [
-        trial
-        for trial in budget["trials"]
-        if _of_file(trial, budget)
-        and args.model in ("auto", trial["model"])
-        and worst(trial) <= float(trial.get("share", ENOUGH)) * args.error
-    ]
-    if not kept:
-        least = percent(min(worst(trial) for trial in budget["trials"] if _of_file(trial, budget)))
-        return Taken(None, f"{head} no less than {least} on this file: the solve's own estimate decides")
-    best = min(kept, key=lambda trial: float(trial["cost"]))
-    if not 1 <= best["cycles"] <= MOST_CYCLES:
-        raise ValueError(f"cycles {best['cycles']} found, 1 to {MOST_CYCLES} allowed")
-    lights = "in this light" if budget["lights_given"] else f"under {len(budget['lights'])} usual sets of lights"
-    setting = f"{best['model']} and {best['cycles']} cycles"
-    return Taken(
-        {
-            "error": 0.0,
-            "tolerance": BOUNCE_TOLERANCE * args.error,
-            "model": str(best["model"]),
-            "cycles": int(best["cycles"]),
-        },
-        f"error {percent(args.error)}: kept, the bake measured {percent(worst(best))} {lights} with {setting}",
-    )

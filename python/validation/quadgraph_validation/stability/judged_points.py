@@ -100,9 +100,7 @@ def errors(case: Case, found: np.ndarray, truth: np.ndarray) -> Errors:
 
 def words(report: dict[str, Any]) -> list[str]:
     """What a report says against its own solution of the model's equations."""
-    stopped = [level for level in report["levels"] if not level["converged"]]
-    texts = [f"level {level['level']} stopped at residual {level['residual']:.1e}" for level in stopped]
-    return texts + [report[name] for name in ("missed", "mesh_warning") if report[name]]
+    return report["unmet"] + ([report["mesh_warning"]] if report["mesh_warning"] else [])
 
 
 def _means(values: np.ndarray, weight: np.ndarray, labels: np.ndarray) -> np.ndarray:

@@ -1,0 +1,26 @@
+// What a bake for an error measured on its file (docs/accuracy.md), as the file's metadata keeps it in "budget", and
+// what a solve of that file takes from it instead of estimating its error.
+#pragma once
+
+#include <string>
+
+#include "engine/render/engine.h"
+
+namespace quadgraph {
+
+// Options of a solve, and what the bake has to say of the error that was asked for; no sentence where it says nothing.
+struct MeasuredOptions {
+  SolveOptions options;
+  std::string sentence;
+};
+
+// The options with those that the bake measured to keep options.error, where it measured this scene on this file: a
+// model, a number of cycles and the tolerance of bounces, and no error that is left to estimate. Else the options as
+// they are, and why. metadata: of the file, a JSON object. Throws FormatError "<scene.file>: metadata: <path>: found
+// ..., allowed is ..." where an error is asked for and the record is none that a bake writes.
+MeasuredOptions with_measured(const SolveOptions& options, const std::string& metadata, const PresentScene& scene);
+
+// Engine::solve with these options; SolveReport::budget has the sentence. Throws as Engine::solve and with_measured.
+SolveReport solve_measured(Engine& engine, const SolveOptions& options);
+
+}  // namespace quadgraph
