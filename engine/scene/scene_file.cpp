@@ -79,6 +79,10 @@ SceneFile SceneFile::load(const std::filesystem::path& path) {
   }
 }
 
+SceneFile SceneFile::parse(const std::string& text) {
+  return {parsed(text, "scene"), {}};
+}
+
 void SceneFile::check() {
   const JsonField field(document_, "");
   field.allow({"quadgraph_scene", "body", "material", "edits", "lights", "deformation", "cuts", "camera", "solver",

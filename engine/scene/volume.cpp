@@ -173,7 +173,10 @@ std::vector<gpu::Optical> Volume::at(std::span<const glm::vec3> points, const gl
 
 void set_material(Engine& engine, std::string_view text) {
   if (!is_volume(text)) return engine.set_material(text);
-  const Volume volume = read_volume(text);
+  set_material(engine, read_volume(text));
+}
+
+void set_material(Engine& engine, const Volume& volume) {
   const std::span<const Level> levels = engine.graph().levels();
   const RestBox box = rest_box(levels.empty() ? engine.graph().display().vertices : levels[0].vertices);
   const glm::dvec3 centre = 0.5 * (box.low + box.high);

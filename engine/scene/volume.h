@@ -38,6 +38,9 @@ void check_material_text(std::string_view text);
 // and what is allowed.
 Volume read_volume(const std::filesystem::path& path);
 
+// A volume's coefficients on all levels and, for shortest-path, on its own grid. Throws InputError.
+void set_material(Engine& engine, const Volume& volume);
+
 // A material, or coefficients on all levels from such a file. Throws InputError as parse_material or read_volume.
 void set_material(Engine& engine, std::string_view text);
 

@@ -1,5 +1,132 @@
-"""Real-time rendering of heterogeneous translucent objects, with an error that is known."""
+"""Real-time rendering of heterogeneous translucent objects, with an error that is known.
+
+Lengths are millimetres, coefficients 1/mm, fluence and exitance W/mm^2, radiance W/(mm^2 sr), angles degrees. Arrays of
+channels end in three columns: red, green, blue. docs/python.md is the guide; docs/public_api.toml lists what is public.
+"""
+
+import importlib
+from typing import TYPE_CHECKING
 
 from quadgraph.base.version import __version__
 
-__all__ = ["__version__"]
+if TYPE_CHECKING:
+    from quadgraph.api.deformers import (
+        Bend,
+        Cage,
+        Deformer,
+        Displaced,
+        Lattice,
+        Shapes,
+        Stretch,
+        Taper,
+        Transform,
+        Twist,
+    )
+    from quadgraph.api.engine import Engine
+    from quadgraph.api.fields import Fluence, SurfaceField
+    from quadgraph.api.lights import (
+        AmbientLight,
+        DirectionalLight,
+        EnvironmentLight,
+        Light,
+        PointLight,
+        ProjectorLight,
+        RectangleLight,
+        SpotLight,
+        default_lights,
+    )
+    from quadgraph.api.materials import Material, VolumeMaterial, material_names
+    from quadgraph.api.options import Camera, PathOptions, PictureOptions, SolveOptions
+    from quadgraph.api.picture import Picture
+    from quadgraph.api.scene import Scene, SceneFile
+    from quadgraph.api.solution import Energy, ErrorEstimate, LevelReport, PathReport, Solution
+    from quadgraph.api.stage import Stage
+    from quadgraph.baking.pipeline import BakeOptions, BakeReport, bake
+    from quadgraph.base.errors import (
+        FormatError,
+        InputError,
+        QuadGraphError,
+        SolverError,
+        ToolError,
+        VulkanError,
+    )
+
+__all__ = [
+    "AmbientLight",
+    "BakeOptions",
+    "BakeReport",
+    "Bend",
+    "Cage",
+    "Camera",
+    "Deformer",
+    "DirectionalLight",
+    "Displaced",
+    "Energy",
+    "Engine",
+    "EnvironmentLight",
+    "ErrorEstimate",
+    "Fluence",
+    "FormatError",
+    "InputError",
+    "Lattice",
+    "LevelReport",
+    "Light",
+    "Material",
+    "PathOptions",
+    "PathReport",
+    "Picture",
+    "PictureOptions",
+    "PointLight",
+    "ProjectorLight",
+    "QuadGraphError",
+    "RectangleLight",
+    "Scene",
+    "SceneFile",
+    "Shapes",
+    "Solution",
+    "SolveOptions",
+    "SolverError",
+    "SpotLight",
+    "Stage",
+    "Stretch",
+    "SurfaceField",
+    "Taper",
+    "ToolError",
+    "Transform",
+    "Twist",
+    "VolumeMaterial",
+    "VulkanError",
+    "__version__",
+    "bake",
+    "default_lights",
+    "material_names",
+]
+
+# Where the public names live: found when they are first asked for, so that the command line starts without them.
+_PLACES = {
+    "quadgraph.api.deformers": "Bend Cage Deformer Displaced Lattice Shapes Stretch Taper Transform Twist",
+    "quadgraph.api.engine": "Engine",
+    "quadgraph.api.fields": "Fluence SurfaceField",
+    "quadgraph.api.lights": "AmbientLight DirectionalLight EnvironmentLight Light PointLight ProjectorLight "
+    "RectangleLight SpotLight default_lights",
+    "quadgraph.api.materials": "Material VolumeMaterial material_names",
+    "quadgraph.api.options": "Camera PathOptions PictureOptions SolveOptions",
+    "quadgraph.api.picture": "Picture",
+    "quadgraph.api.scene": "Scene SceneFile",
+    "quadgraph.api.solution": "Energy ErrorEstimate LevelReport PathReport Solution",
+    "quadgraph.api.stage": "Stage",
+    "quadgraph.baking.pipeline": "BakeOptions BakeReport bake",
+    "quadgraph.base.errors": "FormatError InputError QuadGraphError SolverError ToolError VulkanError",
+}
+
+
+def __getattr__(name: str) -> object:
+    for place, names in _PLACES.items():
+        if name in names.split():
+            globals()[name] = found = getattr(importlib.import_module(place), name)
+            return found
+    raise AttributeError(f"module 'quadgraph' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return __all__

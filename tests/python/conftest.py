@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from leaks import nothing_left_on_devices as nothing_left_on_devices
-from quadgraph.bake.pipeline import BakeOptions, bake
+from quadgraph.baking.pipeline import BakeOptions, bake
 from quadgraph.mesh.surface import Surface
 from shapes import pymeshlab_samples, read_ply
 

@@ -87,11 +87,11 @@ def test_arrows_that_go_up_are_seen(tmp_path):
     up = [
         ("quadgraph.base.errors", "quadgraph.mesh.surface"),
         ("quadgraph.tets.graph", "quadgraph.file.qgraph_file"),
-        ("quadgraph.bake.pipeline", "quadgraph.commands.bake"),
+        ("quadgraph.baking.pipeline", "quadgraph.commands.bake"),
         ("quadgraph_validation.commands.chart", "quadgraph.commands.bake"),
-        ("quadgraph.bake.pipeline", "quadgraph_validation.bodies.media"),
+        ("quadgraph.baking.pipeline", "quadgraph_validation.bodies.media"),
         ("quadgraph_validation.truth.fresnel", "quadgraph_validation.chart.pixels"),
-        ("quadgraph.bake.pipeline", "quadgraph._core"),
+        ("quadgraph.baking.pipeline", "quadgraph._core"),
     ]
     assert not [pair for pair in up if arrow_is_allowed(*pair)]
     assert arrow_is_allowed("quadgraph.file.qgraph_file", "quadgraph.tets.graph")

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 from rich.table import Table
 
-from quadgraph.bake.budget import record
+from quadgraph.baking.budget import record
 from quadgraph.base.arguments import length_mm, positive_float, positive_int, share
 from quadgraph.base.errors import InputError
 from quadgraph.base.units import UNITS_MM
 
 if TYPE_CHECKING:
-    from quadgraph.bake.pipeline import BakeReport
+    from quadgraph.baking.pipeline import BakeReport
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -140,7 +140,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _write_surface(args: argparse.Namespace) -> int:
     """Write a file without levels."""
-    from quadgraph.bake import bare
+    from quadgraph.baking import bare
 
     left_alone = {"mesh", "output", "unit", "height", "surface_only", "command", "mesher", "order", "device", "front"}
     for name, value in vars(args).items():
@@ -168,10 +168,10 @@ def _check_error_options(args: argparse.Namespace) -> None:
 
 def _bake(args: argparse.Namespace, tell: Callable[[str], None]) -> BakeReport:
     if args.error is None:
-        from quadgraph.bake.pipeline import bake
+        from quadgraph.baking.pipeline import bake
 
         return bake(args.mesh, args.output, _options(args), tell)
-    from quadgraph.bake.budget.plan import bake_for
+    from quadgraph.baking.budget.plan import bake_for
 
     return bake_for(
         args.mesh, args.output, _options(args), args.error, args.material, args.light or (), args.device, tell
@@ -179,7 +179,7 @@ def _bake(args: argparse.Namespace, tell: Callable[[str], None]) -> BakeReport:
 
 
 def _options(args: argparse.Namespace):
-    from quadgraph.bake.pipeline import BakeOptions
+    from quadgraph.baking.pipeline import BakeOptions
 
     given = {
         "unit": args.unit,

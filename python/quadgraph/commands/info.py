@@ -11,7 +11,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from quadgraph.bake.budget import record
+from quadgraph.baking.budget import record
 from quadgraph.commands import device_memory
 from quadgraph.commands.bake import exchange_line, level_table
 from quadgraph.file import sections

@@ -104,7 +104,7 @@ def add_size_arguments(group: argparse._ArgumentGroup) -> None:
 @contextlib.contextmanager
 def baked_or_bare(file: Path, unit: str | None, height_mm: float | None) -> Iterator[Path]:
     """The file, or if it is a mesh, one without levels made of it, which is there as long as the block runs."""
-    from quadgraph.bake import bare
+    from quadgraph.baking import bare
 
     if not bare.is_mesh(file):
         if unit is not None or height_mm is not None:

@@ -44,7 +44,7 @@ def find_program() -> str:
 
 def run(args: argparse.Namespace) -> int:
     """Open the window; the program's exit status once it is closed."""
-    from quadgraph.bake import bare
+    from quadgraph.baking import bare
 
     if not bare.is_mesh(args.file):
         return subprocess.run([find_program(), args.file, *args.options], check=False).returncode

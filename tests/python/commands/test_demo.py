@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from quadgraph.bake.pipeline import BakeOptions, bake
+from quadgraph.baking.pipeline import BakeOptions, bake
 
 _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 

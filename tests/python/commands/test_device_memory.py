@@ -9,7 +9,7 @@ import pytest
 import trimesh
 
 from quadgraph import cli
-from quadgraph.bake import pipeline
+from quadgraph.baking import pipeline
 from quadgraph.commands import device_memory, scene_options
 from shapes import icosphere, torus
 

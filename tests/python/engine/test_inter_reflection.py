@@ -13,7 +13,7 @@ from PIL import Image
 
 from engine_program import ENGINE
 from quadgraph import cli
-from quadgraph.bake import pipeline
+from quadgraph.baking import pipeline
 from shapes import torus
 
 _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")

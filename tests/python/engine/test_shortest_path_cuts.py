@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from quadgraph.bake import bare
+from quadgraph.baking import bare
 from quadgraph.base.errors import InputError
 from shapes import cube, icosphere
 

@@ -10,7 +10,7 @@ import pytest
 import trimesh
 
 from baked import write_levels
-from quadgraph.bake import bare
+from quadgraph.baking import bare
 from quadgraph.base.errors import FormatError, InputError
 from quadgraph.cli import main
 from quadgraph.file import qgraph_file

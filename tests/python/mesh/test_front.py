@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from quadgraph.bake import bare
+from quadgraph.baking import bare
 from quadgraph.base.errors import FormatError, InputError
 from quadgraph.file import qgraph_file
 from quadgraph.mesh import front

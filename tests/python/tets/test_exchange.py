@@ -12,7 +12,7 @@ import pytest
 import trimesh
 from scipy.spatial.transform import Rotation
 
-from quadgraph.bake import pipeline
+from quadgraph.baking import pipeline
 from quadgraph.base.errors import InputError, ToolError
 from quadgraph.commands.info import describe
 from quadgraph.file import qgraph_file, sections

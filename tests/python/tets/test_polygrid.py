@@ -13,7 +13,7 @@ import trimesh
 import grids
 from grids import RADIUS
 from quadgraph import cli
-from quadgraph.bake import pipeline
+from quadgraph.baking import pipeline
 from quadgraph.base.errors import InputError, ToolError
 from quadgraph.file import qgraph_file
 from quadgraph.mesh.surface import Surface, TetMesh

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from quadgraph import cli
-from quadgraph.bake.budget import finer_levels
-from quadgraph.bake.budget.surface_errors import PARTS
-from quadgraph.bake.budget.usual_lights import lights
-from quadgraph.bake.pipeline import BakeOptions, bake
+from quadgraph.baking.budget import finer_levels
+from quadgraph.baking.budget.surface_errors import PARTS
+from quadgraph.baking.budget.usual_lights import lights
+from quadgraph.baking.pipeline import BakeOptions, bake
 from quadgraph_validation.accuracy import estimate_study, target_study
 from quadgraph_validation.accuracy.judged_levels import Judged, LevelCase
 from quadgraph_validation.bodies import level_chains

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from baked import write_levels
-from quadgraph.bake.budget.surface_errors import unlit_part
+from quadgraph.baking.budget.surface_errors import unlit_part
 from quadgraph.base.errors import InputError, SolverError
 from quadgraph_validation.benchmark import bench_charts, frame_passes, scaling
 from quadgraph_validation.benchmark.algebraic_error import AlgebraicJudge, judge

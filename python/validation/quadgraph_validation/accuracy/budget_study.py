@@ -13,13 +13,13 @@ import pymeshlab
 import trimesh
 from rich.table import Table
 
-from quadgraph.bake import pipeline
-from quadgraph.bake.budget import plan
-from quadgraph.bake.budget.displayed import DisplayedFile as File
-from quadgraph.bake.budget.plan import Bench
-from quadgraph.bake.budget.trials import BudgetScene, Trial, forecast
-from quadgraph.bake.budget.usual_lights import lights
-from quadgraph.bake.pipeline import BakeOptions, BakeReport, Level, Prepared
+from quadgraph.baking import pipeline
+from quadgraph.baking.budget import plan
+from quadgraph.baking.budget.displayed import DisplayedFile as File
+from quadgraph.baking.budget.plan import Bench
+from quadgraph.baking.budget.trials import BudgetScene, Trial, forecast
+from quadgraph.baking.budget.usual_lights import lights
+from quadgraph.baking.pipeline import BakeOptions, BakeReport, Level, Prepared
 from quadgraph.mesh import lod, mesh_io, repair
 from quadgraph_validation.bodies import level_chains
 from quadgraph_validation.bodies.level_chains import ChainSubject

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from quadgraph.bake.budget import finer_levels, surface_errors, usual_lights
+from quadgraph.baking.budget import finer_levels, surface_errors, usual_lights
 from quadgraph.base.errors import InputError
 from quadgraph.base.relative_error import relative_rms
 from quadgraph.core import load_core

@@ -11,7 +11,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from quadgraph.bake import pipeline
+from quadgraph.baking import pipeline
 from quadgraph.base.errors import InputError
 from quadgraph.core import load_core
 from quadgraph_validation.base import store

@@ -8,8 +8,8 @@ from typing import Any
 
 from rich.table import Table
 
-from quadgraph.bake.budget import finer_levels
-from quadgraph.bake.budget.surface_errors import PARTS
+from quadgraph.baking.budget import finer_levels
+from quadgraph.baking.budget.surface_errors import PARTS
 from quadgraph_validation.accuracy.judged_levels import Judged, LevelCase, judged
 from quadgraph_validation.bodies import level_chains
 from quadgraph_validation.bodies.level_chains import ChainSubject

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from quadgraph.bake.budget.surface_errors import unlit_part
+from quadgraph.baking.budget.surface_errors import unlit_part
 from quadgraph.base.errors import SolverError
 from quadgraph.base.relative_error import relative_rms
 

@@ -43,7 +43,7 @@ class BenchScene:
 
 def bake_bunny(path: Path, height_mm: float, order: str = "blocks") -> Path:
     """Bake that bunny as every run of the benchmark does."""
-    from quadgraph.bake.pipeline import BakeOptions, bake
+    from quadgraph.baking.pipeline import BakeOptions, bake
 
     bake(bunny_mesh(), path, BakeOptions(height_mm=height_mm, order=order))
     return path

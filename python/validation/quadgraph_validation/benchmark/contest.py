@@ -9,7 +9,7 @@ import numpy as np
 from scipy.sparse import diags
 from scipy.sparse.linalg import cg
 
-from quadgraph.bake.budget.surface_errors import unlit_part
+from quadgraph.baking.budget.surface_errors import unlit_part
 from quadgraph.base.errors import SolverError
 from quadgraph_validation.benchmark.algebraic_error import AlgebraicJudge
 from quadgraph_validation.benchmark.linear_system import System

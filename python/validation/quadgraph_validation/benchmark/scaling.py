@@ -72,7 +72,7 @@ def exponent(bodies: list[dict[str, Any]], model: str) -> float | None:
 
 def _baked(folder: Path, size: int, tell: ProgressCallback) -> tuple[Path, float | None]:
     """The body with about `size` surface vertices, and seconds of its bake; None if it was there."""
-    from quadgraph.bake.pipeline import BakeOptions, bake
+    from quadgraph.baking.pipeline import BakeOptions, bake
 
     path = folder / f"bunny-{size}.qgraph"
     if path.exists():

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import trimesh
 
-from quadgraph.bake.pipeline import BakeOptions, bake
+from quadgraph.baking.pipeline import BakeOptions, bake
 from quadgraph.base.errors import InputError
 from quadgraph.file import qgraph_file
 from quadgraph.mesh import display_map
@@ -69,7 +69,7 @@ def chosen(subjects: Sequence[ChainSubject], names: Sequence[str]) -> list[Chain
 
 
 def baked(subject: ChainSubject, mesh_folder: Path, folder: Path) -> Path:
-    """Bake a subject into `folder`, without what its faces see. Raises as quadgraph.bake.pipeline.bake does."""
+    """Bake a subject into `folder`, without what its faces see. Raises as quadgraph.baking.pipeline.bake does."""
     source = mesh_folder / subject.mesh
     if subject.mesh in SHAPES:
         source = folder / f"{subject.name}.ply"

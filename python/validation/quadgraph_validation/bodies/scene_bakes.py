@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from quadgraph.bake.pipeline import BakeOptions, bake
+from quadgraph.baking.pipeline import BakeOptions, bake
 from quadgraph.base.version import __version__
 from quadgraph.file import qgraph_file
 from quadgraph.mesh import mesh_io
@@ -35,7 +35,7 @@ class SceneBake:
     options: BakeOptions
 
     def made(self) -> Path:
-        """The file, baked if it is not there. Raises as quadgraph.bake.pipeline.bake does."""
+        """The file, baked if it is not there. Raises as quadgraph.baking.pipeline.bake does."""
         return store.kept(self.path, lambda working: bake(self.source, working, self.options))
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from quadgraph.bake.budget.surface_errors import unlit_part
+from quadgraph.baking.budget.surface_errors import unlit_part
 from quadgraph.core import load_core
 from quadgraph.file import qgraph_file, sections
 from quadgraph.mesh.surface import Surface

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from quadgraph.bake.budget import surface_errors
+from quadgraph.baking.budget import surface_errors
 from quadgraph_validation.chart.chart_body import ChartBody
 from quadgraph_validation.chart.chart_method import CHAIN, ChartMethod
 from quadgraph_validation.truth import blocks

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from quadgraph.bake.budget import surface_errors
+from quadgraph.baking.budget import surface_errors
 from quadgraph.base.errors import QuadGraphError
 from quadgraph_validation.bodies import meshes
 from quadgraph_validation.stability.error_classes import REFUSED, Errors, classify

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from quadgraph.bake.budget import finer_levels, surface_errors
+from quadgraph.baking.budget import finer_levels, surface_errors
 from quadgraph.base.errors import InputError
 from quadgraph.base.progress import ProgressCallback
 from quadgraph.base.relative_error import relative_rms

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import trimesh
 
-from quadgraph.bake.pipeline import BakeOptions, bake
+from quadgraph.baking.pipeline import BakeOptions, bake
 from quadgraph.base.errors import InputError
 from quadgraph.base.version import __version__
 from quadgraph.mesh import mesh_io
@@ -58,7 +58,7 @@ def chosen(names: Sequence[str], meshes: Path) -> list[PolygridBody]:
 
 
 def baked(body: PolygridBody, meshes: Path, folder: Path) -> Path:
-    """Its file in `folder`, made if it is not there. Raises as quadgraph.bake.pipeline.bake does."""
+    """Its file in `folder`, made if it is not there. Raises as quadgraph.baking.pipeline.bake does."""
     surface = _surface(body, meshes)
     digest = hashlib.sha256(surface.vertices.tobytes() + f"{body}{__version__}".encode()).hexdigest()
 

@@ -13,7 +13,7 @@ import numpy as np
 import trimesh
 from scipy.spatial import cKDTree
 
-from quadgraph.bake.pipeline import BakeOptions, bake
+from quadgraph.baking.pipeline import BakeOptions, bake
 from quadgraph.base import atomic_file
 from quadgraph.base.errors import InputError
 from quadgraph.base.progress import ProgressCallback
@@ -81,7 +81,7 @@ class Store:
     def body(self, subject: TableSubject, faces: int, tell: ProgressCallback, **options: Any) -> Baked:
         """The subject with about `faces` surface nodes and further options of the bake, made if it is not there yet.
 
-        Raises as quadgraph.bake.pipeline.bake does.
+        Raises as quadgraph.baking.pipeline.bake does.
         """
         surface = self._surface(subject, faces)
         wanted = faces // 2 + surface.euler
@@ -103,7 +103,7 @@ class Store:
         """A scene's body as path tracing sees it, with about so many vertices on the finest surface, by the CGAL
         mesher with that K.
 
-        Raises as quadgraph.bake.pipeline.bake does.
+        Raises as quadgraph.baking.pipeline.bake does.
         """
         mesh = scene_meshes.file(scene, self.meshes)
         source = mesh_io.read_surface(mesh, height_mm=scene.height)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from quadgraph.bake.budget.surface_errors import unlit_part
+from quadgraph.baking.budget.surface_errors import unlit_part
 from quadgraph.base.errors import SolverError
 from quadgraph.base.pass_report import PICTURE_PURPOSES, ms_by_pass
 from quadgraph.base.progress import ProgressCallback

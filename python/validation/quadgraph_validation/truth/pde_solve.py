@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from quadgraph.bake.budget import finer_levels
+from quadgraph.baking.budget import finer_levels
 from quadgraph.file import qgraph_file
 from quadgraph.mesh.surface import TetMesh
 from quadgraph.tets import graph, refine

@@ -18,7 +18,7 @@ import numpy as np
 from rich.console import Console
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-from quadgraph.bake.budget import finer_levels, surface_errors
+from quadgraph.baking.budget import finer_levels, surface_errors
 from quadgraph.base.errors import InputError
 from quadgraph.base.relative_error import relative_rms
 from quadgraph.core import load_core

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.spatial import cKDTree
 
-from quadgraph.bake.budget import finer_levels, surface_errors
+from quadgraph.baking.budget import finer_levels, surface_errors
 from quadgraph.base.relative_error import relative_rms
 from quadgraph.core import load_core
 

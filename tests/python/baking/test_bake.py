@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from quadgraph.bake import pipeline
+from quadgraph.baking import pipeline
 from quadgraph.base.errors import InputError, ToolError
 from quadgraph.file import qgraph_file
 from quadgraph.mesh import display_map

@@ -17,7 +17,7 @@ _BROKEN = (KeyError, TypeError, ValueError, AttributeError, ZeroDivisionError)
 def sentences(budget: dict[str, Any], file: str) -> list[str]:
     """What was chosen, what was left out, and why.
 
-    budget: as quadgraph.bake.budget.plan writes it. Raises FormatError.
+    budget: as quadgraph.baking.budget.plan writes it. Raises FormatError.
     """
     try:
         return [

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from quadgraph.bake.budget.displayed import DisplayedFile, DisplayedTruth
+from quadgraph.baking.budget.displayed import DisplayedFile, DisplayedTruth
 
 MODELS = ("diffusion", "sp3")
 CYCLES = (1, 2, 3, 4, 6)  # on the finest level

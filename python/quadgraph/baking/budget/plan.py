@@ -19,9 +19,9 @@ from typing import Any
 import numpy as np
 from scipy.spatial import cKDTree
 
-from quadgraph.bake import pipeline
-from quadgraph.bake.budget.displayed import DisplayedFile, DisplayedTruth, Reference
-from quadgraph.bake.budget.trials import (
+from quadgraph.baking import pipeline
+from quadgraph.baking.budget.displayed import DisplayedFile, DisplayedTruth, Reference
+from quadgraph.baking.budget.trials import (
     MODELS,
     BudgetScene,
     Forecast,
@@ -32,8 +32,8 @@ from quadgraph.bake.budget.trials import (
     measure,
     trial,
 )
-from quadgraph.bake.budget.usual_lights import lights as lights_around
-from quadgraph.bake.pipeline import BakeOptions, BakeReport, Level, Prepared
+from quadgraph.baking.budget.usual_lights import lights as lights_around
+from quadgraph.baking.pipeline import BakeOptions, BakeReport, Level, Prepared
 from quadgraph.base.errors import InputError, ToolError
 from quadgraph.base.progress import ProgressCallback
 from quadgraph.core import load_core
@@ -147,7 +147,7 @@ def bake_for(
     error: relative RMS of the exitance against the whole mesh cut finer, the larger of the whole and the unlit surface,
     above 0 and below 1; material, lights: as the engine reads them, without lights some usual ones. Where no setting
     keeps the error the whole mesh is baked, and `report.budget["reached"]` is false. Raises InputError as
-    quadgraph.bake.pipeline.bake does, and where `options` say what the error is to choose.
+    quadgraph.baking.pipeline.bake does, and where `options` say what the error is to choose.
     """
     tell = progress or (lambda text: None)
     pipeline.check_options(output, options)

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from quadgraph import cli
-from quadgraph.bake import pipeline
-from quadgraph.bake.budget import plan, trials
-from quadgraph.bake.budget import record as budget
-from quadgraph.bake.budget.displayed import Reference
-from quadgraph.bake.budget.trials import Trial
-from quadgraph.bake.pipeline import BakeOptions
+from quadgraph.baking import pipeline
+from quadgraph.baking.budget import plan, trials
+from quadgraph.baking.budget import record as budget
+from quadgraph.baking.budget.displayed import Reference
+from quadgraph.baking.budget.trials import Trial
+from quadgraph.baking.pipeline import BakeOptions
 from quadgraph.base.errors import FormatError, InputError
 from quadgraph.file import qgraph_file
 from quadgraph_validation.accuracy import budget_study as study

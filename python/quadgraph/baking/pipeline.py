@@ -70,7 +70,7 @@ class BakeReport:
     """What a bake did. Times in s; of levels, `seconds` per step; memory in bytes, children apart.
 
     exchange: what faces see of each other, as `exchange.summary` tells; None if left out. budget: what was measured and
-    chosen for an error that was asked for (`quadgraph.bake.budget.plan`). polygrid: how good it is
+    chosen for an error that was asked for (`quadgraph.baking.budget.plan`). polygrid: how good it is
     (`quadgraph.tets.polygrid.grid_report`), None of other meshers.
     """
 

@@ -1,0 +1,138 @@
+// What the public Python classes hand over: values as JSON text in the form that scene files have (docs/scene.md), and
+// volumes as arrays.
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "engine/base/error.h"
+#include "engine/optics/material.h"
+#include "engine/scene/light_json.h"
+#include "engine/scene/scene.h"
+#include "engine/scene/scene_file.h"
+#include "engine/scene/volume.h"
+#include "python/bindings/bindings.h"
+
+namespace py = pybind11;
+
+namespace quadgraph::python {
+namespace {
+
+Json parsed(const std::string& text) {
+  Json json = Json::parse(text, nullptr, false);
+  if (json.is_discarded()) throw InputError("the text is no JSON");
+  return json;
+}
+
+// A scene of no body with these members.
+Scene members(const std::string& text) {
+  Json json = parsed(text);
+  if (!json.is_object()) throw InputError("a JSON object is wanted");
+  if (!json.contains("body")) json["body"] = "";
+  return scene_from(JsonField(json, ""));
+}
+
+std::string material_json(const std::string& text) {
+  const gpu::Material material = parse_material(text);
+  Json json{{"sigma_s_prime", triple_json(material.sigma_s_prime)},
+            {"sigma_a", triple_json(material.sigma_a)},
+            {"eta", real_json(material.eta)},
+            {"pattern", pattern_name(material)}};
+  if (material.pattern != gpu::PATTERN_NONE) {
+    json["second_sigma_s_prime"] = triple_json(material.second_sigma_s_prime);
+    json["second_sigma_a"] = triple_json(material.second_sigma_a);
+    json["period"] = real_json(material.period);
+    json["sharpness"] = real_json(material.sharpness);
+  }
+  return json.dump();
+}
+
+// The camera that `text` says, or that of the members; without an azimuth the body's front.
+View view_of(const Engine& engine, const std::string& json, const std::string& text) {
+  View view = members(json).view;
+  if (!parsed(json).contains("/camera/azimuth"_json_pointer)) {
+    view.azimuth = first_view(engine.graph().front(), view.up).azimuth;
+  }
+  return text.empty() ? view : parse_view(text, view);
+}
+
+Picture render(Engine& engine, const std::string& json, const std::string& text) {
+  const View view = view_of(engine, json, text);
+  const RenderOptions options = members(json).render;
+  const py::gil_scoped_release release;
+  return engine.render(view, options);
+}
+
+using Triple = std::array<double, 3>;
+
+void set_volume(Engine& engine, const FloatArray& sigma_s_prime, const FloatArray& sigma_a, const Triple& spacing,
+                const std::optional<Triple>& origin, float eta) {
+  if (sigma_s_prime.ndim() != 4 || sigma_s_prime.shape(3) != 3) {
+    throw InputError("sigma_s_prime: an array (nz, ny, nx, 3) is wanted");
+  }
+  const auto side = [&](int axis) { return static_cast<std::size_t>(sigma_s_prime.shape(axis)); };
+  const std::size_t count = side(0) * side(1) * side(2);
+  if (sigma_a.ndim() != 4 || static_cast<std::size_t>(sigma_a.size()) != 3 * count) {
+    throw InputError("sigma_a: an array of the shape of sigma_s_prime is wanted");
+  }
+  Volume volume{.cells = {side(2), side(1), side(0)},
+                .spacing = {spacing[0], spacing[1], spacing[2]},
+                .eta = eta};
+  if (origin) volume.origin = glm::dvec3((*origin)[0], (*origin)[1], (*origin)[2]);
+  const auto* scattering = reinterpret_cast<const glm::vec3*>(sigma_s_prime.data());
+  const auto* absorption = reinterpret_cast<const glm::vec3*>(sigma_a.data());
+  for (std::size_t cell = 0; cell < count; ++cell) volume.optical.push_back({scattering[cell], absorption[cell]});
+  set_material(engine, volume);
+}
+
+void bind_pictures(py::module_& module) {
+  module.def("render", &render, py::arg("engine"), py::arg("json"), py::arg("view") = "",
+             "As Engine.render, with the members `camera` and `picture` of a scene; view: a text in place of azimuth, "
+             "elevation and distance. Raises InputError.");
+  module.def(
+      "srgb",
+      [](const Picture& picture, const std::string& json) { return srgb_array(picture, members(json).tone); },
+      py::arg("picture"), py::arg("json"), "(h, w, 3) uint8, with the member `picture` of a scene. Raises InputError.");
+  module.def(
+      "write_png",
+      [](const Picture& picture, const std::filesystem::path& path, const Metadata& metadata, const std::string& json) {
+        write_png(path, picture, members(json).tone, metadata);
+      },
+      py::arg("picture"), py::arg("path"), py::arg("metadata"), py::arg("json"));
+  module.def(
+      "write_exr",
+      [](const Picture& picture, const std::filesystem::path& path, const Metadata& metadata, const std::string& json) {
+        write_exr(path, picture, members(json).tone, metadata);
+      },
+      py::arg("picture"), py::arg("path"), py::arg("metadata"), py::arg("json"));
+}
+
+}  // namespace
+
+void bind_values(py::module_& module) {
+  module.def(
+      "light_json", [](const std::string& text) { return to_json(parse_light(text)).dump(); }, py::arg("text"),
+      "A light's members, from the text that --light takes. Raises InputError.");
+  module.def(
+      "light_text",
+      [](const std::string& json) {
+        const Json light = parsed(json);
+        return to_string(light_from(JsonField(light, "light")));
+      },
+      py::arg("json"), "The text of a light, from its members. Raises InputError.");
+  module.def("material_json", &material_json, py::arg("text"),
+             "A material's members, in the shortest numbers, from the text that --material takes. Raises InputError.");
+  module.def("set_volume", &set_volume, py::arg("engine"), py::arg("sigma_s_prime"), py::arg("sigma_a"),
+             py::arg("spacing"), py::arg("origin"), py::arg("eta"),
+             "As Engine.set_material of a .npz (docs/scene.md): (nz, ny, nx, 3) each, 1/mm; spacing and origin (3,), "
+             "mm. Raises InputError.");
+  module.def(
+      "set_edits", [](Engine& engine, const std::string& json) { engine.set_edits(members(json).edits); },
+      py::arg("engine"), py::arg("json"), "The member `edits` of a scene. Raises InputError.");
+  module.def(
+      "check_scene", [](const std::string& json) { members(json); }, py::arg("json"),
+      "Raises InputError naming the place, unless scene files may have these members.");
+  module.def("scene_file", &SceneFile::parse, py::arg("json"),
+             "A SceneFile of no file; relative names are looked for in the working directory. Raises InputError.");
+  bind_pictures(module);
+}
+
+}  // namespace quadgraph::python

@@ -1,0 +1,1 @@
+"""What `import quadgraph` gives: typed classes around the compiled engine."""

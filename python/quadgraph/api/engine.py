@@ -1,0 +1,215 @@
+"""One body on one device: its material, lights and shape, the solve, and pictures of it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self, TypeAlias, Unpack
+
+import numpy as np
+import numpy.typing as npt
+
+from quadgraph import core
+from quadgraph.api.deformers import Deformer, as_dict
+from quadgraph.api.fields import Fluence, SurfaceField
+from quadgraph.api.lights import Light, as_light
+from quadgraph.api.materials import Material, VolumeMaterial
+from quadgraph.api.options import Camera, PictureOptions, SolveOptions
+from quadgraph.api.picture import Picture
+from quadgraph.api.solution import Solution
+from quadgraph.api.values import Floats, plain
+from quadgraph.base.errors import InputError
+
+Coefficients: TypeAlias = Callable[[Floats], tuple[npt.ArrayLike, npt.ArrayLike]]
+
+
+class Engine:
+    """A baked .qgraph on a Vulkan device. Use it in a `with` block, or call `close`, to free the device's memory.
+
+    The lights are `default_lights` of the body's front until others are set; a material is wanted before `solve`.
+    """
+
+    def __init__(self, path: str | Path, *, device: str = "", validation: bool = False) -> None:
+        """Load a file. device: part of its name; validation: load Vulkan's validation layer.
+
+        Raises FormatError, InputError, VulkanError.
+        """
+        self._open: core.Engine | None = core.Engine(Path(path), device, validation)
+        self._material: Material | VolumeMaterial | str | None = None
+        self._solution: Solution | None = None
+        self.lights = core.default_lights("", "y", self._open.graph.front)
+
+    @classmethod
+    def _around(cls, engine: core.Engine) -> Self:
+        """Return one around the engine of a stage, whose scene sets material and lights."""
+        self = cls.__new__(cls)
+        self._open, self._material, self._lights, self._solution = engine, None, (), None
+        return self
+
+    @property
+    def _engine(self) -> core.Engine:
+        if self._open is None:
+            raise InputError("the engine is closed")
+        return self._open
+
+    def close(self) -> None:
+        """Free the device's memory; whatever is asked afterwards raises InputError. Pictures and arrays stay."""
+        self._open = None
+
+    def __enter__(self) -> Self:
+        """Return itself."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Close."""
+        self.close()
+
+    @property
+    def material(self) -> Material | VolumeMaterial | str | None:
+        """What was set last: a `Material`, a `VolumeMaterial`, or a text as --material takes it. Raises InputError."""
+        return self._material
+
+    @material.setter
+    def material(self, material: Material | VolumeMaterial | str) -> None:
+        if isinstance(material, VolumeMaterial):
+            material.set_on(self._engine)
+        else:
+            self._engine.set_material(material.text if isinstance(material, Material) else material)
+        self._material = material
+
+    def set_coefficients(self, function: Coefficients, eta: float = 1.3) -> None:
+        """Take coefficients from a function in place of a material (not with shortest-path, which wants a grid).
+
+        function: given points of the body at rest, (n, 3) float32 mm, returns sigma_s_prime and sigma_a, 1/mm, both of
+        a shape that broadcasts to (n, 3); it is called once for every level. Raises InputError.
+        """
+        for number, level in enumerate(self._engine.graph.levels):
+            points = np.array(level.nodes)
+            scattering, absorption = (
+                np.broadcast_to(np.asarray(c, np.float32), points.shape) for c in function(points)
+            )
+            self._engine.set_optical(number, scattering, absorption, eta)
+        self._material = None
+
+    @property
+    def lights(self) -> tuple[Light, ...]:
+        """The lights; to set them, typed ones or texts as --light takes them. Raises InputError."""
+        return self._lights
+
+    @lights.setter
+    def lights(self, lights: Iterable[Light | str]) -> None:
+        wanted = tuple(map(as_light, lights))
+        self._engine.set_lights([light.text for light in wanted])
+        self._lights = wanted
+
+    def set_deformation(self, steps: Sequence[Deformer | Mapping[str, Any]]) -> None:
+        """Move the body by these steps from where it lies in the file; [] puts it back exactly.
+
+        Material and what the body sees of itself follow. Raises InputError, and moves nothing.
+        """
+        self._engine.set_deformation([plain_members(as_dict(step)) for step in steps])
+        self._solution = None
+
+    def set_edits(self, edits: Sequence[Mapping[str, Any]]) -> None:
+        """Change the material in places, one edit after the other (docs/scene.md, "Edits"). Raises InputError."""
+        core.set_edits(self._engine, json.dumps({"edits": [plain_members(edit) for edit in edits]}))
+
+    def set_cuts(self, cuts: Sequence[Mapping[str, Any]]) -> None:
+        """Cut pieces away, with shortest-path alone (docs/shortest-path.md, "Cuts"). Raises InputError."""
+        self._engine.set_cuts(json.dumps([plain_members(cut) for cut in cuts]))
+
+    def solve(self, *, warm: bool = False, motion: bool = False, **options: Unpack[SolveOptions]) -> Solution:
+        """Solve for the present material, lights and shape.
+
+        options: of `SolveOptions`; warm: start from the last solution; motion: with less work, as the window does while
+        something changes (docs/window.md). Raises InputError, SolverError.
+        """
+        flat: dict[str, Any] = {name: value for name, value in options.items() if name != "path"}
+        flat |= {f"path_{name}": value for name, value in options.get("path", {}).items()}
+        core.check_scene(json.dumps({"solver": options}))
+        return self._take(self._engine.solve(warm=warm, motion=motion, **flat))
+
+    def _take(self, report: dict[str, Any]) -> Solution:
+        self._solution = Solution.from_report(report)
+        return self._solution
+
+    @property
+    def solution(self) -> Solution | None:
+        """What the last solve did; None before one, and after the body was moved."""
+        return self._solution
+
+    def surface(self) -> SurfaceField:
+        """Return the last solution on the surface. Raises InputError before a solve, and after shortest-path."""
+        return SurfaceField(**self._engine.surface_field())
+
+    def fluence(self) -> Fluence:
+        """Return the last solution in the body, at the unknowns of its method.
+
+        Raises InputError before a solve, after shortest-path, and where an error was met on a coarser level.
+        """
+        return Fluence(*core.fluence(self._engine, self._solved_inside()))
+
+    def fluence_at(self, points: npt.ArrayLike) -> Floats:
+        """Return the fluence of scattered light, W/mm^2, at points (n, 3), mm, of the shape as it is shown: (n, 3).
+
+        Linear between the vertices of tets with fem and polygrids, one value a tet with quadgraph-fv and
+        quadgraph-fdm; NaN outside the body. Raises InputError as `fluence`.
+        """
+        return core.fluence_at(self._engine, self._solved_inside(), np.asarray(points, np.float32))
+
+    def _solved_inside(self) -> str:
+        """The method of the last solve, if it left fluence in the tets. Raises InputError."""
+        if self._solution is None:
+            raise InputError("fluence: nothing was solved since the body was loaded or moved")
+        if self._solution.path is not None:
+            raise InputError("fluence: the method shortest-path has none in the body")
+        if self._solution.finest > 0:
+            raise InputError("fluence: with an error as target the finest level was not solved")
+        return self._solution.method
+
+    def render(self, camera: Camera | str | None = None, **picture: Unpack[PictureOptions]) -> Picture:
+        """Return a picture of the last solve.
+
+        camera: None for the front, or a text azimuth,elevation[,distance] in degrees and mm. Raises InputError before
+        a solve, and for an option that is not allowed.
+        """
+        return self._render({} if camera is None or isinstance(camera, str) else camera, picture, camera)
+
+    def _render(self, camera: Mapping[str, Any], picture: Mapping[str, Any], text: object) -> Picture:
+        options, around = plain_members(picture), plain_members(camera)
+        members = json.dumps({"camera": around, "picture": options})
+        layers = core.render(self._engine, members, text if isinstance(text, str) else "")
+        return Picture(layers, self._engine.metadata, options)
+
+    @property
+    def box(self) -> tuple[Floats, Floats]:
+        """The lowest and the highest corner, (3,) mm each, of the box around the body at rest."""
+        vertices = self._engine.graph.display["vertices"]
+        return vertices.min(axis=0), vertices.max(axis=0)
+
+    @property
+    def device(self) -> str:
+        """The device's name and its driver's."""
+        return f"{self._engine.device_name}, {self._engine.driver}"
+
+    @property
+    def device_bytes(self) -> int:
+        """Memory that is taken on the device, bytes."""
+        return self._engine.device_bytes
+
+    @property
+    def times_ms(self) -> dict[str, float]:
+        """Milliseconds on the device of the passes of the last motion, light, solve and picture, by name."""
+        times: dict[str, float] = {}
+        for each in self._engine.passes:
+            times[each["name"]] = times.get(each["name"], 0.0) + each["time_ms"]
+        return times
+
+
+def plain_members(members: Mapping[str, Any]) -> dict[str, Any]:
+    """Return an object of a scene file with plain values."""
+    return {name: plain_members(v) if isinstance(v, Mapping) else plain(v) for name, v in members.items()}

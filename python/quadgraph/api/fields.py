@@ -1,0 +1,37 @@
+"""What a solve leaves behind, as arrays: on the surface, and in the body."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from quadgraph.api.values import Floats
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceField:
+    """One sample per outside face of the finest level, float32, whatever the method.
+
+    position: (n, 3) mm; normal: (n, 3), unit, outward; area: (n,) mm^2; q: (n, 3) W/mm^2, irradiance that the surface
+    lets in; phi: (n, 3) W/mm^2, fluence below the surface; exitance: (n, 3) W/mm^2, of light that was scattered;
+    unscattered: (n, 3) W/mm^2, of light that was not.
+    """
+
+    position: Floats
+    normal: Floats
+    area: Floats
+    q: Floats
+    phi: Floats
+    exitance: Floats
+    unscattered: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Fluence:
+    """Fluence of scattered light in the body, at the points where the method has its unknowns, float32.
+
+    points: (n, 3) mm, of the shape as it is shown: vertices of the tets with fem and polygrids, nodes of the QuadGraph
+    (one in every tet, then one at every outside face) with quadgraph-fv and quadgraph-fdm; values: (n, 3) W/mm^2.
+    """
+
+    points: Floats
+    values: Floats

@@ -1,0 +1,131 @@
+"""Materials: two coefficients per channel and an index of refraction, everywhere, by a pattern, or on a grid.
+
+The named ones are measured [Jensen et al. 2001, Figure 5] or made up to look like their stone, wood or wax.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Literal, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from quadgraph import core
+from quadgraph.api.values import RGB, Floats, Vector, plain
+from quadgraph.base.errors import InputError
+
+PatternName: TypeAlias = Literal["none", "veins", "clouds", "bands", "rings", "spots", "checker", "layers"]
+
+
+@dataclass(frozen=True)
+class Material:
+    """Coefficients, 1/mm: one number, or red, green, blue. Where one is wanted, the text of --material does as well.
+
+    sigma_s_prime: reduced scattering; sigma_a: absorption, both >= 0; eta: index of refraction inside over outside, 1
+    to 3. pattern: mixes in the second set, with `period` mm from one vein, band, ... to the next (of layers, the depth
+    of the upper one) and a sharpness from 1 to 1000. Raises InputError.
+    """
+
+    sigma_s_prime: RGB
+    sigma_a: RGB
+    eta: float = 1.3
+    pattern: PatternName = "none"
+    second_sigma_s_prime: RGB | None = None
+    second_sigma_a: RGB | None = None
+    period: float | None = None
+    sharpness: float | None = None
+
+    def __post_init__(self) -> None:
+        """Check, and make numbers plain. Raises InputError."""
+        for each in fields(self):
+            object.__setattr__(self, each.name, plain(getattr(self, each.name)))
+        core.material_json(self.text)
+
+    @staticmethod
+    def parse(text: str) -> Material:
+        """Return the material of a text as --material takes it: a name of `material_names`, numbers, or both.
+
+        A file of a volume is not one. Raises InputError.
+        """
+        return Material(**json.loads(core.material_json(text)))
+
+    @staticmethod
+    def from_colour(reflectance: RGB, mean_free_path: RGB, eta: float = 1.3) -> Material:
+        """Return the material that shows a colour where it is thick.
+
+        reflectance: of white light, 0 to below 1; mean_free_path: 1 / sigma_t, mm. Raises InputError.
+        """
+        members = {"reflectance": reflectance, "mean_free_path": mean_free_path, "eta": eta}
+        return Material.parse(",".join(f"{name}={_numbers(value)}" for name, value in members.items()))
+
+    @property
+    def text(self) -> str:
+        """The text as --material takes it."""
+        members = {each.name: getattr(self, each.name) for each in fields(self)}
+        return ",".join(f"{name}={_numbers(value)}" for name, value in members.items() if value is not None)
+
+
+def _numbers(value: object) -> str:
+    value = plain(value)
+    return "/".join(map(str, value)) if isinstance(value, tuple) else str(value)
+
+
+@dataclass(frozen=True, eq=False)
+class VolumeMaterial:
+    """Coefficients at the middles of the cells of a grid, linear between them.
+
+    sigma_s_prime, sigma_a: (nz, ny, nx) or (nz, ny, nx, 3), 1/mm, >= 0; spacing: of cells along x, y, z, mm, or one
+    number; origin: of the first cell's middle, mm, None centres the grid on the body; eta: 1 to 3. Beside the grid the
+    nearest cell counts. Raises InputError.
+    """
+
+    sigma_s_prime: npt.NDArray[np.floating]
+    sigma_a: npt.NDArray[np.floating]
+    spacing: float | Vector
+    origin: Vector | None = None
+    eta: float = 1.3
+
+    def __post_init__(self) -> None:
+        """Check shapes and numbers. Raises InputError."""
+        shapes = [np.shape(self.sigma_s_prime)[:3], np.shape(self.sigma_a)[:3]]
+        if shapes[0] != shapes[1]:
+            raise InputError(f"sigma_s_prime and sigma_a: shapes {shapes[0]} and {shapes[1]}, the same are wanted")
+        for name in ("sigma_s_prime", "sigma_a"):
+            cells = self._cells(name)
+            if not (np.isfinite(cells).all() and (cells >= 0).all()):
+                raise InputError(f"{name}: negative or not finite somewhere, numbers >= 0 (1/mm) allowed")
+        if not (np.asarray(self.spacing) > 0).all() or np.shape(self.spacing) not in ((), (3,)):
+            raise InputError(f"spacing: {self.spacing} found, one number or three above 0 (mm) allowed")
+        if not 1 <= self.eta <= 3:
+            raise InputError(f"eta: {self.eta} found, 1 to 3 allowed")
+
+    def _cells(self, name: str) -> Floats:
+        """One of the coefficients as (nz, ny, nx, 3). Raises InputError."""
+        array = np.asarray(getattr(self, name), np.float32)
+        if array.ndim == 3:
+            array = np.repeat(array[..., None], 3, axis=3)
+        if array.ndim != 4 or array.shape[3] != 3 or array.size == 0:
+            raise InputError(f"{name}: shape {array.shape} found, (nz, ny, nx) or (nz, ny, nx, 3) wanted")
+        return array
+
+    def save(self, path: str | Path) -> None:
+        """Write the .npz file that --material and scene files take."""
+        content = {"sigma_s_prime": self.sigma_s_prime, "sigma_a": self.sigma_a, "spacing": self.spacing}
+        if self.origin is not None:
+            content["origin"] = self.origin
+        with Path(path).open("wb") as stream:
+            np.savez(stream, eta=self.eta, **{name: np.asarray(value) for name, value in content.items()})
+
+    def set_on(self, engine: core.Engine) -> None:
+        """Give it to the compiled engine. Raises InputError."""
+        spacing = np.broadcast_to(np.asarray(self.spacing, float), 3).tolist()
+        origin = None if self.origin is None else np.asarray(self.origin, float).tolist()
+        core.set_volume(engine, self._cells("sigma_s_prime"), self._cells("sigma_a"), spacing, origin, self.eta)
+
+
+def material_names() -> tuple[str, ...]:
+    """Return the names that `Material.parse` and --material know."""
+    return tuple(core.material_names())

@@ -1,0 +1,90 @@
+"""Options by name, as scene files have them (docs/scene.md): what is left out is the engine's default.
+
+Plain dicts at run time. Names and values are checked by the engine, which raises InputError with what is allowed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal, TypeAlias, TypedDict
+
+from quadgraph.api.values import RGB, Vector
+
+Method: TypeAlias = Literal["fem", "quadgraph-fv", "quadgraph-fdm", "polygrid", "polygrid-divergence", "shortest-path"]
+Solver: TypeAlias = Literal["fmg-pcg", "vcycle", "dpcg", "cascade", "jacobi", "auto"]
+Source: TypeAlias = Literal["buried", "diffuse"]
+Model: TypeAlias = Literal["diffusion", "sp3", "auto"]
+Radiance: TypeAlias = Literal["gathered", "lambertian", "single", "auto"]
+PathCost: TypeAlias = Literal["transport", "extinction"]
+PathSolver: TypeAlias = Literal["eikonal", "lattice"]
+
+
+class PathOptions(TypedDict, total=False):
+    """Of the method shortest-path (docs/shortest-path.md).
+
+    cost: of a mm of path; solver: any path, or steps between the 26 neighbours of a voxel; cells: voxels along the
+    longest side, 8 to 150.
+    """
+
+    cost: PathCost
+    solver: PathSolver
+    cells: int
+
+
+class SolveOptions(TypedDict, total=False):
+    """What a solve is asked (engine/base/solve_options.h; docs/architecture.md, "Solvers").
+
+    tolerance: stop when the exitance is estimated to be solved to this relative RMS error; error: stop when that and
+    the mesh's together are below it, 0 for no target; cycles: exactly so many iterations on the finest level, 0 for as
+    many as it takes; max_iterations: per level; inter_reflection: light from part to part; bounces: of that, 0 until
+    nothing changes; active_layers: of a polygrid, 0 for all; path: of the method shortest-path.
+    """
+
+    method: Method
+    solver: Solver
+    source: Source
+    model: Model
+    tolerance: float
+    error: float
+    cycles: int
+    max_iterations: int
+    inter_reflection: bool
+    bounces: int
+    active_layers: int
+    path: PathOptions
+
+
+class Camera(TypedDict, total=False):
+    """Where a picture is taken from, degrees and mm.
+
+    azimuth: left out, the body's front; elevation: above the ground; distance: left out, the body fits; up: "y" or "z";
+    fov: vertical; target: from the object's centre, what the middle of the picture shows.
+    """
+
+    azimuth: float
+    elevation: float
+    distance: float
+    up: Literal["y", "z"]
+    fov: float
+    target: Vector
+
+
+class PictureOptions(TypedDict, total=False):
+    """What a picture shows, and how.
+
+    width, height: pixels, 1 to 16384; roughness: of the surface, GGX alpha; radiance: how it leaves the surface; show:
+    "picture", or what is inside (docs/window.md, "Views of the inside"); ground: a shadow where the body stands;
+    surroundings: what environment lights show, behind it; roughness_map: as in scene files; exposure: "auto" or stops;
+    background: "studio", "black", "white", a grey, three numbers, or {"top": ..., "bottom": ...}, linear.
+    """
+
+    width: int
+    height: int
+    roughness: float
+    radiance: Radiance
+    show: str
+    ground: bool
+    surroundings: bool
+    roughness_map: Mapping[str, Any]
+    exposure: float | Literal["auto"]
+    background: str | RGB | Mapping[str, RGB] | Sequence[float]

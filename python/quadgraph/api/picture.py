@@ -1,0 +1,90 @@
+"""A rendered picture: its layers, and what becomes of them in a file."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from quadgraph import core
+from quadgraph.api.values import Floats, plain
+from quadgraph.base.errors import InputError
+
+
+class Picture:
+    """Linear radiance in W/(mm^2 sr), premultiplied by alpha, top row first; made by `Engine.render`.
+
+    The layers scattered, specular and unscattered add up to what is seen. Arrays are read-only float32.
+    """
+
+    def __init__(self, layers: core.Picture, metadata: Sequence[tuple[str, str]], options: Mapping[str, Any]) -> None:
+        """Keep the compiled engine's picture, what it was made with, and the picture options of a scene."""
+        self._layers = layers
+        self._metadata = list(metadata)
+        self._options = dict(options)
+
+    @property
+    def scattered(self) -> Floats:
+        """(h, w, 3): light that was scattered in the body."""
+        return self._layers.scattered
+
+    @property
+    def specular(self) -> Floats:
+        """(h, w, 3): light that the surface reflected."""
+        return self._layers.specular
+
+    @property
+    def unscattered(self) -> Floats:
+        """(h, w, 3): light that crossed the body without being scattered."""
+        return self._layers.unscattered
+
+    @property
+    def transmittance(self) -> Floats:
+        """(h, w, 3): share of what is behind the body that is seen through it."""
+        return self._layers.transmittance
+
+    @property
+    def alpha(self) -> Floats:
+        """(h, w): share of the pixel that the body covers."""
+        return self._layers.alpha
+
+    @property
+    def surroundings(self) -> Floats | None:
+        """(h, w, 3): what is behind the body where environment lights are seen, else None."""
+        return self._layers.surroundings
+
+    @property
+    def metadata(self) -> dict[str, str]:
+        """What the picture was made with, and how good its solve is."""
+        return dict(self._metadata)
+
+    def srgb(self, **tone: Any) -> npt.NDArray[np.uint8]:
+        """(h, w, 3) uint8 sRGB, tone mapped; `exposure` and `background` as in `PictureOptions`. Raises InputError."""
+        return core.srgb(self._layers, self._tone(tone))
+
+    def save(self, path: str | Path, **tone: Any) -> None:
+        """Write .png (8-bit sRGB, as `srgb`) or .exr (float32, linear and not exposed, with layers) at once.
+
+        Raises InputError for another ending, or if it cannot be written.
+        """
+        writers = {".png": core.write_png, ".exr": core.write_exr}
+        write = writers.get(Path(path).suffix.lower())
+        if write is None:
+            raise InputError(f"{path}: a picture must end in {' or '.join(writers)}")
+        write(self._layers, Path(path), self._metadata, self._tone(tone))
+
+    def _tone(self, changes: Mapping[str, Any]) -> str:
+        for name in changes.keys() - {"exposure", "background"}:
+            raise InputError(f"{name}: not known; exposure and background are")
+        return json.dumps({"picture": self._options | {name: plain(value) for name, value in changes.items()}})
+
+    def _repr_png_(self) -> bytes:
+        """Show it in a notebook."""
+        with tempfile.TemporaryDirectory() as folder:
+            self.save(Path(folder) / "picture.png")
+            return (Path(folder) / "picture.png").read_bytes()

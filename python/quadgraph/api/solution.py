@@ -1,0 +1,127 @@
+"""What a solve did: its way, its error, and where the power went."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any, Self
+
+import numpy as np
+
+from quadgraph.api.values import Doubles
+
+
+@dataclass(frozen=True, eq=False)
+class Energy:
+    """Power per channel, W, (3,) float64 each: what enters goes out again or is absorbed, by a conservative method.
+
+    entered: of the lights; re_entered: of light that had left another part; scattered_out, absorbed, unscattered_out;
+    balance: what is missing of that, as a share of what entered.
+    """
+
+    entered: Doubles
+    re_entered: Doubles
+    scattered_out: Doubles
+    absorbed: Doubles
+    unscattered_out: Doubles
+    balance: Doubles
+
+    @classmethod
+    def from_report(cls, report: Mapping[str, Any]) -> Self:
+        """Return it from the compiled engine's report."""
+        return cls(**{name: np.array(power) for name, power in report.items()})
+
+
+@dataclass(frozen=True)
+class LevelReport:
+    """One level's solve. level: 0 is the finest; unknowns: per channel; residual: relative, of the worst channel."""
+
+    level: int
+    unknowns: int
+    iterations: int
+    residual: float
+    converged: bool
+
+
+@dataclass(frozen=True)
+class ErrorEstimate:
+    """Relative RMS error of the exitance, weighted by area: over the whole surface, and over its unlit part."""
+
+    whole: float
+    unlit: float
+
+
+@dataclass(frozen=True)
+class PathReport:
+    """What shortest-path did. size: voxels along x, y, z; cell: mm, side of one; solid: voxels in the body; lit: of
+    them, those that light enters; rounds: until no path had anything to gain.
+    """
+
+    cost: str
+    solver: str
+    cells: int
+    size: tuple[int, int, int]
+    cell: float
+    solid: int
+    lit: int
+    rounds: int
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """What a solve did.
+
+    method, solver, source, model: those that were used; replaced: why it is another solver than the one asked for;
+    cycles: that were asked for, 0 if none; levels: in the order solved, coarsest first; finest: the level solved last;
+    work: products of all levels, in products of level 0; clipped: (3,) share of the exitance that was below zero and
+    taken from the rest; algebraic, error: estimates without and with the mesh's part, None where they cannot be told;
+    inter_reflection: whether it was followed; bounces: (n, 3) W that each brought in; unmet: what was asked for and is
+    not met, in words; missed: of that, the error; budget: what the bake of the file has to say of the error that was
+    asked for; mesh_warning, model_warning, deformed: what else is to be said against the answer; exchange_age: solves
+    by which what some face sees is behind the shape; path: of the method shortest-path, which has no levels, energy
+    balance and estimates. Texts are empty where there is nothing to say.
+    """
+
+    method: str
+    solver: str
+    source: str
+    model: str
+    replaced: str
+    cycles: int
+    levels: tuple[LevelReport, ...]
+    finest: int
+    work: float
+    energy: Energy
+    clipped: Doubles
+    algebraic: ErrorEstimate | None
+    error: ErrorEstimate | None
+    inter_reflection: bool
+    bounces: Doubles
+    unmet: tuple[str, ...]
+    missed: str
+    budget: str
+    mesh_warning: str
+    model_warning: str
+    deformed: str
+    exchange_age: int
+    path: PathReport | None
+
+    @classmethod
+    def from_report(cls, report: Mapping[str, Any]) -> Self:
+        """Return it from the compiled engine's report."""
+        typed = {
+            "levels": tuple(LevelReport(**level) for level in report["levels"]),
+            "energy": Energy.from_report(report["energy"]),
+            "clipped": np.array(report["clipped"]),
+            "algebraic": report["algebraic"] and ErrorEstimate(**report["algebraic"]),
+            "error": report["error"] and ErrorEstimate(**report["error"]),
+            "bounces": np.array(report["bounces"]).reshape(-1, 3),
+            "unmet": tuple(report["unmet"]),
+            "path": report["path"] and PathReport(**report["path"]),
+        }
+        return cls(**{each.name: typed.get(each.name, report[each.name]) for each in fields(cls)})
+
+    @property
+    def converged(self) -> bool:
+        """Whether all that was asked for is met."""
+        return not self.unmet

@@ -1,0 +1,83 @@
+"""An engine that shows one scene after the other."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from quadgraph import core
+from quadgraph.api.engine import Engine
+from quadgraph.api.picture import Picture
+from quadgraph.api.scene import Scene, SceneFile
+from quadgraph.api.solution import Solution
+from quadgraph.base.errors import InputError
+
+
+class Stage:
+    """Shows scenes on a Vulkan device, and sets only what differs from one to the next. Use it in a `with` block."""
+
+    def __init__(self, *, device: str = "", validation: bool = False) -> None:
+        """Choose a device by part of its name; validation: load Vulkan's validation layer."""
+        self._stage: core.Stage | None = core.Stage(device, validation)
+        self._engine: Engine | None = None
+        self._scene: Scene | None = None
+
+    def __enter__(self) -> Self:
+        """Return itself."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Close."""
+        self.close()
+
+    def close(self) -> None:
+        """Free the device's memory; whatever is asked afterwards raises InputError."""
+        self._forget()
+        self._stage = None
+
+    def _forget(self) -> None:
+        if self._engine is not None:
+            self._engine.close()
+        self._engine, self._scene = None, None
+
+    @property
+    def _open(self) -> core.Stage:
+        if self._stage is None:
+            raise InputError("the stage is closed")
+        return self._stage
+
+    @property
+    def scene(self) -> Scene | None:
+        """The scene that is shown, with all members filled in; None before the first."""
+        return self._scene
+
+    @property
+    def engine(self) -> Engine:
+        """The engine that shows the scene; closed where another body is shown. Raises InputError before the first."""
+        if self._engine is None:
+            raise InputError("no scene is shown")
+        return self._engine
+
+    def show(self, scene: Scene | SceneFile | str | Path, frame: float = 0) -> None:
+        """Show a scene, or a frame of a scene file. Raises FormatError, InputError, VulkanError."""
+        file = scene if isinstance(scene, SceneFile) else SceneFile(scene)
+        wanted = file.at(frame)
+        if self._scene is None or self._scene.body != wanted.body:
+            self._forget()
+        self._open.show(core.scene_file(json.dumps(wanted.to_dict())).at(0))
+        self._scene = wanted
+        if self._engine is None:
+            self._engine = Engine._around(self._open.engine)
+
+    def solve(self) -> Solution:
+        """Solve with the scene's options. Raises InputError, SolverError."""
+        return self.engine._take(self._open.solve())
+
+    def render(self) -> Picture:
+        """Return a picture with the scene's camera and options. Raises InputError before a solve."""
+        shown = self.engine._engine
+        return Picture(self._open.render(), shown.metadata, dict(self._scene.picture) if self._scene else {})

@@ -1,0 +1,44 @@
+"""What lights and deformers share: frozen values with the members that scene files give them (docs/scene.md)."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+Floats: TypeAlias = npt.NDArray[np.float32]
+Doubles: TypeAlias = npt.NDArray[np.float64]
+Vector: TypeAlias = Sequence[float] | npt.NDArray[np.floating[Any]]  # x, y, z
+RGB: TypeAlias = float | Vector  # one number for all channels, or red, green, blue
+
+
+def plain(value: object) -> Any:
+    """Arrays and sequences as tuples, NumPy's numbers as Python's, paths as texts: comparable, and ready for JSON."""
+    if isinstance(value, np.ndarray | np.generic):
+        value = value.tolist()
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    if isinstance(value, list | tuple):
+        return tuple(plain(item) for item in value)
+    return value
+
+
+@dataclass(frozen=True)
+class Value:
+    """A value of one `type`; members that are None are left to the engine."""
+
+    type: ClassVar[str]
+
+    def __post_init__(self) -> None:
+        """Make members plain."""
+        for each in fields(self):
+            object.__setattr__(self, each.name, plain(getattr(self, each.name)))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the object that a scene file has for it: `type` and the members that are not None."""
+        members = {each.name: getattr(self, each.name) for each in fields(self)}
+        return {"type": self.type} | {name: value for name, value in members.items() if value is not None}
