@@ -3,7 +3,7 @@
 #include "assemble/assembly_shared.h"
 #include "material/optics.h"
 #include "solver/stored_rows.glsl"
-#include "shared/tet_volume.glsl"
+#include "solver/tet_volume.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { AssembleFvPush push; };

@@ -29,7 +29,9 @@ Pair pair_of(vec3 here, vec3 there) {
 float open_area(uint i) {
   float area = 0.0;
   uint end = load_uint(push.face_offset, i + 1u);
-  for (uint k = load_uint(push.face_offset, i); k < end; ++k) area += area_of(load_uint(push.face_incidence, k)) / 3.0;
+  for (uint k = load_uint(push.face_offset, i); k < end; ++k) {
+    area += area_of(push.faces, push.vertices, load_uint(push.face_incidence, k)) / 3.0;
+  }
   return area;
 }
 

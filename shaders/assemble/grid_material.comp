@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "assemble/assembly_shared.h"
-#include "shared/tet_volume.glsl"
+#include "solver/tet_volume.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { GridMaterialPush push; };

@@ -3,7 +3,7 @@
 #include "deform/deform_shared.h"
 #include "shared/stride.glsl"
 #include "shared/reduce.glsl"
-#include "shared/tet_volume.glsl"
+#include "solver/tet_volume.glsl"
 
 layout(push_constant, scalar) uniform Block { ShapeStatePush push; };
 

@@ -5,7 +5,7 @@
 #include "light/environment.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
-layout(push_constant, scalar) uniform Block { ResolvePush push; };
+#include "display/pixel.glsl"
 
 SurfaceScene scene;
 #define BODY scene.solid.body
@@ -13,7 +13,6 @@ SurfaceScene scene;
 #define TREE scene.solid.tree
 #define POINTS scene.points
 #include "gather/leaving.glsl"
-#include "display/pixel.glsl"
 
 const float PI = 3.14159265;
 

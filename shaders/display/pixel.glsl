@@ -1,4 +1,10 @@
-// A pixel of the picture and its 2 x 2 samples. Include after a ResolvePush as `push`.
+// A pixel of the picture and its 2 x 2 samples. With the push constants of the passes that make them.
+#ifndef QUADGRAPH_PIXEL_GLSL
+#define QUADGRAPH_PIXEL_GLSL
+
+#include "light/render_shared.h"
+
+layout(push_constant, scalar) uniform Block { ResolvePush push; };
 
 struct Pixel {
   uint first;  // sample, the upper left one
@@ -24,3 +30,5 @@ void write_pixel(Pixel pixel, vec3 layers[PICTURE_LAYERS], float alpha) {
   }
   push.alpha.at[pixel.index] = alpha;
 }
+
+#endif

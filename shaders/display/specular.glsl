@@ -1,5 +1,18 @@
-// Light that the surface reflects. Include after lights.glsl, fresnel.glsl, a SurfacePush `push` and a
-// SurfaceScene `scene`.
+// Light that the surface reflects. The shader that includes it defines first
+//   SURFACE  the SurfacePush, e.g. push
+// and fills `scene`.
+#ifndef QUADGRAPH_SPECULAR_GLSL
+#define QUADGRAPH_SPECULAR_GLSL
+
+#include "light/environment.glsl"
+#include "light/lights.glsl"
+#include "material/fresnel.glsl"
+
+#ifndef SURFACE
+#error "specular.glsl: SURFACE is not defined"
+#endif
+
+SurfaceScene scene;
 
 const float PI = 3.14159265;
 
@@ -9,12 +22,12 @@ float placed_share = 0.0;
 // Makes scene.roughness that of a point of the surface, `rest` at rest, mm. To be called by all fragments.
 void place_roughness(vec3 rest) {
   if (!PLACED_ROUGHNESS) return;
-  vec3 place = in_box(push.box, rest);
+  vec3 place = in_box(SURFACE.box, rest);
   float width = max(length(dFdx(place.xy)), length(dFdy(place.xy)));
-  if (any(greaterThan(abs(place), push.box.half_size))) return;
-  ImageTap tap = image_tap(push.image, in_picture(push.box, place), texels_across(push.box, push.image, width));
-  placed_share = clamp(luminance(load_image(push.texels, tap)), 0.0, 1.0);
-  scene.roughness = mix(scene.roughness, push.roughness, placed_share);
+  if (any(greaterThan(abs(place), SURFACE.box.half_size))) return;
+  ImageTap tap = image_tap(SURFACE.image, in_picture(SURFACE.box, place), texels_across(SURFACE.box, SURFACE.image, width));
+  placed_share = clamp(luminance(load_image(SURFACE.texels, tap)), 0.0, 1.0);
+  scene.roughness = mix(scene.roughness, SURFACE.roughness, placed_share);
 }
 
 // Cook and Torrance 1982 with the GGX distribution and height-correlated Smith masking (Walter et al. 2007, Heitz 2014)
@@ -72,3 +85,5 @@ vec3 specular_radiance(vec3 position, vec3 n, vec3 v, float sky) {
   }
   return sum;
 }
+
+#endif

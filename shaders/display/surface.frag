@@ -1,9 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "light/lights.glsl"
-#include "material/fresnel.glsl"
+#include "light/render_shared.h"
 
 layout(push_constant, scalar) uniform Block { SurfacePush push; };
+#define SURFACE push
 layout(location = 0) in vec3 position;  // mm
 layout(location = 1) in vec3 normal;
 layout(location = 4) in float sky;  // share that is not hidden by the body
@@ -14,8 +14,6 @@ layout(location = 0) out vec4 scattered_coverage;  // W/(mm^2 sr), 1
 layout(location = 1) out vec4 specular;            // W/(mm^2 sr), 1
 layout(location = 2) out vec4 unscattered;         // W/(mm^2 sr), 1
 
-SurfaceScene scene;
-#include "light/environment.glsl"
 #include "display/specular.glsl"
 
 // As of a diffuser behind the surface: the same from every side but for Fresnel.

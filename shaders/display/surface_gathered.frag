@@ -1,9 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "light/lights.glsl"
-#include "material/fresnel.glsl"
+#include "light/render_shared.h"
 
 layout(push_constant, scalar) uniform Block { SurfacePush push; };
+#define SURFACE push
 layout(location = 0) in vec3 position;  // mm
 layout(location = 1) in vec3 normal;
 layout(location = 4) in float sky;  // share that is not hidden by the body
@@ -12,8 +12,6 @@ layout(location = 0) out vec4 position_coverage;  // mm, 1
 layout(location = 1) out vec4 specular_face;      // W/(mm^2 sr), high half of the face
 layout(location = 2) out vec4 normal_face;        // unit, low half of the face
 
-SurfaceScene scene;
-#include "light/environment.glsl"
 #include "display/specular.glsl"
 
 void main() {

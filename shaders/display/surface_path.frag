@@ -1,11 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "path/path_light_shared.h"
-#include "light/lights.glsl"
-#include "material/fresnel.glsl"
 
-layout(push_constant, scalar) uniform Block { SurfacePathPush path_push; };
-#define push path_push.surface
+layout(push_constant, scalar) uniform Block { SurfacePathPush push; };
+#define SURFACE push.surface
 layout(location = 0) in vec3 position;  // mm
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 rest;  // mm, the position at rest
@@ -13,8 +11,6 @@ layout(location = 0) out vec4 scattered_coverage;  // W/(mm^2 sr), 1
 layout(location = 1) out vec4 specular;            // W/(mm^2 sr), 1
 layout(location = 2) out vec4 unscattered;         // none, 1
 
-SurfaceScene scene;
-#include "light/environment.glsl"
 #include "path/path_field.glsl"
 #include "path/path_tools.glsl"
 #include "display/specular.glsl"
@@ -38,8 +34,8 @@ bool last_cut(PathTools tools, vec3 end, out vec3 point, out vec3 outward) {
 // Open surfaces are seen from both sides. A side that is turned away from the eye is seen through a hole, or because
 // what lay before it has been cut away: then the cut face is what is seen, and it lies on the same ray.
 void main() {
-  scene = load_scene(push.scene);
-  PathField field = load_path_field(path_push.field);
+  scene = load_scene(SURFACE.scene);
+  PathField field = load_path_field(push.field);
   if (field.tools.count > 0u && cut_away(field.tools, position)) discard;
   place_roughness(rest);
   vec3 at = position, n = normalize(normal);

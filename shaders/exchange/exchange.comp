@@ -23,7 +23,7 @@ void main() {
       uvec2 row = load_uvec2(push.rows, f);
       for (uint k = row.x; k < row.y; ++k) irradiance += sent_by(load_uint(push.entries, k), clip);
       irradiance /= push.rays;
-      float area = area_of(f);
+      float area = area_of(push.faces, push.vertices, f);
       received = area * irradiance;
       sent = area * float(row.y - row.x) / push.rays * sent_by(f, clip);
     }

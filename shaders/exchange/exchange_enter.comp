@@ -15,7 +15,7 @@ void main() {
     vec3 irradiance = load_vec3(push.factor, 0u) * load_vec3(push.irradiance, f);
     push.irradiance.at[f] = irradiance;
     vec3 q = push.transmitted * irradiance;
-    float area = area_of(f);
+    float area = area_of(push.faces, push.vertices, f);
     entered = area * load_vec3(push.q, f);
     change = area * abs(q - load_vec3(push.beam_q, f));
     push.beam_q.at[f] = q;

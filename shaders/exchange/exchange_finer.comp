@@ -17,7 +17,7 @@ void main() {
       for (uint k = f * push.width; k < (f + 1u) * push.width; ++k) {
         irradiance += load_float(push.weight, k) * load_vec3(push.coarse, load_uint(push.index, k));
       }
-      received = area_of(f) * irradiance;
+      received = area_of(push.faces, push.vertices, f) * irradiance;
     }
     push.irradiance.at[f] = irradiance;
   }

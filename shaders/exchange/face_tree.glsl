@@ -1,6 +1,17 @@
-// The first face that a line meets. Include after body_shared.h and definitions of
+// The first face that a line meets. The shader that includes it defines first
 //   TREE      what has order, leaf_begin, boxes and leaf_count, e.g. a TreeRef
 //   TREE_BODY what has vertices and faces
+#ifndef QUADGRAPH_FACE_TREE_GLSL
+#define QUADGRAPH_FACE_TREE_GLSL
+
+#include "shared/body_shared.h"
+
+#ifndef TREE
+#error "face_tree.glsl: TREE is not defined"
+#endif
+#ifndef TREE_BODY
+#error "face_tree.glsl: TREE_BODY is not defined"
+#endif
 
 const uint NO_FACE = 0xFFFFFFFFu;
 const float FAR = 1e37;
@@ -68,3 +79,5 @@ Hit first_met(Line line, uint own, float reach) {
   }
   return hit;
 }
+
+#endif

@@ -1,5 +1,11 @@
-// Radiance gathered along a view ray, and its scale. Include after fresnel.glsl and a definition of BODY and POINTS.
+// Radiance gathered along a view ray, and its scale. The shader that includes it defines
+// first BODY and POINTS (gather_fields.glsl).
+#ifndef QUADGRAPH_GATHER_GLSL
+#define QUADGRAPH_GATHER_GLSL
+
 #include "gather/gather_fields.glsl"
+#include "gather/gather_shared.h"
+#include "material/fresnel.glsl"
 
 // Where most of a ray leaves the body, to go on outside.
 struct Escape {
@@ -67,3 +73,4 @@ Gathered gather(uint tet, vec3 direction) {
   return sum;
 }
 
+#endif

@@ -1,5 +1,14 @@
-// The fields of gathered radiance along a ray; see tet_ray.glsl. Include after a definition of
+// The fields of gathered radiance along a ray; see tet_ray.glsl. The shader that includes it
+// defines first BODY (tet_ray.glsl) and
 //   POINTS  where the GatherPoints are, e.g. push.points
+#ifndef QUADGRAPH_GATHER_FIELDS_GLSL
+#define QUADGRAPH_GATHER_FIELDS_GLSL
+
+#include "gather/gather_shared.h"
+
+#ifndef POINTS
+#error "gather_fields.glsl: POINTS is not defined"
+#endif
 
 struct Payload {
   GatherPoint point;
@@ -56,3 +65,5 @@ vec3 even_radiance(GatherPoint here) {
   vec3 albedo = min(optical.sigma_s_prime / max(extinction(), vec3(1e-30)), vec3(1));
   return albedo / FOUR_PI * (here.phi + here.entry * exp(-here.depth));
 }
+
+#endif

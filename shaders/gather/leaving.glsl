@@ -1,7 +1,12 @@
-// Light that leaves a body along a view ray, and what is seen through it. Include after fresnel.glsl and definitions of
-// POINTS and of BODY, TREE and TREE_BODY, which belong together.
-#include "gather/gather.glsl"
+// Light that leaves a body along a view ray, and what is seen through it. The shader that
+// includes it defines first POINTS (gather_fields.glsl) and BODY, TREE and TREE_BODY (face_tree.glsl), which belong
+// together.
+#ifndef QUADGRAPH_LEAVING_GLSL
+#define QUADGRAPH_LEAVING_GLSL
+
 #include "exchange/face_tree.glsl"
+#include "gather/gather.glsl"
+#include "material/fresnel.glsl"
 
 // The direction inside of light that leaves along `outward` at a surface of normal `n`, turned around; into the face of
 // normal `face_normal` in any case.
@@ -53,3 +58,5 @@ Leaving leaving(uint face, vec3 l, vec3 outward, vec3 n, GatherScales scale, flo
   sum.seen += share;
   return sum;
 }
+
+#endif

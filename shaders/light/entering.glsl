@@ -1,4 +1,14 @@
-// What of a light enters a surface at a point. Include after lights.glsl, fresnel.glsl and a `push` with eta and views.
+// What of a light enters a surface at a point. The shader that includes it defines first
+//   ENTERED  what has eta and views, e.g. push
+#ifndef QUADGRAPH_ENTERING_GLSL
+#define QUADGRAPH_ENTERING_GLSL
+
+#include "light/lights.glsl"
+#include "material/fresnel.glsl"
+
+#ifndef ENTERED
+#error "entering.glsl: ENTERED is not defined"
+#endif
 
 // A light as a surface is lit by it: of a projector one channel at a time.
 struct Lamp {
@@ -17,7 +27,7 @@ float share_from(Lamp lamp, vec3 position, vec3 normal) {
     float width = lamp.width / distance(lamp.light.vector, position);
     incident.share *= projected(lamp.shape, -incident.direction, width)[lamp.channel];
   }
-  return cos_i * fresnel_transmittance(cos_i, push.eta) * incident.share;
+  return cos_i * fresnel_transmittance(cos_i, ENTERED.eta) * incident.share;
 }
 
 // The same of a patch, the mean over its parts.
@@ -37,5 +47,7 @@ float share_from_parts(Lamp lamp, vec3 position, vec3 normal) {
 float share_at(Lamp lamp, vec3 position, vec3 normal) {
   bool parts = SHAPED && lamp.shape.parts > 1u;
   float share = parts ? share_from_parts(lamp, position, normal) : share_from(lamp, position, normal);
-  return share > 0.0 ? share * light_visibility(lamp.light, push.views, position, normal, 0) : 0.0;
+  return share > 0.0 ? share * light_visibility(lamp.light, ENTERED.views, position, normal, 0) : 0.0;
 }
+
+#endif

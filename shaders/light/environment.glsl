@@ -1,4 +1,8 @@
-// Light from all around by direction. Include after shaped.glsl.
+// Light from all around by direction.
+#ifndef QUADGRAPH_ENVIRONMENT_GLSL
+#define QUADGRAPH_ENVIRONMENT_GLSL
+
+#include "light/shaped.glsl"
 
 // Texel of a picture of an environment.
 vec3 environment_texel(Vec3s texels, uint picture, int x, int y) {
@@ -21,3 +25,5 @@ vec3 environment_at(LightShape shape, uint picture, vec3 direction) {
                    environment_texel(shape.texels, picture, left + 1, bottom), f.x);
   return mix(upper, lower, f.y);
 }
+
+#endif

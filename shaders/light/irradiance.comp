@@ -6,6 +6,7 @@
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Block { IrradiancePush push; };
+#define ENTERED push
 #include "light/entering.glsl"
 
 // The quarter of a face that its point a + u ab + v ac lies in, away from their boundaries.

@@ -1,6 +1,9 @@
 // Light that arrives at a point: direction, irradiance facing the light, and visibility from the shadow maps.
-#include "shared/image_levels.h"
+#ifndef QUADGRAPH_LIGHTS_GLSL
+#define QUADGRAPH_LIGHTS_GLSL
+
 #include "light/shaped.glsl"
+#include "shared/image_levels.h"
 
 struct Incident {
   vec3 direction;  // unit, towards the light
@@ -90,3 +93,5 @@ float light_visibility(LightRecord light, ShadowViews views, vec3 position, vec3
   vec2 texel = vec2(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y) * float(view.size);
   return filtered(view, perspective, texel, depth, radius);
 }
+
+#endif

@@ -1,4 +1,7 @@
 // What passes know of: lights with a shape, a roughness that varies.
+#ifndef QUADGRAPH_SHAPED_GLSL
+#define QUADGRAPH_SHAPED_GLSL
+
 #include "light/render_shared.h"
 
 layout(constant_id = 1) const uint VARIANT = 0u;
@@ -12,3 +15,5 @@ LightShape no_shape() {
   shape.parts = 1u;
   return shape;
 }
+
+#endif

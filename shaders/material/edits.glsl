@@ -1,4 +1,8 @@
-// A place's coefficients after edits, one after the other. Include after edits.h.
+// A place's coefficients after edits, one after the other.
+#ifndef QUADGRAPH_EDITS_GLSL
+#define QUADGRAPH_EDITS_GLSL
+
+#include "material/edits.h"
 
 struct AllEdits {
   MaterialEdits edits;
@@ -48,3 +52,5 @@ Optical edited_at(AllEdits those, Optical optical, vec3 position, float depth) {
   }
   return optical;
 }
+
+#endif

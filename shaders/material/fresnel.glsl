@@ -1,3 +1,6 @@
+#ifndef QUADGRAPH_FRESNEL_GLSL
+#define QUADGRAPH_FRESNEL_GLSL
+
 // Unpolarised reflectance of a smooth boundary from outside at incidence cosine `cos_i` in [0, 1]; eta = inside over
 // outside >= 1. Exact, as engine/optics/fresnel.h.
 float fresnel_reflectance(float cos_i, float eta) {
@@ -17,3 +20,5 @@ float internal_reflectance(float cosine, float eta) {
   float sin_o_squared = eta * eta * (1.0 - cosine * cosine);
   return sin_o_squared >= 1.0 ? 1.0 : fresnel_reflectance(sqrt(1.0 - max(sin_o_squared, 0.0)), eta);
 }
+
+#endif

@@ -1,5 +1,14 @@
-// Where the lines through the middles of cells cross a triangle. Include after a PathGrid GRID and declare `crossed`
-// before.
+// Where the lines through the middles of cells cross a triangle. The shader that includes it defines
+//   GRID     the PathGrid, first
+//   crossed  what happens at a crossing
+#ifndef QUADGRAPH_PATH_CROSSINGS_GLSL
+#define QUADGRAPH_PATH_CROSSINGS_GLSL
+
+#include "path/path_shared.h"
+
+#ifndef GRID
+#error "path_crossings.glsl: GRID is not defined"
+#endif
 
 struct Crossing {
   uint axis;
@@ -58,3 +67,5 @@ void cross_triangle(ivec3 a, ivec3 b, ivec3 c, uint axis, uint stripe, uint stri
     }
   }
 }
+
+#endif

@@ -3,10 +3,9 @@
 #include "path/path_light_shared.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
-layout(push_constant, scalar) uniform Block { PathEnterPush push; };
+#include "path/path_entering.glsl"
 #define GRID push.grid
 #include "path/path_crossings.glsl"
-#include "path/path_entering.glsl"
 #include "path/path_tools.glsl"
 
 vec3 normal;  // unit, of the triangle, as its corners turn

@@ -3,7 +3,6 @@
 #include "path/path_light_shared.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
-layout(push_constant, scalar) uniform Block { PathEnterPush push; };
 #include "path/path_entering.glsl"
 #include "path/path_tools.glsl"
 

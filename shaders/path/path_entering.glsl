@@ -1,7 +1,14 @@
-// What of all lights enters a cell at a point of the surface. Include after a PathEnterPush `push`.
+// What of all lights enters a cell at a point of the surface. With the push constants of the passes that do so.
+#ifndef QUADGRAPH_PATH_ENTERING_GLSL
+#define QUADGRAPH_PATH_ENTERING_GLSL
+
+#include "light/environment.glsl"
 #include "light/lights.glsl"
 #include "material/fresnel.glsl"
-#include "light/environment.glsl"
+#include "path/path_light_shared.h"
+
+layout(push_constant, scalar) uniform Block { PathEnterPush push; };
+#define ENTERED push
 #include "light/entering.glsl"
 
 // Whether solid cells lie between a point of the surface and a light.
@@ -53,3 +60,5 @@ void enter(uint cell, vec3 entering) {
     if (entering[c] > 0.0) atomicMax(push.entering.at[c * count + cell], floatBitsToUint(entering[c]));
   }
 }
+
+#endif

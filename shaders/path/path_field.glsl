@@ -1,4 +1,8 @@
-// What leaves the surface at a point, between the middles of cells. Include after path_shared.h.
+// What leaves the surface at a point, between the middles of cells.
+#ifndef QUADGRAPH_PATH_FIELD_GLSL
+#define QUADGRAPH_PATH_FIELD_GLSL
+
+#include "path/path_shared.h"
 
 // W/mm^2, of the cells of the surface around.
 vec3 path_exitance(PathField field, vec3 position) {
@@ -14,3 +18,5 @@ vec3 path_exitance(PathField field, vec3 position) {
   }
   return sum.w > 0.0 ? sum.rgb / sum.w : vec3(0);
 }
+
+#endif

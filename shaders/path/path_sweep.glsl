@@ -1,4 +1,11 @@
-// Sweeps over the block of path_relax.comp. Include after its shared arrays.
+// Sweeps over the block of path_relax.comp.
+#ifndef QUADGRAPH_PATH_SWEEP_GLSL
+#define QUADGRAPH_PATH_SWEEP_GLSL
+
+#extension GL_EXT_control_flow_attributes : require
+
+#include "path/path_block.glsl"
+#include "path/path_update.h"
 
 // Nine cells of a plane, row after row.
 struct Plane {
@@ -167,3 +174,5 @@ uint relax() {
   if (gl_LocalInvocationID.x == 0u) changed_blocks = 1u << PATH_SELF;
   return all;
 }
+
+#endif

@@ -1,4 +1,8 @@
-// What is cut away at a point. Include after path_tools.h.
+// What is cut away at a point.
+#ifndef QUADGRAPH_PATH_TOOLS_GLSL
+#define QUADGRAPH_PATH_TOOLS_GLSL
+
+#include "path/path_tools.h"
 
 const uint NO_TOOL = 0xffffffffu;
 
@@ -22,3 +26,5 @@ bool cut_away(PathTools tools, vec3 p) {
   }
   return false;
 }
+
+#endif

@@ -2,7 +2,12 @@
 // (engine/vk/arena.h). Arrays that are loaded so lie in buffers of the place that belongs to their type
 // (engine/vk/memory.h). An arena whose bit is set in IN_TEXELS is a buffer of 32-bit texels, the first of which has an
 // address that ends in ..._AT: of what lies there that is enough.
+#ifndef QUADGRAPH_LOAD_GLSL
+#define QUADGRAPH_LOAD_GLSL
+
 #extension GL_EXT_buffer_reference_uvec2 : require
+
+#include "shared/buffers.glsl"
 
 layout(constant_id = 0) const uint IN_TEXELS = 0u;
 layout(constant_id = 2) const uint READ_AT = 0u;
@@ -128,3 +133,5 @@ vec2 load_assembly_vec2(AssemblyVec2s a, uint i) {
   if (ASSEMBLY_TEXELS) return uintBitsToFloat(assembly_texels2(assembly_texel_of(uvec2(a)) + 2u * i));
   return a.at[i];
 }
+
+#endif

@@ -1,13 +1,18 @@
 // Reduction over a whole dispatch in a fixed order, so that results repeat bit for bit: every workgroup stores a
-// partial, the last one to finish combines them, or a dispatch of its own (part.glsl). Include after defining REDUCE(a, b) and the identity REDUCE_ZERO for
-// anything but sums. All functions must be called by every invocation.
+// partial, the last one to finish combines them, or a dispatch of its own (part.glsl). A shader that wants anything but
+// sums defines REDUCE(a, b) and its identity REDUCE_ZERO first. All functions must be called by every invocation.
+#ifndef QUADGRAPH_REDUCE_GLSL
+#define QUADGRAPH_REDUCE_GLSL
+
+#extension GL_EXT_control_flow_attributes : require
+
+#include "shared/part.glsl"
+#include "shared/shared.h"
+
 #ifndef REDUCE
 #define REDUCE(a, b) ((a) + (b))
 #define REDUCE_ZERO vec3(0)
 #endif
-
-#extension GL_EXT_control_flow_attributes : require
-#include "shared/part.glsl"
 #ifndef GROUP_SIZE
 #define GROUP_SIZE WORKGROUP_SIZE
 #endif
@@ -92,3 +97,5 @@ bool reduce_dispatch_pair(Reduction reduction, vec3 a, vec3 b, out vec3 total_a,
   if (gl_LocalInvocationID.x == 0u) reduction.ticket = 0u;
   return count > 0u;
 }
+
+#endif

@@ -22,20 +22,6 @@ using uint = std::uint32_t;
 #include "shared/buffers.glsl"
 #define QG_INLINE
 #define QG_REF(Name) Name
-QG_ARRAY(Floats, float);
-QG_ARRAY(Uints, uint);
-QG_ARRAY(Uvec2s, uvec2);
-QG_ARRAY(Vec2s, vec2);
-QG_ARRAY(Vec3s, vec3);
-QG_ARRAY(Vec4s, vec4);
-QG_ARRAY(Uvec3s, uvec3);
-QG_ARRAY(Uvec4s, uvec4);
-QG_ARRAY(RowUints, uint);
-QG_ARRAY(RowFloats, float);
-QG_ARRAY(AssemblyUints, uint);
-QG_ARRAY(AssemblyUvec2s, uvec2);
-QG_ARRAY(AssemblyFloats, float);
-QG_ARRAY(AssemblyVec2s, vec2);
 #include "shared/load.glsl"
 #endif
 

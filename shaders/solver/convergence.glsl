@@ -1,6 +1,11 @@
 // What the last workgroup of a solver pass decides. Loops stay loops, as in reduce.glsl: llvmpipe walks through this code
 // in every workgroup, with nothing to do.
+#ifndef QUADGRAPH_CONVERGENCE_GLSL
+#define QUADGRAPH_CONVERGENCE_GLSL
+
 #extension GL_EXT_control_flow_attributes : require
+
+#include "solver/solve_shared.h"
 
 bvec3 not_finite(vec3 v) {
   return bvec3(isnan(v.x) || isinf(v.x), isnan(v.y) || isinf(v.y), isnan(v.z) || isinf(v.z));
@@ -54,3 +59,5 @@ void take_preconditioned(SolveStates state, vec3 rz) {
   bvec3 failed = bvec3(open_channel.x && !(rz.x > 0.0), open_channel.y && !(rz.y > 0.0), open_channel.z && !(rz.z > 0.0));
   if (any(failed)) stop(state, SOLVE_NOT_POSITIVE, first_channel(failed));
 }
+
+#endif

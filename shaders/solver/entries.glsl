@@ -1,5 +1,10 @@
-// What a method says about a pair of carriers becomes an entry of the operator (engine/reference/operator.h): stiffness of
-// kappa, mass of sigma_a (absorption), mass of 5/9 sigma_t (relaxation), measure of the surface.
+// What a method says about a pair of carriers becomes an entry of the operator (engine/reference/operator.h):
+// stiffness of kappa, mass of sigma_a (absorption), mass of 5/9 sigma_t (relaxation), measure of the surface.
+#ifndef QUADGRAPH_ENTRIES_GLSL
+#define QUADGRAPH_ENTRIES_GLSL
+
+#include "material/optics.h"
+#include "solver/solve_shared.h"
 
 Entry entry_of(vec3 stiffness, vec3 absorption, vec3 relaxation) {
 #if MOMENTS == 1
@@ -38,3 +43,5 @@ Entry difference_of(Entry a, Entry b) {
 vec3 relaxation_of(Optical optical) {
   return (5.0 / 9.0) * sigma_t(optical);
 }
+
+#endif

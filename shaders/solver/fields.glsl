@@ -1,4 +1,8 @@
 // Arithmetic of fields and entries, in the variant of MOMENTS (solve_shared.h).
+#ifndef QUADGRAPH_FIELDS_GLSL
+#define QUADGRAPH_FIELDS_GLSL
+
+#include "solver/solve_shared.h"
 
 Field add(Field a, Field b) {
 #if MOMENTS == 1
@@ -95,3 +99,5 @@ Field diffuse_source(Boundary boundary, vec3 load) {
   return Field(boundary.source * boundary.k11 * load, boundary.source * boundary.k12 * load);
 #endif
 }
+
+#endif

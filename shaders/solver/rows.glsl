@@ -1,5 +1,9 @@
-// Products with operator rows; include after fields.glsl.
+// Products with operator rows.
+#ifndef QUADGRAPH_ROWS_GLSL
+#define QUADGRAPH_ROWS_GLSL
+
 #include "material/optics.h"
+#include "solver/fields.glsl"
 #include "solver/stored_rows.glsl"
 
 // (A x)_i; `row_sum` is of row i.
@@ -19,3 +23,5 @@ Field row_times(RowsRef rows, Entry row_sum, Fields x, uint i) {
 Field residual(RowsRef rows, Entry row_sum, Fields b, Fields x, uint i) {
   return difference(load_field(b, i), row_times(rows, row_sum, x, i));
 }
+
+#endif

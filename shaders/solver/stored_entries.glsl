@@ -1,5 +1,9 @@
 // The entries of an operator as packing.h stores them: reading and writing.
+#ifndef QUADGRAPH_STORED_ENTRIES_GLSL
+#define QUADGRAPH_STORED_ENTRIES_GLSL
+
 #include "solver/packing.h"
+#include "solver/solve_shared.h"
 
 layout(constant_id = 1) const uint ENTRIES = ENTRIES_PACKED;
 
@@ -115,3 +119,5 @@ Entry store_entry(RowsRef rows, uint e, Entry entry) {
 Entry load_entry(RowsRef rows, uint e) {
   return entry_in(stored_entry(rows, e));
 }
+
+#endif

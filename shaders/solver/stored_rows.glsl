@@ -1,5 +1,9 @@
 // The blocks of an operator's rows beside its entries (RowsRef): reading and writing.
+#ifndef QUADGRAPH_STORED_ROWS_GLSL
+#define QUADGRAPH_STORED_ROWS_GLSL
+
 #include "solver/entries.glsl"
+#include "solver/solve_shared.h"
 #include "solver/stored_entries.glsl"
 
 #if MOMENTS == 2
@@ -91,3 +95,5 @@ void store_row(RowsRef rows, uint i, vec3 absorption, vec3 relaxation, float are
   rows.row_sum.at[i] = sum;
   rows.diagonal.at[i] = difference_of(sum, entries);
 }
+
+#endif

@@ -1,6 +1,10 @@
 // The quality of a tet, and its volume as operators take it. A tet that is turned inside out counts as the one that it
 // mirrors, a flat one as if it had a least height: its stiffness is then the same, positive semidefinite sum of
 // products of normals, divided by a larger volume, so that operators stay symmetric and positive definite.
+#ifndef QUADGRAPH_TET_VOLUME_GLSL
+#define QUADGRAPH_TET_VOLUME_GLSL
+
+#include "solver/solve_shared.h"
 
 const float REGULAR = 0.31020161970069987;  // 6 V / (sum of the squares of n_k)^(3/4), n_k of twice the areas
 
@@ -23,3 +27,5 @@ float tet_volume(vec3 e1, vec3 e2, vec3 e3, LeastTet least) {
   vec3 n2 = cross(e3, e1), n3 = cross(e1, e2), n0 = n1 + n2 + n3;
   return bounded_six_volume(six_volume, dot(n0, n0) + dot(n1, n1) + dot(n2, n2) + dot(n3, n3), least) / 6.0;
 }
+
+#endif

@@ -1,3 +1,8 @@
+#ifndef QUADGRAPH_BEAM_LIGHT_GLSL
+#define QUADGRAPH_BEAM_LIGHT_GLSL
+
+#include "shared/beam_shared.h"
+
 // What a beam brings to a quarter of a face, W/mm^2. Of a level's beam_q each beam has a part with its floats per face.
 vec3 beam_light(Beam beam, Floats beam_q, uint face_count, uint face, uint quarter) {
   uint at = beam.offset * face_count + beam.floats * face;
@@ -10,3 +15,5 @@ vec3 beam_light(Beam beam, Floats beam_q, uint face_count, uint face, uint quart
   }
   return load_float(beam_q, at + (beam.floats == BEAM_QUARTERS ? quarter : 0u)) * beam.colour;
 }
+
+#endif

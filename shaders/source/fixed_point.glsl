@@ -1,4 +1,8 @@
 // Sums of power in fixed point; see POWER_UNIT.
+#ifndef QUADGRAPH_FIXED_POINT_GLSL
+#define QUADGRAPH_FIXED_POINT_GLSL
+
+#include "source/walk_shared.h"
 
 // Adds `value` >= 0, scaled, to element `i`. A float times a power of two splits into two words without loss, but for
 // the bits below the unit.
@@ -23,3 +27,5 @@ vec3 power_at(Uints sums, uint i) {
   }
   return value;
 }
+
+#endif

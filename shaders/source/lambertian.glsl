@@ -1,5 +1,10 @@
-// Light at the surface that it enters by, and even light as a bundle of rays. Include after fresnel.glsl and
-// face_azimuth.glsl.
+// Light at the surface that it enters by, and even light as a bundle of rays.
+#ifndef QUADGRAPH_LAMBERTIAN_GLSL
+#define QUADGRAPH_LAMBERTIAN_GLSL
+
+#include "material/fresnel.glsl"
+#include "shared/beam_shared.h"
+#include "source/face_azimuth.glsl"
 
 // Behind the surface: shares p_k of the power at inside cosines mu_k, the Gauss nodes of the outside cosine.
 struct Lambertian {
@@ -38,3 +43,5 @@ vec3 refracted(vec3 incoming, vec3 normal, float eta) {
   float cos_t = sqrt(max(1.0 - (1.0 - cos_i * cos_i) / (eta * eta), 0.0));
   return normalize(incoming / eta + (cos_i / eta - cos_t) * normal);
 }
+
+#endif

@@ -1,4 +1,4 @@
-// A ray through the tets of a level. Include after a definition of
+// A ray through the tets of a level. The shader that includes it defines first
 //   BODY                     where the BodyRef is, e.g. push.body
 //   struct Payload           what a corner carries
 //   Payload payload(uint id) that of vertex `id`, when the ray first sees it
@@ -8,6 +8,14 @@
 // face that the ray comes in through. Nearly all of the time goes to loads (lavapipe: some 3 loads cost as much as all
 // arithmetic of a tet), so that a tet is read only as far as it is new: its crossing, one vertex and, in a varied
 // material, its coefficients.
+#ifndef QUADGRAPH_TET_RAY_GLSL
+#define QUADGRAPH_TET_RAY_GLSL
+
+#include "shared/body_shared.h"
+
+#ifndef BODY
+#error "tet_ray.glsl: BODY is not defined"
+#endif
 
 struct Corner {
   uint id;
@@ -138,3 +146,5 @@ void enter(uvec2 crossing) {
   uint id = load_component(BODY.tets, crossing.x, place);
   corner_3 = Corner(id, place, load_vec3(BODY.vertices, id), 0.0, payload(id));
 }
+
+#endif

@@ -1,4 +1,12 @@
-// One ray of the buried source through the tets; include after the push constants of walk_source.comp.
+// One ray of the buried source through the tets, and the push constants of walk_source.comp.
+#ifndef QUADGRAPH_WALK_RAY_GLSL
+#define QUADGRAPH_WALK_RAY_GLSL
+
+#include "material/fresnel.glsl"
+#include "source/fixed_point.glsl"
+#include "source/walk_shared.h"
+
+layout(push_constant, scalar) uniform Block { WalkSourcePush push; };
 
 // Scattered towards a vertex, not yet added to its deposit.
 struct Payload {
@@ -111,3 +119,5 @@ void walk(Ray ray) {
   flush(corner_2);
   flush(corner_3);
 }
+
+#endif

@@ -8,8 +8,6 @@
 #include "source/beam_light.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
-layout(push_constant, scalar) uniform Block { WalkSourcePush push; };
-
 #include "source/walk_ray.glsl"
 
 const uint FACE_CENTRE = 3u;  // the quarter in the middle

@@ -4,7 +4,7 @@
 #include "solver/fields.glsl"
 #include "shared/stride.glsl"
 #include "shared/reduce.glsl"
-#include "shared/tet_volume.glsl"
+#include "solver/tet_volume.glsl"
 
 layout(push_constant, scalar) uniform Block { EnergyPush push; };
 

@@ -10,7 +10,7 @@ layout(push_constant, scalar) uniform Block { SurfaceSharePush push; };
 // Of a whole face, `reflected` times its area.
 SurfaceShare of_face(uint face) {
   vec3 q = load_vec3(push.q, face);
-  float area = area_of(face);
+  float area = area_of(push.faces, push.vertices, face);
   float unlit = q.x + q.y + q.z < load_scale(push.scale).unlit ? area : 0.0;
   return SurfaceShare(vec2(area, unlit), area * push.reflected * q);
 }

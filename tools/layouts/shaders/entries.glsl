@@ -1,4 +1,8 @@
-// Blocks of the matrix in memory, as ENTRIES, COLUMNS and COEFFICIENTS say; include after vectors.glsl.
+// Blocks of the matrix in memory, as ENTRIES, COLUMNS and COEFFICIENTS say.
+#ifndef QUADGRAPH_LAYOUTS_ENTRIES_GLSL
+#define QUADGRAPH_LAYOUTS_ENTRIES_GLSL
+
+#include "vectors.glsl"
 
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer AlignedUvec4s {
   uvec4 at[];
@@ -183,3 +187,5 @@ Entry diagonal_of(Row row) {
   return Entries(push.diagonal).at[row.i];
 #endif
 }
+
+#endif

@@ -1,4 +1,7 @@
 // What every kernel of tools/layouts starts with: one way to keep the matrix and its vectors, chosen by macros.
+#ifndef QUADGRAPH_LAYOUTS_LAYOUT_GLSL
+#define QUADGRAPH_LAYOUTS_LAYOUT_GLSL
+
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #include "layout_shared.h"
@@ -37,3 +40,5 @@ uint row_of(uint slot) {
   return slot;
 #endif
 }
+
+#endif

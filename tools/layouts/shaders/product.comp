@@ -3,12 +3,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
-#include "layout.glsl"
-#include "vectors.glsl"
-#include "entries.glsl"
 #include "rows.glsl"
 #ifdef REDUCTION
-#include "shared/reduce.glsl"
 #include "reduction.glsl"
 #endif
 

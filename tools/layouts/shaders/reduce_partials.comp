@@ -4,8 +4,6 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
-#include "layout.glsl"
-#include "shared/reduce.glsl"
 #include "reduction.glsl"
 
 void main() {

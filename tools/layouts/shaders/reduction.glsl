@@ -1,4 +1,9 @@
-// A sum over a whole dispatch in the way REDUCTION says; include after reduce.glsl.
+// A sum over a whole dispatch in the way REDUCTION says.
+#ifndef QUADGRAPH_LAYOUTS_REDUCTION_GLSL
+#define QUADGRAPH_LAYOUTS_REDUCTION_GLSL
+
+#include "layout.glsl"
+#include "shared/reduce.glsl"
 
 shared vec3 subgroup_sums[WORKGROUP_SIZE];
 
@@ -44,3 +49,5 @@ bool sum_dispatch(Reduction reduction, vec3 value, out vec3 total) {
 #endif
 #endif
 }
+
+#endif

@@ -1,9 +1,6 @@
 #version 460
 // y = b - A x.
 #extension GL_GOOGLE_include_directive : require
-#include "layout.glsl"
-#include "vectors.glsl"
-#include "entries.glsl"
 #include "rows.glsl"
 
 void main() {

@@ -1,4 +1,8 @@
-// Products with rows as ROWS says; include after entries.glsl.
+// Products with rows as ROWS says.
+#ifndef QUADGRAPH_LAYOUTS_ROWS_GLSL
+#define QUADGRAPH_LAYOUTS_ROWS_GLSL
+
+#include "entries.glsl"
 
 struct Units {
   uint first, end, step;
@@ -46,3 +50,5 @@ Field row_times(uint slot, inout Row row) {
   for (uint e = units.first; e < units.end; e += units.step) sum = add_unit(sum, row, e);
   return sum;
 }
+
+#endif

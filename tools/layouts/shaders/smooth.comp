@@ -1,9 +1,6 @@
 #version 460
 // One Chebyshev step: d = c1 d + c2 D^-1 (b - A x), y = x + d. With FROM_ZERO two of them: x = d = c0 D^-1 b before.
 #extension GL_GOOGLE_include_directive : require
-#include "layout.glsl"
-#include "vectors.glsl"
-#include "entries.glsl"
 #include "rows.glsl"
 
 void main() {

@@ -1,4 +1,8 @@
-// Fields in memory, as VECTORS says; include after layout.glsl.
+// Fields in memory, as VECTORS says.
+#ifndef QUADGRAPH_LAYOUTS_VECTORS_GLSL
+#define QUADGRAPH_LAYOUTS_VECTORS_GLSL
+
+#include "layout.glsl"
 
 struct WideField {
   vec4 phi;
@@ -71,3 +75,5 @@ void store(Uints vectors, uint i, Field value) {
                                 packHalf2x16(value.phi2.yz));
 #endif
 }
+
+#endif
