@@ -127,11 +127,11 @@ py::dict as_dict(const SolveReport& report) {
 
 namespace {
 
-// C++ errors arrive as the classes of quadgraph.errors, so that Python code catches one family.
+// C++ errors arrive as the classes of quadgraph.base.errors, so that Python code catches one family.
 void register_errors() {
   py::register_exception_translator([](std::exception_ptr error) {
     const auto raise = [](const char* name, const std::exception& e) {
-      PyErr_SetString(py::module_::import("quadgraph.errors").attr(name).ptr(), e.what());
+      PyErr_SetString(py::module_::import("quadgraph.base.errors").attr(name).ptr(), e.what());
     };
     try {
       if (error) std::rethrow_exception(error);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/optics/half_space.h"
 #include "tests/cpp/fixtures/graph_cases.h"
 
 using namespace quadgraph;
