@@ -37,7 +37,7 @@ class Change:
 
     @property
     def verdict(self) -> str:
-        """ "slower", "faster", "" (within noise, or below LEAST) or "not judged" (a time taken once)."""
+        """What is to be said of it: slower, faster, not judged (a time taken once), or nothing."""
         if self.noise is None:
             return "not judged"
         difference = self.new["value"] - self.old["value"]
