@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import json
 from itertools import pairwise
+from pathlib import Path
 
 import pytest
 
 from baked import write_levels
 from quadgraph import cli
-from quadgraph_validation.benchmark import scaling
+from quadgraph_validation.benchmark import figures, scaling
 from quadgraph_validation.benchmark.bench_scene import Device
 from quadgraph_validation.benchmark.frame_passes import METHODS
 from quadgraph_validation.benchmark.solver_convergence import TARGETS, WAYS
 from shapes import icosphere
 
 pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
+
+TINY = str(Path(__file__).parents[2] / "data" / "tiny.qgraph")
 
 
 @pytest.fixture(scope="module")
@@ -30,14 +33,37 @@ def bench(tmp_path, *arguments: str) -> dict:
     path = tmp_path / "record.json"
     assert cli.main(["bench", *arguments, "--repeats", "1", "--json", str(path)]) == 0
     record = json.loads(path.read_text())
+    assert record["figures"] == figures.of(record)
+    assert all(figure["runs"] == 1 for figure in record["figures"].values())
     assert all(record[key] for key in ("device", "driver", "commit", "version", "cores"))
     return record
+
+
+def test_a_run_ends_in_a_line_that_can_be_compared(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("quadgraph_validation.benchmark.frame_passes.METHODS", METHODS[:1])
+    path = tmp_path / "record.json"
+    assert cli.main(["bench", TINY, "--passes", "--live", "--repeats", "3", "--json", str(path)]) == 0
+    printed = capsys.readouterr().out
+    ended = json.loads(printed.splitlines()[-1])
+    assert ended["schema"] == figures.SCHEMA
+    assert all(ended[key] for key in ("commit", "device", "driver", "cores"))
+    assert ended["figures"] == json.loads(path.read_text())["figures"]
+    assert {"frame/light/ms", "passes/fem/diffusion/buried/fmg-pcg/ms"} <= set(ended["figures"])
+    for name, figure in ended["figures"].items():
+        assert figure["value"] >= 0
+        assert figure["runs"] == (3 if figure["unit"] == "ms" else 1), name
+    whole = ended["figures"]["frame/light/ms"]
+    assert whole["value"] > whole["spread"] > 0
+    (tmp_path / "printed.txt").write_text(printed)
+    assert cli.main(["bench", "--compare", str(path), str(tmp_path / "printed.txt")]) == 0
+    assert f"{len(ended['figures'])} figures: 0 slower, 0 faster" in capsys.readouterr().out
 
 
 def test_passes_have_time_bytes_and_a_share_of_copying_in_both_orders(sphere, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr("quadgraph_validation.benchmark.frame_passes.METHODS", METHODS[:2])
     record = bench(tmp_path, sphere, "--passes", "--random-order", sphere)
     assert len(record["passes"]) == 2
+    assert "passes/fem/sp3/buried/fmg-pcg/random-order/assembly/ms" in record["figures"]
     assert {entry["model"] for entry in record["passes"]} == {"diffusion", "sp3"}
     for method in record["passes"]:
         assert "assembly" in [entry["name"] for entry in method["passes"]]
@@ -70,6 +96,7 @@ def test_solvers_have_curves_and_targets_and_are_drawn(sphere, tmp_path, capsys)
     pytest.importorskip("matplotlib", reason="matplotlib is not installed: pip install -e 'python/validation[bench]'")
     record = bench(tmp_path, sphere, "--solvers", "--chart", str(tmp_path / "images"))
     (scene,) = record["solvers"]
+    assert {f"solvers/sphere/fmg-pcg/0.1%/{what}" for what in ("work", "ms", "wall/ms")} <= set(record["figures"])
     assert [way["name"] for way in scene["ways"]] == [way.label for way in WAYS]
     for way in scene["ways"]:
         for before, after in pairwise(way["points"]):
@@ -86,7 +113,10 @@ def test_solvers_have_curves_and_targets_and_are_drawn(sphere, tmp_path, capsys)
 
 def test_rivals_are_beside_ours(sphere, tmp_path, capsys):
     pytest.importorskip("pyamg", reason="pyamg is not installed: pip install -e 'python/validation[bench]'")
-    (scene,) = bench(tmp_path, sphere, "--rivals")["rivals"]
+    record = bench(tmp_path, sphere, "--rivals")
+    (scene,) = record["rivals"]
+    expected = {"rivals/sphere/1%/ours/fmg-pcg/ms", "rivals/sphere/1%/pyamg-+-cg/error/ms"}
+    assert expected <= set(record["figures"])
     assert scene["agreement"]["whole"] < 1e-3
     assert {"fmg-pcg", "dpcg"} <= set(scene["targets"][0]["ours"])
     assert "PyAMG" in capsys.readouterr().out
@@ -98,7 +128,9 @@ def cycles(record: dict) -> dict[str, list[int]]:
 
 
 def test_cycles_do_not_depend_on_the_size(tmp_path):
-    record = bench(tmp_path, "--scaling", "--sizes", "500,1800,8500", "--bodies", str(tmp_path / "bodies"))["scaling"]
+    made = bench(tmp_path, "--scaling", "--sizes", "500,1800,8500", "--bodies", str(tmp_path / "bodies"))
+    assert {"scaling/sp3/8500/cycles", "scaling/diffusion/500/ms"} <= set(made["figures"])
+    record = made["scaling"]
     assert len(list((tmp_path / "bodies").glob("*.qgraph"))) == 3
     sizes = [body["tets"] for body in record["bodies"]]
     assert sizes[0] < 4000

@@ -9,6 +9,7 @@ from rich.table import Table
 
 from quadgraph.base import pass_report
 from quadgraph.core import load_core
+from quadgraph_validation.benchmark import figures
 
 if TYPE_CHECKING:
     from quadgraph.core import Engine
@@ -48,17 +49,21 @@ SOLVER_PASSES = (
 def measure(
     engines: dict[str, Engine], material: str, way: dict[str, str], repeats: int, copy_gb_per_s: float
 ) -> dict[str, Any]:
-    """Whole frames, alternating between the engines ("blocks", perhaps "random"); the median time of every pass."""
+    """Whole frames, alternating between the engines ("blocks", perhaps "random"); the median time of every pass.
+
+    A first frame of each engine, which makes room, is left out.
+    """
     frames: dict[str, list[list[dict]]] = {name: [] for name in engines}
     reports = {}
     before = engines["blocks"].device_bytes
-    for _ in range(repeats):
+    for number in range(repeats + 1):
         for name, engine in engines.items():
             engine.set_material(material)
             engine.set_lights(load_core().default_lights())
             reports[name] = engine.solve(**way, tolerance=1e-3)
             engine.render()
-            frames[name].append(engine.passes)
+            if number > 0:
+                frames[name].append(engine.passes)
     levels = reports["blocks"]["levels"]
     entry = way | {
         "iterations": [level["iterations"] for level in levels],
@@ -67,9 +72,11 @@ def measure(
         "added_bytes": engines["blocks"].device_bytes - before,
         "error": reports["blocks"]["error"],
         "passes": median_passes(frames["blocks"], copy_gb_per_s),
+        "frames": frame_figures(frames["blocks"]),
     }
     if "random" in frames:
         entry["random_order_passes"] = median_passes(frames["random"], copy_gb_per_s)
+        entry["random_order_frames"] = frame_figures(frames["random"])
     return entry
 
 
@@ -82,6 +89,14 @@ def median_passes(frames: list[list[dict]], copy_gb_per_s: float) -> list[dict[s
         speed = pass_report.bandwidth(merged)
         passes.append(merged | {"gb_per_s": speed, "copy_share": speed / copy_gb_per_s})
     return passes
+
+
+def frame_figures(frames: list[list[dict]]) -> dict[str, figures.Figure]:
+    """Of each pass that all frames have, by its name, and of all passes together, under "": time over the frames."""
+    by_pass = [pass_report.ms_by_pass(frame) for frame in frames]
+    common = [name for name in by_pass[0] if all(name in frame for frame in by_pass)]
+    found = {"": figures.times([sum(frame.values()) for frame in by_pass])}
+    return found | {name: figures.times([frame[name] for frame in by_pass]) for name in common}
 
 
 def name_of(entry: dict[str, Any]) -> str:

@@ -17,8 +17,9 @@ from rich.table import Table
 from quadgraph.base import pass_report
 from quadgraph.base.relative_error import relative_rms
 from quadgraph.core import load_core
+from quadgraph_validation.benchmark import figures
 from quadgraph_validation.benchmark.bench_scene import Device
-from quadgraph_validation.benchmark.frame_passes import median_passes
+from quadgraph_validation.benchmark.frame_passes import frame_figures, median_passes
 
 SIDE = 512  # pixels
 _CONVERGED = 1e-4  # algebraic error of what frames are held against
@@ -62,11 +63,13 @@ def _measure(file: Any, stage: Any, name: str, repeats: int, copy_gb_per_s: floa
         stage.engine.solve(motion=True)
         stage.engine.render(width=SIDE, height=SIDE, radiance="lambertian")
         taken.append((1e3 * (time.perf_counter() - start), stage.engine.passes))
+    wall_ms, passes = zip(*taken[1:], strict=True)
     return {
         "changes": name,
-        "wall_ms": statistics.median(ms for ms, _ in taken[1:]),
+        "wall_ms": statistics.median(wall_ms),
         "off": _off(stage.engine),
-        "passes": median_passes([passes for _, passes in taken[1:]], copy_gb_per_s),
+        "passes": median_passes(list(passes), copy_gb_per_s),
+        "frames": frame_figures(list(passes)) | {"": figures.times(wall_ms)},
     }
 
 

@@ -22,6 +22,7 @@ from scipy.sparse.linalg import cg
 
 from quadgraph.base.errors import InputError, SolverError
 from quadgraph.base.progress import ProgressCallback
+from quadgraph_validation.benchmark import figures
 from quadgraph_validation.benchmark import linear_system as systems
 from quadgraph_validation.benchmark.bench_scene import DIRECTION, BenchScene, Device
 from quadgraph_validation.benchmark.contest import Contest, Iterate, counts_for_residual
@@ -184,7 +185,8 @@ def _to_target(
         "ours": {runner.way.label: point.record() for runner, point in zip(runners, points, strict=True)},
         "rivals": {
             entrant.rival.name: {
-                goal: {"iterations": found[goal], "time_ms": median(kept[goal])} for goal in ("error", "residual")
+                goal: {"iterations": found[goal], "time_ms": median(kept[goal]), "time": figures.times(kept[goal])}
+                for goal in ("error", "residual")
             }
             for entrant, found, kept in zip(entrants, counts, times, strict=True)
         },

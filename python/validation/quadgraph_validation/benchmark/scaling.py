@@ -47,7 +47,8 @@ def run(
         path, seconds = _baked(folder, size, tell)
         engine = device.open(path, "marble", [LIGHT])
         level = engine.graph.levels[0]
-        entry = {"tets": len(level.tets), "vertices": len(level.vertices), "levels": len(engine.graph.levels)}
+        counts = {"tets": len(level.tets), "vertices": len(level.vertices), "levels": len(engine.graph.levels)}
+        entry = {"surface_vertices": size} | counts
         tell(f"{entry['tets']:,} tets: cycles and time")
         models = {model: _measure(engine, replace(way, model=model), repeats) for model in MODELS}
         bodies.append(entry | {"bake_s": seconds, "models": models})
@@ -123,4 +124,5 @@ def _measure(engine: Engine, way: SolverWay, repeats: int) -> dict[str, Any]:
         "unlit": point.unlit,
         "time_ms": median(point.time_ms),
         "wall_ms": median(point.wall_ms),
+        **point.timed(),
     }

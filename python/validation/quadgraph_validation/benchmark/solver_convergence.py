@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from quadgraph.base.errors import SolverError
 from quadgraph.base.progress import ProgressCallback
+from quadgraph_validation.benchmark import figures
 from quadgraph_validation.benchmark.algebraic_error import AlgebraicJudge, judge
 from quadgraph_validation.benchmark.bench_scene import BenchScene, Device
 from quadgraph_validation.benchmark.frame_passes import PICTURE_PASSES
@@ -82,8 +83,16 @@ class CurvePoint:
     wall_ms: list[float] = field(default_factory=list)
 
     def record(self) -> dict[str, float]:
-        """As plain values, times as medians: `time_ms` on the device's clock, `wall_ms` of the whole call."""
-        return vars(self) | {"time_ms": median(self.time_ms), "wall_ms": median(self.wall_ms)}
+        """As plain values, times as medians: `time_ms` on the device's clock, `wall_ms` of the whole call.
+
+        `time` and `wall` are the same as figures.
+        """
+        medians = {"time_ms": median(self.time_ms), "wall_ms": median(self.wall_ms)}
+        return vars(self) | medians | self.timed()
+
+    def timed(self) -> dict[str, figures.Figure]:
+        """The times of all repeats."""
+        return {"time": figures.times(self.time_ms), "wall": figures.times(self.wall_ms)}
 
 
 class SolverRunner:

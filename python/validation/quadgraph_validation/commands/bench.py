@@ -1,4 +1,7 @@
-"""`quadgraph bench`: passes, solvers, other people's solvers, and growth with size, on fixed scenes."""
+"""`quadgraph bench`: passes, solvers, other people's solvers, and growth with size, on fixed scenes.
+
+The last line printed is JSON: schema, commit, device, and the figures of all parts by flat names.
+"""
 
 from __future__ import annotations
 
@@ -17,6 +20,18 @@ if TYPE_CHECKING:
     from quadgraph.base.progress import ProgressCallback
 
 _TABLE_WIDTH = 140  # characters; narrower, the tables cannot be read
+_SLOWER = 3  # exit status
+_MEASURING = (
+    *("file", "passes", "solvers", "live", "rivals", "scaling"),
+    *("sizes", "random_order", "bodies", "chart", "json", "device", "validation"),
+)
+_RULE = (
+    "A figure is the median of its runs. It is slower, or faster, if it changed by more than 2% and by more than the "
+    "noise of the runs: Student's t of their pooled standard deviation, at a level where one table in a hundred names "
+    "a figure although none changed. Work and cycles are counts without noise. What changes between the two runs but "
+    "not within them (other load, a warmer machine) is not seen. Exit status: 0 if nothing is slower, 3 if something "
+    "is, 1 if the runs cannot be compared or the new one lacks figures."
+)
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -53,11 +68,24 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         metavar="FOLDER",
         help="keep what is baked there, and take from there what is (default: bake for the occasion)",
     )
-    parser.add_argument("--repeats", type=positive_int, default=3, metavar="N", help="default: %(default)s")
+    parser.add_argument(
+        "--repeats",
+        type=positive_int,
+        default=5,
+        metavar="N",
+        help="runs of a figure, after one that is left out; with 2 or more they have a spread (default: %(default)s)",
+    )
     parser.add_argument("--material", default="marble", metavar="M", help="default: %(default)s")
     parser.add_argument("--chart", type=Path, metavar="FOLDER", help="draw error-work.png and error-time.png there")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the record here")
     add_device_arguments(parser)
+    parser.add_argument_group("what got slower", _RULE).add_argument(
+        "--compare",
+        nargs=2,
+        type=Path,
+        metavar=("OLD", "NEW"),
+        help="measure nothing; hold two runs against each other: files of what was printed, or of --json",
+    )
 
 
 def _sizes(text: str) -> tuple[int, ...]:
@@ -65,13 +93,15 @@ def _sizes(text: str) -> tuple[int, ...]:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Measure, print, record; 0 on success."""
+    """Measure, print, record, or compare; 0 on success, _SLOWER if the comparison found something slower."""
+    if args.compare:
+        return _compare(args)
     if not (args.passes or args.solvers or args.live or args.rivals or args.scaling):
         args.passes = args.solvers = True
     _check(args)
     from rich.console import Console
 
-    from quadgraph_validation.benchmark import bench_tables
+    from quadgraph_validation.benchmark import bench_tables, figures
 
     core, console = load_core(), Console(highlight=False)
     console.width = max(console.width, _TABLE_WIDTH)
@@ -82,13 +112,32 @@ def run(args: argparse.Namespace) -> int:
         bodies = args.bodies or Path(folder)
         bodies.mkdir(parents=True, exist_ok=True)
         copied = core.copy_bandwidth(args.device)
-        record = machine(copied) | {"repeats": args.repeats} | _measure(args, bodies, copied, status.update)
+        record = {"schema": figures.SCHEMA} | machine(copied) | {"repeats": args.repeats}
+        record |= _measure(args, bodies, copied, status.update)
+    record["figures"] = figures.of(record)
     console.print(", ".join(f"{key}: {record[key]}" for key in ("device", "driver", "cores", "load", "commit")))
     console.print(bench_tables.copy_text(record["copy"]))
     for table in bench_tables.all_of(record):
         console.print(table)
     _write(args, record)
+    print(figures.line(record))
     return 0
+
+
+def _compare(args: argparse.Namespace) -> int:
+    if any(getattr(args, name) for name in _MEASURING):
+        raise InputError("--compare measures nothing: it takes OLD and NEW alone")
+    from rich.console import Console
+
+    from quadgraph_validation.benchmark import comparison
+
+    found = comparison.compare(*map(comparison.read, args.compare))
+    console = Console(highlight=False, markup=False, emoji=False)
+    console.width = max(console.width, _TABLE_WIDTH)
+    console.print(comparison.table(found))
+    print("\n".join(comparison.summary(found)))
+    comparison.check_complete(found)
+    return _SLOWER if found.names("slower") else 0
 
 
 def _measure(args: argparse.Namespace, folder: Path, copied: dict[str, Any], tell: ProgressCallback) -> dict[str, Any]:
