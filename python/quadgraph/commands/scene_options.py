@@ -24,7 +24,7 @@ DEFAULT_MATERIAL = "marble"
 VARIED_MATERIAL = "marble-veins"
 
 
-# What each is: docs/architecture.md, "Solvers".
+# What each is: docs/engine.md, "Solvers".
 SOLVERS = ("fmg-pcg", "vcycle", "dpcg", "cascade", "jacobi", "auto")
 
 
