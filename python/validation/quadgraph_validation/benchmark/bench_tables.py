@@ -1,4 +1,4 @@
-"""The benchmark's tables for people; those of the solvers and the rivals are the README's."""
+"""The benchmark's tables for people; those of the solvers and the rivals are docs/benchmarks/README.md's."""
 
 from __future__ import annotations
 
