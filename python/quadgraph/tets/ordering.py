@@ -76,8 +76,8 @@ def in_blocks(graph: Graph) -> Graph:
 def by_degree(graph: Graph, window: int = WINDOW) -> np.ndarray:
     """Order (n_v,) int64 of the vertices in which those with most neighbours come first in every window.
 
-    Rows of linear elements are padded to the longest of 32 neighbouring ones (shaders/solver/solve_shared.h): in the order of
-    first use that adds a third, sorted in windows a twentieth. Surface vertices stay first.
+    Rows of linear elements are padded to the longest of 32 neighbouring ones (shaders/solver/solve_shared.h): in the
+    order of first use that adds a third, sorted in windows a twentieth. Surface vertices stay first.
     """
     vertex = np.arange(len(graph.vertices))
     on_surface = vertex < graph.surface_vertex_count

@@ -23,7 +23,7 @@ Coefficients = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 @dataclass(frozen=True)
 class View:
-    """A view of the middle of the bounding box, as engine/render/display/camera.h defines it, y up: degrees, degrees, mm.
+    """A view of the middle of the bounding box, as engine/render/display/camera.h has it, y up: degrees, degrees, mm.
 
     scan: rows of pixels that figures draw as lines; effort: batches of samples that it gets for each one of the easiest
     view, for a dark side needs more.
