@@ -9,7 +9,7 @@
 namespace quadgraph {
 namespace {
 
-constexpr double slack = 1e-3;  // of a tet's height
+constexpr double slack = 1e-3;   // of a tet's height
 constexpr int most_cells = 256;  // along an axis
 
 glm::dvec4 barycentric_in(const Level& level, std::uint32_t tet, const glm::dvec3& point) {
@@ -38,15 +38,14 @@ TetLocator::TetLocator(const Level& level) : level_(level), low_(level.vertices[
   const double longest = std::max(box.x, std::max(box.y, box.z));
   side_ = std::max(std::cbrt(box.x * box.y * box.z / level.tet_count()), longest / most_cells);
   size_ = glm::max(glm::ivec3(glm::ceil(box / side_)), glm::ivec3(1));
-  begin_.assign(static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y) *
-                        static_cast<std::size_t>(size_.z) +
-                    1,
-                0);
+  begin_.assign(
+      static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(size_.z) + 1, 0);
   for (std::uint32_t t = 0; t < level.tet_count(); ++t) each_cell(t, [&](std::size_t cell) { ++begin_[cell + 1]; });
   std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
   tets_.resize(begin_.back());
   std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
-  for (std::uint32_t t = 0; t < level.tet_count(); ++t) each_cell(t, [&](std::size_t cell) { tets_[next[cell]++] = t; });
+  for (std::uint32_t t = 0; t < level.tet_count(); ++t)
+    each_cell(t, [&](std::size_t cell) { tets_[next[cell]++] = t; });
 }
 
 glm::ivec3 TetLocator::cell_of(const glm::dvec3& point) const {

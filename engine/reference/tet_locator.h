@@ -32,9 +32,9 @@ class TetLocator {
   void each_cell(std::uint32_t tet, const Visit& visit) const;
 
   const Level& level_;
-  glm::dvec3 low_{0}, high_{0};  // mm, box around the vertices
-  double side_ = 1;              // mm, of a cell
-  glm::ivec3 size_{1};           // cells along x, y, z
+  glm::dvec3 low_{0}, high_{0};              // mm, box around the vertices
+  double side_ = 1;                          // mm, of a cell
+  glm::ivec3 size_{1};                       // cells along x, y, z
   std::vector<std::uint32_t> begin_, tets_;  // cell c is touched by tets_[begin_[c]] ... tets_[begin_[c + 1] - 1]
 };
 

@@ -73,9 +73,10 @@ void set_volume(Engine& engine, const FloatArray& sigma_s_prime, const FloatArra
   if (sigma_a.ndim() != 4 || static_cast<std::size_t>(sigma_a.size()) != 3 * count) {
     throw InputError("sigma_a: an array of the shape of sigma_s_prime is wanted");
   }
-  Volume volume{.cells = {side(2), side(1), side(0)},
-                .spacing = {spacing[0], spacing[1], spacing[2]},
-                .eta = eta};
+  Volume volume;
+  volume.cells = {side(2), side(1), side(0)};
+  volume.spacing = {spacing[0], spacing[1], spacing[2]};
+  volume.eta = eta;
   if (origin) volume.origin = glm::dvec3((*origin)[0], (*origin)[1], (*origin)[2]);
   const auto* scattering = reinterpret_cast<const glm::vec3*>(sigma_s_prime.data());
   const auto* absorption = reinterpret_cast<const glm::vec3*>(sigma_a.data());
@@ -88,8 +89,7 @@ void bind_pictures(py::module_& module) {
              "As Engine.render, with the members `camera` and `picture` of a scene; view: a text in place of azimuth, "
              "elevation and distance. Raises InputError.");
   module.def(
-      "srgb",
-      [](const Picture& picture, const std::string& json) { return srgb_array(picture, members(json).tone); },
+      "srgb", [](const Picture& picture, const std::string& json) { return srgb_array(picture, members(json).tone); },
       py::arg("picture"), py::arg("json"), "(h, w, 3) uint8, with the member `picture` of a scene. Raises InputError.");
   module.def(
       "write_png",
