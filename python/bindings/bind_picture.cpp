@@ -71,7 +71,8 @@ void bind_picture(py::module_& module) {
           [](const Picture& picture, const std::string& exposure, const std::string& background) {
             return srgb_array(picture, tone_options(exposure, background));
           },
-          py::arg("exposure") = usual_exposure, py::arg("background") = usual_background, "Tone mapped, (h, w, 3) uint8 sRGB.")
+          py::arg("exposure") = usual_exposure, py::arg("background") = usual_background,
+          "Tone mapped, (h, w, 3) uint8 sRGB.")
       .def(
           "write_png",
           [](const Picture& picture, const std::filesystem::path& path, const Metadata& metadata,

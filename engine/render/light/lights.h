@@ -1,6 +1,6 @@
 // Lights: what a user states, in physical units. The table `light_kinds` says all there is to say of a kind but how
-// its light travels (engine/render/light/light_set.h) and is spread (shaders/light/light_kinds.h): texts, scene files, checks,
-// help, the window, Python, docs/scene.schema.json and the tables of docs/lights.md follow from it.
+// its light travels (engine/render/light/light_set.h) and is spread (shaders/light/light_kinds.h): texts, scene files,
+// checks, help, the window, Python, docs/scene.schema.json and the tables of docs/lights.md follow from it.
 #pragma once
 
 #include <array>

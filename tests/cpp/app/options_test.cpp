@@ -1,10 +1,11 @@
 // The command line of quadgraph-engine against the table of scene options.
+#include "engine/app/options.h"
+
 #include <doctest/doctest.h>
 
 #include <string>
 #include <vector>
 
-#include "engine/app/options.h"
 #include "engine/base/error.h"
 #include "engine/render/light/default_lights.h"
 #include "engine/scene/options.h"

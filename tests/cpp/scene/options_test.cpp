@@ -1,4 +1,6 @@
 // The table of scene options: that command lines and scene files can say each, and that its facts are the engine's.
+#include "engine/scene/options.h"
+
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -6,7 +8,6 @@
 #include <set>
 
 #include "engine/base/error.h"
-#include "engine/scene/options.h"
 
 using namespace quadgraph;
 

@@ -1,4 +1,6 @@
 // The features that are required of a device are those that something needs: compiled shaders say themselves what.
+#include "engine/vk/features.h"
+
 #include <doctest/doctest.h>
 
 #include <map>
@@ -7,7 +9,6 @@
 #include <string>
 
 #include "all_shaders.h"
-#include "engine/vk/features.h"
 #include "engine/vk/pipeline.h"
 
 using namespace quadgraph;
