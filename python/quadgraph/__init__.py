@@ -1,7 +1,7 @@
 """Real-time rendering of heterogeneous translucent objects, with an error that is known.
 
 Lengths are millimetres, coefficients 1/mm, fluence and exitance W/mm^2, radiance W/(mm^2 sr), angles degrees. Arrays of
-channels end in three columns: red, green, blue. docs/python.md is the guide; docs/public_api.toml lists what is public.
+channels end in three columns: red, green, blue.
 """
 
 import importlib
