@@ -2,7 +2,7 @@
 // require the feature geometryShader of the device.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaped.glsl"
+#include "light/shaped.glsl"
 
 layout(push_constant, scalar) uniform Block { SurfacePush push; };
 layout(location = 0) out vec3 position;  // mm
