@@ -22,7 +22,7 @@ _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is no
 
 MATERIALS = ("marble", "skin1", "ketchup", "wholemilk", "spectralon", "jade", "wood", "marble-veins", "chicken1,eta=1")
 HOST_SLACK = 24 << 20  # bytes: what allocators keep, and books of the validation layer (1.2 to 1.6 kB a frame)
-OWN_SLACK = 4 << 10  # bytes, without that layer, in a STILL process: what the interpreter keeps, up to 800 in 60 rounds
+OWN_SLACK = 4 << 10  # bytes, without that layer, in a STILL process: what the interpreter keeps, 800 in 40 rounds
 WARM = 2  # rounds that may make room and compile
 # One thread for all of llvmpipe, which otherwise holds up to seven blocks of 64 KiB at a time until its threads come to
 # free them; freed memory counted as free at once; no pages of their own, rounded up, for some arrays some of the time.
