@@ -59,7 +59,7 @@ double largest_error(const JsonField& errors) {
 Model measured_model(const JsonField& field) {
   const std::string name = field.text();
   if (name != name_of(Model::diffusion) && name != name_of(Model::sp3)) field.refuse("\"diffusion\" or \"sp3\"");
-  return model_from_name(name);
+  return from_name<Model>(name);
 }
 
 Trial trial_from(const JsonField& field) {

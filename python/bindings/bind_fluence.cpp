@@ -11,7 +11,7 @@ void bind_fluence(py::module_& module) {
   module.def(
       "fluence",
       [](Engine& engine, const std::string& method) {
-        Fluence found = fluence(engine.simulation(), method_from_name(method));
+        Fluence found = fluence(engine.simulation(), from_name<Method>(method));
         return py::make_tuple(own(std::move(found.points)), own(std::move(found.values)));
       },
       py::arg("engine"), py::arg("method"),
@@ -21,7 +21,7 @@ void bind_fluence(py::module_& module) {
       "fluence_at",
       [](Engine& engine, const std::string& method, const FloatArray& points) {
         const auto count = static_cast<std::size_t>(points.ndim() == 2 ? points.shape(0) : 0);
-        return own(fluence_at(engine.simulation(), method_from_name(method), vectors(points, count, "points")));
+        return own(fluence_at(engine.simulation(), from_name<Method>(method), vectors(points, count, "points")));
       },
       py::arg("engine"), py::arg("method"), py::arg("points"),
       "The same at points (n, 3), mm; (n, 3), NaN outside the body. Raises InputError.");
