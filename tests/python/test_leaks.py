@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from leaks import left_behind
-from quadgraph import errors
+from quadgraph.base import errors
 
 _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 
