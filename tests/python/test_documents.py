@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import re
+import subprocess
 from pathlib import Path
 from urllib.parse import unquote
 
@@ -163,3 +164,14 @@ def test_the_glossary_is_in_order():
     assert len(terms) > 50
     assert terms == sorted(terms, key=str.casefold)
     assert len(set(terms)) == len(terms)
+
+
+def test_every_folder_has_its_sentence():
+    """The folder table of docs/architecture.md and the folders with tracked files are the same set."""
+    table = prose(DOCS / "architecture.md").partition("\n## Folders\n")[2].partition("\n## ")[0]
+    rows = re.findall(r"^\| `([^`]+)/` \| \S", table, re.MULTILINE)
+    if not (ROOT / ".git").exists():
+        pytest.skip("not a checkout of git: tracked folders are unknown")
+    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    tracked = {Path(name).parent.as_posix() for name in listed.split("\0") if name}
+    assert sorted(rows) == sorted(tracked)
