@@ -25,12 +25,12 @@ class RoundSurface:
         return RADIUS * normals, normals
 
 
-def one_cube(cells: int) -> lattice.Lattice:
+def one_cube(cells: int) -> lattice.TetLattice:
     """The lattice of a single cube."""
     return lattice.build(np.ones((1, 1, 1), bool), cells)
 
 
-def blown_up(grid: lattice.Lattice) -> np.ndarray:
+def blown_up(grid: lattice.TetLattice) -> np.ndarray:
     """Positions of a cube's nodes in the ball, mm."""
     low, high = grid.positions.min(axis=0), grid.positions.max(axis=0)
     x, y, z = (2 * (grid.positions - low) / (high - low) - 1).T

@@ -32,7 +32,7 @@ class PathOptions(TypedDict, total=False):
 
 
 class SolveOptions(TypedDict, total=False):
-    """What a solve is asked (engine/base/solve_options.h; docs/architecture.md, "Solvers").
+    """What a solve is asked (engine/base/solve_options.h; docs/engine.md, "Solvers").
 
     tolerance: stop when the exitance is estimated to be solved to this relative RMS error; error: stop when that and
     the mesh's together are below it, 0 for no target; cycles: exactly so many iterations on the finest level, 0 for as

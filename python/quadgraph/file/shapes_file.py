@@ -29,7 +29,7 @@ _FAR = 0.01  # of the diagonal: a display vertex farther than that from the rest
 
 
 @dataclass(frozen=True)
-class Shapes:
+class StoredShapes:
     """Displacements in mm, float32: `display` (shapes, n_d, 3), `levels` (shapes, n_v, 3) each, finest first."""
 
     display: np.ndarray
@@ -48,7 +48,7 @@ class Shapes:
         return qgraph_file.write_sections(path, {"kind": "shapes"}, sections)
 
 
-def from_gltf(body: Path, path: Path, rate: float = 24, animation: str | None = None) -> Shapes:
+def from_gltf(body: Path, path: Path, rate: float = 24, animation: str | None = None) -> StoredShapes:
     """Shapes of a .glb or .gltf whose mesh, unposed, lies where that of the baked `body` does, in its unit.
 
     Of skinned meshes the frames of the animation of that name, or the only one, `rate` a second; without a skin a shape
@@ -69,7 +69,7 @@ def _moves_of(file: GltfFile, rate: float, animation: str | None) -> tuple[np.nd
     return morph.vertices, morph.triangles, morph.targets
 
 
-def from_frames(body: Path, rest: Path, frames: Sequence[Path]) -> Shapes:
+def from_frames(body: Path, rest: Path, frames: Sequence[Path]) -> StoredShapes:
     """Read frames of the mesh `rest`, which lies where that of the baked `body` does, in its unit.
 
     .obj, .ply or .off, all with the vertices and triangles of `rest` in its order. Raises InputError, FormatError.
@@ -80,7 +80,7 @@ def from_frames(body: Path, rest: Path, frames: Sequence[Path]) -> Shapes:
     return of_moves(file, start, np.array(moves))
 
 
-def of_moves(file: qgraph_file.QGraphFile, start: Surface, moves: np.ndarray) -> Shapes:
+def of_moves(file: qgraph_file.QGraphFile, start: Surface, moves: np.ndarray) -> StoredShapes:
     """Displacements (shapes, n, 3), mm, of the vertices of `start`, a surface where that of the body is, in mm.
 
     Raises InputError where it is not.
@@ -91,7 +91,7 @@ def of_moves(file: qgraph_file.QGraphFile, start: Surface, moves: np.ndarray) ->
     far = np.linalg.norm(display - reached, axis=1).max()
     if far > _FAR * start.diagonal:
         raise InputError(f"rest frame: {far:.3g} mm from the body found, allowed are {_FAR * start.diagonal:.3g}")
-    return Shapes(
+    return StoredShapes(
         _at(start, moves, face, weight).astype(np.float32),
         [_inside(file, number, start, moves) for number in range(file.level_count)],
     )

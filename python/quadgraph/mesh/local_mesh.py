@@ -57,7 +57,7 @@ def min_angle(p: Point, q: Point, r: Point) -> float:
 
 
 @dataclass
-class Change:
+class MeshChange:
     """A possible change: faces to drop, faces to add, vertices at new places, and the smallest angle after it."""
 
     dropped: list[int]
@@ -95,16 +95,16 @@ class LocalMesh:
         normals = [normal(*(self.points[v] for v in self.faces[f])) for f in self.star[vertex]]
         return unit(tuple(map(sum, zip(*normals, strict=True))))
 
-    def flip(self, face: int, corner: int) -> Change | None:
+    def flip(self, face: int, corner: int) -> MeshChange | None:
         """Swap the diagonal of the two faces at the edge from `corner` on; None if the new edge exists already."""
         u, v, w = (self.faces[face][(corner + k) % 3] for k in range(3))
         other = next(f for f in self.star[u] & self.star[v] if f != face)
         x = next(k for k in self.faces[other] if k not in (u, v))
         if self.star[w] & self.star[x] or min(len(self.star[u]), len(self.star[v])) < 4:
             return None
-        return Change([face, other], [(u, x, w), (x, v, w)])
+        return MeshChange([face, other], [(u, x, w), (x, v, w)])
 
-    def collapse(self, face: int, corner: int, share: float) -> Change | None:
+    def collapse(self, face: int, corner: int, share: float) -> MeshChange | None:
         """Merge the ends of the edge from `corner` on, at `share` of its length; None if that breaks the manifold."""
         u, v = self.faces[face][corner], self.faces[face][(corner + 1) % 3]
         both = self.star[u] & self.star[v]
@@ -114,18 +114,18 @@ class LocalMesh:
             return None
         moving = (self.star[u] | self.star[v]) - both
         added = [tuple(u if k == v else k for k in self.faces[f]) for f in sorted(moving)]
-        return Change(sorted(moving) + sorted(both), added, {u: along(self.points[u], self.points[v], share)})
+        return MeshChange(sorted(moving) + sorted(both), added, {u: along(self.points[u], self.points[v], share)})
 
-    def relocate(self, vertex: int, place: Point) -> Change:
+    def relocate(self, vertex: int, place: Point) -> MeshChange:
         """Move one vertex."""
         around = sorted(self.star[vertex])
-        return Change(around, [self.faces[f] for f in around], {vertex: place})
+        return MeshChange(around, [self.faces[f] for f in around], {vertex: place})
 
-    def angles_before(self, change: Change) -> float:
+    def angles_before(self, change: MeshChange) -> float:
         """Smallest angle of the faces that the change drops, degrees."""
         return min(self.angle(f) for f in change.dropped)
 
-    def assess(self, change: Change, max_turn_cosine: float) -> bool:
+    def assess(self, change: MeshChange, max_turn_cosine: float) -> bool:
         """Fill in `change.after`; False if a new face leans too far from the surface it replaces.
 
         The surface replaced is the area-weighted normal of all dropped faces for a flip and a collapse, so that a
@@ -141,7 +141,7 @@ class LocalMesh:
                 return False
         return True
 
-    def apply(self, change: Change) -> None:
+    def apply(self, change: MeshChange) -> None:
         """Carry the change out."""
         for f in change.dropped:
             for vertex in self.faces.pop(f):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from quadgraph.mesh.local_mesh import Change, LocalMesh, along, dot
+from quadgraph.mesh.local_mesh import LocalMesh, MeshChange, along, dot
 from quadgraph.mesh.surface import Surface
 
 _PASSES = 12
@@ -41,7 +41,7 @@ def _improve(mesh: LocalMesh, face: int, bound: float, cosine: float) -> bool:
     return best is not None
 
 
-def _candidates(mesh: LocalMesh, face: int) -> list[Change]:
+def _candidates(mesh: LocalMesh, face: int) -> list[MeshChange]:
     """Flips first, since they keep every vertex, then tangential moves, then collapses."""
     flips = [mesh.flip(face, corner) for corner in range(3)]
     moves = [_smoothed(mesh, vertex, step) for vertex in mesh.faces[face] for step in _STEPS]
@@ -49,7 +49,7 @@ def _candidates(mesh: LocalMesh, face: int) -> list[Change]:
     return [change for change in flips + moves + collapses if change is not None]
 
 
-def _smoothed(mesh: LocalMesh, vertex: int, step: float) -> Change:
+def _smoothed(mesh: LocalMesh, vertex: int, step: float) -> MeshChange:
     """Move a vertex towards the middle of its neighbours, within its tangent plane."""
     here = mesh.points[vertex]
     around = [mesh.points[v] for v in mesh.neighbours(vertex)]

@@ -13,7 +13,7 @@ import pytest
 from quadgraph import _core, cli
 from quadgraph.base.errors import FormatError, InputError
 from quadgraph.file import qgraph_file
-from quadgraph.file.shapes_file import Shapes, from_gltf, of_moves
+from quadgraph.file.shapes_file import StoredShapes, from_gltf, of_moves
 from quadgraph.mesh.surface import Surface
 
 TINY = Path(__file__).resolve().parents[2] / "data" / "tiny.qgraph"
@@ -209,7 +209,7 @@ def test_frames_of_something_else_are_refused(tmp_path, capsys):
 def test_damaged_shapes_are_refused(engine, tmp_path, spoil):
     path = tmp_path / "a.qshapes"
     levels = [np.zeros((1, len(level.vertices), 3), np.float32) for level in engine.graph.levels]
-    Shapes(np.zeros((1, len(engine.graph.display["vertices"]), 3), np.float32), levels).write(path)
+    StoredShapes(np.zeros((1, len(engine.graph.display["vertices"]), 3), np.float32), levels).write(path)
     moved = [{"type": "displaced", "shapes": str(path), "weights": [2]}]
     engine.set_deformation(moved)
     path.write_bytes(spoil(path.read_bytes()))

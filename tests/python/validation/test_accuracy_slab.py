@@ -10,7 +10,7 @@ from quadgraph_validation.bodies import meshes
 from quadgraph_validation.bodies.media import Medium, media
 from quadgraph_validation.truth import closed_forms, schemes
 from quadgraph_validation.truth.closed_forms import Layer
-from quadgraph_validation.truth.schemes import DIFFUSION, SP3, Light, Scheme
+from quadgraph_validation.truth.schemes import DIFFUSION, SP3, Scheme, StudyLight
 from quadgraph_validation.truth.slab_transport import COLLIMATED, discrete_ordinates
 
 pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
@@ -71,7 +71,7 @@ def test_layers_are_joined_as_the_closed_form_joins_them(source, model):
     depth = np.concatenate([body.mesh.inner, body.centre])[:, 2]
     region = np.minimum(np.searchsorted(np.cumsum([layer.thickness for layer in LAYERS]), depth), len(LAYERS) - 1)
     lit, unlit = body.normal[:, 2] < -0.5, body.normal[:, 2] > 0.5
-    light = Light(np.outer(lit, np.ones(3)), (0.0, 0.0, 1.0))
+    light = StudyLight(np.outer(lit, np.ones(3)), (0.0, 0.0, 1.0))
     answer = body.piecewise([[layer.medium] * 3 for layer in LAYERS], region, eta, light, scheme)
     beam = COLLIMATED if source == "buried" else None
     exact = closed_forms.layered_slab(LAYERS, scheme.model_of, scheme.boundary(eta), eta, beam)

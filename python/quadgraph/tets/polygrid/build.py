@@ -14,7 +14,7 @@ from quadgraph.mesh.surface import MesherInfo, Surface, TetMesh
 from quadgraph.tets import graph, ordering
 from quadgraph.tets.graph import Graph
 from quadgraph.tets.polygrid import grid_report, lattice, placement, polycube
-from quadgraph.tets.polygrid.lattice import MISSING, Lattice
+from quadgraph.tets.polygrid.lattice import MISSING, TetLattice
 from quadgraph.tets.polygrid.placement import OnSurface
 from quadgraph.tets.polygrid.untangle import Distortion, untangle
 from quadgraph.tets.tet_geometry import determinants
@@ -72,9 +72,9 @@ def build(
 
 def _drawn(
     cube: polycube.Polycube, cells: int, surface: OnSurface, tell: Callable[[str], None]
-) -> list[tuple[Lattice, np.ndarray]]:
+) -> list[tuple[TetLattice, np.ndarray]]:
     """Lattices from the coarsest to the finest, with positions near the surface."""
-    chain: list[tuple[Lattice, np.ndarray]] = []
+    chain: list[tuple[TetLattice, np.ndarray]] = []
     count = COARSEST
     while count <= cells:
         grid = lattice.build(cube.solid, count)
@@ -88,7 +88,7 @@ def _drawn(
     return chain
 
 
-def averaged(fine: Lattice, positions: np.ndarray, coarse: Lattice, surface: OnSurface) -> np.ndarray:
+def averaged(fine: TetLattice, positions: np.ndarray, coarse: TetLattice, surface: OnSurface) -> np.ndarray:
     """Interior nodes in the middle of their children, boundary nodes of theirs, on the surface."""
     parent = _rows_of(coarse.cells, fine.cells // 2)
     boundary = np.full(coarse.interior, MISSING)
@@ -101,7 +101,7 @@ def averaged(fine: Lattice, positions: np.ndarray, coarse: Lattice, surface: OnS
     return _upright(coarse, result)
 
 
-def _upright(grid: Lattice, positions: np.ndarray) -> np.ndarray:
+def _upright(grid: TetLattice, positions: np.ndarray) -> np.ndarray:
     """No cell inverted: interior nodes near those that are move, then boundary nodes."""
     distortion = Distortion(grid.positions, grid.tets)
     inner = np.arange(grid.nodes) < grid.interior
@@ -120,7 +120,7 @@ def _rows_of(cells: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     return order[np.searchsorted(keys[order], np.ravel_multi_index(wanted.T, shape))]
 
 
-def as_graph(grid: Lattice, positions: np.ndarray, number: int = 0) -> Graph:
+def as_graph(grid: TetLattice, positions: np.ndarray, number: int = 0) -> Graph:
     """A lattice's tets as a graph with `grid_links`, vertices in order of their layers below the surface.
 
     Raises ToolError naming level `number` if tets are inverted.

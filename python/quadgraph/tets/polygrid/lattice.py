@@ -29,7 +29,7 @@ MISSING = -1
 
 
 @dataclass(frozen=True, eq=False)
-class Lattice:
+class TetLattice:
     """Nodes of a polygrid: interior ones first, then the boundary nodes.
 
     cells: (n_i, 3) int64, the fine cell of each interior node; owners: (n_b,) int64, the interior neighbour of each
@@ -63,7 +63,7 @@ class Lattice:
         return np.concatenate([centres, centres[self.owners] + 0.5 * self.outward])
 
 
-def build(solid: np.ndarray, resolution: int) -> Lattice:
+def build(solid: np.ndarray, resolution: int) -> TetLattice:
     """The lattice of a polycube, `resolution` >= 2 cells along a cube's side; its surface must be a manifold."""
     fine = np.pad(solid, 1)
     for axis in range(3):
@@ -80,7 +80,7 @@ def build(solid: np.ndarray, resolution: int) -> Lattice:
     boundary[owners] = len(cells) + np.arange(len(owners))
     links = _links(number, cells, around, outward, boundary)
     tets, across = _tets(number, cells, boundary)
-    return Lattice(cells, owners, outward[owners], links, tets, across)
+    return TetLattice(cells, owners, outward[owners], links, tets, across)
 
 
 def _links(

@@ -17,7 +17,7 @@ from scipy.sparse.linalg import factorized
 
 from quadgraph.mesh import display_map
 from quadgraph.mesh.surface import Surface
-from quadgraph.tets.polygrid.lattice import MISSING, Lattice
+from quadgraph.tets.polygrid.lattice import MISSING, TetLattice
 from quadgraph.tets.polygrid.untangle import Distortion, Pull, improve, untangle
 
 PARTNER_SHARE = 0.1  # of the spacing between boundary nodes: depth of their interior neighbours
@@ -57,7 +57,7 @@ class OnSurface:
 
 
 def draw_to(
-    surface: OnSurface, lattice: Lattice, reference: np.ndarray, start: np.ndarray, coarsest: bool
+    surface: OnSurface, lattice: TetLattice, reference: np.ndarray, start: np.ndarray, coarsest: bool
 ) -> np.ndarray:
     """Positions with the boundary nodes near the surface and the cells near their shape in `reference` (n, 3), mm."""
     distortion = Distortion(reference, lattice.tets)
@@ -70,14 +70,14 @@ def draw_to(
     return positions
 
 
-def refine(coarse: Lattice, coarse_positions: np.ndarray, fine: Lattice) -> np.ndarray:
+def refine(coarse: TetLattice, coarse_positions: np.ndarray, fine: TetLattice) -> np.ndarray:
     """Positions of a lattice of twice the resolution from those of the coarse one, smoothly in between."""
     known = 2 * coarse.positions
     count = min(_NEIGHBOURS, len(known))
     return RBFInterpolator(known, coarse_positions, neighbors=count, kernel="linear")(fine.positions)
 
 
-def settle(surface: OnSurface, lattice: Lattice, start: np.ndarray) -> Placed:
+def settle(surface: OnSurface, lattice: TetLattice, start: np.ndarray) -> Placed:
     """Nodes where the paper puts them, from positions whose boundary nodes are near the surface."""
     positions = start.copy()
     boundary, first = positions[lattice.interior :], lattice.interior
@@ -94,7 +94,7 @@ def settle(surface: OnSurface, lattice: Lattice, start: np.ndarray) -> Placed:
     return _without_inversions(lattice, start, positions, fixed)
 
 
-def _without_inversions(lattice: Lattice, start: np.ndarray, positions: np.ndarray, fixed: np.ndarray) -> Placed:
+def _without_inversions(lattice: TetLattice, start: np.ndarray, positions: np.ndarray, fixed: np.ndarray) -> Placed:
     """Near inverted cells first the nodes deep inside move, then the partners too, then boundary nodes."""
     distortion = Distortion(start, lattice.tets)
     inverted = int((distortion.determinants(positions) <= 0).sum())
@@ -127,7 +127,7 @@ def _incidence(across: np.ndarray, count: int) -> sparse.csr_matrix:
     return sparse.diags(1 / np.asarray(matrix.sum(axis=1)).ravel()) @ matrix
 
 
-def pairs_of(lattice: Lattice) -> np.ndarray:
+def pairs_of(lattice: TetLattice) -> np.ndarray:
     """(k, 2) pairs of linked nodes, smaller number first, each once."""
     rows = np.repeat(np.arange(lattice.interior), 6)
     links = lattice.links.ravel()
@@ -136,7 +136,7 @@ def pairs_of(lattice: Lattice) -> np.ndarray:
 
 
 def least_variance(
-    lattice: Lattice, positions: np.ndarray, fixed: np.ndarray, steps: int = _VARIANCE_STEPS
+    lattice: TetLattice, positions: np.ndarray, fixed: np.ndarray, steps: int = _VARIANCE_STEPS
 ) -> np.ndarray:
     """Interior nodes where the sum over nodes of the variance of their links' lengths is least, `fixed` ones held.
 

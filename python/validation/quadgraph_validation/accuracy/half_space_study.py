@@ -10,7 +10,7 @@ from rich.table import Table
 from quadgraph_validation.bodies import meshes
 from quadgraph_validation.bodies.media import Medium
 from quadgraph_validation.truth import closed_forms, monte_carlo
-from quadgraph_validation.truth.schemes import DIFFUSION, PUBLISHED, SP3, BodyOf, Light, Scheme, StudyBody
+from quadgraph_validation.truth.schemes import DIFFUSION, PUBLISHED, SP3, BodyOf, Scheme, StudyBody, StudyLight
 
 # Index, albedo, and wavelengths in mean free paths, which are 1 mm here.
 CASES = (
@@ -45,7 +45,7 @@ def response(body: StudyBody, medium: Medium, eta: float, wavelength: float, sch
     """
     lit = body.normal[:, 2] < -0.5
     wave = np.cos(2 * np.pi * body.centre[:, 0] / wavelength)
-    light = Light(np.outer(np.where(lit, 1 + wave, 0), np.ones(3)), (0.0, 0.0, 1.0))
+    light = StudyLight(np.outer(np.where(lit, 1 + wave, 0), np.ones(3)), (0.0, 0.0, 1.0))
     exitance = body.homogeneous([medium] * 3, eta, light, scheme).exitance[:, 0]
     weight = body.area * lit * wave
     share = 2 if np.isinf(wavelength) else 1  # without a wave, 1 + cos is 2 all over

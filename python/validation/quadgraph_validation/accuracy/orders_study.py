@@ -15,7 +15,7 @@ from quadgraph_validation.bodies import meshes
 from quadgraph_validation.bodies.media import Medium
 from quadgraph_validation.truth import manufactured, round_bodies
 from quadgraph_validation.truth.round_bodies import Shell
-from quadgraph_validation.truth.schemes import PUBLISHED, BodyOf, Light, Scheme, StudyBody
+from quadgraph_validation.truth.schemes import PUBLISHED, BodyOf, Scheme, StudyBody, StudyLight
 
 ETA = 1.3
 COEFFICIENTS = (0.5, 0.6, 0.4, 0.3)  # of q in Legendre polynomials or cosines, W/mm^2; q is positive everywhere
@@ -71,7 +71,7 @@ def surface_error(body: StudyBody, case: OrdersCase, scheme: Scheme) -> float:
     """Relative area-weighted L2 error of the fluence on the open surface."""
     centre = np.concatenate([body.mesh.inner, body.centre])
     region = (np.linalg.norm(centre, axis=1) > case.shells[0].radius) * (len(case.shells) - 1)
-    light = Light(np.repeat(case.irradiance(body.centre)[:, None], 3, axis=1), (0.0, 0.0, -1.0))
+    light = StudyLight(np.repeat(case.irradiance(body.centre)[:, None], 3, axis=1), (0.0, 0.0, -1.0))
     answer = body.piecewise([[shell.medium] * 3 for shell in case.shells], region, ETA, light, scheme)
     exact = case.fluence(body.centre, scheme)
     area = body.area * (np.ones_like(exact) if body.mesh.face_kinds is None else body.mesh.face_kinds == meshes.OPEN)

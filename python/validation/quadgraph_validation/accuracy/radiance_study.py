@@ -13,7 +13,7 @@ from quadgraph_validation.bodies.media import Medium
 from quadgraph_validation.truth import exit_angles
 from quadgraph_validation.truth.exit_angles import BIN_AREA, BINS
 from quadgraph_validation.truth.fresnel import composite_gauss, entering_share, transmittance_from_outside
-from quadgraph_validation.truth.schemes import DIFFUSION, SP3, Answer, BodyOf, Light, Scheme, StudyBody
+from quadgraph_validation.truth.schemes import DIFFUSION, SP3, Answer, BodyOf, Scheme, StudyBody, StudyLight
 from quadgraph_validation.truth.slab_transport import radiance_by_angle
 
 ALBEDOS = (0.999, 0.9, 0.5)  # one per channel
@@ -62,7 +62,7 @@ def solved(body: StudyBody, case: RadianceCase, scheme: Scheme) -> Answer:
     """Light that enters evenly at z = 0."""
     lit = body.normal[:, 2] < -0.5
     direction = (float(np.sqrt(1 - case.cosine**2)), 0.0, case.cosine)
-    return body.homogeneous(MEDIA, case.eta, Light(np.outer(lit, np.ones(3)), direction), scheme)
+    return body.homogeneous(MEDIA, case.eta, StudyLight(np.outer(lit, np.ones(3)), direction), scheme)
 
 
 def gathered(body: StudyBody, case: RadianceCase, scheme: Scheme) -> list[Found]:

@@ -17,7 +17,7 @@ from quadgraph_validation.bodies.scenes import StudyScene
 from quadgraph_validation.truth import blocks
 
 if TYPE_CHECKING:
-    from quadgraph_validation.accuracy.scenes_study import Comparison
+    from quadgraph_validation.accuracy.scenes_study import ScenesCompared
 
 _RANGE = 40.0  # %, both ends of the difference's scale
 _NOISY = 0.15  # standard error of a block of the truth, relative, above which no difference is drawn
@@ -26,7 +26,7 @@ _TRUTH = "#222222"
 _COLOURS = ("#c44e52", "#1f77b4", "#8a8a8a", "#e6953a")  # of scan lines, in the order of what is shown
 
 
-def write(path: Path, scene: StudyScene, compared: Mapping[str, Comparison], shown: Mapping[str, str]) -> None:
+def write(path: Path, scene: StudyScene, compared: Mapping[str, ScenesCompared], shown: Mapping[str, str]) -> None:
     """Draw images of a scene by their names: a row of pictures and a row of scan lines for each.
 
     shown: titles to the names of those pictures of each comparison that stand beside path tracing, up to four. Raises
@@ -47,7 +47,9 @@ def write(path: Path, scene: StudyScene, compared: Mapping[str, Comparison], sho
     pyplot.close(figure)
 
 
-def _pictures(part: Any, name: str, one: Comparison, pictures: dict[str, np.ndarray], rows: tuple[int, ...]) -> None:
+def _pictures(
+    part: Any, name: str, one: ScenesCompared, pictures: dict[str, np.ndarray], rows: tuple[int, ...]
+) -> None:
     axes = part.subplots(1, 1 + 2 * len(pictures), gridspec_kw={"wspace": 0.02})
     white = 1.1 * np.quantile(one.image.mean[one.alpha > 0], 0.98)
     images = {f"{name}: path tracing": one.image.mean} | pictures
@@ -66,7 +68,7 @@ def _pictures(part: Any, name: str, one: Comparison, pictures: dict[str, np.ndar
     part.colorbar(drawn, ax=differences, shrink=0.85, label="% of path tracing", pad=0.02)
 
 
-def _scan_lines(part: Any, one: Comparison, pictures: dict[str, np.ndarray], rows: tuple[int, ...]) -> None:
+def _scan_lines(part: Any, one: ScenesCompared, pictures: dict[str, np.ndarray], rows: tuple[int, ...]) -> None:
     axes = part.subplots(1, len(rows), squeeze=False)[0]
     for axis, row in zip(axes, rows, strict=True):
         top = row // blocks.BLOCK * blocks.BLOCK
@@ -79,7 +81,7 @@ def _scan_lines(part: Any, one: Comparison, pictures: dict[str, np.ndarray], row
     part.legend(*lines, loc="outside upper center", ncols=len(lines[1]), fontsize=9, frameon=False)
 
 
-def _scan_line(axis: Any, one: Comparison, pictures: dict[str, np.ndarray], band: slice) -> None:
+def _scan_line(axis: Any, one: ScenesCompared, pictures: dict[str, np.ndarray], band: slice) -> None:
     """Means over the rows of a band, where it lies within the body."""
     inside = (one.alpha[band] > 1 - 1e-3).all(axis=0)
     mean, *lines = (
@@ -105,7 +107,7 @@ def _display(radiance: np.ndarray) -> np.ndarray:
     return np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
 
 
-def _difference(image: np.ndarray, one: Comparison) -> np.ndarray:
+def _difference(image: np.ndarray, one: ScenesCompared) -> np.ndarray:
     """Of block means, in % of the truth's; NaN outside the body and where the truth is too noisy to tell."""
     true = blocks.means(one.image.mean)
     known = blocks.covered(one.alpha) & (blocks.errors(one.image.error) < _NOISY * true)

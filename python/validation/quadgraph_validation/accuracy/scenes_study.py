@@ -54,7 +54,7 @@ SHOWN = {"published": PUBLISHED.name, "ours": OURS.name}
 
 
 @dataclass(frozen=True)
-class Comparison:
+class ScenesCompared:
     """One image: the truth, the coverage (h, w) of the engine's pixels, and its pictures (h, w) by setting's name."""
 
     image: StoredTruth
@@ -88,7 +88,7 @@ def run(
     return {"block": blocks.BLOCK, "bright": blocks.BRIGHT, "scenes": record}
 
 
-def compare(found: TracedSubject, stored: dict[str, StoredTruth], device: str = "") -> dict[str, Comparison]:
+def compare(found: TracedSubject, stored: dict[str, StoredTruth], device: str = "") -> dict[str, ScenesCompared]:
     """Bake a scene's mesh, and solve and render it in every setting; by image."""
     with tempfile.TemporaryDirectory(prefix="quadgraph-study-") as folder:
         file = Path(folder) / "scene.qgraph"
@@ -100,7 +100,7 @@ def compare(found: TracedSubject, stored: dict[str, StoredTruth], device: str = 
         solve(engine, setting)
         shown[setting.name] = {name: picture(engine, found.scene, name, setting) for name in stored}
     return {
-        name: Comparison(image, shown[OURS.name][name][1], {key: value[name][0] for key, value in shown.items()})
+        name: ScenesCompared(image, shown[OURS.name][name][1], {key: value[name][0] for key, value in shown.items()})
         for name, image in stored.items()
     }
 
@@ -139,7 +139,7 @@ def picture(engine: Engine, scene: StudyScene, image: str, setting: PictureSetti
     return shown, np.array(found.alpha, np.float64)
 
 
-def measured(compared: Comparison) -> dict[str, Any]:
+def measured(compared: ScenesCompared) -> dict[str, Any]:
     """What the record holds of an image: deviations by setting and part of the picture."""
     image = compared.image
     chosen = blocks.parts(image.mean, compared.alpha)

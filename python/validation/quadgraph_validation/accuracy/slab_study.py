@@ -10,7 +10,7 @@ from rich.table import Table
 from quadgraph_validation.bodies import meshes
 from quadgraph_validation.bodies.media import CHANNELS, NAMES, Medium, media
 from quadgraph_validation.truth import closed_forms
-from quadgraph_validation.truth.schemes import DIFFUSION, PUBLISHED, SP3, BodyOf, Light, Scheme, StudyBody
+from quadgraph_validation.truth.schemes import DIFFUSION, PUBLISHED, SP3, BodyOf, Scheme, StudyBody, StudyLight
 from quadgraph_validation.truth.slab_transport import SlabLight, discrete_ordinates, entry
 
 THICKNESS = 5.0  # mm
@@ -27,7 +27,7 @@ def column(body_of: BodyOf, layers: int = LAYERS) -> StudyBody:
 def solved(body: StudyBody, channels: list[Medium], eta: float, lambertian: bool, scheme: Scheme) -> list[SlabLight]:
     """What a column does, per channel, to light that entered at z = 0, collimated or Lambertian."""
     lit, unlit = body.normal[:, 2] < -0.5, body.normal[:, 2] > 0.5
-    light = Light(np.outer(lit, np.ones(3)), None if lambertian else (0.0, 0.0, 1.0))
+    light = StudyLight(np.outer(lit, np.ones(3)), None if lambertian else (0.0, 0.0, 1.0))
     answer = body.homogeneous(channels, eta, light, scheme)
     entered = answer.energy["entered"]
     reflected, transmitted = body.mean(answer.exitance, lit), body.mean(answer.exitance, unlit)

@@ -14,7 +14,7 @@ from quadgraph_validation.bodies.media import Medium
 from quadgraph_validation.truth import monte_carlo, round_bodies
 from quadgraph_validation.truth.fresnel import transmittance_from_outside
 from quadgraph_validation.truth.round_bodies import Shell
-from quadgraph_validation.truth.schemes import DIFFUSION, PUBLISHED, SP3, BodyOf, Light, Scheme, StudyBody
+from quadgraph_validation.truth.schemes import DIFFUSION, PUBLISHED, SP3, BodyOf, Scheme, StudyBody, StudyLight
 
 RADIUS = 10.0  # mm
 MEDIUM = Medium(2.0, 0.01)
@@ -47,7 +47,7 @@ def exitance(body: StudyBody, eta: float, scheme: Scheme) -> np.ndarray:
     """Scattered exitance (zones,), W/mm^2, from the dark side to the lit one, in 1 W/mm^2 along -z."""
     cosine = np.clip(body.normal[:, 2], 0, 1)
     q = cosine * transmittance_from_outside(cosine, eta)
-    light = Light(np.repeat(q[:, None], 3, axis=1), (0.0, 0.0, -1.0))
+    light = StudyLight(np.repeat(q[:, None], 3, axis=1), (0.0, 0.0, -1.0))
     return by_zone(body, body.homogeneous([MEDIUM] * 3, eta, light, scheme).exitance[:, 0])
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from quadgraph_validation.accuracy import scene_figures
-from quadgraph_validation.accuracy.scenes_study import Comparison
+from quadgraph_validation.accuracy.scenes_study import ScenesCompared
 from quadgraph_validation.chart.chart_judge import ChartJudge
 from quadgraph_validation.chart.chart_measure import ChartPoint
 
@@ -26,7 +26,7 @@ def write(folder: Path, judge: ChartJudge, points: Sequence[ChartPoint]) -> list
     compared = {}
     for name, image in judge.images.items():
         pictures = {title: judge.of_picture(name, point.pictures) for title, point in chosen.items()}
-        compared[name] = Comparison(image, judge.body.coverage(judge.body.scene.images[name].view), pictures)
+        compared[name] = ScenesCompared(image, judge.body.coverage(judge.body.scene.images[name].view), pictures)
     path = folder / f"pictures-{judge.body.scene.name}.png"
     scene_figures.write(path, judge.body.scene, compared, {title: title for title in chosen})
     return [path]

@@ -17,7 +17,7 @@ from quadgraph_validation.truth import schemes
 from quadgraph_validation.truth.interruptible import interruptible
 from quadgraph_validation.truth.irradiance import Occluder, entering
 from quadgraph_validation.truth.nested import nested
-from quadgraph_validation.truth.schemes import Light, Scheme
+from quadgraph_validation.truth.schemes import Scheme, StudyLight
 
 REFINEMENTS = 2
 SKY_RAYS = 256  # from every face of the mesh that was cut once
@@ -62,7 +62,7 @@ class Ladder:
 
     def _solve(self, number: int, mesh: Graph, scheme: Scheme) -> np.ndarray:
         coefficients = self._scene.in_channels(mesh.nodes)
-        light = Light(self.q if number == 1 else self._entering(number, mesh), self._scene.direction)
+        light = StudyLight(self.q if number == 1 else self._entering(number, mesh), self._scene.direction)
         body = schemes.on_reference(mesh)
         return interruptible(lambda: body.solve(*coefficients, self._scene.eta, light, scheme)).exitance
 

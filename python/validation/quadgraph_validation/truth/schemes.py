@@ -53,7 +53,7 @@ SP3 = Scheme("fem", "buried", "sp3")
 
 
 @dataclass(frozen=True)
-class Light:
+class StudyLight:
     """Irradiance that the surface lets in, (n_f, 3) W/mm^2, and the way it travels outside; None: Lambertian."""
 
     q: np.ndarray
@@ -84,14 +84,14 @@ class StudyBody:
     centre: np.ndarray
     normal: np.ndarray
     area: np.ndarray
-    solve: Callable[[np.ndarray, np.ndarray, float, Light, Scheme], Answer]
+    solve: Callable[[np.ndarray, np.ndarray, float, StudyLight, Scheme], Answer]
 
-    def homogeneous(self, media: list[Medium], eta: float, light: Light, scheme: Scheme) -> Answer:
+    def homogeneous(self, media: list[Medium], eta: float, light: StudyLight, scheme: Scheme) -> Answer:
         """Solve with one medium per channel everywhere."""
         return self.piecewise([media], np.zeros(len(self.mesh.nodes), np.int64), eta, light, scheme)
 
     def piecewise(
-        self, regions: list[list[Medium]], region: np.ndarray, eta: float, light: Light, scheme: Scheme
+        self, regions: list[list[Medium]], region: np.ndarray, eta: float, light: StudyLight, scheme: Scheme
     ) -> Answer:
         """Solve with the media of regions[region[i]] at node i."""
         sigma_s_prime = np.array([[m.sigma_s_prime for m in channels] for channels in regions])[region]
@@ -113,7 +113,7 @@ def on_reference(mesh: Graph) -> StudyBody:
     with tempfile.TemporaryDirectory(prefix="quadgraph-study-") as folder:
         loaded = core.load(graph_file.write(Path(folder) / "study.qgraph", [mesh]))
 
-    def solve(sigma_s_prime: np.ndarray, sigma_a: np.ndarray, eta: float, light: Light, scheme: Scheme) -> Answer:
+    def solve(sigma_s_prime: np.ndarray, sigma_a: np.ndarray, eta: float, light: StudyLight, scheme: Scheme) -> Answer:
         result = core.solve_reference(
             loaded,
             0,
@@ -146,7 +146,9 @@ def on_engine(device: str = "") -> BodyOf:
         with tempfile.TemporaryDirectory(prefix="quadgraph-study-") as folder:
             engine = load_core().Engine(graph_file.write(Path(folder) / "study.qgraph", [mesh]), device=device)
 
-        def solve(sigma_s_prime: np.ndarray, sigma_a: np.ndarray, eta: float, light: Light, scheme: Scheme) -> Answer:
+        def solve(
+            sigma_s_prime: np.ndarray, sigma_a: np.ndarray, eta: float, light: StudyLight, scheme: Scheme
+        ) -> Answer:
             engine.set_optical(0, sigma_s_prime, sigma_a, eta)
             engine.set_irradiance(0, light.q, light.direction)
             report = engine.solve(

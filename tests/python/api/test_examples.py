@@ -1,0 +1,32 @@
+"""The examples of the documents run, and give the physics that they tell of."""
+
+from __future__ import annotations
+
+import runpy
+from pathlib import Path
+
+import pytest
+
+FOLDER = Path(__file__).resolve().parents[3] / "docs/examples"
+EXPECTED = {
+    "energy_balance.py": pytest.approx(0, abs=1e-5),
+    "fluence.py": pytest.approx(0, abs=1e-5),
+    "lights_and_materials.py": pytest.approx(2, rel=1e-5),
+}
+
+
+def run(name: str) -> float:
+    return runpy.run_path(str(FOLDER / name))["main"]()
+
+
+@pytest.mark.parametrize("name", EXPECTED)
+def test_the_number_of_an_example(name):
+    assert run(name) == EXPECTED[name]
+
+
+def test_the_picture_shows_the_body():
+    assert 0.1 < run("picture.py") < 0.9
+
+
+def test_every_example_is_run():
+    assert {path.name for path in FOLDER.glob("*.py")} == EXPECTED.keys() | {"picture.py"}
