@@ -25,7 +25,7 @@ gpu::Optical after(std::initializer_list<Edit> edits, const glm::vec3& place = {
 }  // namespace
 
 TEST_CASE("an edit everywhere multiplies, adds or sets what it names, in order") {
-  using enum Edit::Operation;
+  using enum EditOperation;
   CHECK(after({}).sigma_a == base.sigma_a);
   CHECK(after({{.operation = multiply, .sigma_a = glm::vec3(2)}}).sigma_a == 2.0f * base.sigma_a);
   CHECK(after({{.operation = multiply, .sigma_a = glm::vec3(2)}}).sigma_s_prime == base.sigma_s_prime);
