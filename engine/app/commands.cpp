@@ -12,7 +12,7 @@ namespace quadgraph {
 namespace {
 
 using S = State&;
-using W = const Surroundings&;
+using W = const CommandContext&;
 
 constexpr float degrees = 7.5f, share = 0.04f;  // of a step of the keys
 constexpr float brighter = 1.25f;
@@ -173,11 +173,11 @@ std::span<const Command> all_commands() {
   return table;
 }
 
-bool run_command(int key, int mods, State& state, const Surroundings& surroundings) {
+bool run_command(int key, int mods, State& state, const CommandContext& context) {
   constexpr int known = GLFW_MOD_CONTROL | GLFW_MOD_SHIFT | GLFW_MOD_ALT | GLFW_MOD_SUPER;
   for (const Command& command : table) {
     if ((command.key != key && command.other_key != key) || command.mods != (mods & known)) continue;
-    command.run(state, surroundings);
+    command.run(state, context);
     return true;
   }
   return false;

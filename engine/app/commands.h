@@ -9,7 +9,7 @@
 namespace quadgraph {
 
 // What the commands need to know of the body and the picture.
-struct Surroundings {
+struct CommandContext {
   Sphere bounds;
   float aspect = 1;          // of the picture, width / height
   std::uint32_t levels = 1;  // of the body
@@ -20,12 +20,12 @@ struct Command {
   int key, other_key;     // GLFW's; 0: none
   int mods;               // GLFW's, that must be held; others must not
   std::string_view text;  // what it does
-  void (*run)(State&, const Surroundings&);
+  void (*run)(State&, const CommandContext&);
 };
 
 std::span<const Command> all_commands();
 
 // Runs the command of a key, if it has one.
-bool run_command(int key, int mods, State& state, const Surroundings& surroundings);
+bool run_command(int key, int mods, State& state, const CommandContext& context);
 
 }  // namespace quadgraph

@@ -76,7 +76,7 @@ Viewer::Part Viewer::part() const {
   return {left, swapchain_.width() - left, swapchain_.height()};
 }
 
-Surroundings Viewer::surroundings() const {
+CommandContext Viewer::command_context() const {
   const Part now = part();
   const auto height = static_cast<float>(std::max(now.height, 1u));
   return {engine_.bounds(), std::max(static_cast<float>(now.width), 1.0f) / height,
@@ -92,8 +92,8 @@ void Viewer::handle(const std::vector<Event>& events) {
     } else if (const auto* button = std::get_if<ButtonEvent>(&event)) {
       begin_or_end_drag(*button);
     } else if (const auto* scroll = std::get_if<ScrollEvent>(&event); scroll != nullptr && !interface_.has_pointer()) {
-      const Surroundings around = surroundings();
-      state_.scene.view = zoomed(state_.scene.view, around.bounds, around.aspect, static_cast<float>(scroll->y));
+      const CommandContext context = command_context();
+      state_.scene.view = zoomed(state_.scene.view, context.bounds, context.aspect, static_cast<float>(scroll->y));
     }
   }
 }
@@ -109,9 +109,9 @@ void Viewer::begin_or_end_drag(const ButtonEvent& event) {
   if (touch) state_.brush.begin(state_.scene, *touch);
   Knife& knife = state_.knife;
   if (!dragging_ && knife.cuts()) {
-    const Surroundings around = surroundings();
+    const CommandContext context = command_context();
     state_.cut = state_.scene.cuts.size();
-    state_.scene.cuts.push_back(cut_along(state_.scene.view, around.bounds, around.aspect, *knife.from, *knife.to));
+    state_.scene.cuts.push_back(cut_along(state_.scene.view, context.bounds, context.aspect, *knife.from, *knife.to));
   }
   knife.from = dragging_ && plain && knife.on ? std::optional(pointer()) : std::nullopt;
   knife.to.reset();
@@ -131,11 +131,11 @@ void Viewer::handle_key(const KeyEvent& event) {
     state_.help = false;
     return;
   }
-  run_command(event.key, event.mods, state_, surroundings());
+  run_command(event.key, event.mods, state_, command_context());
 }
 
 void Viewer::handle_motion(const MotionEvent& event) {
-  const Surroundings around = surroundings();
+  const CommandContext context = command_context();
   const auto height = static_cast<float>(std::max(part().height, 1u));
   const float right = static_cast<float>(event.x - pointer_x_) / height;
   const float up = static_cast<float>(pointer_y_ - event.y) / height;
@@ -152,12 +152,12 @@ void Viewer::handle_motion(const MotionEvent& event) {
   }
   View& view = state_.scene.view;
   if (drag_button_ != GLFW_MOUSE_BUTTON_LEFT) {
-    view = panned(view, around.bounds, around.aspect, right, up);
+    view = panned(view, context.bounds, context.aspect, right, up);
   } else if ((drag_mods_ & (GLFW_MOD_CONTROL | GLFW_MOD_SHIFT)) == 0) {
     view = orbited(view, degrees_per_height * right, degrees_per_height * up);
   } else if (state_.light < state_.scene.lights.size()) {
     Light& light = state_.scene.lights[state_.light];
-    light = turned(light, view, around.bounds, degrees_per_height * right, degrees_per_height * up);
+    light = turned(light, view, context.bounds, degrees_per_height * right, degrees_per_height * up);
   }
 }
 
@@ -170,10 +170,10 @@ glm::vec2 Viewer::pointer() const {
 
 // Where the pointer meets the body.
 std::optional<Touch> Viewer::pointed_at() const {
-  const Surroundings around = surroundings();
-  const auto found = engine_.pick(state_.scene.view, around.aspect, pointer());
+  const CommandContext context = command_context();
+  const auto found = engine_.pick(state_.scene.view, context.aspect, pointer());
   if (!found) return std::nullopt;
-  return touched(*found, place_camera(state_.scene.view, around.bounds, around.aspect));
+  return touched(*found, place_camera(state_.scene.view, context.bounds, context.aspect));
 }
 
 void Viewer::build_widgets(const std::vector<Event>& events) {

@@ -39,7 +39,7 @@ class Viewer {
   };
 
   Part part() const;
-  Surroundings surroundings() const;
+  CommandContext command_context() const;
   double patience() const;
   void handle(const std::vector<Event>& events);
   void handle_key(const KeyEvent& event);
