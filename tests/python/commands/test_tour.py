@@ -13,6 +13,7 @@ import pytest
 from PIL import Image
 
 from quadgraph import cli
+from quadgraph.commands import render
 
 ROOT = Path(__file__).resolve().parents[3]
 TEXT = (ROOT / "docs" / "tour.md").read_text()
@@ -36,7 +37,7 @@ def test_every_command_can_be_read():
     lines = [line.strip() for line in commands().splitlines() if line.strip().startswith("quadgraph ")]
     assert len(lines) >= 8
     for line in lines:
-        args = cli.build_parser().parse_args(re.sub(r"\$(\w+|\{[^}]*\})", "x", line).split()[1:])
+        args = cli.build_parser({"render": render}, {}).parse_args(re.sub(r"\$(\w+|\{[^}]*\})", "x", line).split()[1:])
         assert args.command == "render"
 
 

@@ -151,7 +151,10 @@ def test_the_engine_keeps_nothing_of_a_frame(tmp_path, rounds, frames):
     if getattr(ctypes.CDLL(None), "mallinfo2", None) is None:
         pytest.skip("the C library has no mallinfo2 (glibc 2.33)")
     command = [sys.executable, __file__, str(tmp_path), str(rounds), str(frames)]
-    run = subprocess.run(command, env=os.environ | STILL, stdout=subprocess.PIPE, text=True, check=True)
+    helpers = str(Path(__file__).resolve().parents[1])
+    run = subprocess.run(
+        command, env=os.environ | STILL | {"PYTHONPATH": helpers}, stdout=subprocess.PIPE, text=True, check=True
+    )
     after = json.loads(run.stdout)
     print(f"{rounds} rounds of {frames} frames: {[r['host'] for r in after['rounds']]} bytes allocated")
     warm, *later = after["rounds"][WARM - 1 :]

@@ -14,9 +14,9 @@ import pytest
 
 from quadgraph.base.child_process import Program, run
 from quadgraph.base.errors import InputError, ToolError
+from quadgraph.mesh import intersections
 from quadgraph.mesh.intersections import intersecting_triangles
 from quadgraph.mesh.surface import Surface
-from quadgraph.tets import tetgen
 from quadgraph.tets.cgal_mesh import CGAL_MESH
 from quadgraph.tets.tet_geometry import determinants
 from quadgraph.tets.tet_rounding import orient, round_to_float32
@@ -94,7 +94,7 @@ def test_the_test_for_crossings_may_take_longer_on_larger_meshes(monkeypatch) ->
         limits.append(time_limit_s)
         return run(*call, time_limit_s=time_limit_s, **rest)
 
-    monkeypatch.setattr(tetgen, "run", run_for)
+    monkeypatch.setattr(intersections, "run", run_for)
     small, large = icosphere(2), icosphere(4)
     for surface in (small, large):
         intersecting_triangles(surface)
