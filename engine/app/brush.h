@@ -14,7 +14,7 @@ struct Touch {
   glm::vec3 upright{0, 1, 0};  // unit, along the surface: what is upwards in the picture
 };
 
-// Of what has been picked in a picture seen from `camera`.
+// Where the brush touches what was picked in a picture seen from `camera`.
 Touch touched(const Picked& picked, const Camera& camera);
 
 struct Brush {

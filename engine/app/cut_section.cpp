@@ -24,28 +24,28 @@ BodyCut fresh_cut(const View& view, const Sphere& bounds) {
 
 void draw_plane(BodyCut& cut, const Sphere& bounds, UpAxis up) {
   Bearing bearing = bearing_of(cut.normal, up);
-  const bool around = slide("faces, around##cut", bearing.azimuth, -180, 180, "%.0f°");
-  const bool above = slide("faces, above##cut", bearing.elevation, -90, 90, "%.0f°");
+  const bool around = slide("Azimuth##cut", bearing.azimuth, -180, 180, "%.0f°");
+  const bool above = slide("Elevation##cut", bearing.elevation, -90, 90, "%.0f°");
   float distance = cut.offset - glm::dot(glm::normalize(cut.normal), bounds.centre);
-  const bool moved = slide("from the middle##cut", distance, -bounds.radius, bounds.radius, "%.1f mm");
+  const bool moved = slide("Offset##cut", distance, -bounds.radius, bounds.radius, "%.1f mm");
   if (!around && !above && !moved) return;
   cut.normal = towards(bearing, up);
   cut.offset = glm::dot(cut.normal, bounds.centre) + distance;
 }
 
 void draw_cut(BodyCut& cut, const Sphere& bounds, UpAxis up) {
-  choose("kind##cut", cut.kind);
+  choose("Type##cut", cut.kind);
   const float least = 1e-3f * bounds.radius, most = 2 * bounds.radius;
   if (cut.kind == CutKind::plane || cut.kind == CutKind::slab) {
     draw_plane(cut, bounds, up);
-    if (cut.kind == CutKind::slab) slide("thickness##cut", cut.thickness, least, bounds.radius, "%.1f mm");
+    if (cut.kind == CutKind::slab) slide("Thickness##cut", cut.thickness, least, bounds.radius, "%.1f mm");
     return;
   }
-  ImGui::DragFloat3("at, mm##cut", &cut.centre.x, 0.01f * bounds.radius, 0, 0, "%.1f");
+  ImGui::DragFloat3("Centre, mm##cut", &cut.centre.x, 0.01f * bounds.radius, 0, 0, "%.1f");
   if (cut.kind == CutKind::sphere) {
-    slide("radius##cut", cut.radius, least, most, "%.1f mm");
+    slide("Radius##cut", cut.radius, least, most, "%.1f mm");
   } else {
-    ImGui::DragFloat3("size, mm##cut", &cut.size.x, 0.01f * bounds.radius, least, most, "%.1f",
+    ImGui::DragFloat3("Size, mm##cut", &cut.size.x, 0.01f * bounds.radius, least, most, "%.1f",
                       ImGuiSliderFlags_AlwaysClamp);
   }
 }
@@ -55,7 +55,7 @@ void draw_cut(BodyCut& cut, const Sphere& bounds, UpAxis up) {
 void draw_cuts(State& state, const Sphere& bounds) {
   if (!section("Cuts")) return;
   auto& cuts = state.scene.cuts;
-  if (ImGui::Checkbox("a left drag cuts", &state.knife.on) && state.knife.on) state.brush.on = false;
+  if (ImGui::Checkbox("Cut with left drag", &state.knife.on) && state.knife.on) state.brush.on = false;
   for (std::size_t i = 0; i < cuts.size(); ++i) {
     ImGui::PushID(static_cast<int>(i));
     const std::string name = formatted("%zu  %s##cuts", i + 1, std::string(name_of(cuts[i].kind)).c_str());
@@ -63,12 +63,12 @@ void draw_cuts(State& state, const Sphere& bounds) {
     ImGui::PopID();
   }
   if (state.cut < cuts.size()) draw_cut(cuts[state.cut], bounds, state.scene.view.up);
-  if (ImGui::Button("add##cut")) {
+  if (ImGui::Button("Add##cut")) {
     state.cut = cuts.size();
     cuts.push_back(fresh_cut(state.scene.view, bounds));
   }
   ImGui::SameLine();
-  if (ImGui::Button("remove##cut") && state.cut < cuts.size()) {
+  if (ImGui::Button("Remove##cut") && state.cut < cuts.size()) {
     cuts.erase(cuts.begin() + static_cast<std::ptrdiff_t>(state.cut));
     state.cut = cuts.empty() ? 0 : std::min(state.cut, cuts.size() - 1);
   }

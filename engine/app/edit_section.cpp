@@ -17,15 +17,15 @@ void draw_coefficient(const char* name, std::optional<glm::vec3>& by, Edit::Oper
   if (by) {
     const bool factor = operation == Edit::Operation::multiply;
     const float least = operation == Edit::Operation::add ? -10.0f : 0.0f;
-    ImGui::DragFloat3(factor ? "times" : "1/mm", &by->x, 0.01f, least, 100, "%.2f");
+    ImGui::DragFloat3(factor ? "Factor" : "1/mm", &by->x, 0.01f, least, 100, "%.2f");
   }
   ImGui::PopID();
 }
 
-// A picture that is typed by name, or taken away by leaving none.
+// A field for the name of an image file; an empty name removes the image.
 void draw_image(State& state, const char* name, std::shared_ptr<const ImagePyramid>& image) {
   std::string text = image ? image->file.string() : std::string();
-  if (!ImGui::InputTextWithHint(name, "picture.png, .exr, .hdr", &text, ImGuiInputTextFlags_EnterReturnsTrue)) return;
+  if (!ImGui::InputTextWithHint(name, "image.png, .exr, .hdr", &text, ImGuiInputTextFlags_EnterReturnsTrue)) return;
   try {
     image = text.empty() ? nullptr : load_pyramid(text);
     state.say("");
@@ -38,23 +38,23 @@ void draw_image(State& state, const char* name, std::shared_ptr<const ImagePyram
 
 void draw_edits(State& state, const Sphere& bounds) {
   if (!section("Edit", false)) return;
-  if (ImGui::Button("undo") && state.can_undo) state.undo = true;
+  if (ImGui::Button("Undo") && state.can_undo) state.undo = true;
   ImGui::SameLine();
-  if (ImGui::Button("redo") && state.can_redo) state.redo = true;
+  if (ImGui::Button("Redo") && state.can_redo) state.redo = true;
   ImGui::SameLine();
-  if (ImGui::Button("scene to file")) state.save = true;
+  if (ImGui::Button("Save scene")) state.save = true;
   Edit& edit = state.brush.edit;
-  if (ImGui::Checkbox("a left drag paints", &state.brush.on) && state.brush.on) state.knife.on = false;
-  choose("operation", edit.operation);
-  draw_coefficient("absorption", edit.sigma_a, edit.operation);
-  draw_coefficient("scattering", edit.sigma_s_prime, edit.operation);
-  draw_image(state, "pattern", edit.image);
-  draw_image(state, "mask", edit.mask);
-  slide("radius", edit.radius, 0.005f * bounds.radius, 0.5f * bounds.radius, "%.1f mm");
-  slide("from depth", edit.depth_from, 0, bounds.radius, "%.1f mm");
-  slide("to depth", edit.depth_to, edit.depth_from + 1e-3f * bounds.radius, 2 * bounds.radius, "%.1f mm");
-  slide("softness", edit.softness, 0, edit.radius, "%.1f mm");
-  tell("edits", formatted("%zu", state.scene.edits.size()));
+  if (ImGui::Checkbox("Paint with left drag", &state.brush.on) && state.brush.on) state.knife.on = false;
+  choose("Operation", edit.operation);
+  draw_coefficient("Absorption", edit.sigma_a, edit.operation);
+  draw_coefficient("Scattering", edit.sigma_s_prime, edit.operation);
+  draw_image(state, "Pattern", edit.image);
+  draw_image(state, "Mask", edit.mask);
+  slide("Radius", edit.radius, 0.005f * bounds.radius, 0.5f * bounds.radius, "%.1f mm");
+  slide("Depth from", edit.depth_from, 0, bounds.radius, "%.1f mm");
+  slide("Depth to", edit.depth_to, edit.depth_from + 1e-3f * bounds.radius, 2 * bounds.radius, "%.1f mm");
+  slide("Softness", edit.softness, 0, edit.radius, "%.1f mm");
+  tell("Edits", formatted("%zu", state.scene.edits.size()));
 }
 
 }  // namespace quadgraph

@@ -24,14 +24,14 @@ Light turned(Light light, const View& view, const Sphere& bounds, float right, f
 // A light of another kind, not a projector, that lights the object's centre about as strongly and from the same side.
 Light as_kind(const Light& light, LightKind kind, const Sphere& bounds);
 
-// The same rectangle, shining along a unit direction that is not upright, with two of its edges level.
+// A rectangular light turned to shine along a unit direction that is not vertical, with two of its edges horizontal.
 Light faced(Light rectangle, const glm::vec3& direction, UpAxis up);
 
 // The plane through the eye and a stroke over the picture, between two points in clip coordinates (right and up, -1 to
 // 1) that are not the same. What lies to the right of the hand's way goes.
 BodyCut cut_along(const View& view, const Sphere& bounds, float aspect, const glm::vec2& from, const glm::vec2& to);
 
-// As degrees of azimuth and elevation, as of a View, from where a light comes; and towards there.
+// Where a light comes from, as azimuth and elevation of a View, degrees; and the unit vector towards there.
 struct Bearing {
   float azimuth = 0, elevation = 0;
 };

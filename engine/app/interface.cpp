@@ -151,7 +151,7 @@ void Interface::start_backend() {
   info.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
   info.CheckVkResultFn = check_result;
   ImGui_ImplVulkan_Init(&info, pass_.get());
-  vk::Commands commands(context_);
+  vk::Recording commands(context_, 0);
   ImGui_ImplVulkan_CreateFontsTexture(commands.handle());
   commands.submit_and_wait();
   ImGui_ImplVulkan_DestroyFontUploadObjects();

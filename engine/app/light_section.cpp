@@ -4,6 +4,7 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -21,27 +22,35 @@ std::string window_text(std::string_view unit) {
   return text;
 }
 
-// Brightness and tint of a light whose numbers span many decades.
+// The label of a field: its name in scene files with a capital.
+std::string label_of(const LightField& field) {
+  std::string label = std::string(field.name) + "##light";
+  label.front() = static_cast<char>(std::toupper(label.front()));
+  return label;
+}
+
+// Brightness and colour of a light whose power spans many decades.
 void draw_power(Light& light, const LightField& field) {
+  const std::string label = label_of(field);
   float most = std::max({light.power.x, light.power.y, light.power.z, 1e-9f});
   glm::vec3 tint = light.power / most;
-  // A text without a conversion: the slider moves along decades and tells the power.
+  // A text without a conversion: the slider moves along decades and shows the power.
   const std::string told = formatted("%.3g ", static_cast<double>(most)) + window_text(field.unit);
   float decades = std::log10(most);
-  if (slide("power", decades, -6, field.name == "irradiance" ? 1.0f : 6.0f, told.c_str())) {
+  if (slide(label.c_str(), decades, -6, field.name == "irradiance" ? 1.0f : 6.0f, told.c_str())) {
     most = std::pow(10.0f, decades);
     light.power = most * tint;
   }
-  if (ImGui::ColorEdit3("tint", &tint.x, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_NoInputs)) {
+  if (ImGui::ColorEdit3("Colour", &tint.x, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_NoInputs)) {
     light.power = most * tint;
   }
 }
 
-// Whether it was changed.
+// Two sliders for where a direction comes from; whether one was moved.
 bool draw_bearing(glm::vec3& direction, UpAxis up) {
   Bearing bearing = bearing_of(-direction, up);
-  const bool around = slide("from, around", bearing.azimuth, -180, 180, "%.0f°");
-  const bool above = slide("from above", bearing.elevation, -89.9f, 89.9f, "%.0f°");
+  const bool around = slide("Azimuth##light", bearing.azimuth, -180, 180, "%.0f°");
+  const bool above = slide("Elevation##light", bearing.elevation, -89.9f, 89.9f, "%.0f°");
   if (!around && !above) return false;
   direction = -towards(bearing, up);
   return true;
@@ -58,7 +67,7 @@ void draw_kind(State& state, Light& light, const Sphere& bounds) {
   for (const LightForm& form : kinds) names.push_back(form.name);
   const LightForm& shown = form_of(state.kind_with_image.value_or(light.kind));
   auto chosen = static_cast<std::size_t>(&shown - kinds.data());
-  if (!choose("kind", chosen, names)) return;
+  if (!choose("Type##light", chosen, names)) return;
   const LightKind kind = kinds[chosen].kind;
   state.kind_with_image.reset();
   if (kind == light.kind) return;
@@ -69,11 +78,12 @@ void draw_kind(State& state, Light& light, const Sphere& bounds) {
   }
 }
 
-// What is no image the viewer tells when it shows the scene, and takes back.
+// A field for the name of an image file. The viewer reports a file that is no image when it shows the scene, and
+// restores the light.
 void draw_image(State& state, Light& light, const Sphere& bounds) {
   if (!state.kind_with_image && !has_image(light.kind)) return;
   if (!ImGui::IsAnyItemActive()) state.image_text = state.kind_with_image ? std::string() : light.file;
-  if (!ImGui::InputTextWithHint("image", "picture.png, .exr, .hdr", &state.image_text,
+  if (!ImGui::InputTextWithHint("Image##light", "image.png, .exr, .hdr", &state.image_text,
                                 ImGuiInputTextFlags_EnterReturnsTrue)) {
     return;
   }
@@ -91,16 +101,15 @@ void draw_edges(Light& light, const Sphere& bounds, UpAxis up) {
     const glm::vec3 unit = edge / length;
     if (slide(name, length, 0.02f * bounds.radius, 4 * bounds.radius, "%.1f mm")) edge = length * unit;
   };
-  draw_edge("width", light.u);
-  draw_edge("height", light.v);
+  draw_edge("Width##light", light.u);
+  draw_edge("Height##light", light.v);
 }
 
 // A slider of a number that keeps off ends that are not allowed.
 void draw_number(Light& light, const LightField& field) {
   const bool degrees = field.unit == "degrees";
   const auto high = static_cast<float>(field.range.high), low = static_cast<float>(field.range.low);
-  const std::string label = std::string(field.name) + "##light";
-  slide(label.c_str(), light.*std::get<float Light::*>(field.member), field.range.above ? low + 1 : low,
+  slide(label_of(field).c_str(), light.*std::get<float Light::*>(field.member), field.range.above ? low + 1 : low,
         field.range.below ? high - 10 : high, degrees ? "%.0f°" : "%.2f");
 }
 
@@ -110,13 +119,13 @@ void draw_field(Light& light, const LightField& field, const Sphere& bounds, UpA
       draw_bearing(light.direction, up);
       break;
     case FieldForm::point:
-      ImGui::DragFloat3("at, mm", &light.position.x, 0.01f * bounds.radius, 0, 0, "%.1f");
+      ImGui::DragFloat3("Position, mm##light", &light.position.x, 0.01f * bounds.radius, 0, 0, "%.1f");
       break;
     case FieldForm::number:
       draw_number(light, field);
       break;
     case FieldForm::turn:
-      slide("turn##light", light.turn, -180, 180, "%.0f°");
+      slide("Rotation##light", light.turn, -180, 180, "%.0f°");
       break;
     case FieldForm::power:
       draw_power(light, field);
@@ -155,12 +164,12 @@ void draw_lights(State& state, const Sphere& bounds) {
     ImGui::PopID();
   }
   if (state.light < lights.size()) draw_light(state, bounds);
-  if (ImGui::Button("add")) {
+  if (ImGui::Button("Add##light")) {
     lights.push_back(default_lights(state.scene.view).front());
     select(lights.size() - 1);
   }
   ImGui::SameLine();
-  if (ImGui::Button("remove") && state.light < lights.size()) {
+  if (ImGui::Button("Remove##light") && state.light < lights.size()) {
     lights.erase(lights.begin() + static_cast<std::ptrdiff_t>(state.light));
     select(lights.empty() ? 0 : std::min(state.light, lights.size() - 1));
   }

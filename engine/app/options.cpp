@@ -55,8 +55,10 @@ void declare(CLI::App& app, Typed& typed) {
     if (!option.on_command_line) continue;
     option.kind == OptionKind::flag ? declare_flag(app, option, typed) : declare_option(app, option, typed);
   }
-  app.add_option("--device", typed.device, "part of the Vulkan device's name")->group("Run");
-  app.add_flag("--validation", typed.validation, "load the Vulkan validation layer; any message is an error")
+  app.add_option("--device", typed.device, "cpu, or part of a Vulkan device's name; default: a GPU, else cpu")
+      ->group("Run");
+  app.add_flag("--validation", typed.validation,
+               "load the validation layer of a Vulkan device; any message is an error")
       ->group("Run");
   app.add_flag("--json", typed.json, "print the report as JSON")->group("Run");
 }

@@ -12,7 +12,7 @@ struct AppOptions {
   Scene scene;                   // with lights
   bool headless = false;         // a picture, and no window
   std::filesystem::path output;  // headless: .png or .exr; else what pictures that the user asks for are called
-  vk::ContextOptions device;
+  device::DeviceOptions device;
   bool json = false;
 };
 

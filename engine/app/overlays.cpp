@@ -14,12 +14,12 @@ void draw_help(State& state, float unit) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({0.5f * size.x, 0.5f * size.y}, ImGuiCond_Always, {0.5f, 0.5f});
   ImGui::SetNextWindowBgAlpha(0.94f);
-  ImGui::Begin("keys", &state.help,
+  ImGui::Begin("Keyboard shortcuts", &state.help,
                ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoNav |
                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoMove);
-  ImGui::TextUnformatted("Left drag turns the object, right or middle drag moves it, the wheel brings it nearer.");
+  ImGui::TextUnformatted("Left drag rotates the object, right or middle drag pans, the wheel zooms.");
   ImGui::TextUnformatted(
-      "With Ctrl or Shift a drag turns the selected light; a left drag with the brush in hand paints, with the knife "
+      "Ctrl or Shift + drag rotates the selected light. With the brush (P) a left drag paints, with the knife (K) it "
       "cuts.");
   ImGui::Separator();
   const auto commands = all_commands();

@@ -22,21 +22,21 @@ void draw_plane(Show& show, const Sphere& bounds) {
     if (axis > 0) ImGui::SameLine();
     ImGui::RadioButton(std::array{"x", "y", "z"}[static_cast<std::size_t>(axis)], &show.axis, axis);
   }
-  slide("plane", show.offset, -bounds.radius, bounds.radius, "%.1f mm");
+  slide("Plane offset", show.offset, -bounds.radius, bounds.radius, "%.1f mm");
 }
 
 void draw_show(State& state, const Engine& engine) {
   if (!section("View")) return;
   Show& show = state.scene.render.show;
-  choose("show", show.quantity);
+  choose("Show", show.quantity);
   if (has_plane(show.quantity)) draw_plane(show, engine.bounds());
   if (has_level(show.quantity)) {
     auto level = static_cast<int>(show.level);
     const auto last = static_cast<int>(engine.graph().levels().size()) - 1;
-    if (ImGui::SliderInt("level", &level, 0, last)) show.level = static_cast<std::uint32_t>(level);
+    if (ImGui::SliderInt("Level", &level, 0, last)) show.level = static_cast<std::uint32_t>(level);
   }
   if (show.quantity == Quantity::difference) {
-    choose("other method", show.other, state.methods);
+    choose("Compare with", show.other, state.methods);
   }
 }
 
@@ -44,8 +44,8 @@ void draw_material(State& state) {
   if (!section("Material")) return;
   const auto& names = material_names();
   const auto found = std::find(names.begin(), names.end(), state.scene.material);
-  const char* shown = found == names.end() ? "its own numbers" : found->c_str();
-  if (ImGui::BeginCombo("material", shown, ImGuiComboFlags_HeightLarge)) {
+  const char* shown = found == names.end() ? "Custom" : found->c_str();
+  if (ImGui::BeginCombo("Preset", shown, ImGuiComboFlags_HeightLarge)) {
     for (const std::string& name : names) {
       const bool chosen = name == state.scene.material;
       if (ImGui::Selectable(name.c_str(), chosen)) state.scene.material = name;
@@ -75,7 +75,7 @@ void draw_deformer(Scene& scene, const char* label, DeformerKind kind) {
   auto found = std::find_if(list.begin(), list.end(), [&](const Deformer& d) { return d.kind == kind; });
   const double neutral = turns ? 0 : 1;
   auto value = static_cast<float>(found == list.end() ? neutral : turns ? found->degrees : found->factor);
-  if (!slide(label, value, turns ? -180.0f : 0.4f, turns ? 180.0f : 2.0f, turns ? "%.0f°" : "%.2f times")) return;
+  if (!slide(label, value, turns ? -180.0f : 0.4f, turns ? 180.0f : 2.0f, turns ? "%.0f°" : "× %.2f")) return;
   if (found == list.end()) {
     Deformer fresh{.kind = kind};
     if (scene.view.up == UpAxis::z) fresh.axis = {0, 0, 1};
@@ -87,68 +87,69 @@ void draw_deformer(Scene& scene, const char* label, DeformerKind kind) {
 
 void draw_shape(State& state) {
   if (!section("Shape", false)) return;
-  draw_deformer(state.scene, "twist", DeformerKind::twist);
-  draw_deformer(state.scene, "bend", DeformerKind::bend);
-  draw_deformer(state.scene, "taper", DeformerKind::taper);
-  draw_deformer(state.scene, "stretch", DeformerKind::stretch);
+  draw_deformer(state.scene, "Twist", DeformerKind::twist);
+  draw_deformer(state.scene, "Bend", DeformerKind::bend);
+  draw_deformer(state.scene, "Taper", DeformerKind::taper);
+  draw_deformer(state.scene, "Stretch", DeformerKind::stretch);
 }
 
 void draw_path(PathOptions& path) {
-  choose("cost", path.cost);
-  choose("paths", path.solver);
+  choose("Cost", path.cost);
+  choose("Solver##path", path.solver);
   auto cells = static_cast<int>(path.cells);
-  if (ImGui::SliderInt("voxels", &cells, 16, static_cast<int>(path_cells_range.high)))
+  if (ImGui::SliderInt("Voxels", &cells, 16, static_cast<int>(path_cells_range.high)))
     path.cells = static_cast<std::uint32_t>(cells);
 }
 
 void draw_solver(State& state) {
-  if (!section("Solve")) return;
+  if (!section("Solver")) return;
   SolveOptions& solve = state.scene.solve;
-  if (choose("method", solve.method, state.all_methods()) && !on_grid(solve.method)) solve.active_layers = 0;
+  if (choose("Method", solve.method, state.all_methods()) && !on_grid(solve.method)) solve.active_layers = 0;
   if (solve.method == Method::shortest_path) return draw_path(solve.path);
-  choose("solver", solve.solver);
-  choose("source", solve.source);
-  choose("model", solve.model);
+  choose("Solver##linear", solve.solver);
+  choose("Source", solve.source);
+  choose("Model", solve.model);
   auto error = static_cast<float>(100 * solve.error);
-  if (slide("error", error, 0, 20, error > 0 ? "at most %.1f%%" : "no target")) {
+  if (slide("Error target", error, 0, 20, error > 0 ? "%.1f%%" : "none")) {
     solve.error = error < 0.1f ? 0 : static_cast<double>(error) / 100;
   }
-  ImGui::Checkbox("light from part to part", &solve.inter_reflection);
+  ImGui::Checkbox("Inter-reflection", &solve.inter_reflection);
 }
 
 void draw_picture(State& state, const Measured& measured) {
-  if (!section("Picture", false)) return;
-  choose("radiance", state.scene.render.radiance);
-  ImGui::Checkbox("ground", &state.scene.render.ground);
+  if (!section("Render", false)) return;
+  choose("Radiance", state.scene.render.radiance);
+  ImGui::Checkbox("Ground", &state.scene.render.ground);
   ImGui::SameLine();
-  ImGui::Checkbox("surroundings", &state.scene.render.surroundings);
-  slide("roughness", state.scene.render.roughness, roughness_range, "%.2f");
+  ImGui::Checkbox("Show environment", &state.scene.render.surroundings);
+  slide("Roughness", state.scene.render.roughness, roughness_range, "%.2f");
   auto& stops = state.scene.tone.exposure_stops;
   bool automatic = !stops;
-  if (ImGui::Checkbox("exposure by itself", &automatic)) {
+  if (ImGui::Checkbox("Auto exposure", &automatic)) {
     stops = automatic ? std::nullopt : std::optional(measured.exposure_stops);
   }
   float value = stops.value_or(measured.exposure_stops);
-  if (slide("exposure", value, -20, 20, "%+.1f stops")) stops = value;
-  ImGui::ColorEdit3("above", &state.scene.tone.background_top.x, ImGuiColorEditFlags_Float);
-  ImGui::ColorEdit3("below", &state.scene.tone.background_bottom.x, ImGuiColorEditFlags_Float);
+  if (slide("Exposure", value, -20, 20, "%+.1f stops")) stops = value;
+  ImGui::TextDisabled("Background");
+  ImGui::ColorEdit3("Top", &state.scene.tone.background_top.x, ImGuiColorEditFlags_Float);
+  ImGui::ColorEdit3("Bottom", &state.scene.tone.background_bottom.x, ImGuiColorEditFlags_Float);
 }
 
 void draw_camera(State& state, const Sphere& bounds) {
   if (!section("Camera", false)) return;
   View& view = state.scene.view;
-  slide("around", view.azimuth, -180, 180, "%.0f°");
-  slide("above##camera", view.elevation, elevation_range, "%.0f°");
-  slide("angle", view.vertical_fov, 5, 90, "%.0f°");
+  slide("Azimuth##camera", view.azimuth, -180, 180, "%.0f°");
+  slide("Elevation##camera", view.elevation, elevation_range, "%.0f°");
+  slide("Field of view", view.vertical_fov, 5, 90, "%.0f°");
   float distance = view.distance.value_or(0);
-  const char* format = view.distance ? "%.0f mm" : "the whole object";
-  if (slide("distance", distance, 0, 20 * bounds.radius, format)) {
+  const char* format = view.distance ? "%.0f mm" : "fit object";
+  if (slide("Distance", distance, 0, 20 * bounds.radius, format)) {
     view.distance = distance > 0.05f * bounds.radius ? std::optional(distance) : std::nullopt;
   }
 }
 
 void draw_passes(const std::vector<PassStats>& passes) {
-  if (!section("Milliseconds by pass")) return;
+  if (!section("Time by pass, ms")) return;
   if (!ImGui::BeginTable("passes", 3, ImGuiTableFlags_SizingStretchProp)) return;
   ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, 3);
   ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, 2.5f);
@@ -181,18 +182,18 @@ void draw_frame(const Measured& measured) {
   const SolveReport& report = measured.solve;
   const glm::dvec3 balance = report.energy.balance();
   const double worst = std::max({std::abs(balance.x), std::abs(balance.y), std::abs(balance.z)});
-  tell("picture", formatted("%.0f ms, %.1f per second", measured.frame_ms, measured.frames_per_second));
-  tell("state",
-       measured.settled ? "converged" : formatted("in motion, at %.0f%% of the size", 100.0 * double(measured.share)));
-  tell("error", error_text(report));
-  tell("energy", report.path ? "not conserved" : "balanced to " + percent(worst));
-  tell("memory", bytes_text(measured.device_bytes) + ", at most " + bytes_text(measured.peak_device_bytes));
+  tell("Time", formatted("%.0f ms, %.1f fps", measured.frame_ms, measured.frames_per_second));
+  tell("State",
+       measured.settled ? "converged" : formatted("preview, %.0f%% resolution", 100.0 * double(measured.share)));
+  tell("Error", error_text(report));
+  tell("Energy", report.path ? "not conserved" : "balanced to " + percent(worst));
+  tell("Memory", bytes_text(measured.device_bytes) + ", peak " + bytes_text(measured.peak_device_bytes));
   if (!report.levels.empty()) {
     const LevelReport& last = report.levels.back();
-    tell("solved", formatted("%u unknowns, %u cycles", last.unknowns, last.iterations));
-    tell("with", std::string(name_of(report.model)) + ", " + std::string(name_of(report.solver)));
+    tell("Solve", formatted("%u unknowns, %u cycles", last.unknowns, last.iterations));
+    tell("Solver", std::string(name_of(report.model)) + ", " + std::string(name_of(report.solver)));
   }
-  if (report.path) tell("solved", formatted("%u voxels, %u rounds", report.path->solid, report.path->rounds));
+  if (report.path) tell("Solve", formatted("%u voxels, %u rounds", report.path->solid, report.path->rounds));
   for (const std::string& text :
        {report.budget, report.replaced, report.missed, report.stopped, report.mesh_warning, report.model_warning}) {
     if (!text.empty()) ImGui::TextWrapped("%s", text.c_str());
@@ -200,11 +201,11 @@ void draw_frame(const Measured& measured) {
 }
 
 void draw_buttons(State& state) {
-  if (ImGui::Button("picture to file")) state.screenshot = true;
+  if (ImGui::Button("Save image")) state.screenshot = true;
   ImGui::SameLine();
-  if (ImGui::Button("full screen")) state.full_screen = true;
+  if (ImGui::Button("Full screen")) state.full_screen = true;
   ImGui::SameLine();
-  if (ImGui::Button("keys")) state.help = !state.help;
+  if (ImGui::Button("Shortcuts")) state.help = !state.help;
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ bool section(const char* name, bool open = true);
 // A list to choose from, with the label to its right; whether another entry was chosen.
 bool choose(const char* label, std::size_t& chosen, const std::vector<std::string_view>& names);
 
-// The same over some values of an enum, by their names, or over all of them.
+// A list of some or all values of an enum, by their names; whether another one was chosen.
 template <HasNames Enum>
 bool choose(const char* label, Enum& value, const std::vector<Enum>& values) {
   std::vector<std::string_view> names;
@@ -40,7 +40,7 @@ bool slide(const char* label, float& value, const Range& range, const char* form
 // A dim name and a value after it.
 void tell(const char* name, const std::string& value);
 
-// As printf's.
+// The text that printf would print, at most 255 bytes.
 std::string formatted(const char* format, ...) __attribute__((format(printf, 1, 2)));
 
 // "12.3%", with as many digits as are worth reading.

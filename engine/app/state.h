@@ -54,7 +54,7 @@ struct State {
   bool focus_panel = false, focus_picture = false;
   bool screenshot = false, save = false, undo = false, redo = false, full_screen = false, quit = false;
 
-  // The same and shortest-path, which needs no levels.
+  // `methods`, and shortest-path, which needs no levels.
   std::vector<Method> all_methods() const {
     std::vector<Method> all = methods;
     all.push_back(Method::shortest_path);

@@ -28,12 +28,13 @@ double milliseconds(std::chrono::steady_clock::duration duration) {
 
 }  // namespace
 
-Viewer::Viewer(Window& window, Stage& stage, std::filesystem::path stem)
+Viewer::Viewer(Window& window, vk::Context& presenter, Stage& stage, std::filesystem::path stem)
     : window_(window),
+      presenter_(presenter),
       stage_(stage),
       engine_(stage.engine()),
-      swapchain_(engine_.context(), window.width(), window.height()),
-      interface_(window, engine_.context(), swapchain_),
+      swapchain_(presenter_, window.width(), window.height()),
+      interface_(window, presenter_, swapchain_),
       tone_mapper_(engine_.context()),
       pace_(budget_ms),
       stem_(std::move(stem)),
@@ -46,7 +47,7 @@ Viewer::Viewer(Window& window, Stage& stage, std::filesystem::path stem)
 
 // The last frame may still read the pixels.
 Viewer::~Viewer() {
-  vkDeviceWaitIdle(engine_.context().device());
+  vkDeviceWaitIdle(presenter_.device());
 }
 
 void Viewer::run() {
@@ -216,7 +217,7 @@ void Viewer::keep_up() {
   const bool first = !shown_;
   try {
     remake(!changed);
-  } catch (const VulkanError&) {
+  } catch (const DeviceError&) {
     throw;
   } catch (const std::exception& error) {
     if (first) throw;
@@ -273,8 +274,20 @@ void Viewer::make_picture(bool settle, bool gather) {
   if (!gather) options.radiance = Radiance::lambertian;
   const PictureBuffers& picture = engine_.draw(state_.scene.view, options);
   measured_.exposure_stops = tone_mapper_.exposure(picture, state_.scene.tone);
-  pixels_ = &tone_mapper_.run(picture, state_.scene.tone, measured_.exposure_stops,
-                              {now.width, now.height, swapchain_.blue_first()});
+  show(tone_mapper_.run(picture, state_.scene.tone, measured_.exposure_stops,
+                        {now.width, now.height, swapchain_.blue_first()}));
+}
+
+// Brings pixels to the device that presents them, where another has made them.
+void Viewer::show(const device::Buffer& pixels) {
+  pixels_ = &pixels;
+  if (&engine_.context() == &presenter_) return;
+  const auto bytes = pixels.mapped_as<std::byte>();
+  if (presented_.size() < bytes.size()) {
+    presented_ = device::Buffer(presenter_, bytes.size(), device::Place::host, "picture/presented");
+  }
+  std::copy(bytes.begin(), bytes.end(), presented_.mapped_as<std::byte>().begin());
+  pixels_ = &presented_;
 }
 
 void Viewer::measure(Clock::time_point start, double solve_ms, double draw_ms, bool gathered) {
@@ -318,7 +331,7 @@ void Viewer::save_scene() {
     Scene scene = state_.scene;
     scene.body = std::filesystem::absolute(scene.body);
     SceneFile(scene).save(path);
-    state_.say("written: " + path.string());
+    state_.say("saved: " + path.string());
   } catch (const std::exception& error) {
     state_.say(error.what(), true);
   }
@@ -341,8 +354,8 @@ void Viewer::write_picture() {
     } while (std::filesystem::exists(png) || std::filesystem::exists(exr));
     write_png(png, picture, state_.scene.tone, engine_.metadata());
     write_exr(exr, picture, state_.scene.tone, engine_.metadata());
-    state_.say("written: " + png.string() + ", " + exr.string());
-  } catch (const VulkanError&) {
+    state_.say("saved: " + png.string() + ", " + exr.string());
+  } catch (const DeviceError&) {
     throw;
   } catch (const std::exception& error) {
     state_.say(error.what(), true);

@@ -18,14 +18,15 @@ namespace quadgraph {
 
 class Viewer {
  public:
-  // Of the scene that the stage shows. `stem`: of the pictures that the user asks for. All must outlive the viewer.
-  Viewer(Window& window, Stage& stage, std::filesystem::path stem);
+  // Views the scene that the stage shows, in frames of the window's Vulkan device. `stem`: file name, without
+  // extension, of saved images and scenes. All three must outlive the viewer.
+  Viewer(Window& window, vk::Context& presenter, Stage& stage, std::filesystem::path stem);
 
   ~Viewer();
   Viewer(const Viewer&) = delete;
   Viewer& operator=(const Viewer&) = delete;
 
-  // Until the user closes the window. Throws VulkanError.
+  // Until the user closes the window. Throws DeviceError.
   void run();
 
  private:
@@ -53,12 +54,14 @@ class Viewer {
   void remake(bool settle);
   SolveOptions options_of_solve(bool settle) const;
   void make_picture(bool settle, bool gather);
+  void show(const device::Buffer& pixels);
   void measure(Clock::time_point start, double solve_ms, double draw_ms, bool gathered);
   void save_scene();
   void present();
   void write_picture();
 
   Window& window_;
+  vk::Context& presenter_;
   Stage& stage_;
   Engine& engine_;
   vk::Swapchain swapchain_;
@@ -76,7 +79,8 @@ class Viewer {
   double pointer_x_ = 0, pointer_y_ = 0;  // pixels
   std::optional<Scene> shown_;            // empty before the first picture
   Part shown_part_;
-  const vk::Buffer* pixels_ = nullptr;       // of shown_part_
+  const device::Buffer* pixels_ = nullptr;   // of shown_part_, on the presenter
+  device::Buffer presented_;                 // where the engine has another device
   bool solved_exactly_ = false;              // the last solve was to the tolerance
   Clock::time_point changed_;                // when something changed last
   std::vector<Clock::time_point> pictures_;  // of the last second

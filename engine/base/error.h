@@ -22,8 +22,8 @@ struct SolverError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// A Vulkan call that failed, or a device that lacks what the engine needs.
-struct VulkanError : std::runtime_error {
+// A device that failed, has no room left, or lacks what the engine needs.
+struct DeviceError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 

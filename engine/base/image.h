@@ -24,7 +24,7 @@ struct ImagePyramid {
   std::vector<glm::vec3> texels{};
 };
 
-// Of the picture, halved first until no side is longer than `largest` texels.
+// The pyramid of an image, which is halved first until no side is longer than `largest` texels.
 ImagePyramid pyramid_of(Image picture, std::uint32_t largest);
 
 }  // namespace quadgraph

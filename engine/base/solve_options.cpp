@@ -5,6 +5,7 @@
 #include "engine/base/error.h"
 
 namespace quadgraph {
+
 void check_options(const SolveOptions& options) {
   if (!tolerance_range.contains(options.tolerance)) {
     throw InputError("tolerance: " + std::to_string(options.tolerance) + ", a number between 0 and 1 is wanted");
@@ -23,28 +24,8 @@ void check_options(const SolveOptions& options) {
   check_options(options.path);
 }
 
-bool on_grid(Method method) {
-  return method == Method::polygrid || method == Method::polygrid_divergence;
-}
-
-bool on_vertices(Method method) {
-  return method == Method::fem || on_grid(method);
-}
-
 bool gathers(Method method, Source source) {
   return on_vertices(method) && source == Source::buried;
-}
-
-bool symmetric(Method method) {
-  return !on_grid(method);
-}
-
-bool conserves(Method method) {
-  return method == Method::fem || method == Method::quadgraph_fv;
-}
-
-bool published(Method method) {
-  return method == Method::quadgraph_fdm || method == Method::polygrid;
 }
 
 bool bounces_wanted(const SolveOptions& options) {

@@ -20,20 +20,55 @@ enum class Method {
   shortest_path,  // no linear system: the light of the shortest optical path, through voxels (docs/shortest-path.md)
 };
 
-// Whether a method's carriers are the tet vertices, else the nodes of the QuadGraph.
-bool on_vertices(Method method);
+// Rows that are made alike: what the right-hand side and the CPU twin (engine/reference/operator.h) go by.
+enum class Discretisation { none, fdm, fv, fem, polygrid };
 
-// Whether it needs the links of a polygrid.
-bool on_grid(Method method);
+struct MethodTraits {
+  Discretisation discretisation = Discretisation::none;
+  bool on_vertices = false;  // its carriers are the tet vertices, else the nodes of the QuadGraph
+  bool on_grid = false;      // it needs the links of a polygrid
+  bool symmetric = true;     // its matrix is, so that conjugate gradients take it
+  bool conserves = false;    // its fluxes add up to the power that enters
+  bool published = false;    // with Source::diffuse and Model::diffusion it has the published boundary
+};
 
-// Whether its matrix is symmetric, so that conjugate gradients take it.
-bool symmetric(Method method);
+constexpr MethodTraits traits_of(Method method) {
+  switch (method) {
+    case Method::quadgraph_fdm:
+      return {.discretisation = Discretisation::fdm, .published = true};
+    case Method::quadgraph_fv:
+      return {.discretisation = Discretisation::fv, .conserves = true};
+    case Method::fem:
+      return {.discretisation = Discretisation::fem, .on_vertices = true, .conserves = true};
+    case Method::polygrid:
+      return {.discretisation = Discretisation::polygrid,
+              .on_vertices = true,
+              .on_grid = true,
+              .symmetric = false,
+              .published = true};
+    case Method::polygrid_divergence:
+      return {.discretisation = Discretisation::polygrid, .on_vertices = true, .on_grid = true, .symmetric = false};
+    case Method::shortest_path:
+      return {};
+  }
+  return {};
+}
 
-// Whether its fluxes add up to the power that enters.
-bool conserves(Method method);
-
-// Whether it is a published method, which with Source::diffuse and Model::diffusion has the published boundary.
-bool published(Method method);
+constexpr bool on_vertices(Method method) {
+  return traits_of(method).on_vertices;
+}
+constexpr bool on_grid(Method method) {
+  return traits_of(method).on_grid;
+}
+constexpr bool symmetric(Method method) {
+  return traits_of(method).symmetric;
+}
+constexpr bool conserves(Method method) {
+  return traits_of(method).conserves;
+}
+constexpr bool published(Method method) {
+  return traits_of(method).published;
+}
 
 enum class SolverKind {
   fmg_pcg,    // full-multigrid start, then conjugate gradients preconditioned by a V-cycle; fem only
@@ -130,8 +165,9 @@ struct SolveOptions {
   // Where the shape has changed: what the faces see of each other is found anew, for as many of them in each solve, in
   // turn; 0: for all.
   std::uint32_t exchange_rows = 0;
-  // Even light (ambient, of environments) goes in along one ray from an origin, straight down with the optical depth of
-  // the mean inside cosine, instead of eight: an eighth of that work. What that does to the exitance: docs/window.md.
+  // Uniform light (ambient, of environments) goes in along one ray from an origin, straight down with the optical depth
+  // of the mean inside cosine, instead of eight: an eighth of that work. What that does to the exitance:
+  // docs/window.md.
   bool mean_rays = false;
   // n > 0, with the links of a polygrid: on all levels but the coarsest only the first n layers of vertices below the
   // surface are solved for, the others keep what the coarser level has [PG Section 5.3, Fig. 8]; 0: all are.

@@ -41,7 +41,7 @@ struct BodyCut {
 // Throws InputError naming the field, what was found and what is allowed.
 void check_cut(const BodyCut& cut);
 
-// As shaders take them; checked before.
+// Cuts as shaders take them; checked before.
 std::vector<gpu::PathTool> path_tools(std::span<const BodyCut> cuts);
 
 }  // namespace quadgraph

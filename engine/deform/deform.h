@@ -23,7 +23,7 @@ gpu::DeformRecord deform_record(const Deformer& deformer, const RestBox& rest);
 // Displacements of the control points of a lattice or of the vertices of a cage, mm; empty for other kinds.
 std::vector<glm::dvec3> control_displacements(const Deformer& deformer);
 
-// Of a `displaced` deformer, mm for each of the `count` vertices of the mesh, which check_shapes has been content with.
+// Displacements of a `displaced` deformer that check_shapes has passed, mm for each of the mesh's `count` vertices.
 std::vector<glm::vec3> shape_displacements(const Deformer& deformer, MeshNumber mesh, std::size_t count);
 
 // Throws InputError if a `displaced` deformer has shapes of another body.

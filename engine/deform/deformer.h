@@ -87,8 +87,8 @@ struct Deformer {
 // Throws InputError naming the field, what was found and what is allowed.
 void check_deformer(const Deformer& deformer);
 
-// Of `count` shapes that are the frames of an animation, at a frame that need not be whole; before the first and after
-// the last one those.
+// Weights of `count` shapes that are the frames of an animation, at a frame that need not be a whole number; before the
+// first and after the last frame that frame's shape alone.
 std::vector<double> frame_weights(double frame, std::size_t count);
 
 // "twist 90 degrees, stretch x 1.5, cage": in words, without what does not fit into a line.

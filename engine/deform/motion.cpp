@@ -8,7 +8,7 @@ namespace {
 constexpr std::uint32_t graph_steps = 20;    // on the finest level, of methods without cycles
 constexpr std::uint32_t exchange_parts = 8;  // a view of the other parts is up to so many frames old
 
-// Of the level that says what its faces see.
+// Faces of the level that has the exchange between faces.
 std::uint32_t exchange_faces(std::span<const Level> levels) {
   for (const Level& level : levels) {
     if (!level.seen.empty()) return level.face_count();

@@ -9,9 +9,9 @@ namespace quadgraph {
 
 struct Level;
 
-// The same with one cycle and one bounce from the last solution (twenty steps of conjugate gradients or sweeps where
-// the method has no cycles), even light by one ray from an origin, and an eighth of the faces looking anew at what they
-// see. The method shortest-path stays as it is.
+// Options for a frame in motion: one cycle and one bounce from the last solution (twenty steps of conjugate gradients
+// or sweeps where the method has no cycles), uniform light by one ray per origin, and visibility traced again for an
+// eighth of the faces. The method shortest-path stays as it is.
 SolveOptions in_motion(SolveOptions options, std::span<const Level> levels);
 
 }  // namespace quadgraph

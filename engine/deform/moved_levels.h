@@ -28,7 +28,7 @@ class MovedLevels {
   // has no volume left or is turned inside out.
   void move(std::uint32_t number, std::span<const glm::vec3> positions);
 
-  // The same without a look at the tets.
+  // Moves like `move`, without checking the tets.
   void place(std::uint32_t number, std::span<const glm::vec3> positions);
 
   // All levels as the file has them.

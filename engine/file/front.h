@@ -11,7 +11,7 @@ namespace quadgraph {
 // is a number of -180 to 360.
 float front_from(const std::string& metadata, const std::string& file);
 
-// The same of a file, of which no more is read than that; 0 where it cannot be: whoever loads the body says why.
+// The front that a file's metadata names; nothing else is read. 0 where that fails: whoever loads the body says why.
 float front_of(const std::filesystem::path& file);
 
 }  // namespace quadgraph

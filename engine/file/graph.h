@@ -35,7 +35,7 @@ struct Level {
   std::span<const glm::uvec4> links;          // entry k across the face opposite vertex k; >= n_t: surface node
   std::span<const glm::vec3> nodes;           // mm; inner nodes, then surface nodes
   std::span<const std::uint32_t> face_kinds;  // FaceKind of each outside face; empty: all are open
-  // Of a polygrid, else empty: the six links of each vertex below the surface, in pairs of opposite ones; the last of
+  // Links of a polygrid, else empty: six for each vertex below the surface, in pairs of opposite ones; the last of
   // six may be the vertex itself, for none. A surface vertex is named once, by its one neighbour. Vertices are in order
   // of their layers, the fewest links from the surface.
   std::span<const std::uint32_t> grid_links;
@@ -74,7 +74,7 @@ class QuadGraph {
   // the file cannot be read.
   static QuadGraph load(const std::filesystem::path& path);
 
-  // The same from bytes in memory; `name` stands for the file in messages.
+  // Reads and validates a file's bytes in memory; `name` stands for the file in messages. Throws FormatError.
   static QuadGraph parse(std::span<const std::byte> bytes, const std::string& name);
 
   const std::vector<Level>& levels() const { return levels_; }  // finest first; empty: a surface alone

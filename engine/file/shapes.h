@@ -9,7 +9,7 @@
 
 namespace quadgraph {
 
-// Of one mesh, one vector per shape, of one displacement per vertex, mm.
+// The shapes of one mesh: a vector per shape, with a displacement per vertex, mm.
 using ShapesOfMesh = std::vector<std::vector<glm::vec3>>;
 
 struct Shapes {

@@ -25,7 +25,7 @@ void check_by(const std::optional<glm::vec3>& by, const char* field, Edit::Opera
   }
 }
 
-// Of the picture, whose texels are put at the end of `texels`.
+// Appends the image's texels to `texels`; where they lie.
 gpu::ImageLevels put(const std::shared_ptr<const ImagePyramid>& image, std::vector<glm::vec3>& texels) {
   if (!image) return {};
   const auto first = static_cast<gpu::uint>(texels.size());
@@ -56,7 +56,7 @@ gpu::MaterialEdit as_gpu(const Edit& edit, std::size_t first_point) {
   return e;
 }
 
-// Of a place in the box of the edit, the share of it that arrives there; and the factor of its image.
+// What an edit does at a place in its box: the share of it that arrives there, and the factor of its image.
 struct Arriving {
   glm::vec3 factor{1};
   float weight = 1;

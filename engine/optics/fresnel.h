@@ -15,8 +15,8 @@ double internal_reflectance(double mu, double eta);
 // R_n, the integral of internal_reflectance mu^n over mu from 0 to 1; to 1e-10.
 double fresnel_moment(int n, double eta);
 
-// Share of even light from outside that enters, the integral of 2 mu fresnel_transmittance over the outside cosine: by
-// reciprocity eta^2 (1 - 2 R_1).
+// Share of uniform light from outside that enters, the integral of 2 mu fresnel_transmittance over the outside cosine:
+// by reciprocity eta^2 (1 - 2 R_1).
 double diffuse_transmittance(double eta);
 
 // Internal diffuse reflectance by the published polynomial: -1.440/eta^2 + 0.710/eta + 0.668 + 0.0636 eta for eta > 1,

@@ -54,7 +54,7 @@ double layer_ratio(double rate, double depth) {
   return std::copysign(2 / (std::abs(s) + std::sqrt(std::max(0.0, s * s - 4))), s);
 }
 
-// The same on layers: the particular solution falls by e^-depth from layer to layer, like the load.
+// Reflectance of a half-space cut into layers: the particular solution falls by e^-depth per layer, like the load.
 double layered_reflectance(const Moments& m, double albedo, double depth) {
   const double once = std::exp(-depth), entered = -std::expm1(-depth);
   const glm::dmat2 beside = m.conduction * (-1 / depth) + m.mass * (depth / 6);

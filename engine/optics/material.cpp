@@ -70,7 +70,6 @@ constexpr std::array<std::string_view, gpu::PATTERNS> patterns = {"none",  "vein
 constexpr std::string_view allowed_keys =
     "pattern, eta, period, sharpness, sigma_s_prime, sigma_a, or reflectance, mean_free_path, and these four after "
     "second_";
-constexpr float default_eta = 1.3f;
 
 std::string joined(std::span<const std::string_view> names) {
   std::string text;

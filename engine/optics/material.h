@@ -9,18 +9,21 @@
 
 namespace quadgraph {
 
+// Index of refraction, inside over outside, of a material that says none.
+inline constexpr float default_eta = 1.3f;
+
 // Names in the order they are listed to the user.
 const std::vector<std::string>& material_names();
 
 // "none", "veins", "clouds", ..., as `pattern=` takes it.
 std::string_view pattern_name(const gpu::Material& material);
 
-// Parses "marble" (a name), or "sigma_s_prime=2.0,sigma_a=0.01,eta=1.3" with one value or R/G/B each; eta defaults to
-// 1.3, the other two are required. Instead of these two, "reflectance=0.8/0.6/0.5,mean_free_path=0.5" takes the colour
-// that a thick body shows in white light (engine/optics/colour.h) and 1 / sigma_t in mm. "NAME,key=value,..." overrides
-// a named material. "pattern=veins,period=16,sharpness=14" mixes in second_sigma_s_prime and second_sigma_a, or
-// second_reflectance and second_mean_free_path. Throws InputError naming the field, what was found and what is allowed
-// (sigma_s_prime, sigma_a >= 0, eta in [1, 3], mean_free_path > 0; all finite).
+// Parses "marble" (a name), or "sigma_s_prime=2.0,sigma_a=0.01,eta=1.3" with one value or R/G/B each; eta may be left
+// out (default_eta), the other two are required. Instead of these, "reflectance=0.8/0.6/0.5,mean_free_path=0.5" takes
+// the colour that a thick body shows in white light (engine/optics/colour.h) and 1 / sigma_t, mm. "NAME,key=value"
+// overrides a named material. "pattern=veins,period=16,sharpness=14" mixes in second_sigma_s_prime and second_sigma_a,
+// or second_reflectance and second_mean_free_path. Throws InputError naming the field, what was found and what is
+// allowed (sigma_s_prime, sigma_a >= 0, eta in [1, 3], mean_free_path > 0; all finite).
 gpu::Material parse_material(std::string_view text);
 
 // Throws InputError if a coefficient is out of range.

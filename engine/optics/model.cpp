@@ -27,7 +27,7 @@ HalfSpace diffusion_half_space(double albedo, double k11) {
   return {k11 * (mode + particular), decay};
 }
 
-// The same with G and masses of SP3 (operator.h): two modes and the particular solution.
+// The half-space in SP3, with its G and masses (operator.h): two modes and the particular solution.
 HalfSpace sp3_half_space(double albedo, const Boundary& boundary) {
   const glm::dmat2 kappa = glm::dmat2(1, 2.0 / 3, 2.0 / 3, 55.0 / 63) * (1.0 / 3);
   const glm::dmat2 mass(1 - albedo, 0, 0, 5.0 / 9);

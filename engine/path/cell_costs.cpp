@@ -5,15 +5,15 @@
 
 #include "engine/base/error.h"
 #include "engine/path/path_pass.h"
-#include "spirv/path_cost.comp.h"
-#include "spirv/path_flood.comp.h"
+#include "interface/path/path_cost.comp.h"
+#include "interface/path/path_flood.comp.h"
 
 namespace quadgraph {
 
-CellCosts::CellCosts(vk::Context& context)
+CellCosts::CellCosts(device::Device& context)
     : context_(context),
-      cost_pass_(context, path_cost_comp, sizeof(gpu::PathCostPush), "path cost"),
-      body_(context, sizeof(gpu::PathMaterial), vk::Place::device, "path/material") {}
+      cost_pass_(context, shader::path_cost),
+      body_(context, sizeof(gpu::PathMaterial), device::Place::device, "path/material") {}
 
 void CellCosts::set(const gpu::Material& material) {
   clear();
@@ -22,7 +22,7 @@ void CellCosts::set(const gpu::Material& material) {
 
 void CellCosts::set(const OpticalGrid& grid) {
   clear();
-  optical_ = vk::upload(context_, grid.optical, "path/coefficients", vk::Place::fields);
+  optical_ = device::upload(context_, grid.optical, "path/coefficients");
   grid_.optical = optical_.address();
   grid_.optical_size = grid.size;
   grid_.optical_spacing = grid.spacing;
@@ -39,24 +39,23 @@ void CellCosts::set(std::span<const Edit> edits) {
   const EditArrays arrays(edits);
   edit_count_ = static_cast<std::uint32_t>(arrays.edits.size());
   wants_depth_ = arrays.wants_depth();
-  vk::rewrite<gpu::MaterialEdit>(context_, arrays.edits, "path/edits", edits_);
-  vk::rewrite<glm::vec3>(context_, arrays.points, "path/strokes", points_);
-  vk::rewrite<glm::vec3>(context_, arrays.texels, "path/images", texels_);
+  device::rewrite<gpu::MaterialEdit>(context_, arrays.edits, "path/edits", edits_);
+  device::rewrite<glm::vec3>(context_, arrays.points, "path/strokes", points_);
+  device::rewrite<glm::vec3>(context_, arrays.texels, "path/images", texels_);
 }
 
-const vk::Buffer& CellCosts::flood(const Voxels& voxels, std::vector<PassStats>& passes) {
+const device::Buffer& CellCosts::flood(const Voxels& voxels, std::vector<PassStats>& passes) {
   const gpu::PathGrid& grid = voxels.grid();
   const std::uint64_t count = gpu::cell_count(grid);
   if (!flood_pass_) {
-    flood_pass_.emplace(context_, path_flood_comp, static_cast<std::uint32_t>(sizeof(gpu::PathFloodPush)),
-                        "path flood");
+    flood_pass_.emplace(context_, shader::path_flood);
   }
-  for (vk::Buffer& nearest : nearest_) {
-    make_room(context_, nearest, count * sizeof(std::uint32_t), vk::Place::read, "path/nearest");
+  for (device::Buffer& nearest : nearest_) {
+    make_room(context_, nearest, count * sizeof(std::uint32_t), device::Place::device, "path/nearest");
   }
   const std::uint32_t longest = std::max({grid.size.x, grid.size.y, grid.size.z});
   std::uint32_t last = 0;
-  run_pass(context_, "nearest surface", 0, passes, [&](vk::Commands& commands) {
+  run_pass(context_, "nearest surface", 0, passes, [&](device::Commands& commands) {
     const auto record = [&](std::uint32_t step) {
       commands.dispatch(*flood_pass_,
                         gpu::PathFloodPush{grid, voxels.triangle().address(), nearest_[last].address(),
@@ -71,8 +70,8 @@ const vk::Buffer& CellCosts::flood(const Voxels& voxels, std::vector<PassStats>&
   return nearest_[last];
 }
 
-void CellCosts::run(const Voxels& voxels, const PathMesh& mesh, const vk::Buffer* rest, PathCost kind,
-                    const vk::Buffer& cost, std::vector<PassStats>& passes) {
+void CellCosts::run(const Voxels& voxels, const PathMesh& mesh, const device::Buffer* rest, PathCost kind,
+                    const device::Buffer& cost, std::vector<PassStats>& passes) {
   if (!material_ && optical_.size() == 0) {
     throw InputError(
         "shortest-path: coefficients are given per node of levels, which it does not know; give a material or a "
@@ -85,10 +84,10 @@ void CellCosts::run(const Voxels& voxels, const PathMesh& mesh, const vk::Buffer
   body.texels = texels_.address();
   body.edit_count = edit_count_;
   body.cost = kind == PathCost::extinction ? gpu::COST_EXTINCTION : gpu::COST_TRANSPORT;
-  vk::write_bytes(context_, body_, std::as_bytes(std::span(&body, 1)));
+  device::write_bytes(context_, body_, std::as_bytes(std::span(&body, 1)));
   const bool placed = !material_ || material_->pattern != gpu::PATTERN_NONE || edit_count_ > 0;
   const bool deep = (material_ && material_->pattern == gpu::PATTERN_LAYERS) || wants_depth_;
-  const vk::Buffer* nearest = (placed && rest != nullptr) || deep ? &flood(voxels, passes) : nullptr;
+  const device::Buffer* nearest = (placed && rest != nullptr) || deep ? &flood(voxels, passes) : nullptr;
   const gpu::PathCostPush push{voxels.grid(),
                                voxels.cells().flags.address(),
                                nearest ? nearest->address() : 0,
@@ -100,7 +99,7 @@ void CellCosts::run(const Voxels& voxels, const PathMesh& mesh, const vk::Buffer
                                cost.address()};
   const std::uint64_t count = gpu::cell_count(voxels.grid());
   run_pass(context_, "path cost", 16 * count, passes,
-           [&](vk::Commands& commands) { commands.dispatch(cost_pass_, push, count); });
+           [&](device::Commands& commands) { commands.dispatch(cost_pass_, push, count); });
 }
 
 }  // namespace quadgraph

@@ -14,34 +14,34 @@ namespace quadgraph {
 
 class CellCosts {
  public:
-  explicit CellCosts(vk::Context& context);
+  explicit CellCosts(device::Device& context);
 
   // A material, or a grid of coefficients; nothing, for coefficients that only the nodes of levels have.
   void set(const gpu::Material& material);
   void set(const OpticalGrid& grid);
   void clear();
 
-  // Of the one or the other, as in engine/optics/edit.h; checked before.
+  // Edits of the material or the grid (engine/optics/edit.h); checked before.
   void set(std::span<const Edit> edits);
 
   // Evaluates the coefficients into `cost` (PathRelaxation::cost). `rest`: vertices of the mesh at rest, null where it
   // lies there. Throws InputError where nothing is set.
-  void run(const Voxels& voxels, const PathMesh& mesh, const vk::Buffer* rest, PathCost kind, const vk::Buffer& cost,
-           std::vector<PassStats>& passes);
+  void run(const Voxels& voxels, const PathMesh& mesh, const device::Buffer* rest, PathCost kind,
+           const device::Buffer& cost, std::vector<PassStats>& passes);
 
  private:
-  const vk::Buffer& flood(const Voxels& voxels, std::vector<PassStats>& passes);
+  const device::Buffer& flood(const Voxels& voxels, std::vector<PassStats>& passes);
 
-  vk::Context& context_;
-  vk::ComputePass cost_pass_;
-  std::optional<vk::ComputePass> flood_pass_;  // made at first use
+  device::Device& context_;
+  device::ComputePass cost_pass_;
+  std::optional<device::ComputePass> flood_pass_;  // made at first use
   std::optional<gpu::Material> material_;
   gpu::PathMaterial grid_{};  // its part of it
-  vk::Buffer optical_, edits_, points_, texels_;
+  device::Buffer optical_, edits_, points_, texels_;
   std::uint32_t edit_count_ = 0;
-  bool wants_depth_ = false;  // of the edits
-  vk::Buffer body_;           // gpu::PathMaterial
-  vk::Buffer nearest_[2];     // PathFloodPush
+  bool wants_depth_ = false;   // of the edits
+  device::Buffer body_;        // gpu::PathMaterial
+  device::Buffer nearest_[2];  // PathFloodPush
 };
 
 }  // namespace quadgraph

@@ -10,21 +10,21 @@ namespace quadgraph {
 
 class ExitField {
  public:
-  explicit ExitField(vk::Context& context);
+  explicit ExitField(device::Device& context);
 
   void run(const Voxels& voxels, const PathRelaxation& paths, const gpu::PathTools& tools,
            std::vector<PassStats>& passes);
 
-  const vk::Buffer& field() const { return record_; }  // gpu::PathField, one
+  const device::Buffer& field() const { return record_; }  // gpu::PathField, one
 
   // W/mm^2 at points, mm, as path_field.glsl has it.
   std::vector<glm::vec3> at(std::span<const glm::vec3> points) const;
 
  private:
-  vk::Context& context_;
-  vk::ComputePass pass_;
+  device::Device& context_;
+  device::ComputePass pass_;
   gpu::PathGrid grid_{};
-  vk::Buffer cells_, record_;
+  device::Buffer cells_, record_;
 };
 
 }  // namespace quadgraph

@@ -7,8 +7,8 @@
 
 namespace quadgraph {
 
-std::vector<float> paths_through(vk::Context& context, const glm::uvec3& size, float cell, std::span<const float> cost,
-                                 std::span<const float> entering, PathSolver solver) {
+std::vector<float> paths_through(device::Device& context, const glm::uvec3& size, float cell,
+                                 std::span<const float> cost, std::span<const float> entering, PathSolver solver) {
   gpu::PathGrid grid{};
   grid.cell = cell;
   grid.size = size;
@@ -26,27 +26,27 @@ std::vector<float> paths_through(vk::Context& context, const glm::uvec3& size, f
   std::vector<std::uint32_t> flags(count);
   for (std::size_t i = 0; i < count; ++i) flags[i] = cost[i] >= 0 ? gpu::CELL_SOLID : 0;
   const std::vector<std::uint32_t> wanted(6 * block_count(grid), 0);
-  const vk::Buffer flag_buffer = vk::upload<std::uint32_t>(context, flags, "path/flags");
-  const vk::Buffer wanted_buffer = vk::upload<std::uint32_t>(context, wanted, "path/wanted", vk::Place::device);
+  const device::Buffer flag_buffer = device::upload<std::uint32_t>(context, flags, "path/flags");
+  const device::Buffer wanted_buffer = device::upload<std::uint32_t>(context, wanted, "path/wanted");
   PathRelaxation relaxation(context);
   relaxation.make_room(grid);
-  vk::write_bytes(context, relaxation.cost(), std::as_bytes(cost));
-  vk::write_bytes(context, relaxation.entering(), std::as_bytes(entering));
+  device::write_bytes(context, relaxation.cost(), std::as_bytes(cost));
+  device::write_bytes(context, relaxation.entering(), std::as_bytes(entering));
   std::vector<PassStats> passes;
   relaxation.solve({grid, flag_buffer, wanted_buffer}, solver, passes);
-  return vk::download<float>(context, relaxation.lengths());
+  return device::download<float>(context, relaxation.lengths());
 }
 
-GivenVoxels voxels_of(vk::Context& context, std::span<const glm::vec3> vertices, std::span<const glm::uvec3> triangles,
-                      std::uint32_t cells) {
-  const vk::Buffer vertex_buffer = vk::upload(context, vertices, "path/vertices");
-  const vk::Buffer triangle_buffer = vk::upload(context, triangles, "path/triangles");
+GivenVoxels voxels_of(device::Device& context, std::span<const glm::vec3> vertices,
+                      std::span<const glm::uvec3> triangles, std::uint32_t cells) {
+  const device::Buffer vertex_buffer = device::upload(context, vertices, "path/vertices");
+  const device::Buffer triangle_buffer = device::upload(context, triangles, "path/triangles");
   Voxels voxels(context);
   std::vector<PassStats> passes;
   voxels.update({vertex_buffer, triangle_buffer, static_cast<std::uint32_t>(vertices.size()),
                  static_cast<std::uint32_t>(triangles.size())},
                 cells, {}, passes);
-  return {voxels.grid(), vk::download<std::uint32_t>(context, voxels.cells().flags)};
+  return {voxels.grid(), device::download<std::uint32_t>(context, voxels.cells().flags)};
 }
 
 }  // namespace quadgraph

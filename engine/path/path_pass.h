@@ -5,15 +5,15 @@
 #include <vector>
 
 #include "engine/base/pass_stats.h"
-#include "engine/vk/commands.h"
+#include "engine/device/commands.h"
 
 namespace quadgraph {
 
 // Records with `record(commands)`, runs it, waits, and adds what it took to `passes`. `bytes`: read and written.
 template <typename Record>
-void run_pass(vk::Context& context, const char* name, std::uint64_t bytes, std::vector<PassStats>& passes,
+void run_pass(device::Device& context, const char* name, std::uint64_t bytes, std::vector<PassStats>& passes,
               const Record& record) {
-  vk::Commands commands(context, 1);
+  device::Commands commands(context, 1);
   commands.begin_pass(name);
   record(commands);
   commands.end_pass();
@@ -21,9 +21,9 @@ void run_pass(vk::Context& context, const char* name, std::uint64_t bytes, std::
 }
 
 // `buffer` with room for that many bytes, which may be more than it is asked for.
-inline void make_room(vk::Context& context, vk::Buffer& buffer, std::uint64_t bytes, vk::Place place,
+inline void make_room(device::Device& context, device::Buffer& buffer, std::uint64_t bytes, device::Place place,
                       const char* name) {
-  if (buffer.handle() == VK_NULL_HANDLE || buffer.size() < bytes) {
+  if (!buffer.exists() || buffer.size() < bytes) {
     buffer = {};  // two need not fit beside each other
     buffer = {context, bytes, place, name};
   }

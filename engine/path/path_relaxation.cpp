@@ -4,8 +4,8 @@
 
 #include "engine/base/error.h"
 #include "engine/path/path_pass.h"
-#include "spirv/path_relax.comp.h"
-#include "spirv/path_start.comp.h"
+#include "interface/path/path_relax.comp.h"
+#include "interface/path/path_start.comp.h"
 
 namespace quadgraph {
 namespace {
@@ -17,38 +17,36 @@ constexpr std::uint64_t word = sizeof(std::uint32_t);
 
 }  // namespace
 
-PathRelaxation::PathRelaxation(vk::Context& context)
+PathRelaxation::PathRelaxation(device::Device& context)
     : context_(context),
-      start_pass_(context, path_start_comp, sizeof(gpu::PathStartPush), "path start"),
-      fronts_(context, 3 * (most_rounds + 1) * word, vk::Place::device, "path/fronts"),
-      groups_(context, (most_rounds + 1) * sizeof(glm::uvec3), vk::Place::device, "path/groups"),
-      counts_(context, sizeof(gpu::PathCounts), vk::Place::device, "path/counts of lit cells") {}
+      start_pass_(context, shader::path_start),
+      fronts_(context, 3 * (most_rounds + 1) * word, device::Place::device, "path/fronts"),
+      groups_(context, (most_rounds + 1) * sizeof(glm::uvec3), device::Place::device, "path/groups"),
+      counts_(context, sizeof(gpu::PathCounts), device::Place::device, "path/counts of lit cells") {}
 
-const vk::ComputePass& PathRelaxation::pass(PathSolver solver) {
+const device::ComputePass& PathRelaxation::pass(PathSolver solver) {
   const std::uint32_t lattice = solver == PathSolver::lattice ? 1 : 0;
   auto& pass = passes_[lattice];
   if (pass) return *pass;
-  // llvmpipe runs eight invocations at a time, which then need not wait for others.
-  const bool few = vk::few_workgroups(context_);
-  return pass.emplace(context_, path_relax_comp, static_cast<std::uint32_t>(sizeof(gpu::PathRelaxPush)), "path relax",
-                      few ? std::uint32_t{PATH_BLOCK} : std::uint32_t{PATH_GROUP}, lattice);
+  return pass.emplace(context_, shader::path_relax,
+                      device::ComputeOptions{.variant = lattice, .workgroup_size = PATH_GROUP});
 }
 
 void PathRelaxation::make_room(const gpu::PathGrid& grid) {
   const std::uint64_t bytes = 3 * word * gpu::cell_count(grid);
-  quadgraph::make_room(context_, cost_, bytes, vk::Place::read, "path/cost");
-  quadgraph::make_room(context_, entering_, bytes, vk::Place::read, "path/entering");
-  quadgraph::make_room(context_, lengths_, bytes, vk::Place::read, "path/lengths");
-  quadgraph::make_room(context_, arrivals_, 6 * sizeof(glm::uvec2) * block_count(grid), vk::Place::device,
+  quadgraph::make_room(context_, cost_, bytes, device::Place::device, "path/cost");
+  quadgraph::make_room(context_, entering_, bytes, device::Place::device, "path/entering");
+  quadgraph::make_room(context_, lengths_, bytes, device::Place::device, "path/lengths");
+  quadgraph::make_room(context_, arrivals_, 6 * sizeof(glm::uvec2) * block_count(grid), device::Place::device,
                        "path/arrivals");
-  for (vk::Buffer& list : lists_) {
-    quadgraph::make_room(context_, list, 3 * word * block_count(grid), vk::Place::device, "path/blocks to relax");
+  for (device::Buffer& list : lists_) {
+    quadgraph::make_room(context_, list, 3 * word * block_count(grid), device::Place::device, "path/blocks to relax");
   }
 }
 
 void PathRelaxation::solve(const SolidCells& cells, PathSolver solver, std::vector<PassStats>& passes) {
   const gpu::PathGrid& grid = cells.grid;
-  const vk::ComputePass& relax = pass(solver);
+  const device::ComputePass& relax = pass(solver);
   const std::vector<glm::uvec3> no_groups(most_rounds + 1, glm::uvec3(0, 1, 1));
   const std::uint64_t count = gpu::cell_count(grid);
   rounds_ = relaxed_ = 0;
@@ -57,13 +55,12 @@ void PathRelaxation::solve(const SolidCells& cells, PathSolver solver, std::vect
     if (rounds_ + rounds_at_once > most_rounds) {
       throw SolverError("shortest paths: not found in " + std::to_string(most_rounds) + " rounds");
     }
-    run_pass(context_, "shortest paths", 0, passes, [&](vk::Commands& commands) {
+    run_pass(context_, "shortest paths", 0, passes, [&](device::Commands& commands) {
       if (rounds_ == 0) {
         commands.update(groups_, std::as_bytes(std::span(no_groups)));
         commands.fill(counts_, 0);
         commands.fill(fronts_, ~0u);
         commands.fill(arrivals_, ~0u);
-        commands.barrier();
         commands.dispatch(
             start_pass_,
             gpu::PathStartPush{grid, cells.flags.address(), entering_.address(), lengths_.address(),
@@ -84,7 +81,7 @@ void PathRelaxation::solve(const SolidCells& cells, PathSolver solver, std::vect
         commands.dispatch_indirect(relax, push, groups_, k * sizeof(glm::uvec3));
       }
     });
-    groups = vk::download<glm::uvec3>(context_, groups_);
+    groups = device::download<glm::uvec3>(context_, groups_);
     for (std::uint32_t k = rounds_; k < rounds_ + rounds_at_once; ++k) relaxed_ += groups[k].x;
     rounds_ += rounds_at_once;
     done = groups[rounds_].x == 0;
@@ -92,7 +89,7 @@ void PathRelaxation::solve(const SolidCells& cells, PathSolver solver, std::vect
   while (rounds_ > 0 && groups[rounds_ - 1].x == 0) --rounds_;
   // Per block of a channel: lengths and costs with a cell around, and what has changed.
   passes.back().bytes = relaxed_ * 4ull * (2 * 1000 + 512) + count * 28;
-  lit_ = vk::download<gpu::PathCounts>(context_, counts_)[0].lit;
+  lit_ = device::download<gpu::PathCounts>(context_, counts_)[0].lit;
 }
 
 }  // namespace quadgraph

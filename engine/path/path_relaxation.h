@@ -17,31 +17,31 @@ namespace quadgraph {
 // rounding.
 class PathRelaxation {
  public:
-  explicit PathRelaxation(vk::Context& context);
+  explicit PathRelaxation(device::Device& context);
 
   // Room for the cells of a grid. What cost and entering hold is then undefined.
   void make_room(const gpu::PathGrid& grid);
 
   // Channel after channel, per cell: float, 1/mm, below 0 where it is not solid; and what enters, as the bits of a
   // float in W/mm^2, 0 where nothing does. Both are for others to write.
-  const vk::Buffer& cost() const { return cost_; }
-  const vk::Buffer& entering() const { return entering_; }
+  const device::Buffer& cost() const { return cost_; }
+  const device::Buffer& entering() const { return entering_; }
 
   // Lengths from -ln(entering) on. Throws SolverError if rounds do not end.
   void solve(const SolidCells& cells, PathSolver solver, std::vector<PassStats>& passes);
 
-  const vk::Buffer& lengths() const { return lengths_; }  // as cost; PATH_FAR: no light gets there
-  std::uint32_t rounds() const { return rounds_; }        // of the last solve
-  std::uint32_t relaxed() const { return relaxed_; }      // blocks of a channel, over all rounds, and waited
-  std::uint32_t lit() const { return lit_; }              // cells that light enters
+  const device::Buffer& lengths() const { return lengths_; }  // as cost; PATH_FAR: no light gets there
+  std::uint32_t rounds() const { return rounds_; }            // of the last solve
+  std::uint32_t relaxed() const { return relaxed_; }          // blocks of a channel, over all rounds, and waited
+  std::uint32_t lit() const { return lit_; }                  // cells that light enters
 
  private:
-  const vk::ComputePass& pass(PathSolver solver);
+  const device::ComputePass& pass(PathSolver solver);
 
-  vk::Context& context_;
-  vk::ComputePass start_pass_;
-  std::optional<vk::ComputePass> passes_[2];  // by PathSolver, made at first use
-  vk::Buffer cost_, entering_, lengths_, lists_[2], arrivals_, fronts_, groups_, counts_;
+  device::Device& context_;
+  device::ComputePass start_pass_;
+  std::optional<device::ComputePass> passes_[2];  // by PathSolver, made at first use
+  device::Buffer cost_, entering_, lengths_, lists_[2], arrivals_, fronts_, groups_, counts_;
   std::uint32_t rounds_ = 0, relaxed_ = 0, lit_ = 0;
 };
 

@@ -5,10 +5,10 @@
 #include <bit>
 
 #include "engine/path/path_pass.h"
-#include "spirv/path_box.comp.h"
-#include "spirv/path_crossings.comp.h"
-#include "spirv/path_solid.comp.h"
-#include "spirv/path_winding.comp.h"
+#include "interface/path/path_box.comp.h"
+#include "interface/path/path_crossings.comp.h"
+#include "interface/path/path_solid.comp.h"
+#include "interface/path/path_winding.comp.h"
 
 namespace quadgraph {
 namespace {
@@ -23,14 +23,14 @@ float from_sortable(std::uint32_t number) {
 
 }  // namespace
 
-Voxels::Voxels(vk::Context& context)
+Voxels::Voxels(device::Device& context)
     : context_(context),
-      box_pass_(context, path_box_comp, sizeof(gpu::PathBoxPush), "path box"),
-      crossings_pass_(context, path_crossings_comp, sizeof(gpu::PathCrossingsPush), "path crossings"),
-      winding_pass_(context, path_winding_comp, sizeof(gpu::PathWindingPush), "path winding"),
-      solid_pass_(context, path_solid_comp, sizeof(gpu::PathSolidPush), "path solid"),
-      box_(context, 6 * sizeof(std::uint32_t), vk::Place::read, "path/box"),
-      counts_(context, sizeof(gpu::PathCounts), vk::Place::read, "path/counts of cells") {}
+      box_pass_(context, shader::path_box),
+      crossings_pass_(context, shader::path_crossings),
+      winding_pass_(context, shader::path_winding),
+      solid_pass_(context, shader::path_solid),
+      box_(context, 6 * sizeof(std::uint32_t), device::Place::device, "path/box"),
+      counts_(context, sizeof(gpu::PathCounts), device::Place::device, "path/counts of cells") {}
 
 std::uint32_t Voxels::stripes(const PathMesh& mesh) {
   return std::max(least_invocations / std::max(mesh.triangle_count, 1u), 1u);
@@ -38,13 +38,12 @@ std::uint32_t Voxels::stripes(const PathMesh& mesh) {
 
 void Voxels::fit(const PathMesh& mesh, std::uint32_t cells, std::vector<PassStats>& passes) {
   constexpr std::array<std::uint32_t, 6> none = {~0u, ~0u, ~0u, 0, 0, 0};
-  run_pass(context_, "box", mesh.vertices.size(), passes, [&](vk::Commands& commands) {
+  run_pass(context_, "box", mesh.vertices.size(), passes, [&](device::Commands& commands) {
     commands.update(box_, std::as_bytes(std::span(none)));
-    commands.barrier();
     commands.dispatch(box_pass_, gpu::PathBoxPush{mesh.vertices.address(), box_.address(), mesh.vertex_count},
                       mesh.vertex_count);
   });
-  const auto found = vk::download<std::uint32_t>(context_, box_);
+  const auto found = device::download<std::uint32_t>(context_, box_);
   glm::vec3 low, high;
   for (int axis = 0; axis < 3; ++axis) {
     low[axis] = from_sortable(found[axis]);
@@ -57,10 +56,10 @@ void Voxels::update(const PathMesh& mesh, std::uint32_t cells, const gpu::PathTo
                     std::vector<PassStats>& passes) {
   fit(mesh, cells, passes);
   const std::uint64_t count = gpu::cell_count(grid_), blocks = block_count(grid_), word = sizeof(std::uint32_t);
-  make_room(context_, crossings_, 3 * count * word, vk::Place::read, "path/crossings");
-  make_room(context_, flags_, count * word, vk::Place::read, "path/flags");
-  make_room(context_, triangle_, count * word, vk::Place::read, "path/triangles of cells");
-  make_room(context_, wanted_, 6 * blocks * word, vk::Place::device, "path/wanted");
+  make_room(context_, crossings_, 3 * count * word, device::Place::device, "path/crossings");
+  make_room(context_, flags_, count * word, device::Place::device, "path/flags");
+  make_room(context_, triangle_, count * word, device::Place::device, "path/triangles of cells");
+  make_room(context_, wanted_, 6 * blocks * word, device::Place::device, "path/wanted");
   const std::uint32_t stripes = Voxels::stripes(mesh);
   const gpu::PathCrossingsPush crossings{grid_,
                                          mesh.vertices.address(),
@@ -72,13 +71,12 @@ void Voxels::update(const PathMesh& mesh, std::uint32_t cells, const gpu::PathTo
                                          stripes,
                                          tools};
   const std::uint64_t bytes = mesh.triangles.size() + 36ull * mesh.triangle_count + 8 * 3 * count * word;
-  run_pass(context_, "voxels", bytes, passes, [&](vk::Commands& commands) {
+  run_pass(context_, "voxels", bytes, passes, [&](device::Commands& commands) {
     commands.fill(crossings_, 0);
     commands.fill(flags_, 0);
     commands.fill(triangle_, 0);
     commands.fill(wanted_, ~0u);
     commands.fill(counts_, 0);
-    commands.barrier();
     commands.dispatch(crossings_pass_, crossings, 3ull * stripes * mesh.triangle_count);
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
       commands.dispatch(winding_pass_, gpu::PathWindingPush{grid_, crossings_.address() + axis * count * word, axis},
@@ -89,7 +87,7 @@ void Voxels::update(const PathMesh& mesh, std::uint32_t cells, const gpu::PathTo
         gpu::PathSolidPush{grid_, crossings_.address(), flags_.address(), wanted_.address(), counts_.address(), tools},
         count);
   });
-  solid_ = vk::download<std::uint32_t>(context_, counts_)[0];
+  solid_ = device::download<std::uint32_t>(context_, counts_)[0];
 }
 
 }  // namespace quadgraph

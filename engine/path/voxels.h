@@ -5,24 +5,24 @@
 #include <vector>
 
 #include "engine/base/pass_stats.h"
+#include "engine/device/memory.h"
+#include "engine/device/pipeline.h"
 #include "engine/path/path_grid.h"
-#include "engine/vk/memory.h"
-#include "engine/vk/pipeline.h"
 
 namespace quadgraph {
 
 // A triangle mesh on the device: vec3, mm, and uvec3.
 struct PathMesh {
-  const vk::Buffer& vertices;
-  const vk::Buffer& triangles;
+  const device::Buffer& vertices;
+  const device::Buffer& triangles;
   std::uint32_t vertex_count = 0, triangle_count = 0;
 };
 
 // The nodes of the graph.
 struct SolidCells {
   gpu::PathGrid grid;
-  const vk::Buffer& flags;   // uint per cell, CELL_*
-  const vk::Buffer& wanted;  // gpu::PathRelaxPush, of blocks that are not listed: 0, or that they never are
+  const device::Buffer& flags;   // uint per cell, CELL_*
+  const device::Buffer& wanted;  // gpu::PathRelaxPush, of blocks that are not listed: 0, or that they never are
 };
 
 // A cell is solid where its middle is inside the surface or the surface crosses, within the cell, one of the three
@@ -31,9 +31,9 @@ struct SolidCells {
 // mislead single lines, not the majority.
 class Voxels {
  public:
-  explicit Voxels(vk::Context& context);
+  explicit Voxels(device::Device& context);
 
-  // Of a mesh, `cells` along its longest side, without what is cut away. `passes` gets what it took.
+  // Voxelises a mesh, `cells` along its longest side, without what is cut away. `passes` gets what it took.
   void update(const PathMesh& mesh, std::uint32_t cells, const gpu::PathTools& tools, std::vector<PassStats>& passes);
 
   const gpu::PathGrid& grid() const { return grid_; }
@@ -41,7 +41,7 @@ class Voxels {
   std::uint32_t solid() const { return solid_; }  // cells
 
   // uint per cell: 1 + the largest of the triangles that cross it, 0 without one.
-  const vk::Buffer& triangle() const { return triangle_; }
+  const device::Buffer& triangle() const { return triangle_; }
 
   // Invocations for each triangle and axis of passes over crossings.
   static std::uint32_t stripes(const PathMesh& mesh);
@@ -49,9 +49,9 @@ class Voxels {
  private:
   void fit(const PathMesh& mesh, std::uint32_t cells, std::vector<PassStats>& passes);
 
-  vk::Context& context_;
-  vk::ComputePass box_pass_, crossings_pass_, winding_pass_, solid_pass_;
-  vk::Buffer box_, crossings_, flags_, triangle_, wanted_, counts_;
+  device::Device& context_;
+  device::ComputePass box_pass_, crossings_pass_, winding_pass_, solid_pass_;
+  device::Buffer box_, crossings_, flags_, triangle_, wanted_, counts_;
   gpu::PathGrid grid_{};
   std::uint32_t solid_ = 0;
 };

@@ -1,4 +1,4 @@
-// How light enters through the outside faces: frames, refraction, and the directions that stand for even light.
+// How light enters through the outside faces: frames, refraction, and the directions that stand for uniform light.
 #pragma once
 
 #include <array>
@@ -26,7 +26,7 @@ glm::dvec3 refract(const glm::dvec3& outside, const glm::dvec3& n, double eta);
 // Cosine inside of light that has the cosine `outside` outside.
 double refracted_cosine(double outside, double eta);
 
-// What even light is made of after it has entered: inside cosines and shares, which sum to 1.
+// What uniform light is made of after it has entered: inside cosines and shares, which sum to 1.
 struct LambertianBundle {
   std::array<double, gpu::LAMBERTIAN_NODES> mu, share;
 

@@ -23,7 +23,7 @@ struct VertexScale {
   glm::dvec3 least{0};  // W/mm^2
 };
 
-// Of every surface vertex: factor = mean of the exitance over that of what is gathered, with the weights that
+// Scales of every surface vertex: factor = mean of the exitance over that of what is gathered, with the weights that
 // shaders/gather/gather_shared.h states, at most GATHER_FACTOR_MAX; rest: what is then missing; least: GATHER_FLOOR of
 // the exitance there, where edges are long. `gathered`: W/mm^2 per outside face (radiance.h); `exitance`: W/mm^2 per
 // surface vertex.

@@ -42,16 +42,15 @@ void check_irradiance(const Level& level, std::span<const glm::vec3> q) {
 }
 
 std::vector<glm::dvec3> surface_load(const Level& level, const Problem& problem, std::span<const glm::vec3> q) {
-  switch (problem.method) {
-    case Method::quadgraph_fdm:
+  switch (traits_of(problem.method).discretisation) {
+    case Discretisation::fdm:
       return surface_load_fdm(level, problem, q);
-    case Method::quadgraph_fv:
+    case Discretisation::fv:
       return surface_load_fv(level, q);
-    case Method::fem:
-    case Method::polygrid:
-    case Method::polygrid_divergence:
+    case Discretisation::fem:
+    case Discretisation::polygrid:
       return surface_load_fem(level, q);
-    case Method::shortest_path:
+    case Discretisation::none:
       break;
   }
   throw InputError("method: no system of linear equations");
@@ -100,17 +99,16 @@ std::uint32_t carrier_count(const Level& level, Method method) {
 
 Rows assemble(const Level& level, const Problem& problem) {
   check_problem(level, problem);
-  switch (problem.method) {
-    case Method::quadgraph_fdm:
+  switch (traits_of(problem.method).discretisation) {
+    case Discretisation::fdm:
       return assemble_fdm(level, problem);
-    case Method::quadgraph_fv:
+    case Discretisation::fv:
       return assemble_fv(level, problem);
-    case Method::fem:
+    case Discretisation::fem:
       return assemble_fem(level, problem);
-    case Method::polygrid:
-    case Method::polygrid_divergence:
+    case Discretisation::polygrid:
       return assemble_polygrid(level, problem);
-    case Method::shortest_path:
+    case Discretisation::none:
       break;
   }
   throw InputError("method: no system of linear equations");

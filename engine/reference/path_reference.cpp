@@ -34,7 +34,7 @@ class Grid {
 
   bool solid(std::size_t cell) const { return cells_.cost[cell] >= 0; }
 
-  // Of a cell's side.
+  // Cost of a path along a cell's side.
   double cost(std::size_t cell) const { return cells_.cell * static_cast<double>(cells_.cost[cell]); }
 
   Neighbours around(std::size_t cell) const {
@@ -54,7 +54,7 @@ class Grid {
 
 constexpr std::array<int, 3> strides = {1, 3, 9};
 
-// Of the middles of a cell and of place k in the cube around it, cells.
+// Distance between the middles of a cell and of place k in the cube around it, cells.
 double distance_to(int k) {
   const glm::dvec3 way(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
   return glm::length(way);

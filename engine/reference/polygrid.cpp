@@ -66,7 +66,7 @@ class GridAssembly {
  private:
   glm::dvec3 kappa(std::uint32_t v) const { return glm::dvec3(gpu::kappa(material_.optical[v])); }
 
-  // Of the link between two vertices, per weight.
+  // Conduction of the link between two vertices, per weight.
   glm::dvec3 between(std::uint32_t a, std::uint32_t b) const {
     if (published_) return glm::dvec3(1);
     return 2.0 * kappa(a) * kappa(b) / (kappa(a) + kappa(b));

@@ -39,6 +39,12 @@ struct EnteringLight {
 // The entries of the operator in double precision, or rounded to what a device stores (stored_entries.h).
 enum class Entries { exact, stored };
 
+// SolveOptions with what the reference cannot leave to the scene: a model that is named, a solver of one level, and a
+// tolerance near double precision.
+constexpr SolveOptions reference_options() {
+  return {.solver = SolverKind::dpcg, .model = Model::sp3, .tolerance = 1e-10, .max_iterations = 100000};
+}
+
 // Solves one level from zero to `options.tolerance` (cascade: plain relaxation on this level) under all `lights`
 // together; unsymmetric methods are always relaxed. `options.model` must not be `automatic`; bounces are those of
 // exchange.h, not of this. Throws InputError as `assemble` does, SolverError if conjugate gradients meet a direction of

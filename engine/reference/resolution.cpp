@@ -58,7 +58,7 @@ double least_albedo_of(std::span<const gpu::Optical> optical) {
   return least;
 }
 
-// Of the channel in which the body is thinnest and absorbs, in mean free paths; infinite if there is none.
+// Thickness in mean free paths, in the absorbing channel in which it is least; infinite if no channel absorbs.
 double least_thickness(std::span<const gpu::Optical> optical, double chord) {
   double least = HUGE_VAL;
   for (int c = 0; c < 3; ++c) {

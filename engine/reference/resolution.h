@@ -36,7 +36,7 @@ struct Resolution {
   double decay = 0;  // largest of any channel, mean over the surface
 };
 
-// Of linear elements and the buried source. `optical`: one entry per sample.
+// Resolution of linear elements with the buried source. `optical`: one entry per sample.
 Resolution resolution_of(std::span<const SurfaceSample> samples, std::span<const gpu::Optical> optical, double eta,
                          Model model);
 

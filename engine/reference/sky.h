@@ -15,7 +15,7 @@ namespace quadgraph {
 std::vector<std::vector<float>> sky_of_levels(std::span<const Level> levels, std::uint32_t known,
                                               std::span<const float> sky);
 
-// The same from Level::seen; all 1 without it.
+// Shares of the sky from the level that has Level::seen; all 1 without one.
 std::vector<std::vector<float>> sky_of_levels(std::span<const Level> levels);
 
 }  // namespace quadgraph

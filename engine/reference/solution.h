@@ -71,7 +71,7 @@ struct SolveReport {
   // share of it that is the finer one's own, and no less than what elements as deep as those at the surface leave
   // (engine/reference/resolution.h). Empty with a single level.
   std::optional<ErrorEstimate> error;
-  bool inter_reflection = false;  // whether light from part to part was followed
+  bool inter_reflection = false;  // whether inter-reflection was computed
   std::string missed;             // what was wanted of the error and is not met; empty if all is
   // How the level that was solved last stopped short of the tolerance; empty if it did not, if a number of cycles was
   // asked for, or if the error that was asked for is met all the same. Coarser levels only start it.

@@ -125,7 +125,7 @@ class Follower {
     return level_.faces[f][0] == v ? 0 : level_.faces[f][1] == v ? 1 : 2;
   }
 
-  // Fluence of even light below a flat face is q g(tau), g a sum over the bundle's cosines.
+  // Fluence of uniform light below a flat face is q g(tau), g a sum over the bundle's cosines.
   Light even(std::uint32_t v, const BeamLight& light, std::span<const double> mu, std::span<const double> share) const {
     double whole = 0;
     for (std::size_t k = 0; k < mu.size(); ++k) whole += share[k] / mu[k];

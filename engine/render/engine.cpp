@@ -41,8 +41,11 @@ void check_options(const RenderOptions& options) {
   check_placement(options.roughness_map->placement);
 }
 
-Engine::Engine(const std::filesystem::path& path, const vk::ContextOptions& device)
-    : implementation_(std::make_unique<Implementation>(path, device)) {}
+Engine::Engine(const std::filesystem::path& path, const device::DeviceOptions& device)
+    : Engine(path, open_device(device)) {}
+
+Engine::Engine(const std::filesystem::path& path, std::shared_ptr<device::Device> device)
+    : implementation_(std::make_unique<Implementation>(path, std::move(device))) {}
 
 Engine::~Engine() = default;
 
@@ -50,7 +53,7 @@ const QuadGraph& Engine::graph() const {
   return implementation_->graph;
 }
 
-vk::Context& Engine::context() const {
+device::Device& Engine::context() const {
   return implementation_->context;
 }
 
@@ -265,7 +268,7 @@ const std::optional<Legend>& Engine::legend() const {
 
 std::optional<Picked> Engine::pick(const View& view, float aspect, const glm::vec2& at) const {
   auto& self = *implementation_;
-  const auto vertices = vk::download<glm::vec3>(self.context, self.mesh.vertices);
+  const auto vertices = device::download<glm::vec3>(self.context, self.mesh.vertices);
   return quadgraph::pick(self.graph.display(), vertices, place_camera(view, self.bounds, aspect), view.vertical_fov,
                          aspect, at, self.cut_tools);
 }

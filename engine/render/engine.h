@@ -16,6 +16,7 @@
 #include "engine/base/range.h"
 #include "engine/deform/cut.h"
 #include "engine/deform/deformer.h"
+#include "engine/device/device.h"
 #include "engine/file/graph.h"
 #include "engine/optics/optical_grid.h"
 #include "engine/render/display/camera.h"
@@ -27,7 +28,6 @@
 #include "engine/render/picture/picture_buffers.h"
 #include "engine/render/picture/radiance_probe.h"
 #include "engine/solve/simulation.h"
-#include "engine/vk/context.h"
 
 namespace quadgraph {
 
@@ -78,14 +78,15 @@ struct PresentScene {
 
 class Engine {
  public:
-  // Loads a .qgraph onto a device. Throws FormatError, InputError, VulkanError.
-  explicit Engine(const std::filesystem::path& path, const vk::ContextOptions& device = {});
+  // Loads a .qgraph onto a device. Throws FormatError, InputError, DeviceError.
+  explicit Engine(const std::filesystem::path& path, const device::DeviceOptions& device = {});
+  Engine(const std::filesystem::path& path, std::shared_ptr<device::Device> device);
   ~Engine();
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
   const QuadGraph& graph() const;
-  vk::Context& context() const;
+  device::Device& context() const;
   Simulation& simulation();      // throws InputError where the file is a surface without levels
   const Sphere& bounds() const;  // of the display mesh in its present shape
 
@@ -96,10 +97,11 @@ class Engine {
   // Coefficients instead of a material, as Simulation::set_optical.
   void set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta);
 
-  // The same everywhere, which shortest-path takes instead of what nodes have. Throws InputError.
+  // Coefficients on a grid instead of a material; shortest-path takes them, other methods those of nodes. Throws
+  // InputError.
   void set_optical(const OpticalGrid& grid);
 
-  // As Simulation::set_edits.
+  // Edits of the material, see Simulation::set_edits.
   void set_edits(std::span<const Edit> edits);
 
   // What is cut away, in the shape as it is shown; only shortest-path can. Throws InputError naming the cut and as
@@ -146,7 +148,7 @@ class Engine {
   // What the colours of the last one mean; nothing if it shows the body as it looks.
   const std::optional<Legend>& legend() const;
 
-  // The same as `draw`, read back, with the legend in it.
+  // Draws as `draw` does and reads the picture back, with the legend in it.
   Picture render(const View& view, const RenderOptions& options = {});
 
   // What a picture of this view and shape (width / height) shows at `at` (engine/render/display/pick.h).
@@ -160,7 +162,7 @@ class Engine {
   // order.
   std::vector<PassStats> passes() const;
 
-  // Device memory now and at most so far, bytes, and the present one by purpose (engine/vk/memory.h).
+  // Device memory now and at most so far, bytes, and the present one by purpose (engine/device/memory.h).
   std::uint64_t device_bytes() const;
   const std::map<std::string, std::uint64_t>& memory() const;
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/base/error.h"
+#include "engine/devices/open_device.h"
 #include "engine/render/display/display_faces.h"
 #include "engine/render/display/display_motion.h"
 #include "engine/render/engine.h"
@@ -16,11 +17,12 @@
 namespace quadgraph {
 
 struct Engine::Implementation {
-  Implementation(const std::filesystem::path& path, const vk::ContextOptions& device)
+  Implementation(const std::filesystem::path& path, std::shared_ptr<device::Device> device)
       : source(path.filename().string()),
         graph(QuadGraph::load(path)),
         bounds(bounding_sphere(graph.display().vertices)),
-        context(device),
+        owned(std::move(device)),
+        context(*owned),
         simulation(graph.levels().empty() ? nullptr : std::make_unique<Simulation>(context, graph)),
         mesh(upload_display(context, graph.display())),
         motion(graph.display()),
@@ -35,7 +37,8 @@ struct Engine::Implementation {
   std::string source;
   QuadGraph graph;
   Sphere bounds;
-  vk::Context context;
+  std::shared_ptr<device::Device> owned;
+  device::Device& context;
   std::unique_ptr<Simulation> simulation;  // none of a surface without levels
   DisplayBuffers mesh;
   DisplayMotion motion;
@@ -56,14 +59,14 @@ struct Engine::Implementation {
   std::optional<View> view;
   Radiance radiance = Radiance::automatic;  // of the last picture
   std::optional<RadianceProbe> probe;       // made at first use
-  vk::Buffer triangle_face;                 // display_faces.h, made at first use
+  device::Buffer triangle_face;             // display_faces.h, made at first use
   std::vector<PassStats> deformation_passes, irradiance_passes, gather_passes, render_passes;
   bool deformed = false;                                // since the last solve
   std::string deformation;                              // in words
   std::optional<Ground> ground;                         // made at first use
   std::optional<Surroundings> surroundings;             // made at first use
   std::shared_ptr<const ImagePyramid> roughness_image;  // of the last picture
-  vk::Buffer roughness_texels, rest_vertices;           // at first use
+  device::Buffer roughness_texels, rest_vertices;       // at first use
   std::optional<Legend> legend;                         // of the last picture
   FalseColours false_colours;                           // the same
   PathMethod paths;
@@ -116,10 +119,10 @@ struct Engine::Implementation {
 
   PlacedRoughness placed_roughness(const RoughnessMap& map) {
     if (rest_vertices.size() == 0) {
-      rest_vertices = vk::upload<glm::vec3>(context, graph.display().vertices, "display/at rest");
+      rest_vertices = device::upload<glm::vec3>(context, graph.display().vertices, "display/at rest");
     }
     if (roughness_image != map.image) {
-      roughness_texels = vk::upload<glm::vec3>(context, map.image->texels, "picture/roughness image");
+      roughness_texels = device::upload<glm::vec3>(context, map.image->texels, "picture/roughness image");
       roughness_image = map.image;
     }
     return {roughness_texels,
@@ -180,8 +183,8 @@ struct Engine::Implementation {
 
   void display_room() {
     if (triangle_face.size() > 0) return;
-    triangle_face = vk::upload<std::uint32_t>(context, display_faces(graph.display(), graph.levels()[0]),
-                                              "display/faces of triangles");
+    triangle_face = device::upload<std::uint32_t>(context, display_faces(graph.display(), graph.levels()[0]),
+                                                  "display/faces of triangles");
   }
 };
 

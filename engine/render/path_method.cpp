@@ -8,9 +8,9 @@
 #include "engine/path/exit_field.h"
 #include "engine/path/path_pass.h"
 #include "engine/path/path_relaxation.h"
+#include "interface/path/path_enter.comp.h"
+#include "interface/path/path_enter_cut.comp.h"
 #include "shaders/path/path_light_shared.h"
-#include "spirv/path_enter.comp.h"
-#include "spirv/path_enter_cut.comp.h"
 
 namespace quadgraph {
 
@@ -19,20 +19,20 @@ struct PathMethod::Parts {
   CellCosts costs;
   PathRelaxation paths;
   ExitField field;
-  std::array<std::optional<vk::ComputePass>, 2> enter, enter_cut;  // without shaped lights and with; made at first use
+  std::array<std::optional<device::ComputePass>, 2> enter,
+      enter_cut;  // without shaped lights and with; made at first use
 
-  explicit Parts(vk::Context& context) : voxels(context), costs(context), paths(context), field(context) {}
+  explicit Parts(device::Device& context) : voxels(context), costs(context), paths(context), field(context) {}
 
-  const vk::ComputePass& enter_pass(vk::Context& context, bool cuts, bool shaped) {
+  const device::ComputePass& enter_pass(device::Device& context, bool cuts, bool shaped) {
     auto& pass = (cuts ? enter_cut : enter)[shaped ? 1 : 0];
     if (pass) return *pass;
-    return pass.emplace(context, cuts ? std::span<const std::uint32_t>(path_enter_cut_comp) : path_enter_comp,
-                        static_cast<std::uint32_t>(sizeof(gpu::PathEnterPush)), cuts ? "path enter cut" : "path enter",
-                        vk::ComputePass::default_workgroup_size, shaped ? 1u : 0u);
+    return pass.emplace(context, cuts ? shader::path_enter_cut : shader::path_enter,
+                        device::ComputeOptions{.variant = shaped ? 1u : 0u});
   }
 };
 
-PathMethod::PathMethod(vk::Context& context) : context_(context) {}
+PathMethod::PathMethod(device::Device& context) : context_(context) {}
 
 PathMethod::~PathMethod() = default;
 
@@ -61,7 +61,7 @@ void PathMethod::set(std::span<const BodyCut> cuts) {
   const std::vector<gpu::PathTool> tools = path_tools(cuts);
   body_.reset();
   tool_count_ = static_cast<std::uint32_t>(tools.size());
-  vk::rewrite<gpu::PathTool>(context_, tools, "path/cuts", tools_);
+  device::rewrite<gpu::PathTool>(context_, tools, "path/cuts", tools_);
 }
 
 PathMethod::Parts& PathMethod::parts() {
@@ -97,9 +97,8 @@ void PathMethod::light(const DisplayBuffers& mesh, const ShadowMaps& shadows, fl
                                 .diffuse_transmittance = static_cast<float>(diffuse_transmittance(eta)),
                                 .tools = tools()};
   run_pass(context_, "path light", mesh.triangles.size() + 36ull * mesh.triangle_count, passes_,
-           [&](vk::Commands& commands) {
+           [&](device::Commands& commands) {
              commands.fill(own.paths.entering(), 0);
-             commands.barrier();
              commands.dispatch(own.enter_pass(context_, false, shadows.shaped()), push,
                                3ull * stripes * mesh.triangle_count);
              if (tool_count_ == 0) return;
@@ -108,7 +107,7 @@ void PathMethod::light(const DisplayBuffers& mesh, const ShadowMaps& shadows, fl
            });
 }
 
-void PathMethod::make_body(const PathMesh& mesh, const vk::Buffer* rest, const PathOptions& options) {
+void PathMethod::make_body(const PathMesh& mesh, const device::Buffer* rest, const PathOptions& options) {
   Parts& own = *parts_;
   if (body_ && body_->cells == options.cells && body_->cost == options.cost) return;
   body_.reset();
@@ -118,8 +117,8 @@ void PathMethod::make_body(const PathMesh& mesh, const vk::Buffer* rest, const P
   body_ = options;
 }
 
-PathReport PathMethod::solve(const DisplayBuffers& mesh, const vk::Buffer* rest, const ShadowMaps& shadows, float eta,
-                             const PathOptions& options) {
+PathReport PathMethod::solve(const DisplayBuffers& mesh, const device::Buffer* rest, const ShadowMaps& shadows,
+                             float eta, const PathOptions& options) {
   Parts& own = parts();
   passes_.clear();
   make_body({mesh.vertices, mesh.triangles, mesh.vertex_count, mesh.triangle_count}, rest, options);
@@ -134,7 +133,7 @@ PathReport PathMethod::solve(const DisplayBuffers& mesh, const vk::Buffer* rest,
           .rounds = own.paths.rounds()};
 }
 
-const vk::Buffer& PathMethod::field() const {
+const device::Buffer& PathMethod::field() const {
   return parts_->field.field();
 }
 

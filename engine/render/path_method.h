@@ -26,10 +26,10 @@ struct GivenGrid {
 // Makes what it needs of the device at the first solve.
 class PathMethod {
  public:
-  explicit PathMethod(vk::Context& context);
+  explicit PathMethod(device::Device& context);
   ~PathMethod();
 
-  // As CellCosts.
+  // Coefficients and edits, see CellCosts.
   void set(const gpu::Material& material);
   void set(const OpticalGrid& grid);
   void clear();
@@ -44,12 +44,12 @@ class PathMethod {
   // Voxels and costs of the mesh as it is now, if anything about them has changed since the last solve, light and
   // paths. `rest`: its vertices at rest, null where they are there. Throws InputError as CellCosts and check_options,
   // SolverError as PathRelaxation.
-  PathReport solve(const DisplayBuffers& mesh, const vk::Buffer* rest, const ShadowMaps& shadows, float eta,
+  PathReport solve(const DisplayBuffers& mesh, const device::Buffer* rest, const ShadowMaps& shadows, float eta,
                    const PathOptions& options);
 
-  // Of the last solve.
+  // Results of the last solve.
   const std::vector<PassStats>& passes() const { return passes_; }
-  const vk::Buffer& field() const;                                              // gpu::PathField
+  const device::Buffer& field() const;                                          // gpu::PathField
   std::vector<glm::vec3> exitance_at(std::span<const glm::vec3> points) const;  // W/mm^2
 
  private:
@@ -57,14 +57,14 @@ class PathMethod {
 
   gpu::PathTools tools() const { return {tools_.address(), tool_count_}; }
   Parts& parts();
-  void make_body(const PathMesh& mesh, const vk::Buffer* rest, const PathOptions& options);
+  void make_body(const PathMesh& mesh, const device::Buffer* rest, const PathOptions& options);
   void light(const DisplayBuffers& mesh, const ShadowMaps& shadows, float eta);
 
-  vk::Context& context_;
+  device::Device& context_;
   std::vector<Edit> edits_;
   std::optional<gpu::Material> material_;
   std::optional<GivenGrid> grid_;
-  vk::Buffer tools_;  // gpu::PathTool
+  device::Buffer tools_;  // gpu::PathTool
   std::uint32_t tool_count_ = 0;
   bool stale_ = true;                // the parts do not know the present coefficients
   std::optional<PathOptions> body_;  // of which voxels and costs are; none: not of the present body

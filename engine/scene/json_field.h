@@ -32,14 +32,14 @@ class JsonField {
   void allow(std::span<const std::string_view> keys) const;
   void allow(std::initializer_list<std::string_view> keys) const { allow(std::span(keys.begin(), keys.size())); }
 
-  // Of an object; `at` throws if it is not there.
+  // A member of an object; `at` throws if it is not there.
   std::optional<JsonField> find(std::string_view key) const;
   JsonField at(std::string_view key) const;
 
-  // Of an array.
+  // The entries of an array.
   std::vector<JsonField> items() const;
 
-  // Of an object, in order; `allowed` is what a complaint asks for.
+  // The members of an object, in order; an error message names `allowed` as what was expected.
   std::vector<JsonField> members(const std::string& allowed) const;
 
   // Finite, from `low` to `high`.

@@ -14,11 +14,8 @@
 namespace quadgraph {
 namespace {
 
-// Of any setting that a bake tries.
+// Most cycles of any setting that a bake tries.
 constexpr std::uint32_t most_cycles = 256;
-
-// Of a trial whose record has none (docs/qgraph-format.md).
-constexpr double usual_share = 0.95;
 
 constexpr std::uint32_t most_vertices = std::numeric_limits<std::uint32_t>::max();
 constexpr double largest = std::numeric_limits<double>::max();
@@ -71,7 +68,7 @@ Trial trial_from(const JsonField& field) {
           .cycles = field.at("cycles").whole(1, most_cycles),
           .cost = field.at("cost").number(0, largest),
           .error = largest_error(field.at("errors")),
-          .share = share ? share->number(0, 1) : usual_share};
+          .share = share ? share->number(0, 1) : usual_measured_share};
 }
 
 std::vector<Light> lights_from(const JsonField& field) {
@@ -83,7 +80,7 @@ std::vector<Light> lights_from(const JsonField& field) {
   return lights;
 }
 
-// Of the trials those on the file that was kept.
+// The record of a bake, with the trials on the file that was kept alone.
 Record record_from(const JsonField& field) {
   if (!field.value().is_object()) field.refuse("an object");
   Record record{.material = field.at("material").text()};

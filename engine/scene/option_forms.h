@@ -14,7 +14,7 @@ std::string material_help();
 OptionValue lights_of(const Scene& scene);
 void set_lights(Scene& scene, const OptionValue& value);
 
-// As parse_view reads it; nothing for the default one, whose azimuth is the front of the body.
+// The camera as a text for parse_view; nothing for the default one, whose azimuth is the front of the body.
 OptionValue view_of(const Scene& scene);
 void set_view(Scene& scene, const OptionValue& value);
 
@@ -26,7 +26,7 @@ void set_size(Scene& scene, const OptionValue& value);
 OptionValue stops_of(const Scene& scene);
 void set_stops(Scene& scene, const OptionValue& value);
 
-// As parse_background reads it; nothing for one that changes from top to bottom, but for the usual one.
+// The background as a text for parse_background; nothing for a gradient other than the default one.
 OptionValue background_of(const Scene& scene);
 void set_background(Scene& scene, const OptionValue& value);
 

@@ -20,8 +20,8 @@ void add_scene(OptionTable& table) {
               .member = "/lights",
               .own_form = true,
               .metavar = "L",
-              .help = light_forms() + ". May be repeated. Default: warm from behind the view, cool from the side, a "
-                                      "little from all around"},
+              .help = light_forms() + ". May be repeated. Default: a warm key light from behind the object, a cool "
+                                      "one from the side, a little ambient light"},
              lights_of, set_lights);
 }
 
@@ -34,8 +34,8 @@ void add_camera(OptionTable& table) {
               .own_form = true,
               .metavar = "A,E[,D]",
               .help = "azimuth and elevation in degrees, and distance in mm from the object's centre; without a "
-                      "distance the object fits the picture. Default: elevation 10 from the front, as the bake found "
-                      "or was told it"},
+                      "distance the object fits the picture. Default: elevation 10 from the front that the bake found "
+                      "or --front gave"},
              view_of, set_view);
   table.member<&Scene::view, &View::azimuth>({.name = "azimuth",
                                               .member = "/camera/azimuth",
@@ -67,11 +67,11 @@ void add_solver(OptionTable& table) {
   table.member<&Scene::solve, &SolveOptions::method>(
       {.name = "method", .member = "/solver/method", .keyword = "method", .help = "how light in the body is computed"});
   table.member<&Scene::solve, &SolveOptions::solver>(
-      {.name = "solver", .member = "/solver/solver", .keyword = "solver", .help = "of the linear system"});
+      {.name = "solver", .member = "/solver/solver", .keyword = "solver", .help = "solver of the linear system"});
   table.member<&Scene::solve, &SolveOptions::source>(
       {.name = "source", .member = "/solver/source", .keyword = "source", .help = "how light enters the body"});
   table.member<&Scene::solve, &SolveOptions::model>(
-      {.name = "model", .member = "/solver/model", .keyword = "model", .help = "of light transport"});
+      {.name = "model", .member = "/solver/model", .keyword = "model", .help = "model of light transport"});
 }
 
 void add_accuracy(OptionTable& table) {
@@ -92,8 +92,8 @@ void add_accuracy(OptionTable& table) {
            .keyword = "error",
            .metavar = "E",
            .range = error_range,
-           .help = "stop when that error and the mesh's together are estimated to be below E, e.g. 1%, on a level of "
-                   "the file as coarse as that allows; exit 3 if no level does; 0: no target, the finest level"})
+           .help = "stop when solver and mesh error together are estimated to be below E, e.g. 1%, on the coarsest "
+                   "level of the file that allows it; exit 3 if none does; 0: no target, the finest level"})
       .kind = OptionKind::share;
   table.member<&Scene::solve, &SolveOptions::cycles>(
       {.name = "cycles",
@@ -105,7 +105,7 @@ void add_accuracy(OptionTable& table) {
                                                               .member = "/solver/max_iterations",
                                                               .keyword = "max_iterations",
                                                               .range = {.low = 1, .high = up_to_a_million.high},
-                                                              .help = "per level"});
+                                                              .help = "most iterations per level"});
 }
 
 void add_light_paths(OptionTable& table) {
@@ -114,26 +114,29 @@ void add_light_paths(OptionTable& table) {
        .member = "/solver/inter_reflection",
        .keyword = "inter_reflection",
        .help = "light that leaves one part of the object and enters another"});
-  table.member<&Scene::solve, &SolveOptions::bounces>({.name = "bounces",
-                                                       .member = "/solver/bounces",
-                                                       .keyword = "bounces",
-                                                       .range = up_to_a_million,
-                                                       .help = "of that light; 0: until they change nothing"});
+  table.member<&Scene::solve, &SolveOptions::bounces>(
+      {.name = "bounces",
+       .member = "/solver/bounces",
+       .keyword = "bounces",
+       .range = up_to_a_million,
+       .help = "bounces of inter-reflection; 0: until they change nothing"});
   table.member<&Scene::solve, &SolveOptions::active_layers>(
       {.name = "active-layers",
        .member = "/solver/active_layers",
        .keyword = "active_layers",
        .range = up_to_a_million,
-       .help = "of a polygrid that are solved for on all levels but the coarsest, the rest being taken from the "
-               "coarser level, as published; 0: all"});
+       .help = "layers of a polygrid that are solved for on all levels but the coarsest, the rest being taken from "
+               "the coarser level, as published; 0: all"});
 }
 
 void add_path(OptionTable& table) {
   table.group(path_group);
   table.member<&Scene::solve, &SolveOptions::path, &PathOptions::cost>(
-      {.name = "path-cost", .member = "/solver/path/cost", .keyword = "path_cost", .help = "of a mm of path"});
-  table.member<&Scene::solve, &SolveOptions::path, &PathOptions::solver>(
-      {.name = "path-solver", .member = "/solver/path/solver", .keyword = "path_solver", .help = "what a path is"});
+      {.name = "path-cost", .member = "/solver/path/cost", .keyword = "path_cost", .help = "cost of a mm of path"});
+  table.member<&Scene::solve, &SolveOptions::path, &PathOptions::solver>({.name = "path-solver",
+                                                                          .member = "/solver/path/solver",
+                                                                          .keyword = "path_solver",
+                                                                          .help = "how the cheapest paths are found"});
   table.member<&Scene::solve, &SolveOptions::path, &PathOptions::cells>(
       {.name = "path-cells",
        .member = "/solver/path/cells",
@@ -142,7 +145,7 @@ void add_path(OptionTable& table) {
        .help = "voxels along the longest side, " + path_cells_range.text()});
 }
 
-// Of bodies in motion, which programs and the window know, and neither command lines nor files.
+// Options for bodies in motion: programs and the window have them, command lines and files do not.
 void add_motion(OptionTable& table) {
   table.group(solver_group);
   table.member<&Scene::solve, &SolveOptions::warm>(
@@ -155,13 +158,13 @@ void add_motion(OptionTable& table) {
        .keyword = "smoothing",
        .on_command_line = false,
        .range = {.low = 0, .high = 2},
-       .help = "steps of a cycle before and after its correction; 0: what is cheapest"});
+       .help = "smoothing steps of a cycle before and after its coarse-grid correction; 0: the cheapest number"});
   table.member<&Scene::solve, &SolveOptions::exchange_rows>(
       {.name = "exchange-rows",
        .keyword = "exchange_rows",
        .on_command_line = false,
        .range = {.low = 0},
-       .help = "faces of a body that deforms which look anew at what they see, in each solve; 0: all of them"});
+       .help = "faces of a deforming body whose visibility is traced again in each solve; 0: all of them"});
   table.member<&Scene::solve, &SolveOptions::mean_rays>({.name = "mean-rays",
                                                          .keyword = "mean_rays",
                                                          .on_command_line = false,
@@ -200,7 +203,7 @@ void add_picture(OptionTable& table) {
        .keyword = "roughness",
        .metavar = "ALPHA",
        .range = roughness_range,
-       .help = "of the surface, GGX alpha, " + roughness_range.text()});
+       .help = "roughness of the surface, GGX alpha, " + roughness_range.text()});
   table.member<&Scene::render, &RenderOptions::radiance>({.name = "radiance",
                                                           .member = "/picture/radiance",
                                                           .keyword = "radiance",
@@ -211,19 +214,18 @@ void add_picture(OptionTable& table) {
        .member = "/picture/show",
        .keyword = "show",
        .metavar = "WHAT",
-       .help = std::string("the picture, or what is inside in false colour: ") + show_forms},
+       .help = std::string("the picture, or false colours of what is inside: ") + show_forms},
       [](const Scene& scene) { return to_string(scene.render.show); },
       [](Scene& scene, const OptionValue& value) { scene.render.show = parse_show(text_in(value)); });
   table.member<&Scene::render, &RenderOptions::ground>(
       {.name = "ground",
        .member = "/picture/ground",
        .keyword = "ground",
-       .help = "a shadow on the ground where the object stands; a window has it without being asked"});
-  table.member<&Scene::render, &RenderOptions::surroundings>(
-      {.name = "surroundings",
-       .member = "/picture/surroundings",
-       .keyword = "surroundings",
-       .help = "what environment lights show, behind the object"});
+       .help = "shadow catcher under the object; on by default in a window"});
+  table.member<&Scene::render, &RenderOptions::surroundings>({.name = "surroundings",
+                                                              .member = "/picture/surroundings",
+                                                              .keyword = "surroundings",
+                                                              .help = "show environment lights behind the object"});
 }
 
 void add_tone(OptionTable& table) {

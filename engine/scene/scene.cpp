@@ -16,7 +16,7 @@
 namespace quadgraph {
 namespace {
 
-// As a text of numbers joined by '/'.
+// A text, a number or an array as a text of numbers joined by '/'.
 std::string numbers(const JsonField& field) {
   if (field.value().is_string()) return field.text();
   if (!field.value().is_array()) return number_text(field.number());

@@ -20,7 +20,7 @@ class SceneFile {
   // Throws InputError naming the file, the path into it, what was found and what is allowed.
   static SceneFile load(const std::filesystem::path& path);
 
-  // The same from JSON text of no file: relative names are looked for in the working directory.
+  // Parses JSON text without a file: relative names are looked for in the working directory.
   static SceneFile parse(const std::string& text);
 
   // One that does not change.

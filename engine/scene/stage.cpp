@@ -1,6 +1,7 @@
 #include "engine/scene/stage.h"
 
 #include "engine/base/error.h"
+#include "engine/devices/open_device.h"
 #include "engine/scene/measured_error.h"
 #include "engine/scene/volume.h"
 
@@ -10,7 +11,7 @@ void Stage::show(const Scene& scene) {
   const bool fresh = !engine_ || scene.body != scene_.body;
   if (fresh) {
     engine_.reset();  // two bodies need not fit beside each other
-    engine_ = std::make_unique<Engine>(scene.body, device_);
+    engine_ = std::make_unique<Engine>(scene.body, device_ ? device_ : open_device(options_));
     scene_ = {};
     scene_.body = scene.body;
   }

@@ -9,14 +9,16 @@ namespace quadgraph {
 
 class Stage {
  public:
-  explicit Stage(const vk::ContextOptions& device = {}) : device_(device) {}
+  // Opens a device for every body, or takes one that is open.
+  explicit Stage(const device::DeviceOptions& options = {}) : options_(options) {}
+  explicit Stage(std::shared_ptr<device::Device> device) : device_(std::move(device)) {}
 
   // Sets on the engine what differs from the scene before; another body gets another engine. Throws FormatError,
-  // InputError, VulkanError; the scene before then stays as far as it was not changed.
+  // InputError, DeviceError; the scene before then stays as far as it was not changed.
   void show(const Scene& scene);
 
-  // Of the scene that is shown; as solve_measured, with its options or others, and Engine::render. Throw InputError
-  // before there is one.
+  // Solve and render the scene that is shown, with its own options or others; see solve_measured and Engine::render.
+  // Throw InputError before a scene was shown.
   SolveReport solve();
   SolveReport solve(const SolveOptions& options);
   Picture render();
@@ -24,7 +26,8 @@ class Stage {
   const Scene& scene() const { return scene_; }
 
  private:
-  vk::ContextOptions device_;
+  device::DeviceOptions options_;
+  std::shared_ptr<device::Device> device_;  // null: by the options
   std::unique_ptr<Engine> engine_;
   Scene scene_;
 };

@@ -19,7 +19,7 @@ template <>
 struct Names<Between> {
   static constexpr std::string_view what = "between";
   static constexpr auto values =
-      std::to_array<Named<Between>>({{Between::linear, "linear", "evenly from key to key"},
+      std::to_array<Named<Between>>({{Between::linear, "linear", "linearly from key to key"},
                                      {Between::smooth, "smooth", "starting and ending slowly at every key"},
                                      {Between::step, "step", "the value of the key before"}});
 };

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/optics/material.h"
 #include "engine/render/engine.h"
 
 namespace quadgraph {
@@ -17,7 +18,7 @@ struct Volume {
   std::vector<gpu::Optical> optical;   // at the middles of the cells, x fastest
   glm::dvec3 spacing{1};               // mm
   std::optional<glm::dvec3> origin;    // mm, the middle of the first cell; without one the grid is centred on the body
-  float eta = 1.3f;
+  float eta = default_eta;
 
   // Where the middle of the first cell lies in a body around `centre`, mm.
   glm::dvec3 first(const glm::dvec3& centre) const;

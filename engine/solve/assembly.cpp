@@ -4,6 +4,21 @@
 #include <bit>
 #include <utility>
 
+#include "interface/assemble/assemble_edges.comp.h"
+#include "interface/assemble/assemble_even.comp.h"
+#include "interface/assemble/assemble_fdm.comp.h"
+#include "interface/assemble/assemble_fem.comp.h"
+#include "interface/assemble/assemble_fv.comp.h"
+#include "interface/assemble/assemble_polygrid.comp.h"
+#include "interface/assemble/eigenvalue_bound.comp.h"
+#include "interface/assemble/grid_material.comp.h"
+#include "interface/assemble/irradiance_scale.comp.h"
+#include "interface/assemble/right_hand_side_fdm.comp.h"
+#include "interface/assemble/right_hand_side_fem.comp.h"
+#include "interface/assemble/right_hand_side_fv.comp.h"
+#include "interface/assemble/shape.comp.h"
+#include "interface/material/edit_material.comp.h"
+#include "interface/material/evaluate_material.comp.h"
 #include "shaders/assemble/assembly_shared.h"
 #include "shaders/material/edits.h"
 
@@ -27,7 +42,7 @@ void assemble_fdm(Workspace& work, const LevelBuffers& level, const Boundary& bo
                                   .boundary = on_device(boundary)};
   const std::uint64_t bytes = op.entries * (vec3_bytes + 2 * op.entry_bytes()) +
                               op.count * (2 * vec3_bytes + sizeof(gpu::Optical) + op.row_bytes());
-  work.recorder.dispatch(work.passes.assemble_fdm.of(op.model, op.format), push, op.count, "assembly", bytes);
+  work.recorder.dispatch(work.passes.of(shader::assemble_fdm, op.model, op.format), push, op.count, "assembly", bytes);
 }
 
 void assemble_fv(Workspace& work, const LevelBuffers& level, const Boundary& boundary, OperatorBuffers& op) {
@@ -45,7 +60,7 @@ void assemble_fv(Workspace& work, const LevelBuffers& level, const Boundary& bou
                                  .boundary = on_device(boundary)};
   const std::uint64_t link_bytes =
       2 * sizeof(glm::uvec4) + 5 * vec3_bytes + 2 * sizeof(gpu::Optical) + 2 * op.entry_bytes();
-  work.recorder.dispatch(work.passes.assemble_fv.of(op.model, op.format), push, op.count, "assembly",
+  work.recorder.dispatch(work.passes.of(shader::assemble_fv, op.model, op.format), push, op.count, "assembly",
                          op.entries * link_bytes + op.count * (vec3_bytes + sizeof(gpu::Optical) + op.row_bytes()) +
                              level.tet_count * (sizeof(glm::uvec4) + 4 * vec3_bytes));
 }
@@ -61,7 +76,8 @@ void measure(Workspace& work, const LevelBuffers& level, OperatorBuffers& op) {
                             .least = level.least};
   const std::uint64_t bytes = level.tet_count * (sizeof(glm::uvec4) + 4 * vec3_bytes + gpu::TET_SHAPE * sizeof(float)) +
                               level.face_count * (sizeof(glm::uvec3) + 3 * vec3_bytes + sizeof(float));
-  work.recorder.dispatch(work.passes.shape, push, std::max(level.tet_count, level.face_count), "shape", bytes);
+  work.recorder.dispatch(work.passes.of(shader::shape), push, std::max(level.tet_count, level.face_count), "shape",
+                         bytes);
   op.measured = true;
 }
 
@@ -74,7 +90,7 @@ void assemble_even(Workspace& work, const LevelBuffers& level, const Boundary& b
                                    .count = op.count,
                                    .area_count = static_cast<std::uint32_t>(op.entry_area.size() / sizeof(float)),
                                    .boundary = on_device(boundary)};
-  work.recorder.dispatch(work.passes.assemble_even.of(op.model, op.format), push, op.count, "assembly",
+  work.recorder.dispatch(work.passes.of(shader::assemble_even, op.model, op.format), push, op.count, "assembly",
                          op.entry_shape.size() + op.entry_area.size() + op.row_shape.size() +
                              2 * op.entries * op.entry_bytes() + op.count * op.row_bytes());
 }
@@ -96,7 +112,7 @@ void assemble_fem(Workspace& work, const LevelBuffers& level, const Boundary& bo
   // Every tet is met at its six edges, then at its four corners.
   const std::uint64_t tet_bytes = index_bytes + (even ? 0 : sizeof(gpu::Optical)) + sizeof(float);
   const std::uint64_t face_bytes = index_bytes + sizeof(float);
-  work.recorder.dispatch(work.passes.assemble_edges.of(op.model, op.format), edges, op.edge_count, "assembly",
+  work.recorder.dispatch(work.passes.of(shader::assemble_edges, op.model, op.format), edges, op.edge_count, "assembly",
                          6 * level.tet_count * (tet_bytes + sizeof(float)) + 3 * level.face_count * face_bytes +
                              op.edge_count * (3 * index_bytes + 4 * op.entry_bytes()));
   const gpu::AssembleFemPush push{.rows = op.rows(),
@@ -111,7 +127,7 @@ void assemble_fem(Workspace& work, const LevelBuffers& level, const Boundary& bo
                                   .surface_count = level.surface_vertex_count,
                                   .even = even ? 1u : 0u,
                                   .boundary = on_device(boundary)};
-  work.recorder.dispatch(work.passes.assemble_fem.of(op.model, op.format), push, op.count, "assembly",
+  work.recorder.dispatch(work.passes.of(shader::assemble_fem, op.model, op.format), push, op.count, "assembly",
                          4 * level.tet_count * tet_bytes + 3 * level.face_count * face_bytes +
                              2 * op.entries * op.entry_bytes() + op.count * op.row_bytes());
 }
@@ -129,7 +145,7 @@ void assemble_polygrid(Workspace& work, const LevelBuffers& level, Method method
                                        .even = even ? 1u : 0u,
                                        .least = level.least};
   const std::uint64_t tet_bytes = sizeof(glm::uvec4) + 4 * vec3_bytes + index_bytes + sizeof(gpu::Optical);
-  work.recorder.dispatch(work.passes.grid_material, material, op.count, "assembly",
+  work.recorder.dispatch(work.passes.of(shader::grid_material), material, op.count, "assembly",
                          4 * level.tet_count * tet_bytes + op.grid_optical.size() + op.grid_volume.size());
   const gpu::AssemblePolygridPush push{.rows = op.rows(),
                                        .vertices = level.vertices.address(),
@@ -146,7 +162,8 @@ void assemble_polygrid(Workspace& work, const LevelBuffers& level, Method method
   const std::uint64_t bytes = op.entries * (2 * op.entry_bytes() + vec3_bytes + sizeof(gpu::Optical)) +
                               op.count * (2 * vec3_bytes + sizeof(gpu::Optical) + sizeof(float) + op.row_bytes()) +
                               3 * level.face_count * (sizeof(glm::uvec3) + 3 * vec3_bytes + index_bytes);
-  work.recorder.dispatch(work.passes.assemble_polygrid.of(op.model, op.format), push, op.count, "assembly", bytes);
+  work.recorder.dispatch(work.passes.of(shader::assemble_polygrid, op.model, op.format), push, op.count, "assembly",
+                         bytes);
 }
 
 // Every right-hand side reads the diagonal and writes b.
@@ -169,8 +186,8 @@ void load_fdm(Workspace& work, const LevelBuffers& level, const Boundary& bounda
                                        .tet_count = level.tet_count,
                                        .boundary = on_device(boundary)};
   const std::uint64_t face_bytes = 2 * index_bytes + 3 * vec3_bytes + 2 * sizeof(gpu::Optical);
-  work.recorder.dispatch(work.passes.right_hand_side_fdm.of(op.model, op.format), push, op.count, "right-hand side",
-                         right_hand_side_bytes(op) + level.face_count * face_bytes);
+  work.recorder.dispatch(work.passes.of(shader::right_hand_side_fdm, op.model, op.format), push, op.count,
+                         "right-hand side", right_hand_side_bytes(op) + level.face_count * face_bytes);
 }
 
 void load_fv(Workspace& work, const LevelBuffers& level, const Boundary& boundary, OperatorBuffers& op) {
@@ -187,8 +204,8 @@ void load_fv(Workspace& work, const LevelBuffers& level, const Boundary& boundar
                                       .tet_count = level.tet_count,
                                       .boundary = on_device(boundary)};
   const std::uint64_t face_bytes = sizeof(glm::uvec3) + 4 * vec3_bytes + index_bytes;
-  work.recorder.dispatch(work.passes.right_hand_side_fv.of(op.model, op.format), push, op.count, "right-hand side",
-                         right_hand_side_bytes(op) + level.face_count * face_bytes);
+  work.recorder.dispatch(work.passes.of(shader::right_hand_side_fv, op.model, op.format), push, op.count,
+                         "right-hand side", right_hand_side_bytes(op) + level.face_count * face_bytes);
 }
 
 void load_fem(Workspace& work, const LevelBuffers& level, const Boundary& boundary, OperatorBuffers& op) {
@@ -206,8 +223,8 @@ void load_fem(Workspace& work, const LevelBuffers& level, const Boundary& bounda
                                        .surface_count = level.surface_vertex_count,
                                        .boundary = on_device(boundary)};
   const std::uint64_t face_bytes = index_bytes + sizeof(glm::uvec3) + 4 * vec3_bytes;
-  work.recorder.dispatch(work.passes.right_hand_side_fem.of(op.model, op.format), push, op.count, "right-hand side",
-                         right_hand_side_bytes(op) + 3 * level.face_count * face_bytes);
+  work.recorder.dispatch(work.passes.of(shader::right_hand_side_fem, op.model, op.format), push, op.count,
+                         "right-hand side", right_hand_side_bytes(op) + 3 * level.face_count * face_bytes);
 }
 
 }  // namespace
@@ -217,16 +234,16 @@ gpu::Boundary on_device(const Boundary& boundary) {
           static_cast<float>(boundary.source), static_cast<float>(boundary.reflected)};
 }
 
-void record_material(Workspace& work, const LevelBuffers& level, const gpu::Material& material, const vk::Buffer* depth,
-                     std::uint32_t count) {
+void record_material(Workspace& work, const LevelBuffers& level, const gpu::Material& material,
+                     const device::Buffer* depth, std::uint32_t count) {
   const gpu::EvaluateMaterialPush push{material, level.rest.address(), depth ? depth->address() : 0,
                                        level.optical.address(), count};
-  work.recorder.dispatch(work.passes.evaluate_material, push, count, "material",
+  work.recorder.dispatch(work.passes.of(shader::evaluate_material), push, count, "material",
                          count * (vec3_bytes + sizeof(gpu::Optical)));
 }
 
-void record_edits(Workspace& work, const LevelBuffers& level, const vk::Buffer& base, const EditBuffers& edits,
-                  const vk::Buffer* depth, float spacing, std::uint32_t count) {
+void record_edits(Workspace& work, const LevelBuffers& level, const device::Buffer& base, const EditBuffers& edits,
+                  const device::Buffer* depth, float spacing, std::uint32_t count) {
   const gpu::EditMaterialPush push{base.address(),
                                    level.optical.address(),
                                    level.rest.address(),
@@ -238,7 +255,7 @@ void record_edits(Workspace& work, const LevelBuffers& level, const vk::Buffer& 
                                    edits.count,
                                    depth ? 1u : 0u,
                                    count};
-  work.recorder.dispatch(work.passes.edit_material, push, count, "material edits",
+  work.recorder.dispatch(work.passes.of(shader::edit_material), push, count, "material edits",
                          count * (vec3_bytes + 2 * sizeof(gpu::Optical)));
 }
 
@@ -267,22 +284,21 @@ void record_scale(Workspace& work, const LevelBuffers& finest) {
                                       .scale = work.scale.address(),
                                       .reduction = work.reduction.address(),
                                       .count = finest.face_count};
-  work.recorder.dispatch(work.passes.irradiance_scale, push, finest.face_count, "right-hand side",
+  work.recorder.dispatch(work.passes.of(shader::irradiance_scale), push, finest.face_count, "right-hand side",
                          finest.face_count * (sizeof(glm::uvec3) + 4 * vec3_bytes));
 }
 
 void record_diffuse_load(Workspace& work, const LevelBuffers& level, Method method, const Boundary& boundary,
                          OperatorBuffers& op) {
-  switch (method) {
-    case Method::quadgraph_fdm:
+  switch (traits_of(method).discretisation) {
+    case Discretisation::fdm:
       return load_fdm(work, level, boundary, op);
-    case Method::quadgraph_fv:
+    case Discretisation::fv:
       return load_fv(work, level, boundary, op);
-    case Method::fem:
-    case Method::polygrid:
-    case Method::polygrid_divergence:
+    case Discretisation::fem:
+    case Discretisation::polygrid:
       return load_fem(work, level, boundary, op);
-    case Method::shortest_path:
+    case Discretisation::none:
       break;
   }
 }
@@ -292,8 +308,8 @@ void record_damping(Workspace& work, Method method, OperatorBuffers& op) {
     work.recorder.fill(op.damping, std::bit_cast<std::uint32_t>(1.0f));
     return;
   }
-  const vk::Buffer* y = &op.z;
-  const vk::Buffer* z = &op.product;
+  const device::Buffer* y = &op.z;
+  const device::Buffer* z = &op.product;
   for (std::uint32_t step = 0; step < bound_steps; ++step) {
     const gpu::EigenvalueBoundPush push{.rows = op.rows(),
                                         .y = y->address(),
@@ -302,7 +318,8 @@ void record_damping(Workspace& work, Method method, OperatorBuffers& op) {
                                         .reduction = work.reduction.address(),
                                         .count = op.count,
                                         .first = step == 0 ? 1u : 0u};
-    work.recorder.dispatch(work.passes.eigenvalue_bound.of(op.model, op.format), push, op.count, "eigenvalue bound",
+    work.recorder.dispatch(work.passes.of(shader::eigenvalue_bound, op.model, op.format), push, op.count,
+                           "eigenvalue bound",
                            op.product_bytes() + op.count * (op.block_bytes() + 2 * op.field_bytes()));
     std::swap(y, z);
   }

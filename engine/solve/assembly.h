@@ -11,18 +11,18 @@ namespace quadgraph {
 // EditArrays on the device.
 struct EditBuffers {
   std::uint32_t count = 0;
-  vk::Buffer edits, points, texels;
+  device::Buffer edits, points, texels;
 };
 
 // The coefficients of the first `count` nodes; a material that varies is evaluated at level.rest, one of layers at
 // `depth`.
-void record_material(Workspace& work, const LevelBuffers& level, const gpu::Material& material, const vk::Buffer* depth,
-                     std::uint32_t count);
+void record_material(Workspace& work, const LevelBuffers& level, const gpu::Material& material,
+                     const device::Buffer* depth, std::uint32_t count);
 
 // The first `count` coefficients of `base`, which may be level.optical, with edits into level.optical; nodes
 // are `spacing` apart, mm.
-void record_edits(Workspace& work, const LevelBuffers& level, const vk::Buffer& base, const EditBuffers& edits,
-                  const vk::Buffer* depth, float spacing, std::uint32_t count);
+void record_edits(Workspace& work, const LevelBuffers& level, const device::Buffer& base, const EditBuffers& edits,
+                  const device::Buffer* depth, float spacing, std::uint32_t count);
 
 // `even`: level.optical is the same everywhere, which takes less time.
 void record_assembly(Workspace& work, const LevelBuffers& level, Method method, const Boundary& boundary, bool even,

@@ -14,7 +14,7 @@ namespace quadgraph {
 // is in no LevelBuffers::q, and zero while there is none.
 struct BeamBuffers {
   std::vector<gpu::Beam> beams;
-  vk::Buffer on_device;  // the same
+  device::Buffer on_device;  // the same
 };
 
 // A beam of given q along `direction`, of any length, or a Lambertian one. Throws InputError unless it is finite and
@@ -23,11 +23,11 @@ gpu::Beam beam_along(const std::optional<glm::vec3>& direction);
 
 // Replaces the beams by those of the scene's light and the one for light that enters again. If they need other room
 // than the present ones, every level gets it, without light.
-void replace_beams(vk::Context& context, std::span<const gpu::Beam> beams, BeamBuffers& buffers,
+void replace_beams(device::Device& context, std::span<const gpu::Beam> beams, BeamBuffers& buffers,
                    std::vector<LevelBuffers>& levels);
 
 // Light of the only beam, W/mm^2 per face, even over each. Throws InputError unless there is one value >= 0 for each
 // face of level `number`.
-void write_irradiance(vk::Context& context, std::span<const glm::vec3> q, std::uint32_t number, LevelBuffers& level);
+void write_irradiance(device::Device& context, std::span<const glm::vec3> q, std::uint32_t number, LevelBuffers& level);
 
 }  // namespace quadgraph

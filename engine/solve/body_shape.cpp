@@ -14,11 +14,11 @@ void BodyShape::sample() {
   chord_ = mean_chord(levels()[0]);
 }
 
-const Level& BodyShape::present(vk::Context& context, const LevelBuffers& finest) {
+const Level& BodyShape::present(device::Device& context, const LevelBuffers& finest) {
   if (deformed_.list().empty()) return levels()[0];
   if (!present_) {
     present_.emplace(moved_);
-    present_->place(0, vk::download<glm::vec3>(context, finest.vertices));
+    present_->place(0, device::download<glm::vec3>(context, finest.vertices));
   }
   return present_->levels()[0];
 }
@@ -31,7 +31,7 @@ void BodyShape::move(std::uint32_t number, std::span<const glm::vec3> positions)
   present_.reset();
 }
 
-void BodyShape::put_back(vk::Context& context, std::vector<LevelBuffers>& levels) {
+void BodyShape::put_back(device::Device& context, std::vector<LevelBuffers>& levels) {
   moved_.put_back();
   deformed_.put_back(context, levels);
   set_ = false;

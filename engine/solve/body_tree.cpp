@@ -1,16 +1,17 @@
 #include "engine/solve/body_tree.h"
 
 #include "engine/file/face_tree.h"
+#include "interface/exchange/exchange_boxes.comp.h"
 #include "shaders/exchange/exchange_shared.h"
 
 namespace quadgraph {
 
-BodyTree::BodyTree(vk::Context& context, const Level& level, const std::string& purpose) : purpose_(purpose) {
+BodyTree::BodyTree(device::Device& context, const Level& level, const std::string& purpose) : purpose_(purpose) {
   const FaceTree tree = face_tree(level);
   leaves_ = tree.leaves();
-  order_ = vk::upload<std::uint32_t>(context, tree.order, purpose + "/faces of the tree");
-  leaf_begin_ = vk::upload<std::uint32_t>(context, tree.leaf_begin, purpose + "/leaves of the tree");
-  boxes_ = {context, nodes() * sizeof(gpu::Box), vk::Place::read, purpose + "/boxes of the tree"};
+  order_ = device::upload<std::uint32_t>(context, tree.order, purpose + "/faces of the tree");
+  leaf_begin_ = device::upload<std::uint32_t>(context, tree.leaf_begin, purpose + "/leaves of the tree");
+  boxes_ = {context, nodes() * sizeof(gpu::Box), device::Place::device, purpose + "/boxes of the tree"};
 }
 
 void BodyTree::record(Workspace& work, const LevelBuffers& level) {
@@ -29,7 +30,7 @@ void BodyTree::record(Workspace& work, const LevelBuffers& level) {
   upwards([&](std::uint32_t first, std::uint32_t count) {
     push.first = first;
     push.count = count;
-    work.recorder.dispatch(work.passes.exchange_boxes, push, count, purpose_ + " boxes",
+    work.recorder.dispatch(work.passes.of(shader::exchange_boxes), push, count, purpose_ + " boxes",
                            bytes + count * sizeof(gpu::Box));
     bytes = count * sizeof(gpu::Box);  // children
   });

@@ -15,7 +15,7 @@ namespace quadgraph {
 class BodyTree {
  public:
   // `purpose`: what its memory counts for.
-  BodyTree(vk::Context& context, const Level& level, const std::string& purpose);
+  BodyTree(device::Device& context, const Level& level, const std::string& purpose);
 
   // The vertices of the level have moved.
   void moved() { behind_ = true; }
@@ -37,7 +37,7 @@ class BodyTree {
   std::string purpose_;
   std::uint32_t leaves_ = 0;
   bool behind_ = true;
-  vk::Buffer order_, leaf_begin_, boxes_;
+  device::Buffer order_, leaf_begin_, boxes_;
 };
 
 }  // namespace quadgraph

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "engine/base/error.h"
+#include "engine/device/commands.h"
 #include "engine/file/geometry.h"
 #include "engine/optics/depth.h"
 #include "engine/optics/fresnel.h"
@@ -11,21 +12,20 @@
 #include "engine/optics/model.h"
 #include "engine/reference/operator.h"
 #include "engine/solve/assembly.h"
-#include "engine/vk/commands.h"
 #include "shaders/material/material.h"
 
 namespace quadgraph {
 
 namespace {
 
-vk::Buffer room(vk::Context& context, std::uint32_t number, std::uint64_t count) {
-  return {context, count * sizeof(gpu::Optical), vk::Place::fields,
+device::Buffer room(device::Device& context, std::uint32_t number, std::uint64_t count) {
+  return {context, count * sizeof(gpu::Optical), device::Place::device,
           "material/level " + std::to_string(number) + " optical"};
 }
 
 }  // namespace
 
-Coefficients::Coefficients(vk::Context& context, std::span<const Level> rest)
+Coefficients::Coefficients(device::Device& context, std::span<const Level> rest)
     : context_(context),
       rest_(rest),
       given_(rest.size()),
@@ -43,7 +43,7 @@ void Coefficients::changed() {
 void Coefficients::set(const gpu::Material& material) {
   check_material(material);
   material_ = material;
-  for (vk::Buffer& given : given_) given = {};
+  for (device::Buffer& given : given_) given = {};
   changed();
   eta_ = material.eta;
   std::fill(albedo_.begin(), albedo_.end(), least_albedo(material));
@@ -55,7 +55,7 @@ void Coefficients::set(std::uint32_t number, std::span<const gpu::Optical> optic
   check_eta(static_cast<double>(eta));
   if (material_) std::fill(albedo_.begin(), albedo_.end(), std::nullopt);
   material_.reset();
-  vk::rewrite(context_, optical, "material/level " + std::to_string(number) + " given", given_[number]);
+  device::rewrite(context_, optical, "material/level " + std::to_string(number) + " given", given_[number]);
   changed();
   eta_ = eta;
   albedo_[number] = least_albedo(optical);
@@ -73,9 +73,9 @@ void Coefficients::set(std::span<const Edit> edits) {
   }
   edits_ = EditArrays(edits);
   edit_buffers_.count = static_cast<std::uint32_t>(edits.size());
-  vk::rewrite<gpu::MaterialEdit>(context_, edits_.edits, "material/edits", edit_buffers_.edits);
-  vk::rewrite<glm::vec3>(context_, edits_.points, "material/strokes", edit_buffers_.points);
-  vk::rewrite<glm::vec3>(context_, edits_.texels, "material/images", edit_buffers_.texels);
+  device::rewrite<gpu::MaterialEdit>(context_, edits_.edits, "material/edits", edit_buffers_.edits);
+  device::rewrite<glm::vec3>(context_, edits_.points, "material/strokes", edit_buffers_.points);
+  device::rewrite<glm::vec3>(context_, edits_.texels, "material/images", edit_buffers_.texels);
   changed();
 }
 
@@ -122,7 +122,7 @@ Model Coefficients::resolve(Workspace& work, Model wanted, Method method, Source
       record(work, levels);
       work.recorder.submit();
       std::vector<gpu::Optical> optical(count(levels[0], extent_));
-      vk::read_bytes(context_, levels[0].optical, std::as_writable_bytes(std::span(optical)));
+      device::read_bytes(context_, levels[0].optical, std::as_writable_bytes(std::span(optical)));
       edited_albedo_ = least_albedo(optical);
     }
     least = *edited_albedo_;
@@ -147,10 +147,10 @@ void Coefficients::make_room(Method method, std::vector<LevelBuffers>& levels) {
     }
     const std::string name = "material/level " + std::to_string(i);
     if (placed && level.rest.size() < wanted * sizeof(glm::vec3)) {
-      level.rest = vk::upload(context_, rest_[i].nodes.first(wanted), name + " rest");
+      level.rest = device::upload(context_, rest_[i].nodes.first(wanted), name + " rest");
     }
     if (wants_depth() && depth_buffers_[i].size() == 0) {
-      depth_buffers_[i] = vk::upload<float>(context_, depth(i), name + " depth");
+      depth_buffers_[i] = device::upload<float>(context_, depth(i), name + " depth");
     }
   }
 }
@@ -160,7 +160,7 @@ void Coefficients::record(Workspace& work, const std::vector<LevelBuffers>& leve
   for (std::size_t i = 0; i < levels.size(); ++i) {
     const LevelBuffers& level = levels[i];
     const std::uint32_t wanted = count(level, extent_);
-    const vk::Buffer* depth = wants_depth() ? &depth_buffers_[i] : nullptr;
+    const device::Buffer* depth = wants_depth() ? &depth_buffers_[i] : nullptr;
     if (material_) record_material(work, level, *material_, depth, wanted);
     if (!material_ || edit_buffers_.count > 0) {
       record_edits(work, level, material_ ? level.optical : given_[i], edit_buffers_, depth,

@@ -17,7 +17,7 @@ namespace quadgraph {
 class Coefficients {
  public:
   // `rest`, the levels of the file, must stay alive.
-  Coefficients(vk::Context& context, std::span<const Level> rest);
+  Coefficients(device::Device& context, std::span<const Level> rest);
 
   // Throws InputError as check_material does.
   void set(const gpu::Material& material);
@@ -63,14 +63,14 @@ class Coefficients {
   const std::vector<float>& depth(std::uint32_t number);
   float spacing(std::uint32_t number);
 
-  vk::Context& context_;
+  device::Device& context_;
   std::span<const Level> rest_;
   std::optional<gpu::Material> material_;
-  std::vector<vk::Buffer> given_;  // arrays, per level, where there is no material
+  std::vector<device::Buffer> given_;  // arrays, per level, where there is no material
   EditArrays edits_{{}};
   EditBuffers edit_buffers_;
   std::vector<std::vector<float>> depth_;  // mm, of the nodes of every level, computed at first use
-  std::vector<vk::Buffer> depth_buffers_;
+  std::vector<device::Buffer> depth_buffers_;
   std::vector<std::optional<float>> spacing_;  // mm, of the nodes of every level, computed at first use
   Extent extent_ = Extent::one;
   std::optional<Extent> evaluated_;  // the present coefficients, there

@@ -8,6 +8,8 @@
 #include <glm/vec4.hpp>
 #include <string>
 
+#include "interface/deform/deform_nodes.comp.h"
+#include "interface/deform/shape_state.comp.h"
 #include "shaders/deform/deform_shared.h"
 
 namespace quadgraph {
@@ -64,18 +66,18 @@ bool DeformedLevels::same_shape(std::span<const Deformer> list) const {
   return std::equal(present.begin(), present.end(), wanted.begin(), wanted.end());
 }
 
-void DeformedLevels::make_room(vk::Context& context) {
+void DeformedLevels::make_room(device::Device& context) {
   for (std::size_t i = 0; i < rest_.size(); ++i) {
     Measured& measured = measured_[i];
     if (measured.sums.size() > 0) continue;
     const std::string prefix = "deformation/level " + std::to_string(i) + " ";
     measured.step = surface_sample_step(rest_[i]);
-    const std::uint64_t sums = vk::strided_workgroups(context, elements_of(rest_[i])) * sizeof(gpu::ShapeSums);
+    const std::uint64_t sums = device::workgroups(elements_of(rest_[i])) * sizeof(gpu::ShapeSums);
     const std::uint64_t samples = (rest_[i].face_count() / measured.step + 1) * sizeof(glm::vec2);
-    measured.sums = {context, sums, vk::Place::device, prefix + "sums"};
-    measured.samples = {context, samples, vk::Place::device, prefix + "samples"};
-    measured.sums_on_host = {context, sums, vk::Place::host, prefix + "sums, read back"};
-    measured.samples_on_host = {context, samples, vk::Place::host, prefix + "samples, read back"};
+    measured.sums = {context, sums, device::Place::device, prefix + "sums"};
+    measured.samples = {context, samples, device::Place::device, prefix + "samples"};
+    measured.sums_on_host = {context, sums, device::Place::host, prefix + "sums, read back"};
+    measured.samples_on_host = {context, samples, device::Place::host, prefix + "samples, read back"};
   }
 }
 
@@ -96,9 +98,9 @@ void DeformedLevels::record(Workspace& work, std::span<const Deformer> list, con
 
 void DeformedLevels::record_nodes(Workspace& work, std::uint32_t number, const LevelBuffers& level) {
   if (level.nodes.size() == 0) return;
-  vk::Buffer& place = measured_[number].place;
+  device::Buffer& place = measured_[number].place;
   if (place.size() == 0) {
-    place = vk::upload<glm::vec4>(work.recorder.context(), places_of(rest_[number]), "deformation/places of nodes");
+    place = device::upload<glm::vec4>(work.recorder.context(), places_of(rest_[number]), "deformation/places of nodes");
   }
   const gpu::DeformNodesPush push{.vertices = level.vertices.address(),
                                   .tets = level.tets.address(),
@@ -107,7 +109,7 @@ void DeformedLevels::record_nodes(Workspace& work, std::uint32_t number, const L
                                   .nodes = level.nodes.address(),
                                   .tet_count = level.tet_count,
                                   .count = level.node_count};
-  work.recorder.dispatch(work.passes.deform_nodes, push, level.node_count, "deform",
+  work.recorder.dispatch(work.passes.of(shader::deform_nodes), push, level.node_count, "deform",
                          level.node_count * (sizeof(glm::uvec4) + sizeof(glm::vec4) + 5 * vec3_bytes));
 }
 
@@ -124,7 +126,7 @@ void DeformedLevels::record_state(Workspace& work, std::uint32_t number, const L
                                  .face_count = level.face_count,
                                  .step = measured.step,
                                  .least = level.least};
-  work.recorder.dispatch(work.passes.shape_state, push, elements_of(rest_[number]), "tet quality",
+  work.recorder.dispatch(work.passes.of(shader::shape_state), push, elements_of(rest_[number]), "tet quality",
                          level.tet_count * (sizeof(glm::uvec4) + 4 * vec3_bytes) +
                              level.face_count * (sizeof(glm::uvec3) + 3 * vec3_bytes) + measured.sums.size());
   work.recorder.copy(measured.sums, measured.sums_on_host, measured.sums.size());
@@ -157,10 +159,10 @@ ShapeState DeformedLevels::state(std::uint32_t number) const {
   return state;
 }
 
-void DeformedLevels::put_back(vk::Context& context, std::vector<LevelBuffers>& levels) {
+void DeformedLevels::put_back(device::Device& context, std::vector<LevelBuffers>& levels) {
   for (std::size_t i = 0; i < levels.size(); ++i) {
     meshes_[i].put_back(context, levels[i].vertices);
-    if (levels[i].nodes.size() > 0) vk::write_bytes(context, levels[i].nodes, std::as_bytes(rest_[i].nodes));
+    if (levels[i].nodes.size() > 0) device::write_bytes(context, levels[i].nodes, std::as_bytes(rest_[i].nodes));
     levels[i].least = {};
     levels[i].inverted = false;
   }

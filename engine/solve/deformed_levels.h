@@ -51,17 +51,17 @@ class DeformedLevels {
   ShapeState state(std::uint32_t number) const;
 
   // All vertices and nodes as in the file; waits.
-  void put_back(vk::Context& context, std::vector<LevelBuffers>& levels);
+  void put_back(device::Device& context, std::vector<LevelBuffers>& levels);
 
  private:
   struct Measured {
-    vk::Buffer sums, samples;                  // ShapeSums per workgroup, vec2 per sample
-    vk::Buffer sums_on_host, samples_on_host;  // the same, mapped
-    vk::Buffer place;                          // vec4 per node: barycentric coordinates in its tet
+    device::Buffer sums, samples;                  // ShapeSums per workgroup, vec2 per sample
+    device::Buffer sums_on_host, samples_on_host;  // the same, mapped
+    device::Buffer place;                          // vec4 per node: barycentric coordinates in its tet
     std::uint32_t step = 1;
   };
 
-  void make_room(vk::Context& context);
+  void make_room(device::Device& context);
   void record_state(Workspace& work, std::uint32_t number, const LevelBuffers& level);
 
   const std::vector<Level>& rest_;

@@ -1,5 +1,7 @@
 #include "engine/solve/deformed_mesh.h"
 
+#include "interface/deform/deform.comp.h"
+
 namespace quadgraph {
 namespace {
 
@@ -15,7 +17,7 @@ bool same_cage(const Deformer& a, const Deformer& b) {
 
 }  // namespace
 
-void DeformedMesh::upload_control(vk::Context& context, const Deformer& deformer, Data& data) const {
+void DeformedMesh::upload_control(device::Device& context, const Deformer& deformer, Data& data) const {
   std::vector<glm::vec3> control;
   if (deformer.kind == DeformerKind::displaced) {
     control = shape_displacements(deformer, number_, rest_.size());
@@ -23,17 +25,17 @@ void DeformedMesh::upload_control(vk::Context& context, const Deformer& deformer
     for (const glm::dvec3& d : control_displacements(deformer)) control.emplace_back(d);
   }
   if (data.control.size() != control.size() * vec3_bytes) {
-    data.control = {context, control.size() * vec3_bytes, vk::Place::read, purpose_ + "/displacements"};
+    data.control = {context, control.size() * vec3_bytes, device::Place::device, purpose_ + "/displacements"};
   }
-  vk::write_bytes(context, data.control, std::as_bytes(std::span(control)));
+  device::write_bytes(context, data.control, std::as_bytes(std::span(control)));
 }
 
-DeformedMesh::Data& DeformedMesh::data_of(vk::Context& context, std::size_t place, const Deformer& deformer) {
+DeformedMesh::Data& DeformedMesh::data_of(device::Device& context, std::size_t place, const Deformer& deformer) {
   if (data_.size() <= place) data_.resize(place + 1);
   Data& data = data_[place];
   if (!has_control(deformer.kind) || data.of == deformer) return data;
   if (deformer.kind == DeformerKind::cage && !same_cage(data.of, deformer)) {
-    data.weight = vk::upload<float>(context, cage_weights(deformer, rest_), purpose_ + "/weights of a cage");
+    data.weight = device::upload<float>(context, cage_weights(deformer, rest_), purpose_ + "/weights of a cage");
   }
   upload_control(context, deformer, data);
   data.of = deformer;
@@ -41,11 +43,11 @@ DeformedMesh::Data& DeformedMesh::data_of(vk::Context& context, std::size_t plac
 }
 
 void DeformedMesh::record(Workspace& work, std::span<const Deformer> list, const RestBox& box,
-                          const vk::Buffer& target) {
-  vk::Context& context = work.recorder.context();
+                          const device::Buffer& target) {
+  device::Device& context = work.recorder.context();
   for (std::size_t k = 0; k < list.size(); ++k) data_of(context, k, list[k]);
-  if (rest_on_device_.size() == 0) rest_on_device_ = vk::upload(context, rest_, purpose_ + "/rest");
-  const vk::Buffer* source = &rest_on_device_;
+  if (rest_on_device_.size() == 0) rest_on_device_ = device::upload(context, rest_, purpose_ + "/rest");
+  const device::Buffer* source = &rest_on_device_;
   for (std::size_t k = 0; k < list.size(); ++k) {
     gpu::DeformPush push{.record = deform_record(list[k], box),
                          .source = source->address(),
@@ -60,13 +62,13 @@ void DeformedMesh::record(Workspace& work, std::span<const Deformer> list, const
       push.record.weight = data_[k].weight.address();
       bytes += data_[k].weight.size();
     }
-    work.recorder.dispatch(work.passes.deform, push, push.count, "deform", bytes);
+    work.recorder.dispatch(work.passes.of(shader::deform), push, push.count, "deform", bytes);
     source = &target;
   }
 }
 
-void DeformedMesh::put_back(vk::Context& context, const vk::Buffer& target) const {
-  vk::write_bytes(context, target, std::as_bytes(rest_));
+void DeformedMesh::put_back(device::Device& context, const device::Buffer& target) const {
+  device::write_bytes(context, target, std::as_bytes(rest_));
 }
 
 }  // namespace quadgraph

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "engine/deform/deform.h"
+#include "engine/device/memory.h"
 #include "engine/solve/workspace.h"
-#include "engine/vk/memory.h"
 
 namespace quadgraph {
 
@@ -19,27 +19,27 @@ class DeformedMesh {
 
   // Writes all vertices of `target` (vec3, mm). `list` has been checked, shapes too. What it needs per vertex is made
   // on the CPU where it is new: the weights of a cage at rest, the sum of weighted shapes.
-  void record(Workspace& work, std::span<const Deformer> list, const RestBox& box, const vk::Buffer& target);
+  void record(Workspace& work, std::span<const Deformer> list, const RestBox& box, const device::Buffer& target);
 
-  const vk::Buffer& rest() const { return rest_on_device_; }  // vec3, mm; after `record`
+  const device::Buffer& rest() const { return rest_on_device_; }  // vec3, mm; after `record`
 
   // Writes the vertices at rest; waits.
-  void put_back(vk::Context& context, const vk::Buffer& target) const;
+  void put_back(device::Device& context, const device::Buffer& target) const;
 
  private:
   // What one deformer of the list needs on the device, and of which value it is.
   struct Data {
     Deformer of;
-    vk::Buffer control, weight;
+    device::Buffer control, weight;
   };
 
-  Data& data_of(vk::Context& context, std::size_t place, const Deformer& deformer);
-  void upload_control(vk::Context& context, const Deformer& deformer, Data& data) const;
+  Data& data_of(device::Device& context, std::size_t place, const Deformer& deformer);
+  void upload_control(device::Device& context, const Deformer& deformer, Data& data) const;
 
   MeshNumber number_;
   std::span<const glm::vec3> rest_;
   std::string purpose_;
-  vk::Buffer rest_on_device_;
+  device::Buffer rest_on_device_;
   std::vector<Data> data_;  // by place in the list
 };
 

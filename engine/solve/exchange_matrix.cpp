@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "interface/exchange/exchange_rays.comp.h"
 #include "shaders/exchange/exchange_shared.h"
 
 namespace quadgraph {
@@ -37,19 +38,19 @@ std::vector<std::uint32_t> wide_entries(const Level& level) {
 
 }  // namespace
 
-void ExchangeMatrix::make_room(vk::Context& context) {
+void ExchangeMatrix::make_room(device::Device& context) {
   if (rows_.size() > 0) return;
   std::vector<glm::uvec2> rows;
   for (std::size_t f = 0; f < level_.faces.size(); ++f) rows.emplace_back(level_.seen[f], level_.seen[f + 1]);
-  rows_ = vk::upload<glm::uvec2>(context, rows, "exchange/rows");
-  entries_ = vk::upload(context, level_.seen, "exchange/entries");
+  rows_ = device::upload<glm::uvec2>(context, rows, "exchange/rows");
+  entries_ = device::upload(context, level_.seen, "exchange/entries");
 }
 
-void ExchangeMatrix::make_room_for_rays(vk::Context& context) {
+void ExchangeMatrix::make_room_for_rays(device::Device& context) {
   if (cast_) return;
   cast_ = true;
-  rows_ = vk::upload<glm::uvec2>(context, wide_rows(level_), "exchange/rows");
-  entries_ = vk::upload<std::uint32_t>(context, wide_entries(level_), "exchange/entries");
+  rows_ = device::upload<glm::uvec2>(context, wide_rows(level_), "exchange/rows");
+  entries_ = device::upload<std::uint32_t>(context, wide_entries(level_), "exchange/entries");
   tree_.emplace(context, level_, "exchange");
 }
 
@@ -61,14 +62,14 @@ void ExchangeMatrix::moved() {
   behind_ = static_cast<std::uint32_t>(behind_since_.size());
 }
 
-void ExchangeMatrix::put_back(vk::Context& context) {
+void ExchangeMatrix::put_back(device::Device& context) {
   turned();
   behind_ = 0;
   if (!cast_) return;
   const std::vector<glm::uvec2> rows = wide_rows(level_);
   const std::vector<std::uint32_t> entries = wide_entries(level_);
-  vk::write_bytes(context, rows_, std::as_bytes(std::span(rows)));
-  vk::write_bytes(context, entries_, std::as_bytes(std::span(entries)));
+  device::write_bytes(context, rows_, std::as_bytes(std::span(rows)));
+  device::write_bytes(context, entries_, std::as_bytes(std::span(entries)));
 }
 
 std::uint32_t ExchangeMatrix::record_refresh(Workspace& work, const LevelBuffers& level, std::uint32_t count) {
@@ -100,13 +101,13 @@ void ExchangeMatrix::record_rays(Workspace& work, const LevelBuffers& level, std
                                    .rays = rays()};
   constexpr std::uint64_t face_bytes = index_bytes + sizeof(glm::uvec3) + 3 * vec3_bytes;
   work.recorder.dispatch(
-      work.passes.exchange_rays, push, std::uint64_t{count} * WORKGROUP_SIZE, "exchange rays",
+      work.passes.of(shader::exchange_rays), push, std::uint64_t{count} * WORKGROUP_SIZE, "exchange rays",
       std::uint64_t{count} * rays() * (nodes_per_ray * sizeof(gpu::Box) + faces_per_ray * face_bytes));
 }
 
-std::vector<float> ExchangeMatrix::sky(vk::Context& context) const {
+std::vector<float> ExchangeMatrix::sky(device::Device& context) const {
   std::vector<float> sky;
-  for (const glm::uvec2& row : vk::download<glm::uvec2>(context, rows_)) {
+  for (const glm::uvec2& row : device::download<glm::uvec2>(context, rows_)) {
     sky.push_back(1.0f - static_cast<float>(row.y - row.x) / static_cast<float>(rays()));
   }
   return sky;

@@ -29,7 +29,7 @@ class ExchangeMatrix {
   }
 
   // The shape is that of the file again: so are all rows.
-  void put_back(vk::Context& context);
+  void put_back(device::Device& context);
 
   // Casts the rays of up to `count` rows that are behind the shape of `level`, the longest behind first; of all with 0.
   // Returns how many. To be called once in a solve, by which ages are counted.
@@ -38,21 +38,21 @@ class ExchangeMatrix {
   // Solves since the shape left the row that has been behind it for longest; 0 if none is.
   std::uint32_t age() const { return behind_ > 0 ? now_ - behind_since_[next_] : 0; }
 
-  void make_room(vk::Context& context);
-  const vk::Buffer& rows() const { return rows_; }        // uvec2 per face: first entry, and one past the last
-  const vk::Buffer& entries() const { return entries_; }  // faces that were met
+  void make_room(device::Device& context);
+  const device::Buffer& rows() const { return rows_; }        // uvec2 per face: first entry, and one past the last
+  const device::Buffer& entries() const { return entries_; }  // faces that were met
 
   std::uint32_t rays() const { return level_.seen_rays; }
 
   // Share of each face's rays that met nothing; of what has run.
-  std::vector<float> sky(vk::Context& context) const;
+  std::vector<float> sky(device::Device& context) const;
 
  private:
-  void make_room_for_rays(vk::Context& context);
+  void make_room_for_rays(device::Device& context);
   void record_rays(Workspace& work, const LevelBuffers& level, std::uint32_t first, std::uint32_t count);
 
   const Level& level_;
-  vk::Buffer rows_, entries_;
+  device::Buffer rows_, entries_;
   bool cast_ = false;  // entries_ has room for all rays of every row
   std::optional<BodyTree> tree_;
 

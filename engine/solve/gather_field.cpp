@@ -3,6 +3,12 @@
 #include <cstring>
 
 #include "engine/reference/vertex_starts.h"
+#include "interface/gather/gather_exitance.comp.h"
+#include "interface/gather/gather_nodes.comp.h"
+#include "interface/gather/gather_phi.comp.h"
+#include "interface/gather/gather_scale.comp.h"
+#include "interface/gather/gather_single.comp.h"
+#include "interface/gather/uncollided.comp.h"
 
 namespace quadgraph {
 namespace {
@@ -20,12 +26,12 @@ constexpr std::uint64_t face_bytes = 2 * sizeof(std::uint32_t) + sizeof(glm::uve
 
 }  // namespace
 
-GatherField::GatherField(vk::Context& context, const Level& level, const BodyTree& tree) {
+GatherField::GatherField(device::Device& context, const Level& level, const BodyTree& tree) {
   const VertexStarts starts = vertex_starts(level);
-  start_ = vk::upload<std::uint32_t>(context, starts.start, "gather/a tet at each vertex");
-  nearest_ = vk::upload<std::uint32_t>(context, starts.nearest, "gather/nearest surface vertex");
+  start_ = device::upload<std::uint32_t>(context, starts.start, "gather/a tet at each vertex");
+  nearest_ = device::upload<std::uint32_t>(context, starts.nearest, "gather/nearest surface vertex");
   const auto room = [&](std::uint64_t bytes, const char* name) {
-    return vk::Buffer(context, bytes, vk::Place::read, name);
+    return device::Buffer(context, bytes, device::Place::device, name);
   };
   solid_on_device_ = room(sizeof(gpu::SolidRef), "gather/body");
   points_ = room(level.vertex_count() * sizeof(gpu::GatherPoint), "gather/points");
@@ -48,7 +54,7 @@ void GatherField::record_single(Workspace& work, const GatherInput& input) {
   const gpu::GatherSinglePush single{.exitance = input.vertex_exitance.address(),
                                      .scale = scale_.address(),
                                      .count = input.level.surface_vertex_count};
-  work.recorder.dispatch(work.passes.gather_single, single, single.count, "gather scale",
+  work.recorder.dispatch(work.passes.of(shader::gather_single), single, single.count, "gather scale",
                          single.count * (vec3_bytes + sizeof(gpu::GatherScale)));
 }
 
@@ -57,9 +63,9 @@ void GatherField::record_body(Workspace& work, const GatherInput& input) {
   input.tree.record(work, input.level);
 }
 
-void GatherField::write_solid(vk::Context& context, const gpu::SolidRef& solid) {
+void GatherField::write_solid(device::Device& context, const gpu::SolidRef& solid) {
   if (std::memcmp(&solid, &solid_, sizeof(solid)) == 0) return;
-  vk::write_bytes(context, solid_on_device_, std::as_bytes(std::span(&solid, 1)));
+  device::write_bytes(context, solid_on_device_, std::as_bytes(std::span(&solid, 1)));
   solid_ = solid;
 }
 
@@ -70,7 +76,7 @@ void GatherField::record_points(Workspace& work, const GatherInput& input) {
                                .scale = work.scale.address(),
                                .points = points_.address(),
                                .count = level.vertex_count};
-  work.recorder.dispatch(work.passes.gather_phi.of(input.op.model), phi, level.vertex_count, "gather points",
+  work.recorder.dispatch(work.passes.of(shader::gather_phi, input.op.model), phi, level.vertex_count, "gather points",
                          level.vertex_count * (vec3_bytes + input.op.field_bytes()));
 }
 
@@ -87,7 +93,7 @@ void GatherField::record_uncollided(Workspace& work, const GatherInput& input) {
                                        .beam_count = static_cast<std::uint32_t>(input.beams.beams.size()),
                                        .vertex_count = level.vertex_count,
                                        .surface_vertex_count = level.surface_vertex_count};
-  work.recorder.dispatch(work.passes.uncollided, uncollided, level.vertex_count, "uncollided",
+  work.recorder.dispatch(work.passes.of(shader::uncollided), uncollided, level.vertex_count, "uncollided",
                          level.vertex_count * input.beams.beams.size() * (tets_per_ray * tet_bytes + 2 * vec3_bytes));
 }
 
@@ -95,7 +101,7 @@ void GatherField::record_scale(Workspace& work, const GatherInput& input) {
   const LevelBuffers& level = input.level;
   const gpu::GatherExitancePush exitance{
       .body = solid_on_device_.address(), .points = points_.address(), .exitance = gathered_.address()};
-  work.recorder.dispatch(work.passes.gather_exitance, exitance, level.face_count, "gathered exitance",
+  work.recorder.dispatch(work.passes.of(shader::gather_exitance), exitance, level.face_count, "gathered exitance",
                          level.face_count * (tets_per_ray * (tet_bytes + sizeof(gpu::GatherPoint)) + vec3_bytes));
   record_nodes(work, input);
   const gpu::GatherScalePush scale{.solid = solid_on_device_.address(),
@@ -107,7 +113,7 @@ void GatherField::record_scale(Workspace& work, const GatherInput& input) {
                                    .scale = scale_.address(),
                                    .count = level.surface_vertex_count};
   work.recorder.dispatch(
-      work.passes.gather_scale, scale, level.surface_vertex_count, "gather scale",
+      work.passes.of(shader::gather_scale), scale, level.surface_vertex_count, "gather scale",
       level.surface_vertex_count *
           (boxes_per_mean * sizeof(gpu::Box) + nodes_per_mean * sizeof(gpu::GatherNode) + sizeof(gpu::GatherScale)));
 }
@@ -123,7 +129,7 @@ void GatherField::record_nodes(Workspace& work, const GatherInput& input) {
   input.tree.upwards([&](std::uint32_t first, std::uint32_t count) {
     push.first = first;
     push.count = count;
-    work.recorder.dispatch(work.passes.gather_nodes, push, count, "gather nodes",
+    work.recorder.dispatch(work.passes.of(shader::gather_nodes), push, count, "gather nodes",
                            bytes + count * sizeof(gpu::GatherNode));
     bytes = count * sizeof(gpu::GatherNode);  // children
   });

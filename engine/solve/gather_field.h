@@ -20,7 +20,7 @@ struct GatherInput {
   const LevelBuffers& level;
   const OperatorBuffers& op;
   const BeamBuffers& beams;
-  const vk::Buffer& vertex_exitance;  // vec3 per surface vertex, W/mm^2
+  const device::Buffer& vertex_exitance;  // vec3 per surface vertex, W/mm^2
   gpu::BodyRef body;
   BodyTree& tree;  // of the level
 };
@@ -28,7 +28,7 @@ struct GatherInput {
 class GatherField {
  public:
   // `tree`: of the level.
-  GatherField(vk::Context& context, const Level& level, const BodyTree& tree);
+  GatherField(device::Device& context, const Level& level, const BodyTree& tree);
 
   // Fluence of both kinds at the vertices, exitance of what is gathered, and their scale.
   void record(Workspace& work, const GatherInput& input);
@@ -38,21 +38,21 @@ class GatherField {
   void record_single(Workspace& work, const GatherInput& input);
 
   const gpu::SolidRef& solid() const { return solid_; }  // as it was last recorded
-  const vk::Buffer& solid_on_device() const { return solid_on_device_; }
-  const vk::Buffer& points() const { return points_; }      // GatherPoint per vertex
-  const vk::Buffer& gathered() const { return gathered_; }  // vec3 per face, W/mm^2: exitance of what is gathered
-  const vk::Buffer& scale() const { return scale_; }        // GatherScale per surface vertex
+  const device::Buffer& solid_on_device() const { return solid_on_device_; }
+  const device::Buffer& points() const { return points_; }      // GatherPoint per vertex
+  const device::Buffer& gathered() const { return gathered_; }  // vec3 per face, W/mm^2: exitance of what is gathered
+  const device::Buffer& scale() const { return scale_; }        // GatherScale per surface vertex
 
  private:
-  void write_solid(vk::Context& context, const gpu::SolidRef& solid);
+  void write_solid(device::Device& context, const gpu::SolidRef& solid);
   void record_body(Workspace& work, const GatherInput& input);
   void record_points(Workspace& work, const GatherInput& input);
   void record_uncollided(Workspace& work, const GatherInput& input);
   void record_scale(Workspace& work, const GatherInput& input);
   void record_nodes(Workspace& work, const GatherInput& input);
 
-  vk::Buffer start_, nearest_;  // engine/reference/vertex_starts.h
-  vk::Buffer solid_on_device_, points_, gathered_, nodes_, scale_;
+  device::Buffer start_, nearest_;  // engine/reference/vertex_starts.h
+  device::Buffer solid_on_device_, points_, gathered_, nodes_, scale_;
   gpu::SolidRef solid_{};
 };
 

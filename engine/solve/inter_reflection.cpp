@@ -6,6 +6,9 @@
 #include "engine/optics/fresnel.h"
 #include "engine/reference/exchange.h"
 #include "engine/reference/sky.h"
+#include "interface/exchange/exchange.comp.h"
+#include "interface/exchange/exchange_enter.comp.h"
+#include "interface/exchange/exchange_finer.comp.h"
 #include "shaders/exchange/exchange_shared.h"
 
 namespace quadgraph {
@@ -24,7 +27,7 @@ InterReflection::InterReflection(const QuadGraph& graph) : graph_(graph) {
   }
 }
 
-std::optional<SeenRows> InterReflection::seen(vk::Context& context) {
+std::optional<SeenRows> InterReflection::seen(device::Device& context) {
   if (!level()) return std::nullopt;
   matrix_->make_room(context);
   return SeenRows{*level_, matrix_->rows(), matrix_->entries(), matrix_->rays()};
@@ -38,12 +41,12 @@ void InterReflection::turned() {
   if (matrix_) matrix_->turned();
 }
 
-void InterReflection::put_back(vk::Context& context, std::vector<LevelBuffers>& levels) {
+void InterReflection::put_back(device::Device& context, std::vector<LevelBuffers>& levels) {
   if (!matrix_) return;
   matrix_->put_back(context);
   const auto sky = sky_of_levels(graph_.levels());
   for (std::size_t i = 0; i < levels.size(); ++i) {
-    vk::write_bytes(context, levels[i].sky, std::as_bytes(std::span(sky[i])));
+    device::write_bytes(context, levels[i].sky, std::as_bytes(std::span(sky[i])));
   }
 }
 
@@ -51,18 +54,18 @@ void InterReflection::refresh(Workspace& work, std::span<const Level> shape, std
                               std::uint32_t rows) {
   if (!matrix_ || matrix_->record_refresh(work, levels[*level_], rows) == 0) return;
   work.recorder.submit();
-  vk::Context& context = work.recorder.context();
+  device::Device& context = work.recorder.context();
   const auto sky = sky_of_levels(shape, *level_, matrix_->sky(context));
   for (std::size_t i = 0; i < levels.size(); ++i) {
-    vk::write_bytes(context, levels[i].sky, std::as_bytes(std::span(sky[i])));
+    device::write_bytes(context, levels[i].sky, std::as_bytes(std::span(sky[i])));
   }
 }
 
 void InterReflection::make_room(Workspace& work, const std::vector<LevelBuffers>& levels) {
   if (!irradiance_.empty()) return;
-  vk::Context& context = work.recorder.context();
+  device::Device& context = work.recorder.context();
   const auto room = [&](std::uint64_t bytes, const char* name) {
-    return vk::Buffer(context, bytes, vk::Place::read, name);
+    return device::Buffer(context, bytes, device::Place::device, name);
   };
   const Level& level = graph_.levels()[*level_];
   matrix_->make_room(context);
@@ -72,7 +75,7 @@ void InterReflection::make_room(Workspace& work, const std::vector<LevelBuffers>
   clip_ = room(sizeof(gpu::Clip), "exchange/clip");
   factor_ = room(vec3_bytes, "exchange/factor");
   state_ = room(sizeof(gpu::ExchangeState), "exchange/state");
-  states_on_host_ = {context, (max_bounces + 1) * sizeof(gpu::ExchangeState), vk::Place::host,
+  states_on_host_ = {context, (max_bounces + 1) * sizeof(gpu::ExchangeState), device::Place::host,
                      "exchange/states, read back"};
   work.recorder.fill(state_, 0);
   for (std::uint32_t i = 0; i <= *level_; ++i) {
@@ -80,12 +83,12 @@ void InterReflection::make_room(Workspace& work, const std::vector<LevelBuffers>
     work.recorder.fill(irradiance_.back(), 0);
     if (i == *level_) break;
     const Transfer& surface = graph_.levels()[i].surface;
-    finer_.push_back({vk::upload(context, surface.index, "exchange/surface_index"),
-                      vk::upload(context, surface.weight, "exchange/surface_weight"), surface.width});
+    finer_.push_back({device::upload(context, surface.index, "exchange/surface_index"),
+                      device::upload(context, surface.weight, "exchange/surface_weight"), surface.width});
   }
 }
 
-void InterReflection::record_enter(Workspace& work, const LevelBuffers& level, const vk::Buffer& irradiance,
+void InterReflection::record_enter(Workspace& work, const LevelBuffers& level, const device::Buffer& irradiance,
                                    double transmitted) {
   const gpu::ExchangeEnterPush push{.vertices = level.vertices.address(),
                                     .faces = level.faces.address(),
@@ -97,7 +100,7 @@ void InterReflection::record_enter(Workspace& work, const LevelBuffers& level, c
                                     .reduction = work.reduction.address(),
                                     .count = level.face_count,
                                     .transmitted = static_cast<float>(transmitted)};
-  work.recorder.dispatch(work.passes.exchange_enter, push, level.face_count, "exchange",
+  work.recorder.dispatch(work.passes.of(shader::exchange_enter), push, level.face_count, "exchange",
                          level.face_count * (face_bytes + 5 * vec3_bytes));
 }
 
@@ -132,7 +135,7 @@ void InterReflection::record_bounce(Workspace& work, const Solved& solved, doubl
                                .rays = static_cast<float>(matrix_->rays()),
                                .transmitted = transmitted};
   const std::uint64_t entries = graph_.levels()[*level_].seen.size() - level.face_count - 1;
-  work.recorder.dispatch(work.passes.exchange, push, level.face_count, "exchange",
+  work.recorder.dispatch(work.passes.of(shader::exchange), push, level.face_count, "exchange",
                          level.face_count * (face_bytes + sizeof(glm::uvec2) + 3 * vec3_bytes) +
                              entries * (sizeof(std::uint32_t) + 2 * vec3_bytes));
   record_enter(work, level, irradiance_.back(), transmitted);
@@ -164,7 +167,7 @@ void InterReflection::record_beam(Workspace& work, const std::vector<LevelBuffer
                                     .count = level.face_count,
                                     .width = finer.width,
                                     .transmitted = static_cast<float>(transmitted)};
-  work.recorder.dispatch(work.passes.exchange_finer, push, level.face_count, "exchange",
+  work.recorder.dispatch(work.passes.of(shader::exchange_finer), push, level.face_count, "exchange",
                          level.face_count * (face_bytes + finer.width * (8 + vec3_bytes) + vec3_bytes));
   record_enter(work, level, irradiance_[number], transmitted);
 }

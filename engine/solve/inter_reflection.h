@@ -30,7 +30,7 @@ class InterReflection {
   std::optional<std::uint32_t> level() const { return matrix_ && !matrix_->empty() ? level_ : std::nullopt; }
 
   // Its rows and entries.
-  std::optional<SeenRows> seen(vk::Context& context);
+  std::optional<SeenRows> seen(device::Device& context);
 
   // The vertices of level `number` have moved.
   void moved(std::uint32_t number);
@@ -39,7 +39,7 @@ class InterReflection {
   void turned();
 
   // The shape is that of the file again, and so is what its faces see.
-  void put_back(vk::Context& context, std::vector<LevelBuffers>& levels);
+  void put_back(device::Device& context, std::vector<LevelBuffers>& levels);
 
   // Brings up to `rows` rows that are behind the shape up to date, all with 0; then the view of the sky on every level.
   // To be called once in a solve.
@@ -74,25 +74,26 @@ class InterReflection {
 
  private:
   struct Finer {
-    vk::Buffer index, weight;
+    device::Buffer index, weight;
     std::uint32_t width = 0;
   };
 
-  void record_enter(Workspace& work, const LevelBuffers& level, const vk::Buffer& irradiance, double transmitted);
+  void record_enter(Workspace& work, const LevelBuffers& level, const device::Buffer& irradiance, double transmitted);
 
   const QuadGraph& graph_;
   std::optional<std::uint32_t> level_;
   std::optional<ExchangeMatrix> matrix_;
-  bool any_ = false;                    // some beam may not be zero
-  vk::Buffer phi_, exitance_, clip_;    // exitance.comp
-  std::vector<vk::Buffer> irradiance_;  // vec3 per face, W/mm^2; finest level first, the last that with the exchange
-  vk::Buffer before_;                   // that of the bounce before
-  std::vector<Finer> finer_;            // transfers, finest first
-  vk::Buffer factor_;                   // vec3
-  vk::Buffer state_;                    // ExchangeState
-  vk::Buffer states_on_host_;           // of every bounce of a solve, mapped
-  std::uint32_t count_ = 0;             // of bounces in this solve
-  glm::dvec3 begun_with_{0};            // W, before them
+  bool any_ = false;                      // some beam may not be zero
+  device::Buffer phi_, exitance_, clip_;  // exitance.comp
+  std::vector<device::Buffer>
+      irradiance_;                 // vec3 per face, W/mm^2; finest level first, the last that with the exchange
+  device::Buffer before_;          // that of the bounce before
+  std::vector<Finer> finer_;       // transfers, finest first
+  device::Buffer factor_;          // vec3
+  device::Buffer state_;           // ExchangeState
+  device::Buffer states_on_host_;  // of every bounce of a solve, mapped
+  std::uint32_t count_ = 0;        // of bounces in this solve
+  glm::dvec3 begun_with_{0};       // W, before them
 };
 
 }  // namespace quadgraph

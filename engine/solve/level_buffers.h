@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "engine/vk/memory.h"
+#include "engine/device/memory.h"
 #include "shaders/solver/solve_shared.h"
 
 namespace quadgraph {
@@ -11,23 +11,23 @@ namespace quadgraph {
 // Geometry and fields of one level on the device. Counts as in Level.
 struct LevelBuffers {
   std::uint32_t vertex_count = 0, tet_count = 0, face_count = 0, node_count = 0, surface_vertex_count = 0;
-  vk::Buffer vertices;   // vec3, mm
-  vk::Buffer tets;       // uvec4
-  vk::Buffer faces;      // uvec3
-  vk::Buffer face_tets;  // uint
-  vk::Buffer face_kind;  // uint; 0 open, 1 reflecting
+  device::Buffer vertices;   // vec3, mm
+  device::Buffer tets;       // uvec4
+  device::Buffer faces;      // uvec3
+  device::Buffer face_tets;  // uint
+  device::Buffer face_kind;  // uint; 0 open, 1 reflecting
   // The open faces at surface vertex v: face_incidence[k], k from face_offset[v] to face_offset[v + 1].
-  vk::Buffer face_offset, face_incidence;
-  vk::Buffer links;       // uvec4; for the graph methods, made at first use
-  vk::Buffer nodes;       // vec3, mm; inner nodes, then surface nodes; for the graph methods, made at first use
-  vk::Buffer rest;        // the same where the file has them, as far as optical goes: the material moves with the body
-  vk::Buffer optical;     // Optical per node; of the tets alone, or one for all (Coefficients), where that is enough
-  bool even = false;      // optical is the same everywhere, and read from the first
-  gpu::LeastTet least{};  // of the tets in the present shape
-  bool inverted = false;  // some of them are turned inside out
-  vk::Buffer q;           // vec3 per face, W/mm^2: written by the lights or by set_irradiance
-  vk::Buffer beam_q;      // float, per beam (BeamBuffers) gpu::Beam::floats per face: what q is made of
-  vk::Buffer sky;         // float per face: share of even light from outside that no other part of the body hides
+  device::Buffer face_offset, face_incidence;
+  device::Buffer links;    // uvec4; for the graph methods, made at first use
+  device::Buffer nodes;    // vec3, mm; inner nodes, then surface nodes; for the graph methods, made at first use
+  device::Buffer rest;     // the same where the file has them, as far as optical goes: the material moves with the body
+  device::Buffer optical;  // Optical per node; of the tets alone, or one for all (Coefficients), where that is enough
+  bool even = false;       // optical is the same everywhere, and read from the first
+  gpu::LeastTet least{};   // of the tets in the present shape
+  bool inverted = false;   // some of them are turned inside out
+  device::Buffer q;        // vec3 per face, W/mm^2: written by the lights or by set_irradiance
+  device::Buffer beam_q;   // float, per beam (BeamBuffers) gpu::Beam::floats per face: what q is made of
+  device::Buffer sky;      // float per face: share of even light from outside that no other part of the body hides
 
   // Where the last beam begins in beam_q, that of light that enters again, bytes.
   std::uint64_t beam_again() const { return beam_q.size() - face_count * gpu::BEAM_RGB * sizeof(float); }
@@ -37,8 +37,8 @@ struct LevelBuffers {
 // last, uvec2; entries, the faces that `rays` cosine-weighted rays met (docs/qgraph-format.md).
 struct SeenRows {
   std::uint32_t level;
-  const vk::Buffer& rows;
-  const vk::Buffer& entries;
+  const device::Buffer& rows;
+  const device::Buffer& entries;
   std::uint32_t rays;
 };
 

@@ -24,7 +24,29 @@ struct LevelTask {
   std::uint32_t active_layers = 0;   // of a relaxation: rows below these layers stay as they are; 0: none do
 };
 
-bool uses_cycles(SolverKind solver);
+// How a solver's looks at the surface become an estimate of what is left, and when it counts as stalled.
+struct SolverLooks {
+  std::uint32_t first;  // look from which the estimate counts
+  float least_rate;
+  std::uint32_t stall_limit;
+  float slow_rate;
+};
+
+// What makes a kind of solver: all that the rest of the engine asks of it.
+struct SolverRules {
+  enum class Step { conjugate_gradients, cycle, sweep } step;
+  bool cycles = false;          // it needs coarser levels and a symmetric matrix
+  bool any_matrix = false;      // it takes one that is not symmetric
+  bool alone = false;           // it starts from nothing on the finest level, else from the coarsest level on
+  bool damped = true;           // it needs a bound of the eigenvalues
+  std::uint32_t smoothing = 1;  // steps that are cheapest for it
+  std::uint32_t window;  // iterations between two looks at the surface; of sweeps an even number, as x is then last
+  std::uint32_t batch;   // iterations in one submission where the host decides whether to go on
+  SolverLooks looks;
+};
+
+// Those of the first choice for SolverKind::automatic.
+SolverRules rules_of(SolverKind solver);
 
 class LevelSolver {
  public:
@@ -33,7 +55,7 @@ class LevelSolver {
               const LevelTask& task);
 
   // Notes the exitance of `x` as that of the start, for record_difference.
-  void record_origin(const vk::Buffer& x);
+  void record_origin(const device::Buffer& x);
 
   // The residual of x, and the gates.
   void record_start();
@@ -76,12 +98,14 @@ class LevelSolver {
   double entries() const { return entries_; }
 
  private:
+  using Step = SolverRules::Step;
+
   std::uint32_t active_rows() const;
   const OperatorBuffers& op() const { return operators_.at(key_, level_); }
   template <typename Push>
-  void dispatch(LazyPass& pass, const Push& push, std::uint64_t gate, const char* name, bool concludes = true);
+  void dispatch(LazyPass& pass, const Push& push, std::uint64_t gate, const char* name);
   void dispatch_start(std::uint32_t what);
-  void record_surface(const vk::Buffer& x, const vk::Buffer& before, std::uint32_t what);
+  void record_surface(const device::Buffer& x, const device::Buffer& before, std::uint32_t what);
   void record_cg();
   void record_cycle();
   void record_sweeps(std::uint32_t sweeps);
@@ -94,6 +118,7 @@ class LevelSolver {
   OperatorKey key_;
   std::uint32_t level_;
   LevelTask task_;
+  SolverRules rules_;
   std::optional<Multigrid> multigrid_;
   std::uint32_t unlooked_ = 0;  // iterations recorded since the last look at the surface
   std::uint32_t taken_ = 0;     // iterations counted, over all starts

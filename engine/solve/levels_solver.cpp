@@ -86,7 +86,7 @@ SolveReport LevelsSolver::run() {
 // Where the levels to be solved begin.
 void LevelsSolver::start_over() {
   next_ = static_cast<std::uint32_t>(solvers_.size()) - 1;
-  if (report_.solver == SolverKind::jacobi) {
+  if (rules_of(report_.solver).alone) {
     next_ = std::max(finest_, report_.inter_reflection ? parts_.exchange.level().value_or(0) : 0);
   }
   warm_ = options_.warm;
@@ -144,7 +144,7 @@ void LevelsSolver::record_setup(std::uint32_t level) {
     rows.weighed = false;
     rows.loaded.reset();
   }
-  if (!rows.damped && report_.solver != SolverKind::dpcg) {
+  if (!rows.damped && rules_of(report_.solver).damped) {
     record_damping(parts_.work, key_.method, rows);
     rows.damped = true;
   }
@@ -162,9 +162,9 @@ void LevelsSolver::record_light(std::uint32_t level) {
 // x before the first iteration, and the exitance of what comes from the coarser level. In motion x follows what changes
 // on the coarser levels: where the light jumps that is as good a start as one from nothing, and else a better one.
 void LevelsSolver::record_first(std::uint32_t level) {
-  const bool alone = report_.solver == SolverKind::jacobi || level + 1 == solvers_.size() || !solvers_[level + 1];
+  const bool alone = rules_of(report_.solver).alone || level + 1 == solvers_.size() || !solvers_[level + 1];
   if (!alone) {
-    const vk::Buffer& target = warm_ ? op(level).p : op(level).x;
+    const device::Buffer& target = warm_ ? op(level).p : op(level).x;
     parts_.operators.record_transfer(parts_.work, key_, level, target, op(level).state);
     solvers_[level]->record_origin(target);
   }
@@ -187,7 +187,7 @@ void LevelsSolver::set_solver(std::uint32_t level) {
   const bool last = level == finest_;
   LevelTask task{.solver = report_.solver, .boundary = boundary_, .max_iterations = options_.max_iterations};
   task.tolerance = algebraic_wanted();
-  task.smoothing = options_.smoothing > 0 ? options_.smoothing : report_.solver == SolverKind::vcycle ? 2 : 1;
+  task.smoothing = options_.smoothing > 0 ? options_.smoothing : rules_of(report_.solver).smoothing;
   task.start = !last && cycles();
   task.fixed = options_.cycles > 0 && (last || (task.start && !bounces_on(level)));
   if (task.fixed) task.max_iterations = task.start ? coarse_cycles : options_.cycles;

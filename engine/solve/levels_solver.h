@@ -43,7 +43,7 @@ class LevelsSolver {
   OperatorBuffers& op(std::uint32_t level) { return parts_.operators.at(key_, level); }
   bool bounces_reach(std::uint32_t level) const;
   bool bounces_on(std::uint32_t level) const;
-  bool cycles() const { return uses_cycles(report_.solver); }
+  bool cycles() const { return rules_of(report_.solver).cycles; }
   Solved solved(std::uint32_t level);
   WalkTask walk_task() const;
   Energy energy() const;

@@ -3,6 +3,12 @@
 #include <cmath>
 #include <cstddef>
 
+#include "interface/solver/chebyshev.comp.h"
+#include "interface/solver/coarse_solve.comp.h"
+#include "interface/solver/prolong.comp.h"
+#include "interface/solver/residual.comp.h"
+#include "interface/solver/restrict.comp.h"
+
 namespace quadgraph {
 namespace {
 
@@ -42,7 +48,7 @@ bool Multigrid::possible(Operators& operators, const OperatorKey& key) {
   return key.method == Method::fem && levels > 1 && operators.at(key, levels - 1).count <= largest_coarse;
 }
 
-const vk::Buffer& Multigrid::correction(std::uint32_t level) const {
+const device::Buffer& Multigrid::correction(std::uint32_t level) const {
   if (smoothing_ % 2 == 0) return op(level).z;
   return level == coarsest() ? op(level).other : op(level).product;
 }
@@ -54,13 +60,13 @@ std::uint32_t Multigrid::coarse_steps() const {
 }
 
 template <typename Push>
-void Multigrid::dispatch(LazyPass& pass, const Push& push, std::uint32_t level, const char* name, bool concludes) {
+void Multigrid::dispatch(LazyPass& pass, const Push& push, std::uint32_t level, const char* name) {
   work_.recorder.dispatch_indirect(pass, push, op(top_).state,
-                                   offsetof(gpu::SolveState, gate) + level * sizeof(glm::uvec3), name, concludes);
+                                   offsetof(gpu::SolveState, gate) + level * sizeof(glm::uvec3), name);
 }
 
-void Multigrid::record_step(std::uint32_t level, const vk::Buffer& from, const vk::Buffer& to, std::uint32_t number,
-                            bool zero, bool reduce) {
+void Multigrid::record_step(std::uint32_t level, const device::Buffer& from, const device::Buffer& to,
+                            std::uint32_t number, bool zero, bool reduce) {
   const OperatorBuffers& rows = op(level);
   const ChebyshevStep step = chebyshev_step(number, smoothing_ratio(smoothing_));
   const gpu::ChebyshevPush push{.rows = rows.rows(),
@@ -78,7 +84,7 @@ void Multigrid::record_step(std::uint32_t level, const vk::Buffer& from, const v
                                 .reduce = reduce ? 1u : 0u,
                                 .keep = static_cast<float>(step.keep),
                                 .add = static_cast<float>(step.add)};
-  dispatch(work_.passes.chebyshev.of(rows.model, rows.format), push, level, "smoothing", reduce);
+  dispatch(work_.passes.of(shader::chebyshev, rows.model, rows.format), push, level, "smoothing");
 }
 
 // From zero: the first step is d itself, which the second takes as x; so z comes out, after one step or two. Later, one
@@ -90,7 +96,7 @@ void Multigrid::record_smoothing(std::uint32_t level, bool from_zero) {
     if (from_zero) {
       record_step(level, rows.product, rows.z, k, k == 0, reduce);
     } else {
-      const vk::Buffer& between = smoothing_ == 1 ? rows.product : rows.other;
+      const device::Buffer& between = smoothing_ == 1 ? rows.product : rows.other;
       record_step(level, k == 0 ? rows.z : between, k == 0 ? between : rows.z, k, false, reduce);
     }
   }
@@ -100,7 +106,7 @@ void Multigrid::record_restriction(std::uint32_t level) {
   const OperatorBuffers& fine = op(level);
   const OperatorBuffers& coarse = op(level + 1);
   const gpu::ResidualPush residual{fine.rows(), fine.r.address(), fine.z.address(), fine.product.address(), fine.count};
-  dispatch(work_.passes.residual.of(fine.model, fine.format), residual, level, "coarse residual");
+  dispatch(work_.passes.of(shader::residual, fine.model, fine.format), residual, level, "coarse residual");
   const TransferBuffers& transfer = operators_.transfer(key_, level);
   const auto& part = transfer.parts.front();
   const gpu::RestrictPush push{.offset = transfer.back_offset.address(),
@@ -109,7 +115,7 @@ void Multigrid::record_restriction(std::uint32_t level) {
                                .r = fine.product.address(),
                                .f = coarse.r.address(),
                                .count = coarse.count};
-  dispatch(work_.passes.restrict.of(key_.model), push, level + 1, "restriction");
+  dispatch(work_.passes.of(shader::restrict, key_.model), push, level + 1, "restriction");
 }
 
 void Multigrid::record_prolongation(std::uint32_t level) {
@@ -121,12 +127,12 @@ void Multigrid::record_prolongation(std::uint32_t level) {
                               fine.z.address(),
                               part.width,
                               fine.count};
-  dispatch(work_.passes.prolong.of(key_.model), push, level, "prolongation");
+  dispatch(work_.passes.of(shader::prolong, key_.model), push, level, "prolongation");
 }
 
 void Multigrid::record_coarse_solve() {
   const OperatorBuffers& rows = op(coarsest());
-  const vk::Buffer& result = correction(coarsest());
+  const device::Buffer& result = correction(coarsest());
   const double ratio = std::pow(static_cast<double>(rows.count), -2.0 / 3);
   const gpu::CoarseSolvePush push{.rows = rows.rows(),
                                   .f = rows.r.address(),
@@ -139,7 +145,7 @@ void Multigrid::record_coarse_solve() {
                                   .steps = coarse_steps(),
                                   .reduce = coarsest() == top_ ? 1u : 0u,
                                   .ratio = static_cast<float>(ratio)};
-  work_.recorder.dispatch_indirect(work_.passes.coarse_solve.of(rows.model, rows.format), push, op(top_).state,
+  work_.recorder.dispatch_indirect(work_.passes.of(shader::coarse_solve, rows.model, rows.format), push, op(top_).state,
                                    offsetof(gpu::SolveState, coarse), "coarse solve");
 }
 

@@ -24,7 +24,7 @@ class Multigrid {
   void record(std::uint32_t top);
 
   // z of the last cycle from `top` down.
-  const vk::Buffer& correction(std::uint32_t level) const;
+  const device::Buffer& correction(std::uint32_t level) const;
 
   void did(std::uint32_t top, std::uint32_t cycles) const;
 
@@ -38,11 +38,11 @@ class Multigrid {
   std::uint64_t smoothing_bytes(const OperatorBuffers& op) const;
 
   template <typename Push>
-  void dispatch(LazyPass& pass, const Push& push, std::uint32_t level, const char* name, bool concludes = true);
+  void dispatch(LazyPass& pass, const Push& push, std::uint32_t level, const char* name);
 
   void record_smoothing(std::uint32_t level, bool from_zero);
-  void record_step(std::uint32_t level, const vk::Buffer& from, const vk::Buffer& to, std::uint32_t number, bool zero,
-                   bool reduce);
+  void record_step(std::uint32_t level, const device::Buffer& from, const device::Buffer& to, std::uint32_t number,
+                   bool zero, bool reduce);
   void record_restriction(std::uint32_t level);
   void record_prolongation(std::uint32_t level);
   void record_coarse_solve();

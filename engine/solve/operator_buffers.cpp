@@ -11,8 +11,8 @@ namespace quadgraph {
 namespace {
 
 template <typename T>
-vk::Buffer upload(vk::Context& context, const std::vector<T>& values, const std::string& name, vk::Place place) {
-  return vk::upload<T>(context, values, name, place);
+device::Buffer upload(device::Device& context, const std::vector<T>& values, const std::string& name) {
+  return device::upload<T>(context, values, name);
 }
 
 // Of ascending numbers from 0 on: how many are at most 0, 1, ...
@@ -24,7 +24,7 @@ std::vector<std::uint32_t> ends_of(const std::vector<std::uint32_t>& layers) {
 
 }  // namespace
 
-OperatorBuffers::OperatorBuffers(vk::Context& context, const Level& level, std::uint32_t index, Method method,
+OperatorBuffers::OperatorBuffers(device::Device& context, const Level& level, std::uint32_t index, Method method,
                                  Model model_in, EntryFormat format_in)
     : model(model_in),
       format(format_in),
@@ -32,17 +32,14 @@ OperatorBuffers::OperatorBuffers(vk::Context& context, const Level& level, std::
       method_(method),
       prefix_("level " + std::to_string(index) + " " + std::string(name_of(method)) + " " +
               std::string(name_of(model)) + " ") {
-  const auto buffer = [&](std::uint64_t bytes, const std::string& purpose, const char* name,
-                          vk::Place place = vk::Place::read) {
-    return vk::Buffer(context, bytes, place, purpose + prefix_ + name);
+  const auto buffer = [&](std::uint64_t bytes, const std::string& purpose, const char* name) {
+    return device::Buffer(context, bytes, device::Place::device, purpose + prefix_ + name);
   };
   const auto block = [&](const char* name) {
-    const std::uint64_t head = compact_rows() ? gpu::SP3_ROWS_HEAD * sizeof(float) : 0;
-    return buffer(head + count * block_bytes(), "operator/", name, vk::Place::rows);
+    const std::uint64_t head = compact_rows() ? sizeof(glm::vec3) : 0;
+    return buffer(head + count * block_bytes(), "operator/", name);
   };
-  const auto field = [&](const char* name) {
-    return buffer(count * field_bytes(), "solver/", name, vk::Place::fields);
-  };
+  const auto field = [&](const char* name) { return buffer(count * field_bytes(), "solver/", name); };
   const std::string rows = "operator/", vectors = "solver/";
   const bool fem = method == Method::fem;
   const SlicedColumns columns = fem               ? slice(vertex_neighbours(level))
@@ -52,8 +49,8 @@ OperatorBuffers::OperatorBuffers(vk::Context& context, const Level& level, std::
   if (!fem) to_phi = buffer(count * sizeof(glm::vec3), rows, "to_phi");
   entries = static_cast<std::uint32_t>(columns.column.size());
   slices = static_cast<std::uint32_t>(columns.slice_offset.size() - 1);
-  slice_offset = upload(context, columns.slice_offset, rows + prefix_ + "slice_offset", vk::Place::rows);
-  entry = upload(context, stored_columns(columns.column, model, format), rows + prefix_ + "entry", vk::Place::rows);
+  slice_offset = upload(context, columns.slice_offset, rows + prefix_ + "slice_offset");
+  entry = upload(context, stored_columns(columns.column, model, format), rows + prefix_ + "entry");
   row_sum = block("row_sum");
   if (!compact_rows()) diagonal = block("diagonal");
   b = field("b");
@@ -70,15 +67,15 @@ OperatorBuffers::OperatorBuffers(vk::Context& context, const Level& level, std::
   surface_before = buffer(surface_count * sizeof(glm::vec3), vectors, "exitance before");
   surface_start = buffer(surface_count * sizeof(glm::vec3), vectors, "exitance of the start");
   state = buffer(sizeof(gpu::SolveState), vectors, "state");
-  state_on_host = {context, sizeof(gpu::SolveState), vk::Place::host, vectors + prefix_ + "state, read back"};
+  state_on_host = {context, sizeof(gpu::SolveState), device::Place::host, vectors + prefix_ + "state, read back"};
   damping = buffer(sizeof(glm::vec3), vectors, "damping");
 }
 
-void OperatorBuffers::make_room(vk::Context& context, const Level& level, bool even, bool two_steps) {
+void OperatorBuffers::make_room(device::Device& context, const Level& level, bool even, bool two_steps) {
   if (on_grid(method_) && grid_optical.size() == 0) upload_grid(context, level);
   if (method_ != Method::fem) return;
   if (two_steps && other.size() == 0) {
-    other = {context, count * field_bytes(), vk::Place::fields, "solver/" + prefix_ + "other z"};
+    other = {context, count * field_bytes(), device::Place::device, "solver/" + prefix_ + "other z"};
   }
   if (by_entry(even)) {
     if (row_shape.size() == 0) upload_shape(context, level);
@@ -87,41 +84,41 @@ void OperatorBuffers::make_room(vk::Context& context, const Level& level, bool e
   }
 }
 
-void OperatorBuffers::upload_shape(vk::Context& context, const Level& level) {
+void OperatorBuffers::upload_shape(device::Device& context, const Level& level) {
   const Neighbours rows = vertex_neighbours(level);
   const FemShape shape = fem_shape(level, rows, slice(rows));
   const std::string prefix = "assembly/" + prefix_;
-  entry_shape = upload(context, shape.entry, prefix + "entry_shape", vk::Place::assembly);
-  entry_area = upload(context, shape.area, prefix + "entry_area", vk::Place::assembly);
-  row_shape = upload(context, shape.row, prefix + "row_shape", vk::Place::assembly);
+  entry_shape = upload(context, shape.entry, prefix + "entry_shape");
+  entry_area = upload(context, shape.area, prefix + "entry_area");
+  row_shape = upload(context, shape.row, prefix + "row_shape");
 }
 
-void OperatorBuffers::upload_rings(vk::Context& context, const Level& level) {
+void OperatorBuffers::upload_rings(device::Device& context, const Level& level) {
   const Neighbours rows = vertex_neighbours(level);
   const FemRings rings = fem_rings(level, rows, slice(rows));
   const std::string prefix = "assembly/" + prefix_;
   edge_count = static_cast<std::uint32_t>(rings.edge_entry.size());
-  edge_entry = upload(context, rings.edge_entry, prefix + "edge_entry", vk::Place::assembly);
-  ring_offset = upload(context, rings.ring_offset, prefix + "ring_offset", vk::Place::assembly);
-  ring = upload(context, rings.ring, prefix + "ring", vk::Place::assembly);
-  tet_offset = upload(context, rings.tets.offset, prefix + "tet_offset", vk::Place::assembly);
-  tet_incidence = upload(context, rings.tets.tet, prefix + "tet_incidence", vk::Place::assembly);
-  tet_shape = {context, std::uint64_t{gpu::TET_SHAPE} * level.tet_count() * sizeof(float), vk::Place::assembly,
+  edge_entry = upload(context, rings.edge_entry, prefix + "edge_entry");
+  ring_offset = upload(context, rings.ring_offset, prefix + "ring_offset");
+  ring = upload(context, rings.ring, prefix + "ring");
+  tet_offset = upload(context, rings.tets.offset, prefix + "tet_offset");
+  tet_incidence = upload(context, rings.tets.tet, prefix + "tet_incidence");
+  tet_shape = {context, std::uint64_t{gpu::TET_SHAPE} * level.tet_count() * sizeof(float), device::Place::device,
                prefix + "tet_shape"};
-  face_area = {context, level.face_count() * sizeof(float), vk::Place::assembly, prefix + "face_area"};
+  face_area = {context, level.face_count() * sizeof(float), device::Place::device, prefix + "face_area"};
 }
 
-void OperatorBuffers::upload_grid(vk::Context& context, const Level& level) {
+void OperatorBuffers::upload_grid(device::Device& context, const Level& level) {
   const TetIncidence tets = quadgraph::tet_incidence(level);
   const std::string prefix = "assembly/" + prefix_;
-  tet_offset = upload(context, tets.offset, prefix + "tet_offset", vk::Place::assembly);
-  tet_incidence = upload(context, tets.tet, prefix + "tet_incidence", vk::Place::assembly);
-  grid_optical = {context, count * sizeof(gpu::Optical), vk::Place::fields, prefix + "optical at vertices"};
-  grid_volume = {context, count * sizeof(float), vk::Place::assembly, prefix + "volume at vertices"};
+  tet_offset = upload(context, tets.offset, prefix + "tet_offset");
+  tet_incidence = upload(context, tets.tet, prefix + "tet_incidence");
+  grid_optical = {context, count * sizeof(gpu::Optical), device::Place::device, prefix + "optical at vertices"};
+  grid_volume = {context, count * sizeof(float), device::Place::device, prefix + "volume at vertices"};
 }
 
 std::uint64_t OperatorBuffers::block_bytes() const {
-  if (compact_rows()) return gpu::SP3_ROW_FLOATS * sizeof(float);
+  if (compact_rows()) return sizeof(gpu::Sp3Row);
   return (model == Model::sp3 ? 3 : 1) * sizeof(glm::vec3);
 }
 

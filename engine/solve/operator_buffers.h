@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "engine/base/solve_options.h"
+#include "engine/device/memory.h"
 #include "engine/file/graph.h"
 #include "engine/optics/boundary.h"
 #include "engine/reference/stored_entries.h"
-#include "engine/vk/memory.h"
 #include "shaders/solver/solve_shared.h"
 
 namespace quadgraph {
@@ -27,31 +27,31 @@ struct OperatorBuffers {
   std::uint32_t count = 0;    // rows: carriers, each with one unknown or, in SP3, two
   std::uint32_t entries = 0;  // off the diagonal, padding included
   std::uint32_t slices = 0;
-  vk::Buffer slice_offset, entry, row_sum, diagonal;  // RowsRef; no diagonal with compact_rows
-  vk::Buffer to_phi;                                  // vec3 per row; none with fem: 1
-  vk::Buffer b, x;                                    // scaled (gpu::Scale)
-  vk::Buffer r, p;                                    // residual, direction
-  vk::Buffer product;               // A p; in a relaxation, the other x; in a cycle, the direction, then the residual
-  vk::Buffer z, other;              // correction of a cycle, and a second buffer of it (make_room); fem only
-  vk::Buffer before;                // x of the last solve, on levels that have a finer one
-  vk::Buffer unit;                  // vec3: the scale that x has
-  vk::Buffer state, state_on_host;  // SolveState, and the same, mapped
-  vk::Buffer damping;               // vec3
+  device::Buffer slice_offset, entry, row_sum, diagonal;  // RowsRef; no diagonal with compact_rows
+  device::Buffer to_phi;                                  // vec3 per row; none with fem: 1
+  device::Buffer b, x;                                    // scaled (gpu::Scale)
+  device::Buffer r, p;                                    // residual, direction
+  device::Buffer product;   // A p; in a relaxation, the other x; in a cycle, the direction, then the residual
+  device::Buffer z, other;  // correction of a cycle, and a second buffer of it (make_room); fem only
+  device::Buffer before;    // x of the last solve, on levels that have a finer one
+  device::Buffer unit;      // vec3: the scale that x has
+  device::Buffer state, state_on_host;  // SolveState, and the same, mapped
+  device::Buffer damping;               // vec3
 
   std::uint32_t surface_first = 0, surface_count = 0;  // carriers on the surface
-  vk::Buffer surface_share;                            // SurfaceShare of each
-  vk::Buffer surface_before, surface_start;            // vec3 of each: exitance at the last look, and at the start
+  device::Buffer surface_share;                        // SurfaceShare of each
+  device::Buffer surface_before, surface_start;        // vec3 of each: exitance at the last look, and at the start
 
   // fem only, like all that follow: of a body at rest and coefficients that are the same everywhere.
-  vk::Buffer entry_shape, entry_area, row_shape;  // AssembleEvenPush
+  device::Buffer entry_shape, entry_area, row_shape;  // AssembleEvenPush
 
   // Of all others.
   std::uint32_t edge_count = 0;
-  vk::Buffer edge_entry, ring_offset, ring;  // AssembleEdgesPush
-  vk::Buffer tet_offset, tet_incidence;      // AssembleFemPush
-  vk::Buffer tet_shape, face_area;           // ShapePush
+  device::Buffer edge_entry, ring_offset, ring;  // AssembleEdgesPush
+  device::Buffer tet_offset, tet_incidence;      // AssembleFemPush
+  device::Buffer tet_shape, face_area;           // ShapePush
   // Of polygrids: tet_offset and tet_incidence, and what GridMaterialPush makes of them.
-  vk::Buffer grid_optical, grid_volume;
+  device::Buffer grid_optical, grid_volume;
   std::vector<std::uint32_t> layer_ends;  // rows of each layer and all above it
   bool measured = false;                  // they belong to the present vertices
   bool moved = false;                     // since these buffers were made
@@ -63,12 +63,12 @@ struct OperatorBuffers {
   bool solved = false;                // x has been solved for, if for other light or coefficients
 
   // Uploads the rows; values are undefined until assembled.
-  OperatorBuffers(vk::Context& context, const Level& level, std::uint32_t index, Method method, Model model,
+  OperatorBuffers(device::Device& context, const Level& level, std::uint32_t index, Method method, Model model,
                   EntryFormat format);
 
   // Makes what the assembly needs, and what smoothing in two steps does, unless it is there. `even`: the coefficients
   // are the same everywhere.
-  void make_room(vk::Context& context, const Level& level, bool even, bool two_steps);
+  void make_room(device::Device& context, const Level& level, bool even, bool two_steps);
 
   // Whether entry_shape makes the entries, and not the elements around each edge.
   bool by_entry(bool even) const { return even && !moved; }
@@ -87,9 +87,9 @@ struct OperatorBuffers {
   std::uint64_t product_bytes() const;  // read by one product with the rows, diagonal left out
 
  private:
-  void upload_shape(vk::Context& context, const Level& level);
-  void upload_grid(vk::Context& context, const Level& level);
-  void upload_rings(vk::Context& context, const Level& level);
+  void upload_shape(device::Device& context, const Level& level);
+  void upload_grid(device::Device& context, const Level& level);
+  void upload_rings(device::Device& context, const Level& level);
 
   Method method_;
   std::string prefix_;

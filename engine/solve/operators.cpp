@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "interface/solver/follow.comp.h"
+#include "interface/solver/transfer.comp.h"
+
 namespace quadgraph {
 namespace {
 
@@ -11,7 +14,7 @@ constexpr double packed_conduction = 50;
 
 }  // namespace
 
-void Operators::create(vk::Context& context, std::span<const Level> levels, const OperatorKey& key, bool even,
+void Operators::create(device::Device& context, std::span<const Level> levels, const OperatorKey& key, bool even,
                        bool two_steps) {
   const std::size_t count = std::min<std::size_t>(levels.size(), MAX_LEVELS);
   if (!levels_.contains(key)) {
@@ -30,12 +33,12 @@ void Operators::create(vk::Context& context, std::span<const Level> levels, cons
 }
 
 // What opens the gates of the level's state.
-void Operators::write_gates(vk::Context& context, const std::vector<OfLevel>& levels, std::uint32_t number) {
-  const auto groups = [&](std::uint32_t count) { return vk::strided_workgroups(context, count); };
+void Operators::write_gates(device::Device& context, const std::vector<OfLevel>& levels, std::uint32_t number) {
+  const auto groups = [&](std::uint32_t count) { return device::workgroups(count); };
   gpu::SolveState state{};
   for (std::size_t i = number; i < levels.size(); ++i) state.groups[i] = groups(levels[i].op->count);
   state.surface_groups = groups(levels[number].op->surface_count);
-  vk::write_bytes(context, levels[number].op->state, std::as_bytes(std::span(&state, 1)));
+  device::write_bytes(context, levels[number].op->state, std::as_bytes(std::span(&state, 1)));
 }
 
 void Operators::unload() {
@@ -101,8 +104,8 @@ void Operators::moved(std::uint32_t number) {
   }
 }
 
-void Operators::record_transfer(Workspace& work, const OperatorKey& key, std::uint32_t level, const vk::Buffer& target,
-                                const vk::Buffer& state) {
+void Operators::record_transfer(Workspace& work, const OperatorKey& key, std::uint32_t level,
+                                const device::Buffer& target, const device::Buffer& state) {
   const OperatorBuffers& coarse = at(key, level + 1);
   const OperatorBuffers& fine = at(key, level);
   for (const auto& part : levels_.at(key)[level].transfer->parts) {
@@ -118,7 +121,7 @@ void Operators::record_transfer(Workspace& work, const OperatorKey& key, std::ui
                                  .coarse_first = part.coarse_first,
                                  .count = part.count};
     work.recorder.dispatch(
-        work.passes.transfer.of(key.model), push, part.count, "transfer",
+        work.passes.of(shader::transfer, key.model), push, part.count, "transfer",
         part.count * (part.width * (8 + sizeof(glm::vec3) + fine.field_bytes()) + 2 * sizeof(glm::vec3)));
   }
 }
@@ -135,7 +138,7 @@ void Operators::record_follow(Workspace& work, const OperatorKey& key, std::uint
   push.keep_before = level > 0 ? 1u : 0u;
   if (level > 0) push.before = fine.before.address();
   const auto dispatch = [&] {
-    work.recorder.dispatch(work.passes.follow.of(key.model), push, push.count, "transfer",
+    work.recorder.dispatch(work.passes.of(shader::follow, key.model), push, push.count, "transfer",
                            push.count * (push.width * (8 + sizeof(glm::vec3) + 2 * fine.field_bytes()) +
                                          sizeof(glm::vec3) + 3 * fine.field_bytes()));
   };

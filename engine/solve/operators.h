@@ -26,7 +26,8 @@ class Operators {
  public:
   // Makes what operators of all levels need, unless it is there. `even`: the coefficients are the same everywhere;
   // `two_steps`: cycles smooth in two steps.
-  void create(vk::Context& context, std::span<const Level> levels, const OperatorKey& key, bool even, bool two_steps);
+  void create(device::Device& context, std::span<const Level> levels, const OperatorKey& key, bool even,
+              bool two_steps);
 
   // Of a key that has been created.
   OperatorBuffers& at(const OperatorKey& key, std::uint32_t level) { return *levels_.at(key)[level].op; }
@@ -52,8 +53,8 @@ class Operators {
 
   // `target`, as x of `level`, from x of the next coarser one, in the channels that `state`, of a level that was solved
   // for the same light, tells to be lit.
-  void record_transfer(Workspace& work, const OperatorKey& key, std::uint32_t level, const vk::Buffer& target,
-                       const vk::Buffer& state);
+  void record_transfer(Workspace& work, const OperatorKey& key, std::uint32_t level, const device::Buffer& target,
+                       const device::Buffer& state);
 
   // x of `level` from the last solution, with what has changed on the next coarser one since; `changed`: that there is
   // such a level.
@@ -67,7 +68,7 @@ class Operators {
 
   void moved(std::uint32_t number);
 
-  static void write_gates(vk::Context& context, const std::vector<OfLevel>& levels, std::uint32_t number);
+  static void write_gates(device::Device& context, const std::vector<OfLevel>& levels, std::uint32_t number);
 
   std::map<OperatorKey, std::vector<OfLevel>> levels_;
   std::set<OperatorKey> plain_;  // on all levels, since a motion

@@ -1,68 +1,45 @@
 // The compute pipelines of the solve, created at first use: compiling takes long on lavapipe, and no solve needs all.
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <optional>
+#include <tuple>
 
 #include "engine/base/solve_options.h"
+#include "engine/device/pipeline.h"
 #include "engine/reference/stored_entries.h"
-#include "engine/vk/pipeline.h"
 
 namespace quadgraph {
 
 // A pipeline that does not exist until it is wanted.
 class LazyPass {
  public:
-  LazyPass(vk::Spirv code, std::uint32_t push_size, const char* name, vk::Work work = vk::Work::each,
-           std::uint32_t variant = 0)
-      : code_(code), push_size_(push_size), name_(name), work_(work), variant_(variant) {}
+  LazyPass(const device::Shader& shader, const device::ComputeOptions& options) : shader_(shader), options_(options) {}
 
-  const vk::ComputePass& get(vk::Context& context) { return made(pass_, context, work_); }
-
-  // The dispatch that has to follow; null if none has.
-  const vk::ComputePass* conclusion(vk::Context& context) {
-    if (work_ != vk::Work::reducing || !vk::few_workgroups(context)) return nullptr;
-    return &made(conclusion_, context, vk::Work::conclusion);
-  }
+  const device::ComputePass& get(device::Device& context);
 
  private:
-  const vk::ComputePass& made(std::optional<vk::ComputePass>& pass, vk::Context& context, vk::Work work) {
-    if (!pass) pass.emplace(context, code_, push_size_, name_, vk::ComputePass::default_workgroup_size, variant_, work);
-    return *pass;
-  }
-
-  vk::Spirv code_;
-  std::uint32_t push_size_;
-  const char* name_;
-  vk::Work work_;
-  std::uint32_t variant_;
-  std::optional<vk::ComputePass> pass_, conclusion_;
+  const device::Shader& shader_;
+  device::ComputeOptions options_;
+  std::optional<device::ComputePass> pass_;
 };
 
-// The two variants of a pass that touches fields.
-struct ModelPass {
-  LazyPass diffusion, sp3;
+// All passes by their shaders, which know what there is of each: one for all, or one per model, or per model and format
+// of entries.
+class Passes {
+ public:
+  LazyPass& of(const device::Shader& shader) { return made(shader, {}); }
+  LazyPass& of(const device::ModelShader& shader, Model model) { return made(shader, {.sp3 = model == Model::sp3}); }
+  LazyPass& of(const device::EntryShader& shader, Model model, EntryFormat format);
 
-  LazyPass& of(Model model) { return model == Model::sp3 ? sp3 : diffusion; }
-};
+  LazyPass& of(const device::ModelShader& shader) = delete;
+  LazyPass& of(const device::EntryShader& shader, Model model) = delete;
 
-// The same of a pass that touches entries or rows, for both formats.
-struct EntryPass {
-  ModelPass packed, plain;
+ private:
+  LazyPass& made(const device::Shader& shader, const device::ComputeOptions& options);
 
-  LazyPass& of(Model model, EntryFormat format) { return (format == EntryFormat::plain ? plain : packed).of(model); }
-};
-
-struct Passes {
-  Passes();
-
-  LazyPass evaluate_material, edit_material, shape, irradiance_scale, walk_source, vertex_exitance, display_scale,
-      vertex_unscattered, energy_total, surface_share, uncollided, gather_exitance, gather_nodes, gather_scale,
-      gather_single, exchange, exchange_finer, exchange_enter, exchange_boxes, exchange_rays, deform, deform_nodes,
-      deform_normals, deform_bounds, shape_state, grid_material;
-  EntryPass assemble_fdm, assemble_fv, assemble_polygrid, assemble_edges, assemble_even, assemble_fem, eigenvalue_bound,
-      cg_start, cg_multiply, cg_update, cg_direction, sweep, residual, chebyshev, coarse_solve, right_hand_side_fdm,
-      right_hand_side_fv, right_hand_side_fem, right_hand_side_buried;
-  ModelPass transfer, follow, correct, restrict, prolong, surface_change, exitance, energy, gather_phi;
+  std::map<std::tuple<const device::Shader*, bool, std::uint32_t>, LazyPass> passes_;
 };
 
 }  // namespace quadgraph

@@ -10,8 +10,8 @@ constexpr std::uint32_t max_timed = 4096;
 
 }  // namespace
 
-vk::Commands& Recorder::commands() {
-  if (!commands_) commands_ = std::make_unique<vk::Commands>(context_, max_timed);
+device::Commands& Recorder::commands() {
+  if (!commands_) commands_ = std::make_unique<device::Commands>(context_, max_timed);
   return *commands_;
 }
 
@@ -31,20 +31,20 @@ void Recorder::begin(const std::string& name, std::uint64_t bytes, bool counts) 
   ++timed_;
 }
 
-void Recorder::copy(const vk::Buffer& source, const vk::Buffer& target, std::uint64_t bytes,
+void Recorder::copy(const device::Buffer& source, const device::Buffer& target, std::uint64_t bytes,
                     std::uint64_t target_offset) {
   commands().copy(source, target, bytes, target_offset);
 }
 
-void Recorder::fill(const vk::Buffer& target, std::uint32_t value) {
+void Recorder::fill(const device::Buffer& target, std::uint32_t value) {
   commands().fill(target, value);
 }
 
 void Recorder::submit() {
   if (!commands_) return;
-  const std::unique_ptr<vk::Commands> running = std::move(commands_);
+  const std::unique_ptr<device::Commands> running = std::move(commands_);
   timed_ = 0;
-  for (const vk::PassTime& time : running->submit_and_wait()) stats(time.name).time_ms += time.time_ms;
+  for (const device::PassTime& time : running->submit_and_wait()) stats(time.name).time_ms += time.time_ms;
 }
 
 void Recorder::did(const std::string& name, std::uint32_t count, std::uint64_t bytes_each) {

@@ -7,45 +7,44 @@
 #include <vector>
 
 #include "engine/base/pass_stats.h"
+#include "engine/device/commands.h"
 #include "engine/solve/passes.h"
-#include "engine/vk/commands.h"
 
 namespace quadgraph {
 
 class Recorder {
  public:
-  explicit Recorder(vk::Context& context) : context_(context) {}
+  explicit Recorder(device::Device& context) : context_(context) {}
 
-  vk::Context& context() { return context_; }
+  device::Device& context() { return context_; }
 
   // Forgets the passes counted so far.
   void clear() { passes_.clear(); }
   const std::vector<PassStats>& passes() const { return passes_; }
 
-  // One timed dispatch; `bytes` is what the algorithm reads and writes in it. `concludes`: its reduction is wanted.
+  // One timed dispatch; `bytes` is what the algorithm reads and writes in it.
   template <typename Push>
-  void dispatch(LazyPass& pass, const Push& push, std::uint64_t elements, const std::string& name, std::uint64_t bytes,
-                bool concludes = true) {
-    const vk::ComputePass& pipeline = pass.get(context_);
+  void dispatch(LazyPass& pass, const Push& push, std::uint64_t elements, const std::string& name,
+                std::uint64_t bytes) {
+    const device::ComputePass& pipeline = pass.get(context_);
     begin(name, bytes, true);
     commands_->dispatch(pipeline, push, elements);
-    if (concludes) conclude(pass, push);
     commands_->end_pass();
   }
 
   // The same with workgroup counts from the device. Bytes and count are added by `did`, once known.
   template <typename Push>
-  void dispatch_indirect(LazyPass& pass, const Push& push, const vk::Buffer& arguments, std::uint64_t offset,
-                         const std::string& name, bool concludes = true) {
-    const vk::ComputePass& pipeline = pass.get(context_);
+  void dispatch_indirect(LazyPass& pass, const Push& push, const device::Buffer& arguments, std::uint64_t offset,
+                         const std::string& name) {
+    const device::ComputePass& pipeline = pass.get(context_);
     begin(name, 0, false);
     commands_->dispatch_indirect(pipeline, push, arguments, offset);
-    if (concludes) conclude(pass, push);
     commands_->end_pass();
   }
 
-  void copy(const vk::Buffer& source, const vk::Buffer& target, std::uint64_t bytes, std::uint64_t target_offset = 0);
-  void fill(const vk::Buffer& target, std::uint32_t value);
+  void copy(const device::Buffer& source, const device::Buffer& target, std::uint64_t bytes,
+            std::uint64_t target_offset = 0);
+  void fill(const device::Buffer& target, std::uint32_t value);
 
   // Runs what is recorded and waits.
   void submit();
@@ -54,18 +53,12 @@ class Recorder {
   void did(const std::string& name, std::uint32_t count, std::uint64_t bytes_each);
 
  private:
-  template <typename Push>
-  void conclude(LazyPass& pass, const Push& push) {
-    const vk::ComputePass* conclusion = pass.conclusion(context_);
-    if (conclusion != nullptr) commands_->dispatch(*conclusion, push, 1);
-  }
-
-  vk::Commands& commands();
+  device::Commands& commands();
   void begin(const std::string& name, std::uint64_t bytes, bool counts);
   PassStats& stats(const std::string& name);
 
-  vk::Context& context_;
-  std::unique_ptr<vk::Commands> commands_;
+  device::Device& context_;
+  std::unique_ptr<device::Commands> commands_;
   std::uint32_t timed_ = 0;
   std::vector<PassStats> passes_;  // in order of first use
 };

@@ -11,6 +11,7 @@
 #include "engine/solve/coefficients.h"
 #include "engine/solve/gather_field.h"
 #include "engine/solve/inter_reflection.h"
+#include "engine/solve/level_solver.h"
 #include "engine/solve/level_upload.h"
 #include "engine/solve/levels_solver.h"
 #include "engine/solve/solver_choice.h"
@@ -19,7 +20,7 @@
 
 namespace quadgraph {
 struct Simulation::Implementation {
-  vk::Context& context;
+  device::Device& context;
   BodyShape shape;
   std::vector<PassStats> deformation_passes;
   std::vector<LevelBuffers> levels;
@@ -40,7 +41,7 @@ struct Simulation::Implementation {
   std::map<Model, std::vector<Resolution>> resolution;  // per level, of the present material and shape
   SolverChoice quicker;
 
-  Implementation(vk::Context& context_in, const QuadGraph& graph_in)
+  Implementation(device::Device& context_in, const QuadGraph& graph_in)
       : context(context_in),
         shape(graph_in),
         levels(upload_levels(context_in, graph_in.levels())),
@@ -49,8 +50,7 @@ struct Simulation::Implementation {
         coefficients(context_in, graph_in.levels()),
         exchange(graph_in) {
     for (std::uint32_t i = 0; i < levels.size(); ++i) walks.emplace_back(context, shape.levels()[i], i);
-    const gpu::Beam lambertian = beam_along(std::nullopt);
-    light({&lambertian, 1});
+    light(std::vector{beam_along(std::nullopt)});
   }
 
   void light(std::span<const gpu::Beam> records) { replace_beams(context, records, beams, levels); }
@@ -79,8 +79,8 @@ struct Simulation::Implementation {
   void move(std::uint32_t number, std::span<const glm::vec3> positions) {
     shape.move(number, positions);
     const Level& moved = shape.levels()[number];
-    vk::write_bytes(context, levels[number].vertices, std::as_bytes(moved.vertices));
-    if (levels[number].nodes.size() > 0) vk::write_bytes(context, levels[number].nodes, std::as_bytes(moved.nodes));
+    device::write_bytes(context, levels[number].vertices, std::as_bytes(moved.vertices));
+    if (levels[number].nodes.size() > 0) device::write_bytes(context, levels[number].nodes, std::as_bytes(moved.nodes));
     operators.remeasure(number, moved);
     exchange.moved(number);
     if (number == 0) gather.reset();
@@ -170,7 +170,7 @@ struct Simulation::Implementation {
       upload_graph(context, shape.levels()[i], i, levels[i]);
       if (!there) shape.record_nodes(work, i, levels[i]);
     }
-    const bool two_steps = options.smoothing == 2 || (options.smoothing == 0 && options.solver == SolverKind::vcycle);
+    const bool two_steps = (options.smoothing > 0 ? options.smoothing : rules_of(options.solver).smoothing) == 2;
     operators.create(context, shape.levels(), key, coefficients.even(), two_steps);
     const std::optional<std::uint32_t> bounced = bounces_wanted(options) ? exchange.level() : std::nullopt;
     if (bounced) exchange.make_room(work, levels);
@@ -240,7 +240,7 @@ struct Simulation::Implementation {
     return exitance_of(context, work, {levels[number], op, solved->method, boundary, nullptr});
   }
 
-  glm::vec3 scale() const { return vk::download<gpu::Scale>(context, work.scale)[0].scale; }
+  glm::vec3 scale() const { return device::download<gpu::Scale>(context, work.scale)[0].scale; }
 
   // W/mm^2 per face.
   std::vector<glm::vec3> unscattered(std::span<const float> area) const {
@@ -254,7 +254,7 @@ struct Simulation::Implementation {
   }
 };
 
-Simulation::Simulation(vk::Context& context, const QuadGraph& graph)
+Simulation::Simulation(device::Device& context, const QuadGraph& graph)
     : implementation_(std::make_unique<Implementation>(context, graph)) {}
 
 Simulation::~Simulation() = default;
@@ -353,9 +353,9 @@ SurfaceField Simulation::surface_field() const {
   const Implementation& self = *implementation_;
   self.solved_key();
   SurfaceField field = surface_of(implementation_->shape.present(self.context, self.levels[0]));
-  field.q = vk::download<glm::vec3>(self.context, self.levels[0].q);
-  field.phi = vk::download<glm::vec3>(self.context, self.results.phi());
-  field.exitance = vk::download<glm::vec3>(self.context, self.results.exitance());
+  field.q = device::download<glm::vec3>(self.context, self.levels[0].q);
+  field.phi = device::download<glm::vec3>(self.context, self.results.phi());
+  field.exitance = device::download<glm::vec3>(self.context, self.results.exitance());
   field.unscattered = self.unscattered(field.area);
   return field;
 }
@@ -364,9 +364,9 @@ std::vector<glm::vec3> Simulation::phi() const {
   const Implementation& self = *implementation_;
   const OperatorBuffers& rows = implementation_->operators.at(self.solved_key(), 0);
   const std::size_t moments = rows.model == Model::sp3 ? 2 : 1;
-  const auto x = vk::download<glm::vec3>(self.context, rows.x);
+  const auto x = device::download<glm::vec3>(self.context, rows.x);
   std::vector<glm::vec3> phi(rows.count, glm::vec3(1));
-  if (rows.to_phi.size() > 0) phi = vk::download<glm::vec3>(self.context, rows.to_phi);
+  if (rows.to_phi.size() > 0) phi = device::download<glm::vec3>(self.context, rows.to_phi);
   const glm::vec3 scale = self.scale();
   for (std::size_t i = 0; i < phi.size(); ++i) phi[i] *= x[moments * i] * scale;
   return phi;
@@ -376,11 +376,11 @@ std::vector<glm::vec3> Simulation::exitance_on(std::uint32_t level) {
   return implementation_->exitance_on(level);
 }
 
-const vk::Buffer& Simulation::vertex_exitance() const {
+const device::Buffer& Simulation::vertex_exitance() const {
   return implementation_->results.vertex_exitance();
 }
 
-const vk::Buffer& Simulation::vertex_unscattered() const {
+const device::Buffer& Simulation::vertex_unscattered() const {
   return implementation_->results.vertex_unscattered();
 }
 

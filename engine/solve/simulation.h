@@ -16,12 +16,12 @@
 
 #include "engine/base/pass_stats.h"
 #include "engine/deform/deformer.h"
+#include "engine/device/device.h"
+#include "engine/device/memory.h"
 #include "engine/file/graph.h"
 #include "engine/optics/edit.h"
 #include "engine/reference/solution.h"
 #include "engine/solve/level_buffers.h"
-#include "engine/vk/context.h"
-#include "engine/vk/memory.h"
 #include "shaders/solver/solve_shared.h"
 
 namespace quadgraph {
@@ -38,7 +38,7 @@ enum class Gather {
 class Simulation {
  public:
   // `graph` is copied to the device; it must stay alive (its spans are used to set up row structures lazily).
-  Simulation(vk::Context& context, const QuadGraph& graph);
+  Simulation(device::Device& context, const QuadGraph& graph);
   ~Simulation();
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
@@ -117,8 +117,8 @@ class Simulation {
   std::vector<glm::vec3> exitance_on(std::uint32_t level);
 
   // vec3 per surface vertex of level 0, W/mm^2, for display: of scattered light, and of light that was not.
-  const vk::Buffer& vertex_exitance() const;
-  const vk::Buffer& vertex_unscattered() const;
+  const device::Buffer& vertex_exitance() const;
+  const device::Buffer& vertex_unscattered() const;
 
   // Whether all of the last solve's radiance can be gathered along view rays (see gathers).
   bool can_gather() const;

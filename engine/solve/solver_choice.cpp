@@ -34,14 +34,16 @@ std::string ratio_text(double ratio) {
 
 PossibleSolver possible_solver(Operators& operators, const OperatorKey& key, SolverKind wanted) {
   const std::string method(name_of(key.method)), name(name_of(wanted));
+  const SolverRules rules = rules_of(wanted);
   if (!symmetric(key.method)) {
-    if (wanted == SolverKind::dpcg) {
-      throw InputError("solver dpcg: the matrix of " + method + " is not symmetric; cascade and jacobi take it");
+    if (rules.any_matrix) return {wanted, ""};
+    if (!rules.cycles) {
+      throw InputError("solver " + name + ": the matrix of " + method +
+                       " is not symmetric; cascade and jacobi take it");
     }
-    if (!uses_cycles(wanted)) return {wanted, ""};
     return {SolverKind::cascade, name + " by cascade: the matrix of " + method + " is not symmetric"};
   }
-  if (!uses_cycles(wanted) || Multigrid::possible(operators, key)) return {wanted, ""};
+  if (!rules.cycles || Multigrid::possible(operators, key)) return {wanted, ""};
   const std::string why =
       key.method == Method::fem ? "there is no coarser level that is small enough" : method + " has no cycles";
   return {SolverKind::dpcg, name + " by dpcg: " + why};

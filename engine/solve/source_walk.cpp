@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "engine/base/error.h"
+#include "interface/source/right_hand_side_buried.comp.h"
+#include "interface/source/walk_source.comp.h"
 
 namespace quadgraph {
 namespace {
@@ -59,14 +61,15 @@ constexpr std::uint32_t most_nodes = 1u << (32 - CROSSING_BITS);
 
 }  // namespace
 
-SourceWalk::SourceWalk(vk::Context& context, const Level& level, std::uint32_t number)
+SourceWalk::SourceWalk(device::Device& context, const Level& level, std::uint32_t number)
     : prefix_("level " + std::to_string(number) + " "),
-      unscattered_(context, level.face_count() * power_bytes, vk::Place::read, "walk/" + prefix_ + "unscattered") {
+      unscattered_(context, level.face_count() * power_bytes, device::Place::device,
+                   "walk/" + prefix_ + "unscattered") {
   if (level.node_count() > most_nodes) {
     throw InputError(prefix_ + "has " + std::to_string(level.node_count()) +
                      " tets and outside faces; the buried source takes up to " + std::to_string(most_nodes));
   }
-  crossings_ = vk::upload<std::uint32_t>(context, crossings(level), "geometry/" + prefix_ + "crossings");
+  crossings_ = device::upload<std::uint32_t>(context, crossings(level), "geometry/" + prefix_ + "crossings");
 }
 
 gpu::BodyRef SourceWalk::body(const LevelBuffers& level, double eta, bool even) const {
@@ -83,11 +86,11 @@ gpu::BodyRef SourceWalk::body(const LevelBuffers& level, double eta, bool even) 
           .eta = static_cast<float>(eta)};
 }
 
-void SourceWalk::Sums::make_room(vk::Context& context, std::uint64_t bytes, const std::string& prefix) {
+void SourceWalk::Sums::make_room(device::Device& context, std::uint64_t bytes, const std::string& prefix) {
   if (device.size() >= bytes) return;
-  device = {context, bytes, vk::Place::device, "walk/" + prefix + "sums"};
-  host = {context, bytes, vk::Place::host, "walk/" + prefix + "sums, read back"};
-  scale = {context, sizeof(gpu::Scale), vk::Place::host, "walk/" + prefix + "scale, read back"};
+  device = {context, bytes, device::Place::device, "walk/" + prefix + "sums"};
+  host = {context, bytes, device::Place::host, "walk/" + prefix + "sums, read back"};
+  scale = {context, sizeof(gpu::Scale), device::Place::host, "walk/" + prefix + "scale, read back"};
 }
 
 void SourceWalk::Sums::read_back(Workspace& work) const {
@@ -107,10 +110,10 @@ WalkPower SourceWalk::Sums::power() const {
   return power;
 }
 
-void SourceWalk::make_room(vk::Context& context, const LevelBuffers& level, const BeamBuffers& beams, Method method,
+void SourceWalk::make_room(device::Device& context, const LevelBuffers& level, const BeamBuffers& beams, Method method,
                            bool again) {
-  const auto room = [&](vk::Buffer& buffer, std::uint64_t bytes, const char* name) {
-    if (buffer.size() != bytes) buffer = {context, bytes, vk::Place::read, "walk/" + prefix_ + name};
+  const auto room = [&](device::Buffer& buffer, std::uint64_t bytes, const char* name) {
+    if (buffer.size() != bytes) buffer = {context, bytes, device::Place::device, "walk/" + prefix_ + name};
   };
   room(deposits_[carrier(method)], carriers(level, method) * power_bytes, "deposit");
   std::uint64_t all_sums = 0;
@@ -152,8 +155,8 @@ void SourceWalk::record(Workspace& work, const LevelBuffers& level, const BeamBu
     const std::uint32_t kind = beam.way.kind;
     if (kind == gpu::BEAM_MEAN) continue;
     push.rays = rays(kind, task.mean_rays);
-    work.recorder.dispatch(work.passes.walk_source, push, std::uint64_t{level.face_count} * push.rays, "source walk",
-                           walk_bytes(level, push.rays));
+    work.recorder.dispatch(work.passes.of(shader::walk_source), push, std::uint64_t{level.face_count} * push.rays,
+                           "source walk", walk_bytes(level, push.rays));
     push.beam += sizeof(gpu::Beam);
     push.sums += sums_bytes;
   }
@@ -163,7 +166,7 @@ void SourceWalk::record(Workspace& work, const LevelBuffers& level, const BeamBu
 void SourceWalk::record_again(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams,
                               const WalkTask& task) {
   make_room(work.recorder.context(), level, beams, task.method, true);
-  const vk::Buffer& deposit = deposits_[carrier(task.method)];
+  const device::Buffer& deposit = deposits_[carrier(task.method)];
   work.recorder.copy(deposit, all_deposits_[carrier(task.method)], deposit.size());
   work.recorder.copy(unscattered_, all_unscattered_, unscattered_.size());
   work.recorder.fill(sums_again_.device, 0);
@@ -171,7 +174,8 @@ void SourceWalk::record_again(Workspace& work, const LevelBuffers& level, const 
   gpu::WalkSourcePush push = this->push(work, level, beams, task);
   push.beam += (beams.beams.size() - 1) * sizeof(gpu::Beam);
   push.sums = sums_again_.device.address();
-  work.recorder.dispatch(work.passes.walk_source, push, level.face_count, "source walk", walk_bytes(level, 1));
+  work.recorder.dispatch(work.passes.of(shader::walk_source), push, level.face_count, "source walk",
+                         walk_bytes(level, 1));
   sums_again_.read_back(work);
 }
 
@@ -187,12 +191,13 @@ void SourceWalk::record_right_hand_side(Workspace& work, const LevelBuffers& lev
                                           .count = op.count,
                                           .deposit_count = carriers(level, method),
                                           .per_volume = method == Method::quadgraph_fdm ? 1u : 0u};
-  work.recorder.dispatch(work.passes.right_hand_side_buried.of(op.model, op.format), push, op.count, "right-hand side",
+  work.recorder.dispatch(work.passes.of(shader::right_hand_side_buried, op.model, op.format), push, op.count,
+                         "right-hand side",
                          op.count * (op.block_bytes() + op.field_bytes()) + carriers(level, method) * power_bytes);
 }
 
-std::vector<glm::dvec3> SourceWalk::unscattered_power(vk::Context& context, const glm::dvec3& scale) const {
-  return powers(vk::download<std::uint32_t>(context, unscattered()), scale);
+std::vector<glm::dvec3> SourceWalk::unscattered_power(device::Device& context, const glm::dvec3& scale) const {
+  return powers(device::download<std::uint32_t>(context, unscattered()), scale);
 }
 
 WalkPower SourceWalk::power() const {

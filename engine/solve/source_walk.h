@@ -37,7 +37,7 @@ struct WalkTask {
 class SourceWalk {
  public:
   // Throws InputError if the level has too many tets and faces.
-  SourceWalk(vk::Context& context, const Level& level, std::uint32_t number);
+  SourceWalk(device::Device& context, const Level& level, std::uint32_t number);
 
   // What rays need of the level. `even`: level.optical is the same everywhere, which saves its reading.
   gpu::BodyRef body(const LevelBuffers& level, double eta, bool even) const;
@@ -46,7 +46,8 @@ class SourceWalk {
   void invalidate() { walked_ = {false, false}; }
 
   // Room for what `record` and, with `again`, `record_again` write, as far as the beams go, unless it is there.
-  void make_room(vk::Context& context, const LevelBuffers& level, const BeamBuffers& beams, Method method, bool again);
+  void make_room(device::Device& context, const LevelBuffers& level, const BeamBuffers& beams, Method method,
+                 bool again);
 
   // Walks, unless that has been done for the present light by the same rays: level.beam_q of every beam of the scene,
   // scaled by work.scale. The graph methods share their deposits.
@@ -62,11 +63,11 @@ class SourceWalk {
   void record_right_hand_side(Workspace& work, const LevelBuffers& level, Method method, OperatorBuffers& op) const;
 
   // Fixed point (walk_shared.h): per vertex (fem) or tet what was scattered, and per face what left.
-  const vk::Buffer& deposit(Method method) const { return (again_ ? all_deposits_ : deposits_)[carrier(method)]; }
-  const vk::Buffer& unscattered() const { return again_ ? all_unscattered_ : unscattered_; }
+  const device::Buffer& deposit(Method method) const { return (again_ ? all_deposits_ : deposits_)[carrier(method)]; }
+  const device::Buffer& unscattered() const { return again_ ? all_unscattered_ : unscattered_; }
 
   // W per face of what left unscattered, in the last walk that has run; `scale` as on the device.
-  std::vector<glm::dvec3> unscattered_power(vk::Context& context, const glm::dvec3& scale) const;
+  std::vector<glm::dvec3> unscattered_power(device::Device& context, const glm::dvec3& scale) const;
 
   // Of the last walk that has run.
   WalkPower power() const;
@@ -74,9 +75,9 @@ class SourceWalk {
  private:
   // Fixed point, per beam and workgroup absorbed and unscattered.
   struct Sums {
-    vk::Buffer device, host, scale;
+    device::Buffer device, host, scale;
 
-    void make_room(vk::Context& context, std::uint64_t bytes, const std::string& prefix);
+    void make_room(device::Device& context, std::uint64_t bytes, const std::string& prefix);
     void read_back(Workspace& work) const;
     WalkPower power() const;
   };
@@ -90,14 +91,14 @@ class SourceWalk {
   std::array<bool, 2> walked_ = {false, false};  // by carrier
   bool mean_rays_ = false;                       // in what was walked
   bool again_ = false;                           // light that entered again is in the results
-  vk::Buffer crossings_;                         // walk_shared.h
+  device::Buffer crossings_;                     // walk_shared.h
   // Of the scene's light; by carrier, made at first use.
-  std::array<vk::Buffer, 2> deposits_;
-  vk::Buffer unscattered_;
+  std::array<device::Buffer, 2> deposits_;
+  device::Buffer unscattered_;
   Sums sums_;
   // With what entered again; made at first use.
-  std::array<vk::Buffer, 2> all_deposits_;
-  vk::Buffer all_unscattered_;
+  std::array<device::Buffer, 2> all_deposits_;
+  device::Buffer all_unscattered_;
   Sums sums_again_;
 };
 

@@ -3,6 +3,12 @@
 #include <algorithm>
 
 #include "engine/solve/assembly.h"
+#include "interface/source/vertex_unscattered.comp.h"
+#include "interface/surface/display_scale.comp.h"
+#include "interface/surface/energy.comp.h"
+#include "interface/surface/energy_total.comp.h"
+#include "interface/surface/exitance.comp.h"
+#include "interface/surface/vertex_exitance.comp.h"
 #include "shaders/surface/surface_shared.h"
 
 namespace quadgraph {
@@ -18,14 +24,14 @@ std::uint64_t energy_elements(const LevelBuffers& level) {
   return std::max(level.tet_count, level.face_count);
 }
 
-std::uint32_t energy_groups(vk::Context& context, const LevelBuffers& level) {
-  return vk::strided_workgroups(context, energy_elements(level));
+std::uint32_t energy_groups(const LevelBuffers& level) {
+  return static_cast<std::uint32_t>(device::workgroups(energy_elements(level)));
 }
 
 }  // namespace
 
-void record_exitance(Workspace& work, const Solved& solved, const vk::Buffer& phi, const vk::Buffer& exitance,
-                     const vk::Buffer& clip) {
+void record_exitance(Workspace& work, const Solved& solved, const device::Buffer& phi, const device::Buffer& exitance,
+                     const device::Buffer& clip) {
   const LevelBuffers& level = solved.level;
   const gpu::ExitancePush push{.vertices = level.vertices.address(),
                                .faces = level.faces.address(),
@@ -43,39 +49,39 @@ void record_exitance(Workspace& work, const Solved& solved, const vk::Buffer& ph
                                .fem = is_on_vertices(solved.method),
                                .clipped = solved.walk != nullptr ? 1u : 0u,
                                .boundary = on_device(solved.boundary)};
-  work.recorder.dispatch(work.passes.exitance.of(solved.op.model), push, level.face_count, "exitance",
+  work.recorder.dispatch(work.passes.of(shader::exitance, solved.op.model), push, level.face_count, "exitance",
                          level.face_count * (sizeof(glm::uvec3) + 6 * vec3_bytes + 3 * solved.op.field_bytes()));
 }
 
-std::vector<glm::vec3> exitance_of(vk::Context& context, Workspace& work, const Solved& solved) {
+std::vector<glm::vec3> exitance_of(device::Device& context, Workspace& work, const Solved& solved) {
   const std::uint64_t bytes = solved.level.face_count * vec3_bytes;
-  const vk::Buffer phi(context, bytes, vk::Place::read, "results/phi of a level");
-  const vk::Buffer exitance(context, bytes, vk::Place::read, "results/exitance of a level");
-  const vk::Buffer clip(context, sizeof(gpu::Clip), vk::Place::device, "results/clip of a level");
+  const device::Buffer phi(context, bytes, device::Place::device, "results/phi of a level");
+  const device::Buffer exitance(context, bytes, device::Place::device, "results/exitance of a level");
+  const device::Buffer clip(context, sizeof(gpu::Clip), device::Place::device, "results/clip of a level");
   record_exitance(work, solved, phi, exitance, clip);
   work.recorder.submit();
-  return vk::download<glm::vec3>(context, exitance);
+  return device::download<glm::vec3>(context, exitance);
 }
 
-SurfaceResults::SurfaceResults(vk::Context& context, const LevelBuffers& level) {
+SurfaceResults::SurfaceResults(device::Device& context, const LevelBuffers& level) {
   const auto vector = [&](std::uint64_t count, const char* name) {
-    return vk::Buffer(context, count * vec3_bytes, vk::Place::read, name);
+    return device::Buffer(context, count * vec3_bytes, device::Place::device, name);
   };
   phi_ = vector(level.face_count, "results/phi at faces");
   exitance_ = vector(level.face_count, "results/exitance");
   vertex_exitance_ = vector(level.surface_vertex_count, "results/exitance at vertices");
   vertex_unscattered_ = vector(level.surface_vertex_count, "results/unscattered light at vertices");
   display_factor_ = vector(1, "results/display factor");
-  clip_ = vk::Buffer(context, sizeof(gpu::Clip), vk::Place::device, "results/clip");
-  clip_on_host_ = vk::Buffer(context, sizeof(gpu::Clip), vk::Place::host, "results/clip, read back");
-  const std::uint64_t sums_bytes = energy_groups(context, level) * sizeof(gpu::EnergySums);
-  sums_ = vk::Buffer(context, sums_bytes, vk::Place::device, "results/energy sums");
+  clip_ = device::Buffer(context, sizeof(gpu::Clip), device::Place::device, "results/clip");
+  clip_on_host_ = device::Buffer(context, sizeof(gpu::Clip), device::Place::host, "results/clip, read back");
+  const std::uint64_t sums_bytes = energy_groups(level) * sizeof(gpu::EnergySums);
+  sums_ = device::Buffer(context, sums_bytes, device::Place::device, "results/energy sums");
   constexpr std::uint64_t total_bytes = WORKGROUP_SIZE * sizeof(gpu::EnergySums);
-  totals_ = vk::Buffer(context, total_bytes, vk::Place::device, "results/energy totals");
-  totals_on_host_ = vk::Buffer(context, total_bytes, vk::Place::host, "results/energy totals, read back");
+  totals_ = device::Buffer(context, total_bytes, device::Place::device, "results/energy totals");
+  totals_on_host_ = device::Buffer(context, total_bytes, device::Place::host, "results/energy totals, read back");
 }
 
-void SurfaceResults::record_vertex_exitance(Workspace& work, const LevelBuffers& level, const vk::Buffer& faces,
+void SurfaceResults::record_vertex_exitance(Workspace& work, const LevelBuffers& level, const device::Buffer& faces,
                                             bool geometric) {
   const gpu::VertexExitancePush push{.vertices = level.vertices.address(),
                                      .faces = level.faces.address(),
@@ -86,7 +92,7 @@ void SurfaceResults::record_vertex_exitance(Workspace& work, const LevelBuffers&
                                      .count = level.surface_vertex_count,
                                      .geometric = geometric ? 1u : 0u};
   const std::uint64_t face_bytes = sizeof(std::uint32_t) + sizeof(glm::uvec3) + 4 * vec3_bytes;
-  work.recorder.dispatch(work.passes.vertex_exitance, push, level.surface_vertex_count, "exitance",
+  work.recorder.dispatch(work.passes.of(shader::vertex_exitance), push, level.surface_vertex_count, "exitance",
                          3 * level.face_count * face_bytes + vec3_bytes * level.surface_vertex_count);
 }
 
@@ -100,7 +106,7 @@ void SurfaceResults::record_display_scale(Workspace& work, const LevelBuffers& l
                                    .factor = display_factor_.address(),
                                    .reduction = work.reduction.address(),
                                    .count = level.face_count};
-  work.recorder.dispatch(work.passes.display_scale, push, level.face_count, "exitance",
+  work.recorder.dispatch(work.passes.of(shader::display_scale), push, level.face_count, "exitance",
                          level.face_count * (sizeof(glm::uvec3) + sizeof(std::uint32_t) + 7 * vec3_bytes));
 }
 
@@ -131,7 +137,7 @@ void SurfaceResults::record_vertex_unscattered(Workspace& work, const Solved& so
                                         .vertex_unscattered = vertex_unscattered_.address(),
                                         .count = level.surface_vertex_count};
   const std::uint64_t face_bytes = sizeof(std::uint32_t) * (1 + FIXED_WORDS) + sizeof(glm::uvec3) + 3 * vec3_bytes;
-  work.recorder.dispatch(work.passes.vertex_unscattered, push, level.surface_vertex_count, "exitance",
+  work.recorder.dispatch(work.passes.of(shader::vertex_unscattered), push, level.surface_vertex_count, "exitance",
                          3 * level.face_count * face_bytes + 3 * vec3_bytes * level.surface_vertex_count);
 }
 
@@ -156,10 +162,12 @@ void SurfaceResults::record_energy(Workspace& work, const Solved& solved) {
                              .least = level.least};
   const std::uint64_t bytes = level.tet_count * (sizeof(glm::uvec4) + 5 * vec3_bytes + 4 * solved.op.field_bytes()) +
                               level.face_count * (sizeof(glm::uvec3) + 6 * vec3_bytes) + sums_.size();
-  work.recorder.dispatch(work.passes.energy.of(solved.op.model), push, energy_elements(level), "energy", bytes);
-  const std::uint32_t groups = energy_groups(work.recorder.context(), level);
+  work.recorder.dispatch(work.passes.of(shader::energy, solved.op.model), push, energy_elements(level), "energy",
+                         bytes);
+  const std::uint32_t groups = energy_groups(level);
   const gpu::EnergyTotalPush total{sums_.address(), totals_.address(), groups};
-  work.recorder.dispatch(work.passes.energy_total, total, WORKGROUP_SIZE, "energy", sums_.size() + totals_.size());
+  work.recorder.dispatch(work.passes.of(shader::energy_total), total, WORKGROUP_SIZE, "energy",
+                         sums_.size() + totals_.size());
   work.recorder.copy(totals_, totals_on_host_, totals_.size());
   work.recorder.copy(clip_, clip_on_host_, clip_.size());
 }

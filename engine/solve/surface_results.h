@@ -22,22 +22,22 @@ struct Solved {
 };
 
 // phi and M (vec3 per outside face, W/mm^2) and the Clip, whose factor is left to be applied to M.
-void record_exitance(Workspace& work, const Solved& solved, const vk::Buffer& phi, const vk::Buffer& exitance,
-                     const vk::Buffer& clip);
+void record_exitance(Workspace& work, const Solved& solved, const device::Buffer& phi, const device::Buffer& exitance,
+                     const device::Buffer& clip);
 
 // M alone, read back; not clipped.
-std::vector<glm::vec3> exitance_of(vk::Context& context, Workspace& work, const Solved& solved);
+std::vector<glm::vec3> exitance_of(device::Device& context, Workspace& work, const Solved& solved);
 
 class SurfaceResults {
  public:
-  SurfaceResults(vk::Context& context, const LevelBuffers& level);
+  SurfaceResults(device::Device& context, const LevelBuffers& level);
 
-  const vk::Buffer& phi() const { return phi_; }            // vec3 per outside face, W/mm^2
-  const vk::Buffer& exitance() const { return exitance_; }  // vec3 per outside face, W/mm^2, scattered
+  const device::Buffer& phi() const { return phi_; }            // vec3 per outside face, W/mm^2
+  const device::Buffer& exitance() const { return exitance_; }  // vec3 per outside face, W/mm^2, scattered
 
   // vec3 per surface vertex, W/mm^2, for display: of scattered light, and of light that was not.
-  const vk::Buffer& vertex_exitance() const { return vertex_exitance_; }
-  const vk::Buffer& vertex_unscattered() const { return vertex_unscattered_; }
+  const device::Buffer& vertex_exitance() const { return vertex_exitance_; }
+  const device::Buffer& vertex_unscattered() const { return vertex_unscattered_; }
 
   // Exitance and energy of the final solution.
   void record(Workspace& work, const Solved& solved);
@@ -47,19 +47,19 @@ class SurfaceResults {
   glm::dvec3 clipped() const;
 
  private:
-  void record_vertex_exitance(Workspace& work, const LevelBuffers& level, const vk::Buffer& faces, bool geometric);
+  void record_vertex_exitance(Workspace& work, const LevelBuffers& level, const device::Buffer& faces, bool geometric);
   void record_display_scale(Workspace& work, const LevelBuffers& level);
   void record_display(Workspace& work, const Solved& solved);
   void record_vertex_unscattered(Workspace& work, const Solved& solved);
   void record_energy(Workspace& work, const Solved& solved);
 
-  vk::Buffer phi_, exitance_, vertex_exitance_, vertex_unscattered_;
-  vk::Buffer display_factor_;  // vec3
-  vk::Buffer clip_;            // Clip
-  vk::Buffer clip_on_host_;    // the same, mapped
-  vk::Buffer sums_;            // EnergySums per workgroup
-  vk::Buffer totals_;          // EnergySums, WORKGROUP_SIZE of them
-  vk::Buffer totals_on_host_;  // the same, mapped
+  device::Buffer phi_, exitance_, vertex_exitance_, vertex_unscattered_;
+  device::Buffer display_factor_;  // vec3
+  device::Buffer clip_;            // Clip
+  device::Buffer clip_on_host_;    // the same, mapped
+  device::Buffer sums_;            // EnergySums per workgroup
+  device::Buffer totals_;          // EnergySums, WORKGROUP_SIZE of them
+  device::Buffer totals_on_host_;  // the same, mapped
 };
 
 }  // namespace quadgraph

@@ -1,5 +1,6 @@
 #include "engine/solve/surface_share.h"
 
+#include "interface/surface/surface_share.comp.h"
 #include "shaders/surface/surface_shared.h"
 
 namespace quadgraph {
@@ -18,7 +19,7 @@ void record_surface_share(Workspace& work, const LevelBuffers& level, Method met
                                    .fem = on_vertices(method) ? 1u : 0u,
                                    .reflected = static_cast<float>(boundary.reflected)};
   const std::uint64_t face_bytes = sizeof(glm::uvec3) + 4 * sizeof(glm::vec3) + sizeof(std::uint32_t);
-  work.recorder.dispatch(work.passes.surface_share, push, op.surface_count, "surface share",
+  work.recorder.dispatch(work.passes.of(shader::surface_share), push, op.surface_count, "surface share",
                          3 * level.face_count * face_bytes + op.surface_count * sizeof(gpu::SurfaceShare));
 }
 

@@ -7,18 +7,16 @@
 namespace quadgraph {
 namespace {
 
-std::uint64_t reduction_bytes(vk::Context& context, std::uint64_t elements) {
-  const std::uint64_t groups =
-      std::max<std::uint64_t>(elements / WORKGROUP_SIZE + 1, vk::strided_workgroups(context, elements));
-  return 4 + 2 * sizeof(glm::vec3) * groups;
+std::uint64_t reduction_bytes(std::uint64_t elements) {
+  return 4 + 2 * sizeof(glm::vec3) * device::workgroups(elements);
 }
 
 }  // namespace
 
-Workspace::Workspace(vk::Context& context, std::uint64_t max_elements)
+Workspace::Workspace(device::Device& context, std::uint64_t max_elements)
     : recorder(context),
-      reduction(context, reduction_bytes(context, max_elements), vk::Place::device, "solver/reduction"),
-      scale(context, sizeof(gpu::Scale), vk::Place::read, "solver/scale") {
+      reduction(context, reduction_bytes(max_elements), device::Place::device, "solver/reduction"),
+      scale(context, sizeof(gpu::Scale), device::Place::device, "solver/scale") {
   recorder.fill(reduction, 0);
   recorder.submit();
 }

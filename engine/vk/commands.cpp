@@ -1,10 +1,8 @@
 #include "engine/vk/commands.h"
 
-#include <algorithm>
 #include <cassert>
 
-#include "engine/base/error.h"
-#include "engine/vk/arena.h"
+#include "engine/vk/pipeline.h"
 
 namespace quadgraph::vk {
 namespace {
@@ -12,10 +10,21 @@ namespace {
 constexpr VkPipelineStageFlags2 all_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
 constexpr VkAccessFlags2 all_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
 
+VkRenderingAttachmentInfo attachment(const ImageMemory& image, VkImageLayout layout, const VkClearValue& clear) {
+  VkRenderingAttachmentInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
+  info.imageView = image.views[0].get();
+  info.imageLayout = layout;
+  info.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+  info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+  info.clearValue = clear;
+  return info;
+}
+
 }  // namespace
 
-Commands::Commands(Context& context, std::uint32_t max_passes)
-    : context_(context), max_passes_(max_passes), host_timed_(context.info().type == VK_PHYSICAL_DEVICE_TYPE_CPU) {
+Recording::Recording(Context& context, std::uint32_t max_passes)
+    : context_(context), max_passes_(max_passes), host_timed_(context.info().cpu) {
   VkCommandPoolCreateInfo pool_info{};
   pool_info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
   pool_info.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
@@ -45,14 +54,14 @@ Commands::Commands(Context& context, std::uint32_t max_passes)
   begin();
 }
 
-void Commands::begin() {
+void Recording::begin() {
   VkCommandBufferBeginInfo info{};
   info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
   info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
   check(vkBeginCommandBuffer(commands_, &info), "vkBeginCommandBuffer");
 }
 
-void Commands::barrier() {
+void Recording::barrier() {
   VkMemoryBarrier2 memory{};
   memory.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
   memory.srcStageMask = all_stages;
@@ -67,7 +76,7 @@ void Commands::barrier() {
   unfinished_ = true;
 }
 
-void Commands::transition(const Image& image, VkImageLayout from, VkImageLayout to) {
+void Recording::transition(const ImageMemory& image, VkImageLayout from, VkImageLayout to) {
   VkImageMemoryBarrier2 barrier{};
   barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
   barrier.srcStageMask = all_stages;
@@ -78,8 +87,8 @@ void Commands::transition(const Image& image, VkImageLayout from, VkImageLayout 
   barrier.newLayout = to;
   barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
   barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-  barrier.image = image.handle();
-  barrier.subresourceRange = {image.aspect(), 0, 1, 0, image.options().layers};
+  barrier.image = image.image.get();
+  barrier.subresourceRange = {image.aspect(), 0, 1, 0, image.options.layers};
   VkDependencyInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
   info.imageMemoryBarrierCount = 1;
@@ -88,59 +97,104 @@ void Commands::transition(const Image& image, VkImageLayout from, VkImageLayout 
   unfinished_ = true;
 }
 
-void Commands::copy(const Buffer& source, const Buffer& target, std::uint64_t bytes, std::uint64_t target_offset) {
+void Recording::copy(const device::Memory& source, const device::Memory& target, std::uint64_t bytes,
+                     std::uint64_t target_offset) {
   const VkBufferCopy region{0, target_offset, bytes};
-  vkCmdCopyBuffer(commands_, source.handle(), target.handle(), 1, &region);
+  vkCmdCopyBuffer(commands_, handle_of(source), handle_of(target), 1, &region);
   barrier();
 }
 
-void Commands::copy(const Image& source, const Buffer& target, std::uint32_t width, std::uint32_t height) {
-  const ImageOptions& options = source.options();
+void Recording::copy(const device::ImageMemory& source, const device::Memory& target, std::uint32_t width,
+                     std::uint32_t height) {
+  const auto& image = static_cast<const ImageMemory&>(source);
   VkBufferImageCopy region{};
-  region.imageSubresource = {source.aspect(), 0, 0, options.layers};
-  region.imageExtent = {width > 0 ? width : options.width, height > 0 ? height : options.height, 1};
-  vkCmdCopyImageToBuffer(commands_, source.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, target.handle(), 1, &region);
+  region.imageSubresource = {image.aspect(), 0, 0, image.options.layers};
+  region.imageExtent = {width, height, 1};
+  vkCmdCopyImageToBuffer(commands_, image.image.get(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, handle_of(target), 1,
+                         &region);
   barrier();
 }
 
-void Commands::update(const Buffer& target, std::span<const std::byte> data) {
-  vkCmdUpdateBuffer(commands_, target.handle(), 0, data.size(), data.data());
+void Recording::update(const device::Memory& target, std::span<const std::byte> data) {
+  vkCmdUpdateBuffer(commands_, handle_of(target), 0, data.size(), data.data());
   barrier();
 }
 
-void Commands::fill(const Buffer& target, std::uint32_t value) {
-  vkCmdFillBuffer(commands_, target.handle(), 0, VK_WHOLE_SIZE, value);
+void Recording::fill(const device::Memory& target, std::uint64_t, std::uint32_t value) {
+  vkCmdFillBuffer(commands_, handle_of(target), 0, VK_WHOLE_SIZE, value);
   barrier();
 }
 
-void Commands::bind(const ComputePass& pass, const void* push, std::uint32_t size) {
-  assert(size == pass.push_size());
-  vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pass.pipeline());
-  vkCmdPushConstants(commands_, pass.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, size, push);
-  const VkDescriptorSet texels = context_.arenas().set();
-  vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pass.layout(), 0, 1, &texels, 0, nullptr);
+void Recording::bind(VkPipelineBindPoint point, const device::Pipeline& pass, const void* push) {
+  const auto& pipeline = static_cast<const Pipeline&>(pass);
+  vkCmdBindPipeline(commands_, point, pipeline.pipeline.get());
+  vkCmdPushConstants(commands_, pipeline.layout.get(), pipeline.stages, 0, pipeline.push_size, push);
 }
 
-void Commands::dispatch_bytes(const ComputePass& pass, const void* push, std::uint32_t size, std::uint64_t elements) {
-  if (elements == 0) return;
-  const std::uint64_t groups = pass.workgroups(elements);
-  if (groups > context_.limits().maxComputeWorkGroupCount[0]) {
-    throw VulkanError(pass.name() + " needs " + std::to_string(groups) + " workgroups, " + context_.info().name +
-                      " allows " + std::to_string(context_.limits().maxComputeWorkGroupCount[0]));
+void Recording::dispatch(const device::Pipeline& pass, const void* push, std::uint32_t groups) {
+  bind(VK_PIPELINE_BIND_POINT_COMPUTE, pass, push);
+  vkCmdDispatch(commands_, groups, 1, 1);
+  barrier();
+}
+
+void Recording::dispatch_indirect(const device::Pipeline& pass, const void* push, const device::Memory& arguments,
+                                  std::uint64_t offset) {
+  bind(VK_PIPELINE_BIND_POINT_COMPUTE, pass, push);
+  vkCmdDispatchIndirect(commands_, handle_of(arguments), offset);
+  barrier();
+}
+
+void Recording::begin_rendering(const device::DrawImages& target) {
+  std::vector<VkRenderingAttachmentInfo> colours;
+  for (const device::ImageMemory* memory : target.colours) {
+    const auto& image = static_cast<const ImageMemory&>(*memory);
+    transition(image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+    colours.push_back(attachment(image, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, {}));
   }
-  bind(pass, push, size);
-  vkCmdDispatch(commands_, static_cast<std::uint32_t>(groups), 1, 1);
-  barrier();
+  const auto& farthest_image = static_cast<const ImageMemory&>(*target.depth);
+  transition(farthest_image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
+  VkClearValue farthest{};
+  farthest.depthStencil.depth = 1.0f;
+  const auto depth = attachment(farthest_image, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, farthest);
+  VkRenderingInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
+  info.renderArea.extent = {target.width, target.height};
+  info.layerCount = 1;
+  info.colorAttachmentCount = static_cast<std::uint32_t>(colours.size());
+  info.pColorAttachments = colours.data();
+  info.pDepthAttachment = &depth;
+  vkCmdBeginRendering(commands_, &info);
 }
 
-void Commands::dispatch_indirect_bytes(const ComputePass& pass, const void* push, std::uint32_t size,
-                                       const Buffer& arguments, std::uint64_t offset) {
-  bind(pass, push, size);
-  vkCmdDispatchIndirect(commands_, arguments.handle(), offset);
-  barrier();
+// A negative height turns y up (VK_KHR_maintenance1).
+void Recording::set_viewport(const device::DrawImages& target, const device::Viewport& viewport) {
+  const VkViewport turned{viewport.x, viewport.y + viewport.height, viewport.width, -viewport.height, 0.0f, 1.0f};
+  const VkRect2D scissor{{0, 0}, {target.width, target.height}};
+  vkCmdSetViewport(commands_, 0, 1, &turned);
+  vkCmdSetScissor(commands_, 0, 1, &scissor);
 }
 
-void Commands::begin_pass(const std::string& name) {
+void Recording::draw(const device::DrawImages& target, const device::Viewport& viewport, const device::Pipeline& pass,
+                     const void* push, const device::Memory* indices, std::uint32_t vertices) {
+  begin_rendering(target);
+  set_viewport(target, viewport);
+  bind(VK_PIPELINE_BIND_POINT_GRAPHICS, pass, push);
+  if (indices == nullptr) {
+    vkCmdDraw(commands_, vertices, 1, 0, 0);
+  } else {
+    vkCmdBindIndexBuffer(commands_, handle_of(*indices), 0, VK_INDEX_TYPE_UINT32);
+    vkCmdDrawIndexed(commands_, vertices, 1, 0, 0, 0);
+  }
+  vkCmdEndRendering(commands_);
+  for (const device::ImageMemory* image : target.colours) {
+    transition(static_cast<const ImageMemory&>(*image), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+               VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+  }
+  transition(static_cast<const ImageMemory&>(*target.depth), VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+             VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+}
+
+void Recording::begin_pass(const std::string& name) {
   assert(passes_.size() < max_passes_);
   const auto query = static_cast<std::uint32_t>(2 * passes_.size());
   passes_.push_back({name, 0});
@@ -152,7 +206,7 @@ void Commands::begin_pass(const std::string& name) {
   }
 }
 
-void Commands::end_pass() {
+void Recording::end_pass() {
   if (host_timed_) {
     flush();
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - pass_start_;
@@ -164,7 +218,7 @@ void Commands::end_pass() {
 }
 
 // Runs what was recorded, if anything was, and records anew.
-void Commands::flush() {
+void Recording::flush() {
   if (!unfinished_) return;
   unfinished_ = false;
   end_and_run();
@@ -172,7 +226,7 @@ void Commands::flush() {
   begin();
 }
 
-void Commands::end_and_run() {
+void Recording::end_and_run() {
   check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
   VkFenceCreateInfo fence_info{};
   fence_info.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
@@ -191,12 +245,12 @@ void Commands::end_and_run() {
   check(vkWaitForFences(context_.device(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
 }
 
-std::vector<PassTime> Commands::submit_and_wait() {
+std::vector<device::PassTime> Recording::submit_and_wait() {
   end_and_run();
   return read_times();
 }
 
-std::vector<PassTime> Commands::read_times() {
+std::vector<device::PassTime> Recording::read_times() {
   if (passes_.empty() || host_timed_) return passes_;
   std::vector<std::uint64_t> ticks(2 * passes_.size());
   check(vkGetQueryPoolResults(context_.device(), queries_.get(), 0, static_cast<std::uint32_t>(ticks.size()),
@@ -208,6 +262,10 @@ std::vector<PassTime> Commands::read_times() {
     passes_[i].time_ms = elapsed * context_.limits().timestampPeriod * 1e-6;
   }
   return passes_;
+}
+
+std::unique_ptr<device::Recording> Context::record(std::uint32_t max_passes) {
+  return std::make_unique<Recording>(*this, max_passes);
 }
 
 }  // namespace quadgraph::vk

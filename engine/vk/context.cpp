@@ -5,7 +5,6 @@
 #include <cstring>
 
 #include "engine/base/error.h"
-#include "engine/vk/arena.h"
 #include "engine/vk/features.h"
 
 namespace quadgraph::vk {
@@ -109,10 +108,10 @@ std::string result_name(VkResult result) {
 }  // namespace
 
 void check(VkResult result, std::string_view call) {
-  if (result != VK_SUCCESS) throw VulkanError(std::string(call) + ": " + result_name(result));
+  if (result != VK_SUCCESS) throw DeviceError(std::string(call) + ": " + result_name(result));
 }
 
-Context::Context(const ContextOptions& options) {
+Context::Context(const device::DeviceOptions& options) {
   try {
     create_instance(options);
     if (options.validation) create_messenger();
@@ -120,8 +119,6 @@ Context::Context(const ContextOptions& options) {
     pick_device(options.device);
     read_properties();
     create_device();
-    const std::uint64_t usual = info_.type == VK_PHYSICAL_DEVICE_TYPE_CPU ? max_buffer_bytes_ : 0;
-    arenas_ = std::make_unique<Arenas>(*this, options.texel_bytes.value_or(usual));
   } catch (...) {
     destroy();
     throw;
@@ -133,10 +130,9 @@ Context::~Context() {
 }
 
 void Context::destroy() noexcept {
-  arenas_.reset();
   if (device_ != VK_NULL_HANDLE) {
     vkDestroyDevice(device_, nullptr);
-    count_closed(device_);
+    device::count_closed(device_);
   }
   if (surface_ != VK_NULL_HANDLE) vkDestroySurfaceKHR(instance_, surface_, nullptr);
   if (messenger_ != VK_NULL_HANDLE) {
@@ -147,9 +143,9 @@ void Context::destroy() noexcept {
   if (instance_ != VK_NULL_HANDLE) vkDestroyInstance(instance_, nullptr);
 }
 
-void Context::create_instance(const ContextOptions& options) {
+void Context::create_instance(const device::DeviceOptions& options) {
   if (options.validation && !layer_present(validation_layer)) {
-    throw VulkanError(std::string(validation_layer) + " is not installed (Debian: vulkan-validationlayers)");
+    throw DeviceError(std::string(validation_layer) + " is not installed (Debian: vulkan-validationlayers)");
   }
   debug_utils_ = extension_present(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
   std::vector<const char*> extensions;
@@ -188,7 +184,7 @@ std::string Context::what_is_missing(VkPhysicalDevice device) const {
 }
 
 void Context::create_messenger() {
-  if (!debug_utils_) throw VulkanError("validation needs VK_EXT_debug_utils, which the loader does not offer");
+  if (!debug_utils_) throw DeviceError("validation needs VK_EXT_debug_utils, which the loader does not offer");
   VkDebugUtilsMessengerCreateInfoEXT info{};
   info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
   info.messageSeverity =
@@ -203,7 +199,7 @@ void Context::create_messenger() {
 
 VkBool32 Context::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                              const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
-  static_cast<Context*>(user)->validation_messages_.emplace_back(data->pMessage);
+  static_cast<Context*>(user)->messages_.emplace_back(data->pMessage);
   return VK_FALSE;
 }
 
@@ -227,7 +223,7 @@ void Context::pick_device(const std::string& wanted) {
     physical_device_ = candidate;
   }
   if (physical_device_ == VK_NULL_HANDLE) {
-    throw VulkanError("no usable Vulkan device" + (wanted.empty() ? "" : " named '" + wanted + "'") +
+    throw DeviceError("no usable Vulkan device" + (wanted.empty() ? "" : " named '" + wanted + "'") +
                       "; found: " + (seen.empty() ? "none (Debian: mesa-vulkan-drivers has a software device)" : seen));
   }
 }
@@ -248,7 +244,9 @@ void Context::read_properties() {
   limits_ = properties.properties.limits;
   max_buffer_bytes_ = std::min(maintenance3.maxMemoryAllocationSize, maintenance4.maxBufferSize);
   info_ = {properties.properties.deviceName, std::string(driver.driverName) + " " + driver.driverInfo,
-           properties.properties.deviceType};
+           properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU};
+  max_image_side_ = limits_.maxImageDimension2D;
+  max_workgroups_ = limits_.maxComputeWorkGroupCount[0];
   vkGetPhysicalDeviceMemoryProperties(physical_device_, &memory_properties_);
 }
 
@@ -271,7 +269,8 @@ void Context::create_device() {
   info.enabledExtensionCount = surface_ != VK_NULL_HANDLE ? 1 : 0;
   info.ppEnabledExtensionNames = &swapchain;
   check(vkCreateDevice(physical_device_, &info, nullptr, &device_), "vkCreateDevice");
-  count_opened(device_);
+  books_ = device_;
+  device::count_opened(device_);
   vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
   if (debug_utils_) {
     set_object_name_ = reinterpret_cast<PFN_vkSetDebugUtilsObjectNameEXT>(
@@ -287,7 +286,7 @@ std::uint32_t Context::memory_type(std::uint32_t type_bits, VkMemoryPropertyFlag
       if (allowed && (memory_properties_.memoryTypes[i].propertyFlags & flags) == flags) return i;
     }
   }
-  throw VulkanError(info_.name + " has no memory type with properties " + std::to_string(required));
+  throw DeviceError(info_.name + " has no memory type with properties " + std::to_string(required));
 }
 
 void Context::set_name(VkObjectType type, std::uint64_t handle, const std::string& name) const {

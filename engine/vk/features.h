@@ -1,5 +1,5 @@
 // What the engine requires of a device beyond Vulkan 1.3 itself, and enables: no more than compiled shaders and the
-// calls of vk/ need, so that no device is refused without a reason (tests/cpp/vk_features_test.cpp).
+// calls of vk/ need, so that no device is refused without a reason (tests/cpp/vk/features_test.cpp).
 #pragma once
 
 #include <vulkan/vulkan.h>

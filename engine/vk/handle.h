@@ -1,5 +1,5 @@
 // Move-only ownership of a Vulkan handle, counted by kind (live_objects.h), and the check that turns a failed call into
-// VulkanError.
+// DeviceError.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -7,11 +7,14 @@
 #include <string_view>
 #include <utility>
 
-#include "engine/vk/live_objects.h"
+#include "engine/device/live_objects.h"
 
 namespace quadgraph::vk {
 
-// Throws VulkanError("<call>: VK_ERROR_...") unless `result` is VK_SUCCESS.
+using device::count_gone;
+using device::count_made;
+
+// Throws DeviceError("<call>: VK_ERROR_...") unless `result` is VK_SUCCESS.
 void check(VkResult result, std::string_view call);
 
 // What a handle is called in LiveObjects.
@@ -31,10 +34,6 @@ template <>
 inline constexpr const char* kind_of<VkPipelineLayout> = "pipeline layout";
 template <>
 inline constexpr const char* kind_of<VkPipeline> = "pipeline";
-template <>
-inline constexpr const char* kind_of<VkBufferView> = "buffer view";
-template <>
-inline constexpr const char* kind_of<VkDescriptorSetLayout> = "descriptor set layout";
 template <>
 inline constexpr const char* kind_of<VkDescriptorPool> = "descriptor pool";
 template <>
@@ -92,8 +91,6 @@ using UniqueImageView = Unique<VkImageView, vkDestroyImageView>;
 using UniqueShaderModule = Unique<VkShaderModule, vkDestroyShaderModule>;
 using UniquePipelineLayout = Unique<VkPipelineLayout, vkDestroyPipelineLayout>;
 using UniquePipeline = Unique<VkPipeline, vkDestroyPipeline>;
-using UniqueBufferView = Unique<VkBufferView, vkDestroyBufferView>;
-using UniqueDescriptorSetLayout = Unique<VkDescriptorSetLayout, vkDestroyDescriptorSetLayout>;
 using UniqueDescriptorPool = Unique<VkDescriptorPool, vkDestroyDescriptorPool>;
 using UniqueCommandPool = Unique<VkCommandPool, vkDestroyCommandPool>;
 using UniqueFence = Unique<VkFence, vkDestroyFence>;

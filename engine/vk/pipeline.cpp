@@ -1,16 +1,14 @@
 #include "engine/vk/pipeline.h"
 
 #include <algorithm>
-#include <array>
-#include <cstddef>
+#include <vector>
 
 #include "engine/base/error.h"
-#include "engine/vk/arena.h"
 
 namespace quadgraph::vk {
 namespace {
 
-UniqueShaderModule shader_module(Context& context, Spirv code, const std::string& name) {
+UniqueShaderModule shader_module(Context& context, device::Spirv code, const std::string& name) {
   VkShaderModuleCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
   info.codeSize = code.size_bytes();
@@ -23,15 +21,12 @@ UniqueShaderModule shader_module(Context& context, Spirv code, const std::string
 UniquePipelineLayout push_layout(Context& context, std::uint32_t push_size, VkShaderStageFlags stages,
                                  const std::string& name) {
   if (push_size > context.limits().maxPushConstantsSize) {
-    throw VulkanError(name + " needs " + std::to_string(push_size) + " bytes of push constants, " +
+    throw DeviceError(name + " needs " + std::to_string(push_size) + " bytes of push constants, " +
                       context.info().name + " allows " + std::to_string(context.limits().maxPushConstantsSize));
   }
   const VkPushConstantRange range{stages, 0, push_size};
-  const VkDescriptorSetLayout texels = context.arenas().layout();
   VkPipelineLayoutCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-  info.setLayoutCount = 1;
-  info.pSetLayouts = &texels;
   info.pushConstantRangeCount = push_size > 0 ? 1 : 0;
   info.pPushConstantRanges = &range;
   VkPipelineLayout layout = VK_NULL_HANDLE;
@@ -50,36 +45,16 @@ VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits bit, const UniqueSha
   return info;
 }
 
-// Specialization constants by their number: how shaders load arrays (shaders/shared/load.glsl), and a variant of their
-// own.
+// Specialization constant 1, the variant of a shader that has it.
 struct Constants {
-  static constexpr std::uint32_t count = 4 + arena_count;
-  std::array<std::uint32_t, count> values;
-  std::array<VkSpecializationMapEntry, count> entries;
-  VkSpecializationInfo info{count, entries.data(), sizeof(values), values.data()};
+  std::uint32_t variant;
+  VkSpecializationMapEntry entry{1, 0, sizeof(std::uint32_t)};
+  VkSpecializationInfo info{1, &entry, sizeof(std::uint32_t), &variant};
 
-  explicit Constants(Context& context, std::uint32_t variant = 0, std::uint32_t part = 0,
-                     std::uint32_t workgroup_size = 0) {
-    values[0] = context.arenas().complete();
-    values[1] = variant;
-    for (std::uint32_t i = 0; i < arena_count; ++i) {
-      values[2 + i] = static_cast<std::uint32_t>(context.arenas()[i].address());
-    }
-    values[2 + arena_count] = part;
-    values[3 + arena_count] = workgroup_size;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      entries[i] = {i, static_cast<std::uint32_t>(i * sizeof(std::uint32_t)), sizeof(std::uint32_t)};
-    }
-  }
+  explicit Constants(std::uint32_t value) : variant(value) {}
   Constants(const Constants&) = delete;
   Constants& operator=(const Constants&) = delete;
 };
-
-// shaders/shared/part.glsl.
-constexpr std::uint32_t part_whole = 0, part_sums = 1, part_conclusion = 2;
-
-// On two to dozens of cores: enough to share out, few enough that starting and reducing them costs nothing.
-constexpr std::uint32_t most_strided = 64, strided_size = 8;
 
 // The fixed-function state of every graphics pass, kept alive while the pipeline is created.
 struct FixedState {
@@ -90,12 +65,13 @@ struct FixedState {
   VkPipelineMultisampleStateCreateInfo multisample{};
   VkPipelineDepthStencilStateCreateInfo depth{};
   std::vector<VkPipelineColorBlendAttachmentState> attachments;
+  std::vector<VkFormat> formats;
   VkPipelineColorBlendStateCreateInfo blend{};
   std::vector<VkDynamicState> dynamic_states = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
   VkPipelineDynamicStateCreateInfo dynamic{};
   VkPipelineRenderingCreateInfo rendering{};
 
-  explicit FixedState(const GraphicsOptions& options) {
+  explicit FixedState(const device::GraphicsOptions& options) {
     vertex_input.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
     assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
     assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
@@ -104,7 +80,9 @@ struct FixedState {
     viewport.scissorCount = 1;
     raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
     raster.polygonMode = VK_POLYGON_MODE_FILL;
-    raster.cullMode = options.cull;
+    raster.cullMode = options.cull == device::Cull::back    ? VK_CULL_MODE_BACK_BIT
+                      : options.cull == device::Cull::front ? VK_CULL_MODE_FRONT_BIT
+                                                            : VK_CULL_MODE_NONE;
     raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
     raster.lineWidth = 1.0f;
     multisample.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
@@ -117,109 +95,69 @@ struct FixedState {
   FixedState(const FixedState&) = delete;
   FixedState& operator=(const FixedState&) = delete;
 
-  void set_outputs(const GraphicsOptions& options) {
-    const bool has_depth = options.depth_format != VK_FORMAT_UNDEFINED;
+  void set_outputs(const device::GraphicsOptions& options) {
     depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
-    depth.depthTestEnable = has_depth;
-    depth.depthWriteEnable = has_depth;
+    depth.depthTestEnable = VK_TRUE;
+    depth.depthWriteEnable = VK_TRUE;
     depth.depthCompareOp = VK_COMPARE_OP_LESS;
     VkPipelineColorBlendAttachmentState opaque{};
     opaque.colorWriteMask =
         VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
-    attachments.assign(options.colour_formats.size(), opaque);
+    attachments.assign(options.colours, opaque);
+    formats.assign(options.colours, VK_FORMAT_R32G32B32A32_SFLOAT);
     blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
-    blend.attachmentCount = static_cast<std::uint32_t>(attachments.size());
+    blend.attachmentCount = options.colours;
     blend.pAttachments = attachments.data();
     rendering.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO;
-    rendering.colorAttachmentCount = static_cast<std::uint32_t>(options.colour_formats.size());
-    rendering.pColorAttachmentFormats = options.colour_formats.data();
-    rendering.depthAttachmentFormat = options.depth_format;
+    rendering.colorAttachmentCount = options.colours;
+    rendering.pColorAttachmentFormats = formats.data();
+    rendering.depthAttachmentFormat = VK_FORMAT_D32_SFLOAT;
   }
 };
 
 }  // namespace
 
-bool few_workgroups(Context& context) {
-  return context.arenas()[0].used();
-}
-
-std::uint32_t strided_workgroups(Context& context, std::uint64_t elements) {
-  const bool few = few_workgroups(context);
-  const std::uint64_t size = few ? strided_size : ComputePass::default_workgroup_size;
-  const std::uint64_t groups = (elements + size - 1) / size;
-  return static_cast<std::uint32_t>(few ? std::min<std::uint64_t>(groups, most_strided) : groups);
-}
-
-ComputePass::ComputePass(Context& context, Spirv code, std::uint32_t push_size, const std::string& name,
-                         std::uint32_t workgroup_size, std::uint32_t variant, Work work)
-    : context_(context),
-      code_(code),
-      push_size_(push_size),
-      workgroup_size_(work != Work::each && few_workgroups(context) ? strided_size : workgroup_size),
-      variant_(variant),
-      work_(work),
-      name_(name),
-      layout_(push_layout(context, push_size, VK_SHADER_STAGE_COMPUTE_BIT, name)) {
+Pipeline::Pipeline(Context& context, const device::Shader& shader, const device::ComputeOptions& options,
+                   const std::string& name)
+    : stages(VK_SHADER_STAGE_COMPUTE_BIT),
+      push_size(shader.push_size),
+      layout(push_layout(context, push_size, stages, name)) {
   const VkPhysicalDeviceLimits& limits = context.limits();
   const std::uint32_t largest = std::min(limits.maxComputeWorkGroupInvocations, limits.maxComputeWorkGroupSize[0]);
-  if (workgroup_size > largest) {
-    throw VulkanError(name + " needs workgroups of " + std::to_string(workgroup_size) + " invocations, " +
+  if (options.workgroup_size > largest) {
+    throw DeviceError(name + " needs workgroups of " + std::to_string(options.workgroup_size) + " invocations, " +
                       context.info().name + " allows " + std::to_string(largest));
   }
-  pipeline();
-}
-
-std::uint64_t ComputePass::workgroups(std::uint64_t elements) const {
-  if (work_ != Work::each) return strided_workgroups(context_, elements);
-  return (elements + workgroup_size_ - 1) / workgroup_size_;
-}
-
-VkPipeline ComputePass::pipeline() const {
-  UniquePipeline& made = pipelines_[context_.arenas().complete()];
-  if (made.get() != VK_NULL_HANDLE) return made.get();
-  const UniqueShaderModule module = shader_module(context_, code_, name_);
+  const UniqueShaderModule module = shader_module(context, options.sp3 ? shader.sp3 : shader.code, name);
+  const Constants constants(options.variant);
   VkComputePipelineCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
-  const std::uint32_t part = work_ == Work::conclusion                             ? part_conclusion
-                             : work_ == Work::reducing && few_workgroups(context_) ? part_sums
-                                                                                   : part_whole;
-  const Constants constants(context_, variant_, part, workgroup_size_);
   info.stage = stage(VK_SHADER_STAGE_COMPUTE_BIT, module, constants.info);
-  info.layout = layout_.get();
-  VkPipeline pipeline = VK_NULL_HANDLE;
-  check(vkCreateComputePipelines(context_.device(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
-        "vkCreateComputePipelines '" + name_ + "'");
-  made = UniquePipeline(context_.device(), pipeline);
-  context_.set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline), name_);
-  return pipeline;
+  info.layout = layout.get();
+  VkPipeline made = VK_NULL_HANDLE;
+  check(vkCreateComputePipelines(context.device(), VK_NULL_HANDLE, 1, &info, nullptr, &made),
+        "vkCreateComputePipelines '" + name + "'");
+  take(context, made, name);
 }
 
-GraphicsPass::GraphicsPass(Context& context, const GraphicsOptions& options, const std::string& name)
-    : context_(context),
-      options_(options),
-      name_(name),
-      layout_(
-          push_layout(context, options.push_size, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, name)) {
-  pipeline();
-}
-
-VkPipeline GraphicsPass::pipeline() const {
-  UniquePipeline& made = pipelines_[context_.arenas().complete()];
-  if (made.get() != VK_NULL_HANDLE) return made.get();
-  const UniqueShaderModule vertex = shader_module(context_, options_.vertex, name_ + ".vert");
-  const Constants constants(context_, options_.variant);
-  std::vector<VkPipelineShaderStageCreateInfo> stages = {stage(VK_SHADER_STAGE_VERTEX_BIT, vertex, constants.info)};
+Pipeline::Pipeline(Context& context, const device::GraphicsOptions& options, const std::string& name)
+    : stages(VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT),
+      push_size(options.vertex->push_size),
+      layout(push_layout(context, push_size, stages, name)) {
+  const UniqueShaderModule vertex = shader_module(context, options.vertex->code, name + ".vert");
+  const Constants constants(options.variant);
+  std::vector<VkPipelineShaderStageCreateInfo> all = {stage(VK_SHADER_STAGE_VERTEX_BIT, vertex, constants.info)};
   UniqueShaderModule fragment;
-  if (!options_.fragment.empty()) {
-    fragment = shader_module(context_, options_.fragment, name_ + ".frag");
-    stages.push_back(stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment, constants.info));
+  if (options.fragment != nullptr) {
+    fragment = shader_module(context, options.fragment->code, name + ".frag");
+    all.push_back(stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment, constants.info));
   }
-  const FixedState state(options_);
+  const FixedState state(options);
   VkGraphicsPipelineCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
   info.pNext = &state.rendering;
-  info.stageCount = static_cast<std::uint32_t>(stages.size());
-  info.pStages = stages.data();
+  info.stageCount = static_cast<std::uint32_t>(all.size());
+  info.pStages = all.data();
   info.pVertexInputState = &state.vertex_input;
   info.pInputAssemblyState = &state.assembly;
   info.pViewportState = &state.viewport;
@@ -228,13 +166,25 @@ VkPipeline GraphicsPass::pipeline() const {
   info.pDepthStencilState = &state.depth;
   info.pColorBlendState = &state.blend;
   info.pDynamicState = &state.dynamic;
-  info.layout = layout_.get();
-  VkPipeline pipeline = VK_NULL_HANDLE;
-  check(vkCreateGraphicsPipelines(context_.device(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
-        "vkCreateGraphicsPipelines '" + name_ + "'");
-  made = UniquePipeline(context_.device(), pipeline);
-  context_.set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline), name_);
-  return pipeline;
+  info.layout = layout.get();
+  VkPipeline made = VK_NULL_HANDLE;
+  check(vkCreateGraphicsPipelines(context.device(), VK_NULL_HANDLE, 1, &info, nullptr, &made),
+        "vkCreateGraphicsPipelines '" + name + "'");
+  take(context, made, name);
+}
+
+void Pipeline::take(Context& context, VkPipeline made, const std::string& name) {
+  pipeline = UniquePipeline(context.device(), made);
+  context.set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(made), name);
+}
+
+std::unique_ptr<device::Pipeline> Context::compile(const device::Shader& shader, const device::ComputeOptions& options,
+                                                   const std::string& name) {
+  return std::make_unique<Pipeline>(*this, shader, options, name);
+}
+
+std::unique_ptr<device::Pipeline> Context::compile(const device::GraphicsOptions& options, const std::string& name) {
+  return std::make_unique<Pipeline>(*this, options, name);
 }
 
 }  // namespace quadgraph::vk

@@ -60,7 +60,7 @@ bool outdated(VkResult result, std::string_view call) {
 Swapchain::Swapchain(Context& context, std::uint32_t width, std::uint32_t height)
     : context_(context), wanted_width_(width), wanted_height_(height), fence_(signalled_fence(context)) {
   if ((capabilities_of(context_).supportedUsageFlags & usage) != usage) {
-    throw VulkanError(context.info().name + " cannot copy pixels into this window");
+    throw DeviceError(context.info().name + " cannot copy pixels into this window");
   }
   choose_format();
   create_commands();
@@ -83,7 +83,7 @@ void Swapchain::choose_format() {
     format_ = *found;
     return;
   }
-  throw VulkanError("this window has no format of 8 bits per channel, R8G8B8A8 or B8G8R8A8");
+  throw DeviceError("this window has no format of 8 bits per channel, R8G8B8A8 or B8G8R8A8");
 }
 
 void Swapchain::create_commands() {
@@ -241,14 +241,14 @@ void transition(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkI
   vkCmdPipelineBarrier2(commands, &info);
 }
 
-void copy_pixels(const SwapchainFrame& frame, const Buffer& pixels, std::uint32_t x, std::uint32_t y,
+void copy_pixels(const SwapchainFrame& frame, const device::Buffer& pixels, std::uint32_t x, std::uint32_t y,
                  std::uint32_t width, std::uint32_t height) {
   VkBufferImageCopy region{};
   region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
   region.imageOffset = {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), 0};
   region.imageExtent = {width, height, 1};
-  vkCmdCopyBufferToImage(frame.commands, pixels.handle(), frame.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
-                         &region);
+  vkCmdCopyBufferToImage(frame.commands, handle_of(pixels.memory()), frame.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                         1, &region);
 }
 
 }  // namespace quadgraph::vk

@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/device/memory.h"
 #include "engine/vk/context.h"
 #include "engine/vk/handle.h"
 #include "engine/vk/memory.h"
@@ -27,7 +28,7 @@ struct SwapchainFrame {
 class Swapchain {
  public:
   // Of the context's surface. The window is `width` x `height` pixels where the surface does not say so itself. Throws
-  // VulkanError where the surface has no 8-bit format that copies can write.
+  // DeviceError where the surface has no 8-bit format that copies can write.
   Swapchain(Context& context, std::uint32_t width, std::uint32_t height);
   ~Swapchain();
   Swapchain(const Swapchain&) = delete;
@@ -83,7 +84,7 @@ class Swapchain {
 void transition(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to);
 
 // Writes `width` x `height` pixels of 4 bytes, tightly packed, into the frame's image from (x, y) on. All within it.
-void copy_pixels(const SwapchainFrame& frame, const Buffer& pixels, std::uint32_t x, std::uint32_t y,
+void copy_pixels(const SwapchainFrame& frame, const device::Buffer& pixels, std::uint32_t x, std::uint32_t y,
                  std::uint32_t width, std::uint32_t height);
 
 }  // namespace quadgraph::vk

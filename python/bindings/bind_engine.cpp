@@ -6,15 +6,16 @@
 
 #include "engine/base/error.h"
 #include "engine/deform/motion.h"
+#include "engine/device/copy_bandwidth.h"
+#include "engine/device/device.h"
+#include "engine/device/memory.h"
+#include "engine/devices/open_device.h"
 #include "engine/render/engine.h"
 #include "engine/render/light/default_lights.h"
 #include "engine/scene/cut_json.h"
 #include "engine/scene/measured_error.h"
 #include "engine/scene/options.h"
 #include "engine/scene/volume.h"
-#include "engine/vk/context.h"
-#include "engine/vk/copy_bandwidth.h"
-#include "engine/vk/memory.h"
 #include "python/bindings/bindings.h"
 #include "python/bindings/scene_keywords.h"
 
@@ -62,7 +63,7 @@ py::list as_list(const std::vector<PassStats>& passes) {
 }
 
 std::unique_ptr<Engine> make_engine(const std::filesystem::path& path, const std::string& device, bool validation) {
-  return std::make_unique<Engine>(path, vk::ContextOptions{validation, device});
+  return std::make_unique<Engine>(path, device::DeviceOptions{validation, device, nullptr});
 }
 
 void set_lights(Engine& engine, const std::vector<std::string>& texts) {
@@ -147,14 +148,14 @@ py::dict leaving(Engine& engine, const IndexArray& face, const FloatArray& direc
 }
 
 py::dict copy_bandwidth(const std::string& device) {
-  vk::Context context(vk::ContextOptions{false, device});
-  const vk::CopyBandwidth copied = [&] {
+  const std::shared_ptr<device::Device> opened = open_device({false, device, nullptr});
+  const device::CopyBandwidth copied = [&] {
     const py::gil_scoped_release release;
-    return vk::copy_bandwidth(context, vk::default_copy_bytes(context));
+    return device::copy_bandwidth(*opened, device::default_copy_bytes(*opened));
   }();
   py::dict d;
-  d["device"] = context.info().name;
-  d["driver"] = context.info().driver;
+  d["device"] = opened->info().name;
+  d["driver"] = opened->info().driver;
   d["gb_per_s"] = copied.gb_per_s;
   d["kernel"] = copied.kernel;
   d["transfer"] = copied.transfer;
@@ -173,23 +174,9 @@ std::string render_help() {
          keywords_help({camera_group, picture_group});
 }
 
-}  // namespace
-
-void bind_engine(py::module_& module) {
-  const std::string usual_up(name_of(View{}.up));
-  module.def("default_lights", &default_light_texts, py::arg("view") = "", py::arg("up") = usual_up,
-             py::arg("front") = 0.0f,
-             "The lights a picture gets when nobody asks for others: warm from behind `view` (without one the azimuth "
-             "`front`, degrees, of QuadGraph.front), cool from the side, a little from all around.");
-  module.def(
-      "copy_bandwidth", &copy_bandwidth, py::arg("device") = "",
-      "GB/s, read and written, at which a device copies one buffer into another: kernel (a compute pass), transfer "
-      "(the driver's own copy), gb_per_s (the faster); bytes of each buffer; device, driver. Raises VulkanError.");
-  py::class_<Engine>(module, "Engine", "A .qgraph on a Vulkan device.")
-      .def(py::init(&make_engine), py::arg("path"), py::arg("device") = "", py::arg("validation") = false,
-           "device: part of its name. validation: load the validation layer. Raises FormatError, InputError, "
-           "VulkanError.")
-      .def_property_readonly("graph", &Engine::graph, py::return_value_policy::reference_internal)
+// The body as users see it: material, lights, deformation.
+void bind_scene_setters(py::class_<Engine>& bound) {
+  bound
       .def(
           "set_material", [](Engine& engine, std::string_view text) { set_material(engine, text); }, py::arg("text"),
           "As --material reads it: names and numbers, or a .npz of coefficients (docs/scene.md). Raises InputError.")
@@ -208,7 +195,12 @@ void bind_engine(py::module_& module) {
           "taper, "
           "stretch, transform, lattice, cage or displaced and the fields of docs/deformation.md (mm, degrees), or its "
           "JSON text; [] puts all back exactly. Material and what the body sees of itself follow. Raises InputError, "
-          "and moves nothing.")
+          "and moves nothing.");
+}
+
+// What tests and studies give level by level in place of material and lights.
+void bind_level_setters(py::class_<Engine>& bound) {
+  bound
       .def(
           "set_irradiance",
           [](Engine& engine, std::uint32_t level, const FloatArray& q,
@@ -238,9 +230,12 @@ void bind_engine(py::module_& module) {
           "Moves the vertices of a level, (n_v, 3) mm, and the material with them; light given by set_irradiance "
           "stays, "
           "lights are evaluated again by update_irradiance. Raises InputError, and moves nothing, where a tet would be "
-          "turned inside out.")
-      .def("update_irradiance", &Engine::update_irradiance, py::call_guard<py::gil_scoped_release>())
-      .def("solve", &solve, py::kw_only(), py::arg("motion") = false, solve_help().c_str())
+          "turned inside out.");
+}
+
+// What only shortest-path takes.
+void bind_shortest_path(py::class_<Engine>& bound) {
+  bound
       .def(
           "set_grid",
           [](Engine& engine, const FloatArray& sigma_s_prime, const FloatArray& sigma_a,
@@ -268,7 +263,12 @@ void bind_engine(py::module_& module) {
           },
           py::arg("json"),
           "What shortest-path cuts away, in the shape as it is shown: the JSON text of a list as in a scene file "
-          "(docs/shortest-path.md). Raises InputError.")
+          "(docs/shortest-path.md). Raises InputError.");
+}
+
+// What the last solve found, on the surface.
+void bind_surface_results(py::class_<Engine>& bound) {
+  bound
       .def(
           "exitance_at",
           [](const Engine& engine, const FloatArray& points) {
@@ -284,15 +284,21 @@ void bind_engine(py::module_& module) {
       .def(
           "vertex_exitance",
           [](Engine& engine) {
-            return own(vk::download<glm::vec3>(engine.context(), engine.simulation().vertex_exitance()));
+            return own(device::download<glm::vec3>(engine.context(), engine.simulation().vertex_exitance()));
           },
           "Per surface vertex of level 0, W/mm^2: what a picture shows, local means of the scattered light.")
       .def(
           "vertex_unscattered",
           [](Engine& engine) {
-            return own(vk::download<glm::vec3>(engine.context(), engine.simulation().vertex_unscattered()));
+            return own(device::download<glm::vec3>(engine.context(), engine.simulation().vertex_unscattered()));
           },
-          "The same of light that left without having scattered.")
+          "The same of light that left without having scattered.");
+}
+
+// What is seen of the last solve.
+void bind_views(py::class_<Engine>& bound) {
+  const std::string usual_up(name_of(View{}.up));
+  bound
       .def("pick", &pick, py::arg("at"), py::arg("view") = "", py::arg("up") = usual_up,
            py::arg("vertical_fov") = View{}.vertical_fov, py::arg("aspect") = 1.0f,
            "What a picture of this view and shape shows at (x, y), -1 to 1 from left to right and from bottom to top: "
@@ -302,7 +308,12 @@ void bind_engine(py::module_& module) {
            "outward directions (n, 3): radiance (n, 3) of scattered light, transmittance (n, 3) of the body.")
       .def(
           "phi", [](Engine& engine) { return own(engine.simulation().phi()); }, "Per carrier of level 0, W/mm^2.")
-      .def("render", &render, py::arg("view") = "", render_help().c_str())
+      .def("render", &render, py::arg("view") = "", render_help().c_str());
+}
+
+// What the engine says of itself: device, memory, time per pass.
+void bind_measures(py::class_<Engine>& bound) {
+  bound
       .def_property_readonly(
           "passes", [](const Engine& engine) { return as_list(engine.passes()); },
           "Device time and bytes per pass of the last frame.")
@@ -319,6 +330,36 @@ void bind_engine(py::module_& module) {
       .def_property_readonly("driver", [](const Engine& engine) { return engine.context().info().driver; })
       .def_property_readonly("validation_messages",
                              [](const Engine& engine) { return engine.context().validation_messages(); });
+}
+
+}  // namespace
+
+void bind_engine(py::module_& module) {
+  const std::string usual_up(name_of(View{}.up));
+  module.def(
+      "default_lights", &default_light_texts, py::arg("view") = "", py::arg("up") = usual_up, py::arg("front") = 0.0f,
+      "The lights a picture gets when nobody asks for others: a warm key light from behind the object as `view` "
+      "sees it (without one the azimuth `front`, degrees, of QuadGraph.front), a cool one from the side, a little "
+      "ambient light.");
+  module.def(
+      "copy_bandwidth", &copy_bandwidth, py::arg("device") = "",
+      "GB/s, read and written, at which a device copies one buffer into another: kernel (a compute pass), transfer "
+      "(the driver's own copy), gb_per_s (the faster); bytes of each buffer; device, driver. Raises DeviceError.");
+  py::class_<Engine> bound(module, "Engine", "A .qgraph on a device.");
+  bound
+      .def(py::init(&make_engine), py::arg("path"), py::arg("device") = "", py::arg("validation") = false,
+           "device: cpu, or part of a Vulkan device's name; empty: a GPU, else cpu. validation: of Vulkan devices, by "
+           "its layer. Raises FormatError, InputError, "
+           "DeviceError.")
+      .def_property_readonly("graph", &Engine::graph, py::return_value_policy::reference_internal)
+      .def("update_irradiance", &Engine::update_irradiance, py::call_guard<py::gil_scoped_release>())
+      .def("solve", &solve, py::kw_only(), py::arg("motion") = false, solve_help().c_str());
+  bind_scene_setters(bound);
+  bind_level_setters(bound);
+  bind_shortest_path(bound);
+  bind_surface_results(bound);
+  bind_views(bound);
+  bind_measures(bound);
 }
 
 }  // namespace quadgraph::python

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "engine/base/error.h"
+#include "engine/scene/measured_error.h"
 #include "python/bindings/bindings.h"
 #include "python/bindings/scene_keywords.h"
 
@@ -153,6 +154,7 @@ py::object as_object(const OptionValue& value) {
 void bind_options(py::module_& module) {
   bind_option(module);
   bind_light_kind(module);
+  module.attr("MEASURED_SHARE") = usual_measured_share;
   module.def(
       "scene_options",
       [] {

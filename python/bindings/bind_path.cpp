@@ -2,6 +2,7 @@
 #include <pybind11/stl.h>
 
 #include "engine/base/error.h"
+#include "engine/devices/open_device.h"
 #include "engine/path/given_cells.h"
 #include "engine/reference/path_reference.h"
 #include "python/bindings/bindings.h"
@@ -31,18 +32,18 @@ py::array_t<Scalar> in_cells(const std::vector<Scalar>& values, const glm::uvec3
   return array;
 }
 
-void check_messages(const vk::Context& context) {
-  const auto& messages = context.validation_messages();
-  if (!messages.empty()) throw VulkanError("validation: " + messages.front());
+void check_messages(const device::Device& device) {
+  const auto& messages = device.validation_messages();
+  if (!messages.empty()) throw DeviceError("validation: " + messages.front());
 }
 
 py::array paths(const FloatArray& cost, const FloatArray& entering, float cell, const std::string& solver,
                 const std::string& device, bool validation) {
   const glm::uvec3 size = cells_of(cost, "cost");
   const PathSolver kind = from_name<PathSolver>(solver);
-  vk::Context context(vk::ContextOptions{validation, device});
-  const std::vector<float> found = paths_through(context, size, cell, values(cost), values(entering), kind);
-  check_messages(context);
+  const std::shared_ptr<device::Device> opened = open_device({validation, device, nullptr});
+  const std::vector<float> found = paths_through(*opened, size, cell, values(cost), values(entering), kind);
+  check_messages(*opened);
   return in_cells(found, size, 3);
 }
 
@@ -75,9 +76,9 @@ py::dict voxels(const FloatArray& vertices, const IndexArray& triangles, std::ui
       if (corner[k] >= count) throw InputError("triangles: vertex " + std::to_string(corner[k]) + " is not there");
     }
   }
-  vk::Context context(vk::ContextOptions{validation, device});
-  const GivenVoxels found = voxels_of(context, places, corners, cells);
-  check_messages(context);
+  const std::shared_ptr<device::Device> opened = open_device({validation, device, nullptr});
+  const GivenVoxels found = voxels_of(*opened, places, corners, cells);
+  check_messages(*opened);
   py::dict d;
   d["flags"] = in_cells(found.flags, found.grid.size, 1);
   d["origin"] = as_tuple(glm::dvec3(found.grid.origin));
@@ -98,7 +99,7 @@ void bind_path(py::module_& module) {
              "Lengths (3, nz, ny, nx) float32 of the shortest optical paths on the device; PATH_FAR: none. cost, as "
              "large: 1/mm, below 0 where a cell is not solid (in all channels alike); entering: W/mm^2, of which the "
              "negative logarithm is the length at the start, 0: none; cell: mm; solver: eikonal or lattice. Sides are "
-             "multiples of 8. Raises InputError, VulkanError.");
+             "multiples of 8. Raises InputError, DeviceError.");
   module.def("shortest_paths_reference", &reference, py::arg("cost"), py::arg("start"), py::arg("cell"),
              py::arg("solver") = solver,
              "The same in double precision on the CPU, from lengths at the start, PATH_FAR: none.");

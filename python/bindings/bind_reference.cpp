@@ -174,24 +174,24 @@ py::dict boundary_dict(const std::string& method, const std::string& source, con
   return d;
 }
 
+py::tuple coefficients_at_nodes(const QuadGraph& graph, std::uint32_t level, const gpu::Material& material) {
+  const auto optical = evaluate_material(level_of(graph, level), material);
+  std::vector<glm::vec3> sigma_s_prime, sigma_a;
+  for (const gpu::Optical& o : optical) {
+    sigma_s_prime.push_back(o.sigma_s_prime);
+    sigma_a.push_back(o.sigma_a);
+  }
+  return py::make_tuple(own(std::move(sigma_s_prime)), own(std::move(sigma_a)));
+}
+
 }  // namespace
 
 void bind_reference(py::module_& module) {
-  module.def(
-      "evaluate_material",
-      [](const QuadGraph& graph, std::uint32_t level, const gpu::Material& material) {
-        const auto optical = evaluate_material(level_of(graph, level), material);
-        std::vector<glm::vec3> sigma_s_prime, sigma_a;
-        for (const gpu::Optical& o : optical) {
-          sigma_s_prime.push_back(o.sigma_s_prime);
-          sigma_a.push_back(o.sigma_a);
-        }
-        return py::make_tuple(own(std::move(sigma_s_prime)), own(std::move(sigma_a)));
-      },
-      py::arg("graph"), py::arg("level"), py::arg("material"),
-      "sigma_s_prime and sigma_a, (n, 3) in 1/mm, at the nodes.");
+  const SolveOptions usual = reference_options();
+  module.def("evaluate_material", &coefficients_at_nodes, py::arg("graph"), py::arg("level"), py::arg("material"),
+             "sigma_s_prime and sigma_a, (n, 3) in 1/mm, at the nodes.");
   module.def("assemble", &assemble_dict, py::arg("graph"), py::arg("level"), py::arg("method"),
-             py::arg("sigma_s_prime"), py::arg("sigma_a"), py::arg("eta"), py::arg("source") = "buried",
+             py::arg("sigma_s_prime"), py::arg("sigma_a"), py::arg("eta"), py::arg("source") = name_of(usual.source),
              py::arg("model") = "diffusion",
              "Rows of the symmetric system A x = b, (phi, phi2) = to_phi * x (engine/reference/operator.h): offset, "
              "column, to_phi (n, 3), and weight and diagonal, (m, 3) with diffusion, (m, 3, 3) of a11, a12, a22 with "
@@ -207,8 +207,9 @@ void bind_reference(py::module_& module) {
       "Lambertian: shape as of diffuse_load.");
   module.def("solve_reference", &reference, py::arg("graph"), py::arg("level"), py::arg("sigma_s_prime"),
              py::arg("sigma_a"), py::arg("eta"), py::arg("q"), py::arg("direction") = py::none(),
-             py::arg("method") = "fem", py::arg("solver") = "dpcg", py::arg("source") = "buried",
-             py::arg("model") = "sp3", py::arg("tolerance") = 1e-10, py::arg("max_iterations") = 100000,
+             py::arg("method") = name_of(usual.method), py::arg("solver") = name_of(usual.solver),
+             py::arg("source") = name_of(usual.source), py::arg("model") = name_of(usual.model),
+             py::arg("tolerance") = usual.tolerance, py::arg("max_iterations") = usual.max_iterations,
              py::arg("stored") = false,
              "Solve one level on the CPU; stored: with the entries of the operator rounded as a device stores them. "
              "sigma_s_prime and sigma_a (n, 3) 1/mm at the nodes; q (n_f, 3) W/mm^2, the "

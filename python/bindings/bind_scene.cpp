@@ -27,6 +27,13 @@ void bind_scene_type(py::module_& module) {
       .def_property_readonly("size",
                              [](const Scene& scene) { return py::make_tuple(scene.render.width, scene.render.height); })
       .def(
+          "with_deformation",
+          [](Scene scene, const py::object& list) {
+            scene.deformation = deformation_from(list);
+            return scene;
+          },
+          py::arg("list"), "The same with another deformation, as Engine.set_deformation takes it. Raises InputError.")
+      .def(
           "json", [](const Scene& scene) { return to_json(scene).dump(2); },
           "The text of a scene file that shows this.")
       .def(py::self == py::self);
@@ -48,11 +55,11 @@ void bind_scene_file(py::module_& module) {
 void bind_stage(py::module_& module) {
   py::class_<Stage>(module, "Stage", "An Engine that shows a Scene.")
       .def(py::init([](const std::string& device, bool validation) {
-             return std::make_unique<Stage>(vk::ContextOptions{validation, device});
+             return std::make_unique<Stage>(device::DeviceOptions{validation, device, nullptr});
            }),
            py::arg("device") = "", py::arg("validation") = false)
       .def("show", &Stage::show, py::arg("scene"), py::call_guard<py::gil_scoped_release>(),
-           "Sets on the engine what differs. Raises FormatError, InputError, VulkanError.")
+           "Sets on the engine what differs. Raises FormatError, InputError, DeviceError.")
       .def(
           "solve",
           [](Stage& stage) {

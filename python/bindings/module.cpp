@@ -146,8 +146,8 @@ void register_errors() {
       raise("InputError", e);
     } catch (const SolverError& e) {
       raise("SolverError", e);
-    } catch (const VulkanError& e) {
-      raise("VulkanError", e);
+    } catch (const DeviceError& e) {
+      raise("DeviceError", e);
     }
   });
 }

@@ -18,7 +18,7 @@ Scene scene_of(const char* function, const pybind11::kwargs& given, std::initial
 // A line for each keyword of these groups: its default, what it is and what it allows.
 std::string keywords_help(std::initializer_list<std::string_view> groups);
 
-// As a Python object: None, bool, int, float, str or list of str.
+// An option's value as a Python object: None, bool, int, float, str or list of str.
 pybind11::object as_object(const OptionValue& value);
 
 }  // namespace quadgraph::python

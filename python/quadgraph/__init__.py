@@ -36,19 +36,19 @@ if TYPE_CHECKING:
         default_lights,
     )
     from quadgraph.api.materials import Material, VolumeMaterial, material_names
-    from quadgraph.api.options import Camera, PathOptions, PictureOptions, SolveOptions
+    from quadgraph.api.options import Camera, MotionOptions, PathOptions, PictureOptions, SolveOptions
     from quadgraph.api.picture import Picture
     from quadgraph.api.scene import Scene, SceneFile
     from quadgraph.api.solution import Energy, ErrorEstimate, LevelReport, PathReport, Solution
     from quadgraph.api.stage import Stage
     from quadgraph.baking.pipeline import BakeOptions, BakeReport, bake
     from quadgraph.base.errors import (
+        DeviceError,
         FormatError,
         InputError,
         QuadGraphError,
         SolverError,
         ToolError,
-        VulkanError,
     )
 
 __all__ = [
@@ -59,6 +59,7 @@ __all__ = [
     "Cage",
     "Camera",
     "Deformer",
+    "DeviceError",
     "DirectionalLight",
     "Displaced",
     "Energy",
@@ -72,6 +73,7 @@ __all__ = [
     "LevelReport",
     "Light",
     "Material",
+    "MotionOptions",
     "PathOptions",
     "PathReport",
     "Picture",
@@ -95,7 +97,6 @@ __all__ = [
     "Transform",
     "Twist",
     "VolumeMaterial",
-    "VulkanError",
     "__version__",
     "bake",
     "default_lights",
@@ -110,13 +111,13 @@ _PLACES = {
     "quadgraph.api.lights": "AmbientLight DirectionalLight EnvironmentLight Light PointLight ProjectorLight "
     "RectangleLight SpotLight default_lights",
     "quadgraph.api.materials": "Material VolumeMaterial material_names",
-    "quadgraph.api.options": "Camera PathOptions PictureOptions SolveOptions",
+    "quadgraph.api.options": "Camera MotionOptions PathOptions PictureOptions SolveOptions",
     "quadgraph.api.picture": "Picture",
     "quadgraph.api.scene": "Scene SceneFile",
     "quadgraph.api.solution": "Energy ErrorEstimate LevelReport PathReport Solution",
     "quadgraph.api.stage": "Stage",
     "quadgraph.baking.pipeline": "BakeOptions BakeReport bake",
-    "quadgraph.base.errors": "FormatError InputError QuadGraphError SolverError ToolError VulkanError",
+    "quadgraph.base.errors": "FormatError InputError QuadGraphError SolverError ToolError DeviceError",
 }
 
 

@@ -13,6 +13,7 @@ import sys
 from collections.abc import Callable, Sequence
 from importlib.metadata import entry_points
 from types import ModuleType
+from typing import Any
 
 from quadgraph.base.errors import InputError, QuadGraphError
 from quadgraph.base.version import __version__
@@ -32,7 +33,7 @@ class CommandParser(argparse.ArgumentParser):
     declare: Callable[[argparse.ArgumentParser], None] | None = None
 
     def parse_known_args(self, args=None, namespace=None):
-        """As ArgumentParser does, with all arguments declared."""
+        """Parse like ArgumentParser, with all arguments declared."""
         declare, self.declare = self.declare, None
         if declare is not None:
             declare(self)
@@ -46,7 +47,7 @@ class Added:
         self._subparsers = subparsers
         self._lines: list[str] = []
 
-    def add_parser(self, name: str, help: str, **options: object) -> argparse.ArgumentParser:
+    def add_parser(self, name: str, help: str, **options: Any) -> argparse.ArgumentParser:
         """Add a subcommand that the list of the first group does not show."""
         self._lines.append(f"    {name:<10}{help}")
         return self._subparsers.add_parser(name, **options)
@@ -88,8 +89,8 @@ def check_installed(arguments: Sequence[str], added: dict[str, ModuleType]) -> N
     command = next(iter(arguments), "")
     if command in VALIDATION and command not in added:
         raise InputError(
-            f"{command} belongs to quadgraph-validation, which is not installed: pip install 'quadgraph[validation]', "
-            "or pip install -e python/validation in the source tree"
+            f"{command} belongs to quadgraph-validation, which is not installed: pip install ./python/validation "
+            "in the source tree"
         )
 
 

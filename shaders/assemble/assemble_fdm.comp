@@ -5,14 +5,26 @@
 #include "solver/stored_rows.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// Weight, diagonal and to_phi of engine/reference/operator.h, one invocation per node.
+struct AssembleFdmPush {
+  RowsRef rows;
+  Vec3s nodes;
+  Opticals optical;
+  Vec3s to_phi;
+  Uints face_kinds;
+  uint count;      // nodes
+  uint tet_count;  // inner nodes
+  Boundary boundary;
+};
 layout(push_constant, scalar) uniform Block { AssembleFdmPush push; };
 
 // Sum of the row of a surface node, with the inner node behind it at distance 1 / inverse_distance.
 Entry surface_row_sum(uint node, uint inner, float inverse_distance) {
-  vec3 own = kappa(load_optical(push.optical, node));
-  vec3 ratio = kappa(load_optical(push.optical, inner)) / own;
+  vec3 own = kappa(push.optical.at[node]);
+  vec3 ratio = kappa(push.optical.at[inner]) / own;
   Entry entry = entry_of((ratio - 1.0) * (inverse_distance * inverse_distance), vec3(0), vec3(0));
-  if (load_uint(push.face_kinds, node - push.tet_count) != FACE_OPEN) return entry;
+  if (push.face_kinds.at[node - push.tet_count] != FACE_OPEN) return entry;
   return sum_of(entry, boundary_entry(push.boundary, ratio / own * inverse_distance));
 }
 
@@ -20,19 +32,19 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= push.count) return;
   uint slice = i / SLICE_ROWS;
-  uint begin = load_row_uint(push.rows.slice_offset, slice) + i % SLICE_ROWS;
-  uint end = load_row_uint(push.rows.slice_offset, slice + 1u);
-  vec3 position = load_vec3(push.nodes, i);
+  uint begin = push.rows.slice_offset.at[slice] + i % SLICE_ROWS;
+  uint end = push.rows.slice_offset.at[slice + 1u];
+  vec3 position = push.nodes.at[i];
   float inverse_square = 0.0;  // 1/mm^2, of the last link
   Entry sum = entry_of(vec3(0), vec3(0), vec3(0));
   for (uint e = begin; e < end; e += SLICE_ROWS) {
     uint j = column_of(stored_entry(push.rows, e));
-    vec3 step = load_vec3(push.nodes, j) - position;
+    vec3 step = push.nodes.at[j] - position;
     float weight = j == i ? 0.0 : 1.0 / dot(step, step);
     sum = sum_of(sum, store_entry(push.rows, e, entry_of(vec3(-weight), vec3(0), vec3(0))));
     if (j != i) inverse_square = weight;
   }
-  Optical own = load_optical(push.optical, i);
+  Optical own = push.optical.at[i];
   vec3 to_phi = 1.0 / kappa(own);
   push.to_phi.at[i] = to_phi;
   uint inner = column_of(stored_entry(push.rows, begin));

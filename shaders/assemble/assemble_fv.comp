@@ -6,43 +6,59 @@
 #include "solver/tet_volume.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// Weight, diagonal and to_phi, one invocation per node.
+struct AssembleFvPush {
+  RowsRef rows;
+  Vec3s vertices;
+  Uvec4s tets;
+  Uvec4s links;
+  Vec3s nodes;
+  Opticals optical;
+  Vec3s to_phi;
+  Uints face_kinds;
+  uint count;      // nodes
+  uint tet_count;  // inner nodes
+  LeastTet least;
+  Boundary boundary;
+};
 layout(push_constant, scalar) uniform Block { AssembleFvPush push; };
 
 vec3 vertex(uvec4 tet, uint k) {
-  return load_vec3(push.vertices, tet[k & 3u]);
+  return push.vertices.at[tet[k & 3u]];
 }
 
-// Of a node over a face, times twice the area of the face.
+// Height of a node over a face, times twice the area of the face.
 float height(vec3 twice_area, vec3 away, float least) {
   return max(abs(dot(twice_area, away)), least);
 }
 
 // The link of tet t across face k: area / (d_i/kappa_i + d_j/kappa_j), mm^2, or area kappa_i / d_i to a surface node.
 vec3 conductance(uint t, uint k, out float area) {
-  uvec4 tet = load_uvec4(push.tets, t);
-  uint j = load_uvec4(push.links, t)[k];
+  uvec4 tet = push.tets.at[t];
+  uint j = push.links.at[t][k];
   vec3 point = vertex(tet, k + 1u);
   vec3 twice_area = cross(vertex(tet, k + 2u) - point, vertex(tet, k + 3u) - point);
   float size = length(twice_area);
   area = 0.5 * size;
   float least = push.least.quality * size * sqrt(size);
-  float height_t = height(twice_area, load_vec3(push.nodes, t) - point, least);
-  vec3 resistance = vec3(height_t) / kappa(load_optical(push.optical, t));
+  float height_t = height(twice_area, push.nodes.at[t] - point, least);
+  vec3 resistance = vec3(height_t) / kappa(push.optical.at[t]);
   if (j < push.tet_count) {
-    float height_j = height(twice_area, load_vec3(push.nodes, j) - point, least);
-    resistance += vec3(height_j) / kappa(load_optical(push.optical, j));
+    float height_j = height(twice_area, push.nodes.at[j] - point, least);
+    resistance += vec3(height_j) / kappa(push.optical.at[j]);
   }
   return vec3(area * size) / resistance;
 }
 
 uint face_towards(uint t, uint node) {
   uint k = 0u;
-  while (k < 3u && load_uvec4(push.links, t)[k] != node) ++k;
+  while (k < 3u && push.links.at[t][k] != node) ++k;
   return k;
 }
 
 float volume(uint t) {
-  uvec4 tet = load_uvec4(push.tets, t);
+  uvec4 tet = push.tets.at[t];
   vec3 p = vertex(tet, 0u);
   return tet_volume(vertex(tet, 1u) - p, vertex(tet, 2u) - p, vertex(tet, 3u) - p, push.least);
 }
@@ -51,8 +67,8 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= push.count) return;
   uint slice = i / SLICE_ROWS;
-  uint begin = load_row_uint(push.rows.slice_offset, slice) + i % SLICE_ROWS;
-  uint end = load_row_uint(push.rows.slice_offset, slice + 1u);
+  uint begin = push.rows.slice_offset.at[slice] + i % SLICE_ROWS;
+  uint end = push.rows.slice_offset.at[slice + 1u];
   Entry sum = entry_of(vec3(0), vec3(0), vec3(0));
   float area = 0.0;
   for (uint e = begin; e < end; e += SLICE_ROWS) {
@@ -67,11 +83,11 @@ void main() {
   push.to_phi.at[i] = vec3(1);
   Entry row_sum;
   if (i < push.tet_count) {
-    Optical optical = load_optical(push.optical, i);
+    Optical optical = push.optical.at[i];
     float size = volume(i);
     row_sum = entry_of(vec3(0), optical.sigma_a * size, relaxation_of(optical) * size);
   } else {
-    bool open = load_uint(push.face_kinds, i - push.tet_count) == FACE_OPEN;
+    bool open = push.face_kinds.at[i - push.tet_count] == FACE_OPEN;
     row_sum = boundary_entry(push.boundary, vec3(open ? area : 0.0));
   }
   push.rows.row_sum.at[i] = row_sum;

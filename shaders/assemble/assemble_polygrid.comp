@@ -6,12 +6,28 @@
 #include "solver/stored_rows.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// Weight, diagonal and to_phi, one invocation per vertex. Entry k of a row is link k.
+struct AssemblePolygridPush {
+  RowsRef rows;
+  Vec3s vertices;
+  Uvec3s faces;
+  Uints face_offset;
+  Uints face_incidence;
+  Opticals optical;  // of the vertices
+  Floats volume;
+  Vec3s to_phi;
+  uint count;          // vertices
+  uint surface_count;  // of them on the surface
+  uint published;      // 1: differences of kappa phi, 0: of the flux
+  Boundary boundary;
+};
 layout(push_constant, scalar) uniform Block { AssemblePolygridPush push; };
 
 #include "shared/face_area.glsl"
 
 vec3 kappa_at(uint vertex) {
-  return kappa(load_optical(push.optical, vertex));
+  return kappa(push.optical.at[vertex]);
 }
 
 // What multiplies kappa phi of the neighbour (published) or phi, per weight, and what the node itself.
@@ -25,12 +41,12 @@ Pair pair_of(vec3 here, vec3 there) {
   return Pair(between, between);
 }
 
-// Of the open faces around a surface vertex, mm^2: a third of each.
+// A third of the area of the open faces around a surface vertex, mm^2.
 float open_area(uint i) {
   float area = 0.0;
-  uint end = load_uint(push.face_offset, i + 1u);
-  for (uint k = load_uint(push.face_offset, i); k < end; ++k) {
-    area += area_of(push.faces, push.vertices, load_uint(push.face_incidence, k)) / 3.0;
+  uint end = push.face_offset.at[i + 1u];
+  for (uint k = push.face_offset.at[i]; k < end; ++k) {
+    area += area_of(push.faces, push.vertices, push.face_incidence.at[k]) / 3.0;
   }
   return area;
 }
@@ -44,7 +60,7 @@ void surface_row(uint i, uint entry, vec3 here) {
   uint inner = column_of(stored_entry(push.rows, entry));
   vec3 there = kappa_at(inner);
   float open = open_area(i);
-  float per_distance = (open > 0.0 ? open : 1.0) / length(load_vec3(push.vertices, inner) - load_vec3(push.vertices, i));
+  float per_distance = (open > 0.0 ? open : 1.0) / length(push.vertices.at[inner] - push.vertices.at[i]);
   Pair pair = pair_of(here, there);
   if (push.published == 1u) pair.other = here / there;
   Entry stored = store_entry(push.rows, entry, entry_of(-per_distance * pair.other, vec3(0), vec3(0)));
@@ -55,22 +71,22 @@ void surface_row(uint i, uint entry, vec3 here) {
 }
 
 void inner_row(uint i, uint begin, vec3 here) {
-  vec3 position = load_vec3(push.vertices, i);
+  vec3 position = push.vertices.at[i];
   GridOffsets offsets;
   uint link[GRID_LINKS];
   for (int k = 0; k < GRID_LINKS; ++k) {
     link[k] = column_of(stored_entry(push.rows, begin + uint(k) * SLICE_ROWS));
-    offsets.at[k] = load_vec3(push.vertices, link[k]) - position;
+    offsets.at[k] = push.vertices.at[link[k]] - position;
   }
   GridWeights weights = grid_weights(offsets);
-  float volume = load_assembly_float(push.volume, i);
+  float volume = push.volume.at[i];
   Entry sum = entry_of(vec3(0), vec3(0), vec3(0));
   for (int k = 0; k < GRID_LINKS; ++k) {
     vec3 weight = weights.at[k] * volume * pair_of(here, kappa_at(link[k])).other;
     Entry entry = store_entry(push.rows, begin + uint(k) * SLICE_ROWS, entry_of(-weight, vec3(0), vec3(0)));
     sum = sum_of(sum, entry);
   }
-  Optical own = load_optical(push.optical, i);
+  Optical own = push.optical.at[i];
   vec3 mass = push.published == 1u ? volume / here : vec3(volume);
   store(i, entry_of(vec3(0), own.sigma_a * mass, relaxation_of(own) * mass), sum);
 }
@@ -80,7 +96,7 @@ void main() {
   if (i >= push.count) return;
   vec3 here = kappa_at(i);
   push.to_phi.at[i] = push.published == 1u ? 1.0 / here : vec3(1);
-  uint begin = load_row_uint(push.rows.slice_offset, i / SLICE_ROWS) + i % SLICE_ROWS;
+  uint begin = push.rows.slice_offset.at[i / SLICE_ROWS] + i % SLICE_ROWS;
   if (i < push.surface_count) {
     surface_row(i, begin, here);
   } else {

@@ -9,6 +9,18 @@
 #define REDUCE_ZERO vec3(0)
 #include "shared/reduce.glsl"
 
+// damping = 2 / bound of the eigenvalues of D^-1 A, per channel: the largest step of a
+// relaxation that cannot diverge. With N = |D^-1 A| entry by entry and any y > 0, z = N y, the largest z_i / y_i is
+// such a bound (Collatz 1942, Wielandt 1950); z as the next y gives a better one. `first`: y = 1, without reading it.
+struct EigenvalueBoundPush {
+  RowsRef rows;
+  Fields y;
+  Fields z;
+  Vec3s damping;
+  Reduction reduction;
+  uint count;
+  uint first;
+};
 layout(push_constant, scalar) uniform Block { EigenvalueBoundPush push; };
 
 // What linear tetrahedra never exceed: no eigenvalue of an element's D^-1 K is above its trace.
@@ -34,7 +46,7 @@ Field one() {
 
 Field start_or(Fields y, uint i) {
   if (push.first == 1u) return one();
-  return load_field(y, i);
+  return y.at[i];
 }
 
 vec3 largest_ratio(Field z, Field y) {
@@ -49,12 +61,12 @@ void main() {
   vec3 own = vec3(0);
   EACH(i, push.count) {
     uint slice = i / SLICE_ROWS;
-    uint end = load_row_uint(push.rows.slice_offset, slice + 1u);
+    uint end = push.rows.slice_offset.at[slice + 1u];
     Row row = load_row(push.rows, i);
     Field y = start_or(push.y, i);
     Entry diagonal = row.sum;  // of A; D may be rounded otherwise
     Field z = no_field();
-    for (uint e = load_row_uint(push.rows.slice_offset, slice) + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
+    for (uint e = push.rows.slice_offset.at[slice] + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
       StoredEntry stored = stored_entry(push.rows, e);
       Entry entry = entry_in(stored);
       diagonal = difference_of(diagonal, entry);
@@ -68,6 +80,6 @@ void main() {
   if (!reduce_dispatch(push.reduction, own, largest)) return;
   if (gl_LocalInvocationID.x != 0u) return;
   vec3 before = vec3(ELEMENT_BOUND);
-  if (push.first == 0u) before = 2.0 / load_vec3(push.damping, 0);
+  if (push.first == 0u) before = 2.0 / push.damping.at[0];
   push.damping.at[0] = 2.0 / min(before, largest);
 }

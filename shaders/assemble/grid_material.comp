@@ -4,13 +4,27 @@
 #include "solver/tet_volume.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// The mean coefficients of the tets around each vertex, by volume, and a fourth of that, mm^3.
+struct GridMaterialPush {
+  Vec3s vertices;
+  Uvec4s tets;
+  Opticals optical;  // of the tets
+  Uints tet_offset;
+  Uints tet_incidence;
+  Opticals vertex_optical;
+  Floats volume;
+  uint count;  // vertices
+  uint even;   // 1: the coefficients are the same everywhere
+  LeastTet least;
+};
 layout(push_constant, scalar) uniform Block { GridMaterialPush push; };
 
 float volume(uint tet) {
-  uvec4 corners = load_uvec4(push.tets, tet);
-  vec3 p = load_vec3(push.vertices, corners.x);
-  return tet_volume(load_vec3(push.vertices, corners.y) - p, load_vec3(push.vertices, corners.z) - p,
-                    load_vec3(push.vertices, corners.w) - p, push.least);
+  uvec4 corners = push.tets.at[tet];
+  vec3 p = push.vertices.at[corners.x];
+  return tet_volume(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p,
+                    push.vertices.at[corners.w] - p, push.least);
 }
 
 void main() {
@@ -18,11 +32,11 @@ void main() {
   if (i >= push.count) return;
   float sum = 0.0;
   Optical optical = Optical(vec3(0), vec3(0));
-  uint end = load_assembly_uint(push.tet_offset, i + 1u);
-  for (uint k = load_assembly_uint(push.tet_offset, i); k < end; ++k) {
-    uint tet = load_assembly_uint(push.tet_incidence, k);
+  uint end = push.tet_offset.at[i + 1u];
+  for (uint k = push.tet_offset.at[i]; k < end; ++k) {
+    uint tet = push.tet_incidence.at[k];
     float size = volume(tet);
-    Optical own = load_optical(push.optical, push.even == 1u ? 0u : tet);
+    Optical own = push.optical.at[push.even == 1u ? 0u : tet];
     optical.sigma_s_prime += size * own.sigma_s_prime;
     optical.sigma_a += size * own.sigma_a;
     sum += size;

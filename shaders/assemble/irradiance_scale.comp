@@ -4,13 +4,23 @@
 #include "shared/stride.glsl"
 #include "shared/reduce.glsl"
 
+// `scale` from the power that enters, per channel.
+struct IrradianceScalePush {
+  Vec3s vertices;
+  Uvec3s faces;
+  Uints face_kinds;
+  Vec3s q;
+  Scales scale;
+  Reduction reduction;
+  uint count;
+};
 layout(push_constant, scalar) uniform Block { IrradianceScalePush push; };
 
 float area_of(uint face) {
-  if (load_uint(push.face_kinds, face) != FACE_OPEN) return 0.0;
-  uvec3 corners = load_uvec3(push.faces, face);
-  vec3 p = load_vec3(push.vertices, corners.x);
-  return 0.5 * length(cross(load_vec3(push.vertices, corners.y) - p, load_vec3(push.vertices, corners.z) - p));
+  if (push.face_kinds.at[face] != FACE_OPEN) return 0.0;
+  uvec3 corners = push.faces.at[face];
+  vec3 p = push.vertices.at[corners.x];
+  return 0.5 * length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));
 }
 
 // Faces with less than this share of the mean irradiance count as unlit.
@@ -22,7 +32,7 @@ void main() {
   EACH(i, push.count) {
     float face = area_of(i);
     own += face;
-    entering += face * load_vec3(push.q, i);
+    entering += face * push.q.at[i];
   }
   vec3 power, area;
   if (!reduce_dispatch_pair(push.reduction, entering, vec3(own), power, area)) return;

@@ -41,7 +41,7 @@ struct GridWeights {
 // Weights below this share of the largest count as not positive.
 const real GRID_LEAST_WEIGHT = real(1e-3);
 const real GRID_LEAST_PIVOT = real(1e-5);
-// Of Newton's iteration for the nearest orthonormal frame, which converges quadratically.
+// Steps of Newton's iteration for the nearest orthonormal frame, which converges quadratically.
 const int GRID_FRAME_STEPS = 10;
 
 QG_INLINE real3 grid_direction(real3 offset) {
@@ -60,7 +60,7 @@ QG_INLINE bool grid_link_missing(GridOffsets d) {
   return d.at[GRID_LINKS - 1] == real3(0);
 }
 
-// As if both links of each pair lay on a straight line: never negative.
+// Weights as if both links of each pair lay on a straight line: never negative.
 QG_INLINE GridWeights grid_straight_weights(GridOffsets d) {
   GridWeights w;
   for (int k = 0; k < GRID_LINKS; ++k) {

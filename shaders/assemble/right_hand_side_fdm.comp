@@ -4,27 +4,42 @@
 #include "material/optics.h"
 #include "solver/fields.glsl"
 #include "solver/stored_rows.glsl"
+#include "shared/stride.glsl"
 #include "shared/reduce.glsl"
 
-layout(local_size_x = WORKGROUP_SIZE) in;
+// Scaled b at every node, and its norm.
+struct RightHandSideFdmPush {
+  Vec3s nodes;
+  Opticals optical;
+  Uints face_tets;
+  Uints face_kinds;
+  Vec3s q;
+  Scales scale;
+  Entries diagonal;
+  Fields b;
+  SolveStates state;
+  Reduction reduction;
+  uint count;
+  uint tet_count;
+  Boundary boundary;
+};
 layout(push_constant, scalar) uniform Block { RightHandSideFdmPush push; };
 
 // kappa_k q / (kappa_s d) at surface node `face`.
 vec3 surface_load(uint face) {
-  if (load_uint(push.face_kinds, face) != FACE_OPEN) return vec3(0);
-  uint tet = load_uint(push.face_tets, face);
-  float d = distance(load_vec3(push.nodes, tet), load_vec3(push.nodes, push.tet_count + face));
-  vec3 kappa_ratio = kappa(load_optical(push.optical, tet)) / kappa(load_optical(push.optical, push.tet_count + face));
-  return kappa_ratio * load_vec3(push.q, face) * load_scale(push.scale).inverse / d;
+  if (push.face_kinds.at[face] != FACE_OPEN) return vec3(0);
+  uint tet = push.face_tets.at[face];
+  float d = distance(push.nodes.at[tet], push.nodes.at[push.tet_count + face]);
+  vec3 kappa_ratio = kappa(push.optical.at[tet]) / kappa(push.optical.at[push.tet_count + face]);
+  return kappa_ratio * push.q.at[face] * push.scale.at[0].inverse / d;
 }
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
   vec3 square = vec3(0);
-  if (i < push.count) {
+  EACH(i, push.count) {
     Field b = diffuse_source(push.boundary, i < push.tet_count ? vec3(0) : surface_load(i - push.tet_count));
     push.b.at[i] = b;
-    square = product(b, solved(load_diagonal(push.diagonal, i), b));
+    square += product(b, solved(load_diagonal(push.diagonal, i), b));
   }
   vec3 norm;
   if (!reduce_dispatch(push.reduction, square, norm)) return;

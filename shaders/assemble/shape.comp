@@ -4,13 +4,25 @@
 #include "solver/tet_volume.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// Measures every tet and outside face.
+struct ShapePush {
+  Vec3s vertices;
+  Uvec4s tets;
+  Uvec3s faces;
+  Floats tet_shape;
+  Floats face_area;  // mm^2
+  uint tet_count;
+  uint face_count;
+  LeastTet least;
+};
 layout(push_constant, scalar) uniform Block { ShapePush push; };
 
 void measure_tet(uint t) {
-  uvec4 tet = load_uvec4(push.tets, t);
-  vec3 p = load_vec3(push.vertices, tet.x);
-  vec3 e1 = load_vec3(push.vertices, tet.y) - p, e2 = load_vec3(push.vertices, tet.z) - p;
-  vec3 e3 = load_vec3(push.vertices, tet.w) - p;
+  uvec4 tet = push.tets.at[t];
+  vec3 p = push.vertices.at[tet.x];
+  vec3 e1 = push.vertices.at[tet.y] - p, e2 = push.vertices.at[tet.z] - p;
+  vec3 e3 = push.vertices.at[tet.w] - p;
   // The gradient of corner k is n_k / (6 V), up to an orientation that cancels in products.
   vec3 n1 = cross(e2, e3), n2 = cross(e3, e1), n3 = cross(e1, e2);
   vec3 n0 = -(n1 + n2 + n3);
@@ -31,8 +43,8 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i < push.tet_count) measure_tet(i);
   if (i >= push.face_count) return;
-  uvec3 face = load_uvec3(push.faces, i);
-  vec3 p = load_vec3(push.vertices, face.x);
-  vec3 doubled = cross(load_vec3(push.vertices, face.y) - p, load_vec3(push.vertices, face.z) - p);
+  uvec3 face = push.faces.at[i];
+  vec3 p = push.vertices.at[face.x];
+  vec3 doubled = cross(push.vertices.at[face.y] - p, push.vertices.at[face.z] - p);
   push.face_area.at[i] = 0.5 * length(doubled);
 }

@@ -25,7 +25,7 @@ inline real2 sine_cosine(real angle) {
 #define real float
 #define real2 vec2
 #define real3 vec3
-#define CONTROL(record, i) load_vec3(record.control, i)
+#define CONTROL(record, i) (record).control.at[i]
 
 // To 1e-7; what GLSL has need not be better than 5e-4. Reduction and polynomials: Cephes, sinf.c.
 vec2 sine_cosine(float angle) {
@@ -85,7 +85,7 @@ QG_INLINE real3 transformed(DeformRecord r, real3 p) {
   return real3(dot(real3(r.a), p), dot(real3(r.b), p), dot(real3(r.c), p)) + real3(r.d);
 }
 
-// Of control point i of n at t in [0, 1]: Bernstein's polynomial, or a hat.
+// Weight of control point i of n at t in [0, 1]: Bernstein's polynomial, or a hat function.
 QG_INLINE real lattice_weight(uint basis, uint n, uint i, real t) {
   if (n == 1u) return real(1);
   if (basis == LATTICE_LINEAR) return max(real(1) - abs(t * real(n - 1u) - real(i)), real(0));

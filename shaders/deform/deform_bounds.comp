@@ -3,6 +3,13 @@
 #include "deform/deform_shared.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// One workgroup; the sphere around the middle of the bounding box, mm.
+struct DeformBoundsPush {
+  Vec3s vertices;
+  Vec4s sphere;  // centre and radius, written
+  uint count;
+};
 layout(push_constant, scalar) uniform Block { DeformBoundsPush push; };
 
 shared vec3 low[WORKGROUP_SIZE], high[WORKGROUP_SIZE];
@@ -22,7 +29,7 @@ void main() {
   uint lane = gl_LocalInvocationID.x;
   vec3 least = vec3(1e37), most = vec3(-1e37);
   for (uint v = lane; v < push.count; v += WORKGROUP_SIZE) {
-    vec3 p = load_vec3(push.vertices, v);
+    vec3 p = push.vertices.at[v];
     least = min(least, p);
     most = max(most, p);
   }
@@ -33,7 +40,7 @@ void main() {
   barrier();
   float radius = 0.0;
   for (uint v = lane; v < push.count; v += WORKGROUP_SIZE) {
-    radius = max(radius, distance(load_vec3(push.vertices, v), centre));
+    radius = max(radius, distance(push.vertices.at[v], centre));
   }
   low[lane] = high[lane] = vec3(radius);
   combine(lane);

@@ -3,12 +3,24 @@
 #include "deform/deform_shared.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// The triangles around vertex v are incidence[k], k from offset[v] to offset[v + 1].
+struct DeformNormalsPush {
+  Vec3s rest;   // vertices, mm
+  Vec3s moved;  // the same
+  Vec3s rest_normals;
+  Vec3s normals;  // written
+  Uvec3s triangles;
+  Uints offset;
+  Uints incidence;
+  uint count;
+};
 layout(push_constant, scalar) uniform Block { DeformNormalsPush push; };
 
 // A triangle as a frame: two edges and its doubled normal.
 mat3 frame_of(Vec3s vertices, uvec3 ids) {
-  vec3 p = load_vec3(vertices, ids.x);
-  vec3 u = load_vec3(vertices, ids.y) - p, v = load_vec3(vertices, ids.z) - p;
+  vec3 p = vertices.at[ids.x];
+  vec3 u = vertices.at[ids.y] - p, v = vertices.at[ids.z] - p;
   return mat3(u, v, cross(u, v));
 }
 
@@ -28,10 +40,10 @@ vec3 carried(uvec3 ids, vec3 normal) {
 void main() {
   uint v = gl_GlobalInvocationID.x;
   if (v >= push.count) return;
-  vec3 normal = load_vec3(push.rest_normals, v), sum = vec3(0);
-  uint end = load_uint(push.offset, v + 1u);
-  for (uint k = load_uint(push.offset, v); k < end; ++k) {
-    sum += carried(load_uvec3(push.triangles, load_uint(push.incidence, k)), normal);
+  vec3 normal = push.rest_normals.at[v], sum = vec3(0);
+  uint end = push.offset.at[v + 1u];
+  for (uint k = push.offset.at[v]; k < end; ++k) {
+    sum += carried(push.triangles.at[push.incidence.at[k]], normal);
   }
   float size = length(sum);
   push.normals.at[v] = size > 0.0 ? sum / size : normal;

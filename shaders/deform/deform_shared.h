@@ -38,44 +38,6 @@ struct DeformRecord {
   uint count;             // cage: its vertices; lattice: points in x, y, z, and LATTICE_*, a byte each
 };
 
-// deform.comp: target[v] = source[v], moved. They may be the same.
-struct DeformPush {
-  DeformRecord record;
-  QG_REF(Vec3s) source;  // mm
-  QG_REF(Vec3s) target;  // mm
-  uint count;
-};
-
-// deform_nodes.comp: a node keeps its barycentric coordinates in its tet.
-struct DeformNodesPush {
-  QG_REF(Vec3s) vertices;  // mm
-  QG_REF(Uvec4s) tets;
-  QG_REF(Uints) face_tets;
-  QG_REF(Vec4s) place;  // per node
-  QG_REF(Vec3s) nodes;  // mm, written
-  uint tet_count;
-  uint count;
-};
-
-// deform_normals.comp: the triangles around vertex v are incidence[k], k from offset[v] to offset[v + 1].
-struct DeformNormalsPush {
-  QG_REF(Vec3s) rest;   // vertices, mm
-  QG_REF(Vec3s) moved;  // the same
-  QG_REF(Vec3s) rest_normals;
-  QG_REF(Vec3s) normals;  // written
-  QG_REF(Uvec3s) triangles;
-  QG_REF(Uints) offset;
-  QG_REF(Uints) incidence;
-  uint count;
-};
-
-// deform_bounds.comp: one workgroup; the sphere around the middle of the bounding box, mm.
-struct DeformBoundsPush {
-  QG_REF(Vec3s) vertices;
-  QG_REF(Vec4s) sphere;  // centre and radius, written
-  uint count;
-};
-
 // Sums over the tets and open faces that one workgroup looked at.
 struct ShapeSums {
   float inverted;    // tets turned inside out
@@ -89,21 +51,6 @@ struct ShapeSums {
 #ifndef __cplusplus
 QG_ARRAY(ShapeSumsArray, ShapeSums);
 #endif
-
-// shape_state.comp: looks at all tets and faces.
-struct ShapeStatePush {
-  QG_REF(Vec3s) vertices;
-  QG_REF(Uvec4s) tets;
-  QG_REF(Uvec3s) faces;
-  QG_REF(Uints) face_kinds;
-  QG_REF(Uints) face_tets;
-  QG_REF(ShapeSumsArray) sums;  // per workgroup, written
-  QG_REF(Vec2s) samples;        // depth (mm) and area (mm^2) of every `step`-th face, written
-  uint tet_count;
-  uint face_count;
-  uint step;
-  LeastTet least;
-};
 
 #ifdef __cplusplus
 }  // namespace quadgraph::gpu

@@ -5,6 +5,20 @@
 #include "shared/reduce.glsl"
 #include "solver/tet_volume.glsl"
 
+// Looks at all tets and faces.
+struct ShapeStatePush {
+  Vec3s vertices;
+  Uvec4s tets;
+  Uvec3s faces;
+  Uints face_kinds;
+  Uints face_tets;
+  ShapeSumsArray sums;  // per workgroup, written
+  Vec2s samples;        // depth (mm) and area (mm^2) of every `step`-th face, written
+  uint tet_count;
+  uint face_count;
+  uint step;
+  LeastTet least;
+};
 layout(push_constant, scalar) uniform Block { ShapeStatePush push; };
 
 shared float worst[WORKGROUP_SIZE];
@@ -19,9 +33,9 @@ float conducted(vec3 n_i, vec3 n_j, vec3 p_i, vec3 p_j) {
 }
 
 TetState state_of(uint t) {
-  uvec4 tet = load_uvec4(push.tets, t);
-  vec3 p = load_vec3(push.vertices, tet.x), a = load_vec3(push.vertices, tet.y);
-  vec3 b = load_vec3(push.vertices, tet.z), c = load_vec3(push.vertices, tet.w);
+  uvec4 tet = push.tets.at[t];
+  vec3 p = push.vertices.at[tet.x], a = push.vertices.at[tet.y];
+  vec3 b = push.vertices.at[tet.z], c = push.vertices.at[tet.w];
   vec3 n1 = cross(b - p, c - p), n2 = cross(c - p, a - p), n3 = cross(a - p, b - p);
   vec3 n0 = -(n1 + n2 + n3);
   float squares = dot(n0, n0) + dot(n1, n1) + dot(n2, n2) + dot(n3, n3), six_volume = dot(a - p, n1);
@@ -32,9 +46,9 @@ TetState state_of(uint t) {
 }
 
 float area_of(uint f) {
-  uvec3 ids = load_uvec3(push.faces, f);
-  vec3 p = load_vec3(push.vertices, ids.x);
-  return 0.5 * length(cross(load_vec3(push.vertices, ids.y) - p, load_vec3(push.vertices, ids.z) - p));
+  uvec3 ids = push.faces.at[f];
+  vec3 p = push.vertices.at[ids.x];
+  return 0.5 * length(cross(push.vertices.at[ids.y] - p, push.vertices.at[ids.z] - p));
 }
 
 // In invocation 0.
@@ -42,12 +56,12 @@ float least_of_group(float value) {
   uint lane = gl_LocalInvocationID.x;
   worst[lane] = value;
   barrier();
-  [[dont_unroll]] for (uint k = 1u; k < GROUP_SIZE && lane == 0u; ++k) value = min(value, worst[k]);
+  for (uint k = 1u; k < WORKGROUP_SIZE && lane == 0u; ++k) value = min(value, worst[k]);
   return value;
 }
 
 void take_sample(uint f, float area) {
-  float depth = 3.0 * state_of(load_uint(push.face_tets, f)).volume / max(area, 1e-30);
+  float depth = 3.0 * state_of(push.face_tets.at[f]).volume / max(area, 1e-30);
   push.samples.at[f / push.step] = vec2(depth, area);
 }
 
@@ -62,7 +76,7 @@ void main() {
   }
   EACH(f, push.face_count) {
     float area = area_of(f);
-    if (load_uint(push.face_kinds, f) == FACE_OPEN) sums.z += area;
+    if (push.face_kinds.at[f] == FACE_OPEN) sums.z += area;
     if (f % push.step == 0u) take_sample(f, area);
   }
   counts = reduce_workgroup(counts);

@@ -1,5 +1,4 @@
-// What views of the inside are drawn from, in scalar layout; tests/cpp/render/layout_test.cpp compares it with the
-// compiled shaders.
+// What views of the inside are drawn from, in scalar layout; see shared.h.
 #ifndef QUADGRAPH_FALSE_COLOUR_SHARED_H
 #define QUADGRAPH_FALSE_COLOUR_SHARED_H
 

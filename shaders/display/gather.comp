@@ -22,9 +22,9 @@ struct Sample {
 };
 
 Sample sample_at(uint i) {
-  vec4 specular = load_vec4(push.samples[1], i), normal = load_vec4(push.samples[2], i);
+  vec4 specular = push.samples[1].at[i], normal = push.samples[2].at[i];
   uint face = uint(specular.w) * FACE_HALF + uint(normal.w);
-  return Sample(face, load_vec4(push.samples[0], i).xyz, normal.xyz, specular.rgb);
+  return Sample(face, push.samples[0].at[i].xyz, normal.xyz, specular.xyz);
 }
 
 // Whether one ray does for two samples of a pixel. Between faces what is seen can change too much.
@@ -34,9 +34,9 @@ bool together(Sample a, Sample b) {
 
 // Barycentric coordinates of the point of a face that lies below or above `point`.
 vec3 coordinates_in(uint face, vec3 point) {
-  uvec3 ids = load_uvec3(BODY.faces, face);
-  vec3 a = load_vec3(BODY.vertices, ids.x);
-  vec3 u = load_vec3(BODY.vertices, ids.y) - a, v = load_vec3(BODY.vertices, ids.z) - a, offset = point - a;
+  uvec3 ids = BODY.faces.at[face];
+  vec3 a = BODY.vertices.at[ids.x];
+  vec3 u = BODY.vertices.at[ids.y] - a, v = BODY.vertices.at[ids.z] - a, offset = point - a;
   vec3 normal = cross(u, v);
   float area = max(dot(normal, normal), 1e-30);
   float second = dot(cross(offset, v), normal) / area, third = dot(cross(u, offset), normal) / area;
@@ -48,10 +48,10 @@ vec3 coordinates_in(uint face, vec3 point) {
 vec3 radiance_behind(vec3 ray) {
   vec3 sum = vec3(0);
   for (uint i = 0u; i < scene.light_count; ++i) {
-    LightRecord light = load_light(scene.lights, i);
+    LightRecord light = scene.lights.at[i];
     if (light.kind == LIGHT_AMBIENT) sum += light.power / PI;
     if (SHAPED && light.kind == LIGHT_ENVIRONMENT) {
-      sum += light.power * environment_at(load_light_shape(scene.shapes, i), ENVIRONMENT_RAYS, ray);
+      sum += light.power * environment_at(scene.shapes.at[i], ENVIRONMENT_RAYS, ray);
     }
   }
   return sum;
@@ -68,9 +68,9 @@ Leaving towards_eye(uint face, vec3 position, vec3 normal) {
 void main() {
   Pixel pixel;
   if (!find_pixel(pixel)) return;
-  scene = load_scene(push.scene);
+  scene = push.scene.at[0];
   uint waiting = 0u;
-  for (uint k = 0u; k < 4u; ++k) waiting |= load_vec4(push.samples[0], sample_of(pixel, k)).w > 0.0 ? 1u << k : 0u;
+  for (uint k = 0u; k < 4u; ++k) waiting |= push.samples[0].at[sample_of(pixel, k)].w > 0.0 ? 1u << k : 0u;
   vec3 scattered = vec3(0), specular = vec3(0), seen = vec3(0), unscattered = vec3(0);
   float alpha = 0.0;
   while (waiting != 0u) {
@@ -93,5 +93,10 @@ void main() {
     unscattered += share * light.seen * radiance_behind(normalize(0.25 / share * position - scene.eye));
     alpha += share;
   }
-  write_pixel(pixel, vec3[](scattered, specular, unscattered, seen), alpha);
+  vec3 layers[PICTURE_LAYERS];
+  layers[0] = scattered;
+  layers[1] = specular;
+  layers[2] = unscattered;
+  layers[3] = seen;
+  write_pixel(pixel, layers, alpha);
 }

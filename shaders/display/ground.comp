@@ -3,6 +3,20 @@
 #include "display/ground_shared.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// Darkens what is seen beside the body. The shadow counts as coverage without light.
+struct GroundPush {
+  Floats shadow;
+  Floats alpha;  // per pixel, written
+  vec3 eye;              // mm, from the middle of the map
+  vec3 corner;           // direction from the eye to the upper left corner of the picture
+  vec3 right;            // from there to the upper right one
+  vec3 down;             // to the lower left one
+  float half_width;      // mm, of the map
+  uint z_up;             // 1: the ground lies across z; 0: across y
+  uint width;            // pixels
+  uint height;
+};
 layout(push_constant, scalar) uniform Block { GroundPush push; };
 
 float shadow_of(ivec2 texel) {

@@ -3,12 +3,20 @@
 #include "display/ground_shared.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// How dark every texel of the ground is, from the depth of the body seen from below.
+struct GroundMapPush {
+  Floats depth;   // GROUND_SIZE^2, 0 on the ground to 1 at `far`
+  Floats shadow;  // the same, share of the light that is missing; written
+  float far;              // mm
+  float reach;            // mm above the ground from which a surface still darkens it by 1/e
+};
 layout(push_constant, scalar) uniform Block { GroundMapPush push; };
 
 // Light that is missing under what hangs over a texel; nothing beyond the map does.
 float missing(ivec2 texel) {
   if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(GROUND_SIZE)))) return 0.0;
-  float depth = load_float(push.depth, texel.y * GROUND_SIZE + texel.x);
+  float depth = push.depth.at[texel.y * GROUND_SIZE + texel.x];
   return depth >= 1.0 ? 0.0 : exp(-depth * push.far / push.reach);
 }
 

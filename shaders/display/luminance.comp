@@ -3,6 +3,14 @@
 #include "display/display_shared.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// Counts of the covered pixels of a picture, by luminance and by their brightest channel.
+struct LuminancePush {
+  Floats layers[PICTURE_LAYERS];  // RGB per pixel
+  Floats alpha;                   // per pixel
+  Uints bins;  // LUMINANCE_BINS twice, added to; what is below the first or black is in the first
+  uint count;          // pixels
+};
 layout(push_constant, scalar) uniform Block { LuminancePush push; };
 
 float radiance(uint value) {
@@ -21,5 +29,5 @@ void main() {
   if (i >= push.count || push.alpha.at[i] != 1.0) return;
   vec3 seen = vec3(radiance(3u * i), radiance(3u * i + 1u), radiance(3u * i + 2u));
   count(0u, luminance(seen));
-  count(LUMINANCE_BINS, max(max(seen.r, seen.g), seen.b));
+  count(LUMINANCE_BINS, max(max(seen.x, seen.y), seen.z));
 }

@@ -7,7 +7,7 @@ layout(local_size_x = WORKGROUP_SIZE) in;
 
 vec4 mean_of(Vec4s samples, Pixel pixel) {
   vec4 sum = vec4(0);
-  for (uint k = 0u; k < 4u; ++k) sum += load_vec4(samples, sample_of(pixel, k));
+  for (uint k = 0u; k < 4u; ++k) sum += samples.at[sample_of(pixel, k)];
   return 0.25 * sum;
 }
 
@@ -15,7 +15,10 @@ void main() {
   Pixel pixel;
   if (!find_pixel(pixel)) return;
   vec4 scattered = mean_of(push.samples[0], pixel);
-  vec3 layers[PICTURE_LAYERS] = vec3[](scattered.rgb, mean_of(push.samples[1], pixel).rgb,
-                                       mean_of(push.samples[2], pixel).rgb, vec3(0));
-  write_pixel(pixel, layers, scattered.a);
+  vec3 layers[PICTURE_LAYERS];
+  layers[0] = scattered.xyz;
+  layers[1] = mean_of(push.samples[1], pixel).xyz;
+  layers[2] = mean_of(push.samples[2], pixel).xyz;
+  layers[3] = vec3(0);
+  write_pixel(pixel, layers, scattered.w);
 }

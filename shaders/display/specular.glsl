@@ -17,13 +17,20 @@ SurfaceScene scene;
 const float PI = 3.14159265;
 
 // How much of the roughness here is that of an image.
-float placed_share = 0.0;
+float placed_share;
 
-// Makes scene.roughness that of a point of the surface, `rest` at rest, mm. To be called by all fragments.
-void place_roughness(vec3 rest) {
+// Length of a way that is seen along the box's third axis, mm.
+float across_box(ImageBox box, vec3 way) {
+  return length(vec2(dot(box.right, way), dot(box.up, way)));
+}
+
+// Makes scene.roughness that of a point of the surface, `rest` at rest, mm; `to_right` and `to_below`: how it differs
+// from pixel to pixel.
+void place_roughness(vec3 rest, vec3 to_right, vec3 to_below) {
+  placed_share = 0.0;
   if (!PLACED_ROUGHNESS) return;
   vec3 place = in_box(SURFACE.box, rest);
-  float width = max(length(dFdx(place.xy)), length(dFdy(place.xy)));
+  float width = max(across_box(SURFACE.box, to_right), across_box(SURFACE.box, to_below));
   if (any(greaterThan(abs(place), SURFACE.box.half_size))) return;
   ImageTap tap = image_tap(SURFACE.image, in_picture(SURFACE.box, place), texels_across(SURFACE.box, SURFACE.image, width));
   placed_share = clamp(luminance(load_image(SURFACE.texels, tap)), 0.0, 1.0);
@@ -62,14 +69,14 @@ vec3 reflected_environment(LightShape shape, vec3 n, vec3 v) {
 vec3 specular_radiance(vec3 position, vec3 n, vec3 v, float sky) {
   vec3 sum = vec3(0.0);
   for (uint i = 0u; i < scene.light_count; ++i) {
-    LightRecord light = load_light(scene.lights, i);
+    LightRecord light = scene.lights.at[i];
     if (light.kind == LIGHT_AMBIENT) {
-      // As of a smooth surface.
+      // Ambient light is reflected as by a smooth surface.
       sum += fresnel_reflectance(clamp(dot(n, v), 0.0, 1.0), scene.eta) / PI * sky * light.power;
       continue;
     }
     LightShape shape = no_shape();
-    if (SHAPED) shape = load_light_shape(scene.shapes, i);
+    if (SHAPED) shape = scene.shapes.at[i];
     if (SHAPED && light.kind == LIGHT_ENVIRONMENT) {
       float share = fresnel_reflectance(clamp(dot(n, v), 0.0, 1.0), scene.eta) * sky;
       sum += share * light.power * reflected_environment(shape, n, v);

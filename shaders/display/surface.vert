@@ -11,19 +11,19 @@ layout(location = 4) out float sky;                  // share that is not hidden
 layout(location = 5) out vec3 rest;                  // mm, the position at rest
 
 void main() {
-  SurfaceScene scene = load_scene(push.scene);
-  position = load_vec3(scene.vertices, gl_VertexIndex);
+  SurfaceScene scene = push.scene.at[0];
+  position = scene.vertices.at[gl_VertexIndex];
   rest = vec3(0);
-  if (PLACED_ROUGHNESS) rest = load_vec3(push.rest, gl_VertexIndex);
-  normal = load_vec3(scene.normals, gl_VertexIndex);
-  uint index = load_uint(scene.face, gl_VertexIndex);
-  uvec3 face = load_uvec3(scene.faces, index);
-  sky = load_float(scene.sky, index);
-  vec3 weight = load_vec3(scene.barycentric, gl_VertexIndex);
+  if (PLACED_ROUGHNESS) rest = push.rest.at[gl_VertexIndex];
+  normal = scene.normals.at[gl_VertexIndex];
+  uint index = scene.face.at[gl_VertexIndex];
+  uvec3 face = scene.faces.at[index];
+  sky = scene.sky.at[index];
+  vec3 weight = scene.barycentric.at[gl_VertexIndex];
   exitance = unscattered_exitance = vec3(0.0);
   for (int k = 0; k < 3; ++k) {
-    exitance += weight[k] * load_vec3(scene.exitance, face[k]);
-    unscattered_exitance += weight[k] * load_vec3(scene.unscattered, face[k]);
+    exitance += weight[k] * scene.exitance.at[face[k]];
+    unscattered_exitance += weight[k] * scene.unscattered.at[face[k]];
   }
   gl_Position = scene.clip_from_world * vec4(position, 1.0);
 }

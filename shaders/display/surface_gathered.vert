@@ -12,13 +12,13 @@ layout(location = 4) out float sky;       // share that is not hidden by the bod
 layout(location = 5) out vec3 rest;       // mm, the position at rest
 
 void main() {
-  SurfaceScene scene = load_scene(push.scene);
-  uint vertex = load_uint(scene.triangles, gl_VertexIndex);
-  position = load_vec3(scene.vertices, vertex);
+  SurfaceScene scene = push.scene.at[0];
+  uint vertex = scene.triangles.at[gl_VertexIndex];
+  position = scene.vertices.at[vertex];
   rest = vec3(0);
-  if (PLACED_ROUGHNESS) rest = load_vec3(push.rest, vertex);
-  normal = load_vec3(scene.normals, vertex);
-  face = load_uint(scene.triangle_face, gl_VertexIndex / 3);
-  sky = load_float(scene.sky, load_uint(scene.face, vertex));
+  if (PLACED_ROUGHNESS) rest = push.rest.at[vertex];
+  normal = scene.normals.at[vertex];
+  face = scene.triangle_face.at[gl_VertexIndex / 3];
+  sky = scene.sky.at[scene.face.at[vertex]];
   gl_Position = scene.clip_from_world * vec4(position, 1.0);
 }

@@ -34,10 +34,10 @@ bool last_cut(PathTools tools, vec3 end, out vec3 point, out vec3 outward) {
 // Open surfaces are seen from both sides. A side that is turned away from the eye is seen through a hole, or because
 // what lay before it has been cut away: then the cut face is what is seen, and it lies on the same ray.
 void main() {
-  scene = load_scene(SURFACE.scene);
-  PathField field = load_path_field(push.field);
+  scene = SURFACE.scene.at[0];
+  PathField field = push.field.at[0];
   if (field.tools.count > 0u && cut_away(field.tools, position)) discard;
-  place_roughness(rest);
+  place_roughness(rest, dFdx(rest), dFdy(rest));
   vec3 at = position, n = normalize(normal);
   if (field.tools.count > 0u && !gl_FrontFacing) {
     vec3 point, outward;

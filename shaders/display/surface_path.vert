@@ -4,16 +4,15 @@
 #include "light/shaped.glsl"
 
 layout(push_constant, scalar) uniform Block { SurfacePathPush path_push; };
-#define push path_push.surface
 layout(location = 0) out vec3 position;  // mm
 layout(location = 1) out vec3 normal;
 layout(location = 2) out vec3 rest;  // mm, the position at rest
 
 void main() {
-  SurfaceScene scene = load_scene(push.scene);
-  position = load_vec3(scene.vertices, gl_VertexIndex);
+  SurfaceScene scene = path_push.surface.scene.at[0];
+  position = scene.vertices.at[gl_VertexIndex];
   rest = vec3(0);
-  if (PLACED_ROUGHNESS) rest = load_vec3(push.rest, gl_VertexIndex);
-  normal = load_vec3(scene.normals, gl_VertexIndex);
+  if (PLACED_ROUGHNESS) rest = path_push.surface.rest.at[gl_VertexIndex];
+  normal = scene.normals.at[gl_VertexIndex];
   gl_Position = scene.clip_from_world * vec4(position, 1.0);
 }

@@ -1,8 +1,23 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "display/surroundings_shared.h"
+#include "shared/image_levels.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// Radiance of one environment along the ray of every pixel. Rays are in the frame of its picture:
+// right, up, ahead.
+struct SurroundingsPush {
+  Vec3s texels;         // by longitude and latitude, its middle ahead
+  Floats surroundings;  // RGB per pixel, W/(mm^2 sr); written
+  ImageLevels image;
+  vec3 corner;  // ray to the upper left corner of the picture, 1 along the view
+  vec3 right;   // from its left to its right
+  vec3 down;    // from its top to its bottom
+  vec3 power;   // W/(mm^2 sr) of a texel of 1
+  uint width;   // pixels
+  uint height;
+  uint first;  // 1: written, 0: added
+};
 layout(push_constant, scalar) uniform Block { SurroundingsPush push; };
 
 const float PI = 3.14159265;

@@ -3,6 +3,24 @@
 #include "display/display_shared.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// A picture as engine/render/picture/png_file.cpp's to_srgb8 shows it, stretched to a part of a screen.
+struct ToneMapPush {
+  Floats layers[PICTURE_LAYERS];  // RGB per pixel
+  Floats alpha;                   // per pixel
+  Floats surroundings;            // RGB per pixel
+  Uints target;                   // per pixel of the screen's part, 8 bits each, the first lowest; written
+  vec3 background_top;                    // linear display colour
+  vec3 background_bottom;
+  float exposure;  // radiance is multiplied by it
+  uint picture_width;
+  uint picture_height;
+  uint width;  // pixels of the screen's part
+  uint height;
+  uint false_colour;  // 1: the first layer is linear display colour
+  uint blue_first;    // order of the channels: 1 blue, green, red; 0 red, green, blue
+  uint surrounded;    // 1: surroundings are seen instead of a background
+};
 layout(push_constant, scalar) uniform Block { ToneMapPush push; };
 
 // engine/render/picture/tone_map.h.
@@ -65,6 +83,6 @@ void main() {
   if (push.surrounded != 0u) background = filmic(push.exposure * seen.surroundings);
   vec3 shown = clamp(object + (1.0 - seen.alpha + seen.transmittance) * background, vec3(0), vec3(1));
   uvec3 code = uvec3(min(floor(255.0 * srgb_encode(shown) + dither(x, y)), vec3(255)));
-  if (push.blue_first != 0u) code = code.bgr;
-  push.target.at[i] = code.r | code.g << 8 | code.b << 16 | 0xff000000u;
+  if (push.blue_first != 0u) code = code.zyx;
+  push.target.at[i] = code.x | code.y << 8 | code.z << 16 | 0xff000000u;
 }

@@ -1,31 +1,49 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "exchange/exchange_shared.h"
+#include "shared/stride.glsl"
 #include "shared/reduce.glsl"
 
-layout(local_size_x = WORKGROUP_SIZE) in;
+// Irradiance of every face from those its rays met, each of which sends M and reflects part of what it
+// received before; and the factor with which all arrives that is sent towards other faces.
+struct ExchangePush {
+  Vec3s vertices;
+  Uvec3s faces;
+  Uints face_kinds;
+  Uvec2s rows;  // per face: its entries are entry[rows.x] to entry[rows.y - 1]
+  Uints entries;
+  Vec3s exitance;  // without the factor of the clip
+  Clips clip;
+  Vec3s before;      // irradiance of the bounce before
+  Vec3s irradiance;  // written, without the factor
+  Vec3s factor;      // one, written
+  ExchangeStates state;
+  Reduction reduction;
+  uint count;
+  float rays;         // per face
+  float transmitted;  // share of even light
+};
 layout(push_constant, scalar) uniform Block { ExchangePush push; };
 
 #include "shared/face_area.glsl"
 
 // W/mm^2 that a face sends out.
 vec3 sent_by(uint face, vec3 clip) {
-  return load_vec3(push.exitance, face) * clip + (1.0 - push.transmitted) * load_vec3(push.before, face);
+  return push.exitance.at[face] * clip + (1.0 - push.transmitted) * push.before.at[face];
 }
 
 void main() {
-  uint f = gl_GlobalInvocationID.x;
   vec3 received = vec3(0), sent = vec3(0);  // W
-  if (f < push.count) {
+  EACH(f, push.count) {
     vec3 irradiance = vec3(0);
-    if (load_uint(push.face_kinds, f) == FACE_OPEN) {
+    if (push.face_kinds.at[f] == FACE_OPEN) {
       vec3 clip = push.clip.at[0].factor;
-      uvec2 row = load_uvec2(push.rows, f);
-      for (uint k = row.x; k < row.y; ++k) irradiance += sent_by(load_uint(push.entries, k), clip);
+      uvec2 row = push.rows.at[f];
+      for (uint k = row.x; k < row.y; ++k) irradiance += sent_by(push.entries.at[k], clip);
       irradiance /= push.rays;
       float area = area_of(push.faces, push.vertices, f);
-      received = area * irradiance;
-      sent = area * float(row.y - row.x) / push.rays * sent_by(f, clip);
+      received += area * irradiance;
+      sent += area * float(row.y - row.x) / push.rays * sent_by(f, clip);
     }
     push.irradiance.at[f] = irradiance;
   }

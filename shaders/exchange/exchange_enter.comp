@@ -1,23 +1,35 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "exchange/exchange_shared.h"
+#include "shared/stride.glsl"
 #include "shared/reduce.glsl"
 
-layout(local_size_x = WORKGROUP_SIZE) in;
+// Multiplies the irradiance by the factor; what of it enters becomes a beam.
+struct ExchangeEnterPush {
+  Vec3s vertices;
+  Uvec3s faces;
+  Vec3s q;  // W/mm^2, of the scene's light
+  Vec3s irradiance;
+  Vec3s beam_q;  // of that beam, written
+  Vec3s factor;  // one
+  ExchangeStates state;
+  Reduction reduction;
+  uint count;
+  float transmitted;  // share of even light
+};
 layout(push_constant, scalar) uniform Block { ExchangeEnterPush push; };
 
 #include "shared/face_area.glsl"
 
 void main() {
-  uint f = gl_GlobalInvocationID.x;
   vec3 change = vec3(0), entered = vec3(0);
-  if (f < push.count) {
-    vec3 irradiance = load_vec3(push.factor, 0u) * load_vec3(push.irradiance, f);
+  EACH(f, push.count) {
+    vec3 irradiance = push.factor.at[0u] * push.irradiance.at[f];
     push.irradiance.at[f] = irradiance;
     vec3 q = push.transmitted * irradiance;
     float area = area_of(push.faces, push.vertices, f);
-    entered = area * load_vec3(push.q, f);
-    change = area * abs(q - load_vec3(push.beam_q, f));
+    entered += area * push.q.at[f];
+    change += area * abs(q - push.beam_q.at[f]);
     push.beam_q.at[f] = q;
   }
   vec3 total_change, total_entered;

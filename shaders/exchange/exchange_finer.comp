@@ -1,23 +1,38 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "exchange/exchange_shared.h"
+#include "shared/stride.glsl"
 #include "shared/reduce.glsl"
 
-layout(local_size_x = WORKGROUP_SIZE) in;
+// Irradiance of a level from the next coarser one, and the factor that keeps its power.
+struct ExchangeFinerPush {
+  Vec3s vertices;
+  Uvec3s faces;
+  Uints face_kinds;
+  Uints index;
+  Floats weight;
+  Vec3s coarse;      // irradiance
+  Vec3s irradiance;  // written, without the factor
+  Vec3s factor;      // one, written
+  ExchangeStates state;
+  Reduction reduction;
+  uint count;
+  uint width;
+  float transmitted;  // share of even light
+};
 layout(push_constant, scalar) uniform Block { ExchangeFinerPush push; };
 
 #include "shared/face_area.glsl"
 
 void main() {
-  uint f = gl_GlobalInvocationID.x;
   vec3 received = vec3(0);  // W
-  if (f < push.count) {
+  EACH(f, push.count) {
     vec3 irradiance = vec3(0);
-    if (load_uint(push.face_kinds, f) == FACE_OPEN) {
+    if (push.face_kinds.at[f] == FACE_OPEN) {
       for (uint k = f * push.width; k < (f + 1u) * push.width; ++k) {
-        irradiance += load_float(push.weight, k) * load_vec3(push.coarse, load_uint(push.index, k));
+        irradiance += push.weight.at[k] * push.coarse.at[push.index.at[k]];
       }
-      received = area_of(push.faces, push.vertices, f) * irradiance;
+      received += area_of(push.faces, push.vertices, f) * irradiance;
     }
     push.irradiance.at[f] = irradiance;
   }

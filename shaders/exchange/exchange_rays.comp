@@ -4,6 +4,22 @@
 #include "source/face_azimuth.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// Rows of the faces `first` to `first` + `count` - 1 modulo `face_count`, one workgroup each, of at
+// most `rays` entries from face * rays on.
+struct ExchangeRaysPush {
+  Vec3s vertices;
+  Uvec3s faces;
+  Uints order;
+  Uints leaf_begin;
+  Boxes boxes;
+  Uvec2s rows;    // written
+  Uints entries;  // written
+  uint first;
+  uint face_count;
+  uint leaf_count;
+  uint rays;
+};
 layout(push_constant, scalar) uniform Block { ExchangeRaysPush push; };
 
 #define TREE push
@@ -17,8 +33,8 @@ struct Frame {
 };
 
 Frame frame_of(uint face) {
-  uvec3 ids = load_uvec3(push.faces, face);
-  vec3 a = load_vec3(push.vertices, ids.x), b = load_vec3(push.vertices, ids.y), c = load_vec3(push.vertices, ids.z);
+  uvec3 ids = push.faces.at[face];
+  vec3 a = push.vertices.at[ids.x], b = push.vertices.at[ids.y], c = push.vertices.at[ids.z];
   vec3 normal = normalize(cross(b - a, c - a)), t1 = normalize(b - a);
   return Frame((a + b + c) / 3.0, t1, cross(normal, t1), normal);
 }

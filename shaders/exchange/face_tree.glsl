@@ -36,9 +36,9 @@ Line line_along(vec3 origin, vec3 direction) {
 
 // Moeller and Trumbore 1997, about the origin of the line.
 void meet(Line line, uint face, inout Hit hit) {
-  uvec3 ids = load_uvec3(TREE_BODY.faces, face);
-  vec3 first = load_vec3(TREE_BODY.vertices, ids.x), a = first - line.origin;
-  vec3 ab = load_vec3(TREE_BODY.vertices, ids.y) - first, ac = load_vec3(TREE_BODY.vertices, ids.z) - first;
+  uvec3 ids = TREE_BODY.faces.at[face];
+  vec3 first = TREE_BODY.vertices.at[ids.x], a = first - line.origin;
+  vec3 ab = TREE_BODY.vertices.at[ids.y] - first, ac = TREE_BODY.vertices.at[ids.z] - first;
   vec3 p = cross(line.direction, ac);
   float det = dot(ab, p);
   if (det == 0.0) return;
@@ -57,19 +57,19 @@ bool may_meet(Line line, Box box, float least) {
   return enter <= min(leave, least);
 }
 
-// Of all faces but `own`, up to the distance `reach`.
+// The first face that a line meets, other than `own`, up to the distance `reach`.
 Hit first_met(Line line, uint own, float reach) {
   Hit hit = Hit(reach, NO_FACE, false, vec2(0));
   uint node = 1u;
   while (node != 0u) {
-    if (may_meet(line, load_box(TREE.boxes, node), hit.distance)) {
+    if (may_meet(line, TREE.boxes.at[node], hit.distance)) {
       if (node < TREE.leaf_count) {
         node *= 2u;
         continue;
       }
       uint leaf = node - TREE.leaf_count;
-      for (uint k = load_uint(TREE.leaf_begin, leaf); k < load_uint(TREE.leaf_begin, leaf + 1u); ++k) {
-        uint face = load_uint(TREE.order, k);
+      for (uint k = TREE.leaf_begin.at[leaf]; k < TREE.leaf_begin.at[leaf + 1u]; ++k) {
+        uint face = TREE.order.at[k];
         if (face != own) meet(line, face, hit);
       }
     }

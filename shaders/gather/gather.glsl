@@ -57,7 +57,7 @@ Gathered gather(uint tet, vec3 direction) {
     }
     vec3 n = exit.outward / length(exit.outward);
     float cosine = dot(direction, n);
-    if (load_uint(BODY.face_kinds, crossing.x - BODY.tet_count) == FACE_OPEN) {
+    if (BODY.face_kinds.at[crossing.x - BODY.tet_count] == FACE_OPEN) {
       float reflected = internal_reflectance(cosine, BODY.eta);
       vec3 through = left * (1.0 - reflected);
       sum.seen += through;

@@ -6,6 +6,13 @@
 #include "source/lambertian.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// Exitance of what is gathered, per face.
+struct GatherExitancePush {
+  BodyRefs body;  // one
+  GatherPoints points;
+  Vec3s exitance;  // W/mm^2, written
+};
 layout(push_constant, scalar) uniform Block { GatherExitancePush push; };
 
 BodyRef body;
@@ -17,17 +24,17 @@ const float PI = 3.14159265;
 
 void main() {
   uint face = gl_GlobalInvocationID.x;
-  body = load_body(push.body);
+  body = push.body.at[0];
   if (face >= BODY.face_count) return;
   push.exitance.at[face] = vec3(0);
-  if (load_uint(BODY.face_kinds, face) != FACE_OPEN) return;
-  uvec3 ids = load_uvec3(BODY.faces, face);
+  if (BODY.face_kinds.at[face] != FACE_OPEN) return;
+  uvec3 ids = BODY.faces.at[face];
   mat3 corners = corners_of(ids);
   vec3 doubled = cross(corners[1] - corners[0], corners[2] - corners[0]);
   if (doubled == vec3(0)) return;
   vec3 normal = normalize(doubled);
   vec3 tangent = face_tangent(face, normal, corners[1] - corners[0]);
-  uint tet = load_uint(BODY.face_tets, face);
+  uint tet = BODY.face_tets.at[face];
   vec3 exitance = vec3(0);
   for (uint node = 0u; node < LAMBERTIAN_NODES; ++node) {
     start_on_face(tet, ids, corners, vec3(1.0 / 3.0));

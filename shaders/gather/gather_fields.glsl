@@ -15,7 +15,7 @@ struct Payload {
 };
 
 Payload payload(uint id) {
-  return Payload(load_gather_point(POINTS, id));
+  return Payload(POINTS.at[id]);
 }
 
 #include "source/tet_ray.glsl"

@@ -3,21 +3,32 @@
 #include "gather/gather_shared.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// Nodes `first` to `first` + `count` - 1 of the tree, leaves before their parents; and, behind all
+// nodes, every face by its place in TreeRef::order.
+struct GatherNodesPush {
+  SolidRefs solid;  // one
+  Vec3s gathered;   // W/mm^2 per face
+  Vec3s exitance;   // W/mm^2 per surface vertex
+  GatherNodes nodes;
+  uint first;
+  uint count;
+};
 layout(push_constant, scalar) uniform Block { GatherNodesPush push; };
 
 SolidRef solid;
 
 GatherNode node_of_face(uint face) {
   GatherNode node = GatherNode(vec3(0), vec3(0), vec3(0), vec3(0), 0.0);
-  if (load_uint(solid.body.face_kinds, face) != FACE_OPEN) return node;
-  uvec3 ids = load_uvec3(solid.body.faces, face);
-  vec3 a = load_vec3(solid.body.vertices, ids.x), b = load_vec3(solid.body.vertices, ids.y),
-       c = load_vec3(solid.body.vertices, ids.z);
+  if (solid.body.face_kinds.at[face] != FACE_OPEN) return node;
+  uvec3 ids = solid.body.faces.at[face];
+  vec3 a = solid.body.vertices.at[ids.x], b = solid.body.vertices.at[ids.y],
+       c = solid.body.vertices.at[ids.z];
   node.normal = 0.5 * cross(b - a, c - a);
   node.area = length(node.normal);
   node.place = node.area * (a + b + c) / 3.0;
-  node.gathered = node.area * load_vec3(push.gathered, face);
-  for (int k = 0; k < 3; ++k) node.exitance += node.area / 3.0 * load_vec3(push.exitance, ids[k]);
+  node.gathered = node.area * push.gathered.at[face];
+  for (int k = 0; k < 3; ++k) node.exitance += node.area / 3.0 * push.exitance.at[ids[k]];
   return node;
 }
 
@@ -28,8 +39,8 @@ GatherNode sum_of(GatherNode a, GatherNode b) {
 
 GatherNode node_of_leaf(uint leaf) {
   GatherNode sum = GatherNode(vec3(0), vec3(0), vec3(0), vec3(0), 0.0);
-  for (uint k = load_uint(solid.tree.leaf_begin, leaf); k < load_uint(solid.tree.leaf_begin, leaf + 1u); ++k) {
-    GatherNode face = node_of_face(load_uint(solid.tree.order, k));
+  for (uint k = solid.tree.leaf_begin.at[leaf]; k < solid.tree.leaf_begin.at[leaf + 1u]; ++k) {
+    GatherNode face = node_of_face(solid.tree.order.at[k]);
     push.nodes.at[2u * solid.tree.leaf_count + k] = face;
     sum = sum_of(sum, face);
   }
@@ -39,11 +50,11 @@ GatherNode node_of_leaf(uint leaf) {
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= push.count) return;
-  solid = load_solid(push.solid);
+  solid = push.solid.at[0];
   uint node = push.first + i, leaves = solid.tree.leaf_count;
   if (node >= leaves) {
     push.nodes.at[node] = node_of_leaf(node - leaves);
   } else {
-    push.nodes.at[node] = sum_of(load_gather_node(push.nodes, 2u * node), load_gather_node(push.nodes, 2u * node + 1u));
+    push.nodes.at[node] = sum_of(push.nodes.at[2u * node], push.nodes.at[2u * node + 1u]);
   }
 }

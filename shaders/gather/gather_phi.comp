@@ -4,10 +4,19 @@
 #include "solver/fields.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// Phi of the points from a solution at the vertices.
+struct GatherPhiPush {
+  Fields x;
+  Vec3s to_phi;  // null: 1
+  Scales scale;
+  GatherPoints points;
+  uint count;
+};
 layout(push_constant, scalar) uniform Block { GatherPhiPush push; };
 
 void main() {
   uint v = gl_GlobalInvocationID.x;
   if (v >= push.count) return;
-  push.points.at[v].phi = load_vec3_or_one(push.to_phi, v) * load_field(push.x, v).phi * load_scale(push.scale).scale;
+  push.points.at[v].phi = element_or_one(push.to_phi, v) * push.x.at[v].phi * push.scale.at[0].scale;
 }

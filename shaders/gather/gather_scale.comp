@@ -3,6 +3,18 @@
 #include "gather/gather_shared.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// Scale at surface vertices.
+struct GatherScalePush {
+  SolidRefs solid;  // one
+  Uints face_offset;
+  Uints face_incidence;
+  Vec3s gathered;
+  Vec3s exitance;  // W/mm^2 per surface vertex
+  GatherNodes nodes;
+  GatherScales scale;
+  uint count;
+};
 layout(push_constant, scalar) uniform Block { GatherScalePush push; };
 
 SolidRef solid;
@@ -18,24 +30,24 @@ struct Around {
 Around around_vertex(uint v) {
   vec3 normal = vec3(0), extinction = vec3(0), gathered = vec3(0);
   float size = 0.0, edges = 0.0;
-  for (uint k = load_uint(push.face_offset, v); k < load_uint(push.face_offset, v + 1u); ++k) {
-    uint face = load_uint(push.face_incidence, k);
-    uvec3 ids = load_uvec3(solid.body.faces, face);
-    vec3 a = load_vec3(solid.body.vertices, ids.x);
-    vec3 ab = load_vec3(solid.body.vertices, ids.y) - a, ac = load_vec3(solid.body.vertices, ids.z) - a;
+  for (uint k = push.face_offset.at[v]; k < push.face_offset.at[v + 1u]; ++k) {
+    uint face = push.face_incidence.at[k];
+    uvec3 ids = solid.body.faces.at[face];
+    vec3 a = solid.body.vertices.at[ids.x];
+    vec3 ab = solid.body.vertices.at[ids.y] - a, ac = solid.body.vertices.at[ids.z] - a;
     vec3 doubled = cross(ab, ac), bc = ac - ab;
     float weight = length(doubled);
-    uint tet = (solid.body.flags & BODY_EVEN) != 0u ? 0u : load_uint(solid.body.face_tets, face);
-    Optical optical = load_optical(solid.body.optical, tet);
+    uint tet = (solid.body.flags & BODY_EVEN) != 0u ? 0u : solid.body.face_tets.at[face];
+    Optical optical = solid.body.optical.at[tet];
     normal += doubled;
-    gathered += weight * load_vec3(push.gathered, face);
+    gathered += weight * push.gathered.at[face];
     size += weight;
     extinction += weight * (optical.sigma_s_prime + optical.sigma_a);
     edges += weight * (dot(ab, ab) + dot(ac, ac) + dot(bc, bc)) / 3.0;
   }
   size = max(size, 1e-30);
   vec3 path = 1.0 / max(extinction / size, vec3(1e-6));
-  return Around(load_vec3(solid.body.vertices, v), normal / max(length(normal), 1e-30),
+  return Around(solid.body.vertices.at[v], normal / max(length(normal), 1e-30),
                 GATHER_PATH * path * path + GATHER_EDGE * edges / size, gathered / size,
                 sqrt(edges / size) / path);
 }
@@ -63,8 +75,8 @@ void add(inout Means means, GatherNode node, Around around) {
 }
 
 void add_leaf(inout Means means, uint leaf, Around around) {
-  for (uint k = load_uint(solid.tree.leaf_begin, leaf); k < load_uint(solid.tree.leaf_begin, leaf + 1u); ++k) {
-    add(means, load_gather_node(push.nodes, 2u * solid.tree.leaf_count + k), around);
+  for (uint k = solid.tree.leaf_begin.at[leaf]; k < solid.tree.leaf_begin.at[leaf + 1u]; ++k) {
+    add(means, push.nodes.at[2u * solid.tree.leaf_count + k], around);
   }
 }
 
@@ -73,14 +85,14 @@ Means means_around(Around around) {
   Means means = Means(vec3(0), vec3(0), vec3(0));
   uint node = 1u;
   while (node != 0u) {
-    Box box = load_box(solid.tree.boxes, node);
+    Box box = solid.tree.boxes.at[node];
     vec3 outside = max(max(box.low - around.place, around.place - box.high), vec3(0));
     bvec3 near = lessThanEqual(vec3(squared(outside)), GATHER_REACH * GATHER_REACH * around.variance);
     if (any(near)) {
       vec3 wanted = mix(vec3(1e37), around.variance, near);
       float finest = GATHER_NODE * GATHER_NODE * min(wanted.x, min(wanted.y, wanted.z));
       if (squared(box.high - box.low) <= finest) {
-        add(means, load_gather_node(push.nodes, node), around);
+        add(means, push.nodes.at[node], around);
       } else if (node < solid.tree.leaf_count) {
         node *= 2u;
         continue;
@@ -100,11 +112,11 @@ vec3 gather_floor(vec3 edge) { return GATHER_FLOOR * clamp(2.0 * edge / GATHER_L
 void main() {
   uint v = gl_GlobalInvocationID.x;
   if (v >= push.count) return;
-  solid = load_solid(push.solid);
+  solid = push.solid.at[0];
   Around around = around_vertex(v);
   Means means = means_around(around);
   vec3 factor = mix(vec3(0), min(means.exitance / means.gathered, vec3(GATHER_FACTOR_MAX)),
                     greaterThan(means.gathered, vec3(0)));
   vec3 rest = max(means.exitance - factor * means.gathered, vec3(0)) / max(means.weight, vec3(1e-30));
-  push.scale.at[v] = GatherScale(factor, rest, gather_floor(around.edge) * load_vec3(push.exitance, v));
+  push.scale.at[v] = GatherScale(factor, rest, gather_floor(around.edge) * push.exitance.at[v]);
 }

@@ -29,17 +29,17 @@ Leaving leaving(uint face, vec3 l, vec3 outward, vec3 n, GatherScales scale, flo
   Leaving sum = Leaving(vec3(0), vec3(0));
   vec3 share = vec3(1);
   for (uint part = 0u; part < VIEW_PARTS; ++part) {
-    uvec3 ids = load_uvec3(BODY.faces, face);
+    uvec3 ids = BODY.faces.at[face];
     mat3 corners = corners_of(ids);
     vec3 doubled = cross(corners[1] - corners[0], corners[2] - corners[0]);
     vec3 face_normal = doubled / max(length(doubled), 1e-30);
     if (part > 0u) n = face_normal;
     share *= fresnel_transmittance(clamp(dot(outward, n), 0.0, 1.0), BODY.eta);
-    uint tet = load_uint(BODY.face_tets, face);
+    uint tet = BODY.face_tets.at[face];
     start_on_face(tet, ids, corners, l);
     Gathered inside = gather(tet, view_ray(outward, n, face_normal));
-    GatherScale a = load_gather_scale(scale, ids.x), b = load_gather_scale(scale, ids.y),
-                c = load_gather_scale(scale, ids.z);
+    GatherScale a = scale.at[ids.x], b = scale.at[ids.y],
+                c = scale.at[ids.z];
     vec3 factor = l.x * a.factor + l.y * b.factor + l.z * c.factor;
     vec3 rest = l.x * a.rest + l.y * b.rest + l.z * c.rest;
     vec3 least = l.x * a.least + l.y * b.least + l.z * c.least;

@@ -4,6 +4,19 @@
 #include "material/fresnel.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// Radiance that leaves the centroids of faces.
+struct RadianceProbePush {
+  SolidRefs solid;  // one
+  GatherPoints points;
+  GatherScales scale;
+  Uints face;
+  Vec3s direction;      // unit, outward
+  Vec3s radiance;       // W/(mm^2 sr), written: scattered
+  Vec3s transmittance;  // written
+  uint count;
+  float radiance_norm;  // integral of F_t cos over the hemisphere, sr
+};
 layout(push_constant, scalar) uniform Block { RadianceProbePush push; };
 
 SolidRef solid;
@@ -16,12 +29,12 @@ SolidRef solid;
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= push.count) return;
-  solid = load_solid(push.solid);
-  uint face = load_uint(push.face, i);
-  uvec3 ids = load_uvec3(BODY.faces, face);
-  vec3 p = load_vec3(BODY.vertices, ids.x);
-  vec3 normal = normalize(cross(load_vec3(BODY.vertices, ids.y) - p, load_vec3(BODY.vertices, ids.z) - p));
-  Leaving light = leaving(face, vec3(1.0 / 3.0), load_vec3(push.direction, i), normal, push.scale, push.radiance_norm);
+  solid = push.solid.at[0];
+  uint face = push.face.at[i];
+  uvec3 ids = BODY.faces.at[face];
+  vec3 p = BODY.vertices.at[ids.x];
+  vec3 normal = normalize(cross(BODY.vertices.at[ids.y] - p, BODY.vertices.at[ids.z] - p));
+  Leaving light = leaving(face, vec3(1.0 / 3.0), push.direction.at[i], normal, push.scale, push.radiance_norm);
   push.radiance.at[i] = light.radiance;
   push.transmittance.at[i] = light.seen;
 }

@@ -7,6 +7,21 @@
 #include "source/beam_light.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// Entry and depth of the points.
+struct UncollidedPush {
+  BodyRefs body;      // one
+  Uints start;        // a tet at each vertex
+  Uints nearest;      // surface vertex
+  Uints face_offset;  // faces around each surface vertex
+  Uints face_incidence;
+  Beams beams;
+  Floats beam_q;
+  GatherPoints points;
+  uint beam_count;
+  uint vertex_count;
+  uint surface_vertex_count;
+};
 layout(push_constant, scalar) uniform Block { UncollidedPush push; };
 
 BodyRef body;
@@ -40,12 +55,12 @@ struct Met {
 // Puts the ray's point on vertex v. The corner that the ray moves towards fastest is none of those it can leave
 // opposite of.
 void start_at_vertex(uint v, uint tet, vec3 direction) {
-  uvec4 ids = load_uvec4(BODY.tets, tet);
-  optical = load_optical(BODY.optical, (BODY.flags & BODY_EVEN) != 0u ? 0u : tet);
-  corner_0 = Corner(ids.x, 0u, load_vec3(BODY.vertices, ids.x), float(ids.x == v), Payload(0u));
-  corner_1 = Corner(ids.y, 1u, load_vec3(BODY.vertices, ids.y), float(ids.y == v), Payload(0u));
-  corner_2 = Corner(ids.z, 2u, load_vec3(BODY.vertices, ids.z), float(ids.z == v), Payload(0u));
-  corner_3 = Corner(ids.w, 3u, load_vec3(BODY.vertices, ids.w), float(ids.w == v), Payload(0u));
+  uvec4 ids = BODY.tets.at[tet];
+  optical = BODY.optical.at[(BODY.flags & BODY_EVEN) != 0u ? 0u : tet];
+  corner_0 = Corner(ids.x, 0u, BODY.vertices.at[ids.x], float(ids.x == v), Payload(0u));
+  corner_1 = Corner(ids.y, 1u, BODY.vertices.at[ids.y], float(ids.y == v), Payload(0u));
+  corner_2 = Corner(ids.z, 2u, BODY.vertices.at[ids.z], float(ids.z == v), Payload(0u));
+  corner_3 = Corner(ids.w, 3u, BODY.vertices.at[ids.w], float(ids.w == v), Payload(0u));
   vec4 rate = find_exit(direction).rate;
   float most = max(max(rate.x, rate.y), max(rate.z, rate.w));
   if (rate.x == most) {
@@ -59,14 +74,14 @@ void start_at_vertex(uint v, uint tet, vec3 direction) {
 
 // The quarter of a face that the ray's point lies in, once the corner opposite is in slot 3.
 uint quarter_here(uint face) {
-  uvec3 ids = load_uvec3(BODY.faces, face);
+  uvec3 ids = BODY.faces.at[face];
   if (max(corner_0.l, max(corner_1.l, corner_2.l)) <= 0.5) return FACE_CENTRE;
   uint near = corner_0.l > 0.5 ? corner_0.id : corner_1.l > 0.5 ? corner_1.id : corner_2.id;
   return near == ids.x ? 0u : near == ids.y ? 1u : 2u;
 }
 
 Met back_to_surface(uint v, vec3 direction) {
-  uint tet = load_uint(push.start, v);
+  uint tet = push.start.at[v];
   start_at_vertex(v, tet, direction);
   vec3 tau = vec3(0);
   for (uint step = 0u; step < UNCOLLIDED_STEPS; ++step) {
@@ -82,7 +97,7 @@ Met back_to_surface(uint v, vec3 direction) {
       continue;
     }
     uint face = crossing.x - BODY.tet_count;
-    if (load_uint(BODY.face_kinds, face) == FACE_OPEN) return Met(true, face, quarter_here(face), tau);
+    if (BODY.face_kinds.at[face] == FACE_OPEN) return Met(true, face, quarter_here(face), tau);
     vec3 n = exit.outward / length(exit.outward);
     direction = normalize(direction - 2.0 * dot(direction, n) * n);
   }
@@ -90,13 +105,13 @@ Met back_to_surface(uint v, vec3 direction) {
 }
 
 vec3 doubled_normal(uint face) {
-  uvec3 ids = load_uvec3(BODY.faces, face);
-  vec3 p = load_vec3(BODY.vertices, ids.x);
-  return cross(load_vec3(BODY.vertices, ids.y) - p, load_vec3(BODY.vertices, ids.z) - p);
+  uvec3 ids = BODY.faces.at[face];
+  vec3 p = BODY.vertices.at[ids.x];
+  return cross(BODY.vertices.at[ids.y] - p, BODY.vertices.at[ids.z] - p);
 }
 
 vec3 q_at(uint beam, uint face, uint quarter) {
-  return beam_light(load_beam(push.beams, beam), push.beam_q, BODY.face_count, face, quarter);
+  return beam_light(push.beams.at[beam], push.beam_q, BODY.face_count, face, quarter);
 }
 
 // Unit, but 0 of a face without area.
@@ -107,7 +122,7 @@ vec3 normal_of(uint face) {
 
 // The quarter of face `face` at its corner v.
 uint quarter_at(uint face, uint v) {
-  uvec3 ids = load_uvec3(BODY.faces, face);
+  uvec3 ids = BODY.faces.at[face];
   return v == ids.x ? 0u : v == ids.y ? 1u : 2u;
 }
 
@@ -124,8 +139,8 @@ vec3 entry_fluence(vec3 q, vec3 incoming, vec3 normal) {
 bool lit_at_surface(uint beam, uint v, vec3 incoming, bool directed, out vec3 entry) {
   float area = 0.0;
   entry = vec3(0);
-  for (uint k = load_uint(push.face_offset, v); k < load_uint(push.face_offset, v + 1u); ++k) {
-    uint face = load_uint(push.face_incidence, k);
+  for (uint k = push.face_offset.at[v]; k < push.face_offset.at[v + 1u]; ++k) {
+    uint face = push.face_incidence.at[k];
     vec3 normal = doubled_normal(face);
     float size = length(normal);
     if (directed && dot(incoming, normal) >= 0.0) continue;
@@ -152,8 +167,8 @@ Light directed_light(uint beam, uint v, vec3 incoming) {
 
 vec3 surface_normal(uint v) {
   vec3 sum = vec3(0);
-  for (uint k = load_uint(push.face_offset, v); k < load_uint(push.face_offset, v + 1u); ++k) {
-    sum += doubled_normal(load_uint(push.face_incidence, k));
+  for (uint k = push.face_offset.at[v]; k < push.face_offset.at[v + 1u]; ++k) {
+    sum += doubled_normal(push.face_incidence.at[k]);
   }
   return sum / max(length(sum), 1e-30);
 }
@@ -172,22 +187,22 @@ Light lambertian_light(uint beam, uint kind, uint v) {
   if (v < push.surface_vertex_count && lit_at_surface(beam, v, vec3(0), false, entry)) {
     return Light(whole * entry, vec3(0));
   }
-  Met met = back_to_surface(v, surface_normal(load_uint(push.nearest, v)));
+  Met met = back_to_surface(v, surface_normal(push.nearest.at[v]));
   if (!met.found) return NO_LIGHT;
   return Light(whole * q_at(beam, met.face, met.quarter), -log(fluence_below(light, met.tau) / whole));
 }
 
 Light light_of(uint beam, uint v) {
-  BeamRecord record = load_beam(push.beams, beam).way;
+  BeamRecord record = push.beams.at[beam].way;
   if (record.kind == BEAM_DIRECTIONAL) return directed_light(beam, v, record.travel_or_from);
-  if (record.kind == BEAM_POINT) return directed_light(beam, v, normalize(load_vec3(BODY.vertices, v) - record.travel_or_from));
+  if (record.kind == BEAM_POINT) return directed_light(beam, v, normalize(BODY.vertices.at[v] - record.travel_or_from));
   return lambertian_light(beam, record.kind, v);
 }
 
 void main() {
   uint v = gl_GlobalInvocationID.x;
   if (v >= push.vertex_count) return;
-  body = load_body(push.body);
+  body = push.body.at[0];
   vec3 entry = vec3(0), left = vec3(0), least = vec3(UNCOLLIDED_DEPTH);
   for (uint beam = 0u; beam < push.beam_count; ++beam) {
     Light light = light_of(beam, v);

@@ -30,7 +30,7 @@ float share_from(Lamp lamp, vec3 position, vec3 normal) {
   return cos_i * fresnel_transmittance(cos_i, ENTERED.eta) * incident.share;
 }
 
-// The same of a patch, the mean over its parts.
+// Share from a patch, the mean over its parts.
 float share_from_parts(Lamp lamp, vec3 position, vec3 normal) {
   vec3 middle = lamp.light.towards_or_at;
   uint n = lamp.shape.parts;

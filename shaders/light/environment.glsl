@@ -7,7 +7,7 @@
 // Texel of a picture of an environment.
 vec3 environment_texel(Vec3s texels, uint picture, int x, int y) {
   uint column = uint(x + int(ENVIRONMENT_COLUMNS)) % ENVIRONMENT_COLUMNS;
-  return load_vec3(texels, (picture * ENVIRONMENT_ROWS + uint(y)) * ENVIRONMENT_COLUMNS + column);
+  return texels.at[(picture * ENVIRONMENT_ROWS + uint(y)) * ENVIRONMENT_COLUMNS + column];
 }
 
 // A picture of an environment (ENVIRONMENT_*) in a unit direction.

@@ -5,6 +5,21 @@
 #include "light/environment.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// What the body hides of every environment from the faces of the level whose rays are known, as q over its power.
+struct EnvironmentHiddenPush {
+  Vec3s vertices;
+  Uvec3s faces;
+  Uvec2s rows;  // as ExchangePush
+  Uints entries;
+  LightRecords lights;
+  LightShapes shapes;
+  Vec3s hidden;  // written
+  uint face_count;
+  uint light_count;
+  float rays;  // per face
+  float eta;
+};
 layout(push_constant, scalar) uniform Block { EnvironmentHiddenPush push; };
 
 struct Place {
@@ -12,8 +27,8 @@ struct Place {
 };
 
 Place place_of(uint face) {
-  uvec3 ids = load_uvec3(push.faces, face);
-  vec3 a = load_vec3(push.vertices, ids.x), b = load_vec3(push.vertices, ids.y), c = load_vec3(push.vertices, ids.z);
+  uvec3 ids = push.faces.at[face];
+  vec3 a = push.vertices.at[ids.x], b = push.vertices.at[ids.y], c = push.vertices.at[ids.z];
   return Place((a + b + c) / 3.0, normalize(cross(b - a, c - a)));
 }
 
@@ -21,10 +36,10 @@ Place place_of(uint face) {
 // not the ray: it went about towards the middle of that face.
 vec3 hidden_from(uint face, LightShape shape) {
   Place own = place_of(face);
-  uvec2 row = load_uvec2(push.rows, face);
+  uvec2 row = push.rows.at[face];
   vec3 sum = vec3(0);
   for (uint k = row.x; k < row.y; ++k) {
-    vec3 way = normalize(place_of(load_uint(push.entries, k)).centre - own.centre);
+    vec3 way = normalize(place_of(push.entries.at[k]).centre - own.centre);
     float cosine = clamp(dot(way, own.normal), 0.0, 1.0);
     sum += fresnel_transmittance(cosine, push.eta) * environment_at(shape, ENVIRONMENT_RAYS, way);
   }
@@ -36,7 +51,7 @@ void main() {
   if (f >= push.face_count) return;
   uint environment = 0u;
   for (uint i = 0u; i < push.light_count; ++i) {
-    if (load_light(push.lights, i).kind != LIGHT_ENVIRONMENT) continue;
-    push.hidden.at[environment++ * push.face_count + f] = hidden_from(f, load_light_shape(push.shapes, i));
+    if (push.lights.at[i].kind != LIGHT_ENVIRONMENT) continue;
+    push.hidden.at[environment++ * push.face_count + f] = hidden_from(f, push.shapes.at[i]);
   }
 }

@@ -5,6 +5,25 @@
 #include "light/environment.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// q of every outside face of a level, the mean over the face, and what each light brings to its
+// quarters.
+struct IrradiancePush {
+  Vec3s vertices;  // mm
+  Uvec3s faces;
+  Vec3s q;        // W/mm^2, written
+  Floats beam_q;  // per beam what gpu::Beam says: shares of its power; written
+  Floats sky;     // per face: share of ambient light that other parts of the body do not hide
+  Vec3s hidden;   // per environment and face: what they hide of it, as q; null: by the share of the sky
+  LightRecords lights;
+  LightShapes shapes;  // per light
+  ShadowViews views;
+  uint face_count;
+  uint light_count;
+  uint subdivision;  // even: the face is sampled at the centroids of subdivision^2 equal triangles
+  float eta;
+  float diffuse_transmittance;  // of a smooth surface under even light from outside
+};
 layout(push_constant, scalar) uniform Block { IrradiancePush push; };
 #define ENTERED push
 #include "light/entering.glsl"
@@ -14,7 +33,7 @@ uint quarter_of(float u, float v) {
   return u + v < 0.5 ? 0u : u > 0.5 ? 1u : v > 0.5 ? 2u : 3u;
 }
 
-// The same on the quarters of the face a, a + ab, a + ac.
+// Irradiance on the four quarters of the face a, a + ab, a + ac.
 vec4 quarters_of(Lamp lamp, vec3 a, vec3 ab, vec3 ac, vec3 normal) {
   vec4 quarter = vec4(0);
   uint n = push.subdivision;
@@ -36,17 +55,17 @@ vec4 quarters_of(Lamp lamp, vec3 a, vec3 ab, vec3 ac, vec3 normal) {
 // What of an environment enters a face, over its power.
 vec3 environment_share(LightShape shape, vec3 normal, uint hidden, uint face) {
   vec3 all = environment_at(shape, ENVIRONMENT_ENTERING, normal);
-  if (uvec2(push.hidden) == uvec2(0)) return load_float(push.sky, face) * all;
-  return max(all - load_vec3(push.hidden, hidden), vec3(0));
+  if (uvec2(push.hidden) == uvec2(0)) return push.sky.at[face] * all;
+  return max(all - push.hidden.at[hidden], vec3(0));
 }
 
 void main() {
   uint f = gl_GlobalInvocationID.x;
   if (f >= push.face_count) return;
-  uvec3 face = load_uvec3(push.faces, f);
-  vec3 a = load_vec3(push.vertices, face.x);
-  vec3 ab = load_vec3(push.vertices, face.y) - a;
-  vec3 ac = load_vec3(push.vertices, face.z) - a;
+  uvec3 face = push.faces.at[f];
+  vec3 a = push.vertices.at[face.x];
+  vec3 ab = push.vertices.at[face.y] - a;
+  vec3 ac = push.vertices.at[face.z] - a;
   vec3 doubled = cross(ab, ac);
   vec3 normal = doubled / max(length(doubled), 1e-30);  // none of a face without area
 
@@ -55,9 +74,9 @@ void main() {
   uint environment = 0u;
   vec4 quarter = vec4(0);
   for (uint i = 0u; i < push.light_count; ++i) {
-    LightRecord light = load_light(push.lights, i);
+    LightRecord light = push.lights.at[i];
     if (light.kind == LIGHT_AMBIENT) {
-      float share = load_float(push.sky, f) * push.diffuse_transmittance;
+      float share = push.sky.at[f] * push.diffuse_transmittance;
       push.beam_q.at[beam + f] = share;
       q += share * light.power;
       beam += BEAM_FACE * push.face_count;
@@ -65,7 +84,7 @@ void main() {
     }
     Lamp lamp = Lamp(light, no_shape(), 0u, 0.0);
     if (SHAPED) {
-      lamp.shape = load_light_shape(push.shapes, i);
+      lamp.shape = push.shapes.at[i];
       lamp.width = sqrt(0.5 * length(cross(ab, ac))) / float(push.subdivision);
     }
     if (SHAPED && light.kind == LIGHT_ENVIRONMENT) {

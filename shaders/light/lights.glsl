@@ -41,7 +41,7 @@ uint cube_view(vec3 away) {
 // 1 where the light reaches `depth` (mm from the light) at this texel, else 0. Beyond the map there is no occluder.
 float texel_lit(ShadowView view, bool perspective, ivec2 texel, float depth) {
   if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(view.size)))) return 1.0;
-  float z = load_float(view.depth, texel.y * int(view.size) + texel.x);
+  float z = view.depth.at[texel.y * int(view.size) + texel.x];
   float stored = perspective ? view.near * view.far / (view.far - z * (view.far - view.near))
                              : view.near + z * (view.far - view.near);
   return stored < depth ? 0.0 : 1.0;
@@ -67,7 +67,7 @@ float filtered(ShadowView view, bool perspective, vec2 texel, float depth, int r
 float light_visibility(LightRecord light, ShadowViews views, vec3 position, vec3 normal, int radius) {
   bool perspective = light.kind != LIGHT_DIRECTIONAL;
   uint index = light.first_view + (light.view_count == 6u ? cube_view(position - light.towards_or_at) : 0u);
-  ShadowView view = load_shadow_view(views, index);
+  ShadowView view = views.at[index];
   float w = (view.clip_from_world * vec4(position, 1.0)).w;
   float texel_mm = view.texel * (perspective ? max(w, view.near) : 1.0);
   vec4 clip = view.clip_from_world * vec4(position + SHADOW_NORMAL_OFFSET * texel_mm * normal, 1.0);

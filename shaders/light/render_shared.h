@@ -1,5 +1,4 @@
-// Types of lights, shadow maps and the display that GLSL and C++ share, in scalar layout;
-// tests/cpp/render/layout_test.cpp compares them with the compiled shaders.
+// Types of lights, shadow maps and the display that GLSL and C++ share, in scalar layout; see shared.h.
 #ifndef QUADGRAPH_RENDER_SHARED_H
 #define QUADGRAPH_RENDER_SHARED_H
 
@@ -51,86 +50,7 @@ QG_ARRAY(ShadowViews, ShadowView);
 QG_ARRAY(LightRecords, LightRecord);
 QG_ARRAY(LightShapes, LightShape);
 
-ShadowView load_shadow_view(ShadowViews a, uint i) {
-  if (TEXELS) {
-    uint t = texel_of(uvec2(a)) + 22u * i;
-    return ShadowView(mat4_in_texels(t), Floats(texels2(t + 16u)), texel(t + 18u), uintBitsToFloat(texel(t + 19u)),
-                      uintBitsToFloat(texel(t + 20u)), uintBitsToFloat(texel(t + 21u)));
-  }
-  return a.at[i];
-}
-
-LightRecord load_light(LightRecords a, uint i) {
-  if (TEXELS) {
-    uint t = texel_of(uvec2(a)) + 9u * i;
-    return LightRecord(texel(t), uintBitsToFloat(texels3(t + 1u)), uintBitsToFloat(texels3(t + 4u)), texel(t + 7u),
-                       texel(t + 8u));
-  }
-  return a.at[i];
-}
-
-LightShape load_light_shape(LightShapes a, uint i) {
-  if (TEXELS) {
-    uint t = texel_of(uvec2(a)) + 20u * i;
-    return LightShape(uintBitsToFloat(texels3(t)), uintBitsToFloat(texel(t + 3u)), uintBitsToFloat(texel(t + 4u)),
-                      uintBitsToFloat(texel(t + 5u)), uintBitsToFloat(texel(t + 6u)), texel(t + 7u),
-                      uintBitsToFloat(texels3(t + 8u)), uintBitsToFloat(texels3(t + 11u)), Vec3s(texels2(t + 14u)),
-                      texel(t + 16u), texel(t + 17u), texel(t + 18u), texel(t + 19u));
-  }
-  return a.at[i];
-}
 #endif
-
-// shadow.vert: depth of the display mesh.
-struct ShadowPush {
-  mat4 clip_from_world;
-  QG_REF(Vec3s) vertices;  // mm
-};
-
-// irradiance.comp: q of every outside face of a level, the mean over the face, and what each light brings to its
-// quarters.
-struct IrradiancePush {
-  QG_REF(Vec3s) vertices;  // mm
-  QG_REF(Uvec3s) faces;
-  QG_REF(Vec3s) q;        // W/mm^2, written
-  QG_REF(Floats) beam_q;  // per beam what gpu::Beam says: shares of its power; written
-  QG_REF(Floats) sky;     // per face: share of ambient light that other parts of the body do not hide
-  QG_REF(Vec3s) hidden;   // per environment and face: what they hide of it, as q; null: by the share of the sky
-  QG_REF(LightRecords) lights;
-  QG_REF(LightShapes) shapes;  // per light
-  QG_REF(ShadowViews) views;
-  uint face_count;
-  uint light_count;
-  uint subdivision;  // even: the face is sampled at the centroids of subdivision^2 equal triangles
-  float eta;
-  float diffuse_transmittance;  // of a smooth surface under even light from outside
-};
-
-// environment_hidden.comp: what the body hides of every environment from the faces of the level whose rays are known,
-// as q over its power. environment_finer.comp: the same on a level from the next coarser one.
-struct EnvironmentHiddenPush {
-  QG_REF(Vec3s) vertices;
-  QG_REF(Uvec3s) faces;
-  QG_REF(Uvec2s) rows;  // as ExchangePush
-  QG_REF(Uints) entries;
-  QG_REF(LightRecords) lights;
-  QG_REF(LightShapes) shapes;
-  QG_REF(Vec3s) hidden;  // written
-  uint face_count;
-  uint light_count;
-  float rays;  // per face
-  float eta;
-};
-struct EnvironmentFinerPush {
-  QG_REF(Uints) index;
-  QG_REF(Floats) weight;
-  QG_REF(Vec3s) coarse;
-  QG_REF(Vec3s) hidden;  // written
-  uint width;
-  uint face_count;
-  uint coarse_count;
-  uint environments;
-};
 
 // All that surface.vert and surface.frag read.
 struct SurfaceScene {
@@ -161,35 +81,6 @@ struct SurfaceScene {
 #ifndef __cplusplus
 QG_ARRAY(SurfaceScenes, SurfaceScene);
 
-// The only one of an array.
-SurfaceScene load_scene(SurfaceScenes a) {
-  if (!TEXELS) return a.at[0];
-  uint t = texel_of(uvec2(a));
-  SurfaceScene scene;
-  scene.clip_from_world = mat4_in_texels(t);
-  scene.eye = uintBitsToFloat(texels3(t + 16u));
-  scene.eta = uintBitsToFloat(texel(t + 19u));
-  scene.roughness = uintBitsToFloat(texel(t + 20u));
-  scene.radiance_norm = uintBitsToFloat(texel(t + 21u));
-  scene.light_count = texel(t + 22u);
-  scene.vertices = Vec3s(texels2(t + 24u));
-  scene.normals = Vec3s(texels2(t + 26u));
-  scene.face = Uints(texels2(t + 28u));
-  scene.barycentric = Vec3s(texels2(t + 30u));
-  scene.faces = Uvec3s(texels2(t + 32u));
-  scene.exitance = Vec3s(texels2(t + 34u));
-  scene.unscattered = Vec3s(texels2(t + 36u));
-  scene.sky = Floats(texels2(t + 38u));
-  scene.lights = LightRecords(texels2(t + 40u));
-  scene.shapes = LightShapes(texels2(t + 42u));
-  scene.views = ShadowViews(texels2(t + 44u));
-  scene.triangles = Uints(texels2(t + 46u));
-  scene.triangle_face = Uints(texels2(t + 48u));
-  scene.points = GatherPoints(texels2(t + 50u));
-  scene.scale = GatherScales(texels2(t + 52u));
-  scene.solid = solid_in_texels(t + 54u);
-  return scene;
-}
 #endif
 
 // surface.vert, surface.frag: radiance of the display mesh. surface_gathered.vert, surface_gathered.frag: what is

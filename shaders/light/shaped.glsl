@@ -8,7 +8,7 @@ layout(constant_id = 1) const uint VARIANT = 0u;
 const bool SHAPED = (VARIANT & VARIANT_SHAPED) != 0u;  // some light has a shape (LIGHT_FIRST_SHAPED)
 const bool PLACED_ROUGHNESS = (VARIANT & VARIANT_PLACED_ROUGHNESS) != 0u;  // an image says where it is another
 
-// Of a light that has none.
+// The shape of a light that has none.
 LightShape no_shape() {
   LightShape shape;
   shape.more_follow = 0u;

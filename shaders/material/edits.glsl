@@ -14,9 +14,9 @@ struct AllEdits {
 
 float stroke_distance(Vec3s points, MaterialEdit e, vec3 position) {
   float nearest = 1e30;
-  vec3 from = load_vec3(points, e.first_point);
+  vec3 from = points.at[e.first_point];
   for (uint k = 0u; k < e.point_count; ++k) {
-    vec3 to = load_vec3(points, e.first_point + k);
+    vec3 to = points.at[e.first_point + k];
     nearest = min(nearest, segment_distance(position, from, to));
     from = to;
   }

@@ -57,7 +57,7 @@ QG_INLINE float edit_weight(MaterialEdit e, float distance, float depth) {
   return weight;
 }
 
-// The same of its box, at `place` in it (in_box).
+// Weight of an edit's box at `place` in it (in_box).
 QG_INLINE float box_weight(MaterialEdit e, vec3 place) {
   vec3 over = max(place, -place) - e.box.half_size;
   return inside(max(over.x, max(over.y, over.z)), e.softness);
@@ -83,21 +83,6 @@ QG_INLINE Optical edited(Optical optical, MaterialEdit e, vec3 factor, float wei
 #ifndef __cplusplus
 QG_ARRAY(MaterialEdits, MaterialEdit);
 #endif
-
-// edit_material.comp: optical[i] = base[i] after all edits, one after the other.
-struct EditMaterialPush {
-  QG_REF(Opticals) base;  // may be `optical`
-  QG_REF(Opticals) optical;
-  QG_REF(Vec3s) nodes;   // mm, at rest; not read without edits
-  QG_REF(Floats) depth;  // mm, of the nodes
-  QG_REF(MaterialEdits) edits;
-  QG_REF(Vec3s) points;  // mm, of all strokes
-  QG_REF(Vec3s) texels;  // of all images
-  float spacing;         // mm from node to node: what is finer in an image is taken together
-  uint edit_count;
-  uint with_depth;  // 0: depth is not read
-  uint count;
-};
 
 #ifdef __cplusplus
 }  // namespace quadgraph::gpu

@@ -1,8 +1,14 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "path/path_shared.h"
+#include "shared/stride.glsl"
 
-layout(local_size_x = WORKGROUP_SIZE) in;
+// The box around vertices, as numbers that order as the coordinates do (sortable_float).
+struct PathBoxPush {
+  Vec3s vertices;  // mm
+  Uints box;       // 6: low, high; begun at the largest and smallest number
+  uint count;
+};
 layout(push_constant, scalar) uniform Block { PathBoxPush push; };
 
 shared uint low[3], high[3];
@@ -14,22 +20,21 @@ uint sortable_float(float x) {
 }
 
 void main() {
-  uint lane = gl_LocalInvocationID.x, i = gl_GlobalInvocationID.x;
-  if (lane < 3u) {
-    low[lane] = 0xffffffffu;
-    high[lane] = 0u;
+  for (uint k = gl_LocalInvocationID.x; k < 3u; k += WORKGROUP_SIZE) {
+    low[k] = 0xffffffffu;
+    high[k] = 0u;
   }
   barrier();
-  if (i < push.count) {
-    vec3 position = load_vec3(push.vertices, i);
+  EACH(i, push.count) {
+    vec3 position = push.vertices.at[i];
     for (uint k = 0u; k < 3u; ++k) {
       atomicMin(low[k], sortable_float(position[k]));
       atomicMax(high[k], sortable_float(position[k]));
     }
   }
   barrier();
-  if (lane < 3u) {
-    atomicMin(push.box.at[lane], low[lane]);
-    atomicMax(push.box.at[3u + lane], high[lane]);
+  for (uint k = gl_LocalInvocationID.x; k < 3u; k += WORKGROUP_SIZE) {
+    atomicMin(push.box.at[k], low[k]);
+    atomicMax(push.box.at[3u + k], high[k]);
   }
 }

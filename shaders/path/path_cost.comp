@@ -5,6 +5,19 @@
 #include "material/edits.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// What the cells cost.
+struct PathCostPush {
+  PathGrid grid;
+  Uints flags;
+  Uints nearest;   // path_flood.comp; null: cells lie where they do at rest, and depth does not matter
+  Uints triangle;  // path_crossings.comp
+  Uvec3s triangles;
+  Vec3s vertices;  // mm
+  Vec3s rest;      // the same at rest
+  PathMaterials body;
+  Floats cost;  // written
+};
 layout(push_constant, scalar) uniform Block { PathCostPush push; };
 
 // A place at rest, mm, and how deep below the surface it then is, mm.
@@ -27,12 +40,12 @@ mat3 frame_of(vec3 a, vec3 b, vec3 c) {
   return mat3(b - a, c - a, n * inversesqrt(max(length(n), 1e-30)));
 }
 
-// As the nearest triangle has moved, so has what lies below it.
+// The place at rest of a cell: what lies below the surface moves with the nearest triangle.
 Place place_at_rest(vec3 middle, uint i) {
-  uint nearest = load_uint(push.nearest, i);
-  uvec3 ids = load_uvec3(push.triangles, load_uint(push.triangle, nearest) - 1u);
-  vec3 a = load_vec3(push.vertices, ids.x), b = load_vec3(push.vertices, ids.y), c = load_vec3(push.vertices, ids.z);
-  vec3 at = load_vec3(push.rest, ids.x), bt = load_vec3(push.rest, ids.y), ct = load_vec3(push.rest, ids.z);
+  uint nearest = push.nearest.at[i];
+  uvec3 ids = push.triangles.at[push.triangle.at[nearest] - 1u];
+  vec3 a = push.vertices.at[ids.x], b = push.vertices.at[ids.y], c = push.vertices.at[ids.z];
+  vec3 at = push.rest.at[ids.x], bt = push.rest.at[ids.y], ct = push.rest.at[ids.z];
   Place place = Place(middle, 0.0);
   mat3 now = frame_of(a, b, c);
   if (a != at || b != bt || c != ct) place.position = at + frame_of(at, bt, ct) * (inverse(now) * (middle - a));
@@ -41,14 +54,14 @@ Place place_at_rest(vec3 middle, uint i) {
 }
 
 Optical optical_cell(PathMaterial body, uvec3 cell) {
-  return load_optical(body.optical, cell.x + body.optical_size.x * (cell.y + body.optical_size.y * cell.z));
+  return body.optical.at[cell.x + body.optical_size.x * (cell.y + body.optical_size.y * cell.z)];
 }
 
 Optical mixed(Optical a, Optical b, float t) {
   return Optical(mix(a.sigma_s_prime, b.sigma_s_prime, t), mix(a.sigma_a, b.sigma_a, t));
 }
 
-// As engine/scene/volume.h.
+// Coefficients of a grid at a position, trilinear as in engine/scene/volume.h.
 Optical volume_at(PathMaterial body, vec3 position) {
   vec3 last = vec3(body.optical_size - 1u);
   vec3 place = clamp((position - body.optical_first) / body.optical_spacing, vec3(0), last);
@@ -73,7 +86,7 @@ void main() {
   uint i = gl_GlobalInvocationID.x, count = cell_count(push.grid);
   if (i >= count) return;
   vec3 cost = vec3(-1);
-  if ((load_uint(push.flags, i) & CELL_SOLID) != 0u) {
+  if ((push.flags.at[i] & CELL_SOLID) != 0u) {
     vec3 middle = middle_of(push.grid, cell_at(push.grid, i));
     PathMaterial body = push.body.at[0];
     Place place = Place(middle, 0.0);

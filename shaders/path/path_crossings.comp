@@ -3,6 +3,21 @@
 #include "path/path_shared.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// Where the lines through the middles of cells cross triangles. Per axis and cell, in the first
+// cell whose middle lies behind a crossing: their number times 65536 plus the change of the winding number along the
+// axis.
+struct PathCrossingsPush {
+  PathGrid grid;
+  Vec3s vertices;  // mm
+  Uvec3s triangles;
+  Uints crossings;  // 3 per cell, axis after axis; added to
+  Uints flags;      // CELL_SURFACE, or-ed
+  Uints triangle;   // per cell that the surface crosses: 1 + the largest of the triangles that do
+  uint triangle_count;
+  uint stripes;  // invocations per triangle and axis
+  PathTools tools;
+};
 layout(push_constant, scalar) uniform Block { PathCrossingsPush push; };
 #define GRID push.grid
 #include "path/path_crossings.glsl"
@@ -27,8 +42,8 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= 3u * push.stripes * push.triangle_count) return;
   triangle = i / (3u * push.stripes);
-  uvec3 ids = load_uvec3(push.triangles, triangle);
+  uvec3 ids = push.triangles.at[triangle];
   uint rest = i % (3u * push.stripes);
-  cross_triangle(rounded(load_vec3(push.vertices, ids.x)), rounded(load_vec3(push.vertices, ids.y)),
-                 rounded(load_vec3(push.vertices, ids.z)), rest / push.stripes, rest % push.stripes, push.stripes);
+  cross_triangle(rounded(push.vertices.at[ids.x]), rounded(push.vertices.at[ids.y]),
+                 rounded(push.vertices.at[ids.z]), rest / push.stripes, rest % push.stripes, push.stripes);
 }

@@ -54,7 +54,7 @@ void cross_triangle(ivec3 a, ivec3 b, ivec3 c, uint axis, uint stripe, uint stri
       ivec3 side = ivec3(side_of(q, r, s), side_of(r, p, s), side_of(p, q, s));
       if (doubled < 0) side = -side;
       if (any(lessThan(side, ivec3(0)))) continue;
-      // Of a point on an edge the weights are only as good as the edge's own rounding, and need not be better.
+      // The weights of a point on an edge are as good as the edge's own rounding; they need not be better.
       vec3 weight = vec3(side) / (float(side.x) + float(side.y) + float(side.z));
       Crossing found;
       found.axis = axis;

@@ -14,7 +14,7 @@ vec3 normal;  // unit, of the triangle, as its corners turn
 bool inside(vec3 place) {
   ivec3 cell = ivec3(floor(place));
   if (any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, ivec3(GRID.size)))) return false;
-  return (load_uint(push.flags, cell_number(GRID, uvec3(cell))) & CELL_INSIDE) != 0u;
+  return (push.flags.at[cell_number(GRID, uvec3(cell))] & CELL_INSIDE) != 0u;
 }
 
 // Whether a cell or one that it shares a corner with is inside: then the surface here is no sheet.
@@ -22,7 +22,7 @@ bool beside_inside(uvec3 cell) {
   for (int k = 0; k < 27; ++k) {
     ivec3 other = ivec3(cell) + ivec3(k % 3, k / 3 % 3, k / 9) - 1;
     if (any(lessThan(other, ivec3(0))) || any(greaterThanEqual(other, ivec3(GRID.size)))) continue;
-    if ((load_uint(push.flags, cell_number(GRID, uvec3(other))) & CELL_INSIDE) != 0u) return true;
+    if ((push.flags.at[cell_number(GRID, uvec3(other))] & CELL_INSIDE) != 0u) return true;
   }
   return false;
 }
@@ -44,9 +44,9 @@ void crossed(Crossing crossing) {
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= 3u * push.stripes * push.triangle_count) return;
-  uvec3 ids = load_uvec3(push.triangles, i / (3u * push.stripes));
+  uvec3 ids = push.triangles.at[i / (3u * push.stripes)];
   uint rest = i % (3u * push.stripes);
-  vec3 a = load_vec3(push.vertices, ids.x), b = load_vec3(push.vertices, ids.y), c = load_vec3(push.vertices, ids.z);
+  vec3 a = push.vertices.at[ids.x], b = push.vertices.at[ids.y], c = push.vertices.at[ids.z];
   vec3 doubled = cross(b - a, c - a);
   normal = doubled / max(length(doubled), 1e-30);
   cross_triangle(rounded(a), rounded(b), rounded(c), rest / push.stripes, rest % push.stripes, push.stripes);

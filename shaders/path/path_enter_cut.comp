@@ -10,7 +10,7 @@ layout(local_size_x = WORKGROUP_SIZE) in;
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= cell_count(push.grid)) return;
-  uint flags = load_uint(push.flags, i);
+  uint flags = push.flags.at[i];
   if ((flags & CELL_CUT) == 0u || (flags & CELL_INSIDE) == 0u) return;
   vec3 middle = middle_of(push.grid, cell_at(push.grid, i));
   PathTool tool = push.tools.at.at[nearest_tool(push.tools, middle)];

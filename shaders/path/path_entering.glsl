@@ -20,7 +20,7 @@ bool hidden_by_cells(LightRecord light, vec3 position, vec3 normal) {
   for (float t = 0.5; t < far; t += 0.5) {
     ivec3 cell = ivec3(floor(place + t * way));
     if (any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, ivec3(push.grid.size)))) return false;
-    if ((load_uint(push.flags, cell_number(push.grid, uvec3(cell))) & CELL_SOLID) != 0u) return true;
+    if ((push.flags.at[cell_number(push.grid, uvec3(cell))] & CELL_SOLID) != 0u) return true;
   }
   return false;
 }
@@ -32,10 +32,10 @@ float share_seen(Lamp lamp, vec3 position, vec3 normal) {
 }
 
 vec3 entering_from(uint number, vec3 position, vec3 normal) {
-  LightRecord light = load_light(push.lights, number);
+  LightRecord light = push.lights.at[number];
   if (light.kind == LIGHT_AMBIENT) return push.diffuse_transmittance * light.power;
   Lamp lamp = Lamp(light, no_shape(), 0u, push.grid.cell);
-  if (SHAPED) lamp.shape = load_light_shape(push.shapes, number);
+  if (SHAPED) lamp.shape = push.shapes.at[number];
   if (SHAPED && light.kind == LIGHT_ENVIRONMENT) {
     return environment_at(lamp.shape, ENVIRONMENT_ENTERING, normal) * light.power;
   }

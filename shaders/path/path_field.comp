@@ -3,16 +3,25 @@
 #include "path/path_shared.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// What leaves the surface: exp(-length) in the cells that it crosses. Deeper cells are darker or
+// brighter by what a cell costs, and the cells around have no paths: both count only where no other cell is near.
+struct PathFieldPush {
+  PathGrid grid;
+  Uints flags;
+  Floats paths;
+  Vec4s field;  // W/mm^2 times weight, and the weight; written
+};
 layout(push_constant, scalar) uniform Block { PathFieldPush push; };
 
 bool solid(uint cell) {
-  return (load_uint(push.flags, cell) & CELL_SOLID) != 0u;
+  return (push.flags.at[cell] & CELL_SOLID) != 0u;
 }
 
 vec3 leaving(uint cell) {
   uint count = cell_count(push.grid);
   vec3 paths;
-  for (uint c = 0u; c < 3u; ++c) paths[c] = load_float(push.paths, c * count + cell);
+  for (uint c = 0u; c < 3u; ++c) paths[c] = push.paths.at[c * count + cell];
   return exp(-paths);
 }
 
@@ -20,7 +29,7 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= cell_count(push.grid)) return;
   if (solid(i)) {
-    bool surface = (load_uint(push.flags, i) & (CELL_SURFACE | CELL_CUT)) != 0u;
+    bool surface = (push.flags.at[i] & (CELL_SURFACE | CELL_CUT)) != 0u;
     push.field.at[i] = (surface ? 1.0 : FIELD_BELOW) * vec4(leaving(i), 1.0);
     return;
   }

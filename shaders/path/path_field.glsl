@@ -14,9 +14,9 @@ vec3 path_exitance(PathField field, vec3 position) {
   for (uint k = 0u; k < 8u; ++k) {
     uvec3 corner = uvec3(k & 1u, k >> 1u & 1u, k >> 2u);
     vec3 share = mix(1.0 - f, f, vec3(corner));
-    sum += share.x * share.y * share.z * load_vec4(field.field, cell_number(field.grid, low + corner));
+    sum += share.x * share.y * share.z * field.field.at[cell_number(field.grid, low + corner)];
   }
-  return sum.w > 0.0 ? sum.rgb / sum.w : vec3(0);
+  return sum.w > 0.0 ? sum.xyz / sum.w : vec3(0);
 }
 
 #endif

@@ -1,5 +1,5 @@
 // Types of the passes that light the cells of the shortest-path method and show them, in scalar layout;
-// tests/cpp/render/layout_test.cpp compares them with the compiled shaders.
+// see shared.h.
 #ifndef QUADGRAPH_PATH_LIGHT_SHARED_H
 #define QUADGRAPH_PATH_LIGHT_SHARED_H
 
@@ -29,7 +29,7 @@ struct PathEnterPush {
   PathTools tools;  // where there are any, cells hide the light and not shadow maps, which know nothing of them
 };
 
-// The same push for path_enter_cut.comp: what enters the cells beside what is cut away.
+// path_enter_cut.comp takes the push above: what enters the cells beside what is cut away.
 
 // surface_path.vert, surface_path.frag: radiance of the display mesh, from the cells.
 struct SurfacePathPush {

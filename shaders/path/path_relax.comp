@@ -1,23 +1,22 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_control_flow_attributes : require
 #include "path/path_block.glsl"
 
 // A block of one channel per workgroup. Lengths only fall, and whatever mixture of old and new ones a workgroup sees of
 // its neighbours, each is the length of a path; a block is relaxed again in a round after a neighbour's side has
 // changed so that it may matter. What is left when no block is listed is the one solution, whatever the order.
-layout(local_size_x = PATH_GROUP, local_size_x_id = 7) in;
+layout(local_size_x = PATH_GROUP) in;
 #include "path/path_sweep.glsl"
 
-void load_block(ivec3 first, uint channel) {
+void load_cells(ivec3 first, uint channel) {
   uint offset = channel * cell_count(push.grid);
   for (uint k = gl_LocalInvocationID.x; k < WIDE_CELLS; k += gl_WorkGroupSize.x) {
     ivec3 local = ivec3(k % WIDE, k / WIDE % WIDE, k / (WIDE * WIDE)) - 1;
     ivec3 cell = first + local;
     bool there = all(greaterThanEqual(cell, ivec3(0))) && all(lessThan(cell, ivec3(push.grid.size)));
     uint number = there ? offset + cell_number(push.grid, uvec3(cell)) : 0u;
-    costs[k] = there ? push.grid.cell * load_float(push.cost, number) : -1.0;
-    lengths[k] = there ? load_float(push.paths, number) : PATH_FAR;
+    costs[k] = there ? push.grid.cell * push.cost.at[number] : -1.0;
+    lengths[k] = there ? push.paths.at[number] : PATH_FAR;
     bool own = all(greaterThanEqual(local, ivec3(0))) && all(lessThan(local, ivec3(PATH_BLOCK)));
     if (own) before[own_number(local)] = lengths[k];
   }
@@ -50,7 +49,7 @@ void look_at(uint number) {
   bvec3 beyond = notEqual(way, ivec3(0));
   ivec3 wide = mix(ivec3(PATH_BLOCK), ivec3(1), beyond);
   uint across = beyond.x ? 0u : beyond.y ? 1u : 2u, count = uint(wide.x * wide.y * wide.z);
-  [[dont_unroll]] for (uint k = gl_LocalInvocationID.x; k < count; k += gl_WorkGroupSize.x) {
+  for (uint k = gl_LocalInvocationID.x; k < count; k += gl_WorkGroupSize.x) {
     ivec3 place = ivec3(k % wide.x, k / wide.x % wide.y, k / (wide.x * wide.y));
     ivec3 cell = mix(place, mix(ivec3(-1), ivec3(PATH_BLOCK), equal(way, ivec3(1))), beyond);
     float least = PATH_FAR;
@@ -80,7 +79,7 @@ void list(uint item, uint all, uint from, uint arrival, uint crossing) {
 }
 
 void list_blocks(ivec3 block, ivec3 blocks, uint channel, uint moved) {
-  // Of 27 blocks those that have something fallen beside them.
+  // Bits of those of the 27 blocks that something has fallen beside.
   uint near = 0u;
   for (uint k = 0u; k < 27u; ++k) {
     bool all = k != PATH_SELF && moved != 0u;
@@ -90,7 +89,7 @@ void list_blocks(ivec3 block, ivec3 blocks, uint channel, uint moved) {
     }
     if (all) near |= 1u << k;
   }
-  [[dont_unroll]] for (uint rest = near; rest != 0u; rest &= rest - 1u) look_at(uint(findLSB(rest)));
+  for (uint rest = near; rest != 0u; rest &= rest - 1u) look_at(uint(findLSB(rest)));
   barrier();
   uint all = uint(blocks.x * blocks.y * blocks.z);
   for (uint k = gl_LocalInvocationID.x; k < 27u; k += gl_WorkGroupSize.x) {
@@ -142,7 +141,7 @@ void main() {
     if (gl_LocalInvocationID.x == 0u) list(item, all, wanted, arrived, crossed);
     return;
   }
-  load_block(first, channel);
+  load_cells(first, channel);
   barrier();
   uint moved = relax();
   store_block(first, channel);

@@ -4,19 +4,29 @@
 #include "path/path_tools.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// Which cells are solid.
+struct PathSolidPush {
+  PathGrid grid;
+  Uints votes;  // path_winding.comp's, axis after axis
+  Uints flags;
+  Uints wanted;  // PathRelaxPush; 0 where a cell of the block is solid
+  Uints counts;  // PathCounts
+  PathTools tools;
+};
 layout(push_constant, scalar) uniform Block { PathSolidPush push; };
 
 // By the majority of six directions, as winding numbers of broken surfaces are means over all (Jacobson et al. 2013).
 bool inside(uint cell) {
   uint votes = 0u;
-  for (uint axis = 0u; axis < 3u; ++axis) votes += load_uint(push.votes, axis * cell_count(push.grid) + cell);
+  for (uint axis = 0u; axis < 3u; ++axis) votes += push.votes.at[axis * cell_count(push.grid) + cell];
   return votes > 3u;
 }
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= cell_count(push.grid)) return;
-  uint flags = load_uint(push.flags, i);
+  uint flags = push.flags.at[i];
   if (inside(i)) flags |= CELL_INSIDE;
   vec3 middle = middle_of(push.grid, cell_at(push.grid, i));
   if (cut_away(push.tools, middle)) flags = 0u;

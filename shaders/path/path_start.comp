@@ -3,16 +3,28 @@
 #include "path/path_shared.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// Lengths before the first step: -ln of what enters.
+struct PathStartPush {
+  PathGrid grid;
+  Uints flags;
+  Uints entering;  // 3 per cell, channel after channel: bits of W/mm^2
+  Floats paths;    // the same order, written
+  Uints wanted;
+  Uints list;    // blocks of round 0: block + blocks * channel
+  Uints groups;  // of round 0
+  Uints counts;  // PathCounts
+};
 layout(push_constant, scalar) uniform Block { PathStartPush push; };
 
 void main() {
   uint i = gl_GlobalInvocationID.x, count = cell_count(push.grid);
   if (i >= count) return;
-  bool solid = (load_uint(push.flags, i) & CELL_SOLID) != 0u, lit = false;
+  bool solid = (push.flags.at[i] & CELL_SOLID) != 0u, lit = false;
   uvec3 blocks = push.grid.size / PATH_BLOCK, block = cell_at(push.grid, i) / PATH_BLOCK;
   uint number = block.x + blocks.x * (block.y + blocks.y * block.z), all = blocks.x * blocks.y * blocks.z;
   for (uint c = 0u; c < 3u; ++c) {
-    float entering = uintBitsToFloat(load_uint(push.entering, c * count + i));
+    float entering = uintBitsToFloat(push.entering.at[c * count + i]);
     bool here = solid && entering > 0.0;
     push.paths.at[c * count + i] = here ? -log(entering) : PATH_FAR;
     if (!here) continue;

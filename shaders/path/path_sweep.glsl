@@ -2,8 +2,6 @@
 #ifndef QUADGRAPH_PATH_SWEEP_GLSL
 #define QUADGRAPH_PATH_SWEEP_GLSL
 
-#extension GL_EXT_control_flow_attributes : require
-
 #include "path/path_block.glsl"
 #include "path/path_update.h"
 
@@ -44,8 +42,8 @@ float through_side(Plane t, float cost) {
   return min(t.rows[1].y + cost * sqrt(rest), min(min(best.x, best.y), min(best.z, best.w)));
 }
 
-// Of a step of the lattice, over its length, the mean of both ends. Other paths cost what the cell does that they lead
-// to, so that all points of a side are weighed alike, and no order of updates matters.
+// Least path by a step of the lattice, whose cost is its length times the mean of both ends. Other paths cost what the
+// cell does that they lead to, so that all points of a side are weighed alike, and no order of updates matters.
 float by_steps(Plane t, Plane costs, float cost) {
   vec3 way0 = sqrt(vec3(3, 2, 3)), way1 = sqrt(vec3(2, 1, 2));
   vec3 found = t.rows[0] + way0 * (0.5 * (cost + costs.rows[0]));
@@ -73,7 +71,7 @@ uint widened(uint mask) {
   return (mask | mask << 1u | mask >> 1u) & OWN_BITS;
 }
 
-// Of a mask as `dirty`.
+// Bits of a mask like `dirty` along an axis.
 uint bits_along(uint mask, uint axis) {
   return mask >> uint(WIDE) * axis & ((1u << WIDE) - 1u);
 }
@@ -92,7 +90,7 @@ uint relax_rows(int cell, int forward, int u, int v, int count) {
   if (LATTICE == 1u) c.rows[1] = cost_row(cell - forward - v, u);
   if (LATTICE == 1u) c.rows[2] = cost_row(cell - forward, u);
   uint falls = 0u;
-  [[dont_unroll]] for (int row = 0; row < count; ++row) {
+  for (int row = 0; row < count; ++row) {
     t.rows[0] = t.rows[1];
     t.rows[1] = t.rows[2];
     t.rows[2] = length_row(cell - forward + v, u);
@@ -125,21 +123,24 @@ uint sweep(uint way, uint mask) {
     v = other;
   }
   int forward = way < 3u ? STRIDES[axis] : -STRIDES[axis], lane = int(gl_LocalInvocationID.x);
-  int most_rows = PATH_BLOCK * PATH_BLOCK / int(gl_WorkGroupSize.x);
-  int across = lane % PATH_BLOCK + 1, own = lane / PATH_BLOCK * most_rows + 1;
+  // A plane is shared out by columns, and by rows where there are more invocations than columns.
+  int parts = max(int(gl_WorkGroupSize.x), PATH_BLOCK), most_rows = PATH_BLOCK * PATH_BLOCK / parts;
   uint changed_rows = widened(bits_along(mask, v)), changed_planes = planes_after(mask, way);
   uint planes = changed_planes, rows_before = 0u, all = 0u;
   int slot = 0;
-  [[dont_unroll]] while (planes != 0u) {
+  while (planes != 0u) {
     int k = findLSB(planes);
     planes &= planes - 1u;
     uint rows = ((changed_planes & 1u << k) != 0u ? changed_rows : 0u) | rows_before;
-    int first = max(findLSB(rows), own), end = min(findMSB(rows) + 1, own + most_rows);
     int plane = way < 3u ? 1 + k : PATH_BLOCK - k, next = (slot + 1) % 3;
     if (lane == 0) fallen[next] = 0u;
-    int cell = plane * STRIDES[axis] + across * STRIDES[u] + first * STRIDES[v];
-    uint falls = relax_rows(cell, forward, STRIDES[u], STRIDES[v], end - first) << first;
-    if (falls != 0u) atomicOr(fallen[slot], falls | 1u << (WIDE + across));
+    for (int part = lane; part < parts; part += int(gl_WorkGroupSize.x)) {
+      int across = part % PATH_BLOCK + 1, own = part / PATH_BLOCK * most_rows + 1;
+      int first = max(findLSB(rows), own), end = min(findMSB(rows) + 1, own + most_rows);
+      int cell = plane * STRIDES[axis] + across * STRIDES[u] + first * STRIDES[v];
+      uint falls = relax_rows(cell, forward, STRIDES[u], STRIDES[v], end - first) << first;
+      if (falls != 0u) atomicOr(fallen[slot], falls | 1u << (WIDE + across));
+    }
     barrier();
     uint fell = fallen[slot];
     slot = next;
@@ -155,7 +156,7 @@ uint sweep(uint way, uint mask) {
 // Sweeps up and down the axes as long as something may fall; where it has, as `dirty`. Gives up after MOST_SWEEPS.
 uint relax() {
   uint way = 5u, all = 0u;
-  [[dont_unroll]] for (uint k = 0u; k < MOST_SWEEPS; ++k) {
+  for (uint k = 0u; k < MOST_SWEEPS; ++k) {
     uint ways = 0u;
     for (uint other = 0u; other < 6u; ++other) ways |= planes_after(dirty[other], other) != 0u ? 1u << other : 0u;
     if (ways == 0u) return all;

@@ -39,7 +39,7 @@ QG_INLINE float tool_distance(PathTool tool, vec3 p) {
   return max(over.x, max(over.y, over.z));
 }
 
-// Of tool_distance: unit, out of the tool.
+// Gradient of tool_distance: unit, out of the tool.
 QG_INLINE vec3 tool_gradient(PathTool tool, vec3 p) {
   if (tool.kind == TOOL_PLANE) return -tool.a;
   if (tool.kind == TOOL_SLAB) return dot(tool.a, p) < tool.b.x ? -tool.a : tool.a;

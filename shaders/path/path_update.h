@@ -24,7 +24,7 @@ QG_INLINE path_real edge_rest(path_real fall, path_real base_squared, path_real 
   return between ? path_real(1) - g / edge_squared : path_real(1);
 }
 
-// The same of the triangle of neighbours at distances 1, sqrt(2) and sqrt(3): t0 + c sqrt(rest), with the falls from
+// Update from the triangle of neighbours at distances 1, sqrt(2) and sqrt(3): t0 + c sqrt(rest), with the falls from
 // the first to the second and on to the third.
 QG_INLINE path_real triangle_rest(path_real a, path_real b) {
   path_real rest = path_real(1) - a * a - b * b;

@@ -3,6 +3,15 @@
 #include "path/path_shared.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// Along the lines of one axis, in how many of its two directions a cell's middle is inside: where
+// the changes of the winding number along the line add up to 0, in both where that is not 0 here; else, where a
+// surface is open or does not know its outside, where an odd number of crossings lies on the way.
+struct PathWindingPush {
+  PathGrid grid;
+  Uints crossings;  // of the axis, replaced
+  uint axis;
+};
 layout(push_constant, scalar) uniform Block { PathWindingPush push; };
 
 // The low half, with its sign.
@@ -27,14 +36,14 @@ void main() {
   int turns = 0;
   uint number = 0u;
   for (uint k = 0u; k < end; ++k) {
-    uint here = load_uint(push.crossings, first + k * step);
+    uint here = push.crossings.at[first + k * step];
     turns += turn_of(here);
     number += number_of(here);
   }
   int before = 0;
   uint passed = 0u;
   for (uint k = 0u; k < end; ++k) {
-    uint here = load_uint(push.crossings, first + k * step);
+    uint here = push.crossings.at[first + k * step];
     before += turn_of(here);
     passed += number_of(here);
     uint odd = (passed & 1u) + ((number - passed) & 1u);

@@ -50,14 +50,6 @@ const uint GOLDEN_TURN = 2654435769u;
 #ifndef __cplusplus
 QG_ARRAY(Beams, Beam);
 
-Beam load_beam(Beams a, uint i) {
-  if (TEXELS) {
-    uint t = texel_of(uvec2(a)) + 9u * i;
-    BeamRecord way = BeamRecord(texel(t), uintBitsToFloat(texels3(t + 1u)));
-    return Beam(way, uintBitsToFloat(texels3(t + 4u)), texel(t + 7u), texel(t + 8u));
-  }
-  return a.at[i];
-}
 #endif
 
 #ifdef __cplusplus

@@ -38,10 +38,6 @@ struct Box {
 #ifndef __cplusplus
 QG_ARRAY(Boxes, Box);
 
-Box load_box(Boxes a, uint i) {
-  if (TEXELS) return Box(load_vec3(Vec3s(uvec2(a)), 2u * i), load_vec3(Vec3s(uvec2(a)), 2u * i + 1u));
-  return a.at[i];
-}
 #endif
 
 // A tree over outside faces (engine/file/face_tree.h).
@@ -62,31 +58,6 @@ struct SolidRef {
 QG_ARRAY(BodyRefs, BodyRef);
 QG_ARRAY(SolidRefs, SolidRef);
 
-BodyRef body_in_texels(uint t) {
-  return BodyRef(Vec3s(texels2(t)), Uvec4s(texels2(t + 2u)), Uints(texels2(t + 4u)), Uvec3s(texels2(t + 6u)),
-                 Uints(texels2(t + 8u)), Uints(texels2(t + 10u)), Opticals(texels2(t + 12u)), texel(t + 14u),
-                 texel(t + 15u), texel(t + 16u), uintBitsToFloat(texel(t + 17u)));
-}
-
-// The only one of an array.
-BodyRef load_body(BodyRefs a) {
-  if (TEXELS) return body_in_texels(texel_of(uvec2(a)));
-  return a.at[0];
-}
-
-TreeRef tree_in_texels(uint t) {
-  return TreeRef(Uints(texels2(t)), Uints(texels2(t + 2u)), Boxes(texels2(t + 4u)), texel(t + 6u));
-}
-
-SolidRef solid_in_texels(uint t) {
-  return SolidRef(body_in_texels(t), tree_in_texels(t + 18u));
-}
-
-// The only one of an array.
-SolidRef load_solid(SolidRefs a) {
-  if (TEXELS) return solid_in_texels(texel_of(uvec2(a)));
-  return a.at[0];
-}
 #endif
 
 #ifdef __cplusplus

@@ -3,10 +3,27 @@
 #define QUADGRAPH_BUFFERS_GLSL
 
 #extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
 #extension GL_EXT_scalar_block_layout : require
 
 #define QG_ARRAY(Name, Type)                                                 \
   layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Name { \
+    Type at[];                                                               \
+  }
+// Written by some invocations of a dispatch and read by others.
+#define QG_COHERENT_ARRAY(Name, Type)                                                 \
+  layout(buffer_reference, scalar, buffer_reference_align = 4) coherent buffer Name { \
+    Type at[];                                                                        \
+  }
+// At addresses that are a multiple of so many bytes.
+#define QG_ALIGNED_ARRAY(Name, Type, bytes)                                      \
+  layout(buffer_reference, scalar, buffer_reference_align = bytes) buffer Name { \
+    Type at[];                                                                   \
+  }
+// With a value before the elements.
+#define QG_HEADED_ARRAY(Name, Head, head, Type)                              \
+  layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Name { \
+    Head head;                                                               \
     Type at[];                                                               \
   }
 
@@ -24,11 +41,11 @@ QG_ARRAY(Vec3s, vec3);
 QG_ARRAY(Vec4s, vec4);
 QG_ARRAY(Uvec3s, uvec3);
 QG_ARRAY(Uvec4s, uvec4);
-QG_ARRAY(RowUints, uint);
-QG_ARRAY(RowFloats, float);
-QG_ARRAY(AssemblyUints, uint);
-QG_ARRAY(AssemblyUvec2s, uvec2);
-QG_ARRAY(AssemblyFloats, float);
-QG_ARRAY(AssemblyVec2s, vec2);
+
+// a.at[i]; 1 everywhere if there is no array.
+vec3 element_or_one(Vec3s a, uint i) {
+  if (uvec2(a) == uvec2(0)) return vec3(1);
+  return a.at[i];
+}
 
 #endif

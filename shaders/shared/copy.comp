@@ -3,6 +3,14 @@
 #include "shared/shared.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// target[i] = source[i], invocation k those of k, k + invocations, ...
+struct CopyPush {
+  Uvec4s source;
+  Uvec4s target;
+  uint count;
+  uint invocations;  // in the dispatch, a multiple of WORKGROUP_SIZE
+};
 layout(push_constant, scalar) uniform Block { CopyPush push; };
 
 void main() {

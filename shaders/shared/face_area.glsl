@@ -5,9 +5,9 @@
 
 // mm^2.
 float area_of(Uvec3s faces, Vec3s vertices, uint face) {
-  uvec3 corners = load_uvec3(faces, face);
-  vec3 p = load_vec3(vertices, corners.x);
-  return 0.5 * length(cross(load_vec3(vertices, corners.y) - p, load_vec3(vertices, corners.z) - p));
+  uvec3 corners = faces.at[face];
+  vec3 p = vertices.at[corners.x];
+  return 0.5 * length(cross(vertices.at[corners.y] - p, vertices.at[corners.z] - p));
 }
 
 #endif

@@ -91,8 +91,8 @@ QG_INLINE float texels_across(ImageBox box, ImageLevels image, float width) {
 
 #ifndef __cplusplus
 vec3 load_image(Vec3s texels, ImageTap tap) {
-  return mixed(tap, load_vec3(texels, tap.upper_left), load_vec3(texels, tap.upper_right),
-               load_vec3(texels, tap.lower_left), load_vec3(texels, tap.lower_right));
+  return mixed(tap, texels.at[tap.upper_left], texels.at[tap.upper_right], texels.at[tap.lower_left],
+               texels.at[tap.lower_right]);
 }
 #endif
 

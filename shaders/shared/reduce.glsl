@@ -1,42 +1,35 @@
 // Reduction over a whole dispatch in a fixed order, so that results repeat bit for bit: every workgroup stores a
-// partial, the last one to finish combines them, or a dispatch of its own (part.glsl). A shader that wants anything but
-// sums defines REDUCE(a, b) and its identity REDUCE_ZERO first. All functions must be called by every invocation.
+// partial, the last one to finish combines them. A shader that wants anything but sums defines REDUCE(a, b) and its
+// identity REDUCE_ZERO first. All functions must be called by every invocation.
 #ifndef QUADGRAPH_REDUCE_GLSL
 #define QUADGRAPH_REDUCE_GLSL
 
-#extension GL_EXT_control_flow_attributes : require
-
-#include "shared/part.glsl"
 #include "shared/shared.h"
 
 #ifndef REDUCE
 #define REDUCE(a, b) ((a) + (b))
 #define REDUCE_ZERO vec3(0)
 #endif
-#ifndef GROUP_SIZE
-#define GROUP_SIZE WORKGROUP_SIZE
-#endif
 
 shared vec3 reduce_scratch[WORKGROUP_SIZE];
 shared bool reduce_last;
 
-// Result in invocation 0. Two rounds of 16 need fewer barriers than a binary tree. Loops stay loops: unrolled, every
-// invocation of lavapipe would walk through all of the body with nothing to do, and compile it for a second.
+// Result in invocation 0. Two rounds of 16 need fewer barriers than a binary tree.
 vec3 reduce_workgroup(vec3 value) {
-  uint lane = gl_LocalInvocationID.x, first = min(16u, GROUP_SIZE);
+  uint lane = gl_LocalInvocationID.x, first = min(16u, WORKGROUP_SIZE);
   reduce_scratch[lane] = value;
   barrier();
-  if (GROUP_SIZE > 16u) {
+  if (WORKGROUP_SIZE > 16u) {
     if (lane < 16u) {
       vec3 part = value;
-      [[dont_unroll]] for (uint k = lane + 16u; k < GROUP_SIZE; k += 16u) part = REDUCE(part, reduce_scratch[k]);
+      for (uint k = lane + 16u; k < WORKGROUP_SIZE; k += 16u) part = REDUCE(part, reduce_scratch[k]);
       reduce_scratch[lane] = part;
     }
     barrier();
   }
   vec3 total = REDUCE_ZERO;
   if (lane == 0u) {
-    [[dont_unroll]] for (uint k = 0u; k < first; ++k) total = REDUCE(total, reduce_scratch[k]);
+    for (uint k = 0u; k < first; ++k) total = REDUCE(total, reduce_scratch[k]);
   }
   barrier();
   return total;
@@ -46,10 +39,6 @@ vec3 reduce_workgroup(vec3 value) {
 bool reduce_keep(Reduction reduction, vec3 partial, uint k, uint each) {
   if (gl_LocalInvocationID.x == 0u) reduction.partials[each * gl_WorkGroupID.x + k] = partial;
   if (k + 1u < each) return false;
-  if (PART == PART_SUMS) {
-    if (gl_GlobalInvocationID.x == 0u) reduction.ticket = gl_NumWorkGroups.x;
-    return false;
-  }
   if (gl_LocalInvocationID.x == 0u) {
     memoryBarrierBuffer();
     reduce_last = atomicAdd(reduction.ticket, 1u) == gl_NumWorkGroups.x - 1u;
@@ -60,9 +49,9 @@ bool reduce_keep(Reduction reduction, vec3 partial, uint k, uint each) {
 }
 
 // All partials number `k`.
-vec3 reduce_partials(Reduction reduction, uint count, uint k, uint each) {
+vec3 reduce_partials(Reduction reduction, uint k, uint each) {
   vec3 mine = REDUCE_ZERO;
-  for (uint g = gl_LocalInvocationID.x; g < count; g += GROUP_SIZE) {
+  for (uint g = gl_LocalInvocationID.x; g < gl_NumWorkGroups.x; g += WORKGROUP_SIZE) {
     mine = REDUCE(mine, reduction.partials[each * g + k]);
   }
   return reduce_workgroup(mine);
@@ -71,31 +60,21 @@ vec3 reduce_partials(Reduction reduction, uint count, uint k, uint each) {
 // True in the workgroup that finishes last; `total` then holds the result in invocation 0.
 bool reduce_dispatch(Reduction reduction, vec3 value, out vec3 total) {
   total = REDUCE_ZERO;
-  uint count = gl_NumWorkGroups.x;
-  if (PART == PART_CONCLUSION) {
-    count = reduction.ticket;  // 0 if the gate of the dispatch before was closed
-  } else if (!reduce_keep(reduction, reduce_workgroup(value), 0u, 1u)) {
-    return false;
-  }
-  total = reduce_partials(reduction, count, 0u, 1u);
+  if (!reduce_keep(reduction, reduce_workgroup(value), 0u, 1u)) return false;
+  total = reduce_partials(reduction, 0u, 1u);
   if (gl_LocalInvocationID.x == 0u) reduction.ticket = 0u;
-  return count > 0u;
+  return true;
 }
 
-// The same for two sums at once.
+// Reduces two sums in one dispatch.
 bool reduce_dispatch_pair(Reduction reduction, vec3 a, vec3 b, out vec3 total_a, out vec3 total_b) {
   total_a = total_b = REDUCE_ZERO;
-  uint count = gl_NumWorkGroups.x;
-  if (PART == PART_CONCLUSION) {
-    count = reduction.ticket;
-  } else {
-    reduce_keep(reduction, reduce_workgroup(a), 0u, 2u);
-    if (!reduce_keep(reduction, reduce_workgroup(b), 1u, 2u)) return false;
-  }
-  total_a = reduce_partials(reduction, count, 0u, 2u);
-  total_b = reduce_partials(reduction, count, 1u, 2u);
+  reduce_keep(reduction, reduce_workgroup(a), 0u, 2u);
+  if (!reduce_keep(reduction, reduce_workgroup(b), 1u, 2u)) return false;
+  total_a = reduce_partials(reduction, 0u, 2u);
+  total_b = reduce_partials(reduction, 1u, 2u);
   if (gl_LocalInvocationID.x == 0u) reduction.ticket = 0u;
-  return count > 0u;
+  return true;
 }
 
 #endif

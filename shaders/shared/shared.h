@@ -1,4 +1,4 @@
-// Types that GLSL and C++ share, in scalar layout. tests/cpp/solve/layout_test.cpp compares every offset and array
+// Types that GLSL and C++ share, in scalar layout. tests/cpp/vk/struct_layout_test.cpp compares every offset and array
 // stride in the compiled shaders with offsetof and sizeof.
 #ifndef QUADGRAPH_SHARED_H
 #define QUADGRAPH_SHARED_H
@@ -22,11 +22,12 @@ using uint = std::uint32_t;
 #include "shared/buffers.glsl"
 #define QG_INLINE
 #define QG_REF(Name) Name
-#include "shared/load.glsl"
 #endif
 
 // Invocations per compute workgroup. Every device of Vulkan 1.3 offers at least 128; GPUs and lavapipe offer 1024.
 #define WORKGROUP_SIZE 256
+// Elements that EACH gives a workgroup (stride.glsl), however many invocations that has.
+#define GROUP_ELEMENTS 256u
 
 // A face takes in light on four quarters: that of each corner, then the middle one.
 #define FACE_QUARTERS 4
@@ -63,31 +64,7 @@ struct Material {
 #ifndef __cplusplus
 QG_ARRAY(Opticals, Optical);
 
-Optical load_optical(Opticals a, uint i) {
-  if (FIELD_TEXELS) {
-    uint t = field_texel_of(uvec2(a)) + 6u * i;
-    return Optical(uintBitsToFloat(field_texels3(t)), uintBitsToFloat(field_texels3(t + 3u)));
-  }
-  return a.at[i];
-}
 #endif
-
-// evaluate_material.comp: optical[i] = material_at(nodes[i], depth[i]).
-struct EvaluateMaterialPush {
-  Material material;
-  QG_REF(Vec3s) nodes;   // mm; not read for a homogeneous material
-  QG_REF(Floats) depth;  // mm below the surface, of the nodes; read for layers
-  QG_REF(Opticals) optical;
-  uint count;
-};
-
-// copy.comp: target[i] = source[i], invocation k those of k, k + invocations, ...
-struct CopyPush {
-  QG_REF(Uvec4s) source;
-  QG_REF(Uvec4s) target;
-  uint count;
-  uint invocations;  // in the dispatch, a multiple of WORKGROUP_SIZE
-};
 
 #ifdef __cplusplus
 }  // namespace quadgraph::gpu

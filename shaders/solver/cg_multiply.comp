@@ -7,6 +7,15 @@
 #include "shared/reduce.glsl"
 #include "solver/convergence.glsl"
 
+// product = A p, alpha.
+struct CgMultiplyPush {
+  RowsRef rows;
+  Fields p;
+  Fields product;
+  SolveStates state;
+  Reduction reduction;
+  uint count;
+};
 layout(push_constant, scalar) uniform Block { CgMultiplyPush push; };
 
 void decide(vec3 energy) {
@@ -21,7 +30,7 @@ void main() {
   EACH(i, push.count) {
     Field result = row_times(push.rows, load_row(push.rows, i).sum, push.p, i);
     push.product.at[i] = result;
-    energy += product(load_field(push.p, i), result);
+    energy += product(push.p.at[i], result);
   }
   vec3 total;
   if (!reduce_dispatch(push.reduction, energy, total)) return;

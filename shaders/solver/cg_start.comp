@@ -7,6 +7,20 @@
 #include "shared/reduce.glsl"
 #include "solver/convergence.glsl"
 
+// r = b - A x and its norm; decides whether to iterate. Without multigrid also p = r / D.
+struct CgStartPush {
+  RowsRef rows;
+  Fields b;
+  Fields x;
+  Fields r;
+  Fields p;
+  SolveStates state;
+  Reduction reduction;
+  uint count;
+  float tolerance;
+  uint what;  // START_*
+  uint multigrid;
+};
 layout(push_constant, scalar) uniform Block { CgStartPush push; };
 
 // A true residual up to this many times the recursive one confirms it.

@@ -8,6 +8,18 @@
 #include "shared/reduce.glsl"
 #include "solver/convergence.glsl"
 
+// x += alpha p, r -= alpha A p; without multigrid also beta.
+struct CgUpdatePush {
+  Entries diagonal;
+  Fields p;
+  Fields product;
+  Fields x;
+  Fields r;
+  SolveStates state;
+  Reduction reduction;
+  uint count;
+  uint multigrid;
+};
 layout(push_constant, scalar) uniform Block { CgUpdatePush push; };
 
 void decide(vec3 square) {
@@ -26,8 +38,8 @@ void main() {
   vec3 own = vec3(0);
   vec3 alpha = push.state.at[0].alpha;
   EACH(i, push.count) {
-    push.x.at[i] = add_scaled(load_field(push.x, i), alpha, load_field(push.p, i));
-    Field r = add_scaled(load_field(push.r, i), -alpha, load_field(push.product, i));
+    push.x.at[i] = add_scaled(push.x.at[i], alpha, push.p.at[i]);
+    Field r = add_scaled(push.r.at[i], -alpha, push.product.at[i]);
     push.r.at[i] = r;
     own += product(r, solved(load_diagonal(push.diagonal, i), r));
   }

@@ -7,28 +7,46 @@
 #include "shared/reduce.glsl"
 #include "solver/convergence.glsl"
 
+// One step of Chebyshev's iteration for A x = f, preconditioned by D:
+//   d <- keep d + add damping/2 D^-1 (f - A from),  to = from + d.
+// `first`: d is not read. `zero`: from is 0 and not read. `last`: d is not written. With `zero` and without `last`, to
+// is not written either: it would be d. `reduce`: also f^T to, for the direction.
+struct ChebyshevPush {
+  RowsRef rows;
+  Fields f;
+  Fields from;
+  Fields to;
+  Fields d;
+  Vec3s damping;
+  SolveStates state;
+  Reduction reduction;
+  uint count;
+  uint first, zero, last, reduce;
+  float keep;
+  float add;
+};
 layout(push_constant, scalar) uniform Block { ChebyshevPush push; };
 
 Field step_at(uint i) {
   Row row = load_row(push.rows, i);
   Field r;
   if (push.zero == 1u) {
-    r = load_field(push.f, i);
+    r = push.f.at[i];
   } else {
     r = residual(push.rows, row.sum, push.f, push.from, i);
   }
-  Field d = scaled(0.5 * push.add * load_vec3(push.damping, 0), solved(row.diagonal, r));
-  if (push.first == 0u) d = add_scaled(d, vec3(push.keep), load_field(push.d, i));
+  Field d = scaled(0.5 * push.add * push.damping.at[0], solved(row.diagonal, r));
+  if (push.first == 0u) d = add_scaled(d, vec3(push.keep), push.d.at[i]);
   if (push.last == 0u) push.d.at[i] = d;
   Field x = d;
-  if (push.zero == 0u) x = add(load_field(push.from, i), d);
+  if (push.zero == 0u) x = add(push.from.at[i], d);
   if (push.zero == 0u || push.last == 1u) push.to.at[i] = x;
   return x;
 }
 
 void main() {
   vec3 own = vec3(0);
-  EACH(i, push.count) own += product(load_field(push.f, i), step_at(i));
+  EACH(i, push.count) own += product(push.f.at[i], step_at(i));
   if (push.reduce == 0u) return;
   vec3 rz;
   if (!reduce_dispatch(push.reduction, own, rz)) return;

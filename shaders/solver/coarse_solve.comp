@@ -8,18 +8,34 @@
 #include "solver/convergence.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// `steps` of Chebyshev's iteration for A z = f from 0 on [ratio lambda, lambda], lambda = 2/damping,
+// by one workgroup. Even `steps`: z ends in z. `reduce` as above.
+struct CoarseSolvePush {
+  RowsRef rows;
+  Fields f;
+  CoherentFields z;
+  CoherentFields other;
+  CoherentFields d;
+  Vec3s damping;
+  SolveStates state;
+  uint count;
+  uint steps;
+  uint reduce;
+  float ratio;
+};
 layout(push_constant, scalar) uniform Block { CoarseSolvePush push; };
 
 Field residual_at(CoherentFields x, Entry row_sum, uint i) {
   uint slice = i / SLICE_ROWS;
-  uint end = load_row_uint(push.rows.slice_offset, slice + 1u);
-  Field own = load_coherent(x, i);
+  uint end = push.rows.slice_offset.at[slice + 1u];
+  Field own = x.at[i];
   Field sum = times(row_sum, own);
-  for (uint e = load_row_uint(push.rows.slice_offset, slice) + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
+  for (uint e = push.rows.slice_offset.at[slice] + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
     StoredEntry stored = stored_entry(push.rows, e);
-    sum = add(sum, times(entry_in(stored), difference(load_coherent(x, column_of(stored)), own)));
+    sum = add(sum, times(entry_in(stored), difference(x.at[column_of(stored)], own)));
   }
-  return difference(load_field(push.f, i), sum);
+  return difference(push.f.at[i], sum);
 }
 
 // One step on all rows; the writes are seen by all before the next.
@@ -28,17 +44,17 @@ void iterate(CoherentFields from, CoherentFields to, bool zero, float keep, vec3
     Row row = load_row(push.rows, i);
     Field r;
     if (zero) {
-      r = load_field(push.f, i);
+      r = push.f.at[i];
     } else {
       r = residual_at(from, row.sum, i);
     }
     Field d = scaled(add_share, solved(row.diagonal, r));
-    if (!zero) d = add_scaled(d, vec3(keep), load_coherent(push.d, i));
+    if (!zero) d = add_scaled(d, vec3(keep), push.d.at[i]);
     push.d.at[i] = d;
     if (zero) {
       to.at[i] = d;
     } else {
-      to.at[i] = add(load_coherent(from, i), d);
+      to.at[i] = add(from.at[i], d);
     }
   }
   memoryBarrierBuffer();
@@ -46,7 +62,7 @@ void iterate(CoherentFields from, CoherentFields to, bool zero, float keep, vec3
 }
 
 void main() {
-  vec3 inverse = 0.5 * load_vec3(push.damping, 0);  // 1/lambda
+  vec3 inverse = 0.5 * push.damping.at[0];  // 1/lambda
   float middle = 0.5 * (1.0 + push.ratio), radius = 0.5 * (1.0 - push.ratio);
   float rho = radius / middle;
   iterate(push.z, push.other, true, 0.0, inverse / middle);
@@ -64,7 +80,7 @@ void main() {
   if (push.reduce == 0u) return;
   vec3 own = vec3(0);
   for (uint i = gl_LocalInvocationID.x; i < push.count; i += WORKGROUP_SIZE) {
-    own += product(load_field(push.f, i), load_coherent(push.z, i));
+    own += product(push.f.at[i], push.z.at[i]);
   }
   vec3 rz = reduce_workgroup(own);
   if (gl_LocalInvocationID.x == 0u) take_preconditioned(push.state, rz);

@@ -1,9 +1,6 @@
-// What the last workgroup of a solver pass decides. Loops stay loops, as in reduce.glsl: llvmpipe walks through this code
-// in every workgroup, with nothing to do.
+// What the last workgroup of a solver pass decides.
 #ifndef QUADGRAPH_CONVERGENCE_GLSL
 #define QUADGRAPH_CONVERGENCE_GLSL
-
-#extension GL_EXT_control_flow_attributes : require
 
 #include "solver/solve_shared.h"
 
@@ -29,7 +26,7 @@ uint first_channel(bvec3 flags) {
 }
 
 void open(SolveStates state) {
-  [[dont_unroll]] for (uint l = 0u; l < MAX_LEVELS; ++l) state.at[0].gate[l] = uvec3(state.at[0].groups[l], 1u, 1u);
+  for (uint l = 0u; l < MAX_LEVELS; ++l) state.at[0].gate[l] = uvec3(state.at[0].groups[l], 1u, 1u);
   state.at[0].coarse = uvec3(1);
   state.at[0].surface = uvec3(state.at[0].surface_groups, 1u, 1u);
   state.at[0].check = uvec3(0);
@@ -37,7 +34,7 @@ void open(SolveStates state) {
 }
 
 void close(SolveStates state) {
-  [[dont_unroll]] for (uint l = 0u; l < MAX_LEVELS; ++l) state.at[0].gate[l] = uvec3(0);
+  for (uint l = 0u; l < MAX_LEVELS; ++l) state.at[0].gate[l] = uvec3(0);
   state.at[0].coarse = uvec3(0);
   state.at[0].surface = uvec3(0);
   state.at[0].check = uvec3(0);

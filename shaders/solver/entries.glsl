@@ -14,7 +14,7 @@ Entry entry_of(vec3 stiffness, vec3 absorption, vec3 relaxation) {
 #endif
 }
 
-// Of the surface alone.
+// The boundary's entry of a surface area, mm^2.
 Entry boundary_entry(Boundary boundary, vec3 measure) {
 #if MOMENTS == 1
   return Entry(boundary.k11 * measure);

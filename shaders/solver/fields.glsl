@@ -45,7 +45,7 @@ Field no_field() {
 #endif
 }
 
-// Of a source that lights phi alone.
+// The field of a source that lights phi alone.
 Field lit(vec3 phi) {
 #if MOMENTS == 1
   return Field(phi);

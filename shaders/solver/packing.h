@@ -88,7 +88,7 @@ const int SP3_BELOW = 2, SP3_RANGE12 = 7, SP3_RANGE22 = 30;
 // Words 0 to 3 of an entry.
 QG_INLINE uvec4 pack_sp3(uint column, Sp3Block block) {
   int e12 = exponent_of(block.rest12, SP3_BITS12) + SP3_BELOW, e22 = exponent_of(block.rest22, SP3_BITS22) + SP3_BELOW;
-  // As much as the rests need, so that they are not clamped.
+  // The exponent of a11 is at least what the rests need, so that theirs are not clamped.
   int e11 = max(exponent_of(block.a11, SP3_BITS11), max(e12 - SP3_RANGE12, e22 - SP3_RANGE22));
   e11 = clamp(e11, -PACKED_BIAS, 63 - PACKED_BIAS);
   int d12 = clamp(e12 - e11, 0, SP3_RANGE12), d22 = (clamp(e22 - e11, 0, SP3_RANGE22) + 1) / 2;
@@ -118,8 +118,15 @@ QG_INLINE Sp3Block unpack_sp3(uvec4 word) {
   return block;
 }
 
-// Floats of a row's sum and diagonal beside packed entries of SP3 (stored_rows.glsl), and before the first row.
-const uint SP3_ROW_FLOATS = 10u, SP3_ROWS_HEAD = 3u;
+// With packed entries of SP3, which only linear elements have, a row's sum and its diagonal are not stored: both follow
+// from what the elements around the vertex say (entries.glsl), as consistent masses have two fifths of a row's sum on
+// the diagonal, and faces half. Before the first row lie k11, k12 and k22 (stored_rows.glsl).
+struct Sp3Row {
+  vec3 stiffness;   // on the diagonal
+  vec3 absorption;  // of the whole row, like the rest
+  vec3 relaxation;
+  float area;
+};
 
 #ifdef __cplusplus
 }  // namespace quadgraph::gpu

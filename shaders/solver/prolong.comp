@@ -4,13 +4,22 @@
 #include "solver/fields.glsl"
 #include "shared/stride.glsl"
 
+// x += transfer of the coarse x.
+struct ProlongPush {
+  Uints index;
+  Floats weight;
+  Fields coarse_x;
+  Fields x;
+  uint width;
+  uint count;
+};
 layout(push_constant, scalar) uniform Block { ProlongPush push; };
 
 void main() {
   EACH(i, push.count) {
-    Field x = load_field(push.x, i);
+    Field x = push.x.at[i];
     for (uint k = push.width * i; k < push.width * (i + 1u); ++k) {
-      x = add_scaled(x, vec3(load_row_float(push.weight, k)), load_field(push.coarse_x, load_row_uint(push.index, k)));
+      x = add_scaled(x, vec3(push.weight.at[k]), push.coarse_x.at[push.index.at[k]]);
     }
     push.x.at[i] = x;
   }

@@ -5,6 +5,14 @@
 #include "solver/rows.glsl"
 #include "shared/stride.glsl"
 
+// r = f - A x.
+struct ResidualPush {
+  RowsRef rows;
+  Fields f;
+  Fields x;
+  Fields r;
+  uint count;
+};
 layout(push_constant, scalar) uniform Block { ResidualPush push; };
 
 void main() {

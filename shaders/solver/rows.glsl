@@ -9,19 +9,19 @@
 // (A x)_i; `row_sum` is of row i.
 Field row_times(RowsRef rows, Entry row_sum, Fields x, uint i) {
   uint slice = i / SLICE_ROWS;
-  uint end = load_row_uint(rows.slice_offset, slice + 1u);
-  Field own = load_field(x, i);
+  uint end = rows.slice_offset.at[slice + 1u];
+  Field own = x.at[i];
   Field sum = times(row_sum, own);
-  for (uint e = load_row_uint(rows.slice_offset, slice) + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
+  for (uint e = rows.slice_offset.at[slice] + i % SLICE_ROWS; e < end; e += SLICE_ROWS) {
     StoredEntry stored = stored_entry(rows, e);
-    sum = add(sum, times(entry_in(stored), difference(load_field(x, column_of(stored)), own)));
+    sum = add(sum, times(entry_in(stored), difference(x.at[column_of(stored)], own)));
   }
   return sum;
 }
 
 // (b - A x)_i.
 Field residual(RowsRef rows, Entry row_sum, Fields b, Fields x, uint i) {
-  return difference(load_field(b, i), row_times(rows, row_sum, x, i));
+  return difference(b.at[i], row_times(rows, row_sum, x, i));
 }
 
 #endif

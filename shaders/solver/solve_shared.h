@@ -34,39 +34,8 @@ struct Entry {
 QG_ARRAY(Fields, Field);
 QG_ARRAY(Entries, Entry);
 // Written by some invocations of a workgroup and read by others, in one dispatch.
-layout(buffer_reference, scalar, buffer_reference_align = 4) coherent buffer CoherentFields {
-  Field at[];
-};
+QG_COHERENT_ARRAY(CoherentFields, Field);
 
-Field load_field(Fields a, uint i) {
-  if (FIELD_TEXELS) {
-#if MOMENTS == 1
-    return Field(uintBitsToFloat(field_texels3(field_texel_of(uvec2(a)) + 3u * i)));
-#else
-    uint t = field_texel_of(uvec2(a)) + 6u * i;
-    return Field(uintBitsToFloat(field_texels3(t)), uintBitsToFloat(field_texels3(t + 3u)));
-#endif
-  }
-  return a.at[i];
-}
-
-Field load_coherent(CoherentFields a, uint i) {
-  if (FIELD_TEXELS) return load_field(Fields(uvec2(a)), i);
-  return a.at[i];
-}
-
-Entry load_block(Entries a, uint i) {
-  if (ROW_TEXELS) {
-#if MOMENTS == 1
-    return Entry(uintBitsToFloat(row_texels3(row_texel_of(uvec2(a)) + 3u * i)));
-#else
-    uint t = row_texel_of(uvec2(a)) + 9u * i;
-    return Entry(uintBitsToFloat(row_texels3(t)), uintBitsToFloat(row_texels3(t + 3u)),
-                 uintBitsToFloat(row_texels3(t + 6u)));
-#endif
-  }
-  return a.at[i];
-}
 #endif
 
 // K of engine/optics/boundary.h, and what the diffuse source needs.
@@ -84,8 +53,8 @@ struct Boundary {
 // precision. `diagonal` = row_sum - sum of the weights is for preconditioning. Both are read with stored_rows.glsl:
 // with packed entries of SP3 they are one array.
 struct RowsRef {
-  QG_REF(RowUints) slice_offset;
-  QG_REF(RowUints) entry;
+  QG_REF(Uints) slice_offset;
+  QG_REF(Uints) entry;
   QG_REF(Entries) row_sum;
   QG_REF(Entries) diagonal;
 };
@@ -159,197 +128,16 @@ struct Scale {
 QG_ARRAY(SolveStates, SolveState);
 QG_ARRAY(Scales, Scale);
 
-// The only one of an array.
-Scale load_scale(Scales a) {
-  if (TEXELS) {
-    uint t = texel_of(uvec2(a));
-    return Scale(uintBitsToFloat(texels3(t)), uintBitsToFloat(texels3(t + 3u)), uintBitsToFloat(texel(t + 6u)));
-  }
-  return a.at[0];
-}
 #endif
-
-// transfer.comp: x = sum of weight * to_phi_coarse * x_coarse / to_phi (1 where null), for `count` rows from `first`
-// on; 0 in a channel without light.
-struct TransferPush {
-  QG_REF(RowUints) index;
-  QG_REF(RowFloats) weight;
-  QG_REF(Fields) coarse_x;
-  QG_REF(Vec3s) coarse_to_phi;
-  QG_REF(Vec3s) to_phi;
-  QG_REF(Fields) x;
-  QG_REF(SolveStates) state;
-  uint width;
-  uint first;
-  uint coarse_first;  // added to every index
-  uint count;
-};
-
-// follow.comp: the last solution as the next start: before = x in the present units, x = before + transfer of what has
-// changed on the coarser level since. `coarse_x` null: there is none. `before` null: no finer level will ask.
-struct FollowPush {
-  QG_REF(RowUints) index;
-  QG_REF(RowFloats) weight;
-  QG_REF(Fields) coarse_x;
-  QG_REF(Fields) coarse_before;
-  QG_REF(Vec3s) coarse_to_phi;
-  QG_REF(Vec3s) to_phi;
-  QG_REF(Fields) x;
-  QG_REF(Fields) before;
-  QG_REF(Vec3s) unit;  // one: the scale that x has
-  QG_REF(Scales) scale;
-  uint width;
-  uint first;
-  uint coarse_first;
-  uint count;
-  uint has_coarse;
-  uint keep_before;
-};
 
 const uint START_FIRST = 0u;     // resets the state, opens the gates
 const uint START_AGAIN = 3u;     // the same within a solve: iterations done so far are kept as earlier ones
 const uint START_CHECK = 1u;     // after the surface has met the tolerance: does the residual agree?
 const uint START_RESIDUAL = 2u;  // no decision
 
-// cg_start.comp: r = b - A x and its norm; decides whether to iterate. Without multigrid also p = r / D.
-struct CgStartPush {
-  RowsRef rows;
-  QG_REF(Fields) b;
-  QG_REF(Fields) x;
-  QG_REF(Fields) r;
-  QG_REF(Fields) p;
-  QG_REF(SolveStates) state;
-  QG_REF(Reduction) reduction;
-  uint count;
-  float tolerance;
-  uint what;  // START_*
-  uint multigrid;
-};
-
-// cg_multiply.comp: product = A p, alpha.
-struct CgMultiplyPush {
-  RowsRef rows;
-  QG_REF(Fields) p;
-  QG_REF(Fields) product;
-  QG_REF(SolveStates) state;
-  QG_REF(Reduction) reduction;
-  uint count;
-};
-
-// cg_update.comp: x += alpha p, r -= alpha A p; without multigrid also beta.
-struct CgUpdatePush {
-  QG_REF(Entries) diagonal;
-  QG_REF(Fields) p;
-  QG_REF(Fields) product;
-  QG_REF(Fields) x;
-  QG_REF(Fields) r;
-  QG_REF(SolveStates) state;
-  QG_REF(Reduction) reduction;
-  uint count;
-  uint multigrid;
-};
-
-// cg_direction.comp: p = z + beta p; without multigrid z = r / D.
-struct CgDirectionPush {
-  QG_REF(Entries) diagonal;
-  QG_REF(Fields) r;
-  QG_REF(Fields) z;
-  QG_REF(Fields) p;
-  QG_REF(SolveStates) state;
-  uint count;
-  uint multigrid;
-};
-
-// correct.comp: x += z, and counts the iteration.
-struct CorrectPush {
-  QG_REF(Fields) z;
-  QG_REF(Fields) x;
-  QG_REF(SolveStates) state;
-  uint count;
-};
-
-// sweep.comp: to = from + damping (b - A from) / D. With `sweeps` > 0 it also takes the residual of `from`, counts that
-// many sweeps as done and stops a relaxation that grows.
-struct SweepPush {
-  RowsRef rows;
-  QG_REF(Fields) b;
-  QG_REF(Fields) from;
-  QG_REF(Fields) to;
-  QG_REF(Vec3s) damping;
-  QG_REF(SolveStates) state;
-  QG_REF(Reduction) reduction;
-  uint count;
-  uint sweeps;
-};
-
-// residual.comp: r = f - A x.
-struct ResidualPush {
-  RowsRef rows;
-  QG_REF(Fields) f;
-  QG_REF(Fields) x;
-  QG_REF(Fields) r;
-  uint count;
-};
-
-// chebyshev.comp: one step of Chebyshev's iteration for A x = f, preconditioned by D:
-//   d <- keep d + add damping/2 D^-1 (f - A from),  to = from + d.
-// `first`: d is not read. `zero`: from is 0 and not read. `last`: d is not written. With `zero` and without `last`, to
-// is not written either: it would be d. `reduce`: also f^T to, for the direction.
-struct ChebyshevPush {
-  RowsRef rows;
-  QG_REF(Fields) f;
-  QG_REF(Fields) from;
-  QG_REF(Fields) to;
-  QG_REF(Fields) d;
-  QG_REF(Vec3s) damping;
-  QG_REF(SolveStates) state;
-  QG_REF(Reduction) reduction;
-  uint count;
-  uint first, zero, last, reduce;
-  float keep;
-  float add;
-};
-
-// coarse_solve.comp: `steps` of Chebyshev's iteration for A z = f from 0 on [ratio lambda, lambda], lambda = 2/damping,
-// by one workgroup. Even `steps`: z ends in z. `reduce` as above.
-struct CoarseSolvePush {
-  RowsRef rows;
-  QG_REF(Fields) f;
-  QG_REF(CoherentFields) z;
-  QG_REF(CoherentFields) other;
-  QG_REF(CoherentFields) d;
-  QG_REF(Vec3s) damping;
-  QG_REF(SolveStates) state;
-  uint count;
-  uint steps;
-  uint reduce;
-  float ratio;
-};
-
 // Rows of barycentric transfers, which cycles use, have so many entries (engine/file/graph.h). llvmpipe divides by
 // what it does not know lane by lane.
 const uint BARYCENTRIC_WIDTH = 4u;
-
-// restrict.comp: f_i = sum of weight_p r_(p / BARYCENTRIC_WIDTH), p = place_k, k from offset[i] to offset[i + 1]: the
-// transpose of the transfer whose weights these are.
-struct RestrictPush {
-  QG_REF(RowUints) offset;
-  QG_REF(RowUints) place;
-  QG_REF(RowFloats) weight;
-  QG_REF(Fields) r;
-  QG_REF(Fields) f;
-  uint count;
-};
-
-// prolong.comp: x += transfer of the coarse x.
-struct ProlongPush {
-  QG_REF(RowUints) index;
-  QG_REF(RowFloats) weight;
-  QG_REF(Fields) coarse_x;
-  QG_REF(Fields) x;
-  uint width;
-  uint count;
-};
 
 #ifdef __cplusplus
 }  // namespace quadgraph::gpu

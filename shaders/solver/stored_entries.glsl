@@ -18,29 +18,21 @@ layout(constant_id = 1) const uint ENTRIES = ENTRIES_PACKED;
 struct StoredEntry {
   uint word[PLAIN_WORDS];
 };
-layout(buffer_reference, scalar, buffer_reference_align = 8) buffer AlignedUvec2s {
-  uvec2 at[];
-};
-layout(buffer_reference, scalar, buffer_reference_align = 16) buffer AlignedUvec4s {
-  uvec4 at[];
-};
+QG_ALIGNED_ARRAY(AlignedUvec2s, uvec2, 8);
+QG_ALIGNED_ARRAY(AlignedUvec4s, uvec4, 16);
 
 StoredEntry stored_entry(RowsRef rows, uint e) {
   StoredEntry stored;
   if (ENTRIES == ENTRIES_PLAIN) {
-    for (uint k = 0u; k < PLAIN_WORDS; ++k) stored.word[k] = load_row_uint(rows.entry, PLAIN_WORDS * e + k);
+    for (uint k = 0u; k < PLAIN_WORDS; ++k) stored.word[k] = rows.entry.at[PLAIN_WORDS * e + k];
     return stored;
   }
-  if (!ROW_TEXELS) {
 #if MOMENTS == 1
-    uvec2 words = AlignedUvec2s(uvec2(rows.entry)).at[e];
+  uvec2 words = AlignedUvec2s(uvec2(rows.entry)).at[e];
 #else
-    uvec4 words = AlignedUvec4s(uvec2(rows.entry)).at[e];
+  uvec4 words = AlignedUvec4s(uvec2(rows.entry)).at[e];
 #endif
-    for (uint k = 0u; k < PACKED_WORDS; ++k) stored.word[k] = words[k];
-    return stored;
-  }
-  for (uint k = 0u; k < PACKED_WORDS; ++k) stored.word[k] = load_row_uint(rows.entry, PACKED_WORDS * e + k);
+  for (uint k = 0u; k < PACKED_WORDS; ++k) stored.word[k] = words[k];
   return stored;
 }
 

@@ -7,31 +7,14 @@
 #include "solver/stored_entries.glsl"
 
 #if MOMENTS == 2
-// With packed entries, which only linear elements have, a row's sum and its diagonal are not stored: both follow from
-// what the elements around the vertex say (entries.glsl), as consistent masses have two fifths of a row's sum on the
-// diagonal, and faces half.
-struct Sp3Row {
-  vec3 stiffness;   // on the diagonal
-  vec3 absorption;  // of the whole row, like the rest
-  vec3 relaxation;
-  float area;
-};
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Sp3Rows {
-  vec3 boundary;  // k11, k12, k22
-  Sp3Row at[];
-};
+// Rows beside packed entries (packing.h). `boundary`: k11, k12, k22.
+QG_HEADED_ARRAY(Sp3Rows, vec3, boundary, Sp3Row);
 
 Boundary stored_boundary(Entries a) {
-  vec3 k = ROW_TEXELS ? uintBitsToFloat(row_texels3(row_texel_of(uvec2(a)))) : Sp3Rows(uvec2(a)).boundary;
+  vec3 k = Sp3Rows(uvec2(a)).boundary;
   return Boundary(k.x, k.y, k.z, 0.0, 0.0);
 }
 
-Sp3Row load_sp3_row(Entries a, uint i) {
-  if (!ROW_TEXELS) return Sp3Rows(uvec2(a)).at[i];
-  uint t = row_texel_of(uvec2(a)) + SP3_ROWS_HEAD + SP3_ROW_FLOATS * i;
-  return Sp3Row(uintBitsToFloat(row_texels3(t)), uintBitsToFloat(row_texels3(t + 3u)),
-                uintBitsToFloat(row_texels3(t + 6u)), uintBitsToFloat(row_texel(t + 9u)));
-}
 #endif
 
 struct Row {
@@ -42,14 +25,14 @@ struct Row {
 Row load_row(Entries row_sum, Entries diagonal, uint i) {
 #if MOMENTS == 2
   if (ENTRIES == ENTRIES_PACKED) {
-    Sp3Row row = load_sp3_row(row_sum, i);
+    Sp3Row row = Sp3Rows(uvec2(row_sum)).at[i];
     Boundary boundary = stored_boundary(row_sum);
     return Row(sum_of(entry_of(vec3(0), row.absorption, row.relaxation), boundary_entry(boundary, vec3(row.area))),
                sum_of(entry_of(row.stiffness, 0.4 * row.absorption, 0.4 * row.relaxation),
                       boundary_entry(boundary, vec3(0.5 * row.area))));
   }
 #endif
-  return Row(load_block(row_sum, i), load_block(diagonal, i));
+  return Row(row_sum.at[i], diagonal.at[i]);
 }
 
 Row load_row(RowsRef rows, uint i) {
@@ -84,10 +67,10 @@ Entry store_terms(RowsRef rows, uint e, vec3 stiffness, vec3 absorption, vec3 re
 void store_row(RowsRef rows, uint i, vec3 absorption, vec3 relaxation, float area, Boundary boundary, Entry entries) {
 #if MOMENTS == 2
   if (ENTRIES == ENTRIES_PACKED) {
-    Sp3Rows packed = Sp3Rows(uvec2(rows.row_sum));
+    Sp3Rows sp3_rows = Sp3Rows(uvec2(rows.row_sum));
     vec3 stiffness = 0.6 * absorption + 0.5 * boundary.k11 * area - entries.a11;
-    packed.at[i] = Sp3Row(stiffness, absorption, relaxation, area);
-    if (i == 0u) packed.boundary = vec3(boundary.k11, boundary.k12, boundary.k22);
+    sp3_rows.at[i] = Sp3Row(stiffness, absorption, relaxation, area);
+    if (i == 0u) sp3_rows.boundary = vec3(boundary.k11, boundary.k12, boundary.k22);
     return;
   }
 #endif

@@ -7,6 +7,19 @@
 #include "shared/reduce.glsl"
 #include "solver/convergence.glsl"
 
+// to = from + damping (b - A from) / D. With `sweeps` > 0 it also takes the residual of `from`, counts that
+// many sweeps as done and stops a relaxation that grows.
+struct SweepPush {
+  RowsRef rows;
+  Fields b;
+  Fields from;
+  Fields to;
+  Vec3s damping;
+  SolveStates state;
+  Reduction reduction;
+  uint count;
+  uint sweeps;
+};
 layout(push_constant, scalar) uniform Block { SweepPush push; };
 
 // A relaxation that converges never exceeds its start by this much; one that diverges does at once.
@@ -31,7 +44,7 @@ void main() {
     Row row = load_row(push.rows, i);
     Field r = residual(push.rows, row.sum, push.b, push.from, i);
     Field z = solved(row.diagonal, r);
-    push.to.at[i] = add_scaled(load_field(push.from, i), load_vec3(push.damping, 0), z);
+    push.to.at[i] = add_scaled(push.from.at[i], push.damping.at[0], z);
     square += product(r, z);
   }
   if (push.sweeps == 0u) return;

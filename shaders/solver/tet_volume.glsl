@@ -19,7 +19,7 @@ float bounded_six_volume(float six_volume, float squares, LeastTet least) {
   return max(abs(six_volume), max(least.quality * REGULAR * pow(squares, 0.75), 6.0 * least.volume));
 }
 
-// Of a tet with these edges from one corner.
+// Volume of a tet with these edges from one corner.
 float tet_volume(vec3 e1, vec3 e2, vec3 e3, LeastTet least) {
   vec3 n1 = cross(e2, e3);
   float six_volume = dot(e1, n1);

@@ -7,13 +7,13 @@
 vec3 beam_light(Beam beam, Floats beam_q, uint face_count, uint face, uint quarter) {
   uint at = beam.offset * face_count + beam.floats * face;
   if (beam.floats == BEAM_RGB) {
-    return vec3(load_float(beam_q, at), load_float(beam_q, at + 1u), load_float(beam_q, at + 2u));
+    return vec3(beam_q.at[at], beam_q.at[at + 1u], beam_q.at[at + 2u]);
   }
   if (beam.floats == BEAM_RGB_QUARTERS) {
     at += 3u * quarter;
-    return vec3(load_float(beam_q, at), load_float(beam_q, at + 1u), load_float(beam_q, at + 2u)) * beam.colour;
+    return vec3(beam_q.at[at], beam_q.at[at + 1u], beam_q.at[at + 2u]) * beam.colour;
   }
-  return load_float(beam_q, at + (beam.floats == BEAM_QUARTERS ? quarter : 0u)) * beam.colour;
+  return beam_q.at[at + (beam.floats == BEAM_QUARTERS ? quarter : 0u)] * beam.colour;
 }
 
 #endif

@@ -22,7 +22,7 @@ void add_power(Uints sums, uint i, vec3 value) {
 vec3 power_at(Uints sums, uint i) {
   vec3 value;
   for (uint c = 0u; c < 3u; ++c) {
-    uint low = load_uint(sums, FIXED_WORDS * i + c), high = load_uint(sums, FIXED_WORDS * i + 3u + c);
+    uint low = sums.at[FIXED_WORDS * i + c], high = sums.at[FIXED_WORDS * i + 3u + c];
     value[c] = (float(high) * exp2(32.0) + float(low)) * POWER_UNIT;
   }
   return value;

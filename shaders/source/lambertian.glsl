@@ -1,4 +1,4 @@
-// Light at the surface that it enters by, and even light as a bundle of rays.
+// Light at the surface that it enters by, and uniform light as a bundle of rays.
 #ifndef QUADGRAPH_LAMBERTIAN_GLSL
 #define QUADGRAPH_LAMBERTIAN_GLSL
 

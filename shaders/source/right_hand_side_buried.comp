@@ -8,13 +8,26 @@
 #include "shared/stride.glsl"
 #include "shared/reduce.glsl"
 
+// Scaled b from the deposits, and its norm. Surface nodes of the graph methods have none.
+struct RightHandSideBuriedPush {
+  Uints deposit;
+  Vec3s vertices;  // those of the tets, where b is power per volume
+  Uvec4s tets;
+  Entries diagonal;
+  Fields b;
+  SolveStates state;
+  Reduction reduction;
+  uint count;
+  uint deposit_count;  // elements with a deposit: the first ones
+  uint per_volume;     // 1: quadgraph-fdm
+};
 layout(push_constant, scalar) uniform Block { RightHandSideBuriedPush push; };
 
 float volume_of(uint tet) {
-  uvec4 corners = load_uvec4(push.tets, tet);
-  vec3 p = load_vec3(push.vertices, corners.x);
-  vec3 e1 = load_vec3(push.vertices, corners.y) - p, e2 = load_vec3(push.vertices, corners.z) - p;
-  vec3 e3 = load_vec3(push.vertices, corners.w) - p;
+  uvec4 corners = push.tets.at[tet];
+  vec3 p = push.vertices.at[corners.x];
+  vec3 e1 = push.vertices.at[corners.y] - p, e2 = push.vertices.at[corners.z] - p;
+  vec3 e3 = push.vertices.at[corners.w] - p;
   return abs(dot(e1, cross(e2, e3))) / 6.0;
 }
 

@@ -58,20 +58,20 @@ uint place_of(uint id, uvec4 tet) {
   return id == tet.x ? 0u : id == tet.y ? 1u : id == tet.z ? 2u : 3u;
 }
 
-// Of an outside face, as columns.
+// Corners of an outside face, as columns.
 mat3 corners_of(uvec3 ids) {
-  return mat3(load_vec3(BODY.vertices, ids.x), load_vec3(BODY.vertices, ids.y), load_vec3(BODY.vertices, ids.z));
+  return mat3(BODY.vertices.at[ids.x], BODY.vertices.at[ids.y], BODY.vertices.at[ids.z]);
 }
 
 // Puts the ray's point on an outside face of `tet`, at the barycentric coordinates `l`.
 void start_on_face(uint tet, uvec3 ids, mat3 corners, vec3 l) {
-  uvec4 all = load_uvec4(BODY.tets, tet);
+  uvec4 all = BODY.tets.at[tet];
   uint apex = all.x + all.y + all.z + all.w - ids.x - ids.y - ids.z;
-  optical = load_optical(BODY.optical, (BODY.flags & BODY_EVEN) != 0u ? 0u : tet);
+  optical = BODY.optical.at[(BODY.flags & BODY_EVEN) != 0u ? 0u : tet];
   corner_0 = Corner(ids.x, place_of(ids.x, all), corners[0], l.x, payload(ids.x));
   corner_1 = Corner(ids.y, place_of(ids.y, all), corners[1], l.y, payload(ids.y));
   corner_2 = Corner(ids.z, place_of(ids.z, all), corners[2], l.z, payload(ids.z));
-  corner_3 = Corner(apex, place_of(apex, all), load_vec3(BODY.vertices, apex), 0.0, payload(apex));
+  corner_3 = Corner(apex, place_of(apex, all), BODY.vertices.at[apex], 0.0, payload(apex));
 }
 
 // Whether the present tet, of this signed volume as find_exit takes it, is turned inside out.
@@ -131,20 +131,20 @@ uvec2 turn(uint tet, uint slot) {
   } else {
     swap_with_3(corner_2);
   }
-  uint crossing = load_uint(BODY.crossings, 4u * tet + corner_3.place);
+  uint crossing = BODY.crossings.at[4u * tet + corner_3.place];
   uint last = (crossing ^ crossing >> 2u ^ crossing >> 4u) & 3u;
   return uvec2(crossing >> CROSSING_BITS, crossing & 63u | last << 6u);
 }
 
 // Enters the tet across, whose new corner replaces that in slot 3.
 void enter(uvec2 crossing) {
-  if ((BODY.flags & BODY_EVEN) == 0u) optical = load_optical(BODY.optical, crossing.x);
+  if ((BODY.flags & BODY_EVEN) == 0u) optical = BODY.optical.at[crossing.x];
   corner_0.place = crossing.y >> 2u * corner_0.place & 3u;
   corner_1.place = crossing.y >> 2u * corner_1.place & 3u;
   corner_2.place = crossing.y >> 2u * corner_2.place & 3u;
   uint place = crossing.y >> 2u * corner_3.place & 3u;
-  uint id = load_component(BODY.tets, crossing.x, place);
-  corner_3 = Corner(id, place, load_vec3(BODY.vertices, id), 0.0, payload(id));
+  uint id = BODY.tets.at[crossing.x][place];
+  corner_3 = Corner(id, place, BODY.vertices.at[id], 0.0, payload(id));
 }
 
 #endif

@@ -4,6 +4,21 @@
 #include "source/fixed_point.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// Multiplies the exitance at surface vertices by a factor, and gives that of unscattered
+// light.
+struct VertexUnscatteredPush {
+  Vec3s vertices;
+  Uvec3s faces;
+  Uints face_offset;
+  Uints face_incidence;
+  Uints unscattered;
+  Scales scale;
+  Vec3s factor;  // one
+  Vec3s exitance;
+  Vec3s vertex_unscattered;  // W/mm^2, written
+  uint count;
+};
 layout(push_constant, scalar) uniform Block { VertexUnscatteredPush push; };
 
 // Power over area of the faces around: interpolated over the faces this carries the same power.
@@ -12,13 +27,13 @@ void main() {
   if (v >= push.count) return;
   float area = 0.0;
   vec3 power = vec3(0);
-  for (uint k = load_uint(push.face_offset, v); k < load_uint(push.face_offset, v + 1u); ++k) {
-    uint face = load_uint(push.face_incidence, k);
-    uvec3 corners = load_uvec3(push.faces, face);
-    vec3 p = load_vec3(push.vertices, corners.x);
-    area += 0.5 * length(cross(load_vec3(push.vertices, corners.y) - p, load_vec3(push.vertices, corners.z) - p));
+  for (uint k = push.face_offset.at[v]; k < push.face_offset.at[v + 1u]; ++k) {
+    uint face = push.face_incidence.at[k];
+    uvec3 corners = push.faces.at[face];
+    vec3 p = push.vertices.at[corners.x];
+    area += 0.5 * length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));
     power += power_at(push.unscattered, face);
   }
-  push.vertex_unscattered.at[v] = area > 0.0 ? power / area * load_scale(push.scale).scale : vec3(0);
-  push.exitance.at[v] = load_vec3(push.factor, 0u) * load_vec3(push.exitance, v);
+  push.vertex_unscattered.at[v] = area > 0.0 ? power / area * push.scale.at[0].scale : vec3(0);
+  push.exitance.at[v] = push.factor.at[0u] * push.exitance.at[v];
 }

@@ -82,7 +82,7 @@ void flush(Corner corner) {
 void meet_surface(inout Ray ray, uint face, vec3 outward) {
   vec3 n = outward / length(outward);
   float cosine = dot(ray.direction, n);
-  if (load_uint(push.body.face_kinds, face) == FACE_OPEN) {
+  if (push.body.face_kinds.at[face] == FACE_OPEN) {
     vec3 reflected = ray.power * internal_reflectance(cosine, push.body.eta);
     vec3 leaving = ray.power - reflected;
     unscattered += leaving;

@@ -34,35 +34,6 @@ struct WalkSourcePush {
   uint fem;
 };
 
-// right_hand_side_buried.comp: scaled b from the deposits, and its norm. Surface nodes of the graph methods have none.
-struct RightHandSideBuriedPush {
-  QG_REF(Uints) deposit;
-  QG_REF(Vec3s) vertices;  // those of the tets, where b is power per volume
-  QG_REF(Uvec4s) tets;
-  QG_REF(Entries) diagonal;
-  QG_REF(Fields) b;
-  QG_REF(SolveStates) state;
-  QG_REF(Reduction) reduction;
-  uint count;
-  uint deposit_count;  // elements with a deposit: the first ones
-  uint per_volume;     // 1: quadgraph-fdm
-};
-
-// vertex_unscattered.comp: multiplies the exitance at surface vertices by a factor, and gives that of unscattered
-// light.
-struct VertexUnscatteredPush {
-  QG_REF(Vec3s) vertices;
-  QG_REF(Uvec3s) faces;
-  QG_REF(Uints) face_offset;
-  QG_REF(Uints) face_incidence;
-  QG_REF(Uints) unscattered;
-  QG_REF(Scales) scale;
-  QG_REF(Vec3s) factor;  // one
-  QG_REF(Vec3s) exitance;
-  QG_REF(Vec3s) vertex_unscattered;  // W/mm^2, written
-  uint count;
-};
-
 #ifdef __cplusplus
 }  // namespace quadgraph::gpu
 #endif

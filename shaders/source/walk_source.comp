@@ -66,9 +66,9 @@ Ray start(BeamRecord way, uint ray, uint tet, Frame at, vec3 power) {
 
 // Ray `ray` of every origin on a face.
 void walk_from(uint face, uint ray) {
-  Beam beam = load_beam(push.beam, 0u);
+  Beam beam = push.beam.at[0u];
   vec3 q[FACE_QUARTERS];
-  vec3 inverse = load_scale(push.scale).inverse;
+  vec3 inverse = push.scale.at[0].inverse;
   vec3 least = vec3(NEVER), largest = vec3(0), sum = vec3(0);
   for (uint k = 0u; k < FACE_QUARTERS; ++k) {
     q[k] = beam_light(beam, push.beam_q, push.body.face_count, face, k) * inverse;
@@ -76,8 +76,8 @@ void walk_from(uint face, uint ray) {
     largest = max(largest, q[k]);
     sum += q[k];
   }
-  if (largest == vec3(0) || load_uint(push.body.face_kinds, face) != FACE_OPEN) return;
-  uvec3 ids = load_uvec3(push.body.faces, face);
+  if (largest == vec3(0) || push.body.face_kinds.at[face] != FACE_OPEN) return;
+  uvec3 ids = push.body.faces.at[face];
   mat3 corners = corners_of(ids);
   vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
   float area = 0.5 * length(normal);
@@ -85,7 +85,7 @@ void walk_from(uint face, uint ray) {
   normal /= 2.0 * area;
   vec3 tangent = face_tangent(face, normal, corners[1] - corners[0]);
   bool one = one_ray_does(least, largest, corners, area);
-  uint tet = load_uint(push.body.face_tets, face);
+  uint tet = push.body.face_tets.at[face];
   float share = 0.25 * area * share_of(ray, push.rays);
   for (uint k = one ? FACE_CENTRE : 0u; k < FACE_QUARTERS; ++k) {
     vec3 power = share * (one ? sum : q[k]);

@@ -4,18 +4,30 @@
 #include "shared/stride.glsl"
 #include "shared/reduce.glsl"
 
+// The factor that gives the exitance at vertices, linear over the faces, the power of the faces.
+struct DisplayScalePush {
+  Vec3s vertices;
+  Uvec3s faces;
+  Uints face_kinds;
+  Vec3s exitance;
+  Vec3s vertex_exitance;
+  Scales scale;
+  Vec3s factor;
+  Reduction reduction;
+  uint count;
+};
 layout(push_constant, scalar) uniform Block { DisplayScalePush push; };
 
 void main() {
   vec3 solved = vec3(0), shown = vec3(0);  // integrals over the face, in units of the scale
   EACH(f, push.count) {
-    if (load_uint(push.face_kinds, f) != FACE_OPEN) continue;
-    uvec3 corners = load_uvec3(push.faces, f);
-    vec3 p = load_vec3(push.vertices, corners.x);
-    float area = 0.5 * length(cross(load_vec3(push.vertices, corners.y) - p, load_vec3(push.vertices, corners.z) - p));
-    vec3 weight = area * load_scale(push.scale).inverse;
-    solved += weight * load_vec3(push.exitance, f);
-    for (int k = 0; k < 3; ++k) shown += weight / 3.0 * load_vec3(push.vertex_exitance, corners[k]);
+    if (push.face_kinds.at[f] != FACE_OPEN) continue;
+    uvec3 corners = push.faces.at[f];
+    vec3 p = push.vertices.at[corners.x];
+    float area = 0.5 * length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));
+    vec3 weight = area * push.scale.at[0].inverse;
+    solved += weight * push.exitance.at[f];
+    for (int k = 0; k < 3; ++k) shown += weight / 3.0 * push.vertex_exitance.at[corners[k]];
   }
   vec3 total_solved, total_shown;
   if (!reduce_dispatch_pair(push.reduction, solved, shown, total_solved, total_shown)) return;

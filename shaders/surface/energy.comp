@@ -6,17 +6,37 @@
 #include "shared/reduce.glsl"
 #include "solver/tet_volume.glsl"
 
+// Sums per workgroup over faces and tets; applies the factor of the clip to the exitance of the faces.
+struct EnergyPush {
+  Vec3s vertices;
+  Uvec4s tets;
+  Uvec3s faces;
+  Uints face_kinds;
+  Opticals optical;
+  Fields x;
+  Vec3s to_phi;
+  Vec3s q;
+  Vec3s exitance;
+  Scales scale;
+  Clips clip;
+  EnergySumsArray sums;
+  uint tet_count;
+  uint face_count;
+  uint fem;
+  uint even;  // 1: optical is the same everywhere
+  LeastTet least;
+};
 layout(push_constant, scalar) uniform Block { EnergyPush push; };
 
 vec3 phi_at(uint carrier) {
-  return load_vec3_or_one(push.to_phi, carrier) * load_field(push.x, carrier).phi;
+  return element_or_one(push.to_phi, carrier) * push.x.at[carrier].phi;
 }
 
 vec3 absorbed(uint tet) {
-  uvec4 corners = load_uvec4(push.tets, tet);
-  vec3 p = load_vec3(push.vertices, corners.x);
-  vec3 e1 = load_vec3(push.vertices, corners.y) - p, e2 = load_vec3(push.vertices, corners.z) - p;
-  vec3 e3 = load_vec3(push.vertices, corners.w) - p;
+  uvec4 corners = push.tets.at[tet];
+  vec3 p = push.vertices.at[corners.x];
+  vec3 e1 = push.vertices.at[corners.y] - p, e2 = push.vertices.at[corners.z] - p;
+  vec3 e3 = push.vertices.at[corners.w] - p;
   float volume = tet_volume(e1, e2, e3, push.least);
   vec3 phi;
   if (push.fem == 1u) {
@@ -24,23 +44,26 @@ vec3 absorbed(uint tet) {
   } else {
     phi = phi_at(tet);
   }
-  return load_optical(push.optical, push.even == 1u ? 0u : tet).sigma_a * phi * load_scale(push.scale).scale * volume;
+  return push.optical.at[push.even == 1u ? 0u : tet].sigma_a * phi * push.scale.at[0].scale * volume;
 }
 
 void main() {
   EnergySums sums = EnergySums(vec3(0), vec3(0), vec3(0));
   EACH(i, push.tet_count) sums.absorbed += absorbed(i);
   EACH(i, push.face_count) {
-    uvec3 corners = load_uvec3(push.faces, i);
-    vec3 p = load_vec3(push.vertices, corners.x);
-    float area = 0.5 * length(cross(load_vec3(push.vertices, corners.y) - p, load_vec3(push.vertices, corners.z) - p));
-    vec3 q = load_uint(push.face_kinds, i) == FACE_OPEN ? load_vec3(push.q, i) : vec3(0);
-    vec3 exitance = load_vec3(push.exitance, i) * push.clip.at[0].factor;
+    uvec3 corners = push.faces.at[i];
+    vec3 p = push.vertices.at[corners.x];
+    float area = 0.5 * length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));
+    vec3 q = push.face_kinds.at[i] == FACE_OPEN ? push.q.at[i] : vec3(0);
+    vec3 exitance = push.exitance.at[i] * push.clip.at[0].factor;
     push.exitance.at[i] = exitance;
     sums.entered += area * q;
     sums.exitance += area * exitance;
   }
-  vec3 parts[3] = vec3[](sums.entered, sums.exitance, sums.absorbed);
-  [[dont_unroll]] for (int k = 0; k < 3; ++k) parts[k] = reduce_workgroup(parts[k]);
+  vec3 parts[3];
+  parts[0] = sums.entered;
+  parts[1] = sums.exitance;
+  parts[2] = sums.absorbed;
+  for (int k = 0; k < 3; ++k) parts[k] = reduce_workgroup(parts[k]);
   if (gl_LocalInvocationID.x == 0u) push.sums.at[gl_WorkGroupID.x] = EnergySums(parts[0], parts[1], parts[2]);
 }

@@ -3,6 +3,13 @@
 #include "surface/surface_shared.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// One workgroup; total[i] = sum of sums[i], sums[i + WORKGROUP_SIZE], ...
+struct EnergyTotalPush {
+  EnergySumsArray sums;
+  EnergySumsArray total;
+  uint count;
+};
 layout(push_constant, scalar) uniform Block { EnergyTotalPush push; };
 
 void main() {

@@ -5,6 +5,27 @@
 #include "shared/stride.glsl"
 #include "shared/reduce.glsl"
 
+// phi and M = k11 phi + k12 phi2 - reflected q per outside face, 0 at reflecting ones. fem: the mean
+// over the face's vertices; graph methods: the surface node, x at tet_count + face. With `clipped` 1 negative values at
+// vertices or nodes count as 0, and the factor is found that restores the power.
+struct ExitancePush {
+  Vec3s vertices;
+  Uvec3s faces;
+  Uints face_kinds;
+  Fields x;
+  Vec3s to_phi;
+  Vec3s q;
+  Scales scale;
+  Vec3s phi;
+  Vec3s exitance;
+  Clips clip;
+  Reduction reduction;
+  uint count;
+  uint tet_count;
+  uint fem;  // 1: fem, 0: graph methods
+  uint clipped;
+  Boundary boundary;
+};
 layout(push_constant, scalar) uniform Block { ExitancePush push; };
 
 // phi, and the outward flux as it is and without what is negative at the carriers, in units of the scale.
@@ -15,14 +36,14 @@ struct Surface {
 Surface at_face(uint f) {
   if (push.fem == 0u) {
     uint node = push.tet_count + f;
-    Field x = scaled(load_vec3_or_one(push.to_phi, node), load_field(push.x, node));
+    Field x = scaled(element_or_one(push.to_phi, node), push.x.at[node]);
     vec3 flux = outward_flux(push.boundary, x);
     return Surface(x.phi, flux, max(flux, vec3(0)));
   }
   Surface mean = Surface(vec3(0), vec3(0), vec3(0));
-  uvec3 corners = load_uvec3(push.faces, f);
+  uvec3 corners = push.faces.at[f];
   for (int k = 0; k < 3; ++k) {
-    Field x = scaled(load_vec3_or_one(push.to_phi, corners[k]), load_field(push.x, corners[k]));
+    Field x = scaled(element_or_one(push.to_phi, corners[k]), push.x.at[corners[k]]);
     vec3 flux = outward_flux(push.boundary, x);
     mean.phi += x.phi / 3.0;
     mean.raw += flux / 3.0;
@@ -32,17 +53,17 @@ Surface at_face(uint f) {
 }
 
 float area_of(uint f) {
-  uvec3 corners = load_uvec3(push.faces, f);
-  vec3 p = load_vec3(push.vertices, corners.x);
-  return 0.5 * length(cross(load_vec3(push.vertices, corners.y) - p, load_vec3(push.vertices, corners.z) - p));
+  uvec3 corners = push.faces.at[f];
+  vec3 p = push.vertices.at[corners.x];
+  return 0.5 * length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));
 }
 
 void main() {
   vec3 negative = vec3(0), positive = vec3(0);  // integrals over the face
   EACH(f, push.count) {
     Surface surface = Surface(vec3(0), vec3(0), vec3(0));
-    if (load_uint(push.face_kinds, f) == FACE_OPEN) surface = at_face(f);
-    vec3 scale = load_scale(push.scale).scale;
+    if (push.face_kinds.at[f] == FACE_OPEN) surface = at_face(f);
+    vec3 scale = push.scale.at[0].scale;
     push.phi.at[f] = surface.phi * scale;
     if (push.clipped == 1u) {
       float area = area_of(f);
@@ -50,8 +71,8 @@ void main() {
       positive += area * surface.positive;
       push.exitance.at[f] = surface.positive * scale;
     } else {
-      bool open = load_uint(push.face_kinds, f) == FACE_OPEN;
-      vec3 reflected = open ? push.boundary.reflected * load_vec3(push.q, f) : vec3(0);
+      bool open = push.face_kinds.at[f] == FACE_OPEN;
+      vec3 reflected = open ? push.boundary.reflected * push.q.at[f] : vec3(0);
       push.exitance.at[f] = surface.raw * scale - reflected;
     }
   }

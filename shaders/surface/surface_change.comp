@@ -6,6 +6,30 @@
 #include "shared/reduce.glsl"
 #include "solver/convergence.glsl"
 
+// M of the carriers on the surface, `count` from `first` on, in units of the scale.
+struct SurfaceChangePush {
+  Fields x;
+  Vec3s to_phi;
+  SurfaceShares share;
+  Vec3s before;
+  Scales scale;
+  SolveStates state;
+  Reduction reduction;
+  uint first;
+  uint count;
+  uint what;         // SURFACE_*
+  uint level;        // whose gate opens the check
+  uint verify;       // 1: the true residual has the last word
+  uint stall_limit;  // looks in a row at which the residual has hardly fallen; 0: any number
+  uint max_iterations;
+  uint looks;        // from this one on the estimate counts
+  uint by_change;    // 1: the rate is that of the changes where it is the larger one
+  float least_rate;  // by which a residual is taken to fall from look to look
+  float slow_rate;   // at which it has hardly fallen
+  uint by_residual;  // 1: the residual has to be below the tolerance, too
+  float tolerance;
+  Boundary boundary;
+};
 layout(push_constant, scalar) uniform Block { SurfaceChangePush push; };
 
 // A residual counts as falling by 1 - 1e-4 from look to look at least.
@@ -54,16 +78,16 @@ void decide(vec2 change) {
 
 void main() {
   vec3 difference_squares = vec3(0), size_squares = vec3(0);
-  Scale unit = load_scale(push.scale);
+  Scale unit = push.scale.at[0];
   // One factor for all channels, which are weighed alike.
   vec3 scale = unit.scale / max(unit.scale.x, max(unit.scale.y, unit.scale.z));
   EACH(i, push.count) {
     uint carrier = push.first + i;
-    SurfaceShare share = load_surface_share(push.share, i);
-    Field x = scaled(load_vec3_or_one(push.to_phi, carrier), load_field(push.x, carrier));
+    SurfaceShare share = push.share.at[i];
+    Field x = scaled(element_or_one(push.to_phi, carrier), push.x.at[carrier]);
     vec3 flux = outward_flux(push.boundary, x);
     vec3 m = scale * (flux - unit.inverse * share.reflected);
-    vec3 change = m - load_vec3(push.before, i);
+    vec3 change = m - push.before.at[i];
     difference_squares += vec3(dot(change, change) * share.area, 0.0);
     size_squares += vec3(dot(m, m) * share.area, 0.0);
     if (push.what != SURFACE_DIFFERENCE) push.before.at[i] = m;

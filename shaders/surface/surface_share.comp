@@ -3,15 +3,31 @@
 #include "surface/surface_shared.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// fem: the first `count` vertices, each with a third of its open faces; graph methods: the surface
+// nodes.
+struct SurfaceSharePush {
+  Vec3s vertices;
+  Uvec3s faces;
+  Uints face_kinds;
+  Uints face_offset;
+  Uints face_incidence;
+  Vec3s q;
+  Scales scale;
+  SurfaceShares share;
+  uint count;
+  uint fem;
+  float reflected;  // of q
+};
 layout(push_constant, scalar) uniform Block { SurfaceSharePush push; };
 
 #include "shared/face_area.glsl"
 
-// Of a whole face, `reflected` times its area.
+// Share of a whole face, `reflected` times its area.
 SurfaceShare of_face(uint face) {
-  vec3 q = load_vec3(push.q, face);
+  vec3 q = push.q.at[face];
   float area = area_of(push.faces, push.vertices, face);
-  float unlit = q.x + q.y + q.z < load_scale(push.scale).unlit ? area : 0.0;
+  float unlit = q.x + q.y + q.z < push.scale.at[0].unlit ? area : 0.0;
   return SurfaceShare(vec2(area, unlit), area * push.reflected * q);
 }
 
@@ -20,12 +36,12 @@ void main() {
   if (i >= push.count) return;
   SurfaceShare sum = SurfaceShare(vec2(0), vec3(0));
   if (push.fem == 1u) {
-    for (uint k = load_uint(push.face_offset, i); k < load_uint(push.face_offset, i + 1u); ++k) {
-      SurfaceShare face = of_face(load_uint(push.face_incidence, k));
+    for (uint k = push.face_offset.at[i]; k < push.face_offset.at[i + 1u]; ++k) {
+      SurfaceShare face = of_face(push.face_incidence.at[k]);
       sum.area += face.area / 3.0;
       sum.reflected += face.reflected / 3.0;
     }
-  } else if (load_uint(push.face_kinds, i) == FACE_OPEN) {
+  } else if (push.face_kinds.at[i] == FACE_OPEN) {
     sum = of_face(i);
   }
   if (sum.area.x > 0.0) sum.reflected /= sum.area.x;

@@ -3,12 +3,24 @@
 #include "surface/surface_shared.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
+
+// The area-weighted mean over the open faces around every surface vertex, 0 without any.
+struct VertexExitancePush {
+  Vec3s vertices;
+  Uvec3s faces;
+  Uints face_offset;
+  Uints face_incidence;
+  Vec3s face_exitance;
+  Vec3s exitance;
+  uint count;
+  uint geometric;  // 1: geometric mean, 0: arithmetic
+};
 layout(push_constant, scalar) uniform Block { VertexExitancePush push; };
 
 float twice_area_of(uint face) {
-  uvec3 corners = load_uvec3(push.faces, face);
-  vec3 p = load_vec3(push.vertices, corners.x);
-  return length(cross(load_vec3(push.vertices, corners.y) - p, load_vec3(push.vertices, corners.z) - p));
+  uvec3 corners = push.faces.at[face];
+  vec3 p = push.vertices.at[corners.x];
+  return length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));
 }
 
 // A value far below the arithmetic mean, or none at all, counts as this share of it: one clipped vertex must not darken
@@ -19,8 +31,8 @@ const float LEAST_SHARE = 1.0 / 16.0;
 vec3 geometric_mean(uint begin, uint end, float area, vec3 mean) {
   vec3 logarithm = vec3(0);
   for (uint k = begin; k < end; ++k) {
-    uint face = load_uint(push.face_incidence, k);
-    vec3 value = max(max(load_vec3(push.face_exitance, face), LEAST_SHARE * mean), vec3(1e-37));
+    uint face = push.face_incidence.at[k];
+    vec3 value = max(max(push.face_exitance.at[face], LEAST_SHARE * mean), vec3(1e-37));
     logarithm += twice_area_of(face) / area * log(value);
   }
   return mix(vec3(0), exp(logarithm), greaterThan(mean, vec3(0)));
@@ -29,14 +41,14 @@ vec3 geometric_mean(uint begin, uint end, float area, vec3 mean) {
 void main() {
   uint v = gl_GlobalInvocationID.x;
   if (v >= push.count) return;
-  uint begin = load_uint(push.face_offset, v), end = load_uint(push.face_offset, v + 1u);
+  uint begin = push.face_offset.at[v], end = push.face_offset.at[v + 1u];
   float area = 0.0;
   vec3 mean = vec3(0);
   for (uint k = begin; k < end; ++k) {
-    uint face = load_uint(push.face_incidence, k);
+    uint face = push.face_incidence.at[k];
     float size = twice_area_of(face);
     area += size;
-    mean += size * load_vec3(push.face_exitance, face);
+    mean += size * push.face_exitance.at[face];
   }
   mean = area > 0.0 ? mean / area : vec3(0);
   push.exitance.at[v] = push.geometric == 1u ? geometric_mean(begin, end, area, mean) : mean;

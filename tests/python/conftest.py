@@ -14,6 +14,27 @@ from shapes import pymeshlab_samples, read_ply
 
 ROOT = Path(__file__).resolve().parents[2]
 
+# Files that take longest, in this order: begun first, so that no worker is left with one of them at the end.
+LONGEST = (
+    "test_budget.py",
+    "test_real_meshes.py",
+    "test_window_panel.py",
+    "test_measured_error.py",
+    "test_window.py",
+    "test_accuracy_estimate.py",
+    "test_stability.py",
+    "test_bench_command.py",
+    "test_repair.py",
+    "test_tables.py",
+    "test_window_methods.py",
+    "test_engine.py",
+)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    rank = {name: number for number, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: rank.get(item.path.name, len(LONGEST)))
+
 
 @pytest.fixture(scope="session")
 def shared() -> Path:

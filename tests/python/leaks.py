@@ -8,7 +8,7 @@ import pytest
 
 
 def left_behind(first: int) -> dict[str, int]:
-    """Vulkan objects by kind, of the contexts from number `first` on, after what nobody refers to has gone."""
+    """Objects by kind, of the devices from number `first` on, after what nobody refers to has gone."""
     from quadgraph import _core
 
     left = _core.live_objects(first)
@@ -20,7 +20,7 @@ def left_behind(first: int) -> dict[str, int]:
 
 @pytest.fixture(autouse=True)
 def nothing_left_on_devices(request):
-    """A test keeps no context that it has made, nor anything of one; those of wider fixtures, made before, stay.
+    """A test keeps no device that it has opened, nor anything of one; those of wider fixtures, made before, stay.
 
     A test that has failed is not judged: its traceback keeps what it was working with.
     """
@@ -29,7 +29,7 @@ def nothing_left_on_devices(request):
     except ImportError:  # not built
         yield
         return
-    first, failed = _core.contexts_made(), request.session.testsfailed
+    first, failed = _core.devices_opened(), request.session.testsfailed
     yield
     request.node.funcargs.clear()  # values of its fixtures, which are over by now but for this one
     if request.session.testsfailed == failed:

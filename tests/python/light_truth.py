@@ -65,7 +65,7 @@ class Body:
 
 
 def unit(vector: tuple[float, float, float] | np.ndarray) -> np.ndarray:
-    """Of length 1."""
+    """A vector scaled to length 1."""
     return np.array(vector, float) / np.linalg.norm(vector)
 
 

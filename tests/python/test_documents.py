@@ -53,7 +53,7 @@ def on_one_line(text: str) -> str:
 
 
 def anchor(heading: str) -> str:
-    """As GitHub makes it of a heading."""
+    """The anchor that GitHub makes of a heading."""
     text = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading).replace("`", "").lower()
     return "".join(c for c in text if c.isalpha() or c.isdecimal() or c in " -_").replace(" ", "-")
 

@@ -11,8 +11,8 @@ namespace {
 constexpr double least_pass_ms = 15;  // of one timed pass
 constexpr std::uint32_t most_executions = 400;
 
-vk::Buffer words(vk::Context& context, const std::vector<std::uint32_t>& values, const char* name) {
-  return vk::upload<std::uint32_t>(context, values, name);
+device::Buffer words(vk::Context& context, const std::vector<std::uint32_t>& values, const char* name) {
+  return device::upload<std::uint32_t>(context, values, name);
 }
 
 double median(std::vector<double> values) {
@@ -36,8 +36,8 @@ Subgroups::Subgroups(const vk::Context& context) {
 }
 
 struct Bench::Resident {
-  vk::Buffer offset, column, weight, row_sum, diagonal, order, coefficients, constants;
-  vk::Buffer x, y, b, d;
+  device::Buffer offset, column, weight, row_sum, diagonal, order, coefficients, constants;
+  device::Buffer x, y, b, d;
   std::uint32_t width;
   std::uint64_t slots, product_bytes, diagonal_bytes;
 
@@ -49,9 +49,9 @@ struct Bench::Resident {
         diagonal(words(context, packed.diagonal, "diagonal")),
         order(words(context, packed.order, "order")),
         coefficients(words(context, packed.coefficients, "coefficients")),
-        constants(vk::upload<gpu::LayoutConstants>(context, {&packed.constants, 1}, "constants")),
+        constants(device::upload<gpu::LayoutConstants>(context, {&packed.constants, 1}, "constants")),
         x(words(context, pack_fields(vectors.x, model, kind), "x")),
-        y(context, x.size(), vk::Place::device, "y"),
+        y(context, x.size(), device::Place::device, "y"),
         b(words(context, pack_fields(vectors.b, model, VECTORS_PACKED), "b")),
         d(words(context, pack_fields(vectors.d, model, kind), "d")),
         width(packed.width),
@@ -61,7 +61,7 @@ struct Bench::Resident {
 };
 
 struct Bench::Dispatch {
-  const vk::ComputePass* kernel;
+  const device::ComputePass* kernel;
   gpu::LayoutPush push;
   std::uint64_t invocations;
 };
@@ -71,8 +71,8 @@ Bench::Bench(vk::Context& context, const Matrix& matrix, Vectors vectors)
       matrix_(matrix),
       vectors_(std::move(vectors)),
       subgroups_(context),
-      total_(context, sizeof(glm::vec3), vk::Place::device, "total"),
-      scratch_(context, matrix.count() * field_bytes(matrix.model, VECTORS_PACKED), vk::Place::device, "scratch") {
+      total_(context, sizeof(glm::vec3), device::Place::device, "total"),
+      scratch_(context, matrix.count() * field_bytes(matrix.model, VECTORS_PACKED), device::Place::device, "scratch") {
   const std::size_t groups = matrix.count() / WORKGROUP_SIZE + 1;
   reduction_ = words(context, std::vector<std::uint32_t>(1 + 3 * groups), "reduction");
 }
@@ -92,11 +92,16 @@ Bench::Resident& Bench::resident(const Layout& layout) {
   return *found;
 }
 
-const vk::ComputePass& Bench::kernel(const std::string& name) {
-  std::unique_ptr<vk::ComputePass>& found = kernels_[name];
+const device::ComputePass& Bench::kernel(const std::string& name) {
+  std::unique_ptr<device::ComputePass>& found = kernels_[name];
   if (!found) {
-    found = std::make_unique<vk::ComputePass>(context_, kernel_code(name, matrix_.model), sizeof(gpu::LayoutPush),
-                                              "layouts " + name);
+    const device::Spirv code = kernel_code(name, matrix_.model);
+    found = std::make_unique<device::ComputePass>(context_, device::Shader{.name = name.c_str(),
+                                                                           .code = code,
+                                                                           .sp3 = {},
+                                                                           .cpu = {},
+                                                                           .cpu_sp3 = {},
+                                                                           .push_size = sizeof(gpu::LayoutPush)});
   }
   return *found;
 }
@@ -126,7 +131,7 @@ gpu::LayoutPush Bench::push_of(const Layout& layout) {
 std::vector<Bench::Dispatch> Bench::dispatches(const Variant& variant) {
   const std::uint64_t count = matrix_.count();
   gpu::LayoutPush push = push_of(variant.layout), other = push;
-  const vk::ComputePass* main = &kernel(variant.kernel);
+  const device::ComputePass* main = &kernel(variant.kernel);
   switch (variant.operation) {
     case Operation::product: {
       const bool wide = variant.layout.rows == ROWS_CSR_SUBGROUP;
@@ -154,28 +159,28 @@ std::vector<Bench::Dispatch> Bench::dispatches(const Variant& variant) {
   return {};
 }
 
-void Bench::record(vk::Commands& commands, const std::vector<Dispatch>& all) {
+void Bench::record(device::Commands& commands, const std::vector<Dispatch>& all) {
   for (const Dispatch& one : all) commands.dispatch(*one.kernel, one.push, one.invocations);
 }
 
 Outcome Bench::run(const Variant& variant) {
   const Resident& r = resident(variant.layout);
   const auto d = pack_fields(vectors_.d, matrix_.model, variant.layout.vectors);
-  vk::write_bytes(context_, r.d, std::as_bytes(std::span(d)));
-  vk::Commands commands(context_);
+  device::write_bytes(context_, r.d, std::as_bytes(std::span(d)));
+  device::Commands commands(context_);
   record(commands, dispatches(variant));
   commands.submit_and_wait();
-  const auto y = vk::download<std::uint32_t>(context_, r.y);
+  const auto y = device::download<std::uint32_t>(context_, r.y);
   return {unpack_fields(y, matrix_.count(), matrix_.model, variant.layout.vectors),
-          glm::dvec3(vk::download<glm::vec3>(context_, total_)[0])};
+          glm::dvec3(device::download<glm::vec3>(context_, total_)[0])};
 }
 
 // Time of one execution.
 Bench::Timed Bench::execute(const Variant& variant, std::uint32_t times) {
   const std::vector<Dispatch> all = dispatches(variant);
-  const bool cpu = context_.info().type == VK_PHYSICAL_DEVICE_TYPE_CPU;
+  const bool cpu = context_.info().cpu;
   const std::clock_t start = std::clock();
-  vk::Commands commands(context_, 1);
+  device::Commands commands(context_, 1);
   commands.begin_pass(variant.name);
   for (std::uint32_t k = 0; k < times; ++k) record(commands, all);
   commands.end_pass();

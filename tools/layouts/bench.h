@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "engine/vk/commands.h"
-#include "engine/vk/memory.h"
-#include "engine/vk/pipeline.h"
+#include "engine/device/commands.h"
+#include "engine/device/memory.h"
+#include "engine/device/pipeline.h"
+#include "engine/vk/context.h"
 #include "tools/layouts/variants.h"
 
 namespace quadgraph::layouts {
@@ -73,19 +74,19 @@ class Bench {
   };
 
   Resident& resident(const Layout& layout);
-  const vk::ComputePass& kernel(const std::string& name);
+  const device::ComputePass& kernel(const std::string& name);
   gpu::LayoutPush push_of(const Layout& layout);
   std::vector<Dispatch> dispatches(const Variant& variant);
-  void record(vk::Commands& commands, const std::vector<Dispatch>& dispatches);
+  void record(device::Commands& commands, const std::vector<Dispatch>& dispatches);
   Timed execute(const Variant& variant, std::uint32_t times);
 
   vk::Context& context_;
   const Matrix& matrix_;
   Vectors vectors_;
   Subgroups subgroups_;
-  vk::Buffer reduction_, total_, scratch_;
+  device::Buffer reduction_, total_, scratch_;
   std::map<Layout, std::unique_ptr<Resident>> residents_;
-  std::map<std::string, std::unique_ptr<vk::ComputePass>> kernels_;
+  std::map<std::string, std::unique_ptr<device::ComputePass>> kernels_;
 };
 
 }  // namespace quadgraph::layouts

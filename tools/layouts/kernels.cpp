@@ -6,9 +6,9 @@
 
 namespace quadgraph::layouts {
 
-vk::Spirv kernel_code(const std::string& name, Model model) {
+device::Spirv kernel_code(const std::string& name, Model model) {
   struct Code {
-    vk::Spirv diffusion, sp3;
+    device::Spirv diffusion, sp3;
   };
 #define LAYOUT_KERNEL(name) {#name, {layout_##name##_1, layout_##name##_2}},
   static const std::map<std::string, Code> codes = {

@@ -4,10 +4,10 @@
 #include <string>
 
 #include "engine/base/solve_options.h"
-#include "engine/vk/pipeline.h"
+#include "engine/device/pipeline.h"
 
 namespace quadgraph::layouts {
 
-vk::Spirv kernel_code(const std::string& name, Model model);
+device::Spirv kernel_code(const std::string& name, Model model);
 
 }  // namespace quadgraph::layouts

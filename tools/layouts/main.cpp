@@ -8,7 +8,8 @@
 #include <iostream>
 
 #include "engine/base/error.h"
-#include "engine/vk/copy_bandwidth.h"
+#include "engine/device/copy_bandwidth.h"
+#include "engine/vk/context.h"
 #include "tools/layouts/report.h"
 
 using namespace quadgraph;
@@ -51,7 +52,7 @@ void declare(CLI::App& app, Options& options) {
 void refuse_messages(const vk::Context& context) {
   const auto& messages = context.validation_messages();
   if (!messages.empty()) {
-    throw VulkanError(std::to_string(messages.size()) + " validation messages, the first: " + messages.front());
+    throw DeviceError(std::to_string(messages.size()) + " validation messages, the first: " + messages.front());
   }
 }
 
@@ -81,10 +82,10 @@ void run(const Options& options) {
                          .driver = context.info().driver,
                          .level = options.level,
                          .subgroup_size = layouts::Subgroups(context).size,
-                         .copy_bytes = vk::default_copy_bytes(context),
+                         .copy_bytes = device::default_copy_bytes(context),
                          .copy_GBps = 0,
                          .studies = {}};
-  record.copy_GBps = vk::copy_bandwidth(context, record.copy_bytes).gb_per_s;
+  record.copy_GBps = device::copy_bandwidth(context, record.copy_bytes).gb_per_s;
   std::cout << record.device << ", subgroups of " << record.subgroup_size << ", copy of " << (record.copy_bytes >> 20)
             << " MiB at " << record.copy_GBps << " GB/s\n";
   for (const std::string& material : options.materials) {

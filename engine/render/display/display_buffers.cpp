@@ -2,14 +2,14 @@
 
 namespace quadgraph {
 
-DisplayBuffers upload_display(vk::Context& context, const DisplayMesh& mesh) {
+DisplayBuffers upload_display(device::Device& context, const DisplayMesh& mesh) {
   return {static_cast<std::uint32_t>(mesh.vertices.size()),
           static_cast<std::uint32_t>(mesh.triangles.size()),
-          vk::upload(context, mesh.vertices, "display/vertices"),
-          vk::upload(context, mesh.normals, "display/normals"),
-          vk::upload(context, mesh.triangles, "display/triangles"),
-          vk::upload(context, mesh.face, "display/face"),
-          vk::upload(context, mesh.barycentric, "display/barycentric")};
+          device::upload(context, mesh.vertices, "display/vertices"),
+          device::upload(context, mesh.normals, "display/normals"),
+          device::upload(context, mesh.triangles, "display/triangles"),
+          device::upload(context, mesh.face, "display/face"),
+          device::upload(context, mesh.barycentric, "display/barycentric")};
 }
 
 }  // namespace quadgraph

@@ -3,6 +3,8 @@
 #include <glm/vec4.hpp>
 #include <vector>
 
+#include "interface/deform/deform_bounds.comp.h"
+#include "interface/deform/deform_normals.comp.h"
 #include "shaders/deform/deform_shared.h"
 
 namespace quadgraph {
@@ -34,21 +36,21 @@ Incidence triangles_at_vertices(const DisplayMesh& mesh) {
 DisplayMotion::DisplayMotion(const DisplayMesh& mesh)
     : mesh_(mesh), box_(quadgraph::rest_box(mesh.vertices)), vertices_({}, mesh.vertices, "deformation/display") {}
 
-void DisplayMotion::make_room(vk::Context& context) {
+void DisplayMotion::make_room(device::Device& context) {
   if (sphere_.size() > 0) return;
   const Incidence incidence = triangles_at_vertices(mesh_);
-  rest_normals_ = vk::upload(context, mesh_.normals, "deformation/display normals at rest");
-  offset_ = vk::upload<std::uint32_t>(context, incidence.offset, "deformation/display offsets");
-  incidence_ = vk::upload<std::uint32_t>(context, incidence.triangle, "deformation/display triangles");
-  sphere_ = {context, sizeof(glm::vec4), vk::Place::device, "deformation/bounds"};
-  sphere_on_host_ = {context, sizeof(glm::vec4), vk::Place::host, "deformation/bounds, read back"};
+  rest_normals_ = device::upload(context, mesh_.normals, "deformation/display normals at rest");
+  offset_ = device::upload<std::uint32_t>(context, incidence.offset, "deformation/display offsets");
+  incidence_ = device::upload<std::uint32_t>(context, incidence.triangle, "deformation/display triangles");
+  sphere_ = {context, sizeof(glm::vec4), device::Place::device, "deformation/bounds"};
+  sphere_on_host_ = {context, sizeof(glm::vec4), device::Place::host, "deformation/bounds, read back"};
 }
 
 void DisplayMotion::record(Workspace& work, std::span<const Deformer> list, const DisplayBuffers& buffers) {
-  vk::Context& context = work.recorder.context();
+  device::Device& context = work.recorder.context();
   if (list.empty()) {
     vertices_.put_back(context, buffers.vertices);
-    vk::write_bytes(context, buffers.normals, std::as_bytes(mesh_.normals));
+    device::write_bytes(context, buffers.normals, std::as_bytes(mesh_.normals));
     return;
   }
   make_room(context);
@@ -61,12 +63,13 @@ void DisplayMotion::record(Workspace& work, std::span<const Deformer> list, cons
                                        .offset = offset_.address(),
                                        .incidence = incidence_.address(),
                                        .count = buffers.vertex_count};
-  work.recorder.dispatch(work.passes.deform_normals, normals, buffers.vertex_count, "display normals",
+  work.recorder.dispatch(work.passes.of(shader::deform_normals), normals, buffers.vertex_count, "display normals",
                          buffers.vertex_count * (3 * vec3_bytes + index_bytes) +
                              3ull * buffers.triangle_count * (index_bytes + sizeof(glm::uvec3) + 6 * vec3_bytes));
   const gpu::DeformBoundsPush bounds{
       .vertices = buffers.vertices.address(), .sphere = sphere_.address(), .count = buffers.vertex_count};
-  work.recorder.dispatch(work.passes.deform_bounds, bounds, 1, "bounds", 2 * buffers.vertex_count * vec3_bytes);
+  work.recorder.dispatch(work.passes.of(shader::deform_bounds), bounds, 1, "bounds",
+                         2 * buffers.vertex_count * vec3_bytes);
   work.recorder.copy(sphere_, sphere_on_host_, sphere_.size());
 }
 

@@ -22,20 +22,20 @@ class DisplayMotion {
   void record(Workspace& work, std::span<const Deformer> list, const DisplayBuffers& buffers);
 
   // vec3 per vertex, mm; after a list that was not empty has been recorded.
-  const vk::Buffer& rest() const { return vertices_.rest(); }
+  const device::Buffer& rest() const { return vertices_.rest(); }
 
-  // Of what has been recorded and has run; the list then was not empty.
+  // Bounding sphere of the moved mesh, once the recorded motion has run; its list of deformers was not empty.
   Sphere bounds() const;
 
  private:
-  void make_room(vk::Context& context);
+  void make_room(device::Device& context);
 
   const DisplayMesh& mesh_;
   RestBox box_;
   DeformedMesh vertices_;
-  vk::Buffer rest_normals_;
-  vk::Buffer offset_, incidence_;  // the triangles at every vertex
-  vk::Buffer sphere_, sphere_on_host_;
+  device::Buffer rest_normals_;
+  device::Buffer offset_, incidence_;  // the triangles at every vertex
+  device::Buffer sphere_, sphere_on_host_;
 };
 
 }  // namespace quadgraph

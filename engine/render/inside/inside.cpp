@@ -55,7 +55,7 @@ const Level& level_of(const InsideInput& input, std::uint32_t number) {
 
 // In the present shape.
 std::vector<glm::vec3> vertices_of(const InsideInput& input, std::uint32_t level) {
-  return vk::download<glm::vec3>(input.context, input.simulation.level(level).vertices);
+  return device::download<glm::vec3>(input.context, input.simulation.level(level).vertices);
 }
 
 Plane plane_of(const InsideInput& input, const Show& show) {
@@ -244,7 +244,7 @@ std::vector<glm::vec3> nodes_of(const Level& level, const std::vector<glm::vec3>
   return nodes;
 }
 
-// Of the tets that the plane cuts: their nodes, and the links to all neighbours behind the plane or on it.
+// Nodes of the tets that the plane cuts, and their links to all neighbours behind the plane or on it.
 Inside links_at_plane(const InsideInput& input, const Show& show) {
   const Level& level = level_of(input, show.level);
   const auto vertices = vertices_of(input, show.level);

@@ -15,7 +15,7 @@ struct Inside {
 };
 
 struct InsideInput {
-  vk::Context& context;
+  device::Device& context;
   Simulation& simulation;
   const QuadGraph& graph;
   const SolveReport& report;    // of the last solve

@@ -65,7 +65,7 @@ void check_header(Reader& reader) {
   }
 }
 
-// Of "-Y height +X width".
+// Reads the line "-Y height +X width".
 std::array<std::uint32_t, 2> read_size(Reader& reader, const std::filesystem::path& path) {
   const std::string text(reader.line());
   const auto words = split(text, ' ');

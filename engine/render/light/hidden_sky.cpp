@@ -1,28 +1,27 @@
 #include "engine/render/light/hidden_sky.h"
 
-#include "engine/vk/commands.h"
-#include "spirv/environment_finer.comp.h"
-#include "spirv/environment_hidden.comp.h"
+#include "engine/device/commands.h"
+#include "interface/light/environment_finer.comp.h"
+#include "interface/light/environment_hidden.comp.h"
 
 namespace quadgraph {
 
-HiddenSky::HiddenSky(vk::Context& context, const QuadGraph& graph)
+HiddenSky::HiddenSky(device::Device& context, const QuadGraph& graph)
     : context_(context),
       graph_(graph),
-      hide_(context, environment_hidden_comp, sizeof(gpu::EnvironmentHiddenPush), "environment hidden",
-            vk::ComputePass::default_workgroup_size, 1),
-      refine_(context, environment_finer_comp, sizeof(gpu::EnvironmentFinerPush), "environment finer") {}
+      hide_(context, shader::environment_hidden, {.variant = 1}),
+      refine_(context, shader::environment_finer) {}
 
 void HiddenSky::make_room(Simulation& simulation, std::uint32_t level, std::uint32_t environments) {
   hidden_.resize(level + 1);
   for (std::uint32_t i = 0; i <= level; ++i) {
     const std::uint64_t bytes = std::uint64_t{environments} * simulation.level(i).face_count * sizeof(glm::vec3);
-    if (hidden_[i].size() != bytes) hidden_[i] = {context_, bytes, vk::Place::read, "light/hidden environment"};
+    if (hidden_[i].size() != bytes) hidden_[i] = {context_, bytes, device::Place::device, "light/hidden environment"};
   }
   for (auto i = static_cast<std::uint32_t>(finer_.size()); i < level; ++i) {
     const Transfer& surface = graph_.levels()[i].surface;
-    finer_.push_back({vk::upload(context_, surface.index, "light/surface_index"),
-                      vk::upload(context_, surface.weight, "light/surface_weight"), surface.width});
+    finer_.push_back({device::upload(context_, surface.index, "light/surface_index"),
+                      device::upload(context_, surface.weight, "light/surface_weight"), surface.width});
   }
 }
 
@@ -35,7 +34,7 @@ PassStats HiddenSky::run(Simulation& simulation, const ShadowMaps& lights, std::
   }
   make_room(simulation, seen->level, environments);
   const LevelBuffers& level = simulation.level(seen->level);
-  vk::Commands commands(context_, 1);
+  device::Commands commands(context_, 1);
   commands.begin_pass(stats.name);
   commands.dispatch(hide_,
                     gpu::EnvironmentHiddenPush{.vertices = level.vertices.address(),

@@ -73,7 +73,7 @@ Image read_channels(const std::filesystem::path& path) {
   return image;
 }
 
-// Of a byte of a PNG; the inverse of srgb_encode (tone_map.h).
+// Linear value of a byte of a PNG, the inverse of srgb_encode (tone_map.h).
 float srgb_decode(std::uint8_t value) {
   const float encoded = static_cast<float>(value) / 255;
   return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);

@@ -14,8 +14,8 @@ namespace quadgraph {
 // allowed.
 Image read_image(const std::filesystem::path& path);
 
-// The same with smaller ones, of at most 2048 texels a side. What was read
-// before if the file is still the same.
+// The pyramid of an image file, at most 2048 texels a side; from memory if the file has not changed since it was read.
+// Throws as read_image.
 std::shared_ptr<const ImagePyramid> load_pyramid(const std::filesystem::path& path);
 
 // The parts of read_image.

@@ -1,8 +1,8 @@
 #include "engine/render/light/irradiance.h"
 
+#include "engine/device/commands.h"
 #include "engine/optics/fresnel.h"
-#include "engine/vk/commands.h"
-#include "spirv/irradiance.comp.h"
+#include "interface/light/irradiance.comp.h"
 
 namespace quadgraph {
 namespace {
@@ -15,20 +15,16 @@ static_assert(finest_subdivision % 2 == 0 && more_per_level % 2 == 0, "a sample 
 
 }  // namespace
 
-IrradiancePass::IrradiancePass(vk::Context& context)
-    : context_(context), pass_(context, irradiance_comp, sizeof(gpu::IrradiancePush), "irradiance") {}
+IrradiancePass::IrradiancePass(device::Device& context) : context_(context), pass_(context, shader::irradiance) {}
 
-const vk::ComputePass& IrradiancePass::pass(bool shaped) {
+const device::ComputePass& IrradiancePass::pass(bool shaped) {
   if (!shaped) return pass_;
-  if (!shaped_) {
-    shaped_.emplace(context_, irradiance_comp, static_cast<std::uint32_t>(sizeof(gpu::IrradiancePush)),
-                    "irradiance of shaped lights", vk::ComputePass::default_workgroup_size, 1u);
-  }
+  if (!shaped_) shaped_.emplace(context_, shader::irradiance, device::ComputeOptions{.variant = 1});
   return *shaped_;
 }
 
 PassStats IrradiancePass::run(const LevelBuffers& buffers, std::uint32_t level, const ShadowMaps& shadows, float eta,
-                              VkDeviceAddress hidden) {
+                              std::uint64_t hidden) {
   const std::uint32_t subdivision = finest_subdivision + more_per_level * level;
   const gpu::IrradiancePush push{.vertices = buffers.vertices.address(),
                                  .faces = buffers.faces.address(),
@@ -44,7 +40,7 @@ PassStats IrradiancePass::run(const LevelBuffers& buffers, std::uint32_t level, 
                                  .subdivision = subdivision,
                                  .eta = eta,
                                  .diffuse_transmittance = static_cast<float>(diffuse_transmittance(eta))};
-  vk::Commands commands(context_, 1);
+  device::Commands commands(context_, 1);
   commands.begin_pass("irradiance");
   commands.dispatch(pass(shadows.shaped()), push, buffers.face_count);
   commands.end_pass();

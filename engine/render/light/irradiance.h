@@ -4,9 +4,9 @@
 #include <optional>
 
 #include "engine/base/pass_stats.h"
+#include "engine/device/pipeline.h"
 #include "engine/render/light/shadow_maps.h"
 #include "engine/solve/level_buffers.h"
-#include "engine/vk/pipeline.h"
 
 namespace quadgraph {
 
@@ -18,19 +18,19 @@ namespace quadgraph {
 // same light as its fine ones.
 class IrradiancePass {
  public:
-  explicit IrradiancePass(vk::Context& context);
+  explicit IrradiancePass(device::Device& context);
 
   // `level` counts from the finest, 0; faces of coarser levels are sampled more finely. `hidden` as
   // HiddenSky::hidden.
   PassStats run(const LevelBuffers& buffers, std::uint32_t level, const ShadowMaps& shadows, float eta,
-                VkDeviceAddress hidden = 0);
+                std::uint64_t hidden = 0);
 
  private:
-  const vk::ComputePass& pass(bool shaped);
+  const device::ComputePass& pass(bool shaped);
 
-  vk::Context& context_;
-  vk::ComputePass pass_;
-  std::optional<vk::ComputePass> shaped_;  // where some light has a shape, made at first use
+  device::Device& context_;
+  device::ComputePass pass_;
+  std::optional<device::ComputePass> shaped_;  // where some light has a shape, made at first use
 };
 
 }  // namespace quadgraph

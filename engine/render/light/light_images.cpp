@@ -11,9 +11,9 @@ namespace {
 
 constexpr std::uint32_t largest_projected = 4096;  // texels a side; beyond, no face or pixel sees them apart
 
-ProjectedImage upload_projected(vk::Context& context, Image&& picture) {
+ProjectedImage upload_projected(device::Device& context, Image&& picture) {
   const ImagePyramid pyramid = pyramid_of(std::move(picture), largest_projected);
-  return {vk::upload<glm::vec3>(context, pyramid.texels, "light/projected image"), pyramid.columns, pyramid.rows,
+  return {device::upload<glm::vec3>(context, pyramid.texels, "light/projected image"), pyramid.columns, pyramid.rows,
           pyramid.levels};
 }
 
@@ -21,19 +21,19 @@ constexpr std::size_t picture_texels = std::size_t{gpu::ENVIRONMENT_COLUMNS} * g
 // Beyond this degree irradiance has nothing left: docs/lights.md.
 constexpr int irradiance_degree = 8;
 
-void write_picture(vk::Context& context, EnvironmentImage& image, std::uint32_t number,
+void write_picture(device::Device& context, EnvironmentImage& image, std::uint32_t number,
                    std::span<const double> degrees) {
   const auto picture =
       sphere_picture(image.environment.series, degrees, gpu::ENVIRONMENT_COLUMNS, gpu::ENVIRONMENT_ROWS);
   std::copy(picture.begin(), picture.end(),
             image.pictures.begin() + static_cast<std::ptrdiff_t>(number * picture_texels));
-  vk::write_bytes(context, image.texels, std::as_bytes(std::span(image.pictures)));
+  device::write_bytes(context, image.texels, std::as_bytes(std::span(image.pictures)));
 }
 
-EnvironmentImage upload_environment(vk::Context& context, Image&& picture) {
+EnvironmentImage upload_environment(device::Device& context, Image&& picture) {
   EnvironmentImage image{
       environment_of(std::move(picture)), std::vector<glm::vec3>(gpu::ENVIRONMENT_PICTURES * picture_texels), {}};
-  image.texels = {context, image.pictures.size() * sizeof(glm::vec3), vk::Place::read, "light/environment"};
+  image.texels = {context, image.pictures.size() * sizeof(glm::vec3), device::Place::device, "light/environment"};
   write_picture(context, image, gpu::ENVIRONMENT_RAYS, ray_degrees(environment_degree));
   return image;
 }

@@ -7,16 +7,16 @@
 #include <span>
 #include <string>
 
+#include "engine/device/memory.h"
 #include "engine/render/light/environment.h"
 #include "engine/render/light/image_file.h"
 #include "engine/render/light/lights.h"
-#include "engine/vk/memory.h"
 
 namespace quadgraph {
 
 // Levels as gpu::LightShape says.
 struct ProjectedImage {
-  vk::Buffer texels;
+  device::Buffer texels;
   std::uint32_t columns = 0, rows = 0, levels = 0;
 };
 
@@ -24,19 +24,19 @@ struct ProjectedImage {
 struct EnvironmentImage {
   Environment environment;
   std::vector<glm::vec3> pictures;
-  vk::Buffer texels;                                   // the same
+  device::Buffer texels;                               // the same
   float eta = 0, roughness = 0, placed_roughness = 0;  // what the pictures are for; 0: none yet
 };
 
 class LightImages {
  public:
-  explicit LightImages(vk::Context& context) : context_(context) {}
+  explicit LightImages(device::Device& context) : context_(context) {}
 
   // Reads the files that `lights` name and that have not been read or have changed since, and forgets all others.
   // Throws InputError naming the light.
   void load(std::span<const Light> lights);
 
-  // Of a light given to the last `load`.
+  // The image of a light that was given to the last `load`.
   const ProjectedImage& projected(const std::string& file) const { return projected_.at(file).image; }
   const EnvironmentImage& environment(const std::string& file) const { return environments_.at(file).image; }
 
@@ -58,7 +58,7 @@ class LightImages {
   template <typename T, typename Upload>
   void load(const Light& light, Images<T>& old, Images<T>& images, const Upload& upload);
 
-  vk::Context& context_;
+  device::Device& context_;
   Images<ProjectedImage> projected_;
   Images<EnvironmentImage> environments_;
 };

@@ -27,7 +27,7 @@ gpu::LightShape spot_shape(const Light& light) {
   return shape;
 }
 
-// Of a patch as wide as that, so that a part is at most half as wide as its distance to the body.
+// Parts along a side of a patch, so many that each is at most half as wide as its distance to the body.
 std::uint32_t parts_of(float width, const glm::vec3& position, const Sphere& bounds) {
   constexpr float most = 4;
   const float gap = glm::distance(position, bounds.centre) - bounds.radius;

@@ -22,7 +22,7 @@ class LightSet {
   std::uint32_t environments = 0;
   bool shaped = false;  // some kind beyond directional, point and ambient
 
-  // Of all lights on a body within `bounds`. `images` has loaded theirs, if they have any.
+  // The records of all lights on a body within `bounds`. `images` has loaded theirs, if they have any.
   LightSet(std::span<const Light> lights, const Sphere& bounds, const LightImages* images = nullptr);
 
  private:
@@ -34,11 +34,11 @@ class LightSet {
   Sphere bounds_;
 };
 
-// Of an environment: its picture's right, up and ahead in the world.
+// Axes of an environment's image in the world: right, up and ahead.
 glm::mat3 environment_frame(const Light& light);
 
-// As shaders take it, without views; of a rectangle a patch in its middle,
-// of a projector with the power of the whole image as intensity.
+// A light's record for shaders, without views: for a rectangle a patch in its middle, for a projector with the power of
+// the whole image as intensity.
 gpu::LightRecord light_record(const Light& light);
 
 }  // namespace quadgraph

@@ -98,7 +98,7 @@ std::string text_form(const LightForm& form);
 // What an optional field has where nobody says it, as parse_light reads it; empty for one that is required.
 std::string default_text(const LightField& field);
 
-// The same of all kinds, with their help, for help and errors.
+// The text forms of all light kinds with their help, for --help and error messages.
 const std::string& light_forms();
 
 // Parses one of the text forms; the power is one number or R/G/B. A direction need not be of unit length. Throws

@@ -1,31 +1,25 @@
 #include "engine/render/light/shadow_maps.h"
 
-#include "engine/render/display/draw.h"
-#include "spirv/shadow.vert.h"
+#include "engine/device/commands.h"
+#include "interface/light/shadow.vert.h"
 
 namespace quadgraph {
 namespace {
 
-vk::Image depth_image(vk::Context& context, std::uint32_t size) {
-  return {context, {VK_FORMAT_D32_SFLOAT, size, size, 1, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT}, "shadows/depth"};
+device::Image depth_image(device::Device& context, std::uint32_t size) {
+  return {context, {device::Format::depth32_float, size, size}, "shadows/depth"};
 }
 
 }  // namespace
 
-ShadowMaps::ShadowMaps(vk::Context& context)
+ShadowMaps::ShadowMaps(device::Device& context)
     : context_(context),
-      pass_(context,
-            {.vertex = shadow_vert,
-             .fragment = {},
-             .push_size = sizeof(gpu::ShadowPush),
-             .colour_formats = {},
-             .cull = VK_CULL_MODE_FRONT_BIT},
-            "shadow") {}
+      pass_(context, {.vertex = &shader::shadow_vert, .fragment = nullptr, .cull = device::Cull::front}, "shadow") {}
 
 PassStats ShadowMaps::update(const DisplayBuffers& mesh, const LightSet& lights) {
   std::vector<gpu::ShadowView> views = lights.views;
   PassStats stats{.name = "shadow maps"};
-  vk::Commands commands(context_, 1);
+  device::Commands commands(context_, 1);
   commands.begin_pass(stats.name);
   depths_.resize(views.size());
   std::size_t number = 0;
@@ -34,10 +28,11 @@ PassStats ShadowMaps::update(const DisplayBuffers& mesh, const LightSet& lights)
     auto image = images_.find(view.size);
     if (image == images_.end()) image = images_.emplace(view.size, depth_image(context_, view.size)).first;
     const auto size = static_cast<float>(view.size);
-    draw(commands, {{}, &image->second}, {0, 0, size, size}, pass_,
-         gpu::ShadowPush{view.clip_from_world, mesh.vertices.address()}, &mesh.triangles, 3 * mesh.triangle_count);
-    vk::Buffer& depth = depths_[number++];
-    if (depth.size() != map_bytes) depth = {context_, map_bytes, vk::Place::read, "shadows/map"};
+    commands.draw({{}, &image->second}, {0, 0, size, size}, pass_,
+                  gpu::ShadowPush{view.clip_from_world, mesh.vertices.address()}, &mesh.triangles,
+                  3 * mesh.triangle_count);
+    device::Buffer& depth = depths_[number++];
+    if (depth.size() != map_bytes) depth = {context_, map_bytes, device::Place::device, "shadows/map"};
     view.depth = depth.address();
     commands.copy(image->second, depth);
     stats.bytes += mesh.vertices.size() + mesh.triangles.size() + 3 * map_bytes;
@@ -48,9 +43,9 @@ PassStats ShadowMaps::update(const DisplayBuffers& mesh, const LightSet& lights)
 
   light_count_ = static_cast<std::uint32_t>(lights.records.size());
   shaped_ = lights.shaped;
-  vk::rewrite<gpu::LightRecord>(context_, lights.records, "shadows/lights", lights_);
-  vk::rewrite<gpu::LightShape>(context_, lights.shapes, "shadows/shapes", shapes_);
-  vk::rewrite<gpu::ShadowView>(context_, views, "shadows/views", views_);
+  device::rewrite<gpu::LightRecord>(context_, lights.records, "shadows/lights", lights_);
+  device::rewrite<gpu::LightShape>(context_, lights.shapes, "shadows/shapes", shapes_);
+  device::rewrite<gpu::ShadowView>(context_, views, "shadows/views", views_);
   return stats;
 }
 

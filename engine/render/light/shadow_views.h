@@ -15,7 +15,7 @@ namespace quadgraph {
 // times the sphere and of a spot light whose cone is narrower, else six of 90 degrees.
 std::vector<gpu::ShadowView> shadow_views(const Light& light, const Sphere& bounds);
 
-// Of light from a point of a surface that shines to the side `axis` points to; none if the body is behind it.
+// Views for light from a point of a surface that shines to the side `axis` points to; none if the body is behind it.
 std::vector<gpu::ShadowView> patch_views(const glm::vec3& position, const glm::vec3& axis, const Sphere& bounds);
 
 }  // namespace quadgraph

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <glm/trigonometric.hpp>
 
-#include "engine/render/display/draw.h"
+#include "engine/device/commands.h"
+#include "interface/display/ground.comp.h"
+#include "interface/display/ground_map.comp.h"
+#include "interface/light/shadow.vert.h"
 #include "shaders/display/ground_shared.h"
-#include "spirv/ground.comp.h"
-#include "spirv/ground_map.comp.h"
-#include "spirv/shadow.vert.h"
 
 namespace quadgraph {
 namespace {
@@ -22,9 +22,10 @@ int axis_of(UpAxis up) {
   return up == UpAxis::z ? 2 : 1;
 }
 
-float lowest(vk::Context& context, const DisplayBuffers& mesh, int axis) {
+float lowest(device::Device& context, const DisplayBuffers& mesh, int axis) {
   float least = INFINITY;
-  for (const glm::vec3& vertex : vk::download<glm::vec3>(context, mesh.vertices)) least = std::min(least, vertex[axis]);
+  for (const glm::vec3& vertex : device::download<glm::vec3>(context, mesh.vertices))
+    least = std::min(least, vertex[axis]);
   return least;
 }
 
@@ -41,22 +42,15 @@ glm::mat4 from_below(const glm::vec3& middle, float half_width, float far, int a
 
 }  // namespace
 
-Ground::Ground(vk::Context& context)
+Ground::Ground(device::Device& context)
     : context_(context),
-      below_(context,
-             {.vertex = shadow_vert,
-              .fragment = {},
-              .push_size = sizeof(gpu::ShadowPush),
-              .colour_formats = {},
-              .cull = VK_CULL_MODE_NONE},
+      below_(context, {.vertex = &shader::shadow_vert, .fragment = nullptr, .cull = device::Cull::none},
              "ground from below"),
-      map_(context, ground_map_comp, sizeof(gpu::GroundMapPush), "ground map"),
-      ground_(context, ground_comp, sizeof(gpu::GroundPush), "ground"),
-      image_(context,
-             {VK_FORMAT_D32_SFLOAT, gpu::GROUND_SIZE, gpu::GROUND_SIZE, 1, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT},
-             "picture/ground"),
-      depth_(context, sizeof(float) * texels, vk::Place::read, "picture/ground depth"),
-      shadow_(context, sizeof(float) * texels, vk::Place::device, "picture/ground shadow") {}
+      map_(context, shader::ground_map),
+      ground_(context, shader::ground),
+      image_(context, {device::Format::depth32_float, gpu::GROUND_SIZE, gpu::GROUND_SIZE}, "picture/ground"),
+      depth_(context, sizeof(float) * texels, device::Place::device, "picture/ground depth"),
+      shadow_(context, sizeof(float) * texels, device::Place::device, "picture/ground shadow") {}
 
 void Ground::make_map(const DisplayBuffers& mesh, const Sphere& bounds, UpAxis up) {
   const int axis = axis_of(up);
@@ -64,10 +58,10 @@ void Ground::make_map(const DisplayBuffers& mesh, const Sphere& bounds, UpAxis u
   middle_[axis] = lowest(context_, mesh, axis);
   half_width_ = margin * bounds.radius;
   const float far = 2.02f * bounds.radius, size = gpu::GROUND_SIZE;
-  vk::Commands commands(context_);
-  draw(commands, {{}, &image_}, {0, 0, size, size}, below_,
-       gpu::ShadowPush{from_below(middle_, half_width_, far, axis), mesh.vertices.address()}, &mesh.triangles,
-       3 * mesh.triangle_count);
+  device::Commands commands(context_);
+  commands.draw({{}, &image_}, {0, 0, size, size}, below_,
+                gpu::ShadowPush{from_below(middle_, half_width_, far, axis), mesh.vertices.address()}, &mesh.triangles,
+                3 * mesh.triangle_count);
   commands.copy(image_, depth_);
   commands.dispatch(
       map_,
@@ -93,7 +87,7 @@ PassStats Ground::run(const DisplayBuffers& mesh, const Sphere& bounds, const Vi
                              .z_up = view.up == UpAxis::z ? 1u : 0u,
                              .width = picture.width,
                              .height = picture.height};
-  vk::Commands commands(context_, 1);
+  device::Commands commands(context_, 1);
   commands.begin_pass("ground");
   commands.dispatch(ground_, push, picture.pixels());
   commands.end_pass();

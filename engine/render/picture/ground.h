@@ -4,16 +4,16 @@
 #include <optional>
 
 #include "engine/base/pass_stats.h"
+#include "engine/device/pipeline.h"
 #include "engine/render/display/camera.h"
 #include "engine/render/display/display_buffers.h"
 #include "engine/render/picture/picture_buffers.h"
-#include "engine/vk/pipeline.h"
 
 namespace quadgraph {
 
 class Ground {
  public:
-  explicit Ground(vk::Context& context);
+  explicit Ground(device::Device& context);
 
   // The body has another shape.
   void invalidate() { made_for_.reset(); }
@@ -25,11 +25,11 @@ class Ground {
  private:
   void make_map(const DisplayBuffers& mesh, const Sphere& bounds, UpAxis up);
 
-  vk::Context& context_;
-  vk::GraphicsPass below_;
-  vk::ComputePass map_, ground_;
-  vk::Image image_;
-  vk::Buffer depth_, shadow_;
+  device::Device& context_;
+  device::GraphicsPass below_;
+  device::ComputePass map_, ground_;
+  device::Image image_;
+  device::Buffer depth_, shadow_;
   std::optional<UpAxis> made_for_;
   glm::vec3 middle_{0};   // mm, of the map, on the ground
   float half_width_ = 0;  // mm

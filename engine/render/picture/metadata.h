@@ -5,11 +5,11 @@
 #include <span>
 #include <string>
 
+#include "engine/device/device.h"
 #include "engine/reference/solution.h"
 #include "engine/render/display/camera.h"
 #include "engine/render/light/lights.h"
 #include "engine/render/picture/picture.h"
-#include "engine/vk/context.h"
 #include "shaders/shared/shared.h"
 
 namespace quadgraph {
@@ -26,7 +26,7 @@ struct PictureFacts {
   const SolveReport& report;
   std::optional<View> view;
   std::string_view radiance;  // of the picture
-  const vk::DeviceInfo& device;
+  const device::DeviceInfo& device;
 };
 
 Metadata describe(const PictureFacts& facts);

@@ -6,30 +6,30 @@ namespace {
 constexpr std::array<const char*, PICTURE_LAYERS> names = {"picture/scattered", "picture/specular",
                                                            "picture/unscattered", "picture/transmittance"};
 
-void grow(vk::Context& context, std::uint64_t bytes, const char* name, vk::Buffer& buffer) {
-  if (buffer.size() < bytes) buffer = vk::Buffer(context, bytes, vk::Place::device, name);
+void grow(device::Device& context, std::uint64_t bytes, const char* name, device::Buffer& buffer) {
+  if (buffer.size() < bytes) buffer = device::Buffer(context, bytes, device::Place::device, name);
 }
 
-std::vector<float> floats(vk::Context& context, const vk::Buffer& buffer, std::uint64_t count) {
+std::vector<float> floats(device::Device& context, const device::Buffer& buffer, std::uint64_t count) {
   std::vector<float> values(count);
-  vk::read_bytes(context, buffer, std::as_writable_bytes(std::span(values)));
+  device::read_bytes(context, buffer, std::as_writable_bytes(std::span(values)));
   return values;
 }
 
 }  // namespace
 
-void PictureBuffers::resize(vk::Context& context, std::uint32_t new_width, std::uint32_t new_height) {
+void PictureBuffers::resize(device::Device& context, std::uint32_t new_width, std::uint32_t new_height) {
   width = new_width;
   height = new_height;
   for (std::size_t k = 0; k < layers.size(); ++k) grow(context, sizeof(glm::vec3) * pixels(), names[k], layers[k]);
   grow(context, sizeof(float) * pixels(), "picture/alpha", alpha);
 }
 
-void PictureBuffers::make_room_around(vk::Context& context) {
+void PictureBuffers::make_room_around(device::Device& context) {
   grow(context, sizeof(glm::vec3) * pixels(), "picture/surroundings", around);
 }
 
-Picture read_picture(vk::Context& context, const PictureBuffers& buffers) {
+Picture read_picture(device::Device& context, const PictureBuffers& buffers) {
   const auto rgb = [&](std::size_t k) { return floats(context, buffers.layers[k], 3 * buffers.pixels()); };
   return {.width = buffers.width,
           .height = buffers.height,

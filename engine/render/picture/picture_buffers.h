@@ -4,28 +4,28 @@
 #include <array>
 #include <cstdint>
 
+#include "engine/device/memory.h"
 #include "engine/render/picture/picture.h"
-#include "engine/vk/memory.h"
 #include "shaders/light/render_shared.h"
 
 namespace quadgraph {
 
 // The layers of Picture, row after row, the top one first. Buffers may be longer than the picture.
 struct PictureBuffers {
-  std::uint32_t width = 0, height = 0;            // pixels
-  std::array<vk::Buffer, PICTURE_LAYERS> layers;  // vec3 per pixel: scattered, specular, unscattered, transmittance
-  vk::Buffer alpha;                               // float per pixel
-  vk::Buffer around;                              // vec3 per pixel: surroundings, if has_surroundings
+  std::uint32_t width = 0, height = 0;                // pixels
+  std::array<device::Buffer, PICTURE_LAYERS> layers;  // vec3 per pixel: scattered, specular, unscattered, transmittance
+  device::Buffer alpha;                               // float per pixel
+  device::Buffer around;                              // vec3 per pixel: surroundings, if has_surroundings
   bool has_surroundings = false;
   bool false_colour = false;  // as in Picture
 
   std::uint64_t pixels() const { return std::uint64_t{width} * height; }
 
   // Takes the size, and memory for it where there is too little.
-  void resize(vk::Context& context, std::uint32_t new_width, std::uint32_t new_height);
-  void make_room_around(vk::Context& context);
+  void resize(device::Device& context, std::uint32_t new_width, std::uint32_t new_height);
+  void make_room_around(device::Device& context);
 };
 
-Picture read_picture(vk::Context& context, const PictureBuffers& buffers);
+Picture read_picture(device::Device& context, const PictureBuffers& buffers);
 
 }  // namespace quadgraph

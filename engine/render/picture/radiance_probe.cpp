@@ -5,9 +5,9 @@
 #include <string>
 
 #include "engine/base/error.h"
+#include "engine/device/commands.h"
 #include "engine/render/picture/rasteriser.h"
-#include "engine/vk/commands.h"
-#include "spirv/radiance_probe.comp.h"
+#include "interface/gather/radiance_probe.comp.h"
 
 namespace quadgraph {
 namespace {
@@ -34,16 +34,15 @@ void check(const Level& level, std::span<const std::uint32_t> face, std::span<co
 
 }  // namespace
 
-RadianceProbe::RadianceProbe(vk::Context& context)
-    : context_(context), pass_(context, radiance_probe_comp, sizeof(gpu::RadianceProbePush), "radiance probe") {}
+RadianceProbe::RadianceProbe(device::Device& context) : context_(context), pass_(context, shader::radiance_probe) {}
 
 Leaving RadianceProbe::run(const Level& level, const GatherField& field, float eta, std::span<const std::uint32_t> face,
                            std::span<const glm::vec3> direction) {
   check(level, face, direction);
-  const vk::Buffer faces = vk::upload(context_, face, "probe/faces");
-  const vk::Buffer directions = vk::upload(context_, direction, "probe/directions");
-  const vk::Buffer radiance(context_, direction.size_bytes(), vk::Place::device, "probe/radiance");
-  const vk::Buffer transmittance(context_, direction.size_bytes(), vk::Place::device, "probe/transmittance");
+  const device::Buffer faces = device::upload(context_, face, "probe/faces");
+  const device::Buffer directions = device::upload(context_, direction, "probe/directions");
+  const device::Buffer radiance(context_, direction.size_bytes(), device::Place::device, "probe/radiance");
+  const device::Buffer transmittance(context_, direction.size_bytes(), device::Place::device, "probe/transmittance");
   const gpu::RadianceProbePush push{.solid = field.solid_on_device().address(),
                                     .points = field.points().address(),
                                     .scale = field.scale().address(),
@@ -53,10 +52,10 @@ Leaving RadianceProbe::run(const Level& level, const GatherField& field, float e
                                     .transmittance = transmittance.address(),
                                     .count = static_cast<std::uint32_t>(face.size()),
                                     .radiance_norm = static_cast<float>(radiance_norm(eta))};
-  vk::Commands commands(context_);
+  device::Commands commands(context_);
   commands.dispatch(pass_, push, face.size());
   commands.submit_and_wait();
-  return {vk::download<glm::vec3>(context_, radiance), vk::download<glm::vec3>(context_, transmittance)};
+  return {device::download<glm::vec3>(context_, radiance), device::download<glm::vec3>(context_, transmittance)};
 }
 
 }  // namespace quadgraph

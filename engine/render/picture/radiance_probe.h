@@ -5,19 +5,19 @@
 #include <span>
 #include <vector>
 
+#include "engine/device/pipeline.h"
 #include "engine/solve/gather_field.h"
-#include "engine/vk/pipeline.h"
 
 namespace quadgraph {
 
-// Of light that leaves points of the surface: W/(mm^2 sr), and the share of what is behind the body that is seen.
+// Radiance that leaves points of the surface, W/(mm^2 sr), and the share of the background that is seen through them.
 struct Leaving {
   std::vector<glm::vec3> radiance, transmittance;
 };
 
 class RadianceProbe {
  public:
-  explicit RadianceProbe(vk::Context& context);
+  explicit RadianceProbe(device::Device& context);
 
   // At the centroids of outside faces along unit directions. Throws InputError for a face that is not there or a
   // direction that is not unit and outward.
@@ -25,8 +25,8 @@ class RadianceProbe {
               std::span<const glm::vec3> direction);
 
  private:
-  vk::Context& context_;
-  vk::ComputePass pass_;
+  device::Device& context_;
+  device::ComputePass pass_;
 };
 
 }  // namespace quadgraph

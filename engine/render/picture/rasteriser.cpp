@@ -7,23 +7,22 @@
 #include <span>
 
 #include "engine/optics/fresnel.h"
+#include "interface/display/false_colour.frag.h"
+#include "interface/display/false_colour.vert.h"
+#include "interface/display/gather.comp.h"
+#include "interface/display/resolve.comp.h"
+#include "interface/display/surface.frag.h"
+#include "interface/display/surface.vert.h"
+#include "interface/display/surface_gathered.frag.h"
+#include "interface/display/surface_gathered.vert.h"
+#include "interface/display/surface_path.frag.h"
+#include "interface/display/surface_path.vert.h"
 #include "shaders/path/path_light_shared.h"
-#include "spirv/false_colour.frag.h"
-#include "spirv/false_colour.vert.h"
-#include "spirv/gather.comp.h"
-#include "spirv/resolve.comp.h"
-#include "spirv/surface.frag.h"
-#include "spirv/surface.vert.h"
-#include "spirv/surface_gathered.frag.h"
-#include "spirv/surface_gathered.vert.h"
-#include "spirv/surface_path.frag.h"
-#include "spirv/surface_path.vert.h"
 
 namespace quadgraph {
 namespace {
 
 constexpr std::uint32_t tile_pixels = 512;  // per side; 96 MiB of samples
-constexpr VkFormat sample_format = VK_FORMAT_R32G32B32A32_SFLOAT;
 
 gpu::SurfaceScene scene(const RasterInput& input, const Camera& camera) {
   gpu::SurfaceScene scene{.clip_from_world = camera.clip_from_world,
@@ -90,12 +89,9 @@ std::uint32_t variant_of(const Input& input) {
          (input.placed_roughness != nullptr ? VARIANT_PLACED_ROUGHNESS : 0u);
 }
 
-vk::GraphicsOptions pass_options(vk::Spirv fragment, std::uint32_t variant = 0) {
-  return {.vertex = surface_vert,
-          .fragment = fragment,
-          .push_size = sizeof(gpu::SurfacePush),
-          .colour_formats = std::vector<VkFormat>(SAMPLE_LAYERS, sample_format),
-          .variant = variant};
+device::GraphicsOptions pass_options(const device::Shader& vertex, const device::Shader& fragment,
+                                     std::uint32_t variant = 0) {
+  return {.vertex = &vertex, .fragment = &fragment, .colours = SAMPLE_LAYERS, .variant = variant};
 }
 
 }  // namespace
@@ -108,26 +104,22 @@ struct Rasteriser::Tile {
 
 // For tiles of up to as many pixels.
 struct Rasteriser::Targets {
-  Targets(vk::Context& context, std::uint32_t tile_width, std::uint32_t tile_height)
+  Targets(device::Device& context, std::uint32_t tile_width, std::uint32_t tile_height)
       : width(tile_width),
         height(tile_height),
-        depth(context, image_options(VK_FORMAT_D32_SFLOAT, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT),
-              "picture/depth") {
+        depth(context, image_options(device::Format::depth32_float), "picture/depth") {
     for (int k = 0; k < SAMPLE_LAYERS; ++k) {
-      images.emplace_back(context, image_options(sample_format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT),
-                          "picture/samples");
-      samples.emplace_back(context, 64ull * width * height, vk::Place::read, "picture/samples");
+      images.emplace_back(context, image_options(device::Format::rgba32_float), "picture/samples");
+      samples.emplace_back(context, 64ull * width * height, device::Place::device, "picture/samples");
     }
   }
 
-  vk::ImageOptions image_options(VkFormat format, VkImageUsageFlags usage) const {
-    return {format, 2 * width, 2 * height, 1, usage};
-  }
+  device::ImageOptions image_options(device::Format format) const { return {format, 2 * width, 2 * height}; }
 
   std::uint32_t width, height;  // pixels of 2 x 2 samples
-  std::vector<vk::Image> images;
-  vk::Image depth;
-  std::vector<vk::Buffer> samples;  // the same
+  std::vector<device::Image> images;
+  device::Image depth;
+  std::vector<device::Buffer> samples;  // the same
 };
 
 double radiance_norm(double eta) {
@@ -140,40 +132,34 @@ double radiance_norm(double eta) {
   return 2 * std::numbers::pi * sum / steps;
 }
 
-Rasteriser::Rasteriser(vk::Context& context)
-    : context_(context), resolve_(context, resolve_comp, sizeof(gpu::ResolvePush), "resolve") {}
+Rasteriser::Rasteriser(device::Device& context) : context_(context), resolve_(context, shader::resolve) {}
 
-const vk::GraphicsPass& Rasteriser::surface(const RasterInput& input) {
+const device::GraphicsPass& Rasteriser::surface(const RasterInput& input) {
   const bool gathered = input.gather != nullptr;
   const std::uint32_t variant = variant_of(input);
   auto& pass = surfaces_[(gathered ? 1 : 0) + 2 * variant];
   if (pass) return *pass;
-  vk::GraphicsOptions options = pass_options(surface_frag, variant);
-  if (gathered) {
-    options.vertex = surface_gathered_vert;
-    options.fragment = surface_gathered_frag;
-  }
-  return pass.emplace(context_, options, gathered ? "surface gathered" : "surface");
+  if (!gathered)
+    return pass.emplace(context_, pass_options(shader::surface_vert, shader::surface_frag, variant), "surface");
+  return pass.emplace(context_, pass_options(shader::surface_gathered_vert, shader::surface_gathered_frag, variant),
+                      "surface gathered");
 }
 
-const vk::GraphicsPass& Rasteriser::surface(const PathInput& input) {
+const device::GraphicsPass& Rasteriser::surface(const PathInput& input) {
   const std::uint32_t variant = variant_of(input);
   auto& pass = paths_[variant];
   if (pass) return *pass;
-  vk::GraphicsOptions options = pass_options(surface_path_frag, variant);
-  options.vertex = surface_path_vert;
-  options.push_size = sizeof(gpu::SurfacePathPush);
-  options.cull = VK_CULL_MODE_NONE;
+  device::GraphicsOptions options = pass_options(shader::surface_path_vert, shader::surface_path_frag, variant);
+  options.cull = device::Cull::none;
   return pass.emplace(context_, options, "surface of cells");
 }
 
-const vk::ComputePass& Rasteriser::resolve(const RasterInput& input) {
+const device::ComputePass& Rasteriser::resolve(const RasterInput& input) {
   if (input.gather == nullptr) return resolve_;
   const std::uint32_t shaped = input.shadows.shaped() ? 1 : 0;
   auto& pass = gathers_[shaped];
   if (pass) return *pass;
-  return pass.emplace(context_, gather_comp, static_cast<std::uint32_t>(sizeof(gpu::ResolvePush)), "gather",
-                      vk::ComputePass::default_workgroup_size, shaped);
+  return pass.emplace(context_, shader::gather, device::ComputeOptions{.variant = shaped});
 }
 
 Rasteriser::~Rasteriser() = default;
@@ -190,14 +176,14 @@ void Rasteriser::make_room(std::uint32_t width, std::uint32_t height) {
   targets_ = std::make_unique<Targets>(context_, tile_width, tile_height);
 }
 
-Viewport Rasteriser::viewport(const Tile& tile) const {
+device::Viewport Rasteriser::viewport(const Tile& tile) const {
   return {-2.0f * static_cast<float>(tile.x), -2.0f * static_cast<float>(tile.y),
           2.0f * static_cast<float>(picture_.width), 2.0f * static_cast<float>(picture_.height)};
 }
 
-DrawTarget Rasteriser::target(const Tile& tile) const {
-  DrawTarget target{{}, &targets_->depth, 2 * tile.width, 2 * tile.height};
-  for (const vk::Image& image : targets_->images) target.colours.push_back(&image);
+device::DrawTarget Rasteriser::target(const Tile& tile) const {
+  device::DrawTarget target{{}, &targets_->depth, 2 * tile.width, 2 * tile.height};
+  for (const device::Image& image : targets_->images) target.colours.push_back(&image);
   return target;
 }
 
@@ -217,7 +203,7 @@ gpu::ResolvePush Rasteriser::resolve_push(std::uint64_t scene, const Tile& tile)
   return resolve;
 }
 
-void Rasteriser::record_resolve(vk::Commands& commands, const char* name, const vk::ComputePass& pass,
+void Rasteriser::record_resolve(device::Commands& commands, const char* name, const device::ComputePass& pass,
                                 std::uint64_t scene, const Tile& tile) {
   commands.begin_pass(name);
   for (std::size_t k = 0; k < SAMPLE_LAYERS; ++k) {
@@ -227,31 +213,31 @@ void Rasteriser::record_resolve(vk::Commands& commands, const char* name, const 
   commands.end_pass();
 }
 
-void Rasteriser::record(vk::Commands& commands, const RasterInput& input, const Tile& tile) {
+void Rasteriser::record(device::Commands& commands, const RasterInput& input, const Tile& tile) {
   commands.begin_pass("surface");
-  draw(commands, target(tile), viewport(tile), surface(input), surface_push(scene_.address(), input.placed_roughness),
-       input.gather != nullptr ? nullptr : &input.mesh.triangles, 3 * input.mesh.triangle_count);
+  commands.draw(target(tile), viewport(tile), surface(input), surface_push(scene_.address(), input.placed_roughness),
+                input.gather != nullptr ? nullptr : &input.mesh.triangles, 3 * input.mesh.triangle_count);
   commands.end_pass();
   record_resolve(commands, input.gather != nullptr ? "gather" : "resolve", resolve(input), scene_.address(), tile);
 }
 
-void Rasteriser::record(vk::Commands& commands, const PathInput& input, const Tile& tile) {
+void Rasteriser::record(device::Commands& commands, const PathInput& input, const Tile& tile) {
   commands.begin_pass("surface");
-  draw(commands, target(tile), viewport(tile), surface(input),
-       gpu::SurfacePathPush{surface_push(scene_.address(), input.placed_roughness), input.field.address()},
-       &input.mesh.triangles, 3 * input.mesh.triangle_count);
+  commands.draw(target(tile), viewport(tile), surface(input),
+                gpu::SurfacePathPush{surface_push(scene_.address(), input.placed_roughness), input.field.address()},
+                &input.mesh.triangles, 3 * input.mesh.triangle_count);
   commands.end_pass();
   record_resolve(commands, "resolve", resolve_, scene_.address(), tile);
 }
 
-void Rasteriser::record(vk::Commands& commands, const FalseColours& input, const Camera& camera, const Tile& tile) {
+void Rasteriser::record(device::Commands& commands, const FalseColours& input, const Camera& camera, const Tile& tile) {
   const gpu::FalseColourPush push{.clip_from_world = camera.clip_from_world,
                                   .vertices = input.vertices.address(),
                                   .eye = camera.eye,
                                   .plane = input.plane,
                                   .diverging = input.diverging ? 1u : 0u};
   commands.begin_pass("false colour");
-  draw(commands, target(tile), viewport(tile), *false_colour_, push, &input.indices, input.vertex_count);
+  commands.draw(target(tile), viewport(tile), *false_colour_, push, &input.indices, input.vertex_count);
   commands.end_pass();
   record_resolve(commands, "resolve", resolve_, scene_.address(), tile);
 }
@@ -264,7 +250,7 @@ std::vector<PassStats> Rasteriser::run_tiles(std::uint32_t width, std::uint32_t 
   for (std::uint32_t y = 0; y < height; y += tile_pixels) {
     for (std::uint32_t x = 0; x < width; x += tile_pixels) {
       const Tile tile{x, y, std::min(tile_pixels, width - x), std::min(tile_pixels, height - y)};
-      vk::Commands commands(context_, 2);
+      device::Commands commands(context_, 2);
       record_tile(commands, tile);
       const auto times = commands.submit_and_wait();
       for (std::size_t k = 0; k < passes.size(); ++k) {
@@ -281,15 +267,15 @@ std::vector<PassStats> Rasteriser::run_tiles(std::uint32_t width, std::uint32_t 
 }
 
 void Rasteriser::write_scene(const gpu::SurfaceScene& scene) {
-  if (scene_.size() == 0) scene_ = {context_, sizeof(gpu::SurfaceScene), vk::Place::read, "picture/scene"};
-  vk::write_bytes(context_, scene_, std::as_bytes(std::span(&scene, 1)));
+  if (scene_.size() == 0) scene_ = {context_, sizeof(gpu::SurfaceScene), device::Place::device, "picture/scene"};
+  device::write_bytes(context_, scene_, std::as_bytes(std::span(&scene, 1)));
 }
 
 std::vector<PassStats> Rasteriser::run(const PathInput& input, const Camera& camera, std::uint32_t width,
                                        std::uint32_t height) {
   write_scene(scene(input, camera));
   auto passes =
-      run_tiles(width, height, [&](vk::Commands& commands, const Tile& tile) { record(commands, input, tile); });
+      run_tiles(width, height, [&](device::Commands& commands, const Tile& tile) { record(commands, input, tile); });
   picture_.false_colour = false;
   passes[0].bytes += passes[0].count * (64ull * input.mesh.vertex_count + input.mesh.triangles.size());
   return passes;
@@ -299,11 +285,11 @@ std::vector<PassStats> Rasteriser::run(const RasterInput& input, const Camera& c
                                        std::uint32_t height) {
   write_scene(scene(input, camera));
   auto passes =
-      run_tiles(width, height, [&](vk::Commands& commands, const Tile& tile) { record(commands, input, tile); });
+      run_tiles(width, height, [&](device::Commands& commands, const Tile& tile) { record(commands, input, tile); });
   picture_.false_colour = false;
   picture_.has_surroundings = false;
   passes[0].bytes += passes[0].count * (64ull * input.mesh.vertex_count + input.mesh.triangles.size());
-  // Of the body, as if every vertex were read once.
+  // Bytes of the body are counted as if every vertex were read once.
   if (input.gather != nullptr) passes[1].bytes += passes[1].count * input.gather->field.points().size();
   return passes;
 }
@@ -311,25 +297,23 @@ std::vector<PassStats> Rasteriser::run(const RasterInput& input, const Camera& c
 std::vector<PassStats> Rasteriser::run(const FalseColours& input, const Camera& camera, std::uint32_t width,
                                        std::uint32_t height) {
   if (!false_colour_) {
-    vk::GraphicsOptions options = pass_options(false_colour_frag);
-    options.vertex = false_colour_vert;
-    options.push_size = sizeof(gpu::FalseColourPush);
-    options.cull = VK_CULL_MODE_NONE;
+    device::GraphicsOptions options = pass_options(shader::false_colour_vert, shader::false_colour_frag);
+    options.cull = device::Cull::none;
     false_colour_.emplace(context_, options, "false colour");
   }
   auto passes = run_tiles(width, height,
-                          [&](vk::Commands& commands, const Tile& tile) { record(commands, input, camera, tile); });
+                          [&](device::Commands& commands, const Tile& tile) { record(commands, input, camera, tile); });
   picture_.false_colour = true;
   picture_.has_surroundings = false;
   passes[0].bytes += passes[0].count * input.vertices.size();
   return passes;
 }
 
-FalseColours upload_false_colours(vk::Context& context, const FalseMesh& mesh, const Plane& plane, bool diverging) {
+FalseColours upload_false_colours(device::Device& context, const FalseMesh& mesh, const Plane& plane, bool diverging) {
   std::vector<std::uint32_t> indices(mesh.size());
   std::iota(indices.begin(), indices.end(), 0u);
-  return {.vertices = vk::upload<gpu::FalseVertex>(context, mesh, "picture/inside", vk::Place::device),
-          .indices = vk::upload<std::uint32_t>(context, indices, "picture/inside", vk::Place::device),
+  return {.vertices = device::upload<gpu::FalseVertex>(context, mesh, "picture/inside"),
+          .indices = device::upload<std::uint32_t>(context, indices, "picture/inside"),
           .vertex_count = static_cast<std::uint32_t>(mesh.size()),
           .plane = plane,
           .diverging = diverging};

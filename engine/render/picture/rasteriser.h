@@ -7,15 +7,15 @@
 #include <vector>
 
 #include "engine/base/pass_stats.h"
+#include "engine/device/commands.h"
+#include "engine/device/pipeline.h"
 #include "engine/render/display/camera.h"
 #include "engine/render/display/display_buffers.h"
-#include "engine/render/display/draw.h"
 #include "engine/render/inside/false_mesh.h"
 #include "engine/render/light/shadow_maps.h"
 #include "engine/render/picture/picture_buffers.h"
 #include "engine/solve/gather_field.h"
 #include "engine/solve/level_buffers.h"
-#include "engine/vk/pipeline.h"
 #include "shaders/light/render_shared.h"
 
 namespace quadgraph {
@@ -27,13 +27,13 @@ double radiance_norm(double eta);
 // For radiance gathered along view rays.
 struct GatherView {
   const GatherField& field;
-  const vk::Buffer& triangle_face;  // display_faces.h
+  const device::Buffer& triangle_face;  // display_faces.h
 };
 
 // A RoughnessMap on the device.
 struct PlacedRoughness {
-  const vk::Buffer& texels;
-  const vk::Buffer& rest;  // vec3 per display vertex, mm
+  const device::Buffer& texels;
+  const device::Buffer& rest;  // vec3 per display vertex, mm
   gpu::ImageBox box;
   gpu::ImageLevels image;
   float roughness;
@@ -42,8 +42,8 @@ struct PlacedRoughness {
 struct RasterInput {
   const DisplayBuffers& mesh;
   const LevelBuffers& finest;
-  const vk::Buffer& vertex_exitance;     // vec3 per surface vertex of the finest level, W/mm^2
-  const vk::Buffer& vertex_unscattered;  // the same
+  const device::Buffer& vertex_exitance;     // vec3 per surface vertex of the finest level, W/mm^2
+  const device::Buffer& vertex_unscattered;  // the same
   const ShadowMaps& shadows;
   float eta = 1;
   float roughness = 0.3f;                             // alpha of GGX
@@ -54,7 +54,7 @@ struct RasterInput {
 // For radiance from the cells of the shortest-path method.
 struct PathInput {
   const DisplayBuffers& mesh;
-  const vk::Buffer& field;  // gpu::PathField
+  const device::Buffer& field;  // gpu::PathField
   const ShadowMaps& shadows;
   float eta = 1;
   float roughness = 0.3f;                             // alpha of GGX
@@ -63,27 +63,27 @@ struct PathInput {
 
 // A view of the inside on the device.
 struct FalseColours {
-  vk::Buffer vertices;  // gpu::FalseVertex, three per triangle
-  vk::Buffer indices;   // u32, 0, 1, 2 ...
+  device::Buffer vertices;  // gpu::FalseVertex, three per triangle
+  device::Buffer indices;   // u32, 0, 1, 2 ...
   std::uint32_t vertex_count = 0;
   Plane plane{0, 0, 1, 0};
   bool diverging = false;
 };
 
-FalseColours upload_false_colours(vk::Context& context, const FalseMesh& mesh, const Plane& plane, bool diverging);
+FalseColours upload_false_colours(device::Device& context, const FalseMesh& mesh, const Plane& plane, bool diverging);
 
 // Draws in tiles, so that the memory of the samples does not grow with the picture. What it draws into is kept from
 // picture to picture.
 class Rasteriser {
  public:
-  explicit Rasteriser(vk::Context& context);
+  explicit Rasteriser(device::Device& context);
   ~Rasteriser();
 
   std::vector<PassStats> run(const RasterInput& input, const Camera& camera, std::uint32_t width, std::uint32_t height);
 
   std::vector<PassStats> run(const PathInput& input, const Camera& camera, std::uint32_t width, std::uint32_t height);
 
-  // The same of a view of the inside.
+  // Draws a view of the inside.
   std::vector<PassStats> run(const FalseColours& input, const Camera& camera, std::uint32_t width,
                              std::uint32_t height);
 
@@ -96,32 +96,32 @@ class Rasteriser {
   struct Targets;
 
   void make_room(std::uint32_t width, std::uint32_t height);
-  Viewport viewport(const Tile& tile) const;
-  DrawTarget target(const Tile& tile) const;
+  device::Viewport viewport(const Tile& tile) const;
+  device::DrawTarget target(const Tile& tile) const;
   gpu::ResolvePush resolve_push(std::uint64_t scene, const Tile& tile) const;
-  void record(vk::Commands& commands, const RasterInput& input, const Tile& tile);
-  void record(vk::Commands& commands, const PathInput& input, const Tile& tile);
-  void record(vk::Commands& commands, const FalseColours& input, const Camera& camera, const Tile& tile);
-  void record_resolve(vk::Commands& commands, const char* name, const vk::ComputePass& pass, std::uint64_t scene,
-                      const Tile& tile);
+  void record(device::Commands& commands, const RasterInput& input, const Tile& tile);
+  void record(device::Commands& commands, const PathInput& input, const Tile& tile);
+  void record(device::Commands& commands, const FalseColours& input, const Camera& camera, const Tile& tile);
+  void record_resolve(device::Commands& commands, const char* name, const device::ComputePass& pass,
+                      std::uint64_t scene, const Tile& tile);
 
   template <typename Record>
   std::vector<PassStats> run_tiles(std::uint32_t width, std::uint32_t height, const Record& record_tile);
 
   void write_scene(const gpu::SurfaceScene& scene);
-  const vk::GraphicsPass& surface(const RasterInput& input);
-  const vk::GraphicsPass& surface(const PathInput& input);
-  const vk::ComputePass& resolve(const RasterInput& input);
+  const device::GraphicsPass& surface(const RasterInput& input);
+  const device::GraphicsPass& surface(const PathInput& input);
+  const device::ComputePass& resolve(const RasterInput& input);
 
-  vk::Context& context_;
-  std::array<std::optional<vk::GraphicsPass>, 8> surfaces_;  // gathered or not, by variant; at first use
-  std::array<std::optional<vk::GraphicsPass>, 4> paths_;     // from cells, by variant; the same
-  vk::ComputePass resolve_;
-  std::array<std::optional<vk::ComputePass>, 2> gathers_;  // without shaped lights and with; at first use
-  std::optional<vk::GraphicsPass> false_colour_;           // made at first use
+  device::Device& context_;
+  std::array<std::optional<device::GraphicsPass>, 8> surfaces_;  // gathered or not, by variant; at first use
+  std::array<std::optional<device::GraphicsPass>, 4> paths_;     // from cells, by variant; the same
+  device::ComputePass resolve_;
+  std::array<std::optional<device::ComputePass>, 2> gathers_;  // without shaped lights and with; at first use
+  std::optional<device::GraphicsPass> false_colour_;           // made at first use
   PictureBuffers picture_;
   std::unique_ptr<Targets> targets_;  // of a tile
-  vk::Buffer scene_;                  // made at first use, as the targets are: no solve needs them
+  device::Buffer scene_;              // made at first use, as the targets are: no solve needs them
 };
 
 }  // namespace quadgraph

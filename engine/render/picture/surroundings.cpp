@@ -4,21 +4,19 @@
 #include <cmath>
 #include <glm/trigonometric.hpp>
 
+#include "engine/device/commands.h"
 #include "engine/render/light/image_file.h"
-#include "engine/vk/commands.h"
-#include "shaders/display/surroundings_shared.h"
-#include "spirv/surroundings.comp.h"
+#include "interface/display/surroundings.comp.h"
 
 namespace quadgraph {
 
-Surroundings::Surroundings(vk::Context& context)
-    : context_(context), pass_(context, surroundings_comp, sizeof(gpu::SurroundingsPush), "surroundings") {}
+Surroundings::Surroundings(device::Device& context) : context_(context), pass_(context, shader::surroundings) {}
 
 const Surroundings::Seen& Surroundings::seen(const std::string& file) {
   auto image = load_pyramid(file);
   Seen& known = seen_[file];
   if (known.image == image) return known;
-  known.texels = vk::upload<glm::vec3>(context_, image->texels, "picture/surroundings image");
+  known.texels = device::upload<glm::vec3>(context_, image->texels, "picture/surroundings image");
   known.image = std::move(image);
   return known;
 }
@@ -33,7 +31,7 @@ bool Surroundings::run(std::span<const Light> lights, const View& view, const Ca
   picture.make_room_around(context_);
   const float half_height = std::tan(0.5f * glm::radians(view.vertical_fov));
   const float half_width = half_height * static_cast<float>(picture.width) / static_cast<float>(picture.height);
-  vk::Commands commands(context_, 1);
+  device::Commands commands(context_, 1);
   commands.begin_pass("surroundings");
   bool first = true;
   for (const Light& light : lights) {

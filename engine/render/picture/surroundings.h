@@ -6,16 +6,16 @@
 #include <string>
 
 #include "engine/base/pass_stats.h"
+#include "engine/device/pipeline.h"
 #include "engine/render/display/camera.h"
 #include "engine/render/light/light_set.h"
 #include "engine/render/picture/picture_buffers.h"
-#include "engine/vk/pipeline.h"
 
 namespace quadgraph {
 
 class Surroundings {
  public:
-  explicit Surroundings(vk::Context& context);
+  explicit Surroundings(device::Device& context);
 
   // Writes picture.surroundings, the sum of all environment lights as sharp as their files are; false, and nothing, if
   // there is none. Throws InputError as read_image.
@@ -25,13 +25,13 @@ class Surroundings {
  private:
   struct Seen {
     std::shared_ptr<const ImagePyramid> image;
-    vk::Buffer texels;
+    device::Buffer texels;
   };
 
   const Seen& seen(const std::string& file);
 
-  vk::Context& context_;
-  vk::ComputePass pass_;
+  device::Device& context_;
+  device::ComputePass pass_;
   std::map<std::string, Seen> seen_;
 };
 

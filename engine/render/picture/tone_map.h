@@ -31,8 +31,8 @@ float srgb_encode(float linear);
 inline constexpr double exposure_quantile = 0.95;
 inline constexpr double exposure_bright = 0.4;
 
-// The same quantile of their brightest channel is brought to no more than this, so that what is of one pure colour,
-// which has little luminance, keeps its shape too.
+// That quantile of the brightest channel is brought to no more than this, so that surfaces of a saturated colour, whose
+// luminance is low, keep their shape too.
 inline constexpr double exposure_most = 0.9;
 
 // Those quantiles of the luminance and of the brightest channel of covered pixels.

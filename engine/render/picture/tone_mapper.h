@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
+#include "engine/device/pipeline.h"
 #include "engine/render/picture/picture_buffers.h"
 #include "engine/render/picture/tone_map.h"
-#include "engine/vk/pipeline.h"
 
 namespace quadgraph {
 
@@ -17,19 +17,19 @@ struct ScreenPart {
 
 class ToneMapper {
  public:
-  explicit ToneMapper(vk::Context& context);
+  explicit ToneMapper(device::Device& context);
 
   // The stops of exposure_of, within 1/128 of one.
   float exposure(const PictureBuffers& picture, const ToneOptions& options);
 
   // Four bytes per pixel of the part, row after row; to_srgb8 within one code. Kept until the next call.
-  const vk::Buffer& run(const PictureBuffers& picture, const ToneOptions& options, float exposure_stops,
-                        const ScreenPart& part);
+  const device::Buffer& run(const PictureBuffers& picture, const ToneOptions& options, float exposure_stops,
+                            const ScreenPart& part);
 
  private:
-  vk::Context& context_;
-  vk::ComputePass luminance_, tone_map_;
-  vk::Buffer bins_, bins_on_host_, pixels_;
+  device::Device& context_;
+  device::ComputePass luminance_, tone_map_;
+  device::Buffer bins_, bins_on_host_, pixels_;
 };
 
 }  // namespace quadgraph

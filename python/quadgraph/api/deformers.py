@@ -1,7 +1,7 @@
 """Steps of a deformation, applied in order to the body at rest. docs/deformation.md tells what each does.
 
 Lengths are mm, angles degrees. `axis` runs through `centre`, None for the middle of the box around the body; `range` is
-two shares of that box along the axis, `range_mm` two coordinates along it.
+two shares of that box along the axis, `range_mm` two coordinates along it. These four are given by name.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from quadgraph import core
-from quadgraph.api.values import Value, Vector
+from quadgraph.api.values import Value, Vector, plain_members
 
 Triangles: TypeAlias = Sequence[Sequence[int]] | npt.NDArray[np.integer[Any]]
 Points: TypeAlias = Sequence[Vector] | npt.NDArray[np.floating[Any]]
@@ -28,62 +28,60 @@ class Deformer(Value):
     """
 
 
-@dataclass(frozen=True)
-class Twist(Deformer):
-    """Sections across the axis turn, by up to `degrees` (at most 3600)."""
+@dataclass(frozen=True, kw_only=True)
+class _AboutCentre(Deformer):
+    """What turns or scales about a point."""
 
-    type: ClassVar[str] = "twist"
-    degrees: float
     axis: Vector | None = None
     centre: Vector | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class _AlongAxis(_AboutCentre):
+    """What changes along an axis, within a range of it."""
+
     range: Vector | None = None
     range_mm: Vector | None = None
 
 
 @dataclass(frozen=True)
-class Bend(Deformer):
+class Twist(_AlongAxis):
+    """Sections across the axis turn, by up to `degrees` (at most 3600)."""
+
+    type: ClassVar[str] = "twist"
+    degrees: float
+
+
+@dataclass(frozen=True)
+class Bend(_AlongAxis):
     """The axis becomes an arc of `degrees` to the side `towards`, its length kept."""
 
     type: ClassVar[str] = "bend"
     degrees: float
     towards: Vector | None = None
-    axis: Vector | None = None
-    centre: Vector | None = None
-    range: Vector | None = None
-    range_mm: Vector | None = None
 
 
 @dataclass(frozen=True)
-class Taper(Deformer):
+class Taper(_AlongAxis):
     """Sections across the axis are scaled, from 1 to `factor`."""
 
     type: ClassVar[str] = "taper"
     factor: float
-    axis: Vector | None = None
-    centre: Vector | None = None
-    range: Vector | None = None
-    range_mm: Vector | None = None
 
 
 @dataclass(frozen=True)
-class Stretch(Deformer):
+class Stretch(_AlongAxis):
     """The range along the axis becomes `factor` times as long."""
 
     type: ClassVar[str] = "stretch"
     factor: float
-    axis: Vector | None = None
-    centre: Vector | None = None
-    range: Vector | None = None
-    range_mm: Vector | None = None
 
 
 @dataclass(frozen=True)
-class Transform(Deformer):
+class Transform(_AboutCentre):
     """Scaled along x, y, z about the centre, turned about the axis, moved by `translate`, mm."""
 
     type: ClassVar[str] = "transform"
-    axis: Vector | None = None
-    centre: Vector | None = None
     degrees: float | None = None
     scale: float | Vector | None = None
     translate: Vector | None = None
@@ -136,7 +134,7 @@ class Shapes:
 class Displaced(Deformer):
     """The weighted sum of given displacements of all vertices.
 
-    shapes: a .qshapes file, or `Shapes` in memory (not in scenes); weights: one for each shape; frame: in place of
+    shapes: a .qshapes file, or `Shapes` in memory; weights: one for each shape; frame: in place of
     weights where the shapes are frames, at or between two of which the body lies.
     """
 
@@ -145,17 +143,19 @@ class Displaced(Deformer):
     weights: Sequence[float] | None = None
     frame: float | None = None
 
-    def to_engine(self) -> dict[str, Any]:
-        """Return the members, with shapes in memory as the compiled engine holds them."""
-        shapes = self.shapes._shapes if isinstance(self.shapes, Shapes) else self.shapes
-        return self.to_dict() | {"shapes": shapes}
-
 
 def as_dict(step: Deformer | Mapping[str, Any]) -> dict[str, Any]:
-    """Return the members of a step."""
-    if isinstance(step, Displaced):
-        return step.to_engine()
-    return step.to_dict() if isinstance(step, Deformer) else dict(step)
+    """Return the members of a step, with plain values, and shapes in memory as the compiled engine holds them."""
+    members = step.to_dict() if isinstance(step, Deformer) else dict(step)
+    if isinstance(shapes := members.get("shapes"), Shapes):
+        members["shapes"] = shapes._shapes
+    return plain_members(members)
+
+
+def in_memory(step: Deformer | Mapping[str, Any]) -> bool:
+    """Whether a step has shapes that no scene file can name."""
+    members = step.to_dict() if isinstance(step, Deformer) else step
+    return isinstance(members.get("shapes"), Shapes)
 
 
 DEFORMERS = {kind.type: kind for kind in (Twist, Bend, Taper, Stretch, Transform, Lattice, Cage, Displaced)}

@@ -16,25 +16,27 @@ from quadgraph.api.deformers import Deformer, as_dict
 from quadgraph.api.fields import Fluence, SurfaceField
 from quadgraph.api.lights import Light, as_light
 from quadgraph.api.materials import Material, VolumeMaterial
-from quadgraph.api.options import Camera, PictureOptions, SolveOptions
+from quadgraph.api.options import MOTION, Camera, MotionOptions, PictureOptions
 from quadgraph.api.picture import Picture
 from quadgraph.api.solution import Solution
-from quadgraph.api.values import Floats, plain
+from quadgraph.api.values import Floats, plain_members
 from quadgraph.base.errors import InputError
+from quadgraph.base.units import DEFAULT_ETA
 
 Coefficients: TypeAlias = Callable[[Floats], tuple[npt.ArrayLike, npt.ArrayLike]]
 
 
 class Engine:
-    """A baked .qgraph on a Vulkan device. Use it in a `with` block, or call `close`, to free the device's memory.
+    """A baked .qgraph on a device. Use it in a `with` block, or call `close`, to free the device's memory.
 
     The lights are `default_lights` of the body's front until others are set; a material is wanted before `solve`.
     """
 
     def __init__(self, path: str | Path, *, device: str = "", validation: bool = False) -> None:
-        """Load a file. device: part of its name; validation: load Vulkan's validation layer.
+        """Load a file. device: cpu, or part of a Vulkan device's name; default: a GPU, else cpu. validation: load the
+        validation layer of a Vulkan device.
 
-        Raises FormatError, InputError, VulkanError.
+        Raises FormatError, InputError, DeviceError.
         """
         self._open: core.Engine | None = core.Engine(Path(path), device, validation)
         self._material: Material | VolumeMaterial | str | None = None
@@ -81,7 +83,7 @@ class Engine:
             self._engine.set_material(material.text if isinstance(material, Material) else material)
         self._material = material
 
-    def set_coefficients(self, function: Coefficients, eta: float = 1.3) -> None:
+    def set_coefficients(self, function: Coefficients, eta: float = DEFAULT_ETA) -> None:
         """Take coefficients from a function in place of a material (not with shortest-path, which wants a grid).
 
         function: given points of the body at rest, (n, 3) float32 mm, returns sigma_s_prime and sigma_a, 1/mm, both of
@@ -111,7 +113,7 @@ class Engine:
 
         Material and what the body sees of itself follow. Raises InputError, and moves nothing.
         """
-        self._engine.set_deformation([plain_members(as_dict(step)) for step in steps])
+        self._engine.set_deformation([as_dict(step) for step in steps])
         self._solution = None
 
     def set_edits(self, edits: Sequence[Mapping[str, Any]]) -> None:
@@ -122,16 +124,16 @@ class Engine:
         """Cut pieces away, with shortest-path alone (docs/shortest-path.md, "Cuts"). Raises InputError."""
         self._engine.set_cuts(json.dumps([plain_members(cut) for cut in cuts]))
 
-    def solve(self, *, warm: bool = False, motion: bool = False, **options: Unpack[SolveOptions]) -> Solution:
+    def solve(self, *, motion: bool = False, **options: Unpack[MotionOptions]) -> Solution:
         """Solve for the present material, lights and shape.
 
-        options: of `SolveOptions`; warm: start from the last solution; motion: with less work, as the window does while
-        something changes (docs/window.md). Raises InputError, SolverError.
+        options: of `SolveOptions`, and of `MotionOptions`; motion: with less work, as the window does while something
+        changes (docs/window.md). Raises InputError, SolverError, and TypeError for a motion option of another type.
         """
-        flat: dict[str, Any] = {name: value for name, value in options.items() if name != "path"}
-        flat |= {f"path_{name}": value for name, value in options.get("path", {}).items()}
-        core.check_scene(json.dumps({"solver": options}))
-        return self._take(self._engine.solve(warm=warm, motion=motion, **flat))
+        given = plain_members(options)
+        core.check_scene(json.dumps({"solver": {name: given[name] for name in given.keys() - MOTION}}))
+        path = {f"path_{name}": value for name, value in given.pop("path", {}).items()}
+        return self._take(self._engine.solve(motion=motion, **given, **path))
 
     def _take(self, report: dict[str, Any]) -> Solution:
         self._solution = Solution.from_report(report)
@@ -208,8 +210,3 @@ class Engine:
         for each in self._engine.passes:
             times[each["name"]] = times.get(each["name"], 0.0) + each["time_ms"]
         return times
-
-
-def plain_members(members: Mapping[str, Any]) -> dict[str, Any]:
-    """Return an object of a scene file with plain values."""
-    return {name: plain_members(v) if isinstance(v, Mapping) else plain(v) for name, v in members.items()}

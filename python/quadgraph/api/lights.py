@@ -40,7 +40,7 @@ class DirectionalLight(Light):
 
 @dataclass(frozen=True)
 class PointLight(Light):
-    """Light from a point, evenly in all directions: power / (4 pi d^2) at distance d. position: mm; power: W."""
+    """Isotropic light from a point: power / (4 pi d^2) at distance d. position: mm; power: W."""
 
     type: ClassVar[str] = "point"
     position: Vector
@@ -49,7 +49,7 @@ class PointLight(Light):
 
 @dataclass(frozen=True)
 class AmbientLight(Light):
-    """Even light from all sides that the body does not hide. irradiance: W/mm^2."""
+    """Uniform light from all sides that the body does not hide. irradiance: W/mm^2."""
 
     type: ClassVar[str] = "ambient"
     irradiance: RGB
@@ -72,7 +72,7 @@ class SpotLight(Light):
 
 @dataclass(frozen=True)
 class RectangleLight(Light):
-    """A rectangle of even radiance power / (pi |u x v|) on the side to which u x v points.
+    """A rectangle of uniform radiance power / (pi |u x v|) on the side to which u x v points.
 
     centre: mm; u, v: its edges, mm; power: W.
     """
@@ -142,9 +142,9 @@ def as_light(light: Light | str) -> Light:
 
 
 def default_lights(view: str = "", up: Literal["y", "z"] = "y", front: float = 0.0) -> tuple[Light, ...]:
-    """Return the lights that a picture gets when nobody asks for others.
+    """Return the default lights of a picture.
 
-    Warm from behind the view, cool from the side, a little from all around. view: azimuth,elevation[,distance] in
-    degrees and mm; without one the azimuth `front`, degrees. Raises InputError.
+    A warm key light from behind the object, a cool one from the side, a little ambient light. view:
+    azimuth,elevation[,distance] in degrees and mm; without one the azimuth `front`, degrees. Raises InputError.
     """
     return tuple(map(Light.parse, core.default_lights(view, up, front)))

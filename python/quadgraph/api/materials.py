@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +16,7 @@ import numpy.typing as npt
 from quadgraph import core
 from quadgraph.api.values import RGB, Floats, Vector, plain
 from quadgraph.base.errors import InputError
+from quadgraph.base.units import DEFAULT_ETA
 
 PatternName: TypeAlias = Literal["none", "veins", "clouds", "bands", "rings", "spots", "checker", "layers"]
 
@@ -31,7 +32,7 @@ class Material:
 
     sigma_s_prime: RGB
     sigma_a: RGB
-    eta: float = 1.3
+    eta: float = DEFAULT_ETA
     pattern: PatternName = "none"
     second_sigma_s_prime: RGB | None = None
     second_sigma_a: RGB | None = None
@@ -53,7 +54,7 @@ class Material:
         return Material(**json.loads(core.material_json(text)))
 
     @staticmethod
-    def from_colour(reflectance: RGB, mean_free_path: RGB, eta: float = 1.3) -> Material:
+    def from_colour(reflectance: RGB, mean_free_path: RGB, eta: float = DEFAULT_ETA) -> Material:
         """Return the material that shows a colour where it is thick.
 
         reflectance: of white light, 0 to below 1; mean_free_path: 1 / sigma_t, mm. Raises InputError.
@@ -86,7 +87,7 @@ class VolumeMaterial:
     sigma_a: npt.NDArray[np.floating]
     spacing: float | Vector
     origin: Vector | None = None
-    eta: float = 1.3
+    eta: float = DEFAULT_ETA
 
     def __post_init__(self) -> None:
         """Check shapes and numbers. Raises InputError."""
@@ -113,11 +114,10 @@ class VolumeMaterial:
 
     def save(self, path: str | Path) -> None:
         """Write the .npz file that --material and scene files take."""
-        content = {"sigma_s_prime": self.sigma_s_prime, "sigma_a": self.sigma_a, "spacing": self.spacing}
-        if self.origin is not None:
-            content["origin"] = self.origin
+        members = {name: getattr(self, name) for name in ("eta", "sigma_s_prime", "sigma_a", "spacing", "origin")}
+        arrays: dict[str, Any] = {name: np.asarray(value) for name, value in members.items() if value is not None}
         with Path(path).open("wb") as stream:
-            np.savez(stream, eta=self.eta, **{name: np.asarray(value) for name, value in content.items()})
+            np.savez(stream, **arrays)
 
     def set_on(self, engine: core.Engine) -> None:
         """Give it to the compiled engine. Raises InputError."""

@@ -20,7 +20,7 @@ PathSolver: TypeAlias = Literal["eikonal", "lattice"]
 
 
 class PathOptions(TypedDict, total=False):
-    """Of the method shortest-path (docs/shortest-path.md).
+    """Options of the method shortest-path (docs/shortest-path.md).
 
     cost: of a mm of path; solver: any path, or steps between the 26 neighbours of a voxel; cells: voxels along the
     longest side, 8 to 150.
@@ -36,7 +36,7 @@ class SolveOptions(TypedDict, total=False):
 
     tolerance: stop when the exitance is estimated to be solved to this relative RMS error; error: stop when that and
     the mesh's together are below it, 0 for no target; cycles: exactly so many iterations on the finest level, 0 for as
-    many as it takes; max_iterations: per level; inter_reflection: light from part to part; bounces: of that, 0 until
+    many as it takes; max_iterations: per level; inter_reflection: whether it is computed; bounces: of that, 0 until
     nothing changes; active_layers: of a polygrid, 0 for all; path: of the method shortest-path.
     """
 
@@ -52,6 +52,23 @@ class SolveOptions(TypedDict, total=False):
     bounces: int
     active_layers: int
     path: PathOptions
+
+
+class MotionOptions(SolveOptions, total=False):
+    """What `Engine.solve` takes besides, for bodies in motion; scenes have none of it.
+
+    warm: start from the last solution of the same method and model; smoothing: steps of a cycle before and after its
+    correction, 0 to 2, 0 for what is cheapest; exchange_rows: faces of a body that deforms which look anew at what they
+    see, in each solve, 0 for all; mean_rays: isotropic light by one ray from an origin instead of eight.
+    """
+
+    warm: bool
+    smoothing: int
+    exchange_rows: int
+    mean_rays: bool
+
+
+MOTION = MotionOptions.__annotations__.keys() - SolveOptions.__annotations__.keys()
 
 
 class Camera(TypedDict, total=False):

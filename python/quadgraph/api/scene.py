@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Self
 
 from quadgraph import core
-from quadgraph.api.deformers import Deformer, as_dict, deformer_from
-from quadgraph.api.engine import plain_members
+from quadgraph.api.deformers import Deformer, Twist, as_dict, deformer_from, in_memory
 from quadgraph.api.lights import Light, as_light, light_from
 from quadgraph.api.materials import Material
 from quadgraph.api.options import Camera, PictureOptions, SolveOptions
+from quadgraph.api.values import plain_members
+from quadgraph.base.errors import InputError
+
+_STILL = Twist(0).to_dict()
 
 
 @dataclass(frozen=True)
@@ -36,16 +39,29 @@ class Scene:
 
     def __post_init__(self) -> None:
         """Check. Raises InputError."""
-        core.check_scene(json.dumps(self.to_dict()))
+        core.check_scene(json.dumps(self._nameable()))
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the content of a scene file that shows this."""
+        """Return the content of a scene file that shows this. Raises InputError for shapes in memory."""
+        if self._in_memory:
+            raise InputError(
+                "deformation: shapes in memory, which a scene file cannot hold: show the scene on a Stage, or name a "
+                ".qshapes file (quadgraph shapes makes them)"
+            )
+        return self._nameable()
+
+    @property
+    def _in_memory(self) -> bool:
+        return any(map(in_memory, self.deformation))
+
+    def _nameable(self) -> dict[str, Any]:
+        """The content of a scene file, with steps that move nothing in place of those with shapes in memory."""
         document: dict[str, Any] = {"body": str(self.body)}
         if self.material is not None:
             document["material"] = self.material.text if isinstance(self.material, Material) else self.material
         if self.lights is not None:
             document["lights"] = [as_light(light).to_dict() for light in self.lights]
-        document["deformation"] = [plain_members(as_dict(step)) for step in self.deformation]
+        document["deformation"] = [_STILL if in_memory(step) else as_dict(step) for step in self.deformation]
         document |= {name: list(map(plain_members, getattr(self, name))) for name in ("edits", "cuts")}
         return document | {name: plain_members(getattr(self, name)) for name in ("camera", "solver", "picture")}
 
@@ -60,6 +76,11 @@ class Scene:
             members["deformation"] = tuple(map(deformer_from, members["deformation"]))
         return cls(**members)
 
+    def _compiled(self) -> core.Scene:
+        """As the compiled engine holds it. Raises FormatError, InputError."""
+        scene = core.scene_file(json.dumps(self._nameable())).at(0)
+        return scene.with_deformation(list(map(as_dict, self.deformation))) if self._in_memory else scene
+
 
 class SceneFile:
     """A scene that may change from frame to frame."""
@@ -71,8 +92,10 @@ class SceneFile:
         InputError naming file, path into it, what was found and what is allowed.
         """
         if isinstance(source, Scene):
-            self._file = core.scene_file(json.dumps(source.to_dict()))
+            self._file = core.scene_file(json.dumps(source._nameable()))
+            self._scene = source if source._in_memory else None
         else:
+            self._scene = None
             self._file = core.SceneFile(Path(source))
 
     @property
@@ -87,12 +110,20 @@ class SceneFile:
 
     def at(self, frame: float) -> Scene:
         """Return the scene of a frame, which need not be whole, with all members filled in. Raises InputError."""
-        return Scene.from_dict(json.loads(self._file.at(frame).json()))
+        scene = Scene.from_dict(json.loads(self._file.at(frame).json()))
+        return replace(scene, deformation=self._scene.deformation) if self._scene else scene
 
     def set(self, pointer: str, value: object) -> None:
-        """Put a value at a JSON pointer, e.g. set("/camera/fov", 40). Raises InputError, and changes nothing."""
+        """Put a value at a JSON pointer, e.g. set("/camera/fov", 40).
+
+        Raises InputError, and changes nothing, for what is not allowed, and for a deformation by shapes in memory.
+        """
+        if self._scene and pointer.startswith("/deformation"):
+            self._scene.to_dict()
         self._file.set(pointer, json.dumps(value))
 
     def save(self, path: str | Path) -> None:
-        """Write the file at once. Raises InputError."""
+        """Write the file at once. Raises InputError, also for shapes in memory."""
+        if self._scene:
+            self._scene.to_dict()
         self._file.save(Path(path))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -16,10 +15,12 @@ from quadgraph.base.errors import InputError
 
 
 class Stage:
-    """Shows scenes on a Vulkan device, and sets only what differs from one to the next. Use it in a `with` block."""
+    """Shows scenes on a device, and sets only what differs from one to the next. Use it in a `with` block."""
 
     def __init__(self, *, device: str = "", validation: bool = False) -> None:
-        """Choose a device by part of its name; validation: load Vulkan's validation layer."""
+        """Choose a device: cpu, or part of a Vulkan device's name; default: a GPU, else cpu. validation: load the
+        validation layer of a Vulkan device.
+        """
         self._stage: core.Stage | None = core.Stage(device, validation)
         self._engine: Engine | None = None
         self._scene: Scene | None = None
@@ -63,12 +64,12 @@ class Stage:
         return self._engine
 
     def show(self, scene: Scene | SceneFile | str | Path, frame: float = 0) -> None:
-        """Show a scene, or a frame of a scene file. Raises FormatError, InputError, VulkanError."""
+        """Show a scene, or a frame of a scene file. Raises FormatError, InputError, DeviceError."""
         file = scene if isinstance(scene, SceneFile) else SceneFile(scene)
         wanted = file.at(frame)
         if self._scene is None or self._scene.body != wanted.body:
             self._forget()
-        self._open.show(core.scene_file(json.dumps(wanted.to_dict())).at(0))
+        self._open.show(wanted._compiled())
         self._scene = wanted
         if self._engine is None:
             self._engine = Engine._around(self._open.engine)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, ClassVar, TypeAlias
 
@@ -25,6 +25,11 @@ def plain(value: object) -> Any:
     if isinstance(value, list | tuple):
         return tuple(plain(item) for item in value)
     return value
+
+
+def plain_members(members: Mapping[str, Any]) -> dict[str, Any]:
+    """Return an object of a scene file with plain values."""
+    return {name: plain_members(v) if isinstance(v, Mapping) else plain(v) for name, v in members.items()}
 
 
 @dataclass(frozen=True)

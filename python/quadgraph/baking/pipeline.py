@@ -39,7 +39,7 @@ _OPTIONS = ("levels", "surface_vertices", "relax_nodes", "order", "visibility_ra
 
 @dataclass(frozen=True)
 class BakeOptions:
-    """What a bake can be told. Exactly one of `unit` ("mm", "cm", "m") and `height_mm` must be given.
+    """Options of a bake. Exactly one of `unit` ("mm", "cm", "m") and `height_mm` must be given.
 
     levels: None for as many as make sense; mesher: "tetgen", "cgal" or "polygrid"; grading: K of the paper's sizing
     field, for cgal; cubes and cells: of a polygrid (tets/polygrid/build.py), None for the usual; relax_nodes: steps
@@ -118,17 +118,20 @@ class Prepared:
     front: float
 
 
-def bake(mesh: Path, output: Path, options: BakeOptions, progress: ProgressCallback | None = None) -> BakeReport:
+def bake(
+    mesh: str | Path, output: str | Path, options: BakeOptions, progress: ProgressCallback | None = None
+) -> BakeReport:
     """Bake `mesh` into `output` and report.
 
+    mesh: a file that mesh_io.read_surface reads; output: a .qgraph; progress: is told in words what was done.
     The chain of levels ends where a coarser level cannot be made, which a note of the report tells. Raises InputError
     for unusable input or options, ToolError if the finest level cannot be filled with tets. `output` is written last
     and at once: whatever interrupts the bake, it is untouched, and no child program is left.
     """
     tell = progress or (lambda text: None)
-    check_options(output, options)
+    check_options(Path(output), options)
     report, start = BakeReport(str(output)), time.perf_counter()
-    prepared = prepare(mesh, options, report, tell)
+    prepared = prepare(Path(mesh), options, report, tell)
     write(prepared, make_levels(prepared.surface, options, report, tell), options, report)
     report.seconds["total"] = time.perf_counter() - start
     return report
@@ -218,9 +221,14 @@ def make_levels(surface: Surface, options: BakeOptions, report: BakeReport, tell
 def _workers() -> Iterator[Callable[..., Future]]:
     """Threads for the block's work; what has not begun at its end never does, and child programs are stopped."""
     pool = ThreadPoolExecutor(WORKERS)
+
+    def submit(*call: Any) -> Future:
+        in_context: Callable[..., Any] = contextvars.copy_context().run
+        return pool.submit(in_context, *call)
+
     with child_process.stopped_on_exit():
         try:
-            yield lambda *call: pool.submit(contextvars.copy_context().run, *call)
+            yield submit
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
 
@@ -249,7 +257,7 @@ def _polygrid_levels(surface: Surface, options: BakeOptions, report: BakeReport,
 def _make_level(surface: Surface, options: BakeOptions) -> Level:
     """Tets, graph, even nodes, cache-local order."""
     clock = [time.perf_counter()]
-    limits = {"time_limit_s": options.time_limit_s, "memory_limit_bytes": options.memory_limit_bytes}
+    limits: dict[str, Any] = {"time_limit_s": options.time_limit_s, "memory_limit_bytes": options.memory_limit_bytes}
     mesh = tetrahedralise(surface, mesher=options.mesher, grading=options.grading, **limits)
     clock.append(time.perf_counter())
     built = graph.build(mesh)

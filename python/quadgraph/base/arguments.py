@@ -42,8 +42,10 @@ def share(text: str) -> float:
 
 
 def add_device_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the choice of Vulkan device and the validation layer."""
-    parser.add_argument("--device", default="", metavar="NAME", help="part of the Vulkan device's name")
+    """Add the choice of the device and Vulkan's validation layer."""
     parser.add_argument(
-        "--validation", action="store_true", help="load the Vulkan validation layer, fail on any message"
+        "--device", default="", metavar="NAME", help="cpu, or part of a Vulkan device's name; default: a GPU, else cpu"
+    )
+    parser.add_argument(
+        "--validation", action="store_true", help="load the validation layer of a Vulkan device, fail on any message"
     )

@@ -60,7 +60,7 @@ class Finished:
 class _Family:
     """The programs that run in one context, and whether it has ended."""
 
-    members: set[subprocess.Popen] = field(default_factory=set)
+    members: set[subprocess.Popen[bytes]] = field(default_factory=set)
     ended: bool = False
 
 
@@ -112,7 +112,7 @@ def _last_words(output: str) -> str:
     return words[-_LAST_WORDS:] or "no output"
 
 
-def _kill_group(process: subprocess.Popen) -> None:
+def _kill_group(process: subprocess.Popen[bytes]) -> None:
     with suppress(ProcessLookupError):
         os.killpg(process.pid, signal.SIGKILL)
     process.wait()

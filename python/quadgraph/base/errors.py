@@ -21,5 +21,5 @@ class SolverError(QuadGraphError):
     """A linear solve that broke down or diverged."""
 
 
-class VulkanError(QuadGraphError):
-    """A Vulkan call that failed, or a device that lacks what the engine needs."""
+class DeviceError(QuadGraphError):
+    """A device that is not there, lacks what the engine needs, or failed."""

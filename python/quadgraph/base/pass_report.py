@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from rich.table import Table
 
 # What lights and a picture need beyond the solution.
 PICTURE_PURPOSES = ("display", "gather", "shadows")
 
 
-def pass_table(passes: list[dict]) -> Table:
+def pass_table(passes: list[dict[str, Any]]) -> Table:
     """Return ms, dispatches, bytes and GB/s per pass, and the share of the copy bandwidth where it is known."""
     shares = all("copy_share" in entry for entry in passes)
     table = Table("pass", "ms", "dispatches", "MB", "GB/s", *(["of copying"] if shares else []), title="passes")
@@ -25,14 +27,14 @@ def pass_table(passes: list[dict]) -> Table:
     return table
 
 
-def ms_by_pass(passes: list[dict]) -> dict[str, float]:
-    """Of passes that a frame has more than once, together."""
+def ms_by_pass(passes: list[dict[str, Any]]) -> dict[str, float]:
+    """Milliseconds by pass; passes that a frame has more than once are summed."""
     total: dict[str, float] = {}
     for entry in passes:
         total[entry["name"]] = total.get(entry["name"], 0.0) + entry["time_ms"]
     return total
 
 
-def bandwidth(entry: dict) -> float:
+def bandwidth(entry: dict[str, Any]) -> float:
     """GB/s of a pass; 0 if it took no measurable time."""
     return entry["bytes"] / entry["time_ms"] * 1e-6 if entry["time_ms"] > 0 else 0.0

@@ -33,7 +33,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--time-limit",
         type=positive_float,
         metavar="S",
-        help="seconds of the processor for each run of the mesher, four times as many by the clock (default: 300)",
+        help="CPU seconds for each run of the mesher; its wall time may be four times as long (default: 300)",
     )
     parser.add_argument(
         "--memory-limit", type=positive_float, metavar="GB", help="memory for each run of the mesher (default: 4)"
@@ -42,7 +42,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--surface-only",
         action="store_true",
-        help="no levels, nothing repaired, at once: for --method shortest-path, which takes any mesh",
+        help="no levels and no repair, done at once: for --method shortest-path, which takes any mesh",
     )
     _add_error_options(parser.add_argument_group("no more than an error needs"))
 
@@ -55,15 +55,17 @@ def _add_error_options(group: argparse._ArgumentGroup) -> None:
         help="choose surface vertices, levels, model and cycles by measuring: as few as keep the relative RMS error of "
         "the exitance below E, e.g. 2%%, over the whole and over the unlit surface; exit 3 if the mesh cannot",
     )
-    group.add_argument("--material", metavar="M", help="what the error is for, as `render` takes it")
+    group.add_argument("--material", metavar="M", help="material that the error is for, as in `render`")
     group.add_argument(
         "--light",
         action="append",
         metavar="L",
-        help="what the error is for, as `render` takes it; several allowed (default: three usual sets of lights, "
+        help="lights that the error is for, as in `render`; several allowed (default: three usual sets of lights, "
         "under all of which it is kept)",
     )
-    group.add_argument("--device", default="", metavar="NAME", help="part of the Vulkan device's name")
+    group.add_argument(
+        "--device", default="", metavar="NAME", help="cpu, or part of a Vulkan device's name; default: a GPU, else cpu"
+    )
 
 
 def _add_mesh_options(parser: argparse.ArgumentParser) -> None:
@@ -82,13 +84,13 @@ def _add_mesh_options(parser: argparse.ArgumentParser) -> None:
         "(default: %(default)s)",
     )
     parser.add_argument(
-        "--cubes", type=positive_int, metavar="N", help="of a polygrid along the longest side (default: about 8)"
+        "--cubes", type=positive_int, metavar="N", help="cubes of a polygrid along the longest side (default: about 8)"
     )
     parser.add_argument(
         "--cells",
         type=positive_int,
         metavar="N",
-        help="of a polygrid along a cube's side on the finest level, a power of 2 (default: 4)",
+        help="cells of a polygrid along a cube's side on the finest level, a power of 2 (default: 4)",
     )
     parser.add_argument(
         "--grading", type=positive_float, metavar="K", help="growth of cgal's tets with depth (default: 1)"
@@ -107,11 +109,14 @@ def _add_mesh_options(parser: argparse.ArgumentParser) -> None:
         "--front",
         type=float,
         metavar="DEG",
-        help="azimuth about y from where the body is shown when nobody says so (default: 0, from +z, unless another of "
+        help="azimuth about y of the default view (default: 0, from +z, unless another of "
         "eight shows plainly more of its relief)",
     )
     parser.add_argument(
-        "--order", choices=("blocks", "random"), default="blocks", help="of nodes in memory (default: %(default)s)"
+        "--order",
+        choices=("blocks", "random"),
+        default="blocks",
+        help="order of nodes in memory (default: %(default)s)",
     )
 
 

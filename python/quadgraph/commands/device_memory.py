@@ -28,7 +28,7 @@ def measure(path: Path) -> list[dict[str, Any]]:
 
     Each entry: "model", "material", "purposes" ({purpose: bytes}), "solve" and "total" (bytes, without and with what
     lights and any picture keep; what depends on its size is not in it). Raises InputError without the compiled engine,
-    VulkanError without a device.
+    DeviceError without a device.
     """
     core = load_core()
     entries = []
@@ -52,7 +52,7 @@ def table(entries: list[dict[str, Any]]) -> Table:
     for entry in entries:
         for purpose, size in entry["purposes"].items():
             largest[purpose] = max(size, largest.get(purpose, 0))
-    for purpose in sorted(largest, key=largest.get, reverse=True):
+    for purpose in sorted(largest, key=lambda purpose: largest[purpose], reverse=True):
         result.add_row(purpose, *(f"{entry['purposes'].get(purpose, 0) / 1e6:.2f}" for entry in entries))
     result.add_section()
     result.add_row("without shadow maps and picture", *(f"{entry['solve'] / 1e6:.2f}" for entry in entries))

@@ -90,7 +90,7 @@ def check_output(path: Path, with_numbers: bool) -> None:
     numbered = re.search(r"%0?\d*d", path.name) is not None
     if film.is_film(path):
         if not with_numbers:
-            raise InputError(f"{path}: a film wants --frames")
+            raise InputError(f"{path}: a film needs --frames")
         film.check()
     elif path.suffix.lower() not in (".png", ".exr"):
         raise InputError(f"{path}: output must end in .png, .exr or {' or '.join(film.SUFFIXES)}")

@@ -120,7 +120,7 @@ def baked_or_bare(file: Path, unit: str | None, height_mm: float | None) -> Iter
 
 
 def make_engine(args: argparse.Namespace) -> Engine:
-    """Load `args.file` and set material and lights. Raises FormatError, InputError, VulkanError."""
+    """Load `args.file` and set material and lights. Raises FormatError, InputError, DeviceError."""
     core = load_core()
     with baked_or_bare(args.file, getattr(args, "unit", None), getattr(args, "height", None)) as path:
         engine = core.Engine(path, device=args.device, validation=args.validation)

@@ -22,15 +22,15 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         ".gltf: the frames of its skinned animation, or its morph targets",
     )
     parser.add_argument(
-        "--rest", metavar="MESH", type=Path, help="the frame that lies where the body does; left out: the first"
+        "--rest", metavar="MESH", type=Path, help="the frame that matches the baked body (default: the first)"
     )
-    parser.add_argument("--animation", metavar="NAME", help="of a skinned glTF that has several")
+    parser.add_argument("--animation", metavar="NAME", help="animation of a skinned glTF that has several")
     parser.add_argument(
         "--frames-per-second",
         metavar="N",
         type=positive_float,
         default=24,
-        help="of a skinned glTF (default: %(default)s)",
+        help="frame rate of a skinned glTF (default: %(default)s)",
     )
     parser.add_argument("-o", "--output", metavar="FILE", type=Path, required=True, help="the .qshapes to write")
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from rich.console import Console
@@ -43,7 +44,8 @@ def run(args: argparse.Namespace) -> int:
     report |= {"passes": engine.passes, "device": engine.device_name, "driver": engine.driver}
     if args.field:
         with atomic_file.replacing(args.field) as stream:
-            np.savez(stream, **engine.surface_field())
+            fields: dict[str, Any] = engine.surface_field()
+            np.savez(stream, **fields)
     if args.json:
         atomic_file.write_json(args.json, report)
     console = Console(highlight=False)

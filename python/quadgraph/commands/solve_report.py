@@ -55,7 +55,7 @@ def energy_table(report: dict) -> Table:
 
 
 def inter_reflection_text(report: dict, wanted: bool) -> str:
-    """Say whether light from part to part was followed, and if not, why."""
+    """Say whether inter-reflection was computed, and if not, why."""
     if report["inter_reflection"]:
         return f"inter-reflection: {len(report['bounces'])} bounces"
     if not wanted or report["source"] != "buried" or report["method"] not in ("fem", "quadgraph-fv"):

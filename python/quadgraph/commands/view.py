@@ -23,13 +23,15 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "view",
         help="a baked object or a scene in a window",
         description=__doc__,
-        epilog=f"F1 in the window lists the keys. What may follow FILE, `{PROGRAM} --help` tells: --material, --light, "
-        "--view, --method and so on, as of `quadgraph render`.",
+        epilog=f"F1 in the window lists the keyboard shortcuts. Options after FILE are those of {PROGRAM} --help: "
+        "--material, --light, --view, --method and so on, as in `quadgraph render`.",
     )
     parser.add_argument("file", metavar="FILE", type=Path, help="a baked .qgraph, a scene .json, or a mesh")
-    parser.add_argument("--unit", choices=tuple(UNITS_MM), help="of a mesh; stands before FILE")
-    parser.add_argument("--height", type=length_mm, metavar="L", help="of a mesh along y (default: 100mm); the same")
-    parser.add_argument("options", nargs=argparse.REMAINDER, metavar="OPTION", help=f"of {PROGRAM}")
+    parser.add_argument("--unit", choices=tuple(UNITS_MM), help="unit of a mesh; stands before FILE")
+    parser.add_argument(
+        "--height", type=length_mm, metavar="L", help="height of a mesh along y (default: 100mm); stands before FILE"
+    )
+    parser.add_argument("options", nargs=argparse.REMAINDER, metavar="OPTION", help=f"options of {PROGRAM}")
 
 
 def find_program() -> str:

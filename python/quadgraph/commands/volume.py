@@ -10,11 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from quadgraph.base.errors import InputError
+from quadgraph.base.units import DEFAULT_ETA, UNITS_MM
 
 if TYPE_CHECKING:
     from quadgraph.file.openvdb import Field
-
-_UNITS_MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0}
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -29,8 +28,10 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
             default=grid,
             help=f"{grid} (1/mm): a grid, times one number or R/G/B, or a number alone (default: %(default)s)",
         )
-    parser.add_argument("--unit", choices=tuple(_UNITS_MM), default="mm", help="of lengths in the .vdb (%(default)s)")
-    parser.add_argument("--eta", type=_eta, help="refractive index (default: that in the file, or 1.3)")
+    parser.add_argument(
+        "--unit", choices=tuple(UNITS_MM), default="mm", help="unit of lengths in the .vdb (default: %(default)s)"
+    )
+    parser.add_argument("--eta", type=_eta, help=f"refractive index (default: that in the file, or {DEFAULT_ETA})")
     parser.add_argument("-o", "--output", metavar="FILE", type=Path, required=True, help="the .npz, or .vdb, to write")
 
 
@@ -45,7 +46,7 @@ def run(args: argparse.Namespace) -> int:
         return 0
     if suffixes != (".vdb", ".npz"):
         raise InputError(f"from '{args.file}' to '{args.output}': from .vdb to .npz, or back, is wanted")
-    volume = openvdb.read(args.file, args.sigma_s_prime, args.sigma_a, unit_mm=_UNITS_MM[args.unit], eta=args.eta)
+    volume = openvdb.read(args.file, args.sigma_s_prime, args.sigma_a, unit_mm=UNITS_MM[args.unit], eta=args.eta)
     volume.write(args.output)
     cells, spacing = volume.sigma_s_prime.shape[2::-1], volume.spacing
     print(

@@ -6,10 +6,14 @@ import importlib.util
 from contextlib import suppress
 from fractions import Fraction
 from pathlib import Path
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
 from quadgraph.base.errors import InputError
+
+if TYPE_CHECKING:
+    from av.video.stream import VideoStream
 
 _CODECS = {".mp4": "libx264", ".webm": "libvpx-vp9"}
 SUFFIXES = tuple(_CODECS)
@@ -23,7 +27,7 @@ def is_film(path: Path) -> bool:
 def check() -> None:
     """Raise InputError if films cannot be encoded here."""
     if importlib.util.find_spec("av") is None:
-        raise InputError("films need PyAV: pip install 'quadgraph[film]', or render into frames/%04d.png")
+        raise InputError("films need PyAV: pip install '.[film]' in the source tree, or render into frames/%04d.png")
 
 
 class Film:
@@ -34,7 +38,7 @@ class Film:
         import av
 
         if size[0] % 2 or size[1] % 2:
-            raise InputError(f"{path}: a film wants an even width and height, found {size[0]}x{size[1]}")
+            raise InputError(f"{path}: a film needs an even width and height, found {size[0]}x{size[1]}")
         self.path = path
         self._temporary = path.with_name(f".{path.stem}.part{path.suffix.lower()}")
         try:
@@ -43,7 +47,8 @@ class Film:
         except OSError as error:
             raise InputError(f"{path}: cannot be written ({error.strerror})") from error
         rate = Fraction(frames_per_second).limit_denominator(1001)
-        self._stream = self._container.add_stream(_CODECS[path.suffix.lower()], rate=rate, options={"crf": "18"})
+        stream = self._container.add_stream(_CODECS[path.suffix.lower()], rate=rate, options={"crf": "18"})
+        self._stream = cast("VideoStream", stream)
         self._stream.width, self._stream.height = size
         self._stream.pix_fmt = "yuv420p"
 

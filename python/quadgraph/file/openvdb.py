@@ -12,17 +12,18 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from quadgraph.base.atomic_file import replacing
 from quadgraph.base.child_process import Program, run, workspace
 from quadgraph.base.errors import InputError, ToolError
+from quadgraph.base.units import DEFAULT_ETA
 
 _CHILD = Path(__file__).with_name("openvdb_child.py")
 _TIME_LIMIT_S, _MEMORY_LIMIT_BYTES = 300.0, 4 << 30
 _REFUSED = 2  # its exit status where a file does not serve
-DEFAULT_ETA = 1.3
 
 
 class _Interpreter(Program):
@@ -77,7 +78,7 @@ class Volume:
 def read(path: Path, sigma_s_prime: Field, sigma_a: Field, *, unit_mm: float = 1.0, eta: float | None = None) -> Volume:
     """Read a .vdb, whose unit of length is `unit_mm`, on the box around what is active in the grids that are named.
 
-    `eta`: left out, what the file says, or 1.3. Raises InputError naming the file, ToolError without the library.
+    `eta`: left out, what the file says, or the usual. Raises InputError naming the file, ToolError without the library.
     """
     fields = {"sigma_s_prime": sigma_s_prime, "sigma_a": sigma_a}
     names = [field.grid for field in fields.values() if field.grid is not None]
@@ -100,7 +101,7 @@ def write(source: Path, path: Path) -> None:
     volume = _stored(source)
     with replacing(path) as stream, workspace() as directory:
         given, made = directory / "arrays.npz", directory / "grids.vdb"
-        turned = {
+        turned: dict[str, Any] = {
             name: np.ascontiguousarray(np.swapaxes(values, 0, 2), np.float32)
             for name, values in (("sigma_s_prime", volume.sigma_s_prime), ("sigma_a", volume.sigma_a))
         }

@@ -51,7 +51,7 @@ SECTION = np.dtype(
         ("reserved", "V12"),
     ]
 )
-TYPES = {1: np.dtype("u1"), 2: np.dtype("<u4"), 3: np.dtype("<f4")}
+TYPES: dict[int, np.dtype[Any]] = {1: np.dtype("u1"), 2: np.dtype("<u4"), 3: np.dtype("<f4")}
 _CODES = {dtype: code for code, dtype in TYPES.items()}
 
 
@@ -85,8 +85,9 @@ def write_sections(path: Path, metadata: dict[str, Any], sections: dict[str, np.
     everything = _with_metadata(metadata, sections)
     header, table = _head(everything)
     with replacing(path) as stream:
-        for piece in (header.tobytes() + table.tobytes(), *everything.values()):
-            size = stream.write(np.ascontiguousarray(piece) if isinstance(piece, np.ndarray) else piece)
+        pieces = (np.ascontiguousarray(array).data for array in everything.values())
+        for piece in (memoryview(header.tobytes() + table.tobytes()), *pieces):
+            size = stream.write(piece)
             stream.write(b"\0" * (_aligned(size) - size))
     return int(header["file_size"])
 
@@ -131,7 +132,7 @@ def _head(sections: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         entry["shape"][: array.ndim] = array.shape
         entry["offset"] = _aligned(end)
         entry["size"] = array.nbytes
-        entry["crc32"] = zlib.crc32(np.ascontiguousarray(array))
+        entry["crc32"] = zlib.crc32(np.ascontiguousarray(array).data)
         end = int(entry["offset"]) + array.nbytes
     header = np.zeros((), HEADER)
     header["magic"] = np.void(MAGIC)

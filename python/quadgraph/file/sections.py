@@ -85,7 +85,7 @@ def whole_file(graphs: Sequence[Graph], surface: Surface, seen: Seen | None = No
 
     graphs: finest first; surface: the display mesh; seen: what the faces of one of them see, None to leave it out.
     """
-    sections = {}
+    sections: dict[str, np.ndarray] = {}
     for number, graph in enumerate(graphs):
         sections |= level(number, graph)
         if seen is not None and seen.level == number:

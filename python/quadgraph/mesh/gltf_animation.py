@@ -15,7 +15,7 @@ _PATHS = ("translation", "rotation", "scale", "weights")
 
 @dataclass(frozen=True)
 class _Channel:
-    """Of one property of a node: times (k,) s; values (k, width), with CUBICSPLINE (k, 3, width)."""
+    """Keys of one property of a node: times (k,) s; values (k, width), with CUBICSPLINE (k, 3, width)."""
 
     node: int
     path: str

@@ -16,7 +16,7 @@ from quadgraph.base.errors import InputError
 T = TypeVar("T")
 
 _GLB, _JSON_CHUNK, _BINARY_CHUNK = 0x46546C67, 0x4E4F534A, 0x004E4942
-_TYPES = {
+_TYPES: dict[int, type[np.number]] = {
     5120: np.int8,
     5121: np.uint8,
     5122: np.int16,
@@ -57,7 +57,7 @@ class GltfFile:
         return self.document["meshes"][node["mesh"]] if "mesh" in node else {}
 
     def transforms(self, posed: Mapping[int, dict] | None = None) -> dict[int, np.ndarray]:
-        """Of every node of the scene by its number: to the world, (4, 4).
+        """Transform to the world of every node of the scene by its number, (4, 4).
 
         `posed`: by number of a node, what its translation, rotation or scale are instead.
         """
@@ -102,7 +102,7 @@ class GltfFile:
             where = self._view(sparse["indices"], _TYPES[sparse["indices"]["componentType"]], sparse["count"], 1)[:, 0]
             values[where] = self._view(sparse["values"], kind, sparse["count"], width)
         if accessor.get("normalized", False) and kind is not np.float32:
-            return np.maximum(values / np.iinfo(kind).max, -1)
+            return np.maximum(values / np.iinfo(np.dtype(kind)).max, -1)
         return values
 
     def _view(self, holder: dict, kind: type, count: int, width: int) -> np.ndarray:

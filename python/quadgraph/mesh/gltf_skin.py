@@ -73,7 +73,7 @@ class _Skin:
             self.inverse_bind = matrices.transpose(0, 2, 1)[: len(self.joints)]
         missing = [joint for joint in self.joints if joint not in file.transforms()]
         if missing or len(self.inverse_bind) != len(self.joints):
-            raise InputError(f"{file.path}: a skin wants all its joints in the scene, and a matrix for each")
+            raise InputError(f"{file.path}: a skin needs all its joints in the scene, and a matrix for each")
         parts = mesh["primitives"]
         self.vertices, self.triangles = file.positions(parts)
         self.targets = targets_of(file, parts)

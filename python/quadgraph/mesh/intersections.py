@@ -10,7 +10,7 @@ from quadgraph.mesh.surface import Surface
 from quadgraph.mesh.tet_files import read_faces, write_smesh
 
 TETGEN = Program("tetgen", "install Debian's package tetgen: apt install tetgen")
-# Of the test for self-intersection, which takes about 0.1 ms a vertex on an idle core: room for a busy or slow one.
+# Time limits of the test for self-intersection, which takes about 0.1 ms a vertex on an idle core: room for a busy one.
 _TEST_TIME_LIMIT_S, _TEST_TIME_PER_VERTEX_S = 120.0, 2e-3
 
 

@@ -6,6 +6,7 @@ Plain Python numbers: the stars that change hold a handful of triangles, too few
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -40,6 +41,18 @@ def unit(p: Point) -> Point:
     """p at length 1, or zero."""
     length = math.sqrt(dot(p, p))
     return (p[0] / length, p[1] / length, p[2] / length) if length > 0 else (0.0, 0.0, 0.0)
+
+
+def mean_direction(ways: Sequence[Point]) -> Point:
+    """Their sum at length 1, or zero."""
+    x, y, z = map(sum, zip(*ways, strict=True))
+    return unit((x, y, z))
+
+
+def replaced(face: Face, old: int, new: int) -> Face:
+    """The face with one vertex in place of another."""
+    a, b, c = (new if k == old else k for k in face)
+    return a, b, c
 
 
 def normal(p: Point, q: Point, r: Point) -> Point:
@@ -93,7 +106,7 @@ class LocalMesh:
     def vertex_normal(self, vertex: int) -> Point:
         """Area-weighted unit normal."""
         normals = [normal(*(self.points[v] for v in self.faces[f])) for f in self.star[vertex]]
-        return unit(tuple(map(sum, zip(*normals, strict=True))))
+        return mean_direction(normals)
 
     def flip(self, face: int, corner: int) -> MeshChange | None:
         """Swap the diagonal of the two faces at the edge from `corner` on; None if the new edge exists already."""
@@ -113,7 +126,7 @@ class LocalMesh:
         if self.neighbours(u) & self.neighbours(v) != opposite or min(len(self.star[k]) for k in opposite) < 4:
             return None
         moving = (self.star[u] | self.star[v]) - both
-        added = [tuple(u if k == v else k for k in self.faces[f]) for f in sorted(moving)]
+        added = [replaced(self.faces[f], v, u) for f in sorted(moving)]
         return MeshChange(sorted(moving) + sorted(both), added, {u: along(self.points[u], self.points[v], share)})
 
     def relocate(self, vertex: int, place: Point) -> MeshChange:
@@ -132,7 +145,7 @@ class LocalMesh:
         sliver's own meaningless normal does not count.
         """
         old = [normal(*(self.points[v] for v in self.faces[f])) for f in change.dropped]
-        mean = unit(tuple(map(sum, zip(*old, strict=True))))
+        mean = mean_direction(old)
         change.after = 180.0
         for face in change.added:
             corners = tuple(change.places.get(v, self.points[v]) for v in face)

@@ -7,6 +7,7 @@ import hashlib
 import os
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pymeshlab
@@ -40,7 +41,7 @@ def _weld(vertices: np.ndarray, triangles: np.ndarray) -> Arrays:
 
 
 def _read_stl(path: Path) -> Arrays:
-    mesh = trimesh.load(path, process=False, force="mesh")
+    mesh: Any = trimesh.load(path, process=False, force="mesh")
     return _weld(np.asarray(mesh.vertices, np.float64), np.asarray(mesh.faces, np.int64))
 
 

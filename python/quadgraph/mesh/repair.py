@@ -172,7 +172,7 @@ def _cut_crossings(work: _Work) -> None:
         cut = np.zeros(len(work.surface.triangles), bool)
         cut[crossing] = True
         for _ in range(rings):
-            cut = np.isin(work.surface.triangles, work.surface.triangles[cut]).any(axis=1)
+            cut = np.logical_or.reduce(np.isin(work.surface.triangles, work.surface.triangles[cut]), axis=1)
         kept = Surface(work.surface.vertices, work.surface.triangles[~cut]).compacted()
         work.done((kept, len(crossing)), "crossing triangles cut away")
         try:

@@ -53,8 +53,9 @@ def _smoothed(mesh: LocalMesh, vertex: int, step: float) -> MeshChange:
     """Move a vertex towards the middle of its neighbours, within its tangent plane."""
     here = mesh.points[vertex]
     around = [mesh.points[v] for v in mesh.neighbours(vertex)]
-    middle = tuple(sum(p[k] for p in around) / len(around) for k in range(3))
+    x, y, z = (sum(p[k] for p in around) / len(around) for k in range(3))
+    middle = (x, y, z)
     up = mesh.vertex_normal(vertex)
     height = dot(up, middle) - dot(up, here)
-    tangential = tuple(middle[k] - height * up[k] for k in range(3))
-    return mesh.relocate(vertex, along(here, tangential, step))
+    x, y, z = (middle[k] - height * up[k] for k in range(3))
+    return mesh.relocate(vertex, along(here, (x, y, z), step))

@@ -132,10 +132,10 @@ class Surface:
         ends = np.stack([edge, np.roll(edge, 1, axis=1)], axis=2)
         vertex = np.repeat(self.triangles[:, :, None], 2, axis=2)
         key = (ends * len(self.vertices) + vertex).ravel()
-        corner = np.repeat(corner[:, :, None], 2, axis=2).ravel()
+        corner_of_end = np.repeat(corner[:, :, None], 2, axis=2).ravel()
         order = np.argsort(key, kind="stable")
         same = key[order][1:] == key[order][:-1]
-        a, b = corner[order][1:][same], corner[order][:-1][same]
+        a, b = corner_of_end[order][1:][same], corner_of_end[order][:-1][same]
         size = self.triangles.size
         graph = sparse.coo_matrix((np.ones(len(a), bool), (a, b)), shape=(size, size))
         _, fan = connected_components(graph, directed=False)
@@ -152,12 +152,12 @@ class Surface:
         )
 
     def compacted(self) -> Surface:
-        """The same surface without unreferenced vertices, in the order of the old indices."""
+        """This surface without unreferenced vertices, in the order of the old indices."""
         used, inverse = np.unique(self.triangles, return_inverse=True)
         return Surface(self.vertices[used], inverse.reshape(-1, 3).astype(np.int64))
 
     def rounded(self) -> Surface:
-        """The same surface with coordinates that float32 can hold exactly."""
+        """This surface with coordinates that float32 can hold exactly."""
         return Surface(self.vertices.astype(np.float32).astype(np.float64), self.triangles)
 
 
@@ -197,6 +197,9 @@ class MesherInfo:
     options: str
 
 
+NO_MESHER = MesherInfo("", "", "")  # of tets that no program made
+
+
 @dataclass(frozen=True, eq=False)
 class TetMesh:
     """Tetrahedra of one closed surface.
@@ -207,7 +210,7 @@ class TetMesh:
 
     vertices: np.ndarray
     tets: np.ndarray
-    mesher: MesherInfo
+    mesher: MesherInfo = NO_MESHER
 
     @cached_property
     def determinants(self) -> np.ndarray:

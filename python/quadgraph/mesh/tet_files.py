@@ -55,7 +55,9 @@ def _read_table(path: Path, columns: int, dtype: type) -> np.ndarray:
     with path.open() as lines:
         count = int(lines.readline().split()[0])
         wanted = range(1, columns + 1)
-        table = np.loadtxt(lines, dtype=dtype, comments="#", usecols=wanted, ndmin=2) if count else []
+        table = (
+            np.loadtxt(lines, dtype=dtype, comments="#", usecols=wanted, ndmin=2) if count else np.empty((0, columns))
+        )
     if len(table) != count:
         raise ToolError(f"{path.name}: header announces {count} rows, found {len(table)}")
     return np.asarray(table, dtype).reshape(-1, columns)

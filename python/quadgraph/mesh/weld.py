@@ -33,7 +33,7 @@ def drop_degenerate(surface: Surface) -> tuple[Surface, int]:
 
 
 def drop_duplicates(surface: Surface) -> tuple[Surface, int]:
-    """Of triangles over the same vertices keep one, or none where as many look one way as the other (a flap)."""
+    """Keep one of triangles over the same vertices, or none where as many look one way as the other (a flap)."""
     ordered = np.sort(surface.triangles, axis=1)
     _, first, group = np.unique(ordered, axis=0, return_index=True, return_inverse=True)
     group = group.reshape(-1)

@@ -1,4 +1,4 @@
-"""Which outside faces see which others, by rays from each: the matrix of light from part to part of one level.
+"""Which outside faces see which others, by rays from each: the exchange matrix of one level (inter-reflection).
 
 Light that leaves a face reaches another along straight lines outside the body, so that the matrix depends on the shape
 alone and moves with it (docs/physics.md, "Inter-reflection"). Rays and arrays: docs/qgraph-format.md.

@@ -37,7 +37,7 @@ def oriented_graph(points: np.ndarray, tets: np.ndarray) -> Graph:
     points = points.astype(np.float32).astype(np.float64)
     flipped = determinants(points, tets) < 0
     tets[flipped] = tets[flipped][:, [0, 1, 3, 2]]
-    return graph.build(TetMesh(points, tets, mesher=None))
+    return graph.build(TetMesh(points, tets))
 
 
 def _octahedron(points: np.ndarray, middle: np.ndarray) -> list[np.ndarray]:

@@ -16,7 +16,7 @@ def _round(points: np.ndarray) -> np.ndarray:
 
 
 def orient(vertices: np.ndarray, tets: np.ndarray) -> np.ndarray:
-    """The same tets with every determinant turned positive (zero stays zero)."""
+    """The tets with every determinant turned positive (zero stays zero)."""
     turned = tets.copy()
     negative = determinants(vertices, tets) < 0
     turned[negative, 2:] = tets[negative, :1:-1]

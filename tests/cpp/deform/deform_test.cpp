@@ -128,7 +128,7 @@ TEST_CASE("mean value coordinates reproduce points inside, on and outside a cage
   const std::vector<double> on_face = check(0.2 * a + 0.3 * b + 0.5 * c);
   CHECK(on_face[t.z] == doctest::Approx(0.5));
   CHECK(check(0.25 * a + 0.75 * b)[t.y] == doctest::Approx(0.75));
-  // As near as can be to a face and to its plane beside it, from both sides.
+  // Points very near to a face, and to its plane beside it, on both sides.
   const glm::dvec3 n = glm::normalize(glm::cross(b - a, c - a));
   for (const double away : {1e-3, 1e-6, 1e-8, 1e-11, -1e-6, -1e-9}) {
     check(0.2 * a + 0.3 * b + 0.5 * c + away * n);

@@ -67,7 +67,7 @@ double largest_entry(const Rows& rows) {
 
 }  // namespace
 
-TEST_CASE("geometry and an even material make the operator that the engine assembles") {
+TEST_CASE("geometry and a uniform material make the operator that the engine assembles") {
   for (Model model : {Model::diffusion, Model::sp3}) {
     const Body body(model, "skin1");
     const Layout geometry{.entries = ENTRIES_GEOMETRY};

@@ -1,4 +1,4 @@
-// Light as it enters: refraction, the bundle of even light, and its stand-in by one ray.
+// Light as it enters: refraction, the bundle of uniform light, and its stand-in by one ray.
 #include "engine/reference/entering.h"
 
 #include <doctest/doctest.h>
@@ -59,7 +59,7 @@ TEST_CASE("the bundle carries all light, at cosines that refraction allows") {
   }
 }
 
-TEST_CASE("the ray for even light keeps its angle, moves with the face, and turns from face to face") {
+TEST_CASE("the ray for uniform light keeps its angle, moves with the face, and turns from face to face") {
   const OwnedLevel owned = box_level(2, 2.0f, 0.2f);
   const Level level = owned.view();
   std::array<int, 4> quadrant{};
@@ -78,7 +78,7 @@ TEST_CASE("the ray for even light keeps its angle, moves with the face, and turn
   for (const int count : quadrant) CHECK(count == doctest::Approx(level.face_count() / 4.0).epsilon(0.1));
 }
 
-TEST_CASE("a slab lit by the one ray reflects and transmits like one in even light") {
+TEST_CASE("a slab lit by the one ray reflects and transmits like one in uniform light") {
   const OwnedLevel owned = slab_level(10, 2.5f);
   const Level level = owned.view();
   // 10, 5 and 2.5 mean free paths thick.

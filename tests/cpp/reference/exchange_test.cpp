@@ -1,4 +1,4 @@
-// Light from part to part: what arrives, against closed forms of visibility; the bounces, against their series.
+// Inter-reflection: what arrives, against closed forms of visibility; the bounces, against their series.
 #include "engine/reference/exchange.h"
 
 #include <doctest/doctest.h>
@@ -80,7 +80,7 @@ std::vector<glm::vec3> lit(const Level& level, const std::function<bool(std::uin
 
 }  // namespace
 
-TEST_CASE("inside a shell even light arrives as it left, and outside none") {
+TEST_CASE("inside a shell uniform light arrives as it left, and outside none") {
   const Level level = shell().view();
   std::vector<glm::dvec3> radiosity;
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {
@@ -159,7 +159,7 @@ TEST_CASE("nothing arrives at reflecting faces") {
   CHECK(least > 0.1);
 }
 
-TEST_CASE("bounces inside an evenly lit shell are the geometric series of its reflectance") {
+TEST_CASE("bounces inside a uniformly lit shell are the geometric series of its reflectance") {
   const Level level = shell().view();
   const auto in = [](std::uint32_t f) { return inside(shell(), f, 6); };
   const auto q = lit(level, in);

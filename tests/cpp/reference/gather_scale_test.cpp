@@ -80,7 +80,7 @@ TEST_CASE("the exitance counts over a mean free path: below it is smoothed, abov
     CHECK(factor_at(sigma_t, 1.0f) == doctest::Approx(1.0).epsilon(0.01));
     CHECK(factor_at(sigma_t, 8.0f) == doctest::Approx(2.0).epsilon(0.01));
   }
-  // Of 20 mm, larger than the body.
+  // A mean free path of 20 mm is larger than the body.
   CHECK(factor_at(0.05f, 8.0f) / factor_at(0.05f, 1.0f) < 1.1);
   CHECK(factor_at(0.05f, 8.0f) > factor_at(0.05f, 1.0f));
   CHECK(factor_at(0.05f, 5.0f) == doctest::Approx(1.55).epsilon(0.05));

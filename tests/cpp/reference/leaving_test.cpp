@@ -12,7 +12,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-// Two slabs of 2 mm across a gap of 3 mm, evenly lit inside, the lower one `ratio` times as bright.
+// Two slabs of 2 mm across a gap of 3 mm, uniformly lit inside, the lower one `ratio` times as bright.
 struct Slabs {
   OwnedLevel owned = facing_slabs(4, 10.0f, 2.0f, 3.0f);
   Level level = owned.view();

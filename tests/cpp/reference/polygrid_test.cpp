@@ -151,7 +151,8 @@ TEST_CASE("rows of polygrids have positive diagonals, no positive entries, and s
   }
 }
 
-TEST_CASE("a uniform fluence is a solution of both methods in even light, of the divergence form where kappa varies") {
+TEST_CASE(
+    "a uniform fluence is a solution of both methods in uniform light, of the divergence form where kappa varies") {
   const QuadGraph graph = QuadGraph::load(grid_path);
   const Level& level = graph.levels()[0];
   const auto q = everywhere(level, glm::vec3(0.7f));

@@ -76,7 +76,7 @@ glm::dvec3 outward(double c, double side, double azimuth = 0.7) {
 
 }  // namespace
 
-TEST_CASE("even light in a thick body: albedo / 4 pi inside, to rounding, whatever the mesh and the direction") {
+TEST_CASE("uniform light in a thick body: albedo / 4 pi inside, to rounding, whatever the mesh and the direction") {
   const OwnedLevel owned = box_level(5, 5.0f, 0.3f);
   const Level level = owned.view();
   const std::vector<glm::dvec3> phi(level.vertices.size(), glm::dvec3(4 * pi));
@@ -108,7 +108,7 @@ TEST_CASE("even light in a thick body: albedo / 4 pi inside, to rounding, whatev
   }
 }
 
-TEST_CASE("even light in a thin slab: what the surfaces keep inside comes back") {
+TEST_CASE("uniform light in a thin slab: what the surfaces keep inside comes back") {
   const OwnedLevel owned = slab_level(4, 1.0f);
   const Level level = owned.view();
   const std::vector<glm::dvec3> phi(level.vertices.size(), glm::dvec3(4 * pi));
@@ -180,7 +180,7 @@ TEST_CASE("single scattering of a beam leaves a slab as the closed form says, on
   }
 }
 
-TEST_CASE("even light that enters falls off as its bundle; one ray stands for it") {
+TEST_CASE("uniform light that enters falls off as its bundle; one ray stands for it") {
   const OwnedLevel owned = slab_level(5, 2.0f);
   const Level level = owned.view();
   const Opticals optical = everywhere_of(level, glm::vec3(1), glm::vec3(0.2f));

@@ -64,7 +64,7 @@ TEST_CASE("normals of the display are carried by the inverse transpose, and are 
   const Deformer bend{.kind = DeformerKind::bend, .degrees = 100};
   for (const std::vector<Deformer>& list : {std::vector{scale}, std::vector{bend}, std::vector{bend, scale}}) {
     alone.move(list);
-    const auto found = vk::download<glm::vec3>(alone.device.context, alone.buffers.normals);
+    const auto found = device::download<glm::vec3>(alone.device.context, alone.buffers.normals);
     double worst = 0;
     for (std::size_t v = 0; v < found.size(); ++v) {
       const glm::dvec3 p(alone.shape.vertices[v]), n(alone.shape.normals[v]);
@@ -77,19 +77,19 @@ TEST_CASE("normals of the display are carried by the inverse transpose, and are 
       if (glm::dot(glm::dvec3(found[v]), expected) < 0) worst = 2;
     }
     CHECK(worst < 0.06);  // faces are .05 wide
-    const Sphere expected = bounding_sphere(vk::download<glm::vec3>(alone.device.context, alone.buffers.vertices));
+    const Sphere expected = bounding_sphere(device::download<glm::vec3>(alone.device.context, alone.buffers.vertices));
     CHECK(glm::distance(alone.motion.bounds().centre, expected.centre) < 1e-4f);
     CHECK(alone.motion.bounds().radius == doctest::Approx(expected.radius).epsilon(1e-6));
   }
   alone.move({{.kind = DeformerKind::twist, .degrees = 0}});
-  const auto rest = vk::download<glm::vec3>(alone.device.context, alone.buffers.normals);
+  const auto rest = device::download<glm::vec3>(alone.device.context, alone.buffers.normals);
   double worst = 0;
   for (std::size_t v = 0; v < rest.size(); ++v) {
     worst = std::max<double>(worst, glm::distance(rest[v], alone.shape.normals[v]));
   }
   CHECK(worst < 1e-6);
   alone.move({});
-  CHECK(vk::download<glm::vec3>(alone.device.context, alone.buffers.normals) == alone.shape.normals);
+  CHECK(device::download<glm::vec3>(alone.device.context, alone.buffers.normals) == alone.shape.normals);
 }
 
 TEST_CASE("a body turned with its lights and its camera looks as before, and put back it is the same") {
@@ -129,7 +129,7 @@ TEST_CASE("what is shown and what is solved on stay together, and bounds and sha
   const DisplayMesh& mesh = engine.graph().display();
   const Level& level = engine.graph().levels()[0];
   const auto shown = deformed(list, rest_box(mesh.vertices), {}, mesh.vertices);
-  const auto solved = vk::download<glm::vec3>(engine.context(), engine.simulation().level(0).vertices);
+  const auto solved = device::download<glm::vec3>(engine.context(), engine.simulation().level(0).vertices);
   double worst = 0;
   for (std::size_t v = 0; v < shown.size(); ++v) {
     glm::dvec3 on_face(0);
@@ -170,7 +170,7 @@ TEST_CASE("shapes displace display and levels alike, and those of another body a
   engine.set_deformation(std::span(&displaced, 1));
   CHECK(glm::distance(engine.bounds().centre, centre + glm::vec3(2, 1, 0)) < 1e-5f);
   const glm::vec3 vertex = engine.graph().levels()[1].vertices[2];
-  CHECK(glm::distance(vk::download<glm::vec3>(engine.context(), engine.simulation().level(1).vertices)[2],
+  CHECK(glm::distance(device::download<glm::vec3>(engine.context(), engine.simulation().level(1).vertices)[2],
                       vertex + glm::vec3(2, 1, 0)) < 1e-5f);
   shapes.levels[1][1].pop_back();
   displaced.shapes = std::make_shared<Shapes>(shapes);

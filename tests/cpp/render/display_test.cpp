@@ -6,6 +6,7 @@
 
 #include "engine/optics/fresnel.h"
 #include "engine/render/picture/rasteriser.h"
+#include "tests/cpp/fixtures/checked_context.h"
 #include "tests/cpp/fixtures/render_shapes.h"
 
 using namespace quadgraph;
@@ -13,13 +14,14 @@ using namespace quadgraph;
 namespace {
 
 struct Stage {
-  vk::Context context{{.validation = true, .device = ""}};
+  CheckedContext checked;
+  device::Device& context = checked.context;
   Shape shape;
   DisplayBuffers mesh;
   LevelBuffers level;
   ShadowMaps shadows{context};
   Rasteriser rasteriser{context};
-  vk::Buffer exitance, unscattered;
+  device::Buffer exitance, unscattered;
 
   Stage(Shape body, const glm::vec3& uniform_exitance)
       : shape(std::move(body)), mesh(upload_as_display(context, shape)), level(upload_as_level(context, shape, 0)) {
@@ -27,13 +29,11 @@ struct Stage {
   }
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;
-  ~Stage() {
-    for (const auto& message : context.validation_messages()) FAIL_CHECK(message);
-  }
 
   void set_exitance(const std::vector<glm::vec3>& values) {
-    exitance = vk::upload<glm::vec3>(context, values, "exitance");
-    unscattered = vk::upload<glm::vec3>(context, std::vector<glm::vec3>(values.size(), glm::vec3(0)), "unscattered");
+    exitance = device::upload<glm::vec3>(context, values, "exitance");
+    unscattered =
+        device::upload<glm::vec3>(context, std::vector<glm::vec3>(values.size(), glm::vec3(0)), "unscattered");
   }
 
   Picture picture(const std::vector<Light>& lights, float eta, const View& view, std::uint32_t width,

@@ -12,6 +12,7 @@
 #include "engine/render/engine.h"
 #include "engine/render/picture/legend.h"
 #include "shaders/display/colour_map.h"
+#include "tests/cpp/fixtures/test_device.h"
 
 using namespace quadgraph;
 
@@ -78,7 +79,7 @@ TEST_CASE("a colour bar has round numbers inside it") {
 }
 
 TEST_CASE("every view of the inside shows the body and names its unit; a picture comes back unchanged after them") {
-  Engine engine(cube, {.validation = true, .device = ""});
+  Engine engine(cube, test_device());
   engine.set_material("sigma_s_prime=2,sigma_a=0.1,eta=1.4");
   engine.set_lights({parse_light("directional:0,0,-1:1")});
   engine.solve();
@@ -105,7 +106,7 @@ TEST_CASE("every view of the inside shows the body and names its unit; a picture
 }
 
 TEST_CASE("the lit face of a cube is yellow in q, the others are at the dark end") {
-  Engine engine(cube, {.validation = true, .device = ""});
+  Engine engine(cube, test_device());
   engine.set_material("sigma_s_prime=2,sigma_a=0.1,eta=1.4");
   engine.set_lights({parse_light("directional:0,0,-1:1")});
   engine.solve();

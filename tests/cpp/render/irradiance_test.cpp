@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "engine/optics/fresnel.h"
+#include "tests/cpp/fixtures/checked_context.h"
 #include "tests/cpp/fixtures/render_shapes.h"
 
 using namespace quadgraph;
@@ -15,14 +16,14 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-std::vector<glm::vec3> irradiance(vk::Context& context, const Shape& shape, const std::vector<Light>& lights,
+std::vector<glm::vec3> irradiance(device::Device& context, const Shape& shape, const std::vector<Light>& lights,
                                   float eta) {
   const DisplayBuffers mesh = upload_as_display(context, shape);
   const LevelBuffers level = upload_as_level(context, shape, lights.size());
   ShadowMaps shadows(context);
   shadows.update(mesh, {lights, bounding_sphere(shape.vertices)});
   IrradiancePass(context).run(level, 0, shadows, eta);
-  return vk::download<glm::vec3>(context, level.q);
+  return device::download<glm::vec3>(context, level.q);
 }
 
 // Power that enters, W.
@@ -71,14 +72,11 @@ float traced_visibility(const Shape& shape, std::size_t face, const glm::vec3& d
   return static_cast<float>(seen) / static_cast<float>(samples);
 }
 
-void check_silent(const vk::Context& context) {
-  for (const auto& message : context.validation_messages()) FAIL_CHECK(message);
-}
-
 }  // namespace
 
 TEST_CASE("a sphere takes in the light of its cross-section") {
-  vk::Context context({.validation = true, .device = ""});
+  CheckedContext checked;
+  device::Device& context = checked.context;
   constexpr float radius = 10;
   const Shape shape = sphere({3, -2, 5}, radius, 5);
   double worst = 0;
@@ -89,11 +87,11 @@ TEST_CASE("a sphere takes in the light of its cross-section") {
   INFO("worst relative error ", worst);
   // The polyhedron's own cross-section is smaller by less than (edge / radius)^2 / 8 = 0.0003.
   CHECK(worst < 1e-3);
-  check_silent(context);
 }
 
 TEST_CASE("a distant point light, near and in all six directions, gives its share of the solid angle") {
-  vk::Context context({.validation = true, .device = ""});
+  CheckedContext checked;
+  device::Device& context = checked.context;
   constexpr float radius = 10, power = 7;
   const Shape shape = sphere({0, 0, 0}, radius, 5);
   // 30: one frustum; 10.5, inside 1.1 radii: six faces. Half the flux within the cone that touches the sphere.
@@ -106,11 +104,11 @@ TEST_CASE("a distant point light, near and in all six directions, gives its shar
       CHECK(entered(shape, q).x / (power * share) == doctest::Approx(1).epsilon(0.004));
     }
   }
-  check_silent(context);
 }
 
 TEST_CASE("q follows the cosine and the exact Fresnel transmittance, and lights add up") {
-  vk::Context context({.validation = true, .device = ""});
+  CheckedContext checked;
+  device::Device& context = checked.context;
   const Shape shape = sphere({0, 0, 0}, 10, 3);
   const auto red = parse_light("directional:0,0,-1:1/0/0"), blue = parse_light("directional:0,-1,0:0/0/3");
   const auto q = irradiance(context, shape, {red, blue}, 1.5f);
@@ -124,19 +122,19 @@ TEST_CASE("q follows the cosine and the exact Fresnel transmittance, and lights 
     if (std::abs(n.y) > 0.1f) CHECK(q[f].b == doctest::Approx(expected(n.y, 3)).epsilon(1e-4));
     CHECK(q[f].g == 0);
   }
-  check_silent(context);
 }
 
 TEST_CASE("every light has its own quarters, which make up q") {
-  vk::Context context({.validation = true, .device = ""});
+  CheckedContext checked;
+  device::Device& context = checked.context;
   const Shape shape = sphere({0, 0, 0}, 10, 1);
   const std::vector<Light> lights = {parse_light("point:0,0,14:5000/100/0"), parse_light("directional:0,-1,0:0/1/3")};
   const LevelBuffers level = upload_as_level(context, shape, lights.size());
   ShadowMaps shadows(context);
   shadows.update(upload_as_display(context, shape), {lights, bounding_sphere(shape.vertices)});
   IrradiancePass(context).run(level, 0, shadows, 1.0f);
-  const auto q = vk::download<glm::vec3>(context, level.q);
-  const auto shares = vk::download<float>(context, level.beam_q);
+  const auto q = device::download<glm::vec3>(context, level.q);
+  const auto shares = device::download<float>(context, level.beam_q);
   REQUIRE(shares.size() == lights.size() * FACE_QUARTERS * shape.faces.size());
   const auto brought = [&](std::size_t light, std::size_t f, std::size_t k) {
     return shares[(light * shape.faces.size() + f) * FACE_QUARTERS + k] * light_record(lights[light]).power;
@@ -176,17 +174,17 @@ TEST_CASE("every light has its own quarters, which make up q") {
     }
   }
   CHECK(lit > 0);
-  check_silent(context);
 }
 
 TEST_CASE("without lights no light enters") {
-  vk::Context context({.validation = true, .device = ""});
+  CheckedContext checked;
+  device::Device& context = checked.context;
   for (const glm::vec3& q : irradiance(context, sphere({0, 0, 0}, 1, 2), {}, 1.3f)) CHECK(q == glm::vec3(0));
-  check_silent(context);
 }
 
 TEST_CASE("a sphere shadows another as traced rays say, also through a thin plate") {
-  vk::Context context({.validation = true, .device = ""});
+  CheckedContext checked;
+  device::Device& context = checked.context;
   Shape shape = sphere({0, 0, 0}, 10, 4);
   shape.append(sphere({6, 18, 3}, 6, 4));
   // A plate of 0.1 mm, about three texels of the map.
@@ -218,11 +216,11 @@ TEST_CASE("a sphere shadows another as traced rays say, also through a thin plat
   CHECK(errors[errors.size() / 2] < 1e-3f);
   CHECK(mean < 5e-3);
   CHECK(entered(shape, q).x == doctest::Approx(traced_power).epsilon(5e-3));
-  check_silent(context);
 }
 
 TEST_CASE("ambient light comes from the share of the sky that a face sees") {
-  vk::Context context({.validation = true, .device = ""});
+  CheckedContext checked;
+  device::Device& context = checked.context;
   const Shape shape = sphere(glm::vec3(0), 5.0f, 2);
   const DisplayBuffers mesh = upload_as_display(context, shape);
   Light ambient;
@@ -231,14 +229,13 @@ TEST_CASE("ambient light comes from the share of the sky that a face sees") {
   LevelBuffers level = upload_as_level(context, shape, 1);
   std::vector<float> sky;
   for (std::size_t f = 0; f < shape.faces.size(); ++f) sky.push_back(static_cast<float>(f % 5) / 4.0f);
-  level.sky = vk::upload<float>(context, sky, "sky");
+  level.sky = device::upload<float>(context, sky, "sky");
   ShadowMaps shadows(context);
   shadows.update(mesh, {{&ambient, 1}, bounding_sphere(shape.vertices)});
   IrradiancePass(context).run(level, 0, shadows, 1.3f);
-  const auto q = vk::download<glm::vec3>(context, level.q);
+  const auto q = device::download<glm::vec3>(context, level.q);
   const auto entering = static_cast<float>(diffuse_transmittance(1.3));
   for (std::size_t f = 0; f < q.size(); ++f) {
     for (int c = 0; c < 3; ++c) CHECK(q[f][c] == doctest::Approx(entering * sky[f] * static_cast<float>(c + 1)));
   }
-  check_silent(context);
 }

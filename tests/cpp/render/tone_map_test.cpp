@@ -35,11 +35,11 @@ Picture sample_picture(std::uint32_t width, std::uint32_t height) {
   return picture;
 }
 
-PictureBuffers on_device(vk::Context& context, const Picture& picture) {
+PictureBuffers on_device(device::Device& context, const Picture& picture) {
   PictureBuffers buffers;
   buffers.resize(context, picture.width, picture.height);
-  const auto write = [&](const vk::Buffer& buffer, const std::vector<float>& values) {
-    vk::write_bytes(context, buffer, std::as_bytes(std::span(values)));
+  const auto write = [&](const device::Buffer& buffer, const std::vector<float>& values) {
+    device::write_bytes(context, buffer, std::as_bytes(std::span(values)));
   };
   write(buffers.layers[0], picture.scattered);
   write(buffers.layers[1], picture.specular);
@@ -74,7 +74,7 @@ TEST_CASE("the screen shows what a PNG holds, within one code") {
     same.exposure_stops = stops;
     const auto expected = to_srgb8(picture, same);
     for (const bool blue_first : {false, true}) {
-      const auto shown = vk::download<std::uint8_t>(
+      const auto shown = device::download<std::uint8_t>(
           checked.context, mapper.run(buffers, options, stops, {picture.width, picture.height, blue_first}));
       int worst = 0;
       for (std::size_t i = 0; i < picture.alpha.size(); ++i) {
@@ -101,8 +101,8 @@ TEST_CASE("a picture in motion is stretched over the screen: what is even stays 
   }
   ToneMapper mapper(checked.context);
   const ToneOptions black{.exposure_stops = 0.0f, .background_top = glm::vec3(0), .background_bottom = glm::vec3(0)};
-  const auto shown =
-      vk::download<std::uint32_t>(checked.context, mapper.run(on_device(checked.context, picture), black, 0, {32, 16}));
+  const auto shown = device::download<std::uint32_t>(
+      checked.context, mapper.run(on_device(checked.context, picture), black, 0, {32, 16}));
   const float lit = 255 * srgb_encode(filmic(0.4f));
   for (std::size_t y = 0; y < 16; ++y) {
     for (std::size_t x = 0; x < 32; ++x) {

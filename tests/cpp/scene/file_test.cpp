@@ -11,6 +11,7 @@
 #include "engine/render/light/default_lights.h"
 #include "engine/scene/scene_file.h"
 #include "engine/scene/stage.h"
+#include "tests/cpp/fixtures/test_device.h"
 
 using namespace quadgraph;
 
@@ -246,7 +247,7 @@ TEST_CASE("a stage that went through other scenes shows the same as a fresh one"
   other.edits.clear();
   other.deformation.pop_back();
   other.lights.pop_back();
-  Stage travelled({.validation = true, .device = ""}), fresh({.validation = true, .device = ""});
+  Stage travelled(test_device()), fresh(test_device());
   for (const Scene& shown : {scene, other, scene}) {
     travelled.show(shown);
     travelled.solve();

@@ -42,7 +42,7 @@ struct Assembled {
         op(device.context, level, 0, method, model, format_of(level, method)),
         work(device.context, level.node_count()) {
     upload_graph(device.context, level, 0, buffers);
-    buffers.optical = vk::upload<gpu::Optical>(device.context, optical, "optical", vk::Place::fields);
+    buffers.optical = device::upload<gpu::Optical>(device.context, optical, "optical");
     op.make_room(device.context, level, even, false);
     record_assembly(work, buffers, method, problem.boundary(), even, op);
     work.recorder.submit();
@@ -56,8 +56,8 @@ struct Assembled {
   }
 
   template <typename T>
-  std::vector<T> get(const vk::Buffer& buffer) {
-    return vk::download<T>(device.context, buffer);
+  std::vector<T> get(const device::Buffer& buffer) {
+    return device::download<T>(device.context, buffer);
   }
 
   std::vector<StoredEntry> entries() {
@@ -67,13 +67,14 @@ struct Assembled {
     return result;
   }
 
-  // Of rows that are one record (shaders/solver/stored_rows.glsl): what they say, as blocks.
+  // The blocks of rows that are stored as one record (shaders/solver/stored_rows.glsl).
   std::vector<Block> compact(double masses, double area, bool stiffness) {
     const auto v = get<float>(op.row_sum);
     const Boundary boundary{.k11 = v[0], .k12 = v[1], .k22 = v[2]};
     const auto three = [&](std::size_t k) { return glm::dvec3(v[k], v[k + 1], v[k + 2]); };
     std::vector<Block> result;
-    for (std::size_t k = gpu::SP3_ROWS_HEAD; k < v.size(); k += gpu::SP3_ROW_FLOATS) {
+    constexpr std::size_t head = 3, row = sizeof(gpu::Sp3Row) / sizeof(float);
+    for (std::size_t k = head; k < v.size(); k += row) {
       result.push_back(block_of({.stiffness = stiffness ? three(k) : glm::dvec3(0),
                                  .absorption = masses * three(k + 3),
                                  .relaxation = masses * three(k + 6),
@@ -87,7 +88,7 @@ struct Assembled {
   std::vector<Block> diagonals() { return op.compact_rows() ? compact(0.4, 0.5, true) : blocks(op.diagonal); }
 
   // Blocks as the CPU has them, and the same for fields.
-  std::vector<Block> blocks(const vk::Buffer& buffer) {
+  std::vector<Block> blocks(const device::Buffer& buffer) {
     const auto values = get<glm::vec3>(buffer);
     std::vector<Block> result;
     const std::size_t size = op.block_bytes() / sizeof(glm::vec3);
@@ -99,7 +100,7 @@ struct Assembled {
     return result;
   }
 
-  std::vector<Field> fields(const vk::Buffer& buffer) {
+  std::vector<Field> fields(const device::Buffer& buffer) {
     const auto values = get<glm::vec3>(buffer);
     std::vector<Field> result;
     const std::size_t size = op.field_bytes() / sizeof(glm::vec3);
@@ -184,7 +185,7 @@ TEST_CASE("rows on the GPU equal those of the CPU with walls, in a heterogeneous
           sum = sum - entry[e].weight;
         }
         if (gpu_side.op.compact_rows()) {
-          // Of the entries' rounding only that of a11 is in it, as if the stiffness were another.
+          // A compact row holds the rounding of a11 alone, as if the stiffness were another.
           const glm::dvec3 rounded = sum.a11 - rows.diagonal[i].a11;
           sum = rows.diagonal[i];
           sum += {rounded, 2.0 / 3.0 * rounded, 55.0 / 63.0 * rounded};
@@ -230,7 +231,7 @@ TEST_CASE("right-hand sides of the diffuse source on the GPU equal those of the 
       for (std::uint32_t f = 0; f < gpu_side.level.face_count(); ++f) {
         q.push_back(glm::vec3(0.001f, 0.3f, 70.0f) * static_cast<float>(f % 5));
       }
-      vk::write_bytes(gpu_side.device.context, gpu_side.buffers.q, std::as_bytes(std::span(q)));
+      device::write_bytes(gpu_side.device.context, gpu_side.buffers.q, std::as_bytes(std::span(q)));
       record_scale(gpu_side.work, gpu_side.buffers);
       record_diffuse_load(gpu_side.work, gpu_side.buffers, method, gpu_side.problem.boundary(), gpu_side.op);
       gpu_side.work.recorder.submit();

@@ -144,7 +144,7 @@ TEST_CASE("light that is not finite is a solver error, and the next solve is sou
   scene.simulation.set_material(homogeneous());
   std::vector<glm::vec3> q = scene.irradiance(0, one_side);
   q[0].y = std::numeric_limits<float>::quiet_NaN();
-  vk::write_bytes(scene.device.context, scene.simulation.level(0).q, std::as_bytes(std::span(q)));
+  device::write_bytes(scene.device.context, scene.simulation.level(0).q, std::as_bytes(std::span(q)));
   scene.simulation.irradiance_changed();
   for (SolverKind solver : both_solvers) {
     CHECK_THROWS_WITH_AS(scene.simulation.solve(options(Method::fem, solver, 1e-3)), doctest::Contains("channel 1"),
@@ -157,7 +157,7 @@ TEST_CASE("light that is not finite is a solver error, and the next solve is sou
 
 TEST_CASE("a matrix that is not positive definite breaks down by name") {
   CheckedContext device;
-  vk::Context& context = device.context;
+  device::Device& context = device.context;
   const OwnedLevel owned = split_at_centroids(box_level(2, 4.0f));
   const OperatorKey key{Method::fem, Model::diffusion};
   const Level level = owned.view();
@@ -166,23 +166,23 @@ TEST_CASE("a matrix that is not positive definite breaks down by name") {
   OperatorBuffers& op = operators.at(key, 0);
   Workspace work(context, op.count);
   const std::vector<glm::vec3> one(op.entries, glm::vec3(1)), minus(op.entries, glm::vec3(-1));
-  std::vector<std::uint32_t> entries = vk::download<std::uint32_t>(context, op.entry);
+  std::vector<std::uint32_t> entries = device::download<std::uint32_t>(context, op.entry);
   for (std::size_t e = 0; e < op.entries; ++e) store_weight(entries, e, {glm::dvec3(-1), {}, {}}, op.model, op.format);
-  const auto write = [&](const vk::Buffer& buffer, const std::vector<glm::vec3>& values) {
-    vk::write_bytes(context, buffer, std::as_bytes(std::span(values)).first(buffer.size()));
+  const auto write = [&](const device::Buffer& buffer, const std::vector<glm::vec3>& values) {
+    device::write_bytes(context, buffer, std::as_bytes(std::span(values)).first(buffer.size()));
   };
   const gpu::Scale scale{.scale = glm::vec3(1), .inverse = glm::vec3(1), .unlit = 0};
-  vk::write_bytes(context, work.scale, std::as_bytes(std::span(&scale, 1)));
-  gpu::SolveState state = vk::download<gpu::SolveState>(context, op.state)[0];
+  device::write_bytes(context, work.scale, std::as_bytes(std::span(&scale, 1)));
+  gpu::SolveState state = device::download<gpu::SolveState>(context, op.state)[0];
   state.norm = glm::vec3(static_cast<float>(op.count));
   for (SolverKind solver : both_solvers) {
     write(op.diagonal, one);
     write(op.row_sum, minus);
-    vk::write_bytes(context, op.entry, std::as_bytes(std::span(entries)));
+    device::write_bytes(context, op.entry, std::as_bytes(std::span(entries)));
     write(op.b, one);
     write(op.x, std::vector<glm::vec3>(op.entries, glm::vec3(0)));
     write(op.damping, one);
-    vk::write_bytes(context, op.state, std::as_bytes(std::span(&state, 1)));
+    device::write_bytes(context, op.state, std::as_bytes(std::span(&state, 1)));
     const char* expected = solver == SolverKind::dpcg ? "not positive definite" : "diverges";
     LevelSolver level_solver(work, operators, key, 0, {.solver = solver, .max_iterations = 5000});
     CHECK_THROWS_WITH_AS(level_solver.run(), doctest::Contains(expected), SolverError);

@@ -6,14 +6,8 @@
 
 #include "engine/base/error.h"
 #include "shaders/deform/deform_shared.h"
-#include "spirv/deform.comp.h"
-#include "spirv/deform_bounds.comp.h"
-#include "spirv/deform_nodes.comp.h"
-#include "spirv/deform_normals.comp.h"
-#include "spirv/shape_state.comp.h"
 #include "tests/cpp/fixtures/deform_fixtures.h"
 #include "tests/cpp/fixtures/exchange_fixtures.h"
-#include "tests/cpp/fixtures/layout_compare.h"
 #include "tests/cpp/fixtures/solve_fixtures.h"
 
 using namespace quadgraph;
@@ -76,34 +70,6 @@ bool finite(const std::vector<glm::vec3>& values) {
 
 }  // namespace
 
-TEST_CASE("push constants of the passes that move a body") {
-  compare(
-      deform_comp, "DeformPush",
-      {MEMBER(DeformPush, record), MEMBER(DeformPush, source), MEMBER(DeformPush, target), MEMBER(DeformPush, count)});
-  compare(
-      deform_comp, "DeformRecord",
-      {MEMBER(DeformRecord, control), MEMBER(DeformRecord, weight), MEMBER(DeformRecord, a), MEMBER(DeformRecord, b),
-       MEMBER(DeformRecord, c), MEMBER(DeformRecord, d), MEMBER(DeformRecord, begin), MEMBER(DeformRecord, extent),
-       MEMBER(DeformRecord, amount), MEMBER(DeformRecord, kind), MEMBER(DeformRecord, count)});
-  compare(deform_nodes_comp, "DeformNodesPush",
-          {MEMBER(DeformNodesPush, vertices), MEMBER(DeformNodesPush, tets), MEMBER(DeformNodesPush, face_tets),
-           MEMBER(DeformNodesPush, place), MEMBER(DeformNodesPush, nodes), MEMBER(DeformNodesPush, tet_count),
-           MEMBER(DeformNodesPush, count)});
-  compare(deform_normals_comp, "DeformNormalsPush",
-          {MEMBER(DeformNormalsPush, rest), MEMBER(DeformNormalsPush, moved), MEMBER(DeformNormalsPush, rest_normals),
-           MEMBER(DeformNormalsPush, normals), MEMBER(DeformNormalsPush, triangles), MEMBER(DeformNormalsPush, offset),
-           MEMBER(DeformNormalsPush, incidence), MEMBER(DeformNormalsPush, count)});
-  compare(deform_bounds_comp, "DeformBoundsPush",
-          {MEMBER(DeformBoundsPush, vertices), MEMBER(DeformBoundsPush, sphere), MEMBER(DeformBoundsPush, count)});
-  compare(shape_state_comp, "ShapeStatePush",
-          {MEMBER(ShapeStatePush, vertices), MEMBER(ShapeStatePush, tets), MEMBER(ShapeStatePush, faces),
-           MEMBER(ShapeStatePush, face_kinds), MEMBER(ShapeStatePush, face_tets), MEMBER(ShapeStatePush, sums),
-           MEMBER(ShapeStatePush, samples), MEMBER(ShapeStatePush, tet_count), MEMBER(ShapeStatePush, face_count),
-           MEMBER(ShapeStatePush, step), MEMBER(ShapeStatePush, least)});
-  CHECK(sizeof(gpu::DeformPush) <= 128);  // what every device of Vulkan 1.3 has room for
-  CHECK(SpirvLayout((vk::Spirv(shape_state_comp))).block_stride.at("ShapeSumsArray") == sizeof(gpu::ShapeSums));
-}
-
 TEST_CASE("the device moves vertices as double precision does, every kind alone and all in a row") {
   Scene scene({4, 2});
   std::vector<std::vector<Deformer>> lists = {all_kinds(cube)};
@@ -117,18 +83,18 @@ TEST_CASE("the device moves vertices as double precision does, every kind alone 
     for (std::uint32_t i = 0; i < 2; ++i) {
       const auto& rest = scene.graph.levels()[i].vertices;
       const std::vector<glm::dvec3> expected = deformed(list, cube, i, rest);
-      const auto found = vk::download<glm::vec3>(scene.device.context, scene.simulation.level(i).vertices);
+      const auto found = device::download<glm::vec3>(scene.device.context, scene.simulation.level(i).vertices);
       double worst = 0;
       for (std::size_t v = 0; v < found.size(); ++v) {
         worst = std::max(worst, glm::distance(glm::dvec3(found[v]), expected[v]));
       }
-      // Of the diagonal; in a row every one multiplies what those before have rounded.
+      // Bounds are shares of the diagonal; in a list each deformer multiplies the rounding of those before it.
       CHECK(worst < (list.size() > 1 ? 1e-5 : 1e-6) * glm::length(cube.high));
     }
   }
 }
 
-// Of one device and its pipelines, for every method.
+// One device and its pipelines serve every method.
 TEST_CASE(
     "put back a body answers bit for bit as before, moved rigidly to 1e-5, stretched as one whose vertices were set") {
   const std::vector<Deformer> bend = {

@@ -83,7 +83,7 @@ TEST_CASE("edits of a material and of given coefficients are what the CPU makes 
         shown->simulation.solve(usual(method));
         for (std::uint32_t i = 0; i < 2; ++i) {
           const LevelBuffers& level = shown->simulation.level(i);
-          const auto found = vk::download<gpu::Optical>(shown->device.context, level.optical);
+          const auto found = device::download<gpu::Optical>(shown->device.context, level.optical);
           const auto expected = edited_on_cpu(shown->graph.levels()[i], material);
           const std::uint32_t count = method == Method::fem ? level.tet_count : level.node_count;
           float worst = 0;  // relative where a coefficient exceeds 1/mm

@@ -38,7 +38,7 @@ struct Cast {
 
   void move(const Motion& motion) {
     const OwnedLevel now = moved(level, motion);
-    vk::write_bytes(device.context, buffers.vertices, std::as_bytes(std::span(now.vertices)));
+    device::write_bytes(device.context, buffers.vertices, std::as_bytes(std::span(now.vertices)));
     matrix.moved();
   }
 
@@ -50,9 +50,9 @@ struct Cast {
 
   // Every row ascending.
   std::vector<std::vector<std::uint32_t>> rows() {
-    const auto entries = vk::download<std::uint32_t>(device.context, matrix.entries());
+    const auto entries = device::download<std::uint32_t>(device.context, matrix.entries());
     std::vector<std::vector<std::uint32_t>> result;
-    for (const glm::uvec2& row : vk::download<glm::uvec2>(device.context, matrix.rows())) {
+    for (const glm::uvec2& row : device::download<glm::uvec2>(device.context, matrix.rows())) {
       result.emplace_back(entries.begin() + row.x, entries.begin() + row.y);
       std::sort(result.back().begin(), result.back().end());
     }

@@ -58,7 +58,8 @@ TEST_CASE("light that has not scattered is that of the CPU at every vertex") {
       CAPTURE(way.has_value());
       CAPTURE(material.eta);
       Gathering gathering(material, way);
-      const auto points = vk::download<gpu::GatherPoint>(gathering.scene.device.context, gathering.field().points());
+      const auto points =
+          device::download<gpu::GatherPoint>(gathering.scene.device.context, gathering.field().points());
       const Uncollided expected = gathering.expected();
       REQUIRE(points.size() == expected.entry.size());
       // Rays along edges and faces of the regular box may go either way round.
@@ -79,12 +80,12 @@ TEST_CASE("the exitance of what is gathered is that of the CPU at every face") {
       CAPTURE(way.has_value());
       CAPTURE(material.eta);
       Gathering gathering(material, way);
-      vk::Context& context = gathering.scene.device.context;
-      const auto found = vk::download<glm::vec3>(context, gathering.field().gathered());
+      device::Device& context = gathering.scene.device.context;
+      const auto found = device::download<glm::vec3>(context, gathering.field().gathered());
       // From the fields of the device, so that this compares the gather alone.
       Uncollided fields;
       std::vector<glm::dvec3> phi;
-      for (const gpu::GatherPoint& point : vk::download<gpu::GatherPoint>(context, gathering.field().points())) {
+      for (const gpu::GatherPoint& point : device::download<gpu::GatherPoint>(context, gathering.field().points())) {
         phi.emplace_back(point.phi);
         fields.entry.emplace_back(point.entry);
         fields.depth.emplace_back(point.depth);
@@ -106,14 +107,14 @@ TEST_CASE("the scale is that of the CPU at every surface vertex") {
     material.sigma_s_prime *= denser;
     material.sigma_a *= denser;
     Gathering gathering(material, ways[0]);
-    vk::Context& context = gathering.scene.device.context;
+    device::Device& context = gathering.scene.device.context;
     std::vector<glm::dvec3> gathered, shown;
-    for (const glm::vec3& value : vk::download<glm::vec3>(context, gathering.field().gathered()))
+    for (const glm::vec3& value : device::download<glm::vec3>(context, gathering.field().gathered()))
       gathered.emplace_back(value);
-    for (const glm::vec3& value : vk::download<glm::vec3>(context, gathering.scene.simulation.vertex_exitance()))
+    for (const glm::vec3& value : device::download<glm::vec3>(context, gathering.scene.simulation.vertex_exitance()))
       shown.emplace_back(value);
     const auto expected = gather_scale(gathering.scene.graph.levels()[0], gathering.problem(), gathered, shown);
-    const auto found = vk::download<gpu::GatherScale>(context, gathering.field().scale());
+    const auto found = device::download<gpu::GatherScale>(context, gathering.field().scale());
     REQUIRE(found.size() == expected.size());
     for (const gpu::GatherScale& scale : found) {
       for (int c = 0; c < 3; ++c) CHECK(scale.factor[c] <= gpu::GATHER_FACTOR_MAX);
@@ -138,7 +139,7 @@ TEST_CASE("the scale is that of the CPU at every surface vertex") {
 TEST_CASE("a body that has moved is scaled as one that was there") {
   Gathering still(homogeneous(), ways[0]), moved(homogeneous(), ways[0]);
   const auto scale = [](Gathering& gathering) {
-    return vk::download<gpu::GatherScale>(gathering.scene.device.context, gathering.field().scale());
+    return device::download<gpu::GatherScale>(gathering.scene.device.context, gathering.field().scale());
   };
   const auto before = scale(still);
   // Far away, so that boxes left behind would find nothing.

@@ -1,4 +1,4 @@
-// Light from part to part on the GPU: closed forms, conservation, and what it must leave alone.
+// Inter-reflection on the GPU: closed forms, conservation, and what it must leave alone.
 #include <functional>
 
 #include "engine/reference/exchange.h"
@@ -80,7 +80,7 @@ TEST_CASE("inside a shell every bounce brings the same share of the one before, 
   }
 }
 
-TEST_CASE("what leaves a closed cavity enters it again, all of it, and evenly where it left evenly") {
+TEST_CASE("what leaves a closed cavity enters it again, all of it, and uniformly where it left uniformly") {
   Body body({baked(shell_level(4, 2, 3.0, 5.0))});
   body.light([](const glm::vec3& p) { return glm::length(p) > 4 ? glm::vec3(1) : glm::vec3(0); });
   for (const float eta : {1.0f, 1.4f}) {
@@ -89,7 +89,7 @@ TEST_CASE("what leaves a closed cavity enters it again, all of it, and evenly wh
     const SolveReport report = body.simulation.solve(accurate());
     const SurfaceField field = body.simulation.surface_field();
     const LevelBuffers& level = body.simulation.level(0);
-    const auto beams = vk::download<glm::vec3>(body.device.context, level.beam_q);
+    const auto beams = device::download<glm::vec3>(body.device.context, level.beam_q);
     const std::size_t again = beams.size() - level.face_count;
     glm::dvec3 left{0}, enters{0};
     double least = 1e30, most = 0;
@@ -247,7 +247,7 @@ TEST_CASE(
     const SurfaceField found = seeing.simulation.surface_field(), wanted = blind.simulation.surface_field();
     CHECK(found.exitance == wanted.exitance);
     CHECK(found.unscattered == wanted.unscattered);
-    const auto beams = vk::download<glm::vec3>(seeing.device.context, seeing.simulation.level(0).beam_q);
+    const auto beams = device::download<glm::vec3>(seeing.device.context, seeing.simulation.level(0).beam_q);
     CHECK(std::all_of(beams.end() - static_cast<std::ptrdiff_t>(shape.faces.size()), beams.end(),
                       [](const glm::vec3& value) { return value == glm::vec3(0); }));
   }

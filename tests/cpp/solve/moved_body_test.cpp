@@ -84,10 +84,10 @@ TEST_CASE("a body whose vertices have moved answers as one baked in that shape")
     const SurfaceField found = body.solve(accurate(method));
     CHECK(relative_difference(found.exitance, rest.exitance) > 1e-2);
 
-    // The same shape from its own file. Its material stands still, so it gets that of the nodes at rest.
+    // A file of the moved shape. The material must stay with the body, so it gets that of the nodes at rest.
     Body fresh({baked(moved(shape, bent))});
     fresh.simulation.set_optical(0, evaluate_material(body.graph.levels()[0], veined()), veined().eta);
-    fresh.simulation.set_irradiance(0, vk::download<glm::vec3>(body.device.context, body.simulation.level(0).q),
+    fresh.simulation.set_irradiance(0, device::download<glm::vec3>(body.device.context, body.simulation.level(0).q),
                                     body.down);
     fresh.simulation.solve(accurate(method));
     const SurfaceField expected = fresh.simulation.surface_field();
@@ -131,5 +131,5 @@ TEST_CASE("positions that make no body are refused, and nothing moves") {
   bad = good;
   for (glm::vec3& p : bad) p.z = -p.z;
   refused(0, bad, "tet 0");
-  CHECK(vk::download<glm::vec3>(body.device.context, body.simulation.level(0).vertices) == good);
+  CHECK(device::download<glm::vec3>(body.device.context, body.simulation.level(0).vertices) == good);
 }

@@ -63,15 +63,15 @@ struct Chain {
   // z = B r.
   std::vector<glm::vec3> cycle(const std::vector<glm::vec3>& r, std::uint32_t smoothing) {
     OperatorBuffers& op = operators.at(key, 0);
-    auto state = vk::download<gpu::SolveState>(device.context, op.state)[0];
+    auto state = device::download<gpu::SolveState>(device.context, op.state)[0];
     for (std::uint32_t l = 0; l < MAX_LEVELS; ++l) state.gate[l] = {state.groups[l], 1, 1};
     state.coarse = {1, 1, 1};
-    vk::write_bytes(device.context, op.state, std::as_bytes(std::span(&state, 1)));
-    vk::write_bytes(device.context, op.r, std::as_bytes(std::span(r)));
+    device::write_bytes(device.context, op.state, std::as_bytes(std::span(&state, 1)));
+    device::write_bytes(device.context, op.r, std::as_bytes(std::span(r)));
     Multigrid multigrid(work, operators, key, smoothing);
     multigrid.record(0);
     work.recorder.submit();
-    return vk::download<glm::vec3>(device.context, multigrid.correction(0));
+    return device::download<glm::vec3>(device.context, multigrid.correction(0));
   }
 };
 
@@ -132,7 +132,7 @@ TEST_CASE("the bound of the eigenvalues is one, and not a loose one") {
     scene.simulation.solve({.model = model});
     Chain chain({6, 3}, model);
     const glm::vec3 damping =
-        vk::download<glm::vec3>(chain.device.context, chain.operators.at(chain.key, 0).damping)[0];
+        device::download<glm::vec3>(chain.device.context, chain.operators.at(chain.key, 0).damping)[0];
     for (int c = 0; c < 3; ++c) {
       CHECK(2.0 / static_cast<double>(damping[c]) > largest[c]);
       CHECK(2.0 / static_cast<double>(damping[c]) < 1.5 * largest[c]);

@@ -169,7 +169,8 @@ TEST_CASE("the balance closes in single precision to 1e-5, however fine the mesh
         const SolveReport report = scene.simulation.solve(what.options(SolverKind::dpcg, 1e-6));
         for (int c = 0; c < 3; ++c) CHECK(std::abs(report.energy.balance()[c]) < 1e-5);
         for (const glm::vec3& m : scene.simulation.surface_field().exitance) CHECK(std::min({m.x, m.y, m.z}) >= 0);
-        for (const glm::vec3& m : vk::download<glm::vec3>(scene.device.context, scene.simulation.vertex_exitance())) {
+        for (const glm::vec3& m :
+             device::download<glm::vec3>(scene.device.context, scene.simulation.vertex_exitance())) {
           CHECK(std::min({m.x, m.y, m.z}) >= 0);
         }
       }
@@ -216,7 +217,7 @@ TEST_CASE("a furnace with the diffuse source is uniform to rounding, in both mod
     for (const glm::vec3& m : scene.simulation.surface_field().exitance) {
       CHECK(m.y == doctest::Approx(1.0).epsilon(tolerance));
     }
-    const auto vertex_exitance = vk::download<glm::vec3>(scene.device.context, scene.simulation.vertex_exitance());
+    const auto vertex_exitance = device::download<glm::vec3>(scene.device.context, scene.simulation.vertex_exitance());
     REQUIRE(vertex_exitance.size() == scene.graph.levels()[0].surface_vertex_count);
     for (const glm::vec3& m : vertex_exitance) CHECK(m.y == doctest::Approx(1.0).epsilon(1e-4));
     for (int c = 0; c < 3; ++c) {
@@ -279,8 +280,8 @@ TEST_CASE("exitance at vertices interpolates to the power of the faces") {
     CAPTURE(what);
     scene.simulation.solve(what.options(SolverKind::dpcg, 1e-4));
     const SurfaceField field = scene.simulation.surface_field();
-    const auto at_vertices = vk::download<glm::vec3>(scene.device.context, scene.simulation.vertex_exitance());
-    const auto unscattered = vk::download<glm::vec3>(scene.device.context, scene.simulation.vertex_unscattered());
+    const auto at_vertices = device::download<glm::vec3>(scene.device.context, scene.simulation.vertex_exitance());
+    const auto unscattered = device::download<glm::vec3>(scene.device.context, scene.simulation.vertex_unscattered());
     glm::dvec3 of_vertices{0}, of_faces{0};
     for (std::uint32_t f = 0; f < level.face_count(); ++f) {
       const double area = field.area[f];

@@ -4,9 +4,10 @@
 #include <chrono>
 
 #include "engine/base/error.h"
-#include "engine/vk/commands.h"
+#include "engine/device/commands.h"
+#include "engine/vk/context.h"
+#include "interface/material/evaluate_material.comp.h"
 #include "shaders/material/material.h"
-#include "spirv/evaluate_material.comp.h"
 
 using namespace quadgraph;
 
@@ -33,10 +34,10 @@ TEST_CASE("a material evaluated on the GPU equals the same code on the CPU") {
                        0.05f * static_cast<float>(i * i % 911));
   }
   {
-    const auto node_buffer = vk::upload<glm::vec3>(context, nodes, "nodes");
-    const vk::Buffer optical(context, nodes.size() * sizeof(gpu::Optical), vk::Place::device, "optical");
-    const vk::ComputePass pass(context, evaluate_material_comp, sizeof(gpu::EvaluateMaterialPush), "evaluate material");
-    vk::Commands commands(context, 1);
+    const auto node_buffer = device::upload<glm::vec3>(context, nodes, "nodes");
+    const device::Buffer optical(context, nodes.size() * sizeof(gpu::Optical), device::Place::device, "optical");
+    const device::ComputePass pass(context, shader::evaluate_material);
+    device::Commands commands(context, 1);
     commands.begin_pass("material");
     commands.dispatch(pass,
                       gpu::EvaluateMaterialPush{veined(), node_buffer.address(), 0, optical.address(),
@@ -48,7 +49,7 @@ TEST_CASE("a material evaluated on the GPU equals the same code on the CPU") {
     CHECK(times[0].name == "material");
     CHECK(times[0].time_ms >= 0);
 
-    const auto values = vk::download<gpu::Optical>(context, optical);
+    const auto values = device::download<gpu::Optical>(context, optical);
     float spread = 0;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       const gpu::Optical expected = gpu::material_at(veined(), nodes[i], 0);
@@ -67,17 +68,17 @@ TEST_CASE("a material evaluated on the GPU equals the same code on the CPU") {
 
 TEST_CASE("a device that does not exist is named in the error, with those that do") {
   CHECK_THROWS_WITH_AS(vk::Context({.validation = false, .device = "no such device"}),
-                       doctest::Contains("no such device"), VulkanError);
+                       doctest::Contains("no such device"), DeviceError);
 }
 
 TEST_CASE("every pass takes time, together no more than went by") {
   vk::Context context({.validation = true, .device = ""});
   {
     constexpr std::uint32_t few = 1000, many = 1000000;
-    const vk::Buffer nodes(context, many * sizeof(glm::vec3), vk::Place::read, "nodes");
-    const vk::Buffer optical(context, many * sizeof(gpu::Optical), vk::Place::device, "optical");
-    const vk::ComputePass pass(context, evaluate_material_comp, sizeof(gpu::EvaluateMaterialPush), "evaluate material");
-    vk::Commands commands(context, 2);
+    const device::Buffer nodes(context, many * sizeof(glm::vec3), device::Place::device, "nodes");
+    const device::Buffer optical(context, many * sizeof(gpu::Optical), device::Place::device, "optical");
+    const device::ComputePass pass(context, shader::evaluate_material);
+    device::Commands commands(context, 2);
     const auto start = std::chrono::steady_clock::now();
     commands.fill(nodes, 0);
     for (const std::uint32_t count : {few, many}) {

@@ -8,8 +8,7 @@
 #include <set>
 #include <string>
 
-#include "all_shaders.h"
-#include "engine/vk/pipeline.h"
+#include "interface/all_shaders.h"
 
 using namespace quadgraph;
 
@@ -40,7 +39,7 @@ std::optional<std::string> feature_of_capability(std::uint32_t capability) {
 }
 
 // What a module declares, and what layout and workgroup size it has.
-Names features_of(vk::Spirv code) {
+Names features_of(device::Spirv code) {
   constexpr std::uint32_t local_size_id = 38, array_stride = 6;
   Names names;
   std::set<std::uint32_t> vectors_of_three, arrays_of_vectors;
@@ -80,13 +79,12 @@ Names features_of(vk::Spirv code) {
 
 Names by_shaders() {
   Names all;
-#define SHADER(name)                                              \
-  {                                                               \
-    CAPTURE(#name);                                               \
-    for (const std::string& f : features_of(name)) all.insert(f); \
+  for (const device::Shader* shader : all_shaders) {
+    CAPTURE(shader->name);
+    for (const device::Spirv code : {shader->code, shader->sp3}) {
+      if (!code.empty()) all.merge(features_of(code));
+    }
   }
-  ALL_SHADERS
-#undef SHADER
   return all;
 }
 

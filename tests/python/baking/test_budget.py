@@ -69,7 +69,7 @@ class Measured(plan.Bench):
 def test_smaller_surfaces_are_measured_for_as_long_as_they_keep_the_error(monkeypatch, at, tried):
     monkeypatch.setattr(plan, "_levels", lambda whole, options, report: options.surface_vertices)
     bench = Measured(1000)
-    wanted = law(round(1000 * at)).error / trials.ENOUGH
+    wanted = law(round(1000 * at)).error / core.MEASURED_SHARE
     plan._descend(bench, None, BakeOptions(), wanted, pipeline.BakeReport(""), lambda text: None)
     assert [count for count, _ in bench.candidates] == [1000, *tried]
     assert bench.kept(wanted).surface_vertices == min(c for c, _ in bench.candidates if c >= 1000 * at)
@@ -104,7 +104,7 @@ def test_what_is_cheaper_and_in_doubt_is_held_against_a_finer_truth(finer, kept,
     assert other.judged == judged
     found = bench.kept(wanted)
     assert found.surface_vertices == kept
-    assert found.share == (trials.ENOUGH if kept == 1080 else plan._SURE)
+    assert found.share == (core.MEASURED_SHARE if kept == 1080 else plan._SURE)
     assert found.error <= found.share * wanted
 
 

@@ -73,7 +73,7 @@ def test_documents_name_every_kind_of_light_with_its_unit():
 
 
 def test_all_ways_to_a_scene_have_the_same_defaults(tmp_path):
-    """Of argparse, of a file that says nothing, of Python's Scene; and quadgraph-engine's in tests/cpp/app."""
+    """Defaults of argparse, of a file that sets nothing, of Python's Scene; and quadgraph-engine's in tests/cpp/app."""
     path = tmp_path / "a.json"
     path.write_text(json.dumps({"body": "a.qgraph", "lights": []}))
     of_file = json.loads(_core.SceneFile(path).at(0).json())

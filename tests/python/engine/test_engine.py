@@ -104,7 +104,7 @@ def scatter(cos_theta: np.ndarray, exitance: np.ndarray) -> float:
 
 @pytest.mark.parametrize("model", ["diffusion", "sp3"])
 def test_pictures_are_smooth_where_elements_are_longer_than_the_mean_free_path(engine, model):
-    """Even light on irregular tets of two mean free paths: local means, not the values at the vertices, are shown."""
+    """Uniform light on irregular tets of two mean free paths: local means, not values at the vertices, are shown."""
     level = engine.graph.levels[0]
     edge = np.sqrt(face_frames(level)[2].mean() * 4 / np.sqrt(3))
     engine.set_material(f"sigma_s_prime={2 / edge},sigma_a={2e-3 / edge},eta=1.3")

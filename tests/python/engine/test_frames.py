@@ -96,7 +96,7 @@ def test_frames_touch_only_what_they_must(engine):
 
 
 def test_frames_in_motion_are_near_and_leave_nothing_behind(engine):
-    """Even light by one ray from an origin; what is solved afterwards is what it would have been without them."""
+    """Uniform light by one ray from an origin; what is solved afterwards is what it would have been without them."""
     engine.set_material("marble")
     engine.set_lights([*light(0), "ambient:1"])
     engine.solve()
@@ -109,7 +109,7 @@ def test_frames_in_motion_are_near_and_leave_nothing_behind(engine):
     again = engine.solve()
     settled = engine.surface_field()
     whole = relative(moving, settled, np.full(len(settled["area"]), True))
-    print(f"turning light and even light, in motion: {100 * whole:.2f}%")
+    print(f"turning light and uniform light, in motion: {100 * whole:.2f}%")
     assert 0 < whole < 0.01
     assert len(again["bounces"]) > 1
     assert np.array_equal(settled["exitance"], alone)
@@ -125,5 +125,5 @@ def test_one_ray_of_even_light_does_for_eight(engine):
     one = engine.surface_field()
     assert np.abs(report["energy"]["balance"]).max() < 1e-4
     whole = relative(one, eight, np.full(len(eight["area"]), True))
-    print(f"even light by one ray: {100 * whole:.2f}%")
+    print(f"uniform light by one ray: {100 * whole:.2f}%")
     assert 1e-5 < whole < 0.005

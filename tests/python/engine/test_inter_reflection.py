@@ -1,4 +1,4 @@
-"""Light from part to part as a user meets it: options, reports, metadata, and a ring that lights itself."""
+"""Inter-reflection as a user meets it: options, reports, metadata, and a ring that lights itself."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The layers of a picture: equilibrium in even light, light seen through the body, and how radiance leaves."""
+"""The layers of a picture: equilibrium in uniform light, light seen through the body, and how radiance leaves."""
 
 from __future__ import annotations
 

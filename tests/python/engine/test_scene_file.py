@@ -123,9 +123,9 @@ def test_a_volume_lies_beside_its_scene(folder, tmp_path):
         (["--set", "/camera/fov=500"], "/camera: view, field of view: found 500"),
         (["--frames", "-o", "a.png"], "a.png: a number, e.g. %04d, in the name of every frame is wanted"),
         (["-o", "%d.png"], "%d.png: no number without --frames is wanted"),
-        (["-o", "a.mp4"], "a.mp4: a film wants --frames"),
+        (["-o", "a.mp4"], "a.mp4: a film needs --frames"),
         (["-o", "a.gif"], "a.gif: output must end in .png, .exr or .mp4 or .webm"),
-        (["--frames", "-o", "a.mp4", "--set", "/picture/width=33"], "a film wants an even width and height"),
+        (["--frames", "-o", "a.mp4", "--set", "/picture/width=33"], "a film needs an even width and height"),
     ],
 )
 def test_what_cannot_be_rendered_is_said(folder, tmp_path, monkeypatch, capsys, options, said):

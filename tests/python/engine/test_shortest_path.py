@@ -182,7 +182,7 @@ def winding_numbers(surface: Surface, points: np.ndarray) -> np.ndarray:
 
 
 def differing(surface: Surface, cells: int, most: int = 500) -> tuple[float, float]:
-    """Of at most so many cells farther than one from the surface, the share that is solid though outside, or the other
+    """Among at most `most` cells farther than one from the surface, the share solid though outside, or the other
     way round, and the share that no winding number decides (open surfaces have such around their holes).
     """
     flags, middles, _ = voxels(surface, cells)

@@ -123,7 +123,7 @@ def test_cut_face_is_picked(engine_of):
     # A box that lets the ray through to nothing.
     cut(engine, {"type": "box", "centre": [0, 0, 0], "size": [2, 2, 40]})
     assert engine.pick((0, 0), **seen) is None
-    # As the body has moved, so has what lies below its surface.
+    # What lies below the surface moves with the body.
     cut(engine, {"type": "plane", "normal": [0, 0, -1], "offset": -2})
     engine.set_deformation([{"type": "transform", "translate": [0, 0, 1]}])
     assert np.allclose(engine.pick((0, 0), **seen)["at_rest"], (0, 0, 1), atol=1e-3)

@@ -164,7 +164,7 @@ def test_what_is_kept_from_frame_to_frame_changes_nothing(bare_engine):
 
 
 def test_layers_are_as_deep_as_they_say(bare_engine):
-    # Of the way through a plate the first and the last 2 mm cost something, what is between nothing.
+    # The first and the last 2 mm of the way through the plate cost something, those between nothing.
     layers = "sigma_s_prime=1,sigma_a=.3,eta=1,pattern=layers,period=2,sharpness=100,second_sigma_s_prime=1"
     engine = bare_engine(cube(8.0), f"{layers},second_sigma_a=0")
     solve(engine, path_cells=64)

@@ -83,7 +83,7 @@ def test_inside_of_a_shell_every_ray_meets_the_shell(shell):
     assert (seen.share[~inside] == 0).all()
     _, face = rows(seen.table)
     assert inside[face].all()
-    # Even light inside arrives as it left.
+    # Uniform light inside arrives as it left.
     np.testing.assert_allclose(received(seen.table, 256, np.where(inside, 0.7, 3.0)), 0.7 * inside, rtol=1e-14)
 
 

@@ -43,7 +43,7 @@ def torus() -> Surface:
 def test_filled_cubes_have_a_manifold_surface_whose_topology_is_told(seed):
     solid = random_polycube(seed)
     corners = lattice.build(solid, 2)
-    surface = TetMesh(corners.positions, corners.tets, None).boundary().compacted()
+    surface = TetMesh(corners.positions, corners.tets).boundary().compacted()
     assert surface.is_closed_manifold
     assert polycube.topology(solid) == (surface.components, surface.genus)
 
@@ -107,7 +107,7 @@ def test_every_node_has_its_links(seed, cells):
 def test_tets_fill_the_polycube(seed):
     solid = random_polycube(seed)
     grid = lattice.build(solid, 4)
-    mesh = TetMesh(grid.positions, grid.tets, None)
+    mesh = TetMesh(grid.positions, grid.tets)
     assert np.array_equal(np.unique(grid.tets), np.arange(grid.nodes))
     assert (mesh.tets[:, :1] < grid.interior).all()
     # Edges and corners where faces turn in or out are cut, so that the volume is not quite that of the cells.
@@ -196,7 +196,7 @@ def test_links_of_even_length_are_what_placement_is_for():
 
 
 def test_a_uniform_field_stays_what_it_is():
-    """The furnace: no absorption, even light; also where kappa varies, in the divergence form alone."""
+    """The furnace: no absorption, uniform light; also where kappa varies, in the divergence form alone."""
     graph = ball(4)
     count, first = len(graph.vertices), graph.surface_vertex_count
     even = polygrid_diffusion.solve(
@@ -243,7 +243,7 @@ def errors_by_cells(graphs: list[Graph], radius: float) -> np.ndarray:
 
 
 def order(errors: np.ndarray) -> np.ndarray:
-    """Of convergence, where every step halves the cells."""
+    """Order of convergence, where every step halves the cells."""
     return -np.polyfit(np.arange(len(errors)), np.log2(errors), 1)[0]
 
 

@@ -143,7 +143,7 @@ def test_an_error_is_asked_for_where_light_goes_from_part_to_part(tmp_path, inte
     assert report["missed"] == ""
     assert (report["finest"] == 0) == inter_reflection
     assert bool(report["bounces"]) == inter_reflection
-    # Of bounces a tenth of what was asked for may be missing.
+    # Bounces may miss a tenth of the error that was asked for.
     assert np.allclose(*(of["energy"]["re_entered"] for of in (report, usual)), rtol=0.05)
 
 

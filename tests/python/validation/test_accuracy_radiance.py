@@ -75,7 +75,7 @@ def test_every_bin_is_within_four_percent_of_transport(case, kind):
 
 @pytest.mark.parametrize("case", CASES, ids=name_of)
 def test_every_bin_is_within_four_percent_of_random_walks(case):
-    """As far as their own error says; it is below 5% everywhere, and below 1.5% on average."""
+    """The rest is the standard error of the walks, which is below 5% everywhere, and below 1.5% on average."""
     shares = []
     for side, channel in bright_rows(case):
         truth = walks(case)[channel][side]

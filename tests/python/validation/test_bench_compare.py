@@ -26,7 +26,7 @@ def ms(median: float, spread: float | None = 0.1, runs: int = 5) -> figures.Figu
 
 
 def verdict(old: figures.Figure, new: figures.Figure) -> str:
-    """Of the one figure of two records."""
+    """The verdict on the one figure of two records."""
     (change,) = comparison.compare(record(frame_ms=old), record(frame_ms=new)).changes
     return change.verdict
 

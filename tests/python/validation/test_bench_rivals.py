@@ -35,7 +35,7 @@ def lit(path):
 
 @pytest.fixture(scope="module")
 def contest(lit):
-    """The same as rivals get it."""
+    """The problem as rivals get it."""
     return Contest(lit[1], lit[2])
 
 

@@ -101,7 +101,7 @@ def test_scenes_are_added_to_a_record_and_replaced_in_it(small, tmp_path, capsys
 
 
 def test_engines_of_a_scene_are_gone_before_the_next_scene(small, monkeypatch):
-    first, there = _core.contexts_made(), []
+    first, there = _core.devices_opened(), []
 
     @dataclass
     class Looking(EngineMethod):

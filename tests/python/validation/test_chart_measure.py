@@ -39,7 +39,7 @@ def body(ball) -> ChartBody:
 
 
 class SomeTruth:
-    """Of the PDE: what a level's exitance is, whatever it is asked."""
+    """A PDE truth that equals a level's exitance, whatever it is asked."""
 
     def __init__(self):
         self.noise = {"whole": 0.001}
@@ -183,7 +183,7 @@ def test_a_picture_that_is_the_truth_has_no_error_and_another_has_its_own(body):
     found = judge.errors(method, {"A": shown})
     assert found["transport"] == pytest.approx({"whole": 0, "unlit": 0}, abs=1e-6)
     assert judge.errors(method, {"A": 1.1 * shown})["transport"] == pytest.approx({"whole": 0.1, "unlit": 0.1})
-    # Of the disc of a ball that is seen from 70 degrees beside the light, (1 - cos 70 degrees) / 2 is dark.
+    # A ball seen from 70 degrees beside the light has (1 - cos 70 degrees) / 2 of its disc in the dark.
     blocks = judge.noise()["blocks"]
     assert 0.6 * 0.33 < blocks["unlit"] / blocks["whole"] < 0.33
     bounced = EngineMethod(model="diffusion", inter_reflection=True)

@@ -23,7 +23,7 @@ SPHERE = SCENES["sphere"]
 
 
 def thin(scene):
-    """The same body with little in it, so that walks are short."""
+    """The body with thin material, so that walks are short."""
     return replace(scene, coefficients=lambda at: (np.full(at.shape[:-1], 0.1), np.full(at.shape[:-1], 0.05)))
 
 

@@ -106,7 +106,7 @@ def test_even_light_is_hidden_as_much_as_faces_see_of_the_body():
 def test_a_ball_is_as_the_closed_form_says_within_the_noise(truth):
     scheme = Scheme("fem", "diffuse", "sp3")
     boundary, q = scheme.boundary(ETA), entering_share(True, ETA)
-    # In even light the exitance hangs on the volume per area, which the faceted ball has less of.
+    # In uniform light the exitance hangs on the volume per area, which the faceted ball has less of.
     level = pde_solve.Ladder(ball_scene(), truth.chain).first
     radius = 3 * level.volume / truth.area.sum()
     assert 0.98 < radius / RADIUS < 0.99

@@ -138,7 +138,7 @@ VIEWS = [View(12, 25, 60, ()), View(35, 20, 50, ()), View(-110, -40, 70, ()), Vi
 
 
 def coverage(view: View) -> np.ndarray:
-    """Of the pixels by the box, (h, w): the convex hull of its corners in the picture, 8 x 8 samples a pixel."""
+    """Coverage of the pixels by the box, (h, w): the convex hull of its corners, 8 x 8 samples a pixel."""
     centre = BOX.mean(axis=0)
     right, up, backward = scenes.camera_axes(view)
     seen = (BOX - centre - view.distance * backward) @ np.column_stack([right, up, backward])

@@ -24,7 +24,7 @@ def refined(path: Path, count: int, output: Path) -> Path:
     graphs, level = [], 0
     while f"level{level}/tets" in sections:
         vertices, tets = (sections[f"level{level}/{field}"] for field in ("vertices", "tets"))
-        graphs.append(graph.build(TetMesh(vertices.astype(np.float64), tets.astype(np.int64), mesher=None)))
+        graphs.append(graph.build(TetMesh(vertices.astype(np.float64), tets.astype(np.int64))))
         level += 1
     for _ in range(count):
         graphs.insert(0, ordering.in_blocks(refine.refined(graphs[0])))

@@ -50,7 +50,7 @@ _STEPS, _STEP = 3, 0.8  # at most so many surfaces, each with this share of the 
 _SAME = 0.03  # of the number of vertices: two surfaces nearer than this are one
 _DOUBT = 1.03  # times the error: what was measured to have no more may keep it
 _DOUBTS = 3  # so many are settled, the cheapest first
-_SURE = 0.98  # ENOUGH by a truth that was cut twice
+_SURE = 0.98  # core.MEASURED_SHARE by a truth that was cut twice
 _MOST_CUT_TWICE = 4000  # vertices of a mesh that is
 DEEP = 2.0  # diffusion lengths: what lies deeper decides .1% of the whole exitance and .35% of the unlit one
 
@@ -67,7 +67,7 @@ class Bench:
         self._truths: dict[str, DisplayedTruth] = {}
 
     def find_truth(self, levels: list[Level], cuts: int = 1) -> None:
-        """Of the levels of the whole mesh, cut so many times."""
+        """Find the truth of the levels of the whole mesh, refined `cuts` times."""
         path = self._written(levels, "whole.qgraph")
         reference = Reference(path, cuts, self._folder, self._device)
         self.truth_vertices = reference.surface_vertices
@@ -223,7 +223,7 @@ def depth_of(vertices: int) -> int:
 
 
 def _shallow(levels: list[Level]) -> int:
-    """As few levels as end below a small number of vertices, two at least where there are."""
+    """The least number of levels that end below a small number of vertices, two where there are as many."""
     small = [number for number, level in enumerate(levels) if level.graph.surface_vertex_count < _SHALLOW]
     return min(max(2, 1 + small[0]) if small else len(levels), len(levels))
 

@@ -26,7 +26,7 @@ def sentences(budget: dict[str, Any], file: str) -> list[str]:
             _model(budget),
             _cycles(budget),
             _interior(budget),
-            "not in this error: of the model against transport, of light from part to part (docs/accuracy.md)",
+            "not in this error: of the model against transport, of inter-reflection (docs/accuracy.md)",
         ]
     except _BROKEN as error:
         raise _no_record(file, error) from error

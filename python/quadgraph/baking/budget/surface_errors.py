@@ -24,6 +24,6 @@ def weights(area: np.ndarray, q: np.ndarray) -> dict[str, np.ndarray]:
 
 
 def weights_of(area: np.ndarray, unlit: np.ndarray) -> dict[str, np.ndarray]:
-    """The same where the unlit faces (n,) bool are known."""
+    """Weights of faces by part, where the unlit faces (n,) bool are known."""
     found = dict(zip(PARTS, (area, area * unlit), strict=True))
     return {part: weight for part, weight in found.items() if weight.sum() > LEAST_SHARE * area.sum()}

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from quadgraph import core
 from quadgraph.baking.budget.displayed import DisplayedFile, DisplayedTruth
 
 MODELS = ("diffusion", "sp3")
 CYCLES = (1, 2, 3, 4, 6)  # on the finest level
 STEPS = (8, 16, 32, 64, 128, 256)  # of conjugate gradients, where there is no coarser level
-ENOUGH = 0.95  # share of an error that a measured one may have: the truth that it was measured by has an error, too
 _GAIN = 0.97  # of an error: more cycles than those that leave more of it are not tried
 _LOWEST_ORDER, _HIGHEST_ORDER = 0.25, 1.0  # of the error in the number of vertices, where it is not between two trials
 
@@ -43,7 +43,7 @@ class Trial:
     cycles: int
     cost: float
     errors: dict[str, dict[str, float]]
-    share: float = ENOUGH
+    share: float = field(default_factory=lambda: core.MEASURED_SHARE)
 
     @property
     def error(self) -> float:

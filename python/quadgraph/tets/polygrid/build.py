@@ -143,7 +143,7 @@ def as_graph(grid: TetLattice, positions: np.ndarray, number: int = 0) -> Graph:
 
 
 def by_layers(grid: Graph) -> Graph:
-    """The same graph with its vertices in order of their layers, otherwise as they come."""
+    """A graph with its vertices in order of their layers, otherwise as they come."""
     assert grid.grid_links is not None
     return ordering.with_vertices(grid, np.argsort(layers(grid), kind="stable"))
 

@@ -8,6 +8,7 @@ topology stays.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -142,7 +143,7 @@ def bad_corners(solid: np.ndarray) -> np.ndarray:
     return np.argwhere(~_DISK[code])
 
 
-def _two_sided(block: np.ndarray) -> bool:
+def _two_sided(block: Sequence[int]) -> bool:
     """Whether the solid and the empty ones of eight cubes each hang together."""
     cubes = np.asarray(block, bool).reshape(2, 2, 2)
     return ndimage.label(cubes)[1] <= 1 and ndimage.label(~cubes)[1] <= 1

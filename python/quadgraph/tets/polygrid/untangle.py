@@ -45,7 +45,7 @@ class Distortion:
         self.scatter = _scatter(tets, len(reference))
 
     def around(self, nodes: np.ndarray) -> Distortion:
-        """Of the tets alone that have one of the (n,) bool `nodes`."""
+        """The distortion of the tets alone that have one of the (n,) bool `nodes`."""
         kept = nodes[self.tets].any(axis=1)
         part = copy(self)
         part.tets, part.inverse = self.tets[kept], self.inverse[kept]

@@ -28,7 +28,7 @@ def laplacian(offsets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     a straight line, (n,) bool.
     """
     exact = _exact(offsets)
-    missing = ~offsets[:, 5].any(axis=1)
+    missing = np.logical_not(offsets[:, 5].any(axis=1))
     used = np.where(missing[:, None], exact[:, :5].min(axis=1, initial=np.inf)[:, None], exact.min(axis=1)[:, None])
     with np.errstate(invalid="ignore"):
         bad = ~(used[:, 0] > _LEAST * exact.max(axis=1))
@@ -42,7 +42,7 @@ def _exact(offsets: np.ndarray) -> np.ndarray:
     matrix = np.empty((len(offsets), 6, 6))
     matrix[:, ::2], matrix[:, 1::2] = local.transpose(0, 2, 1), 0.5 * local.transpose(0, 2, 1) ** 2
     right = np.tile([0.0, 1, 0, 1, 0, 1], (len(offsets), 1))
-    missing = ~offsets[:, 5].any(axis=1)
+    missing = np.logical_not(offsets[:, 5].any(axis=1))
     matrix[missing, 3] += matrix[missing, 5]
     matrix[missing, 5] = np.eye(6)[5]
     right[missing, 3], right[missing, 5] = 2, 0
@@ -57,7 +57,7 @@ def straight(offsets: np.ndarray) -> np.ndarray:
     """Weights (n, 6), 1/mm^2, as if both links of each pair lay on a straight line."""
     length = np.linalg.norm(offsets, axis=2)
     both = length.reshape(-1, 3, 2).sum(axis=2).repeat(2, axis=1)
-    missing = ~offsets[:, 5].any(axis=1)
+    missing = np.logical_not(offsets[:, 5].any(axis=1))
     with np.errstate(divide="ignore"):
         weights = 2 / (length * both)
         # Three links of a plane at equal angles.

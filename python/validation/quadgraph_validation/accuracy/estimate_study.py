@@ -16,7 +16,7 @@ from quadgraph_validation.bodies.level_chains import ChainSubject
 
 FINER = (2, 1)  # of the two levels that are judged: the truth has sixteen, or four, times the vertices
 CONFIDENCE = 0.95
-# Of a solve to a tolerance, and of one to an error, which brings every level to a quarter of it: none is good enough.
+# Options of a solve to a tolerance, and of one to an error that no level meets, which solves all to a quarter of it.
 MODES: dict[str, dict[str, float]] = {"--tolerance": {}, "--error": {"error": 0.002}}
 
 SUBJECTS = (

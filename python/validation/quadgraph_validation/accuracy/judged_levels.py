@@ -37,7 +37,7 @@ class Judged:
     """A baked chain on the device: whole, with its finest level as the truth, and from each level that is judged.
 
     finer: of each judged level, the number of finer ones, each of which has four times the vertices of the next. None
-    follows light from part to part. Raises InputError if the chain is too short for a judged level to have a coarser
+    computes inter-reflection. Raises InputError if the chain is too short for a judged level to have a coarser
     one.
     """
 

@@ -41,14 +41,14 @@ CASES = [RadianceCase(depth, eta, cosine) for eta in ETAS for depth in DEPTHS fo
 
 @dataclass(frozen=True)
 class Found:
-    """Of one side and three channels: radiance (BINS, 3) per W/mm^2 that entered, and exitance (3,)."""
+    """What one side sends out in three channels: radiance (BINS, 3) per W/mm^2 that entered, and exitance (3,)."""
 
     radiance: np.ndarray
     exitance: np.ndarray
 
     @property
     def integral(self) -> np.ndarray:
-        """Of the radiance over the hemisphere, as a share of the exitance (3,)."""
+        """Integral of the radiance over the hemisphere, as a share of the exitance (3,)."""
         return np.pi * BIN_AREA @ self.radiance / self.exitance
 
 

@@ -108,7 +108,7 @@ def _display(radiance: np.ndarray) -> np.ndarray:
 
 
 def _difference(image: np.ndarray, one: ScenesCompared) -> np.ndarray:
-    """Of block means, in % of the truth's; NaN outside the body and where the truth is too noisy to tell."""
+    """Difference of block means, in % of the truth's; NaN outside the body and where the truth is too noisy to tell."""
     true = blocks.means(one.image.mean)
     known = blocks.covered(one.alpha) & (blocks.errors(one.image.error) < _NOISY * true)
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -47,7 +47,7 @@ class Pair:
 
     @classmethod
     def of(cls, path: Path, device: str) -> Pair:
-        """Of a baked chain. Raises InputError as Judged does."""
+        """The pair of a baked chain. Raises InputError as Judged does."""
         judged_file = level_chains.without_finest(path, FINER, path.with_name(f"{path.stem}-judged.qgraph"))
         own = finer_levels.refined(judged_file, FINER, path.with_name(f"{path.stem}-refined.qgraph"))
         return cls(Judged(own, device, FINER), Judged(path, device, FINER))

@@ -34,7 +34,7 @@ class Parts:
     tell: ProgressCallback
 
     def passes(self) -> list[dict[str, Any]]:
-        """Of every way to solve: time, bytes and speed of its passes; in both orders of nodes where there are two."""
+        """Time, bytes and speed of the passes of every way to solve; in both orders of nodes where there are two."""
         files = self._both_orders()
         lights = load_core().default_lights()
         engines = {order: self.device.open(path, self.material, lights) for order, path in files.items()}

@@ -18,13 +18,13 @@ LIGHT = f"directional:{','.join(f'{d:g}' for d in DIRECTION)}:1"  # W/mm^2
 
 @dataclass(frozen=True)
 class Device:
-    """The choice of Vulkan device, by a part of its name, and whether the validation layer watches."""
+    """The choice of the device (docs/devices.md), and whether Vulkan's validation layer watches."""
 
     name: str = ""
     validation: bool = False
 
     def open(self, path: Path, material: str, lights: list[str]) -> Engine:
-        """Load a .qgraph with material and lights. Raises FormatError, InputError, VulkanError."""
+        """Load a .qgraph with material and lights. Raises FormatError, InputError, DeviceError."""
         engine = load_core().Engine(path, device=self.name, validation=self.validation)
         engine.set_material(material)
         engine.set_lights(lights)

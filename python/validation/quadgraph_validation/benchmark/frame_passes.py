@@ -81,7 +81,7 @@ def measure(
 
 
 def median_passes(frames: list[list[dict]], copy_gb_per_s: float) -> list[dict[str, Any]]:
-    """Of each pass of the last frame the median time over all, GB/s from it, and what share of copying that is."""
+    """For each pass of the last frame: median time over all frames, GB/s, and its share of the copy bandwidth."""
     passes = []
     for entry in frames[-1]:
         same = [p for frame in frames for p in frame if p["name"] == entry["name"]]
@@ -92,7 +92,7 @@ def median_passes(frames: list[list[dict]], copy_gb_per_s: float) -> list[dict[s
 
 
 def frame_figures(frames: list[list[dict]]) -> dict[str, figures.Figure]:
-    """Of each pass that all frames have, by its name, and of all passes together, under "": time over the frames."""
+    """Time over the frames, of each pass that all frames have, by name, and of all passes together, under ""."""
     by_pass = [pass_report.ms_by_pass(frame) for frame in frames]
     common = [name for name in by_pass[0] if all(name in frame for frame in by_pass)]
     found = {"": figures.times([sum(frame.values()) for frame in by_pass])}

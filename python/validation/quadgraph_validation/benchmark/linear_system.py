@@ -48,7 +48,7 @@ class System:
 
 
 def assemble(graph: QuadGraph, material: str, q: np.ndarray, direction: tuple[float, float, float]) -> System:
-    """Of level 0, in double precision, for irradiance q (m, 3) W/mm^2 that travels along `direction` outside."""
+    """The system of level 0, in double precision, for irradiance q (m, 3) W/mm^2 along `direction` outside."""
     core = load_core()
     optical = core.Material(material)
     coefficients = (*core.evaluate_material(graph, 0, optical), optical.eta)

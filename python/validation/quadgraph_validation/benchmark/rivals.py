@@ -110,7 +110,7 @@ class Entrant:
         )
 
     def time_ms(self, counts: Sequence[int]) -> float:
-        """Of a solve, channels in turn or on threads, whichever is faster."""
+        """Time of a solve, channels in turn or on threads, whichever is faster."""
         start = time.perf_counter()
         self.solve(counts)
         in_turn = time.perf_counter() - start

@@ -83,7 +83,7 @@ class CurvePoint:
     wall_ms: list[float] = field(default_factory=list)
 
     def record(self) -> dict[str, float]:
-        """As plain values, times as medians: `time_ms` on the device's clock, `wall_ms` of the whole call.
+        """The figures as plain values, times as medians: `time_ms` on the device's clock, `wall_ms` of the whole call.
 
         `time` and `wall` are the same as figures.
         """

@@ -54,8 +54,8 @@ class StudyScene:
     """A body, its optical properties, one grey light of 1 W/mm^2 and the views.
 
     mesh: as scene_meshes.file finds it; voxel: mm, edge of the cubes within which path tracing takes the coefficients
-    of their middle as constant; direction: the way the light travels, (3,); None: even light from everywhere; height:
-    mm along y; coloured: whether the coefficients differ by channel.
+    of their middle as constant; direction: the way the light travels, (3,); None: uniform light; height: mm
+    along y; coloured: whether the coefficients differ by channel.
     """
 
     name: str
@@ -167,13 +167,13 @@ def veins(position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def even(position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The same everywhere."""
+    """Homogeneous coefficients."""
     shape = position.shape[:-1]
     return np.ones(shape), np.full(shape, 0.01)
 
 
 def of_medium(sigma_s_prime: Sequence[float], sigma_a: Sequence[float]) -> Coefficients:
-    """The same everywhere, one value in 1/mm per channel."""
+    """Homogeneous coefficients, one value in 1/mm per channel."""
 
     def coefficients(position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         shape = (*position.shape[:-1], 3)

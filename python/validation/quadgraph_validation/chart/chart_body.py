@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from quadgraph.core import Engine
 
 STEP_DEGREES = 5.0  # by which a parallel light turns from frame to frame
-STEP_SHARE = 0.05  # by which an even light dims, which has no direction to turn
+STEP_SHARE = 0.05  # by which a uniform light dims, which has no direction to turn
 
 
 def light_at(scene: StudyScene, step: int) -> str:

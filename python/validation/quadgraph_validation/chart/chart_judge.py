@@ -26,7 +26,7 @@ PdeTruths = Mapping[tuple[str, str], PdeTruth]
 class ChartJudge:
     """One scene's truths: of each PDE, and path-traced by name of Scene.images.
 
-    A PDE truth knows no light from part to part, and no surface but its own chain's: what follows that light, or lives
+    A PDE truth knows no inter-reflection, and no surface but its own chain's: what follows that light, or lives
     on another mesh, is judged by transport alone.
     """
 
@@ -54,7 +54,7 @@ class ChartJudge:
         return pictures[image.view][..., image.channel]
 
     def noise(self) -> dict[str, dict[str, Any]]:
-        """Of the truths: by PDE and part, and of path tracing by part with the number of blocks."""
+        """Noise of the truths: by PDE and part, and of path tracing by part with the number of blocks."""
         found = {part: self._deviation(self._true, chosen) for part, chosen in self._parts.items()}
         return {
             "pde": {", ".join(equations): truth.noise for equations, truth in self.pde.items()},

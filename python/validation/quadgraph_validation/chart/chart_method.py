@@ -34,7 +34,7 @@ class ChartMethod(Protocol):
 
     family: what it is a setting of, for colour and filter; settings: everything it depends on, ready for JSON, of which
     `model` and `source` name the PDE that it solves, `level` the level whose surface it answers on, `bake` of which
-    chain, with `K` if it is the paper's, `inter_reflection` whether it follows light from part to part, and `runs_on`
+    chain, with `K` if it is the paper's, `inter_reflection` whether it computes inter-reflection, and `runs_on`
     what its times are of.
     """
 
@@ -52,7 +52,7 @@ class ChartMethod(Protocol):
         """Move the light to a step and do all that a live frame does, a picture included; ms by pass."""
 
     def exitance(self) -> np.ndarray:
-        """Of scattered light after the last frame per face of the level, (n_f, 3) W/mm^2."""
+        """Exitance of scattered light after the last frame per face of the level, (n_f, 3) W/mm^2."""
 
     def picture(self, view: str) -> np.ndarray:
         """Radiance of light that was in the body, (PIXELS, PIXELS, 3) W/(mm^2 sr), after the last frame."""

@@ -69,7 +69,7 @@ def _time(point: dict[str, Any], truth: str) -> float:
 
 
 def without_picture(point: dict[str, Any]) -> float:
-    """Of a frame, the ms until the exitance is known."""
+    """Time of a frame until the exitance is known, ms."""
     return sum(ms for stage, ms in point["stages"].items() if stage != "picture")
 
 

@@ -30,7 +30,7 @@ OTHER_BAKES = (
 
 @dataclass(frozen=True)
 class Folders:
-    """Of mesh files, of path-traced pictures, and of PDE truths with the chains that they belong to."""
+    """Folders of mesh files, of path-traced pictures, and of PDE truths with their chains."""
 
     meshes: Path
     transport: Path
@@ -75,7 +75,7 @@ def _images(scene: StudyScene, where: Folders) -> dict[str, StoredTruth]:
 
 
 def _pde(scene: StudyScene, where: Folders, chosen: Sequence[ChartMethod]) -> PdeTruths:
-    """Of the equations that methods solve, in their order."""
+    """Truths of the equations that methods solve, in their order."""
     judged = [method.settings for method in chosen if not method.settings["inter_reflection"]]
     judged = [settings for settings in judged if settings["bake"] == CHAIN]
     equations = dict.fromkeys((settings["model"], settings["source"]) for settings in judged)

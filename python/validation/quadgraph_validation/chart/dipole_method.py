@@ -40,7 +40,7 @@ class DipoleMethod:
 
     @property
     def settings(self) -> dict[str, Any]:
-        """As told; the model is the one that the dipole solves in a half-space."""
+        """The settings as given; the model is the one that the dipole solves in a half-space."""
         told = {
             "method": "dipole",
             "model": "diffusion",

@@ -43,7 +43,7 @@ class EngineMethod:
 
     @property
     def family(self) -> str:
-        """Discretisation, model and source, and whether light goes from part to part."""
+        """Discretisation, model and source, and whether inter-reflection is computed."""
         if self.method in ("quadgraph-fdm", "polygrid"):
             return f"{self.method}, as published"
         if self.source == "diffuse":
@@ -62,7 +62,7 @@ class EngineMethod:
 
     @property
     def settings(self) -> dict[str, Any]:
-        """As told, and what frames iterate to."""
+        """The settings as given, and what frames iterate to."""
         told = {name: value for name, value in asdict(replace(self, _body=None)).items() if name[0] != "_"}
         del told["choice"]
         return told | bake_settings(self.choice) | {"tolerance": None if self.cycles else SETTLED, "runs_on": "device"}

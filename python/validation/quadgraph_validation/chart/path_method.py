@@ -40,7 +40,7 @@ class PathMethod:
 
     @property
     def settings(self) -> dict[str, Any]:
-        """As told; it approximates diffusion, and is judged on the faces of level 0."""
+        """The settings as given; the method approximates diffusion, and is judged on the faces of level 0."""
         told = {name: value for name, value in asdict(replace(self, _body=None)).items() if name[0] != "_"}
         equations = {"method": "shortest-path", "model": "diffusion", "source": "buried", "solver": self.paths}
         display = {"level": 0, "inter_reflection": False, "radiance": "lambertian", "cycles": 0, "tolerance": None}
@@ -86,6 +86,6 @@ class PathMethod:
 
 @register
 def path_methods(chain: MethodChain) -> Iterator[ChartMethod]:
-    """As published, as we have it, each change alone, and finer and coarser voxels."""
+    """Methods as published and as implemented here, each change alone, and finer and coarser voxels."""
     yield from (PathMethod(cost, paths) for cost in ("transport", "extinction") for paths in ("eikonal", "lattice"))
     yield from (PathMethod(cells=cells) for cells in (32, 96))

@@ -113,7 +113,7 @@ def _series(panel: Panel) -> list[list[int]]:
 
 
 def _named(panel: Panel) -> list[int]:
-    """Of the front, what is worth a label."""
+    """Points of the Pareto front that get a label."""
     drops = {panel.front[0]: float("inf")}
     for before, index in pairwise(panel.front):
         drops[index] = panel.errors[before] / panel.errors[index]

@@ -46,7 +46,9 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--reference", action="store_true", help="solve with the CPU reference in double precision instead of the GPU"
     )
-    parser.add_argument("--device", default="", metavar="NAME", help="part of the Vulkan device's name")
+    parser.add_argument(
+        "--device", default="", metavar="NAME", help="cpu, or part of a Vulkan device's name; default: a GPU, else cpu"
+    )
     _add_bodies_options(parser.add_argument_group("scenes, estimate, target, budget"))
     _add_scenes_options(parser.add_argument_group("scenes"))
 

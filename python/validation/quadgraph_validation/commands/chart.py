@@ -66,7 +66,9 @@ def _add_measure_options(group: argparse._ArgumentGroup) -> None:
         metavar="N",
         help="edge of the picture that a frame draws (default: %(default)s)",
     )
-    group.add_argument("--device", default="", metavar="NAME", help="part of the Vulkan device's name")
+    group.add_argument(
+        "--device", default="", metavar="NAME", help="cpu, or part of a Vulkan device's name; default: a GPU, else cpu"
+    )
 
 
 def _add_truth_options(group: argparse._ArgumentGroup) -> None:

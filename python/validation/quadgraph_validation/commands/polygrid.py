@@ -22,7 +22,9 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--bodies", type=Path, metavar="FOLDER", help="of baked bodies, kept (default: ~/.cache/quadgraph/polygrid)"
     )
     add_meshes_argument(parser)
-    parser.add_argument("--device", default="", metavar="NAME", help="part of the Vulkan device's name")
+    parser.add_argument(
+        "--device", default="", metavar="NAME", help="cpu, or part of a Vulkan device's name; default: a GPU, else cpu"
+    )
 
 
 def run(args: argparse.Namespace) -> int:

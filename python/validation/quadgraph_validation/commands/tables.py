@@ -80,7 +80,9 @@ def _add_measure_options(group: argparse._ArgumentGroup) -> None:
         metavar="FOLDER",
         help="of path-traced pictures, for Figure 13 (default: %(default)s)",
     )
-    group.add_argument("--device", default="", metavar="NAME", help="part of the Vulkan device's name")
+    group.add_argument(
+        "--device", default="", metavar="NAME", help="cpu, or part of a Vulkan device's name; default: a GPU, else cpu"
+    )
 
 
 def run(args: argparse.Namespace) -> int:

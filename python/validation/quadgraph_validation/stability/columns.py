@@ -34,7 +34,7 @@ PATHS = (0.01, 0.03, 0.1, 0.3, 1, 3, 10, 30, 100)
 
 
 def medium(albedo: float, mean_free_path: float) -> Medium:
-    """Of a mean free path in mm."""
+    """The medium of an albedo and a mean free path in mm."""
     return Medium(albedo / mean_free_path, (1 - albedo) / mean_free_path)
 
 

@@ -31,12 +31,12 @@ Irradiance = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 
 def even(sigma_s_prime: float, sigma_a: float) -> Medium:
-    """The same medium everywhere."""
+    """A homogeneous medium."""
     return lambda points: (np.full(len(points), sigma_s_prime), np.full(len(points), sigma_a))
 
 
 class ScaledChain:
-    """Levels of one body, finest first, on the Vulkan device whose name contains `device`.
+    """Levels of one body, finest first, on the device `device` (docs/devices.md).
 
     Raises as quadgraph.tets.graph.build and the engine do, at first use.
     """
@@ -159,4 +159,4 @@ class Fine:
 
 def graph_of(vertices: np.ndarray, tets: np.ndarray) -> Graph:
     """The graph of a level of a file; its tets keep their order."""
-    return graph.build(TetMesh(np.asarray(vertices, np.float64), np.asarray(tets, np.int64), mesher=None))
+    return graph.build(TetMesh(np.asarray(vertices, np.float64), np.asarray(tets, np.int64)))

@@ -95,7 +95,7 @@ def _by_quality(setting: StabilitySetting, angles: Sequence[float], volumes: Seq
 
     @cache
     def truths(volume: float) -> FineTruths:
-        """Of the body whose inside has not been spoilt: it is the same body."""
+        """Truth from the mesh whose inside has not been spoilt: the body is the same."""
         mesh: Graph = meshes.moved(deformed_shapes.block()[0], shape(volume))
         return FineTruths(mesh, [medium], slanted_light, SLANTED, ETA, setting.kept)
 

@@ -53,7 +53,7 @@ def _measure(subject: TableSubject, setting: TableSetting, tell: ProgressCallbac
 
 
 def _iterating(passes: list[dict[str, Any]]) -> float:
-    """Of a solve, ms of iterating."""
+    """Time that a solve iterates, ms."""
     return sum(entry["time_ms"] for entry in passes if entry["name"] in SOLVER_PASSES)
 
 

@@ -142,7 +142,7 @@ class Store:
 
 
 def _report(seconds: dict[str, float], path: Path) -> dict[str, Any]:
-    """Of a baked file: seconds of its bake, MB, and by level surface and inner nodes; K as measured."""
+    """Report of a baked file: seconds of its bake, MB, and by level surface and inner nodes; K as measured."""
     sections = qgraph_file.read(path).sections
     levels = sum(name.endswith("/tets") for name in sections)
     counts = [[len(sections[f"level{level}/{name}"]) for name in ("faces", "tets")] for level in range(levels)]

@@ -20,7 +20,7 @@ GROWTH = {
 
 
 def rows(table: str, setting: TableSetting, wanted: Sequence[str]) -> list[TableRow]:
-    """Of a table, those on the bodies in `wanted`, all if there are none."""
+    """Rows of a table on the bodies in `wanted`; on all bodies if it is empty."""
     made = {"1": _scenes, "12": _growth, "13": grading.rows, "14": table_convergence.rows, "packing": packing.rows}[
         table
     ]
@@ -28,7 +28,7 @@ def rows(table: str, setting: TableSetting, wanted: Sequence[str]) -> list[Table
 
 
 def names() -> list[str]:
-    """Of all bodies."""
+    """Names of all bodies."""
     found = [subject.name for subject in (*table_bodies.TABLE_1, *GROWTH)] + list(grading.SCENES)
     return list(dict.fromkeys(found))
 

@@ -178,7 +178,7 @@ def _figure_12(rows: list[dict[str, Any]]) -> list[str]:
 
 
 def without_picture(entry: dict[str, Any]) -> float:
-    """Of a frame, ms until the exitance is known."""
+    """Time of a frame until the exitance is known, ms."""
     return sum(ms for stage, ms in entry["stages"].items() if stage != "picture")
 
 

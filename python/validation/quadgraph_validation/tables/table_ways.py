@@ -72,7 +72,7 @@ _PUBLISHED = {"method": "quadgraph-fdm", "model": "diffusion", "source": "diffus
 
 def ways(iterations: int) -> tuple[TableWay, ...]:
     """The published method with its iterations per level; ours for the same equation, and for SP₃; and our default,
-    which follows light from part to part too.
+    which computes inter-reflection too.
     """
     ours = {"model": "sp3", "inter_reflection": False}
     return (
@@ -123,11 +123,11 @@ class TableRunner:
         return ms_by_pass(self.engine.passes)
 
     def error(self, judged: AlgebraicJudge) -> dict[str, float]:
-        """Of the last solve, against the same equations solved."""
+        """Error of the last solve against the converged solution of its equations."""
         return judged.error(np.asarray(self.engine.surface_field()["exitance"], np.float64))
 
     def judge(self) -> AlgebraicJudge:
-        """The same equations under the light of step 0, solved far beyond. Raises SolverError if that fails."""
+        """The converged solution under the light of step 0. Raises SolverError if that fails."""
         self.engine.set_lights([light(0)])
         report = self.engine.solve(**self.way.system | _TRUTH)
         residual = report["levels"][-1]["residual"]
@@ -197,7 +197,7 @@ def measure(
 ) -> dict[str, Any]:
     """All ways on a baked body: frames in turn, what they leave, and the work and time to TARGET.
 
-    A way that fails says why. Raises FormatError, VulkanError.
+    A way that fails says why. Raises FormatError, DeviceError.
     """
     runners = [TableRunner(way, _engine(path, device), pixels) for way in ways(iterations)]
     for number in range(repeats):

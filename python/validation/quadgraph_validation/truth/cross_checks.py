@@ -102,6 +102,6 @@ def _at(estimate: Estimate, index: int) -> tuple[float, float]:
 
 
 def _mean(estimate: Estimate, part: slice) -> tuple[float, float]:
-    """Of zones of equal area."""
+    """Mean and standard error over zones of equal area."""
     errors = estimate.error[part]
     return float(estimate.mean[part].mean()), float(np.sqrt((errors**2).sum()) / len(errors))

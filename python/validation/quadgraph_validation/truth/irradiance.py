@@ -43,8 +43,8 @@ class Occluder:
 def entering(scene: StudyScene, mesh: Graph, occluder: Occluder, parts: int, rays: int) -> np.ndarray:
     """q (n_f, 3) W/mm^2 that the outside faces of a mesh on the occluder's surface let in, a mean over each face.
 
-    A beam's shadow is sampled at the middles of parts^2 similar triangles of every face; of even light, as much enters
-    as comes along `rays` cosine-weighted directions that do not meet the body.
+    A beam's shadow is sampled at the middles of parts^2 similar triangles of every face; uniform light enters as it
+    comes along `rays` cosine-weighted directions that do not meet the body.
     """
     frames = face_frames(mesh)
     share = (

@@ -36,7 +36,7 @@ class Ladder:
         vertices, faces = (sections[f"level0/{name}"] for name in ("vertices", "faces"))
         vertices, faces = vertices.astype(np.float64), faces.astype(np.int64)
         self._scene = scene
-        self.first = graph.build(TetMesh(vertices, sections["level0/tets"].astype(np.int64), mesher=None))
+        self.first = graph.build(TetMesh(vertices, sections["level0/tets"].astype(np.int64)))
         self._occluder = Occluder(self.first.boundary)
         self._cut = refine.refined(self.first)
         place = nested(vertices, faces, self._cut.vertices, self._cut.faces)
@@ -67,7 +67,7 @@ class Ladder:
         return interruptible(lambda: body.solve(*coefficients, self._scene.eta, light, scheme)).exitance
 
     def _entering(self, number: int, mesh: Graph | None = None) -> np.ndarray:
-        # The same points of the surface and as many rays of the sky on every mesh.
+        # Every mesh gets the same points of the surface and as many rays of the sky.
         mesh = self._cut if mesh is None else mesh
         rays = int(SKY_RAYS * 4.0 ** (1 - number))
         return entering(self._scene, mesh, self._occluder, 2 ** (REFINEMENTS + 1 - number), rays)

@@ -66,7 +66,7 @@ def slab(medium: Medium, thickness: float, eta: float, walks: int, seed: int) ->
     start = np.array([0.49 * _WIDTH, 0.51 * _WIDTH, _INSIDE])
     weight, scattered, position = _run(body, medium, eta, start, np.array([0.0, 0.0, 1.0]), walks, seed)
     below = position[:, 2] > thickness / 2
-    # Of each walk what was reflected, transmitted, absorbed and unscattered; those that never left were absorbed.
+    # Rows: reflected, transmitted, absorbed and unscattered share of each walk; walks that never left were absorbed.
     shares = np.zeros((4, walks))
     shares[2] = 1
     for row, share in ((0, scattered & ~below), (1, scattered & below), (3, ~scattered)):

@@ -37,11 +37,11 @@ class Scheme:
 
     @property
     def model_of(self) -> moments.ModelOf:
-        """The same model for the closed forms."""
+        """This model as the closed forms take it."""
         return {"diffusion": moments.diffusion, "sp3": moments.sp3}[self.model]
 
     def boundary(self, eta: float) -> Boundary:
-        """The same boundary condition for the closed forms."""
+        """This boundary condition as the closed forms take it."""
         if self == PUBLISHED:
             return boundary.published(eta)
         return {"diffusion": boundary.diffusion, "sp3": boundary.sp3}[self.model](eta, self.source == "diffuse")
@@ -140,7 +140,7 @@ def on_reference(mesh: Graph) -> StudyBody:
 
 
 def on_engine(device: str = "") -> BodyOf:
-    """Bodies that the engine solves on the Vulkan device whose name contains `device`."""
+    """Bodies that the engine solves on the device `device` (docs/devices.md)."""
 
     def body_of(mesh: Graph) -> StudyBody:
         with tempfile.TemporaryDirectory(prefix="quadgraph-study-") as folder:

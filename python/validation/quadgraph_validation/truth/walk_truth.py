@@ -61,7 +61,7 @@ class WalkTruth:
 
     @property
     def absorbed_share(self) -> Estimate:
-        """Of the light that entered."""
+        """Absorbed share of the light that entered."""
         share = self.absorbed / self.walks
         return Estimate(np.array(share), np.sqrt(share * (1 - share) / self.walks))
 

@@ -1,0 +1,59 @@
+// Buffers, images and passes of the processor.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include "engine/device/device.h"
+
+namespace quadgraph::cpu {
+
+struct Freed {
+  void operator()(void* memory) const;
+};
+using Bytes = std::unique_ptr<void, Freed>;
+
+// Aligned for the widest instructions. Throws DeviceError where there is no room.
+Bytes bytes(std::uint64_t count);
+
+struct BufferMemory : device::Memory {
+  explicit BufferMemory(std::uint64_t size) : memory(bytes(size)) {
+    address = reinterpret_cast<std::uint64_t>(memory.get());
+    mapped = memory.get();
+    allocated = size;
+  }
+  Bytes memory;
+};
+
+// One layer after the other, rows tightly packed.
+struct ImageMemory : device::ImageMemory {
+  explicit ImageMemory(const device::ImageOptions& wanted)
+      : options(wanted), memory(bytes(std::uint64_t{texel_bytes()} * wanted.width * wanted.height * wanted.layers)) {
+    allocated = std::uint64_t{texel_bytes()} * wanted.width * wanted.height * wanted.layers;
+  }
+
+  std::uint32_t texel_bytes() const { return options.format == device::Format::depth32_float ? 4 : 16; }
+  float* texels() const { return static_cast<float*>(memory.get()); }
+
+  device::ImageOptions options;
+  Bytes memory;
+};
+
+struct ComputePipeline : device::Pipeline {
+  ComputePipeline(device::ComputeKernel made, std::uint32_t kind) : kernel(made), variant(kind) {}
+  device::ComputeKernel kernel;
+  std::uint32_t variant;
+};
+
+struct GraphicsPipeline : device::Pipeline {
+  GraphicsPipeline(const device::GraphicsOptions& wanted, std::size_t level)
+      : options(wanted),
+        vertex(wanted.vertex->cpu.vertex[level]),
+        fragment(wanted.fragment == nullptr ? nullptr : wanted.fragment->cpu.fragment[level]) {}
+  device::GraphicsOptions options;
+  device::VertexKernel vertex;
+  device::FragmentKernel fragment;  // null: depth only
+};
+
+}  // namespace quadgraph::cpu

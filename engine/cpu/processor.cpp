@@ -1,0 +1,116 @@
+#include "engine/cpu/processor.h"
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <new>
+#include <string>
+
+#include "engine/base/error.h"
+#include "engine/cpu/objects.h"
+#include "engine/cpu/recording.h"
+#include "engine/device/live_objects.h"
+#include "interface/cpu_levels.h"
+
+namespace quadgraph::cpu {
+namespace {
+
+// Room behind every buffer, and multiple that every address is of: a vector of the widest instructions.
+constexpr std::size_t alignment = 64;
+
+bool has_level([[maybe_unused]] const std::string& level) {
+#if defined(__x86_64__)
+  __builtin_cpu_init();
+  if (level == "v2") return __builtin_cpu_supports("x86-64-v2") != 0;
+  if (level == "v3") return __builtin_cpu_supports("x86-64-v3") != 0;
+  if (level == "v4") return __builtin_cpu_supports("x86-64-v4") != 0;
+#endif
+  return level == "portable";
+}
+
+// QUADGRAPH_CPU_LEVEL of the environment names one to take.
+std::size_t best_level() {
+  const char* wanted = std::getenv("QUADGRAPH_CPU_LEVEL");
+  for (std::size_t k = std::size(cpu_level_names); k-- > 0;) {
+    const bool meant = wanted == nullptr || cpu_level_names[k] == std::string(wanted);
+    if (meant && has_level(cpu_level_names[k])) return k;
+  }
+  std::string all;
+  for (const char* name : cpu_level_names) all += std::string(all.empty() ? "" : ", ") + name;
+  throw DeviceError("device cpu: shaders were compiled for the levels of instructions " + all +
+                    ", and this processor has none of them" +
+                    (wanted == nullptr ? "" : " that QUADGRAPH_CPU_LEVEL='" + std::string(wanted) + "' allows"));
+}
+
+unsigned wanted_threads(unsigned threads) {
+  const char* text = std::getenv("QUADGRAPH_THREADS");
+  if (threads > 0 || text == nullptr) return threads;
+  char* end = nullptr;
+  const long number = std::strtol(text, &end, 10);
+  if (*text == '\0' || *end != '\0' || number < 1 || number > 1024) {
+    throw InputError("QUADGRAPH_THREADS is '" + std::string(text) + "'; allowed are 1 to 1024");
+  }
+  return static_cast<unsigned>(number);
+}
+
+std::string processor_name() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    const auto colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "processor";
+}
+
+void* take_memory(std::uint64_t bytes) {
+  void* memory = ::operator new(bytes, std::align_val_t(alignment), std::nothrow);
+  if (memory == nullptr) throw DeviceError("no memory for " + std::to_string(bytes) + " bytes");
+  return memory;
+}
+
+}  // namespace
+
+void Freed::operator()(void* memory) const {
+  ::operator delete(memory, std::align_val_t(alignment));
+}
+
+Bytes bytes(std::uint64_t count) {
+  return Bytes(take_memory(count));
+}
+
+Processor::Processor(const ProcessorOptions& options)
+    : level_(best_level()), threads_(wanted_threads(options.threads)) {
+  info_ = {processor_name(), "quadgraph cpu " + std::string(cpu_level_names[level_]), true};
+  max_buffer_bytes_ = std::uint64_t{1} << 40;
+  max_image_side_ = 16384;
+  max_workgroups_ = 0xffffffffu;
+  device::count_opened(books_);
+}
+
+Processor::~Processor() {
+  device::count_closed(books_);
+}
+
+std::unique_ptr<device::Memory> Processor::allocate(std::uint64_t size, device::Place, const std::string&) {
+  return std::make_unique<BufferMemory>((size + alignment) / alignment * alignment + alignment);
+}
+
+std::unique_ptr<device::ImageMemory> Processor::allocate(const device::ImageOptions& options, const std::string&) {
+  return std::make_unique<ImageMemory>(options);
+}
+
+std::unique_ptr<device::Pipeline> Processor::compile(const device::Shader& shader,
+                                                     const device::ComputeOptions& options, const std::string&) {
+  const device::CpuCode& code = options.sp3 ? shader.cpu_sp3 : shader.cpu;
+  return std::make_unique<ComputePipeline>(code.compute[level_], options.variant);
+}
+
+std::unique_ptr<device::Pipeline> Processor::compile(const device::GraphicsOptions& options, const std::string&) {
+  return std::make_unique<GraphicsPipeline>(options, level_);
+}
+
+std::unique_ptr<device::Recording> Processor::record(std::uint32_t) {
+  return std::make_unique<Recording>(*this);
+}
+
+}  // namespace quadgraph::cpu

@@ -1,0 +1,35 @@
+// The processor as a device: shaders compiled as C++ (engine/cpu/kernel.h), run at once as they are recorded.
+#pragma once
+
+#include <memory>
+
+#include "engine/cpu/thread_pool.h"
+#include "engine/device/device.h"
+
+namespace quadgraph::cpu {
+
+struct ProcessorOptions {
+  unsigned threads = 0;  // 0: one for each core that this process may use, or QUADGRAPH_THREADS of the environment
+};
+
+class Processor : public device::Device {
+ public:
+  // Throws DeviceError where the processor has none of the levels of instructions that shaders were compiled for.
+  explicit Processor(const ProcessorOptions& options = {});
+  ~Processor() override;
+
+  ThreadPool& threads() { return threads_; }
+
+  std::unique_ptr<device::Memory> allocate(std::uint64_t bytes, device::Place place, const std::string& name) override;
+  std::unique_ptr<device::ImageMemory> allocate(const device::ImageOptions& options, const std::string& name) override;
+  std::unique_ptr<device::Pipeline> compile(const device::Shader& shader, const device::ComputeOptions& options,
+                                            const std::string& name) override;
+  std::unique_ptr<device::Pipeline> compile(const device::GraphicsOptions& options, const std::string& name) override;
+  std::unique_ptr<device::Recording> record(std::uint32_t max_passes) override;
+
+ private:
+  std::size_t level_;  // of instructions: index of device::CpuCode
+  ThreadPool threads_;
+};
+
+}  // namespace quadgraph::cpu

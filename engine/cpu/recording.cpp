@@ -1,0 +1,81 @@
+#include "engine/cpu/recording.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "engine/cpu/objects.h"
+#include "engine/cpu/raster.h"
+
+namespace quadgraph::cpu {
+namespace {
+
+// Parts that a dispatch is shared out in, for each thread: what one part takes longer, others make up for.
+constexpr std::uint32_t parts_of_thread = 16;
+
+std::byte* bytes_of(const device::Memory& memory) {
+  return static_cast<std::byte*>(memory.mapped);
+}
+
+}  // namespace
+
+void Recording::copy(const device::Memory& source, const device::Memory& target, std::uint64_t bytes,
+                     std::uint64_t target_offset) {
+  std::memcpy(bytes_of(target) + target_offset, bytes_of(source), bytes);
+}
+
+void Recording::copy(const device::ImageMemory& source, const device::Memory& target, std::uint32_t width,
+                     std::uint32_t height) {
+  const auto& image = static_cast<const ImageMemory&>(source);
+  const std::uint64_t row = std::uint64_t{image.texel_bytes()} * width;
+  const auto* from = static_cast<const std::byte*>(image.memory.get());
+  std::byte* to = bytes_of(target);
+  for (std::uint32_t layer = 0; layer < image.options.layers; ++layer) {
+    for (std::uint32_t y = 0; y < height; ++y, to += row) {
+      std::memcpy(to,
+                  from + (std::uint64_t{layer} * image.options.height + y) * image.options.width * image.texel_bytes(),
+                  row);
+    }
+  }
+}
+
+void Recording::fill(const device::Memory& target, std::uint64_t bytes, std::uint32_t value) {
+  std::fill_n(reinterpret_cast<std::uint32_t*>(bytes_of(target)), (bytes + 3) / 4, value);
+}
+
+void Recording::update(const device::Memory& target, std::span<const std::byte> data) {
+  std::memcpy(bytes_of(target), data.data(), data.size());
+}
+
+void Recording::dispatch(const device::Pipeline& pass, const void* push, std::uint32_t groups) {
+  const auto& pipeline = static_cast<const ComputePipeline&>(pass);
+  const std::uint32_t part = std::max(groups / (parts_of_thread * processor_.threads().threads()), 1u);
+  processor_.threads().run(groups, part, [&](std::uint32_t begin, std::uint32_t end) {
+    pipeline.kernel(push, groups, begin, end, pipeline.variant);
+  });
+}
+
+void Recording::dispatch_indirect(const device::Pipeline& pass, const void* push, const device::Memory& arguments,
+                                  std::uint64_t offset) {
+  std::uint32_t groups[3];
+  std::memcpy(groups, bytes_of(arguments) + offset, sizeof(groups));
+  if (groups[0] > 0 && groups[1] > 0 && groups[2] > 0) dispatch(pass, push, groups[0]);
+}
+
+void Recording::draw(const device::DrawImages& target, const device::Viewport& viewport, const device::Pipeline& pass,
+                     const void* push, const device::Memory* indices, std::uint32_t vertices) {
+  const auto& pipeline = static_cast<const GraphicsPipeline&>(pass);
+  const auto* numbers = indices == nullptr ? nullptr : reinterpret_cast<const std::uint32_t*>(bytes_of(*indices));
+  rasterise(processor_.threads(), target, viewport, pipeline, push, numbers, vertices);
+}
+
+void Recording::begin_pass(const std::string& name) {
+  passes_.push_back({name, 0});
+  pass_start_ = std::chrono::steady_clock::now();
+}
+
+void Recording::end_pass() {
+  const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - pass_start_;
+  passes_.back().time_ms = elapsed.count();
+}
+
+}  // namespace quadgraph::cpu

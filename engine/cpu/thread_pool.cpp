@@ -1,0 +1,82 @@
+#include "engine/cpu/thread_pool.h"
+
+#include <sched.h>
+
+#include <algorithm>
+
+namespace quadgraph::cpu {
+namespace {
+
+// Looks at a variable before a thread goes to sleep until it changes: a short while, as the next dispatch of a solve
+// mostly follows at once.
+constexpr int looks = 2000;
+
+unsigned usable_cores() {
+  cpu_set_t set;
+  if (sched_getaffinity(0, sizeof(set), &set) == 0) return static_cast<unsigned>(std::max(CPU_COUNT(&set), 1));
+  return std::max(std::thread::hardware_concurrency(), 1u);
+}
+
+template <typename T>
+void wait_while(const std::atomic<T>& variable, T value) {
+  for (int look = 0; look < looks; ++look) {
+    if (variable.load(std::memory_order_acquire) != value) return;
+#if defined(__x86_64__)
+    __builtin_ia32_pause();
+#endif
+  }
+  while (variable.load(std::memory_order_acquire) == value) variable.wait(value, std::memory_order_acquire);
+}
+
+}  // namespace
+
+ThreadPool::ThreadPool(unsigned threads) {
+  for (unsigned k = 1; k < (threads == 0 ? usable_cores() : threads); ++k) others_.emplace_back([this] { serve(); });
+}
+
+ThreadPool::~ThreadPool() {
+  ends_ = true;
+  ++round_;
+  round_.notify_all();
+}
+
+void ThreadPool::take_parts() {
+  for (;;) {
+    const std::uint64_t begin = next_.fetch_add(part_, std::memory_order_relaxed);
+    if (begin >= count_) return;
+    const std::uint64_t end = std::min<std::uint64_t>(begin + part_, count_);
+    (*work_)(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end));
+  }
+}
+
+void ThreadPool::serve() {
+  for (std::uint32_t seen = 0;;) {
+    wait_while(round_, seen);
+    seen = round_.load(std::memory_order_acquire);
+    if (ends_) return;
+    take_parts();
+    if (busy_.fetch_sub(1, std::memory_order_acq_rel) == 1) busy_.notify_all();
+  }
+}
+
+void ThreadPool::run(std::uint32_t count, std::uint32_t part,
+                     const std::function<void(std::uint32_t, std::uint32_t)>& work) {
+  if (others_.empty() || count <= part) {
+    if (count > 0) work(0, count);
+    return;
+  }
+  work_ = &work;
+  count_ = count;
+  part_ = part;
+  next_.store(0, std::memory_order_relaxed);
+  busy_.store(static_cast<std::uint32_t>(others_.size()), std::memory_order_relaxed);
+  round_.fetch_add(1, std::memory_order_release);
+  round_.notify_all();
+  take_parts();
+  for (std::uint32_t left = busy_.load(std::memory_order_acquire); left != 0;) {
+    wait_while(busy_, left);
+    left = busy_.load(std::memory_order_acquire);
+  }
+}
+
+}  // namespace quadgraph::cpu

@@ -1,0 +1,40 @@
+// Threads that share out the parts of a piece of work.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <thread>
+#include <vector>
+
+namespace quadgraph::cpu {
+
+class ThreadPool {
+ public:
+  // With the caller `threads` work; 0: one for each core that this process may use.
+  explicit ThreadPool(unsigned threads);
+  ~ThreadPool();
+  ThreadPool(const ThreadPool&) = delete;
+  ThreadPool& operator=(const ThreadPool&) = delete;
+
+  unsigned threads() const { return static_cast<unsigned>(others_.size()) + 1; }
+
+  // Calls work(begin, end) for parts of [0, count), each once, on all threads; waits for them. Parts are of at most
+  // `part`, but for a single thread, which gets them all as one. One call at a time, and not from within `work`. What
+  // throws ends the program.
+  void run(std::uint32_t count, std::uint32_t part, const std::function<void(std::uint32_t, std::uint32_t)>& work);
+
+ private:
+  void take_parts();
+  void serve();
+
+  std::vector<std::jthread> others_;
+  const std::function<void(std::uint32_t, std::uint32_t)>* work_ = nullptr;
+  std::uint32_t count_ = 0, part_ = 1;
+  std::atomic<std::uint64_t> next_{0};
+  std::atomic<std::uint32_t> round_{0};  // grows by one with every run
+  std::atomic<std::uint32_t> busy_{0};   // others that have not finished it
+  std::atomic<bool> ends_{false};
+};
+
+}  // namespace quadgraph::cpu

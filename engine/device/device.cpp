@@ -1,0 +1,27 @@
+#include "engine/device/device.h"
+
+#include <algorithm>
+
+#include "engine/device/live_objects.h"
+
+namespace quadgraph::device {
+
+void Device::count(const std::string& purpose, std::uint64_t bytes) {
+  allocated_bytes_ += bytes;
+  allocated_by_purpose_[purpose] += bytes;
+  ++allocation_count_;
+  count_made(books_, "allocation");
+  count_made(books_, "allocated byte", bytes);
+  peak_allocated_bytes_ = std::max(peak_allocated_bytes_, allocated_bytes_);
+}
+
+void Device::uncount(const std::string& purpose, std::uint64_t bytes) noexcept {
+  allocated_bytes_ -= bytes;
+  count_gone(books_, "allocation");
+  count_gone(books_, "allocated byte", bytes);
+  const auto found = allocated_by_purpose_.find(purpose);
+  found->second -= bytes;
+  if (found->second == 0) allocated_by_purpose_.erase(found);
+}
+
+}  // namespace quadgraph::device

@@ -1,0 +1,167 @@
+// What the engine computes and draws with: a Vulkan device (engine/vk) or the processor (engine/cpu). Everything else
+// in this room borrows a Device and must die before it.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/device/shader.h"
+
+namespace quadgraph::vk {
+struct SurfaceSource;
+}
+
+namespace quadgraph::device {
+
+// DeviceOptions::device of the processor.
+inline constexpr const char* processor = "cpu";
+
+struct DeviceOptions {
+  // Load VK_LAYER_KHRONOS_validation and keep its messages; DeviceError if the layer is not installed.
+  bool validation = false;
+  // "cpu": the processor. Else part of the name of a Vulkan device, case-insensitive. Empty: what QUADGRAPH_DEVICE
+  // of the environment names, else a discrete GPU, else an integrated one, else the processor.
+  std::string device = "";
+  // Of the window to present to (engine/vk/context.h); null: none, and nothing that windows need is asked of the
+  // device.
+  std::shared_ptr<const vk::SurfaceSource> surface = nullptr;
+};
+
+enum class Place {
+  device,  // fastest for the device
+  host,    // mapped, coherent, cached if possible: uploads and read-backs
+};
+
+struct DeviceInfo {
+  std::string name;
+  std::string driver;  // name and version
+  bool cpu = false;    // computes on the processor
+};
+
+enum class Format { rgba32_float, depth32_float };
+
+struct ImageOptions {
+  Format format = Format::rgba32_float;
+  std::uint32_t width = 1;   // pixels
+  std::uint32_t height = 1;  // pixels
+  std::uint32_t layers = 1;
+};
+
+struct ComputeOptions {
+  bool sp3 = false;                    // the code for SP3
+  std::uint32_t variant = 0;           // specialization constant 1 of a shader that has it
+  std::uint32_t workgroup_size = 256;  // local_size_x; WORKGROUP_SIZE in shaders/shared/shared.h
+};
+
+enum class Cull { none, back, front };
+
+struct GraphicsOptions {
+  const Shader* vertex;       // its push constants are visible to both stages
+  const Shader* fragment;     // null: depth only
+  std::uint32_t colours = 0;  // images of Format::rgba32_float that it writes; no blending
+  Cull cull = Cull::back;     // front faces are counter-clockwise in the window with y up
+  std::uint32_t variant = 0;  // specialization constant 1 of the shaders that have it
+};
+
+// Device time of one named pass.
+struct PassTime {
+  std::string name;
+  double time_ms = 0;
+};
+
+// A rectangle of the target, pixels; it may begin outside, so that a tile shows a part of a larger picture.
+struct Viewport {
+  float x = 0, y = 0, width = 0, height = 0;
+};
+
+// What devices make, for the classes of this room alone.
+struct Memory {
+  virtual ~Memory() = default;
+  std::uint64_t address = 0;  // of the first byte, as shaders have it
+  void* mapped = nullptr;     // null where the host does not see it
+  std::uint64_t allocated = 0;
+};
+struct ImageMemory {
+  virtual ~ImageMemory() = default;
+  std::uint64_t allocated = 0;
+};
+struct Pipeline {
+  virtual ~Pipeline() = default;
+};
+
+struct DrawImages {
+  std::vector<ImageMemory*> colours;
+  ImageMemory* depth = nullptr;
+  std::uint32_t width = 0, height = 0;  // of the upper left part that is cleared and drawn into, pixels
+};
+
+// What Commands (commands.h) says in words of the device; each is seen by all that follows.
+class Recording {
+ public:
+  virtual ~Recording() = default;
+  virtual void copy(const Memory& source, const Memory& target, std::uint64_t bytes, std::uint64_t target_offset) = 0;
+  virtual void copy(const ImageMemory& source, const Memory& target, std::uint32_t width, std::uint32_t height) = 0;
+  virtual void fill(const Memory& target, std::uint64_t bytes, std::uint32_t value) = 0;
+  virtual void update(const Memory& target, std::span<const std::byte> data) = 0;
+  virtual void dispatch(const Pipeline& pass, const void* push, std::uint32_t groups) = 0;
+  virtual void dispatch_indirect(const Pipeline& pass, const void* push, const Memory& arguments,
+                                 std::uint64_t offset) = 0;
+  virtual void draw(const DrawImages& target, const Viewport& viewport, const Pipeline& pass, const void* push,
+                    const Memory* indices, std::uint32_t vertices) = 0;
+  virtual void begin_pass(const std::string& name) = 0;
+  virtual void end_pass() = 0;
+  virtual std::vector<PassTime> submit_and_wait() = 0;
+};
+
+class Device {
+ public:
+  Device() = default;
+  virtual ~Device() = default;
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  const DeviceInfo& info() const { return info_; }
+  std::uint64_t max_buffer_bytes() const { return max_buffer_bytes_; }
+  std::uint32_t max_image_side() const { return max_image_side_; }                   // pixels
+  std::uint32_t max_workgroups() const { return max_workgroups_; }                   // of a dispatch
+  const std::vector<std::string>& validation_messages() const { return messages_; }  // so far
+
+  // Bytes of buffers and images now, the most there ever were at a time, and by purpose (memory.h) without those that
+  // have none; and how many were ever made.
+  std::uint64_t allocated_bytes() const { return allocated_bytes_; }
+  std::uint64_t peak_allocated_bytes() const { return peak_allocated_bytes_; }
+  const std::map<std::string, std::uint64_t>& allocated_by_purpose() const { return allocated_by_purpose_; }
+  std::uint64_t allocation_count() const { return allocation_count_; }
+
+  // Throw DeviceError naming what has no room or is not allowed.
+  virtual std::unique_ptr<Memory> allocate(std::uint64_t bytes, Place place, const std::string& name) = 0;
+  virtual std::unique_ptr<ImageMemory> allocate(const ImageOptions& options, const std::string& name) = 0;
+  virtual std::unique_ptr<Pipeline> compile(const Shader& shader, const ComputeOptions& options,
+                                            const std::string& name) = 0;
+  virtual std::unique_ptr<Pipeline> compile(const GraphicsOptions& options, const std::string& name) = 0;
+  virtual std::unique_ptr<Recording> record(std::uint32_t max_passes) = 0;
+
+  // Books of Buffer and Image.
+  void count(const std::string& purpose, std::uint64_t bytes);
+  void uncount(const std::string& purpose, std::uint64_t bytes) noexcept;
+
+ protected:
+  DeviceInfo info_;
+  std::uint64_t max_buffer_bytes_ = 0;
+  std::uint32_t max_image_side_ = 0;
+  std::uint32_t max_workgroups_ = 0;
+  std::vector<std::string> messages_;
+  const void* books_ = this;  // in live_objects.h
+
+ private:
+  std::uint64_t allocated_bytes_ = 0;
+  std::uint64_t peak_allocated_bytes_ = 0;
+  std::uint64_t allocation_count_ = 0;
+  std::map<std::string, std::uint64_t> allocated_by_purpose_;
+};
+
+}  // namespace quadgraph::device

@@ -1,0 +1,89 @@
+#include "engine/device/memory.h"
+
+#include <cstring>
+
+#include "engine/base/error.h"
+#include "engine/device/commands.h"
+
+namespace quadgraph::device {
+namespace {
+
+// Bytes that a command takes along (vkCmdUpdateBuffer).
+constexpr std::size_t largest_update = 65536;
+
+std::unique_ptr<Memory> allocated(Device& device, std::uint64_t size, Place place, const std::string& name) {
+  if (size > device.max_buffer_bytes()) {
+    throw DeviceError("buffer '" + name + "' of " + std::to_string(size) + " bytes: " + device.info().name +
+                      " allows at most " + std::to_string(device.max_buffer_bytes()));
+  }
+  try {
+    return device.allocate(size, place, name);
+  } catch (const DeviceError& error) {
+    throw DeviceError("buffer '" + name + "': " + error.what() + "; " + std::to_string(device.allocated_bytes()) +
+                      " bytes are in use");
+  }
+}
+
+std::unique_ptr<ImageMemory> allocated(Device& device, const ImageOptions& options, const std::string& name) {
+  const std::uint32_t limit = device.max_image_side();
+  if (options.width > limit || options.height > limit) {
+    throw InputError("image '" + name + "' of " + std::to_string(options.width) + " x " +
+                     std::to_string(options.height) + " pixels: " + device.info().name + " allows at most " +
+                     std::to_string(limit));
+  }
+  return device.allocate(options, name);
+}
+
+}  // namespace
+
+Buffer::Buffer(Device& device, std::uint64_t size, Place place, const std::string& name)
+    : size_(size), memory_(device, allocated(device, size, place, name), name) {}
+
+Image::Image(Device& device, const ImageOptions& options, const std::string& name)
+    : options_(options), memory_(device, allocated(device, options, name), name) {}
+
+Buffer upload_bytes(Device& device, std::span<const std::byte> data, const std::string& name) {
+  Buffer target(device, data.size(), Place::device, name);
+  write_bytes(device, target, data);
+  return target;
+}
+
+void write_bytes(Device& device, const Buffer& target, std::span<const std::byte> data) {
+  if (data.size() > target.size()) {
+    throw InputError("buffer holds " + std::to_string(target.size()) + " bytes, got " + std::to_string(data.size()));
+  }
+  if (data.empty()) return;
+  if (target.mapped() != nullptr) {
+    std::memcpy(target.mapped(), data.data(), data.size());
+    return;
+  }
+  Commands commands(device);
+  if (data.size() <= largest_update && data.size() % 4 == 0) {
+    commands.update(target, data);
+    commands.submit_and_wait();
+    return;
+  }
+  const Buffer staging(device, data.size(), Place::host, "staging/upload");
+  std::memcpy(staging.mapped(), data.data(), data.size());
+  commands.copy(staging, target, data.size());
+  commands.submit_and_wait();
+}
+
+void read_bytes(Device& device, const Buffer& source, std::span<std::byte> target) {
+  if (target.size() > source.size()) {
+    throw InputError("buffer holds " + std::to_string(source.size()) + " bytes, asked for " +
+                     std::to_string(target.size()));
+  }
+  if (target.empty()) return;
+  if (source.mapped() != nullptr) {
+    std::memcpy(target.data(), source.mapped(), target.size());
+    return;
+  }
+  const Buffer staging(device, target.size(), Place::host, "staging/read-back");
+  Commands commands(device);
+  commands.copy(source, staging, target.size());
+  commands.submit_and_wait();
+  std::memcpy(target.data(), staging.mapped(), target.size());
+}
+
+}  // namespace quadgraph::device

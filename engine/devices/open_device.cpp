@@ -1,0 +1,43 @@
+#include "engine/devices/open_device.h"
+
+#include <cstdlib>
+
+#include "engine/base/error.h"
+#include "engine/cpu/processor.h"
+#include "engine/vk/context.h"
+
+namespace quadgraph {
+namespace {
+
+// Null where Vulkan has none; then it is not looked for again in this process.
+std::shared_ptr<device::Device> open_gpu(const device::DeviceOptions& options) {
+  static bool none = false;
+  if (none) return nullptr;
+  try {
+    auto context = std::make_shared<vk::Context>(options);
+    if (!context->info().cpu) return context;
+  } catch (const DeviceError&) {
+  }
+  none = true;
+  return nullptr;
+}
+
+}  // namespace
+
+std::string wanted_device(const device::DeviceOptions& options) {
+  const char* usual = std::getenv("QUADGRAPH_DEVICE");
+  return options.device.empty() && usual != nullptr ? usual : options.device;
+}
+
+std::shared_ptr<device::Device> open_device(const device::DeviceOptions& given) {
+  device::DeviceOptions options = given;
+  options.device = wanted_device(given);
+  if (options.device.empty()) {
+    if (auto gpu = open_gpu(options)) return gpu;
+    options.device = device::processor;
+  }
+  if (options.device == device::processor) return std::make_shared<cpu::Processor>();
+  return std::make_shared<vk::Context>(options);
+}
+
+}  // namespace quadgraph

@@ -1,0 +1,89 @@
+// The processor draws the picture of a Vulkan device.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "engine/render/engine.h"
+
+using namespace quadgraph;
+
+namespace {
+
+const std::filesystem::path cube = std::filesystem::path(QUADGRAPH_TEST_DATA) / "tiny.qgraph";
+
+struct Lit {
+  Engine engine;
+
+  explicit Lit(const device::DeviceOptions& device) : engine(cube, device) {
+    engine.set_material("sigma_s_prime=2/1/0.5,sigma_a=0.1,eta=1.3");
+    engine.set_lights({parse_light("directional:-0.3,-0.4,-0.86602540:1/2/3"), parse_light("point:4,2,1:20/10/5"),
+                       parse_light("ambient:0.2")});
+    engine.solve({.tolerance = 1e-5});
+  }
+  Lit(const Lit&) = delete;
+  Lit& operator=(const Lit&) = delete;
+  ~Lit() {
+    for (const auto& message : engine.context().validation_messages()) FAIL_CHECK(message);
+  }
+};
+
+// Largest difference over the largest value.
+double difference(const std::vector<float>& values, const std::vector<float>& expected) {
+  REQUIRE(values.size() == expected.size());
+  double largest = 0, apart = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    largest = std::max(largest, std::abs(double{expected[i]}));
+    apart = std::max(apart, std::abs(double{values[i]} - double{expected[i]}));
+  }
+  REQUIRE(largest > 0);
+  return apart / largest;
+}
+
+// Corners in the window are rounded to 1/256 of a pixel, and interpolated places may be that far apart. Where that puts
+// one of the four samples of a pixel across the edge of a shadow or of a triangle, the pixel differs by more.
+void check_alike(const std::vector<float>& values, const std::vector<float>& expected) {
+  CHECK(difference(values, expected) < 5e-3);
+  const double largest = *std::max_element(expected.begin(), expected.end());
+  std::size_t apart = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::abs(double{values[i]} - double{expected[i]}) > 1e-4 * largest) ++apart;
+  }
+  CHECK(apart < values.size() / 1000);
+}
+
+std::vector<float> flat(const std::vector<glm::vec3>& values) {
+  std::vector<float> result;
+  for (const glm::vec3& value : values) result.insert(result.end(), {value.x, value.y, value.z});
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("light, pictures and leaving radiance are the same on both") {
+  Lit here({.device = "cpu"}), there({.validation = true, .device = "llvmpipe"});
+  for (std::uint32_t level = 0; level < there.engine.graph().levels().size(); ++level) {
+    const auto q = [&](Lit& lit) {
+      return device::download<float>(lit.engine.context(), lit.engine.simulation().level(level).q);
+    };
+    CHECK(difference(q(here), q(there)) < 1e-6);
+  }
+  for (const Radiance radiance : {Radiance::gathered, Radiance::lambertian}) {
+    CAPTURE(name_of(radiance));
+    const View view{.azimuth = 30, .elevation = 20};
+    const RenderOptions options{.width = 384, .height = 256, .radiance = radiance};
+    const Picture a = here.engine.render(view, options), b = there.engine.render(view, options);
+    check_alike(a.scattered, b.scattered);
+    check_alike(a.specular, b.specular);
+    check_alike(a.unscattered, b.unscattered);
+    if (radiance == Radiance::gathered) check_alike(a.transmittance, b.transmittance);
+    CHECK(a.alpha == b.alpha);
+  }
+  const std::vector<std::uint32_t> faces = {0, 1, 2, 3};
+  const auto normals = there.engine.surface_field().normal;
+  const std::vector<glm::vec3> directions(normals.begin(), normals.begin() + 4);
+  const Leaving a = here.engine.leaving(faces, directions), b = there.engine.leaving(faces, directions);
+  CHECK(difference(flat(a.radiance), flat(b.radiance)) < 1e-5);
+  CHECK(difference(flat(a.transmittance), flat(b.transmittance)) < 1e-5);
+}
