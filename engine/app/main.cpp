@@ -7,9 +7,7 @@
 
 #include "engine/app/options.h"
 #include "engine/app/report.h"
-#include "engine/app/viewer.h"
-#include "engine/base/error.h"
-#include "engine/devices/open_device.h"
+#include "engine/app/show_window.h"
 #include "engine/render/picture/metadata.h"
 #include "engine/scene/stage.h"
 
@@ -40,13 +38,6 @@ void write_picture(const AppOptions& options, const Picture& picture, const Meta
   write(options.output, picture, options.scene.tone, metadata);
 }
 
-void refuse_messages(const device::Device& context) {
-  const auto& messages = context.validation_messages();
-  if (!messages.empty()) {
-    throw DeviceError(std::to_string(messages.size()) + " validation messages, the first: " + messages.front());
-  }
-}
-
 // The exit code.
 int write_one(const AppOptions& options) {
   Stages stages;
@@ -67,30 +58,6 @@ int write_one(const AppOptions& options) {
   const RunReport report{engine, solve, metadata, options.output.string(), stages.wall_ms};
   std::cout << (options.json ? json_report(report) : text_report(report)) << "\n";
   return unmet(solve).empty() ? EXIT_SUCCESS : exit_missed;
-}
-
-// The Vulkan device that shows frames in a window; pictures may be made by another.
-std::shared_ptr<vk::Context> presenter_of(const Window& window, device::DeviceOptions options) {
-  options.surface = std::make_shared<vk::SurfaceSource>(window.surface());
-  options.device = wanted_device(options);
-  if (options.device == device::processor) options.device.clear();
-  return std::make_shared<vk::Context>(options);
-}
-
-int show_window(const AppOptions& options) {
-  const std::filesystem::path name = options.scene.body.filename();
-  Window window(name.string() + " - QuadGraph", 1280, 800);
-  const auto presenter = presenter_of(window, options.device);
-  const std::string wanted = wanted_device(options.device);
-  const bool on_processor = wanted.empty() ? presenter->info().cpu : wanted == device::processor;
-  Stage stage(on_processor ? open_device({.device = device::processor}) : presenter);
-  stage.show(options.scene);
-  {
-    const std::filesystem::path stem = options.output.empty() ? name.stem() : options.output;
-    Viewer(window, *presenter, stage, stem).run();
-  }
-  refuse_messages(*presenter);
-  return EXIT_SUCCESS;
 }
 
 }  // namespace

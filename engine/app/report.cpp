@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "engine/base/error.h"
+
 namespace quadgraph {
 namespace {
 
@@ -157,6 +159,13 @@ std::string text_report(const RunReport& report) {
   out << "total " << decimals(total(report.wall_ms), 0) << " ms\n"
       << "picture  " << report.output;
   return out.str();
+}
+
+void refuse_messages(const device::Device& context) {
+  const auto& messages = context.validation_messages();
+  if (!messages.empty()) {
+    throw DeviceError(std::to_string(messages.size()) + " validation messages, the first: " + messages.front());
+  }
 }
 
 }  // namespace quadgraph

@@ -19,4 +19,7 @@ struct RunReport {
 std::string json_report(const RunReport& report);
 std::string text_report(const RunReport& report);
 
+// Throws DeviceError where the validation layer had something to say.
+void refuse_messages(const device::Device& context);
+
 }  // namespace quadgraph

@@ -4,7 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/cpu/processor.h"
-#include "engine/vk/context.h"
+#include "engine/devices/vulkan.h"
 
 namespace quadgraph {
 namespace {
@@ -14,8 +14,8 @@ std::shared_ptr<device::Device> open_gpu(const device::DeviceOptions& options) {
   static bool none = false;
   if (none) return nullptr;
   try {
-    auto context = std::make_shared<vk::Context>(options);
-    if (!context->info().cpu) return context;
+    auto found = open_vulkan(options);
+    if (!found->info().cpu) return found;
   } catch (const DeviceError&) {
   }
   none = true;
@@ -37,7 +37,7 @@ std::shared_ptr<device::Device> open_device(const device::DeviceOptions& given) 
     options.device = device::processor;
   }
   if (options.device == device::processor) return std::make_shared<cpu::Processor>();
-  return std::make_shared<vk::Context>(options);
+  return open_vulkan(options);
 }
 
 }  // namespace quadgraph

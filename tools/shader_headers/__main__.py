@@ -1,5 +1,5 @@
-"""shader_headers SHADERS GENERATED LEVEL...: writes what the build makes from the text of the shaders in a folder, for
-these levels of a processor's instructions.
+"""shader_headers SHADERS GENERATED spirv|no-spirv LEVEL...: writes what the build makes from the text of the shaders in
+a folder, with or without their SPIR-V, for these levels of a processor's instructions.
 """
 
 import sys
@@ -25,10 +25,10 @@ def write(folder: Path, files: dict[str, str]) -> None:
                 path.unlink()
 
 
-def main(shaders: Path, generated: Path, levels: list[str]) -> None:
+def main(shaders: Path, generated: Path, spirv: bool, levels: list[str]) -> None:
     texts = read_shaders(shaders)
-    write(generated, native(texts) | interfaces(texts, levels))
+    write(generated, native(texts) | interfaces(texts, spirv, levels))
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[3:])
+    main(Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[3] == "spirv", sys.argv[4:])

@@ -115,8 +115,8 @@ def stage_facts(texts: Texts, shader: Shader) -> str:
     return f", .locations = {locations(variables)}, .flat = {flat}"
 
 
-def definition_of(texts: Texts, shader: Shader, levels: list[str]) -> str:
-    code = ["::" + code.replace(".", "_") for code in shader.codes] + ["{}"]
+def definition_of(texts: Texts, shader: Shader, spirv: bool, levels: list[str]) -> str:
+    code = ["::" + code.replace(".", "_") for code in shader.codes if spirv] + ["{}", "{}"]
     cpu = [cpu_code(shader, moments, levels) for moments in (1, 2)]
     values = (
         f'{{.name = "{shader.name}", .code = {code[0]}, .sp3 = {code[1]}, .cpu = {cpu[0]}, .cpu_sp3 = {cpu[1]}, '
@@ -129,12 +129,12 @@ def definition_of(texts: Texts, shader: Shader, levels: list[str]) -> str:
     return f"const device::{shader.type} {shader.name}{values};\n"
 
 
-def folder_of(texts: Texts, shaders: list[Shader], folder: str, levels: list[str]) -> str:
+def folder_of(texts: Texts, shaders: list[Shader], folder: str, spirv: bool, levels: list[str]) -> str:
     own = [shader for shader in shaders if shader.folder == folder]
     includes = "".join(f'#include "interface/{shader.file}.h"\n' for shader in own)
-    includes += "".join(f'#include "spirv/{code}.h"\n' for shader in own for code in shader.codes)
+    includes += "".join(f'#include "spirv/{code}.h"\n' for shader in own for code in shader.codes if spirv)
     kernels = "".join(kernels_of(shader, levels) for shader in own)
-    definitions = "".join(definition_of(texts, shader, levels) for shader in own)
+    definitions = "".join(definition_of(texts, shader, spirv, levels) for shader in own)
     return f"""{includes}
 namespace quadgraph {{
 
@@ -203,17 +203,18 @@ inline const std::vector<StructLayout> struct_layouts = {{
 """
 
 
-def interfaces(texts: Texts, levels: list[str]) -> dict[str, str]:
+def interfaces(texts: Texts, spirv: bool, levels: list[str]) -> dict[str, str]:
     """Generated files. interface/FOLDER/NAME.STAGE.h per shader: its device::Shader (engine/device/shader.h),
     quadgraph::shader::NAME of a compute shader and NAME_STAGE of others, and as quadgraph::gpu::XPush the push
-    constants that the shader itself declares. interface/FOLDER.cpp defines the shaders from spirv/NAME.STAGE.h and from
-    native/CODE.cpp, which is compiled for each of `levels` of instructions; interface/cpu_levels.h names these.
+    constants that the shader itself declares. interface/FOLDER.cpp defines the shaders, if `spirv` from
+    spirv/NAME.STAGE.h, and from native/CODE.cpp, which is compiled for each of `levels` of instructions;
+    interface/cpu_levels.h names these.
     interface/all_shaders.h is for tests, interface/variants.txt says what is compiled: file, MOMENTS, name.
     """
     shaders = shaders_of(texts)
     files = {f"interface/{shader.file}.h": interface_of(texts, shader) for shader in shaders}
     for folder in {shader.folder for shader in shaders}:
-        files[f"interface/{folder}.cpp"] = folder_of(texts, shaders, folder, levels)
+        files[f"interface/{folder}.cpp"] = folder_of(texts, shaders, folder, spirv, levels)
     files["interface/all_shaders.h"] = all_shaders(texts, shaders)
     files["interface/variants.txt"] = "".join(
         f"{shader.file} {moments} {code}\n" for shader in shaders for moments, code in enumerate(shader.codes, 1)

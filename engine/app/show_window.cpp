@@ -1,0 +1,39 @@
+#include "engine/app/show_window.h"
+
+#include <cstdlib>
+
+#include "engine/app/report.h"
+#include "engine/app/viewer.h"
+#include "engine/devices/open_device.h"
+#include "engine/scene/stage.h"
+
+namespace quadgraph {
+namespace {
+
+// The Vulkan device that shows frames in a window; pictures may be made by another.
+std::shared_ptr<vk::Context> presenter_of(const Window& window, device::DeviceOptions options) {
+  options.surface = std::make_shared<vk::SurfaceSource>(window.surface());
+  options.device = wanted_device(options);
+  if (options.device == device::processor) options.device.clear();
+  return std::make_shared<vk::Context>(options);
+}
+
+}  // namespace
+
+int show_window(const AppOptions& options) {
+  const std::filesystem::path name = options.scene.body.filename();
+  Window window(name.string() + " - QuadGraph", 1280, 800);
+  const auto presenter = presenter_of(window, options.device);
+  const std::string wanted = wanted_device(options.device);
+  const bool on_processor = wanted.empty() ? presenter->info().cpu : wanted == device::processor;
+  Stage stage(on_processor ? open_device({.device = device::processor}) : presenter);
+  stage.show(options.scene);
+  {
+    const std::filesystem::path stem = options.output.empty() ? name.stem() : options.output;
+    Viewer(window, *presenter, stage, stem).run();
+  }
+  refuse_messages(*presenter);
+  return EXIT_SUCCESS;
+}
+
+}  // namespace quadgraph

@@ -1,0 +1,23 @@
+# What GPUs and the window are built with. QUADGRAPH_VULKAN is then ON or OFF, AUTO no more. Looked for each time, so that
+# what is installed later is seen.
+find_path(VULKAN_INCLUDE vulkan/vulkan.h NO_CACHE)
+find_path(GLFW_INCLUDE GLFW/glfw3.h NO_CACHE)
+find_path(IMGUI_INCLUDE imgui.h PATH_SUFFIXES imgui NO_CACHE)
+find_program(GLSLANG_VALIDATOR glslangValidator NO_CACHE)
+
+set(missing)
+foreach(found VULKAN_INCLUDE GLFW_INCLUDE IMGUI_INCLUDE GLSLANG_VALIDATOR)
+  if(NOT ${found})
+    list(APPEND missing ${found})
+  endif()
+endforeach()
+if(QUADGRAPH_VULKAN STREQUAL "AUTO")
+  if(missing)
+    message(STATUS "Without Vulkan: cpu is the only device, and there is no window (not found: ${missing})")
+    set(QUADGRAPH_VULKAN OFF)
+  else()
+    set(QUADGRAPH_VULKAN ON)
+  endif()
+elseif(QUADGRAPH_VULKAN AND missing)
+  message(FATAL_ERROR "QUADGRAPH_VULKAN=${QUADGRAPH_VULKAN}: not found: ${missing} (tools/packages.txt)")
+endif()
