@@ -5,8 +5,8 @@ namespace quadgraph {
 
 int show_window(const AppOptions&) {
   throw InputError(
-      "this build has no window, as it has no Vulkan (tools/setup --vulkan builds it with): use --headless -o "
-      "PICTURE.png to render without a window");
+      "a window needs Vulkan, and this build has none (tools/setup --vulkan adds it): use --headless -o PICTURE.png to "
+      "render without a window");
 }
 
 }  // namespace quadgraph

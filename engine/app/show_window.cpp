@@ -4,23 +4,39 @@
 
 #include "engine/app/report.h"
 #include "engine/app/viewer.h"
+#include "engine/base/error.h"
 #include "engine/devices/open_device.h"
 #include "engine/scene/stage.h"
+#include "engine/vk/loader.h"
 
 namespace quadgraph {
 namespace {
+
+// What a window needs, whatever computes its pictures.
+template <typename Step>
+auto needed(Step step) {
+  try {
+    return step();
+  } catch (const DeviceError& error) {
+    throw InputError(std::string("a window needs Vulkan: ") + error.what() +
+                     ": use --headless -o PICTURE.png to render without a window");
+  }
+}
 
 // The Vulkan device that shows frames in a window; pictures may be made by another.
 std::shared_ptr<vk::Context> presenter_of(const Window& window, device::DeviceOptions options) {
   options.surface = std::make_shared<vk::SurfaceSource>(window.surface());
   options.device = wanted_device(options);
-  if (options.device == device::processor) options.device.clear();
-  return std::make_shared<vk::Context>(options);
+  const bool named = !options.device.empty() && options.device != device::processor;
+  if (named) return std::make_shared<vk::Context>(options);
+  options.device.clear();
+  return needed([&] { return std::make_shared<vk::Context>(options); });
 }
 
 }  // namespace
 
 int show_window(const AppOptions& options) {
+  needed(vk::require_loader);
   const std::filesystem::path name = options.scene.body.filename();
   Window window(name.string() + " - QuadGraph", 1280, 800);
   const auto presenter = presenter_of(window, options.device);

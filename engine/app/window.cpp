@@ -7,7 +7,6 @@
 #include <set>
 
 #include "engine/base/error.h"
-#include "engine/vk/loader.h"
 
 namespace quadgraph {
 namespace {
@@ -19,21 +18,7 @@ std::string glfw_message() {
 }
 
 [[noreturn]] void no_window(const std::string& what) {
-  throw InputError(what + ": use --headless -o PICTURE.png to render without a window");
-}
-
-[[noreturn]] void refused_by_glfw(const std::string& what) {
-  no_window(what + " (" + glfw_message() + ")");
-}
-
-// A window shows pictures by Vulkan, whatever computes them.
-void require_vulkan() {
-  try {
-    vk::require_loader();
-  } catch (const DeviceError& error) {
-    no_window(std::string("a window needs Vulkan: ") + error.what());
-  }
-  if (glfwVulkanSupported() != GLFW_TRUE) refused_by_glfw("this display has no Vulkan");
+  throw InputError(what + " (" + glfw_message() + "): use --headless -o PICTURE.png to render without a window");
 }
 
 Window& owner(GLFWwindow* window) {
@@ -64,13 +49,13 @@ GLFWmonitor* monitor_of(GLFWwindow* window) {
 }  // namespace
 
 Window::Window(const std::string& title, int width, int height) : title_(title) {
-  if (glfwInit() != GLFW_TRUE) refused_by_glfw("there is no display to open a window on");
+  if (glfwInit() != GLFW_TRUE) no_window("there is no display to open a window on");
   try {
-    require_vulkan();
+    if (glfwVulkanSupported() != GLFW_TRUE) no_window("this display has no Vulkan");
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
     glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
     window_ = glfwCreateWindow(width, height, (title + " ...").c_str(), nullptr, nullptr);
-    if (window_ == nullptr) refused_by_glfw("the display opens no window");
+    if (window_ == nullptr) no_window("the display opens no window");
   } catch (...) {
     glfwTerminate();
     throw;

@@ -4,8 +4,8 @@
 namespace quadgraph {
 
 std::shared_ptr<device::Device> open_vulkan(const device::DeviceOptions& options) {
-  throw DeviceError("there is no device '" + options.device +
-                    "' but cpu alone, as this build has no Vulkan (tools/setup --vulkan builds it with)");
+  throw DeviceError("no device '" + options.device +
+                    "': this build has no Vulkan, so cpu is the only one (tools/setup --vulkan adds it)");
 }
 
 }  // namespace quadgraph

@@ -1,6 +1,6 @@
 // The functions of Vulkan that engine/vk, the window and Dear ImGui's backend call, by their names in Vulkan's headers.
-// Each calls its namesake in libvulkan.so.1. They are functions, not pointers as volk has them, because the backend, which
-// comes compiled, calls functions. The compiler checks the number of parameters, the linker that none is missing.
+// Each calls its namesake in libvulkan.so.1. They are functions, not pointers as volk has them, because the backend,
+// which comes compiled, calls functions. The compiler checks the number of parameters, the linker that none is missing.
 #include "engine/vk/loader.h"
 
 #include <dlfcn.h>
@@ -33,7 +33,8 @@ void* loader() {
 template <typename Pointer>
 Pointer find(const char* name) {
   void* found = dlsym(loader(), name);
-  if (found == nullptr) throw DeviceError(std::string(loader_name) + " has no " + name + ": it is older than Vulkan 1.3");
+  if (found == nullptr)
+    throw DeviceError(std::string(loader_name) + " has no " + name + ": it is older than Vulkan 1.3");
   return reinterpret_cast<Pointer>(found);
 }
 
@@ -80,7 +81,7 @@ using quadgraph::vk::Signature;
 #define GIVE_10 GIVE_9, p9
 
 // Hidden, so that the Python module offers none of them to others.
-#define FORWARD(count, name)                                                                                     \
+#define FORWARD(count, name)                                                                                   \
   [[gnu::visibility("hidden")]] VKAPI_ATTR Signature<PFN_##name>::Result VKAPI_CALL name(TAKE_##count(name)) { \
     static const auto found = find<PFN_##name>(#name);                                                         \
     return found(GIVE_##count);                                                                                \
