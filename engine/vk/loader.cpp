@@ -1,6 +1,7 @@
 // The functions of Vulkan that engine/vk, the window and Dear ImGui's backend call, by their names in Vulkan's headers.
 // Each calls its namesake in libvulkan.so.1. They are functions, not pointers as volk has them, because the backend,
-// which comes compiled, calls functions. The compiler checks the number of parameters, the linker that none is missing.
+// which comes compiled, calls functions. The compiler checks the number of parameters, the linker that no function is
+// missing.
 #include "engine/vk/loader.h"
 
 #include <dlfcn.h>
