@@ -34,8 +34,7 @@ void* loader() {
 template <typename Pointer>
 Pointer find(const char* name) {
   void* found = dlsym(loader(), name);
-  if (found == nullptr)
-    throw DeviceError(std::string(loader_name) + " has no " + name + ": it is older than Vulkan 1.3");
+  if (found == nullptr) throw DeviceError(std::string(loader_name) + " is older than Vulkan 1.3: it has no " + name);
   return reinterpret_cast<Pointer>(found);
 }
 
