@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "engine/cpu/denormals.h"
+
 namespace quadgraph::cpu {
 namespace {
 
@@ -50,6 +52,7 @@ void ThreadPool::take_parts() {
 }
 
 void ThreadPool::serve() {
+  const DenormalsAreZero denormals;
   for (std::uint32_t seen = 0;;) {
     wait_while(round_, seen);
     seen = round_.load(std::memory_order_acquire);
@@ -61,6 +64,7 @@ void ThreadPool::serve() {
 
 void ThreadPool::run(std::uint32_t count, std::uint32_t part,
                      const std::function<void(std::uint32_t, std::uint32_t)>& work) {
+  const DenormalsAreZero denormals;
   if (others_.empty() || count <= part) {
     if (count > 0) work(0, count);
     return;

@@ -5,7 +5,9 @@
 
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <thread>
 #include <vector>
 
 using namespace quadgraph;
@@ -32,6 +34,25 @@ TEST_CASE("every element is worked on once, in parts that do not overlap, also w
       pool.run(20, 1, [&](std::uint32_t begin, std::uint32_t end) { sum += end - begin; });
     }
     CHECK(sum == 3000 * 20);
+  }
+}
+
+TEST_CASE("denormals are zero on all threads while they work, and not after") {
+  volatile float least = std::numeric_limits<float>::min();
+  for (const unsigned threads : {1u, 3u}) {
+    cpu::ThreadPool pool(threads);
+    std::vector<float> halves(threads, 1.0f), sums(threads, 1.0f);
+    volatile float denormal = std::numeric_limits<float>::denorm_min();
+    std::atomic<unsigned> working = 0;
+    pool.run(threads, 1, [&](std::uint32_t begin, std::uint32_t) {
+      for (++working; working < threads;) std::this_thread::yield();  // so that each has one part
+      halves[begin] = 0.5f * least;
+      sums[begin] = denormal + denormal;
+    });
+    CHECK(std::all_of(halves.begin(), halves.end(), [](float x) { return x == 0; }));
+    CHECK(std::all_of(sums.begin(), sums.end(), [](float x) { return x == 0; }));
+    const float half = 0.5f * least;
+    CHECK(half > 0);
   }
 }
 
