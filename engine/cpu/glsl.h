@@ -37,7 +37,8 @@ template <typename T>
 struct Array {
   T* at;
   Array() = default;
-  explicit Array(uvec2 address) : at(reinterpret_cast<T*>(std::uint64_t{address.x} | std::uint64_t{address.y} << 32)) {}
+  explicit Array(uvec2 address)
+      : at(reinterpret_cast<T*>(std::uint64_t{address.x()} | std::uint64_t{address.y()} << 32)) {}
   explicit operator uvec2() const {
     const auto address = reinterpret_cast<std::uint64_t>(at);
     return {address & 0xffffffffu, address >> 32};
@@ -71,7 +72,7 @@ struct Ticket {
 };
 struct Partials {
   uint* address;
-  vec3& operator[](uint i) const { return reinterpret_cast<vec3*>(address + 1)[i]; }
+  packed_vec3& operator[](uint i) const { return reinterpret_cast<packed_vec3*>(address + 1)[i]; }
 };
 union Reduction {
   Ticket ticket;

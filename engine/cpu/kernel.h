@@ -32,10 +32,10 @@ void run_groups(const void* push, uint groups, uint begin, uint end, bool groupe
   shader.gl_WorkGroupSize = uvec3(size, 1u, 1u);
   shader.gl_WorkGroupID = shader.gl_LocalInvocationID = shader.gl_GlobalInvocationID = uvec3(0u);
   for (uint group = begin; group < end; ++group) {
-    shader.gl_WorkGroupID.x = group;
+    shader.gl_WorkGroupID.ref_x() = group;
     for (uint local = 0; local < size; ++local) {
-      shader.gl_LocalInvocationID.x = local;
-      shader.gl_GlobalInvocationID.x = size * group + local;
+      shader.gl_LocalInvocationID.ref_x() = local;
+      shader.gl_GlobalInvocationID.ref_x() = size * group + local;
       shader.main();
     }
   }

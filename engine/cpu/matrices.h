@@ -1,20 +1,20 @@
 // Matrices of GLSL, columns first; engine/cpu/glsl.h says what they are for.
 #pragma once
 
-#include "engine/cpu/functions.h"
+#include "engine/cpu/lane_functions.h"
 
 namespace quadgraph::cpu::QG_LEVEL {
 
 struct mat3 {
   vec3 column[3];
   mat3() = default;
-  explicit mat3(float d) : column{{d, 0, 0}, {0, d, 0}, {0, 0, d}} {}
+  explicit mat3(float d) : column{vec3(d, 0, 0), vec3(0, d, 0), vec3(0, 0, d)} {}
   mat3(vec3 a, vec3 b, vec3 c) : column{a, b, c} {}
   vec3& operator[](std::size_t i) { return column[i]; }
-  vec3 operator[](std::size_t i) const { return column[i]; }
+  const vec3& operator[](std::size_t i) const { return column[i]; }
 };
 inline vec3 operator*(const mat3& m, vec3 v) {
-  return m[0] * v.x + m[1] * v.y + m[2] * v.z;
+  return m[0] * v.x() + m[1] * v.y() + m[2] * v.z();
 }
 inline vec3 operator*(vec3 v, const mat3& m) {
   return {dot(v, m[0]), dot(v, m[1]), dot(v, m[2])};
@@ -44,14 +44,14 @@ inline float determinant(const mat3& m) {
   return dot(m[0], cross(m[1], m[2]));
 }
 inline mat3 transpose(const mat3& m) {
-  return {vec3(m[0].x, m[1].x, m[2].x), vec3(m[0].y, m[1].y, m[2].y), vec3(m[0].z, m[1].z, m[2].z)};
+  return {vec3(m[0].x(), m[1].x(), m[2].x()), vec3(m[0].y(), m[1].y(), m[2].y()), vec3(m[0].z(), m[1].z(), m[2].z())};
 }
 inline mat3 inverse(const mat3& m) {
   vec3 a = cross(m[1], m[2]), b = cross(m[2], m[0]), c = cross(m[0], m[1]);
   return transpose(mat3(a, b, c)) / dot(m[0], a);
 }
 inline mat3 outerProduct(vec3 a, vec3 b) {
-  return {a * b.x, a * b.y, a * b.z};
+  return {a * b.x(), a * b.y(), a * b.z()};
 }
 
 struct mat4 {
@@ -62,7 +62,7 @@ struct mat4 {
   vec4 operator[](std::size_t i) const { return column[i]; }
 };
 inline vec4 operator*(const mat4& m, vec4 v) {
-  return m[0] * v.x + m[1] * v.y + m[2] * v.z + m[3] * v.w;
+  return m[0] * v.x() + m[1] * v.y() + m[2] * v.z() + m[3] * v.w();
 }
 
 }  // namespace quadgraph::cpu::QG_LEVEL

@@ -31,12 +31,14 @@ float through_side(Plane t, float cost) {
   float least = least_of(t), inverse = 1.0 / cost;
   vec3 low = (t.rows[0] - least) * inverse, mid = (t.rows[1] - least) * inverse, high = (t.rows[2] - least) * inverse;
   float rest = 1.0;
-  vec4 rests = vec4(1);  // of the four beside the middle, each the first of one corner
-  through_corner(mid.y, mid.x, low.y, low.x, rest, rests.x, rests.y);
-  through_corner(mid.y, low.y, mid.z, low.z, rest, rests.y, rests.z);
-  through_corner(mid.y, mid.z, high.y, high.z, rest, rests.z, rests.w);
-  through_corner(mid.y, high.y, mid.x, high.x, rest, rests.w, rests.x);
-  vec4 beside = vec4(t.rows[1].x, t.rows[0].y, t.rows[1].z, t.rows[2].y) + sqrt(2.0) * cost * sqrt(rests);
+  // Rests of the four beside the middle, each the first of one corner.
+  float left = 1.0, below = 1.0, right = 1.0, above = 1.0;
+  through_corner(mid.y, mid.x, low.y, low.x, rest, left, below);
+  through_corner(mid.y, low.y, mid.z, low.z, rest, below, right);
+  through_corner(mid.y, mid.z, high.y, high.z, rest, right, above);
+  through_corner(mid.y, high.y, mid.x, high.x, rest, above, left);
+  vec4 middles = vec4(t.rows[1].x, t.rows[0].y, t.rows[1].z, t.rows[2].y);
+  vec4 beside = middles + sqrt(2.0) * cost * sqrt(vec4(left, below, right, above));
   vec4 corners = vec4(t.rows[0].xz, t.rows[2].xz) + sqrt(3.0) * cost;
   vec4 best = min(beside, corners);
   return min(t.rows[1].y + cost * sqrt(rest), min(min(best.x, best.y), min(best.z, best.w)));

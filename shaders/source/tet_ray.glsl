@@ -45,9 +45,10 @@ const float NEVER = 1e37;
 void attenuate(vec3 tau, out vec3 lost, out vec3 place) {
   bvec3 small = lessThan(tau, vec3(0.25));
   vec3 t = min(tau, vec3(0.25));
-  vec3 series = t * (1.0 - t / 2.0 * (1.0 - t / 3.0 * (1.0 - t / 4.0 * (1.0 - t / 5.0 * (1.0 - t / 6.0)))));
-  lost = mix(1.0 - exp(-tau), series, small);
-  place = mix(1.0 / tau - (1.0 - lost) / lost, 0.5 - t / 12.0 * (1.0 - t * t / 60.0), small);
+  vec3 series = t * (1.0 - t * (1.0 / 2.0 - t * (1.0 / 6.0 - t * (1.0 / 24.0 - t * (1.0 / 120.0 - t * (1.0 / 720.0))))));
+  vec3 left = exp(-tau);
+  lost = mix(1.0 - left, series, small);
+  place = mix((lost - tau * left) / (tau * lost), 0.5 - t * (1.0 / 12.0 - t * t * (1.0 / 720.0)), small);
 }
 
 vec3 extinction() {

@@ -2,20 +2,25 @@
 
 What the text becomes part of is in engine/cpu/glsl.h (types and functions of GLSL) and engine/cpu/kernel.h (how a
 shader is run). A shader is a struct: its globals, `shared` variables and push constants are members, its functions
-member functions. Derivatives are of `in` variables alone, and globals keep their values from one invocation to the
-next.
+member functions. A struct that lies in memory and holds a vec3 has a twin packed_NAME, which is what lies there: a vec3
+that is computed with takes a register of four. Push constants of one letter are reached through `push` alone.
+Derivatives are of `in` variables alone, and globals keep their values from one invocation to the next.
 """
 
 import re
 from pathlib import PurePosixPath
 
-from shader_text import STAGES, Texts, name_of, with_includes
+from shader_text import STAGES, Texts, elements_of, members_of, name_of, with_includes
 
 # "0.5", "1e-3", "2." outside of names and numbers that have a suffix.
 FLOAT = re.compile(r"(?<![\w.])((?:\d+\.\d*|\.\d+)(?:[eE][-+]?\d+)?|\d+[eE][-+]?\d+)(?![\w.])")
-SWIZZLE = re.compile(r"(?<=[\w)\]])\.([xyzw]{2,4})\b")
+SWIZZLE = re.compile(r"(?<=[\w)\]])(?<!\bpush)\.([xyzw]{1,4})\b")
+CHANGED = re.compile(r"(\batomic\w+\([^,]*)\.([xyzw]),")
+ASSIGNED = re.compile(r"(?<=[\w)\]])\.([xyzw])(?= *[-+*/&|^]?=(?!=))")
 OUT_PARAMETER = re.compile(r"\b(?:inout|out) (\w+) (?=\w+[,)\[])")
 STAGE_VARIABLE = re.compile(r"^layout\(location = (\d+)\) (?:flat )?(in|out) (?:flat )?(\w+) (\w+);")
+PUSH = re.compile(r"^layout\(push_constant, scalar\) uniform Block \{ (\w+) ", re.M)
+IN_MEMORY = re.compile(r"^QG_(?:\w+_)?ARRAY\(|^layout\(push_constant")
 PROTOTYPE = re.compile(r"^\w+ \w+\([^()]*\);$")
 
 # Lines as a whole, in this order; what matches none stays as it is.
@@ -42,6 +47,8 @@ WORDS = [
     (re.compile(r"\bdiscard;"), "{ kept = false; return; }"),
     (re.compile(r"\bprecise "), ""),
     (FLOAT, r"\1f"),
+    (CHANGED, r"\1.ref_\2(),"),
+    (ASSIGNED, r".ref_\1()"),
     (SWIZZLE, r".\1()"),
     (OUT_PARAMETER, r"\1& "),
 ]
@@ -62,18 +69,75 @@ def native_line(line: str) -> str:
     return code + slashes + comment
 
 
-def native_text(file: str, text: str) -> str:
-    """All of a file; blocks that are reached through addresses, and the macros that make them, are in glsl.h."""
+def packed(line: str, stored: set[str]) -> str:
+    """A line with the types of what lies in memory."""
+    return re.sub(r"\b\w+\b", lambda word: f"packed_{word[0]}" if word[0] in stored else word[0], line)
+
+
+def twin_of(name: str, body: list[str], stored: set[str]) -> list[str]:
+    """A struct as it lies in memory, which turns into the one that is computed with and back; `body`: its lines."""
+
+    def copies(target: str, source: str) -> list[str]:
+        lines = []
+        for line in body:
+            if line.startswith("#"):
+                lines.append(line)
+                continue
+            for member in members_of(line):
+                loop, at = (f"for (uint k = 0; k < {member.count}; ++k) ", "[k]") if member.count else ("", "")
+                lines.append(f"{loop}{target}{member.name}{at} = {source}{member.name}{at};")
+        return lines
+
+    members = [line if line.startswith("#") else packed(native_line(line), stored) for line in body]
+    return [
+        f"struct packed_{name} {{",
+        *members,
+        f"packed_{name}& operator=(const {name}& other) {{",
+        *copies("", "other."),
+        f"return *this; }} operator {name}() const {{ {name} other;",
+        *copies("other.", ""),
+        "return other; } };",
+    ]
+
+
+def native_text(file: str, text: str, stored: set[str]) -> str:
+    """All of a file; blocks that are reached through addresses, and the macros that make them, are in glsl.h.
+    `stored`: types that are not in memory as they are computed with.
+    """
     lines, end = [f'#line 1 "shaders/{file}"'], None  # of what is left out: its last line matches
-    for line in text.splitlines():
+    struct, body = "", []
+    for number, line in enumerate(text.splitlines(), 1):
         if line.startswith("layout(buffer_reference"):
             end = re.compile(r"^\};")
         elif re.match(r"#define QG_(?:\w+_)?ARRAY", line):
             end = re.compile(r".*[^\\]$")
-        lines.append(native_line(line) if end is None else "")
+        lines.append(native_line(packed(line, stored) if IN_MEMORY.match(line) else line) if end is None else "")
         if end and end.match(line):
             end = None
+        if begin := re.match(r"struct (\w+) \{", line):
+            struct, body = begin[1], []
+        elif struct in stored and line.startswith("};"):
+            lines += [*twin_of(struct, body, stored), f"#line {number + 1}"]
+            struct = ""
+        else:
+            body.append(line)
     return "\n".join(lines) + "\n"
+
+
+def stored_types(texts: Texts) -> set[str]:
+    """vec3, which is padded where it is computed with, and the structs in memory that hold one."""
+    all_text = "\n".join(texts.values())
+    members = {
+        found[1]: set(re.findall(r"^ +(\w+) \w", found[2], re.M))
+        for found in re.finditer(r"^struct (\w+) \{\n(.*?)^\};", all_text, re.M | re.S)
+    }
+    reached = elements_of(texts) | set(PUSH.findall(all_text))
+    while found := {each for name in reached for each in members.get(name, ())} - reached:
+        reached |= found
+    stored = {"vec3"}
+    while found := {name for name in reached if members.get(name, set()) & stored} - stored:
+        stored |= found
+    return stored
 
 
 def runs_in_groups(texts: Texts, file: str) -> bool:
@@ -135,7 +199,7 @@ namespace quadgraph::cpu::QG_LEVEL {{
 namespace {{
 template <uint VARIANT_OF_PASS>
 struct Shader : {stage.capitalize()}Invocation {{
-{native_text(file, texts[file])}
+{native_text(file, texts[file], stored_types(texts))}
 {stage_members(texts[file], stage)}}};
 }}  // namespace
 QG_{stage.upper()}_KERNEL({arguments})
@@ -145,8 +209,9 @@ QG_{stage.upper()}_KERNEL({arguments})
 
 def native(texts: Texts) -> dict[str, str]:
     """Generated files: native/FILE of what shaders include."""
+    stored = stored_types(texts)
     return {
-        f"native/{file}": native_text(file, text)
+        f"native/{file}": native_text(file, text, stored)
         for file, text in texts.items()
         if PurePosixPath(file).suffix not in STAGES
     }

@@ -1,0 +1,189 @@
+// Functions of GLSL of three and four floats; engine/cpu/glsl.h says what they are for.
+#pragma once
+
+#include "engine/cpu/functions.h"
+
+namespace quadgraph::cpu::QG_LEVEL {
+
+// 2^whole e^rest for |rest| <= .35: a Taylor polynomial to the seventh power, off by 5e-9, times the power of two in
+// two steps, so that it goes below and above the range of exponents.
+inline Lanes exp_of_parts(Lanes whole, Lanes rest) {
+  Lanes sum = 1.0f / 720 + rest * (1.0f / 5040);
+  sum = 1.0f / 120 + rest * sum;
+  sum = 1.0f / 24 + rest * sum;
+  sum = 1.0f / 6 + rest * sum;
+  sum = 0.5f + rest * sum;
+  sum = 1.0f + rest * (1.0f + rest * sum);
+  const IntLanes exponent = __builtin_convertvector(whole, IntLanes);
+  const IntLanes half = exponent >> 1;
+  return sum * Lanes((half + 127) << 23) * Lanes((exponent - half + 127) << 23);
+}
+// The nearest whole numbers of what is below 2^22 in size.
+inline Lanes whole_of(Lanes x) {
+  constexpr float shift = 12582912.0f;  // 1.5 * 2^23: what is added to it loses its fraction
+  return x + shift - shift;
+}
+// A NaN stays one.
+inline Lanes within(Lanes x, float least, float most) {
+  x = x < least ? least - Lanes{} : x;
+  return x > most ? most - Lanes{} : x;
+}
+inline Lanes exp_of_lanes(Lanes x) {
+  x = within(x, -150.0f, 100.0f);
+  const Lanes whole = whole_of(x * 1.44269504f);
+  // ln 2 in two parts, the first of few bits, so that its product is exact.
+  return exp_of_parts(whole, x - whole * 0.693359375f + whole * 2.12194440e-4f);
+}
+inline Lanes exp2_of_lanes(Lanes x) {
+  x = within(x, -200.0f, 150.0f);
+  const Lanes whole = whole_of(x);
+  return exp_of_parts(whole, (x - whole) * 0.693147181f);
+}
+inline float exp(float x) {
+  return exp_of_lanes(x - Lanes{})[0];
+}
+inline float exp2(float x) {
+  return __builtin_constant_p(x) ? __builtin_exp2f(x) : exp2_of_lanes(x - Lanes{})[0];
+}
+
+inline bool any(bvec3 a) {
+  return (a.lanes[0] | a.lanes[1] | a.lanes[2]) != 0;
+}
+inline bool all(bvec3 a) {
+  return (a.lanes[0] & a.lanes[1] & a.lanes[2]) != 0;
+}
+inline bool any(bvec4 a) {
+  return (a.lanes[0] | a.lanes[1] | a.lanes[2] | a.lanes[3]) != 0;
+}
+inline bool all(bvec4 a) {
+  return (a.lanes[0] & a.lanes[1] & a.lanes[2] & a.lanes[3]) != 0;
+}
+
+#define QG_COMPARE_LANES(Vector, Mask, name, op)  \
+  inline Mask name(Vector a, Vector b) {          \
+    return Mask(Lanes(a.lanes) op Lanes(b.lanes)); \
+  }
+#define QG_LANE_FUNCTIONS(Vector, Mask)                       \
+  QG_COMPARE_LANES(Vector, Mask, lessThan, <)                 \
+  QG_COMPARE_LANES(Vector, Mask, lessThanEqual, <=)           \
+  QG_COMPARE_LANES(Vector, Mask, greaterThan, >)              \
+  QG_COMPARE_LANES(Vector, Mask, greaterThanEqual, >=)        \
+  QG_COMPARE_LANES(Vector, Mask, equal, ==)                   \
+  QG_COMPARE_LANES(Vector, Mask, notEqual, !=)                \
+  inline bool operator==(Vector a, Vector b) {                \
+    return all(equal(a, b));                                  \
+  }                                                           \
+  inline Vector mix(Vector a, Vector b, Mask t) {             \
+    return Vector(t.lanes ? Lanes(b.lanes) : Lanes(a.lanes)); \
+  }                                                           \
+  inline Vector min(Vector a, Vector b) {                     \
+    return mix(a, b, lessThan(b, a));                         \
+  }                                                           \
+  inline Vector max(Vector a, Vector b) {                     \
+    return mix(a, b, lessThan(a, b));                         \
+  }                                                           \
+  inline Vector min(Vector a, float b) {                      \
+    return min(a, Vector(b));                                 \
+  }                                                           \
+  inline Vector max(Vector a, float b) {                      \
+    return max(a, Vector(b));                                 \
+  }                                                           \
+  inline Vector clamp(Vector x, Vector low, Vector high) {    \
+    return min(max(x, low), high);                            \
+  }                                                           \
+  inline Vector clamp(Vector x, float low, float high) {      \
+    return min(max(x, low), high);                            \
+  }                                                           \
+  inline Vector mix(Vector a, Vector b, Vector t) {           \
+    return a * (1.0f - t) + b * t;                            \
+  }                                                           \
+  inline Vector mix(Vector a, Vector b, float t) {            \
+    return a * (1.0f - t) + b * t;                            \
+  }                                                           \
+  inline Vector exp(Vector a) {                               \
+    return Vector(exp_of_lanes(a.lanes));                     \
+  }                                                           \
+  inline Vector exp2(Vector a) {                              \
+    return Vector(exp2_of_lanes(a.lanes));                    \
+  }                                                           \
+  inline Mask isnan(Vector a) {                               \
+    return notEqual(a, a);                                    \
+  }                                                           \
+  inline Mask isinf(Vector a) {                               \
+    return greaterThan(abs(a), Vector(3.402823466e38f));      \
+  }
+QG_LANE_FUNCTIONS(vec3, bvec3)
+QG_LANE_FUNCTIONS(vec4, bvec4)
+
+inline vec3 pow(vec3 a, vec3 b) {
+  return {pow(a.x(), b.x()), pow(a.y(), b.y()), pow(a.z(), b.z())};
+}
+inline float dot(vec3 a, vec3 b) {
+  const Lanes products = a.lanes * b.lanes;
+  return products[0] + products[1] + products[2];
+}
+inline float dot(vec4 a, vec4 b) {
+  const Lanes products = a.lanes * b.lanes;
+  return products[0] + products[1] + products[2] + products[3];
+}
+inline vec3 cross(vec3 a, vec3 b) {
+  return (a * b.yzx() - a.yzx() * b).yzx();
+}
+inline float length(vec3 a) {
+  return sqrt(dot(a, a));
+}
+inline float distance(vec3 a, vec3 b) {
+  return length(a - b);
+}
+inline vec3 normalize(vec3 a) {
+  return a * (1.0f / length(a));
+}
+inline vec3 reflect(vec3 i, vec3 n) {
+  return i - 2.0f * dot(n, i) * n;
+}
+inline vec3 refract(vec3 i, vec3 n, float eta) {
+  float cosine = dot(n, i), k = 1.0f - eta * eta * (1.0f - cosine * cosine);
+  return k < 0.0f ? vec3(0.0f) : eta * i - (eta * cosine + sqrt(k)) * n;
+}
+
+// Comparisons of pairs and of whole numbers.
+#define QG_COMPARE(name, op)                                 \
+  template <typename T>                                      \
+  inline bvec3 name(Vec3<T> a, Vec3<T> b) {                  \
+    return {a.x() op b.x(), a.y() op b.y(), a.z() op b.z()}; \
+  }                                                          \
+  template <typename T>                                      \
+  inline bvec2 name(Vec2<T> a, Vec2<T> b) {                  \
+    return {a.x() op b.x(), a.y() op b.y()};                 \
+  }
+QG_COMPARE(lessThan, <)
+QG_COMPARE(lessThanEqual, <=)
+QG_COMPARE(greaterThan, >)
+QG_COMPARE(greaterThanEqual, >=)
+QG_COMPARE(equal, ==)
+QG_COMPARE(notEqual, !=)
+
+template <typename T>
+inline Vec3<T> mix(Vec3<T> a, Vec3<T> b, bvec3 t) {
+  return {t.x() ? b.x() : a.x(), t.y() ? b.y() : a.y(), t.z() ? b.z() : a.z()};
+}
+inline vec3 ldexp(vec3 a, ivec3 e) {
+  return {ldexp(a.x(), e.x()), ldexp(a.y(), e.y()), ldexp(a.z(), e.z())};
+}
+inline vec3 frexp(vec3 a, ivec3& e) {
+  return {__builtin_frexpf(a.x(), &e[0]), __builtin_frexpf(a.y(), &e[1]), __builtin_frexpf(a.z(), &e[2])};
+}
+inline vec2 uintBitsToFloat(uvec2 a) {
+  return {uintBitsToFloat(a.x()), uintBitsToFloat(a.y())};
+}
+inline vec3 uintBitsToFloat(uvec3 a) {
+  return {uintBitsToFloat(a.x()), uintBitsToFloat(a.y()), uintBitsToFloat(a.z())};
+}
+inline vec4 uintBitsToFloat(uvec4 a) {
+  return {uintBitsToFloat(a.x()), uintBitsToFloat(a.y()), uintBitsToFloat(a.z()), uintBitsToFloat(a.w())};
+}
+inline uvec3 floatBitsToUint(vec3 a) {
+  return {floatBitsToUint(a.x()), floatBitsToUint(a.y()), floatBitsToUint(a.z())};
+}
+
+}  // namespace quadgraph::cpu::QG_LEVEL
