@@ -6,6 +6,13 @@
 
 // Adds `value` >= 0, scaled, to element `i`. A float times a power of two splits into two words without loss, but for
 // the bits below the unit.
+#ifdef QG_PROCESSOR
+PendingSums pending;  // engine/cpu/pending_sums.h
+
+void add_power(Uints sums, uint i, vec3 value) {
+  pending.add(sums.at + FIXED_WORDS * i, roundEven(value / POWER_UNIT));
+}
+#else
 void add_power(Uints sums, uint i, vec3 value) {
   vec3 units = value / POWER_UNIT;
   vec3 high = floor(units * exp2(-32.0));
@@ -18,6 +25,7 @@ void add_power(Uints sums, uint i, vec3 value) {
     if (carried != 0u) atomicAdd(sums.at[FIXED_WORDS * i + 3u + c], carried);
   }
 }
+#endif
 
 vec3 power_at(Uints sums, uint i) {
   vec3 value;

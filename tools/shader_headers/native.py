@@ -191,7 +191,9 @@ def native_shader(texts: Texts, file: str, moments: int) -> str:
     arguments = f"{name}, {str(grouped).lower()}" if stage == "comp" else name
     return f"""#include "engine/cpu/glsl.h"
 #include "engine/cpu/kernel.h"
+#include "engine/cpu/pending_sums.h"
 
+#define QG_PROCESSOR
 #define MOMENTS {moments}
 #define INVOCATIONS_OF_GROUP {"1u" if grouped else "256u"}
 
