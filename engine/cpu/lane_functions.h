@@ -69,8 +69,8 @@ inline bool all(bvec4 a) {
   return (a.lanes[0] & a.lanes[1] & a.lanes[2] & a.lanes[3]) != 0;
 }
 
-#define QG_COMPARE_LANES(Vector, Mask, name, op)  \
-  inline Mask name(Vector a, Vector b) {          \
+#define QG_COMPARE_LANES(Vector, Mask, name, op)   \
+  inline Mask name(Vector a, Vector b) {           \
     return Mask(Lanes(a.lanes) op Lanes(b.lanes)); \
   }
 #define QG_LANE_FUNCTIONS(Vector, Mask)                       \

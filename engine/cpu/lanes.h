@@ -32,12 +32,20 @@ struct Lane {
   float operator/=(float value) const { return *this = lanes[i] / value; }
 };
 
-#define QG_LANE(name, i)                  \
-  float name() const { return lanes[i]; } \
-  Lane<Stored> ref_##name() { return {lanes, i}; }
-#define QG_LANES                                                \
-  Lane<Stored> operator[](std::size_t i) { return {lanes, i}; } \
-  float operator[](std::size_t i) const { return lanes[i]; }
+#define QG_LANE(name, i)      \
+  float name() const {        \
+    return lanes[i];          \
+  }                           \
+  Lane<Stored> ref_##name() { \
+    return {lanes, i};        \
+  }
+#define QG_LANES                           \
+  Lane<Stored> operator[](std::size_t i) { \
+    return {lanes, i};                     \
+  }                                        \
+  float operator[](std::size_t i) const {  \
+    return lanes[i];                       \
+  }
 struct vec4;
 
 struct vec3 {
@@ -83,19 +91,19 @@ inline vec3::vec3(vec4 a) : lanes(a.lanes) {}
 template <typename T>
 inline Vec3<T>::Vec3(vec3 a) : Vec3(a.x(), a.y(), a.z()) {}
 
-#define QG_LANES_OPERATOR(Vector, op)             \
-  inline Vector operator op(Vector a, Vector b) { \
-    return Vector(Lanes(a.lanes) op b.lanes);     \
-  }                                               \
-  inline Vector operator op(Vector a, float b) {  \
-    return Vector(Lanes(a.lanes) op b);           \
-  }                                               \
-  inline Vector operator op(float a, Vector b) {  \
-    return Vector(a op Lanes(b.lanes));           \
-  }                                               \
-  template <typename B>                           \
-  inline Vector& operator op##=(Vector& a, B b) { \
-    return a = a op b;                            \
+#define QG_LANES_OPERATOR(Vector, op)                \
+  inline Vector operator op(Vector a, Vector b) {    \
+    return Vector(Lanes(a.lanes) op b.lanes);        \
+  }                                                  \
+  inline Vector operator op(Vector a, float b) {     \
+    return Vector(Lanes(a.lanes) op b);              \
+  }                                                  \
+  inline Vector operator op(float a, Vector b) {     \
+    return Vector(a op Lanes(b.lanes));              \
+  }                                                  \
+  template <typename B>                              \
+  inline Vector& operator op## = (Vector & a, B b) { \
+    return a = a op b;                               \
   }
 #define QG_LANES_OPERATORS(Vector)    \
   QG_LANES_OPERATOR(Vector, +)        \
@@ -133,11 +141,15 @@ struct packed_vec3 {
 };
 
 // Booleans: all bits of a lane, or none. Of three, the last lane holds anything.
-#define QG_MASK(Mask)                             \
-  IntLanes lanes;                                 \
-  explicit Mask(IntLanes a) : lanes(a) {}         \
-  Mask operator!() const { return Mask(~lanes); } \
-  bool operator[](std::size_t i) const { return lanes[i] != 0; }
+#define QG_MASK(Mask)                     \
+  IntLanes lanes;                         \
+  explicit Mask(IntLanes a) : lanes(a) {} \
+  Mask operator!() const {                \
+    return Mask(~lanes);                  \
+  }                                       \
+  bool operator[](std::size_t i) const {  \
+    return lanes[i] != 0;                 \
+  }
 
 struct bvec3 {
   bvec3(bool a, bool b, bool c) : lanes{-a, -b, -c, 0} {}

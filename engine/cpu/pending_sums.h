@@ -1,5 +1,5 @@
-// Sums in memory that a thread adds to later, so that it seldom waits for the memory of others: additions of fixed-point
-// numbers give the same bits in any order.
+// Sums in memory that a thread adds to later, so that it seldom waits for the memory of others: additions of
+// fixed-point numbers give the same bits in any order.
 #pragma once
 
 #include <array>
@@ -27,7 +27,8 @@ class PendingSums {
       write(sum);
       sum = {target, {}};
     }
-    for (std::size_t c = 0; c < channels; ++c) sum.value[c] += static_cast<std::uint64_t>(static_cast<std::int64_t>(value[c]));
+    for (std::size_t c = 0; c < channels; ++c)
+      sum.value[c] += static_cast<std::uint64_t>(static_cast<std::int64_t>(value[c]));
   }
 
  private:
@@ -42,7 +43,8 @@ class PendingSums {
     for (std::size_t c = 0; c < channels; ++c) {
       if (sum.value[c] == 0) continue;
       const auto low = static_cast<uint>(sum.value[c]);
-      const uint carried = static_cast<uint>(sum.value[c] >> 32) + (atomicAdd(sum.target[c], low) + low < low ? 1u : 0u);
+      const uint carried =
+          static_cast<uint>(sum.value[c] >> 32) + (atomicAdd(sum.target[c], low) + low < low ? 1u : 0u);
       if (carried != 0) atomicAdd(sum.target[channels + c], carried);
     }
   }

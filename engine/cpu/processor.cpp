@@ -83,6 +83,7 @@ Processor::Processor(const ProcessorOptions& options)
   info_ = {processor_name(), "quadgraph cpu " + std::string(cpu_level_names[level_]), true};
   max_buffer_bytes_ = std::uint64_t{1} << 40;
   max_image_side_ = 16384;
+  one_by_one_ = true;
   max_workgroups_ = 0xffffffffu;
   device::count_opened(books_);
 }

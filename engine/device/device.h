@@ -126,8 +126,9 @@ class Device {
 
   const DeviceInfo& info() const { return info_; }
   std::uint64_t max_buffer_bytes() const { return max_buffer_bytes_; }
-  std::uint32_t max_image_side() const { return max_image_side_; }                   // pixels
-  std::uint32_t max_workgroups() const { return max_workgroups_; }                   // of a dispatch
+  std::uint32_t max_image_side() const { return max_image_side_; }  // pixels
+  std::uint32_t max_workgroups() const { return max_workgroups_; }  // of a dispatch
+  bool one_by_one() const { return one_by_one_; }  // a thread runs invocations one after the other, not side by side
   const std::vector<std::string>& validation_messages() const { return messages_; }  // so far
 
   // Bytes of buffers and images now, the most there ever were at a time, and by purpose (memory.h) without those that
@@ -154,6 +155,7 @@ class Device {
   std::uint64_t max_buffer_bytes_ = 0;
   std::uint32_t max_image_side_ = 0;
   std::uint32_t max_workgroups_ = 0;
+  bool one_by_one_ = false;
   std::vector<std::string> messages_;
   const void* books_ = this;  // in live_objects.h
 

@@ -42,9 +42,10 @@ OperatorBuffers::OperatorBuffers(device::Device& context, const Level& level, st
   const auto field = [&](const char* name) { return buffer(count * field_bytes(), "solver/", name); };
   const std::string rows = "operator/", vectors = "solver/";
   const bool fem = method == Method::fem;
-  const SlicedColumns columns = fem               ? slice(vertex_neighbours(level))
-                                : on_grid(method) ? grid_columns(level)
-                                                  : node_columns(level);
+  slice_rows = context.one_by_one() ? 1 : SLICE_ROWS;
+  const SlicedColumns columns = fem               ? slice(vertex_neighbours(level), slice_rows)
+                                : on_grid(method) ? grid_columns(level, slice_rows)
+                                                  : node_columns(level, slice_rows);
   if (on_grid(method)) layer_ends = ends_of(grid_layers(level));
   if (!fem) to_phi = buffer(count * sizeof(glm::vec3), rows, "to_phi");
   entries = static_cast<std::uint32_t>(columns.column.size());
@@ -86,7 +87,7 @@ void OperatorBuffers::make_room(device::Device& context, const Level& level, boo
 
 void OperatorBuffers::upload_shape(device::Device& context, const Level& level) {
   const Neighbours rows = vertex_neighbours(level);
-  const FemShape shape = fem_shape(level, rows, slice(rows));
+  const FemShape shape = fem_shape(level, rows, slice(rows, slice_rows));
   const std::string prefix = "assembly/" + prefix_;
   entry_shape = upload(context, shape.entry, prefix + "entry_shape");
   entry_area = upload(context, shape.area, prefix + "entry_area");
@@ -95,7 +96,7 @@ void OperatorBuffers::upload_shape(device::Device& context, const Level& level) 
 
 void OperatorBuffers::upload_rings(device::Device& context, const Level& level) {
   const Neighbours rows = vertex_neighbours(level);
-  const FemRings rings = fem_rings(level, rows, slice(rows));
+  const FemRings rings = fem_rings(level, rows, slice(rows, slice_rows));
   const std::string prefix = "assembly/" + prefix_;
   edge_count = static_cast<std::uint32_t>(rings.edge_entry.size());
   edge_entry = upload(context, rings.edge_entry, prefix + "edge_entry");

@@ -26,7 +26,7 @@ struct OperatorBuffers {
   EntryFormat format = EntryFormat::packed;
   std::uint32_t count = 0;    // rows: carriers, each with one unknown or, in SP3, two
   std::uint32_t entries = 0;  // off the diagonal, padding included
-  std::uint32_t slices = 0;
+  std::uint32_t slice_rows = 0, slices = 0;
   device::Buffer slice_offset, entry, row_sum, diagonal;  // RowsRef; no diagonal with compact_rows
   device::Buffer to_phi;                                  // vec3 per row; none with fem: 1
   device::Buffer b, x;                                    // scaled (gpu::Scale)

@@ -23,7 +23,8 @@ std::uint32_t place_of(const Neighbours& rows, std::uint32_t row, std::uint32_t 
 }
 
 std::uint32_t entry_of(const Neighbours& rows, const SlicedColumns& sliced, std::uint32_t row, std::uint32_t column) {
-  return sliced.slice_offset[row / SLICE_ROWS] + row % SLICE_ROWS + place_of(rows, row, column) * SLICE_ROWS;
+  const std::uint32_t side = sliced.slice_rows;
+  return sliced.slice_offset[row / side] + row % side + place_of(rows, row, column) * side;
 }
 
 // Lists of elements, one after the other.
@@ -156,16 +157,16 @@ Neighbours vertex_neighbours(const Level& level) {
   return rows;
 }
 
-SlicedColumns slice(const Neighbours& rows) {
+SlicedColumns slice(const Neighbours& rows, std::uint32_t slice_rows) {
   const std::size_t count = rows.offset.size() - 1;
-  SlicedColumns sliced;
+  SlicedColumns sliced{.slice_rows = slice_rows, .slice_offset = {}, .column = {}};
   sliced.slice_offset.push_back(0);
-  for (std::size_t first = 0; first < count; first += SLICE_ROWS) {
-    const std::size_t last = std::min<std::size_t>(first + SLICE_ROWS, count);
+  for (std::size_t first = 0; first < count; first += slice_rows) {
+    const std::size_t last = std::min<std::size_t>(first + slice_rows, count);
     std::uint32_t width = 0;
     for (std::size_t i = first; i < last; ++i) width = std::max(width, rows.offset[i + 1] - rows.offset[i]);
     for (std::uint32_t k = 0; k < width; ++k) {
-      for (std::size_t i = first; i < first + SLICE_ROWS; ++i) {
+      for (std::size_t i = first; i < first + slice_rows; ++i) {
         const bool present = i < last && k < rows.offset[i + 1] - rows.offset[i];
         const auto own = static_cast<std::uint32_t>(std::min(i, last - 1));
         sliced.column.push_back(present ? rows.column[rows.offset[i] + k] : own);
@@ -176,7 +177,7 @@ SlicedColumns slice(const Neighbours& rows) {
   return sliced;
 }
 
-SlicedColumns node_columns(const Level& level) {
+SlicedColumns node_columns(const Level& level, std::uint32_t slice_rows) {
   Neighbours rows;
   rows.offset.push_back(0);
   for (const glm::uvec4& links : level.links) {
@@ -187,10 +188,10 @@ SlicedColumns node_columns(const Level& level) {
     rows.column.push_back(tet);
     rows.offset.push_back(static_cast<std::uint32_t>(rows.column.size()));
   }
-  return slice(rows);
+  return slice(rows, slice_rows);
 }
 
-SlicedColumns grid_columns(const Level& level) {
+SlicedColumns grid_columns(const Level& level, std::uint32_t slice_rows) {
   Neighbours rows;
   rows.offset.push_back(0);
   for (const std::uint32_t neighbour : grid_neighbours(level)) {
@@ -199,7 +200,7 @@ SlicedColumns grid_columns(const Level& level) {
   }
   rows.column.insert(rows.column.end(), level.grid_links.begin(), level.grid_links.end());
   while (rows.offset.size() <= level.vertices.size()) rows.offset.push_back(rows.offset.back() + grid_link_count);
-  return slice(rows);
+  return slice(rows, slice_rows);
 }
 
 FemShape fem_shape(const Level& level, const Neighbours& rows, const SlicedColumns& columns) {
@@ -210,7 +211,7 @@ FemShape fem_shape(const Level& level, const Neighbours& rows, const SlicedColum
   add_tets(level, edges, of_edge, shape.row);
   add_faces(level, edges, of_edge, shape.row);
   shape.entry.assign(columns.column.size(), glm::vec2(0));
-  const std::uint32_t surface_slices = (level.surface_vertex_count + SLICE_ROWS - 1) / SLICE_ROWS;
+  const std::uint32_t surface_slices = (level.surface_vertex_count + columns.slice_rows - 1) / columns.slice_rows;
   shape.area.assign(columns.slice_offset[surface_slices], 0.0f);
   std::uint32_t edge = 0;
   edges.for_each([&](std::uint32_t a, std::uint32_t b) {

@@ -14,6 +14,7 @@ namespace quadgraph {
 
 // Sliced columns, padded with the row's own index.
 struct SlicedColumns {
+  std::uint32_t slice_rows;
   std::vector<std::uint32_t> slice_offset;  // slices + 1
   std::vector<std::uint32_t> column;
 };
@@ -51,16 +52,16 @@ struct FaceIncidence {
 };
 
 // Rows of the vertices of a polygrid: the six links, in their order, or the one.
-SlicedColumns grid_columns(const Level& level);
+SlicedColumns grid_columns(const Level& level, std::uint32_t slice_rows);
 
 // Rows of the nodes: the four links, or the one.
-SlicedColumns node_columns(const Level& level);
+SlicedColumns node_columns(const Level& level, std::uint32_t slice_rows);
 
 // The vertices around every vertex, ascending.
 Neighbours vertex_neighbours(const Level& level);
 
 // Rows of the vertices.
-SlicedColumns slice(const Neighbours& rows);
+SlicedColumns slice(const Neighbours& rows, std::uint32_t slice_rows);
 
 // Of the present vertices of `level`; `rows` are its vertex_neighbours.
 FemShape fem_shape(const Level& level, const Neighbours& rows, const SlicedColumns& columns);

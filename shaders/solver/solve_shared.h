@@ -5,8 +5,12 @@
 #include "shared/beam_shared.h"
 
 // Rows per slice of an operator (sliced ELL): neighbouring invocations read neighbouring entries, and a row is padded
-// only to the longest of its slice. 32 is the width of the widest common subgroup.
+// only to the longest of its slice. 32 is the width of the widest common subgroup; a processor has no neighbours.
+#ifdef QG_PROCESSOR
+#define SLICE_ROWS 1
+#else
 #define SLICE_ROWS 32
+#endif
 
 #ifdef __cplusplus
 namespace quadgraph::gpu {

@@ -151,6 +151,7 @@ TEST_CASE("rows on the GPU equal those of the CPU with walls, in a heterogeneous
       CAPTURE(even);
       Assembled gpu_side(method, model, even);
       const Rows rows = assemble(gpu_side.level, gpu_side.problem);
+      const std::uint32_t side = gpu_side.op.slice_rows;
       const auto slice_offset = gpu_side.get<std::uint32_t>(gpu_side.op.slice_offset);
       const std::vector<StoredEntry> entry = gpu_side.entries();
       const auto diagonal = gpu_side.diagonals();
@@ -172,8 +173,7 @@ TEST_CASE("rows on the GPU equal those of the CPU with walls, in a heterogeneous
         worst = std::max(worst, largest_difference(row_sum[i], sum) / scale);
         worst = std::max(worst, largest(glm::dvec3(to_phi[i]) / rows.to_phi[i] - 1.0));
         std::size_t found = 0;
-        for (std::uint32_t e = slice_offset[i / SLICE_ROWS] + i % SLICE_ROWS; e < slice_offset[i / SLICE_ROWS + 1];
-             e += SLICE_ROWS) {
+        for (std::uint32_t e = slice_offset[i / side] + i % side; e < slice_offset[i / side + 1]; e += side) {
           if (entry[e].column == i) {
             CHECK(is_zero(entry[e].weight));
             continue;
@@ -204,12 +204,12 @@ TEST_CASE("weights are symmetric bit for bit, so that the flux from i to j is th
   for (const auto& [method, even] : ways) {
     for (Model model : both_models) {
       Assembled gpu_side(method, model, even);
+      const std::uint32_t side = gpu_side.op.slice_rows;
       const auto slice_offset = gpu_side.get<std::uint32_t>(gpu_side.op.slice_offset);
       const std::vector<StoredEntry> entry = gpu_side.entries();
       std::map<std::pair<std::uint32_t, std::uint32_t>, Block> at;
       for (std::uint32_t i = 0; i < gpu_side.op.count; ++i) {
-        for (std::uint32_t e = slice_offset[i / SLICE_ROWS] + i % SLICE_ROWS; e < slice_offset[i / SLICE_ROWS + 1];
-             e += SLICE_ROWS) {
+        for (std::uint32_t e = slice_offset[i / side] + i % side; e < slice_offset[i / side + 1]; e += side) {
           if (entry[e].column != i) at[{i, entry[e].column}] = entry[e].weight;
         }
       }
@@ -261,7 +261,7 @@ using EdgeEnds = std::pair<std::uint32_t, std::uint32_t>;
 EdgeEnds ends_of(const SlicedColumns& columns, std::uint32_t entry) {
   const auto after = std::upper_bound(columns.slice_offset.begin(), columns.slice_offset.end(), entry) - 1;
   const auto slice = static_cast<std::uint32_t>(after - columns.slice_offset.begin());
-  return {slice * SLICE_ROWS + (entry - *after) % SLICE_ROWS, columns.column[entry]};
+  return {slice * columns.slice_rows + (entry - *after) % columns.slice_rows, columns.column[entry]};
 }
 
 template <typename Corners>
@@ -278,7 +278,7 @@ struct FemStructure : FemRings {
 
 FemStructure fem_structure(const Level& level) {
   const Neighbours rows = vertex_neighbours(level);
-  const SlicedColumns columns = slice(rows);
+  const SlicedColumns columns = slice(rows, SLICE_ROWS);
   return {fem_rings(level, rows, columns), columns};
 }
 
