@@ -4,6 +4,10 @@
 
 #include <cstdint>
 
+#if defined(__SANITIZE_THREAD__)
+#include <sanitizer/tsan_interface.h>
+#endif
+
 #include "engine/cpu/functions.h"
 #include "engine/cpu/matrices.h"
 
@@ -30,7 +34,36 @@ inline uint atomicMax(uint& x, uint y) {
 inline void barrier() {}
 inline void memoryBarrierBuffer() {
   __atomic_thread_fence(__ATOMIC_SEQ_CST);
+#if defined(__SANITIZE_THREAD__)
+  // ThreadSanitizer knows no fences.
+  static char fence;
+  __tsan_acquire(&fence);
+  __tsan_release(&fence);
+#endif
 }
+
+// A word that threads write and read at the same time: each sees what was there or what another has written.
+template <typename T>
+struct Relaxed {
+  T value;
+  operator T() const { return __atomic_load_n(&value, __ATOMIC_RELAXED); }
+  void operator=(T now) { __atomic_store_n(&value, now, __ATOMIC_RELAXED); }
+};
+inline uint atomicOr(Relaxed<uint>& x, uint y) {
+  return atomicOr(x.value, y);
+}
+
+// Elements of a coherent array. Structs are shared within a workgroup alone, which is one thread.
+template <typename T>
+struct Coherent {
+  using Type = T;
+};
+template <>
+struct Coherent<uint> {
+  using Type = Relaxed<uint>;
+};
+template <typename T>
+using CoherentElement = typename Coherent<T>::Type;
 
 // A buffer reference: an array at an address in memory.
 template <typename T>
@@ -50,7 +83,7 @@ struct Array {
   struct Name : Array<Type> { \
     using Array<Type>::Array; \
   }
-#define QG_COHERENT_ARRAY(Name, Type) QG_ARRAY(Name, Type)
+#define QG_COHERENT_ARRAY(Name, Type) QG_ARRAY(Name, CoherentElement<Type>)
 #define QG_ALIGNED_ARRAY(Name, Type, bytes) QG_ARRAY(Name, Type)
 #define QG_HEADED_ARRAY(Name, Head, head, Type)                                                       \
   struct Name {                                                                                       \
@@ -65,7 +98,7 @@ struct Ticket {
   uint* address;
   operator uint&() const { return *address; }
   const Ticket& operator=(uint value) const {
-    *address = value;
+    __atomic_store_n(address, value, __ATOMIC_RELAXED);
     return *this;
   }
   Ticket(const Ticket&) = default;

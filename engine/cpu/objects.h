@@ -28,12 +28,16 @@ struct BufferMemory : device::Memory {
 
 // One layer after the other, rows tightly packed.
 struct ImageMemory : device::ImageMemory {
-  explicit ImageMemory(const device::ImageOptions& wanted)
-      : options(wanted), memory(bytes(std::uint64_t{texel_bytes()} * wanted.width * wanted.height * wanted.layers)) {
-    allocated = std::uint64_t{texel_bytes()} * wanted.width * wanted.height * wanted.layers;
+  explicit ImageMemory(const device::ImageOptions& wanted) : options(wanted), memory(bytes(bytes_of(wanted))) {
+    allocated = bytes_of(wanted);
   }
 
-  std::uint32_t texel_bytes() const { return options.format == device::Format::depth32_float ? 4 : 16; }
+  static std::uint32_t texel_bytes(device::Format format) { return format == device::Format::depth32_float ? 4 : 16; }
+  static std::uint64_t bytes_of(const device::ImageOptions& image) {
+    return std::uint64_t{texel_bytes(image.format)} * image.width * image.height * image.layers;
+  }
+
+  std::uint32_t texel_bytes() const { return texel_bytes(options.format); }
   float* texels() const { return static_cast<float*>(memory.get()); }
 
   device::ImageOptions options;

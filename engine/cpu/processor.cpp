@@ -1,5 +1,7 @@
 #include "engine/cpu/processor.h"
 
+#include <unistd.h>
+
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -62,6 +64,10 @@ std::string processor_name() {
   return "processor";
 }
 
+std::uint64_t physical_memory() {
+  return static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
+}
+
 void* take_memory(std::uint64_t bytes) {
   void* memory = ::operator new(bytes, std::align_val_t(alignment), std::nothrow);
   if (memory == nullptr) throw DeviceError("no memory for " + std::to_string(bytes) + " bytes");
@@ -81,7 +87,7 @@ Bytes bytes(std::uint64_t count) {
 Processor::Processor(const ProcessorOptions& options)
     : level_(best_level()), threads_(wanted_threads(options.threads)) {
   info_ = {processor_name(), "quadgraph cpu " + std::string(cpu_level_names[level_]), true};
-  max_buffer_bytes_ = std::uint64_t{1} << 40;
+  max_buffer_bytes_ = physical_memory();
   max_image_side_ = 16384;
   one_by_one_ = true;
   max_workgroups_ = 0xffffffffu;
@@ -92,11 +98,20 @@ Processor::~Processor() {
   device::count_closed(books_);
 }
 
+// Linux grants more than there is, and ends the process when it is used.
+void Processor::check_room(std::uint64_t size) const {
+  if (size <= max_buffer_bytes() && allocated_bytes() <= max_buffer_bytes() - size) return;
+  throw DeviceError("no memory for " + std::to_string(size) + " bytes: this machine has " +
+                    std::to_string(max_buffer_bytes()));
+}
+
 std::unique_ptr<device::Memory> Processor::allocate(std::uint64_t size, device::Place, const std::string&) {
+  check_room(size);
   return std::make_unique<BufferMemory>((size + alignment) / alignment * alignment + alignment);
 }
 
 std::unique_ptr<device::ImageMemory> Processor::allocate(const device::ImageOptions& options, const std::string&) {
+  check_room(ImageMemory::bytes_of(options));
   return std::make_unique<ImageMemory>(options);
 }
 

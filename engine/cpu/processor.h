@@ -28,6 +28,8 @@ class Processor : public device::Device {
   std::unique_ptr<device::Recording> record(std::uint32_t max_passes) override;
 
  private:
+  void check_room(std::uint64_t size) const;
+
   std::size_t level_;  // of instructions: index of device::CpuCode
   ThreadPool threads_;
 };

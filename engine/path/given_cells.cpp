@@ -34,7 +34,9 @@ std::vector<float> paths_through(device::Device& context, const glm::uvec3& size
   device::write_bytes(context, relaxation.entering(), std::as_bytes(entering));
   std::vector<PassStats> passes;
   relaxation.solve({grid, flag_buffer, wanted_buffer}, solver, passes);
-  return device::download<float>(context, relaxation.lengths());
+  std::vector<float> lengths = device::download<float>(context, relaxation.lengths());
+  lengths.resize(3 * count);
+  return lengths;
 }
 
 GivenVoxels voxels_of(device::Device& context, std::span<const glm::vec3> vertices,

@@ -5,6 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/path/path_pass.h"
 #include "interface/path/path_relax.comp.h"
+#include "interface/path/path_settle.comp.h"
 #include "interface/path/path_start.comp.h"
 
 namespace quadgraph {
@@ -20,6 +21,7 @@ constexpr std::uint64_t word = sizeof(std::uint32_t);
 PathRelaxation::PathRelaxation(device::Device& context)
     : context_(context),
       start_pass_(context, shader::path_start),
+      settle_pass_(context, shader::path_settle),
       fronts_(context, 3 * (most_rounds + 1) * word, device::Place::device, "path/fronts"),
       groups_(context, (most_rounds + 1) * sizeof(glm::uvec3), device::Place::device, "path/groups"),
       counts_(context, sizeof(gpu::PathCounts), device::Place::device, "path/counts of lit cells") {}
@@ -36,7 +38,8 @@ void PathRelaxation::make_room(const gpu::PathGrid& grid) {
   const std::uint64_t bytes = 3 * word * gpu::cell_count(grid);
   quadgraph::make_room(context_, cost_, bytes, device::Place::device, "path/cost");
   quadgraph::make_room(context_, entering_, bytes, device::Place::device, "path/entering");
-  quadgraph::make_room(context_, lengths_, bytes, device::Place::device, "path/lengths");
+  quadgraph::make_room(context_, lengths_, 2 * bytes, device::Place::device, "path/lengths");
+  quadgraph::make_room(context_, copies_, 3 * word * block_count(grid), device::Place::device, "path/copies");
   quadgraph::make_room(context_, arrivals_, 6 * sizeof(glm::uvec2) * block_count(grid), device::Place::device,
                        "path/arrivals");
   for (device::Buffer& list : lists_) {
@@ -61,6 +64,7 @@ void PathRelaxation::solve(const SolidCells& cells, PathSolver solver, std::vect
         commands.fill(counts_, 0);
         commands.fill(fronts_, ~0u);
         commands.fill(arrivals_, ~0u);
+        commands.fill(copies_, 0);
         commands.dispatch(
             start_pass_,
             gpu::PathStartPush{grid, cells.flags.address(), entering_.address(), lengths_.address(),
@@ -71,6 +75,7 @@ void PathRelaxation::solve(const SolidCells& cells, PathSolver solver, std::vect
         const gpu::PathRelaxPush push{grid,
                                       cost_.address(),
                                       lengths_.address(),
+                                      copies_.address(),
                                       cells.wanted.address(),
                                       lists_[k % 2].address(),
                                       lists_[(k + 1) % 2].address(),
@@ -86,6 +91,9 @@ void PathRelaxation::solve(const SolidCells& cells, PathSolver solver, std::vect
     rounds_ += rounds_at_once;
     done = groups[rounds_].x == 0;
   }
+  run_pass(context_, "shortest paths", count * 24, passes, [&](device::Commands& commands) {
+    commands.dispatch(settle_pass_, gpu::PathSettlePush{grid, lengths_.address(), copies_.address()}, count);
+  });
   while (rounds_ > 0 && groups[rounds_ - 1].x == 0) --rounds_;
   // Per block of a channel: lengths and costs with a cell around, and what has changed.
   passes.back().bytes = relaxed_ * 4ull * (2 * 1000 + 512) + count * 28;

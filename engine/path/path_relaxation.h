@@ -30,18 +30,19 @@ class PathRelaxation {
   // Lengths from -ln(entering) on. Throws SolverError if rounds do not end.
   void solve(const SolidCells& cells, PathSolver solver, std::vector<PassStats>& passes);
 
-  const device::Buffer& lengths() const { return lengths_; }  // as cost; PATH_FAR: no light gets there
-  std::uint32_t rounds() const { return rounds_; }            // of the last solve
-  std::uint32_t relaxed() const { return relaxed_; }          // blocks of a channel, over all rounds, and waited
-  std::uint32_t lit() const { return lit_; }                  // cells that light enters
+  // As cost; PATH_FAR: no light gets there. More follows that is not for others.
+  const device::Buffer& lengths() const { return lengths_; }
+  std::uint32_t rounds() const { return rounds_; }    // of the last solve
+  std::uint32_t relaxed() const { return relaxed_; }  // blocks of a channel, over all rounds, and waited
+  std::uint32_t lit() const { return lit_; }          // cells that light enters
 
  private:
   const device::ComputePass& pass(PathSolver solver);
 
   device::Device& context_;
-  device::ComputePass start_pass_;
+  device::ComputePass start_pass_, settle_pass_;
   std::optional<device::ComputePass> passes_[2];  // by PathSolver, made at first use
-  device::Buffer cost_, entering_, lengths_, lists_[2], arrivals_, fronts_, groups_, counts_;
+  device::Buffer cost_, entering_, lengths_, copies_, lists_[2], arrivals_, fronts_, groups_, counts_;
   std::uint32_t rounds_ = 0, relaxed_ = 0, lit_ = 0;
 };
 

@@ -24,6 +24,7 @@ shared uint dirty[6];
 shared uint fallen[3];  // what a sweep makes fall in a plane, by turns: bits of rows, and WIDE higher across
 shared uint wanted, arrived, crossed;  // what this block is listed for
 shared uint changed_blocks;
+shared uint copies[27];                   // which copies of the lengths of the blocks around hold
 shared uint arrivals[27], crossings[27];  // of the blocks around, of numbers that order as the lengths do
 
 int at(ivec3 cell) {

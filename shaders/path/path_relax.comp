@@ -2,11 +2,29 @@
 #extension GL_GOOGLE_include_directive : require
 #include "path/path_block.glsl"
 
-// A block of one channel per workgroup. Lengths only fall, and whatever mixture of old and new ones a workgroup sees of
-// its neighbours, each is the length of a path; a block is relaxed again in a round after a neighbour's side has
-// changed so that it may matter. What is left when no block is listed is the one solution, whatever the order.
+// A block of one channel per workgroup. What it sees of its neighbours are the lengths before this round, as a block
+// leaves those alone and writes its own beside them: which workgroup is quicker changes no bit, where an update through
+// a side may round up what a shorter path rounds down. A block is relaxed again in a round after a neighbour's side has
+// changed so that it may matter.
 layout(local_size_x = PATH_GROUP) in;
 #include "path/path_sweep.glsl"
+
+// The copy of a block's lengths that held before this round.
+uint copy_of(uint item) {
+  uint last = push.copies.at[item];
+  return last / 2u == push.round + 1u ? 1u - last % 2u : last % 2u;
+}
+
+// Cells of both copies lie so far apart.
+uint copy_offset(uint copy, uint channel) {
+  return (3u * copy + channel) * cell_count(push.grid);
+}
+
+// Number, as that of one of 27, of the block that a cell of the wide one lies in.
+uint block_around(ivec3 local) {
+  ivec3 way = (local + PATH_BLOCK) / PATH_BLOCK;
+  return uint(way.x + 3 * (way.y + 3 * way.z));
+}
 
 void load_cells(ivec3 first, uint channel) {
   uint offset = channel * cell_count(push.grid);
@@ -14,22 +32,23 @@ void load_cells(ivec3 first, uint channel) {
     ivec3 local = ivec3(k % WIDE, k / WIDE % WIDE, k / (WIDE * WIDE)) - 1;
     ivec3 cell = first + local;
     bool there = all(greaterThanEqual(cell, ivec3(0))) && all(lessThan(cell, ivec3(push.grid.size)));
-    uint number = there ? offset + cell_number(push.grid, uvec3(cell)) : 0u;
-    costs[k] = there ? push.grid.cell * push.cost.at[number] : -1.0;
-    lengths[k] = there ? push.paths.at[number] : PATH_FAR;
+    uint number = there ? cell_number(push.grid, uvec3(cell)) : 0u;
+    costs[k] = there ? push.grid.cell * push.cost.at[offset + number] : -1.0;
+    lengths[k] = there ? push.paths.at[copy_offset(copies[block_around(local)], channel) + number] : PATH_FAR;
     bool own = all(greaterThanEqual(local, ivec3(0))) && all(lessThan(local, ivec3(PATH_BLOCK)));
     if (own) before[own_number(local)] = lengths[k];
   }
 }
 
-void store_block(ivec3 first, uint channel) {
-  uint offset = channel * cell_count(push.grid);
+void store_block(ivec3 first, uint item, uint channel) {
+  uint copy = 1u - copies[PATH_SELF], offset = copy_offset(copy, channel);
+  if (gl_LocalInvocationID.x == 0u) push.copies.at[item] = 2u * (push.round + 1u) + copy;
   for (uint k = gl_LocalInvocationID.x; k < CELLS; k += gl_WorkGroupSize.x) {
     ivec3 cell = own_cell(k);
     float now = lengths[at(cell)];
     bool fallen = now < before[k];
     before[k] = fallen ? now : PATH_FAR;
-    if (fallen) push.paths.at[offset + cell_number(push.grid, uvec3(first + cell))] = now;
+    push.paths.at[offset + cell_number(push.grid, uvec3(first + cell))] = now;
   }
 }
 
@@ -37,6 +56,10 @@ void store_block(ivec3 first, uint channel) {
 uint sortable(float x) {
   uint bits = floatBitsToUint(x);
   return (bits & 0x80000000u) != 0u ? ~bits : bits | 0x80000000u;
+}
+
+uint item_of(ivec3 block, ivec3 blocks, uint channel) {
+  return uint(block.x + blocks.x * (block.y + blocks.y * (block.z + blocks.z * int(channel))));
 }
 
 ivec3 way_to(uint number) {
@@ -96,14 +119,14 @@ void list_blocks(ivec3 block, ivec3 blocks, uint channel, uint moved) {
     ivec3 other = block + way_to(k);
     if ((changed_blocks & 1u << k) == 0u || any(lessThan(other, ivec3(0))) || any(greaterThanEqual(other, blocks)))
       continue;
-    uint item = uint(other.x + blocks.x * (other.y + blocks.y * other.z)) + channel * all;
+    uint item = item_of(other, blocks, channel);
     // From there this one lies the other way.
     list(item, all, 1u << (26u - k), arrivals[k], crossings[k]);
   }
 }
 
 // Takes what the block of this workgroup is listed for, and says where it is dirty.
-void start(uint here) {
+void start(uint here, ivec3 block, ivec3 blocks, uint channel) {
   if (gl_LocalInvocationID.x == 0u) {
     wanted = push.wanted.at[here];
     arrived = push.arrivals.at[here].x;
@@ -112,7 +135,12 @@ void start(uint here) {
     push.arrivals.at[here] = uvec2(NONE);
     changed_blocks = 0u;
   }
-  for (uint k = gl_LocalInvocationID.x; k < 27u; k += gl_WorkGroupSize.x) arrivals[k] = crossings[k] = NONE;
+  for (uint k = gl_LocalInvocationID.x; k < 27u; k += gl_WorkGroupSize.x) {
+    arrivals[k] = crossings[k] = NONE;
+    ivec3 other = block + way_to(k);
+    bool there = all(greaterThanEqual(other, ivec3(0))) && all(lessThan(other, blocks));
+    copies[k] = there ? copy_of(item_of(other, blocks, channel)) : 0u;
+  }
   barrier();
   uint mask = 0u;
   for (uint k = 0u; k < 27u; ++k) {
@@ -136,7 +164,7 @@ void main() {
   int number = int(item % all);
   ivec3 block = ivec3(number % blocks.x, number / blocks.x % blocks.y, number / (blocks.x * blocks.y));
   ivec3 first = PATH_BLOCK * block;
-  start(push.round % 2u * 3u * all + item);
+  start(push.round % 2u * 3u * all + item, block, blocks, channel);
   if (arrived > push.fronts.at[3u * push.round + channel]) {
     if (gl_LocalInvocationID.x == 0u) list(item, all, wanted, arrived, crossed);
     return;
@@ -144,7 +172,7 @@ void main() {
   load_cells(first, channel);
   barrier();
   uint moved = relax();
-  store_block(first, channel);
+  store_block(first, item, channel);
   barrier();
   list_blocks(block, blocks, channel, moved);
 }

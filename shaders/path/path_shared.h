@@ -80,6 +80,7 @@ struct PathMaterial {
 
 #ifndef __cplusplus
 QG_ARRAY(PathMaterials, PathMaterial);
+QG_COHERENT_ARRAY(CoherentUints, uint);
 #endif
 
 const uint PATH_NEVER = 0x80000000u;
@@ -90,10 +91,13 @@ const uint PATH_SELF = 13u;  // of 27 blocks, x fastest
 struct PathRelaxPush {
   PathGrid grid;
   QG_REF(Floats) cost;   // 3 per cell, channel after channel, 1/mm; below 0: not solid
-  QG_REF(Floats) paths;  // the same order; falls
+  QG_REF(Floats) paths;  // the same order, twice; falls
+  // Per block and channel, of those two copies of its lengths: 2 (1 + the round that wrote it last) + which one that
+  // was; 0 at first, for the first.
+  QG_REF(CoherentUints) copies;
   // Bits per block and channel, of even rounds and then of odd ones: the 27 blocks around that have changed, the
   // block itself in their middle; 0 where it is not listed, PATH_NEVER too where no cell is solid.
-  QG_REF(Uints) wanted;
+  QG_REF(CoherentUints) wanted;
   QG_REF(Uints) list;    // of this round
   QG_REF(Uints) next;    // of the next one
   QG_REF(Uints) groups;  // workgroup counts, 3 per round

@@ -10,7 +10,7 @@ struct PathSolidPush {
   PathGrid grid;
   Uints votes;  // path_winding.comp's, axis after axis
   Uints flags;
-  Uints wanted;  // PathRelaxPush; 0 where a cell of the block is solid
+  CoherentUints wanted;  // PathRelaxPush; 0 where a cell of the block is solid
   Uints counts;  // PathCounts
   PathTools tools;
 };

@@ -10,7 +10,7 @@ struct PathStartPush {
   Uints flags;
   Uints entering;  // 3 per cell, channel after channel: bits of W/mm^2
   Floats paths;    // the same order, written
-  Uints wanted;
+  CoherentUints wanted;
   Uints list;    // blocks of round 0: block + blocks * channel
   Uints groups;  // of round 0
   Uints counts;  // PathCounts
