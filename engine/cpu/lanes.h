@@ -8,6 +8,7 @@ namespace quadgraph::cpu::QG_LEVEL {
 
 using Lanes = float __attribute__((vector_size(16)));
 using StoredLanes = float __attribute__((vector_size(16), aligned(4)));
+using LongLanes = long long __attribute__((vector_size(16)));
 using IntLanes = int __attribute__((vector_size(16)));
 
 // One lane that can be assigned to.
@@ -59,6 +60,7 @@ struct vec3 {
   vec3(float a, vec2 b) : vec3(a, b.x(), b.y()) {}
   template <typename T>
   explicit vec3(Vec3<T> a) : vec3(a.x(), a.y(), a.z()) {}
+  explicit vec3(ivec3 a) : lanes(__builtin_convertvector((IntLanes{a.x(), a.y(), a.z(), 0}), Lanes)) {}
   inline explicit vec3(vec4 a);
   vec2 xy() const { return {x(), y()}; }
   vec2 xz() const { return {x(), z()}; }
@@ -123,7 +125,13 @@ struct packed_vec3 {
     values[0] = a.x(), values[1] = a.y(), values[2] = a.z();
     return *this;
   }
-  operator vec3() const { return {values[0], values[1], values[2]}; }
+  operator vec3() const {  // by two loads
+    LongLanes words{};
+    __builtin_memcpy(&words, values, 8);
+    IntLanes last{};
+    __builtin_memcpy(&last, values + 2, 4);
+    return vec3(Lanes(LongLanes{words[0], LongLanes(last)[0]}));
+  }
   float x() const { return values[0]; }
   float y() const { return values[1]; }
   float z() const { return values[2]; }

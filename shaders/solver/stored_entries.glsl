@@ -54,7 +54,7 @@ uint column_of(StoredEntry stored) {
 Entry entry_in(StoredEntry stored) {
   if (ENTRIES == ENTRIES_PLAIN) return Entry(plain_block(stored, 1u));
   uint first = stored.word[0], second = stored.word[1];
-  ivec3 number = ivec3(number_at(first, 20, 12), number_at(second, 8, 12), number_at(second, 20, 12));
+  ivec3 number = ivec3(uvec3(first, second << 12u, second)) >> 20;  // the upper twelve bits, with their sign
   return Entry(unpack(number, (second >> 2u) & 63u));
 }
 
