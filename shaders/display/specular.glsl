@@ -17,7 +17,7 @@ SurfaceScene scene;
 const float PI = 3.14159265;
 
 // How much of the roughness here is that of an image.
-float placed_share;
+float placed_share = 0.0;
 
 // Length of a way that is seen along the box's third axis, mm.
 float across_box(ImageBox box, vec3 way) {
@@ -28,7 +28,6 @@ float across_box(ImageBox box, vec3 way) {
 // from pixel to pixel.
 void place_roughness(vec3 rest, vec3 to_right, vec3 to_below) {
   placed_share = 0.0;
-  if (!PLACED_ROUGHNESS) return;
   vec3 place = in_box(SURFACE.box, rest);
   float width = max(across_box(SURFACE.box, to_right), across_box(SURFACE.box, to_below));
   if (any(greaterThan(abs(place), SURFACE.box.half_size))) return;

@@ -17,7 +17,7 @@ layout(location = 2) out vec4 normal_face;        // unit, low half of the face
 
 void main() {
   scene = push.scene.at[0];
-  place_roughness(rest, dFdx(rest), dFdy(rest));
+  if (PLACED_ROUGHNESS) place_roughness(rest, dFdx(rest), dFdy(rest));
   vec3 n = normalize(normal);
   position_coverage = vec4(position, 1.0);
   specular_face = vec4(specular_radiance(position, n, normalize(scene.eye - position), sky), face / FACE_HALF);

@@ -37,7 +37,7 @@ void main() {
   scene = SURFACE.scene.at[0];
   PathField field = push.field.at[0];
   if (field.tools.count > 0u && cut_away(field.tools, position)) discard;
-  place_roughness(rest, dFdx(rest), dFdy(rest));
+  if (PLACED_ROUGHNESS) place_roughness(rest, dFdx(rest), dFdy(rest));
   vec3 at = position, n = normalize(normal);
   if (field.tools.count > 0u && !gl_FrontFacing) {
     vec3 point, outward;

@@ -23,6 +23,9 @@ PUSH = re.compile(r"^layout\(push_constant, scalar\) uniform Block \{ (\w+) ", r
 IN_MEMORY = re.compile(r"^QG_(?:\w+_)?ARRAY\(|^layout\(push_constant")
 PROTOTYPE = re.compile(r"^\w+ \w+\([^()]*\);$")
 
+VARIANTS = 4  # of a graphics pass
+ALL_VARIANTS = (1 << VARIANTS) - 1
+
 # Lines as a whole, in this order; what matches none stays as it is.
 LINES = [
     (re.compile(r"^#(?:version|extension)\b.*"), ""),
@@ -162,21 +165,36 @@ def table_of(text: str, way: str) -> str:
     return f"static constexpr std::array<StageVariable, {len(rows)}> {way}s() {{ return {values}; }}\n"
 
 
-def stage_members(text: str, stage: str) -> str:
+def stage_members(texts: Texts, file: str) -> str:
     """What engine/cpu/kernel.h wants to know of a vertex or fragment shader."""
+    text, stage = texts[file], PurePosixPath(file).suffix[1:]
     if stage == "comp":
         return ""
     way = "out" if stage == "vert" else "in"
     members = f"static constexpr uint locations = {locations(stage_variables(text, way))};\n" + table_of(text, "out")
     if stage == "frag":
-        members += (
-            table_of(text, "in") + f"static constexpr bool derivatives = {str(asks_derivatives(text)).lower()};\n"
-        )
+        variants = f"{derivative_variants(texts, file)}u"
+        members += table_of(text, "in")
+        members += f"static constexpr bool derivatives = ({variants} >> VARIANT_OF_PASS & 1u) != 0u;\n"
     return members
 
 
-def asks_derivatives(text: str) -> bool:
-    return re.search(r"\b(?:dFd[xy]|fwidth)\(", text) is not None
+def derivative_variants(texts: Texts, file: str) -> int:
+    """Bits of the variants of a fragment shader that ask for derivatives: all, or those with the flag NAME where a line
+    that asks for them begins with "if (NAME)".
+    """
+    all_text = "\n".join(texts.values())
+    bits = 0
+    for line in texts[file].splitlines():
+        if not re.search(r"\b(?:dFd[xy]|fwidth)\(", line):
+            continue
+        condition = re.match(r" *if \((\w+)\) ", line)
+        if condition is None:
+            return ALL_VARIANTS
+        flag = re.search(rf"^const bool {condition[1]} = \(VARIANT & (\w+)\) != 0u;", all_text, re.M)
+        value = int(re.search(rf"^#define {flag[1]} (\d+)", all_text, re.M)[1])
+        bits |= sum(1 << variant for variant in range(VARIANTS) if variant & value)
+    return bits
 
 
 def kernel_name(file: str, moments: int) -> str:
@@ -202,7 +220,7 @@ namespace {{
 template <uint VARIANT_OF_PASS>
 struct Shader : {stage.capitalize()}Invocation {{
 {native_text(file, texts[file], stored_types(texts))}
-{stage_members(texts[file], stage)}}};
+{stage_members(texts, file)}}};
 }}  // namespace
 QG_{stage.upper()}_KERNEL({arguments})
 }}  // namespace quadgraph::cpu::QG_LEVEL
