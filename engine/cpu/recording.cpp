@@ -12,15 +12,29 @@ namespace {
 // Parts that a dispatch is shared out in, for each thread: what one part takes longer, others make up for.
 constexpr std::uint32_t parts_of_thread = 16;
 
+// Bytes of a copy that a thread takes at once.
+constexpr std::uint64_t copied_at_once = 1 << 20;
+
 std::byte* bytes_of(const device::Memory& memory) {
   return static_cast<std::byte*>(memory.mapped);
+}
+
+// Calls part(begin, end) for all of `bytes`.
+template <typename Part>
+void share_out(ThreadPool& threads, std::uint64_t bytes, const Part& part) {
+  const auto parts = static_cast<std::uint32_t>((bytes + copied_at_once - 1) / copied_at_once);
+  threads.run(parts, 1, [&](std::uint32_t begin, std::uint32_t end) {
+    part(begin * copied_at_once, std::min(end * copied_at_once, bytes));
+  });
 }
 
 }  // namespace
 
 void Recording::copy(const device::Memory& source, const device::Memory& target, std::uint64_t bytes,
                      std::uint64_t target_offset) {
-  std::memcpy(bytes_of(target) + target_offset, bytes_of(source), bytes);
+  share_out(processor_.threads(), bytes, [&](std::uint64_t begin, std::uint64_t end) {
+    std::memcpy(bytes_of(target) + target_offset + begin, bytes_of(source) + begin, end - begin);
+  });
 }
 
 void Recording::copy(const device::ImageMemory& source, const device::Memory& target, std::uint32_t width,
@@ -29,17 +43,20 @@ void Recording::copy(const device::ImageMemory& source, const device::Memory& ta
   const std::uint64_t row = std::uint64_t{image.texel_bytes()} * width;
   const auto* from = static_cast<const std::byte*>(image.memory.get());
   std::byte* to = bytes_of(target);
-  for (std::uint32_t layer = 0; layer < image.options.layers; ++layer) {
-    for (std::uint32_t y = 0; y < height; ++y, to += row) {
-      std::memcpy(to,
-                  from + (std::uint64_t{layer} * image.options.height + y) * image.options.width * image.texel_bytes(),
-                  row);
+  const std::uint32_t rows_at_once = std::max(static_cast<std::uint32_t>(copied_at_once / row), 1u);
+  processor_.threads().run(image.options.layers * height, rows_at_once, [&](std::uint32_t begin, std::uint32_t end) {
+    for (std::uint32_t k = begin; k < end; ++k) {
+      const std::uint64_t y = std::uint64_t{k / height} * image.options.height + k % height;
+      std::memcpy(to + k * row, from + y * image.options.width * image.texel_bytes(), row);
     }
-  }
+  });
 }
 
 void Recording::fill(const device::Memory& target, std::uint64_t bytes, std::uint32_t value) {
-  std::fill_n(reinterpret_cast<std::uint32_t*>(bytes_of(target)), (bytes + 3) / 4, value);
+  auto* words = reinterpret_cast<std::uint32_t*>(bytes_of(target));
+  share_out(processor_.threads(), bytes, [&](std::uint64_t begin, std::uint64_t end) {
+    std::fill(words + begin / 4, words + (end + 3) / 4, value);
+  });
 }
 
 void Recording::update(const device::Memory& target, std::span<const std::byte> data) {
