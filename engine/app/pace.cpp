@@ -12,7 +12,7 @@ double mixed(double before, double now) {
   return before > 0 ? 0.5 * (before + now) : now;
 }
 
-constexpr double least_drawing = 0.35;  // of the budget, however long the solve takes
+constexpr double least_drawing = 0.35;  // of the budget, or of the solve where that takes longer
 constexpr float shares[] = {1.0f, 0.75f, 0.5f, 0.375f};
 
 }  // namespace
@@ -24,7 +24,8 @@ void Pace::took(double solve_ms, double draw_ms, double pixels, bool gathered) {
 }
 
 float Pace::share(double pixels, bool solving) const {
-  const double left = std::max(budget_ms_ - (solving ? solve_ms_ : 0), least_drawing * budget_ms_);
+  const double solve_ms = solving ? solve_ms_ : 0;
+  const double left = std::max(budget_ms_ - solve_ms, least_drawing * std::max(budget_ms_, solve_ms));
   for (const float share : shares) {
     const double side = static_cast<double>(share);
     if (1e-6 * draw_ns_[gathers(solving) ? 1 : 0] * pixels * side * side <= left) return share;

@@ -17,7 +17,7 @@
 namespace quadgraph {
 namespace {
 
-constexpr double budget_ms = 400;             // of a picture in motion
+constexpr double budget_ms = 90;              // of a picture in motion: ten a second
 constexpr double settle_after = 0.25;         // seconds without a change
 constexpr double idle_wait = 0.5;             // seconds
 constexpr float degrees_per_height = 180.0f;  // of a drag over the height of the picture

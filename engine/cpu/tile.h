@@ -59,7 +59,8 @@ class Tile {
 
  private:
   std::uint64_t place(std::uint32_t x, std::uint32_t y) const { return std::uint64_t{y} * depth_.options.width + x; }
-  void cover(const Triangle& t, const Edges& edges, std::int64_t x, std::int64_t y, const std::array<double, 3>& weights);
+  void cover(const Triangle& t, const Edges& edges, std::int64_t x, std::int64_t y,
+             const std::array<double, 3>& weights);
 
   const Frame& frame_;
   ImageMemory& depth_;

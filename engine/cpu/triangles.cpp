@@ -76,8 +76,8 @@ void add(Part& part, const Frame& frame, const float* first, std::array<const fl
     t.inverse_w[k] = inverse;
     t.values[k] = corners[k] + position_floats;
   }
-  const std::int64_t twice = std::int64_t{t.x[1] - t.x[0]} * (t.y[2] - t.y[0]) -
-                             std::int64_t{t.x[2] - t.x[0]} * (t.y[1] - t.y[0]);
+  const std::int64_t twice =
+      std::int64_t{t.x[1] - t.x[0]} * (t.y[2] - t.y[0]) - std::int64_t{t.x[2] - t.x[0]} * (t.y[1] - t.y[0]);
   const bool front = twice < 0;  // y is down
   const device::Cull cull = frame.pass.options.cull;
   if (twice == 0 || (cull == device::Cull::back && !front) || (cull == device::Cull::front && front)) return;
