@@ -30,7 +30,8 @@ class PathRelaxation {
   // Lengths from -ln(entering) on. Throws SolverError if rounds do not end.
   void solve(const SolidCells& cells, PathSolver solver, std::vector<PassStats>& passes);
 
-  // As cost; PATH_FAR: no light gets there. More follows that is not for others.
+  // Optical lengths, stored as cost is; PATH_FAR: no light gets there. The buffer goes on with what only the
+  // relaxation reads.
   const device::Buffer& lengths() const { return lengths_; }
   std::uint32_t rounds() const { return rounds_; }    // of the last solve
   std::uint32_t relaxed() const { return relaxed_; }  // blocks of a channel, over all rounds, and waited

@@ -67,7 +67,7 @@ struct RowsRef {
 const uint FACE_OPEN = 0u;
 const uint FACE_REFLECTING = 1u;
 
-// What a tet of a deformed body counts for at least (tet_volume.glsl); 0 in both: for what it is.
+// What a tet of a deformed body counts for at least (tet_volume.glsl); 0 in both: every tet counts for what it is.
 struct LeastTet {
   float quality;  // 1 of a regular tet, 0 of a flat one
   float volume;   // mm^3
@@ -139,8 +139,8 @@ const uint START_AGAIN = 3u;     // the same within a solve: iterations done so 
 const uint START_CHECK = 1u;     // after the surface has met the tolerance: does the residual agree?
 const uint START_RESIDUAL = 2u;  // no decision
 
-// Rows of barycentric transfers, which cycles use, have so many entries (engine/file/graph.h). llvmpipe divides by
-// what it does not know lane by lane.
+// Rows of barycentric transfers, which cycles use, have so many entries (engine/file/graph.h). A constant, as
+// processors divide slowly by what a compiler does not know.
 const uint BARYCENTRIC_WIDTH = 4u;
 
 #ifdef __cplusplus
