@@ -18,15 +18,18 @@ template <typename T>
 using Same = typename SameType<T>::Type;
 
 // A function of each component of vectors, where that of numbers is there already.
+#define QG_OF_PLAIN_VECTORS(name)                   \
+  template <typename T>                             \
+  inline Vec2<T> name(Vec2<T> a) {                  \
+    return {name(a.x()), name(a.y())};              \
+  }                                                 \
+  template <typename T>                             \
+  inline Vec3<T> name(Vec3<T> a) {                  \
+    return {name(a.x()), name(a.y()), name(a.z())}; \
+  }                                                 \
+  static_assert(true)
 #define QG_OF_VECTORS(name)                                      \
-  template <typename T>                                          \
-  inline Vec2<T> name(Vec2<T> a) {                               \
-    return {name(a.x()), name(a.y())};                           \
-  }                                                              \
-  template <typename T>                                          \
-  inline Vec3<T> name(Vec3<T> a) {                               \
-    return {name(a.x()), name(a.y()), name(a.z())};              \
-  }                                                              \
+  QG_OF_PLAIN_VECTORS(name);                                     \
   inline vec3 name(vec3 a) {                                     \
     return {name(a.x()), name(a.y()), name(a.z())};              \
   }                                                              \
@@ -61,26 +64,19 @@ using Same = typename SameType<T>::Type;
   QG_OF_VECTORS(name)
 
 // Also one that x86 has for the lanes `x` at once.
-#define QG_LANE_BUILTIN(name, builtin, of_lanes)    \
-  inline float name(float x) {                      \
-    return __builtin_##builtin(x);                  \
-  }                                                 \
-  template <typename T>                             \
-  inline Vec2<T> name(Vec2<T> a) {                  \
-    return {name(a.x()), name(a.y())};              \
-  }                                                 \
-  template <typename T>                             \
-  inline Vec3<T> name(Vec3<T> a) {                  \
-    return {name(a.x()), name(a.y()), name(a.z())}; \
-  }                                                 \
-  inline vec3 name(vec3 a) {                        \
-    const Lanes x = a.lanes;                        \
-    return vec3(Lanes(of_lanes));                   \
-  }                                                 \
-  inline vec4 name(vec4 a) {                        \
-    const Lanes x = a.lanes;                        \
-    return vec4(Lanes(of_lanes));                   \
-  }                                                 \
+#define QG_LANE_BUILTIN(name, builtin, of_lanes) \
+  inline float name(float x) {                   \
+    return __builtin_##builtin(x);               \
+  }                                              \
+  QG_OF_PLAIN_VECTORS(name);                     \
+  inline vec3 name(vec3 a) {                     \
+    const Lanes x = a.lanes;                     \
+    return vec3(Lanes(of_lanes));                \
+  }                                              \
+  inline vec4 name(vec4 a) {                     \
+    const Lanes x = a.lanes;                     \
+    return vec4(Lanes(of_lanes));                \
+  }                                              \
   static_assert(true)
 
 #ifdef __SSE4_1__

@@ -127,6 +127,10 @@ gpu::RowsRef OperatorBuffers::rows() const {
   return {slice_offset.address(), entry.address(), row_sum.address(), (compact_rows() ? row_sum : diagonal).address()};
 }
 
+gpu::RightHandSideRef OperatorBuffers::right_hand_side(const device::Buffer& reduction) const {
+  return {rows().diagonal, b.address(), state.address(), reduction.address()};
+}
+
 std::uint64_t OperatorBuffers::product_bytes() const {
   return std::uint64_t{entries} * (entry_bytes() + field_bytes()) + (slices + 1) * sizeof(std::uint32_t);
 }

@@ -85,6 +85,7 @@ struct OperatorBuffers {
   std::uint64_t entry_bytes() const { return stored_words(model, format) * sizeof(std::uint32_t); }
 
   gpu::RowsRef rows() const;
+  gpu::RightHandSideRef right_hand_side(const device::Buffer& reduction) const;
   std::uint64_t product_bytes() const;  // read by one product with the rows, diagonal left out
 
  private:

@@ -184,10 +184,7 @@ void SourceWalk::record_right_hand_side(Workspace& work, const LevelBuffers& lev
   const gpu::RightHandSideBuriedPush push{.deposit = deposit(method).address(),
                                           .vertices = level.vertices.address(),
                                           .tets = level.tets.address(),
-                                          .diagonal = op.rows().diagonal,
-                                          .b = op.b.address(),
-                                          .state = op.state.address(),
-                                          .reduction = work.reduction.address(),
+                                          .side = op.right_hand_side(work.reduction),
                                           .count = op.count,
                                           .deposit_count = carriers(level, method),
                                           .per_volume = method == Method::quadgraph_fdm ? 1u : 0u};

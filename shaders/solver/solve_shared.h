@@ -134,6 +134,14 @@ QG_ARRAY(Scales, Scale);
 
 #endif
 
+// Where the right-hand side of a level's rows goes (right_hand_side.glsl): b, and its norm in `state`.
+struct RightHandSideRef {
+  QG_REF(Entries) diagonal;  // of the rows
+  QG_REF(Fields) b;
+  QG_REF(SolveStates) state;
+  QG_REF(Reduction) reduction;
+};
+
 const uint START_FIRST = 0u;     // resets the state, opens the gates
 const uint START_AGAIN = 3u;     // the same within a solve: iterations done so far are kept as earlier ones
 const uint START_CHECK = 1u;     // after the surface has met the tolerance: does the residual agree?
