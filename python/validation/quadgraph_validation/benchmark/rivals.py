@@ -98,7 +98,7 @@ class Entrant:
     def __init__(self, rival: Rival, system: System) -> None:
         self.rival = rival
         matrices = [matrix.astype(rival.precision) for matrix in system.matrices]
-        self.b = system.b.T.astype(rival.precision)
+        self.b: np.ndarray = system.b.T.astype(rival.precision)
         start = time.perf_counter()
         self.iterates = [rival.set_up(matrix) for matrix in matrices]
         self.set_up_ms = 1e3 * (time.perf_counter() - start)

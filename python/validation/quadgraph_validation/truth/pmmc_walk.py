@@ -62,7 +62,8 @@ def slab(medium: Medium, thickness: float, eta: float, walks: int, seed: int) ->
 
     Light enters at normal incidence. Raises InputError as `load` does.
     """
-    body = meshes.box(*(np.array([0, end]) for end in (_WIDTH, _WIDTH, thickness)), lambda n: np.zeros(len(n), bool))
+    side = np.array([0, _WIDTH])
+    body = meshes.box(side, side, np.array([0, thickness]), meshes.no_wall)
     start = np.array([0.49 * _WIDTH, 0.51 * _WIDTH, _INSIDE])
     weight, scattered, position = _run(body, medium, eta, start, np.array([0.0, 0.0, 1.0]), walks, seed)
     below = position[:, 2] > thickness / 2
