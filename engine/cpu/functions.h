@@ -110,9 +110,6 @@ inline float atan(float y, float x) {
 inline float pow(float x, float y) {
   return __builtin_powf(x, y);
 }
-inline float fma(float a, float b, float c) {
-  return __builtin_fmaf(a, b, c);
-}
 inline float mod(float x, float y) {
   return x - y * floor(x / y);
 }
@@ -185,10 +182,6 @@ inline float mix(float a, float b, float t) {
 }
 inline float mix(float a, float b, bool t) {
   return t ? b : a;
-}
-inline float smoothstep(float low, float high, float x) {
-  float t = clamp((x - low) / (high - low), 0.0f, 1.0f);
-  return t * t * (3.0f - 2.0f * t);
 }
 
 inline float ldexp(float a, int e) {

@@ -38,9 +38,6 @@ class DeformedLevels {
   // Whether the shapes under the present list and another differ by a rigid motion of the whole at most.
   bool same_shape(std::span<const Deformer> list) const;
 
-  // Whether the shape is that of the rest.
-  bool rest_shape() const { return without_rigid_end(list_).empty(); }
-
   // Vertices and nodes of all levels, and their states. `list` has been checked.
   void record(Workspace& work, std::span<const Deformer> list, const RestBox& box, std::vector<LevelBuffers>& levels);
 
