@@ -19,6 +19,7 @@ import numpy as np
 
 from quadgraph.base.errors import InputError
 from quadgraph.tets.graph import Graph
+from quadgraph_validation.base import extra_module
 from quadgraph_validation.bodies import meshes
 from quadgraph_validation.bodies.media import Medium
 from quadgraph_validation.truth import monte_carlo
@@ -32,7 +33,7 @@ _DOWN = np.array([0.0, 0.0, -1.0])
 _END = 1e-5  # s after which pmmc lets go of a walk: none lives as long
 
 
-def load():
+def load() -> Any:
     """Import pmmc. Raises InputError, saying why, where it cannot run."""
     module, problem = _found()
     if problem:
@@ -45,11 +46,10 @@ def _found() -> tuple[Any, str]:
     """The module, or what is wrong with it. Asked only once: pmmc 0.3.12 hangs when it fails to find a device again."""
     try:
         with _silent():
-            import pmmc
-
+            pmmc = extra_module.load("pmmc", "truth")
             devices = pmmc.gpuinfo()
-    except ImportError as error:
-        return None, f"pmmc cannot be loaded ({error}); pip install -e 'python/validation[truth]' installs it"
+    except InputError as error:
+        return None, str(error)
     except RuntimeError:
         devices = []
     if not devices:
