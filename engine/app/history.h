@@ -15,7 +15,7 @@ class History {
   // Notes the scene if it differs from what was noted last.
   void note(const Scene& scene);
 
-  // The scene noted before, or after the one that `undo` left; seen as `scene` is. As `scene` is if there is none.
+  // The scene noted before, or after the one that `undo` left, seen as `scene` is; `scene` itself if there is none.
   Scene undo(const Scene& scene);
   Scene redo(const Scene& scene);
 

@@ -18,15 +18,18 @@ template <typename T>
 using Same = typename SameType<T>::Type;
 
 // A function of each component of vectors, where that of numbers is there already.
+#define QG_OF_PLAIN_VECTORS(name)                   \
+  template <typename T>                             \
+  inline Vec2<T> name(Vec2<T> a) {                  \
+    return {name(a.x()), name(a.y())};              \
+  }                                                 \
+  template <typename T>                             \
+  inline Vec3<T> name(Vec3<T> a) {                  \
+    return {name(a.x()), name(a.y()), name(a.z())}; \
+  }                                                 \
+  static_assert(true)
 #define QG_OF_VECTORS(name)                                      \
-  template <typename T>                                          \
-  inline Vec2<T> name(Vec2<T> a) {                               \
-    return {name(a.x()), name(a.y())};                           \
-  }                                                              \
-  template <typename T>                                          \
-  inline Vec3<T> name(Vec3<T> a) {                               \
-    return {name(a.x()), name(a.y()), name(a.z())};              \
-  }                                                              \
+  QG_OF_PLAIN_VECTORS(name);                                     \
   inline vec3 name(vec3 a) {                                     \
     return {name(a.x()), name(a.y()), name(a.z())};              \
   }                                                              \
@@ -61,26 +64,19 @@ using Same = typename SameType<T>::Type;
   QG_OF_VECTORS(name)
 
 // Also one that x86 has for the lanes `x` at once.
-#define QG_LANE_BUILTIN(name, builtin, of_lanes)    \
-  inline float name(float x) {                      \
-    return __builtin_##builtin(x);                  \
-  }                                                 \
-  template <typename T>                             \
-  inline Vec2<T> name(Vec2<T> a) {                  \
-    return {name(a.x()), name(a.y())};              \
-  }                                                 \
-  template <typename T>                             \
-  inline Vec3<T> name(Vec3<T> a) {                  \
-    return {name(a.x()), name(a.y()), name(a.z())}; \
-  }                                                 \
-  inline vec3 name(vec3 a) {                        \
-    const Lanes x = a.lanes;                        \
-    return vec3(Lanes(of_lanes));                   \
-  }                                                 \
-  inline vec4 name(vec4 a) {                        \
-    const Lanes x = a.lanes;                        \
-    return vec4(Lanes(of_lanes));                   \
-  }                                                 \
+#define QG_LANE_BUILTIN(name, builtin, of_lanes) \
+  inline float name(float x) {                   \
+    return __builtin_##builtin(x);               \
+  }                                              \
+  QG_OF_PLAIN_VECTORS(name);                     \
+  inline vec3 name(vec3 a) {                     \
+    const Lanes x = a.lanes;                     \
+    return vec3(Lanes(of_lanes));                \
+  }                                              \
+  inline vec4 name(vec4 a) {                     \
+    const Lanes x = a.lanes;                     \
+    return vec4(Lanes(of_lanes));                \
+  }                                              \
   static_assert(true)
 
 #ifdef __SSE4_1__
@@ -113,9 +109,6 @@ inline float atan(float y, float x) {
 }
 inline float pow(float x, float y) {
   return __builtin_powf(x, y);
-}
-inline float fma(float a, float b, float c) {
-  return __builtin_fmaf(a, b, c);
 }
 inline float mod(float x, float y) {
   return x - y * floor(x / y);
@@ -189,10 +182,6 @@ inline float mix(float a, float b, float t) {
 }
 inline float mix(float a, float b, bool t) {
   return t ? b : a;
-}
-inline float smoothstep(float low, float high, float x) {
-  float t = clamp((x - low) / (high - low), 0.0f, 1.0f);
-  return t * t * (3.0f - 2.0f * t);
 }
 
 inline float ldexp(float a, int e) {

@@ -53,7 +53,7 @@ struct VertInvocation {
   vec4 gl_Position;
 };
 
-// As device::VertexKernel.
+// Runs a vertex shader as device::VertexKernel asks.
 template <typename Shader>
 void run_vertices(const void* push, const uint* vertices, uint count, float* results) {
   constexpr auto written = Shader::outs();
@@ -103,7 +103,7 @@ void read_inputs(Shader& shader, const float* inputs) {
   }
 }
 
-// As device::FragmentKernel.
+// Runs a fragment shader as device::FragmentKernel asks.
 template <typename Shader>
 void run_fragments(const void* push, bool front, const float* inputs, const float* right, const float* below,
                    uint count, float* colours, bool* kept) {

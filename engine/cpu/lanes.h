@@ -1,5 +1,5 @@
-// Vectors of three and four floats, in one register each; engine/cpu/glsl.h says what they are for. Of three, the last
-// lane holds anything. What lies in memory is packed_vec3; four floats lie there as they are.
+// Vectors of three and four floats, in one register each; engine/cpu/glsl.h says what they are for. In a vector of
+// three, the last lane holds anything. What lies in memory is packed_vec3; four floats lie there as they are.
 #pragma once
 
 #include "engine/cpu/vectors.h"
@@ -148,7 +148,7 @@ struct packed_vec3 {
   }
 };
 
-// Booleans: all bits of a lane, or none. Of three, the last lane holds anything.
+// Booleans: all bits of a lane, or none. In a vector of three, the last lane holds anything.
 #define QG_MASK(Mask)                     \
   IntLanes lanes;                         \
   explicit Mask(IntLanes a) : lanes(a) {} \

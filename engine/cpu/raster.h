@@ -10,7 +10,7 @@
 
 namespace quadgraph::cpu {
 
-// As device::Recording::draw. The same picture with any number of threads.
+// Draws as device::Recording::draw asks. The same picture with any number of threads.
 void rasterise(ThreadPool& threads, const device::DrawImages& target, const device::Viewport& viewport,
                const GraphicsPipeline& pass, const void* push, const std::uint32_t* indices, std::uint32_t vertices);
 

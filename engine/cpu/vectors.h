@@ -73,7 +73,6 @@ struct Vec2 {
   constexpr T operator[](std::size_t i) const { return (&x_value)[i]; }
   friend constexpr bool operator==(Vec2 a, Vec2 b) { return a.x() == b.x() && a.y() == b.y(); }
   constexpr Vec2 operator-() const { return {-x(), -y()}; }
-  constexpr Vec2 yx() const { return {y(), x()}; }
   QG_MEMBER(x) QG_MEMBER(y) QG_OPERATOR2(+) QG_OPERATOR2(-) QG_OPERATOR2(*) QG_OPERATOR2(/)
 };
 

@@ -26,8 +26,8 @@ struct DeviceOptions {
   // "cpu": the processor. Else part of the name of a Vulkan device, case-insensitive. Empty: what QUADGRAPH_DEVICE
   // of the environment names, else a discrete GPU, else an integrated one, else the processor.
   std::string device = "";
-  // Of the window to present to (engine/vk/context.h); null: none, and nothing that windows need is asked of the
-  // device.
+  // The surface of the window to present to (engine/vk/context.h); null: no window, and nothing that windows need is
+  // asked of the device.
   std::shared_ptr<const vk::SurfaceSource> surface = nullptr;
 };
 

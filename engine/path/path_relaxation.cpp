@@ -52,7 +52,8 @@ void PathRelaxation::solve(const SolidCells& cells, PathSolver solver, std::vect
   const device::ComputePass& relax = pass(solver);
   const std::vector<glm::uvec3> no_groups(most_rounds + 1, glm::uvec3(0, 1, 1));
   const std::uint64_t count = gpu::cell_count(grid);
-  rounds_ = relaxed_ = 0;
+  rounds_ = 0;
+  std::uint64_t relaxed = 0;  // blocks of a channel, over all rounds, and waited
   std::vector<glm::uvec3> groups;
   for (bool done = false; !done;) {
     if (rounds_ + rounds_at_once > most_rounds) {
@@ -87,7 +88,7 @@ void PathRelaxation::solve(const SolidCells& cells, PathSolver solver, std::vect
       }
     });
     groups = device::download<glm::uvec3>(context_, groups_);
-    for (std::uint32_t k = rounds_; k < rounds_ + rounds_at_once; ++k) relaxed_ += groups[k].x;
+    for (std::uint32_t k = rounds_; k < rounds_ + rounds_at_once; ++k) relaxed += groups[k].x;
     rounds_ += rounds_at_once;
     done = groups[rounds_].x == 0;
   }
@@ -96,7 +97,7 @@ void PathRelaxation::solve(const SolidCells& cells, PathSolver solver, std::vect
   });
   while (rounds_ > 0 && groups[rounds_ - 1].x == 0) --rounds_;
   // Per block of a channel: lengths and costs with a cell around, and what has changed.
-  passes.back().bytes = relaxed_ * 4ull * (2 * 1000 + 512) + count * 28;
+  passes.back().bytes = relaxed * 4ull * (2 * 1000 + 512) + count * 28;
   lit_ = device::download<gpu::PathCounts>(context_, counts_)[0].lit;
 }
 

@@ -30,11 +30,11 @@ class PathRelaxation {
   // Lengths from -ln(entering) on. Throws SolverError if rounds do not end.
   void solve(const SolidCells& cells, PathSolver solver, std::vector<PassStats>& passes);
 
-  // As cost; PATH_FAR: no light gets there. More follows that is not for others.
+  // Optical lengths, stored as cost is; PATH_FAR: no light gets there. The buffer goes on with what only the
+  // relaxation reads.
   const device::Buffer& lengths() const { return lengths_; }
-  std::uint32_t rounds() const { return rounds_; }    // of the last solve
-  std::uint32_t relaxed() const { return relaxed_; }  // blocks of a channel, over all rounds, and waited
-  std::uint32_t lit() const { return lit_; }          // cells that light enters
+  std::uint32_t rounds() const { return rounds_; }  // of the last solve
+  std::uint32_t lit() const { return lit_; }        // cells that light enters
 
  private:
   const device::ComputePass& pass(PathSolver solver);
@@ -43,7 +43,7 @@ class PathRelaxation {
   device::ComputePass start_pass_, settle_pass_;
   std::optional<device::ComputePass> passes_[2];  // by PathSolver, made at first use
   device::Buffer cost_, entering_, lengths_, copies_, lists_[2], arrivals_, fronts_, groups_, counts_;
-  std::uint32_t rounds_ = 0, relaxed_ = 0, lit_ = 0;
+  std::uint32_t rounds_ = 0, lit_ = 0;
 };
 
 }  // namespace quadgraph

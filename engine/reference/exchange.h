@@ -1,8 +1,8 @@
-// Light that leaves one part of a body and enters another (docs/physics.md, "Inter-reflection"), on the CPU in double
+// Inter-reflection between points of a body's surface (docs/physics.md, "Inter-reflection"), on the CPU in double
 // precision, over the rows `seen` of a level: the answer the GPU is compared with.
 //
-// What leaves a face, its radiosity J, arrives elsewhere as irradiance E along the rays of docs/qgraph-format.md. Of E
-// the share T_d = diffuse_transmittance(eta) enters, as uniform light does, and the surface reflects the rest as a
+// What leaves a face, its radiosity J, arrives elsewhere as irradiance E along the rays of docs/qgraph-format.md. The
+// share T_d = diffuse_transmittance(eta) of E enters, as uniform light does, and the surface reflects the rest as a
 // diffuser would: J = M + (1 - T_d) E. Light that the surface reflects on its first arrival, and unscattered light that
 // leaves, are not followed.
 #pragma once

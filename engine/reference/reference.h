@@ -33,7 +33,7 @@ std::vector<gpu::Optical> evaluate_material(const Level& level, const gpu::Mater
 // Light as it enters: a beam and what of it every outside face lets in.
 struct EnteringLight {
   gpu::BeamRecord beam{};
-  std::span<const glm::vec3> q;  // W/mm^2, one per outside face, even over the face; ignored at reflecting faces
+  std::span<const glm::vec3> q;  // W/mm^2, one per outside face, uniform over the face; ignored at reflecting faces
 };
 
 // The entries of the operator in double precision, or rounded to what a device stores (stored_entries.h).

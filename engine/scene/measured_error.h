@@ -9,7 +9,7 @@
 namespace quadgraph {
 
 // Share of an error that is asked for which a measured one may have and count as keeping it: the truth that it was
-// measured by has an error, too. Of a trial whose record has no share of its own (docs/qgraph-format.md).
+// measured by has an error, too. Used for a trial whose record has no share of its own (docs/qgraph-format.md).
 inline constexpr double usual_measured_share = 0.95;
 
 // Options of a solve, and what the bake has to say of the error that was asked for; no sentence where it says nothing.

@@ -85,7 +85,7 @@ std::string_view key_of(const SceneOption& option) {
   return option.member.substr(option.member.rfind('/') + 1);
 }
 
-// Those in `field`, which has besides no members but `others`.
+// Reads the options at `pointer` from `field`, which has no other members but `others`.
 void read_members(const JsonField& field, std::string_view pointer, std::initializer_list<std::string_view> others,
                   Scene& scene) {
   const std::vector<const SceneOption*> members = members_of(pointer);

@@ -9,7 +9,7 @@
 namespace quadgraph {
 namespace {
 
-// Of the light that enters, what sums in single precision may lose.
+// Share of the light that enters which sums in single precision may lose.
 constexpr double lost_in_sums = 2e-6;
 
 std::string two_digits(double value) {

@@ -26,7 +26,7 @@ gpu::Beam beam_along(const std::optional<glm::vec3>& direction);
 void replace_beams(device::Device& context, std::span<const gpu::Beam> beams, BeamBuffers& buffers,
                    std::vector<LevelBuffers>& levels);
 
-// Light of the only beam, W/mm^2 per face, even over each. Throws InputError unless there is one value >= 0 for each
+// Light of the only beam, W/mm^2 per face, uniform over each. Throws InputError unless there is one value >= 0 for each
 // face of level `number`.
 void write_irradiance(device::Device& context, std::span<const glm::vec3> q, std::uint32_t number, LevelBuffers& level);
 

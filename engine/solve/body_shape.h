@@ -16,10 +16,10 @@ class BodyShape {
   // `graph` must stay alive.
   explicit BodyShape(const QuadGraph& graph);
 
-  // As in the file or as set; what deformers do to them is on the device alone.
+  // The levels as in the file or as set; what deformers do to them is on the device alone.
   const std::vector<Level>& levels() const { return moved_.levels(); }
 
-  // Of the present shape: samples of a level, the mean chord, mm, and SolveReport::deformed.
+  // What is known of the present shape: samples of a level, the mean chord, mm, and SolveReport::deformed.
   const std::vector<SurfaceSample>& samples(std::uint32_t number) const { return samples_[number]; }
   double chord() const { return chord_; }
   const std::string& spoilt() const { return spoilt_; }
@@ -30,7 +30,7 @@ class BodyShape {
   // Whether vertices were set since the last put_back.
   bool set() const { return set_; }
 
-  // As MovedLevels::move.
+  // Moves the vertices of a level, as MovedLevels::move.
   void move(std::uint32_t number, std::span<const glm::vec3> positions);
 
   // All vertices and nodes as in the file, here and on the device.

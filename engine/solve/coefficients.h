@@ -26,7 +26,7 @@ class Coefficients {
   void set(std::uint32_t number, std::span<const gpu::Optical> optical, float eta,
            std::span<const SurfaceSample> samples);
 
-  // Of the material or the arrays, also of those that are set later. Throws InputError naming the edit and as
+  // Edits of the material or the arrays, also of those that are set later. Throws InputError naming the edit and as
   // check_edit.
   void set(std::span<const Edit> edits);
 
@@ -35,7 +35,7 @@ class Coefficients {
 
   float eta() const { return eta_; }
 
-  // The same everywhere.
+  // Whether the coefficients are the same everywhere.
   bool even() const { return material_ && material_->pattern == gpu::PATTERN_NONE && edits_.edits.empty(); }
 
   // One entry per sample of level `number`.

@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
 
-// Of the cube of the rest box's diagonal: what a tet counts for at least, so that a body without any volume is finite.
+// Volume that a tet counts for at least, as a share of the cube of the rest box's diagonal, so that a body without any
+// volume is finite.
 constexpr double least_volume = 1e-15;
 
 std::uint32_t elements_of(const Level& level) {

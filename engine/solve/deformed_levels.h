@@ -38,16 +38,13 @@ class DeformedLevels {
   // Whether the shapes under the present list and another differ by a rigid motion of the whole at most.
   bool same_shape(std::span<const Deformer> list) const;
 
-  // Whether it is that of the rest.
-  bool rest_shape() const { return without_rigid_end(list_).empty(); }
-
   // Vertices and nodes of all levels, and their states. `list` has been checked.
   void record(Workspace& work, std::span<const Deformer> list, const RestBox& box, std::vector<LevelBuffers>& levels);
 
   // Nodes of a level, which has got its buffer of them since.
   void record_nodes(Workspace& work, std::uint32_t number, const LevelBuffers& level);
 
-  // Of what has been recorded and has run.
+  // State of a level after what has been recorded and has run.
   ShapeState state(std::uint32_t number) const;
 
   // All vertices and nodes as in the file; waits.

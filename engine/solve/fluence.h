@@ -9,7 +9,7 @@
 
 namespace quadgraph {
 
-// Of light that was scattered, at the carriers of the last solve's method on level 0 in its present shape.
+// Fluence of light that was scattered, at the carriers of the last solve's method on level 0 in its present shape.
 struct Fluence {
   std::vector<glm::vec3> points;  // mm; vertices of the tets, or the nodes, those of tets first (on_vertices)
   std::vector<glm::vec3> values;  // W/mm^2
@@ -18,8 +18,8 @@ struct Fluence {
 // `method`: that of the last solve, which must have gone over level 0. Throws InputError before a solve.
 Fluence fluence(Simulation& simulation, Method method);
 
-// The same at `points`, mm, W/mm^2: linear in the tets where the carriers are their vertices, else one value in each
-// tet, its node's; NaN outside the body (engine/reference/tet_locator.h).
+// Fluence of scattered light at `points`, mm, W/mm^2: linear in the tets where the carriers are their vertices, else
+// one value in each tet, its node's; NaN outside the body (engine/reference/tet_locator.h).
 std::vector<glm::vec3> fluence_at(Simulation& simulation, Method method, std::span<const glm::vec3> points);
 
 }  // namespace quadgraph

@@ -1,5 +1,5 @@
-// Light from part to part: what leaves the body and meets it again enters it again, bounce by bounce, on the level
-// whose file says what its faces see of each other (Level::seen).
+// Inter-reflection between points of the surface: light that leaves the body and meets it again enters it again, bounce
+// by bounce, on the level whose file says what its faces see of each other (Level::seen).
 //
 // One bounce: E_f = 1/N sum over entries of J, J = M + (1 - T_d) E, scaled by one factor per channel so that all that
 // is sent towards the body arrives. T_d E enters, as one beam (BeamBuffers) along one ray per face. Finer levels get E
@@ -26,10 +26,10 @@ class InterReflection {
   // Room for the bounces, unless it is there. To be called where `level` has a value.
   void make_room(Workspace& work, const std::vector<LevelBuffers>& levels);
 
-  // That level, if they see anything; no light enters again elsewhere.
+  // The level on which faces see each other, if any do; no light enters again elsewhere.
   std::optional<std::uint32_t> level() const { return matrix_ && !matrix_->empty() ? level_ : std::nullopt; }
 
-  // Its rows and entries.
+  // Rows and entries of that level: what its faces see.
   std::optional<SeenRows> seen(device::Device& context);
 
   // The vertices of level `number` have moved.
@@ -45,7 +45,7 @@ class InterReflection {
   // To be called once in a solve.
   void refresh(Workspace& work, std::span<const Level> shape, std::vector<LevelBuffers>& levels, std::uint32_t rows);
 
-  // As ExchangeMatrix::age; 0 without one.
+  // How far the exchange is behind the shape, as ExchangeMatrix::age; 0 without one.
   std::uint32_t age() const { return matrix_ ? matrix_->age() : 0; }
 
   // No light has entered again, on any level.
@@ -65,7 +65,7 @@ class InterReflection {
   void begin();
   std::uint32_t count() const { return count_; }
 
-  // Of the last bounce that has run; 0 without any.
+  // The last bounce that has run: its power, 0 without any, and whether it was small enough to be the last.
   glm::dvec3 power() const;  // W, that enters again
   bool converged(double tolerance) const;
 

@@ -20,14 +20,14 @@ struct LevelBuffers {
   device::Buffer face_offset, face_incidence;
   device::Buffer links;    // uvec4; for the graph methods, made at first use
   device::Buffer nodes;    // vec3, mm; inner nodes, then surface nodes; for the graph methods, made at first use
-  device::Buffer rest;     // the same where the file has them, as far as optical goes: the material moves with the body
+  device::Buffer rest;     // nodes where the file has them, as far as optical goes: the material moves with the body
   device::Buffer optical;  // Optical per node; of the tets alone, or one for all (Coefficients), where that is enough
   bool even = false;       // optical is the same everywhere, and read from the first
   gpu::LeastTet least{};   // of the tets in the present shape
   bool inverted = false;   // some of them are turned inside out
   device::Buffer q;        // vec3 per face, W/mm^2: written by the lights or by set_irradiance
   device::Buffer beam_q;   // float, per beam (BeamBuffers) gpu::Beam::floats per face: what q is made of
-  device::Buffer sky;      // float per face: share of even light from outside that no other part of the body hides
+  device::Buffer sky;      // float per face: share of uniform illumination that no other part of the body hides
 
   // Where the last beam begins in beam_q, that of light that enters again, bytes.
   std::uint64_t beam_again() const { return beam_q.size() - face_count * gpu::BEAM_RGB * sizeof(float); }

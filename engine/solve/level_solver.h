@@ -45,7 +45,7 @@ struct SolverRules {
   SolverLooks looks;
 };
 
-// Those of the first choice for SolverKind::automatic.
+// The rules of a solver; for SolverKind::automatic those of its first choice.
 SolverRules rules_of(SolverKind solver);
 
 class LevelSolver {
@@ -76,7 +76,7 @@ class LevelSolver {
   // channel where conjugate gradients or a relaxation break down.
   void take();
 
-  // Of the last `take`.
+  // The state that the last `take` read.
   const gpu::SolveState& state() const { return state_; }
   bool running() const {
     return state_.status == gpu::SOLVE_RUNNING && !stagnated_ && state_.iterations < task_.max_iterations;

@@ -7,7 +7,7 @@
 namespace quadgraph {
 namespace {
 
-// Of the column r of a transfer: the places of its weights, from offset[r] to offset[r + 1].
+// A transfer by columns: the places of the weights of column r, from offset[r] to offset[r + 1].
 struct Transposed {
   std::vector<std::uint32_t> offset, place;
 };

@@ -53,7 +53,8 @@ const device::Buffer& Multigrid::correction(std::uint32_t level) const {
   return level == coarsest() ? op(level).other : op(level).product;
 }
 
-// As many as there are vertices across the body, whose square the condition of the coarsest operator grows with; even.
+// Steps on the coarsest level: as many as there are vertices across the body, whose square the condition of its
+// operator grows with; an even number.
 std::uint32_t Multigrid::coarse_steps() const {
   const auto across = static_cast<std::uint32_t>(std::ceil(std::cbrt(static_cast<double>(op(coarsest()).count))));
   return across + across % 2;

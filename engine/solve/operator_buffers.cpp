@@ -15,7 +15,7 @@ device::Buffer upload(device::Device& context, const std::vector<T>& values, con
   return device::upload<T>(context, values, name);
 }
 
-// Of ascending numbers from 0 on: how many are at most 0, 1, ...
+// Where layers end: of ascending numbers from 0 on, how many are at most 0, 1, ...
 std::vector<std::uint32_t> ends_of(const std::vector<std::uint32_t>& layers) {
   std::vector<std::uint32_t> ends(layers.back() + 1, 0);
   for (std::uint32_t v = 0; v < layers.size(); ++v) ends[layers[v]] = v + 1;
@@ -125,6 +125,10 @@ std::uint64_t OperatorBuffers::block_bytes() const {
 
 gpu::RowsRef OperatorBuffers::rows() const {
   return {slice_offset.address(), entry.address(), row_sum.address(), (compact_rows() ? row_sum : diagonal).address()};
+}
+
+gpu::RightHandSideRef OperatorBuffers::right_hand_side(const device::Buffer& reduction) const {
+  return {rows().diagonal, b.address(), state.address(), reduction.address()};
 }
 
 std::uint64_t OperatorBuffers::product_bytes() const {

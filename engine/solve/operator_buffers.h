@@ -42,15 +42,16 @@ struct OperatorBuffers {
   device::Buffer surface_share;                        // SurfaceShare of each
   device::Buffer surface_before, surface_start;        // vec3 of each: exitance at the last look, and at the start
 
-  // fem only, like all that follow: of a body at rest and coefficients that are the same everywhere.
+  // fem only, like all that follow: what rows are assembled from where the body is at rest and its coefficients are the
+  // same everywhere.
   device::Buffer entry_shape, entry_area, row_shape;  // AssembleEvenPush
 
-  // Of all others.
+  // What rows are assembled from in all other cases.
   std::uint32_t edge_count = 0;
   device::Buffer edge_entry, ring_offset, ring;  // AssembleEdgesPush
   device::Buffer tet_offset, tet_incidence;      // AssembleFemPush
   device::Buffer tet_shape, face_area;           // ShapePush
-  // Of polygrids: tet_offset and tet_incidence, and what GridMaterialPush makes of them.
+  // What rows of polygrids are assembled from: tet_offset and tet_incidence, and what GridMaterialPush makes of them.
   device::Buffer grid_optical, grid_volume;
   std::vector<std::uint32_t> layer_ends;  // rows of each layer and all above it
   bool measured = false;                  // they belong to the present vertices
@@ -84,6 +85,7 @@ struct OperatorBuffers {
   std::uint64_t entry_bytes() const { return stored_words(model, format) * sizeof(std::uint32_t); }
 
   gpu::RowsRef rows() const;
+  gpu::RightHandSideRef right_hand_side(const device::Buffer& reduction) const;
   std::uint64_t product_bytes() const;  // read by one product with the rows, diagonal left out
 
  private:

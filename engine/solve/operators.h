@@ -29,10 +29,11 @@ class Operators {
   void create(device::Device& context, std::span<const Level> levels, const OperatorKey& key, bool even,
               bool two_steps);
 
-  // Of a key that has been created.
+  // The operator of a level, for a key that has been created.
   OperatorBuffers& at(const OperatorKey& key, std::uint32_t level) { return *levels_.at(key)[level].op; }
 
-  // Of a key that has been created: levels, at most MAX_LEVELS; the way from level `level` + 1 to it.
+  // For a key that has been created: how many levels it has, at most MAX_LEVELS; the transfer to `level` from the next
+  // coarser one.
   std::uint32_t count(const OperatorKey& key) const { return static_cast<std::uint32_t>(levels_.at(key).size()); }
   const TransferBuffers& transfer(const OperatorKey& key, std::uint32_t level) const {
     return *levels_.at(key)[level].transfer;
@@ -45,7 +46,7 @@ class Operators {
   // now, the operators are to be created again, with plain ones.
   void remeasure(std::uint32_t number, const Level& level);
 
-  // The same where the device has moved them; `conduction`: their mean, as format_of takes it.
+  // Vertices of a level have been moved by the device; `conduction`: its mean, as format_of takes it.
   void remeasure(std::uint32_t number, double conduction);
 
   // All vertices lie as in the file again.

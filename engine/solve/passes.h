@@ -1,4 +1,5 @@
-// The compute pipelines of the solve, created at first use: compiling takes long on lavapipe, and no solve needs all.
+// The compute pipelines of the solve, created at first use: compiling takes a GPU's driver long, and no solve needs
+// all.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +26,8 @@ class LazyPass {
   std::optional<device::ComputePass> pass_;
 };
 
-// All passes by their shaders, which know what there is of each: one for all, or one per model, or per model and format
-// of entries.
+// All passes by their shaders, whose types say how many pipelines a shader has: one for all, one per model, or one per
+// model and format of entries.
 class Passes {
  public:
   LazyPass& of(const device::Shader& shader) { return made(shader, {}); }

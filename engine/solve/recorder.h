@@ -32,7 +32,7 @@ class Recorder {
     commands_->end_pass();
   }
 
-  // The same with workgroup counts from the device. Bytes and count are added by `did`, once known.
+  // One timed dispatch with workgroup counts from the device. Bytes and count are added by `did`, once known.
   template <typename Push>
   void dispatch_indirect(LazyPass& pass, const Push& push, const device::Buffer& arguments, std::uint64_t offset,
                          const std::string& name) {

@@ -63,7 +63,7 @@ Neighbours vertex_neighbours(const Level& level);
 // Rows of the vertices.
 SlicedColumns slice(const Neighbours& rows, std::uint32_t slice_rows);
 
-// Of the present vertices of `level`; `rows` are its vertex_neighbours.
+// What elements make of the present vertices of `level`; `rows` are its vertex_neighbours.
 FemShape fem_shape(const Level& level, const Neighbours& rows, const SlicedColumns& columns);
 FemRings fem_rings(const Level& level, const Neighbours& rows, const SlicedColumns& columns);
 

@@ -23,7 +23,7 @@ double solver_ms(const std::vector<PassStats>& passes) {
   return spent;
 }
 
-// As a number with two digits after the point.
+// A ratio as text, with two digits after the point.
 std::string ratio_text(double ratio) {
   char text[32];
   std::snprintf(text, sizeof(text), "%.2f", ratio);

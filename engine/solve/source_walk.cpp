@@ -22,8 +22,8 @@ std::uint32_t rays(std::uint32_t beam_kind, bool mean_rays) {
 
 constexpr std::uint64_t sums_bytes = 2 * gpu::WALK_SUMS * power_bytes;
 
-// Of one beam: every invocation looks at its face; half the faces are lit, evenly, and a ray crosses ten tets, about as
-// many as in marble at the finest level.
+// Bytes that the walk of one beam moves: every invocation looks at its face; half the faces are lit, uniformly, and a
+// ray crosses ten tets, about as many as in marble at the finest level.
 std::uint64_t walk_bytes(const LevelBuffers& level, std::uint32_t ray_count) {
   constexpr std::uint64_t tet_bytes = 2 * sizeof(std::uint32_t) + vec3_bytes + sizeof(gpu::Optical) + 2 * power_bytes;
   return std::uint64_t{level.face_count} * ray_count * (FACE_QUARTERS * sizeof(float) + 10 * tet_bytes / 2);
@@ -184,10 +184,7 @@ void SourceWalk::record_right_hand_side(Workspace& work, const LevelBuffers& lev
   const gpu::RightHandSideBuriedPush push{.deposit = deposit(method).address(),
                                           .vertices = level.vertices.address(),
                                           .tets = level.tets.address(),
-                                          .diagonal = op.rows().diagonal,
-                                          .b = op.b.address(),
-                                          .state = op.state.address(),
-                                          .reduction = work.reduction.address(),
+                                          .side = op.right_hand_side(work.reduction),
                                           .count = op.count,
                                           .deposit_count = carriers(level, method),
                                           .per_volume = method == Method::quadgraph_fdm ? 1u : 0u};

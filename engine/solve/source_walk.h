@@ -69,7 +69,7 @@ class SourceWalk {
   // W per face of what left unscattered, in the last walk that has run; `scale` as on the device.
   std::vector<glm::dvec3> unscattered_power(device::Device& context, const glm::dvec3& scale) const;
 
-  // Of the last walk that has run.
+  // Power of the last walk that has run.
   WalkPower power() const;
 
  private:
@@ -92,11 +92,11 @@ class SourceWalk {
   bool mean_rays_ = false;                       // in what was walked
   bool again_ = false;                           // light that entered again is in the results
   device::Buffer crossings_;                     // walk_shared.h
-  // Of the scene's light; by carrier, made at first use.
+  // Results for the scene's light; by carrier, made at first use.
   std::array<device::Buffer, 2> deposits_;
   device::Buffer unscattered_;
   Sums sums_;
-  // With what entered again; made at first use.
+  // Results with the light that entered again; made at first use.
   std::array<device::Buffer, 2> all_deposits_;
   device::Buffer all_unscattered_;
   Sums sums_again_;

@@ -42,7 +42,7 @@ class SurfaceResults {
   // Exitance and energy of the final solution.
   void record(Workspace& work, const Solved& solved);
 
-  // Of what was recorded last and has run; the walk's share is not in it.
+  // Energy of what was recorded last and has run, without the walk's share; and what was clipped in it.
   Energy energy() const;
   glm::dvec3 clipped() const;
 

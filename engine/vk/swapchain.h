@@ -22,13 +22,13 @@ struct SwapchainFrame {
   VkCommandBuffer commands;
   VkImage image;
   VkImageView view;
-  std::uint32_t number;  // of the image
+  std::uint32_t number;  // which image of the swapchain
 };
 
 class Swapchain {
  public:
-  // Of the context's surface. The window is `width` x `height` pixels where the surface does not say so itself. Throws
-  // DeviceError where the surface has no 8-bit format that copies can write.
+  // Presents to the context's surface. The window is `width` x `height` pixels where the surface does not say so
+  // itself. Throws DeviceError where the surface has no 8-bit format that copies can write.
   Swapchain(Context& context, std::uint32_t width, std::uint32_t height);
   ~Swapchain();
   Swapchain(const Swapchain&) = delete;

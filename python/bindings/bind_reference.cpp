@@ -59,26 +59,17 @@ Problem problem_of(const std::string& method, const std::string& source, const s
 }
 
 py::dict assemble_dict(const QuadGraph& graph, std::uint32_t index, const std::string& method,
-                       const FloatArray& sigma_s_prime, const FloatArray& sigma_a, double eta,
-                       const std::string& source, const std::string& model) {
+                       const FloatArray& sigma_s_prime, const FloatArray& sigma_a, double eta, const std::string& model,
+                       const std::string& source) {
   const Level& level = level_of(graph, index);
   const auto optical = optical_from(sigma_s_prime, sigma_a, level.node_count());
   const Problem problem = problem_of(method, source, model, optical, eta);
   return rows_dict(assemble(level, problem), problem.model);
 }
 
-py::array diffuse_load_array(const QuadGraph& graph, std::uint32_t index, const std::string& method,
-                             const FloatArray& sigma_s_prime, const FloatArray& sigma_a, double eta,
-                             const FloatArray& q, const std::string& model) {
-  const Level& level = level_of(graph, index);
-  const auto optical = optical_from(sigma_s_prime, sigma_a, level.node_count());
-  const Problem problem = problem_of(method, "diffuse", model, optical, eta);
-  return fields(diffuse_load(level, problem, vectors(q, level.face_count(), "q")), problem.model);
-}
-
 py::array buried_load_array(const QuadGraph& graph, std::uint32_t index, const std::string& method,
                             const FloatArray& sigma_s_prime, const FloatArray& sigma_a, double eta, const FloatArray& q,
-                            const std::optional<std::array<float, 3>>& direction, const std::string& model) {
+                            const std::string& model, const std::optional<std::array<float, 3>>& direction) {
   const Level& level = level_of(graph, index);
   const auto optical = optical_from(sigma_s_prime, sigma_a, level.node_count());
   check_optical(optical, level.node_count());
@@ -191,20 +182,17 @@ void bind_reference(py::module_& module) {
   module.def("evaluate_material", &coefficients_at_nodes, py::arg("graph"), py::arg("level"), py::arg("material"),
              "sigma_s_prime and sigma_a, (n, 3) in 1/mm, at the nodes.");
   module.def("assemble", &assemble_dict, py::arg("graph"), py::arg("level"), py::arg("method"),
-             py::arg("sigma_s_prime"), py::arg("sigma_a"), py::arg("eta"), py::arg("source") = name_of(usual.source),
-             py::arg("model") = "diffusion",
+             py::arg("sigma_s_prime"), py::arg("sigma_a"), py::arg("eta"), py::arg("model"),
+             py::arg("source") = name_of(usual.source),
              "Rows of the symmetric system A x = b, (phi, phi2) = to_phi * x (engine/reference/operator.h): offset, "
              "column, to_phi (n, 3), and weight and diagonal, (m, 3) with diffusion, (m, 3, 3) of a11, a12, a22 with "
              "sp3.");
-  module.def("diffuse_load", &diffuse_load_array, py::arg("graph"), py::arg("level"), py::arg("method"),
-             py::arg("sigma_s_prime"), py::arg("sigma_a"), py::arg("eta"), py::arg("q"), py::arg("model") = "diffusion",
-             "b of the diffuse source for irradiance q (n_f, 3) in W/mm^2: (n, 3), or (n, 2, 3) with sp3.");
   module.def(
       "buried_load", &buried_load_array, py::arg("graph"), py::arg("level"), py::arg("method"),
-      py::arg("sigma_s_prime"), py::arg("sigma_a"), py::arg("eta"), py::arg("q"), py::arg("direction") = py::none(),
-      py::arg("model") = "diffusion",
+      py::arg("sigma_s_prime"), py::arg("sigma_a"), py::arg("eta"), py::arg("q"), py::arg("model"),
+      py::arg("direction") = py::none(),
       "b of the buried source for irradiance q (n_f, 3) in W/mm^2 that travels along direction (3,) outside, None: "
-      "Lambertian: shape as of diffuse_load.");
+      "Lambertian: (n, 3), or (n, 2, 3) with sp3.");
   module.def("solve_reference", &reference, py::arg("graph"), py::arg("level"), py::arg("sigma_s_prime"),
              py::arg("sigma_a"), py::arg("eta"), py::arg("q"), py::arg("direction") = py::none(),
              py::arg("method") = name_of(usual.method), py::arg("solver") = name_of(usual.solver),

@@ -2,10 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "assemble/assembly_shared.h"
 #include "material/optics.h"
-#include "solver/fields.glsl"
-#include "solver/stored_rows.glsl"
-#include "shared/stride.glsl"
-#include "shared/reduce.glsl"
+#include "solver/right_hand_side.glsl"
 
 // Scaled b at every node, and its norm.
 struct RightHandSideFdmPush {
@@ -15,10 +12,7 @@ struct RightHandSideFdmPush {
   Uints face_kinds;
   Vec3s q;
   Scales scale;
-  Entries diagonal;
-  Fields b;
-  SolveStates state;
-  Reduction reduction;
+  RightHandSideRef side;
   uint count;
   uint tet_count;
   Boundary boundary;
@@ -37,11 +31,8 @@ vec3 surface_load(uint face) {
 void main() {
   vec3 square = vec3(0);
   EACH(i, push.count) {
-    Field b = diffuse_source(push.boundary, i < push.tet_count ? vec3(0) : surface_load(i - push.tet_count));
-    push.b.at[i] = b;
-    square += product(b, solved(load_diagonal(push.diagonal, i), b));
+    vec3 load = i < push.tet_count ? vec3(0) : surface_load(i - push.tet_count);
+    square += store_b(push.side, i, diffuse_source(push.boundary, load));
   }
-  vec3 norm;
-  if (!reduce_dispatch(push.reduction, square, norm)) return;
-  if (gl_LocalInvocationID.x == 0u) push.state.at[0].norm = norm;
+  store_norm(push.side, square);
 }

@@ -1,11 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "assemble/assembly_shared.h"
-#include "solver/fields.glsl"
 #include "material/optics.h"
-#include "solver/stored_rows.glsl"
-#include "shared/stride.glsl"
-#include "shared/reduce.glsl"
+#include "solver/right_hand_side.glsl"
 
 // Scaled b at every vertex, and its norm.
 struct RightHandSideFemPush {
@@ -15,10 +12,7 @@ struct RightHandSideFemPush {
   Uints face_incidence;
   Vec3s q;
   Scales scale;
-  Entries diagonal;
-  Fields b;
-  SolveStates state;
-  Reduction reduction;
+  RightHandSideRef side;
   uint count;
   uint surface_count;
   Boundary boundary;
@@ -41,11 +35,8 @@ vec3 surface_load(uint i) {
 void main() {
   vec3 square = vec3(0);
   EACH(i, push.count) {
-    Field b = diffuse_source(push.boundary, i < push.surface_count ? surface_load(i) : vec3(0));
-    push.b.at[i] = b;
-    square += product(b, solved(load_diagonal(push.diagonal, i), b));
+    vec3 load = i < push.surface_count ? surface_load(i) : vec3(0);
+    square += store_b(push.side, i, diffuse_source(push.boundary, load));
   }
-  vec3 norm;
-  if (!reduce_dispatch(push.reduction, square, norm)) return;
-  if (gl_LocalInvocationID.x == 0u) push.state.at[0].norm = norm;
+  store_norm(push.side, square);
 }

@@ -21,7 +21,7 @@ struct ExchangePush {
   Reduction reduction;
   uint count;
   float rays;         // per face
-  float transmitted;  // share of even light
+  float transmitted;  // share of uniform illumination that enters
 };
 layout(push_constant, scalar) uniform Block { ExchangePush push; };
 

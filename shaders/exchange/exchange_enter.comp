@@ -15,7 +15,7 @@ struct ExchangeEnterPush {
   ExchangeStates state;
   Reduction reduction;
   uint count;
-  float transmitted;  // share of even light
+  float transmitted;  // share of uniform illumination that enters
 };
 layout(push_constant, scalar) uniform Block { ExchangeEnterPush push; };
 

@@ -18,7 +18,7 @@ struct ExchangeFinerPush {
   Reduction reduction;
   uint count;
   uint width;
-  float transmitted;  // share of even light
+  float transmitted;  // share of uniform illumination that enters
 };
 layout(push_constant, scalar) uniform Block { ExchangeFinerPush push; };
 

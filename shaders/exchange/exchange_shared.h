@@ -1,4 +1,4 @@
-// What the passes that take light from part to part share with C++, in scalar layout; see shared.h.
+// What the passes of inter-reflection share with C++, in scalar layout; see shared.h.
 #ifndef QUADGRAPH_EXCHANGE_SHARED_H
 #define QUADGRAPH_EXCHANGE_SHARED_H
 

@@ -22,7 +22,7 @@ struct IrradiancePush {
   uint light_count;
   uint subdivision;  // even: the face is sampled at the centroids of subdivision^2 equal triangles
   float eta;
-  float diffuse_transmittance;  // of a smooth surface under even light from outside
+  float diffuse_transmittance;  // of a smooth surface under uniform illumination from outside
 };
 layout(push_constant, scalar) uniform Block { IrradiancePush push; };
 #define ENTERED push

@@ -13,7 +13,7 @@ const uint LIGHT_DIRECTIONAL = 0u;
 const uint LIGHT_POINT = 1u;
 const uint LIGHT_AMBIENT = 2u;
 // Kinds from here on have a LightShape. Passes that know them are pipelines of their own, by a specialization constant
-// (lights.glsl): llvmpipe walks through code that no light needs.
+// (lights.glsl), so that scenes without such lights do not run their code.
 const uint LIGHT_FIRST_SHAPED = 3u;
 const uint LIGHT_SPOT = 3u;
 const uint LIGHT_PATCH = 4u;  // of a rectangle
@@ -58,7 +58,7 @@ float spot_share(LightShape shape, float cosine) {
   return s * s * (3.0 - 2.0 * s);
 }
 
-// Share of the intensity on the axis of light that a flat image sends out evenly: 1 / cosine^3.
+// Share of the intensity on the axis, for a flat image of uniform irradiance: 1 / cosine^3.
 float projected_share(float cosine) {
   return cosine > 0.0 ? 1.0 / (cosine * cosine * cosine) : 0.0;
 }

@@ -67,7 +67,7 @@ struct SurfaceScene {
   QG_REF(Uvec3s) faces;       // level 0
   QG_REF(Vec3s) exitance;     // per surface vertex of level 0, W/mm^2
   QG_REF(Vec3s) unscattered;  // the same
-  QG_REF(Floats) sky;         // per face of level 0: share of even light from outside that the body does not hide
+  QG_REF(Floats) sky;  // per face of level 0: share of uniform illumination from outside that the body does not hide
   QG_REF(LightRecords) lights;
   QG_REF(LightShapes) shapes;  // per light
   QG_REF(ShadowViews) views;

@@ -10,7 +10,7 @@ using glm::max;
 #endif
 
 // Floor of sigma_t in the operators, 1/mm. A clear region has no diffusion coefficient; with a mean free path of ten
-// metres fluence is even across it, and single precision still carries the contrast to any measured material.
+// metres fluence is uniform across it, and single precision still carries the contrast to any measured material.
 const float SIGMA_T_MIN = 1e-4f;
 
 // Reduced extinction coefficient of the operators, 1/mm, > 0.

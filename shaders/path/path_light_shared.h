@@ -25,7 +25,7 @@ struct PathEnterPush {
   uint stripes;  // invocations per triangle and axis
   uint light_count;
   float eta;
-  float diffuse_transmittance;  // of a smooth surface under even light from outside
+  float diffuse_transmittance;  // of a smooth surface under uniform illumination from outside
   PathTools tools;  // where there are any, cells hide the light and not shadow maps, which know nothing of them
 };
 

@@ -41,10 +41,10 @@ const uint LAMBERTIAN_NODES = 4u;
 const float LAMBERTIAN_U[4] = {0.0694318442f, 0.3300094782f, 0.6699905218f, 0.9305681558f};
 const float LAMBERTIAN_W[4] = {0.1739274226f, 0.3260725774f, 0.3260725774f, 0.1739274226f};
 
-// BEAM_MEAN is even light by one ray from an origin, at the mean inside cosine of those of a Lambertian beam: for light
-// that re-enters, bounce after bounce. On face f it has the azimuth (f GOLDEN_TURN mod 2^32) / 2^32 turns, from the
-// face's first edge t1 towards normal x t1. The golden ratio's fraction in units of 2^-32: integers turn alike on CPU
-// and GPU.
+// BEAM_MEAN is uniform illumination by one ray from an origin, at the mean inside cosine of those of a Lambertian beam:
+// for light that re-enters, bounce after bounce. On face f it has the azimuth (f GOLDEN_TURN mod 2^32) / 2^32 turns,
+// from the face's first edge t1 towards normal x t1. The golden ratio's fraction in units of 2^-32: integers turn alike
+// on CPU and GPU.
 const uint GOLDEN_TURN = 2654435769u;
 
 #ifndef __cplusplus

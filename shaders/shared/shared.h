@@ -24,7 +24,8 @@ using uint = std::uint32_t;
 #define QG_REF(Name) Name
 #endif
 
-// Invocations per compute workgroup. Every device of Vulkan 1.3 offers at least 128; GPUs and lavapipe offer 1024.
+// Invocations per compute workgroup. Every device of Vulkan 1.3 offers at least 128, GPUs 1024, and the
+// processor any number.
 #define WORKGROUP_SIZE 256
 // Elements that EACH gives a workgroup (stride.glsl), however many invocations that has.
 #define GROUP_ELEMENTS 256u

@@ -67,7 +67,7 @@ struct RowsRef {
 const uint FACE_OPEN = 0u;
 const uint FACE_REFLECTING = 1u;
 
-// What a tet of a deformed body counts for at least (tet_volume.glsl); 0 in both: for what it is.
+// What a tet of a deformed body counts for at least (tet_volume.glsl); 0 in both: every tet counts for what it is.
 struct LeastTet {
   float quality;  // 1 of a regular tet, 0 of a flat one
   float volume;   // mm^3
@@ -134,13 +134,21 @@ QG_ARRAY(Scales, Scale);
 
 #endif
 
+// Where the right-hand side of a level's rows goes (right_hand_side.glsl): b, and its norm in `state`.
+struct RightHandSideRef {
+  QG_REF(Entries) diagonal;  // of the rows
+  QG_REF(Fields) b;
+  QG_REF(SolveStates) state;
+  QG_REF(Reduction) reduction;
+};
+
 const uint START_FIRST = 0u;     // resets the state, opens the gates
 const uint START_AGAIN = 3u;     // the same within a solve: iterations done so far are kept as earlier ones
 const uint START_CHECK = 1u;     // after the surface has met the tolerance: does the residual agree?
 const uint START_RESIDUAL = 2u;  // no decision
 
-// Rows of barycentric transfers, which cycles use, have so many entries (engine/file/graph.h). llvmpipe divides by
-// what it does not know lane by lane.
+// Rows of barycentric transfers, which cycles use, have so many entries (engine/file/graph.h). A constant, as
+// processors divide slowly by what a compiler does not know.
 const uint BARYCENTRIC_WIDTH = 4u;
 
 #ifdef __cplusplus

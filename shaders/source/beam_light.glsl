@@ -3,7 +3,8 @@
 
 #include "shared/beam_shared.h"
 
-// What a beam brings to a quarter of a face, W/mm^2. Of a level's beam_q each beam has a part with its floats per face.
+// What a beam brings to a quarter of a face, W/mm^2. Each beam has its part of a level's
+// beam_q, with its floats per face.
 vec3 beam_light(Beam beam, Floats beam_q, uint face_count, uint face, uint quarter) {
   uint at = beam.offset * face_count + beam.floats * face;
   if (beam.floats == BEAM_RGB) {

@@ -1,22 +1,16 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "source/walk_shared.h"
-#include "solver/fields.glsl"
 #include "material/optics.h"
-#include "solver/stored_rows.glsl"
 #include "source/fixed_point.glsl"
-#include "shared/stride.glsl"
-#include "shared/reduce.glsl"
+#include "solver/right_hand_side.glsl"
 
 // Scaled b from the deposits, and its norm. Surface nodes of the graph methods have none.
 struct RightHandSideBuriedPush {
   Uints deposit;
   Vec3s vertices;  // those of the tets, where b is power per volume
   Uvec4s tets;
-  Entries diagonal;
-  Fields b;
-  SolveStates state;
-  Reduction reduction;
+  RightHandSideRef side;
   uint count;
   uint deposit_count;  // elements with a deposit: the first ones
   uint per_volume;     // 1: quadgraph-fdm
@@ -36,11 +30,7 @@ void main() {
   EACH(i, push.count) {
     vec3 power = i < push.deposit_count ? power_at(push.deposit, i) : vec3(0);
     if (push.per_volume == 1u && power != vec3(0)) power /= volume_of(i);
-    Field b = lit(power);
-    push.b.at[i] = b;
-    square += product(b, solved(load_diagonal(push.diagonal, i), b));
+    square += store_b(push.side, i, lit(power));
   }
-  vec3 norm;
-  if (!reduce_dispatch(push.reduction, square, norm)) return;
-  if (gl_LocalInvocationID.x == 0u) push.state.at[0].norm = norm;
+  store_norm(push.side, square);
 }

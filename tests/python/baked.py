@@ -8,9 +8,6 @@ from quadgraph.file.graph_file import write
 from quadgraph.mesh.surface import Surface
 from quadgraph.tets import graph
 from quadgraph.tets.tetrahedralise import tetrahedralise
-from quadgraph_validation.bodies.meshes import face_frames
-
-__all__ = ["face_frames", "write_levels"]
 
 
 def write_levels(path: Path, surfaces: list[Surface], rays: int = 0) -> Path:

@@ -1,9 +1,10 @@
-"""Where the engine's program is, for the tests that run it."""
+"""Where the engine's program is, and how it refuses, for the tests that run it."""
 
 from __future__ import annotations
 
 import os
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 
@@ -17,3 +18,12 @@ def find_engine() -> str | None:
 
 
 ENGINE = find_engine()
+
+
+def assert_refused(result: subprocess.CompletedProcess, *words: str) -> None:
+    """The program failed with one line of words, these among them."""
+    assert result.returncode == 1
+    assert result.stdout == ""
+    assert len(result.stderr.splitlines()) == 1
+    for word in words:
+        assert word in result.stderr

@@ -12,6 +12,7 @@ import numpy as np
 import trimesh
 
 from quadgraph.mesh.surface import Surface
+from quadgraph_validation.bodies.meshes import face_frames
 from quadgraph_validation.truth.fresnel import gauss, transmittance_from_outside
 
 # Per point (n, 3) mm, and place (n, 2) in [0, 1)^2 on the light: where what falls on the point begins (n, 3), mm or, at
@@ -21,6 +22,12 @@ Emitter = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 FAR = 1e4  # mm
 # Multiples of these fill the four-dimensional cube evenly: powers of the root of x^5 = x + 1 (M. Roberts 2018).
 _STEP = 1.1673039782614187 ** -np.arange(1.0, 5.0)
+
+
+def lit_from_above(level) -> np.ndarray:
+    """Clamped-cosine irradiance from +z, (n_f, 3) W/mm^2."""
+    _, normal, _ = face_frames(level)
+    return np.clip(normal[:, 2:], 0, None) * np.array([1.0, 0.8, 0.6])
 
 
 @dataclass(frozen=True)

@@ -31,16 +31,16 @@ float srgb_encode(float linear);
 inline constexpr double exposure_quantile = 0.95;
 inline constexpr double exposure_bright = 0.4;
 
-// That quantile of the brightest channel is brought to no more than this, so that surfaces of a saturated colour, whose
-// luminance is low, keep their shape too.
+// The exposure_quantile of the brightest channel is brought to no more than this, so that surfaces of a saturated
+// colour, whose luminance is low, keep their shape too.
 inline constexpr double exposure_most = 0.9;
 
-// Those quantiles of the luminance and of the brightest channel of covered pixels.
+// The exposure_quantile of the luminance and of the brightest channel of covered pixels.
 struct Brightness {
   double luminance = 0, brightest = 0;
 };
 
-// What auto_exposure makes of them.
+// Stops that auto_exposure takes for a picture of that brightness.
 float exposure_for(const Brightness& brightness);
 
 // Stops that bring the quantiles to their places. Depends on nothing but the picture; 0 for a black one.

@@ -77,7 +77,7 @@ class Scene:
         return cls(**members)
 
     def _compiled(self) -> core.Scene:
-        """As the compiled engine holds it. Raises FormatError, InputError."""
+        """This value as the compiled engine holds it. Raises FormatError, InputError."""
         scene = core.scene_file(json.dumps(self._nameable())).at(0)
         return scene.with_deformation(list(map(as_dict, self.deformation))) if self._in_memory else scene
 

@@ -36,7 +36,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         help="CPU seconds for each run of the mesher; its wall time may be four times as long (default: 300)",
     )
     parser.add_argument(
-        "--memory-limit", type=positive_float, metavar="GB", help="memory for each run of the mesher (default: 4)"
+        "--memory-limit", type=positive_float, metavar="GB", help="memory for each run of the mesher (default: 4.3)"
     )
     parser.add_argument("--json", action="store_true", help="print the report as JSON on standard output")
     parser.add_argument(

@@ -195,7 +195,7 @@ def test_motion_starts_from_the_last_solution(engine):
 
 
 def entered_evenly(engine: quadgraph.Engine, mean_rays: bool) -> np.ndarray:
-    """What even light leaves in the body, W."""
+    """What uniform illumination leaves in the body, W."""
     engine.lights = [quadgraph.AmbientLight(irradiance=1)]
     return engine.solve(mean_rays=mean_rays).energy.absorbed
 

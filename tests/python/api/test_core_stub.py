@@ -36,7 +36,7 @@ def stubbed(body: list[ast.stmt]) -> dict[str, list[Signature]]:
 
 
 def compiled(holder: object) -> dict[str, list[Signature]]:
-    """The same of the compiled module or a class of it, by the first lines of its functions' descriptions."""
+    """Functions of the compiled module or a class of it, by the first lines of their descriptions."""
     found = {}
     for name, value in vars(holder).items():
         public = not name.startswith("_") or name == "__init__"

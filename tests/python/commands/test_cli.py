@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 
@@ -11,10 +12,31 @@ import pytest
 
 import tiny
 from quadgraph import cli
+from quadgraph.baking.pipeline import BakeOptions
 from quadgraph.base.arguments import length_mm
 from quadgraph.file import level_quality
+from quadgraph.tets.polygrid.build import DEFAULT_CELLS
+from quadgraph.tets.polygrid.polycube import DEFAULT_CUBES
 from quadgraph.tets.tet_geometry import determinants
+from quadgraph.tets.tetrahedralise import DEFAULT_GRADING
 from shapes import icosphere, write_obj
+
+TOLD_DEFAULT = re.compile(r"--([a-z-]+) .*\(default: (?:about )?([\w.]+)")
+
+
+def test_the_help_of_bake_tells_the_defaults_of_what_bakes(capsys):
+    """It is printed without importing the modules that have them."""
+    usual = BakeOptions()
+    defaults = {"mesher": usual.mesher, "order": usual.order}
+    numbers = {"relax-nodes": usual.relax_nodes, "visibility-rays": usual.visibility_rays, "grading": DEFAULT_GRADING}
+    numbers |= {"cubes": DEFAULT_CUBES, "cells": DEFAULT_CELLS}
+    numbers |= {"time-limit": usual.time_limit_s, "memory-limit": round(usual.memory_limit_bytes / 1e9, 1)}
+    defaults |= {name: f"{number:.3g}" for name, number in numbers.items()}
+    with pytest.raises(SystemExit):
+        cli.main(["bake", "--help"])
+    options = re.split(r"^  (?=-)", capsys.readouterr().out, flags=re.MULTILINE)
+    told = [found.groups() for text in options if (found := TOLD_DEFAULT.match(" ".join(text.split())))]
+    assert {name: text for name, text in told if name in defaults} == defaults
 
 
 @pytest.fixture

@@ -6,12 +6,11 @@ import json
 from pathlib import Path
 
 import pytest
-import trimesh
 
 from quadgraph import cli
 from quadgraph.baking import pipeline
 from quadgraph.commands import device_memory, scene_options
-from shapes import icosphere, torus
+from shapes import icosphere, torus, write_obj
 
 _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 
@@ -22,8 +21,7 @@ def files(tmp_path_factory) -> dict[str, Path]:
     folder = tmp_path_factory.mktemp("memory")
     paths = {}
     for name, surface, rays in (("ring", torus(), 64), ("ball", icosphere(3, 10), 0)):
-        mesh = folder / f"{name}.obj"
-        trimesh.Trimesh(surface.vertices, surface.triangles, process=False).export(mesh, digits=9)
+        mesh = write_obj(surface, folder / f"{name}.obj")
         paths[name] = folder / f"{name}.qgraph"
         pipeline.bake(mesh, paths[name], pipeline.BakeOptions(unit="mm", levels=2, visibility_rays=rays))
     return paths

@@ -13,7 +13,7 @@ import pytest
 from PIL import Image
 
 import tiny
-from engine_program import ENGINE
+from engine_program import ENGINE, assert_refused
 from quadgraph.cli import main
 
 pytestmark = pytest.mark.skipif(ENGINE is None, reason="quadgraph-engine is not built: run tools/setup")
@@ -25,14 +25,6 @@ def run(*arguments: object) -> subprocess.CompletedProcess:
     return subprocess.run(
         [ENGINE, *map(str, arguments)], env=environment, capture_output=True, text=True, timeout=60, check=False
     )
-
-
-def assert_refused(result: subprocess.CompletedProcess, *words: str) -> None:
-    assert result.returncode == 1
-    assert result.stdout == ""
-    assert len(result.stderr.splitlines()) == 1
-    for word in words:
-        assert word in result.stderr
 
 
 def test_png_without_display(tmp_path: Path):

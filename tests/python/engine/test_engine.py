@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from baked import face_frames, write_levels
+from baked import write_levels
+from light_truth import lit_from_above
+from quadgraph_validation.bodies.meshes import face_frames
 from shapes import icosphere
 
 _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
@@ -27,12 +29,6 @@ def engine(sphere_path):
     engine = _core.Engine(sphere_path, validation=True)
     yield engine
     assert engine.validation_messages == []
-
-
-def lit_from_above(level) -> np.ndarray:
-    """Clamped-cosine irradiance from +z, (n_f, 3) W/mm^2."""
-    _, normal, _ = face_frames(level)
-    return np.clip(normal[:, 2:], 0, None) * np.array([1.0, 0.8, 0.6])
 
 
 @pytest.mark.parametrize("material", [MATERIAL, "marble-veins,period=6"])

@@ -8,13 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import trimesh
 from PIL import Image
 
 from engine_program import ENGINE
 from quadgraph import cli
 from quadgraph.baking import pipeline
-from shapes import torus
+from shapes import torus, write_obj
 
 _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 
@@ -24,9 +23,8 @@ LIGHT = ["--light", "directional:1,0,0:1", "--material", "sigma_s_prime=1,sigma_
 @pytest.fixture(scope="module")
 def ring(tmp_path_factory) -> dict[str, str]:
     """A ring of two levels with what its faces see, and without."""
-    surface, folder = torus(), tmp_path_factory.mktemp("ring")
-    mesh = folder / "ring.obj"
-    trimesh.Trimesh(surface.vertices, surface.triangles, process=False).export(mesh, digits=9)
+    folder = tmp_path_factory.mktemp("ring")
+    mesh = write_obj(torus(), folder / "ring.obj")
     paths = {"seeing": folder / "seeing.qgraph", "blind": folder / "blind.qgraph"}
     for name, rays in (("seeing", 64), ("blind", 0)):
         pipeline.bake(mesh, paths[name], pipeline.BakeOptions(unit="mm", levels=2, visibility_rays=rays))

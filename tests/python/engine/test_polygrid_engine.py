@@ -8,6 +8,7 @@ from scipy.special import eval_legendre, spherical_in
 
 import grids
 from grids import RADIUS
+from light_truth import lit_from_above
 from quadgraph.base.errors import FormatError, InputError
 from quadgraph.file import qgraph_file
 from quadgraph.tets.graph import Graph
@@ -38,12 +39,6 @@ def engine(path):
     engine = _core.Engine(path, validation=True)
     yield engine
     assert engine.validation_messages == []
-
-
-def lit_from_above(level) -> np.ndarray:
-    """Clamped-cosine irradiance from +z, (n_f, 3) W/mm^2."""
-    _, normal, _ = face_frames(level)
-    return np.clip(normal[:, 2:], 0, None) * np.array([1.0, 0.8, 0.6])
 
 
 def light(engine, direction=(0.3, 0.0, -1.0)) -> None:
@@ -92,7 +87,7 @@ def test_rows_are_those_of_scipy(graphs, path, method):
     """Entry by entry, each row over its diagonal: two independent assemblies of Appendix B."""
     graph, engine_graph = graphs[0], _core.Engine(path).graph
     sigma_s_prime, sigma_a = _core.evaluate_material(engine_graph, 0, _core.Material(VEINS))
-    rows = _core.assemble(engine_graph, 0, method, sigma_s_prime, sigma_a, 1.3)
+    rows = _core.assemble(engine_graph, 0, method, sigma_s_prime, sigma_a, 1.3, model="diffusion")
     kappa, absorption = kappa_at_vertices(graph, sigma_s_prime, sigma_a)
     outflow = _core.boundary(method, "buried", "diffusion", 1.3)["k11"]
     expected = polygrid_diffusion.operator(graph, kappa, absorption, outflow, published=method == "polygrid").toarray()

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from baked import face_frames, write_levels
+from baked import write_levels
 from quadgraph.file.graph_file import write
-from quadgraph_validation.bodies.meshes import box
+from quadgraph_validation.bodies.meshes import box, face_frames
 from shapes import icosphere, join, moved
 
 _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")

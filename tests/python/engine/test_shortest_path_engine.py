@@ -15,21 +15,13 @@ from quadgraph.base.errors import FormatError, InputError
 from quadgraph.cli import main
 from quadgraph.file import qgraph_file
 from quadgraph.mesh.surface import Surface
-from shapes import cube, icosphere
+from shapes import cube, icosphere, write_obj
 
 _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 
 SIGMA_A, SIGMA_S = 0.02, 1.5
 MATERIAL = f"sigma_s_prime={SIGMA_S},sigma_a={SIGMA_A},eta=1"
 COSTS = {"transport": np.sqrt(3 * SIGMA_A * (SIGMA_A + SIGMA_S)), "extinction": SIGMA_A + SIGMA_S}
-
-
-def write_obj(path: Path, surface) -> Path:
-    """A surface as an OBJ file."""
-    lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in surface.vertices]
-    lines += [f"f {a} {b} {c}" for a, b, c in surface.triangles + 1]
-    path.write_text("\n".join(lines) + "\n")
-    return path
 
 
 @pytest.fixture
@@ -39,7 +31,7 @@ def bare_engine(tmp_path_factory):
 
     def make(surface, material: str = MATERIAL, lights: tuple[str, ...] = ("directional:0,0,1:1",)):
         folder = tmp_path_factory.mktemp("bare")
-        bare.write(write_obj(folder / "mesh.obj", surface), folder / "mesh.qgraph", unit="mm")
+        bare.write(write_obj(surface, folder / "mesh.obj"), folder / "mesh.qgraph", unit="mm")
         engine = _core.Engine(folder / "mesh.qgraph", validation=True)
         engine.set_material(material)
         engine.set_lights(list(lights))
@@ -236,7 +228,7 @@ def test_other_methods_say_why_they_cannot(bare_engine):
 
 def test_files_without_levels_are_checked(tmp_path: Path):
     path = tmp_path / "mesh.qgraph"
-    bare.write(write_obj(tmp_path / "mesh.obj", cube(4.0)), path, unit="mm")
+    bare.write(write_obj(cube(4.0), tmp_path / "mesh.obj"), path, unit="mm")
     file = qgraph_file.read(path)
     assert file.level_count == 0
     assert len(_core.load(path).levels) == 0
@@ -247,7 +239,7 @@ def test_files_without_levels_are_checked(tmp_path: Path):
 
 
 def test_meshes_are_rendered_at_once(tmp_path: Path, capsys):
-    mesh = write_obj(tmp_path / "mesh.obj", icosphere(3, 5.0))
+    mesh = write_obj(icosphere(3, 5.0), tmp_path / "mesh.obj")
     picture, report = tmp_path / "out.png", tmp_path / "out.json"
     arguments = ["render", str(mesh), "--method", "shortest-path", "--size", "64x64", "--path-cells", "24"]
     assert main([*arguments, "--json", str(report), "-o", str(picture)]) == 0

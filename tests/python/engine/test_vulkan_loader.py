@@ -12,7 +12,7 @@ import pytest
 from test_window import MISSING, display
 
 import tiny
-from engine_program import ENGINE
+from engine_program import ENGINE, assert_refused
 
 _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 pytestmark = pytest.mark.skipif(ENGINE is None, reason="quadgraph-engine is not built: run tools/setup")
@@ -50,14 +50,6 @@ def no_driver(undecided, tmp_path) -> dict[str, str]:
     """An environment in which Vulkan's loader finds no driver."""
     absent = str(tmp_path / "absent.json")
     return undecided | {"VK_DRIVER_FILES": absent, "VK_ICD_FILENAMES": absent}
-
-
-def assert_refused(done: subprocess.CompletedProcess, *words: str) -> None:
-    assert done.returncode == 1
-    assert done.stdout == ""
-    assert len(done.stderr.splitlines()) == 1
-    for word in words:
-        assert word in done.stderr
 
 
 @pytest.mark.parametrize("program", [ENGINE, _core.__file__], ids=["quadgraph-engine", "_core"])

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
-import trimesh
 
 from quadgraph.baking import bare
 from quadgraph.base.errors import FormatError, InputError
@@ -15,14 +13,9 @@ from quadgraph.file import qgraph_file
 from quadgraph.mesh import front
 from quadgraph.mesh.mesh_io import read_surface
 from quadgraph.mesh.surface import Surface
-from shapes import icosphere
+from shapes import icosphere, write_obj
 
 _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
-
-
-def write_obj(surface: Surface, path: Path) -> Path:
-    trimesh.Trimesh(surface.vertices, surface.triangles, process=False).export(path)
-    return path
 
 
 def dented(azimuth: float) -> Surface:

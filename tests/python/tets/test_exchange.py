@@ -9,7 +9,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-import trimesh
 from scipy.spatial.transform import Rotation
 
 from quadgraph.baking import pipeline
@@ -18,7 +17,7 @@ from quadgraph.commands.info import describe
 from quadgraph.file import qgraph_file, sections
 from quadgraph.tets import exchange
 from quadgraph_validation.bodies import meshes
-from shapes import pymeshlab_samples, torus
+from shapes import pymeshlab_samples, torus, write_obj
 
 EDGE, THICKNESS, GAP = 10.0, 1.0, 4.0
 
@@ -200,10 +199,7 @@ def test_the_finest_level_that_is_small_enough_is_taken():
 
 @pytest.fixture(scope="module")
 def ring(tmp_path_factory) -> Path:
-    surface = torus()
-    path = tmp_path_factory.mktemp("ring") / "ring.obj"
-    trimesh.Trimesh(surface.vertices, surface.triangles, process=False).export(path, digits=9)
-    return path
+    return write_obj(torus(), tmp_path_factory.mktemp("ring") / "ring.obj")
 
 
 def test_the_bake_stores_it_once_and_the_same_every_time(ring, tmp_path):

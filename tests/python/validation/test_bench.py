@@ -133,7 +133,7 @@ def solver_record() -> dict:
 
 
 def test_charts_are_drawn_for_work_and_for_time(tmp_path):
-    pytest.importorskip("matplotlib", reason="matplotlib is not installed: pip install -e 'python/validation[bench]'")
+    pytest.importorskip("matplotlib", reason="matplotlib is not installed: pip install './python/validation[bench]'")
     written = bench_charts.write(tmp_path / "images", solver_record())
     assert [path.name for path in written] == ["error-work.png", "error-time.png"]
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in written)

@@ -94,7 +94,7 @@ def test_live_frames_do_more_the_more_changes(sphere, tmp_path, capsys):
 
 
 def test_solvers_have_curves_and_targets_and_are_drawn(sphere, tmp_path, capsys):
-    pytest.importorskip("matplotlib", reason="matplotlib is not installed: pip install -e 'python/validation[bench]'")
+    pytest.importorskip("matplotlib", reason="matplotlib is not installed: pip install './python/validation[bench]'")
     record = bench(tmp_path, sphere, "--solvers", "--chart", str(tmp_path / "images"))
     (scene,) = record["solvers"]
     assert {f"solvers/sphere/fmg-pcg/0.1%/{what}" for what in ("work", "ms", "wall/ms")} <= set(record["figures"])
@@ -113,7 +113,7 @@ def test_solvers_have_curves_and_targets_and_are_drawn(sphere, tmp_path, capsys)
 
 
 def test_rivals_are_beside_ours(sphere, tmp_path, capsys):
-    pytest.importorskip("pyamg", reason="pyamg is not installed: pip install -e 'python/validation[bench]'")
+    pytest.importorskip("pyamg", reason="pyamg is not installed: pip install './python/validation[bench]'")
     record = bench(tmp_path, sphere, "--rivals")
     (scene,) = record["rivals"]
     expected = {"rivals/sphere/1%/ours/fmg-pcg/ms", "rivals/sphere/1%/pyamg-+-cg/error/ms"}

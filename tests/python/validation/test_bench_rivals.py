@@ -68,7 +68,7 @@ def test_irradiance_given_instead_of_light_keeps_its_power_on_every_level(path):
 
 @pytest.mark.parametrize("rival", rivals.RIVALS, ids=lambda rival: rival.name)
 def test_rivals_get_exactly_the_iterations_that_they_need(contest, rival):
-    pytest.importorskip("pyamg", reason="pyamg is not installed: pip install -e 'python/validation[bench]'")
+    pytest.importorskip("pyamg", reason="pyamg is not installed: pip install './python/validation[bench]'")
     entrant = rivals.Entrant(rival, contest.system)
     for target in TARGETS:
         counts = rivals.iterations_wanted(contest, entrant, target, residual=target)
@@ -89,7 +89,7 @@ def test_iterations_for_an_error_may_differ_by_channel_and_no_more_than_all_alik
 
 
 def test_a_run_has_everybody_at_the_target_and_agrees(path):
-    pytest.importorskip("pyamg", reason="pyamg is not installed: pip install -e 'python/validation[bench]'")
+    pytest.importorskip("pyamg", reason="pyamg is not installed: pip install './python/validation[bench]'")
     record = rivals.run(BenchScene("sphere", path), Device(), 1, lambda text: None, (DIAGONAL,))
     assert record["agreement"]["unlit"] < TARGETS[-1]
     assert set(record["set_up_ms"]) == {rival.name for rival in rivals.RIVALS}
@@ -100,7 +100,7 @@ def test_a_run_has_everybody_at_the_target_and_agrees(path):
 
 
 def test_ours_that_never_arrives_is_an_error(path, monkeypatch):
-    pytest.importorskip("pyamg", reason="pyamg is not installed: pip install -e 'python/validation[bench]'")
+    pytest.importorskip("pyamg", reason="pyamg is not installed: pip install './python/validation[bench]'")
     monkeypatch.setattr("quadgraph_validation.benchmark.solver_convergence.MOST_ITERATIONS", 2)
     with pytest.raises(SolverError, match="not reached"):
         rivals.run(BenchScene("sphere", path), Device(), 1, lambda text: None, (SolverWay("jacobi"),))

@@ -85,7 +85,7 @@ def test_walks_through_another_body_are_refused(walks):
 
 
 def test_an_interrupted_picture_goes_on_to_the_same_picture(tmp_path, monkeypatch):
-    pytest.importorskip("mitsuba", reason="Mitsuba is not installed: pip install -e 'python/validation[truth]'")
+    pytest.importorskip("mitsuba", reason="Mitsuba is not installed: pip install './python/validation[truth]'")
     scene = replace(thin(SPHERE), views={"A": SPHERE.views["A"]})
     body = meshes.ball(10.0, 0).boundary
     subject = TracedSubject(scene, None, body, (walk_truth.scenes.grid_of(scene, body),), "")

@@ -166,7 +166,7 @@ def test_the_engine_has_the_studys_camera(view, tmp_path):
 
 
 def mitsuba_there():
-    pytest.importorskip("mitsuba", reason="Mitsuba is not installed: pip install -e 'python/validation[truth]'")
+    pytest.importorskip("mitsuba", reason="Mitsuba is not installed: pip install './python/validation[truth]'")
 
 
 @pytest.mark.parametrize("view", VIEWS[1:3], ids=lambda view: view.text)
@@ -239,7 +239,7 @@ def test_what_is_missing_is_named(shared, tmp_path, capsys, monkeypatch):
     assert "quadgraph reference spot --kind transport" in " ".join(capsys.readouterr().err.split())
     monkeypatch.setitem(sys.modules, "mitsuba", None)
     assert cli.main(["reference", "spot", "--kind", "transport", "--samples", "32", *base]) != 0
-    assert "pip install -e 'python/validation[truth]'" in " ".join(capsys.readouterr().err.split())
+    assert "pip install './python/validation[truth]'" in " ".join(capsys.readouterr().err.split())
     assert list(tmp_path.iterdir()) == []
 
 

@@ -42,7 +42,7 @@ def test_published_numbers_are_the_papers(shared):
 
 
 def test_a_record_is_drawn_again_the_same_to_the_byte_without_a_device(record_path, tmp_path, monkeypatch, capsys):
-    pytest.importorskip("matplotlib", reason="matplotlib is not installed: pip install -e 'python/validation[bench]'")
+    pytest.importorskip("matplotlib", reason="matplotlib is not installed: pip install './python/validation[bench]'")
     monkeypatch.setitem(sys.modules, "quadgraph._core", None)
     folders = [tmp_path / "first", tmp_path / "again"]
     for folder in folders:

@@ -122,14 +122,16 @@ def judge(mesh: Path, height: float, case: BudgetCase, folder: Path, device: str
     prepared = pipeline.prepare(mesh, options, BakeReport(""), lambda text: None)
     around = lights(case.light, prepared.surface.vertices)
     found = plan.bake_for(mesh, output, options, case.error, case.material, around, device)
+    budget = found.budget
+    assert budget is not None, "a bake for an error tells what it measured"
     search = Search(prepared, options, BudgetScene(case.material, {"given": around}, True), folder, device)
-    chosen = search.bench.judge(output, found.budget["model"], found.budget["cycles"])
+    chosen = search.bench.judge(output, budget["model"], budget["cycles"])
     cheapest = search.cheapest(case.error, chosen)
     return asdict(case) | {
         "vertices": len(prepared.surface.vertices),
         "truth_vertices": search.bench.truth_vertices,
-        "reached": found.budget["reached"],
-        "measured": found.budget["measured"],
+        "reached": budget["reached"],
+        "measured": budget["measured"],
         "seconds": found.seconds["total"],
         "chosen": _facts(chosen),
         "cheapest": _facts(cheapest) if cheapest else None,
@@ -170,7 +172,7 @@ class Search:
 
     def _counts(self, error: float, chosen: Trial) -> list[int]:
         """Numbers of vertices to try, no two within a tenth of each other."""
-        middles = [chosen.surface_vertices]
+        middles: list[float] = [chosen.surface_vertices]
         for model in plan.MODELS:
             expected = forecast([t for t in self.bench.trials if t.model == model], error)
             middles += [expected.surface_vertices] if expected else []

@@ -174,8 +174,8 @@ def tables(record: dict[str, Any]) -> list[Table]:
     summary = Table("mode", "part", "cases", "within a factor of 2", *heads, title="estimate over truth")
     for mode, parts in record["statistics"].items():
         for part, found in parts.items():
-            cells = (f"{found[key]:.2f}" for key in extremes)
-            summary.add_row(mode, part, str(found["count"]), f"{found['within_2']:.0%}", *cells)
+            ratios = (f"{found[key]:.2f}" for key in extremes)
+            summary.add_row(mode, part, str(found["count"]), f"{found['within_2']:.0%}", *ratios)
     return [cases, summary]
 
 

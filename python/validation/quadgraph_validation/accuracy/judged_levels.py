@@ -67,6 +67,7 @@ class Judged:
 
     def solve(self, finer: int, **options: Any) -> dict[str, Any]:
         """The engine's report of a solve from the judged level with so many finer ones down."""
+        assert self._case is not None, "`light` comes before `solve`"
         return self._coarse[finer].solve(model=self._case.model, inter_reflection=False, **options)
 
     def true_error(self, finer: int, finest: int = 0) -> dict[str, float]:

@@ -59,7 +59,7 @@ def column(body_of: BodyOf, depth: float, layers_per_mm: int) -> StudyBody:
 
 
 def solved(body: StudyBody, case: RadianceCase, scheme: Scheme) -> Answer:
-    """Light that enters evenly at z = 0."""
+    """Light that enters uniformly at z = 0."""
     lit = body.normal[:, 2] < -0.5
     direction = (float(np.sqrt(1 - case.cosine**2)), 0.0, case.cosine)
     return body.homogeneous(MEDIA, case.eta, StudyLight(np.outer(lit, np.ones(3)), direction), scheme)

@@ -109,7 +109,8 @@ def set_scene(engine: Engine, scene: StudyScene) -> None:
     """Give the engine the coefficients, in the middle of every node, and the light."""
     for index, level in enumerate(engine.graph.levels):
         values = scene.in_channels(np.asarray(level.nodes, np.float64))
-        engine.set_optical(index, *(value.astype(np.float32) for value in values), scene.eta)
+        scattering, absorption = (value.astype(np.float32) for value in values)
+        engine.set_optical(index, scattering, absorption, scene.eta)
     engine.set_lights([scene.light])
 
 

@@ -67,7 +67,8 @@ def published(eta: float) -> np.ndarray:
 def halves(found: np.ndarray, truth: np.ndarray) -> tuple[float, float]:
     """Relative RMS errors over the lit and over the dark half."""
     lit = np.arange(ZONES) >= ZONES // 2
-    return tuple(relative_rms(half, (found - truth)[:, None], truth[:, None]) for half in (lit, ~lit))
+    over_lit, over_dark = (relative_rms(half, (found - truth)[:, None], truth[:, None]) for half in (lit, ~lit))
+    return over_lit, over_dark
 
 
 def run(body_of: BodyOf) -> dict[str, Any]:

@@ -2,18 +2,12 @@
 
 from __future__ import annotations
 
-from quadgraph.base.errors import InputError
+from typing import Any
+
+from quadgraph_validation.base import extra_module
 
 
-def load_pyplot(extra: str = "truth"):
+def load_pyplot(extra: str = "truth") -> Any:
     """Import matplotlib without a window. Raises InputError, naming the optional extra that has it, if it is absent."""
-    try:
-        import matplotlib
-    except ImportError as error:
-        raise InputError(
-            f"matplotlib cannot be loaded ({error}); pip install -e 'python/validation[{extra}]' installs it"
-        ) from error
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-
-    return pyplot
+    extra_module.load("matplotlib", extra).use("Agg")
+    return extra_module.load("matplotlib.pyplot", extra)

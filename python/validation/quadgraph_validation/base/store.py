@@ -38,7 +38,8 @@ def save(path: Path, key: dict[str, Any], arrays: dict[str, np.ndarray]) -> None
     """Write arrays under a key ready for JSON, whole or not at all. Raises InputError if `path` cannot be written."""
     record = json.dumps({"key": key, "sha256": digest(key)}, sort_keys=True)
     with atomic_file.replacing(path) as stream:
-        np.savez_compressed(stream, **arrays, record=np.array(record))
+        sections: dict[str, Any] = arrays | {"record": np.array(record)}
+        np.savez_compressed(stream, **sections)
 
 
 def load(path: Path, key: dict[str, Any], names: tuple[str, ...], what: str) -> dict[str, np.ndarray]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -33,7 +33,7 @@ class AlgebraicJudge:
         return {part: relative_rms(weight, exitance - self.exitance, self.exitance) for part, weight in weights.items()}
 
 
-def judge(engine: Engine, **way: object) -> AlgebraicJudge:
+def judge(engine: Engine, **way: Any) -> AlgebraicJudge:
     """Solve the same system far beyond what is asked of the solvers; `way` as for Engine.solve, less the solver.
 
     Raises SolverError if that does not converge.

@@ -47,7 +47,7 @@ SOLVER_PASSES = (
 
 
 def measure(
-    engines: dict[str, Engine], material: str, way: dict[str, str], repeats: int, copy_gb_per_s: float
+    engines: dict[str, Engine], material: str, way: dict[str, Any], repeats: int, copy_gb_per_s: float
 ) -> dict[str, Any]:
     """Whole frames, alternating between the engines ("blocks", perhaps "random"); the median time of every pass.
 

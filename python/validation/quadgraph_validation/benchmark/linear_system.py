@@ -52,8 +52,8 @@ def assemble(graph: QuadGraph, material: str, q: np.ndarray, direction: tuple[fl
     core = load_core()
     optical = core.Material(material)
     coefficients = (*core.evaluate_material(graph, 0, optical), optical.eta)
-    rows = core.assemble(graph, 0, "fem", *coefficients)
-    b = core.buried_load(graph, 0, "fem", *coefficients, q, direction)
+    rows = core.assemble(graph, 0, "fem", *coefficients, model="diffusion")
+    b = core.buried_load(graph, 0, "fem", *coefficients, q, model="diffusion", direction=direction)
     n = len(rows["diagonal"])
     matrices = [
         csr_matrix((rows["weight"][:, c], rows["column"].astype(np.int32), rows["offset"].astype(np.int32)), (n, n))

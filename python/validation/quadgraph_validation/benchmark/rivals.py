@@ -20,8 +20,9 @@ import numpy as np
 from scipy.sparse import csr_matrix, diags
 from scipy.sparse.linalg import cg
 
-from quadgraph.base.errors import InputError, SolverError
+from quadgraph.base.errors import SolverError
 from quadgraph.base.progress import ProgressCallback
+from quadgraph_validation.base import extra_module
 from quadgraph_validation.benchmark import figures
 from quadgraph_validation.benchmark import linear_system as systems
 from quadgraph_validation.benchmark.bench_scene import DIRECTION, BenchScene, Device
@@ -81,15 +82,9 @@ RIVALS = (
 )
 
 
-def load_pyamg():
+def load_pyamg() -> Any:
     """Import PyAMG. Raises InputError if it is absent."""
-    try:
-        import pyamg
-    except ImportError as error:
-        raise InputError(
-            f"pyamg cannot be loaded ({error}); pip install -e 'python/validation[bench]' installs it"
-        ) from error
-    return pyamg
+    return extra_module.load("pyamg", "bench")
 
 
 class Entrant:
@@ -98,7 +93,7 @@ class Entrant:
     def __init__(self, rival: Rival, system: System) -> None:
         self.rival = rival
         matrices = [matrix.astype(rival.precision) for matrix in system.matrices]
-        self.b = system.b.T.astype(rival.precision)
+        self.b: np.ndarray = system.b.T.astype(rival.precision)
         start = time.perf_counter()
         self.iterates = [rival.set_up(matrix) for matrix in matrices]
         self.set_up_ms = 1e3 * (time.perf_counter() - start)

@@ -32,7 +32,7 @@ HEIGHT_MM = 100.0
 _BUNNY_VERTICES = 28_000  # below those of the bundled mesh, so that it can be simplified to them
 _MOST_CYCLES = 40
 _NO_SECOND_LEVEL = 1500  # surface vertices below which the chain of levels may end at once
-_LIMITS = {"time_limit_s": 3600.0, "memory_limit_bytes": 24 << 30}
+_LIMITS: dict[str, Any] = {"time_limit_s": 3600.0, "memory_limit_bytes": 24 << 30}
 
 
 def run(

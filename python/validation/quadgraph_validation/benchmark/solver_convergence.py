@@ -48,7 +48,7 @@ class SolverWay:
         return self.name or self.solver
 
     @property
-    def system(self) -> dict[str, str]:
+    def system(self) -> dict[str, Any]:
         """What is solved, apart from how."""
         return {"method": self.method, "source": self.source, "model": self.model}
 
@@ -110,7 +110,8 @@ class SolverRunner:
         if key not in self._points:
             report, _ = self._solve(*key)
             error = self._judge.error(self._engine.surface_field()["exitance"])
-            self._points[key] = CurvePoint(*key, report["work"], report["levels"][-1]["residual"], **error)
+            residual = report["levels"][-1]["residual"]
+            self._points[key] = CurvePoint(*key, report["work"], residual, error["whole"], error["unlit"])
         return self._points[key]
 
     def time(self, point: CurvePoint) -> None:
@@ -161,7 +162,10 @@ class SolverRunner:
     def _bisect(self, rungs: list[CurvePoint], tolerance: float, target: float) -> None:
         reached = next((i for i, point in enumerate(rungs) if point.unlit <= target), 0)
         low, high = (rungs[reached - 1], rungs[reached]) if reached else (rungs[0], rungs[0])
-        while high.iterations - low.iterations > 1 and low.work < self.reaching(target).work:
+        while high.iterations - low.iterations > 1:
+            best = self.reaching(target)
+            if best is None or low.work >= best.work:
+                break
             middle = self.at((low.iterations + high.iterations) // 2, tolerance)
             low, high = (low, middle) if middle.unlit <= target else (middle, high)
 

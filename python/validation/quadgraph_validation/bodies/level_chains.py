@@ -75,8 +75,13 @@ def baked(subject: ChainSubject, mesh_folder: Path, folder: Path) -> Path:
         source = folder / f"{subject.name}.ply"
         SHAPES[subject.mesh](subject.detail).export(source)
     output = folder / f"{subject.name}.qgraph"
-    options = {"height_mm": subject.height, "levels": subject.levels, "visibility_rays": 0}
-    bake(source, output, BakeOptions(surface_vertices=subject.vertices, **options))
+    options = BakeOptions(
+        height_mm=subject.height,
+        levels=subject.levels,
+        surface_vertices=subject.vertices,
+        visibility_rays=0,
+    )
+    bake(source, output, options)
     return output
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise, permutations
+from typing import TYPE_CHECKING
 
 import numpy as np
 import trimesh
@@ -14,6 +15,9 @@ from quadgraph.tets import graph, refine
 from quadgraph.tets.graph import Graph
 from quadgraph.tets.refine import oriented_graph
 from quadgraph.tets.tetrahedralise import tetrahedralise
+
+if TYPE_CHECKING:
+    from quadgraph.core import Level
 
 OPEN, REFLECTING = 0, 1
 
@@ -136,7 +140,7 @@ def with_walls(mesh: Graph, is_wall: Callable[[np.ndarray], np.ndarray]) -> Grap
     return replace(mesh, face_kinds=np.where(is_wall(normal), REFLECTING, OPEN).astype(np.int64))
 
 
-def face_frames(level: Graph) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def face_frames(level: Graph | Level) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Centroid (n, 3) mm, outward unit normal (n, 3) and area (n,) mm^2 of a level's outside faces."""
     corners = np.asarray(level.vertices, np.float64)[level.faces]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from quadgraph.baking.pipeline import BakeOptions, bake
 from quadgraph.base.version import __version__
@@ -44,14 +45,14 @@ def of(scene: StudyScene, choice: Choice, meshes: Path, folder: Path) -> SceneBa
     mesh = scene_meshes.file(scene, meshes)
     source = mesh_io.read_surface(mesh, height_mm=scene.height)
     vertices = choice.vertices if choice.vertices is not None and source.vertices > choice.vertices else None
-    made_of = {
+    made_of: dict[str, Any] = {
         "mesh": source.sha256,
         "height_mm": scene.height,
         "vertices": vertices,
         "quadgraph": __version__,
         "format": qgraph_file.VERSION,
     }
-    options = {"height_mm": scene.height, "surface_vertices": vertices}
+    options: dict[str, Any] = {"height_mm": scene.height, "surface_vertices": vertices}
     if choice.grading is not None:
         made_of["grading"] = choice.grading
         options |= {"mesher": "cgal", "grading": choice.grading}

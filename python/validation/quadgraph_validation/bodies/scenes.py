@@ -77,8 +77,10 @@ class StudyScene:
 
     def in_channels(self, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """sigma_s' and sigma_a, both (n, 3) float64 in 1/mm, at (n, 3) positions in mm."""
-        values = (np.asarray(value, np.float64) for value in self.coefficients(position))
-        return tuple(value if self.coloured else np.repeat(value[:, None], 3, axis=1) for value in values)
+        scattering, absorption = (np.asarray(value, np.float64) for value in self.coefficients(position))
+        if self.coloured:
+            return scattering, absorption
+        return np.repeat(scattering[:, None], 3, axis=1), np.repeat(absorption[:, None], 3, axis=1)
 
     @property
     def light(self) -> str:

@@ -136,4 +136,5 @@ class ChartBody:
     def _set_coefficients(self, engine: Engine) -> None:
         for level, of in enumerate(engine.graph.levels):
             values = self.scene.in_channels(np.asarray(of.nodes, np.float64))
-            engine.set_optical(level, *(value.astype(np.float32) for value in values), self.scene.eta)
+            scattering, absorption = (value.astype(np.float32) for value in values)
+            engine.set_optical(level, scattering, absorption, self.scene.eta)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -38,9 +38,14 @@ class ChartMethod(Protocol):
     what its times are of.
     """
 
-    name: str
-    family: str
-    settings: dict[str, Any]
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def family(self) -> str: ...
+
+    @property
+    def settings(self) -> dict[str, Any]: ...
 
     def prepare(self, body: ChartBody) -> None:
         """Settle at the light of SWING[0]: whatever a running program would have done before. Not timed.
@@ -56,6 +61,18 @@ class ChartMethod(Protocol):
 
     def picture(self, view: str) -> np.ndarray:
         """Radiance of light that was in the body, (PIXELS, PIXELS, 3) W/(mm^2 sr), after the last frame."""
+
+
+@dataclass
+class PreparedMethod:
+    """What methods have in common that keep the body they were prepared for."""
+
+    _given: ChartBody | None = field(default=None, repr=False, kw_only=True)
+
+    @property
+    def _body(self) -> ChartBody:
+        assert self._given is not None, "`prepare` comes before all that needs a body"
+        return self._given
 
 
 @dataclass(frozen=True)

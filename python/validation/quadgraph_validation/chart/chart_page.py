@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from quadgraph.base import atomic_file
-from quadgraph.base.errors import InputError
+from quadgraph_validation.base import extra_module
 from quadgraph_validation.chart import chart_record as records
 from quadgraph_validation.chart.chart_record import KINDS, Panel
 
@@ -16,15 +16,9 @@ _COARSER = 0.78  # of that per level
 _TICKS = [step * 10.0**decade for decade in range(-6, 7) for step in (1, 2, 5)]
 
 
-def load_plotly():
+def load_plotly() -> Any:
     """Import plotly. Raises InputError if it is absent."""
-    try:
-        from plotly import graph_objects
-    except ImportError as error:
-        raise InputError(
-            f"plotly cannot be loaded ({error}); pip install -e 'python/validation[chart]' installs it"
-        ) from error
-    return graph_objects
+    return extra_module.load("plotly.graph_objects", "chart")
 
 
 def write(path: Path, record: dict[str, Any]) -> Path:

@@ -19,8 +19,8 @@ def write(folder: Path, judge: ChartJudge, points: Sequence[ChartPoint]) -> list
 
     Raises InputError without matplotlib.
     """
-    chosen = {title: _closest(points, family) for title, family in SHOWN.items()}
-    chosen = {title: point for title, point in chosen.items() if point is not None}
+    closest = {title: _closest(points, family) for title, family in SHOWN.items()}
+    chosen = {title: point for title, point in closest.items() if point is not None}
     if not (judge.images and chosen):
         return []
     compared = {}
@@ -33,5 +33,9 @@ def write(folder: Path, judge: ChartJudge, points: Sequence[ChartPoint]) -> list
 
 
 def _closest(points: Sequence[ChartPoint], family: str | None) -> ChartPoint | None:
-    known = [point for point in points if point.errors.get("transport") and family in (None, point.method.family)]
-    return min(known, key=lambda point: point.errors["transport"]["whole"], default=None)
+    known = [
+        (errors["whole"], number)
+        for number, point in enumerate(points)
+        if (errors := point.errors.get("transport")) and family in (None, point.method.family)
+    ]
+    return points[min(known)[1]] if known else None

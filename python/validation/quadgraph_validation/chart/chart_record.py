@@ -116,7 +116,7 @@ _PUBLISHED = (", as published", " · cascade")  # together
 def short(point: dict[str, Any]) -> str:
     """A point's name for a label: without what is usual."""
     name = point["name"]
-    elsewhere = () if point["settings"]["bake"] == "chain" else (" · level 0",)
+    elsewhere: tuple[str, ...] = () if point["settings"]["bake"] == "chain" else (" · level 0",)
     elsewhere += (" · polygrid",) if name.startswith("polygrid") else ()
     for usual in (*_USUAL, *elsewhere, *(_PUBLISHED if all(part in name for part in _PUBLISHED) else ())):
         name = name.replace(usual, "")

@@ -10,7 +10,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from quadgraph_validation.chart.chart_body import ChartBody, light_at
-from quadgraph_validation.chart.chart_method import SWING, ChartMethod, MethodChain, bake_settings, register
+from quadgraph_validation.chart.chart_method import (
+    SWING,
+    ChartMethod,
+    MethodChain,
+    PreparedMethod,
+    bake_settings,
+    register,
+)
 from quadgraph_validation.chart.dipole import Dipole, transport
 
 if TYPE_CHECKING:
@@ -22,7 +29,7 @@ _PICTURE = ("surface", "resolve")
 
 
 @dataclass
-class DipoleMethod:
+class DipoleMethod(PreparedMethod):
     """The dipole on the surface of a level, its matrix kept from frame to frame, as long as the material stays.
 
     Light and picture are the engine's, and so is their time; the product is timed as numpy does it on the CPU.
@@ -31,9 +38,8 @@ class DipoleMethod:
     level: int
     name: str = ""
     family: str = "dipole per vertex"
-    _body: ChartBody | None = field(default=None, repr=False)
     _matrices: list[np.ndarray] = field(default_factory=list, repr=False)
-    _exitance: np.ndarray | None = field(default=None, repr=False)
+    _exitance: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)), repr=False)
 
     def __post_init__(self) -> None:
         self.name = self.name or f"{self.family} · level {self.level} · numpy"
@@ -58,8 +64,8 @@ class DipoleMethod:
 
     def prepare(self, body: ChartBody) -> None:
         """Make the matrix, and an engine that has something to show."""
-        if self._body is not body:
-            self._body = body
+        if self._given is not body:
+            self._given = body
             self._engine.set_lights([light_at(body.scene, SWING[0])])
             self._engine.solve(method="fem", model="diffusion", source="diffuse", inter_reflection=False)
             self._matrices = self._make()
@@ -107,8 +113,8 @@ class DipoleMethod:
         vertices = self._body.file.sections[f"level{self.level}/vertices"][: faces.max() + 1].astype(np.float64)
         scene, corners = self._body.scene, vertices[faces]
         channels = range(3 if scene.coloured else 1)
-        coefficients = [value.T for value in scene.in_channels(vertices)]
-        media = (Dipole(*(value[c] for value in coefficients), scene.eta) for c in channels)
+        sigma_s_prime, sigma_a = scene.in_channels(vertices)
+        media = (Dipole(sigma_s_prime[:, c], sigma_a[:, c], scene.eta) for c in channels)
         return [transport(medium, vertices, corners) for medium in media]
 
 

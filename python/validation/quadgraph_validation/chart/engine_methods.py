@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,7 +12,15 @@ from quadgraph.base.pass_report import ms_by_pass
 from quadgraph_validation.bodies.scene_bakes import Choice
 from quadgraph_validation.bodies.scenes import FOV, PIXELS
 from quadgraph_validation.chart.chart_body import ChartBody, light_at
-from quadgraph_validation.chart.chart_method import SETTLED, SWING, ChartMethod, MethodChain, bake_settings, register
+from quadgraph_validation.chart.chart_method import (
+    SETTLED,
+    SWING,
+    ChartMethod,
+    MethodChain,
+    PreparedMethod,
+    bake_settings,
+    register,
+)
 
 if TYPE_CHECKING:
     from quadgraph.core import Engine
@@ -23,7 +31,7 @@ _FINEST_PUBLISHED = 3  # levels on which the methods that do not converge with r
 
 
 @dataclass
-class EngineMethod:
+class EngineMethod(PreparedMethod):
     """A way to solve and show, in the words of Engine.solve.
 
     cycles: 0 for as many as SETTLED takes; choice: how the body is baked, None for the chain that the PDE truth knows.
@@ -39,7 +47,6 @@ class EngineMethod:
     cycles: int = 0
     active_layers: int = 0
     choice: Choice | None = None
-    _body: ChartBody | None = field(default=None, repr=False)
 
     @property
     def family(self) -> str:
@@ -63,13 +70,13 @@ class EngineMethod:
     @property
     def settings(self) -> dict[str, Any]:
         """The settings as given, and what frames iterate to."""
-        told = {name: value for name, value in asdict(replace(self, _body=None)).items() if name[0] != "_"}
+        told = {name: value for name, value in asdict(replace(self, _given=None)).items() if name[0] != "_"}
         del told["choice"]
         return told | bake_settings(self.choice) | {"tolerance": None if self.cycles else SETTLED, "runs_on": "device"}
 
     def prepare(self, body: ChartBody) -> None:
         """Solve for the light two frames ago."""
-        first, self._body = self._body is not body, body
+        first, self._given = self._given is not body, body
         self._engine.set_lights([light_at(body.scene, SWING[0])])
         quickest = {"fem": "fmg-pcg", "polygrid": "cascade", "polygrid-divergence": "cascade"}.get(self.method, "dpcg")
         self._engine.solve(**self._options | {"solver": quickest, "tolerance": SETTLED, "cycles": 0, "bounces": 0})

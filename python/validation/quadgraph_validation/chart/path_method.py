@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,7 +11,14 @@ import numpy as np
 from quadgraph.base.pass_report import ms_by_pass
 from quadgraph_validation.bodies.scenes import FOV, PIXELS, bounding_sphere
 from quadgraph_validation.chart.chart_body import ChartBody, light_at
-from quadgraph_validation.chart.chart_method import SWING, ChartMethod, MethodChain, bake_settings, register
+from quadgraph_validation.chart.chart_method import (
+    SWING,
+    ChartMethod,
+    MethodChain,
+    PreparedMethod,
+    bake_settings,
+    register,
+)
 
 if TYPE_CHECKING:
     from quadgraph.core import Engine
@@ -20,13 +27,12 @@ _SAMPLES = 96  # points along a side of the grid on which it gets the scene's co
 
 
 @dataclass
-class PathMethod:
+class PathMethod(PreparedMethod):
     """Shortest paths through `cells` voxels along the longest side, in the words of Engine.solve."""
 
     cost: str = "transport"
     paths: str = "eikonal"
     cells: int = 64
-    _body: ChartBody | None = field(default=None, repr=False)
 
     @property
     def family(self) -> str:
@@ -41,23 +47,23 @@ class PathMethod:
     @property
     def settings(self) -> dict[str, Any]:
         """The settings as given; the method approximates diffusion, and is judged on the faces of level 0."""
-        told = {name: value for name, value in asdict(replace(self, _body=None)).items() if name[0] != "_"}
+        told = {name: value for name, value in asdict(replace(self, _given=None)).items() if name[0] != "_"}
         equations = {"method": "shortest-path", "model": "diffusion", "source": "buried", "solver": self.paths}
         display = {"level": 0, "inter_reflection": False, "radiance": "lambertian", "cycles": 0, "tolerance": None}
         return told | equations | display | bake_settings(None) | {"runs_on": "device"}
 
     def prepare(self, body: ChartBody) -> None:
         """Give it the coefficients on a grid; a first frame compiles shaders and makes room."""
-        if self._body is body:
+        if self._given is body:
             return
-        self._body = body
+        self._given = body
         centre, radius = bounding_sphere(body.display)
         axis = np.linspace(-radius, radius, _SAMPLES)
         points = np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), axis=-1)[..., ::-1] + centre
         values = body.scene.in_channels(points.reshape(-1, 3))
-        coefficients = (value.reshape(points.shape).astype(np.float32) for value in values)
+        scattering, absorption = (value.reshape(points.shape).astype(np.float32) for value in values)
         spacing = axis[1] - axis[0]
-        self._engine.set_grid(*coefficients, (spacing,) * 3, tuple(centre - radius), body.scene.eta)
+        self._engine.set_grid(scattering, absorption, (spacing,) * 3, tuple(centre - radius), body.scene.eta)
         self.frame(SWING[0])
 
     def frame(self, step: int) -> dict[str, float]:

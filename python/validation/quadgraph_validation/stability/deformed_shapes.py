@@ -52,8 +52,8 @@ def lattice(genus: int) -> list[Graph]:
 
 def _struts(counts: tuple[int, int, int], cells: int) -> Graph:
     """With `cells` elements across a strut."""
-    sides = [np.arange(cells * (2 * count + 1) + 1) * _STRUT / cells for count in counts]
-    body = meshes.box(*sides, meshes.no_wall)
+    x, y, z = (np.arange(cells * (2 * count + 1) + 1) * _STRUT / cells for count in counts)
+    body = meshes.box(x, y, z, meshes.no_wall)
     corners = body.vertices[body.tets]
     in_strut = (np.floor(corners.mean(axis=1) / _STRUT).astype(int) % 2 == 0).sum(axis=1)
     kept = body.tets[in_strut >= (2 if max(counts) else 3)]

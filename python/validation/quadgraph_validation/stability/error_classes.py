@@ -27,11 +27,6 @@ class Errors:
         """Those that there are."""
         return [self.whole] if self.unlit is None else [self.whole, self.unlit]
 
-    @property
-    def larger(self) -> float:
-        """The larger one; NaN if either is."""
-        return math.nan if any(math.isnan(part) for part in self.parts) else max(self.parts)
-
 
 def classify(true: Errors, estimate: Errors | None, said: Sequence[str] = (), small: float = SMALL) -> str:
     """Class of a solve that was not refused.

@@ -78,12 +78,14 @@ class ScaledChain:
         area = meshes.face_frames(finest)[2]
         return area if finest.face_kinds is None else area * (finest.face_kinds == meshes.OPEN)
 
-    def solve(self, medium: Medium, q: Irradiance, direction: tuple, eta: float, **options: Any) -> dict[str, Any]:
+    def solve(
+        self, medium: Medium, q: Irradiance, direction: tuple[float, float, float] | None, eta: float, **options: Any
+    ) -> dict[str, Any]:
         """The engine's report. Raises InputError, SolverError."""
         for number, level in enumerate(self.graphs):
             centre, normal, _ = meshes.face_frames(level)
-            optical = (np.repeat(values[:, None], 3, axis=1) for values in medium(level.nodes))
-            self.engine.set_optical(number, *optical, eta)
+            scattering, absorption = (np.repeat(values[:, None], 3, axis=1) for values in medium(level.nodes))
+            self.engine.set_optical(number, scattering, absorption, eta)
             self.engine.set_irradiance(number, np.repeat(q(centre, normal)[:, None], 3, axis=1), direction)
         return self.engine.solve(inter_reflection=False, **options)
 

@@ -49,7 +49,7 @@ def run_map(
     each: Map, methods: Sequence[StabilityMethod], setting: StabilitySetting, tell: ProgressCallback
 ) -> dict[str, Any]:
     """The points of a map, row by row from its first y, of every method."""
-    record = {"name": each.name, "title": each.title, "truth": each.truth}
+    record: dict[str, Any] = {"name": each.name, "title": each.title, "truth": each.truth}
     for axis, name in ((each.x, "x"), (each.y, "y")):
         texts = [axis.text(index) for index in range(len(axis.values))]
         record[name] = {"axis": axis.name, "label": axis.label, "values": list(axis.values), "texts": texts}

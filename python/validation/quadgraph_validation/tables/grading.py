@@ -8,6 +8,7 @@ import os
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -39,7 +40,7 @@ SCENES = ("sphere", "skin", "bunny")
 GRADINGS = (1.0, 0.5, 0.3, 0.1)
 _VERTICES = 10_000  # of the surface at scale 1
 _PIXELS = 128  # edge of a frame's picture; none is timed
-_EXACT = {"tolerance": 1e-4, "max_iterations": 100_000, "inter_reflection": False}
+_EXACT: dict[str, Any] = {"tolerance": 1e-4, "max_iterations": 100_000, "inter_reflection": False}
 
 
 @dataclass(frozen=True)
@@ -52,7 +53,7 @@ class GradingWay:
     solver: str
 
     @property
-    def equations(self) -> dict[str, str]:
+    def equations(self) -> dict[str, Any]:
         """In the words of Engine.solve."""
         return {"model": self.method.model, "source": self.method.source}
 
@@ -72,7 +73,7 @@ def rows(setting: TableSetting) -> Iterator[TableRow]:
     for name in SCENES:
         mesh = scene_meshes.file(KNOWN[name], setting.store.meshes)
         missing = "" if mesh.is_file() else f"{mesh}: no such file"
-        yield TableRow(name, name, missing, lambda tell, scene=KNOWN[name]: measure(scene, setting, tell))
+        yield TableRow(name, name, missing, partial(measure, KNOWN[name], setting))
 
 
 def measure(scene: StudyScene, setting: TableSetting, tell: ProgressCallback) -> dict[str, Any]:
@@ -145,7 +146,7 @@ class _Reference:
         difference = self._shown(engine) - self._true[key]
         return {part: relative_rms(area, difference, self._true[key]) for part, area in self._parts.items()}
 
-    def _solved(self, equations: dict[str, str]) -> np.ndarray:
+    def _solved(self, equations: dict[str, Any]) -> np.ndarray:
         engine = self._body.engine(0, ("fem", *equations.values()))
         engine.set_lights([self._body.scene.light])
         engine.solve(method="fem", solver="fmg-pcg", **equations, **_EXACT)

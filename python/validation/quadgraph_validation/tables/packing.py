@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from functools import partial
 from statistics import median
 from typing import Any
 
@@ -23,7 +24,7 @@ _CYCLES = 10  # of ours; only the ratio of equal work counts
 def rows(setting: TableSetting) -> Iterator[TableRow]:
     """One per body."""
     for subject in (BUNNY, DONUT):
-        yield TableRow(subject.name, subject.name, "", lambda tell, subject=subject: _measure(subject, setting, tell))
+        yield TableRow(subject.name, subject.name, "", partial(_measure, subject, setting))
 
 
 def _measure(subject: TableSubject, setting: TableSetting, tell: ProgressCallback) -> dict[str, Any]:

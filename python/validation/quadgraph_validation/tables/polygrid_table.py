@@ -117,7 +117,7 @@ def curves(engine: Engine, nodes: int) -> dict[str, list[tuple[float, float]]]:
     engine.solve(**_way(tolerance=1e-6, max_iterations=100_000))
     field = engine.surface_field()
     exact, area = np.asarray(field["exitance"], float), np.asarray(field["area"], float)[:, None]
-    schemes = {
+    schemes: dict[str, dict[str, Any]] = {
         "plain": {"solver": "jacobi"},
         "hierarchical": {},
         "adaptive": {"active_layers": ACTIVE_LAYERS},

@@ -28,8 +28,8 @@ from quadgraph_validation.bodies.scenes import StudyScene
 
 EXTENT_MM = 60.0  # largest edge of a body's bounding box
 _ENOUGH = 0.9  # share of the wanted surface vertices from which a mesh is taken as it is
-_LIMITS = {"time_limit_s": 3600.0, "memory_limit_bytes": 24 << 30}
-_GRADED_LIMITS = {"time_limit_s": 900.0, "memory_limit_bytes": 8 << 30}  # CGAL's refinement may not end
+_LIMITS: dict[str, Any] = {"time_limit_s": 3600.0, "memory_limit_bytes": 24 << 30}
+_GRADED_LIMITS: dict[str, Any] = {"time_limit_s": 900.0, "memory_limit_bytes": 8 << 30}  # CGAL's refinement may not end
 
 
 @dataclass(frozen=True)
@@ -108,7 +108,8 @@ class Store:
         mesh = scene_meshes.file(scene, self.meshes)
         source = mesh_io.read_surface(mesh, height_mm=scene.height)
         count = vertices if vertices < _ENOUGH * source.vertices else None
-        options = {"height_mm": scene.height, "surface_vertices": count, "mesher": "cgal", "grading": grading}
+        options: dict[str, Any] = {"height_mm": scene.height, "surface_vertices": count}
+        options |= {"mesher": "cgal", "grading": grading}
 
         def run(working: Path) -> dict[str, float]:
             return bake(mesh, working, BakeOptions(**options, **_GRADED_LIMITS)).seconds

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from functools import partial
 from typing import Any
 
 from quadgraph.base.progress import ProgressCallback
@@ -17,7 +18,7 @@ from quadgraph_validation.tables.table_ways import MATERIAL
 _ROUNDS = 3  # for each of the setting's: solves are short
 _FACES = 80_000  # surface nodes at scale 1
 
-_FDM = {"method": PUBLISHED.method, "source": PUBLISHED.source}
+_FDM: dict[str, Any] = {"method": PUBLISHED.method, "source": PUBLISHED.source}
 # Name to a way and whether it runs on a file of all levels, or of the finest alone.
 WAYS = {
     "published, with levels": (PUBLISHED, True),
@@ -30,7 +31,7 @@ WAYS = {
 def rows(setting: TableSetting) -> Iterator[TableRow]:
     """One per body."""
     for subject in (BUNNY, DONUT):
-        yield TableRow(subject.name, subject.name, "", lambda tell, subject=subject: _measure(subject, setting, tell))
+        yield TableRow(subject.name, subject.name, "", partial(_measure, subject, setting))
 
 
 def _measure(subject: TableSubject, setting: TableSetting, tell: ProgressCallback) -> dict[str, Any]:

@@ -134,8 +134,8 @@ def _figure_13(pyplot: Any, rows: list[dict[str, Any]]) -> Any:
         axes[-1][column].set_xlabel("K")
     for axis in axes[:, 0]:
         axis.set_ylabel("relative RMS error")
-    words = {"picture, against path tracing": "-", "mesh: exitance, own equations": (0, (2, 2))}
-    _legend(pyplot, figure, _COLOURS, words)
+    styles = {"picture, against path tracing": "-", "mesh: exitance, own equations": (0, (2, 2))}
+    _legend(pyplot, figure, _COLOURS, styles)
     return _bare(figure)
 
 
@@ -159,8 +159,8 @@ def _figure_14(pyplot: Any, rows: list[dict[str, Any]]) -> Any:
             axis.set_xlabel(words)
             axis.grid(alpha=0.22)
         axes[line][0].set_ylabel("error left, the larger of whole and unlit")
-    words = {"published": _LINES["published"], "ours, SP₃": _LINES["ours"]}
-    _legend(pyplot, figure, words, {"with levels": "-", "without": (0, (3, 2))})
+    colours = {"published": _LINES["published"], "ours, SP₃": _LINES["ours"]}
+    _legend(pyplot, figure, colours, {"with levels": "-", "without": (0, (3, 2))})
     return _bare(figure)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +30,10 @@ def begin(path: Path, settings: dict[str, Any]) -> dict[str, Any]:
                 f"{path}: settings.{name}: {found!r} found, this run has {wanted!r}; give another --json or remove it"
             )
     return record
+
+
+def _tell_at(tell: ProgressCallback, place: str, text: str) -> None:
+    tell(f"{place}: {text}")
 
 
 def fill(
@@ -58,7 +63,7 @@ def fill(
             if row.missing:
                 raise InputError(row.missing)
             place = f"{TITLES[table]}, row {number + 1} of {len(rows)}"
-            found = row.measure(lambda text, place=place: tell(f"{place}: {text}"))
+            found = row.measure(partial(_tell_at, tell, place))
         except QuadGraphError as error:
             entry["left_out"][row.key] = str(error)
         else:

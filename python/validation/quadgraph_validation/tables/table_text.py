@@ -185,8 +185,11 @@ def without_picture(entry: dict[str, Any]) -> float:
 def exponent(rows: list[dict[str, Any]], way: str) -> float | None:
     """Slope of log time to TARGET over log tets, of bodies from FITTED_FROM tets on; None for fewer than three."""
     pairs = [(row["nodes"][0]["inner"], ((done(row, way) or {}).get("least") or {}).get("ms")) for row in rows]
-    pairs = [(tets, ms) for tets, ms in pairs if ms and tets >= FITTED_FROM]
-    return float(np.polyfit(*np.log(pairs).T, 1)[0]) if len(pairs) > 2 else None
+    fitted = [(tets, ms) for tets, ms in pairs if ms and tets >= FITTED_FROM]
+    if len(fitted) < 3:
+        return None
+    tets, ms = np.log(fitted).T
+    return float(np.polyfit(tets, ms, 1)[0])
 
 
 _JUDGED = [(way, what) for way in NAMES for what in ("picture", "mesh") if (way, what) != (DEFAULT, "mesh")]

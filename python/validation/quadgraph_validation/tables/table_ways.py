@@ -8,6 +8,7 @@ import os
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from statistics import median
 from typing import TYPE_CHECKING, Any
@@ -209,7 +210,7 @@ def measure(
     for runner in runners:
         tell(f"to {100 * TARGET:g}%: {runner.way.name}")
         if not runner.failed:
-            _guarded(runner, lambda runner=runner: _judged(runner, found[runner.way.name]))
+            _guarded(runner, partial(_judged, runner, found[runner.way.name]))
     _time_least(runners, found, repeats, tell)
     failed = {runner.way.name: {"failed": runner.failed} for runner in runners if runner.failed}
     return {"load": load, "ways": found | failed}

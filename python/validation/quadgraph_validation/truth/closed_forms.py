@@ -185,7 +185,8 @@ def half_space_response(
     for wave in 2 * np.pi / np.asarray(wavelengths, np.float64):
         lateral = Moments(system.stiffness, system.mass + wave**2 * system.stiffness)
         rates, vectors = lateral.modes
-        particular, right = np.zeros(len(k)), k[:, 0] * boundary.source
+        particular: np.ndarray = np.zeros(len(k))
+        right = k[:, 0] * boundary.source
         if buried:
             source = np.zeros(len(k))
             source[0] = medium.sigma_s_prime

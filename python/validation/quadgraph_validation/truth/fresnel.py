@@ -5,9 +5,10 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
+import numpy.typing as npt
 
 
-def refracted(cosine: np.ndarray, ratio: float) -> np.ndarray:
+def refracted(cosine: npt.ArrayLike, ratio: float) -> np.ndarray:
     """Cosine beyond the surface of light that meets it at `cosine`; 0 under total reflection.
 
     ratio: index on the light's side over the index beyond.
@@ -15,7 +16,7 @@ def refracted(cosine: np.ndarray, ratio: float) -> np.ndarray:
     return np.sqrt(np.clip(1 - ratio**2 * (1 - np.asarray(cosine) ** 2), 0, None))
 
 
-def reflectance_from_inside(cosine: np.ndarray, eta: float) -> np.ndarray:
+def reflectance_from_inside(cosine: npt.ArrayLike, eta: float) -> np.ndarray:
     """Fresnel reflectance R(mu) for light inside that meets the surface at `cosine`; 1 under total reflection."""
     cosine = np.asarray(cosine, np.float64)
     beyond = refracted(cosine, eta)
@@ -26,7 +27,7 @@ def reflectance_from_inside(cosine: np.ndarray, eta: float) -> np.ndarray:
     return np.where(total, 1.0, (s**2 + p**2) / 2)
 
 
-def transmittance_from_outside(cosine: np.ndarray, eta: float) -> np.ndarray:
+def transmittance_from_outside(cosine: npt.ArrayLike, eta: float) -> np.ndarray:
     """Share of the light arriving from outside at `cosine` that enters."""
     return 1 - reflectance_from_inside(refracted(cosine, 1 / eta), eta)
 

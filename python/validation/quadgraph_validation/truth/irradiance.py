@@ -46,16 +46,18 @@ def entering(scene: StudyScene, mesh: Graph, occluder: Occluder, parts: int, ray
     A beam's shadow is sampled at the middles of parts^2 similar triangles of every face; uniform light enters as it
     comes along `rays` cosine-weighted directions that do not meet the body.
     """
-    frames = face_frames(mesh)
-    share = (
-        _sky(scene, mesh, occluder, rays) if scene.direction is None else _beam(scene, mesh, occluder, parts, frames)
-    )
+    if scene.direction is None:
+        share = _sky(scene, mesh, occluder, rays)
+    else:
+        share = _beam(scene, scene.direction, mesh, occluder, parts)
     return np.repeat(share[:, None], 3, axis=1)
 
 
-def _beam(scene: StudyScene, mesh: Graph, occluder: Occluder, parts: int, frames: tuple) -> np.ndarray:
-    _, normal, _ = frames
-    way = np.array(scene.direction) / np.linalg.norm(scene.direction)
+def _beam(
+    scene: StudyScene, direction: tuple[float, float, float], mesh: Graph, occluder: Occluder, parts: int
+) -> np.ndarray:
+    normal = face_frames(mesh)[1]
+    way = np.array(direction) / np.linalg.norm(direction)
     cosine = np.clip(-normal @ way, 0, 1)
     lit = np.flatnonzero(cosine > 0)
     weights = _middles(parts)
@@ -75,8 +77,8 @@ def _sky(scene: StudyScene, mesh: Graph, occluder: Occluder, rays: int) -> np.nd
     for begin in range(0, len(centre), step):
         faces = np.arange(begin, min(begin + step, len(centre)))
         ways = exchange.directions(frames[faces], faces, rays).reshape(-1, 3)
-        starts = (np.repeat(values[faces], rays, axis=0) for values in (centre, normal))
-        share[faces] = occluder.passes(*starts, ways).reshape(-1, rays).mean(axis=1)
+        points, normals = (np.repeat(values[faces], rays, axis=0) for values in (centre, normal))
+        share[faces] = occluder.passes(points, normals, ways).reshape(-1, rays).mean(axis=1)
     return entering_share(True, scene.eta) * share
 
 

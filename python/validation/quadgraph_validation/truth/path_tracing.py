@@ -17,6 +17,7 @@ import trimesh
 
 from quadgraph.base.errors import InputError
 from quadgraph.mesh.surface import Surface
+from quadgraph_validation.base import extra_module
 from quadgraph_validation.bodies.scenes import FOV, PIXELS, Grid, StudyScene, bounding_sphere, camera_axes
 
 MITSUBA = "3.9.1"
@@ -31,14 +32,9 @@ def settings() -> dict[str, Any]:
     return {"mitsuba": MITSUBA, "variant": "scalar_rgb", "integrator": INTEGRATOR, "batch": BATCH}
 
 
-def load_mitsuba():
+def load_mitsuba() -> Any:
     """Import Mitsuba in the variant that is used. Raises InputError if it is absent or of another version."""
-    try:
-        import mitsuba
-    except ImportError as error:
-        raise InputError(
-            f"Mitsuba cannot be loaded ({error}); pip install -e 'python/validation[truth]' installs it"
-        ) from error
+    mitsuba = extra_module.load("mitsuba", "truth")
     if mitsuba.__version__ != MITSUBA:
         raise InputError(f"Mitsuba: version {mitsuba.__version__} found, the truth is made with {MITSUBA}")
     mitsuba.set_variant("scalar_rgb")

@@ -19,6 +19,7 @@ import numpy as np
 
 from quadgraph.base.errors import InputError
 from quadgraph.tets.graph import Graph
+from quadgraph_validation.base import extra_module
 from quadgraph_validation.bodies import meshes
 from quadgraph_validation.bodies.media import Medium
 from quadgraph_validation.truth import monte_carlo
@@ -32,7 +33,7 @@ _DOWN = np.array([0.0, 0.0, -1.0])
 _END = 1e-5  # s after which pmmc lets go of a walk: none lives as long
 
 
-def load():
+def load() -> Any:
     """Import pmmc. Raises InputError, saying why, where it cannot run."""
     module, problem = _found()
     if problem:
@@ -45,11 +46,10 @@ def _found() -> tuple[Any, str]:
     """The module, or what is wrong with it. Asked only once: pmmc 0.3.12 hangs when it fails to find a device again."""
     try:
         with _silent():
-            import pmmc
-
+            pmmc = extra_module.load("pmmc", "truth")
             devices = pmmc.gpuinfo()
-    except ImportError as error:
-        return None, f"pmmc cannot be loaded ({error}); pip install -e 'python/validation[truth]' installs it"
+    except InputError as error:
+        return None, str(error)
     except RuntimeError:
         devices = []
     if not devices:
@@ -62,7 +62,8 @@ def slab(medium: Medium, thickness: float, eta: float, walks: int, seed: int) ->
 
     Light enters at normal incidence. Raises InputError as `load` does.
     """
-    body = meshes.box(*(np.array([0, end]) for end in (_WIDTH, _WIDTH, thickness)), lambda n: np.zeros(len(n), bool))
+    side = np.array([0, _WIDTH])
+    body = meshes.box(side, side, np.array([0, thickness]), meshes.no_wall)
     start = np.array([0.49 * _WIDTH, 0.51 * _WIDTH, _INSIDE])
     weight, scattered, position = _run(body, medium, eta, start, np.array([0.0, 0.0, 1.0]), walks, seed)
     below = position[:, 2] > thickness / 2

@@ -13,9 +13,6 @@ from quadgraph_validation.bodies.media import Medium
 from quadgraph_validation.truth.boundary import Boundary
 from quadgraph_validation.truth.moments import ModelOf, Moments
 
-# The clamped cosine max(cos(theta), 0) in Legendre polynomials.
-CLAMPED_COSINE = (1 / 4, 1 / 2, 5 / 16, 0, -3 / 32, 0, 13 / 256)
-
 
 @dataclass(frozen=True)
 class Shell:

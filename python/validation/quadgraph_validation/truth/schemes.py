@@ -177,9 +177,14 @@ def _answer(
     clipped: np.ndarray,
     leaving: Callable[[np.ndarray, np.ndarray], np.ndarray],
 ) -> Answer:
-    values = (np.asarray(array, np.float64) for array in (phi, field["exitance"], field["unscattered"]))
-    power = {name: np.array(value) for name, value in energy.items()}
-    return Answer(*values, power, np.asarray(clipped, np.float64), leaving)
+    return Answer(
+        phi=np.asarray(phi, np.float64),
+        exitance=np.asarray(field["exitance"], np.float64),
+        unscattered=np.asarray(field["unscattered"], np.float64),
+        energy={name: np.array(value) for name, value in energy.items()},
+        clipped=np.asarray(clipped, np.float64),
+        leaving=leaving,
+    )
 
 
 def _scaled(

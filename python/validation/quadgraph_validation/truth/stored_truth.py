@@ -48,7 +48,7 @@ class StoredTruth:
 def save(path: Path, truth: StoredTruth) -> None:
     """Write at least two batches, whole or not at all. Raises InputError if `path` cannot be written."""
     arrays = {"mean": truth.mean.astype(np.float32), "error": truth.error.astype(np.float32)}
-    store.save(path, truth.key, arrays | {"batches": np.int64(truth.batches)})
+    store.save(path, truth.key, arrays | {"batches": np.array(truth.batches)})
 
 
 def load(path: Path, key: dict[str, Any]) -> StoredTruth:

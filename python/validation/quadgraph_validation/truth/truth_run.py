@@ -71,7 +71,10 @@ def noise(image: StoredTruth) -> tuple[float, float]:
     values, errors = blocks.means(image.mean), blocks.errors(image.error)
     some = values > 0
     bright = values >= blocks.BRIGHT * np.quantile(values[some], 0.95)
-    return tuple(relative_rms(at.ravel(), errors.reshape(-1, 1), values.reshape(-1, 1)) for at in (bright, some))
+    where_bright, over_all = (
+        relative_rms(at.ravel(), errors.reshape(-1, 1), values.reshape(-1, 1)) for at in (bright, some)
+    )
+    return where_bright, over_all
 
 
 def render(subjects: list[TracedSubject], folder: Path, samples: int, console: Console) -> None:

@@ -59,12 +59,6 @@ class WalkTruth:
         distances = np.array([view.distance for view in self.scene.views.values()])
         return self._per_area(self.eyes, 4 * np.pi * distances**2 * EYE_BAND)
 
-    @property
-    def absorbed_share(self) -> Estimate:
-        """Absorbed share of the light that entered."""
-        share = self.absorbed / self.walks
-        return Estimate(np.array(share), np.sqrt(share * (1 - share) / self.walks))
-
     def _per_area(self, counts: np.ndarray, area: float | np.ndarray) -> Estimate:
         power = monte_carlo.entering_sphere(radius_of(self.scene), self.scene.eta)
         share = counts / self.walks
