@@ -53,7 +53,7 @@ int write_one(const AppOptions& options) {
   stages.end("render");
   write_picture(options, picture, engine.metadata());
   stages.end("write");
-  refuse_messages(engine.context());
+  refuse_messages(engine.device());
   const Metadata metadata = with_exposure(engine.metadata(), picture, options.scene.tone);
   const RunReport report{engine, solve, metadata, options.output.string(), stages.wall_ms};
   std::cout << (options.json ? json_report(report) : text_report(report)) << "\n";

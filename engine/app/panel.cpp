@@ -220,7 +220,7 @@ void draw_panel(State& state, const PanelFacts& facts) {
                    ImGuiWindowFlags_NoBringToFrontOnFocus);
   ImGui::PushItemWidth(0.62f * ImGui::GetContentRegionAvail().x);
   ImGui::TextUnformatted(state.scene.body.filename().string().c_str());
-  ImGui::TextDisabled("%s", facts.engine.context().info().name.c_str());
+  ImGui::TextDisabled("%s", facts.engine.device().info().name.c_str());
   draw_buttons(state);
   draw_frame(facts.measured);
   draw_show(state, facts.engine);

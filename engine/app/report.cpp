@@ -140,7 +140,7 @@ void tell_levels(std::ostream& out, const RunReport& report) {
 
 std::string text_report(const RunReport& report) {
   std::ostringstream out;
-  out << "device   " << report.engine.context().info().name << "\n";
+  out << "device   " << report.engine.device().info().name << "\n";
   if (report.solve.path) {
     tell_paths(out, report);
   } else {

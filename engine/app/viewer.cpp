@@ -35,7 +35,7 @@ Viewer::Viewer(Window& window, vk::Context& presenter, Stage& stage, std::filesy
       engine_(stage.engine()),
       swapchain_(presenter_, window.width(), window.height()),
       interface_(window, presenter_, swapchain_),
-      tone_mapper_(engine_.context()),
+      tone_mapper_(engine_.device()),
       pace_(budget_ms),
       stem_(std::move(stem)),
       history_(stage.scene()) {
@@ -281,7 +281,7 @@ void Viewer::make_picture(bool settle, bool gather) {
 // Brings pixels to the device that presents them, where another has made them.
 void Viewer::show(const device::Buffer& pixels) {
   pixels_ = &pixels;
-  if (&engine_.context() == &presenter_) return;
+  if (&engine_.device() == &presenter_) return;
   const auto bytes = pixels.mapped_as<std::byte>();
   if (presented_.size() < bytes.size()) {
     presented_ = device::Buffer(presenter_, bytes.size(), device::Place::host, "picture/presented");

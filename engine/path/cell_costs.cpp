@@ -10,10 +10,10 @@
 
 namespace quadgraph {
 
-CellCosts::CellCosts(device::Device& context)
-    : context_(context),
-      cost_pass_(context, shader::path_cost),
-      body_(context, sizeof(gpu::PathMaterial), device::Place::device, "path/material") {}
+CellCosts::CellCosts(device::Device& device)
+    : device_(device),
+      cost_pass_(device, shader::path_cost),
+      body_(device, sizeof(gpu::PathMaterial), device::Place::device, "path/material") {}
 
 void CellCosts::set(const gpu::Material& material) {
   clear();
@@ -22,7 +22,7 @@ void CellCosts::set(const gpu::Material& material) {
 
 void CellCosts::set(const OpticalGrid& grid) {
   clear();
-  optical_ = device::upload(context_, grid.optical, "path/coefficients");
+  optical_ = device::upload(device_, grid.optical, "path/coefficients");
   grid_.optical = optical_.address();
   grid_.optical_size = grid.size;
   grid_.optical_spacing = grid.spacing;
@@ -39,23 +39,23 @@ void CellCosts::set(std::span<const Edit> edits) {
   const EditArrays arrays(edits);
   edit_count_ = static_cast<std::uint32_t>(arrays.edits.size());
   wants_depth_ = arrays.wants_depth();
-  device::rewrite<gpu::MaterialEdit>(context_, arrays.edits, "path/edits", edits_);
-  device::rewrite<glm::vec3>(context_, arrays.points, "path/strokes", points_);
-  device::rewrite<glm::vec3>(context_, arrays.texels, "path/images", texels_);
+  device::rewrite<gpu::MaterialEdit>(device_, arrays.edits, "path/edits", edits_);
+  device::rewrite<glm::vec3>(device_, arrays.points, "path/strokes", points_);
+  device::rewrite<glm::vec3>(device_, arrays.texels, "path/images", texels_);
 }
 
 const device::Buffer& CellCosts::flood(const Voxels& voxels, std::vector<PassStats>& passes) {
   const gpu::PathGrid& grid = voxels.grid();
   const std::uint64_t count = gpu::cell_count(grid);
   if (!flood_pass_) {
-    flood_pass_.emplace(context_, shader::path_flood);
+    flood_pass_.emplace(device_, shader::path_flood);
   }
   for (device::Buffer& nearest : nearest_) {
-    make_room(context_, nearest, count * sizeof(std::uint32_t), device::Place::device, "path/nearest");
+    make_room(device_, nearest, count * sizeof(std::uint32_t), device::Place::device, "path/nearest");
   }
   const std::uint32_t longest = std::max({grid.size.x, grid.size.y, grid.size.z});
   std::uint32_t last = 0;
-  run_pass(context_, "nearest surface", 0, passes, [&](device::Commands& commands) {
+  run_pass(device_, "nearest surface", 0, passes, [&](device::Commands& commands) {
     const auto record = [&](std::uint32_t step) {
       commands.dispatch(*flood_pass_,
                         gpu::PathFloodPush{grid, voxels.triangle().address(), nearest_[last].address(),
@@ -84,7 +84,7 @@ void CellCosts::run(const Voxels& voxels, const PathMesh& mesh, const device::Bu
   body.texels = texels_.address();
   body.edit_count = edit_count_;
   body.cost = kind == PathCost::extinction ? gpu::COST_EXTINCTION : gpu::COST_TRANSPORT;
-  device::write_bytes(context_, body_, std::as_bytes(std::span(&body, 1)));
+  device::write_bytes(device_, body_, std::as_bytes(std::span(&body, 1)));
   const bool placed = !material_ || material_->pattern != gpu::PATTERN_NONE || edit_count_ > 0;
   const bool deep = (material_ && material_->pattern == gpu::PATTERN_LAYERS) || wants_depth_;
   const device::Buffer* nearest = (placed && rest != nullptr) || deep ? &flood(voxels, passes) : nullptr;
@@ -98,7 +98,7 @@ void CellCosts::run(const Voxels& voxels, const PathMesh& mesh, const device::Bu
                                body_.address(),
                                cost.address()};
   const std::uint64_t count = gpu::cell_count(voxels.grid());
-  run_pass(context_, "path cost", 16 * count, passes,
+  run_pass(device_, "path cost", 16 * count, passes,
            [&](device::Commands& commands) { commands.dispatch(cost_pass_, push, count); });
 }
 

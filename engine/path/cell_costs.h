@@ -14,7 +14,7 @@ namespace quadgraph {
 
 class CellCosts {
  public:
-  explicit CellCosts(device::Device& context);
+  explicit CellCosts(device::Device& device);
 
   // A material, or a grid of coefficients; nothing, for coefficients that only the nodes of levels have.
   void set(const gpu::Material& material);
@@ -32,7 +32,7 @@ class CellCosts {
  private:
   const device::Buffer& flood(const Voxels& voxels, std::vector<PassStats>& passes);
 
-  device::Device& context_;
+  device::Device& device_;
   device::ComputePass cost_pass_;
   std::optional<device::ComputePass> flood_pass_;  // made at first use
   std::optional<gpu::Material> material_;

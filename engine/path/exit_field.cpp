@@ -8,19 +8,19 @@
 
 namespace quadgraph {
 
-ExitField::ExitField(device::Device& context)
-    : context_(context),
-      pass_(context, shader::path_field),
-      record_(context, sizeof(gpu::PathField), device::Place::device, "path/field") {}
+ExitField::ExitField(device::Device& device)
+    : device_(device),
+      pass_(device, shader::path_field),
+      record_(device, sizeof(gpu::PathField), device::Place::device, "path/field") {}
 
 void ExitField::run(const Voxels& voxels, const PathRelaxation& paths, const gpu::PathTools& tools,
                     std::vector<PassStats>& passes) {
   grid_ = voxels.grid();
   const std::uint64_t count = gpu::cell_count(grid_);
-  make_room(context_, cells_, count * sizeof(glm::vec4), device::Place::device, "path/field of cells");
+  make_room(device_, cells_, count * sizeof(glm::vec4), device::Place::device, "path/field of cells");
   const gpu::PathField record{grid_, cells_.address(), tools};
   const gpu::PathFieldPush push{grid_, voxels.cells().flags.address(), paths.lengths().address(), cells_.address()};
-  run_pass(context_, "path field", 32 * count, passes, [&](device::Commands& commands) {
+  run_pass(device_, "path field", 32 * count, passes, [&](device::Commands& commands) {
     commands.update(record_, std::as_bytes(std::span(&record, 1)));
     commands.dispatch(pass_, push, count);
   });
@@ -28,7 +28,7 @@ void ExitField::run(const Voxels& voxels, const PathRelaxation& paths, const gpu
 
 std::vector<glm::vec3> ExitField::at(std::span<const glm::vec3> points) const {
   std::vector<glm::vec4> cells(gpu::cell_count(grid_));
-  device::read_bytes(context_, cells_, std::as_writable_bytes(std::span(cells)));
+  device::read_bytes(device_, cells_, std::as_writable_bytes(std::span(cells)));
   std::vector<glm::vec3> found;
   found.reserve(points.size());
   for (const glm::vec3& point : points) {

@@ -10,7 +10,7 @@ namespace quadgraph {
 
 class ExitField {
  public:
-  explicit ExitField(device::Device& context);
+  explicit ExitField(device::Device& device);
 
   void run(const Voxels& voxels, const PathRelaxation& paths, const gpu::PathTools& tools,
            std::vector<PassStats>& passes);
@@ -21,7 +21,7 @@ class ExitField {
   std::vector<glm::vec3> at(std::span<const glm::vec3> points) const;
 
  private:
-  device::Device& context_;
+  device::Device& device_;
   device::ComputePass pass_;
   gpu::PathGrid grid_{};
   device::Buffer cells_, record_;

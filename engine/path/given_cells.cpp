@@ -7,7 +7,7 @@
 
 namespace quadgraph {
 
-std::vector<float> paths_through(device::Device& context, const glm::uvec3& size, float cell,
+std::vector<float> paths_through(device::Device& device, const glm::uvec3& size, float cell,
                                  std::span<const float> cost, std::span<const float> entering, PathSolver solver) {
   gpu::PathGrid grid{};
   grid.cell = cell;
@@ -26,29 +26,29 @@ std::vector<float> paths_through(device::Device& context, const glm::uvec3& size
   std::vector<std::uint32_t> flags(count);
   for (std::size_t i = 0; i < count; ++i) flags[i] = cost[i] >= 0 ? gpu::CELL_SOLID : 0;
   const std::vector<std::uint32_t> wanted(6 * block_count(grid), 0);
-  const device::Buffer flag_buffer = device::upload<std::uint32_t>(context, flags, "path/flags");
-  const device::Buffer wanted_buffer = device::upload<std::uint32_t>(context, wanted, "path/wanted");
-  PathRelaxation relaxation(context);
+  const device::Buffer flag_buffer = device::upload<std::uint32_t>(device, flags, "path/flags");
+  const device::Buffer wanted_buffer = device::upload<std::uint32_t>(device, wanted, "path/wanted");
+  PathRelaxation relaxation(device);
   relaxation.make_room(grid);
-  device::write_bytes(context, relaxation.cost(), std::as_bytes(cost));
-  device::write_bytes(context, relaxation.entering(), std::as_bytes(entering));
+  device::write_bytes(device, relaxation.cost(), std::as_bytes(cost));
+  device::write_bytes(device, relaxation.entering(), std::as_bytes(entering));
   std::vector<PassStats> passes;
   relaxation.solve({grid, flag_buffer, wanted_buffer}, solver, passes);
-  std::vector<float> lengths = device::download<float>(context, relaxation.lengths());
+  std::vector<float> lengths = device::download<float>(device, relaxation.lengths());
   lengths.resize(3 * count);
   return lengths;
 }
 
-GivenVoxels voxels_of(device::Device& context, std::span<const glm::vec3> vertices,
+GivenVoxels voxels_of(device::Device& device, std::span<const glm::vec3> vertices,
                       std::span<const glm::uvec3> triangles, std::uint32_t cells) {
-  const device::Buffer vertex_buffer = device::upload(context, vertices, "path/vertices");
-  const device::Buffer triangle_buffer = device::upload(context, triangles, "path/triangles");
-  Voxels voxels(context);
+  const device::Buffer vertex_buffer = device::upload(device, vertices, "path/vertices");
+  const device::Buffer triangle_buffer = device::upload(device, triangles, "path/triangles");
+  Voxels voxels(device);
   std::vector<PassStats> passes;
   voxels.update({vertex_buffer, triangle_buffer, static_cast<std::uint32_t>(vertices.size()),
                  static_cast<std::uint32_t>(triangles.size())},
                 cells, {}, passes);
-  return {voxels.grid(), device::download<std::uint32_t>(context, voxels.cells().flags)};
+  return {voxels.grid(), device::download<std::uint32_t>(device, voxels.cells().flags)};
 }
 
 }  // namespace quadgraph

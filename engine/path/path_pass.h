@@ -11,9 +11,9 @@ namespace quadgraph {
 
 // Records with `record(commands)`, runs it, waits, and adds what it took to `passes`. `bytes`: read and written.
 template <typename Record>
-void run_pass(device::Device& context, const char* name, std::uint64_t bytes, std::vector<PassStats>& passes,
+void run_pass(device::Device& device, const char* name, std::uint64_t bytes, std::vector<PassStats>& passes,
               const Record& record) {
-  device::Commands commands(context, 1);
+  device::Commands commands(device, 1);
   commands.begin_pass(name);
   record(commands);
   commands.end_pass();
@@ -21,11 +21,11 @@ void run_pass(device::Device& context, const char* name, std::uint64_t bytes, st
 }
 
 // `buffer` with room for that many bytes, which may be more than it is asked for.
-inline void make_room(device::Device& context, device::Buffer& buffer, std::uint64_t bytes, device::Place place,
+inline void make_room(device::Device& device, device::Buffer& buffer, std::uint64_t bytes, device::Place place,
                       const char* name) {
   if (!buffer.exists() || buffer.size() < bytes) {
     buffer = {};  // two need not fit beside each other
-    buffer = {context, bytes, place, name};
+    buffer = {device, bytes, place, name};
   }
 }
 

@@ -18,32 +18,32 @@ constexpr std::uint64_t word = sizeof(std::uint32_t);
 
 }  // namespace
 
-PathRelaxation::PathRelaxation(device::Device& context)
-    : context_(context),
-      start_pass_(context, shader::path_start),
-      settle_pass_(context, shader::path_settle),
-      fronts_(context, 3 * (most_rounds + 1) * word, device::Place::device, "path/fronts"),
-      groups_(context, (most_rounds + 1) * sizeof(glm::uvec3), device::Place::device, "path/groups"),
-      counts_(context, sizeof(gpu::PathCounts), device::Place::device, "path/counts of lit cells") {}
+PathRelaxation::PathRelaxation(device::Device& device)
+    : device_(device),
+      start_pass_(device, shader::path_start),
+      settle_pass_(device, shader::path_settle),
+      fronts_(device, 3 * (most_rounds + 1) * word, device::Place::device, "path/fronts"),
+      groups_(device, (most_rounds + 1) * sizeof(glm::uvec3), device::Place::device, "path/groups"),
+      counts_(device, sizeof(gpu::PathCounts), device::Place::device, "path/counts of lit cells") {}
 
 const device::ComputePass& PathRelaxation::pass(PathSolver solver) {
   const std::uint32_t lattice = solver == PathSolver::lattice ? 1 : 0;
   auto& pass = passes_[lattice];
   if (pass) return *pass;
-  return pass.emplace(context_, shader::path_relax,
+  return pass.emplace(device_, shader::path_relax,
                       device::ComputeOptions{.variant = lattice, .workgroup_size = PATH_GROUP});
 }
 
 void PathRelaxation::make_room(const gpu::PathGrid& grid) {
   const std::uint64_t bytes = 3 * word * gpu::cell_count(grid);
-  quadgraph::make_room(context_, cost_, bytes, device::Place::device, "path/cost");
-  quadgraph::make_room(context_, entering_, bytes, device::Place::device, "path/entering");
-  quadgraph::make_room(context_, lengths_, 2 * bytes, device::Place::device, "path/lengths");
-  quadgraph::make_room(context_, copies_, 3 * word * block_count(grid), device::Place::device, "path/copies");
-  quadgraph::make_room(context_, arrivals_, 6 * sizeof(glm::uvec2) * block_count(grid), device::Place::device,
+  quadgraph::make_room(device_, cost_, bytes, device::Place::device, "path/cost");
+  quadgraph::make_room(device_, entering_, bytes, device::Place::device, "path/entering");
+  quadgraph::make_room(device_, lengths_, 2 * bytes, device::Place::device, "path/lengths");
+  quadgraph::make_room(device_, copies_, 3 * word * block_count(grid), device::Place::device, "path/copies");
+  quadgraph::make_room(device_, arrivals_, 6 * sizeof(glm::uvec2) * block_count(grid), device::Place::device,
                        "path/arrivals");
   for (device::Buffer& list : lists_) {
-    quadgraph::make_room(context_, list, 3 * word * block_count(grid), device::Place::device, "path/blocks to relax");
+    quadgraph::make_room(device_, list, 3 * word * block_count(grid), device::Place::device, "path/blocks to relax");
   }
 }
 
@@ -59,7 +59,7 @@ void PathRelaxation::solve(const SolidCells& cells, PathSolver solver, std::vect
     if (rounds_ + rounds_at_once > most_rounds) {
       throw SolverError("shortest paths: not found in " + std::to_string(most_rounds) + " rounds");
     }
-    run_pass(context_, "shortest paths", 0, passes, [&](device::Commands& commands) {
+    run_pass(device_, "shortest paths", 0, passes, [&](device::Commands& commands) {
       if (rounds_ == 0) {
         commands.update(groups_, std::as_bytes(std::span(no_groups)));
         commands.fill(counts_, 0);
@@ -87,18 +87,18 @@ void PathRelaxation::solve(const SolidCells& cells, PathSolver solver, std::vect
         commands.dispatch_indirect(relax, push, groups_, k * sizeof(glm::uvec3));
       }
     });
-    groups = device::download<glm::uvec3>(context_, groups_);
+    groups = device::download<glm::uvec3>(device_, groups_);
     for (std::uint32_t k = rounds_; k < rounds_ + rounds_at_once; ++k) relaxed += groups[k].x;
     rounds_ += rounds_at_once;
     done = groups[rounds_].x == 0;
   }
-  run_pass(context_, "shortest paths", count * 24, passes, [&](device::Commands& commands) {
+  run_pass(device_, "shortest paths", count * 24, passes, [&](device::Commands& commands) {
     commands.dispatch(settle_pass_, gpu::PathSettlePush{grid, lengths_.address(), copies_.address()}, count);
   });
   while (rounds_ > 0 && groups[rounds_ - 1].x == 0) --rounds_;
   // Per block of a channel: lengths and costs with a cell around, and what has changed.
   passes.back().bytes = relaxed * 4ull * (2 * 1000 + 512) + count * 28;
-  lit_ = device::download<gpu::PathCounts>(context_, counts_)[0].lit;
+  lit_ = device::download<gpu::PathCounts>(device_, counts_)[0].lit;
 }
 
 }  // namespace quadgraph

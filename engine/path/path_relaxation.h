@@ -17,7 +17,7 @@ namespace quadgraph {
 // rounding.
 class PathRelaxation {
  public:
-  explicit PathRelaxation(device::Device& context);
+  explicit PathRelaxation(device::Device& device);
 
   // Room for the cells of a grid. What cost and entering hold is then undefined.
   void make_room(const gpu::PathGrid& grid);
@@ -39,7 +39,7 @@ class PathRelaxation {
  private:
   const device::ComputePass& pass(PathSolver solver);
 
-  device::Device& context_;
+  device::Device& device_;
   device::ComputePass start_pass_, settle_pass_;
   std::optional<device::ComputePass> passes_[2];  // by PathSolver, made at first use
   device::Buffer cost_, entering_, lengths_, copies_, lists_[2], arrivals_, fronts_, groups_, counts_;

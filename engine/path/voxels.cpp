@@ -23,14 +23,14 @@ float from_sortable(std::uint32_t number) {
 
 }  // namespace
 
-Voxels::Voxels(device::Device& context)
-    : context_(context),
-      box_pass_(context, shader::path_box),
-      crossings_pass_(context, shader::path_crossings),
-      winding_pass_(context, shader::path_winding),
-      solid_pass_(context, shader::path_solid),
-      box_(context, 6 * sizeof(std::uint32_t), device::Place::device, "path/box"),
-      counts_(context, sizeof(gpu::PathCounts), device::Place::device, "path/counts of cells") {}
+Voxels::Voxels(device::Device& device)
+    : device_(device),
+      box_pass_(device, shader::path_box),
+      crossings_pass_(device, shader::path_crossings),
+      winding_pass_(device, shader::path_winding),
+      solid_pass_(device, shader::path_solid),
+      box_(device, 6 * sizeof(std::uint32_t), device::Place::device, "path/box"),
+      counts_(device, sizeof(gpu::PathCounts), device::Place::device, "path/counts of cells") {}
 
 std::uint32_t Voxels::stripes(const PathMesh& mesh) {
   return std::max(least_invocations / std::max(mesh.triangle_count, 1u), 1u);
@@ -38,12 +38,12 @@ std::uint32_t Voxels::stripes(const PathMesh& mesh) {
 
 void Voxels::fit(const PathMesh& mesh, std::uint32_t cells, std::vector<PassStats>& passes) {
   constexpr std::array<std::uint32_t, 6> none = {~0u, ~0u, ~0u, 0, 0, 0};
-  run_pass(context_, "box", mesh.vertices.size(), passes, [&](device::Commands& commands) {
+  run_pass(device_, "box", mesh.vertices.size(), passes, [&](device::Commands& commands) {
     commands.update(box_, std::as_bytes(std::span(none)));
     commands.dispatch(box_pass_, gpu::PathBoxPush{mesh.vertices.address(), box_.address(), mesh.vertex_count},
                       mesh.vertex_count);
   });
-  const auto found = device::download<std::uint32_t>(context_, box_);
+  const auto found = device::download<std::uint32_t>(device_, box_);
   glm::vec3 low, high;
   for (int axis = 0; axis < 3; ++axis) {
     low[axis] = from_sortable(found[axis]);
@@ -56,10 +56,10 @@ void Voxels::update(const PathMesh& mesh, std::uint32_t cells, const gpu::PathTo
                     std::vector<PassStats>& passes) {
   fit(mesh, cells, passes);
   const std::uint64_t count = gpu::cell_count(grid_), blocks = block_count(grid_), word = sizeof(std::uint32_t);
-  make_room(context_, crossings_, 3 * count * word, device::Place::device, "path/crossings");
-  make_room(context_, flags_, count * word, device::Place::device, "path/flags");
-  make_room(context_, triangle_, count * word, device::Place::device, "path/triangles of cells");
-  make_room(context_, wanted_, 6 * blocks * word, device::Place::device, "path/wanted");
+  make_room(device_, crossings_, 3 * count * word, device::Place::device, "path/crossings");
+  make_room(device_, flags_, count * word, device::Place::device, "path/flags");
+  make_room(device_, triangle_, count * word, device::Place::device, "path/triangles of cells");
+  make_room(device_, wanted_, 6 * blocks * word, device::Place::device, "path/wanted");
   const std::uint32_t stripes = Voxels::stripes(mesh);
   const gpu::PathCrossingsPush crossings{grid_,
                                          mesh.vertices.address(),
@@ -71,7 +71,7 @@ void Voxels::update(const PathMesh& mesh, std::uint32_t cells, const gpu::PathTo
                                          stripes,
                                          tools};
   const std::uint64_t bytes = mesh.triangles.size() + 36ull * mesh.triangle_count + 8 * 3 * count * word;
-  run_pass(context_, "voxels", bytes, passes, [&](device::Commands& commands) {
+  run_pass(device_, "voxels", bytes, passes, [&](device::Commands& commands) {
     commands.fill(crossings_, 0);
     commands.fill(flags_, 0);
     commands.fill(triangle_, 0);
@@ -87,7 +87,7 @@ void Voxels::update(const PathMesh& mesh, std::uint32_t cells, const gpu::PathTo
         gpu::PathSolidPush{grid_, crossings_.address(), flags_.address(), wanted_.address(), counts_.address(), tools},
         count);
   });
-  solid_ = device::download<std::uint32_t>(context_, counts_)[0];
+  solid_ = device::download<std::uint32_t>(device_, counts_)[0];
 }
 
 }  // namespace quadgraph

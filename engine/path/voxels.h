@@ -31,7 +31,7 @@ struct SolidCells {
 // mislead single lines, not the majority.
 class Voxels {
  public:
-  explicit Voxels(device::Device& context);
+  explicit Voxels(device::Device& device);
 
   // Voxelises a mesh, `cells` along its longest side, without what is cut away. `passes` gets what it took.
   void update(const PathMesh& mesh, std::uint32_t cells, const gpu::PathTools& tools, std::vector<PassStats>& passes);
@@ -49,7 +49,7 @@ class Voxels {
  private:
   void fit(const PathMesh& mesh, std::uint32_t cells, std::vector<PassStats>& passes);
 
-  device::Device& context_;
+  device::Device& device_;
   device::ComputePass box_pass_, crossings_pass_, winding_pass_, solid_pass_;
   device::Buffer box_, crossings_, flags_, triangle_, wanted_, counts_;
   gpu::PathGrid grid_{};

@@ -53,8 +53,8 @@ const QuadGraph& Engine::graph() const {
   return implementation_->graph;
 }
 
-device::Device& Engine::context() const {
-  return implementation_->context;
+device::Device& Engine::device() const {
+  return implementation_->device;
 }
 
 Simulation& Engine::simulation() {
@@ -144,7 +144,7 @@ void Engine::set_deformation(std::span<const Deformer> list) {
   check_shapes(list, self.graph);
   const auto also = [&](Workspace& work) { self.motion.record(work, list, self.mesh); };
   if (!self.simulation) {
-    if (!self.motion_work) self.motion_work.emplace(self.context, self.mesh.vertex_count);
+    if (!self.motion_work) self.motion_work.emplace(self.device, self.mesh.vertex_count);
     self.motion_work->recorder.clear();
     also(*self.motion_work);
     self.motion_work->recorder.submit();
@@ -178,7 +178,7 @@ void Engine::update_irradiance() {
   const LightSet lights = self.cast_shadows();
   simulation.set_beams(lights.beams);
   if (lights.environments > 0) {
-    if (!self.hidden) self.hidden.emplace(self.context, self.graph);
+    if (!self.hidden) self.hidden.emplace(self.device, self.graph);
     self.irradiance_passes.push_back(self.hidden->run(simulation, self.shadows, lights.environments, self.eta));
   }
   for (std::uint32_t level = 0; level < simulation.level_count(); ++level) {
@@ -243,11 +243,11 @@ const PictureBuffers& Engine::draw(const View& view, const RenderOptions& option
   self.images.set_roughness(options.roughness, map ? map->roughness : 0);
   self.radiance = self.draw_surface(camera, options);
   if (options.ground) {
-    if (!self.ground) self.ground.emplace(self.context);
+    if (!self.ground) self.ground.emplace(self.device);
     self.render_passes.push_back(self.ground->run(self.mesh, self.bounds, view, camera, self.rasteriser.picture()));
   }
   if (options.surroundings) {
-    if (!self.surroundings) self.surroundings.emplace(self.context);
+    if (!self.surroundings) self.surroundings.emplace(self.device);
     PictureBuffers& picture = self.rasteriser.picture();
     PassStats pass;
     picture.has_surroundings = self.surroundings->run(self.lights, view, camera, picture, pass);
@@ -257,7 +257,7 @@ const PictureBuffers& Engine::draw(const View& view, const RenderOptions& option
 }
 
 Picture Engine::render(const View& view, const RenderOptions& options) {
-  Picture picture = read_picture(implementation_->context, draw(view, options));
+  Picture picture = read_picture(implementation_->device, draw(view, options));
   if (const auto& shown = legend()) draw_legend(picture, *shown);
   return picture;
 }
@@ -268,7 +268,7 @@ const std::optional<Legend>& Engine::legend() const {
 
 std::optional<Picked> Engine::pick(const View& view, float aspect, const glm::vec2& at) const {
   auto& self = *implementation_;
-  const auto vertices = device::download<glm::vec3>(self.context, self.mesh.vertices);
+  const auto vertices = device::download<glm::vec3>(self.device, self.mesh.vertices);
   return quadgraph::pick(self.graph.display(), vertices, place_camera(view, self.bounds, aspect), view.vertical_fov,
                          aspect, at, self.cut_tools);
 }
@@ -277,7 +277,7 @@ Leaving Engine::leaving(std::span<const std::uint32_t> face, std::span<const glm
   auto& self = *implementation_;
   if (!self.report) throw InputError("radiance: solve first");
   const GatherField& field = self.gather(Gather::scaled);
-  if (!self.probe) self.probe.emplace(self.context);
+  if (!self.probe) self.probe.emplace(self.device);
   return self.probe->run(self.levels().present_level(), field, self.eta, face, direction);
 }
 
@@ -295,26 +295,26 @@ std::vector<PassStats> Engine::passes() const {
 }
 
 std::uint64_t Engine::device_bytes() const {
-  return implementation_->context.allocated_bytes();
+  return implementation_->device.allocated_bytes();
 }
 
 const std::map<std::string, std::uint64_t>& Engine::memory() const {
-  return implementation_->context.allocated_by_purpose();
+  return implementation_->device.allocated_by_purpose();
 }
 
 std::uint64_t Engine::allocation_count() const {
-  return implementation_->context.allocation_count();
+  return implementation_->device.allocation_count();
 }
 
 std::uint64_t Engine::peak_device_bytes() const {
-  return implementation_->context.peak_allocated_bytes();
+  return implementation_->device.peak_allocated_bytes();
 }
 
 Metadata Engine::metadata() const {
   const auto& self = *implementation_;
   if (!self.report) return {};
   return describe({self.source, self.material, self.lights, self.deformation, self.options, *self.report, self.view,
-                   name_of(self.radiance), self.context.info()});
+                   name_of(self.radiance), self.device.info()});
 }
 
 }  // namespace quadgraph

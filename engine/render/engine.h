@@ -86,7 +86,7 @@ class Engine {
   Engine& operator=(const Engine&) = delete;
 
   const QuadGraph& graph() const;
-  device::Device& context() const;
+  device::Device& device() const;
   Simulation& simulation();      // throws InputError where the file is a surface without levels
   const Sphere& bounds() const;  // of the display mesh in its present shape
 

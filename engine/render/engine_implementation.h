@@ -17,20 +17,20 @@
 namespace quadgraph {
 
 struct Engine::Implementation {
-  Implementation(const std::filesystem::path& path, std::shared_ptr<device::Device> device)
+  Implementation(const std::filesystem::path& path, std::shared_ptr<device::Device> shared)
       : source(path.filename().string()),
         graph(QuadGraph::load(path)),
         bounds(bounding_sphere(graph.display().vertices)),
-        owned(std::move(device)),
-        context(*owned),
-        simulation(graph.levels().empty() ? nullptr : std::make_unique<Simulation>(context, graph)),
-        mesh(upload_display(context, graph.display())),
+        owned(std::move(shared)),
+        device(*owned),
+        simulation(graph.levels().empty() ? nullptr : std::make_unique<Simulation>(device, graph)),
+        mesh(upload_display(device, graph.display())),
         motion(graph.display()),
-        images(context),
-        shadows(context),
-        irradiance(context),
-        rasteriser(context),
-        paths(context) {
+        images(device),
+        shadows(device),
+        irradiance(device),
+        rasteriser(device),
+        paths(device) {
     shadows.update(mesh, {{}, bounds});
   }
 
@@ -38,7 +38,7 @@ struct Engine::Implementation {
   QuadGraph graph;
   Sphere bounds;
   std::shared_ptr<device::Device> owned;
-  device::Device& context;
+  device::Device& device;
   std::unique_ptr<Simulation> simulation;  // none of a surface without levels
   DisplayBuffers mesh;
   DisplayMotion motion;
@@ -110,19 +110,19 @@ struct Engine::Implementation {
   void draw_inside(const Camera& camera, const RenderOptions& render) {
     if (report->path)
       throw InputError("show: with shortest-path only 'picture', found '" + to_string(render.show) + "'");
-    const Inside inside = inside_of({context, levels(), graph, *report, options, bounds, camera.eye}, render.show);
+    const Inside inside = inside_of({device, levels(), graph, *report, options, bounds, camera.eye}, render.show);
     false_colours = {};  // two need not fit beside each other
-    false_colours = upload_false_colours(context, inside.mesh, inside.plane, inside.legend.diverging);
+    false_colours = upload_false_colours(device, inside.mesh, inside.plane, inside.legend.diverging);
     legend = inside.legend;
     render_passes = rasteriser.run(false_colours, camera, render.width, render.height);
   }
 
   PlacedRoughness placed_roughness(const RoughnessMap& map) {
     if (rest_vertices.size() == 0) {
-      rest_vertices = device::upload<glm::vec3>(context, graph.display().vertices, "display/at rest");
+      rest_vertices = device::upload<glm::vec3>(device, graph.display().vertices, "display/at rest");
     }
     if (roughness_image != map.image) {
-      roughness_texels = device::upload<glm::vec3>(context, map.image->texels, "picture/roughness image");
+      roughness_texels = device::upload<glm::vec3>(device, map.image->texels, "picture/roughness image");
       roughness_image = map.image;
     }
     return {roughness_texels,
@@ -183,7 +183,7 @@ struct Engine::Implementation {
 
   void display_room() {
     if (triangle_face.size() > 0) return;
-    triangle_face = device::upload<std::uint32_t>(context, display_faces(graph.display(), graph.levels()[0]),
+    triangle_face = device::upload<std::uint32_t>(device, display_faces(graph.display(), graph.levels()[0]),
                                                   "display/faces of triangles");
   }
 };

@@ -22,17 +22,17 @@ struct PathMethod::Parts {
   std::array<std::optional<device::ComputePass>, 2> enter,
       enter_cut;  // without shaped lights and with; made at first use
 
-  explicit Parts(device::Device& context) : voxels(context), costs(context), paths(context), field(context) {}
+  explicit Parts(device::Device& device) : voxels(device), costs(device), paths(device), field(device) {}
 
-  const device::ComputePass& enter_pass(device::Device& context, bool cuts, bool shaped) {
+  const device::ComputePass& enter_pass(device::Device& device, bool cuts, bool shaped) {
     auto& pass = (cuts ? enter_cut : enter)[shaped ? 1 : 0];
     if (pass) return *pass;
-    return pass.emplace(context, cuts ? shader::path_enter_cut : shader::path_enter,
+    return pass.emplace(device, cuts ? shader::path_enter_cut : shader::path_enter,
                         device::ComputeOptions{.variant = shaped ? 1u : 0u});
   }
 };
 
-PathMethod::PathMethod(device::Device& context) : context_(context) {}
+PathMethod::PathMethod(device::Device& device) : device_(device) {}
 
 PathMethod::~PathMethod() = default;
 
@@ -61,11 +61,11 @@ void PathMethod::set(std::span<const BodyCut> cuts) {
   const std::vector<gpu::PathTool> tools = path_tools(cuts);
   body_.reset();
   tool_count_ = static_cast<std::uint32_t>(tools.size());
-  device::rewrite<gpu::PathTool>(context_, tools, "path/cuts", tools_);
+  device::rewrite<gpu::PathTool>(device_, tools, "path/cuts", tools_);
 }
 
 PathMethod::Parts& PathMethod::parts() {
-  if (!parts_) parts_ = std::make_unique<Parts>(context_);
+  if (!parts_) parts_ = std::make_unique<Parts>(device_);
   if (!stale_) return *parts_;
   parts_->costs.clear();
   if (material_) parts_->costs.set(*material_);
@@ -96,15 +96,14 @@ void PathMethod::light(const DisplayBuffers& mesh, const ShadowMaps& shadows, fl
                                 .eta = eta,
                                 .diffuse_transmittance = static_cast<float>(diffuse_transmittance(eta)),
                                 .tools = tools()};
-  run_pass(context_, "path light", mesh.triangles.size() + 36ull * mesh.triangle_count, passes_,
-           [&](device::Commands& commands) {
-             commands.fill(own.paths.entering(), 0);
-             commands.dispatch(own.enter_pass(context_, false, shadows.shaped()), push,
-                               3ull * stripes * mesh.triangle_count);
-             if (tool_count_ == 0) return;
-             commands.dispatch(own.enter_pass(context_, true, shadows.shaped()), push,
-                               gpu::cell_count(own.voxels.grid()));
-           });
+  run_pass(
+      device_, "path light", mesh.triangles.size() + 36ull * mesh.triangle_count, passes_,
+      [&](device::Commands& commands) {
+        commands.fill(own.paths.entering(), 0);
+        commands.dispatch(own.enter_pass(device_, false, shadows.shaped()), push, 3ull * stripes * mesh.triangle_count);
+        if (tool_count_ == 0) return;
+        commands.dispatch(own.enter_pass(device_, true, shadows.shaped()), push, gpu::cell_count(own.voxels.grid()));
+      });
 }
 
 void PathMethod::make_body(const PathMesh& mesh, const device::Buffer* rest, const PathOptions& options) {

@@ -26,7 +26,7 @@ struct GivenGrid {
 // Makes what it needs of the device at the first solve.
 class PathMethod {
  public:
-  explicit PathMethod(device::Device& context);
+  explicit PathMethod(device::Device& device);
   ~PathMethod();
 
   // Coefficients and edits, see CellCosts.
@@ -60,7 +60,7 @@ class PathMethod {
   void make_body(const PathMesh& mesh, const device::Buffer* rest, const PathOptions& options);
   void light(const DisplayBuffers& mesh, const ShadowMaps& shadows, float eta);
 
-  device::Device& context_;
+  device::Device& device_;
   std::vector<Edit> edits_;
   std::optional<gpu::Material> material_;
   std::optional<GivenGrid> grid_;

@@ -48,7 +48,7 @@ gpu::Beam beam_along(const std::optional<glm::vec3>& direction) {
   return rgb_beam({gpu::BEAM_DIRECTIONAL, glm::vec3(glm::dvec3(*direction) / length)});
 }
 
-void replace_beams(device::Device& context, std::span<const gpu::Beam> beams, BeamBuffers& buffers,
+void replace_beams(device::Device& device, std::span<const gpu::Beam> beams, BeamBuffers& buffers,
                    std::vector<LevelBuffers>& levels) {
   std::vector<gpu::Beam> all(beams.begin(), beams.end());
   all.push_back(rgb_beam({gpu::BEAM_MEAN, glm::vec3(0)}));
@@ -60,23 +60,22 @@ void replace_beams(device::Device& context, std::span<const gpu::Beam> beams, Be
   const bool fits = alike(all, buffers.beams);
   buffers.beams = std::move(all);
   const std::span<const gpu::Beam> records(buffers.beams);
-  if (fits) return device::write_bytes(context, buffers.on_device, std::as_bytes(records));
-  buffers.on_device = device::upload(context, records, "light/beams");
-  device::Commands commands(context);
+  if (fits) return device::write_bytes(device, buffers.on_device, std::as_bytes(records));
+  buffers.on_device = device::upload(device, records, "light/beams");
+  device::Commands commands(device);
   for (LevelBuffers& level : levels) {
     const std::uint64_t bytes = std::uint64_t{floats} * level.face_count * sizeof(float);
-    if (level.beam_q.size() != bytes) level.beam_q = {context, bytes, device::Place::device, "light/beams on faces"};
+    if (level.beam_q.size() != bytes) level.beam_q = {device, bytes, device::Place::device, "light/beams on faces"};
     commands.fill(level.beam_q, 0);
     commands.fill(level.q, 0);
   }
   commands.submit_and_wait();
 }
 
-void write_irradiance(device::Device& context, std::span<const glm::vec3> q, std::uint32_t number,
-                      LevelBuffers& level) {
+void write_irradiance(device::Device& device, std::span<const glm::vec3> q, std::uint32_t number, LevelBuffers& level) {
   check_irradiance(q, number, level.face_count);
-  device::write_bytes(context, level.q, std::as_bytes(q));
-  device::write_bytes(context, level.beam_q, std::as_bytes(q));
+  device::write_bytes(device, level.q, std::as_bytes(q));
+  device::write_bytes(device, level.beam_q, std::as_bytes(q));
 }
 
 }  // namespace quadgraph

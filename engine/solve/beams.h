@@ -23,11 +23,11 @@ gpu::Beam beam_along(const std::optional<glm::vec3>& direction);
 
 // Replaces the beams by those of the scene's light and the one for light that enters again. If they need other room
 // than the present ones, every level gets it, without light.
-void replace_beams(device::Device& context, std::span<const gpu::Beam> beams, BeamBuffers& buffers,
+void replace_beams(device::Device& device, std::span<const gpu::Beam> beams, BeamBuffers& buffers,
                    std::vector<LevelBuffers>& levels);
 
 // Light of the only beam, W/mm^2 per face, uniform over each. Throws InputError unless there is one value >= 0 for each
 // face of level `number`.
-void write_irradiance(device::Device& context, std::span<const glm::vec3> q, std::uint32_t number, LevelBuffers& level);
+void write_irradiance(device::Device& device, std::span<const glm::vec3> q, std::uint32_t number, LevelBuffers& level);
 
 }  // namespace quadgraph

@@ -14,11 +14,11 @@ void BodyShape::sample() {
   chord_ = mean_chord(levels()[0]);
 }
 
-const Level& BodyShape::present(device::Device& context, const LevelBuffers& finest) {
+const Level& BodyShape::present(device::Device& device, const LevelBuffers& finest) {
   if (deformed_.list().empty()) return levels()[0];
   if (!present_) {
     present_.emplace(moved_);
-    present_->place(0, device::download<glm::vec3>(context, finest.vertices));
+    present_->place(0, device::download<glm::vec3>(device, finest.vertices));
   }
   return present_->levels()[0];
 }
@@ -31,9 +31,9 @@ void BodyShape::move(std::uint32_t number, std::span<const glm::vec3> positions)
   present_.reset();
 }
 
-void BodyShape::put_back(device::Device& context, std::vector<LevelBuffers>& levels) {
+void BodyShape::put_back(device::Device& device, std::vector<LevelBuffers>& levels) {
   moved_.put_back();
-  deformed_.put_back(context, levels);
+  deformed_.put_back(device, levels);
   set_ = false;
   spoilt_.clear();
   present_.reset();

@@ -25,7 +25,7 @@ class BodyShape {
   const std::string& spoilt() const { return spoilt_; }
 
   // Level 0 in its present shape; valid until the next motion.
-  const Level& present(device::Device& context, const LevelBuffers& finest);
+  const Level& present(device::Device& device, const LevelBuffers& finest);
 
   // Whether vertices were set since the last put_back.
   bool set() const { return set_; }
@@ -34,7 +34,7 @@ class BodyShape {
   void move(std::uint32_t number, std::span<const glm::vec3> positions);
 
   // All vertices and nodes as in the file, here and on the device.
-  void put_back(device::Device& context, std::vector<LevelBuffers>& levels);
+  void put_back(device::Device& device, std::vector<LevelBuffers>& levels);
 
   // Whether the body already is as this list makes it.
   bool is(std::span<const Deformer> list) const;

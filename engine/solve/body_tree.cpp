@@ -6,12 +6,12 @@
 
 namespace quadgraph {
 
-BodyTree::BodyTree(device::Device& context, const Level& level, const std::string& purpose) : purpose_(purpose) {
+BodyTree::BodyTree(device::Device& device, const Level& level, const std::string& purpose) : purpose_(purpose) {
   const FaceTree tree = face_tree(level);
   leaves_ = tree.leaves();
-  order_ = device::upload<std::uint32_t>(context, tree.order, purpose + "/faces of the tree");
-  leaf_begin_ = device::upload<std::uint32_t>(context, tree.leaf_begin, purpose + "/leaves of the tree");
-  boxes_ = {context, nodes() * sizeof(gpu::Box), device::Place::device, purpose + "/boxes of the tree"};
+  order_ = device::upload<std::uint32_t>(device, tree.order, purpose + "/faces of the tree");
+  leaf_begin_ = device::upload<std::uint32_t>(device, tree.leaf_begin, purpose + "/leaves of the tree");
+  boxes_ = {device, nodes() * sizeof(gpu::Box), device::Place::device, purpose + "/boxes of the tree"};
 }
 
 void BodyTree::record(Workspace& work, const LevelBuffers& level) {

@@ -15,7 +15,7 @@ namespace quadgraph {
 class BodyTree {
  public:
   // `purpose`: what its memory counts for.
-  BodyTree(device::Device& context, const Level& level, const std::string& purpose);
+  BodyTree(device::Device& device, const Level& level, const std::string& purpose);
 
   // The vertices of the level have moved.
   void moved() { behind_ = true; }

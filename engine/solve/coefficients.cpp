@@ -18,15 +18,15 @@ namespace quadgraph {
 
 namespace {
 
-device::Buffer room(device::Device& context, std::uint32_t number, std::uint64_t count) {
-  return {context, count * sizeof(gpu::Optical), device::Place::device,
+device::Buffer room(device::Device& device, std::uint32_t number, std::uint64_t count) {
+  return {device, count * sizeof(gpu::Optical), device::Place::device,
           "material/level " + std::to_string(number) + " optical"};
 }
 
 }  // namespace
 
-Coefficients::Coefficients(device::Device& context, std::span<const Level> rest)
-    : context_(context),
+Coefficients::Coefficients(device::Device& device, std::span<const Level> rest)
+    : device_(device),
       rest_(rest),
       given_(rest.size()),
       depth_(rest.size()),
@@ -55,7 +55,7 @@ void Coefficients::set(std::uint32_t number, std::span<const gpu::Optical> optic
   check_eta(static_cast<double>(eta));
   if (material_) std::fill(albedo_.begin(), albedo_.end(), std::nullopt);
   material_.reset();
-  device::rewrite(context_, optical, "material/level " + std::to_string(number) + " given", given_[number]);
+  device::rewrite(device_, optical, "material/level " + std::to_string(number) + " given", given_[number]);
   changed();
   eta_ = eta;
   albedo_[number] = least_albedo(optical);
@@ -73,9 +73,9 @@ void Coefficients::set(std::span<const Edit> edits) {
   }
   edits_ = EditArrays(edits);
   edit_buffers_.count = static_cast<std::uint32_t>(edits.size());
-  device::rewrite<gpu::MaterialEdit>(context_, edits_.edits, "material/edits", edit_buffers_.edits);
-  device::rewrite<glm::vec3>(context_, edits_.points, "material/strokes", edit_buffers_.points);
-  device::rewrite<glm::vec3>(context_, edits_.texels, "material/images", edit_buffers_.texels);
+  device::rewrite<gpu::MaterialEdit>(device_, edits_.edits, "material/edits", edit_buffers_.edits);
+  device::rewrite<glm::vec3>(device_, edits_.points, "material/strokes", edit_buffers_.points);
+  device::rewrite<glm::vec3>(device_, edits_.texels, "material/images", edit_buffers_.texels);
   changed();
 }
 
@@ -122,7 +122,7 @@ Model Coefficients::resolve(Workspace& work, Model wanted, Method method, Source
       record(work, levels);
       work.recorder.submit();
       std::vector<gpu::Optical> optical(count(levels[0], extent_));
-      device::read_bytes(context_, levels[0].optical, std::as_writable_bytes(std::span(optical)));
+      device::read_bytes(device_, levels[0].optical, std::as_writable_bytes(std::span(optical)));
       edited_albedo_ = least_albedo(optical);
     }
     least = *edited_albedo_;
@@ -142,15 +142,15 @@ void Coefficients::make_room(Method method, std::vector<LevelBuffers>& levels) {
     level.even = even();
     const std::uint32_t wanted = count(level, extent_);
     if (level.optical.size() < wanted * sizeof(gpu::Optical)) {
-      level.optical = room(context_, i, wanted);
+      level.optical = room(device_, i, wanted);
       evaluated_.reset();
     }
     const std::string name = "material/level " + std::to_string(i);
     if (placed && level.rest.size() < wanted * sizeof(glm::vec3)) {
-      level.rest = device::upload(context_, rest_[i].nodes.first(wanted), name + " rest");
+      level.rest = device::upload(device_, rest_[i].nodes.first(wanted), name + " rest");
     }
     if (wants_depth() && depth_buffers_[i].size() == 0) {
-      depth_buffers_[i] = device::upload<float>(context_, depth(i), name + " depth");
+      depth_buffers_[i] = device::upload<float>(device_, depth(i), name + " depth");
     }
   }
 }

@@ -17,7 +17,7 @@ namespace quadgraph {
 class Coefficients {
  public:
   // `rest`, the levels of the file, must stay alive.
-  Coefficients(device::Device& context, std::span<const Level> rest);
+  Coefficients(device::Device& device, std::span<const Level> rest);
 
   // Throws InputError as check_material does.
   void set(const gpu::Material& material);
@@ -63,7 +63,7 @@ class Coefficients {
   const std::vector<float>& depth(std::uint32_t number);
   float spacing(std::uint32_t number);
 
-  device::Device& context_;
+  device::Device& device_;
   std::span<const Level> rest_;
   std::optional<gpu::Material> material_;
   std::vector<device::Buffer> given_;  // arrays, per level, where there is no material

@@ -67,7 +67,7 @@ bool DeformedLevels::same_shape(std::span<const Deformer> list) const {
   return std::equal(present.begin(), present.end(), wanted.begin(), wanted.end());
 }
 
-void DeformedLevels::make_room(device::Device& context) {
+void DeformedLevels::make_room(device::Device& device) {
   for (std::size_t i = 0; i < rest_.size(); ++i) {
     Measured& measured = measured_[i];
     if (measured.sums.size() > 0) continue;
@@ -75,16 +75,16 @@ void DeformedLevels::make_room(device::Device& context) {
     measured.step = surface_sample_step(rest_[i]);
     const std::uint64_t sums = device::workgroups(elements_of(rest_[i])) * sizeof(gpu::ShapeSums);
     const std::uint64_t samples = (rest_[i].face_count() / measured.step + 1) * sizeof(glm::vec2);
-    measured.sums = {context, sums, device::Place::device, prefix + "sums"};
-    measured.samples = {context, samples, device::Place::device, prefix + "samples"};
-    measured.sums_on_host = {context, sums, device::Place::host, prefix + "sums, read back"};
-    measured.samples_on_host = {context, samples, device::Place::host, prefix + "samples, read back"};
+    measured.sums = {device, sums, device::Place::device, prefix + "sums"};
+    measured.samples = {device, samples, device::Place::device, prefix + "samples"};
+    measured.sums_on_host = {device, sums, device::Place::host, prefix + "sums, read back"};
+    measured.samples_on_host = {device, samples, device::Place::host, prefix + "samples, read back"};
   }
 }
 
 void DeformedLevels::record(Workspace& work, std::span<const Deformer> list, const RestBox& box,
                             std::vector<LevelBuffers>& levels) {
-  make_room(work.recorder.context());
+  make_room(work.recorder.device());
   const double extent = glm::length(box.high - box.low);
   const auto least = static_cast<float>(least_volume * extent * extent * extent);
   const bool moves_only = without_rigid_end(list).empty();
@@ -101,7 +101,7 @@ void DeformedLevels::record_nodes(Workspace& work, std::uint32_t number, const L
   if (level.nodes.size() == 0) return;
   device::Buffer& place = measured_[number].place;
   if (place.size() == 0) {
-    place = device::upload<glm::vec4>(work.recorder.context(), places_of(rest_[number]), "deformation/places of nodes");
+    place = device::upload<glm::vec4>(work.recorder.device(), places_of(rest_[number]), "deformation/places of nodes");
   }
   const gpu::DeformNodesPush push{.vertices = level.vertices.address(),
                                   .tets = level.tets.address(),
@@ -160,10 +160,10 @@ ShapeState DeformedLevels::state(std::uint32_t number) const {
   return state;
 }
 
-void DeformedLevels::put_back(device::Device& context, std::vector<LevelBuffers>& levels) {
+void DeformedLevels::put_back(device::Device& device, std::vector<LevelBuffers>& levels) {
   for (std::size_t i = 0; i < levels.size(); ++i) {
-    meshes_[i].put_back(context, levels[i].vertices);
-    if (levels[i].nodes.size() > 0) device::write_bytes(context, levels[i].nodes, std::as_bytes(rest_[i].nodes));
+    meshes_[i].put_back(device, levels[i].vertices);
+    if (levels[i].nodes.size() > 0) device::write_bytes(device, levels[i].nodes, std::as_bytes(rest_[i].nodes));
     levels[i].least = {};
     levels[i].inverted = false;
   }

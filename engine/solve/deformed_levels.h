@@ -48,7 +48,7 @@ class DeformedLevels {
   ShapeState state(std::uint32_t number) const;
 
   // All vertices and nodes as in the file; waits.
-  void put_back(device::Device& context, std::vector<LevelBuffers>& levels);
+  void put_back(device::Device& device, std::vector<LevelBuffers>& levels);
 
  private:
   struct Measured {
@@ -58,7 +58,7 @@ class DeformedLevels {
     std::uint32_t step = 1;
   };
 
-  void make_room(device::Device& context);
+  void make_room(device::Device& device);
   void record_state(Workspace& work, std::uint32_t number, const LevelBuffers& level);
 
   const std::vector<Level>& rest_;

@@ -17,7 +17,7 @@ bool same_cage(const Deformer& a, const Deformer& b) {
 
 }  // namespace
 
-void DeformedMesh::upload_control(device::Device& context, const Deformer& deformer, Data& data) const {
+void DeformedMesh::upload_control(device::Device& device, const Deformer& deformer, Data& data) const {
   std::vector<glm::vec3> control;
   if (deformer.kind == DeformerKind::displaced) {
     control = shape_displacements(deformer, number_, rest_.size());
@@ -25,28 +25,28 @@ void DeformedMesh::upload_control(device::Device& context, const Deformer& defor
     for (const glm::dvec3& d : control_displacements(deformer)) control.emplace_back(d);
   }
   if (data.control.size() != control.size() * vec3_bytes) {
-    data.control = {context, control.size() * vec3_bytes, device::Place::device, purpose_ + "/displacements"};
+    data.control = {device, control.size() * vec3_bytes, device::Place::device, purpose_ + "/displacements"};
   }
-  device::write_bytes(context, data.control, std::as_bytes(std::span(control)));
+  device::write_bytes(device, data.control, std::as_bytes(std::span(control)));
 }
 
-DeformedMesh::Data& DeformedMesh::data_of(device::Device& context, std::size_t place, const Deformer& deformer) {
+DeformedMesh::Data& DeformedMesh::data_of(device::Device& device, std::size_t place, const Deformer& deformer) {
   if (data_.size() <= place) data_.resize(place + 1);
   Data& data = data_[place];
   if (!has_control(deformer.kind) || data.of == deformer) return data;
   if (deformer.kind == DeformerKind::cage && !same_cage(data.of, deformer)) {
-    data.weight = device::upload<float>(context, cage_weights(deformer, rest_), purpose_ + "/weights of a cage");
+    data.weight = device::upload<float>(device, cage_weights(deformer, rest_), purpose_ + "/weights of a cage");
   }
-  upload_control(context, deformer, data);
+  upload_control(device, deformer, data);
   data.of = deformer;
   return data;
 }
 
 void DeformedMesh::record(Workspace& work, std::span<const Deformer> list, const RestBox& box,
                           const device::Buffer& target) {
-  device::Device& context = work.recorder.context();
-  for (std::size_t k = 0; k < list.size(); ++k) data_of(context, k, list[k]);
-  if (rest_on_device_.size() == 0) rest_on_device_ = device::upload(context, rest_, purpose_ + "/rest");
+  device::Device& device = work.recorder.device();
+  for (std::size_t k = 0; k < list.size(); ++k) data_of(device, k, list[k]);
+  if (rest_on_device_.size() == 0) rest_on_device_ = device::upload(device, rest_, purpose_ + "/rest");
   const device::Buffer* source = &rest_on_device_;
   for (std::size_t k = 0; k < list.size(); ++k) {
     gpu::DeformPush push{.record = deform_record(list[k], box),
@@ -67,8 +67,8 @@ void DeformedMesh::record(Workspace& work, std::span<const Deformer> list, const
   }
 }
 
-void DeformedMesh::put_back(device::Device& context, const device::Buffer& target) const {
-  device::write_bytes(context, target, std::as_bytes(rest_));
+void DeformedMesh::put_back(device::Device& device, const device::Buffer& target) const {
+  device::write_bytes(device, target, std::as_bytes(rest_));
 }
 
 }  // namespace quadgraph

@@ -24,7 +24,7 @@ class DeformedMesh {
   const device::Buffer& rest() const { return rest_on_device_; }  // vec3, mm; after `record`
 
   // Writes the vertices at rest; waits.
-  void put_back(device::Device& context, const device::Buffer& target) const;
+  void put_back(device::Device& device, const device::Buffer& target) const;
 
  private:
   // What one deformer of the list needs on the device, and of which value it is.
@@ -33,8 +33,8 @@ class DeformedMesh {
     device::Buffer control, weight;
   };
 
-  Data& data_of(device::Device& context, std::size_t place, const Deformer& deformer);
-  void upload_control(device::Device& context, const Deformer& deformer, Data& data) const;
+  Data& data_of(device::Device& device, std::size_t place, const Deformer& deformer);
+  void upload_control(device::Device& device, const Deformer& deformer, Data& data) const;
 
   MeshNumber number_;
   std::span<const glm::vec3> rest_;

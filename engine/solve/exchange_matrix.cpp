@@ -38,20 +38,20 @@ std::vector<std::uint32_t> wide_entries(const Level& level) {
 
 }  // namespace
 
-void ExchangeMatrix::make_room(device::Device& context) {
+void ExchangeMatrix::make_room(device::Device& device) {
   if (rows_.size() > 0) return;
   std::vector<glm::uvec2> rows;
   for (std::size_t f = 0; f < level_.faces.size(); ++f) rows.emplace_back(level_.seen[f], level_.seen[f + 1]);
-  rows_ = device::upload<glm::uvec2>(context, rows, "exchange/rows");
-  entries_ = device::upload(context, level_.seen, "exchange/entries");
+  rows_ = device::upload<glm::uvec2>(device, rows, "exchange/rows");
+  entries_ = device::upload(device, level_.seen, "exchange/entries");
 }
 
-void ExchangeMatrix::make_room_for_rays(device::Device& context) {
+void ExchangeMatrix::make_room_for_rays(device::Device& device) {
   if (cast_) return;
   cast_ = true;
-  rows_ = device::upload<glm::uvec2>(context, wide_rows(level_), "exchange/rows");
-  entries_ = device::upload<std::uint32_t>(context, wide_entries(level_), "exchange/entries");
-  tree_.emplace(context, level_, "exchange");
+  rows_ = device::upload<glm::uvec2>(device, wide_rows(level_), "exchange/rows");
+  entries_ = device::upload<std::uint32_t>(device, wide_entries(level_), "exchange/entries");
+  tree_.emplace(device, level_, "exchange");
 }
 
 void ExchangeMatrix::moved() {
@@ -62,21 +62,21 @@ void ExchangeMatrix::moved() {
   behind_ = static_cast<std::uint32_t>(behind_since_.size());
 }
 
-void ExchangeMatrix::put_back(device::Device& context) {
+void ExchangeMatrix::put_back(device::Device& device) {
   turned();
   behind_ = 0;
   if (!cast_) return;
   const std::vector<glm::uvec2> rows = wide_rows(level_);
   const std::vector<std::uint32_t> entries = wide_entries(level_);
-  device::write_bytes(context, rows_, std::as_bytes(std::span(rows)));
-  device::write_bytes(context, entries_, std::as_bytes(std::span(entries)));
+  device::write_bytes(device, rows_, std::as_bytes(std::span(rows)));
+  device::write_bytes(device, entries_, std::as_bytes(std::span(entries)));
 }
 
 std::uint32_t ExchangeMatrix::record_refresh(Workspace& work, const LevelBuffers& level, std::uint32_t count) {
   ++now_;
   const std::uint32_t wanted = count == 0 ? behind_ : std::min(count, behind_);
   if (wanted == 0) return 0;
-  make_room_for_rays(work.recorder.context());
+  make_room_for_rays(work.recorder.device());
   tree_->record(work, level);
   for (std::uint32_t done = 0; done < wanted; done += most_rows) {
     record_rays(work, level, (next_ + done) % level.face_count, std::min(wanted - done, most_rows));
@@ -105,9 +105,9 @@ void ExchangeMatrix::record_rays(Workspace& work, const LevelBuffers& level, std
       std::uint64_t{count} * rays() * (nodes_per_ray * sizeof(gpu::Box) + faces_per_ray * face_bytes));
 }
 
-std::vector<float> ExchangeMatrix::sky(device::Device& context) const {
+std::vector<float> ExchangeMatrix::sky(device::Device& device) const {
   std::vector<float> sky;
-  for (const glm::uvec2& row : device::download<glm::uvec2>(context, rows_)) {
+  for (const glm::uvec2& row : device::download<glm::uvec2>(device, rows_)) {
     sky.push_back(1.0f - static_cast<float>(row.y - row.x) / static_cast<float>(rays()));
   }
   return sky;

@@ -29,7 +29,7 @@ class ExchangeMatrix {
   }
 
   // The shape is that of the file again: so are all rows.
-  void put_back(device::Device& context);
+  void put_back(device::Device& device);
 
   // Casts the rays of up to `count` rows that are behind the shape of `level`, the longest behind first; of all with 0.
   // Returns how many. To be called once in a solve, by which ages are counted.
@@ -38,17 +38,17 @@ class ExchangeMatrix {
   // Solves since the shape left the row that has been behind it for longest; 0 if none is.
   std::uint32_t age() const { return behind_ > 0 ? now_ - behind_since_[next_] : 0; }
 
-  void make_room(device::Device& context);
+  void make_room(device::Device& device);
   const device::Buffer& rows() const { return rows_; }        // uvec2 per face: first entry, and one past the last
   const device::Buffer& entries() const { return entries_; }  // faces that were met
 
   std::uint32_t rays() const { return level_.seen_rays; }
 
   // Share of each face's rays that met nothing; of what has run.
-  std::vector<float> sky(device::Device& context) const;
+  std::vector<float> sky(device::Device& device) const;
 
  private:
-  void make_room_for_rays(device::Device& context);
+  void make_room_for_rays(device::Device& device);
   void record_rays(Workspace& work, const LevelBuffers& level, std::uint32_t first, std::uint32_t count);
 
   const Level& level_;

@@ -26,12 +26,12 @@ constexpr std::uint64_t face_bytes = 2 * sizeof(std::uint32_t) + sizeof(glm::uve
 
 }  // namespace
 
-GatherField::GatherField(device::Device& context, const Level& level, const BodyTree& tree) {
+GatherField::GatherField(device::Device& device, const Level& level, const BodyTree& tree) {
   const VertexStarts starts = vertex_starts(level);
-  start_ = device::upload<std::uint32_t>(context, starts.start, "gather/a tet at each vertex");
-  nearest_ = device::upload<std::uint32_t>(context, starts.nearest, "gather/nearest surface vertex");
+  start_ = device::upload<std::uint32_t>(device, starts.start, "gather/a tet at each vertex");
+  nearest_ = device::upload<std::uint32_t>(device, starts.nearest, "gather/nearest surface vertex");
   const auto room = [&](std::uint64_t bytes, const char* name) {
-    return device::Buffer(context, bytes, device::Place::device, name);
+    return device::Buffer(device, bytes, device::Place::device, name);
   };
   solid_on_device_ = room(sizeof(gpu::SolidRef), "gather/body");
   points_ = room(level.vertex_count() * sizeof(gpu::GatherPoint), "gather/points");
@@ -59,13 +59,13 @@ void GatherField::record_single(Workspace& work, const GatherInput& input) {
 }
 
 void GatherField::record_body(Workspace& work, const GatherInput& input) {
-  write_solid(work.recorder.context(), {input.body, input.tree.ref()});
+  write_solid(work.recorder.device(), {input.body, input.tree.ref()});
   input.tree.record(work, input.level);
 }
 
-void GatherField::write_solid(device::Device& context, const gpu::SolidRef& solid) {
+void GatherField::write_solid(device::Device& device, const gpu::SolidRef& solid) {
   if (std::memcmp(&solid, &solid_, sizeof(solid)) == 0) return;
-  device::write_bytes(context, solid_on_device_, std::as_bytes(std::span(&solid, 1)));
+  device::write_bytes(device, solid_on_device_, std::as_bytes(std::span(&solid, 1)));
   solid_ = solid;
 }
 

@@ -28,7 +28,7 @@ struct GatherInput {
 class GatherField {
  public:
   // `tree`: of the level.
-  GatherField(device::Device& context, const Level& level, const BodyTree& tree);
+  GatherField(device::Device& device, const Level& level, const BodyTree& tree);
 
   // Fluence of both kinds at the vertices, exitance of what is gathered, and their scale.
   void record(Workspace& work, const GatherInput& input);
@@ -44,7 +44,7 @@ class GatherField {
   const device::Buffer& scale() const { return scale_; }        // GatherScale per surface vertex
 
  private:
-  void write_solid(device::Device& context, const gpu::SolidRef& solid);
+  void write_solid(device::Device& device, const gpu::SolidRef& solid);
   void record_body(Workspace& work, const GatherInput& input);
   void record_points(Workspace& work, const GatherInput& input);
   void record_uncollided(Workspace& work, const GatherInput& input);

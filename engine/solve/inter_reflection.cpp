@@ -27,9 +27,9 @@ InterReflection::InterReflection(const QuadGraph& graph) : graph_(graph) {
   }
 }
 
-std::optional<SeenRows> InterReflection::seen(device::Device& context) {
+std::optional<SeenRows> InterReflection::seen(device::Device& device) {
   if (!level()) return std::nullopt;
-  matrix_->make_room(context);
+  matrix_->make_room(device);
   return SeenRows{*level_, matrix_->rows(), matrix_->entries(), matrix_->rays()};
 }
 
@@ -41,12 +41,12 @@ void InterReflection::turned() {
   if (matrix_) matrix_->turned();
 }
 
-void InterReflection::put_back(device::Device& context, std::vector<LevelBuffers>& levels) {
+void InterReflection::put_back(device::Device& device, std::vector<LevelBuffers>& levels) {
   if (!matrix_) return;
-  matrix_->put_back(context);
+  matrix_->put_back(device);
   const auto sky = sky_of_levels(graph_.levels());
   for (std::size_t i = 0; i < levels.size(); ++i) {
-    device::write_bytes(context, levels[i].sky, std::as_bytes(std::span(sky[i])));
+    device::write_bytes(device, levels[i].sky, std::as_bytes(std::span(sky[i])));
   }
 }
 
@@ -54,28 +54,28 @@ void InterReflection::refresh(Workspace& work, std::span<const Level> shape, std
                               std::uint32_t rows) {
   if (!matrix_ || matrix_->record_refresh(work, levels[*level_], rows) == 0) return;
   work.recorder.submit();
-  device::Device& context = work.recorder.context();
-  const auto sky = sky_of_levels(shape, *level_, matrix_->sky(context));
+  device::Device& device = work.recorder.device();
+  const auto sky = sky_of_levels(shape, *level_, matrix_->sky(device));
   for (std::size_t i = 0; i < levels.size(); ++i) {
-    device::write_bytes(context, levels[i].sky, std::as_bytes(std::span(sky[i])));
+    device::write_bytes(device, levels[i].sky, std::as_bytes(std::span(sky[i])));
   }
 }
 
 void InterReflection::make_room(Workspace& work, const std::vector<LevelBuffers>& levels) {
   if (!irradiance_.empty()) return;
-  device::Device& context = work.recorder.context();
+  device::Device& device = work.recorder.device();
   const auto room = [&](std::uint64_t bytes, const char* name) {
-    return device::Buffer(context, bytes, device::Place::device, name);
+    return device::Buffer(device, bytes, device::Place::device, name);
   };
   const Level& level = graph_.levels()[*level_];
-  matrix_->make_room(context);
+  matrix_->make_room(device);
   phi_ = room(level.face_count() * vec3_bytes, "exchange/phi at faces");
   exitance_ = room(level.face_count() * vec3_bytes, "exchange/exitance");
   before_ = room(level.face_count() * vec3_bytes, "exchange/irradiance before the bounce");
   clip_ = room(sizeof(gpu::Clip), "exchange/clip");
   factor_ = room(vec3_bytes, "exchange/factor");
   state_ = room(sizeof(gpu::ExchangeState), "exchange/state");
-  states_on_host_ = {context, (max_bounces + 1) * sizeof(gpu::ExchangeState), device::Place::host,
+  states_on_host_ = {device, (max_bounces + 1) * sizeof(gpu::ExchangeState), device::Place::host,
                      "exchange/states, read back"};
   work.recorder.fill(state_, 0);
   for (std::uint32_t i = 0; i <= *level_; ++i) {
@@ -83,8 +83,8 @@ void InterReflection::make_room(Workspace& work, const std::vector<LevelBuffers>
     work.recorder.fill(irradiance_.back(), 0);
     if (i == *level_) break;
     const Transfer& surface = graph_.levels()[i].surface;
-    finer_.push_back({device::upload(context, surface.index, "exchange/surface_index"),
-                      device::upload(context, surface.weight, "exchange/surface_weight"), surface.width});
+    finer_.push_back({device::upload(device, surface.index, "exchange/surface_index"),
+                      device::upload(device, surface.weight, "exchange/surface_weight"), surface.width});
   }
 }
 

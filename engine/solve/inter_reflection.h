@@ -30,7 +30,7 @@ class InterReflection {
   std::optional<std::uint32_t> level() const { return matrix_ && !matrix_->empty() ? level_ : std::nullopt; }
 
   // Rows and entries of that level: what its faces see.
-  std::optional<SeenRows> seen(device::Device& context);
+  std::optional<SeenRows> seen(device::Device& device);
 
   // The vertices of level `number` have moved.
   void moved(std::uint32_t number);
@@ -39,7 +39,7 @@ class InterReflection {
   void turned();
 
   // The shape is that of the file again, and so is what its faces see.
-  void put_back(device::Device& context, std::vector<LevelBuffers>& levels);
+  void put_back(device::Device& device, std::vector<LevelBuffers>& levels);
 
   // Brings up to `rows` rows that are behind the shape up to date, all with 0; then the view of the sky on every level.
   // To be called once in a solve.

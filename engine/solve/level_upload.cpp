@@ -29,7 +29,7 @@ Transposed transposed(const Transfer& transfer, std::uint32_t columns) {
 
 }  // namespace
 
-LevelBuffers upload_level(device::Device& context, const Level& level, std::uint32_t number) {
+LevelBuffers upload_level(device::Device& device, const Level& level, std::uint32_t number) {
   const std::string prefix = "geometry/level " + std::to_string(number) + " ";
   LevelBuffers buffers;
   buffers.vertex_count = level.vertex_count();
@@ -37,54 +37,54 @@ LevelBuffers upload_level(device::Device& context, const Level& level, std::uint
   buffers.face_count = level.face_count();
   buffers.node_count = level.node_count();
   buffers.surface_vertex_count = level.surface_vertex_count;
-  buffers.vertices = device::upload(context, level.vertices, prefix + "vertices");
-  buffers.tets = device::upload(context, level.tets, prefix + "tets");
-  buffers.faces = device::upload(context, level.faces, prefix + "faces");
-  buffers.face_tets = device::upload(context, level.face_tets, prefix + "face_tets");
+  buffers.vertices = device::upload(device, level.vertices, prefix + "vertices");
+  buffers.tets = device::upload(device, level.tets, prefix + "tets");
+  buffers.faces = device::upload(device, level.faces, prefix + "faces");
+  buffers.face_tets = device::upload(device, level.face_tets, prefix + "face_tets");
   const std::vector<std::uint32_t> all_open(level.face_kinds.empty() ? level.faces.size() : 0, face_open);
   const std::span<const std::uint32_t> kinds = level.face_kinds.empty() ? all_open : level.face_kinds;
-  buffers.face_kind = device::upload(context, kinds, prefix + "face_kind");
+  buffers.face_kind = device::upload(device, kinds, prefix + "face_kind");
   const FaceIncidence incidence = face_incidence(level);
-  buffers.face_offset = device::upload<std::uint32_t>(context, incidence.offset, prefix + "face_offset");
-  buffers.face_incidence = device::upload<std::uint32_t>(context, incidence.face, prefix + "face_incidence");
-  buffers.q = device::Buffer(context, level.faces.size() * sizeof(glm::vec3), device::Place::device,
+  buffers.face_offset = device::upload<std::uint32_t>(device, incidence.offset, prefix + "face_offset");
+  buffers.face_incidence = device::upload<std::uint32_t>(device, incidence.face, prefix + "face_incidence");
+  buffers.q = device::Buffer(device, level.faces.size() * sizeof(glm::vec3), device::Place::device,
                              "light/level " + std::to_string(number) + " q");
-  device::Commands commands(context);
+  device::Commands commands(device);
   commands.fill(buffers.q, 0);
   commands.submit_and_wait();
   return buffers;
 }
 
-std::vector<LevelBuffers> upload_levels(device::Device& context, const std::vector<Level>& levels) {
+std::vector<LevelBuffers> upload_levels(device::Device& device, const std::vector<Level>& levels) {
   std::vector<LevelBuffers> buffers;
   const auto sky = sky_of_levels(levels);
   for (std::uint32_t i = 0; i < levels.size(); ++i) {
-    buffers.push_back(upload_level(context, levels[i], i));
-    buffers[i].sky = device::upload<float>(context, sky[i], "geometry/sky");
+    buffers.push_back(upload_level(device, levels[i], i));
+    buffers[i].sky = device::upload<float>(device, sky[i], "geometry/sky");
   }
   return buffers;
 }
 
-void upload_graph(device::Device& context, const Level& level, std::uint32_t number, LevelBuffers& buffers) {
+void upload_graph(device::Device& device, const Level& level, std::uint32_t number, LevelBuffers& buffers) {
   if (buffers.nodes.size() > 0) return;
   const std::string prefix = "geometry/level " + std::to_string(number) + " ";
-  buffers.links = device::upload(context, level.links, prefix + "links");
-  buffers.nodes = device::upload(context, level.nodes, prefix + "nodes");
+  buffers.links = device::upload(device, level.links, prefix + "links");
+  buffers.nodes = device::upload(device, level.nodes, prefix + "nodes");
 }
 
-TransferBuffers::TransferBuffers(device::Device& context, const Level& level, const Level& coarse, std::uint32_t number,
+TransferBuffers::TransferBuffers(device::Device& device, const Level& level, const Level& coarse, std::uint32_t number,
                                  Method method) {
   const std::string prefix = "transfers/level " + std::to_string(number) + " ";
   const auto add = [&](const Transfer& t, const std::string& name, std::uint32_t first, std::uint32_t coarse_first) {
-    parts.push_back({device::upload(context, t.index, prefix + name + "_index"),
-                     device::upload(context, t.weight, prefix + name + "_weight"), t.width, first, coarse_first,
+    parts.push_back({device::upload(device, t.index, prefix + name + "_index"),
+                     device::upload(device, t.weight, prefix + name + "_weight"), t.width, first, coarse_first,
                      static_cast<std::uint32_t>(t.index.size() / t.width)});
   };
   if (on_vertices(method)) {
     add(level.barycentric, "barycentric", 0, 0);
     const Transposed back = transposed(level.barycentric, coarse.vertex_count());
-    back_offset = device::upload<std::uint32_t>(context, back.offset, prefix + "barycentric_back_offset");
-    back_place = device::upload<std::uint32_t>(context, back.place, prefix + "barycentric_back_place");
+    back_offset = device::upload<std::uint32_t>(device, back.offset, prefix + "barycentric_back_offset");
+    back_place = device::upload<std::uint32_t>(device, back.place, prefix + "barycentric_back_place");
   } else {
     add(level.inner, "inner", 0, 0);
     add(level.surface, "surface", level.tet_count(), coarse.tet_count());

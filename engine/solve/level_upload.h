@@ -10,13 +10,13 @@
 namespace quadgraph {
 
 // Geometry of level `number` without what is made at first use; q is zero.
-LevelBuffers upload_level(device::Device& context, const Level& level, std::uint32_t number);
+LevelBuffers upload_level(device::Device& device, const Level& level, std::uint32_t number);
 
 // All levels of a file, with the shares of the sky that their faces see.
-std::vector<LevelBuffers> upload_levels(device::Device& context, const std::vector<Level>& levels);
+std::vector<LevelBuffers> upload_levels(device::Device& device, const std::vector<Level>& levels);
 
 // Links and nodes, unless they are there.
-void upload_graph(device::Device& context, const Level& level, std::uint32_t number, LevelBuffers& buffers);
+void upload_graph(device::Device& device, const Level& level, std::uint32_t number, LevelBuffers& buffers);
 
 // The transfers of one level that a method needs: phi at `count` unknowns from `first` on, from those of the coarser
 // level from `coarse_first` on.
@@ -28,8 +28,7 @@ struct TransferBuffers {
   std::vector<Part> parts;
   device::Buffer back_offset, back_place;  // the transpose (RestrictPush); fem only
 
-  TransferBuffers(device::Device& context, const Level& level, const Level& coarse, std::uint32_t number,
-                  Method method);
+  TransferBuffers(device::Device& device, const Level& level, const Level& coarse, std::uint32_t number, Method method);
 };
 
 }  // namespace quadgraph

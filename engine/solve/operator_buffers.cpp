@@ -11,8 +11,8 @@ namespace quadgraph {
 namespace {
 
 template <typename T>
-device::Buffer upload(device::Device& context, const std::vector<T>& values, const std::string& name) {
-  return device::upload<T>(context, values, name);
+device::Buffer upload(device::Device& device, const std::vector<T>& values, const std::string& name) {
+  return device::upload<T>(device, values, name);
 }
 
 // Where layers end: of ascending numbers from 0 on, how many are at most 0, 1, ...
@@ -24,7 +24,7 @@ std::vector<std::uint32_t> ends_of(const std::vector<std::uint32_t>& layers) {
 
 }  // namespace
 
-OperatorBuffers::OperatorBuffers(device::Device& context, const Level& level, std::uint32_t index, Method method,
+OperatorBuffers::OperatorBuffers(device::Device& device, const Level& level, std::uint32_t index, Method method,
                                  Model model_in, EntryFormat format_in)
     : model(model_in),
       format(format_in),
@@ -33,7 +33,7 @@ OperatorBuffers::OperatorBuffers(device::Device& context, const Level& level, st
       prefix_("level " + std::to_string(index) + " " + std::string(name_of(method)) + " " +
               std::string(name_of(model)) + " ") {
   const auto buffer = [&](std::uint64_t bytes, const std::string& purpose, const char* name) {
-    return device::Buffer(context, bytes, device::Place::device, purpose + prefix_ + name);
+    return device::Buffer(device, bytes, device::Place::device, purpose + prefix_ + name);
   };
   const auto block = [&](const char* name) {
     const std::uint64_t head = compact_rows() ? sizeof(glm::vec3) : 0;
@@ -42,7 +42,7 @@ OperatorBuffers::OperatorBuffers(device::Device& context, const Level& level, st
   const auto field = [&](const char* name) { return buffer(count * field_bytes(), "solver/", name); };
   const std::string rows = "operator/", vectors = "solver/";
   const bool fem = method == Method::fem;
-  slice_rows = context.one_by_one() ? 1 : SLICE_ROWS;
+  slice_rows = device.one_by_one() ? 1 : SLICE_ROWS;
   const SlicedColumns columns = fem               ? slice(vertex_neighbours(level), slice_rows)
                                 : on_grid(method) ? grid_columns(level, slice_rows)
                                                   : node_columns(level, slice_rows);
@@ -50,8 +50,8 @@ OperatorBuffers::OperatorBuffers(device::Device& context, const Level& level, st
   if (!fem) to_phi = buffer(count * sizeof(glm::vec3), rows, "to_phi");
   entries = static_cast<std::uint32_t>(columns.column.size());
   slices = static_cast<std::uint32_t>(columns.slice_offset.size() - 1);
-  slice_offset = upload(context, columns.slice_offset, rows + prefix_ + "slice_offset");
-  entry = upload(context, stored_columns(columns.column, model, format), rows + prefix_ + "entry");
+  slice_offset = upload(device, columns.slice_offset, rows + prefix_ + "slice_offset");
+  entry = upload(device, stored_columns(columns.column, model, format), rows + prefix_ + "entry");
   row_sum = block("row_sum");
   if (!compact_rows()) diagonal = block("diagonal");
   b = field("b");
@@ -68,54 +68,54 @@ OperatorBuffers::OperatorBuffers(device::Device& context, const Level& level, st
   surface_before = buffer(surface_count * sizeof(glm::vec3), vectors, "exitance before");
   surface_start = buffer(surface_count * sizeof(glm::vec3), vectors, "exitance of the start");
   state = buffer(sizeof(gpu::SolveState), vectors, "state");
-  state_on_host = {context, sizeof(gpu::SolveState), device::Place::host, vectors + prefix_ + "state, read back"};
+  state_on_host = {device, sizeof(gpu::SolveState), device::Place::host, vectors + prefix_ + "state, read back"};
   damping = buffer(sizeof(glm::vec3), vectors, "damping");
 }
 
-void OperatorBuffers::make_room(device::Device& context, const Level& level, bool even, bool two_steps) {
-  if (on_grid(method_) && grid_optical.size() == 0) upload_grid(context, level);
+void OperatorBuffers::make_room(device::Device& device, const Level& level, bool even, bool two_steps) {
+  if (on_grid(method_) && grid_optical.size() == 0) upload_grid(device, level);
   if (method_ != Method::fem) return;
   if (two_steps && other.size() == 0) {
-    other = {context, count * field_bytes(), device::Place::device, "solver/" + prefix_ + "other z"};
+    other = {device, count * field_bytes(), device::Place::device, "solver/" + prefix_ + "other z"};
   }
   if (by_entry(even)) {
-    if (row_shape.size() == 0) upload_shape(context, level);
+    if (row_shape.size() == 0) upload_shape(device, level);
   } else {
-    if (ring.size() == 0) upload_rings(context, level);
+    if (ring.size() == 0) upload_rings(device, level);
   }
 }
 
-void OperatorBuffers::upload_shape(device::Device& context, const Level& level) {
+void OperatorBuffers::upload_shape(device::Device& device, const Level& level) {
   const Neighbours rows = vertex_neighbours(level);
   const FemShape shape = fem_shape(level, rows, slice(rows, slice_rows));
   const std::string prefix = "assembly/" + prefix_;
-  entry_shape = upload(context, shape.entry, prefix + "entry_shape");
-  entry_area = upload(context, shape.area, prefix + "entry_area");
-  row_shape = upload(context, shape.row, prefix + "row_shape");
+  entry_shape = upload(device, shape.entry, prefix + "entry_shape");
+  entry_area = upload(device, shape.area, prefix + "entry_area");
+  row_shape = upload(device, shape.row, prefix + "row_shape");
 }
 
-void OperatorBuffers::upload_rings(device::Device& context, const Level& level) {
+void OperatorBuffers::upload_rings(device::Device& device, const Level& level) {
   const Neighbours rows = vertex_neighbours(level);
   const FemRings rings = fem_rings(level, rows, slice(rows, slice_rows));
   const std::string prefix = "assembly/" + prefix_;
   edge_count = static_cast<std::uint32_t>(rings.edge_entry.size());
-  edge_entry = upload(context, rings.edge_entry, prefix + "edge_entry");
-  ring_offset = upload(context, rings.ring_offset, prefix + "ring_offset");
-  ring = upload(context, rings.ring, prefix + "ring");
-  tet_offset = upload(context, rings.tets.offset, prefix + "tet_offset");
-  tet_incidence = upload(context, rings.tets.tet, prefix + "tet_incidence");
-  tet_shape = {context, std::uint64_t{gpu::TET_SHAPE} * level.tet_count() * sizeof(float), device::Place::device,
+  edge_entry = upload(device, rings.edge_entry, prefix + "edge_entry");
+  ring_offset = upload(device, rings.ring_offset, prefix + "ring_offset");
+  ring = upload(device, rings.ring, prefix + "ring");
+  tet_offset = upload(device, rings.tets.offset, prefix + "tet_offset");
+  tet_incidence = upload(device, rings.tets.tet, prefix + "tet_incidence");
+  tet_shape = {device, std::uint64_t{gpu::TET_SHAPE} * level.tet_count() * sizeof(float), device::Place::device,
                prefix + "tet_shape"};
-  face_area = {context, level.face_count() * sizeof(float), device::Place::device, prefix + "face_area"};
+  face_area = {device, level.face_count() * sizeof(float), device::Place::device, prefix + "face_area"};
 }
 
-void OperatorBuffers::upload_grid(device::Device& context, const Level& level) {
+void OperatorBuffers::upload_grid(device::Device& device, const Level& level) {
   const TetIncidence tets = quadgraph::tet_incidence(level);
   const std::string prefix = "assembly/" + prefix_;
-  tet_offset = upload(context, tets.offset, prefix + "tet_offset");
-  tet_incidence = upload(context, tets.tet, prefix + "tet_incidence");
-  grid_optical = {context, count * sizeof(gpu::Optical), device::Place::device, prefix + "optical at vertices"};
-  grid_volume = {context, count * sizeof(float), device::Place::device, prefix + "volume at vertices"};
+  tet_offset = upload(device, tets.offset, prefix + "tet_offset");
+  tet_incidence = upload(device, tets.tet, prefix + "tet_incidence");
+  grid_optical = {device, count * sizeof(gpu::Optical), device::Place::device, prefix + "optical at vertices"};
+  grid_volume = {device, count * sizeof(float), device::Place::device, prefix + "volume at vertices"};
 }
 
 std::uint64_t OperatorBuffers::block_bytes() const {

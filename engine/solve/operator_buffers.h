@@ -64,12 +64,12 @@ struct OperatorBuffers {
   bool solved = false;                // x has been solved for, if for other light or coefficients
 
   // Uploads the rows; values are undefined until assembled.
-  OperatorBuffers(device::Device& context, const Level& level, std::uint32_t index, Method method, Model model,
+  OperatorBuffers(device::Device& device, const Level& level, std::uint32_t index, Method method, Model model,
                   EntryFormat format);
 
   // Makes what the assembly needs, and what smoothing in two steps does, unless it is there. `even`: the coefficients
   // are the same everywhere.
-  void make_room(device::Device& context, const Level& level, bool even, bool two_steps);
+  void make_room(device::Device& device, const Level& level, bool even, bool two_steps);
 
   // Whether entry_shape makes the entries, and not the elements around each edge.
   bool by_entry(bool even) const { return even && !moved; }
@@ -89,9 +89,9 @@ struct OperatorBuffers {
   std::uint64_t product_bytes() const;  // read by one product with the rows, diagonal left out
 
  private:
-  void upload_shape(device::Device& context, const Level& level);
-  void upload_grid(device::Device& context, const Level& level);
-  void upload_rings(device::Device& context, const Level& level);
+  void upload_shape(device::Device& device, const Level& level);
+  void upload_grid(device::Device& device, const Level& level);
+  void upload_rings(device::Device& device, const Level& level);
 
   Method method_;
   std::string prefix_;

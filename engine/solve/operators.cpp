@@ -14,7 +14,7 @@ constexpr double packed_conduction = 50;
 
 }  // namespace
 
-void Operators::create(device::Device& context, std::span<const Level> levels, const OperatorKey& key, bool even,
+void Operators::create(device::Device& device, std::span<const Level> levels, const OperatorKey& key, bool even,
                        bool two_steps) {
   const std::size_t count = std::min<std::size_t>(levels.size(), MAX_LEVELS);
   if (!levels_.contains(key)) {
@@ -22,23 +22,23 @@ void Operators::create(device::Device& context, std::span<const Level> levels, c
     for (std::uint32_t i = 0; i < count; ++i) {
       const bool plain = plain_on_device_ || plain_.contains(key);
       const EntryFormat format = plain ? EntryFormat::plain : format_of(levels[i], key.method);
-      of_key[i].op.emplace(context, levels[i], i, key.method, key.model, format);
+      of_key[i].op.emplace(device, levels[i], i, key.method, key.model, format);
       of_key[i].op->moved = moved_on_device_;
-      if (i + 1 < count) of_key[i].transfer.emplace(context, levels[i], levels[i + 1], i, key.method);
+      if (i + 1 < count) of_key[i].transfer.emplace(device, levels[i], levels[i + 1], i, key.method);
     }
-    for (std::uint32_t i = 0; i < count; ++i) write_gates(context, of_key, i);
+    for (std::uint32_t i = 0; i < count; ++i) write_gates(device, of_key, i);
     levels_.emplace(key, std::move(of_key));
   }
-  for (std::uint32_t i = 0; i < count; ++i) at(key, i).make_room(context, levels[i], even, two_steps || i + 1 == count);
+  for (std::uint32_t i = 0; i < count; ++i) at(key, i).make_room(device, levels[i], even, two_steps || i + 1 == count);
 }
 
 // What opens the gates of the level's state.
-void Operators::write_gates(device::Device& context, const std::vector<OfLevel>& levels, std::uint32_t number) {
+void Operators::write_gates(device::Device& device, const std::vector<OfLevel>& levels, std::uint32_t number) {
   const auto groups = [&](std::uint32_t count) { return device::workgroups(count); };
   gpu::SolveState state{};
   for (std::size_t i = number; i < levels.size(); ++i) state.groups[i] = groups(levels[i].op->count);
   state.surface_groups = groups(levels[number].op->surface_count);
-  device::write_bytes(context, levels[number].op->state, std::as_bytes(std::span(&state, 1)));
+  device::write_bytes(device, levels[number].op->state, std::as_bytes(std::span(&state, 1)));
 }
 
 void Operators::unload() {

@@ -26,8 +26,7 @@ class Operators {
  public:
   // Makes what operators of all levels need, unless it is there. `even`: the coefficients are the same everywhere;
   // `two_steps`: cycles smooth in two steps.
-  void create(device::Device& context, std::span<const Level> levels, const OperatorKey& key, bool even,
-              bool two_steps);
+  void create(device::Device& device, std::span<const Level> levels, const OperatorKey& key, bool even, bool two_steps);
 
   // The operator of a level, for a key that has been created.
   OperatorBuffers& at(const OperatorKey& key, std::uint32_t level) { return *levels_.at(key)[level].op; }
@@ -69,7 +68,7 @@ class Operators {
 
   void moved(std::uint32_t number);
 
-  static void write_gates(device::Device& context, const std::vector<OfLevel>& levels, std::uint32_t number);
+  static void write_gates(device::Device& device, const std::vector<OfLevel>& levels, std::uint32_t number);
 
   std::map<OperatorKey, std::vector<OfLevel>> levels_;
   std::set<OperatorKey> plain_;  // on all levels, since a motion

@@ -4,8 +4,8 @@
 
 namespace quadgraph {
 
-const device::ComputePass& LazyPass::get(device::Device& context) {
-  if (!pass_) pass_.emplace(context, shader_, options_);
+const device::ComputePass& LazyPass::get(device::Device& device) {
+  if (!pass_) pass_.emplace(device, shader_, options_);
   return *pass_;
 }
 

@@ -18,7 +18,7 @@ class LazyPass {
  public:
   LazyPass(const device::Shader& shader, const device::ComputeOptions& options) : shader_(shader), options_(options) {}
 
-  const device::ComputePass& get(device::Device& context);
+  const device::ComputePass& get(device::Device& device);
 
  private:
   const device::Shader& shader_;

@@ -11,7 +11,7 @@ constexpr std::uint32_t max_timed = 4096;
 }  // namespace
 
 device::Commands& Recorder::commands() {
-  if (!commands_) commands_ = std::make_unique<device::Commands>(context_, max_timed);
+  if (!commands_) commands_ = std::make_unique<device::Commands>(device_, max_timed);
   return *commands_;
 }
 

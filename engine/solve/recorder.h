@@ -14,9 +14,9 @@ namespace quadgraph {
 
 class Recorder {
  public:
-  explicit Recorder(device::Device& context) : context_(context) {}
+  explicit Recorder(device::Device& device) : device_(device) {}
 
-  device::Device& context() { return context_; }
+  device::Device& device() { return device_; }
 
   // Forgets the passes counted so far.
   void clear() { passes_.clear(); }
@@ -26,7 +26,7 @@ class Recorder {
   template <typename Push>
   void dispatch(LazyPass& pass, const Push& push, std::uint64_t elements, const std::string& name,
                 std::uint64_t bytes) {
-    const device::ComputePass& pipeline = pass.get(context_);
+    const device::ComputePass& pipeline = pass.get(device_);
     begin(name, bytes, true);
     commands_->dispatch(pipeline, push, elements);
     commands_->end_pass();
@@ -36,7 +36,7 @@ class Recorder {
   template <typename Push>
   void dispatch_indirect(LazyPass& pass, const Push& push, const device::Buffer& arguments, std::uint64_t offset,
                          const std::string& name) {
-    const device::ComputePass& pipeline = pass.get(context_);
+    const device::ComputePass& pipeline = pass.get(device_);
     begin(name, 0, false);
     commands_->dispatch_indirect(pipeline, push, arguments, offset);
     commands_->end_pass();
@@ -57,7 +57,7 @@ class Recorder {
   void begin(const std::string& name, std::uint64_t bytes, bool counts);
   PassStats& stats(const std::string& name);
 
-  device::Device& context_;
+  device::Device& device_;
   std::unique_ptr<device::Commands> commands_;
   std::uint32_t timed_ = 0;
   std::vector<PassStats> passes_;  // in order of first use

@@ -20,7 +20,7 @@
 
 namespace quadgraph {
 struct Simulation::Implementation {
-  device::Device& context;
+  device::Device& device;
   BodyShape shape;
   std::vector<PassStats> deformation_passes;
   std::vector<LevelBuffers> levels;
@@ -42,18 +42,18 @@ struct Simulation::Implementation {
   SolverChoice quicker;
 
   Implementation(device::Device& context_in, const QuadGraph& graph_in)
-      : context(context_in),
+      : device(context_in),
         shape(graph_in),
         levels(upload_levels(context_in, graph_in.levels())),
         work(context_in, largest_dispatch()),
         results(context_in, levels[0]),
         coefficients(context_in, graph_in.levels()),
         exchange(graph_in) {
-    for (std::uint32_t i = 0; i < levels.size(); ++i) walks.emplace_back(context, shape.levels()[i], i);
+    for (std::uint32_t i = 0; i < levels.size(); ++i) walks.emplace_back(device, shape.levels()[i], i);
     light(std::vector{beam_along(std::nullopt)});
   }
 
-  void light(std::span<const gpu::Beam> records) { replace_beams(context, records, beams, levels); }
+  void light(std::span<const gpu::Beam> records) { replace_beams(device, records, beams, levels); }
 
   std::uint64_t largest_dispatch() const {
     std::uint64_t largest = 0;
@@ -79,8 +79,8 @@ struct Simulation::Implementation {
   void move(std::uint32_t number, std::span<const glm::vec3> positions) {
     shape.move(number, positions);
     const Level& moved = shape.levels()[number];
-    device::write_bytes(context, levels[number].vertices, std::as_bytes(moved.vertices));
-    if (levels[number].nodes.size() > 0) device::write_bytes(context, levels[number].nodes, std::as_bytes(moved.nodes));
+    device::write_bytes(device, levels[number].vertices, std::as_bytes(moved.vertices));
+    if (levels[number].nodes.size() > 0) device::write_bytes(device, levels[number].nodes, std::as_bytes(moved.nodes));
     operators.remeasure(number, moved);
     exchange.moved(number);
     if (number == 0) gather.reset();
@@ -114,9 +114,9 @@ struct Simulation::Implementation {
 
   void put_back() {
     if (shape.set()) gather.reset();
-    shape.put_back(context, levels);
+    shape.put_back(device, levels);
     operators.put_back();
-    exchange.put_back(context, levels);
+    exchange.put_back(device, levels);
     forget_shape();
   }
 
@@ -167,21 +167,21 @@ struct Simulation::Implementation {
     coefficients.make_room(key.method, levels);
     for (std::uint32_t i = 0; i < levels.size() && !on_vertices(key.method); ++i) {
       const bool there = levels[i].nodes.size() > 0;
-      upload_graph(context, shape.levels()[i], i, levels[i]);
+      upload_graph(device, shape.levels()[i], i, levels[i]);
       if (!there) shape.record_nodes(work, i, levels[i]);
     }
     const bool two_steps = (options.smoothing > 0 ? options.smoothing : rules_of(options.solver).smoothing) == 2;
-    operators.create(context, shape.levels(), key, coefficients.even(), two_steps);
+    operators.create(device, shape.levels(), key, coefficients.even(), two_steps);
     const std::optional<std::uint32_t> bounced = bounces_wanted(options) ? exchange.level() : std::nullopt;
     if (bounced) exchange.make_room(work, levels);
     for (std::uint32_t i = 0; i < levels.size() && options.source == Source::buried; ++i) {
-      walks[i].make_room(context, levels[i], beams, key.method, bounced && i <= *bounced);
+      walks[i].make_room(device, levels[i], beams, key.method, bounced && i <= *bounced);
     }
   }
 
   GatherField& gather_room() {
-    if (!tree) tree.emplace(context, shape.levels()[0], "gather");
-    if (!gather) gather.emplace(context, shape.levels()[0], *tree);
+    if (!tree) tree.emplace(device, shape.levels()[0], "gather");
+    if (!gather) gather.emplace(device, shape.levels()[0], *tree);
     return *gather;
   }
 
@@ -237,16 +237,16 @@ struct Simulation::Implementation {
     }
     const Boundary boundary =
         boundary_of(solved->method, solved_source, solved->model, static_cast<double>(coefficients.eta()));
-    return exitance_of(context, work, {levels[number], op, solved->method, boundary, nullptr});
+    return exitance_of(device, work, {levels[number], op, solved->method, boundary, nullptr});
   }
 
-  glm::vec3 scale() const { return device::download<gpu::Scale>(context, work.scale)[0].scale; }
+  glm::vec3 scale() const { return device::download<gpu::Scale>(device, work.scale)[0].scale; }
 
   // W/mm^2 per face.
   std::vector<glm::vec3> unscattered(std::span<const float> area) const {
     std::vector<glm::vec3> field(area.size(), glm::vec3(0));
     if (solved_source == Source::diffuse) return field;
-    const std::vector<glm::dvec3> power = walks[0].unscattered_power(context, glm::dvec3(scale()));
+    const std::vector<glm::dvec3> power = walks[0].unscattered_power(device, glm::dvec3(scale()));
     for (std::size_t f = 0; f < area.size(); ++f) {
       if (area[f] > 0) field[f] = glm::vec3(power[f] / static_cast<double>(area[f]));
     }
@@ -254,8 +254,8 @@ struct Simulation::Implementation {
   }
 };
 
-Simulation::Simulation(device::Device& context, const QuadGraph& graph)
-    : implementation_(std::make_unique<Implementation>(context, graph)) {}
+Simulation::Simulation(device::Device& device, const QuadGraph& graph)
+    : implementation_(std::make_unique<Implementation>(device, graph)) {}
 
 Simulation::~Simulation() = default;
 
@@ -268,7 +268,7 @@ const LevelBuffers& Simulation::level(std::uint32_t level) const {
 }
 
 std::optional<SeenRows> Simulation::seen() {
-  return implementation_->exchange.seen(implementation_->context);
+  return implementation_->exchange.seen(implementation_->device);
 }
 
 void Simulation::set_material(const gpu::Material& material) {
@@ -306,7 +306,7 @@ void Simulation::set_irradiance(std::uint32_t level, std::span<const glm::vec3> 
   }
   const gpu::Beam beam = beam_along(direction);
   implementation_->light({&beam, 1});
-  write_irradiance(implementation_->context, q, level, implementation_->levels[level]);
+  write_irradiance(implementation_->device, q, level, implementation_->levels[level]);
   irradiance_changed();
 }
 
@@ -332,7 +332,7 @@ const std::vector<PassStats>& Simulation::deformation_passes() const {
 }
 
 const Level& Simulation::present_level() const {
-  return implementation_->shape.present(implementation_->context, implementation_->levels[0]);
+  return implementation_->shape.present(implementation_->device, implementation_->levels[0]);
 }
 
 void Simulation::make_room(const SolveOptions& options, bool gather) {
@@ -352,10 +352,10 @@ const std::vector<PassStats>& Simulation::passes() const {
 SurfaceField Simulation::surface_field() const {
   const Implementation& self = *implementation_;
   self.solved_key();
-  SurfaceField field = surface_of(implementation_->shape.present(self.context, self.levels[0]));
-  field.q = device::download<glm::vec3>(self.context, self.levels[0].q);
-  field.phi = device::download<glm::vec3>(self.context, self.results.phi());
-  field.exitance = device::download<glm::vec3>(self.context, self.results.exitance());
+  SurfaceField field = surface_of(implementation_->shape.present(self.device, self.levels[0]));
+  field.q = device::download<glm::vec3>(self.device, self.levels[0].q);
+  field.phi = device::download<glm::vec3>(self.device, self.results.phi());
+  field.exitance = device::download<glm::vec3>(self.device, self.results.exitance());
   field.unscattered = self.unscattered(field.area);
   return field;
 }
@@ -364,9 +364,9 @@ std::vector<glm::vec3> Simulation::phi() const {
   const Implementation& self = *implementation_;
   const OperatorBuffers& rows = implementation_->operators.at(self.solved_key(), 0);
   const std::size_t moments = rows.model == Model::sp3 ? 2 : 1;
-  const auto x = device::download<glm::vec3>(self.context, rows.x);
+  const auto x = device::download<glm::vec3>(self.device, rows.x);
   std::vector<glm::vec3> phi(rows.count, glm::vec3(1));
-  if (rows.to_phi.size() > 0) phi = device::download<glm::vec3>(self.context, rows.to_phi);
+  if (rows.to_phi.size() > 0) phi = device::download<glm::vec3>(self.device, rows.to_phi);
   const glm::vec3 scale = self.scale();
   for (std::size_t i = 0; i < phi.size(); ++i) phi[i] *= x[moments * i] * scale;
   return phi;

@@ -38,7 +38,7 @@ enum class Gather {
 class Simulation {
  public:
   // `graph` is copied to the device; it must stay alive (its spans are used to set up row structures lazily).
-  Simulation(device::Device& context, const QuadGraph& graph);
+  Simulation(device::Device& device, const QuadGraph& graph);
   ~Simulation();
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;

@@ -61,15 +61,14 @@ constexpr std::uint32_t most_nodes = 1u << (32 - CROSSING_BITS);
 
 }  // namespace
 
-SourceWalk::SourceWalk(device::Device& context, const Level& level, std::uint32_t number)
+SourceWalk::SourceWalk(device::Device& device, const Level& level, std::uint32_t number)
     : prefix_("level " + std::to_string(number) + " "),
-      unscattered_(context, level.face_count() * power_bytes, device::Place::device,
-                   "walk/" + prefix_ + "unscattered") {
+      unscattered_(device, level.face_count() * power_bytes, device::Place::device, "walk/" + prefix_ + "unscattered") {
   if (level.node_count() > most_nodes) {
     throw InputError(prefix_ + "has " + std::to_string(level.node_count()) +
                      " tets and outside faces; the buried source takes up to " + std::to_string(most_nodes));
   }
-  crossings_ = device::upload<std::uint32_t>(context, crossings(level), "geometry/" + prefix_ + "crossings");
+  crossings_ = device::upload<std::uint32_t>(device, crossings(level), "geometry/" + prefix_ + "crossings");
 }
 
 gpu::BodyRef SourceWalk::body(const LevelBuffers& level, double eta, bool even) const {
@@ -86,45 +85,45 @@ gpu::BodyRef SourceWalk::body(const LevelBuffers& level, double eta, bool even) 
           .eta = static_cast<float>(eta)};
 }
 
-void SourceWalk::Sums::make_room(device::Device& context, std::uint64_t bytes, const std::string& prefix) {
-  if (device.size() >= bytes) return;
-  device = {context, bytes, device::Place::device, "walk/" + prefix + "sums"};
-  host = {context, bytes, device::Place::host, "walk/" + prefix + "sums, read back"};
-  scale = {context, sizeof(gpu::Scale), device::Place::host, "walk/" + prefix + "scale, read back"};
+void SourceWalk::Sums::make_room(device::Device& device, std::uint64_t bytes, const std::string& prefix) {
+  if (sums.size() >= bytes) return;
+  sums = {device, bytes, device::Place::device, "walk/" + prefix + "sums"};
+  sums_on_host = {device, bytes, device::Place::host, "walk/" + prefix + "sums, read back"};
+  scale_on_host = {device, sizeof(gpu::Scale), device::Place::host, "walk/" + prefix + "scale, read back"};
 }
 
 void SourceWalk::Sums::read_back(Workspace& work) const {
-  work.recorder.copy(device, host, device.size());
-  work.recorder.copy(work.scale, scale, sizeof(gpu::Scale));
+  work.recorder.copy(sums, sums_on_host, sums.size());
+  work.recorder.copy(work.scale, scale_on_host, sizeof(gpu::Scale));
 }
 
 WalkPower SourceWalk::Sums::power() const {
-  if (device.size() == 0) return {};  // no beams, no light
-  const std::vector<glm::dvec3> sums =
-      powers(host.mapped_as<std::uint32_t>(), glm::dvec3(scale.mapped_as<gpu::Scale>()[0].scale));
+  if (sums.size() == 0) return {};  // no beams, no light
+  const glm::dvec3 scale(scale_on_host.mapped_as<gpu::Scale>()[0].scale);
+  const std::vector<glm::dvec3> shares = powers(sums_on_host.mapped_as<std::uint32_t>(), scale);
   WalkPower power;
-  for (std::size_t i = 0; i < sums.size(); i += 2) {
-    power.absorbed += sums[i];
-    power.unscattered += sums[i + 1];
+  for (std::size_t i = 0; i < shares.size(); i += 2) {
+    power.absorbed += shares[i];
+    power.unscattered += shares[i + 1];
   }
   return power;
 }
 
-void SourceWalk::make_room(device::Device& context, const LevelBuffers& level, const BeamBuffers& beams, Method method,
+void SourceWalk::make_room(device::Device& device, const LevelBuffers& level, const BeamBuffers& beams, Method method,
                            bool again) {
   const auto room = [&](device::Buffer& buffer, std::uint64_t bytes, const char* name) {
-    if (buffer.size() != bytes) buffer = {context, bytes, device::Place::device, "walk/" + prefix_ + name};
+    if (buffer.size() != bytes) buffer = {device, bytes, device::Place::device, "walk/" + prefix_ + name};
   };
   room(deposits_[carrier(method)], carriers(level, method) * power_bytes, "deposit");
   std::uint64_t all_sums = 0;
   for (const gpu::Beam& beam : beams.beams) {
     if (beam.way.kind != gpu::BEAM_MEAN) all_sums += sums_bytes;
   }
-  sums_.make_room(context, all_sums, prefix_);
+  sums_.make_room(device, all_sums, prefix_);
   if (!again) return;
   room(all_deposits_[carrier(method)], carriers(level, method) * power_bytes, "deposit with light that entered again");
   room(all_unscattered_, level.face_count * power_bytes, "unscattered with light that entered again");
-  sums_again_.make_room(context, sums_bytes, prefix_);
+  sums_again_.make_room(device, sums_bytes, prefix_);
 }
 
 gpu::WalkSourcePush SourceWalk::push(const Workspace& work, const LevelBuffers& level, const BeamBuffers& beams,
@@ -135,7 +134,7 @@ gpu::WalkSourcePush SourceWalk::push(const Workspace& work, const LevelBuffers& 
           .scale = work.scale.address(),
           .deposit = deposit(task.method).address(),
           .unscattered = unscattered().address(),
-          .sums = sums_.device.address(),
+          .sums = sums_.sums.address(),
           .rays = 1,
           .fem = on_vertices(task.method) ? 1u : 0u};
 }
@@ -145,11 +144,11 @@ void SourceWalk::record(Workspace& work, const LevelBuffers& level, const BeamBu
   mean_rays_ = task.mean_rays;
   if (walked_[carrier(task.method)]) return;
   walked_[carrier(task.method)] = true;
-  make_room(work.recorder.context(), level, beams, task.method, false);
+  make_room(work.recorder.device(), level, beams, task.method, false);
   work.recorder.fill(deposits_[carrier(task.method)], 0);
   work.recorder.fill(unscattered_, 0);
-  if (sums_.device.size() == 0) return;
-  work.recorder.fill(sums_.device, 0);
+  if (sums_.sums.size() == 0) return;
+  work.recorder.fill(sums_.sums, 0);
   gpu::WalkSourcePush push = this->push(work, level, beams, task);
   for (const gpu::Beam& beam : beams.beams) {
     const std::uint32_t kind = beam.way.kind;
@@ -165,15 +164,15 @@ void SourceWalk::record(Workspace& work, const LevelBuffers& level, const BeamBu
 
 void SourceWalk::record_again(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams,
                               const WalkTask& task) {
-  make_room(work.recorder.context(), level, beams, task.method, true);
+  make_room(work.recorder.device(), level, beams, task.method, true);
   const device::Buffer& deposit = deposits_[carrier(task.method)];
   work.recorder.copy(deposit, all_deposits_[carrier(task.method)], deposit.size());
   work.recorder.copy(unscattered_, all_unscattered_, unscattered_.size());
-  work.recorder.fill(sums_again_.device, 0);
+  work.recorder.fill(sums_again_.sums, 0);
   again_ = true;
   gpu::WalkSourcePush push = this->push(work, level, beams, task);
   push.beam += (beams.beams.size() - 1) * sizeof(gpu::Beam);
-  push.sums = sums_again_.device.address();
+  push.sums = sums_again_.sums.address();
   work.recorder.dispatch(work.passes.of(shader::walk_source), push, level.face_count, "source walk",
                          walk_bytes(level, 1));
   sums_again_.read_back(work);
@@ -193,8 +192,8 @@ void SourceWalk::record_right_hand_side(Workspace& work, const LevelBuffers& lev
                          op.count * (op.block_bytes() + op.field_bytes()) + carriers(level, method) * power_bytes);
 }
 
-std::vector<glm::dvec3> SourceWalk::unscattered_power(device::Device& context, const glm::dvec3& scale) const {
-  return powers(device::download<std::uint32_t>(context, unscattered()), scale);
+std::vector<glm::dvec3> SourceWalk::unscattered_power(device::Device& device, const glm::dvec3& scale) const {
+  return powers(device::download<std::uint32_t>(device, unscattered()), scale);
 }
 
 WalkPower SourceWalk::power() const {

@@ -37,7 +37,7 @@ struct WalkTask {
 class SourceWalk {
  public:
   // Throws InputError if the level has too many tets and faces.
-  SourceWalk(device::Device& context, const Level& level, std::uint32_t number);
+  SourceWalk(device::Device& device, const Level& level, std::uint32_t number);
 
   // What rays need of the level. `even`: level.optical is the same everywhere, which saves its reading.
   gpu::BodyRef body(const LevelBuffers& level, double eta, bool even) const;
@@ -46,7 +46,7 @@ class SourceWalk {
   void invalidate() { walked_ = {false, false}; }
 
   // Room for what `record` and, with `again`, `record_again` write, as far as the beams go, unless it is there.
-  void make_room(device::Device& context, const LevelBuffers& level, const BeamBuffers& beams, Method method,
+  void make_room(device::Device& device, const LevelBuffers& level, const BeamBuffers& beams, Method method,
                  bool again);
 
   // Walks, unless that has been done for the present light by the same rays: level.beam_q of every beam of the scene,
@@ -67,7 +67,7 @@ class SourceWalk {
   const device::Buffer& unscattered() const { return again_ ? all_unscattered_ : unscattered_; }
 
   // W per face of what left unscattered, in the last walk that has run; `scale` as on the device.
-  std::vector<glm::dvec3> unscattered_power(device::Device& context, const glm::dvec3& scale) const;
+  std::vector<glm::dvec3> unscattered_power(device::Device& device, const glm::dvec3& scale) const;
 
   // Power of the last walk that has run.
   WalkPower power() const;
@@ -75,9 +75,9 @@ class SourceWalk {
  private:
   // Fixed point, per beam and workgroup absorbed and unscattered.
   struct Sums {
-    device::Buffer device, host, scale;
+    device::Buffer sums, sums_on_host, scale_on_host;
 
-    void make_room(device::Device& context, std::uint64_t bytes, const std::string& prefix);
+    void make_room(device::Device& device, std::uint64_t bytes, const std::string& prefix);
     void read_back(Workspace& work) const;
     WalkPower power() const;
   };

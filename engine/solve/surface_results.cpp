@@ -53,32 +53,32 @@ void record_exitance(Workspace& work, const Solved& solved, const device::Buffer
                          level.face_count * (sizeof(glm::uvec3) + 6 * vec3_bytes + 3 * solved.op.field_bytes()));
 }
 
-std::vector<glm::vec3> exitance_of(device::Device& context, Workspace& work, const Solved& solved) {
+std::vector<glm::vec3> exitance_of(device::Device& device, Workspace& work, const Solved& solved) {
   const std::uint64_t bytes = solved.level.face_count * vec3_bytes;
-  const device::Buffer phi(context, bytes, device::Place::device, "results/phi of a level");
-  const device::Buffer exitance(context, bytes, device::Place::device, "results/exitance of a level");
-  const device::Buffer clip(context, sizeof(gpu::Clip), device::Place::device, "results/clip of a level");
+  const device::Buffer phi(device, bytes, device::Place::device, "results/phi of a level");
+  const device::Buffer exitance(device, bytes, device::Place::device, "results/exitance of a level");
+  const device::Buffer clip(device, sizeof(gpu::Clip), device::Place::device, "results/clip of a level");
   record_exitance(work, solved, phi, exitance, clip);
   work.recorder.submit();
-  return device::download<glm::vec3>(context, exitance);
+  return device::download<glm::vec3>(device, exitance);
 }
 
-SurfaceResults::SurfaceResults(device::Device& context, const LevelBuffers& level) {
+SurfaceResults::SurfaceResults(device::Device& device, const LevelBuffers& level) {
   const auto vector = [&](std::uint64_t count, const char* name) {
-    return device::Buffer(context, count * vec3_bytes, device::Place::device, name);
+    return device::Buffer(device, count * vec3_bytes, device::Place::device, name);
   };
   phi_ = vector(level.face_count, "results/phi at faces");
   exitance_ = vector(level.face_count, "results/exitance");
   vertex_exitance_ = vector(level.surface_vertex_count, "results/exitance at vertices");
   vertex_unscattered_ = vector(level.surface_vertex_count, "results/unscattered light at vertices");
   display_factor_ = vector(1, "results/display factor");
-  clip_ = device::Buffer(context, sizeof(gpu::Clip), device::Place::device, "results/clip");
-  clip_on_host_ = device::Buffer(context, sizeof(gpu::Clip), device::Place::host, "results/clip, read back");
+  clip_ = device::Buffer(device, sizeof(gpu::Clip), device::Place::device, "results/clip");
+  clip_on_host_ = device::Buffer(device, sizeof(gpu::Clip), device::Place::host, "results/clip, read back");
   const std::uint64_t sums_bytes = energy_groups(level) * sizeof(gpu::EnergySums);
-  sums_ = device::Buffer(context, sums_bytes, device::Place::device, "results/energy sums");
+  sums_ = device::Buffer(device, sums_bytes, device::Place::device, "results/energy sums");
   constexpr std::uint64_t total_bytes = WORKGROUP_SIZE * sizeof(gpu::EnergySums);
-  totals_ = device::Buffer(context, total_bytes, device::Place::device, "results/energy totals");
-  totals_on_host_ = device::Buffer(context, total_bytes, device::Place::host, "results/energy totals, read back");
+  totals_ = device::Buffer(device, total_bytes, device::Place::device, "results/energy totals");
+  totals_on_host_ = device::Buffer(device, total_bytes, device::Place::host, "results/energy totals, read back");
 }
 
 void SurfaceResults::record_vertex_exitance(Workspace& work, const LevelBuffers& level, const device::Buffer& faces,

@@ -26,11 +26,11 @@ void record_exitance(Workspace& work, const Solved& solved, const device::Buffer
                      const device::Buffer& clip);
 
 // M alone, read back; not clipped.
-std::vector<glm::vec3> exitance_of(device::Device& context, Workspace& work, const Solved& solved);
+std::vector<glm::vec3> exitance_of(device::Device& device, Workspace& work, const Solved& solved);
 
 class SurfaceResults {
  public:
-  SurfaceResults(device::Device& context, const LevelBuffers& level);
+  SurfaceResults(device::Device& device, const LevelBuffers& level);
 
   const device::Buffer& phi() const { return phi_; }            // vec3 per outside face, W/mm^2
   const device::Buffer& exitance() const { return exitance_; }  // vec3 per outside face, W/mm^2, scattered

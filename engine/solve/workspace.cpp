@@ -13,10 +13,10 @@ std::uint64_t reduction_bytes(std::uint64_t elements) {
 
 }  // namespace
 
-Workspace::Workspace(device::Device& context, std::uint64_t max_elements)
-    : recorder(context),
-      reduction(context, reduction_bytes(max_elements), device::Place::device, "solver/reduction"),
-      scale(context, sizeof(gpu::Scale), device::Place::device, "solver/scale") {
+Workspace::Workspace(device::Device& device, std::uint64_t max_elements)
+    : recorder(device),
+      reduction(device, reduction_bytes(max_elements), device::Place::device, "solver/reduction"),
+      scale(device, sizeof(gpu::Scale), device::Place::device, "solver/scale") {
   recorder.fill(reduction, 0);
   recorder.submit();
 }

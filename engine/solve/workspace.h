@@ -14,7 +14,7 @@ struct Workspace {
   device::Buffer scale;      // Scale
 
   // `max_elements`: invocations of the largest dispatch that reduces.
-  Workspace(device::Device& context, std::uint64_t max_elements);
+  Workspace(device::Device& device, std::uint64_t max_elements);
 };
 
 }  // namespace quadgraph

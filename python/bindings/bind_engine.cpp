@@ -284,13 +284,13 @@ void bind_surface_results(py::class_<Engine>& bound) {
       .def(
           "vertex_exitance",
           [](Engine& engine) {
-            return own(device::download<glm::vec3>(engine.context(), engine.simulation().vertex_exitance()));
+            return own(device::download<glm::vec3>(engine.device(), engine.simulation().vertex_exitance()));
           },
           "Per surface vertex of level 0, W/mm^2: what a picture shows, local means of the scattered light.")
       .def(
           "vertex_unscattered",
           [](Engine& engine) {
-            return own(device::download<glm::vec3>(engine.context(), engine.simulation().vertex_unscattered()));
+            return own(device::download<glm::vec3>(engine.device(), engine.simulation().vertex_unscattered()));
           },
           "The same of light that left without having scattered.");
 }
@@ -326,10 +326,10 @@ void bind_measures(py::class_<Engine>& bound) {
                              "Allocations of device memory ever made; staging for large arrays among them.")
       .def("memory", &memory_list, "What device_bytes consists of: {purpose, bytes}, largest first.")
       .def_property_readonly("peak_device_bytes", &Engine::peak_device_bytes)
-      .def_property_readonly("device_name", [](const Engine& engine) { return engine.context().info().name; })
-      .def_property_readonly("driver", [](const Engine& engine) { return engine.context().info().driver; })
+      .def_property_readonly("device_name", [](const Engine& engine) { return engine.device().info().name; })
+      .def_property_readonly("driver", [](const Engine& engine) { return engine.device().info().driver; })
       .def_property_readonly("validation_messages",
-                             [](const Engine& engine) { return engine.context().validation_messages(); });
+                             [](const Engine& engine) { return engine.device().validation_messages(); });
 }
 
 }  // namespace

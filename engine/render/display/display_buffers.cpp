@@ -2,14 +2,14 @@
 
 namespace quadgraph {
 
-DisplayBuffers upload_display(device::Device& context, const DisplayMesh& mesh) {
+DisplayBuffers upload_display(device::Device& device, const DisplayMesh& mesh) {
   return {static_cast<std::uint32_t>(mesh.vertices.size()),
           static_cast<std::uint32_t>(mesh.triangles.size()),
-          device::upload(context, mesh.vertices, "display/vertices"),
-          device::upload(context, mesh.normals, "display/normals"),
-          device::upload(context, mesh.triangles, "display/triangles"),
-          device::upload(context, mesh.face, "display/face"),
-          device::upload(context, mesh.barycentric, "display/barycentric")};
+          device::upload(device, mesh.vertices, "display/vertices"),
+          device::upload(device, mesh.normals, "display/normals"),
+          device::upload(device, mesh.triangles, "display/triangles"),
+          device::upload(device, mesh.face, "display/face"),
+          device::upload(device, mesh.barycentric, "display/barycentric")};
 }
 
 }  // namespace quadgraph

@@ -18,6 +18,6 @@ struct DisplayBuffers {
   device::Buffer barycentric;  // vec3
 };
 
-DisplayBuffers upload_display(device::Device& context, const DisplayMesh& mesh);
+DisplayBuffers upload_display(device::Device& device, const DisplayMesh& mesh);
 
 }  // namespace quadgraph

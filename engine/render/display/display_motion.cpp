@@ -36,24 +36,24 @@ Incidence triangles_at_vertices(const DisplayMesh& mesh) {
 DisplayMotion::DisplayMotion(const DisplayMesh& mesh)
     : mesh_(mesh), box_(quadgraph::rest_box(mesh.vertices)), vertices_({}, mesh.vertices, "deformation/display") {}
 
-void DisplayMotion::make_room(device::Device& context) {
+void DisplayMotion::make_room(device::Device& device) {
   if (sphere_.size() > 0) return;
   const Incidence incidence = triangles_at_vertices(mesh_);
-  rest_normals_ = device::upload(context, mesh_.normals, "deformation/display normals at rest");
-  offset_ = device::upload<std::uint32_t>(context, incidence.offset, "deformation/display offsets");
-  incidence_ = device::upload<std::uint32_t>(context, incidence.triangle, "deformation/display triangles");
-  sphere_ = {context, sizeof(glm::vec4), device::Place::device, "deformation/bounds"};
-  sphere_on_host_ = {context, sizeof(glm::vec4), device::Place::host, "deformation/bounds, read back"};
+  rest_normals_ = device::upload(device, mesh_.normals, "deformation/display normals at rest");
+  offset_ = device::upload<std::uint32_t>(device, incidence.offset, "deformation/display offsets");
+  incidence_ = device::upload<std::uint32_t>(device, incidence.triangle, "deformation/display triangles");
+  sphere_ = {device, sizeof(glm::vec4), device::Place::device, "deformation/bounds"};
+  sphere_on_host_ = {device, sizeof(glm::vec4), device::Place::host, "deformation/bounds, read back"};
 }
 
 void DisplayMotion::record(Workspace& work, std::span<const Deformer> list, const DisplayBuffers& buffers) {
-  device::Device& context = work.recorder.context();
+  device::Device& device = work.recorder.device();
   if (list.empty()) {
-    vertices_.put_back(context, buffers.vertices);
-    device::write_bytes(context, buffers.normals, std::as_bytes(mesh_.normals));
+    vertices_.put_back(device, buffers.vertices);
+    device::write_bytes(device, buffers.normals, std::as_bytes(mesh_.normals));
     return;
   }
-  make_room(context);
+  make_room(device);
   vertices_.record(work, list, box_, buffers.vertices);
   const gpu::DeformNormalsPush normals{.rest = vertices_.rest().address(),
                                        .moved = buffers.vertices.address(),

@@ -28,7 +28,7 @@ class DisplayMotion {
   Sphere bounds() const;
 
  private:
-  void make_room(device::Device& context);
+  void make_room(device::Device& device);
 
   const DisplayMesh& mesh_;
   RestBox box_;

@@ -55,7 +55,7 @@ const Level& level_of(const InsideInput& input, std::uint32_t number) {
 
 // In the present shape.
 std::vector<glm::vec3> vertices_of(const InsideInput& input, std::uint32_t level) {
-  return device::download<glm::vec3>(input.context, input.simulation.level(level).vertices);
+  return device::download<glm::vec3>(input.device, input.simulation.level(level).vertices);
 }
 
 Plane plane_of(const InsideInput& input, const Show& show) {

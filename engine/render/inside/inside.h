@@ -15,7 +15,7 @@ struct Inside {
 };
 
 struct InsideInput {
-  device::Device& context;
+  device::Device& device;
   Simulation& simulation;
   const QuadGraph& graph;
   const SolveReport& report;    // of the last solve

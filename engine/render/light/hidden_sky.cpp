@@ -6,22 +6,22 @@
 
 namespace quadgraph {
 
-HiddenSky::HiddenSky(device::Device& context, const QuadGraph& graph)
-    : context_(context),
+HiddenSky::HiddenSky(device::Device& device, const QuadGraph& graph)
+    : device_(device),
       graph_(graph),
-      hide_(context, shader::environment_hidden, {.variant = 1}),
-      refine_(context, shader::environment_finer) {}
+      hide_(device, shader::environment_hidden, {.variant = 1}),
+      refine_(device, shader::environment_finer) {}
 
 void HiddenSky::make_room(Simulation& simulation, std::uint32_t level, std::uint32_t environments) {
   hidden_.resize(level + 1);
   for (std::uint32_t i = 0; i <= level; ++i) {
     const std::uint64_t bytes = std::uint64_t{environments} * simulation.level(i).face_count * sizeof(glm::vec3);
-    if (hidden_[i].size() != bytes) hidden_[i] = {context_, bytes, device::Place::device, "light/hidden environment"};
+    if (hidden_[i].size() != bytes) hidden_[i] = {device_, bytes, device::Place::device, "light/hidden environment"};
   }
   for (auto i = static_cast<std::uint32_t>(finer_.size()); i < level; ++i) {
     const Transfer& surface = graph_.levels()[i].surface;
-    finer_.push_back({device::upload(context_, surface.index, "light/surface_index"),
-                      device::upload(context_, surface.weight, "light/surface_weight"), surface.width});
+    finer_.push_back({device::upload(device_, surface.index, "light/surface_index"),
+                      device::upload(device_, surface.weight, "light/surface_weight"), surface.width});
   }
 }
 
@@ -34,7 +34,7 @@ PassStats HiddenSky::run(Simulation& simulation, const ShadowMaps& lights, std::
   }
   make_room(simulation, seen->level, environments);
   const LevelBuffers& level = simulation.level(seen->level);
-  device::Commands commands(context_, 1);
+  device::Commands commands(device_, 1);
   commands.begin_pass(stats.name);
   commands.dispatch(hide_,
                     gpu::EnvironmentHiddenPush{.vertices = level.vertices.address(),

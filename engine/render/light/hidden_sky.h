@@ -14,7 +14,7 @@ namespace quadgraph {
 class HiddenSky {
  public:
   // `graph` must stay alive.
-  HiddenSky(device::Device& context, const QuadGraph& graph);
+  HiddenSky(device::Device& device, const QuadGraph& graph);
 
   // For all environments of `lights`, as many as `environments`, from where the simulation's rays are now.
   PassStats run(Simulation& simulation, const ShadowMaps& lights, std::uint32_t environments, float eta);
@@ -31,7 +31,7 @@ class HiddenSky {
 
   void make_room(Simulation& simulation, std::uint32_t level, std::uint32_t environments);
 
-  device::Device& context_;
+  device::Device& device_;
   const QuadGraph& graph_;
   device::ComputePass hide_, refine_;
   std::vector<device::Buffer> hidden_;  // per level, finest first, the last that with the rays

@@ -15,11 +15,11 @@ static_assert(finest_subdivision % 2 == 0 && more_per_level % 2 == 0, "a sample 
 
 }  // namespace
 
-IrradiancePass::IrradiancePass(device::Device& context) : context_(context), pass_(context, shader::irradiance) {}
+IrradiancePass::IrradiancePass(device::Device& device) : device_(device), pass_(device, shader::irradiance) {}
 
 const device::ComputePass& IrradiancePass::pass(bool shaped) {
   if (!shaped) return pass_;
-  if (!shaped_) shaped_.emplace(context_, shader::irradiance, device::ComputeOptions{.variant = 1});
+  if (!shaped_) shaped_.emplace(device_, shader::irradiance, device::ComputeOptions{.variant = 1});
   return *shaped_;
 }
 
@@ -40,7 +40,7 @@ PassStats IrradiancePass::run(const LevelBuffers& buffers, std::uint32_t level, 
                                  .subdivision = subdivision,
                                  .eta = eta,
                                  .diffuse_transmittance = static_cast<float>(diffuse_transmittance(eta))};
-  device::Commands commands(context_, 1);
+  device::Commands commands(device_, 1);
   commands.begin_pass("irradiance");
   commands.dispatch(pass(shadows.shaped()), push, buffers.face_count);
   commands.end_pass();

@@ -18,7 +18,7 @@ namespace quadgraph {
 // same light as its fine ones.
 class IrradiancePass {
  public:
-  explicit IrradiancePass(device::Device& context);
+  explicit IrradiancePass(device::Device& device);
 
   // `level` counts from the finest, 0; faces of coarser levels are sampled more finely. `hidden` as
   // HiddenSky::hidden.
@@ -28,7 +28,7 @@ class IrradiancePass {
  private:
   const device::ComputePass& pass(bool shaped);
 
-  device::Device& context_;
+  device::Device& device_;
   device::ComputePass pass_;
   std::optional<device::ComputePass> shaped_;  // where some light has a shape, made at first use
 };

@@ -11,9 +11,9 @@ namespace {
 
 constexpr std::uint32_t largest_projected = 4096;  // texels a side; beyond, no face or pixel sees them apart
 
-ProjectedImage upload_projected(device::Device& context, Image&& picture) {
+ProjectedImage upload_projected(device::Device& device, Image&& picture) {
   const ImagePyramid pyramid = pyramid_of(std::move(picture), largest_projected);
-  return {device::upload<glm::vec3>(context, pyramid.texels, "light/projected image"), pyramid.columns, pyramid.rows,
+  return {device::upload<glm::vec3>(device, pyramid.texels, "light/projected image"), pyramid.columns, pyramid.rows,
           pyramid.levels};
 }
 
@@ -21,20 +21,20 @@ constexpr std::size_t picture_texels = std::size_t{gpu::ENVIRONMENT_COLUMNS} * g
 // Beyond this degree irradiance has nothing left: docs/lights.md.
 constexpr int irradiance_degree = 8;
 
-void write_picture(device::Device& context, EnvironmentImage& image, std::uint32_t number,
+void write_picture(device::Device& device, EnvironmentImage& image, std::uint32_t number,
                    std::span<const double> degrees) {
   const auto picture =
       sphere_picture(image.environment.series, degrees, gpu::ENVIRONMENT_COLUMNS, gpu::ENVIRONMENT_ROWS);
   std::copy(picture.begin(), picture.end(),
             image.pictures.begin() + static_cast<std::ptrdiff_t>(number * picture_texels));
-  device::write_bytes(context, image.texels, std::as_bytes(std::span(image.pictures)));
+  device::write_bytes(device, image.texels, std::as_bytes(std::span(image.pictures)));
 }
 
-EnvironmentImage upload_environment(device::Device& context, Image&& picture) {
+EnvironmentImage upload_environment(device::Device& device, Image&& picture) {
   EnvironmentImage image{
       environment_of(std::move(picture)), std::vector<glm::vec3>(gpu::ENVIRONMENT_PICTURES * picture_texels), {}};
-  image.texels = {context, image.pictures.size() * sizeof(glm::vec3), device::Place::device, "light/environment"};
-  write_picture(context, image, gpu::ENVIRONMENT_RAYS, ray_degrees(environment_degree));
+  image.texels = {device, image.pictures.size() * sizeof(glm::vec3), device::Place::device, "light/environment"};
+  write_picture(device, image, gpu::ENVIRONMENT_RAYS, ray_degrees(environment_degree));
   return image;
 }
 
@@ -51,7 +51,7 @@ void LightImages::load(const Light& light, Images<T>& old, Images<T>& images, co
     return;
   }
   try {
-    images.emplace(light.file, Loaded<T>{changed, upload(context_, read_image(light.file))});
+    images.emplace(light.file, Loaded<T>{changed, upload(device_, read_image(light.file))});
   } catch (const InputError& error) {
     throw InputError("light '" + to_string(light) + "', file: " + error.what());
   }
@@ -72,14 +72,14 @@ void LightImages::load(std::span<const Light> lights) {
 void LightImages::set_eta(float eta) {
   for (auto& [file, loaded] : environments_) {
     if (std::exchange(loaded.image.eta, eta) == eta) continue;
-    write_picture(context_, loaded.image, gpu::ENVIRONMENT_ENTERING, irradiance_degrees(eta, irradiance_degree));
+    write_picture(device_, loaded.image, gpu::ENVIRONMENT_ENTERING, irradiance_degrees(eta, irradiance_degree));
   }
 }
 
 void LightImages::set_roughness(float roughness, float placed) {
   const auto write = [&](EnvironmentImage& image, std::uint32_t number, float& known, float wanted) {
     if (wanted == 0 || std::exchange(known, wanted) == wanted) return;
-    write_picture(context_, image, number, reflection_degrees(wanted, environment_degree));
+    write_picture(device_, image, number, reflection_degrees(wanted, environment_degree));
   };
   for (auto& [file, loaded] : environments_) {
     write(loaded.image, gpu::ENVIRONMENT_REFLECTED, loaded.image.roughness, roughness);

@@ -30,7 +30,7 @@ struct EnvironmentImage {
 
 class LightImages {
  public:
-  explicit LightImages(device::Device& context) : context_(context) {}
+  explicit LightImages(device::Device& device) : device_(device) {}
 
   // Reads the files that `lights` name and that have not been read or have changed since, and forgets all others.
   // Throws InputError naming the light.
@@ -58,7 +58,7 @@ class LightImages {
   template <typename T, typename Upload>
   void load(const Light& light, Images<T>& old, Images<T>& images, const Upload& upload);
 
-  device::Device& context_;
+  device::Device& device_;
   Images<ProjectedImage> projected_;
   Images<EnvironmentImage> environments_;
 };

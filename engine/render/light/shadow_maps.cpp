@@ -6,33 +6,33 @@
 namespace quadgraph {
 namespace {
 
-device::Image depth_image(device::Device& context, std::uint32_t size) {
-  return {context, {device::Format::depth32_float, size, size}, "shadows/depth"};
+device::Image depth_image(device::Device& device, std::uint32_t size) {
+  return {device, {device::Format::depth32_float, size, size}, "shadows/depth"};
 }
 
 }  // namespace
 
-ShadowMaps::ShadowMaps(device::Device& context)
-    : context_(context),
-      pass_(context, {.vertex = &shader::shadow_vert, .fragment = nullptr, .cull = device::Cull::front}, "shadow") {}
+ShadowMaps::ShadowMaps(device::Device& device)
+    : device_(device),
+      pass_(device, {.vertex = &shader::shadow_vert, .fragment = nullptr, .cull = device::Cull::front}, "shadow") {}
 
 PassStats ShadowMaps::update(const DisplayBuffers& mesh, const LightSet& lights) {
   std::vector<gpu::ShadowView> views = lights.views;
   PassStats stats{.name = "shadow maps"};
-  device::Commands commands(context_, 1);
+  device::Commands commands(device_, 1);
   commands.begin_pass(stats.name);
   depths_.resize(views.size());
   std::size_t number = 0;
   for (gpu::ShadowView& view : views) {
     const std::uint64_t map_bytes = std::uint64_t{view.size} * view.size * sizeof(float);
     auto image = images_.find(view.size);
-    if (image == images_.end()) image = images_.emplace(view.size, depth_image(context_, view.size)).first;
+    if (image == images_.end()) image = images_.emplace(view.size, depth_image(device_, view.size)).first;
     const auto size = static_cast<float>(view.size);
     commands.draw({{}, &image->second}, {0, 0, size, size}, pass_,
                   gpu::ShadowPush{view.clip_from_world, mesh.vertices.address()}, &mesh.triangles,
                   3 * mesh.triangle_count);
     device::Buffer& depth = depths_[number++];
-    if (depth.size() != map_bytes) depth = {context_, map_bytes, device::Place::device, "shadows/map"};
+    if (depth.size() != map_bytes) depth = {device_, map_bytes, device::Place::device, "shadows/map"};
     view.depth = depth.address();
     commands.copy(image->second, depth);
     stats.bytes += mesh.vertices.size() + mesh.triangles.size() + 3 * map_bytes;
@@ -43,9 +43,9 @@ PassStats ShadowMaps::update(const DisplayBuffers& mesh, const LightSet& lights)
 
   light_count_ = static_cast<std::uint32_t>(lights.records.size());
   shaped_ = lights.shaped;
-  device::rewrite<gpu::LightRecord>(context_, lights.records, "shadows/lights", lights_);
-  device::rewrite<gpu::LightShape>(context_, lights.shapes, "shadows/shapes", shapes_);
-  device::rewrite<gpu::ShadowView>(context_, views, "shadows/views", views_);
+  device::rewrite<gpu::LightRecord>(device_, lights.records, "shadows/lights", lights_);
+  device::rewrite<gpu::LightShape>(device_, lights.shapes, "shadows/shapes", shapes_);
+  device::rewrite<gpu::ShadowView>(device_, views, "shadows/views", views_);
   return stats;
 }
 

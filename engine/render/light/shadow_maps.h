@@ -15,7 +15,7 @@ namespace quadgraph {
 
 class ShadowMaps {
  public:
-  explicit ShadowMaps(device::Device& context);
+  explicit ShadowMaps(device::Device& device);
 
   // Draws the maps of `lights`, in place of those before, whose memory they take over where it is as large.
   PassStats update(const DisplayBuffers& mesh, const LightSet& lights);
@@ -27,7 +27,7 @@ class ShadowMaps {
   const device::Buffer& views() const { return views_; }    // ShadowView, those of the first light first
 
  private:
-  device::Device& context_;
+  device::Device& device_;
   device::GraphicsPass pass_;
   std::uint32_t light_count_ = 0;
   bool shaped_ = false;

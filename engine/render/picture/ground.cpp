@@ -22,9 +22,9 @@ int axis_of(UpAxis up) {
   return up == UpAxis::z ? 2 : 1;
 }
 
-float lowest(device::Device& context, const DisplayBuffers& mesh, int axis) {
+float lowest(device::Device& device, const DisplayBuffers& mesh, int axis) {
   float least = INFINITY;
-  for (const glm::vec3& vertex : device::download<glm::vec3>(context, mesh.vertices))
+  for (const glm::vec3& vertex : device::download<glm::vec3>(device, mesh.vertices))
     least = std::min(least, vertex[axis]);
   return least;
 }
@@ -42,23 +42,23 @@ glm::mat4 from_below(const glm::vec3& middle, float half_width, float far, int a
 
 }  // namespace
 
-Ground::Ground(device::Device& context)
-    : context_(context),
-      below_(context, {.vertex = &shader::shadow_vert, .fragment = nullptr, .cull = device::Cull::none},
+Ground::Ground(device::Device& device)
+    : device_(device),
+      below_(device, {.vertex = &shader::shadow_vert, .fragment = nullptr, .cull = device::Cull::none},
              "ground from below"),
-      map_(context, shader::ground_map),
-      ground_(context, shader::ground),
-      image_(context, {device::Format::depth32_float, gpu::GROUND_SIZE, gpu::GROUND_SIZE}, "picture/ground"),
-      depth_(context, sizeof(float) * texels, device::Place::device, "picture/ground depth"),
-      shadow_(context, sizeof(float) * texels, device::Place::device, "picture/ground shadow") {}
+      map_(device, shader::ground_map),
+      ground_(device, shader::ground),
+      image_(device, {device::Format::depth32_float, gpu::GROUND_SIZE, gpu::GROUND_SIZE}, "picture/ground"),
+      depth_(device, sizeof(float) * texels, device::Place::device, "picture/ground depth"),
+      shadow_(device, sizeof(float) * texels, device::Place::device, "picture/ground shadow") {}
 
 void Ground::make_map(const DisplayBuffers& mesh, const Sphere& bounds, UpAxis up) {
   const int axis = axis_of(up);
   middle_ = bounds.centre;
-  middle_[axis] = lowest(context_, mesh, axis);
+  middle_[axis] = lowest(device_, mesh, axis);
   half_width_ = margin * bounds.radius;
   const float far = 2.02f * bounds.radius, size = gpu::GROUND_SIZE;
-  device::Commands commands(context_);
+  device::Commands commands(device_);
   commands.draw({{}, &image_}, {0, 0, size, size}, below_,
                 gpu::ShadowPush{from_below(middle_, half_width_, far, axis), mesh.vertices.address()}, &mesh.triangles,
                 3 * mesh.triangle_count);
@@ -87,7 +87,7 @@ PassStats Ground::run(const DisplayBuffers& mesh, const Sphere& bounds, const Vi
                              .z_up = view.up == UpAxis::z ? 1u : 0u,
                              .width = picture.width,
                              .height = picture.height};
-  device::Commands commands(context_, 1);
+  device::Commands commands(device_, 1);
   commands.begin_pass("ground");
   commands.dispatch(ground_, push, picture.pixels());
   commands.end_pass();

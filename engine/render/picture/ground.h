@@ -13,7 +13,7 @@ namespace quadgraph {
 
 class Ground {
  public:
-  explicit Ground(device::Device& context);
+  explicit Ground(device::Device& device);
 
   // The body has another shape.
   void invalidate() { made_for_.reset(); }
@@ -25,7 +25,7 @@ class Ground {
  private:
   void make_map(const DisplayBuffers& mesh, const Sphere& bounds, UpAxis up);
 
-  device::Device& context_;
+  device::Device& device_;
   device::GraphicsPass below_;
   device::ComputePass map_, ground_;
   device::Image image_;

@@ -22,10 +22,10 @@ struct PictureBuffers {
   std::uint64_t pixels() const { return std::uint64_t{width} * height; }
 
   // Takes the size, and memory for it where there is too little.
-  void resize(device::Device& context, std::uint32_t new_width, std::uint32_t new_height);
-  void make_room_around(device::Device& context);
+  void resize(device::Device& device, std::uint32_t new_width, std::uint32_t new_height);
+  void make_room_around(device::Device& device);
 };
 
-Picture read_picture(device::Device& context, const PictureBuffers& buffers);
+Picture read_picture(device::Device& device, const PictureBuffers& buffers);
 
 }  // namespace quadgraph

@@ -34,15 +34,15 @@ void check(const Level& level, std::span<const std::uint32_t> face, std::span<co
 
 }  // namespace
 
-RadianceProbe::RadianceProbe(device::Device& context) : context_(context), pass_(context, shader::radiance_probe) {}
+RadianceProbe::RadianceProbe(device::Device& device) : device_(device), pass_(device, shader::radiance_probe) {}
 
 Leaving RadianceProbe::run(const Level& level, const GatherField& field, float eta, std::span<const std::uint32_t> face,
                            std::span<const glm::vec3> direction) {
   check(level, face, direction);
-  const device::Buffer faces = device::upload(context_, face, "probe/faces");
-  const device::Buffer directions = device::upload(context_, direction, "probe/directions");
-  const device::Buffer radiance(context_, direction.size_bytes(), device::Place::device, "probe/radiance");
-  const device::Buffer transmittance(context_, direction.size_bytes(), device::Place::device, "probe/transmittance");
+  const device::Buffer faces = device::upload(device_, face, "probe/faces");
+  const device::Buffer directions = device::upload(device_, direction, "probe/directions");
+  const device::Buffer radiance(device_, direction.size_bytes(), device::Place::device, "probe/radiance");
+  const device::Buffer transmittance(device_, direction.size_bytes(), device::Place::device, "probe/transmittance");
   const gpu::RadianceProbePush push{.solid = field.solid_on_device().address(),
                                     .points = field.points().address(),
                                     .scale = field.scale().address(),
@@ -52,10 +52,10 @@ Leaving RadianceProbe::run(const Level& level, const GatherField& field, float e
                                     .transmittance = transmittance.address(),
                                     .count = static_cast<std::uint32_t>(face.size()),
                                     .radiance_norm = static_cast<float>(radiance_norm(eta))};
-  device::Commands commands(context_);
+  device::Commands commands(device_);
   commands.dispatch(pass_, push, face.size());
   commands.submit_and_wait();
-  return {device::download<glm::vec3>(context_, radiance), device::download<glm::vec3>(context_, transmittance)};
+  return {device::download<glm::vec3>(device_, radiance), device::download<glm::vec3>(device_, transmittance)};
 }
 
 }  // namespace quadgraph

@@ -17,7 +17,7 @@ struct Leaving {
 
 class RadianceProbe {
  public:
-  explicit RadianceProbe(device::Device& context);
+  explicit RadianceProbe(device::Device& device);
 
   // At the centroids of outside faces along unit directions. Throws InputError for a face that is not there or a
   // direction that is not unit and outward.
@@ -25,7 +25,7 @@ class RadianceProbe {
               std::span<const glm::vec3> direction);
 
  private:
-  device::Device& context_;
+  device::Device& device_;
   device::ComputePass pass_;
 };
 

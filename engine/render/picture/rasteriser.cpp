@@ -104,13 +104,13 @@ struct Rasteriser::Tile {
 
 // For tiles of up to as many pixels.
 struct Rasteriser::Targets {
-  Targets(device::Device& context, std::uint32_t tile_width, std::uint32_t tile_height)
+  Targets(device::Device& device, std::uint32_t tile_width, std::uint32_t tile_height)
       : width(tile_width),
         height(tile_height),
-        depth(context, image_options(device::Format::depth32_float), "picture/depth") {
+        depth(device, image_options(device::Format::depth32_float), "picture/depth") {
     for (int k = 0; k < SAMPLE_LAYERS; ++k) {
-      images.emplace_back(context, image_options(device::Format::rgba32_float), "picture/samples");
-      samples.emplace_back(context, 64ull * width * height, device::Place::device, "picture/samples");
+      images.emplace_back(device, image_options(device::Format::rgba32_float), "picture/samples");
+      samples.emplace_back(device, 64ull * width * height, device::Place::device, "picture/samples");
     }
   }
 
@@ -132,7 +132,7 @@ double radiance_norm(double eta) {
   return 2 * std::numbers::pi * sum / steps;
 }
 
-Rasteriser::Rasteriser(device::Device& context) : context_(context), resolve_(context, shader::resolve) {}
+Rasteriser::Rasteriser(device::Device& device) : device_(device), resolve_(device, shader::resolve) {}
 
 const device::GraphicsPass& Rasteriser::surface(const RasterInput& input) {
   const bool gathered = input.gather != nullptr;
@@ -140,8 +140,8 @@ const device::GraphicsPass& Rasteriser::surface(const RasterInput& input) {
   auto& pass = surfaces_[(gathered ? 1 : 0) + 2 * variant];
   if (pass) return *pass;
   if (!gathered)
-    return pass.emplace(context_, pass_options(shader::surface_vert, shader::surface_frag, variant), "surface");
-  return pass.emplace(context_, pass_options(shader::surface_gathered_vert, shader::surface_gathered_frag, variant),
+    return pass.emplace(device_, pass_options(shader::surface_vert, shader::surface_frag, variant), "surface");
+  return pass.emplace(device_, pass_options(shader::surface_gathered_vert, shader::surface_gathered_frag, variant),
                       "surface gathered");
 }
 
@@ -151,7 +151,7 @@ const device::GraphicsPass& Rasteriser::surface(const PathInput& input) {
   if (pass) return *pass;
   device::GraphicsOptions options = pass_options(shader::surface_path_vert, shader::surface_path_frag, variant);
   options.cull = device::Cull::none;
-  return pass.emplace(context_, options, "surface of cells");
+  return pass.emplace(device_, options, "surface of cells");
 }
 
 const device::ComputePass& Rasteriser::resolve(const RasterInput& input) {
@@ -159,13 +159,13 @@ const device::ComputePass& Rasteriser::resolve(const RasterInput& input) {
   const std::uint32_t shaped = input.shadows.shaped() ? 1 : 0;
   auto& pass = gathers_[shaped];
   if (pass) return *pass;
-  return pass.emplace(context_, shader::gather, device::ComputeOptions{.variant = shaped});
+  return pass.emplace(device_, shader::gather, device::ComputeOptions{.variant = shaped});
 }
 
 Rasteriser::~Rasteriser() = default;
 
 void Rasteriser::make_room(std::uint32_t width, std::uint32_t height) {
-  picture_.resize(context_, width, height);
+  picture_.resize(device_, width, height);
   std::uint32_t tile_width = std::min(width, tile_pixels), tile_height = std::min(height, tile_pixels);
   if (targets_ && targets_->width >= tile_width && targets_->height >= tile_height) return;
   if (targets_) {
@@ -173,7 +173,7 @@ void Rasteriser::make_room(std::uint32_t width, std::uint32_t height) {
     tile_height = std::max(tile_height, targets_->height);
     targets_.reset();
   }
-  targets_ = std::make_unique<Targets>(context_, tile_width, tile_height);
+  targets_ = std::make_unique<Targets>(device_, tile_width, tile_height);
 }
 
 device::Viewport Rasteriser::viewport(const Tile& tile) const {
@@ -250,7 +250,7 @@ std::vector<PassStats> Rasteriser::run_tiles(std::uint32_t width, std::uint32_t 
   for (std::uint32_t y = 0; y < height; y += tile_pixels) {
     for (std::uint32_t x = 0; x < width; x += tile_pixels) {
       const Tile tile{x, y, std::min(tile_pixels, width - x), std::min(tile_pixels, height - y)};
-      device::Commands commands(context_, 2);
+      device::Commands commands(device_, 2);
       record_tile(commands, tile);
       const auto times = commands.submit_and_wait();
       for (std::size_t k = 0; k < passes.size(); ++k) {
@@ -267,8 +267,8 @@ std::vector<PassStats> Rasteriser::run_tiles(std::uint32_t width, std::uint32_t 
 }
 
 void Rasteriser::write_scene(const gpu::SurfaceScene& scene) {
-  if (scene_.size() == 0) scene_ = {context_, sizeof(gpu::SurfaceScene), device::Place::device, "picture/scene"};
-  device::write_bytes(context_, scene_, std::as_bytes(std::span(&scene, 1)));
+  if (scene_.size() == 0) scene_ = {device_, sizeof(gpu::SurfaceScene), device::Place::device, "picture/scene"};
+  device::write_bytes(device_, scene_, std::as_bytes(std::span(&scene, 1)));
 }
 
 std::vector<PassStats> Rasteriser::run(const PathInput& input, const Camera& camera, std::uint32_t width,
@@ -299,7 +299,7 @@ std::vector<PassStats> Rasteriser::run(const FalseColours& input, const Camera& 
   if (!false_colour_) {
     device::GraphicsOptions options = pass_options(shader::false_colour_vert, shader::false_colour_frag);
     options.cull = device::Cull::none;
-    false_colour_.emplace(context_, options, "false colour");
+    false_colour_.emplace(device_, options, "false colour");
   }
   auto passes = run_tiles(width, height,
                           [&](device::Commands& commands, const Tile& tile) { record(commands, input, camera, tile); });
@@ -309,11 +309,11 @@ std::vector<PassStats> Rasteriser::run(const FalseColours& input, const Camera& 
   return passes;
 }
 
-FalseColours upload_false_colours(device::Device& context, const FalseMesh& mesh, const Plane& plane, bool diverging) {
+FalseColours upload_false_colours(device::Device& device, const FalseMesh& mesh, const Plane& plane, bool diverging) {
   std::vector<std::uint32_t> indices(mesh.size());
   std::iota(indices.begin(), indices.end(), 0u);
-  return {.vertices = device::upload<gpu::FalseVertex>(context, mesh, "picture/inside"),
-          .indices = device::upload<std::uint32_t>(context, indices, "picture/inside"),
+  return {.vertices = device::upload<gpu::FalseVertex>(device, mesh, "picture/inside"),
+          .indices = device::upload<std::uint32_t>(device, indices, "picture/inside"),
           .vertex_count = static_cast<std::uint32_t>(mesh.size()),
           .plane = plane,
           .diverging = diverging};

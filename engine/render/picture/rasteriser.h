@@ -70,13 +70,13 @@ struct FalseColours {
   bool diverging = false;
 };
 
-FalseColours upload_false_colours(device::Device& context, const FalseMesh& mesh, const Plane& plane, bool diverging);
+FalseColours upload_false_colours(device::Device& device, const FalseMesh& mesh, const Plane& plane, bool diverging);
 
 // Draws in tiles, so that the memory of the samples does not grow with the picture. What it draws into is kept from
 // picture to picture.
 class Rasteriser {
  public:
-  explicit Rasteriser(device::Device& context);
+  explicit Rasteriser(device::Device& device);
   ~Rasteriser();
 
   std::vector<PassStats> run(const RasterInput& input, const Camera& camera, std::uint32_t width, std::uint32_t height);
@@ -113,7 +113,7 @@ class Rasteriser {
   const device::GraphicsPass& surface(const PathInput& input);
   const device::ComputePass& resolve(const RasterInput& input);
 
-  device::Device& context_;
+  device::Device& device_;
   std::array<std::optional<device::GraphicsPass>, 8> surfaces_;  // gathered or not, by variant; at first use
   std::array<std::optional<device::GraphicsPass>, 4> paths_;     // from cells, by variant; the same
   device::ComputePass resolve_;

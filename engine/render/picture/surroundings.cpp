@@ -10,13 +10,13 @@
 
 namespace quadgraph {
 
-Surroundings::Surroundings(device::Device& context) : context_(context), pass_(context, shader::surroundings) {}
+Surroundings::Surroundings(device::Device& device) : device_(device), pass_(device, shader::surroundings) {}
 
 const Surroundings::Seen& Surroundings::seen(const std::string& file) {
   auto image = load_pyramid(file);
   Seen& known = seen_[file];
   if (known.image == image) return known;
-  known.texels = device::upload<glm::vec3>(context_, image->texels, "picture/surroundings image");
+  known.texels = device::upload<glm::vec3>(device_, image->texels, "picture/surroundings image");
   known.image = std::move(image);
   return known;
 }
@@ -28,10 +28,10 @@ bool Surroundings::run(std::span<const Light> lights, const View& view, const Ca
     return std::none_of(lights.begin(), lights.end(), [&](const Light& l) { return l.file == known.first; });
   });
   if (std::none_of(lights.begin(), lights.end(), around)) return false;
-  picture.make_room_around(context_);
+  picture.make_room_around(device_);
   const float half_height = std::tan(0.5f * glm::radians(view.vertical_fov));
   const float half_width = half_height * static_cast<float>(picture.width) / static_cast<float>(picture.height);
-  device::Commands commands(context_, 1);
+  device::Commands commands(device_, 1);
   commands.begin_pass("surroundings");
   bool first = true;
   for (const Light& light : lights) {

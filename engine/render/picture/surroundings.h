@@ -15,7 +15,7 @@ namespace quadgraph {
 
 class Surroundings {
  public:
-  explicit Surroundings(device::Device& context);
+  explicit Surroundings(device::Device& device);
 
   // Writes picture.surroundings, the sum of all environment lights as sharp as their files are; false, and nothing, if
   // there is none. Throws InputError as read_image.
@@ -30,7 +30,7 @@ class Surroundings {
 
   const Seen& seen(const std::string& file);
 
-  device::Device& context_;
+  device::Device& device_;
   device::ComputePass pass_;
   std::map<std::string, Seen> seen_;
 };

@@ -32,12 +32,12 @@ float exposure_from(std::span<const std::uint32_t> bins) {
 
 }  // namespace
 
-ToneMapper::ToneMapper(device::Device& context)
-    : context_(context),
-      luminance_(context, shader::luminance),
-      tone_map_(context, shader::tone_map),
-      bins_(context, bin_bytes, device::Place::device, "screen/luminance"),
-      bins_on_host_(context, bin_bytes, device::Place::host, "screen/luminance, read back") {}
+ToneMapper::ToneMapper(device::Device& device)
+    : device_(device),
+      luminance_(device, shader::luminance),
+      tone_map_(device, shader::tone_map),
+      bins_(device, bin_bytes, device::Place::device, "screen/luminance"),
+      bins_on_host_(device, bin_bytes, device::Place::host, "screen/luminance, read back") {}
 
 float ToneMapper::exposure(const PictureBuffers& picture, const ToneOptions& options) {
   if (options.exposure_stops) return *options.exposure_stops;
@@ -47,7 +47,7 @@ float ToneMapper::exposure(const PictureBuffers& picture, const ToneOptions& opt
                           .bins = bins_.address(),
                           .count = static_cast<std::uint32_t>(picture.pixels())};
   for (std::size_t k = 0; k < PICTURE_LAYERS; ++k) push.layers[k] = picture.layers[k].address();
-  device::Commands commands(context_);
+  device::Commands commands(device_);
   commands.fill(bins_, 0);
   commands.dispatch(luminance_, push, picture.pixels());
   commands.copy(bins_, bins_on_host_, bin_bytes);
@@ -58,7 +58,7 @@ float ToneMapper::exposure(const PictureBuffers& picture, const ToneOptions& opt
 const device::Buffer& ToneMapper::run(const PictureBuffers& picture, const ToneOptions& options, float exposure_stops,
                                       const ScreenPart& part) {
   const std::uint64_t count = std::uint64_t{part.width} * part.height;
-  if (pixels_.size() < 4 * count) pixels_ = device::Buffer(context_, 4 * count, device::Place::device, "screen/pixels");
+  if (pixels_.size() < 4 * count) pixels_ = device::Buffer(device_, 4 * count, device::Place::device, "screen/pixels");
   gpu::ToneMapPush push{.layers = {},
                         .alpha = picture.alpha.address(),
                         .surroundings = picture.around.address(),
@@ -74,7 +74,7 @@ const device::Buffer& ToneMapper::run(const PictureBuffers& picture, const ToneO
                         .blue_first = part.blue_first ? 1u : 0u,
                         .surrounded = picture.has_surroundings ? 1u : 0u};
   for (std::size_t k = 0; k < PICTURE_LAYERS; ++k) push.layers[k] = picture.layers[k].address();
-  device::Commands commands(context_);
+  device::Commands commands(device_);
   commands.dispatch(tone_map_, push, count);
   commands.submit_and_wait();
   return pixels_;

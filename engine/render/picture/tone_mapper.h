@@ -17,7 +17,7 @@ struct ScreenPart {
 
 class ToneMapper {
  public:
-  explicit ToneMapper(device::Device& context);
+  explicit ToneMapper(device::Device& device);
 
   // The stops of exposure_of, within 1/128 of one.
   float exposure(const PictureBuffers& picture, const ToneOptions& options);
@@ -27,7 +27,7 @@ class ToneMapper {
                             const ScreenPart& part);
 
  private:
-  device::Device& context_;
+  device::Device& device_;
   device::ComputePass luminance_, tone_map_;
   device::Buffer bins_, bins_on_host_, pixels_;
 };

@@ -25,7 +25,7 @@ struct Lit {
   Lit(const Lit&) = delete;
   Lit& operator=(const Lit&) = delete;
   ~Lit() {
-    for (const auto& message : engine.context().validation_messages()) FAIL_CHECK(message);
+    for (const auto& message : engine.device().validation_messages()) FAIL_CHECK(message);
   }
 };
 
@@ -65,7 +65,7 @@ TEST_CASE("light, pictures and leaving radiance are the same on both") {
   Lit here({.device = "cpu"}), there({.validation = true, .device = "llvmpipe"});
   for (std::uint32_t level = 0; level < there.engine.graph().levels().size(); ++level) {
     const auto q = [&](Lit& lit) {
-      return device::download<float>(lit.engine.context(), lit.engine.simulation().level(level).q);
+      return device::download<float>(lit.engine.device(), lit.engine.simulation().level(level).q);
     };
     CHECK(difference(q(here), q(there)) < 1e-6);
   }

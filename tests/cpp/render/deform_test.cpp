@@ -129,7 +129,7 @@ TEST_CASE("what is shown and what is solved on stay together, and bounds and sha
   const DisplayMesh& mesh = engine.graph().display();
   const Level& level = engine.graph().levels()[0];
   const auto shown = deformed(list, rest_box(mesh.vertices), {}, mesh.vertices);
-  const auto solved = device::download<glm::vec3>(engine.context(), engine.simulation().level(0).vertices);
+  const auto solved = device::download<glm::vec3>(engine.device(), engine.simulation().level(0).vertices);
   double worst = 0;
   for (std::size_t v = 0; v < shown.size(); ++v) {
     glm::dvec3 on_face(0);
@@ -170,7 +170,7 @@ TEST_CASE("shapes displace display and levels alike, and those of another body a
   engine.set_deformation(std::span(&displaced, 1));
   CHECK(glm::distance(engine.bounds().centre, centre + glm::vec3(2, 1, 0)) < 1e-5f);
   const glm::vec3 vertex = engine.graph().levels()[1].vertices[2];
-  CHECK(glm::distance(device::download<glm::vec3>(engine.context(), engine.simulation().level(1).vertices)[2],
+  CHECK(glm::distance(device::download<glm::vec3>(engine.device(), engine.simulation().level(1).vertices)[2],
                       vertex + glm::vec3(2, 1, 0)) < 1e-5f);
   shapes.levels[1][1].pop_back();
   displaced.shapes = std::make_shared<Shapes>(shapes);

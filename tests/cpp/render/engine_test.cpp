@@ -43,7 +43,7 @@ TEST_CASE("a lit cube takes in the light of its face on every level, without a d
   for (std::uint32_t level = 0; level < engine.graph().levels().size(); ++level) {
     const auto& faces = engine.graph().levels()[level].faces;
     const auto& vertices = engine.graph().levels()[level].vertices;
-    const auto q = device::download<glm::vec3>(engine.context(), engine.simulation().level(level).q);
+    const auto q = device::download<glm::vec3>(engine.device(), engine.simulation().level(level).q);
     double power = 0;
     for (std::size_t f = 0; f < faces.size(); ++f) {
       const glm::vec3 a = vertices[faces[f].x];
@@ -162,7 +162,7 @@ TEST_CASE("pictures that follow each other allocate nothing, smaller ones neithe
   engine.set_material("sigma_s_prime=2,sigma_a=0.1,eta=1.4");
   engine.set_lights({parse_light("directional:0,0,-1:1")});
   engine.solve();
-  ToneMapper mapper(engine.context());
+  ToneMapper mapper(engine.device());
   const auto show = [&](float azimuth, std::uint32_t width, std::uint32_t height) {
     const PictureBuffers& picture = engine.draw({.azimuth = azimuth}, {.width = width, .height = height});
     mapper.run(picture, {}, mapper.exposure(picture, {}), {120, 90});

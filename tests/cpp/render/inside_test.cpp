@@ -102,7 +102,7 @@ TEST_CASE("every view of the inside shows the body and names its unit; a picture
   CHECK_FALSE(engine.legend());
   options.show = {.quantity = Quantity::levels, .level = 7};
   CHECK_THROWS_AS(engine.render(view, options), InputError);
-  for (const auto& message : engine.context().validation_messages()) FAIL_CHECK(message);
+  for (const auto& message : engine.device().validation_messages()) FAIL_CHECK(message);
 }
 
 TEST_CASE("the lit face of a cube is yellow in q, the others are at the dark end") {

@@ -261,6 +261,6 @@ TEST_CASE("a stage that went through other scenes shows the same as a fresh one"
   travelled.solve();
   CHECK(travelled.engine().surface_field().exitance != b);
   for (Stage* stage : {&travelled, &fresh}) {
-    for (const auto& message : stage->engine().context().validation_messages()) FAIL_CHECK(message);
+    for (const auto& message : stage->engine().device().validation_messages()) FAIL_CHECK(message);
   }
 }
