@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "engine/device/device.h"
 
@@ -40,8 +41,17 @@ struct ImageMemory : device::ImageMemory {
   std::uint32_t texel_bytes() const { return texel_bytes(options.format); }
   float* texels() const { return static_cast<float*>(memory.get()); }
 
+  // Before each draw into it, of `width` x `height` texels in `tiles` tiles.
+  void start_draw(std::uint32_t width, std::uint32_t height, std::uint32_t tiles) {
+    if (width != drawn_width || height != drawn_height) clear_tiles.assign(tiles, 0);
+    drawn_width = width;
+    drawn_height = height;
+  }
+
   device::ImageOptions options;
   Bytes memory;
+  std::uint32_t drawn_width = 0, drawn_height = 0;
+  std::vector<char> clear_tiles;  // whether the last draw left nothing in a tile; draws alone write to an image
 };
 
 struct ComputePipeline : device::Pipeline {

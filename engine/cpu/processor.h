@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "engine/cpu/thread_pool.h"
+#include "engine/cpu/triangles.h"
 #include "engine/device/device.h"
 
 namespace quadgraph::cpu {
@@ -19,6 +20,7 @@ class Processor : public device::Device {
   ~Processor() override;
 
   ThreadPool& threads() { return threads_; }
+  DrawMemory& draw_memory() { return draw_memory_; }
 
   std::unique_ptr<device::Memory> allocate(std::uint64_t bytes, device::Place place, const std::string& name) override;
   std::unique_ptr<device::ImageMemory> allocate(const device::ImageOptions& options, const std::string& name) override;
@@ -32,6 +34,7 @@ class Processor : public device::Device {
 
   std::size_t level_;  // of instructions: index of device::CpuCode
   ThreadPool threads_;
+  DrawMemory draw_memory_;
 };
 
 }  // namespace quadgraph::cpu

@@ -6,12 +6,14 @@
 
 #include "engine/cpu/objects.h"
 #include "engine/cpu/thread_pool.h"
+#include "engine/cpu/triangles.h"
 #include "engine/device/device.h"
 
 namespace quadgraph::cpu {
 
-// Draws as device::Recording::draw asks. The same picture with any number of threads.
+// Draws as device::Recording::draw asks. The same picture with any number of threads. `memory` is kept from draw to draw.
 void rasterise(ThreadPool& threads, const device::DrawImages& target, const device::Viewport& viewport,
-               const GraphicsPipeline& pass, const void* push, const std::uint32_t* indices, std::uint32_t vertices);
+               const GraphicsPipeline& pass, const void* push, const std::uint32_t* indices, std::uint32_t vertices,
+               DrawMemory& memory);
 
 }  // namespace quadgraph::cpu

@@ -82,7 +82,7 @@ void Recording::draw(const device::DrawImages& target, const device::Viewport& v
                      const void* push, const device::Memory* indices, std::uint32_t vertices) {
   const auto& pipeline = static_cast<const GraphicsPipeline&>(pass);
   const auto* numbers = indices == nullptr ? nullptr : reinterpret_cast<const std::uint32_t*>(bytes_of(*indices));
-  rasterise(processor_.threads(), target, viewport, pipeline, push, numbers, vertices);
+  rasterise(processor_.threads(), target, viewport, pipeline, push, numbers, vertices, processor_.draw_memory());
 }
 
 void Recording::begin_pass(const std::string& name) {

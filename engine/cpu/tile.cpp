@@ -1,184 +1,356 @@
 #include "engine/cpu/tile.h"
 
 #include <algorithm>
+#include <type_traits>
 
 namespace quadgraph::cpu {
 namespace {
 
-constexpr std::uint32_t fragments_at_once = 256;  // of a call of the fragment shader
+// Pixels of a row side by side.
+constexpr std::uint32_t lanes = 4;
+using Floats = float __attribute__((vector_size(16)));
+using Ints = std::int32_t __attribute__((vector_size(16)));
+using Words = std::uint32_t __attribute__((vector_size(16)));
+using Longs = std::int64_t __attribute__((vector_size(16)));
+using Doubles = double __attribute__((vector_size(32)));
+using Pair = double __attribute__((vector_size(16)));
+using StoredFloats = float __attribute__((vector_size(16), aligned(4)));
 
-std::int64_t first_pixel(std::int64_t at) {
-  return (at - pixel / 2 + pixel - 1) >> 8;
+// Of an edge, at pixels side by side: what is computed in whole numbers below 2^31 fits Ints, all others Doubles, where
+// they are exact too.
+template <typename Lanes>
+struct Edge {
+  using Number = std::remove_cvref_t<decltype(Lanes{}[0])>;
+  Lanes row;   // at the first pixels of the row, less what is in: 0 of top and left edges, else 1
+  Lanes step;  // from pixels to those beside them
+  Number step_y;
+
+  Edge(const Drawn& drawn, std::size_t k, std::uint32_t x, std::uint32_t y) {
+    const bool top_left = drawn.step_x[k] > 0 || (drawn.step_x[k] == 0 && drawn.step_y[k] > 0);
+    const std::int64_t first = drawn.at[k] + x * drawn.step_x[k] + y * drawn.step_y[k] - (top_left ? 0 : 1);
+    row = static_cast<Number>(first) + static_cast<Number>(drawn.step_x[k]) * Lanes{0, 1, 2, 3};
+    step = static_cast<Number>(lanes * drawn.step_x[k]) + Lanes{};
+    step_y = static_cast<Number>(drawn.step_y[k]);
+  }
+};
+
+Ints inside(Ints a, Ints b, Ints c) {
+  return (a | b | c) >= 0;
 }
-std::int64_t last_pixel(std::int64_t at) {
+Ints inside(const Doubles& a, const Doubles& b, const Doubles& c) {
+  return __builtin_convertvector((a >= 0) & (b >= 0) & (c >= 0), Ints);
+}
+
+bool any(Ints mask) {
+  const auto halves = Longs(mask);
+  return (halves[0] | halves[1]) != 0;
+}
+
+// Pixels of a tile, end excluded.
+struct Box {
+  std::uint32_t x0, y0, x1, y1;
+};
+
+// Depth of a triangle in its plane, at pixels side by side: of the first two and of the others.
+struct Plane {
+  Pair left, right;  // at the first pixels of the row
+  Pair step;         // from pixels to those beside them
+  double step_y;
+
+  Plane(const Drawn& drawn, std::uint32_t x, std::uint32_t y) {
+    double at = 0, step_x = 0;
+    step_y = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double depth = drawn.inverse * double{drawn.triangle->z[k]};
+      at += static_cast<double>(drawn.at[k] + x * drawn.step_x[k] + y * drawn.step_y[k]) * depth;
+      step_x += static_cast<double>(drawn.step_x[k]) * depth;
+      step_y += static_cast<double>(drawn.step_y[k]) * depth;
+    }
+    left = Pair{at, at + step_x};
+    right = left + 2 * step_x;
+    step = lanes * step_x + Pair{};
+  }
+};
+
+// Calls take(pixel of the tile, mask, depth) for pixels side by side, of which the mask says which are in the triangle:
+// maybe none, as asking would take longer than taking.
+template <typename Lanes, typename Take>
+void walk(const Drawn& drawn, const Box& box, const Take& take) {
+  const std::uint32_t x0 = box.x0 / lanes * lanes;
+  Edge<Lanes> a(drawn, 0, x0, box.y0), b(drawn, 1, x0, box.y0), c(drawn, 2, x0, box.y0);
+  Plane plane(drawn, x0, box.y0);
+  for (std::uint32_t y = box.y0; y < box.y1; ++y) {
+    Lanes at_a = a.row, at_b = b.row, at_c = c.row;
+    Pair left = plane.left, right = plane.right;
+    for (std::uint32_t x = x0; x < box.x1; x += lanes) {
+      const Ints mask = inside(at_a, at_b, at_c);
+      const Floats depth{static_cast<float>(left[0]), static_cast<float>(left[1]), static_cast<float>(right[0]),
+                         static_cast<float>(right[1])};
+      take(y * tile_side + x, mask, depth);
+      at_a += a.step, at_b += b.step, at_c += c.step;
+      left += plane.step, right += plane.step;
+    }
+    a.row += a.step_y, b.row += b.step_y, c.row += c.step_y;
+    plane.left += plane.step_y, plane.right += plane.step_y;
+  }
+}
+
+std::int32_t first_pixel(std::int32_t at) {
+  return (at + pixel / 2 - 1) >> 8;
+}
+std::int32_t last_pixel(std::int32_t at) {
   return (at - pixel / 2) >> 8;
-}
-std::int64_t centre(std::int64_t of_pixel) {
-  return of_pixel * pixel + pixel / 2;
 }
 
 // Values of one fragment: `b` are weights in the window, which add up to 1.
-void interpolate(const Triangle& t, const std::array<double, 3>& b, std::uint32_t floats, std::uint32_t flat,
+void interpolate(const Triangle& t, const std::array<double, 3>& b, std::uint32_t locations, std::uint32_t flat,
                  float* result) {
   std::array<float, 3> weight;
   double sum = 0;
-  for (int k = 0; k < 3; ++k) sum += b[k] * t.inverse_w[k];
-  for (int k = 0; k < 3; ++k) weight[k] = static_cast<float>(b[k] * t.inverse_w[k] / sum);
-  for (std::uint32_t first = 0; first < floats; first += 4) {
-    if ((flat >> (first / 4) & 1u) != 0) {
-      std::copy_n(t.flat + first, 4, result + first);
-      continue;
-    }
-    for (std::uint32_t k = first; k < first + 4; ++k) {
-      result[k] = weight[0] * t.values[0][k] + weight[1] * t.values[1][k] + weight[2] * t.values[2][k];
-    }
+  for (std::size_t k = 0; k < 3; ++k) sum += b[k] * t.inverse_w[k];
+  const double inverse = 1 / sum;
+  for (std::size_t k = 0; k < 3; ++k) weight[k] = static_cast<float>(b[k] * t.inverse_w[k] * inverse);
+  const auto four = [](const float* values, std::uint32_t location) -> Floats {
+    return *reinterpret_cast<const StoredFloats*>(values + 4 * location);
+  };
+  for (std::uint32_t k = 0; k < locations; ++k) {
+    *reinterpret_cast<StoredFloats*>(result + 4 * k) =
+        (flat >> k & 1u) != 0
+            ? four(t.flat, k)
+            : weight[0] * four(t.values[0], k) + weight[1] * four(t.values[1], k) + weight[2] * four(t.values[2], k);
   }
+}
+
+ImageMemory& image(device::ImageMemory* memory) {
+  return static_cast<ImageMemory&>(*memory);
 }
 
 }  // namespace
 
-Edges::Edges(const Triangle& t) {
-  for (int k = 0; k < 3; ++k) {
-    const int from = (k + 1) % 3, to = (k + 2) % 3;
-    x_[k] = t.x[from];
-    y_[k] = t.y[from];
-    dx_[k] = t.x[to] - t.x[from];
-    dy_[k] = t.y[to] - t.y[from];
-    least_[k] = (dy_[k] > 0 || (dy_[k] == 0 && dx_[k] < 0)) ? 0 : 1;
+Batch::Batch(const Frame& frame) : frame_(frame), derivatives_(false) {
+  if (frame.pass.fragment == nullptr) return;
+  derivatives_ = (frame.pass.options.fragment->derivatives >> frame.pass.options.variant & 1u) != 0;
+  const std::size_t floats = std::size_t{4} * frame.locations() * fragments_at_once;
+  inputs_.resize(floats);
+  if (derivatives_) {
+    right_.resize(floats);
+    below_.resize(floats);
   }
-  twice_ = dx_[2] * dy_[1] - dx_[1] * dy_[2];
+  colours_.resize(4 * frame.target.colours.size() * fragments_at_once);
 }
 
-void Batch::take(const Triangle& t, const Edges& edges, std::uint64_t place, const std::array<double, 3>& weights) {
-  const std::uint32_t floats = frame_.floats(), flat = frame_.pass.options.vertex->flat;
-  const std::size_t end = inputs_.size();
-  pixels_.push_back(place);
-  inputs_.resize(end + floats);
-  interpolate(t, weights, floats, flat, inputs_.data() + end);
-  if ((frame_.pass.options.fragment->derivatives >> frame_.pass.options.variant & 1u) == 0) return;
-  std::array<double, 3> right = weights, below = weights;
-  for (int k = 0; k < 3; ++k) {
-    right[k] += edges.inverse() * static_cast<double>(edges.to_right(k));
-    below[k] += edges.inverse() * static_cast<double>(edges.to_below(k));
+// Triangles of a batch are turned the same way.
+bool Batch::has_room(const Triangle& t) const {
+  return count_ < fragments_at_once && (count_ == 0 || front_ == t.front);
+}
+
+void Batch::take(const Drawn& drawn, std::uint32_t pixel_of_tile, float z) {
+  front_ = drawn.triangle->front;
+  pixels_[count_] = pixel_of_tile;
+  depths_[count_] = z;
+  const std::uint32_t flat = frame_.pass.options.vertex->flat;
+  const std::size_t place = std::size_t{4} * frame_.locations() * count_++;
+  const std::uint32_t x = pixel_of_tile % tile_side, y = pixel_of_tile / tile_side;
+  std::array<double, 3> b, right, below;
+  for (std::size_t k = 0; k < 3; ++k) {
+    b[k] = drawn.inverse * static_cast<double>(drawn.at[k] + x * drawn.step_x[k] + y * drawn.step_y[k]);
+    right[k] = b[k] + drawn.inverse * static_cast<double>(drawn.step_x[k]);
+    below[k] = b[k] + drawn.inverse * static_cast<double>(drawn.step_y[k]);
   }
-  right_.resize(end + floats);
-  below_.resize(end + floats);
-  interpolate(t, right, floats, flat, right_.data() + end);
-  interpolate(t, below, floats, flat, below_.data() + end);
+  interpolate(*drawn.triangle, b, frame_.locations(), flat, inputs_.data() + place);
+  if (!derivatives_) return;
+  interpolate(*drawn.triangle, right, frame_.locations(), flat, right_.data() + place);
+  interpolate(*drawn.triangle, below, frame_.locations(), flat, below_.data() + place);
 }
 
 template <typename Keep>
-void Batch::shade(const Keep& keep) {
-  if (pixels_.empty()) return;
+void Batch::shade(std::uint64_t texel, const Keep& keep) {
+  if (count_ == 0) return;
+  frame_.pass.fragment(frame_.push, front_, inputs_.data(), right_.data(), below_.data(), count_, colours_.data(),
+                       kept_.data(), frame_.pass.options.variant);
   const std::size_t images = frame_.target.colours.size();
-  colours_.resize(4 * images * count());
-  if (kept_.size() < count()) kept_ = std::vector<char>(count());
-  frame_.pass.fragment(frame_.push, front_, inputs_.data(), right_.data(), below_.data(), count(), colours_.data(),
-                       reinterpret_cast<bool*>(kept_.data()), frame_.pass.options.variant);
-  for (std::uint32_t k = 0; k < count(); ++k) {
-    if (kept_[k] == 0) continue;
-    for (std::size_t image = 0; image < images; ++image) {
-      auto& memory = static_cast<ImageMemory&>(*frame_.target.colours[image]);
-      std::copy_n(colours_.data() + 4 * (images * k + image), 4, memory.texels() + 4 * pixels_[k]);
-    }
-    keep(k);
-  }
-  pixels_.clear();
-  for (std::vector<float>* values : {&inputs_, &right_, &below_}) values->clear();
-}
-
-Tile::Tile(const Frame& frame, std::uint32_t x, std::uint32_t y)
-    : frame_(frame),
-      depth_(static_cast<ImageMemory&>(*frame.target.depth)),
-      left_(x),
-      top_(y),
-      right_(std::min(x + tile_side, frame.target.width)),
-      bottom_(std::min(y + tile_side, frame.target.height)),
-      waits_(frame.pass.fragment != nullptr && !frame.pass.options.fragment->discards),
-      front_(frame, true),
-      back_(frame, false) {
-  if (waits_) seen_.fill(nullptr);
-}
-
-void Tile::clear() {
-  for (std::uint32_t y = top_; y < bottom_; ++y) {
-    std::fill_n(depth_.texels() + place(left_, y), right_ - left_, 1.0f);
-    for (device::ImageMemory* image : frame_.target.colours) {
-      std::fill_n(static_cast<ImageMemory&>(*image).texels() + 4 * place(left_, y), 4 * (right_ - left_), 0.0f);
+  for (std::size_t i = 0; i < images; ++i) {
+    const ImageMemory& target = image(frame_.target.colours[i]);
+    for (std::uint32_t k = 0; k < count_; ++k) {
+      if (!kept_[k]) continue;
+      const std::uint64_t at =
+          texel + std::uint64_t{pixels_[k] / tile_side} * target.options.width + pixels_[k] % tile_side;
+      std::copy_n(colours_.data() + 4 * (images * k + i), 4, target.texels() + 4 * at);
     }
   }
+  for (std::uint32_t k = 0; k < count_; ++k) {
+    if (kept_[k]) keep(pixels_[k], depths_[k]);
+  }
+  count_ = 0;
 }
 
-void Tile::draw(const Triangle& t) {
-  const auto [least_x, most_x] = std::minmax({t.x[0], t.x[1], t.x[2]});
-  const auto [least_y, most_y] = std::minmax({t.y[0], t.y[1], t.y[2]});
-  const std::int64_t x0 = std::max<std::int64_t>(left_, first_pixel(least_x));
-  const std::int64_t y0 = std::max<std::int64_t>(top_, first_pixel(least_y));
-  const std::int64_t x1 = std::min<std::int64_t>(right_, last_pixel(most_x) + 1);
-  const std::int64_t y1 = std::min<std::int64_t>(bottom_, last_pixel(most_y) + 1);
-  if (x0 >= x1 || y0 >= y1) return;
-  const Edges edges(t);
-  double inverse = 0;  // once it is needed: small triangles may cover no pixel
-  for (std::int64_t y = y0; y < y1; ++y) {
-    std::array<std::int64_t, 3> e;
-    for (int k = 0; k < 3; ++k) e[k] = edges.at(k, centre(x0), centre(y));
-    for (std::int64_t x = x0; x < x1; ++x) {
-      if (e[0] >= edges.least(0) && e[1] >= edges.least(1) && e[2] >= edges.least(2)) {
-        if (inverse == 0) inverse = edges.inverse();
-        cover(t, edges, x, y,
-              {inverse * static_cast<double>(e[0]), inverse * static_cast<double>(e[1]),
-               inverse * static_cast<double>(e[2])});
-      }
-      for (int k = 0; k < 3; ++k) e[k] += edges.to_right(k);
-    }
+Tile::Tile(const Frame& frame) : frame_(frame), depth_(image(frame.target.depth)), batch_(frame) {}
+
+Drawn Tile::drawn(const Triangle& t) const {
+  Drawn drawn{};
+  drawn.triangle = &t;
+  const std::int64_t first_x = std::int64_t{pixel} * left_ + pixel / 2,
+                     first_y = std::int64_t{pixel} * top_ + pixel / 2;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t from = (k + 1) % 3, to = (k + 2) % 3;
+    const std::int64_t dx = t.x[to] - t.x[from], dy = t.y[to] - t.y[from];
+    drawn.at[k] = dy * (first_x - t.x[from]) - dx * (first_y - t.y[from]);
+    drawn.step_x[k] = dy * pixel;
+    drawn.step_y[k] = -dx * pixel;
   }
-  if (waits_) return;
-  const auto keep = [&](Batch& batch) {
-    batch.shade([&](std::uint32_t k) { depth_.texels()[batch.pixel_of(k)] = depths_[k]; });
-    depths_.clear();
+  const std::int64_t twice =
+      std::int64_t{t.x[2] - t.x[0]} * (t.y[1] - t.y[0]) - std::int64_t{t.x[1] - t.x[0]} * (t.y[2] - t.y[0]);
+  drawn.inverse = 1.0 / static_cast<double>(twice);
+  return drawn;
+}
+
+template <typename Each>
+void Tile::for_each(const DrawMemory& memory, const Each& each) const {
+  const auto clamped = [](std::int32_t at, std::uint32_t first, std::uint32_t size) {
+    return static_cast<std::uint32_t>(
+        std::clamp(at - static_cast<std::int32_t>(first), 0, static_cast<std::int32_t>(size)));
   };
-  if (frame_.pass.fragment != nullptr) keep(t.front ? front_ : back_);
+  constexpr std::uint32_t ahead = 4;  // triangles that memory is asked for
+  for (std::uint32_t p = 0; p < memory.part_count; ++p) {
+    const Part& part = memory.parts[p];
+    const std::uint32_t end = part.first[number_ + 1];
+    for (std::uint32_t k = part.first[number_]; k < end; ++k) {
+      const char* next = reinterpret_cast<const char*>(&part.triangles[part.of_tile[std::min(k + ahead, end - 1)]]);
+      __builtin_prefetch(next);
+      __builtin_prefetch(next + sizeof(Triangle) - 1);
+      const Triangle& t = part.triangles[part.of_tile[k]];
+      const auto [least_x, most_x] = std::minmax({t.x[0], t.x[1], t.x[2]});
+      const auto [least_y, most_y] = std::minmax({t.y[0], t.y[1], t.y[2]});
+      const Box box{clamped(first_pixel(least_x), left_, width_), clamped(first_pixel(least_y), top_, height_),
+                    clamped(last_pixel(most_x) + 1, left_, width_), clamped(last_pixel(most_y) + 1, top_, height_)};
+      if (box.x0 >= box.x1 || box.y0 >= box.y1) continue;
+      const Drawn one = drawn(t);
+      // Within this, edges are below 2^31 at all pixels that are walked over.
+      constexpr std::int32_t narrow = 30000;
+      const bool small = most_x - least_x <= narrow && most_y - least_y <= narrow;
+      each(one, [&](const auto& take) { small ? walk<Ints>(one, box, take) : walk<Doubles>(one, box, take); });
+    }
+  }
 }
 
-void Tile::cover(const Triangle& t, const Edges& edges, std::int64_t x, std::int64_t y,
-                 const std::array<double, 3>& weights) {
-  const auto column = static_cast<std::uint32_t>(x), row = static_cast<std::uint32_t>(y);
-  float& depth = depth_.texels()[place(column, row)];
-  const auto z = static_cast<float>(weights[0] * t.z[0] + weights[1] * t.z[1] + weights[2] * t.z[2]);
-  if (!(z < depth)) return;
-  if (frame_.pass.fragment != nullptr && !waits_) {
-    (t.front ? front_ : back_).take(t, edges, place(column, row), weights);
-    depths_.push_back(z);
+// Depth alone.
+void Tile::draw_depths(const DrawMemory& memory) {
+  for_each(memory, [&](const Drawn&, const auto& walk_over) {
+    walk_over([&](std::uint32_t at, Ints mask, Floats z) {
+      auto& depths = *reinterpret_cast<Floats*>(&depths_[at]);
+      depths = (mask & (z < depths)) != 0 ? z : depths;
+    });
+  });
+}
+
+// Finds what is seen at each pixel, then shades that.
+void Tile::draw_seen(const DrawMemory& memory) {
+  drawn_.clear();
+  seen_.fill(none);
+  for_each(memory, [&](const Drawn& drawn, const auto& walk_over) {
+    const auto number = static_cast<std::uint32_t>(drawn_.size());
+    Ints seen{};
+    walk_over([&](std::uint32_t at, Ints mask, Floats z) {
+      auto& depths = *reinterpret_cast<Floats*>(&depths_[at]);
+      auto& numbers = *reinterpret_cast<Words*>(&seen_[at]);
+      const Ints nearer = mask & (z < depths);
+      depths = nearer != 0 ? z : depths;
+      numbers = nearer != 0 ? number + Words{} : numbers;
+      seen |= nearer;
+    });
+    if (any(seen)) drawn_.push_back(drawn);
+  });
+  const auto keep = [](std::uint32_t, float) {};
+  for (std::uint32_t y = 0; y < height_; ++y) {
+    const std::uint32_t end = y * tile_side + width_;
+    for (std::uint32_t at = y * tile_side; at < end; ++at) {
+      if (seen_[at] == none) {
+        const std::uint32_t first = at;
+        while (at + 1 < end && seen_[at + 1] == none) ++at;
+        leave_empty(first, at + 1 - first);
+        continue;
+      }
+      const Drawn& drawn = drawn_[seen_[at]];
+      if (!batch_.has_room(*drawn.triangle)) batch_.shade(texel_, keep);
+      batch_.take(drawn, at, depths_[at]);
+    }
+  }
+  batch_.shade(texel_, keep);
+}
+
+// Shades all that is nearer than what came before, as fragments may be discarded.
+void Tile::draw_in_order(const DrawMemory& memory) {
+  const auto keep = [&](std::uint32_t at, float z) { depths_[at] = z; };
+  for_each(memory, [&](const Drawn& drawn, const auto& walk_over) {
+    walk_over([&](std::uint32_t at, Ints mask, Floats z) {
+      for (std::uint32_t lane = 0; lane < lanes; ++lane) {
+        if (mask[lane] == 0 || !(z[lane] < depths_[at + lane]) || at % tile_side + lane >= width_) continue;
+        if (!batch_.has_room(*drawn.triangle)) batch_.shade(texel_, keep);
+        batch_.take(drawn, at + lane, z[lane]);
+      }
+    });
+    batch_.shade(texel_, keep);
+  });
+}
+
+void Tile::leave_empty(std::uint32_t pixel_of_tile, std::uint32_t count) const {
+  const std::uint32_t x = pixel_of_tile % tile_side, y = pixel_of_tile / tile_side;
+  for (device::ImageMemory* colour : frame_.target.colours) {
+    const ImageMemory& target = image(colour);
+    std::fill_n(target.texels() + 4 * (texel_ + std::uint64_t{y} * target.options.width + x), 4 * count, 0.0f);
+  }
+}
+
+bool Tile::is_empty(const DrawMemory& memory) const {
+  for (std::uint32_t p = 0; p < memory.part_count; ++p) {
+    if (memory.parts[p].first[number_] != memory.parts[p].first[number_ + 1]) return false;
+  }
+  return true;
+}
+
+// Unless it is clear from an earlier draw.
+void Tile::clear(ImageMemory& target, std::uint32_t floats, float value) const {
+  if (target.clear_tiles[number_] != 0) return;
+  for (std::uint32_t y = 0; y < height_; ++y) {
+    std::fill_n(target.texels() + floats * (texel_ + std::uint64_t{y} * target.options.width), floats * width_, value);
+  }
+  target.clear_tiles[number_] = 1;
+}
+
+void Tile::write_depths() {
+  for (std::uint32_t y = 0; y < height_; ++y) {
+    std::copy_n(depths_.data() + y * tile_side, width_,
+                depth_.texels() + texel_ + std::uint64_t{y} * depth_.options.width);
+  }
+}
+
+void Tile::draw(std::uint32_t number, const DrawMemory& memory) {
+  number_ = number;
+  left_ = number % frame_.columns() * tile_side;
+  top_ = number / frame_.columns() * tile_side;
+  width_ = std::min(tile_side, frame_.target.width - left_);
+  height_ = std::min(tile_side, frame_.target.height - top_);
+  texel_ = std::uint64_t{top_} * depth_.options.width + left_;
+  const bool empty = is_empty(memory),
+             in_order = frame_.pass.fragment != nullptr && frame_.pass.options.fragment->discards;
+  if (empty || in_order) {
+    for (device::ImageMemory* colour : frame_.target.colours) clear(image(colour), 4, 0);
+  }
+  if (empty) {
+    clear(depth_, 1, 1);
     return;
   }
-  depth = z;
-  if (waits_) seen_[(row - top_) * tile_side + column - left_] = &t;
-}
-
-void Tile::finish() {
-  if (!waits_) return;
-  const auto shade = [](Batch& batch) { batch.shade([](std::uint32_t) {}); };
-  const Triangle* last = nullptr;
-  Edges edges;
-  double inverse = 0;
-  for (std::uint32_t y = top_; y < bottom_; ++y) {
-    for (std::uint32_t x = left_; x < right_; ++x) {
-      const Triangle* t = seen_[(y - top_) * tile_side + x - left_];
-      if (t == nullptr) continue;
-      if (t != last) {
-        edges = Edges(*t);
-        inverse = edges.inverse();
-        last = t;
-      }
-      std::array<double, 3> weights;
-      for (int k = 0; k < 3; ++k) weights[k] = inverse * static_cast<double>(edges.at(k, centre(x), centre(y)));
-      Batch& batch = t->front ? front_ : back_;
-      batch.take(*t, edges, place(x, y), weights);
-      if (batch.count() == fragments_at_once) shade(batch);
-    }
+  depth_.clear_tiles[number_] = 0;
+  for (device::ImageMemory* colour : frame_.target.colours) image(colour).clear_tiles[number_] = 0;
+  depths_.fill(1.0f);
+  if (frame_.pass.fragment == nullptr) {
+    draw_depths(memory);
+  } else if (in_order) {
+    draw_in_order(memory);
+  } else {
+    draw_seen(memory);
   }
-  shade(front_);
-  shade(back_);
+  write_depths();
 }
 
 }  // namespace quadgraph::cpu

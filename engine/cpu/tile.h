@@ -1,4 +1,4 @@
-// A square of the target of a draw, which one thread draws all of.
+// A square of the target, which one thread draws.
 #pragma once
 
 #include <array>
@@ -9,67 +9,72 @@
 
 namespace quadgraph::cpu {
 
-constexpr std::uint32_t tile_side = 64;  // pixels
-
-// The weights of a triangle's corners anywhere in the window. Edge k, opposite corner k: above 0 inside, 0 on it.
-class Edges {
- public:
-  Edges() = default;
-  explicit Edges(const Triangle& t);
-
-  std::int64_t at(int k, std::int64_t x, std::int64_t y) const { return dy_[k] * (x - x_[k]) - dx_[k] * (y - y_[k]); }
-  std::int64_t to_right(int k) const { return dy_[k] * pixel; }
-  std::int64_t to_below(int k) const { return -dx_[k] * pixel; }
-  std::int64_t least(int k) const { return least_[k]; }  // that is in: 0 for top and left edges, else 1
-  double inverse() const { return 1.0 / static_cast<double>(twice_); }
-
- private:
-  std::array<std::int64_t, 3> x_, y_, dx_, dy_, least_;  // subpixels
-  std::int64_t twice_;                                   // twice the area
+// A triangle as a tile draws it: edge k lies across from corner k. Its function is above 0 inside and 0 on it, and
+// changes by the steps from pixel to pixel.
+struct Drawn {
+  const Triangle* triangle;
+  std::array<std::int64_t, 3> at;              // at the centre of the tile's first pixel
+  std::array<std::int64_t, 3> step_x, step_y;  // per pixel
+  double inverse;                              // of the sum of the three
 };
 
-// Fragments to be shaded together, all of them of triangles that face the eye, or none.
+// Fragments of a tile to be shaded together.
 class Batch {
  public:
-  Batch(const Frame& frame, bool front) : frame_(frame), front_(front) {}
+  explicit Batch(const Frame& frame);
 
-  std::uint32_t count() const { return static_cast<std::uint32_t>(pixels_.size()); }
-  std::uint64_t pixel_of(std::uint32_t k) const { return pixels_[k]; }
-  void take(const Triangle& t, const Edges& edges, std::uint64_t place, const std::array<double, 3>& weights);
+  bool has_room(const Triangle& t) const;
+  void take(const Drawn& drawn, std::uint32_t pixel_of_tile, float z);
 
-  // Shades them and writes colours; `keep(k)` for each that is kept. None is left.
+  // Shades them and writes colours; `texel`: of the tile's first pixel. Calls keep(pixel of the tile, z) for each that
+  // is kept.
   template <typename Keep>
-  void shade(const Keep& keep);
+  void shade(std::uint64_t texel, const Keep& keep);
 
  private:
+  static constexpr std::uint32_t fragments_at_once = 128;
+
   const Frame& frame_;
-  bool front_;
-  std::vector<std::uint64_t> pixels_;
+  bool derivatives_, front_ = true;
+  std::uint32_t count_ = 0;
+  std::array<std::uint32_t, fragments_at_once> pixels_;
+  std::array<float, fragments_at_once> depths_;
+  std::array<bool, fragments_at_once> kept_;
   std::vector<float> inputs_, right_, below_, colours_;
-  std::vector<char> kept_;
 };
 
+// Draws one tile after the other.
 class Tile {
  public:
-  Tile(const Frame& frame, std::uint32_t x, std::uint32_t y);
+  explicit Tile(const Frame& frame);
 
-  void clear();
-  void draw(const Triangle& t);
-  void finish();  // after the last triangle
+  void draw(std::uint32_t number, const DrawMemory& memory);
 
  private:
-  std::uint64_t place(std::uint32_t x, std::uint32_t y) const { return std::uint64_t{y} * depth_.options.width + x; }
-  void cover(const Triangle& t, const Edges& edges, std::int64_t x, std::int64_t y,
-             const std::array<double, 3>& weights);
+  static constexpr std::uint32_t pixels = tile_side * tile_side;
+  static constexpr std::uint32_t none = 0xffffffffu;
+
+  // Calls each(triangle, as it is drawn, pixels that it may cover) for the triangles of the tile in their order.
+  template <typename Each>
+  void for_each(const DrawMemory& memory, const Each& each) const;
+
+  Drawn drawn(const Triangle& t) const;
+  void draw_depths(const DrawMemory& memory);
+  void draw_seen(const DrawMemory& memory);
+  void draw_in_order(const DrawMemory& memory);
+  void leave_empty(std::uint32_t pixel_of_tile, std::uint32_t count) const;
+  bool is_empty(const DrawMemory& memory) const;
+  void clear(ImageMemory& target, std::uint32_t floats, float value) const;
+  void write_depths();
 
   const Frame& frame_;
   ImageMemory& depth_;
-  std::uint32_t left_, top_, right_, bottom_;
-  // Where no fragment is discarded, shading waits until it is known which triangle is seen.
-  bool waits_;
-  std::array<const Triangle*, tile_side * tile_side> seen_;
-  Batch front_, back_;
-  std::vector<float> depths_;  // of the batch, where shading does not wait
+  Batch batch_;
+  std::uint32_t number_ = 0, left_ = 0, top_ = 0, width_ = 0, height_ = 0;
+  std::uint64_t texel_ = 0;  // the first
+  alignas(16) std::array<float, pixels> depths_;
+  alignas(16) std::array<std::uint32_t, pixels> seen_;  // by pixel: into drawn_, or none
+  std::vector<Drawn> drawn_;
 };
 
 }  // namespace quadgraph::cpu

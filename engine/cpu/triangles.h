@@ -1,4 +1,4 @@
-// Triangles of a draw in the window: vertex shading, clipping, and what is turned away left out.
+// From the vertices of a draw to its triangles in the window, by tile.
 #pragma once
 
 #include <array>
@@ -12,11 +12,31 @@
 
 namespace quadgraph::cpu {
 
+constexpr std::uint32_t tile_side = 64;       // pixels
 constexpr std::uint32_t position_floats = 4;  // before a vertex's own values
-constexpr double subpixels = 256;             // positions are rounded to this part of a pixel
-constexpr std::int64_t pixel = 256;           // in subpixels
+constexpr std::int32_t pixel = 256;           // in subpixels, to which positions are rounded
 
-// A triangle in the window, counter-clockwise: subpixels from the upper left with y down.
+// A draw.
+struct Frame {
+  const device::DrawImages& target;
+  const device::Viewport& viewport;
+  const GraphicsPipeline& pass;
+  const void* push;
+  std::uint32_t stride;  // floats of a vertex with its position
+
+  std::uint32_t locations() const { return pass.options.vertex->locations; }
+  std::uint32_t columns() const { return (target.width + tile_side - 1) / tile_side; }  // of tiles
+  std::uint32_t rows() const { return (target.height + tile_side - 1) / tile_side; }
+};
+
+// A vertex in the window, subpixels from the upper left with y down. Without a place where it is to be clipped.
+struct Corner {
+  std::int32_t x, y;
+  float z, inverse_w;
+  std::uint32_t outside;  // bit per clip plane that it lies outside of, and one where it is not in front of the eye
+};
+
+// A triangle in the window, counter-clockwise.
 struct Triangle {
   std::array<std::int32_t, 3> x, y;
   std::array<float, 3> z, inverse_w;
@@ -25,28 +45,24 @@ struct Triangle {
   bool front;
 };
 
-struct Frame {
-  const device::DrawImages& target;
-  const device::Viewport& viewport;
-  const GraphicsPipeline& pass;
-  const void* push;
-  std::uint32_t stride;  // floats of a vertex with its position
-
-  std::uint32_t floats() const { return stride - position_floats; }
-};
-
 // Triangles of some that follow each other, in their order, and the corners that clipping has made.
 struct Part {
   std::vector<Triangle> triangles;
-  std::vector<std::unique_ptr<std::vector<float>>> corners;
+  std::vector<std::unique_ptr<float[]>> corners;
+  std::vector<std::uint32_t> first;    // per tile: into `of_tile`
+  std::vector<std::uint32_t> of_tile;  // triangles of one tile after the other, in their order
 };
 
-// Values of all vertices, the position first.
-std::vector<float> run_vertices(ThreadPool& threads, const Frame& frame, const std::uint32_t* indices,
-                                std::uint32_t vertices);
+// What draws need, kept from one to the next.
+struct DrawMemory {
+  std::vector<float> vertices;  // `stride` floats each
+  std::vector<Corner> corners;
+  std::vector<Part> parts;
+  std::uint32_t part_count = 0;  // of this draw
+};
 
-// `results`: of run_vertices; must outlive what is returned.
-std::vector<Part> set_up(ThreadPool& threads, const Frame& frame, const std::vector<float>& results,
-                         const std::uint32_t* indices, std::uint32_t triangles);
+// Fills `memory` with the triangles of a draw.
+void set_up(ThreadPool& threads, const Frame& frame, const std::uint32_t* indices, std::uint32_t vertices,
+            DrawMemory& memory);
 
 }  // namespace quadgraph::cpu

@@ -225,6 +225,31 @@ TEST_CASE("a clipped triangle has the flat values of its first corner") {
   CHECK(seen > side * side / 4);
 }
 
+TEST_CASE("an image that is drawn into again shows nothing of the draws before, in any size") {
+  cpu::Processor processor;
+  const device::GraphicsPass pass(processor, {.vertex = &shader::shadow_vert, .fragment = nullptr}, "depth");
+  const device::Image used(processor, {device::Format::depth32_float, side, side}, "test/depth");
+  // A half of it, nothing, a corner; of 130 and 190 pixels too, which are as many tiles.
+  const std::vector<std::pair<float, std::uint32_t>> draws = {{2, 190}, {0, 190}, {0.3f, 190}, {0, 190},    {2, 190},
+                                                              {0, 130}, {0, 190}, {2, side},   {0.3f, side}};
+  for (const auto& [size, width] : draws) {
+    CAPTURE(size);
+    CAPTURE(width);
+    const auto vertices = device::upload<glm::vec3>(processor, corner(size, 0.25f), "test/vertices");
+    const auto depth_in = [&](const device::Image& image) {
+      const device::Buffer depth(processor, width * width * sizeof(float), device::Place::device, "test/copy");
+      device::Commands commands(processor);
+      commands.draw({{}, &image, width, width}, {0, 0, static_cast<float>(width), static_cast<float>(width)}, pass,
+                    gpu::ShadowPush{glm::mat4(1), vertices.address()}, nullptr, 3);
+      commands.copy(image, depth, width, width);
+      commands.submit_and_wait();
+      return device::download<float>(processor, depth);
+    };
+    const device::Image fresh(processor, {device::Format::depth32_float, side, side}, "test/depth");
+    CHECK(depth_in(used) == depth_in(fresh));
+  }
+}
+
 TEST_CASE("what is drawn does not depend on the number of threads") {
   Drawing what{.vertices = scattered(3000)};
   const std::vector<float> alone = drawn(what, 1);
