@@ -30,6 +30,7 @@ struct BufferMemory : device::Memory {
 // One layer after the other, rows tightly packed.
 struct ImageMemory : device::ImageMemory {
   explicit ImageMemory(const device::ImageOptions& wanted) : options(wanted), memory(bytes(bytes_of(wanted))) {
+    address = reinterpret_cast<std::uint64_t>(memory.get());
     allocated = bytes_of(wanted);
   }
 

@@ -87,6 +87,7 @@ struct Memory {
 };
 struct ImageMemory {
   virtual ~ImageMemory() = default;
+  std::uint64_t address = 0;  // of the first texel, where shaders can read the image as a buffer: rows tightly packed
   std::uint64_t allocated = 0;
 };
 struct Pipeline {

@@ -110,6 +110,7 @@ class Image {
   Image(Device& device, const ImageOptions& options, const std::string& name);
 
   ImageMemory& memory() const { return *memory_.get(); }
+  std::uint64_t address() const { return memory().address; }  // 0: it has to be copied into a buffer to be read
   const ImageOptions& options() const { return options_; }
 
  private:

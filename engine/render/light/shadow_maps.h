@@ -27,6 +27,9 @@ class ShadowMaps {
   const device::Buffer& views() const { return views_; }    // ShadowView, those of the first light first
 
  private:
+  device::Image& image_for(std::size_t view, std::uint32_t size);
+  const device::Buffer& buffer_for(std::size_t view, std::uint64_t bytes);
+
   device::Device& device_;
   device::GraphicsPass pass_;
   std::uint32_t light_count_ = 0;
@@ -34,8 +37,10 @@ class ShadowMaps {
   device::Buffer lights_;
   device::Buffer shapes_;
   device::Buffer views_;
-  std::map<std::uint32_t, device::Image> images_;  // what is drawn into, by size
-  std::vector<device::Buffer> depths_;             // per view
+  // Where images are read in place, an image per view; else images by size, and per view a buffer copied from them.
+  std::map<std::uint32_t, device::Image> images_;
+  std::vector<device::Image> maps_;
+  std::vector<device::Buffer> depths_;
 };
 
 }  // namespace quadgraph

@@ -110,16 +110,18 @@ struct Rasteriser::Targets {
         depth(device, image_options(device::Format::depth32_float), "picture/depth") {
     for (int k = 0; k < SAMPLE_LAYERS; ++k) {
       images.emplace_back(device, image_options(device::Format::rgba32_float), "picture/samples");
+      if (in_place()) continue;
       samples.emplace_back(device, 64ull * width * height, device::Place::device, "picture/samples");
     }
   }
 
   device::ImageOptions image_options(device::Format format) const { return {format, 2 * width, 2 * height}; }
+  bool in_place() const { return images.front().address() != 0; }  // images are read, not copies of them
 
   std::uint32_t width, height;  // pixels of 2 x 2 samples
   std::vector<device::Image> images;
   device::Image depth;
-  std::vector<device::Buffer> samples;  // the same
+  std::vector<device::Buffer> samples;  // the same, of what a tile covers, where images are not read in place
 };
 
 double radiance_norm(double eta) {
@@ -196,17 +198,19 @@ gpu::ResolvePush Rasteriser::resolve_push(std::uint64_t scene, const Tile& tile)
                            .tile_y = tile.y,
                            .tile_width = tile.width,
                            .tile_height = tile.height,
-                           .sample_stride = 2 * tile.width,
+                           .sample_stride = 2 * (targets_->in_place() ? targets_->width : tile.width),
                            .picture_width = picture_.width};
   for (std::size_t k = 0; k < PICTURE_LAYERS; ++k) resolve.layers[k] = picture_.layers[k].address();
-  for (std::size_t k = 0; k < SAMPLE_LAYERS; ++k) resolve.samples[k] = targets_->samples[k].address();
+  for (std::size_t k = 0; k < SAMPLE_LAYERS; ++k) {
+    resolve.samples[k] = targets_->in_place() ? targets_->images[k].address() : targets_->samples[k].address();
+  }
   return resolve;
 }
 
 void Rasteriser::record_resolve(device::Commands& commands, const char* name, const device::ComputePass& pass,
                                 std::uint64_t scene, const Tile& tile) {
   commands.begin_pass(name);
-  for (std::size_t k = 0; k < SAMPLE_LAYERS; ++k) {
+  for (std::size_t k = 0; !targets_->in_place() && k < SAMPLE_LAYERS; ++k) {
     commands.copy(targets_->images[k], targets_->samples[k], 2 * tile.width, 2 * tile.height);
   }
   commands.dispatch(pass, resolve_push(scene, tile), std::uint64_t{tile.width} * tile.height);
@@ -259,7 +263,7 @@ std::vector<PassStats> Rasteriser::run_tiles(std::uint32_t width, std::uint32_t 
         ++passes[k].count;
       }
       passes[0].bytes += (2 * SAMPLE_LAYERS + 1) * tile.sample_bytes() / 2;
-      passes[1].bytes += 3 * SAMPLE_LAYERS * tile.sample_bytes();  // copied, then read
+      passes[1].bytes += (targets_->in_place() ? 1 : 3) * SAMPLE_LAYERS * tile.sample_bytes();  // read; copied before
     }
   }
   passes[1].bytes += (12 * PICTURE_LAYERS + 4) * picture_.pixels();
