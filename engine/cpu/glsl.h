@@ -78,6 +78,13 @@ struct Array {
   }
 };
 
+// Asks memory for an element that is read later.
+template <typename T>
+void fetch_ahead(const Array<T>& array, int i) {
+  __builtin_prefetch(array.at + i);
+  asm volatile("");  // without it compilers take what calls this for idle, and leave it out
+}
+
 // What shaders/shared/buffers.glsl says in GLSL.
 #define QG_ARRAY(Name, Type)  \
   struct Name : Array<Type> { \

@@ -33,9 +33,50 @@ uint quarter_of(float u, float v) {
   return u + v < 0.5 ? 0u : u > 0.5 ? 1u : v > 0.5 ? 2u : 3u;
 }
 
+// What enters a face of a directional light where nothing hides it, and where the face lies in the light's map, which is
+// linear in places on the face.
+struct LitFace {
+  float share;
+  ShadowView view;
+  ShadowPlace corner, ab, ac;  // at a, and how far from there at a + ab and a + ac
+};
+
+ShadowPlace apart(ShadowPlace from, ShadowPlace to) {
+  return ShadowPlace(to.texel - from.texel, to.depth - from.depth);
+}
+
+LitFace lit_face(Lamp lamp, vec3 a, vec3 ab, vec3 ac, vec3 normal) {
+  LitFace face;
+  face.share = share_from(lamp, a, normal);
+  if (face.share <= 0.0) return face;
+  face.view = push.views.at[lamp.light.first_view];
+  face.corner = shadow_place(face.view, false, a, normal);
+  face.ab = apart(face.corner, shadow_place(face.view, false, a + ab, normal));
+  face.ac = apart(face.corner, shadow_place(face.view, false, a + ac, normal));
+#ifdef QG_PROCESSOR
+  vec2 ab_end = face.corner.texel + face.ab.texel, ac_end = face.corner.texel + face.ac.texel;
+  fetch_between(face.view, min(min(ab_end, ac_end), face.corner.texel), max(max(ab_end, ac_end), face.corner.texel));
+#endif
+  return face;
+}
+
+float lit_share(LitFace face, float u, float v) {
+  vec2 texel = face.corner.texel + u * face.ab.texel + v * face.ac.texel;
+  float depth = face.corner.depth + u * face.ab.depth + v * face.ac.depth;
+  return filtered(face.view, ShadowPlace(texel, depth), 0);
+}
+
 // Irradiance on the four quarters of the face a, a + ab, a + ac.
 vec4 quarters_of(Lamp lamp, vec3 a, vec3 ab, vec3 ac, vec3 normal) {
   vec4 quarter = vec4(0);
+  bool directional = lamp.light.kind == LIGHT_DIRECTIONAL;
+  float weight = float(FACE_QUARTERS) / float(push.subdivision * push.subdivision);
+  LitFace face;
+  if (directional) {
+    face = lit_face(lamp, a, ab, ac, normal);
+    if (face.share <= 0.0) return quarter;
+    weight *= face.share;
+  }
   uint n = push.subdivision;
   float h = 1.0 / float(n);
   // Row i, column j: an upright triangle, and beside it an inverted one where the row has room.
@@ -44,12 +85,12 @@ vec4 quarters_of(Lamp lamp, vec3 a, vec3 ab, vec3 ac, vec3 normal) {
       for (uint inverted = 0u; inverted < (i + j + 1u < n ? 2u : 1u); ++inverted) {
         float u = h * (float(i) + (inverted == 1u ? 2.0 : 1.0) / 3.0);
         float v = h * (float(j) + (inverted == 1u ? 2.0 : 1.0) / 3.0);
-        quarter[quarter_of(u, v)] +=
-            float(FACE_QUARTERS) * h * h * share_at(lamp, a + u * ab + v * ac, normal);
+        float share = directional ? lit_share(face, u, v) : share_at(lamp, a + u * ab + v * ac, normal);
+        quarter[quarter_of(u, v)] += share;
       }
     }
   }
-  return quarter;
+  return weight * quarter;
 }
 
 // What of an environment enters a face, over its power.

@@ -38,43 +38,86 @@ uint cube_view(vec3 away) {
   return 2u * axis + (away[axis] < 0.0 ? 1u : 0u);
 }
 
-// 1 where the light reaches `depth` (mm from the light) at this texel, else 0. Beyond the map there is no occluder.
-float texel_lit(ShadowView view, bool perspective, ivec2 texel, float depth) {
+// Where a point lies in a view's map.
+struct ShadowPlace {
+  vec2 texel;
+  float depth;  // as the map has it; what is stored there and is less hides the point
+};
+
+// 1 where the light reaches `depth` at this texel, else 0. Beyond the map there is no occluder.
+float texel_lit(ShadowView view, ivec2 texel, float depth) {
   if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(view.size)))) return 1.0;
-  float z = view.depth.at[texel.y * int(view.size) + texel.x];
-  float stored = perspective ? view.near * view.far / (view.far - z * (view.far - view.near))
-                             : view.near + z * (view.far - view.near);
-  return stored < depth ? 0.0 : 1.0;
+  return view.depth.at[texel.y * int(view.size) + texel.x] < depth ? 0.0 : 1.0;
 }
 
-// Percentage-closer filtering over (2 radius + 2)^2 texels, weighted so that it moves smoothly with the position.
-float filtered(ShadowView view, bool perspective, vec2 texel, float depth, int radius) {
-  vec2 corner = floor(texel - 0.5);
-  vec2 f = texel - 0.5 - corner;
+// Weight of one of the 2 radius + 2 columns or rows around a place that is `f` after the one at -`radius`.
+float tap_weight(int tap, float f, int radius) {
+  return tap == 0 ? 1.0 - f : (tap == 2 * radius + 1 ? f : 1.0);
+}
+
+// Percentage-closer filtering over (2 radius + 2)^2 texels, weighted so that it moves smoothly with the position;
+// `radius` 0 or 1.
+float filtered(ShadowView view, ShadowPlace place, int radius) {
+  vec2 corner = floor(place.texel - 0.5);
+  vec2 f = place.texel - 0.5 - corner;
+  ivec2 first = ivec2(corner) - radius;
+  int taps = 2 * radius + 2, size = int(view.size);
   float sum = 0.0;
-  for (int y = -radius; y <= radius + 1; ++y) {
-    float weight_y = y == -radius ? 1.0 - f.y : (y == radius + 1 ? f.y : 1.0);
-    for (int x = -radius; x <= radius + 1; ++x) {
-      float weight_x = x == -radius ? 1.0 - f.x : (x == radius + 1 ? f.x : 1.0);
-      sum += weight_x * weight_y * texel_lit(view, perspective, ivec2(corner) + ivec2(x, y), depth);
+  if (min(first.x, first.y) < 0 || max(first.x, first.y) + taps > size) {
+    for (int y = 0; y < taps; ++y) {
+      for (int x = 0; x < taps; ++x) {
+        float weight = tap_weight(x, f.x, radius) * tap_weight(y, f.y, radius);
+        sum += weight * texel_lit(view, first + ivec2(x, y), place.depth);
+      }
     }
+  } else if (radius == 0) {
+    int at = first.y * size + first.x;
+    vec4 stored = vec4(view.depth.at[at], view.depth.at[at + 1], view.depth.at[at + size], view.depth.at[at + size + 1]);
+    vec4 lit = mix(vec4(1), vec4(0), lessThan(stored, vec4(place.depth)));
+    sum = mix(mix(lit.x, lit.y, f.x), mix(lit.z, lit.w, f.x), f.y);
+  } else {
+    vec4 columns = vec4(0);
+    for (int y = 0; y < 4; ++y) {
+      int at = (first.y + y) * size + first.x;
+      vec4 stored = vec4(view.depth.at[at], view.depth.at[at + 1], view.depth.at[at + 2], view.depth.at[at + 3]);
+      columns += tap_weight(y, f.y, 1) * mix(vec4(1), vec4(0), lessThan(stored, vec4(place.depth)));
+    }
+    sum = dot(columns, vec4(1.0 - f.x, 1.0, 1.0, f.x));
   }
-  float width = float(2 * radius + 1);
-  return sum / (width * width);
+  return sum / float((taps - 1) * (taps - 1));
+}
+
+#ifdef QG_PROCESSOR
+// Asks memory for the texels between places before they are read one after the other.
+void fetch_between(ShadowView view, vec2 least, vec2 most) {
+  const int line = 16, rows = 32, size = int(view.size);  // texels that memory gives at once; rows at most
+  ivec2 low = clamp(ivec2(least) - 1, ivec2(0), ivec2(size - 1));
+  ivec2 high = min(min(ivec2(most) + 1, ivec2(size - 1)), low + rows);
+  for (int y = low.y; y <= high.y; ++y) {
+    for (int x = low.x; x < high.x + line; x += line) fetch_ahead(view.depth, y * size + min(x, high.x));
+  }
+}
+#endif
+
+// The view of a light's map that a position falls into.
+uint shadow_view(LightRecord light, vec3 position) {
+  return light.first_view + (light.view_count == 6u ? cube_view(position - light.towards_or_at) : 0u);
+}
+
+// Of a point of a surface of unit normal `normal`, mm.
+ShadowPlace shadow_place(ShadowView view, bool perspective, vec3 position, vec3 normal) {
+  float texel_mm = view.texel;
+  if (perspective) texel_mm *= max((view.clip_from_world * vec4(position, 1.0)).w, view.near);
+  vec4 clip = view.clip_from_world * vec4(position + SHADOW_NORMAL_OFFSET * texel_mm * normal, 1.0);
+  vec2 ndc = perspective ? clip.xy / clip.w : clip.xy;
+  float depth = perspective ? view.far * (clip.w - view.near) / (clip.w * (view.far - view.near)) : clip.z;
+  return ShadowPlace(vec2(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y) * float(view.size), depth);
 }
 
 // Share of the light that reaches `position` (mm) on a surface of unit normal `normal`.
 float light_visibility(LightRecord light, ShadowViews views, vec3 position, vec3 normal, int radius) {
-  bool perspective = light.kind != LIGHT_DIRECTIONAL;
-  uint index = light.first_view + (light.view_count == 6u ? cube_view(position - light.towards_or_at) : 0u);
-  ShadowView view = views.at[index];
-  float w = (view.clip_from_world * vec4(position, 1.0)).w;
-  float texel_mm = view.texel * (perspective ? max(w, view.near) : 1.0);
-  vec4 clip = view.clip_from_world * vec4(position + SHADOW_NORMAL_OFFSET * texel_mm * normal, 1.0);
-  vec3 ndc = clip.xyz / clip.w;
-  float depth = perspective ? clip.w : view.near + ndc.z * (view.far - view.near);
-  vec2 texel = vec2(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y) * float(view.size);
-  return filtered(view, perspective, texel, depth, radius);
+  ShadowView view = views.at[shadow_view(light, position)];
+  return filtered(view, shadow_place(view, light.kind != LIGHT_DIRECTIONAL, position, normal), radius);
 }
 
 #endif
