@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <utility>
 
 #include "engine/cpu/glsl.h"
 
@@ -48,6 +49,15 @@ struct StageVariable {
   uint words;
 };
 
+// Calls copy(variable, bytes) for each of a constant table, so that the bytes are constants too: three words lie in a
+// shader as four, and are copied as such, since what was written in parts could not be read at once.
+template <auto table, typename Copy>
+void for_each_variable(const Copy& copy) {
+  [&]<std::size_t... k>(std::index_sequence<k...>) {
+    (copy(table[k], std::integral_constant<std::size_t, 4 * (table[k].words == 3 ? 4 : table[k].words)>()), ...);
+  }(std::make_index_sequence<table.size()>());
+}
+
 struct VertInvocation {
   int gl_VertexIndex;
   vec4 gl_Position;
@@ -63,9 +73,9 @@ void run_vertices(const void* push, const uint* vertices, uint count, float* res
     shader.gl_VertexIndex = static_cast<int>(vertices[k]);
     shader.main();
     std::memcpy(results, &shader.gl_Position, sizeof(vec4));
-    for (const StageVariable& one : written) {
-      std::memcpy(results + 4 + 4 * one.location, reinterpret_cast<const char*>(&shader) + one.offset, 4 * one.words);
-    }
+    for_each_variable<written>([&](const StageVariable& one, auto bytes) {
+      std::memcpy(results + 4 + 4 * one.location, reinterpret_cast<const char*>(&shader) + one.offset, bytes);
+    });
     results += 4 + 4 * Shader::locations;
   }
 }
@@ -98,9 +108,10 @@ struct FragInvocation {
 
 template <typename Shader>
 void read_inputs(Shader& shader, const float* inputs) {
-  for (const StageVariable& one : Shader::ins()) {
-    std::memcpy(reinterpret_cast<char*>(&shader) + one.offset, inputs + 4 * one.location, 4 * one.words);
-  }
+  constexpr auto read = Shader::ins();
+  for_each_variable<read>([&](const StageVariable& one, auto bytes) {
+    std::memcpy(reinterpret_cast<char*>(&shader) + one.offset, inputs + 4 * one.location, bytes);
+  });
 }
 
 // Runs a fragment shader as device::FragmentKernel asks.

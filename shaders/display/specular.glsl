@@ -1,6 +1,6 @@
 // Light that the surface reflects. The shader that includes it defines first
 //   SURFACE  the SurfacePush, e.g. push
-// and fills `scene`.
+// and sets `roughness`.
 #ifndef QUADGRAPH_SPECULAR_GLSL
 #define QUADGRAPH_SPECULAR_GLSL
 
@@ -12,9 +12,11 @@
 #error "specular.glsl: SURFACE is not defined"
 #endif
 
-SurfaceScene scene;
+#define SCENE SURFACE.scene.at[0]
 
 const float PI = 3.14159265;
+
+float roughness;  // GGX alpha here
 
 // How much of the roughness here is that of an image.
 float placed_share = 0.0;
@@ -24,7 +26,7 @@ float across_box(ImageBox box, vec3 way) {
   return length(vec2(dot(box.right, way), dot(box.up, way)));
 }
 
-// Makes scene.roughness that of a point of the surface, `rest` at rest, mm; `to_right` and `to_below`: how it differs
+// Makes `roughness` that of a point of the surface, `rest` at rest, mm; `to_right` and `to_below`: how it differs
 // from pixel to pixel.
 void place_roughness(vec3 rest, vec3 to_right, vec3 to_below) {
   placed_share = 0.0;
@@ -33,7 +35,7 @@ void place_roughness(vec3 rest, vec3 to_right, vec3 to_below) {
   if (any(greaterThan(abs(place), SURFACE.box.half_size))) return;
   ImageTap tap = image_tap(SURFACE.image, in_picture(SURFACE.box, place), texels_across(SURFACE.box, SURFACE.image, width));
   placed_share = clamp(luminance(load_image(SURFACE.texels, tap)), 0.0, 1.0);
-  scene.roughness = mix(scene.roughness, SURFACE.roughness, placed_share);
+  roughness = mix(SCENE.roughness, SURFACE.roughness, placed_share);
 }
 
 // Cook and Torrance 1982 with the GGX distribution and height-correlated Smith masking (Walter et al. 2007, Heitz 2014)
@@ -41,19 +43,20 @@ void place_roughness(vec3 rest, vec3 to_right, vec3 to_below) {
 float cook_torrance(vec3 n, vec3 v, vec3 l, float alpha2) {
   float n_l = dot(n, l), n_v = dot(n, v);
   if (n_l <= 0.0 || n_v <= 0.0) return 0.0;
-  vec3 h = normalize(v + l);
-  float n_h = dot(n, h);
-  float base = n_h * n_h * (alpha2 - 1.0) + 1.0;
-  float distribution = alpha2 / (PI * base * base);
+  // Of the half vector (v + l) / |v + l|, with |v + l|^2 = 2 (1 + v.l): its cosines with v and n.
+  float v_h2 = max(0.5 + 0.5 * dot(v, l), 1e-7);
+  float n_h2 = min(0.25 * (n_v + n_l) * (n_v + n_l) / v_h2, 1.0);
+  float base = n_h2 * (alpha2 - 1.0) + 1.0;
   float mask = n_v * sqrt(alpha2 + (1.0 - alpha2) * n_l * n_l) + n_l * sqrt(alpha2 + (1.0 - alpha2) * n_v * n_v);
-  return distribution * fresnel_reflectance(min(dot(v, h), 1.0), scene.eta) * 0.5 * n_l / mask;
+  float reflectance = fresnel_reflectance(min(sqrt(v_h2), 1.0), SCENE.eta);
+  return alpha2 * reflectance * 0.5 * n_l / (PI * base * base * mask);
 }
 
 // Square of the roughness that blurs the highlight of a patch over its width: as much as makes the highlights of
 // neighbours run into one.
 float blurred(LightRecord light, LightShape shape, vec3 position) {
   vec3 away = position - light.towards_or_at;
-  return scene.roughness * scene.roughness + shape.width * shape.width / (8.0 * dot(away, away));
+  return roughness * roughness + shape.width * shape.width / (8.0 * dot(away, away));
 }
 
 // What a surface reflects of an environment towards v, over its power and Fresnel reflectance.
@@ -67,27 +70,27 @@ vec3 reflected_environment(LightShape shape, vec3 n, vec3 v) {
 // Towards v at a point of unit normal n that sees the share `sky` of its surroundings, W/(mm^2 sr).
 vec3 specular_radiance(vec3 position, vec3 n, vec3 v, float sky) {
   vec3 sum = vec3(0.0);
-  for (uint i = 0u; i < scene.light_count; ++i) {
-    LightRecord light = scene.lights.at[i];
+  for (uint i = 0u; i < SCENE.light_count; ++i) {
+    LightRecord light = SCENE.lights.at[i];
     if (light.kind == LIGHT_AMBIENT) {
       // Ambient light is reflected as by a smooth surface.
-      sum += fresnel_reflectance(clamp(dot(n, v), 0.0, 1.0), scene.eta) / PI * sky * light.power;
+      sum += fresnel_reflectance(clamp(dot(n, v), 0.0, 1.0), SCENE.eta) / PI * sky * light.power;
       continue;
     }
     LightShape shape = no_shape();
-    if (SHAPED) shape = scene.shapes.at[i];
+    if (SHAPED) shape = SCENE.shapes.at[i];
     if (SHAPED && light.kind == LIGHT_ENVIRONMENT) {
-      float share = fresnel_reflectance(clamp(dot(n, v), 0.0, 1.0), scene.eta) * sky;
+      float share = fresnel_reflectance(clamp(dot(n, v), 0.0, 1.0), SCENE.eta) * sky;
       sum += share * light.power * reflected_environment(shape, n, v);
       continue;
     }
     Incident incident = incident_light(light, shape, position);
-    float alpha2 = scene.roughness * scene.roughness;
+    float alpha2 = roughness * roughness;
     if (SHAPED && light.kind == LIGHT_PATCH) alpha2 = blurred(light, shape, position);
     float reflected = cook_torrance(n, v, incident.direction, alpha2);
     if (reflected == 0.0 || incident.share <= 0.0) continue;
     if (SHAPED && light.kind == LIGHT_PROJECTOR) light.power *= projected(shape, -incident.direction, 0.0);
-    sum += reflected * light_visibility(light, scene.views, position, n, 1) * incident.share * light.power;
+    sum += reflected * light_visibility(light, SCENE.views, position, n, 1) * incident.share * light.power;
   }
   return sum;
 }

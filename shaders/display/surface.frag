@@ -18,11 +18,11 @@ layout(location = 2) out vec4 unscattered;         // W/(mm^2 sr), 1
 
 // Lambertian exitance behind a smooth surface: radiance depends on direction by Fresnel's transmittance alone.
 void main() {
-  scene = push.scene.at[0];
+  roughness = SCENE.roughness;
   if (PLACED_ROUGHNESS) place_roughness(rest, dFdx(rest), dFdy(rest));
   vec3 n = normalize(normal);
-  vec3 v = normalize(scene.eye - position);
-  float share = fresnel_transmittance(clamp(dot(n, v), 0.0, 1.0), scene.eta) / scene.radiance_norm;
+  vec3 v = normalize(SCENE.eye - position);
+  float share = fresnel_transmittance(clamp(dot(n, v), 0.0, 1.0), SCENE.eta) / SCENE.radiance_norm;
   scattered_coverage = vec4(exitance * share, 1.0);
   specular = vec4(specular_radiance(position, n, v, sky), 1.0);
   unscattered = vec4(unscattered_exitance * share, 1.0);

@@ -10,20 +10,21 @@ layout(location = 3) out vec3 unscattered_exitance;  // W/mm^2
 layout(location = 4) out float sky;                  // share that is not hidden by the body
 layout(location = 5) out vec3 rest;                  // mm, the position at rest
 
+#define SCENE push.scene.at[0]
+
 void main() {
-  SurfaceScene scene = push.scene.at[0];
-  position = scene.vertices.at[gl_VertexIndex];
+  position = SCENE.vertices.at[gl_VertexIndex];
   rest = vec3(0);
   if (PLACED_ROUGHNESS) rest = push.rest.at[gl_VertexIndex];
-  normal = scene.normals.at[gl_VertexIndex];
-  uint index = scene.face.at[gl_VertexIndex];
-  uvec3 face = scene.faces.at[index];
-  sky = scene.sky.at[index];
-  vec3 weight = scene.barycentric.at[gl_VertexIndex];
+  normal = SCENE.normals.at[gl_VertexIndex];
+  uint index = SCENE.face.at[gl_VertexIndex];
+  uvec3 face = SCENE.faces.at[index];
+  sky = SCENE.sky.at[index];
+  vec3 weight = SCENE.barycentric.at[gl_VertexIndex];
   exitance = unscattered_exitance = vec3(0.0);
   for (int k = 0; k < 3; ++k) {
-    exitance += weight[k] * scene.exitance.at[face[k]];
-    unscattered_exitance += weight[k] * scene.unscattered.at[face[k]];
+    exitance += weight[k] * SCENE.exitance.at[face[k]];
+    unscattered_exitance += weight[k] * SCENE.unscattered.at[face[k]];
   }
-  gl_Position = scene.clip_from_world * vec4(position, 1.0);
+  gl_Position = SCENE.clip_from_world * vec4(position, 1.0);
 }

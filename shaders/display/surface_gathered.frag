@@ -16,10 +16,10 @@ layout(location = 2) out vec4 normal_face;        // unit, low half of the face
 #include "display/specular.glsl"
 
 void main() {
-  scene = push.scene.at[0];
+  roughness = SCENE.roughness;
   if (PLACED_ROUGHNESS) place_roughness(rest, dFdx(rest), dFdy(rest));
   vec3 n = normalize(normal);
   position_coverage = vec4(position, 1.0);
-  specular_face = vec4(specular_radiance(position, n, normalize(scene.eye - position), sky), face / FACE_HALF);
+  specular_face = vec4(specular_radiance(position, n, normalize(SCENE.eye - position), sky), face / FACE_HALF);
   normal_face = vec4(n, face % FACE_HALF);
 }

@@ -11,14 +11,15 @@ layout(location = 2) flat out uint face;  // outside face of level 0
 layout(location = 4) out float sky;       // share that is not hidden by the body
 layout(location = 5) out vec3 rest;       // mm, the position at rest
 
+#define SCENE push.scene.at[0]
+
 void main() {
-  SurfaceScene scene = push.scene.at[0];
-  uint vertex = scene.triangles.at[gl_VertexIndex];
-  position = scene.vertices.at[vertex];
+  uint vertex = SCENE.triangles.at[gl_VertexIndex];
+  position = SCENE.vertices.at[vertex];
   rest = vec3(0);
   if (PLACED_ROUGHNESS) rest = push.rest.at[vertex];
-  normal = scene.normals.at[vertex];
-  face = scene.triangle_face.at[gl_VertexIndex / 3];
-  sky = scene.sky.at[scene.face.at[vertex]];
-  gl_Position = scene.clip_from_world * vec4(position, 1.0);
+  normal = SCENE.normals.at[vertex];
+  face = SCENE.triangle_face.at[gl_VertexIndex / 3];
+  sky = SCENE.sky.at[SCENE.face.at[vertex]];
+  gl_Position = SCENE.clip_from_world * vec4(position, 1.0);
 }

@@ -18,14 +18,14 @@ layout(location = 2) out vec4 unscattered;         // none, 1
 // Where a ray from the eye to `end` last leaves a tool: the point, and there the direction out of what is left; false
 // where it meets none.
 bool last_cut(PathTools tools, vec3 end, out vec3 point, out vec3 outward) {
-  vec3 way = end - scene.eye;
+  vec3 way = end - SCENE.eye;
   float latest = 0.0;
   for (uint k = 0u; k < tools.count; ++k) {
     PathTool tool = tools.at.at[k];
-    vec2 span = tool_span(tool, scene.eye, way);
+    vec2 span = tool_span(tool, SCENE.eye, way);
     if (span.x >= span.y || span.y <= latest || span.y >= 1.0) continue;
     latest = span.y;
-    point = scene.eye + latest * way;
+    point = SCENE.eye + latest * way;
     outward = -tool_gradient(tool, point);
   }
   return latest > 0.0;
@@ -34,7 +34,7 @@ bool last_cut(PathTools tools, vec3 end, out vec3 point, out vec3 outward) {
 // Open surfaces are seen from both sides. A side that is turned away from the eye is seen through a hole, or because
 // what lay before it has been cut away: then the cut face is what is seen, and it lies on the same ray.
 void main() {
-  scene = SURFACE.scene.at[0];
+  roughness = SCENE.roughness;
   PathField field = push.field.at[0];
   if (field.tools.count > 0u && cut_away(field.tools, position)) discard;
   if (PLACED_ROUGHNESS) place_roughness(rest, dFdx(rest), dFdy(rest));
@@ -46,9 +46,9 @@ void main() {
       n = outward;
     }
   }
-  vec3 v = normalize(scene.eye - at);
+  vec3 v = normalize(SCENE.eye - at);
   if (dot(n, v) < 0.0) n = gl_FrontFacing ? normalize(n - 1.001 * dot(n, v) * v) : -n;
-  float share = fresnel_transmittance(clamp(dot(n, v), 0.0, 1.0), scene.eta) / scene.radiance_norm;
+  float share = fresnel_transmittance(clamp(dot(n, v), 0.0, 1.0), SCENE.eta) / SCENE.radiance_norm;
   scattered_coverage = vec4(share * path_exitance(field, at), 1.0);
   specular = vec4(specular_radiance(at, n, v, 1.0), 1.0);
   unscattered = vec4(0.0, 0.0, 0.0, 1.0);

@@ -8,11 +8,12 @@ layout(location = 0) out vec3 position;  // mm
 layout(location = 1) out vec3 normal;
 layout(location = 2) out vec3 rest;  // mm, the position at rest
 
+#define SCENE path_push.surface.scene.at[0]
+
 void main() {
-  SurfaceScene scene = path_push.surface.scene.at[0];
-  position = scene.vertices.at[gl_VertexIndex];
+  position = SCENE.vertices.at[gl_VertexIndex];
   rest = vec3(0);
   if (PLACED_ROUGHNESS) rest = path_push.surface.rest.at[gl_VertexIndex];
-  normal = scene.normals.at[gl_VertexIndex];
-  gl_Position = scene.clip_from_world * vec4(position, 1.0);
+  normal = SCENE.normals.at[gl_VertexIndex];
+  gl_Position = SCENE.clip_from_world * vec4(position, 1.0);
 }

@@ -6,9 +6,10 @@
 float fresnel_reflectance(float cos_i, float eta) {
   if (eta == 1.0) return 0.0;
   float cos_t = sqrt(max(0.0, 1.0 - (1.0 - cos_i * cos_i) / (eta * eta)));
-  float parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
-  float perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
-  return 0.5 * (parallel * parallel + perpendicular * perpendicular);
+  // Both over one denominator: a division is slow.
+  float parallel = eta * cos_i + cos_t, perpendicular = cos_i + eta * cos_t;
+  float a = (eta * cos_i - cos_t) * perpendicular, b = (cos_i - eta * cos_t) * parallel, c = parallel * perpendicular;
+  return 0.5 * (a * a + b * b) / (c * c);
 }
 
 float fresnel_transmittance(float cos_i, float eta) {
