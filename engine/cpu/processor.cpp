@@ -1,11 +1,11 @@
 #include "engine/cpu/processor.h"
 
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
-#include <new>
 #include <string>
 
 #include "engine/base/error.h"
@@ -19,6 +19,9 @@ namespace {
 
 // Room behind every buffer, and multiple that every address is of: a vector of the widest instructions.
 constexpr std::size_t alignment = 64;
+
+// Memory of several of these lies in large pages, where the system has them.
+constexpr std::size_t large_page = std::size_t{1} << 21;
 
 bool has_level([[maybe_unused]] const std::string& level) {
 #if defined(__x86_64__)
@@ -69,15 +72,20 @@ std::uint64_t physical_memory() {
 }
 
 void* take_memory(std::uint64_t bytes) {
-  void* memory = ::operator new(bytes, std::align_val_t(alignment), std::nothrow);
+  const bool large = bytes >= 2 * large_page;
+  const std::size_t unit = large ? large_page : alignment, whole = (bytes + unit - 1) / unit * unit;
+  void* memory = std::aligned_alloc(unit, whole);
   if (memory == nullptr) throw DeviceError("no memory for " + std::to_string(bytes) + " bytes");
+#ifdef MADV_HUGEPAGE
+  if (large) madvise(memory, whole, MADV_HUGEPAGE);
+#endif
   return memory;
 }
 
 }  // namespace
 
 void Freed::operator()(void* memory) const {
-  ::operator delete(memory, std::align_val_t(alignment));
+  std::free(memory);
 }
 
 Bytes bytes(std::uint64_t count) {
