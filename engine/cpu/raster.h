@@ -11,7 +11,8 @@
 
 namespace quadgraph::cpu {
 
-// Draws as device::Recording::draw asks. The same picture with any number of threads. `memory` is kept from draw to draw.
+// Draws as device::Recording::draw asks. The same picture with any number of threads. `memory` is kept from draw to
+// draw.
 void rasterise(ThreadPool& threads, const device::DrawImages& target, const device::Viewport& viewport,
                const GraphicsPipeline& pass, const void* push, const std::uint32_t* indices, std::uint32_t vertices,
                DrawMemory& memory);
