@@ -141,7 +141,7 @@ def test_charts_are_drawn_for_work_and_for_time(tmp_path):
 
 def test_charts_without_matplotlib_name_the_extra(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    with pytest.raises(InputError, match=r"pip install -e 'python/validation\[bench\]'"):
+    with pytest.raises(InputError, match=r"pip install './python/validation\[bench\]'"):
         bench_charts.write(tmp_path, solver_record())
     assert list(tmp_path.iterdir()) == []
 

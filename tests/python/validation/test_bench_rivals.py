@@ -108,5 +108,5 @@ def test_ours_that_never_arrives_is_an_error(path, monkeypatch):
 
 def test_without_pyamg_the_way_to_get_it_is_told(monkeypatch):
     monkeypatch.setitem(sys.modules, "pyamg", None)
-    with pytest.raises(InputError, match=r"pip install -e 'python/validation\[bench\]'"):
+    with pytest.raises(InputError, match=r"pip install './python/validation\[bench\]'"):
         rivals.load_pyamg()
