@@ -3,6 +3,11 @@
 from __future__ import annotations
 
 import os
+
+# Workers share the cores: threads of OpenBLAS that wait for each other while others compute make the small matrices of
+# these tests take a hundred times as long, and its version 0.3.30 can hang (OpenBLAS issue 5520).
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 from pathlib import Path
 
 import pytest
