@@ -20,6 +20,15 @@ Json as_json(const std::optional<ErrorEstimate>& error) {
   return error ? Json{{"whole", error->whole}, {"unlit", error->unlit}} : Json(nullptr);
 }
 
+Json as_json(const CorrectionReport& correction) {
+  Json json{{"segments", correction.segments}, {"sweeps", Json::array()}};
+  for (const CorrectedSweep& sweep : correction.sweeps) {
+    json["sweeps"].push_back(
+        {{"change", as_json(sweep.change)}, {"noise", as_json(sweep.noise)}, {"points", sweep.points}});
+  }
+  return json;
+}
+
 Json as_json(const SolveReport& report) {
   Json json;
   json["method"] = name_of(report.method);
@@ -56,6 +65,7 @@ Json as_json(const SolveReport& report) {
                     {"lit", path.lit},
                     {"rounds", path.rounds}};
   }
+  json["correction"] = report.correction ? as_json(*report.correction) : Json(nullptr);
   json["finest"] = report.finest;
   json["work"] = report.work;
   json["algebraic"] = as_json(report.algebraic);
@@ -129,6 +139,13 @@ void tell_levels(std::ostream& out, const RunReport& report) {
       << " iterations on the finest level, residual " << solved.residual << (solved.converged ? "" : " (not converged)")
       << "\n";
   out << "bounces  " << value_of(report.metadata, "inter-reflection") << "\n";
+  if (report.solve.correction) {
+    out << "sweeps  ";
+    for (const CorrectedSweep& sweep : report.solve.correction->sweeps) {
+      out << " " << decimals(100 * sweep.change.whole, 2) << "%";
+    }
+    out << " changed, " << decimals(report.solve.correction->segments / 1e6, 1) << " million ray segments\n";
+  }
   if (report.solve.error) {
     const double unlit = report.solve.error->unlit;
     out << "error    " << decimals(100 * report.solve.error->whole, 2) << "% over the surface, "

@@ -21,6 +21,15 @@ void check_options(const SolveOptions& options) {
     throw InputError("smoothing: " + std::to_string(options.smoothing) +
                      " steps, allowed are 1 and 2, and 0 for either");
   }
+  if (options.sweeps > 0 && !(options.method == Method::fem && options.source == Source::buried)) {
+    throw InputError("sweeps: " + std::to_string(options.sweeps) + " with method " +
+                     std::string(name_of(options.method)) + " and source " + std::string(name_of(options.source)) +
+                     "; transport corrects method fem with source buried alone, else allowed is 0");
+  }
+  if (!sweep_points_range.contains(options.sweep_points)) {
+    throw InputError("sweep_points: " + std::to_string(options.sweep_points) + ", allowed are " +
+                     sweep_points_range.text());
+  }
   check_options(options.path);
 }
 

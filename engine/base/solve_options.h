@@ -138,6 +138,8 @@ struct Names<Model> {
 
 inline constexpr Range tolerance_range{.low = 0, .high = 1, .above = true, .below = true};
 inline constexpr Range error_range{.low = 0, .high = 1, .below = true};
+inline constexpr Range sweeps_range{.low = 0, .high = 100};
+inline constexpr Range sweep_points_range{.low = 1, .high = 10000000};
 
 struct SolveOptions {
   Method method = Method::fem;
@@ -169,6 +171,9 @@ struct SolveOptions {
   // of the mean inside cosine, instead of eight: an eighth of that work. What that does to the exitance:
   // docs/window.md.
   bool mean_rays = false;
+  // n > 0: so many sweeps of the transport equation correct the solution, with Method::fem and Source::buried.
+  std::uint32_t sweeps = 0;
+  std::uint32_t sweep_points = 20000;  // where a sweep evaluates it
   // n > 0, with the links of a polygrid: on all levels but the coarsest only the first n layers of vertices below the
   // surface are solved for, the others keep what the coarser level has [PG Section 5.3, Fig. 8]; 0: all are.
   std::uint32_t active_layers = 0;

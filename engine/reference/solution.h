@@ -40,6 +40,19 @@ struct ErrorEstimate {
   double unlit = 0;  // over the faces with less than a tenth of the mean q; 0 if there are none
 };
 
+// What one sweep of the transport correction did to the exitance.
+struct CorrectedSweep {
+  ErrorEstimate change;  // against what it was before, without the noise of the sampling
+  ErrorEstimate noise;   // of the sampling, in what it is now
+  double points = 0;     // at which the transport equation was evaluated
+};
+
+// What the transport correction did (docs/physics.md, "Transport correction").
+struct CorrectionReport {
+  std::vector<CorrectedSweep> sweeps;
+  double segments = 0;  // tets that all of its rays crossed
+};
+
 // What Method::shortest_path did.
 struct PathReport {
   PathOptions options;
@@ -80,10 +93,11 @@ struct SolveReport {
   // What else is to be said against the answer, of elements and of the model (engine/reference/resolution.h); empty if
   // nothing.
   std::string mesh_warning, model_warning;
-  std::string deformed;             // tets of level 0 that a deformation has spoilt; empty if none is
-  std::vector<glm::dvec3> bounces;  // W per channel that each bounce brought in
-  std::optional<PathReport> path;   // of Method::shortest_path; it has no levels, no energy balance and no estimates
-  std::uint32_t exchange_age = 0;   // solves that what some face sees has been behind the shape; 0: nothing is
+  std::string deformed;                        // tets of level 0 that a deformation has spoilt; empty if none is
+  std::vector<glm::dvec3> bounces;             // W per channel that each bounce brought in
+  std::optional<CorrectionReport> correction;  // of SolveOptions::sweeps
+  std::optional<PathReport> path;  // of Method::shortest_path; it has no levels, no energy balance and no estimates
+  std::uint32_t exchange_age = 0;  // solves that what some face sees has been behind the shape; 0: nothing is
 };
 
 // What was asked for and is not met, in words: `missed` and `stopped`, as far as there are.

@@ -120,6 +120,18 @@ void add_light_paths(OptionTable& table) {
        .keyword = "bounces",
        .range = up_to_a_million,
        .help = "bounces of inter-reflection; 0: until they change nothing"});
+  table.member<&Scene::solve, &SolveOptions::sweeps>(
+      {.name = "sweeps",
+       .member = "/solver/sweeps",
+       .keyword = "sweeps",
+       .range = sweeps_range,
+       .help = "sweeps of the transport equation that correct the solution (method fem, source buried); 0: none"});
+  table.member<&Scene::solve, &SolveOptions::sweep_points>(
+      {.name = "sweep-points",
+       .member = "/solver/sweep_points",
+       .keyword = "sweep_points",
+       .range = sweep_points_range,
+       .help = "points inside the body at which a sweep evaluates the transport equation"});
   table.member<&Scene::solve, &SolveOptions::active_layers>(
       {.name = "active-layers",
        .member = "/solver/active_layers",

@@ -218,6 +218,10 @@ void load_fem(Workspace& work, const LevelBuffers& level, const Boundary& bounda
                          "right-hand side", right_hand_side_bytes(op) + 3 * level.face_count * face_bytes);
 }
 
+bool same(const Boundary& a, const Boundary& b) {
+  return a.k11 == b.k11 && a.k12 == b.k12 && a.k22 == b.k22;
+}
+
 }  // namespace
 
 gpu::Boundary on_device(const Boundary& boundary) {
@@ -264,6 +268,21 @@ void record_assembly(Workspace& work, const LevelBuffers& level, Method method, 
       return assemble_polygrid(work, level, method, boundary, even, op);
     case Method::shortest_path:
       break;  // refused by Simulation::solve
+  }
+}
+
+void record_rows(Workspace& work, const LevelBuffers& level, Method method, const Boundary& boundary, bool even,
+                 bool damped, OperatorBuffers& op) {
+  if (!op.assembled || !same(*op.assembled, boundary)) {
+    record_assembly(work, level, method, boundary, even, op);
+    op.assembled = boundary;
+    op.damped = false;
+    op.weighed = false;
+    op.loaded.reset();
+  }
+  if (!op.damped && damped) {
+    record_damping(work, method, op);
+    op.damped = true;
   }
 }
 

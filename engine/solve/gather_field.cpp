@@ -71,13 +71,13 @@ void GatherField::write_solid(device::Device& device, const gpu::SolidRef& solid
 
 void GatherField::record_points(Workspace& work, const GatherInput& input) {
   const LevelBuffers& level = input.level;
-  const gpu::GatherPhiPush phi{.x = input.op.x.address(),
-                               .to_phi = input.op.to_phi.address(),
+  const gpu::GatherPhiPush phi{.x = input.fluence.x,
+                               .to_phi = input.fluence.to_phi,
                                .scale = work.scale.address(),
                                .points = points_.address(),
                                .count = level.vertex_count};
-  work.recorder.dispatch(work.passes.of(shader::gather_phi, input.op.model), phi, level.vertex_count, "gather points",
-                         level.vertex_count * (vec3_bytes + input.op.field_bytes()));
+  work.recorder.dispatch(work.passes.of(shader::gather_phi, input.fluence.model), phi, level.vertex_count,
+                         "gather points", level.vertex_count * (vec3_bytes + vec3_bytes));
 }
 
 void GatherField::record_uncollided(Workspace& work, const GatherInput& input) {

@@ -9,7 +9,7 @@
 #include "engine/solve/beams.h"
 #include "engine/solve/body_tree.h"
 #include "engine/solve/level_buffers.h"
-#include "engine/solve/operator_buffers.h"
+#include "engine/solve/surface_results.h"
 #include "engine/solve/workspace.h"
 #include "shaders/gather/gather_shared.h"
 
@@ -18,7 +18,7 @@ namespace quadgraph {
 // What was solved, on the finest level.
 struct GatherInput {
   const LevelBuffers& level;
-  const OperatorBuffers& op;
+  FirstMoment fluence;  // at the vertices
   const BeamBuffers& beams;
   const device::Buffer& vertex_exitance;  // vec3 per surface vertex, W/mm^2
   gpu::BodyRef body;
@@ -42,6 +42,7 @@ class GatherField {
   const device::Buffer& points() const { return points_; }      // GatherPoint per vertex
   const device::Buffer& gathered() const { return gathered_; }  // vec3 per face, W/mm^2: exitance of what is gathered
   const device::Buffer& scale() const { return scale_; }        // GatherScale per surface vertex
+  const device::Buffer& nearest() const { return nearest_; }    // surface vertex of each vertex
 
  private:
   void write_solid(device::Device& device, const gpu::SolidRef& solid);

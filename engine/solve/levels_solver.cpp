@@ -37,10 +37,6 @@ constexpr double least_bounce = 1e-6;
 constexpr std::uint32_t most_rounds = 4;
 constexpr double least_unbalanced = 1e-4;
 
-bool same(const Boundary& a, const Boundary& b) {
-  return a.k11 == b.k11 && a.k12 == b.k12 && a.k22 == b.k22;
-}
-
 }  // namespace
 
 LevelsSolver::LevelsSolver(const SolveParts& parts, const OperatorKey& key, const SolveOptions& options,
@@ -136,18 +132,8 @@ void LevelsSolver::record_load_again(std::uint32_t level) {
 }
 
 void LevelsSolver::record_setup(std::uint32_t level) {
-  OperatorBuffers& rows = op(level);
-  if (!rows.assembled || !same(*rows.assembled, boundary_)) {
-    record_assembly(parts_.work, parts_.levels[level], key_.method, boundary_, parts_.coefficients.even(), rows);
-    rows.assembled = boundary_;
-    rows.damped = false;
-    rows.weighed = false;
-    rows.loaded.reset();
-  }
-  if (!rows.damped && rules_of(report_.solver).damped) {
-    record_damping(parts_.work, key_.method, rows);
-    rows.damped = true;
-  }
+  record_rows(parts_.work, parts_.levels[level], key_.method, boundary_, parts_.coefficients.even(),
+              rules_of(report_.solver).damped, op(level));
 }
 
 void LevelsSolver::record_light(std::uint32_t level) {

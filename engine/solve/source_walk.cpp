@@ -136,7 +136,7 @@ gpu::WalkSourcePush SourceWalk::push(const Workspace& work, const LevelBuffers& 
           .unscattered = unscattered().address(),
           .sums = sums_.sums.address(),
           .rays = 1,
-          .fem = on_vertices(task.method) ? 1u : 0u};
+          .deposits = on_vertices(task.method) ? gpu::WALK_VERTICES : gpu::WALK_TETS};
 }
 
 void SourceWalk::record(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, const WalkTask& task) {
@@ -178,15 +178,33 @@ void SourceWalk::record_again(Workspace& work, const LevelBuffers& level, const 
   sums_again_.read_back(work);
 }
 
+void SourceWalk::record_corners(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams,
+                                const WalkTask& task, const device::Buffer& target) const {
+  work.recorder.fill(target, 0);
+  gpu::WalkSourcePush push = this->push(work, level, beams, task);
+  push.deposit = target.address();
+  push.deposits = gpu::WALK_CORNERS;
+  for (const gpu::Beam& beam : beams.beams) {
+    const std::uint32_t kind = beam.way.kind;
+    if (kind == gpu::BEAM_MEAN && !again_) continue;
+    push.rays = rays(kind, task.mean_rays);
+    work.recorder.dispatch(work.passes.of(shader::walk_source), push, std::uint64_t{level.face_count} * push.rays,
+                           "source walk", walk_bytes(level, push.rays));
+    push.beam += sizeof(gpu::Beam);
+  }
+}
+
 void SourceWalk::record_right_hand_side(Workspace& work, const LevelBuffers& level, Method method,
                                         OperatorBuffers& op) const {
   const gpu::RightHandSideBuriedPush push{.deposit = deposit(method).address(),
+                                          .taken = 0,
                                           .vertices = level.vertices.address(),
                                           .tets = level.tets.address(),
                                           .side = op.right_hand_side(work.reduction),
                                           .count = op.count,
                                           .deposit_count = carriers(level, method),
-                                          .per_volume = method == Method::quadgraph_fdm ? 1u : 0u};
+                                          .per_volume = method == Method::quadgraph_fdm ? 1u : 0u,
+                                          .share = 1};
   work.recorder.dispatch(work.passes.of(shader::right_hand_side_buried, op.model, op.format), push, op.count,
                          "right-hand side",
                          op.count * (op.block_bytes() + op.field_bytes()) + carriers(level, method) * power_bytes);

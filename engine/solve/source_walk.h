@@ -59,6 +59,11 @@ class SourceWalk {
   // Adds the beam of light that enters again to the deposits of a walk recorded before; every call anew.
   void record_again(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, const WalkTask& task);
 
+  // What the light of the last walk scatters for the first time between the corners of each tet, into `target`: fixed
+  // point, four per tet.
+  void record_corners(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, const WalkTask& task,
+                      const device::Buffer& target) const;
+
   // b of the solve, and its norm, from the deposits of a walk recorded before.
   void record_right_hand_side(Workspace& work, const LevelBuffers& level, Method method, OperatorBuffers& op) const;
 

@@ -9,6 +9,7 @@
 #include "interface/surface/energy_total.comp.h"
 #include "interface/surface/exitance.comp.h"
 #include "interface/surface/vertex_exitance.comp.h"
+#include "interface/transport/transport_result.comp.h"
 #include "shaders/surface/surface_shared.h"
 
 namespace quadgraph {
@@ -29,6 +30,10 @@ std::uint32_t energy_groups(const LevelBuffers& level) {
 }
 
 }  // namespace
+
+FirstMoment first_moment_of(const OperatorBuffers& op) {
+  return {.x = op.x.address(), .to_phi = op.to_phi.address(), .model = op.model};
+}
 
 void record_exitance(Workspace& work, const Solved& solved, const device::Buffer& phi, const device::Buffer& exitance,
                      const device::Buffer& clip) {
@@ -141,15 +146,15 @@ void SurfaceResults::record_vertex_unscattered(Workspace& work, const Solved& so
                          3 * level.face_count * face_bytes + 3 * vec3_bytes * level.surface_vertex_count);
 }
 
-void SurfaceResults::record_energy(Workspace& work, const Solved& solved) {
+void SurfaceResults::record_energy(Workspace& work, const Solved& solved, const FirstMoment& fluence) {
   const LevelBuffers& level = solved.level;
   const gpu::EnergyPush push{.vertices = level.vertices.address(),
                              .tets = level.tets.address(),
                              .faces = level.faces.address(),
                              .face_kinds = level.face_kind.address(),
                              .optical = level.optical.address(),
-                             .x = solved.op.x.address(),
-                             .to_phi = solved.op.to_phi.address(),
+                             .x = fluence.x,
+                             .to_phi = fluence.to_phi,
                              .q = level.q.address(),
                              .exitance = exitance_.address(),
                              .scale = work.scale.address(),
@@ -162,8 +167,7 @@ void SurfaceResults::record_energy(Workspace& work, const Solved& solved) {
                              .least = level.least};
   const std::uint64_t bytes = level.tet_count * (sizeof(glm::uvec4) + 5 * vec3_bytes + 4 * solved.op.field_bytes()) +
                               level.face_count * (sizeof(glm::uvec3) + 6 * vec3_bytes) + sums_.size();
-  work.recorder.dispatch(work.passes.of(shader::energy, solved.op.model), push, energy_elements(level), "energy",
-                         bytes);
+  work.recorder.dispatch(work.passes.of(shader::energy, fluence.model), push, energy_elements(level), "energy", bytes);
   const std::uint32_t groups = energy_groups(level);
   const gpu::EnergyTotalPush total{sums_.address(), totals_.address(), groups};
   work.recorder.dispatch(work.passes.of(shader::energy_total), total, WORKGROUP_SIZE, "energy",
@@ -174,7 +178,27 @@ void SurfaceResults::record_energy(Workspace& work, const Solved& solved) {
 
 void SurfaceResults::record(Workspace& work, const Solved& solved) {
   record_exitance(work, solved, phi_, exitance_, clip_);
-  record_energy(work, solved);
+  record_energy(work, solved, first_moment_of(solved.op));
+  record_display(work, solved);
+}
+
+void SurfaceResults::record_corrected(Workspace& work, const Solved& solved, const device::Buffer& fluence,
+                                      const device::Buffer& exitance) {
+  const LevelBuffers& level = solved.level;
+  const gpu::TransportResultPush push{.vertices = level.vertices.address(),
+                                      .faces = level.faces.address(),
+                                      .face_kinds = level.face_kind.address(),
+                                      .fluence = fluence.address(),
+                                      .scale = work.scale.address(),
+                                      .corrected = exitance.address(),
+                                      .phi = phi_.address(),
+                                      .exitance = exitance_.address(),
+                                      .clip = clip_.address(),
+                                      .reduction = work.reduction.address(),
+                                      .count = level.face_count};
+  work.recorder.dispatch(work.passes.of(shader::transport_result), push, level.face_count, "exitance",
+                         level.face_count * (sizeof(glm::uvec3) + 9 * vec3_bytes));
+  record_energy(work, solved, {.x = fluence.address()});
   record_display(work, solved);
 }
 

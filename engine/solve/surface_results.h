@@ -21,6 +21,14 @@ struct Solved {
   const SourceWalk* walk;  // of the buried source, whose exitance is clipped; null for the diffuse one
 };
 
+// Fluence at the carriers of a method: the first moment of what is solved for.
+struct FirstMoment {
+  std::uint64_t x = 0, to_phi = 0;  // addresses, as of OperatorBuffers
+  Model model = Model::diffusion;   // what x is made of
+};
+
+FirstMoment first_moment_of(const OperatorBuffers& op);
+
 // phi and M (vec3 per outside face, W/mm^2) and the Clip, whose factor is left to be applied to M.
 void record_exitance(Workspace& work, const Solved& solved, const device::Buffer& phi, const device::Buffer& exitance,
                      const device::Buffer& clip);
@@ -42,6 +50,10 @@ class SurfaceResults {
   // Exitance and energy of the final solution.
   void record(Workspace& work, const Solved& solved);
 
+  // The same of a corrected one: fluence at the vertices (vec3, scaled) and exitance of the faces, W/mm^2.
+  void record_corrected(Workspace& work, const Solved& solved, const device::Buffer& fluence,
+                        const device::Buffer& exitance);
+
   // Energy of what was recorded last and has run, without the walk's share; and what was clipped in it.
   Energy energy() const;
   glm::dvec3 clipped() const;
@@ -51,7 +63,7 @@ class SurfaceResults {
   void record_display_scale(Workspace& work, const LevelBuffers& level);
   void record_display(Workspace& work, const Solved& solved);
   void record_vertex_unscattered(Workspace& work, const Solved& solved);
-  void record_energy(Workspace& work, const Solved& solved);
+  void record_energy(Workspace& work, const Solved& solved, const FirstMoment& fluence);
 
   device::Buffer phi_, exitance_, vertex_exitance_, vertex_unscattered_;
   device::Buffer display_factor_;  // vec3

@@ -83,6 +83,21 @@ py::object error_dict(const std::optional<ErrorEstimate>& estimate) {
   return d;
 }
 
+py::dict correction_dict(const CorrectionReport& correction) {
+  py::list sweeps;
+  for (const CorrectedSweep& sweep : correction.sweeps) {
+    py::dict d;
+    d["change"] = error_dict(sweep.change);
+    d["noise"] = error_dict(sweep.noise);
+    d["points"] = sweep.points;
+    sweeps.append(d);
+  }
+  py::dict d;
+  d["sweeps"] = sweeps;
+  d["segments"] = correction.segments;
+  return d;
+}
+
 py::dict path_dict(const PathReport& path) {
   py::dict d;
   d["cost"] = std::string(name_of(path.options.cost));
@@ -123,6 +138,7 @@ py::dict as_dict(const SolveReport& report) {
   d["deformed"] = report.deformed;
   d["exchange_age"] = report.exchange_age;
   d["path"] = report.path ? py::object(path_dict(*report.path)) : py::object(py::none());
+  d["correction"] = report.correction ? py::object(correction_dict(*report.correction)) : py::object(py::none());
   d["finest"] = report.finest;
   d["work"] = report.work;
   d["algebraic"] = error_dict(report.algebraic);

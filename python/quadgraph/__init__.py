@@ -39,7 +39,15 @@ if TYPE_CHECKING:
     from quadgraph.api.options import Camera, MotionOptions, PathOptions, PictureOptions, SolveOptions
     from quadgraph.api.picture import Picture
     from quadgraph.api.scene import Scene, SceneFile
-    from quadgraph.api.solution import Energy, ErrorEstimate, LevelReport, PathReport, Solution
+    from quadgraph.api.solution import (
+        CorrectedSweep,
+        Correction,
+        Energy,
+        ErrorEstimate,
+        LevelReport,
+        PathReport,
+        Solution,
+    )
     from quadgraph.api.stage import Stage
     from quadgraph.baking.pipeline import BakeOptions, BakeReport, bake
     from quadgraph.base.errors import (
@@ -58,6 +66,8 @@ __all__ = [
     "Bend",
     "Cage",
     "Camera",
+    "CorrectedSweep",
+    "Correction",
     "Deformer",
     "DeviceError",
     "DirectionalLight",
@@ -114,7 +124,7 @@ _PLACES = {
     "quadgraph.api.options": "Camera MotionOptions PathOptions PictureOptions SolveOptions",
     "quadgraph.api.picture": "Picture",
     "quadgraph.api.scene": "Scene SceneFile",
-    "quadgraph.api.solution": "Energy ErrorEstimate LevelReport PathReport Solution",
+    "quadgraph.api.solution": "CorrectedSweep Correction Energy ErrorEstimate LevelReport PathReport Solution",
     "quadgraph.api.stage": "Stage",
     "quadgraph.baking.pipeline": "BakeOptions BakeReport bake",
     "quadgraph.base.errors": "FormatError InputError QuadGraphError SolverError ToolError DeviceError",

@@ -35,14 +35,6 @@ GatherPoint fields_here() {
   return fields_at(vec4(corner_0.l, corner_1.l, corner_2.l, corner_3.l));
 }
 
-// Mean over s from 0 to 1 of mix(a, b, s) exp(-tau s); `lost` is 1 - exp(-tau).
-vec3 attenuated_mean(vec3 a, vec3 b, vec3 tau, out vec3 lost) {
-  vec3 place;
-  tau = max(tau, vec3(1e-20));
-  attenuate(tau, lost, place);
-  return lost / tau * mix(a, b, place);
-}
-
 // Fluence of both kinds between two points of a tet, weighed with exp(-tau s): the mean over s from 0 to 1.
 vec3 fluence_along(GatherPoint from, GatherPoint to, vec3 tau, out vec3 lost) {
   vec3 growth = tau + to.depth - from.depth, unused;

@@ -52,26 +52,6 @@ struct Met {
   vec3 tau;
 };
 
-// Puts the ray's point on vertex v. The corner that the ray moves towards fastest is none of those it can leave
-// opposite of.
-void start_at_vertex(uint v, uint tet, vec3 direction) {
-  uvec4 ids = BODY.tets.at[tet];
-  optical = BODY.optical.at[(BODY.flags & BODY_EVEN) != 0u ? 0u : tet];
-  corner_0 = Corner(ids.x, 0u, BODY.vertices.at[ids.x], float(ids.x == v), Payload(0u));
-  corner_1 = Corner(ids.y, 1u, BODY.vertices.at[ids.y], float(ids.y == v), Payload(0u));
-  corner_2 = Corner(ids.z, 2u, BODY.vertices.at[ids.z], float(ids.z == v), Payload(0u));
-  corner_3 = Corner(ids.w, 3u, BODY.vertices.at[ids.w], float(ids.w == v), Payload(0u));
-  vec4 rate = find_exit(direction).rate;
-  float most = max(max(rate.x, rate.y), max(rate.z, rate.w));
-  if (rate.x == most) {
-    swap_with_3(corner_0);
-  } else if (rate.y == most) {
-    swap_with_3(corner_1);
-  } else if (rate.z == most) {
-    swap_with_3(corner_2);
-  }
-}
-
 // The quarter of a face that the ray's point lies in, once the corner opposite is in slot 3.
 uint quarter_here(uint face) {
   uvec3 ids = BODY.faces.at[face];
@@ -82,7 +62,8 @@ uint quarter_here(uint face) {
 
 Met back_to_surface(uint v, vec3 direction) {
   uint tet = push.start.at[v];
-  start_at_vertex(v, tet, direction);
+  uvec4 ids = BODY.tets.at[tet];
+  start_in_tet(tet, vec4(ids.x == v, ids.y == v, ids.z == v, ids.w == v), direction);
   vec3 tau = vec3(0);
   for (uint step = 0u; step < UNCOLLIDED_STEPS; ++step) {
     Exit exit = find_exit(direction);

@@ -51,6 +51,14 @@ void attenuate(vec3 tau, out vec3 lost, out vec3 place) {
   place = mix((lost - tau * left) / (tau * lost), 0.5 - t * (1.0 / 12.0 - t * t * (1.0 / 720.0)), small);
 }
 
+// Mean over s from 0 to 1 of mix(a, b, s) exp(-tau s); `lost` is 1 - exp(-tau).
+vec3 attenuated_mean(vec3 a, vec3 b, vec3 tau, out vec3 lost) {
+  vec3 place;
+  tau = max(tau, vec3(1e-20));
+  attenuate(tau, lost, place);
+  return lost / tau * mix(a, b, place);
+}
+
 vec3 extinction() {
   return optical.sigma_s_prime + optical.sigma_a;
 }
@@ -135,6 +143,31 @@ uvec2 turn(uint tet, uint slot) {
   uint crossing = BODY.crossings.at[4u * tet + corner_3.place];
   uint last = (crossing ^ crossing >> 2u ^ crossing >> 4u) & 3u;
   return uvec2(crossing >> CROSSING_BITS, crossing & 63u | last << 6u);
+}
+
+// For a ray that begins anywhere in its tet: puts the corner that it moves towards fastest into slot 3, which is none of
+// those it can leave opposite of.
+void face_towards(vec3 direction) {
+  vec4 rate = find_exit(direction).rate;
+  float most = max(max(rate.x, rate.y), max(rate.z, rate.w));
+  if (rate.x == most) {
+    swap_with_3(corner_0);
+  } else if (rate.y == most) {
+    swap_with_3(corner_1);
+  } else if (rate.z == most) {
+    swap_with_3(corner_2);
+  }
+}
+
+// Puts the ray's point into a tet, at the barycentric coordinates `l`.
+void start_in_tet(uint tet, vec4 l, vec3 direction) {
+  uvec4 ids = BODY.tets.at[tet];
+  optical = BODY.optical.at[(BODY.flags & BODY_EVEN) != 0u ? 0u : tet];
+  corner_0 = Corner(ids.x, 0u, BODY.vertices.at[ids.x], l.x, payload(ids.x));
+  corner_1 = Corner(ids.y, 1u, BODY.vertices.at[ids.y], l.y, payload(ids.y));
+  corner_2 = Corner(ids.z, 2u, BODY.vertices.at[ids.z], l.z, payload(ids.z));
+  corner_3 = Corner(ids.w, 3u, BODY.vertices.at[ids.w], l.w, payload(ids.w));
+  face_towards(direction);
 }
 
 // Enters the tet across, whose new corner replaces that in slot 3.

@@ -38,13 +38,24 @@ vec3 albedo() {
 
 // `scattered` at the mean place of each channel between the ray's point and `l`.
 void scatter(uint tet, vec3 scattered, vec4 l, vec3 place) {
-  if (push.fem == 1u) {
-    corner_0.payload.scattered += scattered * mix(vec3(corner_0.l), vec3(l.x), place);
-    corner_1.payload.scattered += scattered * mix(vec3(corner_1.l), vec3(l.y), place);
-    corner_2.payload.scattered += scattered * mix(vec3(corner_2.l), vec3(l.z), place);
-    corner_3.payload.scattered += scattered * mix(vec3(corner_3.l), vec3(l.w), place);
-  } else {
+  if (push.deposits == WALK_TETS) {
     add_power(push.deposit, tet, scattered);
+    return;
+  }
+  vec3 at_0 = scattered * mix(vec3(corner_0.l), vec3(l.x), place);
+  vec3 at_1 = scattered * mix(vec3(corner_1.l), vec3(l.y), place);
+  vec3 at_2 = scattered * mix(vec3(corner_2.l), vec3(l.z), place);
+  vec3 at_3 = scattered * mix(vec3(corner_3.l), vec3(l.w), place);
+  if (push.deposits == WALK_VERTICES) {
+    corner_0.payload.scattered += at_0;
+    corner_1.payload.scattered += at_1;
+    corner_2.payload.scattered += at_2;
+    corner_3.payload.scattered += at_3;
+  } else {
+    add_power(push.deposit, 4u * tet + corner_0.place, at_0);
+    add_power(push.deposit, 4u * tet + corner_1.place, at_1);
+    add_power(push.deposit, 4u * tet + corner_2.place, at_2);
+    add_power(push.deposit, 4u * tet + corner_3.place, at_3);
   }
 }
 
@@ -75,7 +86,7 @@ void end_here(Ray ray) {
 }
 
 void flush(Corner corner) {
-  if (push.fem == 1u) add_power(push.deposit, corner.id, corner.payload.scattered);
+  if (push.deposits == WALK_VERTICES) add_power(push.deposit, corner.id, corner.payload.scattered);
 }
 
 // At an outside face from inside: part leaves, the rest goes on mirrored.
@@ -86,7 +97,7 @@ void meet_surface(inout Ray ray, uint face, vec3 outward) {
     vec3 reflected = ray.power * internal_reflectance(cosine, push.body.eta);
     vec3 leaving = ray.power - reflected;
     unscattered += leaving;
-    add_power(push.unscattered, face, leaving);
+    if (push.deposits != WALK_CORNERS) add_power(push.unscattered, face, leaving);
     ray.power = reflected;
   }
   ray.direction = normalize(ray.direction - 2.0 * cosine * n);

@@ -20,6 +20,12 @@ const uint LAMBERTIAN_RAYS = 2u * LAMBERTIAN_NODES;
 // Pairs of sums that the workgroups of a walk share: few to read back, many enough to be seldom waited for.
 const uint WALK_SUMS = 256u;
 
+// What a walk adds up, and where: what vertices or tets scatter for the first time, with all that leaves or is
+// absorbed; or, of light that has been walked, what is scattered between the corners of each tet, and nothing else.
+const uint WALK_TETS = 0u;
+const uint WALK_VERTICES = 1u;
+const uint WALK_CORNERS = 2u;
+
 // walk_source.comp: follows the rays of one beam. One invocation per face; of a Lambertian beam, one per face and ray
 // of the bundle.
 struct WalkSourcePush {
@@ -27,11 +33,11 @@ struct WalkSourcePush {
   QG_REF(Beams) beam;     // one
   QG_REF(Floats) beam_q;  // of all
   QG_REF(Scales) scale;
-  QG_REF(Uints) deposit;      // fixed point, per vertex (fem) or tet: power scattered for the first time
+  QG_REF(Uints) deposit;      // fixed point, per vertex, tet or corner of a tet: power scattered for the first time
   QG_REF(Uints) unscattered;  // fixed point, per face: power that leaves
   QG_REF(Uints) sums;         // fixed point, WALK_SUMS times two: absorbed; left, or still under way at the end
   uint rays;                  // per origin: 1, or LAMBERTIAN_RAYS; a Lambertian beam may have either
-  uint fem;
+  uint deposits;              // WALK_*
 };
 
 #ifdef __cplusplus

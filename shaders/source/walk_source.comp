@@ -102,6 +102,7 @@ void main() {
   unscattered = vec3(0);
   if (i >= push.body.face_count * push.rays) return;
   walk_from(i % push.body.face_count, i / push.body.face_count);
+  if (push.deposits == WALK_CORNERS) return;
   // In turn, so that invocations seldom wait for each other.
   uint at = 2u * (gl_WorkGroupID.x % WALK_SUMS);
   add_power(push.sums, at, absorbed);

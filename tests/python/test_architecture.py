@@ -36,6 +36,7 @@ FLOORS = {
         "deform",
         "source",
         "surface",
+        "transport",
         "exchange",
         "gather",
         "light",

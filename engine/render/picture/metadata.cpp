@@ -101,6 +101,9 @@ Metadata describe(const PictureFacts& facts) {
                        {"error", error_text(facts.report.error)},
                        {"units", "W/(mm^2 sr)"},
                        {"device", facts.device.name + ", " + facts.device.driver}};
+  if (facts.report.correction) {
+    metadata.emplace_back("transport correction", std::to_string(facts.report.correction->sweeps.size()) + " sweeps");
+  }
   describe_view(facts, metadata);
   return metadata;
 }

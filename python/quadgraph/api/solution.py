@@ -52,6 +52,34 @@ class ErrorEstimate:
 
 
 @dataclass(frozen=True)
+class CorrectedSweep:
+    """What one sweep of the transport correction did to the exitance. change: against what it was before, without the
+    noise of the sampling; noise: that in what it is now; points: at which the transport equation was evaluated.
+    """
+
+    change: ErrorEstimate
+    noise: ErrorEstimate
+    points: float
+
+
+@dataclass(frozen=True)
+class Correction:
+    """What the transport correction did. sweeps: in their order; segments: tets that all of its rays crossed."""
+
+    sweeps: tuple[CorrectedSweep, ...]
+    segments: float
+
+    @classmethod
+    def from_report(cls, report: Mapping[str, Any]) -> Self:
+        """Return it from the compiled engine's report."""
+        sweeps = [
+            CorrectedSweep(ErrorEstimate(**sweep["change"]), ErrorEstimate(**sweep["noise"]), sweep["points"])
+            for sweep in report["sweeps"]
+        ]
+        return cls(tuple(sweeps), report["segments"])
+
+
+@dataclass(frozen=True)
 class PathReport:
     """What shortest-path did. size: voxels along x, y, z; cell: mm, side of one; solid: voxels in the body; lit: of
     them, those that light enters; rounds: until no path had anything to gain.
@@ -78,8 +106,8 @@ class Solution:
     inter_reflection: whether it was followed; bounces: (n, 3) W that each brought in; unmet: what was asked for and is
     not met, in words; missed: of that, the error; budget: what the bake of the file has to say of the error that was
     asked for; mesh_warning, model_warning, deformed: what else is to be said against the answer; exchange_age: solves
-    by which what some face sees is behind the shape; path: of the method shortest-path, which has no levels, energy
-    balance and estimates. Texts are empty where there is nothing to say.
+    by which what some face sees is behind the shape; correction: what sweeps did, None without; path: of the method
+    shortest-path, which has no levels, energy balance and estimates. Texts are empty where there is nothing to say.
     """
 
     method: str
@@ -104,6 +132,7 @@ class Solution:
     model_warning: str
     deformed: str
     exchange_age: int
+    correction: Correction | None
     path: PathReport | None
 
     @classmethod
@@ -117,6 +146,7 @@ class Solution:
             "error": report["error"] and ErrorEstimate(**report["error"]),
             "bounces": np.array(report["bounces"]).reshape(-1, 3),
             "unmet": tuple(report["unmet"]),
+            "correction": report["correction"] and Correction.from_report(report["correction"]),
             "path": report["path"] and PathReport(**report["path"]),
         }
         return cls(**{each.name: typed.get(each.name, report[each.name]) for each in fields(cls)})

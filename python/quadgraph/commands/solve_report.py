@@ -67,10 +67,23 @@ def error_text(report: dict) -> str:
     """Estimated error of the exitance in words."""
     if report.get("path"):
         return "error: not estimated"
+    if report["correction"]:
+        return f"error: {two_parts(report['error'])} (estimate, after {correction_text(report['correction'])})"
     algebraic = f"algebraic {two_parts(report['algebraic'])}"
     if report["error"] is None:
         return f"error: of the mesh not estimated (a single level); {algebraic} (estimate)"
     return f"error: {two_parts(report['error'])}; of that {algebraic} (estimate)"
+
+
+def correction_text(correction: dict) -> str:
+    """What the transport correction did in words."""
+    sweeps = correction["sweeps"]
+    changes = ", ".join(f"{100 * sweep['change']['whole']:.2g}%" for sweep in sweeps)
+    many = "1 sweep of the transport equation that" if len(sweeps) == 1 else f"{len(sweeps)} sweeps that"
+    return (
+        f"{many} changed the exitance by {changes}, with {100 * sweeps[-1]['noise']['whole']:.2g}% of noise; "
+        f"{correction['segments'] / 1e6:.3g} million ray segments"
+    )
 
 
 def two_parts(error: dict | None) -> str:

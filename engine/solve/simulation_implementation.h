@@ -1,0 +1,326 @@
+// What a Simulation is made of.
+#pragma once
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/reference/exchange.h"
+#include "engine/reference/operator.h"
+#include "engine/solve/asked_error.h"
+#include "engine/solve/beams.h"
+#include "engine/solve/body_shape.h"
+#include "engine/solve/coefficients.h"
+#include "engine/solve/gather_field.h"
+#include "engine/solve/inter_reflection.h"
+#include "engine/solve/level_solver.h"
+#include "engine/solve/level_upload.h"
+#include "engine/solve/levels_solver.h"
+#include "engine/solve/simulation.h"
+#include "engine/solve/solver_choice.h"
+#include "engine/solve/surface_results.h"
+#include "engine/solve/surface_share.h"
+#include "engine/solve/transport_correction.h"
+
+namespace quadgraph {
+
+struct Simulation::Implementation {
+  device::Device& device;
+  BodyShape shape;
+  std::vector<PassStats> deformation_passes;
+  std::vector<LevelBuffers> levels;
+  BeamBuffers beams;
+  std::vector<SourceWalk> walks;  // one per level
+  Operators operators;
+  Workspace work;
+  SurfaceResults results;
+  Coefficients coefficients;
+  InterReflection exchange;
+  std::optional<BodyTree> tree;                   // of level 0, made at first use
+  std::optional<GatherField> gather;              // the same
+  std::optional<Gather> gathers_now;              // of the last solution
+  std::optional<TransportCorrection> correction;  // made at first use
+  bool corrected = false;                         // the last solution is
+  std::vector<PassStats> passes;                  // of the last solve
+  bool scaled = false;                            // the scale is that of the present q
+  std::optional<OperatorKey> solved;              // by the last solve
+  Source solved_source = Source::buried;
+  std::map<Model, std::vector<Resolution>> resolution;  // per level, of the present material and shape
+  SolverChoice quicker;
+
+  Implementation(device::Device& context_in, const QuadGraph& graph_in)
+      : device(context_in),
+        shape(graph_in),
+        levels(upload_levels(context_in, graph_in.levels())),
+        work(context_in, largest_dispatch()),
+        results(context_in, levels[0]),
+        coefficients(context_in, graph_in.levels()),
+        exchange(graph_in) {
+    for (std::uint32_t i = 0; i < levels.size(); ++i) walks.emplace_back(device, shape.levels()[i], i);
+    light(std::vector{beam_along(std::nullopt)});
+  }
+
+  void light(std::span<const gpu::Beam> records) { replace_beams(device, records, beams, levels); }
+
+  std::uint64_t largest_dispatch() const {
+    std::uint64_t largest = 0;
+    for (const LevelBuffers& level : levels) largest = std::max<std::uint64_t>(largest, level.node_count);
+    return largest;
+  }
+
+  // Changed light: right-hand sides are stale.
+  void unload() {
+    scaled = false;
+    for (SourceWalk& walk : walks) walk.invalidate();
+    operators.unload();
+  }
+
+  // Changed coefficients: everything is.
+  void disassemble() {
+    quicker.forget();
+    resolution.clear();
+    operators.disassemble();
+    unload();
+  }
+
+  void move(std::uint32_t number, std::span<const glm::vec3> positions) {
+    shape.move(number, positions);
+    const Level& moved = shape.levels()[number];
+    device::write_bytes(device, levels[number].vertices, std::as_bytes(moved.vertices));
+    if (levels[number].nodes.size() > 0) device::write_bytes(device, levels[number].nodes, std::as_bytes(moved.nodes));
+    operators.remeasure(number, moved);
+    exchange.moved(number);
+    if (number == 0) gather.reset();
+    forget_shape();
+  }
+
+  // What was known of the present shape.
+  void forget_shape() {
+    resolution.clear();
+    quicker.forget();
+    forget_place();
+  }
+
+  // What was known of where the body is.
+  void forget_place() {
+    if (tree) tree->moved();
+    solved.reset();
+    unload();
+  }
+
+  bool deform(std::span<const Deformer> list, const RestBox& box, const std::function<void(Workspace&)>& also) {
+    if (shape.is(list)) return false;
+    work.recorder.clear();
+    if (shape.set() || list.empty()) put_back();
+    if (!list.empty()) move_on_device(list, box);
+    if (also) also(work);
+    work.recorder.submit();
+    deformation_passes = work.recorder.passes();
+    return true;
+  }
+
+  void put_back() {
+    if (shape.set()) gather.reset();
+    shape.put_back(device, levels);
+    operators.put_back();
+    exchange.put_back(device, levels);
+    forget_shape();
+  }
+
+  void move_on_device(std::span<const Deformer> list, const RestBox& box) {
+    if (shape.record(work, list, box, levels)) {
+      exchange.turned();
+      return forget_place();
+    }
+    work.recorder.submit();
+    for (std::uint32_t i = 0; i < levels.size(); ++i) {
+      const ShapeState state = shape.measured(i);
+      levels[i].inverted = state.inverted > 0;
+      operators.remeasure(i, state.conduction);
+      exchange.moved(i);
+    }
+    forget_shape();
+  }
+
+  SolveReport solve(const SolveOptions& options) {
+    check_options(options);
+    solved.reset();
+    work.recorder.clear();
+    const OperatorKey key = key_of(options);
+    make_room(key, options);
+    exchange.refresh(work, shape.levels(), levels, options.exchange_rows);
+    const auto with = [&](SolverKind solver) { return run(key, options, solver); };
+    SolveReport report = options.solver == SolverKind::automatic
+                             ? quicker.solve(key, options, Multigrid::possible(operators, key), with,
+                                             [&] { return work.recorder.passes(); })
+                             : with(options.solver);
+    warn(options.source, report);
+    report.deformed = shape.spoilt();
+    corrected = options.sweeps > 0;
+    if (corrected) correct(key, options, report);
+    passes = work.recorder.passes();
+    gathers_now.reset();
+    solved = key;
+    solved_source = options.source;
+    return report;
+  }
+
+  // The operator of the correction on all levels, for the present coefficients.
+  void prepare_correction(const Boundary& boundary) {
+    for (std::uint32_t i = 0; i < operators.count(correction_key); ++i) {
+      OperatorBuffers& op = operators.at(correction_key, i);
+      record_rows(work, levels[i], Method::fem, boundary, coefficients.even(), true, op);
+      if (!op.weighed) record_surface_share(work, levels[i], Method::fem, boundary, op);
+      op.weighed = true;
+    }
+  }
+
+  void correct(const OperatorKey& key, const SolveOptions& options, SolveReport& report) {
+    const double eta = coefficients.eta();
+    const auto boundary_with = [&](Model model) { return boundary_of(Method::fem, Source::buried, model, eta); };
+    const Boundary boundary = boundary_with(Model::diffusion);
+    prepare_correction(boundary);
+    const Solved of_solve{levels[0], operators.at(key, 0), Method::fem, boundary_with(key.model), &walks[0]};
+    const CorrectionParts parts{work,     levels[0],         beams,  walks[0], operators, boundary,
+                                of_solve, gather->nearest(), results};
+    const Energy before = results.energy();
+    report.correction = correction->run(parts, options, {Method::fem, eta, coefficients.even(), options.mean_rays});
+    results.record_corrected(work, of_solve, correction->fluence(), correction->exitance());
+    work.recorder.submit();
+    const Energy after = results.energy();
+    report.energy.scattered_out = after.scattered_out;
+    report.energy.absorbed += after.absorbed - before.absorbed;
+    report.clipped = results.clipped();
+    report.error = corrected_error(*report.correction);
+    report.missed =
+        options.error > 0 && !certain(*report.error, options.error) ? missed(report.error, options.error) : "";
+    report.model_warning.clear();
+  }
+
+  // Of the last solution.
+  FirstMoment fluence() {
+    return corrected ? FirstMoment{.x = correction->fluence().address()}
+                     : first_moment_of(operators.at(solved_key(), 0));
+  }
+
+  OperatorKey key_of(const SolveOptions& options) {
+    if (options.method == Method::shortest_path) throw InputError("shortest-path: has no levels to solve on");
+    check_method(shape.levels()[0], options.method);
+    coefficients.check();
+    return {options.method, coefficients.resolve(work, options.model, options.method, options.source, levels)};
+  }
+
+  void make_room(const OperatorKey& key, const SolveOptions& options) {
+    coefficients.make_room(key.method, levels);
+    for (std::uint32_t i = 0; i < levels.size() && !on_vertices(key.method); ++i) {
+      const bool there = levels[i].nodes.size() > 0;
+      upload_graph(device, shape.levels()[i], i, levels[i]);
+      if (!there) shape.record_nodes(work, i, levels[i]);
+    }
+    const bool two_steps = (options.smoothing > 0 ? options.smoothing : rules_of(options.solver).smoothing) == 2;
+    operators.create(device, shape.levels(), key, coefficients.even(), two_steps);
+    const std::optional<std::uint32_t> bounced = bounces_wanted(options) ? exchange.level() : std::nullopt;
+    if (bounced) exchange.make_room(work, levels);
+    for (std::uint32_t i = 0; i < levels.size() && options.source == Source::buried; ++i) {
+      walks[i].make_room(device, levels[i], beams, key.method, bounced && i <= *bounced);
+    }
+    if (options.sweeps > 0) correction_room(options.sweep_points);
+  }
+
+  void correction_room(std::uint32_t points) {
+    operators.create(device, shape.levels(), correction_key, coefficients.even(), false);
+    if (!correction) correction.emplace(device, shape.levels()[0]);
+    correction->make_room(device, points);
+    gather_room();
+  }
+
+  GatherField& gather_room() {
+    if (!tree) tree.emplace(device, shape.levels()[0], "gather");
+    if (!gather) gather.emplace(device, shape.levels()[0], *tree);
+    return *gather;
+  }
+
+  std::vector<gpu::Optical> optical_at(std::uint32_t level) { return coefficients.at(level, shape.samples(level)); }
+
+  const std::vector<Resolution>& resolution_with(Model model) {
+    std::vector<Resolution>& found = resolution[model];
+    for (auto i = static_cast<std::uint32_t>(found.size()); i < levels.size(); ++i) {
+      found.push_back(resolution_of(shape.samples(i), optical_at(i), static_cast<double>(coefficients.eta()), model));
+    }
+    return found;
+  }
+
+  void warn(Source source, SolveReport& report) {
+    if (report.method == Method::fem) report.mesh_warning = mesh_warning(resolution_with(report.model)[report.finest]);
+    report.model_warning =
+        model_warning(optical_at(0), static_cast<double>(coefficients.eta()), shape.chord(), source, report.model);
+  }
+
+  SolveReport run(const OperatorKey& key, const SolveOptions& options, SolverKind solver) {
+    const bool known = key.method == Method::fem && options.source == Source::buried;
+    const SolveParts parts{
+        work,         levels,
+        beams,        walks,
+        operators,    results,
+        coefficients, exchange,
+        scaled,       known ? std::span<const Resolution>(resolution_with(key.model)) : std::span<const Resolution>{}};
+    return LevelsSolver(parts, key, options, solver).run();
+  }
+
+  const OperatorKey& solved_key() const {
+    if (!solved) throw InputError("no solution: solve has not succeeded yet");
+    return *solved;
+  }
+
+  const GatherField& gathered(Gather what, std::vector<PassStats>& gather_passes) {
+    gather_passes.clear();
+    if (gather_room(); gathers_now == what) return *gather;
+    work.recorder.clear();
+    const auto body = walks[0].body(levels[0], coefficients.eta(), coefficients.even());
+    const GatherInput input{levels[0], fluence(), beams, results.vertex_exitance(), body, *tree};
+    what == Gather::single ? gather->record_single(work, input) : gather->record(work, input);
+    work.recorder.submit();
+    gather_passes = work.recorder.passes();
+    gathers_now = what;
+    return *gather;
+  }
+
+  std::vector<glm::vec3> exitance_on(std::uint32_t number) {
+    OperatorBuffers& op = operators.at(solved_key(), number);
+    if (number >= levels.size() || !op.solved) {
+      throw InputError("level " + std::to_string(number) + " of exitance: the last solve did not go over it");
+    }
+    const Boundary boundary =
+        boundary_of(solved->method, solved_source, solved->model, static_cast<double>(coefficients.eta()));
+    return exitance_of(device, work, {levels[number], op, solved->method, boundary, nullptr});
+  }
+
+  glm::vec3 scale() const { return device::download<gpu::Scale>(device, work.scale)[0].scale; }
+
+  // W/mm^2 per carrier.
+  std::vector<glm::vec3> phi() {
+    const OperatorBuffers& rows = operators.at(solved_key(), 0);
+    const std::size_t moments = !corrected && rows.model == Model::sp3 ? 2 : 1;
+    const auto x = device::download<glm::vec3>(device, corrected ? correction->fluence() : rows.x);
+    std::vector<glm::vec3> field(rows.count, glm::vec3(1));
+    if (rows.to_phi.size() > 0) field = device::download<glm::vec3>(device, rows.to_phi);
+    const glm::vec3 unit = scale();
+    for (std::size_t i = 0; i < field.size(); ++i) field[i] *= x[moments * i] * unit;
+    return field;
+  }
+
+  // W/mm^2 per face.
+  std::vector<glm::vec3> unscattered(std::span<const float> area) const {
+    std::vector<glm::vec3> field(area.size(), glm::vec3(0));
+    if (solved_source == Source::diffuse) return field;
+    const std::vector<glm::dvec3> power = walks[0].unscattered_power(device, glm::dvec3(scale()));
+    for (std::size_t f = 0; f < area.size(); ++f) {
+      if (area[f] > 0) field[f] = glm::vec3(power[f] / static_cast<double>(area[f]));
+    }
+    return field;
+  }
+};
+
+}  // namespace quadgraph

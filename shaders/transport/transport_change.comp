@@ -1,0 +1,68 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "transport/transport_shared.h"
+#include "surface/surface_shared.h"
+#include "shared/stride.glsl"
+#include "shared/reduce.glsl"
+#include "shared/face_area.glsl"
+
+// What a sweep has changed at the surface vertices, each with the mean over its open faces, and how far its halves
+// differ: J = G + k11 delta, less the exitance before.
+struct TransportChangePush {
+  Vec3s vertices;
+  Uvec3s faces;
+  Uints face_offset;
+  Uints face_incidence;
+  SurfaceShares share;
+  Scales scale;
+  Vec3s gathered;  // of transport_exitance.comp
+  Vec3s change_a;  // fluence at the vertices that the solves of both halves add
+  Vec3s change_b;
+  Vec3s exitance;  // W/mm^2, before the sweep
+  TransportChanges change;
+  Reduction reduction;
+  uint count;
+  uint face_count;
+  float k11;
+  uint solves;  // 1: the noise is that of the solves alone, which spreads over the body; 0: with that of G
+};
+layout(push_constant, scalar) uniform Block { TransportChangePush push; };
+
+vec3 at_face(Vec3s field, uint face) {
+  uvec3 ids = push.faces.at[face];
+  return (field.at[ids.x] + field.at[ids.y] + field.at[ids.z]) / 3.0;
+}
+
+void main() {
+  vec3 whole = vec3(0), unlit = vec3(0);  // change, noise, size
+  Scale unit = push.scale.at[0];
+  // One factor for all channels, which are weighed alike.
+  vec3 colours = unit.scale / max(unit.scale.x, max(unit.scale.y, unit.scale.z));
+  EACH(v, push.count) {
+    vec3 a = vec3(0), b = vec3(0), before = vec3(0), difference = vec3(0);
+    float around = 0.0;
+    for (uint k = push.face_offset.at[v]; k < push.face_offset.at[v + 1u]; ++k) {
+      uint face = push.face_incidence.at[k];
+      float area = area_of(push.faces, push.vertices, face);
+      around += area;
+      vec3 g_a = push.gathered.at[face], g_b = push.gathered.at[push.face_count + face];
+      vec3 added_a = push.k11 * at_face(push.change_a, face), added_b = push.k11 * at_face(push.change_b, face);
+      a += area * (g_a + added_a);
+      b += area * (g_b + added_b);
+      difference += area * (push.solves == 1u ? added_a - added_b : g_a + added_a - g_b - added_b);
+      before += area * push.exitance.at[face];
+    }
+    if (around == 0.0) continue;
+    before *= unit.inverse;
+    vec3 per_area = colours / around;
+    vec3 noise = 0.5 * per_area * difference, size = 0.5 * per_area * (a + b);
+    vec3 squares = vec3(dot(per_area * (a - before), per_area * (b - before)), dot(noise, noise), dot(size, size));
+    whole += push.share.at[v].area.x * squares;
+    unlit += push.share.at[v].area.y * squares;
+  }
+  vec3 all_whole, all_unlit;
+  if (!reduce_dispatch_pair(push.reduction, whole, unlit, all_whole, all_unlit)) return;
+  if (gl_LocalInvocationID.x != 0u) return;
+  push.change.at[0] = TransportChange(vec2(all_whole.x, all_unlit.x), vec2(all_whole.y, all_unlit.y),
+                                      vec2(all_whole.z, all_unlit.z));
+}

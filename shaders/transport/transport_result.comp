@@ -1,0 +1,44 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "transport/transport_shared.h"
+#include "surface/surface_shared.h"
+#include "shared/stride.glsl"
+#include "shared/reduce.glsl"
+#include "shared/face_area.glsl"
+
+// Phi and exitance per face of what was corrected. Negative values count as 0, and the factor is found that restores the
+// power, as in exitance.comp.
+struct TransportResultPush {
+  Vec3s vertices;
+  Uvec3s faces;
+  Uints face_kinds;
+  Vec3s fluence;    // at the vertices
+  Scales scale;
+  Vec3s corrected;  // exitance, W/mm^2
+  Vec3s phi;        // W/mm^2, written
+  Vec3s exitance;   // written
+  Clips clip;
+  Reduction reduction;
+  uint count;
+};
+layout(push_constant, scalar) uniform Block { TransportResultPush push; };
+
+void main() {
+  vec3 negative = vec3(0), positive = vec3(0);
+  EACH(f, push.count) {
+    uvec3 ids = push.faces.at[f];
+    vec3 phi = (push.fluence.at[ids.x] + push.fluence.at[ids.y] + push.fluence.at[ids.z]) / 3.0;
+    bool open = push.face_kinds.at[f] == FACE_OPEN;
+    push.phi.at[f] = open ? phi * push.scale.at[0].scale : vec3(0);
+    vec3 m = open ? push.corrected.at[f] : vec3(0);
+    push.exitance.at[f] = max(m, vec3(0));
+    float area = area_of(push.faces, push.vertices, f);
+    negative += area * max(-m, vec3(0));
+    positive += area * max(m, vec3(0));
+  }
+  vec3 total_negative, total_positive;
+  if (!reduce_dispatch_pair(push.reduction, negative, positive, total_negative, total_positive)) return;
+  if (gl_LocalInvocationID.x != 0u) return;
+  vec3 share = mix(vec3(0), min(total_negative / total_positive, vec3(1)), greaterThan(total_positive, vec3(0)));
+  push.clip.at[0] = Clip(1.0 - share, share);
+}
