@@ -13,9 +13,10 @@ using namespace quadgraph;
 
 namespace {
 
-// A scene file that says `value` for an option, with the method that knows them all.
+// A scene file that says `value` for an option, with a method that knows it.
 Json document_with(const SceneOption& option, const Json& value) {
-  Json document{{"body", "a.qgraph"}, {"solver", {{"method", name_of(Method::polygrid)}}}};
+  const Method method = option.name == "active-layers" ? Method::polygrid : Method::fem;
+  Json document{{"body", "a.qgraph"}, {"solver", {{"method", name_of(method)}}}};
   document[Json::json_pointer(std::string(option.member))] = value;
   return document;
 }
