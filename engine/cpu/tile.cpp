@@ -16,8 +16,8 @@ using Doubles = double __attribute__((vector_size(32)));
 using Pair = double __attribute__((vector_size(16)));
 using StoredFloats = float __attribute__((vector_size(16), aligned(4)));
 
-// Of an edge, at pixels side by side: what is computed in whole numbers below 2^31 fits Ints, all others Doubles, where
-// they are exact too.
+// A triangle's edge function at pixels side by side. Ints hold it where its numbers stay below 2^31; Doubles, which are
+// exact for whole numbers as well, hold all others.
 template <typename Lanes>
 struct Edge {
   using Number = std::remove_cvref_t<decltype(Lanes{}[0])>;

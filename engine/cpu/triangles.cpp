@@ -41,7 +41,7 @@ float inside(const glm::vec4& p, int plane, const glm::vec2& guard) {
   }
 }
 
-// Of what lies in front of the eye.
+// Where a vertex in front of the eye comes to lie: in subpixels, and its depth.
 Corner placed(const Frame& frame, const glm::vec4& p) {
   const device::Viewport& viewport = frame.viewport;
   const float inverse = 1 / p.w;

@@ -28,7 +28,8 @@ void record_edits(Workspace& work, const LevelBuffers& level, const device::Buff
 void record_assembly(Workspace& work, const LevelBuffers& level, Method method, const Boundary& boundary, bool even,
                      OperatorBuffers& op);
 
-// The same, unless op has rows of these coefficients and this boundary; with `damped` what record_damping finds, too.
+// record_assembly, unless op has rows of these coefficients and this boundary; with `damped` what record_damping finds,
+// too.
 void record_rows(Workspace& work, const LevelBuffers& level, Method method, const Boundary& boundary, bool even,
                  bool damped, OperatorBuffers& op);
 

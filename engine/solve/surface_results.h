@@ -50,7 +50,8 @@ class SurfaceResults {
   // Exitance and energy of the final solution.
   void record(Workspace& work, const Solved& solved);
 
-  // The same of a corrected one: fluence at the vertices (vec3, scaled) and exitance of the faces, W/mm^2.
+  // Exitance and energy of a solution that the transport correction has changed: fluence at the vertices (vec3, scaled)
+  // and exitance of the faces, W/mm^2.
   void record_corrected(Workspace& work, const Solved& solved, const device::Buffer& fluence,
                         const device::Buffer& exitance);
 

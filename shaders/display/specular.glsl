@@ -43,7 +43,7 @@ void place_roughness(vec3 rest, vec3 to_right, vec3 to_below) {
 float cook_torrance(vec3 n, vec3 v, vec3 l, float alpha2) {
   float n_l = dot(n, l), n_v = dot(n, v);
   if (n_l <= 0.0 || n_v <= 0.0) return 0.0;
-  // Of the half vector (v + l) / |v + l|, with |v + l|^2 = 2 (1 + v.l): its cosines with v and n.
+  // Squared cosines of the half vector (v + l) / |v + l| with v and n; |v + l|^2 = 2 (1 + v.l).
   float v_h2 = max(0.5 + 0.5 * dot(v, l), 1e-7);
   float n_h2 = min(0.25 * (n_v + n_l) * (n_v + n_l) / v_h2, 1.0);
   float base = n_h2 * (alpha2 - 1.0) + 1.0;

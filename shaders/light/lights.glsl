@@ -104,7 +104,7 @@ uint shadow_view(LightRecord light, vec3 position) {
   return light.first_view + (light.view_count == 6u ? cube_view(position - light.towards_or_at) : 0u);
 }
 
-// Of a point of a surface of unit normal `normal`, mm.
+// Where a view of a shadow map sees a point (mm) of a surface of unit normal `normal`.
 ShadowPlace shadow_place(ShadowView view, bool perspective, vec3 position, vec3 normal) {
   float texel_mm = view.texel;
   if (perspective) texel_mm *= max((view.clip_from_world * vec4(position, 1.0)).w, view.near);

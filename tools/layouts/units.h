@@ -36,7 +36,7 @@ struct Bases {
   std::uint32_t code(std::uint32_t column) const { return column < high ? column - low : 0x8000u + column - high; }
 };
 
-// Of every slice.
+// The columns' ranges of every slice.
 std::vector<Bases> bases_of(const Rows& rows, const Units& units);
 
 }  // namespace quadgraph::layouts
