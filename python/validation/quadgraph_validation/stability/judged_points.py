@@ -10,6 +10,7 @@ import numpy as np
 
 from quadgraph.baking.budget import surface_errors
 from quadgraph.base.errors import QuadGraphError
+from quadgraph.base.relative_error import relative_rms
 from quadgraph_validation.bodies import meshes
 from quadgraph_validation.stability.error_classes import REFUSED, Errors, classify
 from quadgraph_validation.stability.fine_truths import TruthOf
@@ -114,5 +115,4 @@ def _rms(weight: np.ndarray, values: np.ndarray) -> float:
 
 
 def _relative(weight: np.ndarray, difference: np.ndarray, truth: np.ndarray) -> float:
-    size = _rms(weight, truth)
-    return _rms(weight, difference) / size if size > 0 else 0.0
+    return relative_rms(weight, difference[:, None], truth[:, None]) if _rms(weight, truth) > 0 else 0.0
