@@ -114,6 +114,7 @@ void draw_solver(State& state) {
     solve.error = error < 0.1f ? 0 : static_cast<double>(error) / 100;
   }
   ImGui::Checkbox("Inter-reflection", &solve.inter_reflection);
+  ImGui::Checkbox("Transport correction", &solve.correction);
 }
 
 void draw_picture(State& state, const Measured& measured) {

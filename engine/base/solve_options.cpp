@@ -21,7 +21,10 @@ void check_options(const SolveOptions& options) {
     throw InputError("smoothing: " + std::to_string(options.smoothing) +
                      " steps, allowed are 1 and 2, and 0 for either");
   }
-  if (options.sweeps > 0 && !(options.method == Method::fem && options.source == Source::buried)) {
+  if (options.sweeps > 0 && !options.correction) {
+    throw InputError("sweeps: " + std::to_string(options.sweeps) + " without correction, allowed is 0");
+  }
+  if (options.sweeps > 0 && !corrects(options)) {
     throw InputError("sweeps: " + std::to_string(options.sweeps) + " with method " +
                      std::string(name_of(options.method)) + " and source " + std::string(name_of(options.source)) +
                      "; transport corrects method fem with source buried alone, else allowed is 0");
@@ -31,6 +34,10 @@ void check_options(const SolveOptions& options) {
                      sweep_points_range.text());
   }
   check_options(options.path);
+}
+
+bool corrects(const SolveOptions& options) {
+  return options.correction && options.method == Method::fem && options.source == Source::buried;
 }
 
 bool gathers(Method method, Source source) {

@@ -171,7 +171,9 @@ struct SolveOptions {
   // of the mean inside cosine, instead of eight: an eighth of that work. What that does to the exitance:
   // docs/window.md.
   bool mean_rays = false;
-  // n > 0: so many sweeps of the transport equation correct the solution, with Method::fem and Source::buried.
+  // Sweeps of the transport equation correct the solution, with Method::fem and Source::buried: so many, or with 0
+  // until another one would change little. Scenes have it by default.
+  bool correction = false;
   std::uint32_t sweeps = 0;
   std::uint32_t sweep_points = 20000;  // where a sweep evaluates it
   // n > 0, with the links of a polygrid: on all levels but the coarsest only the first n layers of vertices below the
@@ -184,6 +186,9 @@ struct SolveOptions {
 
 // Throws InputError naming what is out of range.
 void check_options(const SolveOptions& options);
+
+// Whether the solution is to be corrected, and can be.
+bool corrects(const SolveOptions& options);
 
 // inter_reflection, where source and method allow it.
 bool bounces_wanted(const SolveOptions& options);

@@ -34,7 +34,8 @@ struct LevelReport {
   bool converged = false;
 };
 
-// Relative RMS error of the exitance, weighted by area, channels together.
+// Relative RMS error of the exitance, weighted by area, channels together; after a correction of its means over patches
+// of the surface.
 struct ErrorEstimate {
   double whole = 0;  // over the whole surface
   double unlit = 0;  // over the faces with less than a tenth of the mean q; 0 if there are none
@@ -80,9 +81,14 @@ struct SolveReport {
   // What further iterations would change, and no less than the share of the light that is unaccounted for; empty if
   // that cannot be told yet.
   std::optional<ErrorEstimate> algebraic;
-  // The algebraic error and that of the mesh: the difference between the exitance of the two finest levels, times the
+  // What the model leaves after a correction, and the noise of that; empty without.
+  std::optional<ErrorEstimate> model_error;
+  // That of the mesh: the difference between the exitance of the two finest levels, times the
   // share of it that is the finer one's own, and no less than what elements as deep as those at the surface leave
-  // (engine/reference/resolution.h). Empty with a single level.
+  // (engine/reference/resolution.h). A correction takes most of it away. Empty with a single level.
+  std::optional<ErrorEstimate> mesh;
+  // All of these together, and without a correction those but the model's. Empty where nothing is known of the mesh or
+  // the model.
   std::optional<ErrorEstimate> error;
   bool inter_reflection = false;  // whether inter-reflection was computed
   std::string missed;             // what was wanted of the error and is not met; empty if all is

@@ -120,12 +120,17 @@ void add_light_paths(OptionTable& table) {
        .keyword = "bounces",
        .range = up_to_a_million,
        .help = "bounces of inter-reflection; 0: until they change nothing"});
+  table.member<&Scene::solve, &SolveOptions::correction>(
+      {.name = "correction",
+       .member = "/solver/correction",
+       .keyword = "correction",
+       .help = "correct the solution by sweeps of the transport equation (method fem, source buried)"});
   table.member<&Scene::solve, &SolveOptions::sweeps>(
       {.name = "sweeps",
        .member = "/solver/sweeps",
        .keyword = "sweeps",
        .range = sweeps_range,
-       .help = "sweeps of the transport equation that correct the solution (method fem, source buried); 0: none"});
+       .help = "sweeps of the transport equation; 0: until another one would change little"});
   table.member<&Scene::solve, &SolveOptions::sweep_points>(
       {.name = "sweep-points",
        .member = "/solver/sweep_points",

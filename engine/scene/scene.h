@@ -24,7 +24,7 @@ struct Scene {
   std::vector<Deformer> deformation{};  // one after the other
   std::vector<BodyCut> cuts{};          // away from the body as it is shown; only with shortest-path
   View view{};
-  SolveOptions solve{};
+  SolveOptions solve{.correction = true};
   RenderOptions render{};
   ToneOptions tone{};
 

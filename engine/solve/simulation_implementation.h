@@ -158,7 +158,7 @@ struct Simulation::Implementation {
                              : with(options.solver);
     warn(options.source, report);
     report.deformed = shape.spoilt();
-    corrected = options.sweeps > 0;
+    corrected = corrects(options);
     if (corrected) correct(key, options, report);
     passes = work.recorder.passes();
     gathers_now.reset();
@@ -183,17 +183,19 @@ struct Simulation::Implementation {
     const Boundary boundary = boundary_with(Model::diffusion);
     prepare_correction(boundary);
     const Solved of_solve{levels[0], operators.at(key, 0), Method::fem, boundary_with(key.model), &walks[0]};
-    const CorrectionParts parts{work,     levels[0],         beams,  walks[0], operators, boundary,
-                                of_solve, gather->nearest(), results};
-    const Energy before = results.energy();
+    const TransportParts transport{work, levels[0], beams, walks[0], gather->nearest(), *tree, report.inter_reflection};
+    const CorrectionParts parts{transport, operators, boundary, of_solve, results};
     report.correction = correction->run(parts, options, {Method::fem, eta, coefficients.even(), options.mean_rays});
     results.record_corrected(work, of_solve, correction->fluence(), correction->exitance());
     work.recorder.submit();
-    const Energy after = results.energy();
-    report.energy.scattered_out = after.scattered_out;
-    report.energy.absorbed += after.absorbed - before.absorbed;
+    report.energy = results.energy();
+    const TransportPower power = correction->power(glm::dvec3(scale()), report.energy.scattered_out);
+    report.energy.absorbed += power.absorbed;
+    report.energy.unscattered_out = power.unscattered;
+    report.energy.re_entered = power.entered_again;
     report.clipped = results.clipped();
-    report.error = corrected_error(*report.correction);
+    report.model_error = corrected_error(*report.correction);
+    report.error = error_after_correction(report);
     report.missed =
         options.error > 0 && !certain(*report.error, options.error) ? missed(report.error, options.error) : "";
     report.model_warning.clear();
@@ -226,7 +228,7 @@ struct Simulation::Implementation {
     for (std::uint32_t i = 0; i < levels.size() && options.source == Source::buried; ++i) {
       walks[i].make_room(device, levels[i], beams, key.method, bounced && i <= *bounced);
     }
-    if (options.sweeps > 0) correction_room(options.sweep_points);
+    if (corrects(options)) correction_room(options.sweep_points);
   }
 
   void correction_room(std::uint32_t points) {

@@ -16,18 +16,7 @@ std::uint32_t carriers(const LevelBuffers& level, Method method) {
   return on_vertices(method) ? level.vertex_count : level.tet_count;
 }
 
-std::uint32_t rays(std::uint32_t beam_kind, bool mean_rays) {
-  return beam_kind == gpu::BEAM_LAMBERTIAN && !mean_rays ? gpu::LAMBERTIAN_RAYS : 1;
-}
-
 constexpr std::uint64_t sums_bytes = 2 * gpu::WALK_SUMS * power_bytes;
-
-// Bytes that the walk of one beam moves: every invocation looks at its face; half the faces are lit, uniformly, and a
-// ray crosses ten tets, about as many as in marble at the finest level.
-std::uint64_t walk_bytes(const LevelBuffers& level, std::uint32_t ray_count) {
-  constexpr std::uint64_t tet_bytes = 2 * sizeof(std::uint32_t) + vec3_bytes + sizeof(gpu::Optical) + 2 * power_bytes;
-  return std::uint64_t{level.face_count} * ray_count * (FACE_QUARTERS * sizeof(float) + 10 * tet_bytes / 2);
-}
 
 int place_of(std::uint32_t vertex, const glm::uvec4& tet) {
   int k = 0;
@@ -47,7 +36,7 @@ std::uint32_t crossing(const Level& level, const glm::uvec4& tet, int k, std::ui
   return packed;
 }
 
-std::vector<std::uint32_t> crossings(const Level& level) {
+std::vector<std::uint32_t> crossings_of(const Level& level) {
   std::vector<std::uint32_t> result;
   result.reserve(4 * level.tets.size());
   for (std::size_t t = 0; t < level.tets.size(); ++t) {
@@ -61,6 +50,15 @@ constexpr std::uint32_t most_nodes = 1u << (32 - CROSSING_BITS);
 
 }  // namespace
 
+std::uint32_t rays_of(std::uint32_t beam_kind, bool mean_rays) {
+  return beam_kind == gpu::BEAM_LAMBERTIAN && !mean_rays ? gpu::LAMBERTIAN_RAYS : 1;
+}
+
+std::uint64_t walk_bytes(const LevelBuffers& level, std::uint32_t ray_count) {
+  constexpr std::uint64_t tet_bytes = 2 * sizeof(std::uint32_t) + vec3_bytes + sizeof(gpu::Optical) + 2 * power_bytes;
+  return std::uint64_t{level.face_count} * ray_count * (FACE_QUARTERS * sizeof(float) + 10 * tet_bytes / 2);
+}
+
 SourceWalk::SourceWalk(device::Device& device, const Level& level, std::uint32_t number)
     : prefix_("level " + std::to_string(number) + " "),
       unscattered_(device, level.face_count() * power_bytes, device::Place::device, "walk/" + prefix_ + "unscattered") {
@@ -68,7 +66,7 @@ SourceWalk::SourceWalk(device::Device& device, const Level& level, std::uint32_t
     throw InputError(prefix_ + "has " + std::to_string(level.node_count()) +
                      " tets and outside faces; the buried source takes up to " + std::to_string(most_nodes));
   }
-  crossings_ = device::upload<std::uint32_t>(device, crossings(level), "geometry/" + prefix_ + "crossings");
+  crossings_ = device::upload<std::uint32_t>(device, crossings_of(level), "geometry/" + prefix_ + "crossings");
 }
 
 gpu::BodyRef SourceWalk::body(const LevelBuffers& level, double eta, bool even) const {
@@ -153,7 +151,7 @@ void SourceWalk::record(Workspace& work, const LevelBuffers& level, const BeamBu
   for (const gpu::Beam& beam : beams.beams) {
     const std::uint32_t kind = beam.way.kind;
     if (kind == gpu::BEAM_MEAN) continue;
-    push.rays = rays(kind, task.mean_rays);
+    push.rays = rays_of(kind, task.mean_rays);
     work.recorder.dispatch(work.passes.of(shader::walk_source), push, std::uint64_t{level.face_count} * push.rays,
                            "source walk", walk_bytes(level, push.rays));
     push.beam += sizeof(gpu::Beam);
@@ -178,33 +176,15 @@ void SourceWalk::record_again(Workspace& work, const LevelBuffers& level, const 
   sums_again_.read_back(work);
 }
 
-void SourceWalk::record_corners(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams,
-                                const WalkTask& task, const device::Buffer& target) const {
-  work.recorder.fill(target, 0);
-  gpu::WalkSourcePush push = this->push(work, level, beams, task);
-  push.deposit = target.address();
-  push.deposits = gpu::WALK_CORNERS;
-  for (const gpu::Beam& beam : beams.beams) {
-    const std::uint32_t kind = beam.way.kind;
-    if (kind == gpu::BEAM_MEAN && !again_) continue;
-    push.rays = rays(kind, task.mean_rays);
-    work.recorder.dispatch(work.passes.of(shader::walk_source), push, std::uint64_t{level.face_count} * push.rays,
-                           "source walk", walk_bytes(level, push.rays));
-    push.beam += sizeof(gpu::Beam);
-  }
-}
-
 void SourceWalk::record_right_hand_side(Workspace& work, const LevelBuffers& level, Method method,
                                         OperatorBuffers& op) const {
   const gpu::RightHandSideBuriedPush push{.deposit = deposit(method).address(),
-                                          .taken = 0,
                                           .vertices = level.vertices.address(),
                                           .tets = level.tets.address(),
                                           .side = op.right_hand_side(work.reduction),
                                           .count = op.count,
                                           .deposit_count = carriers(level, method),
-                                          .per_volume = method == Method::quadgraph_fdm ? 1u : 0u,
-                                          .share = 1};
+                                          .per_volume = method == Method::quadgraph_fdm ? 1u : 0u};
   work.recorder.dispatch(work.passes.of(shader::right_hand_side_buried, op.model, op.format), push, op.count,
                          "right-hand side",
                          op.count * (op.block_bytes() + op.field_bytes()) + carriers(level, method) * power_bytes);

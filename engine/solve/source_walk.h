@@ -34,6 +34,13 @@ struct WalkTask {
   bool mean_rays = false;  // SolveOptions
 };
 
+// Rays from one origin on a face, of a beam of this kind.
+std::uint32_t rays_of(std::uint32_t beam_kind, bool mean_rays);
+
+// Bytes that the walk of one beam moves: every invocation looks at its face; half the faces are lit, uniformly, and a
+// ray crosses ten tets, about as many as in marble at the finest level.
+std::uint64_t walk_bytes(const LevelBuffers& level, std::uint32_t ray_count);
+
 class SourceWalk {
  public:
   // Throws InputError if the level has too many tets and faces.
@@ -49,6 +56,8 @@ class SourceWalk {
   void make_room(device::Device& device, const LevelBuffers& level, const BeamBuffers& beams, Method method,
                  bool again);
 
+  const device::Buffer& crossings() const { return crossings_; }  // uint, four per tet (body_shared.h)
+
   // Walks, unless that has been done for the present light by the same rays: level.beam_q of every beam of the scene,
   // scaled by work.scale. The graph methods share their deposits.
   void record(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, const WalkTask& task);
@@ -58,11 +67,6 @@ class SourceWalk {
 
   // Adds the beam of light that enters again to the deposits of a walk recorded before; every call anew.
   void record_again(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, const WalkTask& task);
-
-  // What the light of the last walk scatters for the first time between the corners of each tet, into `target`: fixed
-  // point, four per tet.
-  void record_corners(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, const WalkTask& task,
-                      const device::Buffer& target) const;
 
   // b of the solve, and its norm, from the deposits of a walk recorded before.
   void record_right_hand_side(Workspace& work, const LevelBuffers& level, Method method, OperatorBuffers& op) const;

@@ -1,23 +1,16 @@
 #include "engine/solve/transport_correction.h"
 
 #include <cmath>
+#include <cstddef>
 #include <utility>
 
 #include "engine/base/error.h"
 #include "engine/solve/assembly.h"
 #include "engine/solve/level_solver.h"
-#include "engine/solve/row_structure.h"
 #include "engine/solve/solver_choice.h"
-#include "interface/source/right_hand_side_buried.comp.h"
 #include "interface/transport/transport_change.comp.h"
-#include "interface/transport/transport_exitance.comp.h"
 #include "interface/transport/transport_faces.comp.h"
-#include "interface/transport/transport_first.comp.h"
-#include "interface/transport/transport_fluence.comp.h"
-#include "interface/transport/transport_points.comp.h"
-#include "interface/transport/transport_step.comp.h"
-#include "interface/transport/transport_sweep.comp.h"
-#include "interface/transport/transport_weights.comp.h"
+#include "interface/transport/transport_load.comp.h"
 
 namespace quadgraph {
 namespace {
@@ -26,21 +19,22 @@ constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
 constexpr std::uint64_t sum_bytes = FIXED_WORDS * sizeof(std::uint32_t);
 constexpr std::uint32_t halves = gpu::TRANSPORT_HALVES;
 
-// Rays per point, and per face and half.
-constexpr std::uint32_t directions = 16, face_rays = 8;
-
-// Tets that a ray crosses, and what it reads in one; for the bytes.
-constexpr std::uint64_t tets_per_ray = 10;
-constexpr std::uint64_t segment_bytes = 2 * sizeof(std::uint32_t) + sizeof(gpu::Optical) + 6 * vec3_bytes;
-
 // What is left of what a solve is to find, as a share of it, and its iterations at most, with cycles and without.
 constexpr double share_left = 0.01;
 constexpr std::uint32_t most_cycles = 12, most_steps = 2000;
 
-// Points are drawn again, so often at most, until what their noise does to the exitance through the solves is no
-// larger.
-constexpr ErrorEstimate noise_wanted{0.01, 0.02};
+// What the exitance may be off by after the last sweep, where nobody says how many or how far: by the noise of the
+// samples, and by what another sweep would change; sweeps at most. Of an error that is asked for, the share of each.
+constexpr ErrorEstimate error_wanted{0.008, 0.016};
+constexpr double share_of_error = 0.6;
+constexpr std::uint32_t most_sweeps = 4;
+
+// Directions per point, and rays per face and half; draws of points at most.
+constexpr std::uint32_t rest_directions = 16, rest_rays = 8, motion_directions = 8, motion_rays = 2;
 constexpr double most_draws = 16;
+
+// Of what is known from the frames before, the least that the newest has a say in.
+constexpr float least_share = 0.1f;
 
 ErrorEstimate relative(const glm::vec2& square, const glm::vec2& size) {
   const auto root = [](float part, float whole) {
@@ -49,151 +43,100 @@ ErrorEstimate relative(const glm::vec2& square, const glm::vec2& size) {
   return {root(square.x, size.x), root(square.y, size.y)};
 }
 
-// Of what a sweep has changed, the share that another one would.
-constexpr double next_share = 0.15;
+// Of what a sweep has changed, the share that all further ones would: the first leaves a smaller one than the others.
+constexpr double left_by_first = 0.13, left_by_next = 0.3;
 
-double left_after(double change, double noise_before, double noise) {
-  const double changed = std::sqrt(std::max(0.0, change * change - noise_before * noise_before));
-  return std::hypot(next_share * changed, noise);
+// Of the mesh's error the same.
+constexpr double mesh_left = 0.2;
+
+double share_left_by(std::size_t sweeps) {
+  return sweeps > 1 ? left_by_next : left_by_first;
+}
+
+// The error is that of means over patches, so many on the whole surface; about so many faces are around a vertex. What
+// faces gather is off each by itself, what the solves find is not.
+constexpr double patches = 250, faces_around = 6;
+
+double of_patches(double at_vertices, double of_solves, double faces) {
+  const double gathered = std::max(0.0, at_vertices * at_vertices - of_solves * of_solves);
+  return std::sqrt(of_solves * of_solves + gathered * std::min(1.0, faces_around * patches / faces));
+}
+
+ErrorEstimate wanted(const SolveOptions& options) {
+  if (options.error > 0) return {share_of_error * options.error, share_of_error * options.error};
+  return error_wanted;
+}
+
+// So many times the points would leave the noise that is wanted of what they add.
+double excess_of(const ErrorEstimate& noise, const ErrorEstimate& before, const ErrorEstimate& wanted) {
+  const auto excess = [](double all, double first, double most) { return (all * all - first * first) / (most * most); };
+  return std::max(excess(noise.whole, before.whole, wanted.whole), excess(noise.unlit, before.unlit, wanted.unlit));
+}
+
+// Whether another sweep would change less than is wanted, or than the noise.
+bool last_of_all(const std::vector<CorrectedSweep>& done, const ErrorEstimate& wanted) {
+  const CorrectedSweep& last = done.back();
+  const double share = share_left_by(done.size());
+  return share * last.change.whole <= std::max(wanted.whole, last.noise.whole) &&
+         share * last.change.unlit <= std::max(wanted.unlit, last.noise.unlit);
 }
 
 }  // namespace
 
 ErrorEstimate corrected_error(const CorrectionReport& correction) {
   const CorrectedSweep& last = correction.sweeps.back();
-  ErrorEstimate before;
-  if (correction.sweeps.size() > 1) before = correction.sweeps.end()[-2].noise;
-  return {left_after(last.change.whole, before.whole, last.noise.whole),
-          left_after(last.change.unlit, before.unlit, last.noise.unlit)};
+  const double share = share_left_by(correction.sweeps.size());
+  return {std::hypot(share * last.change.whole, last.noise.whole),
+          std::hypot(share * last.change.unlit, last.noise.unlit)};
 }
 
-TransportCorrection::TransportCorrection(device::Device& device, const Level& level) {
+ErrorEstimate error_after_correction(const SolveReport& report) {
+  const ErrorEstimate none, model = report.model_error.value_or(none), mesh = report.mesh.value_or(none);
+  const ErrorEstimate solver = report.algebraic.value_or(none);
+  const auto all = [](double a, double b, double c) { return std::sqrt(a * a + b * b + c * c); };
+  return {all(model.whole, mesh_left * mesh.whole, left_by_first * solver.whole),
+          all(model.unlit, mesh_left * mesh.unlit, left_by_first * solver.unlit)};
+}
+
+TransportCorrection::TransportCorrection(device::Device& device, const Level& level) : samples_(device, level) {
   const auto room = [&](std::uint64_t bytes, const char* name, device::Place place = device::Place::device) {
     return device::Buffer(device, bytes, place, "transport/" + std::string(name));
   };
-  const TetIncidence tets = quadgraph::tet_incidence(level);
-  tet_offset_ = device::upload<std::uint32_t>(device, tets.offset, "transport/tet_offset");
-  tet_incidence_ = device::upload<std::uint32_t>(device, tets.tet, "transport/tet_incidence");
-  field_ = room(sizeof(gpu::TransportFieldRef), "field");
-  deposit_ = room(4 * level.tet_count() * sum_bytes, "deposit at corners");
-  first_ = room(4 * level.tet_count() * vec3_bytes, "first scattered");
-  weights_ = room(level.tet_count() * sizeof(glm::vec2), "weights");
-  total_ = room(sizeof(float), "total weight");
-  drawn_ = room(sizeof(std::uint32_t), "points drawn");
-  segments_ = room(sizeof(std::uint32_t), "segments");
-  segments_on_host_ = room(sizeof(std::uint32_t), "segments, read back", device::Place::host);
-  load_ = room(2 * halves * level.vertex_count() * sum_bytes, "load");
-  gathered_ = room(halves * level.face_count() * vec3_bytes, "gathered exitance");
   for (std::uint32_t half = 0; half < halves; ++half) {
     right_side_[half] = room(level.vertex_count() * vec3_bytes, "b");
+    known_[half] = room(level.vertex_count() * vec3_bytes, "b, before");
     change_[half] = room(level.vertex_count() * vec3_bytes, "change of fluence");
   }
-  fluence_ = room(level.vertex_count() * vec3_bytes, "fluence");
+  halves_ = room(halves * level.face_count() * vec3_bytes, "exitance of both halves");
   exitance_ = room(level.face_count() * vec3_bytes, "exitance");
   statistics_ = room(2 * sizeof(gpu::TransportChange), "change");
   statistics_on_host_ = room(2 * sizeof(gpu::TransportChange), "change, read back", device::Place::host);
 }
 
-// Of each tet at most one point more than it weighs is drawn: ten standard deviations of their number are left.
-void TransportCorrection::make_room(device::Device& device, std::uint32_t points) {
-  points_wanted_ = points;
-  const std::uint32_t room = points + points / 8 + 1024;
-  if (room_ == room) return;
-  room_ = room;
-  points_ = {device, room * sizeof(gpu::TransportPoint), device::Place::device, "transport/points"};
-}
-
-void TransportCorrection::record_start(const CorrectionParts& parts, const WalkTask& task) {
-  Workspace& work = parts.work;
-  const LevelBuffers& level = parts.level;
-  const gpu::TransportFieldRef field{.body = parts.walk.body(level, task.eta, task.even),
-                                     .fluence = fluence_.address(),
-                                     .first = first_.address(),
-                                     .segments = segments_.address()};
-  device::write_bytes(work.recorder.device(), field_, std::as_bytes(std::span(&field, 1)));
-  work.recorder.fill(segments_, 0);
-  work.recorder.copy(parts.results.exitance(), exitance_, exitance_.size());
-  parts.walk.record_corners(work, level, parts.beams, task, deposit_);
-  const gpu::TransportFirstPush first{.vertices = level.vertices.address(),
-                                      .tets = level.tets.address(),
-                                      .deposit = deposit_.address(),
-                                      .first = first_.address(),
-                                      .count = level.tet_count};
-  work.recorder.dispatch(work.passes.of(shader::transport_first), first, level.tet_count, "transport start",
-                         deposit_.size() + first_.size() + level.tet_count * (sizeof(glm::uvec4) + 4 * vec3_bytes));
-  const OperatorBuffers& op = parts.solved.op;
-  const gpu::TransportFluencePush fluence{
-      .x = op.x.address(), .to_phi = op.to_phi.address(), .fluence = fluence_.address(), .count = level.vertex_count};
-  work.recorder.dispatch(work.passes.of(shader::transport_fluence, op.model), fluence, level.vertex_count,
-                         "transport start", level.vertex_count * (op.field_bytes() + vec3_bytes));
-  const gpu::TransportWeightsPush weights{.vertices = level.vertices.address(),
-                                          .tets = level.tets.address(),
-                                          .optical = level.optical.address(),
-                                          .nearest = parts.nearest.address(),
-                                          .weights = weights_.address(),
-                                          .total = total_.address(),
-                                          .reduction = work.reduction.address(),
-                                          .count = level.tet_count,
-                                          .even = level.even ? 1u : 0u};
-  work.recorder.dispatch(work.passes.of(shader::transport_weights), weights, level.tet_count, "transport start",
-                         level.tet_count * (2 * sizeof(glm::uvec4) + 8 * vec3_bytes + sizeof(gpu::Optical)));
-}
-
-void TransportCorrection::record_points(const CorrectionParts& parts) {
-  Workspace& work = parts.work;
-  work.recorder.fill(drawn_, 0);
-  const gpu::TransportPointsPush push{.weights = weights_.address(),
-                                      .total = total_.address(),
-                                      .drawn = drawn_.address(),
-                                      .points = points_.address(),
-                                      .tet_count = parts.level.tet_count,
-                                      .seed = ++seed_,
-                                      .wanted = static_cast<float>(points_wanted_) / halves,
-                                      .room = room_};
-  work.recorder.dispatch(work.passes.of(shader::transport_points), push, parts.level.tet_count, "transport points",
-                         weights_.size() + points_.size());
-}
-
-void TransportCorrection::record_sweep(const CorrectionParts& parts) {
-  Workspace& work = parts.work;
-  const gpu::TransportSweepPush push{.field = field_.address(),
-                                     .drawn = drawn_.address(),
-                                     .points = points_.address(),
-                                     .load = load_.address(),
-                                     .room = room_,
-                                     .directions = directions,
-                                     .vertex_count = parts.level.vertex_count};
-  work.recorder.dispatch(work.passes.of(shader::transport_sweep), push, room_, "transport sweep",
-                         std::uint64_t{points_wanted_} * directions * tets_per_ray * segment_bytes);
-}
-
-void TransportCorrection::record_exitance(const CorrectionParts& parts) {
-  Workspace& work = parts.work;
-  const gpu::TransportExitancePush push{
-      .field = field_.address(), .exitance = gathered_.address(), .rays = face_rays, .seed = ++seed_};
-  const std::uint64_t samples = std::uint64_t{halves} * parts.level.face_count;
-  work.recorder.dispatch(work.passes.of(shader::transport_exitance), push, samples, "transport exitance",
-                         samples * face_rays * tets_per_ray * segment_bytes);
-}
-
-void TransportCorrection::record_load(const CorrectionParts& parts, OperatorBuffers& op, std::uint32_t half) {
-  Workspace& work = parts.work;
-  const std::uint64_t bytes = op.count * sum_bytes, added = load_.address() + 2 * half * bytes;
-  const gpu::RightHandSideBuriedPush push{.deposit = added,
-                                          .taken = added + bytes,
-                                          .vertices = parts.level.vertices.address(),
-                                          .tets = parts.level.tets.address(),
-                                          .side = op.right_hand_side(work.reduction),
-                                          .count = op.count,
-                                          .deposit_count = op.count,
-                                          .per_volume = 0,
-                                          .share = 1.0f / static_cast<float>(draws_)};
-  work.recorder.dispatch(work.passes.of(shader::right_hand_side_buried, op.model, op.format), push, op.count,
-                         "right-hand side", op.count * (op.block_bytes() + op.field_bytes()) + 2 * bytes);
+void TransportCorrection::record_load(const CorrectionParts& parts, OperatorBuffers& op, std::uint32_t half,
+                                      float known) {
+  Workspace& work = parts.transport.work;
+  const std::uint64_t bytes = 2 * op.count * sum_bytes;
+  const std::uint64_t missing = samples_.books().address() + (half == 0 ? offsetof(gpu::TransportBook, missing_a)
+                                                                        : offsetof(gpu::TransportBook, missing_b));
+  const gpu::TransportLoadPush push{.load = samples_.load().address() + half * bytes,
+                                    .known = known_[half].address(),
+                                    .mass = samples_.mass().address(),
+                                    .fluence = samples_.fluence().address(),
+                                    .missing = missing,
+                                    .unit = samples_.unit().address(),
+                                    .scale = work.scale.address(),
+                                    .side = op.right_hand_side(work.reduction),
+                                    .count = op.count,
+                                    .share = 1.0f / static_cast<float>(draws_),
+                                    .keep = known};
+  work.recorder.dispatch(work.passes.of(shader::transport_load, op.model, op.format), push, op.count, "right-hand side",
+                         op.count * (op.block_bytes() + op.field_bytes() + vec3_bytes) + bytes);
 }
 
 // A delta = b of one half. The operator lends its rows and vectors; b and x of its own solution stay what they are.
-void TransportCorrection::solve(const CorrectionParts& parts, std::uint32_t half) {
+void TransportCorrection::solve(const CorrectionParts& parts, std::uint32_t half, float known) {
+  Workspace& work = parts.transport.work;
   OperatorBuffers& op = parts.operators.at(correction_key, 0);
   std::swap(op.b, right_side_[half]);
   std::swap(op.x, change_[half]);
@@ -204,14 +147,14 @@ void TransportCorrection::solve(const CorrectionParts& parts, std::uint32_t half
                        .tolerance = share_left,
                        .max_iterations = cycles ? most_cycles : most_steps,
                        .smoothing = rules_of(kind).smoothing};
-  LevelSolver solver(parts.work, parts.operators, correction_key, 0, task);
-  record_load(parts, op, half);
-  parts.work.recorder.fill(op.x, 0);
+  LevelSolver solver(work, parts.operators, correction_key, 0, task);
+  record_load(parts, op, half, known);
+  work.recorder.fill(op.x, 0);
   if (cycles) {
     solver.record_start();
     solver.record(most_cycles);
     solver.record_state();
-    parts.work.recorder.submit();
+    work.recorder.submit();
     solver.take();
   } else {
     solver.run();
@@ -222,18 +165,18 @@ void TransportCorrection::solve(const CorrectionParts& parts, std::uint32_t half
 
 // Statistics with all noise, then with that of the solves alone.
 void TransportCorrection::record_change(const CorrectionParts& parts) {
-  Workspace& work = parts.work;
-  const LevelBuffers& level = parts.level;
+  Workspace& work = parts.transport.work;
+  const LevelBuffers& level = parts.transport.level;
   gpu::TransportChangePush push{.vertices = level.vertices.address(),
                                 .faces = level.faces.address(),
                                 .face_offset = level.face_offset.address(),
                                 .face_incidence = level.face_incidence.address(),
                                 .share = parts.operators.at(correction_key, 0).surface_share.address(),
                                 .scale = work.scale.address(),
-                                .gathered = gathered_.address(),
+                                .gathered = samples_.gathered().address(),
                                 .change_a = change_[0].address(),
                                 .change_b = change_[1].address(),
-                                .exitance = exitance_.address(),
+                                .before = halves_.address(),
                                 .change = statistics_.address(),
                                 .reduction = work.reduction.address(),
                                 .count = level.surface_vertex_count,
@@ -249,82 +192,116 @@ void TransportCorrection::record_change(const CorrectionParts& parts) {
 }
 
 void TransportCorrection::record_faces(const CorrectionParts& parts) {
-  Workspace& work = parts.work;
-  const LevelBuffers& level = parts.level;
+  Workspace& work = parts.transport.work;
+  const LevelBuffers& level = parts.transport.level;
   const gpu::TransportFacesPush faces{.faces = level.faces.address(),
                                       .face_kinds = level.face_kind.address(),
                                       .scale = work.scale.address(),
-                                      .gathered = gathered_.address(),
+                                      .gathered = samples_.gathered().address(),
                                       .change_a = change_[0].address(),
                                       .change_b = change_[1].address(),
+                                      .halves = halves_.address(),
                                       .exitance = exitance_.address(),
                                       .count = level.face_count,
                                       .k11 = static_cast<float>(parts.boundary.k11)};
   work.recorder.dispatch(work.passes.of(shader::transport_faces), faces, level.face_count, "transport change",
-                         level.face_count * (sizeof(glm::uvec3) + 9 * vec3_bytes));
-}
-
-void TransportCorrection::record_step(const CorrectionParts& parts) {
-  Workspace& work = parts.work;
-  const LevelBuffers& level = parts.level;
-  const gpu::TransportStepPush push{.vertices = level.vertices.address(),
-                                    .tets = level.tets.address(),
-                                    .optical = level.optical.address(),
-                                    .tet_offset = tet_offset_.address(),
-                                    .tet_incidence = tet_incidence_.address(),
-                                    .load_a = right_side_[0].address(),
-                                    .load_b = right_side_[1].address(),
-                                    .change_a = change_[0].address(),
-                                    .change_b = change_[1].address(),
-                                    .fluence = fluence_.address(),
-                                    .count = level.vertex_count,
-                                    .even = level.even ? 1u : 0u};
-  work.recorder.dispatch(
-      work.passes.of(shader::transport_step), push, level.vertex_count, "transport step",
-      4 * level.tet_count * (sizeof(glm::uvec4) + 4 * vec3_bytes) + 6 * level.vertex_count * vec3_bytes);
+                         level.face_count * (sizeof(glm::uvec3) + 11 * vec3_bytes));
 }
 
 // So many draws of points more; then the solves, and what they say.
-void TransportCorrection::draw(const CorrectionParts& parts, std::uint32_t draws) {
-  for (std::uint32_t k = 0; k < draws; ++k) {
-    record_points(parts);
-    record_sweep(parts);
-  }
+void TransportCorrection::draw(const CorrectionParts& parts, const Sampling& sampling, std::uint32_t draws,
+                               float known) {
+  for (std::uint32_t k = 0; k < draws; ++k) samples_.record_draw(parts.transport, sampling.directions);
   draws_ += draws;
-  for (std::uint32_t half = 0; half < halves; ++half) solve(parts, half);
+  samples_.record_books(parts.transport, 1.0f / static_cast<float>(draws_), known);
+  for (std::uint32_t half = 0; half < halves; ++half) solve(parts, half, known);
   record_change(parts);
-  parts.work.recorder.submit();
+  parts.transport.work.recorder.submit();
 }
 
-CorrectedSweep TransportCorrection::sweep(const CorrectionParts& parts) {
-  record_exitance(parts);
-  parts.work.recorder.fill(load_, 0);
+CorrectedSweep TransportCorrection::sweep(const CorrectionParts& parts, const Sampling& sampling,
+                                          const TransportShares& shares) {
+  samples_.record_source(parts.transport, shares);
+  samples_.record_exitance(parts.transport, sampling.face_rays, shares.known, frames_ == 0);
+  samples_.record_no_load(parts.transport);
+  std::swap(right_side_, known_);
   draws_ = 0;
-  draw(parts, 1);
+  draw(parts, sampling, 1, shares.known);
   const std::span<const gpu::TransportChange> found = statistics_on_host_.mapped_as<gpu::TransportChange>();
   const ErrorEstimate noise = relative(found[1].noise, found[1].size);
-  const double excess = std::max(noise.whole / noise_wanted.whole, noise.unlit / noise_wanted.unlit);
-  const double wanted = std::min(std::ceil(excess * excess), most_draws);
-  if (wanted > 1) draw(parts, static_cast<std::uint32_t>(wanted) - 1);
+  const double draws =
+      std::min(std::ceil(excess_of(noise, sampling.noise_before, sampling.noise_wanted)), sampling.most_draws);
+  if (draws > 1) draw(parts, sampling, static_cast<std::uint32_t>(draws) - 1, shares.known);
+  solves_noise_ = relative(found[1].noise, found[1].size);
   record_faces(parts);
-  record_step(parts);
+  samples_.record_step(parts.transport, right_side_, change_);
+  samples_.record_state(parts.transport);
   if (!std::isfinite(found[0].change.x) || !std::isfinite(found[0].noise.x) || !std::isfinite(found[0].size.x)) {
     throw SolverError("transport correction: met a value that is not finite");
   }
-  return {relative(found[0].change, found[0].size), relative(found[0].noise, found[0].size),
-          static_cast<double>(draws_) * points_wanted_};
+  ++frames_;
+  const ErrorEstimate all = relative(found[0].noise, found[0].size);
+  const double faces = parts.transport.level.face_count;
+  return {relative(found[0].change, found[0].size),
+          {of_patches(all.whole, solves_noise_.whole, faces), of_patches(all.unlit, solves_noise_.unlit, faces)},
+          static_cast<double>(draws_) * samples_.points()};
+}
+
+void TransportCorrection::start(const CorrectionParts& parts, const WalkTask& task) {
+  samples_.record_start(parts.transport, task, parts.solved.op);
+  const device::Buffer& exitance = parts.results.exitance();
+  for (std::uint32_t half = 0; half < halves; ++half) {
+    parts.transport.work.recorder.copy(exitance, halves_, exitance.size(), half * exitance.size());
+  }
+}
+
+// What is known of the frames before is carried on: of tets that are where they were, what rays found for the field
+// before is taken away by the same rays that see the present one, so that the mean is that of the present one alone; of
+// tets that have moved it is averaged.
+TransportShares TransportCorrection::shares_in_motion() {
+  const float newest = std::max(least_share, 1.0f / static_cast<float>(frames_ + 1));
+  return moved_ ? TransportShares{newest, 0, 1 - newest} : TransportShares{1, 1 - newest, 1 - newest};
+}
+
+CorrectedSweep TransportCorrection::sweep_in_motion(const CorrectionParts& parts) {
+  return sweep(parts, {motion_directions, motion_rays, 1, error_wanted, {}}, shares_in_motion());
+}
+
+// The second sweep and those behind it sample what the one before has changed, whose noise is small.
+std::vector<CorrectedSweep> TransportCorrection::sweeps_at_rest(const CorrectionParts& parts,
+                                                                const SolveOptions& options) {
+  samples_.begin_seeds();
+  frames_ = 0;
+  std::vector<CorrectedSweep> done;
+  const ErrorEstimate enough = wanted(options);
+  while (done.empty() || (options.sweeps > 0 ? done.size() < options.sweeps
+                                             : done.size() < most_sweeps && !last_of_all(done, enough))) {
+    const ErrorEstimate noise = done.empty() ? ErrorEstimate{} : solves_noise_;
+    const TransportShares shares = done.empty() ? TransportShares{1, 0, 0} : TransportShares{1, 1, 1};
+    done.push_back(sweep(parts, {rest_directions, rest_rays, most_draws, enough, noise}, shares));
+  }
+  return done;
 }
 
 CorrectionReport TransportCorrection::run(const CorrectionParts& parts, const SolveOptions& options,
                                           const WalkTask& task) {
-  record_start(parts, task);
-  seed_ = 0;
+  start(parts, task);
   CorrectionReport report;
-  for (std::uint32_t k = 0; k < options.sweeps; ++k) report.sweeps.push_back(sweep(parts));
-  parts.work.recorder.copy(segments_, segments_on_host_, segments_.size());
-  parts.work.recorder.submit();
-  report.segments = segments_on_host_.mapped_as<std::uint32_t>()[0];
+  if (options.warm && frames_ > 0) {
+    report.sweeps.push_back(sweep_in_motion(parts));
+  } else {
+    report.sweeps = sweeps_at_rest(parts, options);
+  }
+  moved_ = false;
+  parts.transport.work.recorder.submit();
+  report.segments = samples_.segments();
   return report;
+}
+
+TransportPower TransportCorrection::power(const glm::dvec3& scale, const glm::dvec3& scattered_out) const {
+  TransportPower power = samples_.power(scale);
+  power.entered_again += power.share_again * scattered_out;
+  return power;
 }
 
 }  // namespace quadgraph

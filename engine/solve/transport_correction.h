@@ -7,24 +7,17 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/solve/beams.h"
 #include "engine/solve/operators.h"
-#include "engine/solve/source_walk.h"
-#include "engine/solve/surface_results.h"
-#include "engine/solve/workspace.h"
+#include "engine/solve/transport_samples.h"
 
 namespace quadgraph {
 
-// What a correction works with.
+// What a correction starts from.
 struct CorrectionParts {
-  Workspace& work;
-  const LevelBuffers& level;  // the finest
-  const BeamBuffers& beams;
-  const SourceWalk& walk;         // that has walked the scene's light on it, buried
+  TransportParts transport;
   Operators& operators;           // those of `correction_key` have been created and hold the present coefficients
   const Boundary& boundary;       // of that operator
   const Solved& solved;           // fem
-  const device::Buffer& nearest;  // surface vertex of each vertex (engine/reference/vertex_starts.h)
   const SurfaceResults& results;  // of the solve
 };
 
@@ -35,47 +28,63 @@ inline constexpr OperatorKey correction_key{Method::fem, Model::diffusion};
 // nobody tuned for (docs/accuracy.md).
 ErrorEstimate corrected_error(const CorrectionReport& correction);
 
+// That, of the mesh what the sweeps have left of it, and the algebraic error, together. What the sweeps sample is off
+// where the solve is, whatever the reason.
+ErrorEstimate error_after_correction(const SolveReport& report);
+
 class TransportCorrection {
  public:
   // `level`: the finest, whose tets stay what they are.
   TransportCorrection(device::Device& device, const Level& level);
 
-  // Room for sweeps of so many points, unless it is there.
-  void make_room(device::Device& device, std::uint32_t points);
+  // Room for draws of so many points, unless it is there.
+  void make_room(device::Device& device, std::uint32_t points) { samples_.make_room(device, points); }
 
-  // So many sweeps, from the solution. Throws SolverError where a value is not finite.
+  // Sweeps from the solution, so many or until the error is what is wanted; with `options.warm` one that goes on from
+  // what is known of the last call. Throws SolverError where a value is not finite.
   CorrectionReport run(const CorrectionParts& parts, const SolveOptions& options, const WalkTask& task);
 
+  // The vertices have moved since the last call.
+  void moved() { moved_ = true; }
+
+  // What the last call knows is of no use to the next.
+  void forget() { frames_ = 0; }
+
   // Of the last run: fluence at the vertices (vec3, scaled) and exitance of the faces, W/mm^2.
-  const device::Buffer& fluence() const { return fluence_; }
+  const device::Buffer& fluence() const { return samples_.fluence(); }
   const device::Buffer& exitance() const { return exitance_; }
 
- private:
-  void record_start(const CorrectionParts& parts, const WalkTask& task);
-  void record_points(const CorrectionParts& parts);
-  void record_sweep(const CorrectionParts& parts);
-  void record_exitance(const CorrectionParts& parts);
-  void record_load(const CorrectionParts& parts, OperatorBuffers& op, std::uint32_t half);
-  void solve(const CorrectionParts& parts, std::uint32_t half);
-  void record_change(const CorrectionParts& parts);
-  void record_step(const CorrectionParts& parts);
-  void record_faces(const CorrectionParts& parts);
-  void draw(const CorrectionParts& parts, std::uint32_t draws);
-  CorrectedSweep sweep(const CorrectionParts& parts);
+  // Power of the light's own rays, W; `entered_again` with the scattered light of which `scattered_out` W leave.
+  TransportPower power(const glm::dvec3& scale, const glm::dvec3& scattered_out) const;
 
-  std::uint32_t points_wanted_ = 0, room_ = 0;
-  std::uint32_t seed_ = 0;                     // of what was recorded last
-  std::uint32_t draws_ = 0;                    // of points, in the load
-  device::Buffer tet_offset_, tet_incidence_;  // tets around each vertex
-  device::Buffer field_;                       // TransportFieldRef
-  device::Buffer deposit_, first_;             // four per tet: fixed point; vec3, W/mm^3, scaled
-  device::Buffer weights_, total_;             // vec2 per tet; float
-  device::Buffer drawn_, points_;              // uint; TransportPoint
-  device::Buffer segments_, segments_on_host_;
-  device::Buffer load_;                                // fixed point, per vertex two per half
-  device::Buffer gathered_;                            // vec3 per half and face, scaled
-  std::array<device::Buffer, 2> right_side_, change_;  // vec3 per vertex: b and x of the solve of each half
-  device::Buffer fluence_, exitance_;
+ private:
+  // How a sweep samples: directions per point, rays per face and half, and draws of points while they add more noise to
+  // that of the sweep before than is wanted.
+  struct Sampling {
+    std::uint32_t directions, face_rays;
+    double most_draws;
+    ErrorEstimate noise_wanted{}, noise_before{};
+  };
+
+  void record_load(const CorrectionParts& parts, OperatorBuffers& op, std::uint32_t half, float known);
+  void solve(const CorrectionParts& parts, std::uint32_t half, float known);
+  void record_change(const CorrectionParts& parts);
+  void record_faces(const CorrectionParts& parts);
+  void draw(const CorrectionParts& parts, const Sampling& sampling, std::uint32_t draws, float known);
+  CorrectedSweep sweep(const CorrectionParts& parts, const Sampling& sampling, const TransportShares& shares);
+  void start(const CorrectionParts& parts, const WalkTask& task);
+  TransportShares shares_in_motion();
+  CorrectedSweep sweep_in_motion(const CorrectionParts& parts);
+  std::vector<CorrectedSweep> sweeps_at_rest(const CorrectionParts& parts, const SolveOptions& options);
+
+  TransportSamples samples_;
+  std::uint32_t draws_ = 0;     // of points, in the load
+  std::uint32_t frames_ = 0;    // that what is known is made of; 0: nothing is known
+  ErrorEstimate solves_noise_;  // of the last sweep, without that of the gathered exitance
+  bool moved_ = false;
+  // vec3 per vertex: b and x of the solve of each half, and b of the sweep before.
+  std::array<device::Buffer, 2> right_side_, change_, known_;
+  device::Buffer halves_, exitance_;                // vec3 per face, W/mm^2: of each half, and the mean
   device::Buffer statistics_, statistics_on_host_;  // two TransportChange
 };
 

@@ -84,8 +84,11 @@ std::vector<gpu::Optical> optical_in_cells(const FloatArray& sigma_s_prime, cons
   return optical;
 }
 
+// Those of the simulation, which corrects what it is asked to; what scenes have by default is the callers' to say.
 SolveOptions solve_options(const char* function, const py::kwargs& given) {
-  return scene_of(function, given, {solver_group, path_group}).solve;
+  SolveOptions options = scene_of(function, given, {solver_group, path_group}).solve;
+  if (!given.contains("correction")) options.correction = SolveOptions{}.correction;
+  return options;
 }
 
 py::dict solve(Engine& engine, bool motion, const py::kwargs& given) {

@@ -8,14 +8,12 @@
 // Scaled b from the deposits, and its norm. Surface nodes of the graph methods have none.
 struct RightHandSideBuriedPush {
   Uints deposit;
-  Uints taken;  // like the deposit, to be taken away from it; null: nothing
   Vec3s vertices;  // those of the tets, where b is power per volume
   Uvec4s tets;
   RightHandSideRef side;
   uint count;
   uint deposit_count;  // elements with a deposit: the first ones
   uint per_volume;     // 1: quadgraph-fdm
-  float share;         // of what is deposited that counts
 };
 layout(push_constant, scalar) uniform Block { RightHandSideBuriedPush push; };
 
@@ -31,8 +29,6 @@ void main() {
   vec3 square = vec3(0);
   EACH(i, push.count) {
     vec3 power = i < push.deposit_count ? power_at(push.deposit, i) : vec3(0);
-    if (uvec2(push.taken) != uvec2(0)) power -= power_at(push.taken, i);
-    power *= push.share;
     if (push.per_volume == 1u && power != vec3(0)) power /= volume_of(i);
     square += store_b(push.side, i, lit(power));
   }

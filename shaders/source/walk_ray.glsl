@@ -1,12 +1,10 @@
-// One ray of the buried source through the tets, and the push constants of walk_source.comp.
+// One ray of the buried source through the tets. The shader that includes it defines first BODY (tet_ray.glsl) and push
+// constants `push`, which have deposit and deposits as WalkSourcePush does, and defines meet_surface behind it.
 #ifndef QUADGRAPH_WALK_RAY_GLSL
 #define QUADGRAPH_WALK_RAY_GLSL
 
-#include "material/fresnel.glsl"
 #include "source/fixed_point.glsl"
 #include "source/walk_shared.h"
-
-layout(push_constant, scalar) uniform Block { WalkSourcePush push; };
 
 // Scattered towards a vertex, not yet added to its deposit.
 struct Payload {
@@ -17,7 +15,6 @@ Payload payload(uint id) {
   return Payload(vec3(0));
 }
 
-#define BODY push.body
 #include "source/tet_ray.glsl"
 
 struct Ray {
@@ -89,19 +86,8 @@ void flush(Corner corner) {
   if (push.deposits == WALK_VERTICES) add_power(push.deposit, corner.id, corner.payload.scattered);
 }
 
-// At an outside face from inside: part leaves, the rest goes on mirrored.
-void meet_surface(inout Ray ray, uint face, vec3 outward) {
-  vec3 n = outward / length(outward);
-  float cosine = dot(ray.direction, n);
-  if (push.body.face_kinds.at[face] == FACE_OPEN) {
-    vec3 reflected = ray.power * internal_reflectance(cosine, push.body.eta);
-    vec3 leaving = ray.power - reflected;
-    unscattered += leaving;
-    if (push.deposits != WALK_CORNERS) add_power(push.unscattered, face, leaving);
-    ray.power = reflected;
-  }
-  ray.direction = normalize(ray.direction - 2.0 * cosine * n);
-}
+// At an outside face from inside, whose outward normal has any length.
+void meet_surface(inout Ray ray, uint face, vec3 outward);
 
 // Follows a ray from the point that the corners hold, until its light is spent.
 void walk(Ray ray) {
@@ -115,12 +101,12 @@ void walk(Ray ray) {
     bool spent = all(lessThanEqual(ray.power, end));
     if (spent && extinction() != vec3(0)) break;
     uvec2 crossing = turn(ray.tet, exit.slot);
-    if (crossing.x < push.body.tet_count) {
+    if (crossing.x < BODY.tet_count) {
       flush(corner_3);
       ray.tet = crossing.x;
       enter(crossing);
     } else {
-      meet_surface(ray, crossing.x - push.body.tet_count, exit.outward);
+      meet_surface(ray, crossing.x - BODY.tet_count, exit.outward);
       if (ray.power == vec3(0)) break;
     }
   }

@@ -20,11 +20,10 @@ const uint LAMBERTIAN_RAYS = 2u * LAMBERTIAN_NODES;
 // Pairs of sums that the workgroups of a walk share: few to read back, many enough to be seldom waited for.
 const uint WALK_SUMS = 256u;
 
-// What a walk adds up, and where: what vertices or tets scatter for the first time, with all that leaves or is
-// absorbed; or, of light that has been walked, what is scattered between the corners of each tet, and nothing else.
+// What adds up the light that is scattered for the first time.
 const uint WALK_TETS = 0u;
 const uint WALK_VERTICES = 1u;
-const uint WALK_CORNERS = 2u;
+const uint WALK_CORNERS = 2u;  // of each tet, four (transport_walk.comp)
 
 // walk_source.comp: follows the rays of one beam. One invocation per face; of a Lambertian beam, one per face and ray
 // of the bundle.
@@ -37,7 +36,7 @@ struct WalkSourcePush {
   QG_REF(Uints) unscattered;  // fixed point, per face: power that leaves
   QG_REF(Uints) sums;         // fixed point, WALK_SUMS times two: absorbed; left, or still under way at the end
   uint rays;                  // per origin: 1, or LAMBERTIAN_RAYS; a Lambertian beam may have either
-  uint deposits;              // WALK_*
+  uint deposits;              // WALK_TETS or WALK_VERTICES
 };
 
 #ifdef __cplusplus

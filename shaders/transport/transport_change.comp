@@ -18,7 +18,7 @@ struct TransportChangePush {
   Vec3s gathered;  // of transport_exitance.comp
   Vec3s change_a;  // fluence at the vertices that the solves of both halves add
   Vec3s change_b;
-  Vec3s exitance;  // W/mm^2, before the sweep
+  Vec3s before;  // exitance of both halves before the sweep, W/mm^2
   TransportChanges change;
   Reduction reduction;
   uint count;
@@ -39,7 +39,7 @@ void main() {
   // One factor for all channels, which are weighed alike.
   vec3 colours = unit.scale / max(unit.scale.x, max(unit.scale.y, unit.scale.z));
   EACH(v, push.count) {
-    vec3 a = vec3(0), b = vec3(0), before = vec3(0), difference = vec3(0);
+    vec3 a = vec3(0), b = vec3(0), before_a = vec3(0), before_b = vec3(0), difference = vec3(0);
     float around = 0.0;
     for (uint k = push.face_offset.at[v]; k < push.face_offset.at[v + 1u]; ++k) {
       uint face = push.face_incidence.at[k];
@@ -50,13 +50,14 @@ void main() {
       a += area * (g_a + added_a);
       b += area * (g_b + added_b);
       difference += area * (push.solves == 1u ? added_a - added_b : g_a + added_a - g_b - added_b);
-      before += area * push.exitance.at[face];
+      before_a += area * push.before.at[face];
+      before_b += area * push.before.at[push.face_count + face];
     }
     if (around == 0.0) continue;
-    before *= unit.inverse;
+    vec3 changed_a = a - unit.inverse * before_a, changed_b = b - unit.inverse * before_b;
     vec3 per_area = colours / around;
     vec3 noise = 0.5 * per_area * difference, size = 0.5 * per_area * (a + b);
-    vec3 squares = vec3(dot(per_area * (a - before), per_area * (b - before)), dot(noise, noise), dot(size, size));
+    vec3 squares = vec3(dot(per_area * changed_a, per_area * changed_b), dot(noise, noise), dot(size, size));
     whole += push.share.at[v].area.x * squares;
     unlit += push.share.at[v].area.y * squares;
   }

@@ -1,15 +1,20 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "source/fixed_point.glsl"
 #include "transport/transport_shared.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 
-// Exitance per face and half by the transport equation, of light that was scattered.
+// Exitance per face and half by the transport equation, of light that was scattered, added to what is kept of it.
 struct TransportExitancePush {
   TransportFieldRefs field;  // one
-  Vec3s exitance;            // W/mm^2: of the first half for all faces, then of the second
-  uint rays;                 // per face and half
+  Vec3s exitance;            // W/mm^2, scaled: of the first half for all faces, then of the second
+  Uints sums;                // fixed point, WALK_SUMS times two: what leaves, and what of that enters again; or null
+  Vec3s unit;                // one: the scale of what is kept
+  Scales scale;
+  uint rays;  // per face and half
   uint seed;
+  float keep;  // share of what is kept
 };
 layout(push_constant, scalar) uniform Block { TransportExitancePush push; };
 
@@ -17,24 +22,37 @@ TransportFieldRef field;
 #define FIELD field
 #include "transport/transport_ray.glsl"
 
-const float TWO_PI = 6.2831853;
-
 struct Surface {
   uint face, tet;
   uvec3 ids;
   mat3 corners;
   vec3 normal, tangent, side;
+  float area;
 };
 
+vec3 left, entered_again;  // of the face, over its area
+
 // One of the rays, whose outside cosines are cosine-weighted by strata.
-vec3 leaving(Surface at, float stratum, float azimuth, inout uint state) {
+void add_leaving(Surface at, float stratum, float azimuth, inout uint state) {
   float u = (stratum + uniform_number(state)) / float(push.rays);
   float s = sqrt(uniform_number(state)), t = uniform_number(state);
   float cosine = sqrt(1.0 - (1.0 - u) / (BODY.eta * BODY.eta));
   vec3 across = cos(azimuth) * at.tangent + sin(azimuth) * at.side;
   vec3 inside = normalize(sqrt(1.0 - u) / BODY.eta * across - cosine * at.normal);
-  start_on_face(at.tet, at.ids, at.corners, vec3(1.0 - s, s * (1.0 - t), s * t));
-  return fresnel_transmittance(sqrt(u), BODY.eta) * arriving(at.tet, inside, state);
+  vec3 point = at.corners * vec3(1.0 - s, s * (1.0 - t), s * t);
+  vec3 leaves = fresnel_transmittance(sqrt(u), BODY.eta) *
+                arriving(Ray(at.tet, NO_SLOT, point, inside, vec3(1)), state);
+  left += leaves;
+  if (uvec2(push.sums) == uvec2(0) || !sees_body(at.face)) return;
+  Entrance entry = through_air(at.face, point, leaving_direction(-inside, at.normal, cosine), state);
+  if (entry.face != NO_FACE) entered_again += leaves;
+}
+
+void add_sums(float area) {
+  if (uvec2(push.sums) == uvec2(0)) return;
+  uint at = 2u * (gl_WorkGroupID.x % WALK_SUMS);
+  add_power(push.sums, at, max(area * left, vec3(0)));
+  add_power(push.sums, at + 1u, max(area * entered_again, vec3(0)));
 }
 
 void main() {
@@ -42,22 +60,27 @@ void main() {
   field = push.field.at[0];
   crossed = 0u;
   if (i >= TRANSPORT_HALVES * BODY.face_count) return;
-  push.exitance.at[i] = vec3(0);
   Surface at;
   at.face = i % BODY.face_count;
   if (BODY.face_kinds.at[at.face] != FACE_OPEN) return;
   at.ids = BODY.faces.at[at.face];
-  at.corners = corners_of(at.ids);
+  at.corners = mat3(BODY.vertices.at[at.ids.x], BODY.vertices.at[at.ids.y], BODY.vertices.at[at.ids.z]);
   vec3 doubled = cross(at.corners[1] - at.corners[0], at.corners[2] - at.corners[0]);
   if (doubled == vec3(0)) return;
   at.normal = normalize(doubled);
+  at.area = 0.5 * length(doubled);
   at.tangent = normalize(at.corners[1] - at.corners[0]);
   at.side = cross(at.normal, at.tangent);
   at.tet = BODY.face_tets.at[at.face];
   uint state = hash(i ^ hash(push.seed));
   float turned = TWO_PI * uniform_number(state);
-  vec3 sum = vec3(0);
-  for (uint k = 0u; k < push.rays; ++k) sum += leaving(at, float(k), turned + GOLDEN_ANGLE * float(k), state);
-  push.exitance.at[i] = sum / (4.0 * BODY.eta * BODY.eta * float(push.rays));
+  left = vec3(0);
+  entered_again = vec3(0);
+  for (uint k = 0u; k < push.rays; ++k) add_leaving(at, float(k), turned + GOLDEN_ANGLE * float(k), state);
+  float share = 1.0 / (4.0 * BODY.eta * BODY.eta * float(push.rays));
+  vec3 kept = vec3(0);
+  if (push.keep != 0.0) kept = push.keep * push.unit.at[0] * push.scale.at[0].inverse * push.exitance.at[i];
+  push.exitance.at[i] = kept + share * left;
+  add_sums(share * at.area);
   atomicAdd(field.segments.at[0], crossed);
 }

@@ -4,7 +4,7 @@
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 
-// Exitance per face after a sweep, J = G + k11 delta, the mean of both halves.
+// Exitance per face after a sweep, J = G + k11 delta, of both halves and their mean.
 struct TransportFacesPush {
   Uvec3s faces;
   Uints face_kinds;
@@ -12,6 +12,7 @@ struct TransportFacesPush {
   Vec3s gathered;  // of transport_exitance.comp
   Vec3s change_a;  // fluence at the vertices that the solves of both halves add
   Vec3s change_b;
+  Vec3s halves;    // of the first half for all faces, then of the second, W/mm^2, written
   Vec3s exitance;  // W/mm^2, written
   uint count;
   float k11;
@@ -22,8 +23,15 @@ void main() {
   uint f = gl_GlobalInvocationID.x;
   if (f >= push.count || push.face_kinds.at[f] != FACE_OPEN) return;
   uvec3 ids = push.faces.at[f];
-  vec3 change = vec3(0);
-  for (uint k = 0u; k < 3u; ++k) change += (push.change_a.at[ids[k]] + push.change_b.at[ids[k]]) / 3.0;
-  vec3 both = push.gathered.at[f] + push.gathered.at[push.count + f] + push.k11 * change;
-  push.exitance.at[f] = 0.5 * both * push.scale.at[0].scale;
+  vec3 change_a = vec3(0), change_b = vec3(0);
+  for (uint k = 0u; k < 3u; ++k) {
+    change_a += push.change_a.at[ids[k]] / 3.0;
+    change_b += push.change_b.at[ids[k]] / 3.0;
+  }
+  vec3 unit = push.scale.at[0].scale;
+  vec3 a = unit * (push.gathered.at[f] + push.k11 * change_a);
+  vec3 b = unit * (push.gathered.at[push.count + f] + push.k11 * change_b);
+  push.halves.at[f] = a;
+  push.halves.at[push.count + f] = b;
+  push.exitance.at[f] = 0.5 * (a + b);
 }

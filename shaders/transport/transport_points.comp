@@ -1,18 +1,19 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "transport/random.glsl"
+#include "shared/beam_shared.h"
 #include "transport/transport_shared.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 
-// Draws the points: of each half about `wanted` in all, and of each tet as many as it weighs, or one more by chance.
+// Draws the points: of each half about `wanted` in all, of each tet as many as it weighs. Draw after draw a tet and a half
+// have so many, to within one, and where each lies continues one sequence (transport_sweep.comp).
 struct TransportPointsPush {
   Vec2s weights;
   Floats total;
   Uints drawn;  // one: how many there are
   TransportPoints points;
   uint tet_count;
-  uint seed;
+  uint draw;  // 0, 1, ...
   float wanted;
   uint room;  // points that there is room for
 };
@@ -24,13 +25,13 @@ void main() {
   vec2 weight = push.weights.at[tet];
   if (weight.x <= 0.0) return;
   float expected = push.wanted * weight.x / push.total.at[0];
-  uint state = hash(tet ^ hash(push.seed));
   for (uint half_of = 0u; half_of < TRANSPORT_HALVES; ++half_of) {
-    uint count = uint(expected + uniform_number(state));
-    for (uint k = 0u; k < count; ++k) {
+    // Tets that follow each other lie together: their golden turns keep what is rounded apart.
+    float turn = float((tet * GOLDEN_TURN ^ half_of << 31u) >> 8u) * exp2(-24.0);
+    uint begin = uint(float(push.draw) * expected + turn), end = uint(float(push.draw + 1u) * expected + turn);
+    for (uint number = begin; number < end; ++number) {
       uint at = atomicAdd(push.drawn.at[0], 1u);
-      uint seed = hash(state + k);
-      if (at < push.room) push.points.at[at] = TransportPoint(tet, seed, half_of, weight.y / expected);
+      if (at < push.room) push.points.at[at] = TransportPoint(tet, number, half_of, weight.y / expected);
     }
   }
 }

@@ -3,60 +3,76 @@
 #ifndef QUADGRAPH_TRANSPORT_RAY_GLSL
 #define QUADGRAPH_TRANSPORT_RAY_GLSL
 
-#include "material/fresnel.glsl"
-#include "transport/random.glsl"
 #include "transport/transport_shared.h"
 
 #ifndef FIELD
 #error "transport_ray.glsl: FIELD is not defined"
 #endif
 
-struct Payload {
-  vec3 fluence;
-};
-
-Payload payload(uint id) {
-  return Payload(FIELD.fluence.at[id]);
-}
-
 #define BODY FIELD.body
-#include "source/tet_ray.glsl"
+#include "transport/transport_surface.glsl"
 
 const float GOLDEN_ANGLE = 2.3999632;
+const float TWO_PI = 6.2831853;
+const float NEVER = 1e37;
+const uint NO_SLOT = 4u;
 
 uint crossed;  // tets, by this invocation's rays
 
-// Power per volume that light scatters for the first time, between the corners of the present tet.
-struct FirstScattered {
-  vec3 at_0, at_1, at_2, at_3;
+// A ray at its point in a tet.
+struct Ray {
+  uint tet;
+  uint behind;  // corner opposite the face that it came in through, or NO_SLOT
+  vec3 point, direction;
+  vec3 left;  // of 1, on the way so far
 };
-
-FirstScattered first_scattered(uint tet) {
-  return FirstScattered(FIELD.first.at[4u * tet + corner_0.place], FIELD.first.at[4u * tet + corner_1.place],
-                        FIELD.first.at[4u * tet + corner_2.place], FIELD.first.at[4u * tet + corner_3.place]);
-}
-
-vec3 fluence_at(vec4 l) {
-  return l.x * corner_0.payload.fluence + l.y * corner_1.payload.fluence + l.z * corner_2.payload.fluence +
-         l.w * corner_3.payload.fluence;
-}
-
-// All light that is scattered, per volume.
-vec3 source_at(FirstScattered first, vec4 l) {
-  return optical.sigma_s_prime * fluence_at(l) + l.x * first.at_0 + l.y * first.at_1 + l.z * first.at_2 +
-         l.w * first.at_3;
-}
 
 float largest(vec3 v) {
   return max(v.x, max(v.y, v.z));
 }
 
-// At the surface from inside: what is mirrored of `left` goes on.
-void mirror(uint face, vec3 outward, inout vec3 direction, inout vec3 left) {
-  vec3 n = outward / length(outward);
-  float cosine = dot(direction, n);
-  if (BODY.face_kinds.at[face] == FACE_OPEN) left *= internal_reflectance(cosine, BODY.eta);
-  direction = normalize(direction - 2.0 * cosine * n);
+vec3 extinction_in(uint tet) {
+  Optical optical = BODY.optical.at[(BODY.flags & BODY_EVEN) != 0u ? 0u : tet];
+  return optical.sigma_s_prime + optical.sigma_a;
+}
+
+vec3 source_at(TransportCell cell, vec4 l) {
+  return l.x * cell.source_0 + l.y * cell.source_1 + l.z * cell.source_2 + l.w * cell.source_3;
+}
+
+// Adds the source between two places of a tet `path` apart, attenuated on the way to the ray's start: exact where the
+// source is linear.
+void add_source(vec3 from, vec3 to, vec3 sigma_t, float path, inout vec3 sum, inout vec3 left) {
+  vec3 tau = max(sigma_t * path, vec3(1e-20)), t = min(tau, vec3(0.25));
+  vec3 passes = exp(-tau), inverse = 1.0 / tau;
+  bvec3 small = lessThan(tau, vec3(0.25));
+  // Means over the path of e^-tau s and of s e^-tau s, and series where these cancel.
+  vec3 all = mix((1.0 - passes) * inverse,
+                 1.0 - t * (1.0 / 2.0 - t * (1.0 / 6.0 - t * (1.0 / 24.0 - t * (1.0 / 120.0)))), small);
+  vec3 late = mix((all - passes) * inverse,
+                  1.0 / 2.0 - t * (1.0 / 3.0 - t * (1.0 / 8.0 - t * (1.0 / 30.0 - t * (1.0 / 144.0)))), small);
+  sum += path * left * (from * all + (to - from) * late);
+  left *= passes;
+}
+
+// At the surface from inside: on, mirrored or through the air. False where the ray ends.
+bool goes_past(uint face, inout Ray ray, inout uint state) {
+  vec3 n = outward_normal(face);
+  float cosine = clamp(dot(ray.direction, n), 0.0, 1.0);
+  if (BODY.face_kinds.at[face] == FACE_OPEN) {
+    float reflected = internal_reflectance(cosine, BODY.eta);
+    if (!sees_body(face)) {
+      ray.left *= reflected;
+      if (reflected == 0.0) return false;
+    } else if (uniform_number(state) >= reflected) {
+      Entrance entry = through_air(face, ray.point, leaving_direction(ray.direction, n, cosine), state);
+      if (entry.face == NO_FACE) return false;
+      ray = Ray(BODY.face_tets.at[entry.face], NO_SLOT, entry.point, entry.direction, ray.left);
+      return true;
+    }
+  }
+  ray.direction = normalize(ray.direction - 2.0 * cosine * n);
+  return true;
 }
 
 // Whether a ray goes on that keeps `left`; by chance, without bias, where that is little.
@@ -68,28 +84,36 @@ bool goes_on(inout vec3 left, inout uint state) {
   return true;
 }
 
-// The source along the ray that goes from its point into the body, attenuated on the way to that point: 4 pi times the
-// radiance there, against `direction`.
-vec3 arriving(uint tet, vec3 direction, inout uint state) {
-  vec3 sum = vec3(0), left = vec3(1);
+// The source along the ray from its point, attenuated on the way to that point: 4 pi times the radiance there, against
+// the ray's direction.
+vec3 arriving(Ray ray, inout uint state) {
+  vec3 sum = vec3(0);
+  vec3 sigma_t = extinction_in(ray.tet);
   for (uint step = 0u; step < MAX_WALK_STEPS; ++step) {
-    Exit exit = find_exit(direction);
-    if (!exit.found) break;
+    TransportCell cell = FIELD.cells.at[ray.tet];
+    vec3 x = ray.point, d = ray.direction;
+    vec4 l = max(cell.at_x * x.x + cell.at_y * x.y + cell.at_z * x.z + cell.at_0, vec4(0));
+    vec4 rate = cell.at_x * d.x + cell.at_y * d.y + cell.at_z * d.z;
+    vec4 times = mix(vec4(NEVER), l / -rate, lessThan(rate, vec4(0)));
+    times = mix(times, vec4(NEVER), equal(vec4(0.0, 1.0, 2.0, 3.0), vec4(float(ray.behind))));
+    float path = min(min(times.x, times.y), min(times.z, times.w));
+    if (path >= NEVER) break;
     ++crossed;
-    vec4 l = exit_point(exit);
-    FirstScattered first = first_scattered(tet);
-    vec3 here = source_at(first, vec4(corner_0.l, corner_1.l, corner_2.l, corner_3.l)), lost;
-    sum += left * exit.path * attenuated_mean(here, source_at(first, l), extinction() * exit.path, lost);
-    left -= left * lost;
-    move_to(l);
-    uvec2 crossing = turn(tet, exit.slot);
-    if (crossing.x < BODY.tet_count) {
-      tet = crossing.x;
-      enter(crossing);
+    uint slot = times.x == path ? 0u : times.y == path ? 1u : times.z == path ? 2u : 3u;
+    if ((BODY.flags & BODY_EVEN) == 0u) sigma_t = extinction_in(ray.tet);
+    add_source(source_at(cell, l), source_at(cell, l + path * rate), sigma_t, path, sum, ray.left);
+    ray.point += path * d;
+    uint crossing = cell.crossings[slot];
+    uint across = crossing >> CROSSING_BITS;
+    if (across < BODY.tet_count) {
+      uint last = (crossing ^ crossing >> 2u ^ crossing >> 4u) & 3u;
+      ray.tet = across;
+      ray.behind = slot == 3u ? last : crossing >> 2u * slot & 3u;
     } else {
-      mirror(crossing.x - BODY.tet_count, exit.outward, direction, left);
+      ray.behind = slot;
+      if (!goes_past(across - BODY.tet_count, ray, state)) break;
     }
-    if (!goes_on(left, state)) break;
+    if (!goes_on(ray.left, state)) break;
   }
   return sum;
 }

@@ -20,21 +20,48 @@ const float TRANSPORT_FLOOR = 0.03f;
 // A ray that keeps less than this goes on by chance, with this weight.
 const float TRANSPORT_ROULETTE = 0.03f;
 
+// Parts of the body that a ray can meet in the air, one after the other, before it is given up.
+const uint TRANSPORT_MEETINGS = 8u;
+
+// A tet as rays see it, in two lines of a cache. Barycentric coordinates at x: x.x * at_x + x.y * at_y + x.z * at_z +
+// at_0; all zero where a tet is flat, or turned inside out: rays end there.
+struct TransportCell {
+  vec4 at_x, at_y, at_z;  // 1/mm
+  vec4 at_0;
+  vec3 source_0, source_1, source_2, source_3;  // light that is scattered, at the corners, W/mm^3
+  uvec4 crossings;                              // out of the face opposite each corner (body_shared.h)
+};
+
 // Where the transport equation is evaluated inside the body.
 struct TransportPoint {
   uint tet;
-  uint seed;
+  uint number;   // of those in this tet and half
   uint half_of;  // the half that it counts for
   float volume;  // mm^3 that it stands for
 };
 
-// What rays see: the body, fluence at its vertices, and at the corners of each tet the power per volume that light
-// scatters there for the first time.
+#ifndef __cplusplus
+QG_ARRAY(TransportCells, TransportCell);
+
+#endif
+
+// What rays see: the body, and the light that it scatters.
 struct TransportFieldRef {
   BodyRef body;
-  QG_REF(Vec3s) fluence;   // W/mm^2
-  QG_REF(Vec3s) first;     // W/mm^3, four per tet
-  QG_REF(Uints) segments;  // tets crossed by all rays so far, one
+  TreeRef tree;
+  QG_REF(TransportCells) cells;  // per tet
+  QG_REF(Floats) sky;            // per face: share of all directions outside in which no other part of the body is
+  QG_REF(Uints) segments;        // tets crossed by all rays so far, one
+  uint outside;                  // 1: light that leaves may enter again elsewhere
+};
+
+// Where the power of a sweep goes, W, scaled.
+struct TransportBook {
+  vec3 excess, lost;          // transport_totals.comp
+  vec3 leaving_a, leaving_b;  // transport_leaving.comp, of each half
+  vec3 sum_a, sum_b;          // of all that points are to find, of each half
+  vec3 known_a, known_b;      // that of the sweep before
+  vec3 missing_a, missing_b;  // in what the points found, as a share of what is lost
 };
 
 // Area-weighted squares over the whole surface (x) and over its unlit part (y), channels together.
@@ -46,6 +73,7 @@ struct TransportChange {
 
 #ifndef __cplusplus
 QG_ARRAY(TransportFieldRefs, TransportFieldRef);
+QG_ARRAY(TransportBooks, TransportBook);
 QG_ARRAY(TransportChanges, TransportChange);
 QG_ARRAY(TransportPoints, TransportPoint);
 

@@ -10,10 +10,13 @@ struct TransportSweepPush {
   TransportFieldRefs field;  // one
   Uints drawn;               // one: how many points there are
   TransportPoints points;
+  Vec3s fluence;  // that is seen, at the vertices
+  Uints sums;  // fixed point, WALK_SUMS times two per half: power that is found, added, then taken away
   Uints load;  // fixed point, of each half for all vertices what is added, then what is taken away
   uint room;
   uint directions;
   uint vertex_count;
+  uint seed;
 };
 layout(push_constant, scalar) uniform Block { TransportSweepPush push; };
 
@@ -21,16 +24,13 @@ TransportFieldRef field;
 #define FIELD field
 #include "transport/transport_ray.glsl"
 
-const float TWO_PI = 6.2831853;
-
 vec3 on_sphere(float z, float azimuth) {
   float s = sqrt(max(1.0 - z * z, 0.0));
   return vec3(s * cos(azimuth), s * sin(azimuth), z);
 }
 
 // Uniform in a tet (Rocchini and Cignoni 2000).
-vec4 in_tet(inout uint state) {
-  float s = uniform_number(state), t = uniform_number(state), u = uniform_number(state);
+vec4 in_tet(float s, float t, float u) {
   if (s + t > 1.0) {
     s = 1.0 - s;
     t = 1.0 - t;
@@ -55,26 +55,23 @@ void frame_about(vec3 n, out vec3 a, out vec3 b) {
   b = vec3(d, side + n.y * n.y * c, -n.y);
 }
 
-// Mean over directions that are spread evenly and turned at random.
-vec3 transported(uint tet, vec4 l, inout uint state) {
-  float z = 2.0 * uniform_number(state) - 1.0;
-  vec3 axis = on_sphere(z, TWO_PI * uniform_number(state)), a, b;
+// Mean over directions that are spread evenly and turned by three numbers in [0, 1).
+vec3 transported(uint tet, vec3 point, vec3 turn, inout uint state) {
+  vec3 axis = on_sphere(2.0 * turn.x - 1.0, TWO_PI * turn.y), a, b;
   frame_about(axis, a, b);
-  float turned = TWO_PI * uniform_number(state);
+  float turned = TWO_PI * turn.z;
   vec3 sum = vec3(0);
   for (uint k = 0u; k < push.directions; ++k) {
     vec3 d = on_sphere(1.0 - (2.0 * float(k) + 1.0) / float(push.directions), turned + GOLDEN_ANGLE * float(k));
     vec3 direction = normalize(d.x * a + d.y * b + d.z * axis);
-    start_in_tet(tet, l, direction);
-    sum += arriving(tet, direction, state);
+    sum += arriving(Ray(tet, NO_SLOT, point, direction, vec3(1)), state);
   }
   return sum / float(push.directions);
 }
 
-void add_load(uint vertex, uint half_of, vec3 load) {
-  uint at = 2u * half_of * push.vertex_count + vertex;
-  add_power(push.load, at, max(load, vec3(0)));
-  add_power(push.load, at + push.vertex_count, max(-load, vec3(0)));
+void add_signed(Uints sums, uint at, uint step, vec3 power) {
+  add_power(sums, at, max(power, vec3(0)));
+  add_power(sums, at + step, max(-power, vec3(0)));
 }
 
 void main() {
@@ -83,14 +80,26 @@ void main() {
   crossed = 0u;
   if (i >= min(push.drawn.at[0], push.room)) return;
   TransportPoint point = push.points.at[i];
-  uint state = point.seed;
-  vec4 l = in_tet(state);
-  vec3 now = transported(point.tet, l, state);
+  uint start = hash(TRANSPORT_HALVES * point.tet + point.half_of ^ hash(push.seed));
+  float u[6];
+  for (uint k = 0u; k < 6u; ++k) u[k] = spread_number(start, point.number, k);
+  vec4 l = in_tet(u[0], u[1], u[2]);
   uvec4 ids = BODY.tets.at[point.tet];
-  optical = BODY.optical.at[(BODY.flags & BODY_EVEN) != 0u ? 0u : point.tet];
-  vec3 before = vec3(0);
-  for (uint k = 0u; k < 4u; ++k) before += l[k] * field.fluence.at[ids[k]];
-  vec3 load = point.volume * optical.sigma_s_prime * (now - before);
-  for (uint k = 0u; k < 4u; ++k) add_load(ids[k], point.half_of, l[k] * load);
+  vec3 before = vec3(0), place = vec3(0);
+  for (uint k = 0u; k < 4u; ++k) {
+    before += l[k] * push.fluence.at[ids[k]];
+    place += l[k] * BODY.vertices.at[ids[k]];
+  }
+  uint state = hash(start + point.number);
+  vec3 now = transported(point.tet, place, vec3(u[3], u[4], u[5]), state);
+  Optical optical = BODY.optical.at[(BODY.flags & BODY_EVEN) != 0u ? 0u : point.tet];
+  vec3 found = point.volume * (now - before);
+  add_signed(push.sums, 2u * (WALK_SUMS * point.half_of + gl_WorkGroupID.x % WALK_SUMS), 1u,
+             (optical.sigma_s_prime + optical.sigma_a) * found);
+  vec3 load = optical.sigma_s_prime * found;
+  uint first = 2u * point.half_of * push.vertex_count;
+  for (uint k = 0u; k < 4u; ++k) {
+    add_signed(push.load, first + ids[k], push.vertex_count, l[k] * load);
+  }
   atomicAdd(field.segments.at[0], crossed);
 }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self, TypeAlias, Unpack
@@ -127,10 +128,11 @@ class Engine:
     def solve(self, *, motion: bool = False, **options: Unpack[MotionOptions]) -> Solution:
         """Solve for the present material, lights and shape.
 
-        options: of `SolveOptions`, and of `MotionOptions`; motion: with less work, as the window does while something
+        options: of `SolveOptions`, and of `MotionOptions`, by default those of a scene; motion: with less work, as the window does while something
         changes (docs/window.md). Raises InputError, SolverError, and TypeError for a motion option of another type.
         """
         given = plain_members(options)
+        given.setdefault("correction", _usual_correction())
         core.check_scene(json.dumps({"solver": {name: given[name] for name in given.keys() - MOTION}}))
         path = {f"path_{name}": value for name, value in given.pop("path", {}).items()}
         return self._take(self._engine.solve(motion=motion, **given, **path))
@@ -210,3 +212,9 @@ class Engine:
         for each in self._engine.passes:
             times[each["name"]] = times.get(each["name"], 0.0) + each["time_ms"]
         return times
+
+
+@cache
+def _usual_correction() -> bool:
+    """Whether solves of a scene are corrected where it does not say."""
+    return bool(next(option.default for option in core.scene_options() if option.name == "correction"))

@@ -37,8 +37,8 @@ class SolveOptions(TypedDict, total=False):
     tolerance: stop when the exitance is estimated to be solved to this relative RMS error; error: stop when that and
     the mesh's together are below it, 0 for no target; cycles: exactly so many iterations on the finest level, 0 for as
     many as it takes; max_iterations: per level; inter_reflection: whether it is computed; bounces: of that, 0 until
-    nothing changes; sweeps: of the transport equation, that correct the solution; sweep_points: where one evaluates it;
-    active_layers: of a polygrid, 0 for all; path: of the method shortest-path.
+    nothing changes; correction: by sweeps of the transport equation; sweeps: how many, 0 until another one would change
+    little; sweep_points: where one evaluates it at a time; active_layers: of a polygrid, 0 for all; path: of the method shortest-path.
     """
 
     method: Method
@@ -51,6 +51,7 @@ class SolveOptions(TypedDict, total=False):
     max_iterations: int
     inter_reflection: bool
     bounces: int
+    correction: bool
     sweeps: int
     sweep_points: int
     active_layers: int

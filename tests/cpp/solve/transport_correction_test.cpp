@@ -20,7 +20,7 @@ gpu::Material thin(float sigma_a, float eta) {
 }
 
 SolveOptions swept(std::uint32_t sweeps, Model model = Model::sp3) {
-  return {.model = model, .tolerance = 1e-5, .sweeps = sweeps};
+  return {.model = model, .tolerance = 1e-5, .correction = sweeps > 0, .sweeps = sweeps};
 }
 
 double worst(const glm::dvec3& v) {
@@ -123,7 +123,7 @@ TEST_CASE("only fem with the buried source can be corrected") {
   scene.light(one_side);
   for (const auto& [method, source] :
        {std::pair{Method::quadgraph_fv, Source::buried}, {Method::fem, Source::diffuse}}) {
-    SolveOptions options{.method = method, .source = source, .sweeps = 1};
+    SolveOptions options{.method = method, .source = source, .correction = true, .sweeps = 1};
     CHECK_THROWS_AS(scene.simulation.solve(options), InputError);
   }
   SolveOptions none = swept(1);

@@ -44,7 +44,7 @@ def errors(engine: quadgraph.Engine, medium: str, sweeps: int) -> tuple[np.ndarr
     """Relative RMS error of the exitance over all zones, and over those of the lit and of the dark half."""
     scattering, absorption, eta = MEDIA[medium]
     engine.material = f"sigma_s_prime={scattering},sigma_a={absorption},eta={eta}"
-    solution = engine.solve(model="sp3", sweeps=sweeps)
+    solution = engine.solve(model="sp3", correction=sweeps > 0, sweeps=sweeps)
     field = engine.surface()
     height = field.position[:, 2] / np.linalg.norm(field.position, axis=1)
     zone = np.clip(((height + 1) / 2 * ZONES).astype(int), 0, ZONES - 1)

@@ -1,0 +1,344 @@
+#include "engine/solve/transport_samples.h"
+
+#include <algorithm>
+
+#include "engine/solve/row_structure.h"
+#include "interface/transport/transport_books.comp.h"
+#include "interface/transport/transport_cells.comp.h"
+#include "interface/transport/transport_exitance.comp.h"
+#include "interface/transport/transport_fluence.comp.h"
+#include "interface/transport/transport_leaving.comp.h"
+#include "interface/transport/transport_mass.comp.h"
+#include "interface/transport/transport_mean.comp.h"
+#include "interface/transport/transport_points.comp.h"
+#include "interface/transport/transport_smooth.comp.h"
+#include "interface/transport/transport_source.comp.h"
+#include "interface/transport/transport_step.comp.h"
+#include "interface/transport/transport_sweep.comp.h"
+#include "interface/transport/transport_totals.comp.h"
+#include "interface/transport/transport_walk.comp.h"
+#include "interface/transport/transport_weights.comp.h"
+
+namespace quadgraph {
+namespace {
+
+constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
+constexpr std::uint64_t sum_bytes = FIXED_WORDS * sizeof(std::uint32_t);
+constexpr std::uint32_t halves = gpu::TRANSPORT_HALVES;
+
+// Tets that a ray crosses, and what it reads in one; for the bytes.
+constexpr std::uint64_t tets_per_ray = 10;
+constexpr std::uint64_t segment_bytes = sizeof(gpu::TransportCell) + sizeof(gpu::Optical);
+
+// Sums of each of the WALK_SUMS of a pass.
+constexpr std::uint32_t walk_sums = 3, gather_sums = 2;
+
+// Sums number `which` of `count`, of all that were read back.
+glm::dvec3 sum_of(const std::vector<glm::dvec3>& sums, std::uint32_t which, std::uint32_t count) {
+  glm::dvec3 sum{0};
+  for (std::size_t i = which; i < sums.size(); i += count) sum += sums[i];
+  return sum;
+}
+
+}  // namespace
+
+TransportSamples::TransportSamples(device::Device& device, const Level& level) {
+  const auto room = [&](std::uint64_t bytes, const char* name, device::Place place = device::Place::device) {
+    return device::Buffer(device, bytes, place, "transport/" + std::string(name));
+  };
+  const std::uint64_t vertices = level.vertex_count() * vec3_bytes, corners = 4 * level.tet_count() * vec3_bytes;
+  field_ = room(sizeof(gpu::TransportFieldRef), "field");
+  deposit_ = room(4 * level.tet_count() * sum_bytes, "deposit at corners");
+  source_before_ = room(corners, "source, before");
+  cells_ = room(level.tet_count() * sizeof(gpu::TransportCell), "tets");
+  fluence_ = room(vertices, "fluence");
+  fluence_before_ = room(vertices, "fluence, before");
+  fluence_seen_ = room(vertices, "fluence, seen");
+  unit_ = room(vec3_bytes, "scale, before");
+  weights_ = room(level.tet_count() * sizeof(glm::vec2), "weights");
+  total_ = room(sizeof(float), "total weight");
+  drawn_ = room(sizeof(std::uint32_t), "points drawn");
+  load_ = room(2 * halves * level.vertex_count() * sum_bytes, "load");
+  gathered_ = room(halves * level.face_count() * vec3_bytes, "gathered exitance");
+  const TetIncidence tets = quadgraph::tet_incidence(level);
+  tet_offset_ = device::upload<std::uint32_t>(device, tets.offset, "transport/tet_offset");
+  tet_incidence_ = device::upload<std::uint32_t>(device, tets.tet, "transport/tet_incidence");
+  mass_ = room(vertices, "mass");
+  for (device::Buffer& swept : swept_) swept = room(vertices, "swept");
+  point_sums_ = room(2 * halves * gpu::WALK_SUMS * sum_bytes, "power of the points");
+  books_ = room(sizeof(gpu::TransportBook), "books");
+  segments_ = room(sizeof(std::uint32_t), "segments");
+  walk_sums_ = room(walk_sums * gpu::WALK_SUMS * sum_bytes, "power of the walk");
+  gather_sums_ = room(gather_sums * gpu::WALK_SUMS * sum_bytes, "power gathered");
+  segments_on_host_ = room(segments_.size(), "segments, read back", device::Place::host);
+  walk_sums_on_host_ = room(walk_sums_.size(), "power of the walk, read back", device::Place::host);
+  gather_sums_on_host_ = room(gather_sums_.size(), "power gathered, read back", device::Place::host);
+}
+
+// Of each tet at most one point more than it weighs is drawn: ten standard deviations of their number are left.
+void TransportSamples::make_room(device::Device& device, std::uint32_t points) {
+  points_wanted_ = points;
+  const std::uint32_t room = points + points / 8 + 1024;
+  if (room_ == room) return;
+  room_ = room;
+  points_ = {device, room * sizeof(gpu::TransportPoint), device::Place::device, "transport/points"};
+}
+
+void TransportSamples::write_field(const TransportParts& parts, const WalkTask& task) {
+  const gpu::TransportFieldRef field{.body = parts.walk.body(parts.level, task.eta, task.even),
+                                     .tree = parts.tree.ref(),
+                                     .cells = cells_.address(),
+                                     .sky = parts.level.sky.address(),
+                                     .segments = segments_.address(),
+                                     .outside = parts.outside ? 1u : 0u};
+  device::write_bytes(parts.work.recorder.device(), field_, std::as_bytes(std::span(&field, 1)));
+}
+
+void TransportSamples::record_start(const TransportParts& parts, const WalkTask& task, const OperatorBuffers& op) {
+  Workspace& work = parts.work;
+  write_field(parts, task);
+  parts.tree.record(work, parts.level);
+  work.recorder.fill(segments_, 0);
+  record_walk(parts, task);
+  record_cells(parts);
+  const gpu::TransportFluencePush fluence{.x = op.x.address(),
+                                          .to_phi = op.to_phi.address(),
+                                          .fluence = fluence_.address(),
+                                          .count = parts.level.vertex_count};
+  work.recorder.dispatch(work.passes.of(shader::transport_fluence, op.model), fluence, parts.level.vertex_count,
+                         "transport start", parts.level.vertex_count * (op.field_bytes() + vec3_bytes));
+  record_weights(parts);
+  record_mass(parts);
+}
+
+void TransportSamples::record_mass(const TransportParts& parts) {
+  Workspace& work = parts.work;
+  const LevelBuffers& level = parts.level;
+  const gpu::TransportMassPush push{.vertices = level.vertices.address(),
+                                    .tets = level.tets.address(),
+                                    .optical = level.optical.address(),
+                                    .tet_offset = tet_offset_.address(),
+                                    .tet_incidence = tet_incidence_.address(),
+                                    .mass = mass_.address(),
+                                    .count = level.vertex_count,
+                                    .even = level.even ? 1u : 0u};
+  work.recorder.dispatch(work.passes.of(shader::transport_mass), push, level.vertex_count, "transport start",
+                         4 * level.tet_count * (sizeof(glm::uvec4) + 4 * vec3_bytes) + mass_.size());
+}
+
+void TransportSamples::record_walk(const TransportParts& parts, const WalkTask& task) {
+  Workspace& work = parts.work;
+  const LevelBuffers& level = parts.level;
+  work.recorder.fill(deposit_, 0);
+  work.recorder.fill(walk_sums_, 0);
+  gpu::TransportWalkPush push{.field = field_.address(),
+                              .beam = parts.beams.on_device.address(),
+                              .beam_q = level.beam_q.address(),
+                              .scale = work.scale.address(),
+                              .deposit = deposit_.address(),
+                              .sums = walk_sums_.address(),
+                              .rays = 1,
+                              .deposits = gpu::WALK_CORNERS};
+  for (const gpu::Beam& beam : parts.beams.beams) {
+    const std::uint32_t kind = beam.way.kind;
+    if (kind == gpu::BEAM_MEAN) continue;
+    push.rays = rays_of(kind, task.mean_rays);
+    work.recorder.dispatch(work.passes.of(shader::transport_walk), push, std::uint64_t{level.face_count} * push.rays,
+                           "transport walk", walk_bytes(level, push.rays));
+    push.beam += sizeof(gpu::Beam);
+  }
+}
+
+void TransportSamples::record_cells(const TransportParts& parts) {
+  Workspace& work = parts.work;
+  const LevelBuffers& level = parts.level;
+  const gpu::TransportCellsPush push{.vertices = level.vertices.address(),
+                                     .tets = level.tets.address(),
+                                     .crossings = parts.walk.crossings().address(),
+                                     .cells = cells_.address(),
+                                     .count = level.tet_count};
+  work.recorder.dispatch(work.passes.of(shader::transport_cells), push, level.tet_count, "transport start",
+                         cells_.size() + level.tet_count * (2 * sizeof(glm::uvec4) + 4 * vec3_bytes));
+}
+
+void TransportSamples::record_weights(const TransportParts& parts) {
+  Workspace& work = parts.work;
+  const LevelBuffers& level = parts.level;
+  const gpu::TransportWeightsPush weights{.vertices = level.vertices.address(),
+                                          .tets = level.tets.address(),
+                                          .optical = level.optical.address(),
+                                          .nearest = parts.nearest.address(),
+                                          .weights = weights_.address(),
+                                          .total = total_.address(),
+                                          .reduction = work.reduction.address(),
+                                          .count = level.tet_count,
+                                          .even = level.even ? 1u : 0u};
+  work.recorder.dispatch(work.passes.of(shader::transport_weights), weights, level.tet_count, "transport start",
+                         level.tet_count * (2 * sizeof(glm::uvec4) + 8 * vec3_bytes + sizeof(gpu::Optical)));
+}
+
+void TransportSamples::record_source(const TransportParts& parts, const TransportShares& shares) {
+  Workspace& work = parts.work;
+  const LevelBuffers& level = parts.level;
+  const gpu::TransportSourcePush push{.vertices = level.vertices.address(),
+                                      .tets = level.tets.address(),
+                                      .optical = level.optical.address(),
+                                      .fluence = fluence_.address(),
+                                      .deposit = deposit_.address(),
+                                      .fluence_before = fluence_before_.address(),
+                                      .source_before = source_before_.address(),
+                                      .unit = unit_.address(),
+                                      .scale = work.scale.address(),
+                                      .fluence_seen = fluence_seen_.address(),
+                                      .cells = cells_.address(),
+                                      .vertex_count = level.vertex_count,
+                                      .tet_count = level.tet_count,
+                                      .even = level.even ? 1u : 0u,
+                                      .share = shares.present,
+                                      .keep = shares.before};
+  work.recorder.dispatch(work.passes.of(shader::transport_source), push, std::max(level.tet_count, level.vertex_count),
+                         "transport source",
+                         4 * fluence_.size() + deposit_.size() + 3 * source_before_.size() +
+                             level.tet_count * (sizeof(glm::uvec4) + 8 * vec3_bytes));
+}
+
+void TransportSamples::record_exitance(const TransportParts& parts, std::uint32_t rays, float known, bool power) {
+  Workspace& work = parts.work;
+  if (power) work.recorder.fill(gather_sums_, 0);
+  const gpu::TransportExitancePush push{.field = field_.address(),
+                                        .exitance = gathered_.address(),
+                                        .sums = power ? gather_sums_.address() : 0,
+                                        .unit = unit_.address(),
+                                        .scale = work.scale.address(),
+                                        .rays = rays,
+                                        .seed = ++seed_,
+                                        .keep = known};
+  const std::uint64_t samples = std::uint64_t{halves} * parts.level.face_count;
+  work.recorder.dispatch(work.passes.of(shader::transport_exitance), push, samples, "transport exitance",
+                         samples * rays * tets_per_ray * segment_bytes);
+}
+
+void TransportSamples::record_no_load(const TransportParts& parts) {
+  parts.work.recorder.fill(point_sums_, 0);
+  draw_ = 0;
+  parts.work.recorder.fill(load_, 0);
+  record_totals(parts);
+}
+
+void TransportSamples::record_draw(const TransportParts& parts, std::uint32_t directions) {
+  Workspace& work = parts.work;
+  work.recorder.fill(drawn_, 0);
+  const gpu::TransportPointsPush points{.weights = weights_.address(),
+                                        .total = total_.address(),
+                                        .drawn = drawn_.address(),
+                                        .points = points_.address(),
+                                        .tet_count = parts.level.tet_count,
+                                        .draw = draw_++,
+                                        .wanted = static_cast<float>(points_wanted_) / halves,
+                                        .room = room_};
+  work.recorder.dispatch(work.passes.of(shader::transport_points), points, parts.level.tet_count, "transport points",
+                         weights_.size() + points_.size());
+  const gpu::TransportSweepPush sweep{.field = field_.address(),
+                                      .drawn = drawn_.address(),
+                                      .points = points_.address(),
+                                      .fluence = fluence_seen_.address(),
+                                      .sums = point_sums_.address(),
+                                      .load = load_.address(),
+                                      .room = room_,
+                                      .directions = directions,
+                                      .vertex_count = parts.level.vertex_count,
+                                      .seed = seed_};
+  work.recorder.dispatch(work.passes.of(shader::transport_sweep), sweep, room_, "transport sweep",
+                         std::uint64_t{points_wanted_} * directions * tets_per_ray * segment_bytes);
+}
+
+void TransportSamples::record_totals(const TransportParts& parts) {
+  Workspace& work = parts.work;
+  const LevelBuffers& level = parts.level;
+  const gpu::TransportTotalsPush totals{.vertices = level.vertices.address(),
+                                        .tets = level.tets.address(),
+                                        .optical = level.optical.address(),
+                                        .fluence = fluence_.address(),
+                                        .source = source_before_.address(),
+                                        .books = books_.address(),
+                                        .reduction = work.reduction.address(),
+                                        .count = level.tet_count,
+                                        .even = level.even ? 1u : 0u};
+  work.recorder.dispatch(work.passes.of(shader::transport_totals), totals, level.tet_count, "transport books",
+                         source_before_.size() + level.tet_count * (sizeof(glm::uvec4) + 8 * vec3_bytes));
+  const gpu::TransportLeavingPush leaving{.vertices = level.vertices.address(),
+                                          .faces = level.faces.address(),
+                                          .gathered = gathered_.address(),
+                                          .books = books_.address(),
+                                          .reduction = work.reduction.address(),
+                                          .count = level.face_count};
+  work.recorder.dispatch(work.passes.of(shader::transport_leaving), leaving, level.face_count, "transport books",
+                         gathered_.size() + level.face_count * (sizeof(glm::uvec3) + 3 * vec3_bytes));
+}
+
+void TransportSamples::record_books(const TransportParts& parts, float share, float known) {
+  Workspace& work = parts.work;
+  const gpu::TransportBooksPush push{.books = books_.address(),
+                                     .points = point_sums_.address(),
+                                     .again = gather_sums_.address(),
+                                     .unit = unit_.address(),
+                                     .scale = work.scale.address(),
+                                     .share = share,
+                                     .keep = known};
+  work.recorder.dispatch(work.passes.of(shader::transport_books), push, 1, "transport books",
+                         point_sums_.size() + gather_sums_.size());
+}
+
+void TransportSamples::record_smooth(const TransportParts& parts, const device::Buffer* mass,
+                                     const device::Buffer& from, const device::Buffer& to) {
+  Workspace& work = parts.work;
+  const LevelBuffers& level = parts.level;
+  const gpu::TransportSmoothPush push{.vertices = level.vertices.address(),
+                                      .tets = level.tets.address(),
+                                      .tet_offset = tet_offset_.address(),
+                                      .tet_incidence = tet_incidence_.address(),
+                                      .mass = mass == nullptr ? 0 : mass->address(),
+                                      .from = from.address(),
+                                      .to = to.address(),
+                                      .count = level.vertex_count};
+  work.recorder.dispatch(work.passes.of(shader::transport_smooth), push, level.vertex_count, "transport step",
+                         4 * level.tet_count * (sizeof(glm::uvec4) + 8 * vec3_bytes));
+}
+
+void TransportSamples::record_step(const TransportParts& parts, const std::array<device::Buffer, 2>& load,
+                                   const std::array<device::Buffer, 2>& change) {
+  Workspace& work = parts.work;
+  const std::uint32_t count = parts.level.vertex_count;
+  const gpu::TransportMeanPush mean{load[0].address(), load[1].address(), swept_[0].address(), count};
+  work.recorder.dispatch(work.passes.of(shader::transport_mean), mean, count, "transport step", 3 * count * vec3_bytes);
+  record_smooth(parts, &mass_, swept_[0], swept_[1]);
+  record_smooth(parts, nullptr, swept_[1], swept_[0]);
+  const gpu::TransportStepPush step{.swept = swept_[0].address(),
+                                    .change_a = change[0].address(),
+                                    .change_b = change[1].address(),
+                                    .fluence = fluence_.address(),
+                                    .count = count};
+  work.recorder.dispatch(work.passes.of(shader::transport_step), step, count, "transport step", 5 * count * vec3_bytes);
+}
+
+void TransportSamples::record_state(const TransportParts& parts) {
+  parts.work.recorder.copy(parts.work.scale, unit_, unit_.size());
+  parts.work.recorder.copy(segments_, segments_on_host_, segments_.size());
+  parts.work.recorder.copy(walk_sums_, walk_sums_on_host_, walk_sums_.size());
+  parts.work.recorder.copy(gather_sums_, gather_sums_on_host_, gather_sums_.size());
+}
+
+double TransportSamples::segments() const {
+  return segments_on_host_.mapped_as<std::uint32_t>()[0];
+}
+
+TransportPower TransportSamples::power(const glm::dvec3& scale) const {
+  const std::vector<glm::dvec3> walked = powers(walk_sums_on_host_.mapped_as<std::uint32_t>(), scale);
+  const std::vector<glm::dvec3> gathered = powers(gather_sums_on_host_.mapped_as<std::uint32_t>(), scale);
+  const glm::dvec3 left = sum_of(gathered, 0, gather_sums), again = sum_of(gathered, 1, gather_sums);
+  TransportPower power{sum_of(walked, 0, walk_sums), sum_of(walked, 1, walk_sums), sum_of(walked, 2, walk_sums)};
+  for (int c = 0; c < 3; ++c) power.share_again[c] = left[c] > 0 ? again[c] / left[c] : 0;
+  return power;
+}
+
+}  // namespace quadgraph

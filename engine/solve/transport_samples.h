@@ -1,0 +1,111 @@
+// What rays of the transport correction see, and what they find: the light that scatters for the first time, the fluence
+// on its way to transport's, points that sample what that leaves, and the exitance gathered by the faces.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "engine/solve/beams.h"
+#include "engine/solve/body_tree.h"
+#include "engine/solve/source_walk.h"
+#include "engine/solve/surface_results.h"
+#include "engine/solve/workspace.h"
+#include "shaders/transport/transport_shared.h"
+
+namespace quadgraph {
+
+// What a correction works with, on the finest level.
+struct TransportParts {
+  Workspace& work;
+  const LevelBuffers& level;
+  const BeamBuffers& beams;
+  const SourceWalk& walk;
+  const device::Buffer& nearest;  // surface vertex of each vertex (engine/reference/vertex_starts.h)
+  BodyTree& tree;
+  bool outside = false;  // light that leaves may enter again elsewhere
+};
+
+// What samples see is a share of the present field, less one of the field before; what they find is added to a share of
+// what was known.
+struct TransportShares {
+  float present = 1, before = 0, known = 0;
+};
+
+// Power that the light's own rays brought, W, and of what is gathered the share that enters again.
+struct TransportPower {
+  glm::dvec3 absorbed{0}, unscattered{0}, entered_again{0}, share_again{0};
+};
+
+class TransportSamples {
+ public:
+  // `level`: the finest, whose tets stay what they are.
+  TransportSamples(device::Device& device, const Level& level);
+
+  // Room for so many points at a time, unless it is there.
+  void make_room(device::Device& device, std::uint32_t points);
+
+  // The field of a solve: walks the light, takes the fluence of `op`, weighs the tets.
+  void record_start(const TransportParts& parts, const WalkTask& task, const OperatorBuffers& op);
+
+  // What samples see from here on; the field before is that of the last call.
+  void record_source(const TransportParts& parts, const TransportShares& shares);
+
+  // Exitance of what is seen, by so many rays per face and half, added to a share of what was known. With `power`, also
+  // how much of it enters again.
+  void record_exitance(const TransportParts& parts, std::uint32_t rays, float known, bool power);
+
+  // Forgets the load; then one draw of points after the other is added to it, with so many rays each.
+  void record_no_load(const TransportParts& parts);
+  void record_draw(const TransportParts& parts, std::uint32_t directions);
+
+  // To be read by `segments` and `power` after the next submission.
+  void record_state(const TransportParts& parts);
+  double segments() const;
+  TransportPower power(const glm::dvec3& scale) const;
+
+  std::uint32_t points() const { return points_wanted_; }  // of a draw, about
+  void begin_seeds() { seed_ = 0; }
+
+  // A step of the fluence: what both halves of a load say of it, over the mass and smoothed, and the mean of two changes.
+  void record_step(const TransportParts& parts, const std::array<device::Buffer, 2>& load,
+                   const std::array<device::Buffer, 2>& change);
+
+  // What the points of either half are missing, after draws of which so much counts; `known` is the share of what they
+  // found before.
+  void record_books(const TransportParts& parts, float share, float known);
+  const device::Buffer& books() const { return books_; }  // TransportBook
+  const device::Buffer& mass() const { return mass_; }    // vec3 per vertex, mm^2: integral of sigma_s' times its basis
+
+  const device::Buffer& fluence() const { return fluence_; }  // vec3 per vertex, scaled; to be corrected
+  const device::Buffer& load() const { return load_; }        // fixed point, per vertex two per half
+  const device::Buffer& gathered() const { return gathered_; }  // vec3 per half and face, scaled
+  const device::Buffer& unit() const { return unit_; }          // vec3: the scale of what was known
+
+ private:
+  void write_field(const TransportParts& parts, const WalkTask& task);
+  void record_walk(const TransportParts& parts, const WalkTask& task);
+  void record_cells(const TransportParts& parts);
+  void record_weights(const TransportParts& parts);
+  void record_mass(const TransportParts& parts);
+  void record_smooth(const TransportParts& parts, const device::Buffer* mass, const device::Buffer& from,
+                     const device::Buffer& to);
+  void record_totals(const TransportParts& parts);
+
+  std::uint32_t points_wanted_ = 0, room_ = 0;
+  std::uint32_t seed_ = 0;  // of what was recorded last
+  std::uint32_t draw_ = 0;  // number of the next draw of the load
+  device::Buffer field_;    // TransportFieldRef
+  device::Buffer cells_;    // TransportCell per tet
+  device::Buffer deposit_;  // fixed point, four per tet: power scattered for the first time
+  device::Buffer fluence_, fluence_before_, fluence_seen_;  // vec3 per vertex, scaled
+  device::Buffer source_before_, unit_;                     // vec3, four per tet; vec3
+  device::Buffer weights_, total_;  // vec2 per tet; float
+  device::Buffer drawn_, points_;   // uint; TransportPoint
+  device::Buffer load_, gathered_;
+  device::Buffer tet_offset_, tet_incidence_, mass_;  // tets around each vertex
+  device::Buffer point_sums_, books_;
+  std::array<device::Buffer, 2> swept_;  // vec3 per vertex
+  device::Buffer segments_, walk_sums_, gather_sums_, segments_on_host_, walk_sums_on_host_, gather_sums_on_host_;
+};
+
+}  // namespace quadgraph

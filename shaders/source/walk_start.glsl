@@ -1,0 +1,100 @@
+// Where the rays of a beam start. The shader that includes it, behind walk_ray.glsl, has push constants `push` with beam,
+// beam_q, scale and rays as WalkSourcePush does, and defines follow behind it.
+#ifndef QUADGRAPH_WALK_START_GLSL
+#define QUADGRAPH_WALK_START_GLSL
+
+#include "source/beam_light.glsl"
+#include "source/face_azimuth.glsl"
+#include "source/lambertian.glsl"
+#include "source/walk_ray.glsl"
+
+const uint FACE_CENTRE = 3u;  // the quarter in the middle
+
+// Barycentric coordinates of the centroid of a quarter.
+vec3 quarter_centre(uint quarter) {
+  vec3 l = vec3(quarter == FACE_CENTRE ? 1.0 / 3.0 : 1.0 / 6.0);
+  if (quarter != FACE_CENTRE) l[quarter] = 2.0 / 3.0;
+  return l;
+}
+
+// One ray stands for a face whose quarters are lit alike and that is compact.
+bool one_ray_does(vec3 least, vec3 largest, mat3 corners, float area) {
+  vec3 e_0 = corners[1] - corners[0], e_1 = corners[2] - corners[1], e_2 = corners[0] - corners[2];
+  float longest = max(dot(e_0, e_0), max(dot(e_1, e_1), dot(e_2, e_2)));
+  return longest <= 8.0 * area && all(lessThanEqual(largest - least, largest / 16.0));
+}
+
+struct Frame {
+  vec3 position, normal, tangent;
+};
+
+// The way light travels outside, at a point of a face.
+vec3 incoming(BeamRecord beam, uint ray, Frame at) {
+  if (beam.kind == BEAM_DIRECTIONAL) return beam.travel_or_from;
+  if (beam.kind == BEAM_POINT) return normalize(at.position - beam.travel_or_from);
+  return lambertian_incoming(ray, at.normal, at.tangent);
+}
+
+// Share of the power of a face that one ray takes, by its number.
+float share_of(uint ray, uint rays) {
+  return rays == 1u ? 1.0 : 0.5 * lambertian(BODY.eta).share[ray / 2u];
+}
+
+float mean_cosine() {
+  Lambertian light = lambertian(BODY.eta);
+  return dot(light.share, light.cosine);
+}
+
+// Inside direction of BEAM_MEAN.
+vec3 mean_direction(vec3 normal, vec3 tangent) {
+  float cosine = mean_cosine();
+  return normalize(sqrt(1.0 - cosine * cosine) * tangent - cosine * normal);
+}
+
+// The ray inside, of power that has entered at a point of a face. A Lambertian beam by one ray goes straight down, as
+// deep as the mean of its directions: askew it would take light aside, each face to its own side.
+Ray start(BeamRecord way, uint ray, uint tet, Frame at, vec3 power) {
+  if (way.kind == BEAM_LAMBERTIAN && push.rays == 1u) {
+    return Ray(tet, -at.normal, power, vec3(0), 1.0 / mean_cosine());
+  }
+  vec3 inside = way.kind == BEAM_MEAN ? mean_direction(at.normal, at.tangent)
+                                      : refracted(incoming(way, ray, at), at.normal, BODY.eta);
+  return Ray(tet, inside, power, vec3(0), 1.0);
+}
+
+// Walks a ray from the point that the corners hold.
+void follow(BeamRecord way, uint ray, uint face, Frame at, vec3 power);
+
+// Ray `ray` of every origin on a face.
+void walk_from(uint face, uint ray) {
+  Beam beam = push.beam.at[0u];
+  vec3 q[FACE_QUARTERS];
+  vec3 inverse = push.scale.at[0].inverse;
+  vec3 least = vec3(NEVER), largest = vec3(0), sum = vec3(0);
+  for (uint k = 0u; k < FACE_QUARTERS; ++k) {
+    q[k] = beam_light(beam, push.beam_q, BODY.face_count, face, k) * inverse;
+    least = min(least, q[k]);
+    largest = max(largest, q[k]);
+    sum += q[k];
+  }
+  if (largest == vec3(0) || BODY.face_kinds.at[face] != FACE_OPEN) return;
+  uvec3 ids = BODY.faces.at[face];
+  mat3 corners = corners_of(ids);
+  vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+  float area = 0.5 * length(normal);
+  if (area == 0.0) return;
+  normal /= 2.0 * area;
+  vec3 tangent = face_tangent(face, normal, corners[1] - corners[0]);
+  bool one = one_ray_does(least, largest, corners, area);
+  uint tet = BODY.face_tets.at[face];
+  float share = 0.25 * area * share_of(ray, push.rays);
+  for (uint k = one ? FACE_CENTRE : 0u; k < FACE_QUARTERS; ++k) {
+    vec3 power = share * (one ? sum : q[k]);
+    if (power == vec3(0)) continue;
+    vec3 l = quarter_centre(k);
+    start_on_face(tet, ids, corners, l);
+    follow(beam.way, ray, face, Frame(corners * l, normal, tangent), power);
+  }
+}
+
+#endif

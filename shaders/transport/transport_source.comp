@@ -1,0 +1,69 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "source/fixed_point.glsl"
+#include "transport/transport_shared.h"
+
+layout(local_size_x = WORKGROUP_SIZE) in;
+
+// The light that samples see: a share of the present field, less one of the field before, for which their results are
+// known. All that is sampled is linear in it, so that what is known of the one before is used again, and the noise is that
+// of the difference (docs/physics.md, "Transport correction").
+struct TransportSourcePush {
+  Vec3s vertices;
+  Uvec4s tets;
+  Opticals optical;
+  Vec3s fluence;         // at the vertices
+  Uints deposit;         // fixed point, at the corners of the tets, four each: power scattered for the first time
+  Vec3s fluence_before;  // those before, which the present ones replace
+  Vec3s source_before;   // light that is scattered, four per tet, W/mm^3
+  Vec3s unit;            // one: the scale that these have
+  Scales scale;
+  Vec3s fluence_seen;  // written
+  TransportCells cells;
+  uint vertex_count;
+  uint tet_count;
+  uint even;    // 1: optical is the same everywhere
+  float share;  // of the present field
+  float keep;   // of that before
+};
+layout(push_constant, scalar) uniform Block { TransportSourcePush push; };
+
+vec3 seen(vec3 present, vec3 before) {
+  vec3 seen = push.share * present;
+  if (push.keep != 0.0) seen -= push.keep * push.unit.at[0] * push.scale.at[0].inverse * before;
+  return seen;
+}
+
+float volume_of(uvec4 corners) {
+  vec3 p = push.vertices.at[corners.x];
+  vec3 e1 = push.vertices.at[corners.y] - p, e2 = push.vertices.at[corners.z] - p;
+  return abs(dot(e1, cross(e2, push.vertices.at[corners.w] - p))) / 6.0;
+}
+
+// At a corner: with the linear function in the tet that has the integrals against its basis functions that the walk found.
+vec3 source_at(uint tet, uint corner, uint vertex, vec3 sum, float per_volume) {
+  vec3 first = per_volume * (power_at(push.deposit, 4u * tet + corner) - 0.2 * sum);
+  vec3 present = push.optical.at[push.even == 1u ? 0u : tet].sigma_s_prime * push.fluence.at[vertex] + first;
+  uint at = 4u * tet + corner;
+  vec3 result = seen(present, push.source_before.at[at]);
+  push.source_before.at[at] = present;
+  return result;
+}
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i < push.vertex_count) {
+    vec3 present = push.fluence.at[i];
+    push.fluence_seen.at[i] = seen(present, push.fluence_before.at[i]);
+    push.fluence_before.at[i] = present;
+  }
+  if (i >= push.tet_count) return;
+  uvec4 corners = push.tets.at[i];
+  float volume = volume_of(corners), per_volume = volume > 0.0 ? 20.0 / volume : 0.0;
+  vec3 sum = vec3(0);
+  for (uint k = 0u; k < 4u; ++k) sum += power_at(push.deposit, 4u * i + k);
+  push.cells.at[i].source_0 = source_at(i, 0u, corners.x, sum, per_volume);
+  push.cells.at[i].source_1 = source_at(i, 1u, corners.y, sum, per_volume);
+  push.cells.at[i].source_2 = source_at(i, 2u, corners.z, sum, per_volume);
+  push.cells.at[i].source_3 = source_at(i, 3u, corners.w, sum, per_volume);
+}

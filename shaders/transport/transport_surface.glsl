@@ -1,0 +1,63 @@
+// What the surface does to a ray of the transport correction. The shader that includes it defines first
+//   FIELD  where the TransportFieldRef is
+//   BODY   FIELD.body
+// Where other parts of the body can be met outside, chance decides between the ways that a ray can take, each by its
+// share of the power: so the ray keeps all of it and never divides. Elsewhere what leaves is gone.
+#ifndef QUADGRAPH_TRANSPORT_SURFACE_GLSL
+#define QUADGRAPH_TRANSPORT_SURFACE_GLSL
+
+#include "material/fresnel.glsl"
+#include "source/lambertian.glsl"
+#include "transport/random.glsl"
+#include "transport/transport_shared.h"
+
+#ifndef FIELD
+#error "transport_surface.glsl: FIELD is not defined"
+#endif
+
+#define TREE FIELD.tree
+#define TREE_BODY FIELD.body
+#include "exchange/face_tree.glsl"
+
+bool sees_body(uint face) {
+  return FIELD.outside != 0u && FIELD.sky.at[face] < 1.0;
+}
+
+vec3 outward_normal(uint face) {
+  uvec3 ids = BODY.faces.at[face];
+  vec3 p = BODY.vertices.at[ids.x];
+  return normalize(cross(BODY.vertices.at[ids.y] - p, BODY.vertices.at[ids.z] - p));
+}
+
+// Outside, for a direction that leaves at inside cosine `cosine`.
+vec3 leaving_direction(vec3 direction, vec3 n, float cosine) {
+  float outside = sqrt(max(1.0 - BODY.eta * BODY.eta * (1.0 - cosine * cosine), 0.0));
+  return normalize(BODY.eta * (direction - cosine * n) + outside * n);
+}
+
+// Where a ray enters the body.
+struct Entrance {
+  uint face;  // or NO_FACE: nowhere
+  vec2 place;  // barycentric coordinates of its second and third corner
+  vec3 point, direction;  // inside
+};
+
+// From a point of `face` along `direction` through the air, past what only reflects it, until the ray enters the body
+// again.
+Entrance through_air(uint face, vec3 point, vec3 direction, inout uint state) {
+  for (uint k = 0u; k < TRANSPORT_MEETINGS; ++k) {
+    Hit hit = first_met(line_along(point, direction), face, FAR);
+    if (hit.face == NO_FACE || !hit.outside) break;
+    face = hit.face;
+    point += hit.distance * direction;
+    vec3 n = outward_normal(face);
+    float cosine = clamp(-dot(direction, n), 0.0, 1.0);
+    if (BODY.face_kinds.at[face] == FACE_OPEN && uniform_number(state) < fresnel_transmittance(cosine, BODY.eta)) {
+      return Entrance(face, clamp(hit.place, vec2(0), vec2(1)), point, refracted(direction, n, BODY.eta));
+    }
+    direction = normalize(direction + 2.0 * cosine * n);
+  }
+  return Entrance(NO_FACE, vec2(0), point, direction);
+}
+
+#endif
