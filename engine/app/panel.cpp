@@ -171,11 +171,17 @@ void draw_passes(const std::vector<PassStats>& passes) {
   ImGui::EndTable();
 }
 
-std::string error_text(const SolveReport& report) {
-  if (report.path) return "not estimated";
-  if (!report.error) return "not known, a single level";
-  const std::string unlit = report.error->unlit > 0 ? percent(report.error->unlit) : "–";
-  return percent(report.error->whole) + " whole, " + unlit + " unlit";
+std::string error_text(const std::optional<ErrorEstimate>& error) {
+  if (!error) return "not known";
+  return percent(error->whole) + " whole, " + (error->unlit > 0 ? percent(error->unlit) : "–") + " unlit";
+}
+
+void tell_error(const SolveReport& report) {
+  if (report.path) return tell("Error", "not estimated");
+  tell("Error", error_text(report.error));
+  tell("  mesh", error_text(report.mesh_error) + (report.correction ? ", before correction" : ""));
+  tell("  solver", error_text(report.algebraic));
+  tell("  model", report.correction ? error_text(report.model_error) : "not known without correction");
 }
 
 void draw_frame(const Measured& measured) {
@@ -186,7 +192,7 @@ void draw_frame(const Measured& measured) {
   tell("Time", formatted("%.0f ms, %.1f fps", measured.frame_ms, measured.frames_per_second));
   tell("State",
        measured.settled ? "converged" : formatted("preview, %.0f%% resolution", 100.0 * double(measured.share)));
-  tell("Error", error_text(report));
+  tell_error(report);
   tell("Energy", report.path ? "not conserved" : "balanced to " + percent(worst));
   tell("Memory", bytes_text(measured.device_bytes) + ", peak " + bytes_text(measured.peak_device_bytes));
   if (!report.levels.empty()) {
@@ -195,8 +201,8 @@ void draw_frame(const Measured& measured) {
     tell("Solver", std::string(name_of(report.model)) + ", " + std::string(name_of(report.solver)));
   }
   if (report.path) tell("Solve", formatted("%u voxels, %u rounds", report.path->solid, report.path->rounds));
-  for (const std::string& text :
-       {report.budget, report.replaced, report.missed, report.stopped, report.mesh_warning, report.model_warning}) {
+  for (const std::string& text : {report.budget, report.replaced, report.missed, report.stopped, report.advice,
+                                  report.mesh_warning, report.model_warning}) {
     if (!text.empty()) ImGui::TextWrapped("%s", text.c_str());
   }
 }

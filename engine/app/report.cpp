@@ -69,7 +69,10 @@ Json as_json(const SolveReport& report) {
   json["finest"] = report.finest;
   json["work"] = report.work;
   json["algebraic"] = as_json(report.algebraic);
+  json["mesh_error"] = as_json(report.mesh_error);
+  json["model_error"] = as_json(report.model_error);
   json["error"] = as_json(report.error);
+  json["advice"] = report.advice;
   json["replaced"] = report.replaced;
   json["missed"] = report.missed;
   json["unmet"] = unmet(report);
@@ -129,6 +132,12 @@ void tell_paths(std::ostream& out, const RunReport& report) {
       << "error    not estimated, and energy is not conserved\n";
 }
 
+void tell_part(std::ostream& out, const char* name, const std::optional<ErrorEstimate>& part) {
+  if (!part) return;
+  out << name << decimals(100 * part->whole, 2) << "% over the surface, "
+      << (part->unlit > 0 ? decimals(100 * part->unlit, 2) + "% over the unlit part" : "nothing unlit") << "\n";
+}
+
 void tell_levels(std::ostream& out, const RunReport& report) {
   const Level& finest = report.engine.graph().levels().front();
   const LevelReport& solved = report.solve.levels.back();
@@ -146,11 +155,11 @@ void tell_levels(std::ostream& out, const RunReport& report) {
     }
     out << " changed, " << decimals(report.solve.correction->segments / 1e6, 1) << " million ray segments\n";
   }
-  if (report.solve.error) {
-    const double unlit = report.solve.error->unlit;
-    out << "error    " << decimals(100 * report.solve.error->whole, 2) << "% over the surface, "
-        << (unlit > 0 ? decimals(100 * unlit, 2) + "% over the unlit part" : "nothing unlit") << " (estimated)\n";
-  }
+  if (!report.solve.error) return;
+  tell_part(out, "error    ", report.solve.error);
+  tell_part(out, "  mesh   ", report.solve.mesh_error);
+  tell_part(out, "  solver ", report.solve.algebraic);
+  tell_part(out, "  model  ", report.solve.model_error);
 }
 
 }  // namespace
@@ -166,7 +175,8 @@ std::string text_report(const RunReport& report) {
   if (!report.solve.replaced.empty()) out << "solver   " << report.solve.replaced << "\n";
   if (!report.solve.budget.empty()) out << "budget   " << report.solve.budget << "\n";
   for (const std::string& sentence : unmet(report.solve)) out << "missed   " << sentence << "\n";
-  for (const std::string& warning : {report.solve.mesh_warning, report.solve.model_warning, report.solve.deformed}) {
+  for (const std::string& warning :
+       {report.solve.advice, report.solve.mesh_warning, report.solve.model_warning, report.solve.deformed}) {
     if (!warning.empty()) out << "warning  " << warning << "\n";
   }
   out << "memory   " << decimals(static_cast<double>(report.engine.peak_device_bytes()) / mebibyte, 0)

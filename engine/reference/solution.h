@@ -86,10 +86,11 @@ struct SolveReport {
   // That of the mesh: the difference between the exitance of the two finest levels, times the
   // share of it that is the finer one's own, and no less than what elements as deep as those at the surface leave
   // (engine/reference/resolution.h). A correction takes most of it away. Empty with a single level.
-  std::optional<ErrorEstimate> mesh;
+  std::optional<ErrorEstimate> mesh_error;
   // All of these together, and without a correction those but the model's. Empty where nothing is known of the mesh or
   // the model.
   std::optional<ErrorEstimate> error;
+  std::string advice;             // of an error above 5%: where it comes from and what to do; else empty
   bool inter_reflection = false;  // whether inter-reflection was computed
   std::string missed;             // what was wanted of the error and is not met; empty if all is
   // How the level that was solved last stopped short of the tolerance; empty if it did not, if a number of cycles was

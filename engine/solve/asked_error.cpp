@@ -48,6 +48,22 @@ std::string missed(const std::optional<ErrorEstimate>& estimate, double wanted) 
          " times that; a file with more vertices on its surface would come closer";
 }
 
+std::string advice(const SolveReport& report) {
+  constexpr double large = 0.05;
+  const auto most = [](const std::optional<ErrorEstimate>& part) {
+    return part ? std::max(part->whole, part->unlit) : 0.0;
+  };
+  if (most(report.error) <= large) return "";
+  const double mesh = most(report.mesh_error), solver = most(report.algebraic), model = most(report.model_error);
+  const std::string off = "the error is stated as " + percent_text(most(report.error)) + ", most of it ";
+  if (!report.correction && mesh >= solver) return off + "the mesh's: a correction would take most of that away";
+  if (solver > std::max(mesh, model)) return off + "the solver's: a smaller --tolerance brings it down";
+  if (mesh > model) return off + "the mesh's: a file with more vertices has less";
+  const CorrectedSweep& last = report.correction->sweeps.back();
+  if (most(last.noise) > 0.7 * model) return off + "noise of the correction: more --sweep-points bring it down";
+  return off + "what another sweep would change: more --sweeps bring it down";
+}
+
 std::string stopped(const LevelReport& level) {
   char residual[32];
   std::snprintf(residual, sizeof(residual), "%.2e", level.residual);

@@ -26,6 +26,9 @@ std::string percent_text(double share);
 // In words, of an error that is not certain; no estimate: of a file that has none.
 std::string missed(const std::optional<ErrorEstimate>& estimate, double wanted);
 
+// In words, of a stated error above 5%: the largest of its parts, and what makes it smaller; empty below.
+std::string advice(const SolveReport& report);
+
 // In words, of a level that did not converge.
 std::string stopped(const LevelReport& level);
 

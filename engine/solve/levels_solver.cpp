@@ -319,7 +319,7 @@ void LevelsSolver::take_error() {
     if (report_.algebraic->unlit > 0) report_.algebraic->unlit = std::max(report_.algebraic->unlit, least);
   }
   report_.error.reset();
-  report_.mesh.reset();
+  report_.mesh_error.reset();
   if (finest_ + 1 == solvers_.size() || !solvers_[finest_ + 1]) return;
   const glm::dvec2 difference(solver.state().difference);
   std::optional<glm::dvec2> coarser;
@@ -328,7 +328,7 @@ void LevelsSolver::take_error() {
   }
   ErrorEstimate mesh = mesh_error(difference, coarser);
   if (!parts_.resolution.empty()) mesh.whole = std::max(mesh.whole, parts_.resolution[finest_].error);
-  report_.mesh = mesh;
+  report_.mesh_error = mesh;
   const ErrorEstimate left = report_.algebraic.value_or(ErrorEstimate{});
   report_.error = ErrorEstimate{std::hypot(mesh.whole, left.whole), std::hypot(mesh.unlit, left.unlit)};
 }

@@ -160,6 +160,7 @@ struct Simulation::Implementation {
     report.deformed = shape.spoilt();
     corrected = corrects(options);
     if (corrected) correct(key, options, report);
+    report.advice = advice(report);
     passes = work.recorder.passes();
     gathers_now.reset();
     solved = key;

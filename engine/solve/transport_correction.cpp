@@ -91,7 +91,7 @@ ErrorEstimate corrected_error(const CorrectionReport& correction) {
 }
 
 ErrorEstimate error_after_correction(const SolveReport& report) {
-  const ErrorEstimate none, model = report.model_error.value_or(none), mesh = report.mesh.value_or(none);
+  const ErrorEstimate none, model = report.model_error.value_or(none), mesh = report.mesh_error.value_or(none);
   const ErrorEstimate solver = report.algebraic.value_or(none);
   const auto all = [](double a, double b, double c) { return std::sqrt(a * a + b * b + c * c); };
   return {all(model.whole, mesh_left * mesh.whole, left_by_first * solver.whole),

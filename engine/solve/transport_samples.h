@@ -1,5 +1,5 @@
-// What rays of the transport correction see, and what they find: the light that scatters for the first time, the fluence
-// on its way to transport's, points that sample what that leaves, and the exitance gathered by the faces.
+// What rays of the transport correction see, and what they find: the light that scatters for the first time, the
+// fluence on its way to transport's, points that sample what that leaves, and the exitance gathered by the faces.
 #pragma once
 
 #include <array>
@@ -66,7 +66,8 @@ class TransportSamples {
   std::uint32_t points() const { return points_wanted_; }  // of a draw, about
   void begin_seeds() { seed_ = 0; }
 
-  // A step of the fluence: what both halves of a load say of it, over the mass and smoothed, and the mean of two changes.
+  // A step of the fluence: what both halves of a load say of it, over the mass and smoothed, and the mean of two
+  // changes.
   void record_step(const TransportParts& parts, const std::array<device::Buffer, 2>& load,
                    const std::array<device::Buffer, 2>& change);
 
@@ -76,8 +77,8 @@ class TransportSamples {
   const device::Buffer& books() const { return books_; }  // TransportBook
   const device::Buffer& mass() const { return mass_; }    // vec3 per vertex, mm^2: integral of sigma_s' times its basis
 
-  const device::Buffer& fluence() const { return fluence_; }  // vec3 per vertex, scaled; to be corrected
-  const device::Buffer& load() const { return load_; }        // fixed point, per vertex two per half
+  const device::Buffer& fluence() const { return fluence_; }    // vec3 per vertex, scaled; to be corrected
+  const device::Buffer& load() const { return load_; }          // fixed point, per vertex two per half
   const device::Buffer& gathered() const { return gathered_; }  // vec3 per half and face, scaled
   const device::Buffer& unit() const { return unit_; }          // vec3: the scale of what was known
 
@@ -99,8 +100,8 @@ class TransportSamples {
   device::Buffer deposit_;  // fixed point, four per tet: power scattered for the first time
   device::Buffer fluence_, fluence_before_, fluence_seen_;  // vec3 per vertex, scaled
   device::Buffer source_before_, unit_;                     // vec3, four per tet; vec3
-  device::Buffer weights_, total_;  // vec2 per tet; float
-  device::Buffer drawn_, points_;   // uint; TransportPoint
+  device::Buffer weights_, total_;                          // vec2 per tet; float
+  device::Buffer drawn_, points_;                           // uint; TransportPoint
   device::Buffer load_, gathered_;
   device::Buffer tet_offset_, tet_incidence_, mass_;  // tets around each vertex
   device::Buffer point_sums_, books_;

@@ -142,7 +142,10 @@ py::dict as_dict(const SolveReport& report) {
   d["finest"] = report.finest;
   d["work"] = report.work;
   d["algebraic"] = error_dict(report.algebraic);
+  d["mesh_error"] = error_dict(report.mesh_error);
+  d["model_error"] = error_dict(report.model_error);
   d["error"] = error_dict(report.error);
+  d["advice"] = report.advice;
   return d;
 }
 

@@ -102,8 +102,9 @@ class Solution:
     method, solver, source, model: those that were used; replaced: why it is another solver than the one asked for;
     cycles: that were asked for, 0 if none; levels: in the order solved, coarsest first; finest: the level solved last;
     work: products of all levels, in products of level 0; clipped: (3,) share of the exitance that was below zero and
-    taken from the rest; algebraic, error: estimates without and with the mesh's part, None where they cannot be told;
-    inter_reflection: whether it was followed; bounces: (n, 3) W that each brought in; unmet: what was asked for and is
+    taken from the rest; error: estimate of the whole error, with algebraic, the solver's part, mesh_error, the mesh's
+    before a correction, and model_error, what a correction leaves of the model's, each None where it cannot be told;
+    advice: of an error above 5%, where it comes from and what to do; inter_reflection: whether it was followed; bounces: (n, 3) W that each brought in; unmet: what was asked for and is
     not met, in words; missed: of that, the error; budget: what the bake of the file has to say of the error that was
     asked for; mesh_warning, model_warning, deformed: what else is to be said against the answer; exchange_age: solves
     by which what some face sees is behind the shape; correction: what sweeps did, None without; path: of the method
@@ -122,7 +123,10 @@ class Solution:
     energy: Energy
     clipped: Doubles
     algebraic: ErrorEstimate | None
+    mesh_error: ErrorEstimate | None
+    model_error: ErrorEstimate | None
     error: ErrorEstimate | None
+    advice: str
     inter_reflection: bool
     bounces: Doubles
     unmet: tuple[str, ...]
@@ -143,6 +147,8 @@ class Solution:
             "energy": Energy.from_report(report["energy"]),
             "clipped": np.array(report["clipped"]),
             "algebraic": report["algebraic"] and ErrorEstimate(**report["algebraic"]),
+            "mesh_error": report["mesh_error"] and ErrorEstimate(**report["mesh_error"]),
+            "model_error": report["model_error"] and ErrorEstimate(**report["model_error"]),
             "error": report["error"] and ErrorEstimate(**report["error"]),
             "bounces": np.array(report["bounces"]).reshape(-1, 3),
             "unmet": tuple(report["unmet"]),

@@ -67,12 +67,16 @@ def error_text(report: dict) -> str:
     """Estimated error of the exitance in words."""
     if report.get("path"):
         return "error: not estimated"
-    if report["correction"]:
-        return f"error: {two_parts(report['error'])} (estimate, after {correction_text(report['correction'])})"
-    algebraic = f"algebraic {two_parts(report['algebraic'])}"
+    parts = [f"solver {two_parts(report['algebraic'])}"]
     if report["error"] is None:
-        return f"error: of the mesh not estimated (a single level); {algebraic} (estimate)"
-    return f"error: {two_parts(report['error'])}; of that {algebraic} (estimate)"
+        return f"error: of the mesh not estimated (a single level); {parts[0]} (estimate)"
+    if report["mesh_error"]:
+        before = " before the correction" if report["correction"] else ""
+        parts.insert(0, f"mesh {two_parts(report['mesh_error'])}{before}")
+    if not report["correction"]:
+        return f"error: {two_parts(report['error'])} (estimate, without that of the model): {'; '.join(parts)}"
+    parts.append(f"model {two_parts(report['model_error'])}, after {correction_text(report['correction'])}")
+    return f"error: {two_parts(report['error'])} (estimate): {'; '.join(parts)}"
 
 
 def correction_text(correction: dict) -> str:
@@ -111,7 +115,7 @@ def solver_texts(report: dict) -> list[str]:
     texts += [path_text(report["path"])] if report.get("path") else []
     if report["replaced"]:
         texts.append(f"solver: {report['replaced']}")
-    texts += [f"warning: {report[name]}" for name in ("mesh_warning", "model_warning", "deformed") if report.get(name)]
+    texts += [f"warning: {report[name]}" for name in ("advice", "mesh_warning", "model_warning", "deformed") if report.get(name)]
     if report["finest"] > 0:
         texts.append(f"level: {report['finest']} suffices; its solution is carried to the finest")
     return texts
