@@ -10,6 +10,7 @@ from quadgraph.api.lights import AmbientLight, DirectionalLight, PointLight, Rec
 from quadgraph.mesh.surface import Surface
 from quadgraph_validation.bodies.media import Medium
 from quadgraph_validation.bodies.patches import patches_of
+from quadgraph_validation.bodies.smooth_sky import SmoothSky, directions, drawn_sky
 from quadgraph_validation.bodies.unseen_cases import UnseenMedium
 from quadgraph_validation.truth import light_rays, monte_carlo
 from quadgraph_validation.truth.fresnel import entering_share
@@ -50,8 +51,8 @@ def areas(surface: Surface, patch: np.ndarray) -> np.ndarray:
     return np.bincount(patch, np.linalg.norm(surface.doubled_normals, axis=1) / 2)
 
 
-def walked(surface, medium, light, patch, batches: int = 10, walks: int = 20_000):
-    walker = mesh_walk.MeshWalker(surface, medium, light, patch)
+def walked(surface, medium, light, patch, batches: int = 10, walks: int = 20_000, again: bool = True):
+    walker = mesh_walk.MeshWalker(surface, medium, light, patch, again)
     return [walker.batch(walks, k, seed=3) for k in range(batches)]
 
 
@@ -119,6 +120,22 @@ def test_what_enters_is_absorbed_or_goes_away():
     assert 0.1 < np.mean([b.absorbed / b.entered.sum() for b in found]) < 0.9
 
 
+@pytest.mark.parametrize("shape", ["ball", "waisted"])
+def test_light_that_left_is_let_go_where_that_is_asked_for(shape):
+    """On a ball, which no light comes back to, it makes no difference; a waist is darker without it."""
+    body = ball(3) if shape == "ball" else waisted()
+    medium, patch = even(0.3, 0.01, 1.3), patches_of(body, 16)
+    followed, let_go = (walked(body, medium, AmbientLight(1.0), patch, again=again) for again in (True, False))
+    whole, error = mean_and_error([b.scattered.sum() for b in followed])
+    less, other = mean_and_error([b.scattered.sum() for b in let_go])
+    if shape == "ball":
+        assert abs(whole - less) < 4 * np.hypot(error, other)
+    else:
+        assert whole > 1.03 * less
+    for batch in let_go:  # no walk is light enough for Russian roulette
+        assert batch.absorbed + batch.gone == pytest.approx(batch.entered.sum(), rel=1e-9)
+
+
 @pytest.mark.parametrize(
     "light",
     [
@@ -127,6 +144,7 @@ def test_what_enters_is_absorbed_or_goes_away():
         SpotLight((0, 30, 40), (0, -3, -4), 8, 4000.0, 0.5),
         RectangleLight((0, 0, 30), (15, 0, 0), (0, -25, 0), 4000.0),
         AmbientLight(2.0),
+        drawn_sky(np.random.default_rng(6)),
     ],
     ids=lambda light: light.type,
 )
@@ -144,6 +162,10 @@ def test_light_arrives_as_its_definition_says(light):
 
 def irradiance(light) -> float:
     """W/mm^2 on a plane at the origin that faces AXIS."""
+    if isinstance(light, SmoothSky):
+        rows, columns = light.radiance.shape
+        solid = np.sin(np.pi * (np.arange(rows) + 0.5) / rows)[:, None] * 2 * np.pi**2 / rows / columns
+        return float((light.radiance * solid * np.clip(directions(rows, columns) @ AXIS, 0, None)).sum())
     if isinstance(light, DirectionalLight):
         return light.irradiance
     if isinstance(light, AmbientLight):

@@ -13,9 +13,11 @@ from scipy.spatial import cKDTree
 
 from quadgraph.api.engine import Engine
 from quadgraph.api.fields import SurfaceField
+from quadgraph.api.lights import EnvironmentLight, Light
 from quadgraph.api.materials import Material, VolumeMaterial
 from quadgraph.baking.pipeline import BakeOptions, bake
 from quadgraph_validation.bodies import unseen_bodies
+from quadgraph_validation.bodies.smooth_sky import SmoothSky
 from quadgraph_validation.bodies.unseen_cases import UnseenCase, UnseenMedium
 
 
@@ -53,21 +55,22 @@ def answers(
     report = bake(mesh, file, BakeOptions(unit="mm"))
     with Engine(file, device=device) as engine:
         engine.material = _material(case.medium)
-        engine.lights = [case.light]
-        engine.solve(**_options(0))  # whatever is made once is made now
+        engine.lights = [_light(case, folder)]
+        engine.solve(**_options(0, case))  # whatever is made once is made now
         found = [_answer(engine, case, patch, wanted) for wanted in sweeps]
         apart = float(_triangle_of(case, engine.surface())[1].max())
     return UnseenAnswers(int(report.levels[0]["tets"]), apart, found)
 
 
-def _options(sweeps: int | None) -> dict[str, Any]:
-    """Of `Engine.solve`."""
-    return {} if sweeps is None else {"sweeps": sweeps}
+def _options(sweeps: int | None, case: UnseenCase) -> dict[str, Any]:
+    """Of `Engine.solve`: the defaults but for what was asked for."""
+    asked = {} if sweeps is None else {"sweeps": sweeps}
+    return asked if case.inter_reflection else asked | {"inter_reflection": False}
 
 
 def _answer(engine: Engine, case: UnseenCase, patch: np.ndarray, sweeps: int | None) -> UnseenAnswer:
     start = time.perf_counter()
-    solution = engine.solve(**_options(sweeps))
+    solution = engine.solve(**_options(sweeps, case))
     seconds = time.perf_counter() - start
     field = engine.surface()
     of_face = patch[_triangle_of(case, field)[0]]
@@ -81,6 +84,13 @@ def _triangle_of(case: UnseenCase, field: SurfaceField) -> tuple[np.ndarray, np.
     """(n,) triangle of the body whose middle is nearest to each face's, and how far it is, mm."""
     distance, index = cKDTree(case.surface.corners.mean(axis=1)).query(field.position)
     return index, distance
+
+
+def _light(case: UnseenCase, folder: Path) -> Light:
+    if not isinstance(case.light, SmoothSky):
+        return case.light
+    case.light.write(folder / "sky.hdr")
+    return EnvironmentLight(folder / "sky.hdr", 1.0)
 
 
 def _material(medium: UnseenMedium) -> Material | VolumeMaterial:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -28,7 +28,8 @@ _FEW = 5  # patches: a part with fewer is not judged
 @dataclass(frozen=True)
 class UnseenRun:
     """What is judged. count: of seeds from the first; walks: of the truth of each; truths: folder where these are kept;
-    sweeps: what solves are asked for, None for the engine's own choice; device: as Engine takes it.
+    sweeps: what solves are asked for, None for the engine's own choice; device: as Engine takes it; lights: beams or
+    sky; inter_reflection: in the engine and in the truth.
     """
 
     seed: int
@@ -37,6 +38,8 @@ class UnseenRun:
     truths: Path
     sweeps: Sequence[int | None] = (None,)
     device: str = ""
+    lights: str = "beams"
+    inter_reflection: bool = True
 
 
 def run(wanted: UnseenRun) -> dict[str, Any]:
@@ -60,7 +63,8 @@ def run(wanted: UnseenRun) -> dict[str, Any]:
         except KeyboardInterrupt:
             if not rows:
                 raise
-    return {"seed": wanted.seed, "walks": wanted.walks, "rows": rows, "summary": summary(rows)}
+    asked = {key: getattr(wanted, key) for key in ("seed", "lights", "inter_reflection", "walks")}
+    return asked | {"rows": rows, "summary": summary(rows)}
 
 
 def judged(seed: int, wanted: UnseenRun, tell: Callable[[str, int], None]) -> dict[str, Any]:
@@ -68,7 +72,8 @@ def judged(seed: int, wanted: UnseenRun, tell: Callable[[str, int], None]) -> di
     from quadgraph_validation.truth import unseen_truth
 
     tell("body", 0)
-    case = unseen_cases.drawn(seed, unseen_bodies.surface_of(seed))
+    case = unseen_cases.drawn(seed, unseen_bodies.surface_of(seed), wanted.lights)
+    case = replace(case, inter_reflection=wanted.inter_reflection)
     truth = unseen_truth.make(case, wanted.walks, wanted.truths, lambda walks: tell("random walks", walks))
     tell("engine", wanted.walks)
     with tempfile.TemporaryDirectory(prefix="quadgraph-unseen-") as folder:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -11,6 +10,7 @@ from scipy import ndimage
 
 from quadgraph.api.lights import DirectionalLight, Light, PointLight, RectangleLight, SpotLight
 from quadgraph.mesh.surface import Surface
+from quadgraph_validation.bodies.smooth_sky import SmoothSky, drawn_sky
 
 MEAN_FREE_PATHS = (2.0, 40.0)  # across the longest side
 ETA = (1.0, 1.5)
@@ -43,26 +43,21 @@ class UnseenMedium:
 
 @dataclass(frozen=True, eq=False)
 class UnseenCase:
-    """A body, what is in it, and its one light. size: mean free paths across the longest side; albedo: both of the
-    first material where there are two.
+    """A body, what is in it, and its one light. size: mean free paths across the longest side, and albedo: of the first
+    material where there are two; inter_reflection: whether light that left may enter again.
     """
 
     seed: int
     surface: Surface
     medium: UnseenMedium
-    light: Light
+    light: Light | SmoothSky
     size: float
     albedo: float
-
-    @cached_property
-    def around(self) -> tuple[np.ndarray, float]:
-        """Middle and radius of a sphere around the body, mm."""
-        middle = (self.surface.vertices.min(axis=0) + self.surface.vertices.max(axis=0)) / 2
-        return middle, float(np.linalg.norm(self.surface.vertices - middle, axis=1).max())
+    inter_reflection: bool = True
 
 
-def drawn(seed: int, surface: Surface) -> UnseenCase:
-    """What belongs to a seed's body."""
+def drawn(seed: int, surface: Surface, lights: str = "beams") -> UnseenCase:
+    """What belongs to a seed's body; lights: beams or sky."""
     generator = np.random.default_rng([seed, 1])
     size = float(np.exp(generator.uniform(*np.log(MEAN_FREE_PATHS))))
     albedo = _albedo(generator)
@@ -75,7 +70,11 @@ def drawn(seed: int, surface: Surface) -> UnseenCase:
         medium = UnseenMedium("even", eta, scattering, absorption)
     else:
         medium = _mixed(generator, surface, total, albedo, eta)
-    light = _beam(np.random.default_rng([seed, 2]), surface)
+    light = (
+        _beam(np.random.default_rng([seed, 2]), surface)
+        if lights == "beams"
+        else drawn_sky(np.random.default_rng([seed, 3]))
+    )
     return UnseenCase(seed, surface, medium, light, size, albedo)
 
 

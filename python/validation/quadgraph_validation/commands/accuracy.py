@@ -76,8 +76,22 @@ def _add_scenes_options(group: argparse._ArgumentGroup) -> None:
 
 
 def _add_unseen_options(group: argparse._ArgumentGroup) -> None:
-    group.add_argument("--seed", type=int, default=1, metavar="S", help="of the first body (default: %(default)s)")
+    group.add_argument(
+        "--seed", type=positive_int, default=1, metavar="S", help="of the first body (default: %(default)s)"
+    )
     group.add_argument("--count", type=positive_int, default=4, metavar="N", help="bodies (default: %(default)s)")
+    group.add_argument(
+        "--lights",
+        choices=("beams", "sky"),
+        default="beams",
+        help="one beam, point, spot or rectangle, or a smooth sky",
+    )
+    group.add_argument(
+        "--no-inter-reflection",
+        dest="inter_reflection",
+        action="store_false",
+        help="leave out light that enters again, in the engine and in the truth",
+    )
     group.add_argument(
         "--walks", type=positive_int, default=2_000_000, metavar="N", help="of each truth (default: %(default)s)"
     )
@@ -118,7 +132,10 @@ def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
         return study.run(args.device, args.meshes, args.truth or COMMITTED_TRUTH, args.scene, args.images)
     if args.study == "unseen":
         truths, sweeps = args.truth or cache_folder(), args.sweeps or (None,)
-        record = study.run(study.UnseenRun(args.seed, args.count, args.walks, truths, sweeps, args.device))
+        wanted = study.UnseenRun(
+            args.seed, args.count, args.walks, truths, sweeps, args.device, args.lights, args.inter_reflection
+        )
+        record = study.run(wanted)
         if args.images:
             from quadgraph_validation.accuracy import unseen_figures
 

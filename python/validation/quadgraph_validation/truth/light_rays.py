@@ -9,6 +9,7 @@ import numpy as np
 
 from quadgraph.api.lights import AmbientLight, DirectionalLight, Light, PointLight, RectangleLight, SpotLight
 from quadgraph.base.errors import InputError
+from quadgraph_validation.bodies.smooth_sky import SmoothSky
 
 _ROOM = 1.000001  # spheres around bodies are a little larger
 
@@ -26,7 +27,9 @@ class LightRays:
     drawn: int
 
 
-def rays(light: Light, middle: np.ndarray, radius: float, count: int, generator: np.random.Generator) -> LightRays:
+def rays(
+    light: Light | SmoothSky, middle: np.ndarray, radius: float, count: int, generator: np.random.Generator
+) -> LightRays:
     """Draw `count` rays of a grey light towards a sphere around a body. Raises InputError for kinds it has none of."""
     radius *= _ROOM
     if isinstance(light, DirectionalLight):
@@ -38,6 +41,8 @@ def rays(light: Light, middle: np.ndarray, radius: float, count: int, generator:
         ways = _cone(np.array([0.0, 0.0, 1.0]), -1.0, count, generator)
         power = 4 * np.pi * radius**2 * _grey(light.irradiance)
         return LightRays(_disc(ways, middle, radius, generator), ways, power, count)
+    if isinstance(light, SmoothSky):
+        return _sky(light, middle, radius, count, generator)
     if isinstance(light, PointLight):
         return _point(light, middle, radius, count, generator)
     if isinstance(light, SpotLight):
@@ -47,7 +52,7 @@ def rays(light: Light, middle: np.ndarray, radius: float, count: int, generator:
     raise InputError(f"light: {type(light).__name__} found, random walks start from {_KINDS}")
 
 
-_KINDS = "directional, ambient, point, spot and rectangle lights"
+_KINDS = "directional, ambient, point, spot and rectangle lights, and smooth skies"
 
 
 def _point(
@@ -87,6 +92,19 @@ def _rectangle(
     chosen = generator.random(count) < kept
     power = _grey(light.power) * 2 * (1 - least).max()
     return LightRays(place[chosen], ways[chosen], power, count)
+
+
+def _sky(sky: SmoothSky, middle: np.ndarray, radius: float, count: int, generator: np.random.Generator) -> LightRays:
+    """Texels as often as they are bright and large, directions even over each."""
+    rows, columns = sky.radiance.shape
+    edges = np.cos(np.pi * np.arange(rows + 1) / rows)
+    power = (sky.radiance * ((edges[:-1] - edges[1:]) * 2 * np.pi / columns)[:, None]).ravel()
+    row, column = np.divmod(generator.choice(len(power), count, p=power / power.sum()), columns)
+    height = generator.uniform(edges[row + 1], edges[row])
+    longitude = 2 * np.pi * (column + generator.random(count)) / columns - np.pi
+    flat = np.sqrt(1 - height**2)
+    ways = -np.stack([flat * np.sin(longitude), height, -flat * np.cos(longitude)], axis=-1)
+    return LightRays(_disc(ways, middle, radius, generator), ways, float(power.sum()) * np.pi * radius**2, count)
 
 
 def _meeting(

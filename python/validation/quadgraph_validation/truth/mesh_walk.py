@@ -13,6 +13,7 @@ import numpy as np
 
 from quadgraph.api.lights import Light
 from quadgraph.mesh.surface import Surface
+from quadgraph_validation.bodies.smooth_sky import SmoothSky
 from quadgraph_validation.bodies.unseen_cases import UnseenMedium
 from quadgraph_validation.truth import light_rays, triangle_tree, walk_kernel
 
@@ -40,10 +41,13 @@ class WalkBatch:
 
 
 class MeshWalker:
-    """One body, what is in it, and one light. patch (m,): of each triangle."""
+    """One body, what is in it, and one light."""
 
-    def __init__(self, surface: Surface, medium: UnseenMedium, light: Light, patch: np.ndarray) -> None:
-        self._medium, self._light = medium, light
+    def __init__(
+        self, surface: Surface, medium: UnseenMedium, light: Light | SmoothSky, patch: np.ndarray, again: bool = True
+    ) -> None:
+        """patch (m,): of each triangle; again: whether light outside the body is followed and may enter again."""
+        self._medium, self._light, self._again = medium, light, again
         self._patch, self._patches = np.asarray(patch, np.int64), int(patch.max()) + 1
         low, high = surface.vertices.min(axis=0), surface.vertices.max(axis=0)
         self._middle = (low + high) / 2
@@ -76,9 +80,8 @@ class MeshWalker:
         tally = walk_kernel.WalkTally(entered, scattered, again, unscattered, np.zeros(4))
         start = generator.integers(2**64, dtype=np.uint64)
         origins, ways = np.ascontiguousarray(drawn.origins), np.ascontiguousarray(drawn.ways)
-        walk_kernel.follow(
-            self._tree, self._near, self._volume, self._medium.eta, self._patch, origins, ways, start, tally
-        )
+        what = (self._tree, self._near, self._volume, self._medium.eta, self._patch)
+        walk_kernel.follow(*what, origins, ways, self._again, start, tally)
         return tally, drawn.power
 
 

@@ -80,7 +80,7 @@ def make(case: UnseenCase, walks: int, folder: Path, tell: Callable[[int], None]
     tell(found.batches * BATCH)
     if found.batches >= goal:
         return found
-    walker = MeshWalker(case.surface, case.medium, case.light, found.patch)
+    walker = MeshWalker(case.surface, case.medium, case.light, found.patch, case.inter_reflection)
     try:
         while found.batches < goal:
             found.add(walker.batch(BATCH, found.batches, _SEED))
@@ -107,7 +107,7 @@ def stored(case: UnseenCase, folder: Path) -> UnseenTruth:
 
 def _key(case: UnseenCase, patch: np.ndarray) -> dict[str, Any]:
     medium = case.medium
-    return {
+    key = {
         "seed": case.seed,
         "surface": _sha(case.surface.vertices, case.surface.triangles, patch),
         "medium": _sha(medium.sigma_s_prime, medium.sigma_a),
@@ -116,6 +116,7 @@ def _key(case: UnseenCase, patch: np.ndarray) -> dict[str, Any]:
         "light": case.light.text,
         "walks": {"batch": BATCH, "seed": _SEED, "version": _VERSION},
     }
+    return key if case.inter_reflection else key | {"inter_reflection": False}
 
 
 def _sha(*arrays: np.ndarray) -> str:

@@ -162,10 +162,11 @@ def _leave(tally, at, weight, scattered, fresh):
 
 
 @njit(cache=True, nogil=True)
-def follow(tree, near, volume, eta, patch, origins, ways, seed, tally):
+def follow(tree, near, volume, eta, patch, origins, ways, again, seed, tally):
     """Follow light from outside, origins and unit ways (n, 3), each of weight 1, until it is gone.
 
-    patch (f,): of each triangle of the mesh; tally: is added to.
+    patch (f,): of each triangle of the mesh; again: whether what leaves or is reflected outside is followed; tally: is
+    added to.
     """
     state = np.array([seed], np.uint64)
     for walk in range(len(origins)):
@@ -200,11 +201,16 @@ def follow(tree, near, volume, eta, patch, origins, ways, seed, tally):
             reflected, beyond = fresnel(cosine, ratio)
             if random(state) < reflected:
                 dx, dy, dz = _bent(dx, dy, dz, nx, ny, nz, 1.0, -2 * side * cosine)
-                continue
+                if inside or again:
+                    continue
+                break
             dx, dy, dz = _bent(dx, dy, dz, nx, ny, nz, ratio, side * (beyond - ratio * cosine))
             at = patch[tree.number[face]]
             if inside:
                 _leave(tally, at, weight, scattered, fresh)
             elif not been:
                 tally.entered[at] += weight
+            if inside and not again:
+                tally.rest[1] += weight
+                break
             fresh, inside, been = not scattered, not inside, True
