@@ -10,7 +10,7 @@ import pytest
 
 from quadgraph import cli
 from quadgraph.base.errors import InputError
-from quadgraph_validation.accuracy import unseen_figures, unseen_study, unseen_tables
+from quadgraph_validation.accuracy import unseen_study, unseen_tables
 from quadgraph_validation.bodies import unseen_bodies, unseen_cases
 from quadgraph_validation.bodies.patches import PATCHES, patches_of
 from quadgraph_validation.truth.unseen_truth import UnseenTruth
@@ -119,17 +119,38 @@ def test_a_case_is_judged_printed_recorded_and_drawn(tmp_path, capsys):
     assert row["apart"] < 1e-3 * row["length"]
     assert row["noise"]["whole"] < 0.03
     plain, swept = row["solves"]
-    print(row)
     assert swept["true"]["whole"] < 0.06
     assert swept["ratio"] == pytest.approx(1, abs=0.02)
     assert swept["true"]["whole"] < plain["true"]["whole"]
     assert (tmp_path / "unseen.png").stat().st_size > 10_000
     summary = unseen_tables.summary([row])
     assert [found["sweeps"] for found in summary] == [0, 1]
-    assert unseen_figures  # drawn by --images above
 
 
 def test_a_missing_library_is_named_with_what_installs_it(monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "numba", None)
     with pytest.raises(InputError, match=r"validation\[walks\]"):
         unseen_study.run(unseen_study.UnseenRun(1, 1, 1, None))
+
+
+def test_ctrl_c_leaves_the_cases_that_were_finished(monkeypatch, tmp_path):
+    errors = {"true": {"whole": 0.02, "lit": 0.02}, "printed": {"whole": 0.01}, "sweeps": None}
+    finished = {"noise": {"whole": 0.001, "lit": 0.001}, "solves": [errors]}
+    asked: list[int] = []
+    stop = 2
+
+    def judged(seed, wanted, tell):
+        asked.append(seed)
+        if len(asked) > stop:
+            raise KeyboardInterrupt
+        return finished
+
+    monkeypatch.setattr(unseen_study, "judged", judged)
+    record = unseen_study.run(unseen_study.UnseenRun(100, 5, 1, tmp_path))
+    assert asked == [100, 101, 102]
+    assert record["rows"] == [finished, finished]
+    assert record["summary"][0]["ratios"]["whole"] == {"cases": 2, "within": 0.0, "least": 0.5, "greatest": 0.5}
+    assert record["summary"][0]["true"]["unlit"] is None
+    stop = 0
+    with pytest.raises(KeyboardInterrupt):
+        unseen_study.run(unseen_study.UnseenRun(100, 5, 1, tmp_path))
