@@ -28,7 +28,7 @@ def write(path: Path, record: dict[str, Any]) -> None:
 
 
 def _panel(axis: Any, rows: list[dict[str, Any]], part: str) -> None:
-    shown = [_LEAST, 0.02]
+    shown = [0.01]
     for row in rows:
         for number, solve in enumerate(row["solves"]):
             if part not in solve["true"] or part not in solve["printed"]:
