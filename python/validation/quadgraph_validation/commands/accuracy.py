@@ -10,6 +10,8 @@ from types import ModuleType
 from rich.console import Console
 
 from quadgraph.base import atomic_file
+from quadgraph.base.arguments import positive_int
+from quadgraph.base.cache_folder import cache_folder
 from quadgraph.base.errors import InputError
 from quadgraph.core import load_core
 from quadgraph_validation.base.machine import commit
@@ -27,7 +29,10 @@ STUDIES = {
     "estimate": "estimate",
     "target": "target",
     "budget": "budget",
+    "unseen": "unseen",
 }
+
+_TABLE_WIDTH = 190  # characters of the table of unseen bodies; narrower, it cannot be read
 
 # Studies of real bodies, which the CPU reference cannot stand in for, because only the engine does what they judge.
 ON_ENGINE = {
@@ -35,6 +40,7 @@ ON_ENGINE = {
     "estimate": "estimates its error",
     "target": "stops at an error",
     "budget": "is baked for",
+    "unseen": "prints an error",
 }
 
 
@@ -50,7 +56,8 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--device", default="", metavar="NAME", help="cpu, or part of a Vulkan device's name; default: a GPU, else cpu"
     )
     _add_bodies_options(parser.add_argument_group("scenes, estimate, target, budget"))
-    _add_scenes_options(parser.add_argument_group("scenes"))
+    _add_scenes_options(parser.add_argument_group("scenes, unseen"))
+    _add_unseen_options(parser.add_argument_group("unseen"))
 
 
 def _add_bodies_options(group: argparse._ArgumentGroup) -> None:
@@ -62,11 +69,39 @@ def _add_scenes_options(group: argparse._ArgumentGroup) -> None:
     group.add_argument(
         "--truth",
         type=Path,
-        default=COMMITTED_TRUTH,
         metavar="FOLDER",
-        help="of the path-traced pictures (default: %(default)s)",
+        help=f"of the path-traced pictures (default: {COMMITTED_TRUTH}), or of random walks (~/.cache/quadgraph)",
     )
     group.add_argument("--images", type=Path, metavar="FOLDER", help="draw figures there, with matplotlib")
+
+
+def _add_unseen_options(group: argparse._ArgumentGroup) -> None:
+    group.add_argument(
+        "--seed", type=positive_int, default=1, metavar="S", help="of the first body (default: %(default)s)"
+    )
+    group.add_argument("--count", type=positive_int, default=4, metavar="N", help="bodies (default: %(default)s)")
+    group.add_argument(
+        "--lights",
+        choices=("beams", "sky"),
+        default="beams",
+        help="one beam, point, spot or rectangle, or a smooth sky",
+    )
+    group.add_argument(
+        "--no-inter-reflection",
+        dest="inter_reflection",
+        action="store_false",
+        help="leave out light that enters again, in the engine and in the truth",
+    )
+    group.add_argument(
+        "--walks", type=positive_int, default=2_000_000, metavar="N", help="of each truth (default: %(default)s)"
+    )
+    group.add_argument(
+        "--sweeps",
+        type=int,
+        action="append",
+        metavar="N",
+        help="of the transport correction; several allowed (default: the engine's own choice)",
+    )
 
 
 def run(args: argparse.Namespace) -> int:
@@ -84,6 +119,7 @@ def run(args: argparse.Namespace) -> int:
         with Console(stderr=True).status(f"study: {args.study}"):
             record = study.run(body_of)
     console = Console(highlight=False)
+    console.width = max(console.width, _TABLE_WIDTH if args.study == "unseen" else 0)
     for table in study.tables(record):
         console.print(table)
     if args.json:
@@ -93,6 +129,17 @@ def run(args: argparse.Namespace) -> int:
 
 def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
     if args.study == "scenes":
-        return study.run(args.device, args.meshes, args.truth, args.scene, args.images)
+        return study.run(args.device, args.meshes, args.truth or COMMITTED_TRUTH, args.scene, args.images)
+    if args.study == "unseen":
+        truths, sweeps = args.truth or cache_folder(), args.sweeps or (None,)
+        wanted = study.UnseenRun(
+            args.seed, args.count, args.walks, truths, sweeps, args.device, args.lights, args.inter_reflection
+        )
+        record = study.run(wanted)
+        if args.images:
+            from quadgraph_validation.accuracy import unseen_figures
+
+            unseen_figures.write(args.images / "unseen.png", record)
+        return record
     with Console(stderr=True).status(f"study: {args.study}"):
         return study.run(args.device, args.meshes, args.scene)

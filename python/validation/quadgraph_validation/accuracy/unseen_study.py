@@ -1,0 +1,128 @@
+"""Bodies, materials and lights that nobody tuned for: the engine's true error beside the one that it prints."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+from quadgraph_validation.accuracy import unseen_engine
+from quadgraph_validation.accuracy.unseen_engine import UnseenAnswer
+from quadgraph_validation.accuracy.unseen_tables import summary, tables  # noqa: F401  tables: as every study has
+from quadgraph_validation.base import extra_module
+from quadgraph_validation.bodies import unseen_bodies, unseen_cases
+
+if TYPE_CHECKING:
+    from quadgraph_validation.truth.unseen_truth import UnseenTruth
+
+_UNLIT = 0.1  # of the mean q: below it a patch is unlit, as a face is in the engine's report
+_FEW = 5  # patches: a part with fewer is not judged
+
+
+@dataclass(frozen=True)
+class UnseenRun:
+    """What is judged. count: of seeds from the first; walks: of the truth of each; truths: folder where these are kept;
+    sweeps: what solves are asked for, None for the engine's own choice; device: as Engine takes it; lights: beams or
+    sky; inter_reflection: in the engine and in the truth.
+    """
+
+    seed: int
+    count: int
+    walks: int
+    truths: Path
+    sweeps: Sequence[int | None] = (None,)
+    device: str = ""
+    lights: str = "beams"
+    inter_reflection: bool = True
+
+
+def run(wanted: UnseenRun) -> dict[str, Any]:
+    """Judge all cases. After Ctrl-C the record has those that were finished.
+
+    Raises InputError, what bakes and solves raise, and KeyboardInterrupt where nothing was finished.
+    """
+    extra_module.load("numba", "walks")
+    rows: list[dict[str, Any]] = []
+    shown = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:.0f}%"), TimeRemainingColumn())
+    with Progress(*shown, console=Console(stderr=True)) as progress:
+        bar = progress.add_task("unseen", total=wanted.count * wanted.walks)
+
+        def tell(what: str, walks: int) -> None:
+            seed, done = wanted.seed + len(rows), len(rows) * wanted.walks + min(walks, wanted.walks)
+            progress.update(bar, description=f"seed {seed}: {what}", completed=done)
+
+        try:
+            while len(rows) < wanted.count:
+                rows.append(judged(wanted.seed + len(rows), wanted, tell))
+        except KeyboardInterrupt:
+            if not rows:
+                raise
+    asked = {key: getattr(wanted, key) for key in ("seed", "lights", "inter_reflection", "walks")}
+    return asked | {"rows": rows, "summary": summary(rows)}
+
+
+def judged(seed: int, wanted: UnseenRun, tell: Callable[[str, int], None]) -> dict[str, Any]:
+    """One case: what it is, its truth's noise, and what each solve is off. tell: is told what is done, and walks."""
+    from quadgraph_validation.truth import unseen_truth
+
+    tell("body", 0)
+    case = unseen_cases.drawn(seed, unseen_bodies.surface_of(seed), wanted.lights)
+    case = replace(case, inter_reflection=wanted.inter_reflection)
+    truth = unseen_truth.make(case, wanted.walks, wanted.truths, lambda walks: tell("random walks", walks))
+    tell("engine", wanted.walks)
+    with tempfile.TemporaryDirectory(prefix="quadgraph-unseen-") as folder:
+        found = unseen_engine.answers(case, truth.patch, wanted.sweeps, Path(folder), wanted.device)
+    parts = parts_of(truth)
+    return {
+        "seed": seed,
+        "triangles": len(case.surface.triangles),
+        "length": float(np.ptp(case.surface.vertices, axis=0).max()),
+        "size": case.size,
+        "albedo": case.albedo,
+        "kind": case.medium.kind,
+        "eta": case.medium.eta,
+        "light": case.light.text,
+        "tets": found.tets,
+        "apart": found.apart,
+        "walks": truth.batches * unseen_truth.BATCH,
+        "balance": truth.balance,
+        "again": float(truth.again.sum() / truth.scattered.sum()),
+        "noise": {name: _rms(truth, part, truth.error) for name, part in parts.items()},
+        "solves": [errors(truth, parts, answer) for answer in found.answers],
+    }
+
+
+def parts_of(truth: UnseenTruth) -> dict[str, np.ndarray]:
+    """(n,) bool by name: the patches that count. Those of too few patches are left out."""
+    lit = truth.irradiance >= _UNLIT * np.average(truth.irradiance, weights=truth.area)
+    order = np.argsort(truth.exitance)
+    dim = np.zeros(len(order), bool)
+    dim[order[: len(order) // 3]] = True
+    parts = {"whole": np.ones(len(order), bool), "lit": lit, "unlit": ~lit, "dim": dim}
+    return {name: part for name, part in parts.items() if part.sum() >= _FEW}
+
+
+def errors(truth: UnseenTruth, parts: dict[str, np.ndarray], answer: UnseenAnswer) -> dict[str, Any]:
+    found = {name: _rms(truth, part, answer.exitance - truth.exitance) for name, part in parts.items()}
+    noise = {name: _rms(truth, part, truth.error) for name, part in parts.items()}
+    return {
+        "sweeps": answer.sweeps,
+        "model": answer.model,
+        "true": {name: float(np.sqrt(max(found[name] ** 2 - noise[name] ** 2, 0))) for name in parts},
+        "printed": answer.printed,
+        "ratio": float(truth.area @ answer.exitance / (truth.area @ truth.exitance)),
+        "seconds": answer.seconds,
+    }
+
+
+def _rms(truth: UnseenTruth, part: np.ndarray, difference: np.ndarray) -> float:
+    """Over a part, weighted by area, relative to the truth without its noise."""
+    area = truth.area[part]
+    square = area @ (truth.exitance[part] ** 2 - truth.error[part] ** 2)
+    return float(np.sqrt(area @ difference[part] ** 2 / square))

@@ -1,0 +1,156 @@
+"""`quadgraph accuracy unseen`: what it draws, what it keeps, and one case judged as a user judges it."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from quadgraph import cli
+from quadgraph.base.errors import InputError
+from quadgraph_validation.accuracy import unseen_study, unseen_tables
+from quadgraph_validation.bodies import unseen_bodies, unseen_cases
+from quadgraph_validation.bodies.patches import PATCHES, patches_of
+from quadgraph_validation.truth.unseen_truth import UnseenTruth
+
+pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
+pytest.importorskip("numba", reason="the extra `walks` is not installed: run tools/setup")
+
+from quadgraph_validation.truth import unseen_truth
+
+SEED = 2  # an even body of 29 mean free paths, albedo .9995, under a rectangle
+
+
+@pytest.fixture(scope="module")
+def body():
+    return unseen_bodies.surface_of(SEED)
+
+
+def test_a_seed_is_one_body_with_nothing_to_repair(body):
+    again = unseen_bodies.surface_of(SEED)
+    assert np.array_equal(body.vertices, again.vertices)
+    assert np.array_equal(body.triangles, again.triangles)
+    assert body.is_closed_manifold
+    assert body.components == 1
+    assert body.volume > 0
+    least, most = unseen_bodies.LENGTH
+    assert least <= np.ptp(body.vertices, axis=0).max() <= most
+    assert 0.8 * unseen_bodies.TRIANGLES[0] < len(body.triangles) < 1.2 * unseen_bodies.TRIANGLES[1]
+
+
+def test_cases_cover_what_they_are_drawn_from(body):
+    cases = [unseen_cases.drawn(seed, body) for seed in range(200)]
+    assert {case.light.type for case in cases} == set(unseen_cases.BEAMS)
+    assert {case.medium.kind for case in cases} == {"even", "veins", "checker"}
+    assert 0.4 < np.mean([case.medium.even for case in cases]) < 0.6
+    albedos = np.array([case.albedo for case in cases])
+    assert albedos.min() < 0.2
+    assert albedos.max() > 0.9995
+    assert (albedos > 0.7).mean() > 0.6
+    for case in cases:
+        total = case.medium.sigma_s_prime + case.medium.sigma_a
+        assert (case.medium.sigma_s_prime > 0).all()
+        assert case.medium.sigma_a.min() >= 0
+        length = np.ptp(body.vertices, axis=0).max()
+        assert total.min() * length > 0.4 * 2
+        assert total.max() * length < 2.5 * 40 * 1.001
+        assert 1 <= case.medium.eta <= 1.5
+
+
+def test_a_volume_covers_its_body(body):
+    case = next(c for c in (unseen_cases.drawn(seed, body) for seed in range(99)) if not c.medium.even)
+    first, counts = np.array(case.medium.first), np.array(case.medium.sigma_a.shape[::-1])
+    assert (first <= body.vertices.min(axis=0) + 1e-4).all()
+    assert (first + (counts - 1) * case.medium.spacing >= body.vertices.max(axis=0) - 1e-4).all()
+
+
+def test_patches_are_of_about_the_same_area_and_keep_the_sides_of_walls_apart(body):
+    patch = patches_of(body)
+    area = np.linalg.norm(body.doubled_normals, axis=1) / 2
+    areas = np.bincount(patch, area)
+    assert 200 <= len(areas) <= PATCHES
+    assert areas.std() < 0.3 * areas.mean()
+    normal = body.doubled_normals / (2 * area[:, None])
+    mean = np.stack([np.bincount(patch, area * column) for column in normal.T], axis=1) / areas[:, None]
+    assert np.linalg.norm(mean, axis=1).min() > 0.3  # 0 where both sides of a wall are one patch
+
+
+def test_walks_are_gone_on_with_and_others_are_not_taken_for_them(tmp_path, body, monkeypatch):
+    monkeypatch.setattr(unseen_truth, "BATCH", 2000)
+    case = unseen_cases.drawn(SEED, body)
+    heard: list[int] = []
+    first = unseen_truth.make(case, 4000, tmp_path, heard.append)
+    longer = unseen_truth.make(case, 8000, tmp_path, heard.append)
+    whole = unseen_truth.make(case, 8000, tmp_path / "other", lambda walks: None)
+    assert heard == [0, 2000, 4000, 4000, 6000, 8000]
+    assert first.batches == 2
+    assert np.array_equal(longer.scattered, whole.scattered)
+    assert longer.balance == pytest.approx(0, abs=0.01)
+    denser = replace(case, medium=replace(case.medium, sigma_a=case.medium.sigma_a * 2))
+    assert unseen_truth.stored(denser, tmp_path).batches == 0
+
+
+def test_parts_and_errors_are_those_of_known_patches():
+    area, ones = np.full(30, 2.0), np.ones(30)
+    exitance = np.where(np.arange(30) < 15, 1.0, 0.1)
+    entered = np.where(np.arange(30) < 15, 1.0, 0.05) * area
+    noise = 0.02 * exitance
+    scattered = 4 * exitance * area
+    squares = scattered**2 / 4 + 12 * (noise * area) ** 2
+    truth = UnseenTruth({}, np.arange(30), area, 4, 4 * entered, scattered, squares, 0 * ones, np.zeros(4))
+    parts = unseen_study.parts_of(truth)
+    assert {name: int(part.sum()) for name, part in parts.items()} == {"whole": 30, "lit": 15, "unlit": 15, "dim": 10}
+    assert np.allclose(truth.error, noise)
+    answer = unseen_study.UnseenAnswer(1, exitance * 1.1, {}, "sp3", 0.0)
+    found = unseen_study.errors(truth, parts, answer)
+    expected = np.sqrt((0.1**2 - 0.02**2) / (1 - 0.02**2))
+    assert found["true"] == pytest.approx(dict.fromkeys(parts, expected), rel=1e-6)
+    assert found["ratio"] == pytest.approx(1.1)
+
+
+def test_a_case_is_judged_printed_recorded_and_drawn(tmp_path, capsys):
+    path = tmp_path / "unseen.json"
+    asked = f"accuracy unseen --seed {SEED} --count 1 --walks 200000 --sweeps 0 --sweeps 1 --truth {tmp_path}"
+    assert cli.main([*asked.split(), "--json", str(path), "--images", str(tmp_path)]) == 0
+    assert "mean free paths" in capsys.readouterr().out
+    (row,) = json.loads(path.read_text())["rows"]
+    assert row["apart"] < 1e-3 * row["length"]
+    assert row["noise"]["whole"] < 0.03
+    plain, swept = row["solves"]
+    assert swept["true"]["whole"] < 0.06
+    assert swept["ratio"] == pytest.approx(1, abs=0.02)
+    assert swept["true"]["whole"] < plain["true"]["whole"]
+    assert (tmp_path / "unseen.png").stat().st_size > 10_000
+    summary = unseen_tables.summary([row])
+    assert [found["sweeps"] for found in summary] == [0, 1]
+
+
+def test_a_missing_library_is_named_with_what_installs_it(monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, "numba", None)
+    with pytest.raises(InputError, match=r"validation\[walks\]"):
+        unseen_study.run(unseen_study.UnseenRun(1, 1, 1, None))
+
+
+def test_ctrl_c_leaves_the_cases_that_were_finished(monkeypatch, tmp_path):
+    errors = {"true": {"whole": 0.02, "lit": 0.02}, "printed": {"whole": 0.01}, "sweeps": None}
+    finished = {"noise": {"whole": 0.001, "lit": 0.001}, "solves": [errors]}
+    asked: list[int] = []
+    stop = 2
+
+    def judged(seed, wanted, tell):
+        asked.append(seed)
+        if len(asked) > stop:
+            raise KeyboardInterrupt
+        return finished
+
+    monkeypatch.setattr(unseen_study, "judged", judged)
+    record = unseen_study.run(unseen_study.UnseenRun(100, 5, 1, tmp_path))
+    assert asked == [100, 101, 102]
+    assert record["rows"] == [finished, finished]
+    assert record["summary"][0]["ratios"]["whole"] == {"cases": 2, "within": 0.0, "least": 0.5, "greatest": 0.5}
+    assert record["summary"][0]["true"]["unlit"] is None
+    stop = 0
+    with pytest.raises(KeyboardInterrupt):
+        unseen_study.run(unseen_study.UnseenRun(100, 5, 1, tmp_path))
