@@ -15,6 +15,7 @@ from quadgraph.tets import interior
 from quadgraph.tets.interior import Interior, Limits
 
 AUTO, SURFACE = "auto", "surface"
+_FEW = 0.1  # of the tets, those at the surface, may be larger than asked for before the report says so
 
 
 def check_interior(wanted: str | float | None, materials: Sequence[str], mesher: str) -> None:
@@ -79,7 +80,8 @@ class LevelSizes:
             return make(None), None, []
         limits = self._limits(number, surface, self._finest)
         try:
-            return make(limits), limits.interior.edge, []
+            mesh = make(limits)
+            return mesh, limits.interior.edge, self._missed(number, limits, mesh)
         except ToolError as error:
             if self.rule != AUTO:
                 self._give_up(number, error)
@@ -88,6 +90,13 @@ class LevelSizes:
         except BaseException as error:
             self._give_up(number, error)
             raise
+
+    def _missed(self, number: int, limits: Limits, mesh: TetMesh) -> list[str]:
+        """A note where the surface, which TetGen keeps, has not let it make tets as small as was asked for."""
+        if number > 0 or self.rule == AUTO or (above := limits.share_above(mesh)) <= _FEW:
+            return []
+        return [f"level 0: {above:.0%} of the tets have more than twice the volume asked for, because the surface's "
+                "triangles are large and stay; --refine makes them smaller"]  # fmt: skip
 
     def _limits(self, number: int, surface: Surface, finest: Interior) -> Limits:
         if number == 0:

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from quadgraph.base.errors import InputError
-from quadgraph.mesh.surface import Surface
+from quadgraph.mesh.surface import Surface, TetMesh
 from quadgraph.tets.tet_geometry import determinants
 
 GROWTH = 1.0  # of the edge length with depth, below the surface's own edge length
@@ -126,6 +126,11 @@ class Limits:
         too_large = np.mean(volumes > (1 if self._first else _SLACK) * limits)
         most, self._first = (0.0 if self._first else _FEW), False
         return limits if too_large > most else None
+
+    def share_above(self, mesh: TetMesh) -> float:
+        """Share of the tets that have more than twice their limit."""
+        limits = _REGULAR * self.interior.edges(*self._depths.at(mesh.vertices[mesh.tets].mean(axis=1))) ** 3
+        return float(np.mean(mesh.determinants / 6 > 2 * limits))
 
     def _settle(self, volumes: np.ndarray, *places: np.ndarray) -> None:
         """Make the sizes as large as the number of tets wants them."""

@@ -181,6 +181,16 @@ def test_a_size_that_makes_too_many_tets_is_refused() -> None:
         filled(BALL, 0.001)
 
 
+def test_a_surface_too_coarse_for_a_size_is_told_of() -> None:
+    notes = []
+    for surface in (cube(8), subdivide(cube(8), 3)):
+        sizes = sizes_of(surface, 0.8, (), "tetgen")
+        notes.append(sizes.fill(0, surface, lambda limits, surface=surface: tetrahedralise(surface, limits=limits))[2])
+    assert "100% of the tets have more than twice the volume asked for" in notes[0][0]
+    assert "--refine" in notes[0][0]
+    assert not notes[1]
+
+
 def test_a_level_that_cannot_be_refined_stays_as_it_was_unless_a_size_was_asked_for() -> None:
     def made(limits: Limits | None) -> TetMesh:
         if limits is not None:
