@@ -40,9 +40,15 @@ struct Resolution {
 Resolution resolution_of(std::span<const SurfaceSample> samples, std::span<const gpu::Optical> optical, double eta,
                          Model model);
 
-// What is to be said, in words, beside the error estimate: of elements that do not resolve the light, and of a model
-// where it is not near transport; empty if nothing is. chord in mm.
+// Edges of the tets of a level that are not at its surface, mm: root of the mean square by volume, each that of the
+// regular tet of its volume; 0 where all are at the surface.
+double inside_edge(const Level& level);
+
+// What is to be said, in words, beside the error estimate: of elements that do not resolve the light, at the surface
+// and inside (`edge` as inside_edge, in light that falls as in the samples' mean), and of a model where it is not near
+// transport; empty if nothing is. chord in mm.
 std::string mesh_warning(const Resolution& resolution);
+std::string inside_warning(std::span<const gpu::Optical> optical, double edge, double chord);
 std::string model_warning(std::span<const gpu::Optical> optical, double eta, double chord, Source source, Model model);
 
 }  // namespace quadgraph

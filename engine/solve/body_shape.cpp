@@ -6,6 +6,7 @@ namespace quadgraph {
 
 BodyShape::BodyShape(const QuadGraph& graph) : moved_(graph), deformed_(graph.levels()) {
   sample();
+  for (const Level& level : levels()) edge_shares_.push_back(inside_edge(level) / chord_);
 }
 
 void BodyShape::sample() {

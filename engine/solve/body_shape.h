@@ -19,9 +19,11 @@ class BodyShape {
   // The levels as in the file or as set; what deformers do to them is on the device alone.
   const std::vector<Level>& levels() const { return moved_.levels(); }
 
-  // What is known of the present shape: samples of a level, the mean chord, mm, and SolveReport::deformed.
+  // What is known of the present shape: samples of a level, the mean chord, mm, the edges inside a level as inside_edge
+  // tells but where they are stretched, and SolveReport::deformed.
   const std::vector<SurfaceSample>& samples(std::uint32_t number) const { return samples_[number]; }
   double chord() const { return chord_; }
+  double edge(std::uint32_t number) const { return edge_shares_[number] * chord_; }
   const std::string& spoilt() const { return spoilt_; }
 
   // Level 0 in its present shape; valid until the next motion.
@@ -58,6 +60,7 @@ class BodyShape {
   std::string spoilt_;
   std::vector<std::vector<SurfaceSample>> samples_;
   double chord_ = 0;
+  std::vector<double> edge_shares_;  // of the levels' edges inside in the chord of the body at rest
 };
 
 }  // namespace quadgraph

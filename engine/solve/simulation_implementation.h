@@ -256,7 +256,11 @@ struct Simulation::Implementation {
   }
 
   void warn(Source source, SolveReport& report) {
-    if (report.method == Method::fem) report.mesh_warning = mesh_warning(resolution_with(report.model)[report.finest]);
+    if (report.method == Method::fem) {
+      report.mesh_warning = mesh_warning(resolution_with(report.model)[report.finest]);
+      const std::string inside = inside_warning(optical_at(report.finest), shape.edge(report.finest), shape.chord());
+      report.mesh_warning += (report.mesh_warning.empty() || inside.empty() ? "" : "; ") + inside;
+    }
     report.model_warning =
         model_warning(optical_at(0), static_cast<double>(coefficients.eta()), shape.chord(), source, report.model);
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// quadgraph-cgal-mesh SURFACE.off STEM [--grading K] [--time-limit SECONDS]: writes STEM.node and STEM.ele.
+// quadgraph-cgal-mesh SURFACE.off STEM [--grading K] [--largest L] [--time-limit SECONDS]: writes STEM.node and
+// STEM.ele.
 #include <CGAL/version.h>
 
 #include <cmath>
@@ -23,10 +24,11 @@ using quadgraph::cgal::Tets;
 constexpr int kExitFailed = 1, kExitUsage = 2, kExitMemory = 3;
 
 constexpr const char* kUsage =
-    "usage: quadgraph-cgal-mesh SURFACE.off STEM [--grading K] [--time-limit SECONDS]\n"
+    "usage: quadgraph-cgal-mesh SURFACE.off STEM [--grading K] [--largest L] [--time-limit SECONDS]\n"
     "Fills a closed triangle surface with tetrahedra of size min over the surface of (K * distance + local edge\n"
     "length) and writes them as TetGen does: STEM.node, STEM.ele, indices from 0.\n"
     "  --grading K           growth of the size with depth, above 0 (default 1)\n"
+    "  --largest L           no size is above it, above 0 (default: any)\n"
     "  --time-limit SECONDS  for the optimisation after refinement (default 240)\n"
     "  --version             version of CGAL\n"
     "Exit status: 0 done, 1 failed, 2 wrong usage, 3 out of memory.\n";
@@ -62,6 +64,13 @@ void write(const Tets& tets, const std::string& stem) {
   if (!nodes || !elements) throw std::runtime_error(stem + ".node, " + stem + ".ele: cannot be written");
 }
 
+// Where an option's value goes; null of other words.
+double* option(Options& options, const std::string& word) {
+  if (word == "--grading") return &options.grading;
+  if (word == "--largest") return &options.largest;
+  return word == "--time-limit" ? &options.time_limit_s : nullptr;
+}
+
 int run(const std::vector<std::string>& arguments) {
   Options options;
   std::vector<std::string> names;
@@ -71,9 +80,9 @@ int run(const std::vector<std::string>& arguments) {
       std::cout << (word == "--help" ? kUsage : CGAL_VERSION_STR "\n");
       return EXIT_SUCCESS;
     }
-    if (word == "--grading" || word == "--time-limit") {
+    if (double* value = option(options, word)) {
       if (++i == arguments.size()) throw UsageError(word + ": its value is missing");
-      (word == "--grading" ? options.grading : options.time_limit_s) = positive(word, arguments[i]);
+      *value = positive(word, arguments[i]);
     } else if (word.starts_with("--")) {
       throw UsageError(word + ": unknown option");
     } else {

@@ -14,6 +14,7 @@
 #include <CGAL/odt_optimize_mesh_3.h>
 #include <CGAL/perturb_mesh_3.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <fstream>
@@ -42,16 +43,18 @@ constexpr double kRadiusEdgeRatio = 2.0;
 constexpr double kSliverBound = 10;  // degrees of dihedral angle at which perturber and exuder are content
 constexpr int kOdtIterations = 20;
 
-// The field times a factor, as Mesh_3's MeshDomainField.
+// The field, up to a largest size, times a factor, as Mesh_3's MeshDomainField.
 struct ScaledField {
   using FT = Kernel::FT;
   using Point_3 = Kernel::Point_3;
   using Index = Domain::Index;
 
   const SizingField* size;
-  double factor;
+  double factor, largest;
 
-  FT operator()(const Point_3& p, int, const Index&) const { return factor * (*size)({p.x(), p.y(), p.z()}); }
+  FT operator()(const Point_3& p, int, const Index&) const {
+    return factor * std::min((*size)({p.x(), p.y(), p.z()}), largest);
+  }
 };
 
 SurfaceMesh read_surface(const std::string& path) {
@@ -151,10 +154,11 @@ Tets collect(const Complex& complex) {
 Tets mesh_surface(const std::string& off_path, const Options& options) {
   const SurfaceMesh surface = read_surface(off_path);
   const SizingField field = make_field(surface, options.grading);
+  const double largest = options.largest;
   const Domain domain(surface);
-  const Criteria criteria(
-      Criteria::Facet_criteria(kFacetAngle, ScaledField{&field, kFacetRadius}, ScaledField{&field, kFacetDistance}),
-      Criteria::Cell_criteria(kRadiusEdgeRatio, ScaledField{&field, kCellRadius}));
+  const Criteria criteria(Criteria::Facet_criteria(kFacetAngle, ScaledField{&field, kFacetRadius, largest},
+                                                   ScaledField{&field, kFacetDistance, largest}),
+                          Criteria::Cell_criteria(kRadiusEdgeRatio, ScaledField{&field, kCellRadius, largest}));
   Complex complex = CGAL::make_mesh_3<Complex>(domain, criteria, parameters::no_perturb(), parameters::no_exude(),
                                                parameters::manifold());
   if (complex.number_of_cells_in_complex() == 0) throw std::runtime_error("refinement made no tetrahedra");

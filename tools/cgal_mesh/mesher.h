@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,8 @@
 namespace quadgraph::cgal {
 
 struct Options {
-  double grading = 1.0;       // K of the sizing field
+  double grading = 1.0;                                      // K of the sizing field
+  double largest = std::numeric_limits<double>::infinity();  // mm, no size is above it
   double time_limit_s = 240;  // shared by the optimisers after refinement; they stop early rather than fail
 };
 

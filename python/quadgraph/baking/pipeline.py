@@ -11,16 +11,18 @@ import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from quadgraph.baking import inside
+from quadgraph.baking.inside import LevelSizes
 from quadgraph.base import child_process
 from quadgraph.base.errors import InputError, QuadGraphError
 from quadgraph.base.progress import ProgressCallback
 from quadgraph.base.version import __version__
 from quadgraph.file import qgraph_file, sections
-from quadgraph.mesh import front, lod, mesh_io, repair
+from quadgraph.mesh import front, lod, mesh_io, repair, subdivide
 from quadgraph.mesh.surface import MesherInfo, Repair, SourceMesh, Surface
 from quadgraph.tets import exchange, graph, ordering, relax
 from quadgraph.tets.polygrid import build as polygrid
@@ -34,7 +36,18 @@ from quadgraph.tets.tetrahedralise import (
 ORDERS = {"blocks": ordering.in_blocks, "random": ordering.at_random}
 WORKERS = 2  # levels filled with tets at the same time
 _PACKAGES = ("numpy", "scipy", "pymeshlab", "trimesh")
-_OPTIONS = ("levels", "surface_vertices", "relax_nodes", "order", "visibility_rays", "cubes", "cells")
+_OPTIONS = (
+    "levels",
+    "surface_vertices",
+    "refine",
+    "interior",
+    "for_materials",
+    "relax_nodes",
+    "order",
+    "visibility_rays",
+    "cubes",
+    "cells",
+)
 
 
 @dataclass(frozen=True)
@@ -44,9 +57,13 @@ class BakeOptions:
     levels: None for as many as make sense; mesher: "tetgen", "cgal" or "polygrid"; grading: K of the paper's sizing
     field, for cgal; cubes and cells: of a polygrid (tets/polygrid/build.py), None for the usual; relax_nodes: steps
     that spread the inner nodes; order: "blocks" or "random"; surface_vertices: about how many the finest simulation
-    surface has, None for all of the input's; visibility_rays: from each face of one level, to find what sees what, 0
-    for none; limits hold for each run of the mesher; front: azimuth in degrees from where the body is shown when nobody
-    says so, None for `quadgraph.mesh.front.azimuth`.
+    surface has, None for all of the input's; refine: times that every triangle of the simulation surface is cut into
+    four, curved where the body is smooth; interior: how large tets are deep inside, "auto" by the shape, "surface" as
+    the surface makes them, or an edge length in mm (of coarser levels twice that, four times, ...), None for "auto"
+    with tetgen and "surface" with cgal; for_materials: texts of materials that they are sized for instead;
+    visibility_rays: from each face of one level, to find what sees what, 0 for none; limits hold for each run of the
+    mesher; front: azimuth in degrees from where the body is shown when nobody says so, None for
+    `quadgraph.mesh.front.azimuth`.
     """
 
     unit: str | None = None
@@ -59,6 +76,9 @@ class BakeOptions:
     relax_nodes: int = relax.DEFAULT_STEPS
     order: str = "blocks"
     surface_vertices: int | None = None
+    refine: int = 0
+    interior: str | float | None = None
+    for_materials: tuple[str, ...] = ()
     visibility_rays: int = exchange.DEFAULT_RAYS
     time_limit_s: float = DEFAULT_TIME_LIMIT_S
     memory_limit_bytes: int = DEFAULT_MEMORY_LIMIT_BYTES
@@ -70,7 +90,8 @@ class BakeReport:
     """What a bake did. Times in s; of levels, `seconds` per step; memory in bytes, children apart.
 
     exchange: what faces see of each other, as `exchange.summary` tells; None if left out. budget: what was measured and
-    chosen for an error that was asked for (`quadgraph.baking.budget.plan`). polygrid: how good it is
+    chosen for an error that was asked for (`quadgraph.baking.budget.plan`). interior: what the
+    inner tets are sized by (`quadgraph.baking.inside.metadata`), None of polygrids. polygrid: how good it is
     (`quadgraph.tets.polygrid.grid_report`), None of other meshers.
     """
 
@@ -82,6 +103,7 @@ class BakeReport:
     levels: list[dict[str, Any]] = field(default_factory=list)
     exchange: dict[str, Any] | None = None
     budget: dict[str, Any] | None = None
+    interior: dict[str, Any] | None = None
     polygrid: dict[str, Any] | None = None
     notes: list[str] = field(default_factory=list)
     seconds: dict[str, float] = field(default_factory=dict)
@@ -101,11 +123,16 @@ class BakeReport:
 
 @dataclass(frozen=True)
 class Level:
-    """A level's graph, what made its tets, and what the report tells of it."""
+    """A level's graph, what made its tets, what the report tells of it, and notes for it.
+
+    inside: what its inner tets are sized by, and their largest edge, mm, None for any; None of polygrids.
+    """
 
     graph: graph.Graph
     mesher: MesherInfo
     report: dict[str, Any]
+    notes: list[str] = field(default_factory=list)
+    inside: tuple[str, float | None] | None = None
 
 
 @dataclass(frozen=True)
@@ -166,11 +193,20 @@ def write(
     with report.timed("transfers"):
         content = sections.whole_file(graphs, prepared.surface, seen)
     metadata = _metadata(prepared, levels, options) | ({} if budget is None else {"budget": budget})
+    if levels[0].inside is not None:
+        report.interior = inside.metadata(
+            levels[0].inside[0], options.for_materials, [_edge(level) for level in levels]
+        )
+        metadata["interior"] = report.interior
     if report.polygrid is not None:
         metadata["polygrid"] = report.polygrid
     with report.timed("write"):
         report.byte_size = qgraph_file.write(Path(report.output), metadata, content)
     _complete(report, metadata, levels)
+
+
+def _edge(level: Level) -> float | None:
+    return None if level.inside is None else level.inside[1]
 
 
 def check_options(output: Path, options: BakeOptions) -> None:
@@ -180,8 +216,10 @@ def check_options(output: Path, options: BakeOptions) -> None:
     if options.relax_nodes < 0:
         raise InputError(f"relax_nodes: {options.relax_nodes} found, 0 or more allowed")
     exchange.check_rays(options.visibility_rays)
+    inside.check_interior(options.interior, options.for_materials, options.mesher)
     front.check(options.front)
     _check_polygrid_options(options)
+    subdivide.check(options.refine)
     if not output.parent.is_dir():
         raise InputError(f"{output}: the folder {output.parent} does not exist")
     if output.is_dir():
@@ -190,8 +228,8 @@ def check_options(output: Path, options: BakeOptions) -> None:
 
 def _check_polygrid_options(options: BakeOptions) -> None:
     if options.mesher == "polygrid":
-        for name in ("surface_vertices", "grading"):
-            if getattr(options, name) is not None:
+        for name in ("surface_vertices", "grading", "refine"):
+            if getattr(options, name):
                 raise InputError(f"{name}: found with mesher 'polygrid', whose cubes and cells say how fine it is")
         return
     for name in ("cubes", "cells"):
@@ -206,15 +244,22 @@ def make_levels(surface: Surface, options: BakeOptions, report: BakeReport, tell
         return _polygrid_levels(surface, options, report, tell)
     with _workers() as submit:
         with report.timed("simplify"):
-            finest = lod.simplify(surface, options.surface_vertices) if options.surface_vertices else surface
+            finest = _finest(surface, options)
+        sizes = inside.sizes_of(finest, options.interior, options.for_materials, options.mesher)
         # The finest level takes longest: its tets are made while the chain below it is.
-        jobs = [submit(_make_level, finest, options)]
+        jobs = [submit(_make_level, finest, options, sizes, 0)]
         with report.timed("simplify"):
             chain = lod.build_chain(finest, levels=options.levels, progress=tell)
         report.notes.append(f"the chain ends after level {len(chain) - 1}: {chain.ended}")
-        jobs += [submit(_make_level, coarse, options) for coarse in chain[1:]]
+        jobs += [submit(_make_level, coarse, options, sizes, number) for number, coarse in enumerate(chain[1:], 1)]
         with report.timed("tetrahedra and graphs"):
             return _collect(jobs, report, tell)
+
+
+def _finest(surface: Surface, options: BakeOptions) -> Surface:
+    """The finest simulation surface."""
+    finest = subdivide.subdivide(surface, options.refine)
+    return lod.simplify(finest, options.surface_vertices) if options.surface_vertices else finest
 
 
 @contextmanager
@@ -244,6 +289,7 @@ def _collect(jobs: list[Future[Level]], report: BakeReport, tell: ProgressCallba
             report.notes.append(f"level {number} was left out, and all below it: {error}")
             break
         tell(f"level {number}: {len(levels[-1].graph.tets):,} tets")
+        report.notes += levels[-1].notes
     return levels
 
 
@@ -254,16 +300,20 @@ def _polygrid_levels(surface: Surface, options: BakeOptions, report: BakeReport,
     return [_ordered_level(built, made.mesher, len(built.tets), {}, options) for built in made.graphs]
 
 
-def _make_level(surface: Surface, options: BakeOptions) -> Level:
+def _make_level(surface: Surface, options: BakeOptions, sizes: LevelSizes, number: int) -> Level:
     """Tets, graph, even nodes, cache-local order."""
     clock = [time.perf_counter()]
     limits: dict[str, Any] = {"time_limit_s": options.time_limit_s, "memory_limit_bytes": options.memory_limit_bytes}
-    mesh = tetrahedralise(surface, mesher=options.mesher, grading=options.grading, **limits)
+    mesh, edge, notes = sizes.fill(
+        number, surface, lambda within: tetrahedralise(surface, mesher=options.mesher, grading=options.grading,
+                                                       limits=within, **limits)
+    )  # fmt: skip
     clock.append(time.perf_counter())
     built = graph.build(mesh)
     clock.append(time.perf_counter())
     seconds = {"tetrahedra": clock[1] - clock[0], "graph": clock[2] - clock[1]}
-    return _ordered_level(built, mesh.mesher, len(mesh.tets), seconds, options)
+    level = _ordered_level(built, mesh.mesher, len(mesh.tets), seconds, options)
+    return replace(level, notes=notes, inside=(sizes.rule, edge))
 
 
 def _ordered_level(

@@ -29,6 +29,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     size.add_argument("--unit", choices=tuple(UNITS_MM), help="unit of the mesh file's coordinates")
     size.add_argument("--height", type=length_mm, metavar="L", help="height of the object along y, like 100mm or 1.8m")
     _add_mesh_options(parser)
+    _add_size_options(parser)
     parser.add_argument(
         "--time-limit",
         type=positive_float,
@@ -120,12 +121,42 @@ def _add_mesh_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def _add_size_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--refine",
+        type=steps,
+        metavar="N",
+        help="cut every triangle of the simulation surface into four, N times, curved where the body is smooth; the "
+        "displayed surface stays as it is (default: 0)",
+    )
+    parser.add_argument(
+        "--interior",
+        type=interior,
+        metavar="SIZE",
+        help="how large tets are deep inside: an edge length in mm, auto (a tenth of the mean chord, or what 1.4 times "
+        "the tets of the surface alone allow) or surface (as the surface makes them); of coarser levels twice that, "
+        "four times, ... (default: auto; with --mesher cgal surface)",
+    )
+    parser.add_argument(
+        "--for-material",
+        action="append",
+        metavar="M",
+        help="size the tets inside for the light in this material instead, several allowed: its coefficients, like "
+        "sigma_s_prime=2.0,sigma_a=0.01/0.02/0.05, or, where the engine is compiled, any text as in `render`",
+    )
+
+
 def steps(text: str) -> int:
     """Argument type: an integer of at least zero."""
     value = int(text)
     if value < 0:
         raise argparse.ArgumentTypeError(f"{text}: must be 0 or more")
     return value
+
+
+def interior(text: str) -> str | float:
+    """Argument type: auto, surface, or a number above zero."""
+    return text if text in ("auto", "surface") else positive_float(text)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -197,6 +228,9 @@ def _options(args: argparse.Namespace):
         "relax_nodes": args.relax_nodes,
         "order": args.order,
         "surface_vertices": args.surface_vertices,
+        "refine": args.refine,
+        "interior": args.interior,
+        "for_materials": tuple(args.for_material) if args.for_material else None,
         "visibility_rays": args.visibility_rays,
         "front": args.front,
         "time_limit_s": args.time_limit,
@@ -225,6 +259,10 @@ def _print_report(report: BakeReport) -> None:
         f"link lengths vary by {100 * variation['before']['local']:.1f}% of their local mean, "
         f"{100 * variation['after']['local']:.1f}% after relaxing"
     )
+    if report.interior:
+        from quadgraph.baking import inside
+
+        console.print(inside.sentence(report.interior), markup=False, soft_wrap=True)
     console.print(exchange_line(report.exchange))
     console.print("time: " + ", ".join(f"{stage} {seconds:.1f} s" for stage, seconds in report.seconds.items()))
     memory = report.peak_memory

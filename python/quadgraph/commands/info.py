@@ -65,13 +65,15 @@ def describe(file) -> dict[str, Any]:
 
 
 def _print_facts(name: str, facts: dict[str, Any]) -> None:
+    from quadgraph.baking import inside
+
     console, metadata = Console(highlight=False), facts["metadata"]
     source, mesher = metadata["source"], metadata["mesher"]
     size = " x ".join(f"{extent:.4g}" for extent in facts["display"]["size_mm"])
     grading = "" if mesher["grading"] is None else f", grading {mesher['grading']}"
     repairs = ", ".join(f"{entry['what']}: {entry['count']}" for entry in metadata["repairs"]) or "none"
     tools = ", ".join(f"{tool} {version}" for tool, version in metadata["tools"].items())
-    given = {key: value for key, value in metadata.get("options", {}).items() if value is not None}
+    given = {key: value for key, value in metadata.get("options", {}).items() if value not in (None, [])}
     options = ", ".join(f"{key} {value}" for key, value in given.items()) or "unknown"
     lines = [
         f"{name}: {facts['byte_size'] / 1e6:.2f} MB, {size} mm, by {metadata['generator']}",
@@ -80,6 +82,7 @@ def _print_facts(name: str, facts: dict[str, Any]) -> None:
         f"sha256: {source['sha256']}",
         f"mesher: {mesher['name']} {mesher['version']} {mesher['options']}{grading}",
         f"options: {options}",
+        *([inside.sentence(metadata["interior"])] if "interior" in metadata else []),
         f"repairs: {repairs}",
         f"front: azimuth {metadata.get('front', 0):g} degrees",
         f"tools: {tools}",

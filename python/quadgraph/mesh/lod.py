@@ -70,7 +70,9 @@ def simplify(surface: Surface, vertices: int, *, min_angle_degrees: float = DEFA
     Raises InputError where no valid surface of that size is found or `vertices` is not below the surface's own.
     """
     if not 4 <= vertices < len(surface.vertices):
-        raise InputError(f"surface_vertices: {vertices} found, allowed are 4 to {len(surface.vertices) - 1}")
+        raise InputError(
+            f"surface_vertices: {vertices} found, allowed are 4 to {len(surface.vertices) - 1}; for more, --refine"
+        )
     coarse, trouble = _next_level(surface, vertices, min_angle_degrees)
     if coarse is None:
         raise InputError(f"surface_vertices: no valid surface of {vertices} vertices: {trouble}")

@@ -43,6 +43,12 @@ def write_smesh(surface: Surface, path: Path) -> None:
     path.write_text(f"{n} 3 0 0\n{points}{m} 0\n{facets}{len(found)}\n{holes}0\n")
 
 
+def write_volumes(volumes: np.ndarray, path: Path) -> None:
+    """Write the largest volume that each tet may have, mm^3, as TetGen's .vol."""
+    rows = "".join(f"{i} {volume!r}\n" for i, volume in enumerate(volumes.tolist()))
+    path.write_text(f"{len(volumes)}\n{rows}")
+
+
 def write_off(surface: Surface, path: Path) -> None:
     """Write a surface as OFF with 17 digits."""
     points = "".join(f"{x!r} {y!r} {z!r}\n" for x, y, z in surface.vertices.tolist())

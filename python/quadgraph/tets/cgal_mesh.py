@@ -21,22 +21,25 @@ _RESERVE = 0.8  # share of the time limit that the program may plan with; the re
 
 
 def fill(
-    surface: Surface, grading: float, time_limit_s: float, memory_limit_bytes: int
+    surface: Surface, grading: float, largest: float | None, time_limit_s: float, memory_limit_bytes: int
 ) -> tuple[np.ndarray, np.ndarray, MesherInfo]:
     """Mesh the inside of a closed surface with size(x) = min over the surface of grading * distance + local size.
 
+    largest: mm, no size is above it but where the surface's own is; None for any.
     Returns (n, 3) float64 vertices, mm, and (m, 4) int64 tets. Raises ToolError.
     """
     with workspace() as directory:
         write_off(surface, directory / "surface.off")
         arguments = ["surface.off", "mesh", "--grading", repr(float(grading))]
         arguments += ["--time-limit", f"{_RESERVE * time_limit_s:g}"]
+        arguments += [] if largest is None else ["--largest", repr(float(largest))]
         run(CGAL_MESH, arguments, directory=directory, time_limit_s=time_limit_s,
             memory_limit_bytes=memory_limit_bytes)  # fmt: skip
         vertices, tets = read_tets(directory / "mesh")
     if not len(tets):
         raise ToolError("quadgraph-cgal-mesh: made no tetrahedra")
-    return vertices, tets, MesherInfo("cgal", _version(), f"--grading {grading:g}")
+    options = f"--grading {grading:g}" + ("" if largest is None else f" --largest {largest:g}")
+    return vertices, tets, MesherInfo("cgal", _version(), options)
 
 
 def _version() -> str:

@@ -7,6 +7,8 @@ on an open surface; both become a ToolError here.
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 
@@ -14,29 +16,49 @@ from quadgraph.base.child_process import run, workspace
 from quadgraph.base.errors import ToolError
 from quadgraph.mesh.intersections import TETGEN
 from quadgraph.mesh.surface import MesherInfo, Surface
-from quadgraph.mesh.tet_files import read_tets, write_smesh
+from quadgraph.mesh.tet_files import read_tets, write_smesh, write_volumes
 
 OPTIONS = "-pYq1.4/0"  # piecewise linear complex, surface kept, radius-edge ratio 1.4, no dihedral bound
+REFINE = "-rYq1.4/0a"  # the same on tets that are there, with the volumes of a .vol file
+_PASSES = 3  # a limit holds for what becomes of a tet, so that large ones are asked for again
 
 
-def fill(surface: Surface, time_limit_s: float, memory_limit_bytes: int) -> tuple[np.ndarray, np.ndarray, MesherInfo]:
+def fill(
+    surface: Surface,
+    time_limit_s: float,
+    memory_limit_bytes: int,
+    limits: Callable[[np.ndarray, np.ndarray], np.ndarray | None] | None = None,
+) -> tuple[np.ndarray, np.ndarray, MesherInfo]:
     """Fill a closed surface with tetrahedra; its vertices come first and its triangles are the boundary.
 
+    limits: from vertices and tets to the volumes (m,), mm^3, that those may have, None where they stay as they are.
     Returns (n, 3) float64 vertices, mm, and (m, 4) int64 tets of either orientation. Raises ToolError.
     """
+    options = OPTIONS
+
+    def made(directory: Path, arguments: list[str], stem: str) -> tuple[np.ndarray, np.ndarray]:
+        done = run(TETGEN, arguments, directory=directory, time_limit_s=time_limit_s,
+                   memory_limit_bytes=memory_limit_bytes)  # fmt: skip
+        if not (directory / f"{stem}.ele").exists():
+            raise ToolError(f"tetgen: wrote no tetrahedra: {done.output[-300:].strip()}")
+        return read_tets(directory / stem)
+
     with workspace() as directory:
         write_smesh(surface, directory / "surface.smesh")
-        done = run(TETGEN, [OPTIONS + "F", "surface.smesh"], directory=directory, time_limit_s=time_limit_s,
-                   memory_limit_bytes=memory_limit_bytes)  # fmt: skip
-        if not (directory / "surface.1.ele").exists():
-            raise ToolError(f"tetgen: wrote no tetrahedra: {done.output[-300:].strip()}")
-        vertices, tets = read_tets(directory / "surface.1")
+        vertices, tets = made(directory, [OPTIONS + ("" if limits else "F"), "surface.smesh"], "surface.1")
+        for number in range(1, 1 + _PASSES):
+            volumes = limits(vertices, tets) if limits and len(tets) else None
+            if volumes is None:
+                break
+            write_volumes(volumes, directory / f"surface.{number}.vol")
+            vertices, tets = made(directory, [REFINE, f"surface.{number}"], f"surface.{number + 1}")
+            options = f"{OPTIONS}, {REFINE}"
     if not len(tets):
         raise ToolError("tetgen: made no tetrahedra; the surface is not closed")
     n = len(surface.vertices)
     if len(vertices) < n or not np.array_equal(vertices[:n], surface.vertices):
         raise ToolError("tetgen: the surface's vertices are not the first of its output, as option -Y promises")
-    return vertices, tets, MesherInfo("tetgen", _version(), OPTIONS)
+    return vertices, tets, MesherInfo("tetgen", _version(), options)
 
 
 def _version() -> str:

@@ -7,6 +7,7 @@ import numpy as np
 from quadgraph.base.errors import InputError, ToolError
 from quadgraph.mesh.surface import Surface, TetMesh
 from quadgraph.tets import cgal_mesh, tetgen
+from quadgraph.tets.interior import Limits
 from quadgraph.tets.tet_rounding import orient, round_to_float32
 
 DEFAULT_GRADING = 1.0  # K of the QuadGraph paper's sizing field
@@ -19,6 +20,7 @@ def tetrahedralise(
     *,
     mesher: str = "tetgen",
     grading: float | None = None,
+    limits: Limits | None = None,
     time_limit_s: float = DEFAULT_TIME_LIMIT_S,
     memory_limit_bytes: int = DEFAULT_MEMORY_LIMIT_BYTES,
 ) -> TetMesh:
@@ -26,7 +28,8 @@ def tetrahedralise(
 
     mesher "tetgen" keeps the surface as it is: its vertices are the first of the result and its triangles the
     boundary. "cgal" makes its own surface near it, sized as in the QuadGraph paper by `grading` = K > 0 (larger K:
-    larger tetrahedra inside). All determinants are positive in double precision with float32 vertices.
+    larger tetrahedra inside), and no edge above the smallest of `limits`. limits: how large tets may be inside, None
+    for what the surface makes. All determinants are positive in double precision with float32 vertices.
 
     Raises InputError for a bad option or surface, ToolError if the program is missing, fails or passes a limit.
     """
@@ -35,25 +38,31 @@ def tetrahedralise(
     if not surface.is_closed_manifold or surface.volume <= 0:
         raise InputError("tetrahedralise: the surface is not a closed, outward-facing 2-manifold; repair it first")
     if mesher == "tetgen":
-        return _with_tetgen(surface, grading, time_limit_s, memory_limit_bytes)
-    return _with_cgal(surface, DEFAULT_GRADING if grading is None else grading, time_limit_s, memory_limit_bytes)
+        return _with_tetgen(surface, grading, limits, time_limit_s, memory_limit_bytes)
+    largest = None if limits is None else limits.interior.edge
+    usual = DEFAULT_GRADING if grading is None else grading
+    return _with_cgal(surface, usual, largest, time_limit_s, memory_limit_bytes)
 
 
-def _with_tetgen(surface: Surface, grading: float | None, time_limit_s: float, memory_limit_bytes: int) -> TetMesh:
+def _with_tetgen(
+    surface: Surface, grading: float | None, limits: Limits | None, time_limit_s: float, memory_limit_bytes: int
+) -> TetMesh:
     if grading is not None:
-        raise InputError('grading: an option of mesher "cgal"; "tetgen" grades by the surface alone')
+        raise InputError('grading: an option of mesher "cgal"; "tetgen" has interior')
     surface = surface.rounded()
-    vertices, tets, info = tetgen.fill(surface, time_limit_s, memory_limit_bytes)
+    vertices, tets, info = tetgen.fill(surface, time_limit_s, memory_limit_bytes, limits)
     mesh = _positive(vertices, tets, len(surface.vertices), info)
     if _canonical(mesh.boundary().triangles) != _canonical(surface.triangles):
         raise ToolError("tetgen: the boundary of the tetrahedra is not the given surface")
     return mesh
 
 
-def _with_cgal(surface: Surface, grading: float, time_limit_s: float, memory_limit_bytes: int) -> TetMesh:
+def _with_cgal(
+    surface: Surface, grading: float, largest: float | None, time_limit_s: float, memory_limit_bytes: int
+) -> TetMesh:
     if not (np.isfinite(grading) and grading > 0):
         raise InputError(f"grading: {grading!r} found, allowed is a finite number above 0")
-    vertices, tets, info = cgal_mesh.fill(surface, grading, time_limit_s, memory_limit_bytes)
+    vertices, tets, info = cgal_mesh.fill(surface, grading, largest, time_limit_s, memory_limit_bytes)
     mesh = _positive(vertices, tets, 0, info)
     boundary = mesh.boundary().compacted()
     if not boundary.is_closed_manifold:

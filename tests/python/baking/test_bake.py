@@ -56,6 +56,26 @@ def test_metadata_tells_where_it_comes_from(baked, sphere):
     assert metadata["tools"]["numpy"] == np.__version__
 
 
+def test_metadata_tells_what_the_interior_is_for(baked, sphere, folder):
+    interior = baked[1].metadata["interior"]
+    assert (interior["rule"], interior["materials"]) == ("auto", [])
+    assert interior["edge_mm"][0] > 4 / 3  # a tenth of the mean chord, or more where that would be too many tets
+    np.testing.assert_allclose(np.divide(interior["edge_mm"], interior["edge_mm"][0]), [1, 2, 4])
+    assert baked[0].interior == interior
+    for wanted, rule, edges in (("surface", "surface", [None, None]), (1.2, "size", [1.2, 2.4])):
+        options = pipeline.BakeOptions(unit="cm", levels=2, interior=wanted)
+        pipeline.bake(sphere, folder / "inside.qgraph", options)
+        told = qgraph_file.read(folder / "inside.qgraph").metadata["interior"]
+        assert (told["rule"], told["edge_mm"]) == (rule, edges)
+    material = "sigma_s_prime=2,sigma_a=0.01"
+    pipeline.bake(
+        sphere, folder / "inside.qgraph", pipeline.BakeOptions(unit="cm", levels=1, for_materials=(material,))
+    )
+    told = qgraph_file.read(folder / "inside.qgraph").metadata
+    assert (told["interior"]["rule"], told["interior"]["materials"]) == ("materials", [material])
+    assert told["options"]["for_materials"] == [material]
+
+
 def test_levels_fill_the_ball_and_shrink_by_four(baked):
     levels = baked[1].metadata["levels"]
     assert len(levels) == 3
@@ -125,6 +145,21 @@ def test_a_smaller_simulation_surface_keeps_the_display_mesh(sphere, folder):
     assert distance.max() < 0.3
 
 
+def test_a_refined_simulation_surface_keeps_the_display_mesh(folder):
+    coarse = write_obj(icosphere(2, 1), folder / "coarse.obj")
+    pipeline.bake(coarse, folder / "refined.qgraph", pipeline.BakeOptions(unit="cm", levels=2, refine=2))
+    file = qgraph_file.read(folder / "refined.qgraph")
+    assert file.metadata["levels"][0]["surface_vertices"] == 2562
+    assert file.metadata["options"]["refine"] == 2
+    assert file.metadata["levels"][0]["volume_mm3"] == pytest.approx(4 / 3 * np.pi * 1000, rel=0.003)
+    assert len(file.sections["display/vertices"]) == 162
+    assert (file.sections["display/barycentric"].max(axis=1) == 1).all()
+    both = pipeline.BakeOptions(unit="cm", levels=1, refine=1, surface_vertices=400)
+    pipeline.bake(coarse, folder / "between.qgraph", both)
+    between = qgraph_file.read(folder / "between.qgraph").metadata["levels"][0]
+    assert between["surface_vertices"] == pytest.approx(400, rel=0.1)
+
+
 def _failing_below(monkeypatch, vertices: int) -> None:
     real = pipeline.tetrahedralise
 
@@ -161,7 +196,13 @@ def test_without_a_finest_level_there_is_no_file(sphere, tmp_path, monkeypatch):
         ({"unit": "mm", "relax_nodes": -1}, "relax_nodes: -1"),
         ({"unit": "mm", "mesher": "gmsh"}, "gmsh"),
         ({"unit": "mm", "grading": 2.0}, "grading"),
-        ({"unit": "mm", "surface_vertices": 10**6}, "surface_vertices"),
+        ({"unit": "mm", "surface_vertices": 10**6}, "surface_vertices: 1000000 found.*--refine"),
+        ({"unit": "mm", "refine": 6}, "refine: 6"),
+        ({"unit": "mm", "interior": "fine"}, "interior: 'fine'"),
+        ({"unit": "mm", "interior": -1.0}, "interior: -1"),
+        ({"unit": "mm", "interior": 1.0, "mesher": "polygrid"}, "interior: found with mesher 'polygrid'"),
+        ({"unit": "mm", "refine": 1, "mesher": "polygrid"}, "refine: found with mesher 'polygrid'"),
+        ({"unit": "mm", "for_materials": ("sigma_s_prime=2,sigma_a=-1",)}, "sigma_a=-1"),
     ],
 )
 def test_bad_options_are_named(sphere, tmp_path, options, message):

@@ -71,6 +71,22 @@ def test_bake_and_info_tell_that_rays_were_left_out(sphere, tmp_path, capsys):
     assert "visibility_rays 0" in text
 
 
+def test_bake_and_info_tell_what_the_interior_is_for(sphere, tmp_path, capsys):
+    output = str(tmp_path / "a.qgraph")
+    arguments = ["bake", str(sphere), "-o", output, "--unit", "mm", "--levels", "2", "--visibility-rays", "0"]
+    assert cli.main([*arguments, "--interior", "1.5"]) == 0
+    assert cli.main(["info", output]) == 0
+    text = capsys.readouterr().out
+    assert text.count("interior: tets as asked for, edges of at most 1.5, 3 mm by level") == 2
+    medium = "sigma_s_prime=2,sigma_a=0.01"
+    assert cli.main([*arguments, "--for-material", medium, "--for-material", "sigma_s_prime=1,sigma_a=0.1"]) == 0
+    assert f"interior: tets for {medium}, sigma_s_prime=1,sigma_a=0.1, edges" in " ".join(
+        capsys.readouterr().out.split()
+    )
+    assert cli.main([*arguments, "--interior", "1.5", "--for-material", medium]) == 1
+    assert "one of them says how large tets are" in capsys.readouterr().err
+
+
 def test_info_json_tells_everything(capsys):
     assert cli.main(["info", str(tiny.PATH), "--json"]) == 0
     facts = json.loads(capsys.readouterr().out)

@@ -18,6 +18,7 @@ from quadgraph.mesh import intersections
 from quadgraph.mesh.intersections import intersecting_triangles
 from quadgraph.mesh.surface import Surface
 from quadgraph.tets.cgal_mesh import CGAL_MESH
+from quadgraph.tets.interior import Limits, of_size
 from quadgraph.tets.tet_geometry import determinants
 from quadgraph.tets.tet_rounding import orient, round_to_float32
 from quadgraph.tets.tetrahedralise import tetrahedralise
@@ -138,6 +139,17 @@ def test_cgal_grading_grows_tets_inside_and_keeps_the_surface() -> None:
     local = np.linalg.norm(np.diff(sphere.vertices[sphere.topology.edges], axis=1), axis=2).mean()
     # The field bounds sizes from above: no tet is much larger than grading * distance + local size.
     assert (edge < 1.3 * (0.2 * depth + local)).all()
+
+
+@pytest.mark.usefixtures("cgal")
+def test_cgal_keeps_a_largest_size() -> None:
+    sphere = icosphere(2, 10)
+    within = Limits(sphere, of_size(1.5))
+    free, bounded = (tetrahedralise(sphere, mesher="cgal", grading=1.0, limits=limits) for limits in (None, within))
+    edges = [np.cbrt(mesh.determinants * np.sqrt(2)).max() for mesh in (free, bounded)]
+    assert edges[0] > 2.5
+    assert edges[1] < 1.5
+    assert bounded.mesher.options == "--grading 1 --largest 1.5"
 
 
 @pytest.mark.usefixtures("cgal")

@@ -168,8 +168,8 @@ def bake_for(
 def _check(options: BakeOptions, error: float) -> None:
     if not 0 < error < 1:
         raise InputError(f"error: {error} found, allowed is above 0 and below 1")
-    for name in ("surface_vertices", "levels"):
-        if getattr(options, name) is not None:
+    for name in ("surface_vertices", "levels", "refine"):
+        if getattr(options, name):
             raise InputError(f"{name}: {getattr(options, name)} found, but an error is asked for, which chooses it")
 
 
