@@ -22,6 +22,8 @@ constexpr double settle_after = 0.25;         // seconds without a change
 constexpr double idle_wait = 0.5;             // seconds
 constexpr float degrees_per_height = 180.0f;  // of a drag over the height of the picture
 
+struct Interrupted {};
+
 double milliseconds(std::chrono::steady_clock::duration duration) {
   return std::chrono::duration<double, std::milli>(duration).count();
 }
@@ -217,6 +219,8 @@ void Viewer::keep_up() {
   const bool first = !shown_;
   try {
     remake(!changed);
+  } catch (const Interrupted&) {
+    return;
   } catch (const DeviceError&) {
     throw;
   } catch (const std::exception& error) {
@@ -245,11 +249,10 @@ void Viewer::remake(bool settle) {
   lit.view = scene.view;
   lit.render = scene.render;
   lit.tone = scene.tone;
-  const bool solving = !shown_ || lit != scene || (settle && !solved_exactly_);
+  const bool solving = !shown_ || lit != scene || !solved_ || (settle && !solved_exactly_);
   if (solving) {
     stage_.show(scene);
-    measured_.solve = stage_.solve(options_of_solve(settle));
-    solved_exactly_ = settle;
+    solve(settle);
   }
   const Clock::time_point solved = Clock::now();
   const Part now = part();
@@ -261,6 +264,18 @@ void Viewer::remake(bool settle) {
   measured_.settled = settle;
   measure(start, solving ? milliseconds(solved - start) : 0, milliseconds(Clock::now() - solved),
           settle || pace_.gathers(solving));
+}
+
+// A solve that settles ends, by throwing Interrupted, where the user does something.
+void Viewer::solve(bool settle) {
+  engine_.interrupt_with(settle ? [this] {
+    window_.poll(0);
+    if (window_.wanted()) throw Interrupted();
+  } : std::function<void()>());
+  solved_ = false;
+  measured_.solve = stage_.solve(options_of_solve(settle));
+  solved_ = true;
+  solved_exactly_ = settle;
 }
 
 void Viewer::make_picture(bool settle, bool gather) {

@@ -52,6 +52,7 @@ class Viewer {
   void build_widgets(const std::vector<Event>& events);
   void keep_up();
   void remake(bool settle);
+  void solve(bool settle);
   SolveOptions options_of_solve(bool settle) const;
   void make_picture(bool settle, bool gather);
   void show(const device::Buffer& pixels);
@@ -81,7 +82,8 @@ class Viewer {
   Part shown_part_;
   const device::Buffer* pixels_ = nullptr;   // of shown_part_, on the presenter
   device::Buffer presented_;                 // where the engine has another device
-  bool solved_exactly_ = false;              // the last solve was to the tolerance
+  bool solved_ = false;                      // the engine has a solution
+  bool solved_exactly_ = false;              // it was solved to the tolerance
   Clock::time_point changed_;                // when something changed last
   std::vector<Clock::time_point> pictures_;  // of the last second
   int frames_wanted_ = 3;                    // widgets settle over several frames

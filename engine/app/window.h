@@ -71,6 +71,9 @@ class Window {
   // Whether there is anything to take.
   bool events_wait() const { return !events_.empty(); }
 
+  // Whether there is more than motions of the pointer, or the window is to be closed.
+  bool wanted() const;
+
  private:
   void listen();
 

@@ -198,6 +198,10 @@ void Engine::make_room(const SolveOptions& options) {
   if (gathered) self.display_room();
 }
 
+void Engine::interrupt_with(std::function<void()> check) {
+  if (implementation_->simulation) implementation_->simulation->interrupt_with(std::move(check));
+}
+
 SolveReport Engine::solve(const SolveOptions& options) {
   auto& self = *implementation_;
   const bool by_path = options.method == Method::shortest_path;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -134,6 +135,9 @@ class Engine {
 
   // Calls update_irradiance if lights or material changed since, then solves. Throws as Simulation::solve.
   SolveReport solve(const SolveOptions& options = {});
+
+  // As Simulation::interrupt_with.
+  void interrupt_with(std::function<void()> check);
 
   // Level 0 of the last solve. Throws InputError after one by shortest-path.
   SurfaceField surface_field() const;

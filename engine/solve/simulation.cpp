@@ -95,6 +95,10 @@ SolveReport Simulation::solve(const SolveOptions& options) {
   return implementation_->solve(options);
 }
 
+void Simulation::interrupt_with(std::function<void()> check) {
+  implementation_->interruption = std::move(check);
+}
+
 const std::vector<PassStats>& Simulation::passes() const {
   return implementation_->passes;
 }

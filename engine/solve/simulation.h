@@ -105,6 +105,9 @@ class Simulation {
   // conjugate gradients break down or a value is not finite.
   SolveReport solve(const SolveOptions& options);
 
+  // `check` is called now and then while a solve takes long; what it throws ends that solve, and there is no solution.
+  void interrupt_with(std::function<void()> check);
+
   // Passes of the last solve.
   const std::vector<PassStats>& passes() const;
 

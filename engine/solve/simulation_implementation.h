@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <map>
 #include <optional>
 #include <vector>
@@ -43,12 +45,16 @@ struct Simulation::Implementation {
   std::optional<Gather> gathers_now;              // of the last solution
   std::optional<TransportCorrection> correction;  // made at first use
   bool corrected = false;                         // the last solution is
+  std::vector<gpu::Optical> corrected_optical;    // at the surface, of the last correction
+  double corrected_eta = 0;                       // the same
+  bool optical_changed = true;                    // since then
   std::vector<PassStats> passes;                  // of the last solve
   bool scaled = false;                            // the scale is that of the present q
   std::optional<OperatorKey> solved;              // by the last solve
   Source solved_source = Source::buried;
   std::map<Model, std::vector<Resolution>> resolution;  // per level, of the present material and shape
   SolverChoice quicker;
+  std::function<void()> interruption;
 
   Implementation(device::Device& context_in, const QuadGraph& graph_in)
       : device(context_in),
@@ -79,6 +85,7 @@ struct Simulation::Implementation {
 
   // Changed coefficients: everything is.
   void disassemble() {
+    optical_changed = true;
     quicker.forget();
     resolution.clear();
     operators.disassemble();
@@ -98,6 +105,7 @@ struct Simulation::Implementation {
 
   // What was known of the present shape.
   void forget_shape() {
+    if (correction) correction->moved();
     resolution.clear();
     quicker.forget();
     forget_place();
@@ -168,6 +176,18 @@ struct Simulation::Implementation {
     return report;
   }
 
+  // A correction goes on from what it knows where rays see much the same body.
+  void forget_other_material() {
+    if (!optical_changed) return;
+    std::vector<gpu::Optical> now = optical_at(0);
+    const double eta = static_cast<double>(coefficients.eta()), step = std::abs(eta - corrected_eta) / eta;
+    std::max(extinction_change(corrected_optical, now), step) > most_carried ? correction->forget()
+                                                                             : correction->edited();
+    corrected_optical = std::move(now);
+    corrected_eta = eta;
+    optical_changed = false;
+  }
+
   // The operator of the correction on all levels, for the present coefficients.
   void prepare_correction(const Boundary& boundary) {
     for (std::uint32_t i = 0; i < operators.count(correction_key); ++i) {
@@ -183,9 +203,10 @@ struct Simulation::Implementation {
     const auto boundary_with = [&](Model model) { return boundary_of(Method::fem, Source::buried, model, eta); };
     const Boundary boundary = boundary_with(Model::diffusion);
     prepare_correction(boundary);
+    forget_other_material();
     const Solved of_solve{levels[0], operators.at(key, 0), Method::fem, boundary_with(key.model), &walks[0]};
     const TransportParts transport{work, levels[0], beams, walks[0], gather->nearest(), *tree, report.inter_reflection};
-    const CorrectionParts parts{transport, operators, boundary, of_solve, results};
+    const CorrectionParts parts{transport, operators, boundary, of_solve, results, interruption};
     report.correction = correction->run(parts, options, {Method::fem, eta, coefficients.even(), options.mean_rays});
     results.record_corrected(work, of_solve, correction->fluence(), correction->exitance());
     work.recorder.submit();

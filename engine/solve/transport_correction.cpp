@@ -30,11 +30,13 @@ constexpr double share_of_error = 0.6;
 constexpr std::uint32_t most_sweeps = 4;
 
 // Directions per point, and rays per face and half; draws of points at most.
-constexpr std::uint32_t rest_directions = 16, rest_rays = 8, motion_directions = 8, motion_rays = 2;
+constexpr std::uint32_t rest_directions = 16, rest_rays = 8, motion_directions = 8, motion_rays = 1;
 constexpr double most_draws = 16;
 
-// Of what is known from the frames before, the least that the newest has a say in.
-constexpr float least_share = 0.1f;
+// Of what is known from the frames before, the least that the newest has a say in; frames that a solve at rest is
+// worth.
+constexpr float least_share = 0.05f;
+constexpr std::uint32_t frames_of_rest = 9;
 
 ErrorEstimate relative(const glm::vec2& square, const glm::vec2& size) {
   const auto root = [](float part, float whole) {
@@ -96,6 +98,18 @@ ErrorEstimate error_after_correction(const SolveReport& report) {
   const auto all = [](double a, double b, double c) { return std::sqrt(a * a + b * b + c * c); };
   return {all(model.whole, mesh_left * mesh.whole, left_by_first * solver.whole),
           all(model.unlit, mesh_left * mesh.unlit, left_by_first * solver.unlit)};
+}
+
+double extinction_change(std::span<const gpu::Optical> before, std::span<const gpu::Optical> now) {
+  if (before.size() != now.size()) return 1;
+  double change = 0, size = 0;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    const glm::vec3 was = before[i].sigma_s_prime + before[i].sigma_a;
+    const glm::dvec3 step = glm::abs(glm::dvec3(now[i].sigma_s_prime + now[i].sigma_a) - glm::dvec3(was));
+    change += step.x + step.y + step.z;
+    size += static_cast<double>(was.x) + static_cast<double>(was.y) + static_cast<double>(was.z);
+  }
+  return size > 0 ? change / size : 1;
 }
 
 TransportCorrection::TransportCorrection(device::Device& device, const Level& level) : samples_(device, level) {
@@ -211,7 +225,13 @@ void TransportCorrection::record_faces(const CorrectionParts& parts) {
 // So many draws of points more; then the solves, and what they say.
 void TransportCorrection::draw(const CorrectionParts& parts, const Sampling& sampling, std::uint32_t draws,
                                float known) {
-  for (std::uint32_t k = 0; k < draws; ++k) samples_.record_draw(parts.transport, sampling.directions);
+  for (std::uint32_t k = 0; k < draws; ++k) {
+    if (parts.between && sampling.most_draws > 1) {
+      parts.transport.work.recorder.submit();
+      parts.between();
+    }
+    samples_.record_draw(parts.transport, sampling.directions);
+  }
   draws_ += draws;
   samples_.record_books(parts.transport, 1.0f / static_cast<float>(draws_), known);
   for (std::uint32_t half = 0; half < halves; ++half) solve(parts, half, known);
@@ -222,7 +242,7 @@ void TransportCorrection::draw(const CorrectionParts& parts, const Sampling& sam
 CorrectedSweep TransportCorrection::sweep(const CorrectionParts& parts, const Sampling& sampling,
                                           const TransportShares& shares) {
   samples_.record_source(parts.transport, shares);
-  samples_.record_exitance(parts.transport, sampling.face_rays, shares.known, frames_ == 0);
+  samples_.record_exitance(parts.transport, sampling.face_rays, shares.known, sampling.first);
   samples_.record_no_load(parts.transport);
   std::swap(right_side_, known_);
   draws_ = 0;
@@ -239,7 +259,6 @@ CorrectedSweep TransportCorrection::sweep(const CorrectionParts& parts, const Sa
   if (!std::isfinite(found[0].change.x) || !std::isfinite(found[0].noise.x) || !std::isfinite(found[0].size.x)) {
     throw SolverError("transport correction: met a value that is not finite");
   }
-  ++frames_;
   const ErrorEstimate all = relative(found[0].noise, found[0].size);
   const double faces = parts.transport.level.face_count;
   return {relative(found[0].change, found[0].size),
@@ -247,8 +266,8 @@ CorrectedSweep TransportCorrection::sweep(const CorrectionParts& parts, const Sa
           static_cast<double>(draws_) * samples_.points()};
 }
 
-void TransportCorrection::start(const CorrectionParts& parts, const WalkTask& task) {
-  samples_.record_start(parts.transport, task, parts.solved.op);
+void TransportCorrection::start(const CorrectionParts& parts, const WalkTask& task, bool apart) {
+  samples_.record_start(parts.transport, task, parts.solved.op, apart);
   const device::Buffer& exitance = parts.results.exitance();
   for (std::uint32_t half = 0; half < halves; ++half) {
     parts.transport.work.recorder.copy(exitance, halves_, exitance.size(), half * exitance.size());
@@ -256,43 +275,51 @@ void TransportCorrection::start(const CorrectionParts& parts, const WalkTask& ta
 }
 
 // What is known of the frames before is carried on: of tets that are where they were, what rays found for the field
-// before is taken away by the same rays that see the present one, so that the mean is that of the present one alone; of
-// tets that have moved it is averaged.
-TransportShares TransportCorrection::shares_in_motion() {
-  const float newest = std::max(least_share, 1.0f / static_cast<float>(frames_ + 1));
-  return moved_ ? TransportShares{newest, 0, 1 - newest} : TransportShares{1, 1 - newest, 1 - newest};
+// before, in its coefficients, is taken away by the same rays that see the present one, so that the mean is that of the
+// present one alone; of tets that have moved it is averaged.
+TransportShares TransportCorrection::shares_in_motion(std::uint32_t frames) const {
+  const float newest = std::max(least_share, 1.0f / static_cast<float>(frames + 1));
+  if (moved_) return {newest, 0, 1 - newest};
+  return {1, 1 - newest, 1 - newest, edited_ && frames > 0};
 }
 
-CorrectedSweep TransportCorrection::sweep_in_motion(const CorrectionParts& parts) {
-  return sweep(parts, {motion_directions, motion_rays, 1, error_wanted, {}}, shares_in_motion());
+CorrectedSweep TransportCorrection::sweep_in_motion(const CorrectionParts& parts, const WalkTask& task,
+                                                    std::uint32_t frames) {
+  const TransportShares shares = shares_in_motion(frames);
+  start(parts, task, shares.apart);
+  if (moved_ && frames > 0) samples_.record_carried(parts.transport, parts.boundary.k11);
+  return sweep(parts, {motion_directions, motion_rays, 1, frames == 0}, shares);
 }
 
 // The second sweep and those behind it sample what the one before has changed, whose noise is small.
 std::vector<CorrectedSweep> TransportCorrection::sweeps_at_rest(const CorrectionParts& parts,
                                                                 const SolveOptions& options) {
   samples_.begin_seeds();
-  frames_ = 0;
   std::vector<CorrectedSweep> done;
   const ErrorEstimate enough = wanted(options);
   while (done.empty() || (options.sweeps > 0 ? done.size() < options.sweeps
                                              : done.size() < most_sweeps && !last_of_all(done, enough))) {
-    const ErrorEstimate noise = done.empty() ? ErrorEstimate{} : solves_noise_;
-    const TransportShares shares = done.empty() ? TransportShares{1, 0, 0} : TransportShares{1, 1, 1};
-    done.push_back(sweep(parts, {rest_directions, rest_rays, most_draws, enough, noise}, shares));
+    const bool first = done.empty();
+    const ErrorEstimate noise = first ? ErrorEstimate{} : solves_noise_;
+    const TransportShares shares = first ? TransportShares{1, 0, 0} : TransportShares{1, 1, 1};
+    done.push_back(sweep(parts, {rest_directions, rest_rays, most_draws, first, enough, noise}, shares));
   }
   return done;
 }
 
 CorrectionReport TransportCorrection::run(const CorrectionParts& parts, const SolveOptions& options,
                                           const WalkTask& task) {
-  start(parts, task);
   CorrectionReport report;
-  if (options.warm && frames_ > 0) {
-    report.sweeps.push_back(sweep_in_motion(parts));
+  const std::uint32_t frames = std::exchange(frames_, 0);  // nothing is known where this does not come to its end
+  if (options.warm) {
+    report.sweeps.push_back(sweep_in_motion(parts, task, frames));
+    frames_ = frames + 1;
   } else {
+    start(parts, task, false);
     report.sweeps = sweeps_at_rest(parts, options);
+    frames_ = frames_of_rest;
   }
-  moved_ = false;
+  moved_ = edited_ = false;
   parts.transport.work.recorder.submit();
   report.segments = samples_.segments();
   return report;

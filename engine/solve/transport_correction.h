@@ -5,6 +5,8 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "engine/solve/operators.h"
@@ -19,6 +21,7 @@ struct CorrectionParts {
   const Boundary& boundary;       // of that operator
   const Solved& solved;           // fem
   const SurfaceResults& results;  // of the solve
+  std::function<void()> between;  // called before every draw of points at rest; may throw
 };
 
 // The operator of the correction.
@@ -32,6 +35,13 @@ ErrorEstimate corrected_error(const CorrectionReport& correction);
 // where the solve is, whatever the reason.
 ErrorEstimate error_after_correction(const SolveReport& report);
 
+// Of the extinction sigma_s' + sigma_a at the same places, summed over these and the channels: what changes, as a share
+// of it before. 1 where there are other places.
+double extinction_change(std::span<const gpu::Optical> before, std::span<const gpu::Optical> now);
+
+// What of that a correction in motion may carry on: what it knows is of the extinction before.
+inline constexpr double most_carried = 0.2;
+
 class TransportCorrection {
  public:
   // `level`: the finest, whose tets stay what they are.
@@ -40,12 +50,15 @@ class TransportCorrection {
   // Room for draws of so many points, unless it is there.
   void make_room(device::Device& device, std::uint32_t points) { samples_.make_room(device, points); }
 
-  // Sweeps from the solution, so many or until the error is what is wanted; with `options.warm` one that goes on from
-  // what is known of the last call. Throws SolverError where a value is not finite.
+  // Sweeps from the solution, so many or until the error is what is wanted; with `options.warm` one of few samples that
+  // goes on from what is known. Throws SolverError where a value is not finite, and what `between` throws.
   CorrectionReport run(const CorrectionParts& parts, const SolveOptions& options, const WalkTask& task);
 
   // The vertices have moved since the last call.
   void moved() { moved_ = true; }
+
+  // The coefficients have.
+  void edited() { edited_ = true; }
 
   // What the last call knows is of no use to the next.
   void forget() { frames_ = 0; }
@@ -63,6 +76,7 @@ class TransportCorrection {
   struct Sampling {
     std::uint32_t directions, face_rays;
     double most_draws;
+    bool first;  // nothing is known yet
     ErrorEstimate noise_wanted{}, noise_before{};
   };
 
@@ -72,16 +86,16 @@ class TransportCorrection {
   void record_faces(const CorrectionParts& parts);
   void draw(const CorrectionParts& parts, const Sampling& sampling, std::uint32_t draws, float known);
   CorrectedSweep sweep(const CorrectionParts& parts, const Sampling& sampling, const TransportShares& shares);
-  void start(const CorrectionParts& parts, const WalkTask& task);
-  TransportShares shares_in_motion();
-  CorrectedSweep sweep_in_motion(const CorrectionParts& parts);
+  void start(const CorrectionParts& parts, const WalkTask& task, bool apart);
+  TransportShares shares_in_motion(std::uint32_t frames) const;
+  CorrectedSweep sweep_in_motion(const CorrectionParts& parts, const WalkTask& task, std::uint32_t frames);
   std::vector<CorrectedSweep> sweeps_at_rest(const CorrectionParts& parts, const SolveOptions& options);
 
   TransportSamples samples_;
   std::uint32_t draws_ = 0;     // of points, in the load
   std::uint32_t frames_ = 0;    // that what is known is made of; 0: nothing is known
   ErrorEstimate solves_noise_;  // of the last sweep, without that of the gathered exitance
-  bool moved_ = false;
+  bool moved_ = false, edited_ = false;
   // vec3 per vertex: b and x of the solve of each half, and b of the sweep before.
   std::array<device::Buffer, 2> right_side_, change_, known_;
   device::Buffer halves_, exitance_;                // vec3 per face, W/mm^2: of each half, and the mean

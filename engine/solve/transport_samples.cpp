@@ -4,6 +4,7 @@
 
 #include "engine/solve/row_structure.h"
 #include "interface/transport/transport_books.comp.h"
+#include "interface/transport/transport_carry.comp.h"
 #include "interface/transport/transport_cells.comp.h"
 #include "interface/transport/transport_exitance.comp.h"
 #include "interface/transport/transport_fluence.comp.h"
@@ -29,6 +30,9 @@ constexpr std::uint32_t halves = gpu::TRANSPORT_HALVES;
 // Tets that a ray crosses, and what it reads in one; for the bytes.
 constexpr std::uint64_t tets_per_ray = 10;
 constexpr std::uint64_t segment_bytes = sizeof(gpu::TransportCell) + sizeof(gpu::Optical);
+
+// Draws before the tets take their turns again: while a float tells them apart.
+constexpr std::uint32_t draws_apart = 1u << 16;
 
 // Sums of each of the WALK_SUMS of a pass.
 constexpr std::uint32_t walk_sums = 3, gather_sums = 2;
@@ -84,19 +88,31 @@ void TransportSamples::make_room(device::Device& device, std::uint32_t points) {
   points_ = {device, room * sizeof(gpu::TransportPoint), device::Place::device, "transport/points"};
 }
 
-void TransportSamples::write_field(const TransportParts& parts, const WalkTask& task) {
+void TransportSamples::make_room_apart(const TransportParts& parts) {
+  if (source_apart_.size() > 0) return;
+  device::Device& device = parts.work.recorder.device();
+  source_apart_ = {device, source_before_.size(), device::Place::device, "transport/source, apart"};
+  fluence_apart_ = {device, fluence_.size(), device::Place::device, "transport/fluence, apart"};
+}
+
+void TransportSamples::write_field(const TransportParts& parts, const WalkTask& task, bool apart) {
   const gpu::TransportFieldRef field{.body = parts.walk.body(parts.level, task.eta, task.even),
                                      .tree = parts.tree.ref(),
                                      .cells = cells_.address(),
                                      .sky = parts.level.sky.address(),
                                      .segments = segments_.address(),
+                                     .source_before = apart ? source_apart_.address() : 0,
+                                     .optical_before = apart ? optical_before_.address() : 0,
+                                     .even_before = even_before_ ? 1u : 0u,
                                      .outside = parts.outside ? 1u : 0u};
   device::write_bytes(parts.work.recorder.device(), field_, std::as_bytes(std::span(&field, 1)));
 }
 
-void TransportSamples::record_start(const TransportParts& parts, const WalkTask& task, const OperatorBuffers& op) {
+void TransportSamples::record_start(const TransportParts& parts, const WalkTask& task, const OperatorBuffers& op,
+                                    bool apart) {
   Workspace& work = parts.work;
-  write_field(parts, task);
+  if (apart) make_room_apart(parts);
+  write_field(parts, task, apart);
   parts.tree.record(work, parts.level);
   work.recorder.fill(segments_, 0);
   record_walk(parts, task);
@@ -177,6 +193,22 @@ void TransportSamples::record_weights(const TransportParts& parts) {
                          level.tet_count * (2 * sizeof(glm::uvec4) + 8 * vec3_bytes + sizeof(gpu::Optical)));
 }
 
+void TransportSamples::record_carried(const TransportParts& parts, double k11) {
+  Workspace& work = parts.work;
+  const LevelBuffers& level = parts.level;
+  const gpu::TransportCarryPush push{.faces = level.faces.address(),
+                                     .face_kinds = level.face_kind.address(),
+                                     .fluence = fluence_.address(),
+                                     .fluence_before = fluence_before_.address(),
+                                     .unit = unit_.address(),
+                                     .scale = work.scale.address(),
+                                     .gathered = gathered_.address(),
+                                     .count = level.face_count,
+                                     .k11 = static_cast<float>(k11)};
+  work.recorder.dispatch(work.passes.of(shader::transport_carry), push, level.face_count, "transport source",
+                         2 * gathered_.size() + level.face_count * (sizeof(glm::uvec3) + 6 * vec3_bytes));
+}
+
 void TransportSamples::record_source(const TransportParts& parts, const TransportShares& shares) {
   Workspace& work = parts.work;
   const LevelBuffers& level = parts.level;
@@ -190,6 +222,8 @@ void TransportSamples::record_source(const TransportParts& parts, const Transpor
                                       .unit = unit_.address(),
                                       .scale = work.scale.address(),
                                       .fluence_seen = fluence_seen_.address(),
+                                      .fluence_apart = shares.apart ? fluence_apart_.address() : 0,
+                                      .source_apart = shares.apart ? source_apart_.address() : 0,
                                       .cells = cells_.address(),
                                       .vertex_count = level.vertex_count,
                                       .tet_count = level.tet_count,
@@ -220,7 +254,6 @@ void TransportSamples::record_exitance(const TransportParts& parts, std::uint32_
 
 void TransportSamples::record_no_load(const TransportParts& parts) {
   parts.work.recorder.fill(point_sums_, 0);
-  draw_ = 0;
   parts.work.recorder.fill(load_, 0);
   record_totals(parts);
 }
@@ -233,7 +266,7 @@ void TransportSamples::record_draw(const TransportParts& parts, std::uint32_t di
                                         .drawn = drawn_.address(),
                                         .points = points_.address(),
                                         .tet_count = parts.level.tet_count,
-                                        .draw = draw_++,
+                                        .draw = draw_++ % draws_apart,
                                         .wanted = static_cast<float>(points_wanted_) / halves,
                                         .room = room_};
   work.recorder.dispatch(work.passes.of(shader::transport_points), points, parts.level.tet_count, "transport points",
@@ -242,6 +275,7 @@ void TransportSamples::record_draw(const TransportParts& parts, std::uint32_t di
                                       .drawn = drawn_.address(),
                                       .points = points_.address(),
                                       .fluence = fluence_seen_.address(),
+                                      .fluence_before = fluence_apart_.address(),
                                       .sums = point_sums_.address(),
                                       .load = load_.address(),
                                       .room = room_,
@@ -323,9 +357,22 @@ void TransportSamples::record_step(const TransportParts& parts, const std::array
 
 void TransportSamples::record_state(const TransportParts& parts) {
   parts.work.recorder.copy(parts.work.scale, unit_, unit_.size());
+  record_optical(parts);
   parts.work.recorder.copy(segments_, segments_on_host_, segments_.size());
   parts.work.recorder.copy(walk_sums_, walk_sums_on_host_, walk_sums_.size());
   parts.work.recorder.copy(gather_sums_, gather_sums_on_host_, gather_sums_.size());
+}
+
+// The coefficients, for a field that is to be seen when they have changed.
+void TransportSamples::record_optical(const TransportParts& parts) {
+  Recorder& recorder = parts.work.recorder;
+  even_before_ = parts.level.even;
+  const std::uint64_t bytes = (even_before_ ? 1 : parts.level.tet_count) * sizeof(gpu::Optical);
+  if (optical_before_.size() != bytes) {
+    recorder.submit();
+    optical_before_ = {recorder.device(), bytes, device::Place::device, "transport/coefficients, before"};
+  }
+  recorder.copy(parts.level.optical, optical_before_, bytes);
 }
 
 double TransportSamples::segments() const {

@@ -29,6 +29,7 @@ struct TransportParts {
 // what was known.
 struct TransportShares {
   float present = 1, before = 0, known = 0;
+  bool apart = false;  // the field before is seen by itself, in the coefficients that it had
 };
 
 // Power that the light's own rays brought, W, and of what is gathered the share that enters again.
@@ -44,8 +45,12 @@ class TransportSamples {
   // Room for so many points at a time, unless it is there.
   void make_room(device::Device& device, std::uint32_t points);
 
-  // The field of a solve: walks the light, takes the fluence of `op`, weighs the tets.
-  void record_start(const TransportParts& parts, const WalkTask& task, const OperatorBuffers& op);
+  // The field of a solve: walks the light, takes the fluence of `op`, weighs the tets. With `apart` samples will see
+  // the field before by itself.
+  void record_start(const TransportParts& parts, const WalkTask& task, const OperatorBuffers& op, bool apart);
+
+  // The exitance that is known, for vertices that have moved since; before `record_source`.
+  void record_carried(const TransportParts& parts, double k11);
 
   // What samples see from here on; the field before is that of the last call.
   void record_source(const TransportParts& parts, const TransportShares& shares);
@@ -64,7 +69,7 @@ class TransportSamples {
   TransportPower power(const glm::dvec3& scale) const;
 
   std::uint32_t points() const { return points_wanted_; }  // of a draw, about
-  void begin_seeds() { seed_ = 0; }
+  void begin_seeds() { seed_ = draw_ = 0; }
 
   // A step of the fluence: what both halves of a load say of it, over the mass and smoothed, and the mean of two
   // changes.
@@ -83,7 +88,8 @@ class TransportSamples {
   const device::Buffer& unit() const { return unit_; }          // vec3: the scale of what was known
 
  private:
-  void write_field(const TransportParts& parts, const WalkTask& task);
+  void write_field(const TransportParts& parts, const WalkTask& task, bool apart);
+  void make_room_apart(const TransportParts& parts);
   void record_walk(const TransportParts& parts, const WalkTask& task);
   void record_cells(const TransportParts& parts);
   void record_weights(const TransportParts& parts);
@@ -91,15 +97,19 @@ class TransportSamples {
   void record_smooth(const TransportParts& parts, const device::Buffer* mass, const device::Buffer& from,
                      const device::Buffer& to);
   void record_totals(const TransportParts& parts);
+  void record_optical(const TransportParts& parts);
 
   std::uint32_t points_wanted_ = 0, room_ = 0;
   std::uint32_t seed_ = 0;  // of what was recorded last
-  std::uint32_t draw_ = 0;  // number of the next draw of the load
+  std::uint32_t draw_ = 0;  // number of the next draw of points
   device::Buffer field_;    // TransportFieldRef
   device::Buffer cells_;    // TransportCell per tet
   device::Buffer deposit_;  // fixed point, four per tet: power scattered for the first time
   device::Buffer fluence_, fluence_before_, fluence_seen_;  // vec3 per vertex, scaled
   device::Buffer source_before_, unit_;                     // vec3, four per tet; vec3
+  device::Buffer fluence_apart_, source_apart_;             // vec3; made at first use
+  device::Buffer optical_before_;                           // gpu::Optical per tet, or one
+  bool even_before_ = false;                                // there is one
   device::Buffer weights_, total_;                          // vec2 per tet; float
   device::Buffer drawn_, points_;                           // uint; TransportPoint
   device::Buffer load_, gathered_;

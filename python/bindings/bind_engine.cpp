@@ -93,6 +93,7 @@ SolveOptions solve_options(const char* function, const py::kwargs& given) {
 
 py::dict solve(Engine& engine, bool motion, const py::kwargs& given) {
   const SolveOptions options = solve_options("solve", given);
+  heed_signals(engine);
   const SolveReport report = [&] {
     const py::gil_scoped_release release;
     return solve_measured(engine, motion ? in_motion(options, engine.graph().levels()) : options);
@@ -336,6 +337,13 @@ void bind_measures(py::class_<Engine>& bound) {
 }
 
 }  // namespace
+
+void heed_signals(Engine& engine) {
+  engine.interrupt_with([] {
+    const py::gil_scoped_acquire acquire;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  });
+}
 
 void bind_engine(py::module_& module) {
   const std::string usual_up(name_of(View{}.up));

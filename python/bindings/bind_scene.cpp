@@ -63,6 +63,7 @@ void bind_stage(py::module_& module) {
       .def(
           "solve",
           [](Stage& stage) {
+            heed_signals(stage.engine());
             const SolveReport report = [&] {
               const py::gil_scoped_release release;
               return stage.solve();

@@ -14,6 +14,7 @@
 #include "engine/deform/deformer.h"
 #include "engine/file/graph.h"
 #include "engine/reference/solution.h"
+#include "engine/render/engine.h"
 #include "engine/render/picture/picture.h"
 #include "shaders/shared/shared.h"
 
@@ -85,5 +86,8 @@ pybind11::tuple as_tuple(const glm::dvec3& v);
 pybind11::dict as_dict(const Energy& energy);
 pybind11::dict as_dict(const LevelReport& report);
 pybind11::dict as_dict(const SolveReport& report);
+
+// Solves of the engine end with KeyboardInterrupt where Ctrl-C is pressed.
+void heed_signals(Engine& engine);
 
 }  // namespace quadgraph::python

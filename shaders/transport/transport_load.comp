@@ -1,10 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#define MOMENTS 1
 #include "source/fixed_point.glsl"
 #include "solver/right_hand_side.glsl"
 #include "transport/transport_shared.h"
 
-// b of the solve of one half, and its norm: what the samples have found, and what is kept of b before; what is missing in
+// b of the diffusion solve of one half, and its norm: what the samples have found, and what is kept of b before; what is missing in
 // their sum is added in proportion to the light that is scattered.
 struct TransportLoadPush {
   Uints load;     // fixed point: of the half, for all vertices what is added, then what is taken away

@@ -24,8 +24,13 @@ struct Ray {
   uint tet;
   uint behind;  // corner opposite the face that it came in through, or NO_SLOT
   vec3 point, direction;
-  vec3 left;  // of 1, on the way so far
+  vec3 left;         // of 1, on the way so far
+  vec3 left_before;  // the same in the body before
 };
+
+bool sees_before() {
+  return uvec2(FIELD.source_before) != uvec2(0);
+}
 
 float largest(vec3 v) {
   return max(v.x, max(v.y, v.z));
@@ -34,6 +39,17 @@ float largest(vec3 v) {
 vec3 extinction_in(uint tet) {
   Optical optical = BODY.optical.at[(BODY.flags & BODY_EVEN) != 0u ? 0u : tet];
   return optical.sigma_s_prime + optical.sigma_a;
+}
+
+vec3 extinction_before(uint tet) {
+  Optical optical = FIELD.optical_before.at[FIELD.even_before != 0u ? 0u : tet];
+  return optical.sigma_s_prime + optical.sigma_a;
+}
+
+vec3 source_before_at(uint tet, vec4 l) {
+  vec3 source = vec3(0);
+  for (uint k = 0u; k < 4u; ++k) source += l[k] * FIELD.source_before.at[4u * tet + k];
+  return source;
 }
 
 vec3 source_at(TransportCell cell, vec4 l) {
@@ -63,11 +79,12 @@ bool goes_past(uint face, inout Ray ray, inout uint state) {
     float reflected = internal_reflectance(cosine, BODY.eta);
     if (!sees_body(face)) {
       ray.left *= reflected;
+      ray.left_before *= reflected;
       if (reflected == 0.0) return false;
     } else if (uniform_number(state) >= reflected) {
       Entrance entry = through_air(face, ray.point, leaving_direction(ray.direction, n, cosine), state);
       if (entry.face == NO_FACE) return false;
-      ray = Ray(BODY.face_tets.at[entry.face], NO_SLOT, entry.point, entry.direction, ray.left);
+      ray = Ray(BODY.face_tets.at[entry.face], NO_SLOT, entry.point, entry.direction, ray.left, ray.left_before);
       return true;
     }
   }
@@ -75,19 +92,21 @@ bool goes_past(uint face, inout Ray ray, inout uint state) {
   return true;
 }
 
-// Whether a ray goes on that keeps `left`; by chance, without bias, where that is little.
-bool goes_on(inout vec3 left, inout uint state) {
-  float most = largest(left);
+// Whether a ray goes on; by chance, without bias, where little of it is left.
+bool goes_on(inout Ray ray, inout uint state) {
+  float most = max(largest(ray.left), largest(ray.left_before));
   if (most >= TRANSPORT_ROULETTE) return true;
   if (uniform_number(state) * TRANSPORT_ROULETTE >= most) return false;
-  left *= TRANSPORT_ROULETTE / most;
+  ray.left *= TRANSPORT_ROULETTE / most;
+  ray.left_before *= TRANSPORT_ROULETTE / most;
   return true;
 }
 
 // The source along the ray from its point, attenuated on the way to that point: 4 pi times the radiance there, against
-// the ray's direction.
-vec3 arriving(Ray ray, inout uint state) {
+// the ray's direction. `before`: that of the field before, where it is seen.
+vec3 arriving(Ray ray, inout uint state, out vec3 before) {
   vec3 sum = vec3(0);
+  before = vec3(0);
   vec3 sigma_t = extinction_in(ray.tet);
   for (uint step = 0u; step < MAX_WALK_STEPS; ++step) {
     TransportCell cell = FIELD.cells.at[ray.tet];
@@ -101,7 +120,12 @@ vec3 arriving(Ray ray, inout uint state) {
     ++crossed;
     uint slot = times.x == path ? 0u : times.y == path ? 1u : times.z == path ? 2u : 3u;
     if ((BODY.flags & BODY_EVEN) == 0u) sigma_t = extinction_in(ray.tet);
-    add_source(source_at(cell, l), source_at(cell, l + path * rate), sigma_t, path, sum, ray.left);
+    vec4 end = l + path * rate;
+    add_source(source_at(cell, l), source_at(cell, end), sigma_t, path, sum, ray.left);
+    if (sees_before()) {
+      add_source(source_before_at(ray.tet, l), source_before_at(ray.tet, end), extinction_before(ray.tet), path, before,
+                 ray.left_before);
+    }
     ray.point += path * d;
     uint crossing = cell.crossings[slot];
     uint across = crossing >> CROSSING_BITS;
@@ -113,7 +137,7 @@ vec3 arriving(Ray ray, inout uint state) {
       ray.behind = slot;
       if (!goes_past(across - BODY.tet_count, ray, state)) break;
     }
-    if (!goes_on(ray.left, state)) break;
+    if (!goes_on(ray, state)) break;
   }
   return sum;
 }

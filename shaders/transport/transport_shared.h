@@ -45,14 +45,18 @@ QG_ARRAY(TransportCells, TransportCell);
 
 #endif
 
-// What rays see: the body, and the light that it scatters.
+// What rays see: the body, and the light that it scatters. Where the coefficients have changed, also the field before,
+// with those that it had: the same rays see both.
 struct TransportFieldRef {
   BodyRef body;
   TreeRef tree;
   QG_REF(TransportCells) cells;  // per tet
   QG_REF(Floats) sky;            // per face: share of all directions outside in which no other part of the body is
   QG_REF(Uints) segments;        // tets crossed by all rays so far, one
-  uint outside;                  // 1: light that leaves may enter again elsewhere
+  QG_REF(Vec3s) source_before;   // light that the field before scatters, four per tet, W/mm^3; or null
+  QG_REF(Opticals) optical_before;
+  uint even_before;  // 1: optical_before is the same everywhere
+  uint outside;      // 1: light that leaves may enter again elsewhere
 };
 
 // Where the power of a sweep goes, W, scaled.

@@ -18,7 +18,9 @@ struct TransportSourcePush {
   Vec3s source_before;   // light that is scattered, four per tet, W/mm^3
   Vec3s unit;            // one: the scale that these have
   Scales scale;
-  Vec3s fluence_seen;  // written
+  Vec3s fluence_seen;   // written
+  Vec3s fluence_apart;  // written: what of the field before is seen by itself; or null, where it is taken away
+  Vec3s source_apart;   // the same, four per tet
   TransportCells cells;
   uint vertex_count;
   uint tet_count;
@@ -28,10 +30,14 @@ struct TransportSourcePush {
 };
 layout(push_constant, scalar) uniform Block { TransportSourcePush push; };
 
-vec3 seen(vec3 present, vec3 before) {
-  vec3 seen = push.share * present;
-  if (push.keep != 0.0) seen -= push.keep * push.unit.at[0] * push.scale.at[0].inverse * before;
-  return seen;
+// Of the field before.
+vec3 kept(vec3 before) {
+  if (push.keep == 0.0) return vec3(0);
+  return push.keep * push.unit.at[0] * push.scale.at[0].inverse * before;
+}
+
+bool apart() {
+  return uvec2(push.source_apart) != uvec2(0);
 }
 
 float volume_of(uvec4 corners) {
@@ -45,17 +51,20 @@ vec3 source_at(uint tet, uint corner, uint vertex, vec3 sum, float per_volume) {
   vec3 first = per_volume * (power_at(push.deposit, 4u * tet + corner) - 0.2 * sum);
   vec3 present = push.optical.at[push.even == 1u ? 0u : tet].sigma_s_prime * push.fluence.at[vertex] + first;
   uint at = 4u * tet + corner;
-  vec3 result = seen(present, push.source_before.at[at]);
+  vec3 before = kept(push.source_before.at[at]);
   push.source_before.at[at] = present;
-  return result;
+  if (!apart()) return push.share * present - before;
+  push.source_apart.at[at] = before;
+  return push.share * present;
 }
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i < push.vertex_count) {
-    vec3 present = push.fluence.at[i];
-    push.fluence_seen.at[i] = seen(present, push.fluence_before.at[i]);
+    vec3 present = push.fluence.at[i], before = kept(push.fluence_before.at[i]);
     push.fluence_before.at[i] = present;
+    push.fluence_seen.at[i] = push.share * present - (apart() ? vec3(0) : before);
+    if (apart()) push.fluence_apart.at[i] = before;
   }
   if (i >= push.tet_count) return;
   uvec4 corners = push.tets.at[i];

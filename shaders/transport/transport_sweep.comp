@@ -10,7 +10,8 @@ struct TransportSweepPush {
   TransportFieldRefs field;  // one
   Uints drawn;               // one: how many points there are
   TransportPoints points;
-  Vec3s fluence;  // that is seen, at the vertices
+  Vec3s fluence;         // that is seen, at the vertices
+  Vec3s fluence_before;  // of the field before, where rays see that one too
   Uints sums;  // fixed point, WALK_SUMS times two per half: power that is found, added, then taken away
   Uints load;  // fixed point, of each half for all vertices what is added, then what is taken away
   uint room;
@@ -55,17 +56,20 @@ void frame_about(vec3 n, out vec3 a, out vec3 b) {
   b = vec3(d, side + n.y * n.y * c, -n.y);
 }
 
-// Mean over directions that are spread evenly and turned by three numbers in [0, 1).
-vec3 transported(uint tet, vec3 point, vec3 turn, inout uint state) {
+// Mean over directions that are spread evenly and turned by three numbers in [0, 1). `before` as in arriving.
+vec3 transported(uint tet, vec3 point, vec3 turn, inout uint state, out vec3 before) {
   vec3 axis = on_sphere(2.0 * turn.x - 1.0, TWO_PI * turn.y), a, b;
   frame_about(axis, a, b);
   float turned = TWO_PI * turn.z;
-  vec3 sum = vec3(0);
+  vec3 sum = vec3(0), sum_before = vec3(0), left_before = vec3(sees_before() ? 1.0 : 0.0);
   for (uint k = 0u; k < push.directions; ++k) {
     vec3 d = on_sphere(1.0 - (2.0 * float(k) + 1.0) / float(push.directions), turned + GOLDEN_ANGLE * float(k));
     vec3 direction = normalize(d.x * a + d.y * b + d.z * axis);
-    sum += arriving(Ray(tet, NO_SLOT, point, direction, vec3(1)), state);
+    vec3 then;
+    sum += arriving(Ray(tet, NO_SLOT, point, direction, vec3(1), left_before), state, then);
+    sum_before += then;
   }
+  before = sum_before / float(push.directions);
   return sum / float(push.directions);
 }
 
@@ -85,18 +89,24 @@ void main() {
   for (uint k = 0u; k < 6u; ++k) u[k] = spread_number(start, point.number, k);
   vec4 l = in_tet(u[0], u[1], u[2]);
   uvec4 ids = BODY.tets.at[point.tet];
-  vec3 before = vec3(0), place = vec3(0);
+  vec3 solved = vec3(0), solved_before = vec3(0), place = vec3(0);
   for (uint k = 0u; k < 4u; ++k) {
-    before += l[k] * push.fluence.at[ids[k]];
+    solved += l[k] * push.fluence.at[ids[k]];
+    if (sees_before()) solved_before += l[k] * push.fluence_before.at[ids[k]];
     place += l[k] * BODY.vertices.at[ids[k]];
   }
   uint state = hash(start + point.number);
-  vec3 now = transported(point.tet, place, vec3(u[3], u[4], u[5]), state);
+  vec3 before, now = transported(point.tet, place, vec3(u[3], u[4], u[5]), state, before);
   Optical optical = BODY.optical.at[(BODY.flags & BODY_EVEN) != 0u ? 0u : point.tet];
-  vec3 found = point.volume * (now - before);
-  add_signed(push.sums, 2u * (WALK_SUMS * point.half_of + gl_WorkGroupID.x % WALK_SUMS), 1u,
-             (optical.sigma_s_prime + optical.sigma_a) * found);
-  vec3 load = optical.sigma_s_prime * found;
+  vec3 found = point.volume * (now - solved), load = optical.sigma_s_prime * found;
+  vec3 sum = load + optical.sigma_a * found;
+  if (sees_before()) {
+    Optical then = FIELD.optical_before.at[FIELD.even_before != 0u ? 0u : point.tet];
+    vec3 known = point.volume * (before - solved_before);
+    load -= then.sigma_s_prime * known;
+    sum -= (then.sigma_s_prime + then.sigma_a) * known;
+  }
+  add_signed(push.sums, 2u * (WALK_SUMS * point.half_of + point.tet % WALK_SUMS), 1u, sum);
   uint first = 2u * point.half_of * push.vertex_count;
   for (uint k = 0u; k < 4u; ++k) {
     add_signed(push.load, first + ids[k], push.vertex_count, l[k] * load);

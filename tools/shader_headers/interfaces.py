@@ -17,7 +17,7 @@ class Shader:
     file: str  # below shaders/
     folder: str  # that it lies in
     name: str  # in C++
-    codes: tuple[str, ...]  # NAME.STAGE; for MOMENTS 1 and, where it makes a difference, for 2
+    codes: tuple[str, ...]  # NAME.STAGE; for MOMENTS 1 and, where it makes a difference and the text allows it, for 2
     push: str  # type of its push constants
     type: str  # of engine/device/shader.h
 
@@ -31,12 +31,13 @@ def shader_of(texts: Texts, file: str) -> Shader:
         raise ValueError(f"{file} has {len(pushes)} blocks of push constants")
     # The .h files do not count: what they declare for both variants is used through the .glsl files of solver/.
     moments = any("MOMENTS" in texts[part] for part in parts if not part.endswith(".h"))
+    both = moments and "#define MOMENTS 1\n" not in texts[file]
     entries = "solver/stored_entries.glsl" in parts
     return Shader(
         file=file,
         folder=path.parent.as_posix(),
         name=name_of(file),
-        codes=(path.name, f"{path.stem}_sp3{path.suffix}") if moments else (path.name,),
+        codes=(path.name, f"{path.stem}_sp3{path.suffix}") if both else (path.name,),
         push=pushes[0],
         type="EntryShader" if entries else "ModelShader" if moments else "Shader",
     )

@@ -104,11 +104,12 @@ class Solution:
     work: products of all levels, in products of level 0; clipped: (3,) share of the exitance that was below zero and
     taken from the rest; error: estimate of the whole error, with algebraic, the solver's part, mesh_error, the mesh's
     before a correction, and model_error, what a correction leaves of the model's, each None where it cannot be told;
-    advice: of an error above 5%, where it comes from and what to do; inter_reflection: whether it was followed; bounces: (n, 3) W that each brought in; unmet: what was asked for and is
-    not met, in words; missed: of that, the error; budget: what the bake of the file has to say of the error that was
-    asked for; mesh_warning, model_warning, deformed: what else is to be said against the answer; exchange_age: solves
-    by which what some face sees is behind the shape; correction: what sweeps did, None without; path: of the method
-    shortest-path, which has no levels, energy balance and estimates. Texts are empty where there is nothing to say.
+    advice: of an error above 5%, where it comes from and what to do; inter_reflection: whether it was followed;
+    bounces: (n, 3) W that each brought in; unmet: what was asked for and is not met, in words; missed: of that, the
+    error; budget: what the bake of the file has to say of the error that was asked for; mesh_warning, model_warning,
+    deformed: what else is to be said against the answer; exchange_age: solves by which what some face sees is behind
+    the shape; correction: what sweeps did, None without; path: of the method shortest-path, which has no levels, energy
+    balance and estimates. Texts are empty where there is nothing to say.
     """
 
     method: str

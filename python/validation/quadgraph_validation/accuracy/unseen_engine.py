@@ -64,7 +64,7 @@ def answers(
 
 def _options(sweeps: int | None, case: UnseenCase) -> dict[str, Any]:
     """Of `Engine.solve`: the defaults but for what was asked for."""
-    asked = {} if sweeps is None else {"sweeps": sweeps}
+    asked = {} if sweeps is None else {"correction": sweeps > 0, "sweeps": sweeps}
     return asked if case.inter_reflection else asked | {"inter_reflection": False}
 
 
