@@ -12,7 +12,8 @@ double mixed(double before, double now) {
   return before > 0 ? 0.5 * (before + now) : now;
 }
 
-constexpr double least_drawing = 0.35;  // of the budget, or of the solve where that takes longer
+constexpr double least_drawing = 0.35;      // of the budget, or of the solve where that takes longer
+constexpr double corrected_over_plain = 4;  // time of a solve with the correction over that of one without
 constexpr float shares[] = {1.0f, 0.75f, 0.5f, 0.375f};
 
 }  // namespace
@@ -21,6 +22,16 @@ void Pace::took(double solve_ms, double draw_ms, double pixels, bool gathered) {
   if (solve_ms > 0) solve_ms_ = mixed(solve_ms_, solve_ms);
   double& draw_ns = draw_ns_[gathered ? 1 : 0];
   if (pixels > 0) draw_ns = mixed(draw_ns, 1e6 * draw_ms / pixels);
+}
+
+void Pace::solved(double solve_ms, bool corrected) {
+  double& known_ms = corrected ? corrected_ms_ : plain_ms_;
+  known_ms = mixed(known_ms, solve_ms);
+}
+
+bool Pace::corrects() const {
+  if (corrected_ms_ > 0) return corrected_ms_ < budget_ms_;
+  return plain_ms_ > 0 && corrected_over_plain * plain_ms_ < budget_ms_;
 }
 
 float Pace::share(double pixels, bool solving) const {

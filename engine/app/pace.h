@@ -13,6 +13,12 @@ class Pace {
   // What a picture took: light and solve, and drawing so many pixels with or without gathering.
   void took(double solve_ms, double draw_ms, double pixels, bool gathered);
 
+  // What the solve of a picture in motion took, with or without the transport correction.
+  void solved(double solve_ms, bool corrected);
+
+  // Whether there is time for the correction, as measured, or as far as a solve without lets expect.
+  bool corrects() const;
+
   // Whether there is time to gather radiance along view rays. `solving`: light or solve come before the drawing.
   bool gathers(bool solving) const { return !solving || solve_ms_ < budget_ms_; }
 
@@ -22,6 +28,7 @@ class Pace {
  private:
   double budget_ms_;
   double solve_ms_ = 0;
+  double plain_ms_ = 0, corrected_ms_ = 0;
   double draw_ns_[2] = {0, 0};  // per pixel, without and with gathering
 };
 

@@ -179,7 +179,7 @@ std::string error_text(const std::optional<ErrorEstimate>& error) {
 void tell_error(const SolveReport& report) {
   if (report.path) return tell("Error", "not estimated");
   tell("Error", error_text(report.error));
-  tell("  mesh", error_text(report.mesh_error) + (report.correction ? ", before correction" : ""));
+  tell("  mesh", error_text(report.mesh_error));
   tell("  solver", error_text(report.algebraic));
   tell("  model", report.correction ? error_text(report.model_error) : "not known without correction");
 }

@@ -237,7 +237,10 @@ void Viewer::keep_up() {
 
 SolveOptions Viewer::options_of_solve(bool settle) const {
   const SolveOptions& options = state_.scene.solve;
-  return settle ? options : in_motion(options, engine_.graph().levels());
+  if (settle) return options;
+  SolveOptions quick = in_motion(options, engine_.graph().levels());
+  quick.correction = quick.correction && pace_.corrects();
+  return quick;
 }
 
 void Viewer::remake(bool settle) {
@@ -273,7 +276,10 @@ void Viewer::solve(bool settle) {
     if (window_.wanted()) throw Interrupted();
   } : std::function<void()>());
   solved_ = false;
-  measured_.solve = stage_.solve(options_of_solve(settle));
+  const SolveOptions options = options_of_solve(settle);
+  const Clock::time_point start = Clock::now();
+  measured_.solve = stage_.solve(options);
+  if (!settle) pace_.solved(milliseconds(Clock::now() - start), options.correction);
   solved_ = true;
   solved_exactly_ = settle;
 }

@@ -79,13 +79,13 @@ struct SolveReport {
   // 0 with Source::diffuse, whose exitance stays as it is.
   glm::dvec3 clipped{0};
   // What further iterations would change, and no less than the share of the light that is unaccounted for; empty if
-  // that cannot be told yet.
+  // that cannot be told yet. After a correction what that leaves of it.
   std::optional<ErrorEstimate> algebraic;
   // What the model leaves after a correction, and the noise of that; empty without.
   std::optional<ErrorEstimate> model_error;
   // That of the mesh: the difference between the exitance of the two finest levels, times the
   // share of it that is the finer one's own, and no less than what elements as deep as those at the surface leave
-  // (engine/reference/resolution.h). A correction takes most of it away. Empty with a single level.
+  // (engine/reference/resolution.h). Empty with a single level. After a correction what that leaves of it.
   std::optional<ErrorEstimate> mesh_error;
   // All of these together, and without a correction those but the model's. Empty where nothing is known of the mesh or
   // the model.

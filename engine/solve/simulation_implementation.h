@@ -216,8 +216,7 @@ struct Simulation::Implementation {
     report.energy.unscattered_out = power.unscattered;
     report.energy.re_entered = power.entered_again;
     report.clipped = results.clipped();
-    report.model_error = corrected_error(*report.correction);
-    report.error = error_after_correction(report);
+    state_corrected_error(report);
     report.missed =
         options.error > 0 && !certain(*report.error, options.error) ? missed(report.error, options.error) : "";
     report.model_warning.clear();

@@ -35,7 +35,7 @@ constexpr double most_draws = 16;
 
 // Of what is known from the frames before, the least that the newest has a say in; frames that a solve at rest is
 // worth.
-constexpr float least_share = 0.05f;
+constexpr float least_share = 0.15f;
 constexpr std::uint32_t frames_of_rest = 9;
 
 ErrorEstimate relative(const glm::vec2& square, const glm::vec2& size) {
@@ -48,8 +48,12 @@ ErrorEstimate relative(const glm::vec2& square, const glm::vec2& size) {
 // Of what a sweep has changed, the share that all further ones would: the first leaves a smaller one than the others.
 constexpr double left_by_first = 0.13, left_by_next = 0.3;
 
-// Of the mesh's error the same.
-constexpr double mesh_left = 0.2;
+// Of the solver's error the same. Of the mesh's the share that is left, and what no two levels tell apart: the light
+// and the medium as faces and tets have them.
+constexpr double solver_left = left_by_first, mesh_left = 0.15, unseen = 0.004;
+
+// The halves share what their points see of the body; so much more than they differ by is the noise.
+constexpr double noise_over_difference = 1.2;
 
 double share_left_by(std::size_t sweeps) {
   return sweeps > 1 ? left_by_next : left_by_first;
@@ -85,19 +89,22 @@ bool last_of_all(const std::vector<CorrectedSweep>& done, const ErrorEstimate& w
 
 }  // namespace
 
-ErrorEstimate corrected_error(const CorrectionReport& correction) {
-  const CorrectedSweep& last = correction.sweeps.back();
-  const double share = share_left_by(correction.sweeps.size());
-  return {std::hypot(share * last.change.whole, last.noise.whole),
-          std::hypot(share * last.change.unlit, last.noise.unlit)};
-}
-
-ErrorEstimate error_after_correction(const SolveReport& report) {
-  const ErrorEstimate none, model = report.model_error.value_or(none), mesh = report.mesh_error.value_or(none);
-  const ErrorEstimate solver = report.algebraic.value_or(none);
+void state_corrected_error(SolveReport& report) {
+  const CorrectedSweep& last = report.correction->sweeps.back();
+  const double share = share_left_by(report.correction->sweeps.size());
+  const ErrorEstimate mesh = report.mesh_error.value_or(ErrorEstimate{});
+  const ErrorEstimate solver = report.algebraic.value_or(ErrorEstimate{});
+  const auto of_model = [&](double change, double noise) {
+    return noise_over_difference * std::hypot(share * change, noise);
+  };
+  report.model_error = {of_model(last.change.whole, last.noise.whole), of_model(last.change.unlit, last.noise.unlit)};
+  const bool unlit = last.change.unlit > 0;
+  report.mesh_error = {std::hypot(mesh_left * mesh.whole, unseen),
+                       unlit ? std::hypot(mesh_left * mesh.unlit, unseen) : 0};
+  report.algebraic = {solver_left * solver.whole, solver_left * solver.unlit};
   const auto all = [](double a, double b, double c) { return std::sqrt(a * a + b * b + c * c); };
-  return {all(model.whole, mesh_left * mesh.whole, left_by_first * solver.whole),
-          all(model.unlit, mesh_left * mesh.unlit, left_by_first * solver.unlit)};
+  report.error = {all(report.model_error->whole, report.mesh_error->whole, report.algebraic->whole),
+                  all(report.model_error->unlit, report.mesh_error->unlit, report.algebraic->unlit)};
 }
 
 double extinction_change(std::span<const gpu::Optical> before, std::span<const gpu::Optical> now) {

@@ -27,13 +27,10 @@ struct CorrectionParts {
 // The operator of the correction.
 inline constexpr OperatorKey correction_key{Method::fem, Model::diffusion};
 
-// What the exitance is off by after all sweeps: the noise, and what another sweep would change. Measured on bodies that
-// nobody tuned for (docs/accuracy.md).
-ErrorEstimate corrected_error(const CorrectionReport& correction);
-
-// That, of the mesh what the sweeps have left of it, and the algebraic error, together. What the sweeps sample is off
-// where the solve is, whatever the reason.
-ErrorEstimate error_after_correction(const SolveReport& report);
+// What the exitance is off by after all sweeps, by part: of the model, the noise and what another sweep would change;
+// of the mesh and of the solver what the sweeps leave, which sample where the solve is off, whatever the reason; and
+// all of it together. Calibrated on bodies that nobody tuned for (docs/accuracy.md).
+void state_corrected_error(SolveReport& report);
 
 // Of the extinction sigma_s' + sigma_a at the same places, summed over these and the channels: what changes, as a share
 // of it before. 1 where there are other places.

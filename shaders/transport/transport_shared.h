@@ -18,7 +18,7 @@ const uint TRANSPORT_HALVES = 2u;
 const float TRANSPORT_FLOOR = 0.03f;
 
 // A ray that keeps less than this goes on by chance, with this weight.
-const float TRANSPORT_ROULETTE = 0.03f;
+const float TRANSPORT_ROULETTE = 0.1f;
 
 // Parts of the body that a ray can meet in the air, one after the other, before it is given up.
 const uint TRANSPORT_MEETINGS = 8u;

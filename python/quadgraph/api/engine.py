@@ -128,8 +128,9 @@ class Engine:
     def solve(self, *, motion: bool = False, **options: Unpack[MotionOptions]) -> Solution:
         """Solve for the present material, lights and shape.
 
-        options: of `SolveOptions`, and of `MotionOptions`, by default those of a scene; motion: with less work, as the window does while something
-        changes (docs/window.md). Raises InputError, SolverError, and TypeError for a motion option of another type.
+        options: of `SolveOptions`, and of `MotionOptions`, by default those of a scene; motion: with less work, as the
+        window does while something changes (docs/window.md). Raises InputError, SolverError, and TypeError for a motion
+        option of another type.
         """
         given = plain_members(options)
         given.setdefault("correction", _usual_correction())

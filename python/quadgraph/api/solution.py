@@ -102,8 +102,8 @@ class Solution:
     method, solver, source, model: those that were used; replaced: why it is another solver than the one asked for;
     cycles: that were asked for, 0 if none; levels: in the order solved, coarsest first; finest: the level solved last;
     work: products of all levels, in products of level 0; clipped: (3,) share of the exitance that was below zero and
-    taken from the rest; error: estimate of the whole error, with algebraic, the solver's part, mesh_error, the mesh's
-    before a correction, and model_error, what a correction leaves of the model's, each None where it cannot be told;
+    taken from the rest; error: estimate of the whole error, with algebraic, the solver's part, mesh_error, the mesh's,
+    and model_error, the model's, of each what a correction leaves, and None where it cannot be told;
     advice: of an error above 5%, where it comes from and what to do; inter_reflection: whether it was followed;
     bounces: (n, 3) W that each brought in; unmet: what was asked for and is not met, in words; missed: of that, the
     error; budget: what the bake of the file has to say of the error that was asked for; mesh_warning, model_warning,

@@ -115,7 +115,8 @@ def solver_texts(report: dict) -> list[str]:
     texts += [path_text(report["path"])] if report.get("path") else []
     if report["replaced"]:
         texts.append(f"solver: {report['replaced']}")
-    texts += [f"warning: {report[name]}" for name in ("advice", "mesh_warning", "model_warning", "deformed") if report.get(name)]
+    against = ("advice", "mesh_warning", "model_warning", "deformed")
+    texts += [f"warning: {report[name]}" for name in against if report.get(name)]
     if report["finest"] > 0:
         texts.append(f"level: {report['finest']} suffices; its solution is carried to the finest")
     return texts

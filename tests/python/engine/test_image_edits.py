@@ -45,6 +45,7 @@ def scene_of(folder: Path, edits: list, **more) -> Path:
         "material": "sigma_s_prime=3,sigma_a=.01",
         "lights": [{"type": "directional", "direction": [0, 0, -1], "irradiance": 1}],
         "edits": edits,
+        "solver": {"correction": False},  # whose samples are others where a body is turned
         **more,
     }
     (folder / "scene.json").write_text(json.dumps(scene))

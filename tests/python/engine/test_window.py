@@ -28,7 +28,8 @@ pytestmark = [
 ]
 
 PANEL = 340  # pixels of the panel's width at a scale of 1
-FIELD = 342  # height at which materials are typed
+FRAME = 84  # height of the section that says what the picture has taken, which is closed by a click
+FIELD = 208  # height at which materials are typed, once it is
 SIZE = (900, 600)
 LIGHTS = ["--light", "directional:-0.94,-0.1,0.34:1"]  # from azimuth 110
 
@@ -262,6 +263,8 @@ def test_the_window_changes_its_size(open_window):
 def test_a_wrong_material_is_told_and_changes_nothing(open_window):
     """Typed into the panel."""
     hand = open_window("--material", "wholemilk")
+    hand.settle()
+    hand.do("mousemove", "100", str(FRAME), "click", "1")
     before = hand.picture()
     hand.do("mousemove", "150", str(FIELD), "click", "--repeat", "2", "1", "type", "--delay", "20", "granite")
     hand.keys("Return")

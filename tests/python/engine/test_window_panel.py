@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from PIL import Image
-from test_window import SIZE, Hand, open_window, pytestmark, server
+from test_window import FRAME, SIZE, Hand, open_window, pytestmark, server
 
 from baked import write_levels
 from quadgraph.mesh.surface import Surface
@@ -16,8 +16,8 @@ from shapes import icosphere
 __all__ = ["open_window", "pytestmark", "server"]
 
 TALL = 890  # a window in which the section Shape is seen
-FRAME = 84  # height of a section to close; then, in the same way:
-SHAPE, TWIST = 658, 683  # a section to open and its first slider, with two lights
+# Heights once the section Frame is closed:
+SHAPE, TWIST = 683, 708  # a section to open and its first slider, with two lights
 IMAGE = 333  # the name of an image, of the only light
 EDIT, MASK, RADIUS, TO_DEPTH = 233, 433, 458, 508  # a section to open, and in it
 
