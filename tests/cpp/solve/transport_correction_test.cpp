@@ -188,7 +188,7 @@ TEST_CASE("in motion the correction follows the light, the material and the shap
   }));
 }
 
-TEST_CASE("more points leave less noise, and the change that is found stays") {
+TEST_CASE("points are drawn until they leave the noise that is wanted, and the change that is found stays") {
   Scene scene({6, 3});
   scene.simulation.set_material(thin(0.1f, 1.3f));
   scene.light(one_side);
@@ -197,9 +197,11 @@ TEST_CASE("more points leave less noise, and the change that is found stays") {
     options.sweep_points = points;
     return scene.simulation.solve(options).correction->sweeps.at(0);
   };
-  const CorrectedSweep few = sweep(2000), many = sweep(200000);
+  const CorrectedSweep few = sweep(1000), many = sweep(200000);
+  CHECK(few.points > 2000);
+  CHECK(many.points == 200000);
   CHECK(few.change.whole == doctest::Approx(many.change.whole).epsilon(0.1));
-  CHECK(many.noise.whole < few.noise.whole);
+  CHECK(few.noise.whole < 1.25 * many.noise.whole);
 }
 
 TEST_CASE("only fem with the buried source can be corrected") {
