@@ -51,6 +51,7 @@ struct CorrectedSweep {
 // What the transport correction did (docs/physics.md, "Transport correction").
 struct CorrectionReport {
   std::vector<CorrectedSweep> sweeps;
+  double returns = 0;   // share of the scattered light that leaves which enters again, the largest of any channel
   double segments = 0;  // tets that all of its rays crossed
 };
 

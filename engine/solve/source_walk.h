@@ -73,6 +73,7 @@ class SourceWalk {
 
   // Fixed point (walk_shared.h): per vertex (fem) or tet what was scattered, and per face what left.
   const device::Buffer& deposit(Method method) const { return (again_ ? all_deposits_ : deposits_)[carrier(method)]; }
+  const device::Buffer& first_deposit() const { return deposits_[0]; }  // of the scene's light, per vertex
   const device::Buffer& unscattered() const { return again_ ? all_unscattered_ : unscattered_; }
 
   // W per face of what left unscattered, in the last walk that has run; `scale` as on the device.

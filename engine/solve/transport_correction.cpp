@@ -45,7 +45,8 @@ ErrorEstimate relative(const glm::vec2& square, const glm::vec2& size) {
   return {root(square.x, size.x), root(square.y, size.y)};
 }
 
-// Of what a sweep has changed, the share that all further ones would: the first leaves a smaller one than the others.
+// Of what a sweep has changed, the share that all further ones would: the first leaves a smaller one than the others, but
+// of light that meets the body again it knows little more than the solve.
 constexpr double left_by_first = 0.13, left_by_next = 0.3;
 
 // Of the solver's error the same. Of the mesh's the share that is left, and what no two levels tell apart: the light
@@ -55,8 +56,8 @@ constexpr double solver_left = left_by_first, mesh_left = 0.15, unseen = 0.004;
 // The halves share what their points see of the body; so much more than they differ by is the noise.
 constexpr double noise_over_difference = 1.2;
 
-double share_left_by(std::size_t sweeps) {
-  return sweeps > 1 ? left_by_next : left_by_first;
+double share_left_by(const CorrectionReport& done) {
+  return done.sweeps.size() > 1 ? left_by_next : left_by_first + done.returns;
 }
 
 // The error is that of means over patches, so many on the whole surface; about so many faces are around a vertex. What
@@ -80,9 +81,9 @@ double excess_of(const ErrorEstimate& noise, const ErrorEstimate& before, const 
 }
 
 // Whether another sweep would change less than is wanted, or than the noise.
-bool last_of_all(const std::vector<CorrectedSweep>& done, const ErrorEstimate& wanted) {
-  const CorrectedSweep& last = done.back();
-  const double share = share_left_by(done.size());
+bool last_of_all(const CorrectionReport& done, const ErrorEstimate& wanted) {
+  const CorrectedSweep& last = done.sweeps.back();
+  const double share = share_left_by(done);
   return share * last.change.whole <= std::max(wanted.whole, last.noise.whole) &&
          share * last.change.unlit <= std::max(wanted.unlit, last.noise.unlit);
 }
@@ -91,7 +92,7 @@ bool last_of_all(const std::vector<CorrectedSweep>& done, const ErrorEstimate& w
 
 void state_corrected_error(SolveReport& report) {
   const CorrectedSweep& last = report.correction->sweeps.back();
-  const double share = share_left_by(report.correction->sweeps.size());
+  const double share = share_left_by(*report.correction);
   const ErrorEstimate mesh = report.mesh_error.value_or(ErrorEstimate{});
   const ErrorEstimate solver = report.algebraic.value_or(ErrorEstimate{});
   const auto of_model = [&](double change, double noise) {
@@ -197,6 +198,7 @@ void TransportCorrection::record_change(const CorrectionParts& parts) {
                                 .gathered = samples_.gathered().address(),
                                 .change_a = change_[0].address(),
                                 .change_b = change_[1].address(),
+                                .books = samples_.books().address(),
                                 .before = halves_.address(),
                                 .change = statistics_.address(),
                                 .reduction = work.reduction.address(),
@@ -221,6 +223,7 @@ void TransportCorrection::record_faces(const CorrectionParts& parts) {
                                       .gathered = samples_.gathered().address(),
                                       .change_a = change_[0].address(),
                                       .change_b = change_[1].address(),
+                                      .books = samples_.books().address(),
                                       .halves = halves_.address(),
                                       .exitance = exitance_.address(),
                                       .count = level.face_count,
@@ -249,7 +252,7 @@ void TransportCorrection::draw(const CorrectionParts& parts, const Sampling& sam
 CorrectedSweep TransportCorrection::sweep(const CorrectionParts& parts, const Sampling& sampling,
                                           const TransportShares& shares) {
   samples_.record_source(parts.transport, shares);
-  samples_.record_exitance(parts.transport, sampling.face_rays, shares.known, sampling.first);
+  samples_.record_exitance(parts.transport, sampling.face_rays, shares.known);
   samples_.record_no_load(parts.transport);
   std::swap(right_side_, known_);
   draws_ = 0;
@@ -295,23 +298,23 @@ CorrectedSweep TransportCorrection::sweep_in_motion(const CorrectionParts& parts
   const TransportShares shares = shares_in_motion(frames);
   start(parts, task, shares.apart);
   if (moved_ && frames > 0) samples_.record_carried(parts.transport, parts.boundary.k11);
-  return sweep(parts, {motion_directions, motion_rays, 1, frames == 0}, shares);
+  return sweep(parts, {motion_directions, motion_rays, 1}, shares);
 }
 
 // The second sweep and those behind it sample what the one before has changed, whose noise is small.
-std::vector<CorrectedSweep> TransportCorrection::sweeps_at_rest(const CorrectionParts& parts,
-                                                                const SolveOptions& options) {
+void TransportCorrection::sweep_at_rest(const CorrectionParts& parts, const SolveOptions& options,
+                                        CorrectionReport& report) {
   samples_.begin_seeds();
-  std::vector<CorrectedSweep> done;
   const ErrorEstimate enough = wanted(options);
-  while (done.empty() || (options.sweeps > 0 ? done.size() < options.sweeps
-                                             : done.size() < most_sweeps && !last_of_all(done, enough))) {
-    const bool first = done.empty();
+  const std::uint32_t most = options.sweeps > 0 ? options.sweeps : most_sweeps;
+  do {
+    const bool first = report.sweeps.empty();
     const ErrorEstimate noise = first ? ErrorEstimate{} : solves_noise_;
     const TransportShares shares = first ? TransportShares{1, 0, 0} : TransportShares{1, 1, 1};
-    done.push_back(sweep(parts, {rest_directions, rest_rays, most_draws, first, enough, noise}, shares));
-  }
-  return done;
+    report.sweeps.push_back(sweep(parts, {rest_directions, rest_rays, most_draws, enough, noise}, shares));
+    parts.transport.work.recorder.submit();
+    report.returns = samples_.returns();
+  } while (report.sweeps.size() < most && (options.sweeps > 0 || !last_of_all(report, enough)));
 }
 
 CorrectionReport TransportCorrection::run(const CorrectionParts& parts, const SolveOptions& options,
@@ -320,14 +323,15 @@ CorrectionReport TransportCorrection::run(const CorrectionParts& parts, const So
   const std::uint32_t frames = std::exchange(frames_, 0);  // nothing is known where this does not come to its end
   if (options.warm) {
     report.sweeps.push_back(sweep_in_motion(parts, task, frames));
+    parts.transport.work.recorder.submit();
+    report.returns = samples_.returns();
     frames_ = frames + 1;
   } else {
     start(parts, task, false);
-    report.sweeps = sweeps_at_rest(parts, options);
+    sweep_at_rest(parts, options, report);
     frames_ = frames_of_rest;
   }
   moved_ = edited_ = false;
-  parts.transport.work.recorder.submit();
   report.segments = samples_.segments();
   return report;
 }

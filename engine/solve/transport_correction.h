@@ -73,7 +73,6 @@ class TransportCorrection {
   struct Sampling {
     std::uint32_t directions, face_rays;
     double most_draws;
-    bool first;  // nothing is known yet
     ErrorEstimate noise_wanted{}, noise_before{};
   };
 
@@ -86,7 +85,7 @@ class TransportCorrection {
   void start(const CorrectionParts& parts, const WalkTask& task, bool apart);
   TransportShares shares_in_motion(std::uint32_t frames) const;
   CorrectedSweep sweep_in_motion(const CorrectionParts& parts, const WalkTask& task, std::uint32_t frames);
-  std::vector<CorrectedSweep> sweeps_at_rest(const CorrectionParts& parts, const SolveOptions& options);
+  void sweep_at_rest(const CorrectionParts& parts, const SolveOptions& options, CorrectionReport& report);
 
   TransportSamples samples_;
   std::uint32_t draws_ = 0;     // of points, in the load

@@ -35,7 +35,7 @@ constexpr std::uint64_t segment_bytes = sizeof(gpu::TransportCell) + sizeof(gpu:
 constexpr std::uint32_t draws_apart = 1u << 16;
 
 // Sums of each of the WALK_SUMS of a pass.
-constexpr std::uint32_t walk_sums = 3, gather_sums = 2;
+constexpr std::uint32_t walk_sums = 3, gather_sums = 4;
 
 // Sums number `which` of `count`, of all that were read back.
 glm::dvec3 sum_of(const std::vector<glm::dvec3>& sums, std::uint32_t which, std::uint32_t count) {
@@ -76,7 +76,7 @@ TransportSamples::TransportSamples(device::Device& device, const Level& level) {
   gather_sums_ = room(gather_sums * gpu::WALK_SUMS * sum_bytes, "power gathered");
   segments_on_host_ = room(segments_.size(), "segments, read back", device::Place::host);
   walk_sums_on_host_ = room(walk_sums_.size(), "power of the walk, read back", device::Place::host);
-  gather_sums_on_host_ = room(gather_sums_.size(), "power gathered, read back", device::Place::host);
+  books_on_host_ = room(books_.size(), "books, read back", device::Place::host);
 }
 
 // Of each tet at most one point more than it weighs is drawn: ten standard deviations of their number are left.
@@ -117,14 +117,17 @@ void TransportSamples::record_start(const TransportParts& parts, const WalkTask&
   work.recorder.fill(segments_, 0);
   record_walk(parts, task);
   record_cells(parts);
+  record_mass(parts);
   const gpu::TransportFluencePush fluence{.x = op.x.address(),
                                           .to_phi = op.to_phi.address(),
                                           .fluence = fluence_.address(),
+                                          .mass = mass_.address(),
+                                          .first = parts.walk.first_deposit().address(),
+                                          .all = parts.walk.deposit(Method::fem).address(),
                                           .count = parts.level.vertex_count};
   work.recorder.dispatch(work.passes.of(shader::transport_fluence, op.model), fluence, parts.level.vertex_count,
-                         "transport start", parts.level.vertex_count * (op.field_bytes() + vec3_bytes));
+                         "transport start", parts.level.vertex_count * (op.field_bytes() + 2 * vec3_bytes + 2 * sum_bytes));
   record_weights(parts);
-  record_mass(parts);
 }
 
 void TransportSamples::record_mass(const TransportParts& parts) {
@@ -236,12 +239,12 @@ void TransportSamples::record_source(const TransportParts& parts, const Transpor
                              level.tet_count * (sizeof(glm::uvec4) + 8 * vec3_bytes));
 }
 
-void TransportSamples::record_exitance(const TransportParts& parts, std::uint32_t rays, float known, bool power) {
+void TransportSamples::record_exitance(const TransportParts& parts, std::uint32_t rays, float known) {
   Workspace& work = parts.work;
-  if (power) work.recorder.fill(gather_sums_, 0);
+  work.recorder.fill(gather_sums_, 0);
   const gpu::TransportExitancePush push{.field = field_.address(),
                                         .exitance = gathered_.address(),
-                                        .sums = power ? gather_sums_.address() : 0,
+                                        .sums = gather_sums_.address(),
                                         .unit = unit_.address(),
                                         .scale = work.scale.address(),
                                         .rays = rays,
@@ -289,7 +292,7 @@ void TransportSamples::record_draw(const TransportParts& parts, std::uint32_t di
 void TransportSamples::record_totals(const TransportParts& parts) {
   Workspace& work = parts.work;
   const LevelBuffers& level = parts.level;
-  const gpu::TransportTotalsPush totals{.vertices = level.vertices.address(),
+  gpu::TransportTotalsPush totals{.vertices = level.vertices.address(),
                                         .tets = level.tets.address(),
                                         .optical = level.optical.address(),
                                         .fluence = fluence_.address(),
@@ -297,9 +300,12 @@ void TransportSamples::record_totals(const TransportParts& parts) {
                                         .books = books_.address(),
                                         .reduction = work.reduction.address(),
                                         .count = level.tet_count,
-                                        .even = level.even ? 1u : 0u};
-  work.recorder.dispatch(work.passes.of(shader::transport_totals), totals, level.tet_count, "transport books",
-                         source_before_.size() + level.tet_count * (sizeof(glm::uvec4) + 8 * vec3_bytes));
+                                        .even = level.even ? 1u : 0u,
+                                        .lost = 0};
+  for (; totals.lost < 2; ++totals.lost) {
+    work.recorder.dispatch(work.passes.of(shader::transport_totals), totals, level.tet_count, "transport books",
+                           source_before_.size() + level.tet_count * (sizeof(glm::uvec4) + 8 * vec3_bytes));
+  }
   const gpu::TransportLeavingPush leaving{.vertices = level.vertices.address(),
                                           .faces = level.faces.address(),
                                           .gathered = gathered_.address(),
@@ -350,6 +356,7 @@ void TransportSamples::record_step(const TransportParts& parts, const std::array
   const gpu::TransportStepPush step{.swept = swept_[0].address(),
                                     .change_a = change[0].address(),
                                     .change_b = change[1].address(),
+                                    .books = books_.address(),
                                     .fluence = fluence_.address(),
                                     .count = count};
   work.recorder.dispatch(work.passes.of(shader::transport_step), step, count, "transport step", 5 * count * vec3_bytes);
@@ -360,7 +367,7 @@ void TransportSamples::record_state(const TransportParts& parts) {
   record_optical(parts);
   parts.work.recorder.copy(segments_, segments_on_host_, segments_.size());
   parts.work.recorder.copy(walk_sums_, walk_sums_on_host_, walk_sums_.size());
-  parts.work.recorder.copy(gather_sums_, gather_sums_on_host_, gather_sums_.size());
+  parts.work.recorder.copy(books_, books_on_host_, books_.size());
 }
 
 // The coefficients, for a field that is to be seen when they have changed.
@@ -381,11 +388,21 @@ double TransportSamples::segments() const {
 
 TransportPower TransportSamples::power(const glm::dvec3& scale) const {
   const std::vector<glm::dvec3> walked = powers(walk_sums_on_host_.mapped_as<std::uint32_t>(), scale);
-  const std::vector<glm::dvec3> gathered = powers(gather_sums_on_host_.mapped_as<std::uint32_t>(), scale);
-  const glm::dvec3 left = sum_of(gathered, 0, gather_sums), again = sum_of(gathered, 1, gather_sums);
   TransportPower power{sum_of(walked, 0, walk_sums), sum_of(walked, 1, walk_sums), sum_of(walked, 2, walk_sums)};
-  for (int c = 0; c < 3; ++c) power.share_again[c] = left[c] > 0 ? again[c] / left[c] : 0;
+  power.share_again = share_again();
   return power;
+}
+
+glm::dvec3 TransportSamples::share_again() const {
+  const auto& book = books_on_host_.mapped_as<gpu::TransportBook>()[0];
+  glm::dvec3 share{0};
+  for (int c = 0; c < 3; ++c) share[c] = book.left[c] > 0 ? static_cast<double>(book.again[c] / book.left[c]) : 0;
+  return share;
+}
+
+double TransportSamples::returns() const {
+  const glm::dvec3 share = share_again();
+  return std::max({share.x, share.y, share.z});
 }
 
 }  // namespace quadgraph

@@ -55,17 +55,18 @@ class TransportSamples {
   // What samples see from here on; the field before is that of the last call.
   void record_source(const TransportParts& parts, const TransportShares& shares);
 
-  // Exitance of what is seen, by so many rays per face and half, added to a share of what was known. With `power`, also
-  // how much of it enters again.
-  void record_exitance(const TransportParts& parts, std::uint32_t rays, float known, bool power);
+  // Exitance of what is seen, by so many rays per face and half, added to a share of what was known, and how much of it
+  // enters again.
+  void record_exitance(const TransportParts& parts, std::uint32_t rays, float known);
 
   // Forgets the load; then one draw of points after the other is added to it, with so many rays each.
   void record_no_load(const TransportParts& parts);
   void record_draw(const TransportParts& parts, std::uint32_t directions);
 
-  // To be read by `segments` and `power` after the next submission.
+  // To be read by `segments`, `power` and `returns` after the next submission.
   void record_state(const TransportParts& parts);
   double segments() const;
+  double returns() const;  // share of what is gathered that enters again, the largest of any channel
   TransportPower power(const glm::dvec3& scale) const;
 
   std::uint32_t points() const { return points_wanted_; }  // of a draw, about
@@ -97,6 +98,7 @@ class TransportSamples {
   void record_smooth(const TransportParts& parts, const device::Buffer* mass, const device::Buffer& from,
                      const device::Buffer& to);
   void record_totals(const TransportParts& parts);
+  glm::dvec3 share_again() const;
   void record_optical(const TransportParts& parts);
 
   std::uint32_t points_wanted_ = 0, room_ = 0;
@@ -116,7 +118,7 @@ class TransportSamples {
   device::Buffer tet_offset_, tet_incidence_, mass_;  // tets around each vertex
   device::Buffer point_sums_, books_;
   std::array<device::Buffer, 2> swept_;  // vec3 per vertex
-  device::Buffer segments_, walk_sums_, gather_sums_, segments_on_host_, walk_sums_on_host_, gather_sums_on_host_;
+  device::Buffer segments_, walk_sums_, gather_sums_, segments_on_host_, walk_sums_on_host_, books_on_host_;
 };
 
 }  // namespace quadgraph

@@ -10,7 +10,7 @@ layout(local_size_x = WORKGROUP_SIZE) in;
 struct TransportBooksPush {
   TransportBooks books;
   Uints points;  // fixed point, WALK_SUMS times two per half: power that the points found, added, then taken away
-  Uints again;   // fixed point, WALK_SUMS times two: what leaves, and what of that enters again
+  Uints again;   // fixed point, WALK_SUMS times four: what leaves, added, then taken away; what of that enters again, the same
   Vec3s unit;    // one: the scale of what is known
   Scales scale;
   float share;  // of what was found that counts
@@ -24,19 +24,30 @@ vec3 sum_of(Uints sums, uint first, uint step) {
   return sum;
 }
 
+vec3 kept(vec3 known) {
+  return push.keep == 0.0 ? vec3(0) : push.keep * push.unit.at[0] * push.scale.at[0].inverse * known;
+}
+
 vec3 found_by(uint half_of, vec3 known) {
   uint first = 2u * WALK_SUMS * half_of;
-  vec3 found = push.share * (sum_of(push.points, first, 2u) - sum_of(push.points, first + 1u, 2u));
-  return push.keep == 0.0 ? found : found + push.keep * push.unit.at[0] * push.scale.at[0].inverse * known;
+  return push.share * (sum_of(push.points, first, 2u) - sum_of(push.points, first + 1u, 2u)) + kept(known);
+}
+
+vec3 ratio(vec3 part, vec3 whole) {
+  return mix(part / whole, vec3(0), lessThanEqual(whole, vec3(0)));
 }
 
 void main() {
   if (gl_GlobalInvocationID.x != 0u) return;
   TransportBook book = push.books.at[0];
-  vec3 left = sum_of(push.again, 0u, 2u), again = sum_of(push.again, 1u, 2u);
-  vec3 stays_out = 1.0 - mix(again / left, vec3(0), equal(left, vec3(0)));
-  vec3 sum_a = book.excess - stays_out * book.leaving_a, sum_b = book.excess - stays_out * book.leaving_b;
-  vec3 none = vec3(0), per_lost = mix(1.0 / book.lost, none, lessThanEqual(book.lost, none));
+  vec3 left = sum_of(push.again, 0u, 4u) - sum_of(push.again, 1u, 4u) + kept(book.known_left);
+  vec3 again = sum_of(push.again, 2u, 4u) - sum_of(push.again, 3u, 4u) + kept(book.known_again);
+  vec3 returns = clamp(ratio(again, left), vec3(0), vec3(1)), excess = book.first - book.absorbed;
+  vec3 sum_a = excess - (1.0 - returns) * book.leaving_a, sum_b = excess - (1.0 - returns) * book.leaving_b;
+  vec3 per_lost = ratio(vec3(1), book.lost);
+  push.books.at[0].left = left;
+  push.books.at[0].again = again;
+  push.books.at[0].gain = 1.0 / (1.0 - min(returns * ratio(left, left + book.absorbed), vec3(0.9)));
   push.books.at[0].sum_a = sum_a;
   push.books.at[0].sum_b = sum_b;
   push.books.at[0].missing_a = per_lost * (sum_a - found_by(0u, book.known_a));

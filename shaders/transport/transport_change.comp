@@ -7,7 +7,7 @@
 #include "shared/face_area.glsl"
 
 // What a sweep has changed at the surface vertices, each with the mean over its open faces, and how far its halves
-// differ: J = G + k11 delta, less the exitance before.
+// differ: J = G + k11 delta times its gain, less the exitance before.
 struct TransportChangePush {
   Vec3s vertices;
   Uvec3s faces;
@@ -18,6 +18,7 @@ struct TransportChangePush {
   Vec3s gathered;  // of transport_exitance.comp
   Vec3s change_a;  // fluence at the vertices that the solves of both halves add
   Vec3s change_b;
+  TransportBooks books;
   Vec3s before;  // exitance of both halves before the sweep, W/mm^2
   TransportChanges change;
   Reduction reduction;
@@ -36,6 +37,7 @@ vec3 at_face(Vec3s field, uint face) {
 void main() {
   vec3 whole = vec3(0), unlit = vec3(0);  // change, noise, size
   Scale unit = push.scale.at[0];
+  vec3 gain = push.k11 * push.books.at[0].gain;
   // One factor for all channels, which are weighed alike.
   vec3 colours = unit.scale / max(unit.scale.x, max(unit.scale.y, unit.scale.z));
   EACH(v, push.count) {
@@ -46,7 +48,7 @@ void main() {
       float area = area_of(push.faces, push.vertices, face);
       around += area;
       vec3 g_a = push.gathered.at[face], g_b = push.gathered.at[push.face_count + face];
-      vec3 added_a = push.k11 * at_face(push.change_a, face), added_b = push.k11 * at_face(push.change_b, face);
+      vec3 added_a = gain * at_face(push.change_a, face), added_b = gain * at_face(push.change_b, face);
       a += area * (g_a + added_a);
       b += area * (g_b + added_b);
       difference += area * (push.solves == 1u ? added_a - added_b : g_a + added_a - g_b - added_b);

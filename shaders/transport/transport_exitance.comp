@@ -9,7 +9,7 @@ layout(local_size_x = WORKGROUP_SIZE) in;
 struct TransportExitancePush {
   TransportFieldRefs field;  // one
   Vec3s exitance;            // W/mm^2, scaled: of the first half for all faces, then of the second
-  Uints sums;                // fixed point, WALK_SUMS times two: what leaves, and what of that enters again; or null
+  Uints sums;                // fixed point, WALK_SUMS times four, as TransportBooksPush has it
   Vec3s unit;                // one: the scale of what is kept
   Scales scale;
   uint rays;  // per face and half
@@ -44,16 +44,20 @@ void add_leaving(Surface at, float stratum, float azimuth, inout uint state) {
   vec3 before, now = arriving(ray, state, before);
   vec3 leaves = fresnel_transmittance(sqrt(u), BODY.eta) * (now - before);
   left += leaves;
-  if (uvec2(push.sums) == uvec2(0) || !sees_body(at.face)) return;
+  if (!sees_body(at.face)) return;
   Entrance entry = through_air(at.face, point, leaving_direction(-inside, at.normal, cosine), state);
   if (entry.face != NO_FACE) entered_again += leaves;
 }
 
+void add_signed(uint at, vec3 power) {
+  add_power(push.sums, at, max(power, vec3(0)));
+  add_power(push.sums, at + 1u, max(-power, vec3(0)));
+}
+
 void add_sums(float area) {
-  if (uvec2(push.sums) == uvec2(0)) return;
-  uint at = 2u * (gl_WorkGroupID.x % WALK_SUMS);
-  add_power(push.sums, at, max(area * left, vec3(0)));
-  add_power(push.sums, at + 1u, max(area * entered_again, vec3(0)));
+  uint at = 4u * (gl_WorkGroupID.x % WALK_SUMS);
+  add_signed(at, area * left);
+  add_signed(at + 2u, area * entered_again);
 }
 
 void main() {

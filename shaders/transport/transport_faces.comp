@@ -4,7 +4,7 @@
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 
-// Exitance per face after a sweep, J = G + k11 delta, of both halves and their mean.
+// Exitance per face after a sweep, J = G + k11 delta times its gain, of both halves and their mean.
 struct TransportFacesPush {
   Uvec3s faces;
   Uints face_kinds;
@@ -12,6 +12,7 @@ struct TransportFacesPush {
   Vec3s gathered;  // of transport_exitance.comp
   Vec3s change_a;  // fluence at the vertices that the solves of both halves add
   Vec3s change_b;
+  TransportBooks books;
   Vec3s halves;    // of the first half for all faces, then of the second, W/mm^2, written
   Vec3s exitance;  // W/mm^2, written
   uint count;
@@ -28,9 +29,9 @@ void main() {
     change_a += push.change_a.at[ids[k]] / 3.0;
     change_b += push.change_b.at[ids[k]] / 3.0;
   }
-  vec3 unit = push.scale.at[0].scale;
-  vec3 a = unit * (push.gathered.at[f] + push.k11 * change_a);
-  vec3 b = unit * (push.gathered.at[push.count + f] + push.k11 * change_b);
+  vec3 unit = push.scale.at[0].scale, gain = push.k11 * push.books.at[0].gain;
+  vec3 a = unit * (push.gathered.at[f] + gain * change_a);
+  vec3 b = unit * (push.gathered.at[push.count + f] + gain * change_b);
   push.halves.at[f] = a;
   push.halves.at[push.count + f] = b;
   push.exitance.at[f] = 0.5 * (a + b);

@@ -2,14 +2,19 @@
 #extension GL_GOOGLE_include_directive : require
 #include "transport/transport_shared.h"
 #include "solver/fields.glsl"
+#include "source/fixed_point.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 
-// Fluence at the vertices, of a solution.
+// Fluence at the vertices, of a solution, and of light that enters again and has not scattered since: for the transport
+// equation that is the fluence of what scatters elsewhere.
 struct TransportFluencePush {
   Fields x;
   Vec3s to_phi;  // null: 1
   Vec3s fluence;
+  Vec3s mass;   // of transport_mass.comp
+  Uints first;  // fixed point: power scattered for the first time, of the scene's light
+  Uints all;    // and with that of light that enters again; the same where there is none
   uint count;
 };
 layout(push_constant, scalar) uniform Block { TransportFluencePush push; };
@@ -17,5 +22,7 @@ layout(push_constant, scalar) uniform Block { TransportFluencePush push; };
 void main() {
   uint v = gl_GlobalInvocationID.x;
   if (v >= push.count) return;
-  push.fluence.at[v] = element_or_one(push.to_phi, v) * push.x.at[v].phi;
+  vec3 again = max(power_at(push.all, v) - power_at(push.first, v), vec3(0)), mass = push.mass.at[v];
+  vec3 unscattered = mix(again / mass, vec3(0), equal(mass, vec3(0)));
+  push.fluence.at[v] = element_or_one(push.to_phi, v) * push.x.at[v].phi + unscattered;
 }

@@ -9,6 +9,7 @@ struct TransportStepPush {
   Vec3s swept;
   Vec3s change_a;  // what the solves made of both halves
   Vec3s change_b;
+  TransportBooks books;
   Vec3s fluence;
   uint count;
 };
@@ -17,5 +18,5 @@ layout(push_constant, scalar) uniform Block { TransportStepPush push; };
 void main() {
   uint v = gl_GlobalInvocationID.x;
   if (v >= push.count) return;
-  push.fluence.at[v] += push.swept.at[v] + 0.5 * (push.change_a.at[v] + push.change_b.at[v]);
+  push.fluence.at[v] += push.swept.at[v] + 0.5 * push.books.at[0].gain * (push.change_a.at[v] + push.change_b.at[v]);
 }

@@ -39,14 +39,16 @@ class PictureSetting:
     radiance: str
     inter_reflection: bool
     tolerance: float = 1e-3
+    correction: bool = False
 
 
 PUBLISHED = PictureSetting("published, solved exactly", "diffuse", "diffusion", "lambertian", False, 1e-5)
-OURS = PictureSetting("SP3, gathered, inter-reflection", "buried", "sp3", "gathered", True)
+OURS = PictureSetting("corrected, gathered, the default", "buried", "auto", "gathered", True, correction=True)
 SETTINGS = (
     PUBLISHED,
     PictureSetting("diffusion, Lambertian", "buried", "diffusion", "lambertian", False),
     PictureSetting("SP3, gathered", "buried", "sp3", "gathered", False),
+    PictureSetting("SP3, gathered, inter-reflection", "buried", "sp3", "gathered", True),
     OURS,
 )
 # In figures: title to setting.
@@ -121,6 +123,7 @@ def solve(engine: Engine, setting: PictureSetting) -> dict[str, Any]:
         model=setting.model,
         inter_reflection=setting.inter_reflection,
         tolerance=setting.tolerance,
+        correction=setting.correction,
         max_iterations=100_000,
     )
 

@@ -99,13 +99,13 @@ def judged(seed: int, wanted: UnseenRun, tell: Callable[[str, int], None]) -> di
 
 
 def parts_of(truth: UnseenTruth) -> dict[str, np.ndarray]:
-    """(n,) bool by name: the patches that count. Those of too few patches are left out."""
+    """(n,) bool by name: the patches that count. Those of too few patches, or no brighter than noise, are left out."""
     lit = truth.irradiance >= _UNLIT * np.average(truth.irradiance, weights=truth.area)
     order = np.argsort(truth.exitance)
     dim = np.zeros(len(order), bool)
     dim[order[: len(order) // 3]] = True
     parts = {"whole": np.ones(len(order), bool), "lit": lit, "unlit": ~lit, "dim": dim}
-    return {name: part for name, part in parts.items() if part.sum() >= _FEW}
+    return {name: part for name, part in parts.items() if part.sum() >= _FEW and _square(truth, part) > 0}
 
 
 def errors(truth: UnseenTruth, parts: dict[str, np.ndarray], answer: UnseenAnswer) -> dict[str, Any]:
@@ -123,6 +123,9 @@ def errors(truth: UnseenTruth, parts: dict[str, np.ndarray], answer: UnseenAnswe
 
 def _rms(truth: UnseenTruth, part: np.ndarray, difference: np.ndarray) -> float:
     """Over a part, weighted by area, relative to the truth without its noise."""
-    area = truth.area[part]
-    square = area @ (truth.exitance[part] ** 2 - truth.error[part] ** 2)
-    return float(np.sqrt(area @ difference[part] ** 2 / square))
+    return float(np.sqrt(truth.area[part] @ difference[part] ** 2 / _square(truth, part)))
+
+
+def _square(truth: UnseenTruth, part: np.ndarray) -> float:
+    """Of the exitance of a part, weighted by area, without its noise."""
+    return float(truth.area[part] @ (truth.exitance[part] ** 2 - truth.error[part] ** 2))
