@@ -11,9 +11,7 @@ from quadgraph.base.errors import InputError
 from quadgraph_validation.base.study_folders import COMMITTED_TRUTH
 from quadgraph_validation.bodies import scene_bakes, scene_meshes
 from quadgraph_validation.bodies.scenes import StudyScene
-from quadgraph_validation.chart import (
-    path_method,  # noqa: F401  registers them
-)
+from quadgraph_validation.chart import dipole_method, engine_methods, path_method  # noqa: F401  they register
 from quadgraph_validation.chart.chart_body import ChartBody
 from quadgraph_validation.chart.chart_judge import ChartJudge, PdeTruths
 from quadgraph_validation.chart.chart_method import CHAIN, ChartMethod, methods
