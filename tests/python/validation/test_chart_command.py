@@ -61,7 +61,8 @@ def test_the_record_tells_machine_frame_levels_stages_and_errors(small, tmp_path
     (scene,) = found["scenes"]
     run = scene["run"]
     assert all(run[key] for key in ("device", "driver", "commit", "version", "cores"))
-    assert run["frame"] == {"pixels": 64, "light_turns_degrees": 5.0, "even_light_dims": 0.05}
+    turns = {"light_turns_degrees": 5.0, "light_turns_degrees_in_motion": 3.0}
+    assert run["frame"] == {"pixels": 64, "even_light_dims": 0.05} | turns
     assert [level["faces"] for level in scene["levels"]] == [1280, 320]
     assert [point["name"] for point in scene["points"]] == [method.name for method in METHODS]
     for point in scene["points"]:
