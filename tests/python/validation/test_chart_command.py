@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from dataclasses import dataclass, replace
 
 import pytest
@@ -59,7 +61,8 @@ def test_the_record_tells_machine_frame_levels_stages_and_errors(small, tmp_path
     (scene,) = found["scenes"]
     run = scene["run"]
     assert all(run[key] for key in ("device", "driver", "commit", "version", "cores"))
-    assert run["frame"] == {"pixels": 64, "light_turns_degrees": 5.0, "even_light_dims": 0.05}
+    turns = {"light_turns_degrees": 5.0, "light_turns_degrees_in_motion": 3.0}
+    assert run["frame"] == {"pixels": 64, "even_light_dims": 0.05} | turns
     assert [level["faces"] for level in scene["levels"]] == [1280, 320]
     assert [point["name"] for point in scene["points"]] == [method.name for method in METHODS]
     for point in scene["points"]:
@@ -74,6 +77,17 @@ def test_the_record_tells_machine_frame_levels_stages_and_errors(small, tmp_path
     assert cli.main(["chart", "--from", str(path), "--output", str(again)]) == 0
     for file in drawn.iterdir():
         assert file.read_bytes() == (again / file.name).read_bytes(), file.name
+
+
+def test_all_methods_are_on_the_chart_of_a_fresh_process():
+    """Whatever other tests import: `quadgraph chart` alone imports the modules whose methods it measures."""
+    asked = (
+        "from quadgraph_validation.chart import chart_method, chart_truths\n"
+        "chain = chart_method.MethodChain((900,), None)\n"
+        "print(*{method.settings['method'] for method in chart_truths.methods(chain)})"
+    )
+    found = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, check=True).stdout.split()
+    assert {"fem", "quadgraph-fv", "quadgraph-fdm", "dipole", "shortest-path"} <= set(found)
 
 
 def test_a_truth_that_is_not_there_is_asked_for_by_its_command(tmp_path, capsys):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,16 +10,19 @@ import pytest
 
 from baked import write_levels
 from quadgraph.base.errors import InputError, SolverError, ToolError
+from quadgraph.base.relative_error import relative_rms
+from quadgraph_validation.bodies.media import Medium
 from quadgraph_validation.bodies.scene_bakes import Choice
-from quadgraph_validation.bodies.scenes import PIXELS, SCENES, StudyScene, View, pale
+from quadgraph_validation.bodies.scenes import PIXELS, SCENES, StudyScene, View, of_medium, pale
 from quadgraph_validation.chart import chart_measure as measuring
 from quadgraph_validation.chart import chart_method as registry
 from quadgraph_validation.chart import chart_record as records
 from quadgraph_validation.chart.chart_body import STEP_DEGREES, ChartBody, light_at
 from quadgraph_validation.chart.chart_judge import ChartJudge
-from quadgraph_validation.chart.chart_method import SWING, MethodChain
+from quadgraph_validation.chart.chart_method import SETTLED, SWING, MethodChain
 from quadgraph_validation.chart.engine_methods import EngineMethod, engine_methods
 from quadgraph_validation.chart.path_method import PathMethod, path_methods
+from quadgraph_validation.truth import monte_carlo
 from quadgraph_validation.truth.stored_truth import StoredTruth
 from shapes import icosphere
 
@@ -123,6 +127,104 @@ def test_frames_follow_the_light_to_the_answer_that_a_cold_solve_finds(body):
         assert measuring.stages(passes[-1])["solve"] == pytest.approx(
             sum(passes[-1].values()) - sum(ms for s, ms in measuring.stages(passes[-1]).items() if s != "solve")
         )
+
+
+KETCHUP = Medium(0.18, 0.061)  # in red: a body of four mean free paths, which SP3's boundary condition gets wrong
+KETCHUP_BALL = replace(BALL, name="ketchup", eta=1.3, coefficients=of_medium([0.18] * 3, [0.061] * 3), coloured=True)
+ZONES = 10
+
+
+def zone_means(body: ChartBody, exitance: np.ndarray) -> np.ndarray:
+    """(ZONES,) of one channel over zones of equal height, from the far side of the light."""
+    corners = body.file.sections["level0/vertices"][body.file.sections["level0/faces"]].astype(float)
+    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    middle = corners.mean(axis=1)
+    zone = ((middle[:, 2] / np.linalg.norm(middle, axis=1) + 1) / 2 * ZONES).astype(int)
+    return np.bincount(zone, area * exitance[:, 0]) / np.bincount(zone, area)
+
+
+def test_corrections_come_close_to_random_walks_where_the_model_does_not(ball):
+    body = ChartBody(KETCHUP_BALL, ball, ball.parent, "", 32)
+    known = {method.name: method for method in engine_methods(body.chain)}
+    truth = monte_carlo.sphere(KETCHUP, RADIUS, KETCHUP_BALL.eta, ZONES, 400_000, seed=3).mean
+    names = {"SP3": "fem, SP₃ · level 0 · fmg-pcg"}
+    names |= {how: f"fem, SP₃, corrected · level 0 · fmg-pcg · {how}" for how in ("1 sweep", "2 sweeps", "in motion")}
+    errors, swept = {}, {}
+    for how, name in names.items():
+        method = known[name]
+        method.prepare(body)
+        passes = [method.frame(step) for step in SWING[1:]][-1]
+        off = (zone_means(body, method.exitance()) - truth).reshape(2, -1)  # the dark half, and the lit one
+        errors[how] = max(np.linalg.norm(off, axis=1) / np.linalg.norm(truth.reshape(2, -1), axis=1))
+        swept[how] = passes.get("transport sweep", 0.0)
+        assert measuring.stages(passes)["solve"] > swept[how]
+    print("off the walks:", {how: f"{error:.2%}" for how, error in errors.items()})
+    assert max(errors["1 sweep"], errors["2 sweeps"]) < 0.3 * errors["SP3"]
+    assert errors["in motion"] < 0.5 * errors["SP3"]
+    assert swept["SP3"] == 0 < swept["in motion"] < swept["1 sweep"] < swept["2 sweeps"]
+
+
+def test_methods_are_corrected_where_their_names_say_so_alone(body):
+    """Those too that come after corrected ones, on the engine of these."""
+    plain = EngineMethod()
+    plain.prepare(body)
+    plain.frame(0)
+    before = plain.exitance()
+    others = [EngineMethod(cycles=1), EngineMethod(method="quadgraph-fv", solver="dpcg")]
+    for method in (EngineMethod(sweeps=1), plain, *others):
+        method.prepare(body)
+        corrected = "transport sweep" in method.frame(0)
+        assert corrected == ("corrected" in method.name) == (method.settings["sweeps"] > 0)
+        if method is plain:
+            everywhere = np.ones(len(before))
+            assert relative_rms(everywhere, plain.exitance() - before, before) < 2 * SETTLED
+
+
+def test_what_is_corrected_answers_no_pde(body):
+    judge = ChartJudge(body, {("sp3", "buried"): SomeTruth()}, {})
+    for sweeps in (0, 1):
+        method = EngineMethod(sweeps=sweeps)
+        method.prepare(body)
+        assert (judge.errors(method, {})["pde"] is None) == (sweeps > 0)
+
+
+class ToldEngine:
+    """Keeps what it is told."""
+
+    def __init__(self):
+        self.lights, self.solves, self.passes = [], [], []
+
+    def set_lights(self, lights):
+        self.lights += lights
+
+    def solve(self, **options):
+        self.solves.append(options)
+
+    def render(self, **options):
+        pass
+
+
+@pytest.mark.parametrize("motion", [False, True])
+def test_frames_in_motion_follow_others_by_three_degrees_each(motion, monkeypatch):
+    engine = ToldEngine()
+    body = ChartBody(BALL, Path(), Path(), "", 32)
+    monkeypatch.setattr(body, "engine", lambda *_: engine)
+    method = EngineMethod(sweeps=1, motion=motion)
+    for _ in range(2):
+        engine.lights.clear()
+        engine.solves.clear()
+        method.prepare(body)
+        for step in SWING[1:]:
+            method.frame(step)
+    ways = np.array([text.split(":")[1].split(",") for text in engine.lights], float)
+    turns = np.degrees(np.arccos((ways[1:] * ways[:-1]).sum(axis=1)))
+    assert ways[-1] == pytest.approx(BALL.direction)
+    assert [options["motion"] for options in engine.solves] == [False, *[motion] * (len(ways) - 1)]
+    if motion:
+        assert len(ways) > 12
+        assert turns[turns > 0.1] == pytest.approx(3, rel=1e-6)
+    else:
+        assert turns == pytest.approx(STEP_DEGREES, rel=1e-6)
 
 
 class Baked:

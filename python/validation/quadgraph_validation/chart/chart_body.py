@@ -25,9 +25,10 @@ if TYPE_CHECKING:
 
 STEP_DEGREES = 5.0  # by which a parallel light turns from frame to frame
 STEP_SHARE = 0.05  # by which a uniform light dims, which has no direction to turn
+MOTION_DEGREES = 3.0  # by which a light turns for methods in motion, and uniform light dims in proportion
 
 
-def light_at(scene: StudyScene, step: int) -> str:
+def light_at(scene: StudyScene, step: float) -> str:
     """The scene's light as the engine reads it, `step` frames before it has arrived."""
     if scene.direction is None:
         return f"ambient:{1 - STEP_SHARE * step:g}"

@@ -11,7 +11,7 @@ import numpy as np
 
 from quadgraph.baking.budget import surface_errors
 from quadgraph_validation.chart.chart_body import ChartBody
-from quadgraph_validation.chart.chart_method import CHAIN, ChartMethod
+from quadgraph_validation.chart.chart_method import ChartMethod, pde_of
 from quadgraph_validation.truth import blocks
 from quadgraph_validation.truth.pde_truth import PdeTruth
 from quadgraph_validation.truth.stored_truth import StoredTruth
@@ -26,8 +26,7 @@ PdeTruths = Mapping[tuple[str, str], PdeTruth]
 class ChartJudge:
     """One scene's truths: of each PDE, and path-traced by name of Scene.images.
 
-    A PDE truth knows no inter-reflection, and no surface but its own chain's: what follows that light, or lives
-    on another mesh, is judged by transport alone.
+    What no PDE truth can judge is judged by transport alone.
     """
 
     body: ChartBody
@@ -39,12 +38,10 @@ class ChartJudge:
 
         pictures: the method's by view, (PIXELS, PIXELS, 3).
         """
-        settings = method.settings
-        truth = self.pde.get((settings["model"], settings["source"]))
-        if truth is None or settings["inter_reflection"] or settings["bake"] != CHAIN:
-            return {"pde": None, "transport": self._of_pictures(pictures)}
+        equations = pde_of(method.settings)
+        truth = self.pde.get(equations) if equations else None
         return {
-            "pde": truth.error(settings["level"], method.exitance()),
+            "pde": truth.error(method.settings["level"], method.exitance()) if truth else None,
             "transport": self._of_pictures(pictures),
         }
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from quadgraph.base.errors import SolverError, ToolError
 from quadgraph.base.progress import ProgressCallback
-from quadgraph_validation.chart.chart_body import STEP_DEGREES, STEP_SHARE, ChartBody
+from quadgraph_validation.chart.chart_body import MOTION_DEGREES, STEP_DEGREES, STEP_SHARE, ChartBody
 from quadgraph_validation.chart.chart_judge import ChartJudge
 from quadgraph_validation.chart.chart_method import SETTLED, SWING, ChartMethod, bake_settings
 from quadgraph_validation.truth.path_tracing import BATCH
@@ -117,4 +117,5 @@ def _bakes(body: ChartBody, points: Sequence[ChartPoint]) -> list[dict[str, Any]
 def conditions(repeats: int, pixels: int) -> dict[str, Any]:
     """What holds for all points of a scene, for the record."""
     frame = {"pixels": pixels, "light_turns_degrees": STEP_DEGREES, "even_light_dims": STEP_SHARE}
+    frame |= {"light_turns_degrees_in_motion": MOTION_DEGREES}
     return {"repeats": repeats, "settled": SETTLED, "frame": frame}

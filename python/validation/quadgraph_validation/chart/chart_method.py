@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -29,13 +29,23 @@ def bake_settings(choice: Choice | None) -> dict[str, Any]:
     return {"bake": "default" if choice.grading is None else "K", "K": choice.grading}
 
 
+def pde_of(settings: Mapping[str, Any]) -> tuple[str, str] | None:
+    """Model and source of the PDE whose truth can judge a method of these settings, None where there is none.
+
+    A PDE truth knows no inter-reflection, no transport correction, and no surface but its own chain's.
+    """
+    if settings["inter_reflection"] or settings.get("sweeps") or settings["bake"] != CHAIN:
+        return None
+    return settings["model"], settings["source"]
+
+
 class ChartMethod(Protocol):
     """One way to answer a scene; one point of the chart.
 
     family: what it is a setting of, for colour and filter; settings: everything it depends on, ready for JSON, of which
     `model` and `source` name the PDE that it solves, `level` the level whose surface it answers on, `bake` of which
-    chain, with `K` if it is the paper's, `inter_reflection` whether it computes inter-reflection, and `runs_on`
-    what its times are of.
+    chain, with `K` if it is the paper's, `inter_reflection` whether it computes inter-reflection, `runs_on` what its
+    times are of, and `sweeps`, where there are any, how many of the transport equation correct it.
     """
 
     @property

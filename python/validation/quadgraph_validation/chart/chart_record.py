@@ -157,6 +157,8 @@ KINDS = {
 _COLOURS = {
     "fem, SP₃": "#1f77b4",
     "fem, SP₃, inter-reflection": "#0b3c6f",
+    "fem, SP₃, corrected": "#d62ba8",
+    "fem, SP₃, inter-reflection, corrected": "#d62ba8",
     "fem, diffusion": "#2ca02c",
     "fem, diffusion, inter-reflection": "#14591a",
     "fem, diffusion, published source": "#e6953a",

@@ -11,12 +11,10 @@ from quadgraph.base.errors import InputError
 from quadgraph_validation.base.study_folders import COMMITTED_TRUTH
 from quadgraph_validation.bodies import scene_bakes, scene_meshes
 from quadgraph_validation.bodies.scenes import StudyScene
-from quadgraph_validation.chart import (
-    path_method,  # noqa: F401  registers them
-)
+from quadgraph_validation.chart import dipole_method, engine_methods, path_method  # noqa: F401  they register
 from quadgraph_validation.chart.chart_body import ChartBody
 from quadgraph_validation.chart.chart_judge import ChartJudge, PdeTruths
-from quadgraph_validation.chart.chart_method import CHAIN, ChartMethod, methods
+from quadgraph_validation.chart.chart_method import ChartMethod, methods, pde_of
 from quadgraph_validation.truth import pde_truth, truth_run
 from quadgraph_validation.truth.stored_truth import StoredTruth
 
@@ -76,9 +74,7 @@ def _images(scene: StudyScene, where: Folders) -> dict[str, StoredTruth]:
 
 def _pde(scene: StudyScene, where: Folders, chosen: Sequence[ChartMethod]) -> PdeTruths:
     """Truths of the equations that methods solve, in their order."""
-    judged = [method.settings for method in chosen if not method.settings["inter_reflection"]]
-    judged = [settings for settings in judged if settings["bake"] == CHAIN]
-    equations = dict.fromkeys((settings["model"], settings["source"]) for settings in judged)
+    judged = dict.fromkeys(equations for method in chosen if (equations := pde_of(method.settings)))
     return {
-        (model, source): pde_truth.stored(scene, model, where.meshes, where.pde, source) for model, source in equations
+        (model, source): pde_truth.stored(scene, model, where.meshes, where.pde, source) for model, source in judged
     }

@@ -1,4 +1,4 @@
-"""The engine's methods on the chart: discretisations, models, sources, solvers, levels, budgets of cycles."""
+"""The engine's methods on the chart: discretisations, models, sources, solvers, levels, cycles, corrections."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from quadgraph.base.pass_report import ms_by_pass
 from quadgraph_validation.bodies.scene_bakes import Choice
 from quadgraph_validation.bodies.scenes import FOV, PIXELS
-from quadgraph_validation.chart.chart_body import ChartBody, light_at
+from quadgraph_validation.chart.chart_body import MOTION_DEGREES, STEP_DEGREES, ChartBody, light_at
 from quadgraph_validation.chart.chart_method import (
     SETTLED,
     SWING,
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 _MODELS = {"diffusion": "diffusion", "sp3": "SP₃"}
 _MOST_ITERATIONS = 100_000
+_MOTION_FRAMES = 16  # in motion before those that are timed: what they know comes from such frames, not from rest
 _FINEST_PUBLISHED = 3  # levels on which the methods that do not converge with refinement are shown
 
 
@@ -34,7 +35,9 @@ _FINEST_PUBLISHED = 3  # levels on which the methods that do not converge with r
 class EngineMethod(PreparedMethod):
     """A way to solve and show, in the words of Engine.solve.
 
-    cycles: 0 for as many as SETTLED takes; choice: how the body is baked, None for the chain that the PDE truth knows.
+    cycles: 0 for as many as SETTLED takes; sweeps: of the transport equation that correct the solution; motion: frames
+    are solved as the window does while something changes, with one cycle and, where they are corrected, one sweep of
+    few samples; choice: how the body is baked, None for the chain that the PDE truth knows.
     """
 
     method: str = "fem"
@@ -46,22 +49,25 @@ class EngineMethod(PreparedMethod):
     radiance: str = "gathered"
     cycles: int = 0
     active_layers: int = 0
+    sweeps: int = 0
+    motion: bool = False
     choice: Choice | None = None
 
     @property
     def family(self) -> str:
-        """Discretisation, model and source, and whether inter-reflection is computed."""
+        """Discretisation, model and source, and whether inter-reflection is computed and the solution corrected."""
         if self.method in ("quadgraph-fdm", "polygrid"):
             return f"{self.method}, as published"
         if self.source == "diffuse":
             return f"{self.method}, {_MODELS[self.model]}, published source"
-        return f"{self.method}, {_MODELS[self.model]}" + (", inter-reflection" if self.inter_reflection else "")
+        more = [", inter-reflection"] * self.inter_reflection + [", corrected"] * (self.sweeps > 0)
+        return "".join([f"{self.method}, {_MODELS[self.model]}", *more])
 
     @property
     def name(self) -> str:
         """Family, level, and what is not usual."""
         parts = [self.family, *self._bake_words, f"level {self.level}", self.solver]
-        parts += [f"{self.cycles} cycle{'s' if self.cycles > 1 else ''} a frame"] if self.cycles else []
+        parts += ["in motion"] if self.motion else self._work_words
         parts += [f"{self.active_layers} layers"] if self.active_layers else []
         parts += ["Lambertian"] if self.radiance == "lambertian" and self._can_gather else []
         parts += ["single scattering"] if self.radiance == "single" else []
@@ -75,18 +81,20 @@ class EngineMethod(PreparedMethod):
         return told | bake_settings(self.choice) | {"tolerance": None if self.cycles else SETTLED, "runs_on": "device"}
 
     def prepare(self, body: ChartBody) -> None:
-        """Solve for the light two frames ago."""
+        """Solve for the light of some frames ago, and draw those before the ones that are timed."""
         first, self._given = self._given is not body, body
-        self._engine.set_lights([light_at(body.scene, SWING[0])])
+        before = _MOTION_FRAMES if self.motion else int(first)  # a first frame compiles shaders and makes room
+        steps = range(SWING[0], SWING[0] + before)
+        self._set_light(max(steps, default=SWING[0]))
         quickest = {"fem": "fmg-pcg", "polygrid": "cascade", "polygrid-divergence": "cascade"}.get(self.method, "dpcg")
-        self._engine.solve(**self._options | {"solver": quickest, "tolerance": SETTLED, "cycles": 0, "bounces": 0})
-        if first:
-            # A first frame compiles shaders and makes room.
-            self.frame(SWING[0])
+        settled = {"solver": quickest, "tolerance": SETTLED, "cycles": 0, "bounces": 0, "motion": False}
+        self._engine.solve(**self._options | settled)
+        for step in reversed(steps):
+            self.frame(step)
 
     def frame(self, step: int) -> dict[str, float]:
-        """Light, source walk, warm solve, exitance, picture."""
-        self._engine.set_lights([light_at(self._body.scene, step)])
+        """Light, source walk, solve, correction, exitance, picture."""
+        self._set_light(step)
         self._engine.solve(**self._options)
         self._show(next(iter(self._body.scene.views.values())).text, self._body.pixels)
         return ms_by_pass(self._engine.passes)
@@ -110,6 +118,11 @@ class EngineMethod(PreparedMethod):
         return ["default bake" if self.choice.grading is None else f"K = {self.choice.grading:g}"]
 
     @property
+    def _work_words(self) -> list[str]:
+        cycles = [f"{_counted(self.cycles, 'cycle')} a frame"] if self.cycles else []
+        return cycles + ([_counted(self.sweeps, "sweep")] if self.sweeps else [])
+
+    @property
     def _can_gather(self) -> bool:
         return self.method in ("fem", "polygrid", "polygrid-divergence") and self.source == "buried"
 
@@ -119,14 +132,24 @@ class EngineMethod(PreparedMethod):
 
     @property
     def _options(self) -> dict[str, Any]:
-        names = ("method", "model", "source", "solver", "inter_reflection", "cycles", "active_layers")
+        names = ("method", "model", "source", "solver", "inter_reflection", "cycles", "active_layers", "sweeps")
         bounces = 1 if self.inter_reflection and self.cycles else 0
-        options = {"tolerance": SETTLED, "max_iterations": _MOST_ITERATIONS, "warm": True, "bounces": bounces}
+        options = {"tolerance": SETTLED, "max_iterations": _MOST_ITERATIONS, "bounces": bounces, "motion": self.motion}
+        # A warm solve is corrected by the few samples of a frame in motion, however many sweeps are asked for.
+        options |= {"correction": self.sweeps > 0, "warm": self.sweeps == 0}
         return {name: getattr(self, name) for name in names} | options
+
+    def _set_light(self, step: int) -> None:
+        share = MOTION_DEGREES / STEP_DEGREES if self.motion else 1.0
+        self._engine.set_lights([light_at(self._body.scene, share * step)])
 
     def _show(self, view: str, pixels: int) -> Any:
         radiance = self.radiance if self._can_gather or self.radiance == "single" else "lambertian"
         return self._engine.render(view=view, vertical_fov=FOV, width=pixels, height=pixels, radiance=radiance)
+
+
+def _counted(number: int, what: str) -> str:
+    return f"{number} {what}{'s' if number > 1 else ''}"
 
 
 @register
@@ -144,6 +167,8 @@ def engine_methods(chain: MethodChain) -> Iterator[ChartMethod]:
         yield replace(default, radiance="lambertian")
         yield replace(default, solver="dpcg")
         yield from (replace(default, method="quadgraph-fv", solver="dpcg", level=level) for level in levels[:2])
+    corrected = EngineMethod(inter_reflection=chain.seen is not None, sweeps=1)
+    yield from (corrected, replace(corrected, sweeps=2), replace(corrected, cycles=1, motion=True))
     diffusion = EngineMethod(model="diffusion")
     yield from (replace(diffusion, solver=solver) for solver in ("vcycle", "cascade", "jacobi"))
     published = replace(diffusion, source="diffuse")
