@@ -45,8 +45,8 @@ ErrorEstimate relative(const glm::vec2& square, const glm::vec2& size) {
   return {root(square.x, size.x), root(square.y, size.y)};
 }
 
-// Of what a sweep has changed, the share that all further ones would: the first leaves a smaller one than the others, but
-// of light that meets the body again it knows little more than the solve.
+// Of what a sweep has changed, the share that all further ones would: the first leaves a smaller one than the others,
+// but of light that meets the body again it knows little more than the solve.
 constexpr double left_by_first = 0.13, left_by_next = 0.3;
 
 // Of the solver's error the same. Of the mesh's the share that is left, and what no two levels tell apart: the light

@@ -126,7 +126,8 @@ void TransportSamples::record_start(const TransportParts& parts, const WalkTask&
                                           .all = parts.walk.deposit(Method::fem).address(),
                                           .count = parts.level.vertex_count};
   work.recorder.dispatch(work.passes.of(shader::transport_fluence, op.model), fluence, parts.level.vertex_count,
-                         "transport start", parts.level.vertex_count * (op.field_bytes() + 2 * vec3_bytes + 2 * sum_bytes));
+                         "transport start",
+                         parts.level.vertex_count * (op.field_bytes() + 2 * vec3_bytes + 2 * sum_bytes));
   record_weights(parts);
 }
 
@@ -293,15 +294,15 @@ void TransportSamples::record_totals(const TransportParts& parts) {
   Workspace& work = parts.work;
   const LevelBuffers& level = parts.level;
   gpu::TransportTotalsPush totals{.vertices = level.vertices.address(),
-                                        .tets = level.tets.address(),
-                                        .optical = level.optical.address(),
-                                        .fluence = fluence_.address(),
-                                        .source = source_before_.address(),
-                                        .books = books_.address(),
-                                        .reduction = work.reduction.address(),
-                                        .count = level.tet_count,
-                                        .even = level.even ? 1u : 0u,
-                                        .lost = 0};
+                                  .tets = level.tets.address(),
+                                  .optical = level.optical.address(),
+                                  .fluence = fluence_.address(),
+                                  .source = source_before_.address(),
+                                  .books = books_.address(),
+                                  .reduction = work.reduction.address(),
+                                  .count = level.tet_count,
+                                  .even = level.even ? 1u : 0u,
+                                  .lost = 0};
   for (; totals.lost < 2; ++totals.lost) {
     work.recorder.dispatch(work.passes.of(shader::transport_totals), totals, level.tet_count, "transport books",
                            source_before_.size() + level.tet_count * (sizeof(glm::uvec4) + 8 * vec3_bytes));

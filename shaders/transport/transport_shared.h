@@ -18,7 +18,7 @@ const uint TRANSPORT_HALVES = 2u;
 const float TRANSPORT_FLOOR = 0.03f;
 
 // A ray that keeps less than this goes on by chance, with this weight.
-const float TRANSPORT_ROULETTE = 0.1f;
+const float TRANSPORT_ROULETTE = 0.05f;
 
 // Parts of the body that a ray can meet in the air, one after the other, before it is given up.
 const uint TRANSPORT_MEETINGS = 8u;
@@ -61,15 +61,15 @@ struct TransportFieldRef {
 
 // Where the power of a sweep goes, W, scaled.
 struct TransportBook {
-  vec3 first, absorbed;       // of the field: scattered for the first time, and absorbed of its fluence
-  vec3 lost;                  // of its fluence by extinction
-  vec3 leaving_a, leaving_b;  // transport_leaving.comp, of each half
-  vec3 sum_a, sum_b;          // of all that points are to find, of each half
-  vec3 known_a, known_b;      // that of the sweep before
+  vec3 first, absorbed;          // of the field: scattered for the first time, and absorbed of its fluence
+  vec3 lost;                     // of its fluence by extinction
+  vec3 leaving_a, leaving_b;     // transport_leaving.comp, of each half
+  vec3 sum_a, sum_b;             // of all that points are to find, of each half
+  vec3 known_a, known_b;         // that of the sweep before
   vec3 known_left, known_again;  // the same of `left` and `again`
-  vec3 missing_a, missing_b;  // in what the points found, as a share of what is lost
-  vec3 left, again;           // gathered of both halves together, and what of that enters again
-  vec3 gain;                  // of what a solve adds: what of that leaves enters again, and so on
+  vec3 missing_a, missing_b;     // in what the points found, as a share of what is lost
+  vec3 left, again;              // gathered of both halves together, and what of that enters again
+  vec3 gain;                     // of what a solve adds: what of that leaves enters again, and so on
 };
 
 // Area-weighted squares over the whole surface (x) and over its unlit part (y), channels together.
