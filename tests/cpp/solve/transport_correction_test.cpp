@@ -5,7 +5,10 @@
 #include <tuple>
 
 #include "engine/base/error.h"
+#include "engine/devices/open_device.h"
+#include "tests/cpp/fixtures/exchange_fixtures.h"
 #include "tests/cpp/fixtures/solved_body.h"
+#include "tests/cpp/fixtures/test_device.h"
 
 using namespace quadgraph;
 
@@ -186,6 +189,30 @@ TEST_CASE("in motion the correction follows the light, the material and the shap
       scene.simulation.set_vertices(i, vertices);
     }
   }));
+}
+
+TEST_CASE("power is kept where a part of it meets the body again, and what returns adds to what leaves") {
+  OwnedLevel slabs = facing_slabs(4, 10.0f, 2.0f, 2.0f);
+  bake_seen(slabs, 64);
+  SolvedBody body(open_device(test_device()), graph_of(std::vector{slabs}));
+  body.simulation.set_material(homogeneous());
+  body.light();
+  const auto solve = [&](bool returning, std::uint32_t sweeps) {
+    SolveOptions options = swept(sweeps);
+    options.inter_reflection = returning;
+    const SolveReport report = body.simulation.solve(options);
+    CHECK(worst(report.energy.balance()) < 0.005);
+    CHECK((report.correction->returns > 0.02) == returning);
+    return report.energy;
+  };
+  const Energy alone = solve(false, 2);
+  CHECK(alone.re_entered == glm::dvec3(0));
+  for (const std::uint32_t sweeps : {1u, 3u}) {
+    const Energy energy = solve(true, sweeps);
+    CHECK(glm::all(glm::greaterThan(energy.re_entered, 0.02 * energy.entered)));
+    CHECK(glm::all(glm::greaterThan(energy.scattered_out, alone.scattered_out)));
+    CHECK(glm::all(glm::lessThan(energy.scattered_out - alone.scattered_out, energy.re_entered)));
+  }
 }
 
 TEST_CASE("points are drawn until they leave the noise that is wanted, and the change that is found stays") {

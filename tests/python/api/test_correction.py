@@ -1,0 +1,90 @@
+"""The transport correction as callers ask for it: by default, or not, or in motion, and what of it is refused."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import quadgraph
+from baked import write_levels
+from quadgraph import cli
+from quadgraph.base.errors import InputError
+from shapes import icosphere
+
+MATERIAL, SUN = "ketchup", "directional:0,0,-1:1"
+
+
+@pytest.fixture(scope="module")
+def ball(tmp_path_factory) -> Path:
+    return write_levels(tmp_path_factory.mktemp("ball") / "ball.qgraph", [icosphere(3, 10), icosphere(2, 10)])
+
+
+@pytest.fixture
+def engine(ball):
+    with quadgraph.Engine(ball) as made:
+        made.material, made.lights = MATERIAL, [SUN]
+        yield made
+
+
+def test_scenes_commands_and_engines_are_corrected_unless_they_say_no(ball, engine, tmp_path):
+    asked = {"corrected": [], "plain": ["--no-correction"]}
+    fields = {}
+    for name, options in asked.items():
+        path = tmp_path / f"{name}.npz"
+        scene = ["solve", str(ball), "--material", MATERIAL, "--light", SUN, *options, "--field", str(path)]
+        assert cli.main([*scene, "--json", str(tmp_path / f"{name}.json")]) == 0
+        fields[name] = np.load(path)["exitance"]
+        assert bool(json.loads((tmp_path / f"{name}.json").read_text())["correction"]) == (name == "corrected")
+    assert engine.solve().correction is not None
+    assert np.array_equal(engine.surface().exitance, fields["corrected"])
+    assert engine.solve(correction=False).correction is None
+    assert np.array_equal(engine.surface().exitance, fields["plain"])
+
+
+def test_the_error_is_the_sum_of_its_parts_and_larger_where_nothing_corrects(engine):
+    corrected = engine.solve()
+    parts = (corrected.mesh_error, corrected.algebraic, corrected.model_error)
+    for name in ("whole", "unlit"):
+        whole = np.sqrt(sum(getattr(part, name) ** 2 for part in parts))
+        assert getattr(corrected.error, name) == pytest.approx(whole, rel=1e-6)
+    plain = engine.solve(correction=False)
+    assert plain.model_error is None
+
+
+def test_sweeps_without_a_correction_are_refused(engine):
+    with pytest.raises(InputError, match="sweeps"):
+        engine.solve(correction=False, sweeps=2)
+
+
+def test_frames_in_motion_stay_beside_what_a_solve_at_rest_finds(engine):
+    engine.solve()
+    for turn in np.radians(np.arange(1, 21) * 3):
+        engine.lights = [f"directional:{np.sin(turn)},0,{-np.cos(turn)}:1"]
+        moving = engine.solve(motion=True)
+    assert len(moving.correction.sweeps) == 1
+    frame = engine.surface()
+    engine.solve(sweeps=3)
+    rest = engine.surface()
+    ends = [np.average(field.exitance, axis=0, weights=field.area) for field in (frame, rest)]
+    assert np.allclose(*ends, rtol=0.01)
+
+
+def test_a_solve_ends_where_ctrl_c_is_pressed_and_the_next_one_is_whole(engine):
+    engine.solve()
+    before = engine.surface().exitance
+    threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+    start = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        while time.monotonic() < start + 60:
+            engine.solve(sweeps=100)
+    with pytest.raises(InputError):
+        engine.surface()
+    engine.solve()
+    assert np.array_equal(engine.surface().exitance, before)
