@@ -29,9 +29,10 @@ constexpr ErrorEstimate error_wanted{0.008, 0.016};
 constexpr double share_of_error = 0.6;
 constexpr std::uint32_t most_sweeps = 4;
 
-// Directions per point, and rays per face and half; draws of points at most.
+// Directions per point, and rays per face and half; draws of points at most, or more while all of them cross fewer
+// tets.
 constexpr std::uint32_t rest_directions = 16, rest_rays = 8, motion_directions = 8, motion_rays = 1;
-constexpr double most_draws = 16;
+constexpr double most_draws = 16, most_segments = 1e8;
 
 // Of what is known from the frames before, the least that the newest has a say in; frames that a solve at rest is
 // worth.
@@ -246,6 +247,7 @@ void TransportCorrection::draw(const CorrectionParts& parts, const Sampling& sam
   samples_.record_books(parts.transport, 1.0f / static_cast<float>(draws_), known);
   for (std::uint32_t half = 0; half < halves; ++half) solve(parts, half, known);
   record_change(parts);
+  samples_.record_segments(parts.transport);
   parts.transport.work.recorder.submit();
 }
 
@@ -258,10 +260,12 @@ CorrectedSweep TransportCorrection::sweep(const CorrectionParts& parts, const Sa
   draws_ = 0;
   draw(parts, sampling, 1, shares.known);
   const std::span<const gpu::TransportChange> found = statistics_on_host_.mapped_as<gpu::TransportChange>();
-  const ErrorEstimate noise = relative(found[1].noise, found[1].size);
-  const double draws =
-      std::min(std::ceil(excess_of(noise, sampling.noise_before, sampling.noise_wanted)), sampling.most_draws);
-  if (draws > 1) draw(parts, sampling, static_cast<std::uint32_t>(draws) - 1, shares.known);
+  for (double most = sampling.most_draws; draws_ < most; most = draws_ * most_segments / samples_.segments()) {
+    const ErrorEstimate noise = relative(found[1].noise, found[1].size);
+    const double all = draws_ * excess_of(noise, sampling.noise_before, sampling.noise_wanted);
+    if (all <= draws_) break;
+    draw(parts, sampling, static_cast<std::uint32_t>(std::ceil(std::min(all, most))) - draws_, shares.known);
+  }
   solves_noise_ = relative(found[1].noise, found[1].size);
   record_faces(parts);
   samples_.record_step(parts.transport, right_side_, change_);

@@ -363,10 +363,14 @@ void TransportSamples::record_step(const TransportParts& parts, const std::array
   work.recorder.dispatch(work.passes.of(shader::transport_step), step, count, "transport step", 5 * count * vec3_bytes);
 }
 
+void TransportSamples::record_segments(const TransportParts& parts) {
+  parts.work.recorder.copy(segments_, segments_on_host_, segments_.size());
+}
+
 void TransportSamples::record_state(const TransportParts& parts) {
   parts.work.recorder.copy(parts.work.scale, unit_, unit_.size());
   record_optical(parts);
-  parts.work.recorder.copy(segments_, segments_on_host_, segments_.size());
+  record_segments(parts);
   parts.work.recorder.copy(walk_sums_, walk_sums_on_host_, walk_sums_.size());
   parts.work.recorder.copy(books_, books_on_host_, books_.size());
 }

@@ -63,6 +63,9 @@ class TransportSamples {
   void record_no_load(const TransportParts& parts);
   void record_draw(const TransportParts& parts, std::uint32_t directions);
 
+  // Segments so far, to be read after the next submission.
+  void record_segments(const TransportParts& parts);
+
   // To be read by `segments`, `power` and `returns` after the next submission.
   void record_state(const TransportParts& parts);
   double segments() const;
