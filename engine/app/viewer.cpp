@@ -279,6 +279,7 @@ void Viewer::solve(bool settle) {
   const SolveOptions options = options_of_solve(settle);
   const Clock::time_point start = Clock::now();
   measured_.solve = stage_.solve(options);
+  engine_.interrupt_with({});  // pictures that solve too come to their end
   if (!settle) pace_.solved(milliseconds(Clock::now() - start), options.correction);
   solved_ = true;
   solved_exactly_ = settle;

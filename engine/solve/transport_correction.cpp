@@ -29,10 +29,10 @@ constexpr ErrorEstimate error_wanted{0.008, 0.016};
 constexpr double share_of_error = 0.6;
 constexpr std::uint32_t most_sweeps = 4;
 
-// Directions per point, and rays per face and half; draws of points at most, or more while all of them cross fewer
-// tets.
+// Directions per point, and rays per face and half; draws of points at most, or more while all of them cross so many
+// segments for each tet.
 constexpr std::uint32_t rest_directions = 16, rest_rays = 8, motion_directions = 8, motion_rays = 1;
-constexpr double most_draws = 16, most_segments = 1e8;
+constexpr double most_draws = 16, segments_per_tet = 400;
 
 // Of what is known from the frames before, the least that the newest has a say in; frames that a solve at rest is
 // worth.
@@ -260,7 +260,8 @@ CorrectedSweep TransportCorrection::sweep(const CorrectionParts& parts, const Sa
   draws_ = 0;
   draw(parts, sampling, 1, shares.known);
   const std::span<const gpu::TransportChange> found = statistics_on_host_.mapped_as<gpu::TransportChange>();
-  for (double most = sampling.most_draws; draws_ < most; most = draws_ * most_segments / samples_.segments()) {
+  const double segments = segments_per_tet * parts.transport.level.tet_count;
+  for (double most = sampling.most_draws; draws_ < most; most = draws_ * segments / samples_.segments()) {
     const ErrorEstimate noise = relative(found[1].noise, found[1].size);
     const double all = draws_ * excess_of(noise, sampling.noise_before, sampling.noise_wanted);
     if (all <= draws_) break;
