@@ -71,8 +71,7 @@ def error_text(report: dict) -> str:
     if report["error"] is None:
         return f"error: of the mesh not estimated (a single level); {parts[0]} (estimate)"
     if report["mesh_error"]:
-        before = " before the correction" if report["correction"] else ""
-        parts.insert(0, f"mesh {two_parts(report['mesh_error'])}{before}")
+        parts.insert(0, f"mesh {two_parts(report['mesh_error'])}")
     if not report["correction"]:
         return f"error: {two_parts(report['error'])} (estimate, without that of the model): {'; '.join(parts)}"
     parts.append(f"model {two_parts(report['model_error'])}, after {correction_text(report['correction'])}")

@@ -6,7 +6,6 @@ import json
 import os
 import signal
 import threading
-import time
 from pathlib import Path
 
 import numpy as np
@@ -80,10 +79,8 @@ def test_a_solve_ends_where_ctrl_c_is_pressed_and_the_next_one_is_whole(engine):
     engine.solve()
     before = engine.surface().exitance
     threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
-    start = time.monotonic()
     with pytest.raises(KeyboardInterrupt):
-        while time.monotonic() < start + 60:
-            engine.solve(sweeps=100)
+        engine.solve(sweeps=100)
     with pytest.raises(InputError):
         engine.surface()
     engine.solve()

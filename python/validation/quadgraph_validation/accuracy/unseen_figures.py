@@ -12,12 +12,13 @@ from quadgraph_validation.base.pyplot import load_pyplot
 _COLOURS = ("#1f77b4", "#c44e52", "#e6953a", "#55a868", "#8172b3")  # of solves, in their order
 _MARKERS = {"directional": "o", "point": "^", "rectangle": "s", "spot": "D", "environment": "*"}
 _LEAST = 1e-3  # an error below it is drawn here
+_TICKS = [digit * 10.0**power for power in (-3, -2, -1) for digit in (1, 2, 5)]
 
 
 def write(path: Path, record: dict[str, Any]) -> None:
     """Draw a panel for the whole and one for the unlit part. Raises InputError without matplotlib."""
     pyplot = load_pyplot("walks")
-    figure = pyplot.figure(figsize=(11, 5.6), layout="constrained")
+    figure = pyplot.figure(figsize=(11, 6.2), layout="constrained")
     for axis, part in zip(figure.subplots(1, 2), ("whole", "unlit"), strict=True):
         _panel(axis, record["rows"], part)
     _legend(figure, record["rows"])
@@ -45,7 +46,10 @@ def _panel(axis: Any, rows: list[dict[str, Any]], part: str) -> None:
     axis.set(xscale="log", yscale="log", xlim=ends, ylim=ends, aspect="equal", title=part)
     axis.set(xlabel="true error", ylabel="printed error")
     for one in (axis.xaxis, axis.yaxis):
+        one.set_ticks(_TICKS, minor=False)
+        one.set_ticks([], minor=True)
         one.set_major_formatter(lambda error, _: f"{100 * error:g}%")
+    axis.set(xlim=ends, ylim=ends)
     axis.grid(alpha=0.22)
     for side in ("top", "right"):
         axis.spines[side].set_visible(False)
