@@ -117,7 +117,8 @@ class Changes:
 def scene_of_a_sphere(folder: Path) -> Path:
     """A scene file beside its body."""
     write_levels(folder / "sphere.qgraph", [icosphere(2, 10), icosphere(1, 10)])
-    scene = {"body": "sphere.qgraph", "material": "marble", "picture": {"width": 24, "height": 24}}
+    few = {"sweeps": 1, "sweep_points": 500}
+    scene = {"body": "sphere.qgraph", "material": "marble", "picture": {"width": 24, "height": 24}, "solver": few}
     (folder / "scene.json").write_text(json.dumps(scene))
     return folder / "scene.json"
 
