@@ -18,15 +18,15 @@ constexpr float shares[] = {1.0f, 0.75f, 0.5f, 0.375f};
 
 }  // namespace
 
-void Pace::took(double solve_ms, double draw_ms, double pixels, bool gathered) {
-  if (solve_ms > 0) solve_ms_ = mixed(solve_ms_, solve_ms);
-  double& draw_ns = draw_ns_[gathered ? 1 : 0];
-  if (pixels > 0) draw_ns = mixed(draw_ns, 1e6 * draw_ms / pixels);
-}
-
 void Pace::solved(double solve_ms, bool corrected) {
+  solve_ms_ = mixed(solve_ms_, solve_ms);
   double& known_ms = corrected ? corrected_ms_ : plain_ms_;
   known_ms = mixed(known_ms, solve_ms);
+}
+
+void Pace::drawn(double draw_ms, double pixels, bool gathered) {
+  double& draw_ns = draw_ns_[gathered ? 1 : 0];
+  if (pixels > 0) draw_ns = mixed(draw_ns, 1e6 * draw_ms / pixels);
 }
 
 bool Pace::corrects() const {

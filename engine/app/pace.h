@@ -10,11 +10,11 @@ class Pace {
   // `budget_ms` for a picture in motion, light and solve included.
   explicit Pace(double budget_ms) : budget_ms_(budget_ms) {}
 
-  // What a picture took: light and solve, and drawing so many pixels with or without gathering.
-  void took(double solve_ms, double draw_ms, double pixels, bool gathered);
-
-  // What the solve of a picture in motion took, with or without the transport correction.
+  // What light and solve of a picture in motion took, with or without the transport correction.
   void solved(double solve_ms, bool corrected);
+
+  // What drawing so many pixels took, with or without gathering.
+  void drawn(double draw_ms, double pixels, bool gathered);
 
   // Whether there is time for the correction, as measured, or as far as a solve without lets expect.
   bool corrects() const;

@@ -258,6 +258,7 @@ void Viewer::remake(bool settle) {
     solve(settle);
   }
   const Clock::time_point solved = Clock::now();
+  if (solving && !settle) pace_.solved(milliseconds(solved - start), measured_.solve.correction.has_value());
   const Part now = part();
   const double pixels = double(now.width) * now.height;
   measured_.share = settle ? 1 : pace_.share(pixels, solving);
@@ -265,22 +266,17 @@ void Viewer::remake(bool settle) {
   shown_ = scene;
   shown_part_ = now;
   measured_.settled = settle;
-  measure(start, solving ? milliseconds(solved - start) : 0, milliseconds(Clock::now() - solved),
-          settle || pace_.gathers(solving));
+  measure(start, milliseconds(Clock::now() - solved), settle || pace_.gathers(solving));
 }
 
 // A solve that settles ends, by throwing Interrupted, where the user does something.
 void Viewer::solve(bool settle) {
-  engine_.interrupt_with(settle ? [this] {
+  const auto check = [this] {
     window_.poll(0);
     if (window_.wanted()) throw Interrupted();
-  } : std::function<void()>());
+  };
   solved_ = false;
-  const SolveOptions options = options_of_solve(settle);
-  const Clock::time_point start = Clock::now();
-  measured_.solve = stage_.solve(options);
-  engine_.interrupt_with({});  // pictures that solve too come to their end
-  if (!settle) pace_.solved(milliseconds(Clock::now() - start), options.correction);
+  measured_.solve = stage_.solve(options_of_solve(settle), settle ? check : std::function<void()>());
   solved_ = true;
   solved_exactly_ = settle;
 }
@@ -312,10 +308,10 @@ void Viewer::show(const device::Buffer& pixels) {
   pixels_ = &presented_;
 }
 
-void Viewer::measure(Clock::time_point start, double solve_ms, double draw_ms, bool gathered) {
+void Viewer::measure(Clock::time_point start, double draw_ms, bool gathered) {
   const Clock::time_point now = Clock::now();
   const double side = static_cast<double>(measured_.share);
-  pace_.took(solve_ms, draw_ms, side * side * double(shown_part_.width) * shown_part_.height, gathered);
+  pace_.drawn(draw_ms, side * side * double(shown_part_.width) * shown_part_.height, gathered);
   measured_.frame_ms = milliseconds(now - start);
   pictures_.push_back(now);
   std::erase_if(pictures_, [&](const auto& time) { return milliseconds(now - time) > 1000; });

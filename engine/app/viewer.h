@@ -56,7 +56,7 @@ class Viewer {
   SolveOptions options_of_solve(bool settle) const;
   void make_picture(bool settle, bool gather);
   void show(const device::Buffer& pixels);
-  void measure(Clock::time_point start, double solve_ms, double draw_ms, bool gathered);
+  void measure(Clock::time_point start, double draw_ms, bool gathered);
   void save_scene();
   void present();
   void write_picture();

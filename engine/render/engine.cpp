@@ -198,11 +198,7 @@ void Engine::make_room(const SolveOptions& options) {
   if (gathered) self.display_room();
 }
 
-void Engine::interrupt_with(std::function<void()> check) {
-  if (implementation_->simulation) implementation_->simulation->interrupt_with(std::move(check));
-}
-
-SolveReport Engine::solve(const SolveOptions& options) {
+SolveReport Engine::solve(const SolveOptions& options, const std::function<void()>& check) {
   auto& self = *implementation_;
   const bool by_path = options.method == Method::shortest_path;
   if (!self.cut_tools.empty() && !by_path) throw InputError("cuts: only the method shortest-path knows them");
@@ -212,7 +208,7 @@ SolveReport Engine::solve(const SolveOptions& options) {
   if (self.deformed && self.simulation) self.deformation_passes = self.simulation->deformation_passes();
   self.deformed = false;
   self.report.reset();
-  self.report = by_path ? self.solve_paths(options) : self.levels().solve(options);
+  self.report = by_path ? self.solve_paths(options) : self.levels().solve(options, check);
   self.options = options;
   return *self.report;
 }

@@ -134,10 +134,7 @@ class Engine {
   void make_room(const SolveOptions& options = {});
 
   // Calls update_irradiance if lights or material changed since, then solves. Throws as Simulation::solve.
-  SolveReport solve(const SolveOptions& options = {});
-
-  // As Simulation::interrupt_with.
-  void interrupt_with(std::function<void()> check);
+  SolveReport solve(const SolveOptions& options = {}, const std::function<void()>& check = {});
 
   // Level 0 of the last solve. Throws InputError after one by shortest-path.
   SurfaceField surface_field() const;

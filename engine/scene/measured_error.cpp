@@ -172,9 +172,9 @@ MeasuredOptions with_measured(const SolveOptions& options, const std::string& me
   }
 }
 
-SolveReport solve_measured(Engine& engine, const SolveOptions& options) {
+SolveReport solve_measured(Engine& engine, const SolveOptions& options, const std::function<void()>& check) {
   const MeasuredOptions measured = with_measured(options, engine.graph().metadata(), engine.present_scene());
-  SolveReport report = engine.solve(measured.options);
+  SolveReport report = engine.solve(measured.options, check);
   report.budget = measured.sentence;
   return report;
 }

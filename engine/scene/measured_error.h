@@ -2,6 +2,7 @@
 // what a solve of that file takes from it instead of estimating its error.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "engine/render/engine.h"
@@ -25,6 +26,6 @@ struct MeasuredOptions {
 MeasuredOptions with_measured(const SolveOptions& options, const std::string& metadata, const PresentScene& scene);
 
 // Engine::solve with these options; SolveReport::budget has the sentence. Throws as Engine::solve and with_measured.
-SolveReport solve_measured(Engine& engine, const SolveOptions& options);
+SolveReport solve_measured(Engine& engine, const SolveOptions& options, const std::function<void()>& check = {});
 
 }  // namespace quadgraph

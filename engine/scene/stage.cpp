@@ -38,12 +38,12 @@ void Stage::show(const Scene& scene) {
   scene_ = scene;
 }
 
-SolveReport Stage::solve() {
-  return solve(scene_.solve);
+SolveReport Stage::solve(const std::function<void()>& check) {
+  return solve(scene_.solve, check);
 }
 
-SolveReport Stage::solve(const SolveOptions& options) {
-  return solve_measured(engine(), options);
+SolveReport Stage::solve(const SolveOptions& options, const std::function<void()>& check) {
+  return solve_measured(engine(), options, check);
 }
 
 Picture Stage::render() {

@@ -1,6 +1,7 @@
 // An engine that shows a scene.
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "engine/scene/scene.h"
@@ -19,8 +20,8 @@ class Stage {
 
   // Solve and render the scene that is shown, with its own options or others; see solve_measured and Engine::render.
   // Throw InputError before a scene was shown.
-  SolveReport solve();
-  SolveReport solve(const SolveOptions& options);
+  SolveReport solve(const std::function<void()>& check = {});
+  SolveReport solve(const SolveOptions& options, const std::function<void()>& check = {});
   Picture render();
   Engine& engine();
   const Scene& scene() const { return scene_; }

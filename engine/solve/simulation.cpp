@@ -91,12 +91,8 @@ void Simulation::make_room(const SolveOptions& options, bool gather) {
   if (gather) implementation_->gather_room();
 }
 
-SolveReport Simulation::solve(const SolveOptions& options) {
-  return implementation_->solve(options);
-}
-
-void Simulation::interrupt_with(std::function<void()> check) {
-  implementation_->interruption = std::move(check);
+SolveReport Simulation::solve(const SolveOptions& options, const std::function<void()>& check) {
+  return implementation_->solve(options, check);
 }
 
 const std::vector<PassStats>& Simulation::passes() const {

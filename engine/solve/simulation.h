@@ -102,11 +102,9 @@ class Simulation {
   void make_room(const SolveOptions& options, bool gather);
 
   // Solves for the present coefficients and light, all levels. Throws InputError before they are set, SolverError when
-  // conjugate gradients break down or a value is not finite.
-  SolveReport solve(const SolveOptions& options);
-
-  // `check` is called now and then while a solve takes long; what it throws ends that solve, and there is no solution.
-  void interrupt_with(std::function<void()> check);
+  // conjugate gradients break down or a value is not finite. `check` is called now and then while a correction at rest
+  // takes long; what it throws ends the solve, and there is no solution.
+  SolveReport solve(const SolveOptions& options, const std::function<void()>& check = {});
 
   // Passes of the last solve.
   const std::vector<PassStats>& passes() const;

@@ -54,7 +54,6 @@ struct Simulation::Implementation {
   Source solved_source = Source::buried;
   std::map<Model, std::vector<Resolution>> resolution;  // per level, of the present material and shape
   SolverChoice quicker;
-  std::function<void()> interruption;
 
   Implementation(device::Device& context_in, const QuadGraph& graph_in)
       : device(context_in),
@@ -152,7 +151,7 @@ struct Simulation::Implementation {
     forget_shape();
   }
 
-  SolveReport solve(const SolveOptions& options) {
+  SolveReport solve(const SolveOptions& options, const std::function<void()>& check) {
     check_options(options);
     solved.reset();
     work.recorder.clear();
@@ -167,7 +166,7 @@ struct Simulation::Implementation {
     warn(options.source, report);
     report.deformed = shape.spoilt();
     corrected = corrects(options);
-    if (corrected) correct(key, options, report);
+    if (corrected) correct(key, options, check, report);
     report.advice = advice(report);
     passes = work.recorder.passes();
     gathers_now.reset();
@@ -181,8 +180,11 @@ struct Simulation::Implementation {
     if (!optical_changed) return;
     std::vector<gpu::Optical> now = optical_at(0);
     const double eta = static_cast<double>(coefficients.eta()), step = std::abs(eta - corrected_eta) / eta;
-    std::max(extinction_change(corrected_optical, now), step) > most_carried ? correction->forget()
-                                                                             : correction->edited();
+    if (std::max(extinction_change(corrected_optical, now), step) > most_carried) {
+      correction->forget();
+    } else {
+      correction->edited();
+    }
     corrected_optical = std::move(now);
     corrected_eta = eta;
     optical_changed = false;
@@ -198,7 +200,8 @@ struct Simulation::Implementation {
     }
   }
 
-  void correct(const OperatorKey& key, const SolveOptions& options, SolveReport& report) {
+  void correct(const OperatorKey& key, const SolveOptions& options, const std::function<void()>& check,
+               SolveReport& report) {
     const double eta = coefficients.eta();
     const auto boundary_with = [&](Model model) { return boundary_of(Method::fem, Source::buried, model, eta); };
     const Boundary boundary = boundary_with(Model::diffusion);
@@ -206,7 +209,7 @@ struct Simulation::Implementation {
     forget_other_material();
     const Solved of_solve{levels[0], operators.at(key, 0), Method::fem, boundary_with(key.model), &walks[0]};
     const TransportParts transport{work, levels[0], beams, walks[0], gather->nearest(), *tree, report.inter_reflection};
-    const CorrectionParts parts{transport, operators, boundary, of_solve, results, interruption};
+    const CorrectionParts parts{transport, operators, boundary, of_solve, results, check};
     report.correction = correction->run(parts, options, {Method::fem, eta, coefficients.even(), options.mean_rays});
     results.record_corrected(work, of_solve, correction->fluence(), correction->exitance());
     work.recorder.submit();
@@ -217,8 +220,8 @@ struct Simulation::Implementation {
     report.energy.re_entered = power.entered_again;
     report.clipped = results.clipped();
     state_corrected_error(report);
-    report.missed =
-        options.error > 0 && !certain(*report.error, options.error) ? missed(report.error, options.error) : "";
+    const bool kept = report.error && certain(*report.error, options.error);
+    report.missed = options.error > 0 && !kept ? missed(report.error, options.error) : "";
     report.model_warning.clear();
   }
 

@@ -94,19 +94,21 @@ bool last_of_all(const CorrectionReport& done, const ErrorEstimate& wanted) {
 void state_corrected_error(SolveReport& report) {
   const CorrectedSweep& last = report.correction->sweeps.back();
   const double share = share_left_by(*report.correction);
-  const ErrorEstimate mesh = report.mesh_error.value_or(ErrorEstimate{});
-  const ErrorEstimate solver = report.algebraic.value_or(ErrorEstimate{});
   const auto of_model = [&](double change, double noise) {
     return noise_over_difference * std::hypot(share * change, noise);
   };
   report.model_error = {of_model(last.change.whole, last.noise.whole), of_model(last.change.unlit, last.noise.unlit)};
-  const bool unlit = last.change.unlit > 0;
-  report.mesh_error = {std::hypot(mesh_left * mesh.whole, unseen),
-                       unlit ? std::hypot(mesh_left * mesh.unlit, unseen) : 0};
-  report.algebraic = {solver_left * solver.whole, solver_left * solver.unlit};
+  if (report.algebraic) {
+    report.algebraic = {solver_left * report.algebraic->whole, solver_left * report.algebraic->unlit};
+  }
+  report.error.reset();
+  if (!report.mesh_error) return;
+  ErrorEstimate& mesh = *report.mesh_error;
+  const bool any_unlit = last.noise.unlit > 0;
+  mesh = {std::hypot(mesh_left * mesh.whole, unseen), any_unlit ? std::hypot(mesh_left * mesh.unlit, unseen) : 0};
+  const ErrorEstimate model = *report.model_error, solver = report.algebraic.value_or(ErrorEstimate{});
   const auto all = [](double a, double b, double c) { return std::sqrt(a * a + b * b + c * c); };
-  report.error = {all(report.model_error->whole, report.mesh_error->whole, report.algebraic->whole),
-                  all(report.model_error->unlit, report.mesh_error->unlit, report.algebraic->unlit)};
+  report.error = ErrorEstimate{all(model.whole, mesh.whole, solver.whole), all(model.unlit, mesh.unlit, solver.unlit)};
 }
 
 double extinction_change(std::span<const gpu::Optical> before, std::span<const gpu::Optical> now) {
@@ -237,9 +239,9 @@ void TransportCorrection::record_faces(const CorrectionParts& parts) {
 void TransportCorrection::draw(const CorrectionParts& parts, const Sampling& sampling, std::uint32_t draws,
                                float known) {
   for (std::uint32_t k = 0; k < draws; ++k) {
-    if (parts.between && sampling.most_draws > 1) {
+    if (parts.check && sampling.most_draws > 1) {
       parts.transport.work.recorder.submit();
-      parts.between();
+      parts.check();
     }
     samples_.record_draw(parts.transport, sampling.directions);
   }

@@ -17,11 +17,11 @@ namespace quadgraph {
 // What a correction starts from.
 struct CorrectionParts {
   TransportParts transport;
-  Operators& operators;           // those of `correction_key` have been created and hold the present coefficients
-  const Boundary& boundary;       // of that operator
-  const Solved& solved;           // fem
-  const SurfaceResults& results;  // of the solve
-  std::function<void()> between;  // called before every draw of points at rest; may throw
+  Operators& operators;                // those of `correction_key` have been created and hold the present coefficients
+  const Boundary& boundary;            // of that operator
+  const Solved& solved;                // fem
+  const SurfaceResults& results;       // of the solve
+  const std::function<void()>& check;  // called before every draw of points at rest; may throw
 };
 
 // The operator of the correction.
@@ -48,7 +48,7 @@ class TransportCorrection {
   void make_room(device::Device& device, std::uint32_t points) { samples_.make_room(device, points); }
 
   // Sweeps from the solution, so many or until the error is what is wanted; with `options.warm` one of few samples that
-  // goes on from what is known. Throws SolverError where a value is not finite, and what `between` throws.
+  // goes on from what is known. Throws SolverError where a value is not finite, and what `check` throws.
   CorrectionReport run(const CorrectionParts& parts, const SolveOptions& options, const WalkTask& task);
 
   // The vertices have moved since the last call.

@@ -286,20 +286,17 @@ void TransportSamples::record_draw(const TransportParts& parts, std::uint32_t di
 void TransportSamples::record_totals(const TransportParts& parts) {
   Workspace& work = parts.work;
   const LevelBuffers& level = parts.level;
-  gpu::TransportTotalsPush totals{.vertices = level.vertices.address(),
-                                  .tets = level.tets.address(),
-                                  .optical = level.optical.address(),
-                                  .fluence = fluence_.address(),
-                                  .source = source_before_.address(),
-                                  .books = books_.address(),
-                                  .reduction = work.reduction.address(),
-                                  .count = level.tet_count,
-                                  .even = level.even ? 1u : 0u,
-                                  .lost = 0};
-  for (; totals.lost < 2; ++totals.lost) {
-    work.recorder.dispatch(work.passes.of(shader::transport_totals), totals, level.tet_count, "transport books",
-                           source_before_.size() + level.tet_count * (sizeof(glm::uvec4) + 8 * vec3_bytes));
-  }
+  const gpu::TransportTotalsPush totals{.vertices = level.vertices.address(),
+                                        .tets = level.tets.address(),
+                                        .optical = level.optical.address(),
+                                        .fluence = fluence_.address(),
+                                        .source = source_before_.address(),
+                                        .books = books_.address(),
+                                        .reduction = work.reduction.address(),
+                                        .count = level.tet_count,
+                                        .even = level.even ? 1u : 0u};
+  work.recorder.dispatch(work.passes.of(shader::transport_totals), totals, level.tet_count, "transport books",
+                         source_before_.size() + level.tet_count * (sizeof(glm::uvec4) + 8 * vec3_bytes));
   const gpu::TransportLeavingPush leaving{.vertices = level.vertices.address(),
                                           .faces = level.faces.address(),
                                           .gathered = gathered_.address(),

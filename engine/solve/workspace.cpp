@@ -8,7 +8,7 @@ namespace quadgraph {
 namespace {
 
 std::uint64_t reduction_bytes(std::uint64_t elements) {
-  return 4 + 2 * sizeof(glm::vec3) * device::workgroups(elements);
+  return 4 + 3 * sizeof(glm::vec3) * device::workgroups(elements);
 }
 
 }  // namespace

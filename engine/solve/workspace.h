@@ -10,7 +10,7 @@ namespace quadgraph {
 struct Workspace {
   Recorder recorder;
   Passes passes;
-  device::Buffer reduction;  // Reduction of pairs, for the largest dispatch
+  device::Buffer reduction;  // Reduction of three sums, for the largest dispatch
   device::Buffer scale;      // Scale
 
   // `max_elements`: invocations of the largest dispatch that reduces.

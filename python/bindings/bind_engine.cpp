@@ -93,10 +93,9 @@ SolveOptions solve_options(const char* function, const py::kwargs& given) {
 
 py::dict solve(Engine& engine, bool motion, const py::kwargs& given) {
   const SolveOptions options = solve_options("solve", given);
-  heed_signals(engine);
   const SolveReport report = [&] {
     const py::gil_scoped_release release;
-    return solve_measured(engine, motion ? in_motion(options, engine.graph().levels()) : options);
+    return solve_measured(engine, motion ? in_motion(options, engine.graph().levels()) : options, heed_signals);
   }();
   return as_dict(report);
 }
@@ -338,11 +337,9 @@ void bind_measures(py::class_<Engine>& bound) {
 
 }  // namespace
 
-void heed_signals(Engine& engine) {
-  engine.interrupt_with([] {
-    const py::gil_scoped_acquire acquire;
-    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-  });
+void heed_signals() {
+  const py::gil_scoped_acquire acquire;
+  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }
 
 void bind_engine(py::module_& module) {

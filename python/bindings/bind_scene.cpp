@@ -63,10 +63,9 @@ void bind_stage(py::module_& module) {
       .def(
           "solve",
           [](Stage& stage) {
-            heed_signals(stage.engine());
             const SolveReport report = [&] {
               const py::gil_scoped_release release;
-              return stage.solve();
+              return stage.solve(heed_signals);
             }();
             return as_dict(report);
           },

@@ -14,7 +14,6 @@
 #include "engine/deform/deformer.h"
 #include "engine/file/graph.h"
 #include "engine/reference/solution.h"
-#include "engine/render/engine.h"
 #include "engine/render/picture/picture.h"
 #include "shaders/shared/shared.h"
 
@@ -87,7 +86,7 @@ pybind11::dict as_dict(const Energy& energy);
 pybind11::dict as_dict(const LevelReport& report);
 pybind11::dict as_dict(const SolveReport& report);
 
-// Solves of the engine end with KeyboardInterrupt where Ctrl-C is pressed.
-void heed_signals(Engine& engine);
+// Throws KeyboardInterrupt where Ctrl-C has been pressed; called without the GIL.
+void heed_signals();
 
 }  // namespace quadgraph::python

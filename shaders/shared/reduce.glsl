@@ -66,6 +66,17 @@ bool reduce_dispatch(Reduction reduction, vec3 value, out vec3 total) {
   return true;
 }
 
+// Reduces three sums in one dispatch.
+bool reduce_dispatch_three(Reduction reduction, mat3 values, out mat3 totals) {
+  totals = mat3(REDUCE_ZERO, REDUCE_ZERO, REDUCE_ZERO);
+  bool last = false;
+  for (uint k = 0u; k < 3u; ++k) last = reduce_keep(reduction, reduce_workgroup(values[k]), k, 3u);
+  if (!last) return false;
+  for (uint k = 0u; k < 3u; ++k) totals[k] = reduce_partials(reduction, k, 3u);
+  if (gl_LocalInvocationID.x == 0u) reduction.ticket = 0u;
+  return true;
+}
+
 // Reduces two sums in one dispatch.
 bool reduce_dispatch_pair(Reduction reduction, vec3 a, vec3 b, out vec3 total_a, out vec3 total_b) {
   total_a = total_b = REDUCE_ZERO;

@@ -27,6 +27,12 @@ void add_power(Uints sums, uint i, vec3 value) {
 }
 #endif
 
+// Of any sign: what is above zero to element `i`, and what is below to `i + step`.
+void add_signed(Uints sums, uint i, uint step, vec3 value) {
+  add_power(sums, i, max(value, vec3(0)));
+  add_power(sums, i + step, max(-value, vec3(0)));
+}
+
 vec3 power_at(Uints sums, uint i) {
   vec3 value;
   for (uint c = 0u; c < 3u; ++c) {

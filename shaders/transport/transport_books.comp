@@ -10,7 +10,7 @@ layout(local_size_x = WORKGROUP_SIZE) in;
 struct TransportBooksPush {
   TransportBooks books;
   Uints points;  // fixed point, WALK_SUMS times two per half: power that the points found, added, then taken away
-  Uints again;   // fixed point, WALK_SUMS times four: what leaves, added, then taken away; what of that enters again, the same
+  Uints again;   // fixed point, WALK_SUMS times four: what leaves, added and taken away, and what of that enters again
   Vec3s unit;    // one: the scale of what is known
   Scales scale;
   float share;  // of what was found that counts
@@ -18,14 +18,12 @@ struct TransportBooksPush {
 };
 layout(push_constant, scalar) uniform Block { TransportBooksPush push; };
 
+#include "transport/kept.glsl"
+
 vec3 sum_of(Uints sums, uint first, uint step) {
   vec3 sum = vec3(0);
   for (uint k = 0u; k < WALK_SUMS; ++k) sum += power_at(sums, first + step * k);
   return sum;
-}
-
-vec3 kept(vec3 known) {
-  return push.keep == 0.0 ? vec3(0) : push.keep * push.unit.at[0] * push.scale.at[0].inverse * known;
 }
 
 vec3 found_by(uint half_of, vec3 known) {
@@ -47,7 +45,8 @@ void main() {
   vec3 per_lost = ratio(vec3(1), book.lost);
   push.books.at[0].left = left;
   push.books.at[0].again = again;
-  push.books.at[0].gain = 1.0 / (1.0 - min(returns * ratio(left, left + book.absorbed), vec3(0.9)));
+  vec3 leaving = 0.5 * (book.leaving_a + book.leaving_b);
+  push.books.at[0].gain = 1.0 / (1.0 - min(returns * ratio(leaving, leaving + book.absorbed), vec3(0.9)));
   push.books.at[0].sum_a = sum_a;
   push.books.at[0].sum_b = sum_b;
   push.books.at[0].missing_a = per_lost * (sum_a - found_by(0u, book.known_a));

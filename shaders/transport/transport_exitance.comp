@@ -20,6 +20,7 @@ layout(push_constant, scalar) uniform Block { TransportExitancePush push; };
 
 TransportFieldRef field;
 #define FIELD field
+#include "transport/kept.glsl"
 #include "transport/transport_ray.glsl"
 
 struct Surface {
@@ -49,15 +50,10 @@ void add_leaving(Surface at, float stratum, float azimuth, inout uint state) {
   if (entry.face != NO_FACE) entered_again += leaves;
 }
 
-void add_signed(uint at, vec3 power) {
-  add_power(push.sums, at, max(power, vec3(0)));
-  add_power(push.sums, at + 1u, max(-power, vec3(0)));
-}
-
 void add_sums(float area) {
   uint at = 4u * (gl_WorkGroupID.x % WALK_SUMS);
-  add_signed(at, area * left);
-  add_signed(at + 2u, area * entered_again);
+  add_signed(push.sums, at, 1u, area * left);
+  add_signed(push.sums, at + 2u, 1u, area * entered_again);
 }
 
 void main() {
@@ -83,9 +79,7 @@ void main() {
   entered_again = vec3(0);
   for (uint k = 0u; k < push.rays; ++k) add_leaving(at, float(k), turned + GOLDEN_ANGLE * float(k), state);
   float share = 1.0 / (4.0 * BODY.eta * BODY.eta * float(push.rays));
-  vec3 kept = vec3(0);
-  if (push.keep != 0.0) kept = push.keep * push.unit.at[0] * push.scale.at[0].inverse * push.exitance.at[i];
-  push.exitance.at[i] = kept + share * left;
+  push.exitance.at[i] = kept(push.exitance.at[i]) + share * left;
   add_sums(share * at.area);
   atomicAdd(field.segments.at[0], crossed);
 }

@@ -5,8 +5,8 @@
 #include "solver/right_hand_side.glsl"
 #include "transport/transport_shared.h"
 
-// b of the diffusion solve of one half, and its norm: what the samples have found, and what is kept of b before; what is missing in
-// their sum is added in proportion to the light that is scattered.
+// b of the diffusion solve of one half, and its norm: what the samples have found, and what is kept of b before; what is
+// missing in their sum is added in proportion to the light that is scattered.
 struct TransportLoadPush {
   Uints load;     // fixed point: of the half, for all vertices what is added, then what is taken away
   Vec3s known;    // b before
@@ -22,14 +22,14 @@ struct TransportLoadPush {
 };
 layout(push_constant, scalar) uniform Block { TransportLoadPush push; };
 
+#include "transport/kept.glsl"
+
 void main() {
   vec3 square = vec3(0);
-  vec3 keep = push.keep * push.unit.at[0] * push.scale.at[0].inverse;
   EACH(i, push.count) {
     vec3 found = push.share * (power_at(push.load, i) - power_at(push.load, push.count + i));
-    vec3 known = push.keep == 0.0 ? vec3(0) : keep * push.known.at[i];
     vec3 scattered = push.mass.at[i] * max(push.fluence.at[i], vec3(0));
-    square += store_b(push.side, i, lit(known + found + push.missing.at[0] * scattered));
+    square += store_b(push.side, i, lit(kept(push.known.at[i]) + found + push.missing.at[0] * scattered));
   }
   store_norm(push.side, square);
 }

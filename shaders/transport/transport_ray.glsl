@@ -36,13 +36,15 @@ float largest(vec3 v) {
   return max(v.x, max(v.y, v.z));
 }
 
-vec3 extinction_in(uint tet) {
-  Optical optical = BODY.optical.at[(BODY.flags & BODY_EVEN) != 0u ? 0u : tet];
-  return optical.sigma_s_prime + optical.sigma_a;
+Optical optical_in(uint tet) {
+  return BODY.optical.at[(BODY.flags & BODY_EVEN) != 0u ? 0u : tet];
 }
 
-vec3 extinction_before(uint tet) {
-  Optical optical = FIELD.optical_before.at[FIELD.even_before != 0u ? 0u : tet];
+Optical optical_before(uint tet) {
+  return FIELD.optical_before.at[FIELD.even_before != 0u ? 0u : tet];
+}
+
+vec3 extinction(Optical optical) {
   return optical.sigma_s_prime + optical.sigma_a;
 }
 
@@ -107,7 +109,7 @@ bool goes_on(inout Ray ray, inout uint state) {
 vec3 arriving(Ray ray, inout uint state, out vec3 before) {
   vec3 sum = vec3(0);
   before = vec3(0);
-  vec3 sigma_t = extinction_in(ray.tet);
+  vec3 sigma_t = extinction(optical_in(ray.tet));
   for (uint step = 0u; step < MAX_WALK_STEPS; ++step) {
     TransportCell cell = FIELD.cells.at[ray.tet];
     vec3 x = ray.point, d = ray.direction;
@@ -119,12 +121,12 @@ vec3 arriving(Ray ray, inout uint state, out vec3 before) {
     if (path >= NEVER) break;
     ++crossed;
     uint slot = times.x == path ? 0u : times.y == path ? 1u : times.z == path ? 2u : 3u;
-    if ((BODY.flags & BODY_EVEN) == 0u) sigma_t = extinction_in(ray.tet);
+    if ((BODY.flags & BODY_EVEN) == 0u) sigma_t = extinction(optical_in(ray.tet));
     vec4 end = l + path * rate;
     add_source(source_at(cell, l), source_at(cell, end), sigma_t, path, sum, ray.left);
     if (sees_before()) {
-      add_source(source_before_at(ray.tet, l), source_before_at(ray.tet, end), extinction_before(ray.tet), path, before,
-                 ray.left_before);
+      add_source(source_before_at(ray.tet, l), source_before_at(ray.tet, end), extinction(optical_before(ray.tet)), path,
+                 before, ray.left_before);
     }
     ray.point += path * d;
     uint crossing = cell.crossings[slot];

@@ -30,11 +30,7 @@ struct TransportSourcePush {
 };
 layout(push_constant, scalar) uniform Block { TransportSourcePush push; };
 
-// Of the field before.
-vec3 kept(vec3 before) {
-  if (push.keep == 0.0) return vec3(0);
-  return push.keep * push.unit.at[0] * push.scale.at[0].inverse * before;
-}
+#include "transport/kept.glsl"
 
 bool apart() {
   return uvec2(push.source_apart) != uvec2(0);

@@ -73,11 +73,6 @@ vec3 transported(uint tet, vec3 point, vec3 turn, inout uint state, out vec3 bef
   return sum / float(push.directions);
 }
 
-void add_signed(Uints sums, uint at, uint step, vec3 power) {
-  add_power(sums, at, max(power, vec3(0)));
-  add_power(sums, at + step, max(-power, vec3(0)));
-}
-
 void main() {
   uint i = gl_GlobalInvocationID.x;
   field = push.field.at[0];
@@ -97,11 +92,11 @@ void main() {
   }
   uint state = hash(start + point.number);
   vec3 before, now = transported(point.tet, place, vec3(u[3], u[4], u[5]), state, before);
-  Optical optical = BODY.optical.at[(BODY.flags & BODY_EVEN) != 0u ? 0u : point.tet];
+  Optical optical = optical_in(point.tet);
   vec3 found = point.volume * (now - solved), load = optical.sigma_s_prime * found;
   vec3 sum = load + optical.sigma_a * found;
   if (sees_before()) {
-    Optical then = FIELD.optical_before.at[FIELD.even_before != 0u ? 0u : point.tet];
+    Optical then = optical_before(point.tet);
     vec3 known = point.volume * (before - solved_before);
     load -= then.sigma_s_prime * known;
     sum -= (then.sigma_s_prime + then.sigma_a) * known;

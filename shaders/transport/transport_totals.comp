@@ -15,12 +15,11 @@ struct TransportTotalsPush {
   Reduction reduction;
   uint count;
   uint even;  // 1: optical is the same everywhere
-  uint lost;  // 1: what is lost, 0: the others
 };
 layout(push_constant, scalar) uniform Block { TransportTotalsPush push; };
 
 void main() {
-  vec3 first = vec3(0), lost = vec3(0);
+  vec3 first = vec3(0), absorbed = vec3(0), scattered = vec3(0);
   EACH(i, push.count) {
     uvec4 corners = push.tets.at[i];
     vec3 p = push.vertices.at[corners.x];
@@ -32,19 +31,17 @@ void main() {
       fluence += push.fluence.at[corners[k]];
       source += push.source.at[4u * i + k];
     }
-    vec3 scattered = quarter * o.sigma_s_prime * fluence;
-    lost += quarter * o.sigma_a * fluence + (push.lost == 1u ? scattered : vec3(0));
-    first += quarter * source - scattered;
+    vec3 scatters = quarter * o.sigma_s_prime * fluence;
+    scattered += scatters;
+    absorbed += quarter * o.sigma_a * fluence;
+    first += quarter * source - scatters;
   }
-  vec3 all_first, all_lost;
-  if (!reduce_dispatch_pair(push.reduction, first, lost, all_first, all_lost)) return;
+  mat3 all;
+  if (!reduce_dispatch_three(push.reduction, mat3(first, absorbed, scattered), all)) return;
   if (gl_LocalInvocationID.x != 0u) return;
-  if (push.lost == 1u) {
-    push.books.at[0].lost = all_lost;
-    return;
-  }
-  push.books.at[0].first = all_first;
-  push.books.at[0].absorbed = all_lost;
+  push.books.at[0].first = all[0];
+  push.books.at[0].absorbed = all[1];
+  push.books.at[0].lost = all[1] + all[2];
   // The sweep before is over.
   push.books.at[0].known_a = push.books.at[0].sum_a;
   push.books.at[0].known_b = push.books.at[0].sum_b;

@@ -68,14 +68,13 @@ def error_text(report: dict) -> str:
     if report.get("path"):
         return "error: not estimated"
     parts = [f"solver {two_parts(report['algebraic'])}"]
+    if report["correction"]:
+        parts.append(f"model {two_parts(report['model_error'])}, after {correction_text(report['correction'])}")
     if report["error"] is None:
-        return f"error: of the mesh not estimated (a single level); {parts[0]} (estimate)"
-    if report["mesh_error"]:
-        parts.insert(0, f"mesh {two_parts(report['mesh_error'])}")
-    if not report["correction"]:
-        return f"error: {two_parts(report['error'])} (estimate, without that of the model): {'; '.join(parts)}"
-    parts.append(f"model {two_parts(report['model_error'])}, after {correction_text(report['correction'])}")
-    return f"error: {two_parts(report['error'])} (estimate): {'; '.join(parts)}"
+        return f"error: of the mesh not estimated (a single level); {'; '.join(parts)} (estimate)"
+    parts.insert(0, f"mesh {two_parts(report['mesh_error'])}")
+    without = "" if report["correction"] else ", without that of the model"
+    return f"error: {two_parts(report['error'])} (estimate{without}): {'; '.join(parts)}"
 
 
 def correction_text(correction: dict) -> str:

@@ -159,13 +159,31 @@ TEST_CASE("every key does something, and no two share one") {
 TEST_CASE("a picture in motion keeps to its budget, and takes all of it") {
   Pace pace(400);
   CHECK(pace.share(1e6, true) == 1);
-  for (int i = 0; i < 20; ++i) pace.took(250, 600, 1e6, true);
+  const auto take = [&](double solve_ms, double draw_ms, bool gathered) {
+    pace.solved(solve_ms, false);
+    pace.drawn(draw_ms, 1e6, gathered);
+  };
+  for (int i = 0; i < 20; ++i) take(250, 600, true);
   CHECK(pace.share(1e6, false) == 0.75f);  // 340 of 400 ms
   CHECK(pace.share(1e6, true) == 0.5f);    // 150 of the 150 that the solve leaves
   CHECK(pace.share(1e4, true) == 1);
   CHECK(pace.gathers(true));
-  for (int i = 0; i < 20; ++i) pace.took(800, 100, 1e6, false);
+  for (int i = 0; i < 20; ++i) take(800, 100, false);
   CHECK_FALSE(pace.gathers(true));  // the solve has taken all of it
   CHECK(pace.gathers(false));
   CHECK(pace.share(1e6, true) == 1);
+}
+
+TEST_CASE("a picture in motion is corrected where that keeps to its budget") {
+  Pace pace(100);
+  CHECK_FALSE(pace.corrects());  // nothing is known
+  pace.solved(30, false);
+  CHECK_FALSE(pace.corrects());  // it takes some times as long
+  Pace quick(100);
+  quick.solved(20, false);
+  CHECK(quick.corrects());
+  quick.solved(150, true);
+  CHECK_FALSE(quick.corrects());  // as measured
+  for (int i = 0; i < 5; ++i) quick.solved(80, true);
+  CHECK(quick.corrects());
 }

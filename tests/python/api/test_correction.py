@@ -47,7 +47,7 @@ def test_scenes_commands_and_engines_are_corrected_unless_they_say_no(ball, engi
     assert np.array_equal(engine.surface().exitance, fields["plain"])
 
 
-def test_the_error_is_the_sum_of_its_parts_and_larger_where_nothing_corrects(engine):
+def test_the_error_is_the_sum_of_its_parts_and_has_none_of_the_model_without_a_correction(engine):
     corrected = engine.solve()
     parts = (corrected.mesh_error, corrected.algebraic, corrected.model_error)
     for name in ("whole", "unlit"):

@@ -108,6 +108,9 @@ def test_parts_and_errors_are_those_of_known_patches():
     expected = np.sqrt((0.1**2 - 0.02**2) / (1 - 0.02**2))
     assert found["true"] == pytest.approx(dict.fromkeys(parts, expected), rel=1e-6)
     assert found["ratio"] == pytest.approx(1.1)
+    dark = np.where(np.arange(30) < 20, exitance, 0)  # with the noise that it had: nothing is known of a dark third
+    unknown = replace(truth, scattered=4 * dark * area, squares=4 * (dark * area) ** 2 + 12 * (noise * area) ** 2)
+    assert set(unseen_study.parts_of(unknown)) == {"whole", "lit", "unlit"}
 
 
 def test_a_case_is_judged_printed_recorded_and_drawn(tmp_path, capsys):
