@@ -63,13 +63,13 @@ void Viewer::run() {
     keep_up();
     build_widgets(events);
     present();
-    window_.show_busy(!measured_.settled);
   }
 }
 
 // Seconds that nothing need happen for.
 double Viewer::patience() const {
   if (frames_wanted_ > 0 || window_.events_wait() || !shown_) return 0;
+  if (swapchain_.width() > 0 && part() != shown_part_) return 0;
   return measured_.settled ? idle_wait : 0.5 * settle_after;
 }
 
@@ -212,7 +212,7 @@ void Viewer::keep_up() {
   if (swapchain_.width() == 0) return;
   const bool changed = !shown_ || state_.scene != *shown_ || part() != shown_part_;
   if (changed) changed_ = Clock::now();
-  window_.show_busy(changed || !measured_.settled);
+  window_.show_busy(changed || !measured_.settled);  // what is converged has been presented
   if (!changed && (measured_.settled || milliseconds(Clock::now() - changed_) < 1000 * settle_after || dragging_))
     return;
   const Scene before = shown_.value_or(state_.scene);

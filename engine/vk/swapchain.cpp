@@ -114,6 +114,8 @@ void Swapchain::resize(std::uint32_t width, std::uint32_t height) {
   wanted_width_ = width;
   wanted_height_ = height;
   stale_ = true;
+  wait();
+  create();
 }
 
 // In place of the images before, if there were any.

@@ -34,7 +34,8 @@ class Swapchain {
   Swapchain(const Swapchain&) = delete;
   Swapchain& operator=(const Swapchain&) = delete;
 
-  // The window has now that many pixels; 0 while it is minimised.
+  // The window has now that many pixels, 0 while it is minimised: `width` and `height` follow at once. Throws
+  // DeviceError.
   void resize(std::uint32_t width, std::uint32_t height);
 
   std::uint32_t width() const { return width_; }    // pixels; 0 while there is nothing to show on

@@ -110,14 +110,24 @@ class Hand:
         while not self.busy() and time.monotonic() < seen:
             time.sleep(0.02)
         deadline = time.monotonic() + 60
-        while self.busy():
+        quiet = 0
+        while quiet < 3:  # a change that has just come may not be in the title yet
+            quiet = 0 if self.busy() else quiet + 1
             assert time.monotonic() < deadline, "the picture does not settle"
             time.sleep(0.05)
 
     def screen(self) -> np.ndarray:
-        """The whole screen once it has settled."""
+        """The whole screen once it has settled; a display shows what was presented when it likes."""
         self.settle()
-        return self.look()
+        deadline = time.monotonic() + 20
+        before = self.look()
+        while True:
+            now = self.look()
+            seen = now[: SIZE[1], PANEL : SIZE[0]]
+            if seen.any() and np.array_equal(seen, before[: SIZE[1], PANEL : SIZE[0]]):
+                return now
+            assert time.monotonic() < deadline, "no picture is seen, or it changes by itself"
+            before = now
 
     def picture(self) -> np.ndarray:
         """The part without the panel, once it has settled."""
