@@ -10,7 +10,7 @@ import pytest
 
 from quadgraph import cli
 from quadgraph.base.errors import InputError
-from quadgraph_validation.accuracy import unseen_study, unseen_tables
+from quadgraph_validation.accuracy import unseen_motion, unseen_study, unseen_tables
 from quadgraph_validation.bodies import unseen_bodies, unseen_cases
 from quadgraph_validation.bodies.patches import PATCHES, patches_of
 from quadgraph_validation.truth.unseen_truth import UnseenTruth
@@ -128,6 +128,45 @@ def test_a_case_is_judged_printed_recorded_and_drawn(tmp_path, capsys):
     assert (tmp_path / "unseen.png").stat().st_size > 10_000
     summary = unseen_tables.summary([row])
     assert [found["sweeps"] for found in summary] == [0, 1]
+
+
+def test_the_last_frame_of_the_motion_is_the_case_itself(body):
+    case = unseen_cases.drawn(SEED, body)
+    medium, light = unseen_motion.at_frame(case, unseen_motion.FRAMES - 1)
+    assert medium is case.medium
+    assert light == case.light
+    middle = (body.vertices.min(axis=0) + body.vertices.max(axis=0)) / 2
+    before, earlier = (unseen_motion.at_frame(case, frame)[1] for frame in (28, 27))
+    arm, swung = (np.array(each.centre)[[0, 2]] - middle[[0, 2]] for each in (light, before))
+    assert np.linalg.norm(swung) == pytest.approx(np.linalg.norm(arm))
+    assert arm @ swung == pytest.approx(arm @ arm * np.cos(np.radians(unseen_motion.TURN)))
+    assert earlier == unseen_motion.turned(light, -2 * unseen_motion.TURN, middle)
+    edited = unseen_motion.at_frame(case, 0)[0]
+    assert np.allclose(edited.sigma_a, (1 + unseen_motion.EDIT) * case.medium.sigma_a)
+    with pytest.raises(InputError, match="a sky does not turn"):
+        unseen_motion.at_frame(unseen_cases.drawn(SEED, body, "sky"), 0)
+
+
+def test_a_case_is_judged_in_motion(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(unseen_motion, "FRAMES", 6)
+    monkeypatch.setattr(unseen_motion, "STILL", 10)
+    path = tmp_path / "unseen.json"
+    asked = f"accuracy unseen --seed {SEED} --count 1 --walks 200000 --motion --truth {tmp_path}"
+    assert cli.main([*asked.split(), "--json", str(path)]) == 0
+    assert "summary in motion" in capsys.readouterr().out
+    record = json.loads(path.read_text())
+    (row,) = record["rows"]
+    found = row["motion"]
+    assert found["true"]["whole"] < 0.06
+    assert found["still"]["whole"] < max(1.2 * found["true"]["whole"], 0.03)
+    assert 0 < found["flicker"]["whole"] < found["true"]["whole"] + row["noise"]["whole"]
+    assert found["segments"] > 1e5
+    assert record["motion"]["true"]["lit"]["worst"] == found["true"]["lit"]
+
+
+def test_a_sky_is_refused_in_motion(tmp_path, capsys):
+    assert cli.main(["accuracy", "unseen", "--motion", "--lights", "sky", "--truth", str(tmp_path)]) != 0
+    assert "take --lights beams" in capsys.readouterr().err
 
 
 def test_a_missing_library_is_named_with_what_installs_it(monkeypatch):

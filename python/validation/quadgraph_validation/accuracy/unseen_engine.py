@@ -16,6 +16,8 @@ from quadgraph.api.fields import SurfaceField
 from quadgraph.api.lights import EnvironmentLight, Light
 from quadgraph.api.materials import Material, VolumeMaterial
 from quadgraph.baking.pipeline import BakeOptions, bake
+from quadgraph_validation.accuracy import unseen_motion
+from quadgraph_validation.accuracy.unseen_motion import UnseenMotion
 from quadgraph_validation.bodies import unseen_bodies
 from quadgraph_validation.bodies.smooth_sky import SmoothSky
 from quadgraph_validation.bodies.unseen_cases import UnseenCase, UnseenMedium
@@ -36,19 +38,22 @@ class UnseenAnswer:
 
 @dataclass(frozen=True, eq=False)
 class UnseenAnswers:
-    """tets: of the finest level; apart: mm by which the farthest face lies from the triangle that it is taken for."""
+    """tets: of the finest level; apart: mm by which the farthest face lies from the triangle that it is taken for;
+    motion: what frames in motion gave, None if they were not asked for.
+    """
 
     tets: int
     apart: float
     answers: list[UnseenAnswer]
+    motion: UnseenMotion | None
 
 
 def answers(
-    case: UnseenCase, patch: np.ndarray, sweeps: Sequence[int | None], folder: Path, device: str
+    case: UnseenCase, patch: np.ndarray, sweeps: Sequence[int | None], folder: Path, device: str, motion: bool
 ) -> UnseenAnswers:
-    """Bake the body into a folder and solve once for each of `sweeps`. patch (m,): of each triangle.
+    """Bake the body into a folder, solve once for each of `sweeps`, then in motion. patch (m,): of each triangle.
 
-    Raises what bakes and solves raise.
+    Raises what bakes and solves raise, and InputError for a sky in motion.
     """
     mesh, file = folder / "body.ply", folder / "body.qgraph"
     unseen_bodies.write(mesh, case.surface)
@@ -57,9 +62,11 @@ def answers(
         engine.material = _material(case.medium)
         engine.lights = [_light(case, folder)]
         engine.solve(**_options(0, case))  # whatever is made once is made now
-        found = [_answer(engine, case, patch, wanted) for wanted in sweeps]
-        apart = float(_triangle_of(case, engine.surface())[1].max())
-    return UnseenAnswers(int(report.levels[0]["tets"]), apart, found)
+        triangle, apart = _triangle_of(case, engine.surface())
+        of_face = patch[triangle]
+        found = [_answer(engine, of_face, wanted, _options(wanted, case)) for wanted in sweeps]
+        frames = _moved(engine, case, of_face) if motion else None
+    return UnseenAnswers(int(report.levels[0]["tets"]), float(apart.max()), found, frames)
 
 
 def _options(sweeps: int | None, case: UnseenCase) -> dict[str, Any]:
@@ -68,16 +75,31 @@ def _options(sweeps: int | None, case: UnseenCase) -> dict[str, Any]:
     return asked if case.inter_reflection else asked | {"inter_reflection": False}
 
 
-def _answer(engine: Engine, case: UnseenCase, patch: np.ndarray, sweeps: int | None) -> UnseenAnswer:
+def _answer(engine: Engine, of_face: np.ndarray, sweeps: int | None, options: dict[str, Any]) -> UnseenAnswer:
     start = time.perf_counter()
-    solution = engine.solve(**_options(sweeps, case))
+    solution = engine.solve(**options)
     seconds = time.perf_counter() - start
-    field = engine.surface()
-    of_face = patch[_triangle_of(case, field)[0]]
-    power = np.bincount(of_face, field.area * field.exitance[:, 0], int(patch.max()) + 1)
-    area = np.bincount(of_face, field.area, int(patch.max()) + 1)
     printed = {} if solution.error is None else {"whole": solution.error.whole, "unlit": solution.error.unlit}
-    return UnseenAnswer(sweeps, power / area, printed, solution.model, seconds)
+    return UnseenAnswer(sweeps, _by_patch(engine, of_face), printed, solution.model, seconds)
+
+
+def _moved(engine: Engine, case: UnseenCase, of_face: np.ndarray) -> UnseenMotion:
+    shown: list[UnseenMedium] = []
+
+    def show(medium: UnseenMedium, light: Light) -> None:
+        if not shown or shown[-1] is not medium:  # a volume is read again each time that it is set
+            engine.material = _material(medium)
+            shown[:] = [medium]
+        engine.lights = [light]
+
+    return unseen_motion.moved(engine, case, show, lambda: _by_patch(engine, of_face), _options(None, case))
+
+
+def _by_patch(engine: Engine, of_face: np.ndarray) -> np.ndarray:
+    """(n,) W/mm^2 exitance of the last solution."""
+    field = engine.surface()
+    count = int(of_face.max()) + 1
+    return np.bincount(of_face, field.area * field.exitance[:, 0], count) / np.bincount(of_face, field.area, count)
 
 
 def _triangle_of(case: UnseenCase, field: SurfaceField) -> tuple[np.ndarray, np.ndarray]:

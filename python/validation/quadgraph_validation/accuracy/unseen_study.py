@@ -12,9 +12,11 @@ import numpy as np
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
+from quadgraph.base.errors import InputError
 from quadgraph_validation.accuracy import unseen_engine
 from quadgraph_validation.accuracy.unseen_engine import UnseenAnswer
-from quadgraph_validation.accuracy.unseen_tables import summary, tables  # noqa: F401  tables: as every study has
+from quadgraph_validation.accuracy.unseen_motion import UnseenMotion
+from quadgraph_validation.accuracy.unseen_tables import motion_summary, summary, tables  # noqa: F401  as every study has
 from quadgraph_validation.base import extra_module
 from quadgraph_validation.bodies import unseen_bodies, unseen_cases
 
@@ -29,7 +31,7 @@ _FEW = 5  # patches: a part with fewer is not judged
 class UnseenRun:
     """What is judged. count: of seeds from the first; walks: of the truth of each; truths: folder where these are kept;
     sweeps: what solves are asked for, None for the engine's own choice; device: as Engine takes it; lights: beams or
-    sky; inter_reflection: in the engine and in the truth.
+    sky; inter_reflection: in the engine and in the truth; motion: also in frames whose light and material change.
     """
 
     seed: int
@@ -40,6 +42,7 @@ class UnseenRun:
     device: str = ""
     lights: str = "beams"
     inter_reflection: bool = True
+    motion: bool = False
 
 
 def run(wanted: UnseenRun) -> dict[str, Any]:
@@ -48,6 +51,8 @@ def run(wanted: UnseenRun) -> dict[str, Any]:
     Raises InputError, what bakes and solves raise, and KeyboardInterrupt where nothing was finished.
     """
     extra_module.load("numba", "walks")
+    if wanted.motion and wanted.lights != "beams":
+        raise InputError(f"--motion: with --lights {wanted.lights}, which does not turn; take --lights beams")
     rows: list[dict[str, Any]] = []
     shown = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:.0f}%"), TimeRemainingColumn())
     with Progress(*shown, console=Console(stderr=True)) as progress:
@@ -64,7 +69,8 @@ def run(wanted: UnseenRun) -> dict[str, Any]:
             if not rows:
                 raise
     asked = {key: getattr(wanted, key) for key in ("seed", "lights", "inter_reflection", "walks")}
-    return asked | {"rows": rows, "summary": summary(rows)}
+    record = asked | {"rows": rows, "summary": summary(rows)}
+    return record | {"motion": motion_summary(rows)} if wanted.motion else record
 
 
 def judged(seed: int, wanted: UnseenRun, tell: Callable[[str, int], None]) -> dict[str, Any]:
@@ -77,9 +83,9 @@ def judged(seed: int, wanted: UnseenRun, tell: Callable[[str, int], None]) -> di
     truth = unseen_truth.make(case, wanted.walks, wanted.truths, lambda walks: tell("random walks", walks))
     tell("engine", wanted.walks)
     with tempfile.TemporaryDirectory(prefix="quadgraph-unseen-") as folder:
-        found = unseen_engine.answers(case, truth.patch, wanted.sweeps, Path(folder), wanted.device)
+        found = unseen_engine.answers(case, truth.patch, wanted.sweeps, Path(folder), wanted.device, wanted.motion)
     parts = parts_of(truth)
-    return {
+    row = {
         "seed": seed,
         "triangles": len(case.surface.triangles),
         "length": float(np.ptp(case.surface.vertices, axis=0).max()),
@@ -96,6 +102,7 @@ def judged(seed: int, wanted: UnseenRun, tell: Callable[[str, int], None]) -> di
         "noise": {name: _rms(truth, part, truth.error) for name, part in parts.items()},
         "solves": [errors(truth, parts, answer) for answer in found.answers],
     }
+    return row if found.motion is None else row | {"motion": errors_in_motion(truth, parts, found.motion)}
 
 
 def parts_of(truth: UnseenTruth) -> dict[str, np.ndarray]:
@@ -109,16 +116,35 @@ def parts_of(truth: UnseenTruth) -> dict[str, np.ndarray]:
 
 
 def errors(truth: UnseenTruth, parts: dict[str, np.ndarray], answer: UnseenAnswer) -> dict[str, Any]:
-    found = {name: _rms(truth, part, answer.exitance - truth.exitance) for name, part in parts.items()}
-    noise = {name: _rms(truth, part, truth.error) for name, part in parts.items()}
+    """What one solve is off, and what it says that it is off, by part."""
     return {
         "sweeps": answer.sweeps,
         "model": answer.model,
-        "true": {name: float(np.sqrt(max(found[name] ** 2 - noise[name] ** 2, 0))) for name in parts},
+        "true": _true(truth, parts, answer.exitance),
         "printed": answer.printed,
         "ratio": float(truth.area @ answer.exitance / (truth.area @ truth.exitance)),
         "seconds": answer.seconds,
     }
+
+
+def errors_in_motion(truth: UnseenTruth, parts: dict[str, np.ndarray], found: UnseenMotion) -> dict[str, Any]:
+    """What the last frame is off, what it flickers, and what is left of it after a second in which nothing changes."""
+    return {
+        "true": _true(truth, parts, found.moving),
+        "still": _true(truth, parts, found.still),
+        "flicker": {name: _rms(truth, part, found.flicker) for name, part in parts.items()},
+        "printed": found.printed,
+        "segments": found.segments,
+        "seconds": found.seconds,
+        "plain": found.plain,
+    }
+
+
+def _true(truth: UnseenTruth, parts: dict[str, np.ndarray], exitance: np.ndarray) -> dict[str, float]:
+    """By part, without the truth's noise."""
+    found = {name: _rms(truth, part, exitance - truth.exitance) for name, part in parts.items()}
+    noise = {name: _rms(truth, part, truth.error) for name, part in parts.items()}
+    return {name: float(np.sqrt(max(found[name] ** 2 - noise[name] ** 2, 0))) for name in parts}
 
 
 def _rms(truth: UnseenTruth, part: np.ndarray, difference: np.ndarray) -> float:

@@ -10,6 +10,8 @@ from rich.table import Table
 FACTOR = 1.5  # within which the printed error is to agree with the true one
 _TOLD = ("whole", "unlit")  # parts whose error the engine prints
 _JUDGED = ("lit", "unlit")
+_MOVING = {"true": "true, moving", "still": "a second after", "flicker": "flicker"}
+_SPREAD = ("median", "most", "worst")
 
 
 def summary(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -18,7 +20,7 @@ def summary(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
     for number, asked in enumerate(solve["sweeps"] for solve in (rows[0]["solves"] if rows else [])):
         solves = [row["solves"][number] for row in rows]
         true = {part: _spread([s["true"][part] for s in solves if part in s["true"]]) for part in _JUDGED}
-        ratios = {part: _agreement(rows, number, part) for part in _TOLD}
+        ratios = {part: _agreement([(row["noise"], row["solves"][number]) for row in rows], part) for part in _TOLD}
         found.append({"sweeps": asked, "true": true, "ratios": ratios})
     return found
 
@@ -29,12 +31,11 @@ def _spread(errors: list[float]) -> dict[str, float] | None:
     return {"median": float(np.median(errors)), "most": float(np.quantile(errors, 0.9)), "worst": max(errors)}
 
 
-def _agreement(rows: list[dict[str, Any]], number: int, part: str) -> dict[str, Any] | None:
-    """Of printed over true errors, where the truth's noise is less than the error."""
+def _agreement(solves: list[tuple[dict[str, float], dict[str, Any]]], part: str) -> dict[str, Any] | None:
+    """Of printed over true errors, where the truth's noise is less than the error. solves: each after that noise."""
     ratios = []
-    for row in rows:
-        solve = row["solves"][number]
-        told = solve["true"].get(part, 0) > row["noise"].get(part, np.inf) and part in solve["printed"]
+    for noise, solve in solves:
+        told = solve["true"].get(part, 0) > noise.get(part, np.inf) and part in solve["printed"]
         ratios += [solve["printed"][part] / solve["true"][part]] if told else []
     if not ratios:
         return None
@@ -42,9 +43,26 @@ def _agreement(rows: list[dict[str, Any]], number: int, part: str) -> dict[str, 
     return {"cases": len(ratios), "within": float(np.mean(within)), "least": min(ratios), "greatest": max(ratios)}
 
 
+def motion_summary(rows: list[dict[str, Any]]) -> dict[str, Any]:
+    """Median, 90% and worst in motion: true errors, those a second after it, flicker; how printed errors agree; rays'
+    segments a frame, and a frame's time over that without the correction.
+    """
+    frames = [row["motion"] for row in rows]
+    found: dict[str, Any] = {
+        name: {part: _spread([f[name][part] for f in frames if part in f[name]]) for part in _JUDGED}
+        for name in _MOVING
+    }
+    agree = {part: _agreement([(row["noise"], row["motion"]) for row in rows], part) for part in _TOLD}
+    slower = _spread([f["seconds"] / f["plain"] for f in frames])
+    return found | {"ratios": agree, "segments": _spread([f["segments"] for f in frames]), "slower": slower}
+
+
 def tables(record: dict[str, Any]) -> list[Table]:
-    """All cases, and the summary."""
-    return [_cases(record["rows"]), _summary(record["summary"])]
+    """All cases, and the summary; and both in motion, where that was asked for."""
+    found = [_cases(record["rows"]), _summary(record["summary"])]
+    if "motion" in record:
+        found += [_moving(record["rows"]), _moving_summary(record["motion"])]
+    return found
 
 
 def _cases(rows: list[dict[str, Any]]) -> Table:
@@ -75,9 +93,39 @@ def _summary(rows: list[dict[str, Any]]) -> Table:
     told = "printed over true, {}: cases, within a factor {:g}, least to greatest"
     table = Table(*columns, *(told.format(part, FACTOR) for part in _TOLD), title="summary")
     for row in rows:
-        true = (_percents(row["true"][part] or {}, ("median", "most", "worst")) for part in _JUDGED)
+        true = (_percents(row["true"][part] or {}, _SPREAD) for part in _JUDGED)
         ratios = (_ratios(row["ratios"][part]) for part in _TOLD)
         table.add_row("default" if row["sweeps"] is None else str(row["sweeps"]), *true, *ratios)
+    return table
+
+
+def _moving(rows: list[dict[str, Any]]) -> Table:
+    errors = [f"{words}: lit / unlit" for words in _MOVING.values()]
+    costs = ("segments a frame, million", "s a frame", "s without the correction")
+    title = "in motion: relative RMS error of the exitance, %, by patches"
+    table = Table("seed", "tets", *errors, "printed: whole / unlit", *costs, title=title)
+    for row in rows:
+        found = row["motion"]
+        table.add_row(
+            str(row["seed"]),
+            f"{row['tets']:,}",
+            *(_percents(found[name], _JUDGED) for name in _MOVING),
+            _percents(found["printed"], _TOLD),
+            f"{found['segments'] / 1e6:.2f}",
+            f"{found['seconds']:.2f}",
+            f"{found['plain']:.2f}",
+        )
+    return table
+
+
+def _moving_summary(found: dict[str, Any]) -> Table:
+    table = Table("in motion", "lit: median / 90% / worst", "unlit", title="summary in motion, %")
+    for name, words in _MOVING.items():
+        table.add_row(words, *(_percents(found[name][part] or {}, _SPREAD) for part in _JUDGED))
+    for part in _TOLD:
+        table.add_row(f"printed over true, {part}", _ratios(found["ratios"][part]), "")
+    for name, words, unit in (("segments", "segments a frame, million", 1e6), ("slower", "times a frame without", 1)):
+        table.add_row(words, " / ".join(f"{found[name][kind] / unit:.2f}" for kind in _SPREAD), "")
     return table
 
 

@@ -93,6 +93,11 @@ def _add_unseen_options(group: argparse._ArgumentGroup) -> None:
         help="leave out light that enters again, in the engine and in the truth",
     )
     group.add_argument(
+        "--motion",
+        action="store_true",
+        help="also 30 frames in which the light turns by 3 degrees each and the material is edited",
+    )
+    group.add_argument(
         "--walks", type=positive_int, default=2_000_000, metavar="N", help="of each truth (default: %(default)s)"
     )
     group.add_argument(
@@ -133,7 +138,15 @@ def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
     if args.study == "unseen":
         truths, sweeps = args.truth or cache_folder(), args.sweeps or (None,)
         wanted = study.UnseenRun(
-            args.seed, args.count, args.walks, truths, sweeps, args.device, args.lights, args.inter_reflection
+            args.seed,
+            args.count,
+            args.walks,
+            truths,
+            sweeps,
+            args.device,
+            args.lights,
+            args.inter_reflection,
+            args.motion,
         )
         record = study.run(wanted)
         if args.images:
