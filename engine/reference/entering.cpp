@@ -6,6 +6,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "engine/optics/fresnel.h"
+#include "shaders/shared/random.h"
 
 namespace quadgraph {
 namespace {
@@ -78,6 +79,29 @@ std::array<glm::dvec3, 2 * gpu::LAMBERTIAN_NODES> lambertian_directions(const Fa
 glm::dvec3 mean_direction(const FaceFrame& frame, std::uint32_t f, double eta) {
   const double mu = lambertian_bundle(eta).mean_cosine();
   return std::sqrt(1.0 - mu * mu) * tangent_of(frame, f) - mu * frame.normal;
+}
+
+glm::dvec3 rectangle_incoming(const gpu::BeamRecord& beam, const FaceFrame& frame, std::uint32_t f,
+                              std::uint32_t quarter, const glm::dvec3& point, double eta) {
+  constexpr std::uint32_t side = gpu::RECTANGLE_SIDE;
+  const glm::dvec3 centre(beam.travel_or_from), u(beam.u), v(beam.v);
+  const auto to = [&](double x, double y) { return centre + (x / side - 0.5) * u + (y / side - 0.5) * v - point; };
+  std::array<double, side * side> sums{};  // of what the parts up to each let in
+  double all = 0;
+  for (std::uint32_t k = 0; k < side * side; ++k) {
+    const glm::dvec3 way = to(k % side + 0.5, k / side + 0.5);
+    const double distance = glm::length(way), cosine = std::max(glm::dot(frame.normal, way) / distance, 0.0);
+    const double sent = std::max(-glm::dot(glm::cross(u, v), way), 0.0) / (distance * distance * distance);
+    all += sent * cosine * fresnel_transmittance(std::min(cosine, 1.0), eta);
+    sums[k] = all;
+  }
+  if (all == 0) return glm::normalize(point - centre);
+  const auto number = [&](std::uint32_t dimension) {
+    return static_cast<double>(gpu::spread_number(0, 4 * f + quarter, dimension));
+  };
+  const auto drawn = std::upper_bound(sums.begin(), sums.end() - 1, number(0) * all);
+  const auto k = static_cast<std::uint32_t>(drawn - sums.begin());
+  return -glm::normalize(to(k % side + number(1), k / side + number(2)));
 }
 
 }  // namespace quadgraph

@@ -44,4 +44,8 @@ std::array<glm::dvec3, 2 * gpu::LAMBERTIAN_NODES> lambertian_directions(const Fa
 // moves with the body and differs from face to face without order (GOLDEN_TURN).
 glm::dvec3 mean_direction(const FaceFrame& frame, std::uint32_t f, double eta);
 
+// The way that light of BEAM_RECTANGLE travels to a point of face f, in its quarter (3: the one in the middle).
+glm::dvec3 rectangle_incoming(const gpu::BeamRecord& beam, const FaceFrame& frame, std::uint32_t f,
+                              std::uint32_t quarter, const glm::dvec3& point, double eta);
+
 }  // namespace quadgraph

@@ -35,7 +35,7 @@ class Bounces {
     }
     result.irradiance.assign(level.faces.size(), glm::dvec3(0));
     result.re_entered.assign(level.faces.size(), glm::vec3(0));
-    lights_.push_back({{gpu::BEAM_MEAN, glm::vec3(0)}, result.re_entered});
+    lights_.push_back({{gpu::BEAM_MEAN, {}, {}, {}}, result.re_entered});
   }
 
   std::span<const EnteringLight> lights() const { return lights_; }

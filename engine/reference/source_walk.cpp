@@ -20,16 +20,9 @@ class Beam {
     if (even(frame, quarters)) {
       const glm::dvec3 q =
           (glm::dvec3(quarters[0]) + glm::dvec3(quarters[1]) + glm::dvec3(quarters[2]) + glm::dvec3(quarters[3])) / 4.0;
-      return from(f, frame, glm::dvec3(1.0 / 3), q * frame.area);
+      return from(f, frame, 3, q * frame.area);
     }
-    for (std::size_t k = 0; k < 4; ++k) {
-      glm::dvec3 centre(1.0 / 3);
-      if (k < 3) {
-        centre = glm::dvec3(1.0 / 6);
-        centre[static_cast<int>(k)] = 2.0 / 3;
-      }
-      from(f, frame, centre, glm::dvec3(quarters[k]) * (frame.area / 4));
-    }
+    for (std::uint32_t k = 0; k < 4; ++k) from(f, frame, k, glm::dvec3(quarters[k]) * (frame.area / 4));
   }
 
  private:
@@ -44,15 +37,26 @@ class Beam {
     return glm::all(glm::lessThanEqual(high - low, high / 16.0f)) && longest <= 8 * frame.area;
   }
 
-  void from(std::uint32_t f, const FaceFrame& frame, const glm::dvec3& barycentric, const glm::dvec3& power) {
+  // From the middle of a quarter; the last is the one in the middle of the face.
+  void from(std::uint32_t f, const FaceFrame& frame, std::uint32_t quarter, const glm::dvec3& power) {
+    glm::dvec3 barycentric(1.0 / 3);
+    if (quarter < 3) {
+      barycentric = glm::dvec3(1.0 / 6);
+      barycentric[static_cast<int>(quarter)] = 2.0 / 3;
+    }
     if (power == glm::dvec3(0)) return;
     result_.entered += power;
     if (beam_.kind == gpu::BEAM_LAMBERTIAN) return lambertian(f, frame, barycentric, power);
     if (beam_.kind == gpu::BEAM_MEAN) return ray_.run(f, barycentric, mean_direction(frame, f, problem_.eta), power);
-    const glm::dvec3 vector(beam_.travel_or_from);
-    const glm::dvec3 outside =
-        beam_.kind == gpu::BEAM_DIRECTIONAL ? vector : glm::normalize(point_at(frame, barycentric) - vector);
+    const glm::dvec3 outside = incoming(f, frame, quarter, point_at(frame, barycentric));
     ray_.run(f, barycentric, refract(outside, frame.normal, problem_.eta), power);
+  }
+
+  glm::dvec3 incoming(std::uint32_t f, const FaceFrame& frame, std::uint32_t quarter, const glm::dvec3& point) const {
+    const glm::dvec3 vector(beam_.travel_or_from);
+    if (beam_.kind == gpu::BEAM_DIRECTIONAL) return vector;
+    if (beam_.kind == gpu::BEAM_POINT) return glm::normalize(point - vector);
+    return rectangle_incoming(beam_, frame, f, quarter, point, problem_.eta);
   }
 
   void lambertian(std::uint32_t f, const FaceFrame& frame, const glm::dvec3& barycentric, const glm::dvec3& power) {

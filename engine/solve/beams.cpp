@@ -39,19 +39,19 @@ bool alike(std::span<const gpu::Beam> a, std::span<const gpu::Beam> b) {
 }  // namespace
 
 gpu::Beam beam_along(const std::optional<glm::vec3>& direction) {
-  if (!direction) return rgb_beam({gpu::BEAM_LAMBERTIAN, glm::vec3(0)});
+  if (!direction) return rgb_beam({gpu::BEAM_LAMBERTIAN, {}, {}, {}});
   const double length = glm::length(glm::dvec3(*direction));
   if (!std::isfinite(length) || length == 0) {
     throw InputError("direction of the light: " + std::to_string(direction->x) + ", " + std::to_string(direction->y) +
                      ", " + std::to_string(direction->z) + ", finite numbers that are not all zero are wanted");
   }
-  return rgb_beam({gpu::BEAM_DIRECTIONAL, glm::vec3(glm::dvec3(*direction) / length)});
+  return rgb_beam({gpu::BEAM_DIRECTIONAL, glm::vec3(glm::dvec3(*direction) / length), {}, {}});
 }
 
 void replace_beams(device::Device& device, std::span<const gpu::Beam> beams, BeamBuffers& buffers,
                    std::vector<LevelBuffers>& levels) {
   std::vector<gpu::Beam> all(beams.begin(), beams.end());
-  all.push_back(rgb_beam({gpu::BEAM_MEAN, glm::vec3(0)}));
+  all.push_back(rgb_beam({gpu::BEAM_MEAN, {}, {}, {}}));
   std::uint32_t floats = 0;
   for (gpu::Beam& beam : all) {
     beam.offset = floats;

@@ -176,7 +176,8 @@ Light lambertian_light(uint beam, uint kind, uint v) {
 Light light_of(uint beam, uint v) {
   BeamRecord record = push.beams.at[beam].way;
   if (record.kind == BEAM_DIRECTIONAL) return directed_light(beam, v, record.travel_or_from);
-  if (record.kind == BEAM_POINT) return directed_light(beam, v, normalize(BODY.vertices.at[v] - record.travel_or_from));
+  if (record.kind == BEAM_POINT || record.kind == BEAM_RECTANGLE)
+    return directed_light(beam, v, normalize(BODY.vertices.at[v] - record.travel_or_from));
   return lambertian_light(beam, record.kind, v);
 }
 

@@ -12,11 +12,14 @@ const uint BEAM_DIRECTIONAL = 0u;
 const uint BEAM_POINT = 1u;
 const uint BEAM_LAMBERTIAN = 2u;
 const uint BEAM_MEAN = 3u;
+const uint BEAM_RECTANGLE = 4u;
 
 // How the light of one source comes in, wherever it does.
 struct BeamRecord {
   uint kind;            // BEAM_*
-  vec3 travel_or_from;  // directional: unit, the way the light travels; point: where it comes from, mm; others: unused
+  vec3 travel_or_from;  // directional: unit, the way the light travels; point: where it comes from, mm; rectangle: its
+                        // centre, mm; others: unused
+  vec3 u, v;            // rectangle: its edges, mm; others: unused
 };
 
 // How much of a beam is stored per face, floats: one, one per quarter or three per quarter, to be multiplied by its
@@ -46,6 +49,11 @@ const float LAMBERTIAN_W[4] = {0.1739274226f, 0.3260725774f, 0.3260725774f, 0.17
 // from the face's first edge t1 towards normal x t1. The golden ratio's fraction in units of 2^-32: integers turn alike
 // on CPU and GPU.
 const uint GOLDEN_TURN = 2654435769u;
+
+// A ray of a rectangle comes from a place in one of so many parts along each edge, all of the same size, a part being
+// drawn by what it lets into the surface. The numbers that it takes are 0 to 2 of the spread sequence, at four times
+// the face's number and its quarter's.
+const uint RECTANGLE_SIDE = 4u;
 
 #ifndef __cplusplus
 QG_ARRAY(Beams, Beam);

@@ -6,6 +6,7 @@
 #include "source/beam_light.glsl"
 #include "source/face_azimuth.glsl"
 #include "source/lambertian.glsl"
+#include "source/rectangle_light.glsl"
 #include "source/walk_ray.glsl"
 
 const uint FACE_CENTRE = 3u;  // the quarter in the middle
@@ -26,12 +27,14 @@ bool one_ray_does(vec3 least, vec3 largest, mat3 corners, float area) {
 
 struct Frame {
   vec3 position, normal, tangent;
+  uint number;  // of the origin of rays, among all of the surface
 };
 
 // The way light travels outside, at a point of a face.
 vec3 incoming(BeamRecord beam, uint ray, Frame at) {
   if (beam.kind == BEAM_DIRECTIONAL) return beam.travel_or_from;
   if (beam.kind == BEAM_POINT) return normalize(at.position - beam.travel_or_from);
+  if (beam.kind == BEAM_RECTANGLE) return rectangle_incoming(beam, at.position, at.normal, at.number, BODY.eta);
   return lambertian_incoming(ray, at.normal, at.tangent);
 }
 
@@ -93,7 +96,7 @@ void walk_from(uint face, uint ray) {
     if (power == vec3(0)) continue;
     vec3 l = quarter_centre(k);
     start_on_face(tet, ids, corners, l);
-    follow(beam.way, ray, face, Frame(corners * l, normal, tangent), power);
+    follow(beam.way, ray, face, Frame(corners * l, normal, tangent, FACE_QUARTERS * face + k), power);
   }
 }
 

@@ -55,7 +55,7 @@ Light light_of(const Level& level, const Problem& problem) {
   }
   std::vector<Quarters> quarters;
   for (const glm::vec3& q : light.q) quarters.push_back({q, q, q, q});
-  const WalkResult walk = walk_source(level, problem, {gpu::BEAM_DIRECTIONAL, direction}, quarters);
+  const WalkResult walk = walk_source(level, problem, {gpu::BEAM_DIRECTIONAL, direction, {}, {}}, quarters);
   light.b = buried_load(level, problem, walk.scattered);
   return light;
 }

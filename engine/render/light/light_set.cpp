@@ -63,19 +63,20 @@ gpu::LightShape projector_shape(const Light& light, const ProjectedImage& image)
 gpu::Beam beam_of(const Light& light, const gpu::LightRecord& record) {
   switch (light.kind) {
     case LightKind::ambient:
-      return {{gpu::BEAM_LAMBERTIAN, glm::vec3(0)}, record.power, gpu::BEAM_FACE, 0};
+      return {{gpu::BEAM_LAMBERTIAN, {}, {}, {}}, record.power, gpu::BEAM_FACE, 0};
     case LightKind::environment:
-      return {{gpu::BEAM_LAMBERTIAN, glm::vec3(0)}, glm::vec3(1), gpu::BEAM_RGB, 0};
+      return {{gpu::BEAM_LAMBERTIAN, {}, {}, {}}, glm::vec3(1), gpu::BEAM_RGB, 0};
     case LightKind::directional:
-      return {{gpu::BEAM_DIRECTIONAL, light.direction}, record.power, gpu::BEAM_QUARTERS, 0};
+      return {{gpu::BEAM_DIRECTIONAL, light.direction, {}, {}}, record.power, gpu::BEAM_QUARTERS, 0};
+    case LightKind::rectangle:
+      return {{gpu::BEAM_RECTANGLE, light.position, light.u, light.v}, record.power, gpu::BEAM_QUARTERS, 0};
     case LightKind::point:
     case LightKind::spot:
-    case LightKind::rectangle:
     case LightKind::projector:
       break;
   }
   const auto floats = light.kind == LightKind::projector ? gpu::BEAM_RGB_QUARTERS : gpu::BEAM_QUARTERS;
-  return {{gpu::BEAM_POINT, light.position}, record.power, floats, 0};
+  return {{gpu::BEAM_POINT, light.position, {}, {}}, record.power, floats, 0};
 }
 
 }  // namespace

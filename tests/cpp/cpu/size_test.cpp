@@ -46,7 +46,7 @@ TEST_CASE(
       body.simulation.solve(what.options(solver, 1e-6));
       const ReferenceSolution expected =
           solve_reference(level, evaluate_material(level, material), material.eta,
-                          {{gpu::BEAM_DIRECTIONAL, glm::normalize(glm::vec3(1, 0.2f, 0))}, q},
+                          {{gpu::BEAM_DIRECTIONAL, glm::normalize(glm::vec3(1, 0.2f, 0)), {}, {}}, q},
                           what.options(SolverKind::dpcg, 1e-10), Entries::exact);
       // Vertices are rounded anew at every size, and entries are stored with 20 bits.
       CHECK(relative_difference(body.simulation.phi(), expected.phi) < 1e-5);

@@ -29,7 +29,7 @@ void use(const QuadGraph& graph) {
   for (const Level& level : graph.levels()) {
     const std::vector<gpu::Optical> optical(level.node_count(), {glm::vec3(0.1f), glm::vec3(0.01f)});
     const std::vector<glm::vec3> q(level.face_count(), glm::vec3(1));
-    const EnteringLight light{{gpu::BEAM_LAMBERTIAN, glm::vec3(0)}, q};
+    const EnteringLight light{{gpu::BEAM_LAMBERTIAN, glm::vec3(0), {}, {}}, q};
     for (const Method method : {Method::fem, Method::quadgraph_fdm}) {
       SolveOptions options;
       options.method = method;

@@ -26,7 +26,7 @@ OwnedLevel slab_level(std::uint32_t n, float size) {
 // Mean exitance of the lit and of the far side.
 std::array<glm::dvec3, 2> out_of(const Level& level, const Opticals& optical, double eta, std::uint32_t kind) {
   const auto q = one_side(level);
-  const EnteringLight light{{kind, glm::vec3(0)}, q};
+  const EnteringLight light{{kind, {}, {}, {}}, q};
   const auto solution = solve_reference(level, optical, eta, light, solving(Method::fem, Source::buried, Model::sp3));
   std::array<glm::dvec3, 2> sum{};
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {
@@ -76,6 +76,40 @@ TEST_CASE("the ray for uniform light keeps its angle, moves with the face, and t
     CHECK(glm::distance(mean_direction(frame, f, 1.3), turned(d)) < 1e-12);
   }
   for (const int count : quadrant) CHECK(count == doctest::Approx(level.face_count() / 4.0).epsilon(0.1));
+}
+
+TEST_CASE("rays of a rectangle come from where its light does, also where the surface sees a part of it") {
+  // Face in the plane z = 0; rectangles that face it, close, aslant, and half below its horizon.
+  FaceFrame frame{{glm::dvec3(0), {1, 0, 0}, {0, 1, 0}}, {0, 0, 1}, 0.5};
+  const glm::dvec3 point(0.25, 0.25, 0);
+  const std::array<gpu::BeamRecord, 3> lights = {{{gpu::BEAM_RECTANGLE, {0, 0, 1}, {0, 2, 0}, {2, 0, 0}},
+                                                  {gpu::BEAM_RECTANGLE, {3, -1, 2}, {1, 2, 0}, {1, 0, 1.5f}},
+                                                  {gpu::BEAM_RECTANGLE, {3, 0, 0}, {0, 0, 4}, {0, 4, 0}}}};
+  for (gpu::BeamRecord light : lights) {
+    const glm::dvec3 centre(light.travel_or_from);
+    if (glm::dot(glm::cross(light.u, light.v), -light.travel_or_from) < 0) std::swap(light.u, light.v);
+    for (const double eta : {1.0, 1.5}) {
+      CAPTURE(centre.x);
+      CAPTURE(eta);
+      glm::dvec3 drawn(0), whole(0);
+      constexpr std::uint32_t rays = 20000;
+      for (std::uint32_t f = 0; f < rays; ++f) {
+        drawn += rectangle_incoming(light, frame, f, 3, point, eta) / static_cast<double>(rays);
+      }
+      double all = 0;
+      for (int i = 0; i < 300 * 300; ++i) {
+        const glm::dvec3 to = centre + ((i % 300 + 0.5) / 300 - 0.5) * glm::dvec3(light.u) +
+                              ((i / 300 + 0.5) / 300 - 0.5) * glm::dvec3(light.v) - point;
+        const glm::dvec3 way = glm::normalize(to);
+        const double cosine = std::max(glm::dot(way, frame.normal), 0.0);
+        const double weight = cosine * fresnel_transmittance(cosine, eta) / glm::dot(to, to) *
+                              std::max(-glm::dot(glm::dvec3(glm::cross(light.u, light.v)), way), 0.0);
+        whole -= weight * way;
+        all += weight;
+      }
+      CHECK(glm::distance(drawn, whole / all) < 0.03);  // parts are up to a third of the distance wide
+    }
+  }
 }
 
 TEST_CASE("a slab lit by the one ray reflects and transmits like one in uniform light") {

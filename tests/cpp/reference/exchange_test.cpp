@@ -171,7 +171,7 @@ TEST_CASE("bounces inside a uniformly lit shell are the geometric series of its 
   for (const double eta : {1.0, 1.4}) {
     CAPTURE(eta);
     const SolveOptions options = solving(Method::fem, Source::buried, Model::sp3, 1e-7);
-    const EnteringLight light = lambertian(q), again{{gpu::BEAM_MEAN, glm::vec3(0)}, q};
+    const EnteringLight light = lambertian(q), again{{gpu::BEAM_MEAN, glm::vec3(0), {}, {}}, q};
     const glm::dvec3 first = reflectance(solve_reference(level, medium(level), eta, light, options));
     const glm::dvec3 later = reflectance(solve_reference(level, medium(level), eta, again, options));
     const BouncedSolution bounced = solve_with_bounces(level, medium(level), eta, std::span(&light, 1), options);
@@ -193,7 +193,7 @@ TEST_CASE("bounces inside a uniformly lit shell are the geometric series of its 
 TEST_CASE("the first bounce between facing plates brings what the closed form lets through") {
   const Level level = plates().view();
   const auto q = lit(level, [](std::uint32_t f) { return faces_lower(plates(), f); });
-  const EnteringLight light{{gpu::BEAM_DIRECTIONAL, glm::vec3(0, 0, 1)}, q};
+  const EnteringLight light{{gpu::BEAM_DIRECTIONAL, glm::vec3(0, 0, 1), {}, {}}, q};
   SolveOptions options = solving(Method::fem, Source::buried, Model::sp3, 1e-8);
   options.bounces = 1;
   const double eta = 1.3;
@@ -222,7 +222,7 @@ TEST_CASE("the first bounce between facing plates brings what the closed form le
 TEST_CASE("energy is balanced with bounces, and they add up to what re-entered") {
   const Level level = plates().view();
   const auto q = lit(level, [](std::uint32_t f) { return faces_lower(plates(), f) || f % 3 == 0; });
-  const EnteringLight lights[] = {lambertian(q), {{gpu::BEAM_DIRECTIONAL, glm::vec3(0.6f, 0, 0.8f)}, q}};
+  const EnteringLight lights[] = {lambertian(q), {{gpu::BEAM_DIRECTIONAL, glm::vec3(0.6f, 0, 0.8f), {}, {}}, q}};
   for (const Method method : {Method::fem, Method::quadgraph_fv}) {
     for (const Model model : both_models) {
       const SolveOptions options = solving(method, Source::buried, model, 1e-6);

@@ -59,7 +59,7 @@ struct Lit {
 };
 
 gpu::BeamRecord along(const glm::vec3& direction) {
-  return {gpu::BEAM_DIRECTIONAL, glm::normalize(direction)};
+  return {gpu::BEAM_DIRECTIONAL, glm::normalize(direction), {}, {}};
 }
 
 std::uint32_t open_face(const Level& level, bool lit) {
@@ -187,8 +187,8 @@ TEST_CASE("uniform light that enters falls off as its bundle; one ray stands for
   for (const double eta : {1.0, 1.3}) {
     const Problem problem = problem_of(optical, eta);
     const LambertianBundle bundle = lambertian_bundle(eta);
-    const Uncollided even = Lit(level, {gpu::BEAM_LAMBERTIAN, glm::vec3(0)}).in(level, problem);
-    const Uncollided mean = Lit(level, {gpu::BEAM_MEAN, glm::vec3(0)}).in(level, problem);
+    const Uncollided even = Lit(level, {gpu::BEAM_LAMBERTIAN, {}, {}, {}}).in(level, problem);
+    const Uncollided mean = Lit(level, {gpu::BEAM_MEAN, {}, {}, {}}).in(level, problem);
     for (std::uint32_t v = 0; v < level.vertex_count(); ++v) {
       if (level.vertices[v].x > 0.9f) continue;  // the way out there is the far side, where nothing enters
       const double tau = 1.2 * level.vertices[v].x, mu = bundle.mean_cosine();

@@ -210,8 +210,9 @@ TEST_CASE("turned and moved with its light, a body answers the same") {
     for (Model model : both_models) {
       for (Source source : both_sources) {
         const SolveOptions how = solving(method, source, model);
-        const auto a = solve_reference(here, optical, 1.3, {{gpu::BEAM_DIRECTIONAL, direction}, q}, how);
-        const auto b = solve_reference(there, optical, 1.3, {{gpu::BEAM_DIRECTIONAL, turned(direction)}, q}, how);
+        const auto a = solve_reference(here, optical, 1.3, {{gpu::BEAM_DIRECTIONAL, direction, {}, {}}, q}, how);
+        const auto b =
+            solve_reference(there, optical, 1.3, {{gpu::BEAM_DIRECTIONAL, turned(direction), {}, {}}, q}, how);
         double largest = 0, worst = 0;
         for (std::size_t f = 0; f < a.exitance.size(); ++f) {
           for (int c = 0; c < 3; ++c) {

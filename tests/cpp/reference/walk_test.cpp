@@ -28,10 +28,10 @@ glm::dvec3 sum(std::span<const glm::dvec3> values) {
 }
 
 gpu::BeamRecord along(const glm::vec3& direction) {
-  return {gpu::BEAM_DIRECTIONAL, glm::normalize(direction)};
+  return {gpu::BEAM_DIRECTIONAL, glm::normalize(direction), {}, {}};
 }
 
-const gpu::BeamRecord lambertian_beam{gpu::BEAM_LAMBERTIAN, glm::vec3(0)};
+const gpu::BeamRecord lambertian_beam{gpu::BEAM_LAMBERTIAN, {}, {}, {}};
 
 void check_conserved(const WalkResult& walk, double tolerance = 1e-11) {
   for (int c = 0; c < 3; ++c) {

@@ -47,8 +47,8 @@ TEST_CASE("iterations stop at the limit, with the reference's iterate") {
         CHECK(report.levels[0].iterations == limit);
         CHECK(!report.levels[0].converged);
         CHECK(report.levels[0].residual > 1e-7);
-        const ReferenceSolution expected =
-            solve_reference(level, optical, 1.3, {{gpu::BEAM_LAMBERTIAN, glm::vec3(0)}, q}, how, Entries::stored);
+        const ReferenceSolution expected = solve_reference(
+            level, optical, 1.3, {{gpu::BEAM_LAMBERTIAN, glm::vec3(0), {}, {}}, q}, how, Entries::stored);
         // The relaxation's step differs: the GPU bounds each channel, the CPU all together.
         const bool same_step = solver == SolverKind::dpcg || method != Method::fem;
         if (same_step) CHECK(relative_difference(scene.simulation.phi(), expected.phi) < 1e-3);
@@ -198,7 +198,7 @@ TEST_CASE("published rows that are not positive definite fail on the GPU as in t
   CHECK_THROWS_WITH_AS(scene.simulation.solve(how), doctest::Contains("level 0: quadgraph-fdm"), SolverError);
   const Level& level = scene.graph.levels()[0];
   const auto q = scene.irradiance(0, [](const glm::vec3& p) { return glm::vec3(p.x, p.y, 0.5f); });
-  CHECK_THROWS_AS(
-      solve_reference(level, evaluate_material(level, veined()), 1.3, {{gpu::BEAM_LAMBERTIAN, glm::vec3(0)}, q}, how),
-      SolverError);
+  CHECK_THROWS_AS(solve_reference(level, evaluate_material(level, veined()), 1.3,
+                                  {{gpu::BEAM_LAMBERTIAN, glm::vec3(0), {}, {}}, q}, how),
+                  SolverError);
 }

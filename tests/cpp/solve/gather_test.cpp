@@ -21,8 +21,8 @@ struct Gathering {
     optical = evaluate_material(level, material);
     scene.simulation.set_material(material);
     scene.simulation.set_irradiance(0, scene.irradiance(0, one_side), direction);
-    beam = direction ? gpu::BeamRecord{gpu::BEAM_DIRECTIONAL, glm::normalize(*direction)}
-                     : gpu::BeamRecord{gpu::BEAM_LAMBERTIAN, glm::vec3(0)};
+    beam = direction ? gpu::BeamRecord{gpu::BEAM_DIRECTIONAL, glm::normalize(*direction), {}, {}}
+                     : gpu::BeamRecord{gpu::BEAM_LAMBERTIAN, {}, {}, {}};
     scene.simulation.solve({.method = Method::fem, .model = Model::sp3, .tolerance = 1e-6});
   }
 

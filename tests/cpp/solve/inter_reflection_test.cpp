@@ -151,7 +151,7 @@ TEST_CASE("the bounces are those of the CPU, for every conservative method and m
   body.light(q_at);
   std::vector<glm::vec3> q;
   for (std::uint32_t f = 0; f < level.face_count(); ++f) q.push_back(q_at(level.nodes[level.tet_count() + f]));
-  const EnteringLight light{{gpu::BEAM_LAMBERTIAN, glm::vec3(0)}, q};
+  const EnteringLight light{{gpu::BEAM_LAMBERTIAN, glm::vec3(0), {}, {}}, q};
   for (const Case& what : all_cases()) {
     if (what.source == Source::diffuse || what.method == Method::quadgraph_fdm) continue;
     for (const float eta : {1.0f, 1.4f}) {

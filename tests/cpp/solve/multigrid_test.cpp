@@ -154,7 +154,7 @@ TEST_CASE("cycles solve what the CPU reference solves") {
         const SolveReport report =
             scene.simulation.solve({.solver = solver, .model = model, .tolerance = 1e-5, .smoothing = smoothing});
         const ReferenceSolution expected =
-            solve_reference(level, optical, 1.3, {{gpu::BEAM_LAMBERTIAN, glm::vec3(0)}, q},
+            solve_reference(level, optical, 1.3, {{gpu::BEAM_LAMBERTIAN, glm::vec3(0), {}, {}}, q},
                             {.model = model, .tolerance = 1e-10}, Entries::stored);
         CHECK(report.solver == solver);
         CHECK(report.replaced.empty());

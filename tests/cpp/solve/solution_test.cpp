@@ -16,7 +16,7 @@ ReferenceSolution reference(const Scene& scene, const gpu::Material& material, c
                             const SolveOptions& how, const glm::vec3& direction) {
   const Level& level = scene.graph.levels()[0];
   return solve_reference(level, evaluate_material(level, material), material.eta,
-                         {{gpu::BEAM_DIRECTIONAL, glm::normalize(direction)}, q}, how, Entries::stored);
+                         {{gpu::BEAM_DIRECTIONAL, glm::normalize(direction), {}, {}}, q}, how, Entries::stored);
 }
 
 // phi at the carriers on the surface: vertices, or surface nodes.
@@ -75,10 +75,11 @@ TEST_CASE("the error estimate compares the exitance with that of the coarser lev
     const std::vector<Share> shares = shares_of(fine, method, scene.simulation.surface_field());
     const std::vector<glm::vec3> phi = scene.simulation.phi();
     const auto optical = evaluate_material(coarse, homogeneous());
-    const std::vector<glm::dvec3> start = phi_from_coarse(
-        scene, method,
-        solve_reference(coarse, optical, 1.3f, {{gpu::BEAM_LAMBERTIAN, glm::vec3(0)}, coarse_q}, how, Entries::stored)
-            .phi);
+    const std::vector<glm::dvec3> start =
+        phi_from_coarse(scene, method,
+                        solve_reference(coarse, optical, 1.3f, {{gpu::BEAM_LAMBERTIAN, glm::vec3(0), {}, {}}, coarse_q},
+                                        how, Entries::stored)
+                            .phi);
     glm::dvec2 difference{0}, norm{0};
     for (std::size_t i = 0; i < start.size(); ++i) {
       const glm::dvec3 value(phi[method == Method::fem ? i : fine.tet_count() + i]);

@@ -15,7 +15,7 @@ TEST_CASE("a clear slab passes and reflects light as Fresnel says, none of it sc
           walk(device.context, {.level = level,
                                 .optical = uniform(glm::vec3(0), glm::vec3(0)),
                                 .quarter_q = lit_side({-1, 0, 0}),
-                                .beam = {gpu::BEAM_DIRECTIONAL, {std::sqrt(1 - sine * sine), 0, sine}},
+                                .beam = {gpu::BEAM_DIRECTIONAL, {std::sqrt(1 - sine * sine), 0, sine}, {}, {}},
                                 .eta = eta});
       check_balance(result, 1e-6);
       CHECK(total(result.deposit) == glm::dvec3(0));
@@ -54,7 +54,7 @@ TEST_CASE("light comes out where Snell's law takes it") {
         device.context, {.level = level,
                          .optical = uniform(glm::vec3(0), glm::vec3(0)),
                          .quarter_q = [&](const Lit& lit, std::uint32_t) { return lit.face == entry ? 1.0f : 0.0f; },
-                         .beam = {gpu::BEAM_DIRECTIONAL, glm::vec3(outside)},
+                         .beam = {gpu::BEAM_DIRECTIONAL, glm::vec3(outside), {}, {}},
                          .eta = eta});
     const double sine_over_cosine =
         std::sqrt(1 / (refracted_cosine(outside.x, eta) * refracted_cosine(outside.x, eta)) - 1);
@@ -82,7 +82,7 @@ TEST_CASE("nothing leaves beyond the critical angle") {
   const GpuWalk result = walk(device.context, {.level = level,
                                                .optical = uniform(glm::vec3(0), glm::vec3(0)),
                                                .quarter_q = lit_side({-1, 0, 0}),
-                                               .beam = {gpu::BEAM_LAMBERTIAN, {}},
+                                               .beam = {gpu::BEAM_LAMBERTIAN, {}, {}, {}},
                                                .eta = 1.5});
   check_balance(result, 1e-6);
   for (std::uint32_t f = 0; f < level.faces.size(); ++f) {
@@ -97,7 +97,7 @@ TEST_CASE("light that a clear body traps ends as unscattered, in finite time") {
   const GpuWalk result = walk(device.context, {.level = level,
                                                .optical = uniform(glm::vec3(0), glm::vec3(0)),
                                                .quarter_q = [](const Lit&, std::uint32_t) { return 1.0f; },
-                                               .beam = {gpu::BEAM_LAMBERTIAN, {}},
+                                               .beam = {gpu::BEAM_LAMBERTIAN, {}, {}, {}},
                                                .eta = 3});
   check_balance(result, 1e-6);
   CHECK(result.power.unscattered.x == doctest::Approx(result.entered.x).epsilon(1e-6));

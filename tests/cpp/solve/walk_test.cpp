@@ -46,7 +46,7 @@ TEST_CASE("what rays scatter in a slab is the exact integral against the hat fun
       const GpuWalk result = walk(device.context, {.level = level,
                                                    .optical = uniform(sigma_s_prime, sigma_a),
                                                    .quarter_q = lit_side({-1, 0, 0}),
-                                                   .beam = {gpu::BEAM_DIRECTIONAL, direction},
+                                                   .beam = {gpu::BEAM_DIRECTIONAL, direction, {}, {}},
                                                    .eta = eta});
       check_balance(result, 1e-6);
       const double cosine = refracted_cosine(cos_i, eta), r = internal_reflectance(cosine, eta);
@@ -72,10 +72,12 @@ TEST_CASE("what rays scatter in a slab is the exact integral against the hat fun
 TEST_CASE("no power is lost or won, for any element size against the mean free path, beam and method") {
   CheckedContext device;
   const OwnedLevel level = box_level(4, 4.0f, 0.3f);
-  const std::array<gpu::BeamRecord, 4> beams = {{{gpu::BEAM_DIRECTIONAL, glm::normalize(glm::vec3(1, -0.4f, 0.3f))},
-                                                 {gpu::BEAM_POINT, {-3.0f, 1.0f, 2.5f}},
-                                                 {gpu::BEAM_LAMBERTIAN, {}},
-                                                 {gpu::BEAM_MEAN, {}}}};
+  const std::array<gpu::BeamRecord, 5> beams = {
+      {{gpu::BEAM_DIRECTIONAL, glm::normalize(glm::vec3(1, -0.4f, 0.3f)), {}, {}},
+       {gpu::BEAM_POINT, {-3.0f, 1.0f, 2.5f}, {}, {}},
+       {gpu::BEAM_LAMBERTIAN, {}, {}, {}},
+       {gpu::BEAM_MEAN, {}, {}, {}},
+       {gpu::BEAM_RECTANGLE, {-3.0f, 1.0f, 2.5f}, {0, 3, 1}, {0, -1, 2}}}};
   for (const float path : mean_free_paths) {
     for (const gpu::BeamRecord& beam : beams) {
       for (const Method method : all_methods) {
@@ -107,7 +109,7 @@ TEST_CASE("the walk repeats bit for bit") {
       .level = box_level(6, 6.0f, 0.3f),
       .optical = uniform({1.0f, 0.2f, 0.01f}, {0.1f, 0.0f, 0.001f}),
       .quarter_q = [](const Lit& lit, std::uint32_t k) { return lit.centre.x * static_cast<float>(k); },
-      .beam = {gpu::BEAM_LAMBERTIAN, {}},
+      .beam = {gpu::BEAM_LAMBERTIAN, {}, {}, {}},
       .eta = 1.4};
   const GpuWalk first = walk(device.context, input);
   CHECK(first.entered.x > 0);
@@ -134,7 +136,7 @@ TEST_CASE("Lambertian light falls off with depth as the average over all angles,
     const GpuWalk result = walk(device.context, {.level = level,
                                                  .optical = uniform({3.0f, 1.5f, 0.7f}, glm::vec3(0)),
                                                  .quarter_q = lit_side({-1, 0, 0}),
-                                                 .beam = {gpu::BEAM_LAMBERTIAN, {}},
+                                                 .beam = {gpu::BEAM_LAMBERTIAN, {}, {}, {}},
                                                  .eta = eta,
                                                  .mean_rays = mean_rays});
     check_balance(result, 1e-6);
@@ -159,7 +161,7 @@ TEST_CASE("a face that is lit in part sends its light from the lit quarters") {
               .optical = uniform(glm::vec3(1e5f), glm::vec3(0)),
               .quarter_q = [&](const Lit& face,
                                std::uint32_t quarter) { return face.face == 0 && quarter == lit ? 1.0f : 0.0f; },
-              .beam = {gpu::BEAM_DIRECTIONAL, -lit_face(level, 0).normal}});
+              .beam = {gpu::BEAM_DIRECTIONAL, -lit_face(level, 0).normal, {}, {}}});
     CHECK(result.entered.x == doctest::Approx(0.5 / FACE_QUARTERS));
     for (std::uint32_t k = 0; k < 3; ++k) {
       const double expected = lit == 3 ? 1.0 / 3 : k == lit ? 2.0 / 3 : 1.0 / 6;
@@ -190,7 +192,7 @@ TEST_CASE("one tet, slivers, needles and flat tets keep the power") {
             walk(device.context, {.level = levels[i],
                                   .optical = uniform(glm::vec3(0.7f, 1, 0.1f) / path, glm::vec3(0.3f, 0, 0) / path),
                                   .quarter_q = [](const Lit&, std::uint32_t) { return 1.0f; },
-                                  .beam = {gpu::BEAM_LAMBERTIAN, {}},
+                                  .beam = {gpu::BEAM_LAMBERTIAN, {}, {}, {}},
                                   .method = method,
                                   .eta = 1.4});
         check_balance(result, 1e-6);
@@ -225,10 +227,12 @@ TEST_CASE("the walk is that of the CPU, ray by ray") {
   }
   std::vector<gpu::Optical> optical;
   for (const glm::vec3& node : input.level.nodes) optical.push_back(input.optical(node));
-  const std::array<gpu::BeamRecord, 4> beams = {{{gpu::BEAM_DIRECTIONAL, glm::normalize(glm::vec3(1, -0.4f, 0.3f))},
-                                                 {gpu::BEAM_POINT, {-3.0f, 1.0f, 2.5f}},
-                                                 {gpu::BEAM_LAMBERTIAN, {}},
-                                                 {gpu::BEAM_MEAN, {}}}};
+  const std::array<gpu::BeamRecord, 5> beams = {
+      {{gpu::BEAM_DIRECTIONAL, glm::normalize(glm::vec3(1, -0.4f, 0.3f)), {}, {}},
+       {gpu::BEAM_POINT, {-3.0f, 1.0f, 2.5f}, {}, {}},
+       {gpu::BEAM_LAMBERTIAN, {}, {}, {}},
+       {gpu::BEAM_MEAN, {}, {}, {}},
+       {gpu::BEAM_RECTANGLE, {-3.0f, 1.0f, 2.5f}, {0, 3, 1}, {0, -1, 2}}}};
   for (const gpu::BeamRecord& beam : beams) {
     for (const Method method : all_methods) {
       CAPTURE(beam.kind);
