@@ -27,7 +27,7 @@ void check_irradiance(std::span<const glm::vec3> q, std::uint32_t level, std::ui
 }
 
 gpu::Beam rgb_beam(const gpu::BeamRecord& way) {
-  return {way, glm::vec3(0), gpu::BEAM_RGB, 0};
+  return {way, glm::vec3(0), gpu::BEAM_RGB, 0, 0};
 }
 
 // Both store the same per face, one after the other.

@@ -215,6 +215,7 @@ struct Simulation::Implementation {
     work.recorder.submit();
     report.energy = results.energy();
     const TransportPower power = correction->power(glm::dvec3(scale()), report.energy.scattered_out);
+    report.energy.entered = power.entered;
     report.energy.absorbed += power.absorbed;
     report.energy.unscattered_out = power.unscattered;
     report.energy.re_entered = power.entered_again;

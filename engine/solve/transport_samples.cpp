@@ -31,11 +31,14 @@ constexpr std::uint32_t halves = gpu::TRANSPORT_HALVES;
 constexpr std::uint64_t tets_per_ray = 10;
 constexpr std::uint64_t segment_bytes = sizeof(gpu::TransportCell) + sizeof(gpu::Optical);
 
+// Rays of light from all around, a face.
+constexpr std::uint32_t sky_rays_at_rest = 16, sky_rays_in_motion = 2;
+
 // Draws before the tets take their turns again: while a float tells them apart.
 constexpr std::uint32_t draws_apart = 1u << 16;
 
 // Sums of each of the WALK_SUMS of a pass.
-constexpr std::uint32_t walk_sums = 3, gather_sums = 4;
+constexpr std::uint32_t walk_sums = 4, gather_sums = 4;
 
 }  // namespace
 
@@ -156,6 +159,9 @@ void TransportSamples::record_walk(const TransportParts& parts, const WalkTask& 
     const std::uint32_t kind = beam.way.kind;
     if (kind == gpu::BEAM_MEAN) continue;
     push.rays = rays_of(kind, task.mean_rays);
+    if (beam.floats == gpu::BEAM_FACE || beam.picture != 0) {
+      push.rays = task.mean_rays ? sky_rays_in_motion : sky_rays_at_rest;
+    }
     work.recorder.dispatch(work.passes.of(shader::transport_walk), push, std::uint64_t{level.face_count} * push.rays,
                            "transport walk", walk_bytes(level, push.rays));
     push.beam += sizeof(gpu::Beam);

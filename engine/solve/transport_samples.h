@@ -34,7 +34,7 @@ struct TransportShares {
 
 // Power that the light's own rays brought, W, and of what is gathered the share that enters again.
 struct TransportPower {
-  glm::dvec3 absorbed{0}, unscattered{0}, entered_again{0}, share_again{0};
+  glm::dvec3 entered{0}, absorbed{0}, unscattered{0}, entered_again{0}, share_again{0};
 };
 
 class TransportSamples {

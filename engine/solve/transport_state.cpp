@@ -6,10 +6,10 @@
 namespace quadgraph {
 namespace {
 
-// Sum number `which` of three, of all that were read back of the walk.
+// Sum number `which` of four, of all that were read back of the walk.
 glm::dvec3 sum_of(const std::vector<glm::dvec3>& sums, std::size_t which) {
   glm::dvec3 sum{0};
-  for (std::size_t i = which; i < sums.size(); i += 3) sum += sums[i];
+  for (std::size_t i = which; i < sums.size(); i += 4) sum += sums[i];
   return sum;
 }
 
@@ -45,7 +45,7 @@ double TransportSamples::segments() const {
 
 TransportPower TransportSamples::power(const glm::dvec3& scale) const {
   const std::vector<glm::dvec3> walked = powers(walk_sums_on_host_.mapped_as<std::uint32_t>(), scale);
-  TransportPower power{sum_of(walked, 0), sum_of(walked, 1), sum_of(walked, 2)};
+  TransportPower power{sum_of(walked, 3), sum_of(walked, 0), sum_of(walked, 1), sum_of(walked, 2)};
   power.share_again = share_again();
   return power;
 }

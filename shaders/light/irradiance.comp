@@ -3,6 +3,7 @@
 #include "light/lights.glsl"
 #include "material/fresnel.glsl"
 #include "light/environment.glsl"
+#include "light/shaped.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 

@@ -4,6 +4,7 @@
 
 #include "gather/gather_shared.h"
 #include "light/light_kinds.h"
+#include "shared/environment_picture.h"
 #include "shared/image_levels.h"
 
 #ifdef __cplusplus
@@ -13,15 +14,6 @@ namespace quadgraph::gpu {
 // Bits of the variant of a pipeline, which is a specialization constant (shaped.glsl).
 #define VARIANT_SHAPED 1
 #define VARIANT_PLACED_ROUGHNESS 2
-
-// Pictures of an environment, one after the other in its texels (environment.h).
-const uint ENVIRONMENT_COLUMNS = 256u;
-const uint ENVIRONMENT_ROWS = 128u;
-const uint ENVIRONMENT_ENTERING = 0u;          // irradiance that enters a face, by its normal
-const uint ENVIRONMENT_RAYS = 1u;              // radiance as the rays see it that ask what hides it
-const uint ENVIRONMENT_REFLECTED = 2u;         // radiance as a rough surface reflects it, by the mirrored view
-const uint ENVIRONMENT_REFLECTED_PLACED = 3u;  // the same where the image of a roughness is white
-const uint ENVIRONMENT_PICTURES = 4u;
 
 // Texels along a side of a shadow map: of a single view, and of each of a point light's six; of a patch.
 const uint SHADOW_SIZE = 2048u;

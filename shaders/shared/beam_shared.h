@@ -18,8 +18,8 @@ const uint BEAM_RECTANGLE = 4u;
 struct BeamRecord {
   uint kind;            // BEAM_*
   vec3 travel_or_from;  // directional: unit, the way the light travels; point: where it comes from, mm; rectangle: its
-                        // centre, mm; others: unused
-  vec3 u, v;            // rectangle: its edges, mm; others: unused
+                        // centre, mm; environment: unit, to the middle of its picture; others: unused
+  vec3 u, v;            // rectangle: its edges, mm; environment: unit, right and up in its picture; others: unused
 };
 
 // How much of a beam is stored per face, floats: one, one per quarter or three per quarter, to be multiplied by its
@@ -32,9 +32,10 @@ const uint BEAM_RGB_QUARTERS = 3u * FACE_QUARTERS;
 // A beam as the faces of all levels see it (beam_light.glsl).
 struct Beam {
   BeamRecord way;
-  vec3 colour;  // W/mm^2 of what is stored as 1
-  uint floats;  // BEAM_FACE, BEAM_QUARTERS, BEAM_RGB or BEAM_RGB_QUARTERS
-  uint offset;  // floats of the beams before it, per face
+  vec3 colour;            // W/mm^2 of what is stored as 1; environment: W/(mm^2 sr) of what is 1 in its picture
+  uint floats;            // BEAM_FACE, BEAM_QUARTERS, BEAM_RGB or BEAM_RGB_QUARTERS
+  uint offset;            // floats of the beams before it, per face
+  QG_REF(Vec3s) picture;  // of an environment (environment_picture.h), else null
 };
 
 // Rays of a Lambertian beam from one origin: at outside cosine sqrt(u), u the four Gauss-Legendre nodes on [0, 1], two

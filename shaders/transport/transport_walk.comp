@@ -1,19 +1,21 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "shared/environment_picture.h"
 #include "source/walk_shared.h"
 #include "transport/transport_shared.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 
 // The walk of one beam (walk_source.comp) to the corners of tets, with what meets the body again after it was reflected
-// outside or has left unscattered.
+// outside or has left unscattered. Light from all around comes as it is, each ray from a direction of its own that no
+// part of the body hides.
 struct TransportWalkPush {
   TransportFieldRefs field;  // one
   Beams beam;                // one
   Floats beam_q;             // of all
   Scales scale;
   Uints deposit;  // fixed point, four per tet: power scattered for the first time
-  Uints sums;     // fixed point, WALK_SUMS times three: absorbed; left, or under way at the end; entered again
+  Uints sums;     // fixed point, WALK_SUMS times four: absorbed; left, or under way at the end; entered again; entered
   uint rays;      // as WalkSourcePush
   uint deposits;  // WALK_CORNERS
 };
@@ -26,8 +28,10 @@ TransportFieldRef field;
 #include "source/walk_start.glsl"
 #include "transport/transport_surface.glsl"
 
+const uint SKY_CANDIDATES = 8u;  // directions that one is drawn from, by what it brings
+
 uint state;
-vec3 entered_again;
+vec3 entered, entered_again;
 
 // Puts the ray where it enters. Returns 0 if it enters nowhere, else 1.
 float enter_again(Entrance entry, inout Ray ray) {
@@ -59,16 +63,15 @@ void meet_surface(inout Ray ray, uint face, vec3 outward) {
   ray.direction = normalize(ray.direction - 2.0 * cosine * n);
 }
 
-// What the surface reflects of light whose power `entered`, where that enters elsewhere. Of a bundle that one ray stands
-// for no reflection is known.
-void follow_reflected(BeamRecord way, uint ray, uint face, Frame at, vec3 entered) {
-  if (BODY.eta == 1.0 || !sees_body(face) || (way.kind == BEAM_LAMBERTIAN && push.rays == 1u)) return;
-  vec3 direction = incoming(way, ray, at);
+// What the surface reflects of light that travels along `direction` and whose power `went_in`, where that enters
+// elsewhere.
+void follow_reflected(vec3 direction, uint face, Frame at, vec3 went_in) {
+  if (BODY.eta == 1.0 || !sees_body(face)) return;
   float cosine = clamp(-dot(direction, at.normal), 0.0, 1.0);
   float transmitted = fresnel_transmittance(cosine, BODY.eta);
   direction = normalize(direction + 2.0 * cosine * at.normal);
   if (transmitted < 1e-3) return;
-  Ray reflected = Ray(0u, direction, (1.0 / transmitted - 1.0) * entered, vec3(0), 1.0);
+  Ray reflected = Ray(0u, direction, (1.0 / transmitted - 1.0) * went_in, vec3(0), 1.0);
   if (enter_again(through_air(face, at.position, direction, state), reflected) == 0.0) return;
   entered_again += reflected.power;
   walk(reflected);
@@ -76,8 +79,76 @@ void follow_reflected(BeamRecord way, uint ray, uint face, Frame at, vec3 entere
 
 void follow(BeamRecord way, uint ray, uint face, Frame at, vec3 power) {
   state = hash(face ^ hash(ray));
+  entered += power;
   walk(start(way, ray, BODY.face_tets.at[face], at, power));
-  follow_reflected(way, ray, face, at, power);
+  // Of a bundle that one ray stands for no reflection is known.
+  if (way.kind == BEAM_LAMBERTIAN && push.rays == 1u) return;
+  follow_reflected(incoming(way, ray, at), face, at, power);
+}
+
+// Whether a beam is light from all around, whose directions are known: ambient light, or an environment.
+bool from_sky(Beam beam) {
+  return beam.floats == BEAM_FACE || uvec2(beam.picture) != uvec2(0);
+}
+
+// W/(mm^2 sr) from a direction.
+vec3 sky_radiance(Beam beam, vec3 towards) {
+  if (uvec2(beam.picture) == uvec2(0)) return beam.colour / 3.1415927;
+  mat3 frame = mat3(beam.way.u, beam.way.v, beam.way.travel_or_from);
+  return max(beam.colour * environment_in(beam.picture, frame, ENVIRONMENT_RAYS, towards), vec3(0));
+}
+
+// A ray of the sky that enters a face where nothing hides it.
+struct SkyRay {
+  vec3 towards;  // outside
+  vec3 let_in;   // of what comes from there, pi times radiance times transmittance, by the chance that it was drawn
+};
+
+// Drawn among candidates by what they bring (resampled importance sampling, Talbot, Cline and Egbert 2005), which are
+// spread over the hemisphere by its cosine.
+SkyRay drawn_from_sky(Beam beam, uint number, vec3 normal, vec3 tangent) {
+  SkyRay drawn = SkyRay(normal, vec3(0));
+  vec3 other = cross(normal, tangent);
+  float all = 0.0, chosen = 1.0;
+  for (uint k = 0u; k < SKY_CANDIDATES; ++k) {
+    uint n = SKY_CANDIDATES * number + k;
+    float square = spread_number(0u, n, 0u), azimuth = 6.2831853 * spread_number(0u, n, 1u);
+    vec3 across = cos(azimuth) * tangent + sin(azimuth) * other;
+    vec3 towards = sqrt(square) * normal + sqrt(1.0 - square) * across;
+    vec3 let_in = 3.1415927 * fresnel_transmittance(sqrt(square), BODY.eta) * sky_radiance(beam, towards);
+    float weight = let_in.x + let_in.y + let_in.z;
+    all += weight;
+    if (uniform_number(state) * all < weight) {
+      drawn = SkyRay(towards, let_in);
+      chosen = weight;
+    }
+  }
+  drawn.let_in *= all / (float(SKY_CANDIDATES) * chosen);
+  return drawn;
+}
+
+void walk_from_sky(Beam beam, uint face, uint ray) {
+  if (BODY.face_kinds.at[face] != FACE_OPEN) return;
+  uvec3 ids = BODY.faces.at[face];
+  mat3 corners = corners_of(ids);
+  vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+  float area = 0.5 * length(normal);
+  if (area == 0.0) return;
+  normal /= 2.0 * area;
+  uint number = push.rays * face + ray;
+  state = hash(face ^ hash(ray));
+  SkyRay drawn = drawn_from_sky(beam, number, normal, normalize(corners[1] - corners[0]));
+  vec3 power = area / float(push.rays) * drawn.let_in * push.scale.at[0].inverse;
+  if (power == vec3(0)) return;
+  float side = sqrt(spread_number(0u, number, 2u)), along = side * spread_number(0u, number, 3u);
+  vec3 l = vec3(1.0 - side, side - along, along);
+  Frame at = Frame(corners * l, normal, drawn.towards, number);
+  if (field.sky.at[face] < 1.0 && first_met(line_along(at.position, drawn.towards), face, FAR).face != NO_FACE) return;
+  entered += power;
+  uint tet = BODY.face_tets.at[face];
+  start_on_face(tet, ids, corners, l);
+  walk(Ray(tet, refracted(-drawn.towards, normal, BODY.eta), power, vec3(0), 1.0));
+  follow_reflected(-drawn.towards, face, at, power);
 }
 
 void main() {
@@ -85,11 +156,19 @@ void main() {
   field = push.field.at[0];
   absorbed = vec3(0);
   unscattered = vec3(0);
+  entered = vec3(0);
   entered_again = vec3(0);
   if (i >= BODY.face_count * push.rays) return;
-  walk_from(i % BODY.face_count, i / BODY.face_count);
-  uint at = 3u * (gl_WorkGroupID.x % WALK_SUMS);
+  uint face = i % BODY.face_count, ray = i / BODY.face_count;
+  Beam beam = push.beam.at[0];
+  if (from_sky(beam)) {
+    walk_from_sky(beam, face, ray);
+  } else {
+    walk_from(face, ray);
+  }
+  uint at = 4u * (gl_WorkGroupID.x % WALK_SUMS);
   add_power(push.sums, at, absorbed);
   add_power(push.sums, at + 1u, unscattered);
   add_power(push.sums, at + 2u, entered_again);
+  add_power(push.sums, at + 3u, entered);
 }

@@ -60,23 +60,23 @@ gpu::LightShape projector_shape(const Light& light, const ProjectedImage& image)
   return shape;
 }
 
-gpu::Beam beam_of(const Light& light, const gpu::LightRecord& record) {
+gpu::Beam beam_of(const Light& light, const gpu::LightRecord& record, const gpu::LightShape& shape) {
   switch (light.kind) {
     case LightKind::ambient:
-      return {{gpu::BEAM_LAMBERTIAN, {}, {}, {}}, record.power, gpu::BEAM_FACE, 0};
+      return {{gpu::BEAM_LAMBERTIAN, {}, {}, {}}, record.power, gpu::BEAM_FACE, 0, 0};
     case LightKind::environment:
-      return {{gpu::BEAM_LAMBERTIAN, {}, {}, {}}, glm::vec3(1), gpu::BEAM_RGB, 0};
+      return {{gpu::BEAM_LAMBERTIAN, shape.axis, shape.right, shape.up}, record.power, gpu::BEAM_RGB, 0, shape.texels};
     case LightKind::directional:
-      return {{gpu::BEAM_DIRECTIONAL, light.direction, {}, {}}, record.power, gpu::BEAM_QUARTERS, 0};
+      return {{gpu::BEAM_DIRECTIONAL, light.direction, {}, {}}, record.power, gpu::BEAM_QUARTERS, 0, 0};
     case LightKind::rectangle:
-      return {{gpu::BEAM_RECTANGLE, light.position, light.u, light.v}, record.power, gpu::BEAM_QUARTERS, 0};
+      return {{gpu::BEAM_RECTANGLE, light.position, light.u, light.v}, record.power, gpu::BEAM_QUARTERS, 0, 0};
     case LightKind::point:
     case LightKind::spot:
     case LightKind::projector:
       break;
   }
   const auto floats = light.kind == LightKind::projector ? gpu::BEAM_RGB_QUARTERS : gpu::BEAM_QUARTERS;
-  return {{gpu::BEAM_POINT, light.position, {}, {}}, record.power, floats, 0};
+  return {{gpu::BEAM_POINT, light.position, {}, {}}, record.power, floats, 0, 0};
 }
 
 }  // namespace
@@ -121,7 +121,7 @@ LightSet::LightSet(std::span<const Light> lights, const Sphere& bounds, const Li
       add(light_record(light), light.kind == LightKind::spot ? spot_shape(light) : gpu::LightShape{},
           shadow_views(light, bounds));
     }
-    beams.push_back(beam_of(light, records.back()));
+    beams.push_back(beam_of(light, records.back(), shapes.back()));
   }
 }
 
@@ -142,12 +142,12 @@ void LightSet::add_environment(const Light& light, const EnvironmentImage& image
   shape.axis = frame[2];
   shape.texels = image.texels.address();
   add(light_record(light), shape, {});
-  beams.push_back(beam_of(light, records.back()));
+  beams.push_back(beam_of(light, records.back(), shapes.back()));
   ++environments;
   for (const Sun& sun : image.environment.suns) {
     const Light peak{.direction = -(frame * sun.towards), .power = light.power * sun.irradiance};
     add(light_record(peak), {}, shadow_views(peak, bounds_));
-    beams.push_back(beam_of(peak, records.back()));
+    beams.push_back(beam_of(peak, records.back(), shapes.back()));
   }
 }
 

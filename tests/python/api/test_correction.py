@@ -57,6 +57,17 @@ def test_the_error_is_the_sum_of_its_parts_and_has_none_of_the_model_without_a_c
     assert plain.model_error is None
 
 
+def test_light_from_all_around_enters_by_rays_of_its_own_that_bring_all_of_it(engine):
+    engine.lights = ["ambient:1"]
+    plain = engine.solve(correction=False)
+    corrected = engine.solve()
+    # Nothing of a ball hides the sky from it: the rays bring what the faces are lit by.
+    assert corrected.energy.entered == pytest.approx(plain.energy.entered, rel=1e-3)
+    assert corrected.energy.balance == pytest.approx(np.zeros(3), abs=3e-3)
+    moving = engine.solve(motion=True)
+    assert moving.energy.entered == pytest.approx(plain.energy.entered, rel=5e-3)
+
+
 def test_sweeps_without_a_correction_are_refused(engine):
     with pytest.raises(InputError, match="sweeps"):
         engine.solve(correction=False, sweeps=2)

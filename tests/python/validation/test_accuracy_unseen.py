@@ -130,6 +130,17 @@ def test_a_case_is_judged_printed_recorded_and_drawn(tmp_path, capsys):
     assert [found["sweeps"] for found in summary] == [0, 1]
 
 
+def test_a_sky_comes_from_where_it_is(tmp_path):
+    path = tmp_path / "sky.json"
+    asked = f"accuracy unseen --seed {SEED} --count 1 --lights sky --walks 400000 --sweeps 0 --sweeps 2"
+    assert cli.main([*asked.split(), "--truth", str(tmp_path), "--json", str(path)]) == 0
+    (row,) = json.loads(path.read_text())["rows"]
+    plain, swept = row["solves"]
+    assert swept["ratio"] == pytest.approx(1, abs=0.01)
+    assert swept["true"]["whole"] < 0.5 * plain["true"]["whole"]  # whose light comes from all sides alike
+    assert swept["true"]["whole"] < 0.03
+
+
 def test_the_last_frame_of_the_motion_is_the_case_itself(body):
     case = unseen_cases.drawn(SEED, body)
     medium, light = unseen_motion.at_frame(case, unseen_motion.FRAMES - 1)
