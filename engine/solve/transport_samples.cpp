@@ -31,8 +31,8 @@ constexpr std::uint32_t halves = gpu::TRANSPORT_HALVES;
 constexpr std::uint64_t tets_per_ray = 10;
 constexpr std::uint64_t segment_bytes = sizeof(gpu::TransportCell) + sizeof(gpu::Optical);
 
-// Rays of light from all around, a face.
-constexpr std::uint32_t sky_rays_at_rest = 16, sky_rays_in_motion = 2;
+// Rays a face of light whose directions are known. Fewer are an error that no sweep mends, in dark bodies the largest.
+constexpr std::uint32_t rays_at_rest = 16, rays_in_motion = 4;
 
 // Draws before the tets take their turns again: while a float tells them apart.
 constexpr std::uint32_t draws_apart = 1u << 16;
@@ -158,10 +158,8 @@ void TransportSamples::record_walk(const TransportParts& parts, const WalkTask& 
   for (const gpu::Beam& beam : parts.beams.beams) {
     const std::uint32_t kind = beam.way.kind;
     if (kind == gpu::BEAM_MEAN) continue;
-    push.rays = rays_of(kind, task.mean_rays);
-    if (beam.floats == gpu::BEAM_FACE || beam.picture != 0) {
-      push.rays = task.mean_rays ? sky_rays_in_motion : sky_rays_at_rest;
-    }
+    const bool directed = beam.floats == gpu::BEAM_FACE || beam.picture != 0 || kind != gpu::BEAM_LAMBERTIAN;
+    push.rays = !directed ? rays_of(kind, task.mean_rays) : task.mean_rays ? rays_in_motion : rays_at_rest;
     work.recorder.dispatch(work.passes.of(shader::transport_walk), push, std::uint64_t{level.face_count} * push.rays,
                            "transport walk", walk_bytes(level, push.rays));
     push.beam += sizeof(gpu::Beam);

@@ -127,28 +127,72 @@ SkyRay drawn_from_sky(Beam beam, uint number, vec3 normal, vec3 tangent) {
   return drawn;
 }
 
+// An outside face that light enters by; `tet` is NO_FACE where none does.
+struct LitFace {
+  uint tet;
+  uvec3 ids;
+  mat3 corners;
+  vec3 normal;
+  float area;  // mm^2
+};
+
+LitFace lit_face(uint face) {
+  LitFace lit;
+  lit.tet = NO_FACE;
+  if (BODY.face_kinds.at[face] != FACE_OPEN) return lit;
+  lit.ids = BODY.faces.at[face];
+  lit.corners = corners_of(lit.ids);
+  vec3 doubled = cross(lit.corners[1] - lit.corners[0], lit.corners[2] - lit.corners[0]);
+  lit.area = 0.5 * length(doubled);
+  if (lit.area == 0.0) return lit;
+  lit.normal = doubled / (2.0 * lit.area);
+  lit.tet = BODY.face_tets.at[face];
+  return lit;
+}
+
+// Barycentric coordinates of a place on a face, anywhere in it. number: of the ray, among all of the surface.
+vec3 spread_over_face(uint number) {
+  float side = sqrt(spread_number(0u, number, 3u)), along = side * spread_number(0u, number, 4u);
+  return vec3(1.0 - side, side - along, along);
+}
+
+// From where it entered, and on from there what the surface reflects. direction: outside, the way the light travels.
+void enter(LitFace lit, uint face, vec3 l, vec3 direction, vec3 power) {
+  entered += power;
+  start_on_face(lit.tet, lit.ids, lit.corners, l);
+  walk(Ray(lit.tet, refracted(direction, lit.normal, BODY.eta), power, vec3(0), 1.0));
+  follow_reflected(direction, face, Frame(lit.corners * l, lit.normal, lit.normal, 0u), power);
+}
+
 void walk_from_sky(Beam beam, uint face, uint ray) {
-  if (BODY.face_kinds.at[face] != FACE_OPEN) return;
-  uvec3 ids = BODY.faces.at[face];
-  mat3 corners = corners_of(ids);
-  vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
-  float area = 0.5 * length(normal);
-  if (area == 0.0) return;
-  normal /= 2.0 * area;
+  LitFace lit = lit_face(face);
+  if (lit.tet == NO_FACE) return;
   uint number = push.rays * face + ray;
   state = hash(face ^ hash(ray));
-  SkyRay drawn = drawn_from_sky(beam, number, normal, normalize(corners[1] - corners[0]));
-  vec3 power = area / float(push.rays) * drawn.let_in * push.scale.at[0].inverse;
+  SkyRay drawn = drawn_from_sky(beam, number, lit.normal, normalize(lit.corners[1] - lit.corners[0]));
+  vec3 power = lit.area / float(push.rays) * drawn.let_in * push.scale.at[0].inverse;
   if (power == vec3(0)) return;
-  float side = sqrt(spread_number(0u, number, 2u)), along = side * spread_number(0u, number, 3u);
-  vec3 l = vec3(1.0 - side, side - along, along);
-  Frame at = Frame(corners * l, normal, drawn.towards, number);
-  if (field.sky.at[face] < 1.0 && first_met(line_along(at.position, drawn.towards), face, FAR).face != NO_FACE) return;
-  entered += power;
-  uint tet = BODY.face_tets.at[face];
-  start_on_face(tet, ids, corners, l);
-  walk(Ray(tet, refracted(-drawn.towards, normal, BODY.eta), power, vec3(0), 1.0));
-  follow_reflected(-drawn.towards, face, at, power);
+  vec3 l = spread_over_face(number), point = lit.corners * l;
+  if (field.sky.at[face] < 1.0 && first_met(line_along(point, drawn.towards), face, FAR).face != NO_FACE) return;
+  enter(lit, face, l, -drawn.towards, power);
+}
+
+// One of as many rays from each quarter of a face, from anywhere in it.
+void walk_from_quarter(Beam beam, uint face, uint ray) {
+  LitFace lit = lit_face(face);
+  if (lit.tet == NO_FACE) return;
+  uint number = push.rays * face + ray, quarter = ray % FACE_QUARTERS;
+  vec3 q = beam_light(beam, push.beam_q, BODY.face_count, face, quarter) * push.scale.at[0].inverse;
+  if (q == vec3(0)) return;
+  vec3 l = 0.5 * spread_over_face(number);
+  if (quarter == FACE_CENTRE) {
+    l = 0.5 - l;
+  } else {
+    l[quarter] += 0.5;
+  }
+  state = hash(face ^ hash(ray));
+  Frame at = Frame(lit.corners * l, lit.normal, lit.normal, number);
+  enter(lit, face, l, incoming(beam.way, ray, at), lit.area / float(push.rays) * q);
 }
 
 void main() {
@@ -163,6 +207,8 @@ void main() {
   Beam beam = push.beam.at[0];
   if (from_sky(beam)) {
     walk_from_sky(beam, face, ray);
+  } else if (push.rays > 1u && beam.way.kind != BEAM_LAMBERTIAN) {
+    walk_from_quarter(beam, face, ray);
   } else {
     walk_from(face, ray);
   }
