@@ -69,13 +69,7 @@ TEST_CASE("the walk leaves the same power everywhere, whatever light it starts f
                   .optical = [](const glm::vec3& p) { return optical_of({1.0f, p.x, p.y + p.z}, {0.1f, 0.0f, 0.02f}); },
                   .quarter_q = [](const Lit& lit, std::uint32_t k) { return lit.centre.x * static_cast<float>(k + 1); },
                   .eta = 1.3};
-  const std::array<gpu::BeamRecord, 5> beams = {
-      {{gpu::BEAM_DIRECTIONAL, glm::normalize(glm::vec3(1, -0.4f, 0.3f)), {}, {}},
-       {gpu::BEAM_POINT, {-3.0f, 1.0f, 2.5f}, {}, {}},
-       {gpu::BEAM_LAMBERTIAN, {}, {}, {}},
-       {gpu::BEAM_MEAN, {}, {}, {}},
-       {gpu::BEAM_RECTANGLE, {-3.0f, 1.0f, 2.5f}, {0, 3, 1}, {0, -1, 2}}}};
-  for (const gpu::BeamRecord& beam : beams) {
+  for (const gpu::BeamRecord& beam : beams_of_all_kinds()) {
     for (const Method method : {Method::fem, Method::quadgraph_fv}) {
       CAPTURE(beam.kind);
       CAPTURE(name_of(method));

@@ -72,14 +72,8 @@ TEST_CASE("what rays scatter in a slab is the exact integral against the hat fun
 TEST_CASE("no power is lost or won, for any element size against the mean free path, beam and method") {
   CheckedContext device;
   const OwnedLevel level = box_level(4, 4.0f, 0.3f);
-  const std::array<gpu::BeamRecord, 5> beams = {
-      {{gpu::BEAM_DIRECTIONAL, glm::normalize(glm::vec3(1, -0.4f, 0.3f)), {}, {}},
-       {gpu::BEAM_POINT, {-3.0f, 1.0f, 2.5f}, {}, {}},
-       {gpu::BEAM_LAMBERTIAN, {}, {}, {}},
-       {gpu::BEAM_MEAN, {}, {}, {}},
-       {gpu::BEAM_RECTANGLE, {-3.0f, 1.0f, 2.5f}, {0, 3, 1}, {0, -1, 2}}}};
   for (const float path : mean_free_paths) {
-    for (const gpu::BeamRecord& beam : beams) {
+    for (const gpu::BeamRecord& beam : beams_of_all_kinds()) {
       for (const Method method : all_methods) {
         CAPTURE(path);
         CAPTURE(beam.kind);
@@ -227,13 +221,7 @@ TEST_CASE("the walk is that of the CPU, ray by ray") {
   }
   std::vector<gpu::Optical> optical;
   for (const glm::vec3& node : input.level.nodes) optical.push_back(input.optical(node));
-  const std::array<gpu::BeamRecord, 5> beams = {
-      {{gpu::BEAM_DIRECTIONAL, glm::normalize(glm::vec3(1, -0.4f, 0.3f)), {}, {}},
-       {gpu::BEAM_POINT, {-3.0f, 1.0f, 2.5f}, {}, {}},
-       {gpu::BEAM_LAMBERTIAN, {}, {}, {}},
-       {gpu::BEAM_MEAN, {}, {}, {}},
-       {gpu::BEAM_RECTANGLE, {-3.0f, 1.0f, 2.5f}, {0, 3, 1}, {0, -1, 2}}}};
-  for (const gpu::BeamRecord& beam : beams) {
+  for (const gpu::BeamRecord& beam : beams_of_all_kinds()) {
     for (const Method method : all_methods) {
       CAPTURE(beam.kind);
       CAPTURE(name_of(method));
