@@ -19,7 +19,7 @@ void use(const quadgraph::QuadGraph& graph) {
     if (!level.seen.empty()) {
       quadgraph::received_irradiance(level, std::vector<glm::dvec3>(level.face_count(), glm::dvec3(1)));
     }
-    const quadgraph::EnteringLight light{{quadgraph::gpu::BEAM_LAMBERTIAN, glm::vec3(0)}, q};
+    const quadgraph::EnteringLight light{{quadgraph::gpu::BEAM_LAMBERTIAN, glm::vec3(0), {}, {}}, q};
     for (const auto method : {quadgraph::Method::fem, quadgraph::Method::quadgraph_fdm}) {
       quadgraph::SolveOptions options;
       options.method = method;

@@ -86,6 +86,15 @@ def test_frames_in_motion_stay_beside_what_a_solve_at_rest_finds(engine):
     assert np.allclose(*ends, rtol=0.01)
 
 
+@pytest.fixture
+def heard():
+    """Ctrl-C is heard, also where the tests run in the background, whose processes ignore it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("heard")
 def test_a_solve_ends_where_ctrl_c_is_pressed_and_the_next_one_is_whole(engine):
     engine.solve()
     before = engine.surface().exitance

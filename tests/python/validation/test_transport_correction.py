@@ -26,7 +26,7 @@ MEDIA = {"ketchup": (0.18, 0.061, 1.3), "thin": (0.03, 0.001, 1.4), "absorbing":
 def ball(tmp_path_factory):
     folder = tmp_path_factory.mktemp("ball")
     meshes = pymeshlab.MeshSet()
-    meshes.create_sphere(radius=RADIUS, subdiv=4)
+    meshes.create_sphere(radius=RADIUS, subdiv=5)  # with four the flat faces inside alone leave 1.1% in the thin medium
     meshes.save_current_mesh(str(folder / "ball.ply"))
     quadgraph.bake(folder / "ball.ply", folder / "ball.qgraph", quadgraph.BakeOptions(unit="mm"))
     with quadgraph.Engine(folder / "ball.qgraph") as engine:
