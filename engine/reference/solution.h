@@ -16,7 +16,7 @@ struct Level;
 // Power per channel. What enters, of the scene's light or again after leaving, is scattered out, absorbed, or leaves
 // unscattered, for a conservative method.
 struct Energy {
-  glm::dvec3 entered{0};          // W, integral of the scene's q over the surface
+  glm::dvec3 entered{0};          // W, integral of the scene's q over the surface; corrected: of the rays that bring it
   glm::dvec3 re_entered{0};       // W, of light that had left another part of the body
   glm::dvec3 scattered_out{0};    // W, integral of M over the surface
   glm::dvec3 absorbed{0};         // W, integral of sigma_a times all fluence over the volume
@@ -52,7 +52,7 @@ struct CorrectedSweep {
 struct CorrectionReport {
   std::vector<CorrectedSweep> sweeps;
   double returns = 0;   // share of the scattered light that leaves which enters again, the largest of any channel
-  double segments = 0;  // tets that all of its rays crossed
+  double segments = 0;  // tets that rays back from its points and faces crossed
 };
 
 // What Method::shortest_path did.

@@ -37,8 +37,8 @@ constexpr std::uint32_t rays_at_rest = 16, rays_in_motion = 4;
 // Draws before the tets take their turns again: while a float tells them apart.
 constexpr std::uint32_t draws_apart = 1u << 16;
 
-// Sums of each of the WALK_SUMS of a pass.
-constexpr std::uint32_t walk_sums = 4, gather_sums = 4;
+// Sums of each of the WALK_SUMS of what is gathered.
+constexpr std::uint32_t gather_sums = 4;
 
 }  // namespace
 
@@ -68,7 +68,7 @@ TransportSamples::TransportSamples(device::Device& device, const Level& level) {
   point_sums_ = room(2 * halves * gpu::WALK_SUMS * sum_bytes, "power of the points");
   books_ = room(sizeof(gpu::TransportBook), "books");
   segments_ = room(sizeof(std::uint32_t), "segments");
-  walk_sums_ = room(walk_sums * gpu::WALK_SUMS * sum_bytes, "power of the walk");
+  walk_sums_ = room(gpu::TRANSPORT_WALK_SUMS * gpu::WALK_SUMS * sum_bytes, "power of the walk");
   gather_sums_ = room(gather_sums * gpu::WALK_SUMS * sum_bytes, "power gathered");
   segments_on_host_ = room(segments_.size(), "segments, read back", device::Place::host);
   walk_sums_on_host_ = room(walk_sums_.size(), "power of the walk, read back", device::Place::host);
@@ -154,11 +154,13 @@ void TransportSamples::record_walk(const TransportParts& parts, const WalkTask& 
                               .deposit = deposit_.address(),
                               .sums = walk_sums_.address(),
                               .rays = 1,
+                              .sky = 0,
                               .deposits = gpu::WALK_CORNERS};
   for (const gpu::Beam& beam : parts.beams.beams) {
     const std::uint32_t kind = beam.way.kind;
     if (kind == gpu::BEAM_MEAN) continue;
-    const bool directed = beam.floats == gpu::BEAM_FACE || beam.picture != 0 || kind != gpu::BEAM_LAMBERTIAN;
+    push.sky = beam.floats == gpu::BEAM_FACE || beam.picture != 0 ? 1 : 0;
+    const bool directed = push.sky == 1 || kind != gpu::BEAM_LAMBERTIAN;
     push.rays = !directed ? rays_of(kind, task.mean_rays) : task.mean_rays ? rays_in_motion : rays_at_rest;
     work.recorder.dispatch(work.passes.of(shader::transport_walk), push, std::uint64_t{level.face_count} * push.rays,
                            "transport walk", walk_bytes(level, push.rays));

@@ -6,10 +6,10 @@
 namespace quadgraph {
 namespace {
 
-// Sum number `which` of four, of all that were read back of the walk.
+// Sum number `which` of TRANSPORT_WALK_SUMS, of all that were read back.
 glm::dvec3 sum_of(const std::vector<glm::dvec3>& sums, std::size_t which) {
   glm::dvec3 sum{0};
-  for (std::size_t i = which; i < sums.size(); i += 4) sum += sums[i];
+  for (std::size_t i = which; i < sums.size(); i += gpu::TRANSPORT_WALK_SUMS) sum += sums[i];
   return sum;
 }
 

@@ -114,7 +114,6 @@ void Swapchain::resize(std::uint32_t width, std::uint32_t height) {
   wanted_width_ = width;
   wanted_height_ = height;
   stale_ = true;
-  wait();
   create();
 }
 

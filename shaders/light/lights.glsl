@@ -72,8 +72,7 @@ float filtered(ShadowView view, ShadowPlace place, int radius) {
     }
   } else if (radius == 0) {
     int at = first.y * size + first.x;
-    vec4 stored =
-        vec4(view.depth.at[at], view.depth.at[at + 1], view.depth.at[at + size], view.depth.at[at + size + 1]);
+    vec4 stored = vec4(view.depth.at[at], view.depth.at[at + 1], view.depth.at[at + size], view.depth.at[at + size + 1]);
     vec4 lit = mix(vec4(1), vec4(0), lessThan(stored, vec4(place.depth)));
     sum = mix(mix(lit.x, lit.y, f.x), mix(lit.z, lit.w, f.x), f.y);
   } else {

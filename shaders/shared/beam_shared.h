@@ -52,8 +52,8 @@ const float LAMBERTIAN_W[4] = {0.1739274226f, 0.3260725774f, 0.3260725774f, 0.17
 const uint GOLDEN_TURN = 2654435769u;
 
 // A ray of a rectangle comes from a place in one of so many parts along each edge, all of the same size, a part being
-// drawn by what it lets into the surface. The numbers that it takes are 0 to 2 of the spread sequence, at four times
-// the face's number and its quarter's.
+// drawn by what it lets into the surface. It takes the numbers 0 to 2 of the spread sequence: in the source walk those
+// at four times the face's number and its quarter's.
 const uint RECTANGLE_SIDE = 4u;
 
 #ifndef __cplusplus

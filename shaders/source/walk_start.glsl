@@ -25,6 +25,28 @@ bool one_ray_does(vec3 least, vec3 largest, mat3 corners, float area) {
   return longest <= 8.0 * area && all(lessThanEqual(largest - least, largest / 16.0));
 }
 
+// A face that light can enter by.
+struct OpenFace {
+  uint tet;
+  uvec3 ids;
+  mat3 corners;
+  vec3 normal;
+  float area;  // mm^2
+};
+
+// Whether light can enter by a face.
+bool opens(uint face, out OpenFace open) {
+  if (BODY.face_kinds.at[face] != FACE_OPEN) return false;
+  open.ids = BODY.faces.at[face];
+  open.corners = corners_of(open.ids);
+  vec3 doubled = cross(open.corners[1] - open.corners[0], open.corners[2] - open.corners[0]);
+  open.area = 0.5 * length(doubled);
+  if (open.area == 0.0) return false;
+  open.normal = doubled / (2.0 * open.area);
+  open.tet = BODY.face_tets.at[face];
+  return true;
+}
+
 struct Frame {
   vec3 position, normal, tangent;
   uint number;  // of the origin of rays, among all of the surface
@@ -80,23 +102,17 @@ void walk_from(uint face, uint ray) {
     largest = max(largest, q[k]);
     sum += q[k];
   }
-  if (largest == vec3(0) || BODY.face_kinds.at[face] != FACE_OPEN) return;
-  uvec3 ids = BODY.faces.at[face];
-  mat3 corners = corners_of(ids);
-  vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
-  float area = 0.5 * length(normal);
-  if (area == 0.0) return;
-  normal /= 2.0 * area;
-  vec3 tangent = face_tangent(face, normal, corners[1] - corners[0]);
-  bool one = one_ray_does(least, largest, corners, area);
-  uint tet = BODY.face_tets.at[face];
-  float share = 0.25 * area * share_of(ray, push.rays);
+  OpenFace open;
+  if (largest == vec3(0) || !opens(face, open)) return;
+  vec3 tangent = face_tangent(face, open.normal, open.corners[1] - open.corners[0]);
+  bool one = one_ray_does(least, largest, open.corners, open.area);
+  float share = 0.25 * open.area * share_of(ray, push.rays);
   for (uint k = one ? FACE_CENTRE : 0u; k < FACE_QUARTERS; ++k) {
     vec3 power = share * (one ? sum : q[k]);
     if (power == vec3(0)) continue;
     vec3 l = quarter_centre(k);
-    start_on_face(tet, ids, corners, l);
-    follow(beam.way, ray, face, Frame(corners * l, normal, tangent, FACE_QUARTERS * face + k), power);
+    start_on_face(open.tet, open.ids, open.corners, l);
+    follow(beam.way, ray, face, Frame(open.corners * l, open.normal, tangent, FACE_QUARTERS * face + k), power);
   }
 }
 

@@ -20,6 +20,9 @@ const float TRANSPORT_FLOOR = 0.03f;
 // A ray that keeps less than this goes on by chance, with this weight.
 const float TRANSPORT_ROULETTE = 0.05f;
 
+// Sums of the walk of the light (transport_walk.comp).
+const uint TRANSPORT_WALK_SUMS = 4u;
+
 // Parts of the body that a ray can meet in the air, one after the other, before it is given up.
 const uint TRANSPORT_MEETINGS = 8u;
 

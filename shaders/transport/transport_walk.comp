@@ -15,8 +15,9 @@ struct TransportWalkPush {
   Floats beam_q;             // of all
   Scales scale;
   Uints deposit;  // fixed point, four per tet: power scattered for the first time
-  Uints sums;     // fixed point, WALK_SUMS times four: absorbed; left, or under way at the end; entered again; entered
-  uint rays;      // as WalkSourcePush
+  Uints sums;     // fixed point, WALK_SUMS times TRANSPORT_WALK_SUMS: absorbed; left, or under way at the end; entered again; entered
+  uint rays;      // a face; a multiple of FACE_QUARTERS where the beam has directions
+  uint sky;       // 1: the beam is ambient light or an environment
   uint deposits;  // WALK_CORNERS
 };
 layout(push_constant, scalar) uniform Block { TransportWalkPush push; };
@@ -65,30 +66,26 @@ void meet_surface(inout Ray ray, uint face, vec3 outward) {
 
 // What the surface reflects of light that travels along `direction` and whose power `went_in`, where that enters
 // elsewhere.
-void follow_reflected(vec3 direction, uint face, Frame at, vec3 went_in) {
+void follow_reflected(vec3 direction, uint face, vec3 point, vec3 normal, vec3 went_in) {
   if (BODY.eta == 1.0 || !sees_body(face)) return;
-  float cosine = clamp(-dot(direction, at.normal), 0.0, 1.0);
+  float cosine = clamp(-dot(direction, normal), 0.0, 1.0);
   float transmitted = fresnel_transmittance(cosine, BODY.eta);
-  direction = normalize(direction + 2.0 * cosine * at.normal);
+  direction = normalize(direction + 2.0 * cosine * normal);
   if (transmitted < 1e-3) return;
   Ray reflected = Ray(0u, direction, (1.0 / transmitted - 1.0) * went_in, vec3(0), 1.0);
-  if (enter_again(through_air(face, at.position, direction, state), reflected) == 0.0) return;
+  if (enter_again(through_air(face, point, direction, state), reflected) == 0.0) return;
   entered_again += reflected.power;
   walk(reflected);
 }
 
+// Of a beam whose light comes evenly from everywhere.
 void follow(BeamRecord way, uint ray, uint face, Frame at, vec3 power) {
   state = hash(face ^ hash(ray));
   entered += power;
   walk(start(way, ray, BODY.face_tets.at[face], at, power));
   // Of a bundle that one ray stands for no reflection is known.
-  if (way.kind == BEAM_LAMBERTIAN && push.rays == 1u) return;
-  follow_reflected(incoming(way, ray, at), face, at, power);
-}
-
-// Whether a beam is light from all around, whose directions are known: ambient light, or an environment.
-bool from_sky(Beam beam) {
-  return beam.floats == BEAM_FACE || uvec2(beam.picture) != uvec2(0);
+  if (push.rays == 1u) return;
+  follow_reflected(incoming(way, ray, at), face, at.position, at.normal, power);
 }
 
 // W/(mm^2 sr) from a direction.
@@ -127,29 +124,6 @@ SkyRay drawn_from_sky(Beam beam, uint number, vec3 normal, vec3 tangent) {
   return drawn;
 }
 
-// An outside face that light enters by; `tet` is NO_FACE where none does.
-struct LitFace {
-  uint tet;
-  uvec3 ids;
-  mat3 corners;
-  vec3 normal;
-  float area;  // mm^2
-};
-
-LitFace lit_face(uint face) {
-  LitFace lit;
-  lit.tet = NO_FACE;
-  if (BODY.face_kinds.at[face] != FACE_OPEN) return lit;
-  lit.ids = BODY.faces.at[face];
-  lit.corners = corners_of(lit.ids);
-  vec3 doubled = cross(lit.corners[1] - lit.corners[0], lit.corners[2] - lit.corners[0]);
-  lit.area = 0.5 * length(doubled);
-  if (lit.area == 0.0) return lit;
-  lit.normal = doubled / (2.0 * lit.area);
-  lit.tet = BODY.face_tets.at[face];
-  return lit;
-}
-
 // Barycentric coordinates of a place on a face, anywhere in it. number: of the ray, among all of the surface.
 vec3 spread_over_face(uint number) {
   float side = sqrt(spread_number(0u, number, 3u)), along = side * spread_number(0u, number, 4u);
@@ -157,30 +131,30 @@ vec3 spread_over_face(uint number) {
 }
 
 // From where it entered, and on from there what the surface reflects. direction: outside, the way the light travels.
-void enter(LitFace lit, uint face, vec3 l, vec3 direction, vec3 power) {
+void enter(OpenFace open, uint face, vec3 l, vec3 direction, vec3 power) {
   entered += power;
-  start_on_face(lit.tet, lit.ids, lit.corners, l);
-  walk(Ray(lit.tet, refracted(direction, lit.normal, BODY.eta), power, vec3(0), 1.0));
-  follow_reflected(direction, face, Frame(lit.corners * l, lit.normal, lit.normal, 0u), power);
+  start_on_face(open.tet, open.ids, open.corners, l);
+  walk(Ray(open.tet, refracted(direction, open.normal, BODY.eta), power, vec3(0), 1.0));
+  follow_reflected(direction, face, open.corners * l, open.normal, power);
 }
 
 void walk_from_sky(Beam beam, uint face, uint ray) {
-  LitFace lit = lit_face(face);
-  if (lit.tet == NO_FACE) return;
+  OpenFace open;
+  if (!opens(face, open)) return;
   uint number = push.rays * face + ray;
   state = hash(face ^ hash(ray));
-  SkyRay drawn = drawn_from_sky(beam, number, lit.normal, normalize(lit.corners[1] - lit.corners[0]));
-  vec3 power = lit.area / float(push.rays) * drawn.let_in * push.scale.at[0].inverse;
+  SkyRay drawn = drawn_from_sky(beam, number, open.normal, normalize(open.corners[1] - open.corners[0]));
+  vec3 power = open.area / float(push.rays) * drawn.let_in * push.scale.at[0].inverse;
   if (power == vec3(0)) return;
-  vec3 l = spread_over_face(number), point = lit.corners * l;
+  vec3 l = spread_over_face(number), point = open.corners * l;
   if (field.sky.at[face] < 1.0 && first_met(line_along(point, drawn.towards), face, FAR).face != NO_FACE) return;
-  enter(lit, face, l, -drawn.towards, power);
+  enter(open, face, l, -drawn.towards, power);
 }
 
 // One of as many rays from each quarter of a face, from anywhere in it.
 void walk_from_quarter(Beam beam, uint face, uint ray) {
-  LitFace lit = lit_face(face);
-  if (lit.tet == NO_FACE) return;
+  OpenFace open;
+  if (!opens(face, open)) return;
   uint number = push.rays * face + ray, quarter = ray % FACE_QUARTERS;
   vec3 q = beam_light(beam, push.beam_q, BODY.face_count, face, quarter) * push.scale.at[0].inverse;
   if (q == vec3(0)) return;
@@ -191,8 +165,8 @@ void walk_from_quarter(Beam beam, uint face, uint ray) {
     l[quarter] += 0.5;
   }
   state = hash(face ^ hash(ray));
-  Frame at = Frame(lit.corners * l, lit.normal, lit.normal, number);
-  enter(lit, face, l, incoming(beam.way, ray, at), lit.area / float(push.rays) * q);
+  Frame at = Frame(open.corners * l, open.normal, vec3(0), number);  // it has a direction without a tangent
+  enter(open, face, l, incoming(beam.way, ray, at), open.area / float(push.rays) * q);
 }
 
 void main() {
@@ -205,14 +179,14 @@ void main() {
   if (i >= BODY.face_count * push.rays) return;
   uint face = i % BODY.face_count, ray = i / BODY.face_count;
   Beam beam = push.beam.at[0];
-  if (from_sky(beam)) {
+  if (push.sky == 1u) {
     walk_from_sky(beam, face, ray);
-  } else if (push.rays > 1u && beam.way.kind != BEAM_LAMBERTIAN) {
-    walk_from_quarter(beam, face, ray);
-  } else {
+  } else if (beam.way.kind == BEAM_LAMBERTIAN) {
     walk_from(face, ray);
+  } else {
+    walk_from_quarter(beam, face, ray);
   }
-  uint at = 4u * (gl_WorkGroupID.x % WALK_SUMS);
+  uint at = TRANSPORT_WALK_SUMS * (gl_WorkGroupID.x % WALK_SUMS);
   add_power(push.sums, at, absorbed);
   add_power(push.sums, at + 1u, unscattered);
   add_power(push.sums, at + 2u, entered_again);

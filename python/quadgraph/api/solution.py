@@ -64,7 +64,9 @@ class CorrectedSweep:
 
 @dataclass(frozen=True)
 class Correction:
-    """What the transport correction did. sweeps: in their order; segments: tets that all of its rays crossed."""
+    """What the transport correction did. sweeps: in their order; segments: tets that rays back from its points and from
+    faces crossed.
+    """
 
     sweeps: tuple[CorrectedSweep, ...]
     segments: float

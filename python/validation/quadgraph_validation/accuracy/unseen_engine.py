@@ -79,7 +79,7 @@ def _answer(engine: Engine, of_face: np.ndarray, sweeps: int | None, options: di
     start = time.perf_counter()
     solution = engine.solve(**options)
     seconds = time.perf_counter() - start
-    printed = {} if solution.error is None else {"whole": solution.error.whole, "unlit": solution.error.unlit}
+    printed = unseen_motion.stated(solution)
     return UnseenAnswer(sweeps, _by_patch(engine, of_face), printed, solution.model, seconds)
 
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from quadgraph.api.engine import Engine
 from quadgraph.api.lights import DirectionalLight, Light, PointLight, RectangleLight, SpotLight
+from quadgraph.api.solution import Solution
 from quadgraph.base.errors import InputError
 from quadgraph_validation.bodies.smooth_sky import SmoothSky
 from quadgraph_validation.bodies.unseen_cases import UnseenCase, UnseenMedium
@@ -57,7 +58,7 @@ def moved(engine: Engine, case: UnseenCase, show: Setter, seen: Seen, options: d
         times.append(seconds)
         segments.append(0.0 if solution.correction is None else solution.correction.segments)
         before, now = now, seen()
-    printed = {} if solution.error is None else {"whole": solution.error.whole, "unlit": solution.error.unlit}
+    printed = stated(solution)
     for _ in range(STILL):
         engine.solve(motion=True, **options)
     still = seen()
@@ -74,7 +75,12 @@ def moved(engine: Engine, case: UnseenCase, show: Setter, seen: Seen, options: d
     return UnseenMotion(now, still, (now - before) - (exact[1] - exact[0]), printed, *usual)
 
 
-def _timed(engine: Engine, options: dict[str, Any]) -> tuple[float, Any]:
+def stated(solution: Solution) -> dict[str, float]:
+    """Return the error that a solve states, by part; empty if none."""
+    return {} if solution.error is None else {"whole": solution.error.whole, "unlit": solution.error.unlit}
+
+
+def _timed(engine: Engine, options: dict[str, Any]) -> tuple[float, Solution]:
     start = time.perf_counter()
     solution = engine.solve(motion=True, **options)
     return time.perf_counter() - start, solution
