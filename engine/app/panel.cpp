@@ -171,17 +171,30 @@ void draw_passes(const std::vector<PassStats>& passes) {
   ImGui::EndTable();
 }
 
-std::string error_text(const std::optional<ErrorEstimate>& error) {
-  if (!error) return "not known";
-  return percent(error->whole) + " whole, " + (error->unlit > 0 ? percent(error->unlit) : "–") + " unlit";
+// A row of cells under `name`.
+void tell_row(const char* name, const std::array<std::string, 3>& cells) {
+  ImGui::TextDisabled("%s", name);
+  const float width = ImGui::GetContentRegionMax().x;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    ImGui::SameLine((0.26f + 0.22f * static_cast<float>(i)) * width);
+    ImGui::TextUnformatted(cells[i].c_str());
+  }
 }
 
-void tell_error(const SolveReport& report) {
+void tell_error(const char* name, const std::optional<ErrorEstimate>& error) {
+  if (!error) return tell(name, "not known");
+  const auto part = [](double share) { return share > 0 ? percent(share) : std::string("–"); };
+  tell_row(name, {percent(error->whole), part(error->unlit), part(error->dimmest)});
+}
+
+void tell_errors(const SolveReport& report) {
   if (report.path) return tell("Error", "not estimated");
-  tell("Error", error_text(report.error));
-  tell("  mesh", error_text(report.mesh_error));
-  tell("  solver", error_text(report.algebraic));
-  tell("  model", report.correction ? error_text(report.model_error) : "not known without correction");
+  tell_row("Error", {"whole", "unlit", "dimmest third"});
+  tell_error("  all", report.error);
+  tell_error("  mesh", report.mesh_error);
+  tell_error("  solver", report.algebraic);
+  if (report.correction) return tell_error("  model", report.model_error);
+  tell("  model", "not known without correction");
 }
 
 void draw_frame(const Measured& measured) {
@@ -192,7 +205,7 @@ void draw_frame(const Measured& measured) {
   tell("Time", formatted("%.0f ms, %.1f fps", measured.frame_ms, measured.frames_per_second));
   tell("State",
        measured.settled ? "converged" : formatted("preview, %.0f%% resolution", 100.0 * double(measured.share)));
-  tell_error(report);
+  tell_errors(report);
   tell("Energy", report.path ? "not conserved" : "balanced to " + percent(worst));
   tell("Memory", bytes_text(measured.device_bytes) + ", peak " + bytes_text(measured.peak_device_bytes));
   if (!report.levels.empty()) {

@@ -53,7 +53,8 @@ std::string formatted(const char* format, ...) {
 
 std::string percent(double share) {
   const double value = 100 * share;
-  return formatted(value < 0.00995 ? "%.1e%%" : value < 0.995 ? "%.2f%%" : value < 9.95 ? "%.1f%%" : "%.0f%%", value);
+  if (value > 0 && value < 0.005) return "<0.01%";
+  return formatted(value < 0.995 ? "%.2f%%" : value < 9.95 ? "%.1f%%" : "%.0f%%", value);
 }
 
 std::string bytes_text(std::uint64_t bytes) {

@@ -17,7 +17,7 @@ Json as_json(const glm::dvec3& rgb) {
 }
 
 Json as_json(const std::optional<ErrorEstimate>& error) {
-  return error ? Json{{"whole", error->whole}, {"unlit", error->unlit}} : Json(nullptr);
+  return error ? Json{{"whole", error->whole}, {"unlit", error->unlit}, {"dimmest", error->dimmest}} : Json(nullptr);
 }
 
 Json as_json(const CorrectionReport& correction) {
@@ -135,7 +135,9 @@ void tell_paths(std::ostream& out, const RunReport& report) {
 void tell_part(std::ostream& out, const char* name, const std::optional<ErrorEstimate>& part) {
   if (!part) return;
   out << name << decimals(100 * part->whole, 2) << "% over the surface, "
-      << (part->unlit > 0 ? decimals(100 * part->unlit, 2) + "% over the unlit part" : "nothing unlit") << "\n";
+      << (part->unlit > 0 ? decimals(100 * part->unlit, 2) + "% over the unlit part" : "nothing unlit");
+  if (part->dimmest > 0) out << ", " << decimals(100 * part->dimmest, 2) << "% over the dimmest third";
+  out << "\n";
 }
 
 void tell_levels(std::ostream& out, const RunReport& report) {

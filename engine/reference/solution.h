@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/base/solve_options.h"
+#include "engine/reference/error_estimate.h"
 
 namespace quadgraph {
 
@@ -32,13 +33,6 @@ struct LevelReport {
   std::uint32_t iterations = 0;
   double residual = 0;  // sqrt(r^T D^-1 r / b^T D^-1 b), worst channel
   bool converged = false;
-};
-
-// Relative RMS error of the exitance, weighted by area, channels together; after a correction of its means over patches
-// of the surface.
-struct ErrorEstimate {
-  double whole = 0;  // over the whole surface
-  double unlit = 0;  // over the faces with less than a tenth of the mean q; 0 if there are none
 };
 
 // What one sweep of the transport correction did to the exitance.

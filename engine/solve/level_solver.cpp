@@ -5,6 +5,7 @@
 
 #include "engine/base/error.h"
 #include "engine/solve/assembly.h"
+#include "engine/solve/surface_share.h"
 #include "interface/solver/cg_direction.comp.h"
 #include "interface/solver/cg_multiply.comp.h"
 #include "interface/solver/cg_start.comp.h"
@@ -22,6 +23,10 @@ constexpr double tight = 1e-4;
 
 // A batch of sweeps that leaves more of the residual than this has met the limit of single precision.
 constexpr float least_progress = 1 - 1e-4f;
+
+ErrorEstimate by_part(const glm::vec3& of_state) {
+  return {of_state.x, of_state.y, of_state.z};
+}
 
 std::uint64_t gate_of(std::uint32_t level) {
   return offsetof(gpu::SolveState, gate) + level * sizeof(glm::uvec3);
@@ -128,6 +133,7 @@ void LevelSolver::record_origin(const device::Buffer& x) {
 
 void LevelSolver::record_start() {
   record_surface(op().x, op().surface_before, gpu::SURFACE_STORE);
+  record_surface_dimmest(work_, op());
   dispatch_start(started_ ? gpu::START_AGAIN : gpu::START_FIRST);
   // What stays as it is must be in both vectors of a relaxation.
   if (active_rows() < op().count) work_.recorder.copy(op().x, op().product, op().x.size());
@@ -310,9 +316,13 @@ LevelReport LevelSolver::report() const {
           .converged = task_.start ? !failed() : state_.status == gpu::SOLVE_CONVERGED || met};
 }
 
+ErrorEstimate LevelSolver::difference() const {
+  return by_part(state_.difference);
+}
+
 std::optional<ErrorEstimate> LevelSolver::algebraic() const {
-  if (state_.algebraic.x < 0 || state_.algebraic.y < 0) return std::nullopt;
-  return ErrorEstimate{state_.algebraic.x, state_.algebraic.y};
+  if (state_.algebraic.x < 0) return std::nullopt;
+  return by_part(state_.algebraic);
 }
 
 }  // namespace quadgraph

@@ -94,6 +94,9 @@ class LevelSolver {
   LevelReport report() const;
   std::optional<ErrorEstimate> algebraic() const;
 
+  // From the exitance of the start, as record_difference found it.
+  ErrorEstimate difference() const;
+
   // Entries multiplied so far, as far as `take` knows.
   double entries() const { return entries_; }
 

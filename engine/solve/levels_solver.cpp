@@ -316,21 +316,20 @@ void LevelsSolver::take_error() {
   if (report_.algebraic) {
     const double least = unbalanced();
     report_.algebraic->whole = std::max(report_.algebraic->whole, least);
-    if (report_.algebraic->unlit > 0) report_.algebraic->unlit = std::max(report_.algebraic->unlit, least);
+    for (double* part : {&report_.algebraic->unlit, &report_.algebraic->dimmest}) {
+      if (*part > 0) *part = std::max(*part, least);
+    }
   }
   report_.error.reset();
   report_.mesh_error.reset();
   if (finest_ + 1 == solvers_.size() || !solvers_[finest_ + 1]) return;
-  const glm::dvec2 difference(solver.state().difference);
-  std::optional<glm::dvec2> coarser;
-  if (finest_ + 2 < solvers_.size() && solvers_[finest_ + 2]) {
-    coarser = glm::dvec2(solvers_[finest_ + 1]->state().difference);
-  }
-  ErrorEstimate mesh = mesh_error(difference, coarser);
+  std::optional<ErrorEstimate> coarser;
+  if (finest_ + 2 < solvers_.size() && solvers_[finest_ + 2]) coarser = solvers_[finest_ + 1]->difference();
+  ErrorEstimate mesh = mesh_error(solver.difference(), coarser);
   if (!parts_.resolution.empty()) mesh.whole = std::max(mesh.whole, parts_.resolution[finest_].error);
   report_.mesh_error = mesh;
   const ErrorEstimate left = report_.algebraic.value_or(ErrorEstimate{});
-  report_.error = ErrorEstimate{std::hypot(mesh.whole, left.whole), std::hypot(mesh.unlit, left.unlit)};
+  report_.error = by_parts([](double a, double b) { return std::hypot(a, b); }, mesh, left);
 }
 
 void LevelsSolver::finish() {

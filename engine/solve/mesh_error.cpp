@@ -20,9 +20,9 @@ double error_of(double difference, std::optional<double> coarser) {
 
 }  // namespace
 
-ErrorEstimate mesh_error(const glm::dvec2& difference, const std::optional<glm::dvec2>& coarser) {
-  if (!coarser) return {error_of(difference.x, std::nullopt), error_of(difference.y, std::nullopt)};
-  return {error_of(difference.x, coarser->x), error_of(difference.y, coarser->y)};
+ErrorEstimate mesh_error(const ErrorEstimate& difference, const std::optional<ErrorEstimate>& coarser) {
+  if (coarser) return by_parts(error_of, difference, *coarser);
+  return by_parts([](double part) { return error_of(part, std::nullopt); }, difference);
 }
 
 }  // namespace quadgraph

@@ -8,10 +8,9 @@
 // two, D_L / 3, is 1.9 times too little on real meshes (docs/accuracy.md, "The estimate of the error").
 #pragma once
 
-#include <glm/vec2.hpp>
 #include <optional>
 
-#include "engine/reference/solution.h"
+#include "engine/reference/error_estimate.h"
 
 namespace quadgraph {
 
@@ -19,7 +18,7 @@ namespace quadgraph {
 // five lights, levels of 700 to 7,000 surface vertices against one of 11 to 41 thousand.
 constexpr double confidence = 1.4;
 
-// `difference` D_L over the whole surface and over its unlit part; `coarser` D_(L+1), where it is known.
-ErrorEstimate mesh_error(const glm::dvec2& difference, const std::optional<glm::dvec2>& coarser);
+// `difference` D_L by parts of the surface; `coarser` D_(L+1), where it is known.
+ErrorEstimate mesh_error(const ErrorEstimate& difference, const std::optional<ErrorEstimate>& coarser);
 
 }  // namespace quadgraph

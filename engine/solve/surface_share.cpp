@@ -1,5 +1,6 @@
 #include "engine/solve/surface_share.h"
 
+#include "interface/surface/surface_dimmest.comp.h"
 #include "interface/surface/surface_share.comp.h"
 #include "shaders/surface/surface_shared.h"
 
@@ -21,6 +22,14 @@ void record_surface_share(Workspace& work, const LevelBuffers& level, Method met
   const std::uint64_t face_bytes = sizeof(glm::uvec3) + 4 * sizeof(glm::vec3) + sizeof(std::uint32_t);
   work.recorder.dispatch(work.passes.of(shader::surface_share), push, op.surface_count, "surface share",
                          3 * level.face_count * face_bytes + op.surface_count * sizeof(gpu::SurfaceShare));
+}
+
+void record_surface_dimmest(Workspace& work, const OperatorBuffers& op) {
+  const gpu::SurfaceDimmestPush push{
+      .m = op.surface_before.address(), .share = op.surface_share.address(), .count = op.surface_count};
+  constexpr std::uint64_t bytes = 3 * (sizeof(glm::vec3) + sizeof(gpu::SurfaceShare));
+  work.recorder.dispatch(work.passes.of(shader::surface_dimmest), push, WORKGROUP_SIZE, "surface share",
+                         op.surface_count * bytes);
 }
 
 }  // namespace quadgraph

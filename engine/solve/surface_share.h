@@ -12,4 +12,7 @@ namespace quadgraph {
 void record_surface_share(Workspace& work, const LevelBuffers& level, Method method, const Boundary& boundary,
                           const OperatorBuffers& op);
 
+// What of it is of the dimmest third, for the exitance in op.surface_before.
+void record_surface_dimmest(Workspace& work, const OperatorBuffers& op);
+
 }  // namespace quadgraph

@@ -25,7 +25,7 @@ constexpr std::uint32_t most_cycles = 12, most_steps = 2000;
 
 // What the exitance may be off by after the last sweep, where nobody says how many or how far: by the noise of the
 // samples, and by what another sweep would change; sweeps at most. Of an error that is asked for, the share of each.
-constexpr ErrorEstimate error_wanted{0.008, 0.016};
+constexpr ErrorEstimate error_wanted{.whole = 0.008, .unlit = 0.016};
 constexpr double share_of_error = 0.6;
 constexpr std::uint32_t most_sweeps = 4;
 
@@ -39,11 +39,11 @@ constexpr double most_draws = 16, segments_per_tet = 400;
 constexpr float least_share = 0.15f;
 constexpr std::uint32_t frames_of_rest = 9;
 
-ErrorEstimate relative(const glm::vec2& square, const glm::vec2& size) {
+ErrorEstimate relative(const glm::vec3& square, const glm::vec3& size) {
   const auto root = [](float part, float whole) {
     return whole > 0 ? std::sqrt(std::max(0.0, double{part}) / double{whole}) : 0;
   };
-  return {root(square.x, size.x), root(square.y, size.y)};
+  return {root(square.x, size.x), root(square.y, size.y), root(square.z, size.z)};
 }
 
 // Of what a sweep has changed, the share that all further ones would: the first leaves a smaller one than the others,
@@ -71,8 +71,8 @@ double of_patches(double at_vertices, double of_solves, double faces) {
 }
 
 ErrorEstimate wanted(const SolveOptions& options) {
-  if (options.error > 0) return {share_of_error * options.error, share_of_error * options.error};
-  return error_wanted;
+  const double share = share_of_error * options.error;
+  return options.error > 0 ? ErrorEstimate{.whole = share, .unlit = share} : error_wanted;
 }
 
 // So many times the points would leave the noise that is wanted of what they add.
@@ -97,18 +97,17 @@ void state_corrected_error(SolveReport& report) {
   const auto of_model = [&](double change, double noise) {
     return noise_over_difference * std::hypot(share * change, noise);
   };
-  report.model_error = {of_model(last.change.whole, last.noise.whole), of_model(last.change.unlit, last.noise.unlit)};
+  report.model_error = by_parts(of_model, last.change, last.noise);
   if (report.algebraic) {
-    report.algebraic = {solver_left * report.algebraic->whole, solver_left * report.algebraic->unlit};
+    report.algebraic = by_parts([](double part) { return solver_left * part; }, *report.algebraic);
   }
   report.error.reset();
   if (!report.mesh_error) return;
-  ErrorEstimate& mesh = *report.mesh_error;
-  const bool any_unlit = last.noise.unlit > 0;
-  mesh = {std::hypot(mesh_left * mesh.whole, unseen), any_unlit ? std::hypot(mesh_left * mesh.unlit, unseen) : 0};
-  const ErrorEstimate model = *report.model_error, solver = report.algebraic.value_or(ErrorEstimate{});
+  const auto of_mesh = [](double part, double noise) { return noise > 0 ? std::hypot(mesh_left * part, unseen) : 0; };
+  report.mesh_error = by_parts(of_mesh, *report.mesh_error, last.noise);
   const auto all = [](double a, double b, double c) { return std::sqrt(a * a + b * b + c * c); };
-  report.error = ErrorEstimate{all(model.whole, mesh.whole, solver.whole), all(model.unlit, mesh.unlit, solver.unlit)};
+  const ErrorEstimate solver = report.algebraic.value_or(ErrorEstimate{});
+  report.error = by_parts(all, *report.model_error, *report.mesh_error, solver);
 }
 
 double extinction_change(std::span<const gpu::Optical> before, std::span<const gpu::Optical> now) {
@@ -134,6 +133,7 @@ TransportCorrection::TransportCorrection(device::Device& device, const Level& le
   }
   halves_ = room(halves * level.face_count() * vec3_bytes, "exitance of both halves");
   exitance_ = room(level.face_count() * vec3_bytes, "exitance");
+  share_ = room(level.surface_vertex_count * sizeof(gpu::SurfaceShare), "surface share");
   statistics_ = room(2 * sizeof(gpu::TransportChange), "change");
   statistics_on_host_ = room(2 * sizeof(gpu::TransportChange), "change, read back", device::Place::host);
 }
@@ -196,7 +196,7 @@ void TransportCorrection::record_change(const CorrectionParts& parts) {
                                 .faces = level.faces.address(),
                                 .face_offset = level.face_offset.address(),
                                 .face_incidence = level.face_incidence.address(),
-                                .share = parts.operators.at(correction_key, 0).surface_share.address(),
+                                .share = share_.address(),
                                 .scale = work.scale.address(),
                                 .gathered = samples_.gathered().address(),
                                 .change_a = change_[0].address(),
@@ -278,13 +278,14 @@ CorrectedSweep TransportCorrection::sweep(const CorrectionParts& parts, const Sa
   }
   const ErrorEstimate all = relative(found[0].noise, found[0].size);
   const double faces = parts.transport.level.face_count;
-  return {relative(found[0].change, found[0].size),
-          {of_patches(all.whole, solves_noise_.whole, faces), of_patches(all.unlit, solves_noise_.unlit, faces)},
+  const auto of_part = [&](double at_vertices, double of_solves) { return of_patches(at_vertices, of_solves, faces); };
+  return {relative(found[0].change, found[0].size), by_parts(of_part, all, solves_noise_),
           static_cast<double>(draws_) * samples_.points()};
 }
 
 void TransportCorrection::start(const CorrectionParts& parts, const WalkTask& task, bool apart) {
   samples_.record_start(parts.transport, task, parts.solved.op, apart);
+  parts.transport.work.recorder.copy(parts.solved.op.surface_share, share_, share_.size());
   const device::Buffer& exitance = parts.results.exitance();
   for (std::uint32_t half = 0; half < halves; ++half) {
     parts.transport.work.recorder.copy(exitance, halves_, exitance.size(), half * exitance.size());

@@ -95,6 +95,7 @@ class TransportCorrection {
   // vec3 per vertex: b and x of the solve of each half, and b of the sweep before.
   std::array<device::Buffer, 2> right_side_, change_, known_;
   device::Buffer halves_, exitance_;                // vec3 per face, W/mm^2: of each half, and the mean
+  device::Buffer share_;                            // SurfaceShare, of what the correction starts from
   device::Buffer statistics_, statistics_on_host_;  // two TransportChange
 };
 

@@ -80,6 +80,7 @@ py::object error_dict(const std::optional<ErrorEstimate>& estimate) {
   py::dict d;
   d["whole"] = estimate->whole;
   d["unlit"] = estimate->unlit;
+  d["dimmest"] = estimate->dimmest;
   return d;
 }
 

@@ -51,12 +51,12 @@ void start(float worst) {
   push.state.at[0].slow = 0u;
   push.state.at[0].looks = 0u;
   push.state.at[0].restarts = 0u;
-  push.state.at[0].change = vec2(0);
-  push.state.at[0].algebraic = vec2(-1);
+  push.state.at[0].change = vec3(0);
+  push.state.at[0].algebraic = vec3(-1);
   if (worst > 0.0) {
     open(push.state);
   } else {
-    push.state.at[0].algebraic = vec2(0);
+    push.state.at[0].algebraic = vec3(0);
     stop(push.state, SOLVE_CONVERGED, 0u);
   }
 }

@@ -91,8 +91,8 @@ const uint SOLVE_STALLED = 7u;       // the residual hardly falls for too many c
 // Levels that one solve works on at most; coarser ones of a file are left out.
 #define MAX_LEVELS 12
 
-// State of the solve of one level. `difference`, `change` and `algebraic` are of the exitance, as area-
-// weighted RMS over the whole surface (x) and over its unlit part (y), channels together.
+// State of the solve of one level. `difference`, `change` and `algebraic` are of the exitance, as area-weighted RMS over
+// the whole surface (x), over its unlit part (y) and over its dimmest third (z), channels together.
 struct SolveState {
   uvec3 gate[MAX_LEVELS];   // indirect workgroup counts of the iteration's passes on each level; zero when not wanted
   uvec3 coarse;             // of its pass on the coarsest level, which is one workgroup
@@ -111,9 +111,9 @@ struct SolveState {
   uint earlier;     // done before it, since the first start of a solve
   uint status;      // SOLVE_*
   uint channel;     // that failed
-  vec2 change;      // of the last iterations, relative
-  vec2 algebraic;   // estimated error that is left, relative; below 0: not known yet
-  vec2 difference;  // from the exitance of the start, relative
+  vec3 change;      // of the last iterations, relative
+  vec3 algebraic;   // estimated error that is left, relative; below 0: not known yet
+  vec3 difference;  // from the exitance of the start, relative
   float looked;     // residual at the last look at the surface
   uint looks;       // so far
   uint slow;        // of them in a row at which the residual had hardly fallen

@@ -40,30 +40,30 @@ const float SAFETY = 1.25;
 // Below this a residual that does not fall any more is what single precision allows.
 const float PRECISION = 1e-5;
 
-vec2 ratio(vec2 part, vec2 whole) {
-  return mix(vec2(0), part / whole, greaterThan(whole, vec2(0)));
+vec3 ratio(vec3 part, vec3 whole) {
+  return mix(vec3(0), part / whole, greaterThan(whole, vec3(0)));
 }
 
 // What is left of a series of changes after the last one, if they fall as the residual does.
-vec2 rest(vec2 change, float rate) {
-  vec2 rates = vec2(rate);
+vec3 rest(vec3 change, float rate) {
+  vec3 rates = vec3(rate);
   if (push.by_change == 1u) rates = max(rates, ratio(change, push.state.at[0].change));
-  rates = clamp(rates, vec2(push.least_rate), vec2(LARGEST_RATE));
+  rates = clamp(rates, vec3(push.least_rate), vec3(LARGEST_RATE));
   return SAFETY * change * rates / (1.0 - rates);
 }
 
-void decide(vec2 change) {
+void decide(vec3 change) {
   SolveStates state = push.state;
   float rate = state.at[0].looked > 0.0 ? state.at[0].residual / state.at[0].looked : 0.0;
   uint looks = state.at[0].looks + 1u;
-  vec2 algebraic = looks < push.looks ? vec2(-1) : rest(change, rate);
+  vec3 algebraic = looks < push.looks ? vec3(-1) : rest(change, rate);
   state.at[0].looks = looks;
   state.at[0].looked = state.at[0].residual;
   state.at[0].change = change;
   state.at[0].algebraic = algebraic;
   state.at[0].slow = rate > push.slow_rate ? state.at[0].slow + 1u : 0u;
   bool residual_met = push.by_residual == 0u || state.at[0].residual <= max(push.tolerance, 2.0 * SOLVED);
-  if (looks >= push.looks && residual_met && all(lessThanEqual(algebraic, vec2(push.tolerance)))) {
+  if (looks >= push.looks && residual_met && all(lessThanEqual(algebraic.xy, vec2(push.tolerance)))) {
     stop(state, SOLVE_CONVERGED, 0u);
     if (push.verify == 1u) {
       state.at[0].check = uvec3(state.at[0].groups[push.level], 1u, 1u);
@@ -88,15 +88,15 @@ void main() {
     vec3 flux = outward_flux(push.boundary, x);
     vec3 m = scale * (flux - unit.inverse * share.reflected);
     vec3 change = m - push.before.at[i];
-    difference_squares += vec3(dot(change, change) * share.area, 0.0);
-    size_squares += vec3(dot(m, m) * share.area, 0.0);
+    difference_squares += dot(change, change) * share.area;
+    size_squares += dot(m, m) * share.area;
     if (push.what != SURFACE_DIFFERENCE) push.before.at[i] = m;
   }
   if (push.what == SURFACE_STORE) return;
   vec3 differences, sizes;
   if (!reduce_dispatch_pair(push.reduction, difference_squares, size_squares, differences, sizes)) return;
   if (gl_LocalInvocationID.x != 0u) return;
-  vec2 relative = sqrt(ratio(differences.xy, sizes.xy));
+  vec3 relative = sqrt(ratio(differences, sizes));
   if (push.what == SURFACE_DIFFERENCE) {
     push.state.at[0].difference = relative;
   } else {

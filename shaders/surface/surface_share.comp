@@ -28,13 +28,13 @@ SurfaceShare of_face(uint face) {
   vec3 q = push.q.at[face];
   float area = area_of(push.faces, push.vertices, face);
   float unlit = q.x + q.y + q.z < push.scale.at[0].unlit ? area : 0.0;
-  return SurfaceShare(vec2(area, unlit), area * push.reflected * q);
+  return SurfaceShare(vec3(area, unlit, 0), area * push.reflected * q);
 }
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= push.count) return;
-  SurfaceShare sum = SurfaceShare(vec2(0), vec3(0));
+  SurfaceShare sum = SurfaceShare(vec3(0), vec3(0));
   if (push.fem == 1u) {
     for (uint k = push.face_offset.at[i]; k < push.face_offset.at[i + 1u]; ++k) {
       SurfaceShare face = of_face(push.face_incidence.at[k]);

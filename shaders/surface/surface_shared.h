@@ -28,7 +28,7 @@ QG_ARRAY(EnergySumsArray, EnergySums);
 
 // What a carrier on the surface stands for.
 struct SurfaceShare {
-  vec2 area;       // mm^2: all of it, and what is unlit
+  vec3 area;       // mm^2: all of it, what is unlit, and what is of the dimmest third
   vec3 reflected;  // W/mm^2: what the diffuse source reflects there, which is no part of the exitance
 };
 #ifndef __cplusplus

@@ -35,7 +35,7 @@ vec3 at_face(Vec3s field, uint face) {
 }
 
 void main() {
-  vec3 whole = vec3(0), unlit = vec3(0);  // change, noise, size
+  mat3 sums = mat3(0.0);  // of change, noise, size
   Scale unit = push.scale.at[0];
   vec3 gain = push.k11 * push.books.at[0].gain;
   // One factor for all channels, which are weighed alike.
@@ -59,13 +59,13 @@ void main() {
     vec3 changed_a = a - unit.inverse * before_a, changed_b = b - unit.inverse * before_b;
     vec3 per_area = colours / around;
     vec3 noise = 0.5 * per_area * difference, size = 0.5 * per_area * (a + b);
-    vec3 squares = vec3(dot(per_area * changed_a, per_area * changed_b), dot(noise, noise), dot(size, size));
-    whole += push.share.at[v].area.x * squares;
-    unlit += push.share.at[v].area.y * squares;
+    vec3 area = push.share.at[v].area;
+    sums[0] += dot(per_area * changed_a, per_area * changed_b) * area;
+    sums[1] += dot(noise, noise) * area;
+    sums[2] += dot(size, size) * area;
   }
-  vec3 all_whole, all_unlit;
-  if (!reduce_dispatch_pair(push.reduction, whole, unlit, all_whole, all_unlit)) return;
+  mat3 all;
+  if (!reduce_dispatch_three(push.reduction, sums, all)) return;
   if (gl_LocalInvocationID.x != 0u) return;
-  push.change.at[0] = TransportChange(vec2(all_whole.x, all_unlit.x), vec2(all_whole.y, all_unlit.y),
-                                      vec2(all_whole.z, all_unlit.z));
+  push.change.at[0] = TransportChange(all[0], all[1], all[2]);
 }

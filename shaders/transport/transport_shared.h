@@ -75,11 +75,12 @@ struct TransportBook {
   vec3 gain;                     // of what a solve adds: what of that leaves enters again, and so on
 };
 
-// Area-weighted squares over the whole surface (x) and over its unlit part (y), channels together.
+// Area-weighted squares over the whole surface (x), over its unlit part (y) and over its dimmest third (z), channels
+// together.
 struct TransportChange {
-  vec2 change;  // product of what both halves have changed the exitance by: without their noise
-  vec2 noise;   // of half the difference between the halves
-  vec2 size;    // of the exitance
+  vec3 change;  // product of what both halves have changed the exitance by: without their noise
+  vec3 noise;   // of half the difference between the halves
+  vec3 size;    // of the exitance
 };
 
 #ifndef __cplusplus

@@ -20,7 +20,8 @@ std::string camera_text(const View& view) {
 std::string error_text(const std::optional<ErrorEstimate>& error) {
   if (!error) return "unknown (single level)";
   return "whole surface " + number_text(static_cast<float>(error->whole)) + ", unlit part " +
-         number_text(static_cast<float>(error->unlit));
+         number_text(static_cast<float>(error->unlit)) + ", dimmest third " +
+         number_text(static_cast<float>(error->dimmest));
 }
 
 std::string inter_reflection_text(const SolveOptions& options, const SolveReport& report) {

@@ -45,10 +45,13 @@ class LevelReport:
 
 @dataclass(frozen=True)
 class ErrorEstimate:
-    """Relative RMS error of the exitance, weighted by area: over the whole surface, and over its unlit part."""
+    """Relative RMS error of the exitance, weighted by area: over the whole surface, over its unlit part, and over the
+    third of it with the least exitance. A part is 0 where there is none or where it cannot be told.
+    """
 
     whole: float
     unlit: float
+    dimmest: float
 
 
 @dataclass(frozen=True)

@@ -67,14 +67,14 @@ def error_text(report: dict) -> str:
     """Estimated error of the exitance in words."""
     if report.get("path"):
         return "error: not estimated"
-    parts = [f"solver {two_parts(report['algebraic'])}"]
+    parts = [f"solver {parts_text(report['algebraic'])}"]
     if report["correction"]:
-        parts.append(f"model {two_parts(report['model_error'])}, after {correction_text(report['correction'])}")
+        parts.append(f"model {parts_text(report['model_error'])}, after {correction_text(report['correction'])}")
     if report["error"] is None:
         return f"error: of the mesh not estimated (a single level); {'; '.join(parts)} (estimate)"
-    parts.insert(0, f"mesh {two_parts(report['mesh_error'])}")
+    parts.insert(0, f"mesh {parts_text(report['mesh_error'])}")
     without = "" if report["correction"] else ", without that of the model"
-    return f"error: {two_parts(report['error'])} (estimate{without}): {'; '.join(parts)}"
+    return f"error: {parts_text(report['error'])} (estimate{without}): {'; '.join(parts)}"
 
 
 def correction_text(correction: dict) -> str:
@@ -88,12 +88,13 @@ def correction_text(correction: dict) -> str:
     )
 
 
-def two_parts(error: dict | None) -> str:
-    """Return the error over the whole surface and over its unlit part in words."""
+def parts_text(error: dict | None) -> str:
+    """Return the error over the whole surface, its unlit part and its dimmest third in words."""
     if error is None:
         return "unknown"
     of_unlit = f"{100 * error['unlit']:.2g}% unlit" if error["unlit"] > 0 else "nothing unlit"
-    return f"{100 * error['whole']:.2g}% whole, {of_unlit}"
+    of_dimmest = f", {100 * error['dimmest']:.2g}% dimmest third" if error["dimmest"] > 0 else ""
+    return f"{100 * error['whole']:.2g}% whole, {of_unlit}{of_dimmest}"
 
 
 def path_text(path: dict) -> str:

@@ -296,11 +296,12 @@ TEST_CASE("a target for the error stops on a level as coarse as it allows, or is
 
 TEST_CASE("differences of levels add in quadrature") {
   // A series that halves: the error of a level is that of all finer differences, 1/4 + 1/16 + ... = 1/3 of its square.
-  const ErrorEstimate error = mesh_error({0.1, 0.2}, glm::dvec2(0.2, 0.4));
+  const ErrorEstimate error = mesh_error({0.1, 0.2, 0.3}, ErrorEstimate{0.2, 0.4, 0.6});
   CHECK(error.whole == doctest::Approx(0.1 / std::sqrt(3)));
   CHECK(error.unlit == doctest::Approx(0.2 / std::sqrt(3)));
-  CHECK(mesh_error({0.1, 0.2}, std::nullopt).whole == doctest::Approx(error.whole));
-  CHECK(mesh_error({0.1, 0}, glm::dvec2(0.4, 0)).whole < error.whole);
-  CHECK(mesh_error({0.1, 0}, glm::dvec2(0.1, 0)).whole > error.whole);
-  CHECK(mesh_error({0.1, 0}, glm::dvec2(0.1, 0)).unlit == 0);
+  CHECK(mesh_error({0.1, 0.2, 0.3}, std::nullopt).whole == doctest::Approx(error.whole));
+  CHECK(mesh_error({0.1, 0, 0}, ErrorEstimate{0.4, 0, 0}).whole < error.whole);
+  CHECK(error.dimmest == doctest::Approx(0.3 / std::sqrt(3)));
+  CHECK(mesh_error({0.1, 0, 0}, ErrorEstimate{0.1, 0, 0}).whole > error.whole);
+  CHECK(mesh_error({0.1, 0, 0}, ErrorEstimate{0.1, 0, 0}).unlit == 0);
 }

@@ -15,6 +15,7 @@ import quadgraph
 from baked import write_levels
 from quadgraph import cli
 from quadgraph.base.errors import InputError
+from quadgraph.core import load_core
 from shapes import icosphere
 
 MATERIAL, SUN = "ketchup", "directional:0,0,-1:1"
@@ -50,11 +51,32 @@ def test_scenes_commands_and_engines_are_corrected_unless_they_say_no(ball, engi
 def test_the_error_is_the_sum_of_its_parts_and_has_none_of_the_model_without_a_correction(engine):
     corrected = engine.solve()
     parts = (corrected.mesh_error, corrected.algebraic, corrected.model_error)
-    for name in ("whole", "unlit"):
+    for name in ("whole", "unlit", "dimmest"):
         whole = np.sqrt(sum(getattr(part, name) ** 2 for part in parts))
         assert getattr(corrected.error, name) == pytest.approx(whole, rel=1e-6)
     plain = engine.solve(correction=False)
     assert plain.model_error is None
+
+
+def test_what_a_sweep_changes_is_told_of_the_third_that_sends_out_least(ball, engine):
+    plain = engine.solve(correction=False)
+    before = engine.surface()
+    change = engine.solve(sweeps=1).correction.sweeps[0].change
+    faces = load_core().load(ball).levels[0].faces
+    around = np.bincount(faces.ravel(), np.repeat(before.area, 3))
+
+    def at_vertices(exitance: np.ndarray) -> np.ndarray:
+        parts = (np.bincount(faces.ravel(), np.repeat(before.area * channel, 3)) for channel in exitance.T)
+        return np.stack(list(parts), axis=1) / around[:, None]
+
+    old, new = at_vertices(before.exitance), at_vertices(engine.surface().exitance)
+    order = np.argsort((old**2).sum(axis=1))
+    third = order[np.cumsum(around[order]) < around.sum() / 3]
+    weight = around[third, None]
+    expected = np.sqrt((weight * (new - old)[third] ** 2).sum() / (weight * new[third] ** 2).sum())
+    assert change.dimmest == pytest.approx(expected, rel=0.03)
+    assert abs(change.dimmest / change.whole - 1) > 0.06  # so it is another number
+    assert plain.mesh_error.dimmest > 0
 
 
 def test_light_from_all_around_enters_by_rays_of_its_own_that_bring_all_of_it(engine):

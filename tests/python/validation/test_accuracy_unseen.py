@@ -100,8 +100,9 @@ def test_parts_and_errors_are_those_of_known_patches():
     scattered = 4 * exitance * area
     squares = scattered**2 / 4 + 12 * (noise * area) ** 2
     truth = UnseenTruth({}, np.arange(30), area, 4, 4 * entered, scattered, squares, 0 * ones, np.zeros(4))
-    parts = unseen_study.parts_of(truth)
-    assert {name: int(part.sum()) for name, part in parts.items()} == {"whole": 30, "lit": 15, "unlit": 15, "dim": 10}
+    parts = unseen_study.parts_of(truth, exitance)
+    counts = {name: int(part.sum()) for name, part in parts.items()}
+    assert counts == {"whole": 30, "lit": 15, "unlit": 15, "dimmest": 10}
     assert np.allclose(truth.error, noise)
     answer = unseen_study.UnseenAnswer(1, exitance * 1.1, {}, "sp3", 0.0)
     found = unseen_study.errors(truth, parts, answer)
@@ -110,7 +111,7 @@ def test_parts_and_errors_are_those_of_known_patches():
     assert found["ratio"] == pytest.approx(1.1)
     dark = np.where(np.arange(30) < 20, exitance, 0)  # with the noise that it had: nothing is known of a dark third
     unknown = replace(truth, scattered=4 * dark * area, squares=4 * (dark * area) ** 2 + 12 * (noise * area) ** 2)
-    assert set(unseen_study.parts_of(unknown)) == {"whole", "lit", "unlit"}
+    assert set(unseen_study.parts_of(unknown, dark)) == {"whole", "lit", "unlit"}
 
 
 def test_a_case_is_judged_printed_recorded_and_drawn(tmp_path, capsys):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -77,7 +77,7 @@ def moved(engine: Engine, case: UnseenCase, show: Setter, seen: Seen, options: d
 
 def stated(solution: Solution) -> dict[str, float]:
     """Return the error that a solve states, by part; empty if none."""
-    return {} if solution.error is None else {"whole": solution.error.whole, "unlit": solution.error.unlit}
+    return {} if solution.error is None else asdict(solution.error)
 
 
 def _timed(engine: Engine, options: dict[str, Any]) -> tuple[float, Solution]:

@@ -84,7 +84,7 @@ def judged(seed: int, wanted: UnseenRun, tell: Callable[[str, int], None]) -> di
     tell("engine", wanted.walks)
     with tempfile.TemporaryDirectory(prefix="quadgraph-unseen-") as folder:
         found = unseen_engine.answers(case, truth.patch, wanted.sweeps, Path(folder), wanted.device, wanted.motion)
-    parts = parts_of(truth)
+    parts = parts_of(truth, found.answers[-1].exitance)
     row = {
         "seed": seed,
         "triangles": len(case.surface.triangles),
@@ -105,13 +105,16 @@ def judged(seed: int, wanted: UnseenRun, tell: Callable[[str, int], None]) -> di
     return row if found.motion is None else row | {"motion": errors_in_motion(truth, parts, found.motion)}
 
 
-def parts_of(truth: UnseenTruth) -> dict[str, np.ndarray]:
-    """(n,) bool by name: the patches that count. Those of too few patches, or no brighter than noise, are left out."""
+def parts_of(truth: UnseenTruth, exitance: np.ndarray) -> dict[str, np.ndarray]:
+    """(n,) bool by name: the patches that count. Those of too few patches, or no brighter than noise, are left out.
+
+    exitance (n,): of the engine, which says what is dimmest: walks would take what their noise makes dim.
+    """
     lit = truth.irradiance >= _UNLIT * np.average(truth.irradiance, weights=truth.area)
-    order = np.argsort(truth.exitance)
-    dim = np.zeros(len(order), bool)
-    dim[order[: len(order) // 3]] = True
-    parts = {"whole": np.ones(len(order), bool), "lit": lit, "unlit": ~lit, "dim": dim}
+    order = np.argsort(exitance)
+    dimmest = np.zeros(len(order), bool)
+    dimmest[order[: len(order) // 3]] = True
+    parts = {"whole": np.ones(len(order), bool), "lit": lit, "unlit": ~lit, "dimmest": dimmest}
     return {name: part for name, part in parts.items() if part.sum() >= _FEW and _square(truth, part) > 0}
 
 

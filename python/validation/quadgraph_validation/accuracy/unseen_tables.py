@@ -8,7 +8,7 @@ import numpy as np
 from rich.table import Table
 
 FACTOR = 1.5  # within which the printed error is to agree with the true one
-_TOLD = ("whole", "unlit")  # parts whose error the engine prints
+_TOLD = ("whole", "unlit", "dimmest")  # parts whose error the engine prints
 _JUDGED = ("lit", "unlit")
 _MOVING = {"true": "true, moving", "still": "a second after", "flicker": "flicker"}
 _SPREAD = ("median", "most", "worst")
@@ -67,7 +67,7 @@ def tables(record: dict[str, Any]) -> list[Table]:
 
 def _cases(rows: list[dict[str, Any]]) -> Table:
     case = ("seed", "mm", "mean free paths", "albedo", "η", "medium", "light", "tets")
-    errors = ("true: lit / unlit / dim", "noise of the truth", "true, whole", "printed: whole / unlit")
+    errors = ("true: lit / unlit / dimmest", "noise of the truth", "true, whole", "printed: whole / unlit / dimmest")
     title = "relative RMS error of the exitance, %, by patches"
     table = Table(*case, "sweeps", *errors, "power", "s", title=title)
     for row in rows:
@@ -77,8 +77,8 @@ def _cases(rows: list[dict[str, Any]]) -> Table:
             table.add_row(
                 *(what if number == 0 else [""] * len(what)),
                 "default" if found["sweeps"] is None else str(found["sweeps"]),
-                _percents(found["true"], ("lit", "unlit", "dim")),
-                _percents(row["noise"], ("lit", "unlit", "dim")),
+                _percents(found["true"], ("lit", "unlit", "dimmest")),
+                _percents(row["noise"], ("lit", "unlit", "dimmest")),
                 _percents(found["true"], ("whole",)),
                 _percents(found["printed"], _TOLD),
                 f"{found['ratio']:.3f}",
@@ -103,7 +103,7 @@ def _moving(rows: list[dict[str, Any]]) -> Table:
     errors = [f"{words}: lit / unlit" for words in _MOVING.values()]
     costs = ("segments a frame, million", "s a frame", "s without the correction")
     title = "in motion: relative RMS error of the exitance, %, by patches"
-    table = Table("seed", "tets", *errors, "printed: whole / unlit", *costs, title=title)
+    table = Table("seed", "tets", *errors, "printed: whole / unlit / dimmest", *costs, title=title)
     for row in rows:
         found = row["motion"]
         table.add_row(
