@@ -46,6 +46,7 @@ struct CorrectedSweep {
 struct CorrectionReport {
   std::vector<CorrectedSweep> sweeps;
   double returns = 0;   // share of the scattered light that leaves which enters again, the largest of any channel
+  bool ahead = false;   // one sweep, from what those of the frames before have added to the solution
   double segments = 0;  // tets that rays back from its points and faces crossed
 };
 

@@ -26,7 +26,7 @@ constexpr std::uint32_t most_cycles = 12, most_steps = 2000;
 // What the exitance may be off by after the last sweep, where nobody says how many or how far: by the noise of the
 // samples, and by what another sweep would change; sweeps at most. Of an error that is asked for, the share of each.
 constexpr ErrorEstimate error_wanted{.whole = 0.008, .unlit = 0.016};
-constexpr double share_of_error = 0.6;
+constexpr double share_of_error = 0.45;
 constexpr std::uint32_t most_sweeps = 4;
 
 // Directions per point, and rays per face and half; draws of points at most, or more while all of them cross so many
@@ -57,7 +57,9 @@ constexpr double solver_left = left_by_first, mesh_left = 0.15, unseen = 0.004;
 // The halves share what their points see of the body; so much more than they differ by is the noise.
 constexpr double noise_over_difference = 1.2;
 
+// In motion a sweep starts ahead, from what those before have added to the solution.
 double share_left_by(const CorrectionReport& done) {
+  if (done.ahead) return left_by_next;
   return done.sweeps.size() > 1 ? left_by_next : left_by_first + done.returns;
 }
 
@@ -189,7 +191,7 @@ void TransportCorrection::solve(const CorrectionParts& parts, std::uint32_t half
 }
 
 // Statistics with all noise, then with that of the solves alone.
-void TransportCorrection::record_change(const CorrectionParts& parts) {
+void TransportCorrection::record_change(const CorrectionParts& parts, bool ahead) {
   Workspace& work = parts.transport.work;
   const LevelBuffers& level = parts.transport.level;
   gpu::TransportChangePush push{.vertices = level.vertices.address(),
@@ -208,6 +210,7 @@ void TransportCorrection::record_change(const CorrectionParts& parts) {
                                 .count = level.surface_vertex_count,
                                 .face_count = level.face_count,
                                 .k11 = static_cast<float>(parts.boundary.k11),
+                                .ahead = ahead ? 1u : 0u,
                                 .solves = 0};
   for (; push.solves < 2; ++push.solves) {
     work.recorder.dispatch(work.passes.of(shader::transport_change), push, level.surface_vertex_count,
@@ -237,7 +240,7 @@ void TransportCorrection::record_faces(const CorrectionParts& parts) {
 
 // So many draws of points more; then the solves, and what they say.
 void TransportCorrection::draw(const CorrectionParts& parts, const Sampling& sampling, std::uint32_t draws,
-                               float known) {
+                               const TransportShares& shares) {
   for (std::uint32_t k = 0; k < draws; ++k) {
     if (parts.check && sampling.most_draws > 1) {
       parts.transport.work.recorder.submit();
@@ -246,9 +249,9 @@ void TransportCorrection::draw(const CorrectionParts& parts, const Sampling& sam
     samples_.record_draw(parts.transport, sampling.directions);
   }
   draws_ += draws;
-  samples_.record_books(parts.transport, 1.0f / static_cast<float>(draws_), known);
-  for (std::uint32_t half = 0; half < halves; ++half) solve(parts, half, known);
-  record_change(parts);
+  samples_.record_books(parts.transport, 1.0f / static_cast<float>(draws_), shares.known);
+  for (std::uint32_t half = 0; half < halves; ++half) solve(parts, half, shares.known);
+  record_change(parts, shares.ahead);
   samples_.record_segments(parts.transport);
   parts.transport.work.recorder.submit();
 }
@@ -260,18 +263,18 @@ CorrectedSweep TransportCorrection::sweep(const CorrectionParts& parts, const Sa
   samples_.record_no_load(parts.transport);
   std::swap(right_side_, known_);
   draws_ = 0;
-  draw(parts, sampling, 1, shares.known);
+  draw(parts, sampling, 1, shares);
   const std::span<const gpu::TransportChange> found = statistics_on_host_.mapped_as<gpu::TransportChange>();
   const double segments = segments_per_tet * parts.transport.level.tet_count;
   for (double most = sampling.most_draws; draws_ < most; most = draws_ * segments / samples_.segments()) {
     const ErrorEstimate noise = relative(found[1].noise, found[1].size);
     const double all = draws_ * excess_of(noise, sampling.noise_before, sampling.noise_wanted);
     if (all <= draws_) break;
-    draw(parts, sampling, static_cast<std::uint32_t>(std::ceil(std::min(all, most))) - draws_, shares.known);
+    draw(parts, sampling, static_cast<std::uint32_t>(std::ceil(std::min(all, most))) - draws_, shares);
   }
   solves_noise_ = relative(found[1].noise, found[1].size);
   record_faces(parts);
-  samples_.record_step(parts.transport, right_side_, change_);
+  samples_.record_step(parts.transport, right_side_, change_, !moved_);
   samples_.record_state(parts.transport);
   if (!std::isfinite(found[0].change.x) || !std::isfinite(found[0].noise.x) || !std::isfinite(found[0].size.x)) {
     throw SolverError("transport correction: met a value that is not finite");
@@ -283,12 +286,13 @@ CorrectedSweep TransportCorrection::sweep(const CorrectionParts& parts, const Sa
           static_cast<double>(draws_) * samples_.points()};
 }
 
-void TransportCorrection::start(const CorrectionParts& parts, const WalkTask& task, bool apart) {
-  samples_.record_start(parts.transport, task, parts.solved.op, apart);
-  parts.transport.work.recorder.copy(parts.solved.op.surface_share, share_, share_.size());
+void TransportCorrection::start(const CorrectionParts& parts, const WalkTask& task, const TransportShares& shares) {
+  Recorder& recorder = parts.transport.work.recorder;
+  samples_.record_start(parts.transport, task, parts.solved.op, shares);
+  recorder.copy(parts.solved.op.surface_share, share_, share_.size());
   const device::Buffer& exitance = parts.results.exitance();
   for (std::uint32_t half = 0; half < halves; ++half) {
-    parts.transport.work.recorder.copy(exitance, halves_, exitance.size(), half * exitance.size());
+    recorder.copy(exitance, halves_, exitance.size(), half * exitance.size());
   }
 }
 
@@ -297,14 +301,15 @@ void TransportCorrection::start(const CorrectionParts& parts, const WalkTask& ta
 // present one alone; of tets that have moved it is averaged.
 TransportShares TransportCorrection::shares_in_motion(std::uint32_t frames) const {
   const float newest = std::max(least_share, 1.0f / static_cast<float>(frames + 1));
-  if (moved_) return {newest, 0, 1 - newest};
-  return {1, 1 - newest, 1 - newest, edited_ && frames > 0};
+  const bool ahead = frames > 0;
+  if (moved_) return {.present = newest, .before = 0, .known = 1 - newest, .ahead = ahead};
+  return {.present = 1, .before = 1 - newest, .known = 1 - newest, .apart = edited_ && ahead, .ahead = ahead};
 }
 
 CorrectedSweep TransportCorrection::sweep_in_motion(const CorrectionParts& parts, const WalkTask& task,
                                                     std::uint32_t frames) {
   const TransportShares shares = shares_in_motion(frames);
-  start(parts, task, shares.apart);
+  start(parts, task, shares);
   if (moved_ && frames > 0) samples_.record_carried(parts.transport, parts.boundary.k11);
   return sweep(parts, {motion_directions, motion_rays, 1}, shares);
 }
@@ -331,11 +336,12 @@ CorrectionReport TransportCorrection::run(const CorrectionParts& parts, const So
   const std::uint32_t frames = std::exchange(frames_, 0);  // nothing is known where this does not come to its end
   if (options.warm) {
     report.sweeps.push_back(sweep_in_motion(parts, task, frames));
+    report.ahead = frames > 0;
     parts.transport.work.recorder.submit();
     report.returns = samples_.returns();
     frames_ = frames + 1;
   } else {
-    start(parts, task, false);
+    start(parts, task, {});
     sweep_at_rest(parts, options, report);
     frames_ = frames_of_rest;
   }

@@ -78,11 +78,11 @@ class TransportCorrection {
 
   void record_load(const CorrectionParts& parts, OperatorBuffers& op, std::uint32_t half, float known);
   void solve(const CorrectionParts& parts, std::uint32_t half, float known);
-  void record_change(const CorrectionParts& parts);
+  void record_change(const CorrectionParts& parts, bool ahead);
   void record_faces(const CorrectionParts& parts);
-  void draw(const CorrectionParts& parts, const Sampling& sampling, std::uint32_t draws, float known);
+  void draw(const CorrectionParts& parts, const Sampling& sampling, std::uint32_t draws, const TransportShares& shares);
   CorrectedSweep sweep(const CorrectionParts& parts, const Sampling& sampling, const TransportShares& shares);
-  void start(const CorrectionParts& parts, const WalkTask& task, bool apart);
+  void start(const CorrectionParts& parts, const WalkTask& task, const TransportShares& shares);
   TransportShares shares_in_motion(std::uint32_t frames) const;
   CorrectedSweep sweep_in_motion(const CorrectionParts& parts, const WalkTask& task, std::uint32_t frames);
   void sweep_at_rest(const CorrectionParts& parts, const SolveOptions& options, CorrectionReport& report);

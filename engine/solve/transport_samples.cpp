@@ -54,6 +54,7 @@ TransportSamples::TransportSamples(device::Device& device, const Level& level) {
   fluence_ = room(vertices, "fluence");
   fluence_before_ = room(vertices, "fluence, before");
   fluence_seen_ = room(vertices, "fluence, seen");
+  added_ = room(vertices, "fluence, added");
   unit_ = room(vec3_bytes, "scale, before");
   weights_ = room(level.tet_count() * sizeof(glm::vec2), "weights");
   total_ = room(sizeof(float), "total weight");
@@ -105,10 +106,10 @@ void TransportSamples::write_field(const TransportParts& parts, const WalkTask& 
 }
 
 void TransportSamples::record_start(const TransportParts& parts, const WalkTask& task, const OperatorBuffers& op,
-                                    bool apart) {
+                                    const TransportShares& shares) {
   Workspace& work = parts.work;
-  if (apart) make_room_apart(parts);
-  write_field(parts, task, apart);
+  if (shares.apart) make_room_apart(parts);
+  write_field(parts, task, shares.apart);
   parts.tree.record(work, parts.level);
   work.recorder.fill(segments_, 0);
   record_walk(parts, task);
@@ -117,13 +118,17 @@ void TransportSamples::record_start(const TransportParts& parts, const WalkTask&
   const gpu::TransportFluencePush fluence{.x = op.x.address(),
                                           .to_phi = op.to_phi.address(),
                                           .fluence = fluence_.address(),
+                                          .added = added_.address(),
+                                          .unit = unit_.address(),
+                                          .scale = work.scale.address(),
                                           .mass = mass_.address(),
                                           .first = parts.walk.first_deposit().address(),
                                           .all = parts.walk.deposit(Method::fem).address(),
-                                          .count = parts.level.vertex_count};
+                                          .count = parts.level.vertex_count,
+                                          .keep = shares.ahead ? 1.0f : 0.0f};
   work.recorder.dispatch(work.passes.of(shader::transport_fluence, op.model), fluence, parts.level.vertex_count,
                          "transport start",
-                         parts.level.vertex_count * (op.field_bytes() + 2 * vec3_bytes + 2 * sum_bytes));
+                         parts.level.vertex_count * (op.field_bytes() + 4 * vec3_bytes + 2 * sum_bytes));
   record_weights(parts);
 }
 
@@ -343,7 +348,7 @@ void TransportSamples::record_smooth(const TransportParts& parts, const device::
 }
 
 void TransportSamples::record_step(const TransportParts& parts, const std::array<device::Buffer, 2>& load,
-                                   const std::array<device::Buffer, 2>& change) {
+                                   const std::array<device::Buffer, 2>& change, bool adds) {
   Workspace& work = parts.work;
   const std::uint32_t count = parts.level.vertex_count;
   const gpu::TransportMeanPush mean{load[0].address(), load[1].address(), swept_[0].address(), count};
@@ -355,8 +360,10 @@ void TransportSamples::record_step(const TransportParts& parts, const std::array
                                     .change_b = change[1].address(),
                                     .books = books_.address(),
                                     .fluence = fluence_.address(),
-                                    .count = count};
-  work.recorder.dispatch(work.passes.of(shader::transport_step), step, count, "transport step", 5 * count * vec3_bytes);
+                                    .added = added_.address(),
+                                    .count = count,
+                                    .adds = adds ? 1.0f : 0.0f};
+  work.recorder.dispatch(work.passes.of(shader::transport_step), step, count, "transport step", 7 * count * vec3_bytes);
 }
 
 }  // namespace quadgraph

@@ -30,6 +30,7 @@ struct TransportParts {
 struct TransportShares {
   float present = 1, before = 0, known = 0;
   bool apart = false;  // the field before is seen by itself, in the coefficients that it had
+  bool ahead = false;  // the present field has what sweeps have added before
 };
 
 // Power that the light's own rays brought, W, and of what is gathered the share that enters again.
@@ -45,9 +46,10 @@ class TransportSamples {
   // Room for so many points at a time, unless it is there.
   void make_room(device::Device& device, std::uint32_t points);
 
-  // The field of a solve: walks the light, takes the fluence of `op`, weighs the tets. With `apart` samples will see
-  // the field before by itself.
-  void record_start(const TransportParts& parts, const WalkTask& task, const OperatorBuffers& op, bool apart);
+  // The field of a solve: walks the light, takes the fluence of `op`, weighs the tets. With `shares.ahead` it has what
+  // sweeps added to the solution before; with `shares.apart` samples will see the field before by itself.
+  void record_start(const TransportParts& parts, const WalkTask& task, const OperatorBuffers& op,
+                    const TransportShares& shares);
 
   // The exitance that is known, for vertices that have moved since; before `record_source`.
   void record_carried(const TransportParts& parts, double k11);
@@ -76,9 +78,9 @@ class TransportSamples {
   void begin_seeds() { seed_ = draw_ = 0; }
 
   // A step of the fluence: what both halves of a load say of it, over the mass and smoothed, and the mean of two
-  // changes.
+  // changes; with `adds` that counts among what sweeps have added.
   void record_step(const TransportParts& parts, const std::array<device::Buffer, 2>& load,
-                   const std::array<device::Buffer, 2>& change);
+                   const std::array<device::Buffer, 2>& change, bool adds);
 
   // What the points of either half are missing, after draws of which so much counts; `known` is the share of what they
   // found before.
@@ -87,6 +89,7 @@ class TransportSamples {
   const device::Buffer& mass() const { return mass_; }    // vec3 per vertex, mm^2: integral of sigma_s' times its basis
 
   const device::Buffer& fluence() const { return fluence_; }    // vec3 per vertex, scaled; to be corrected
+  const device::Buffer& added() const { return added_; }        // vec3 per vertex, scaled: by sweeps so far
   const device::Buffer& load() const { return load_; }          // fixed point, per vertex two per half
   const device::Buffer& gathered() const { return gathered_; }  // vec3 per half and face, scaled
   const device::Buffer& unit() const { return unit_; }          // vec3: the scale of what was known
@@ -111,6 +114,7 @@ class TransportSamples {
   device::Buffer cells_;    // TransportCell per tet
   device::Buffer deposit_;  // fixed point, four per tet: power scattered for the first time
   device::Buffer fluence_, fluence_before_, fluence_seen_;  // vec3 per vertex, scaled
+  device::Buffer added_;                                    // the same
   device::Buffer source_before_, unit_;                     // vec3, four per tet; vec3
   device::Buffer fluence_apart_, source_apart_;             // vec3; made at first use
   device::Buffer optical_before_;                           // gpu::Optical per tet, or one

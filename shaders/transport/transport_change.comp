@@ -25,6 +25,7 @@ struct TransportChangePush {
   uint count;
   uint face_count;
   float k11;
+  uint ahead;   // 1: what the solves add is the change; 0: all that the exitance before lacks
   uint solves;  // 1: the noise is that of the solves alone, which spreads over the body; 0: with that of G
 };
 layout(push_constant, scalar) uniform Block { TransportChangePush push; };
@@ -42,6 +43,7 @@ void main() {
   vec3 colours = unit.scale / max(unit.scale.x, max(unit.scale.y, unit.scale.z));
   EACH(v, push.count) {
     vec3 a = vec3(0), b = vec3(0), before_a = vec3(0), before_b = vec3(0), difference = vec3(0);
+    vec3 solved_a = vec3(0), solved_b = vec3(0);
     float around = 0.0;
     for (uint k = push.face_offset.at[v]; k < push.face_offset.at[v + 1u]; ++k) {
       uint face = push.face_incidence.at[k];
@@ -49,6 +51,8 @@ void main() {
       around += area;
       vec3 g_a = push.gathered.at[face], g_b = push.gathered.at[push.face_count + face];
       vec3 added_a = gain * at_face(push.change_a, face), added_b = gain * at_face(push.change_b, face);
+      solved_a += area * added_a;
+      solved_b += area * added_b;
       a += area * (g_a + added_a);
       b += area * (g_b + added_b);
       difference += area * (push.solves == 1u ? added_a - added_b : g_a + added_a - g_b - added_b);
@@ -57,6 +61,7 @@ void main() {
     }
     if (around == 0.0) continue;
     vec3 changed_a = a - unit.inverse * before_a, changed_b = b - unit.inverse * before_b;
+    if (push.ahead == 1u) changed_a = solved_a, changed_b = solved_b;
     vec3 per_area = colours / around;
     vec3 noise = 0.5 * per_area * difference, size = 0.5 * per_area * (a + b);
     vec3 area = push.share.at[v].area;

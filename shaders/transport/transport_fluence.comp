@@ -7,22 +7,30 @@
 layout(local_size_x = WORKGROUP_SIZE) in;
 
 // Fluence at the vertices, of a solution, and of light that enters again and has not scattered since: for the transport
-// equation that is the fluence of what scatters elsewhere.
+// equation that is the fluence of what scatters elsewhere. To it comes what sweeps added to the solution before.
 struct TransportFluencePush {
   Fields x;
   Vec3s to_phi;  // null: 1
   Vec3s fluence;
+  Vec3s added;  // of transport_step.comp; brought to the present scale
+  Vec3s unit;   // one: the scale that it had
+  Scales scale;
   Vec3s mass;   // of transport_mass.comp
   Uints first;  // fixed point: power scattered for the first time, of the scene's light
   Uints all;    // and with that of light that enters again; the same where there is none
   uint count;
+  float keep;  // 1: of `added` all, 0: nothing
 };
 layout(push_constant, scalar) uniform Block { TransportFluencePush push; };
+
+#include "transport/kept.glsl"
 
 void main() {
   uint v = gl_GlobalInvocationID.x;
   if (v >= push.count) return;
   vec3 again = max(power_at(push.all, v) - power_at(push.first, v), vec3(0)), mass = push.mass.at[v];
   vec3 unscattered = mix(again / mass, vec3(0), equal(mass, vec3(0)));
-  push.fluence.at[v] = element_or_one(push.to_phi, v) * push.x.at[v].phi + unscattered;
+  vec3 added = kept(push.added.at[v]);
+  push.added.at[v] = added;
+  push.fluence.at[v] = element_or_one(push.to_phi, v) * push.x.at[v].phi + unscattered + added;
 }

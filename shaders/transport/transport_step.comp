@@ -11,12 +11,16 @@ struct TransportStepPush {
   Vec3s change_b;
   TransportBooks books;
   Vec3s fluence;
+  Vec3s added;  // of all changes so far
   uint count;
+  float adds;  // 1: this one counts among them, 0: it does not
 };
 layout(push_constant, scalar) uniform Block { TransportStepPush push; };
 
 void main() {
   uint v = gl_GlobalInvocationID.x;
   if (v >= push.count) return;
-  push.fluence.at[v] += push.swept.at[v] + 0.5 * push.books.at[0].gain * (push.change_a.at[v] + push.change_b.at[v]);
+  vec3 change = 0.5 * push.books.at[0].gain * (push.change_a.at[v] + push.change_b.at[v]);
+  push.fluence.at[v] += push.swept.at[v] + change;
+  push.added.at[v] += push.adds * change;
 }
