@@ -93,7 +93,7 @@ void add_accuracy(OptionTable& table) {
            .metavar = "E",
            .range = error_range,
            .help = "stop when solver and mesh error together are estimated to be below E, e.g. 1%, on the coarsest "
-                   "level of the file that allows it; exit 3 if none does; 0: no target, the finest level"})
+                   "level of the file that allows it; a warning if none does; 0: no target, the finest level"})
       .kind = OptionKind::share;
   table.member<&Scene::solve, &SolveOptions::cycles>(
       {.name = "cycles",
