@@ -126,7 +126,9 @@ def make_engine(args: argparse.Namespace) -> Engine:
     with baked_or_bare(args.file, getattr(args, "unit", None), getattr(args, "height", None)) as path:
         engine = core.Engine(path, device=args.device, validation=args.validation)
     engine.set_material(args.material)
-    seen_from = {name: value for name in ("view", "up") if (value := getattr(args, name, None)) is not None}
+    seen_from = {
+        name: value for name in ("view", "up", "eye", "look_at") if (value := getattr(args, name, None)) is not None
+    }
     engine.set_lights(args.light or core.default_lights(**seen_from, front=engine.graph.front))
     return engine
 

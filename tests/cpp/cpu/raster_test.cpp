@@ -221,11 +221,14 @@ TEST_CASE("a clipped triangle has the flat values of its first corner") {
   const device::Image depth(processor, {device::Format::depth32_float, side, side}, "test/depth");
   const device::Buffer pixels(processor, side * side * sizeof(glm::vec4), device::Place::device, "test/copy");
   device::Commands commands(processor);
-  commands.draw(
-      {{&first, &second, &third}, &depth}, {0, 0, side, side}, pass,
-      gpu::FalseColourPush{
-          .clip_from_world = glm::mat4(1), .vertices = vertices.address(), .eye = {}, .plane = {}, .diverging = 0},
-      nullptr, 3);
+  commands.draw({{&first, &second, &third}, &depth}, {0, 0, side, side}, pass,
+                gpu::FalseColourPush{.clip_from_offset = glm::mat4(1),
+                                     .vertices = vertices.address(),
+                                     .origin = {},
+                                     .eye = {},
+                                     .plane = {},
+                                     .diverging = 0},
+                nullptr, 3);
   commands.copy(first, pixels);
   commands.submit_and_wait();
   std::size_t seen = 0;
