@@ -18,8 +18,8 @@ constexpr float degrees = 7.5f, share = 0.04f;  // per key press: an angle, and 
 constexpr float brighter = 1.25f;
 constexpr int control = GLFW_MOD_CONTROL, shift = GLFW_MOD_SHIFT;
 
-void orbit(S s, float right, float up) {
-  s.scene.view = orbited(s.scene.view, right, up);
+void orbit(S s, W w, float right, float up) {
+  s.scene.view = orbited(s.scene.view, w.bounds, right, up);
 }
 
 void pan(S s, W w, float right, float up) {
@@ -119,13 +119,14 @@ void reset_view(S s, W) {
   const View old = s.scene.view;
   s.scene.view = first_view(s.front, old.up);
   s.scene.view.vertical_fov = old.vertical_fov;
+  if (old.orthographic) s.scene.view.orthographic = 0.0f;
 }
 
 constexpr auto table = std::to_array<Command>({
-    {"Left", GLFW_KEY_LEFT, 0, 0, "rotate the object left", [](S s, W) { orbit(s, -degrees, 0); }},
-    {"Right", GLFW_KEY_RIGHT, 0, 0, "rotate the object right", [](S s, W) { orbit(s, degrees, 0); }},
-    {"Up", GLFW_KEY_UP, 0, 0, "rotate the object up", [](S s, W) { orbit(s, 0, degrees); }},
-    {"Down", GLFW_KEY_DOWN, 0, 0, "rotate the object down", [](S s, W) { orbit(s, 0, -degrees); }},
+    {"Left", GLFW_KEY_LEFT, 0, 0, "rotate the object left", [](S s, W w) { orbit(s, w, -degrees, 0); }},
+    {"Right", GLFW_KEY_RIGHT, 0, 0, "rotate the object right", [](S s, W w) { orbit(s, w, degrees, 0); }},
+    {"Up", GLFW_KEY_UP, 0, 0, "rotate the object up", [](S s, W w) { orbit(s, w, 0, degrees); }},
+    {"Down", GLFW_KEY_DOWN, 0, 0, "rotate the object down", [](S s, W w) { orbit(s, w, 0, -degrees); }},
     {"Shift+Left", GLFW_KEY_LEFT, 0, shift, "pan left", [](S s, W w) { pan(s, w, -share, 0); }},
     {"Shift+Right", GLFW_KEY_RIGHT, 0, shift, "pan right", [](S s, W w) { pan(s, w, share, 0); }},
     {"Shift+Up", GLFW_KEY_UP, 0, shift, "pan up", [](S s, W w) { pan(s, w, 0, share); }},

@@ -4,41 +4,42 @@
 #include <cmath>
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 #include <glm/trigonometric.hpp>
 #include <numbers>
 
 namespace quadgraph {
 namespace {
 
-constexpr float step = 0.875f;                      // of the distance
+constexpr float step = 0.875f;                      // of the distance, or of what is seen
 constexpr float nearest = 0.05f, farthest = 40.0f;  // radii
-
-float distance_of(const View& view, const Sphere& bounds, float aspect) {
-  return glm::distance(place_camera(view, bounds, aspect).eye, bounds.centre + view.target);
-}
 
 }  // namespace
 
-View orbited(View view, float right, float up) {
-  view.azimuth = std::remainder(view.azimuth - right, 360.0f);
-  view.elevation = std::clamp(view.elevation - up, -90.0f, 90.0f);
-  return view;
+View orbited(const View& view, const Sphere& bounds, float right, float up) {
+  View moved = by_angles(view, bounds);
+  moved.azimuth = std::remainder(moved.azimuth - right, 360.0f);
+  moved.elevation = std::clamp(moved.elevation - up, -90.0f, 90.0f);
+  return moved;
 }
 
-View panned(View view, const Sphere& bounds, float aspect, float right, float up) {
+View panned(const View& view, const Sphere& bounds, float aspect, float right, float up) {
   const Camera camera = place_camera(view, bounds, aspect);
-  const float height = 2 * distance_of(view, bounds, aspect) * std::tan(0.5f * glm::radians(view.vertical_fov));
-  view.target -= height * (right * camera.right + up * camera.up);
-  const float length = glm::length(view.target);
-  if (length > 2 * bounds.radius) view.target *= 2 * bounds.radius / length;
-  return view;
+  const float height = static_cast<float>(2 * camera.half_height);
+  View moved = by_angles(view, bounds);
+  moved.target -= height * (right * camera.right + up * camera.up);
+  const float length = glm::length(moved.target);
+  if (length > 2 * bounds.radius) moved.target *= 2 * bounds.radius / length;
+  return moved;
 }
 
-View zoomed(View view, const Sphere& bounds, float aspect, float steps) {
-  view.distance = std::clamp(distance_of(view, bounds, aspect) * std::pow(step, steps), nearest * bounds.radius,
-                             farthest * bounds.radius);
-  return view;
+View zoomed(const View& view, const Sphere& bounds, float aspect, float steps) {
+  const Camera camera = place_camera(view, bounds, aspect);
+  const double size = camera.parallel ? 2 * camera.half_height : camera.distance;
+  const float wanted =
+      std::clamp(static_cast<float>(size) * std::pow(step, steps), nearest * bounds.radius, farthest * bounds.radius);
+  View moved = by_angles(view, bounds);
+  (camera.parallel ? moved.orthographic : moved.distance) = wanted;
+  return moved;
 }
 
 Light turned(Light light, const View& view, const Sphere& bounds, float right, float up) {
@@ -82,13 +83,10 @@ Light faced(Light rectangle, const glm::vec3& direction, UpAxis up) {
 
 BodyCut cut_along(const View& view, const Sphere& bounds, float aspect, const glm::vec2& from, const glm::vec2& to) {
   const Camera camera = place_camera(view, bounds, aspect);
-  const glm::mat4 world_from_clip = glm::inverse(camera.clip_from_world);
-  const auto ray = [&](const glm::vec2& at) {
-    const glm::vec4 point = world_from_clip * glm::vec4(at, 0.5f, 1);
-    return glm::normalize(glm::vec3(point) / point.w - camera.eye);
-  };
-  const glm::vec3 normal = glm::normalize(glm::cross(ray(from), ray(to)));
-  return {.normal = normal, .offset = glm::dot(normal, camera.eye)};
+  const ViewRay first = view_ray(camera, from);
+  const glm::dvec3 stroke = view_ray(camera, to).through - first.through;
+  const glm::dvec3 normal = glm::normalize(glm::cross(first.along, stroke));
+  return {.normal = normal, .offset = static_cast<float>(glm::dot(normal, first.through))};
 }
 
 Bearing bearing_of(const glm::vec3& towards, UpAxis up) {

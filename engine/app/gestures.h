@@ -9,14 +9,16 @@
 
 namespace quadgraph {
 
+// What moves a view makes of one by places the same by angles.
+
 // The object turns with the hand: the eye goes `right` and `up` degrees the other way round it.
-View orbited(View view, float right, float up);
+View orbited(const View& view, const Sphere& bounds, float right, float up);
 
 // The object moves right and up by shares of the picture's height.
-View panned(View view, const Sphere& bounds, float aspect, float right, float up);
+View panned(const View& view, const Sphere& bounds, float aspect, float right, float up);
 
-// The eye comes nearer by so many steps, an eighth of its distance each.
-View zoomed(View view, const Sphere& bounds, float aspect, float steps);
+// The eye comes nearer by so many steps, an eighth of its distance each; an orthographic picture shows so much less.
+View zoomed(const View& view, const Sphere& bounds, float aspect, float steps);
 
 // Where the light comes from goes right and up round the object's centre, degrees as the viewer sees it.
 Light turned(Light light, const View& view, const Sphere& bounds, float right, float up);
@@ -27,8 +29,8 @@ Light as_kind(const Light& light, LightKind kind, const Sphere& bounds);
 // A rectangular light turned to shine along a unit direction that is not vertical, with two of its edges horizontal.
 Light faced(Light rectangle, const glm::vec3& direction, UpAxis up);
 
-// The plane through the eye and a stroke over the picture, between two points in clip coordinates (right and up, -1 to
-// 1) that are not the same. What lies to the right of the hand's way goes.
+// The plane through a stroke over the picture, along what looks there, between two points in clip coordinates (right
+// and up, -1 to 1) that are not the same. What lies to the right of the hand's way goes.
 BodyCut cut_along(const View& view, const Sphere& bounds, float aspect, const glm::vec2& from, const glm::vec2& to);
 
 // Where a light comes from, as azimuth and elevation of a View, degrees; and the unit vector towards there.

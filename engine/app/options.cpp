@@ -17,7 +17,7 @@ struct Typed {
   std::string file, output, device;
   std::map<std::string_view, std::vector<std::string>> texts;  // of the scene's options, by name
   std::map<std::string_view, bool> flags;
-  bool headless = false, validation = false, json = false;
+  bool headless = false, validation = false, json = false, strict = false;
 };
 
 void declare_flag(CLI::App& app, const SceneOption& option, Typed& typed) {
@@ -61,6 +61,8 @@ void declare(CLI::App& app, Typed& typed) {
                "load the validation layer of a Vulkan device; any message is an error")
       ->group("Run");
   app.add_flag("--json", typed.json, "print the report as JSON")->group("Run");
+  app.add_flag("--strict", typed.strict, "with --headless: exit code 3 where --error is missed (default: a warning)")
+      ->group("Run");
 }
 
 void check_output(const AppOptions& options) {
@@ -113,6 +115,7 @@ AppOptions understood(const Typed& typed, const CLI::App& app) {
   options.device.validation = typed.validation;
   options.device.device = typed.device;
   options.json = typed.json;
+  options.strict = typed.strict;
   return options;
 }
 

@@ -14,6 +14,7 @@ struct AppOptions {
   std::filesystem::path output;  // headless: .png or .exr; else what pictures that the user asks for are called
   device::DeviceOptions device;
   bool json = false;
+  bool strict = false;  // headless: an error that is missed fails
 };
 
 // Empty if the program should end with `exit_code`: help or version was asked for, or CLI11 has reported a mistake.

@@ -136,17 +136,31 @@ void draw_picture(State& state, const Measured& measured) {
   ImGui::ColorEdit3("Bottom", &state.scene.tone.background_bottom.x, ImGuiColorEditFlags_Float);
 }
 
-void draw_camera(State& state, const Sphere& bounds) {
-  if (!section("Camera", false)) return;
-  View& view = state.scene.view;
-  slide("Azimuth##camera", view.azimuth, -180, 180, "%.0f°");
-  slide("Elevation##camera", view.elevation, elevation_range, "%.0f°");
+// The sliders of a perspective view.
+void draw_perspective(View& view, const Sphere& bounds) {
   slide("Field of view", view.vertical_fov, 5, 90, "%.0f°");
   float distance = view.distance.value_or(0);
   const char* format = view.distance ? "%.0f mm" : "fit object";
   if (slide("Distance", distance, 0, 20 * bounds.radius, format)) {
     view.distance = distance > 0.05f * bounds.radius ? std::optional(distance) : std::nullopt;
   }
+}
+
+void draw_camera(State& state, const Sphere& bounds) {
+  if (!section("Camera", false)) return;
+  const View shown = by_angles(state.scene.view, bounds);
+  View view = shown;
+  slide("Azimuth##camera", view.azimuth, -180, 180, "%.0f°");
+  slide("Elevation##camera", view.elevation, elevation_range, "%.0f°");
+  bool parallel = view.orthographic.has_value();
+  if (ImGui::Checkbox("Orthographic", &parallel)) view.orthographic = parallel ? std::optional(0.0f) : std::nullopt;
+  if (view.orthographic) {
+    const char* format = *view.orthographic > 0 ? "%.0f mm" : "fit object";
+    slide("Height##camera", *view.orthographic, 0, 10 * bounds.radius, format);
+  } else {
+    draw_perspective(view, bounds);
+  }
+  if (view != shown) state.scene.view = view;
 }
 
 void draw_passes(const std::vector<PassStats>& passes) {

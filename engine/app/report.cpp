@@ -75,6 +75,7 @@ Json as_json(const SolveReport& report) {
   json["advice"] = report.advice;
   json["replaced"] = report.replaced;
   json["missed"] = report.missed;
+  json["stopped"] = report.stopped;
   json["unmet"] = unmet(report);
   json["budget"] = report.budget;
   json["mesh_warning"] = report.mesh_warning;
@@ -176,9 +177,9 @@ std::string text_report(const RunReport& report) {
   }
   if (!report.solve.replaced.empty()) out << "solver   " << report.solve.replaced << "\n";
   if (!report.solve.budget.empty()) out << "budget   " << report.solve.budget << "\n";
-  for (const std::string& sentence : unmet(report.solve)) out << "missed   " << sentence << "\n";
-  for (const std::string& warning :
-       {report.solve.advice, report.solve.mesh_warning, report.solve.model_warning, report.solve.deformed}) {
+  if (!report.solve.stopped.empty()) out << "failed   " << report.solve.stopped << "\n";
+  for (const std::string& warning : {report.solve.missed, report.solve.advice, report.solve.mesh_warning,
+                                     report.solve.model_warning, report.solve.deformed}) {
     if (!warning.empty()) out << "warning  " << warning << "\n";
   }
   out << "memory   " << decimals(static_cast<double>(report.engine.peak_device_bytes()) / mebibyte, 0)

@@ -318,6 +318,9 @@ void Tile::clear(ImageMemory& target, std::uint32_t floats, float value) const {
 }
 
 void Tile::write_depths() {
+  if (frame_.pass.options.depth == device::Depth::falls) {
+    for (float& depth : depths_) depth = -depth;
+  }
   for (std::uint32_t y = 0; y < height_; ++y) {
     std::copy_n(depths_.data() + y * tile_side, width_,
                 depth_.texels() + texel_ + std::uint64_t{y} * depth_.options.width);
@@ -337,12 +340,12 @@ void Tile::draw(std::uint32_t number, const DrawMemory& memory) {
     for (device::ImageMemory* colour : frame_.target.colours) clear(image(colour), 4, 0);
   }
   if (empty) {
-    clear(depth_, 1, 1);
+    clear(depth_, 1, frame_.pass.options.farthest());
     return;
   }
   depth_.clear_tiles[number_] = 0;
   for (device::ImageMemory* colour : frame_.target.colours) image(colour).clear_tiles[number_] = 0;
-  depths_.fill(1.0f);
+  depths_.fill(frame_.pass.options.farthest());
   if (frame_.pass.fragment == nullptr) {
     draw_depths(memory);
   } else if (in_order) {

@@ -41,14 +41,14 @@ float inside(const glm::vec4& p, int plane, const glm::vec2& guard) {
   }
 }
 
-// Where a vertex in front of the eye comes to lie: in subpixels, and its depth.
+// Where a vertex in front of the eye comes to lie: in subpixels, and its depth, turned round where that falls.
 Corner placed(const Frame& frame, const glm::vec4& p) {
   const device::Viewport& viewport = frame.viewport;
   const float inverse = 1 / p.w;
   const auto subpixel = [](double pixels) { return static_cast<std::int32_t>(std::lrint(pixel * pixels)); };
   return {.x = subpixel(viewport.x + 0.5 * (1 + double(p.x) * inverse) * viewport.width),
           .y = subpixel(viewport.y + 0.5 * (1 - double(p.y) * inverse) * viewport.height),
-          .z = p.z * inverse,
+          .z = frame.pass.options.depth == device::Depth::falls ? -p.z * inverse : p.z * inverse,
           .inverse_w = inverse,
           .outside = 0};
 }

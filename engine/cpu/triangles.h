@@ -32,7 +32,7 @@ struct Frame {
 // A vertex in the window, subpixels from the upper left with y down. Without a place where it is to be clipped.
 struct Corner {
   std::int32_t x, y;
-  float z, inverse_w;
+  float z, inverse_w;     // z is least for what is nearest
   std::uint32_t outside;  // bit per clip plane that it lies outside of, and one where it is not in front of the eye
 };
 

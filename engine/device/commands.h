@@ -60,8 +60,8 @@ class Commands {
     recording_->dispatch_indirect(pass.pipeline(), &push, arguments.memory(), offset);
   }
 
-  // Clears the images (colour 0, depth 1; contents before are dropped), and draws a triangle list with y up. `indices`
-  // holds `vertices` u32; without them vertices are numbered in order.
+  // Clears the images (colour 0, depth that of what is farthest; contents before are dropped), and draws a triangle
+  // list with y up. `indices` holds `vertices` u32; without them vertices are numbered in order.
   template <typename Push>
   void draw(const DrawTarget& target, const Viewport& viewport, const GraphicsPass& pass, const Push& push,
             const Buffer* indices, std::uint32_t vertices) {

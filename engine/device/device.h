@@ -59,12 +59,18 @@ struct ComputeOptions {
 
 enum class Cull { none, back, front };
 
+// From what is nearest to what is farthest: from 0 to 1, or from 1 to 0, where floating point is finest at the far end.
+enum class Depth { rises, falls };
+
 struct GraphicsOptions {
   const Shader* vertex;       // its push constants are visible to both stages
   const Shader* fragment;     // null: depth only
   std::uint32_t colours = 0;  // images of Format::rgba32_float that it writes; no blending
   Cull cull = Cull::back;     // front faces are counter-clockwise in the window with y up
   std::uint32_t variant = 0;  // specialization constant 1 of the shaders that have it
+  Depth depth = Depth::rises;
+
+  float farthest() const { return depth == Depth::rises ? 1.0f : 0.0f; }
 };
 
 // Device time of one named pass.

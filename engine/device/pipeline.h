@@ -35,7 +35,7 @@ class ComputePass {
   std::unique_ptr<Pipeline> pipeline_;
 };
 
-// Triangle lists without vertex buffers (shaders pull from addresses), depth test LESS.
+// Triangle lists without vertex buffers (shaders pull from addresses), what is nearest is seen.
 class GraphicsPass {
  public:
   GraphicsPass(Device& device, const GraphicsOptions& options, const std::string& name)

@@ -25,6 +25,10 @@ std::vector<std::string> unmet(const SolveReport& report) {
   return all;
 }
 
+bool fails(const SolveReport& report, bool strict) {
+  return !report.stopped.empty() || (strict && !report.missed.empty());
+}
+
 SurfaceField surface_of(const Level& level) {
   SurfaceField field;
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {

@@ -105,6 +105,10 @@ struct SolveReport {
 // What was asked for and is not met, in words: `missed` and `stopped`, as far as there are.
 std::vector<std::string> unmet(const SolveReport& report);
 
+// Whether a program that made this ends with 3: the solve did not converge or, where that is held against it
+// (`strict`), the error that was asked for is missed.
+bool fails(const SolveReport& report, bool strict);
+
 // Surface samples of one level: one per outside face, at its surface node.
 struct SurfaceField {
   std::vector<glm::vec3> position;     // mm

@@ -250,7 +250,7 @@ const PictureBuffers& Engine::draw(const View& view, const RenderOptions& option
     if (!self.surroundings) self.surroundings.emplace(self.device);
     PictureBuffers& picture = self.rasteriser.picture();
     PassStats pass;
-    picture.has_surroundings = self.surroundings->run(self.lights, view, camera, picture, pass);
+    picture.has_surroundings = self.surroundings->run(self.lights, camera, picture, pass);
     if (picture.has_surroundings) self.render_passes.push_back(pass);
   }
   return self.rasteriser.picture();
@@ -269,8 +269,7 @@ const std::optional<Legend>& Engine::legend() const {
 std::optional<Picked> Engine::pick(const View& view, float aspect, const glm::vec2& at) const {
   auto& self = *implementation_;
   const auto vertices = device::download<glm::vec3>(self.device, self.mesh.vertices);
-  return quadgraph::pick(self.graph.display(), vertices, place_camera(view, self.bounds, aspect), view.vertical_fov,
-                         aspect, at, self.cut_tools);
+  return quadgraph::pick(self.graph.display(), vertices, place_camera(view, self.bounds, aspect), at, self.cut_tools);
 }
 
 Leaving Engine::leaving(std::span<const std::uint32_t> face, std::span<const glm::vec3> direction) {

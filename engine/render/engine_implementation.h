@@ -110,7 +110,8 @@ struct Engine::Implementation {
   void draw_inside(const Camera& camera, const RenderOptions& render) {
     if (report->path)
       throw InputError("show: with shortest-path only 'picture', found '" + to_string(render.show) + "'");
-    const Inside inside = inside_of({device, levels(), graph, *report, options, bounds, camera.eye}, render.show);
+    const Inside inside =
+        inside_of({device, levels(), graph, *report, options, bounds, camera.seen_from()}, render.show);
     false_colours = {};  // two need not fit beside each other
     false_colours = upload_false_colours(device, inside.mesh, inside.plane, inside.legend.diverging);
     legend = inside.legend;

@@ -42,7 +42,25 @@ OptionValue view_of(const Scene& scene) {
 
 void set_view(Scene& scene, const OptionValue& value) {
   scene.view.distance.reset();
+  scene.view.eye.reset();
+  scene.view.look_at.reset();
   scene.view = parse_view(text_in(value), scene.view);
+}
+
+OptionValue eye_of(const Scene& scene) {
+  return scene.view.eye ? OptionValue(place_text(*scene.view.eye)) : OptionValue();
+}
+
+void set_eye(Scene& scene, const OptionValue& value) {
+  scene.view.eye = parse_place(text_in(value), "eye");
+}
+
+OptionValue look_at_of(const Scene& scene) {
+  return scene.view.look_at ? OptionValue(place_text(*scene.view.look_at)) : OptionValue();
+}
+
+void set_look_at(Scene& scene, const OptionValue& value) {
+  scene.view.look_at = parse_place(text_in(value), "look-at");
 }
 
 OptionValue size_of(const Scene& scene) {

@@ -14,9 +14,16 @@ std::string material_help();
 OptionValue lights_of(const Scene& scene);
 void set_lights(Scene& scene, const OptionValue& value);
 
-// The camera as a text for parse_view; nothing for the default one, whose azimuth is the front of the body.
+// The camera as a text for parse_view; nothing for the default one, whose azimuth is the front of the body. Set, it
+// takes the place of eye and look_at.
 OptionValue view_of(const Scene& scene);
 void set_view(Scene& scene, const OptionValue& value);
+
+// Places as texts for parse_place; nothing where there are none.
+OptionValue eye_of(const Scene& scene);
+void set_eye(Scene& scene, const OptionValue& value);
+OptionValue look_at_of(const Scene& scene);
+void set_look_at(Scene& scene, const OptionValue& value);
 
 // "1024x768".
 OptionValue size_of(const Scene& scene);

@@ -52,6 +52,31 @@ void add_camera(OptionTable& table) {
        .on_command_line = false,
        .range = distance_range,
        .help = "mm from the middle of what the picture shows; left out: the body fits the picture"});
+}
+
+void add_camera_places(OptionTable& table) {
+  table.text(
+      OptionKind::text,
+      {.name = "eye",
+       .member = "/camera/eye",
+       .keyword = "eye",
+       .own_form = true,
+       .metavar = "X,Y,Z",
+       .help =
+           "where the camera is, mm in the coordinates of the body, in place of azimuth, elevation and distance; goes "
+           "with --look-at"},
+      eye_of, set_eye);
+  table.text(OptionKind::text,
+             {.name = "look-at",
+              .member = "/camera/look_at",
+              .keyword = "look_at",
+              .own_form = true,
+              .metavar = "X,Y,Z",
+              .help = "what the middle of the picture shows, mm in the coordinates of the body; goes with --eye"},
+             look_at_of, set_look_at);
+}
+
+void add_projection(OptionTable& table) {
   table.member<&Scene::view, &View::up>(
       {.name = "up", .member = "/camera/up", .keyword = "up", .help = "the axis that points up"});
   table.member<&Scene::view, &View::vertical_fov>({.name = "fov",
@@ -60,6 +85,14 @@ void add_camera(OptionTable& table) {
                                                    .metavar = "DEGREES",
                                                    .range = fov_range,
                                                    .help = "vertical field of view, degrees"});
+  table.member<&Scene::view, &View::orthographic>(
+      {.name = "orthographic",
+       .member = "/camera/orthographic",
+       .keyword = "orthographic",
+       .metavar = "MM",
+       .range = height_range,
+       .help = "parallel rays, with which the height of the picture shows so many mm at any distance; 0: the object "
+               "fits the picture; left out: perspective"});
 }
 
 void add_solver(OptionTable& table) {
@@ -93,7 +126,7 @@ void add_accuracy(OptionTable& table) {
            .metavar = "E",
            .range = error_range,
            .help = "stop when solver and mesh error together are estimated to be below E, e.g. 1%, on the coarsest "
-                   "level of the file that allows it; exit 3 if none does; 0: no target, the finest level"})
+                   "level of the file that allows it; a warning if none does; 0: no target, the finest level"})
       .kind = OptionKind::share;
   table.member<&Scene::solve, &SolveOptions::cycles>(
       {.name = "cycles",
@@ -265,6 +298,8 @@ std::vector<SceneOption> made() {
   OptionTable table;
   add_scene(table);
   add_camera(table);
+  add_camera_places(table);
+  add_projection(table);
   add_solver(table);
   add_accuracy(table);
   add_light_paths(table);

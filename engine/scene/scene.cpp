@@ -111,14 +111,18 @@ Json members_json(std::string_view pointer, const Scene& scene) {
 }
 
 void view_from(const JsonField& field, Scene& scene) {
-  read_members(field, "/camera", {"target"}, scene);
+  read_members(field, "/camera", {"target", "eye", "look_at"}, scene);
   if (const auto target = field.find("target")) scene.view.target = target->triple();
+  if (const auto eye = field.find("eye")) scene.view.eye = eye->triple();
+  if (const auto look_at = field.find("look_at")) scene.view.look_at = look_at->triple();
   field.within([&] { check_view(scene.view); });
 }
 
 Json view_json(const Scene& scene) {
   Json json = members_json("/camera", scene);
   if (scene.view.target != glm::vec3(0)) json["target"] = triple_json(scene.view.target);
+  if (scene.view.eye) json["eye"] = triple_json(*scene.view.eye);
+  if (scene.view.look_at) json["look_at"] = triple_json(*scene.view.look_at);
   return json;
 }
 

@@ -144,7 +144,7 @@ void Recording::dispatch_indirect(const device::Pipeline& pass, const void* push
   barrier();
 }
 
-void Recording::begin_rendering(const device::DrawImages& target) {
+void Recording::begin_rendering(const device::DrawImages& target, float farthest_depth) {
   std::vector<VkRenderingAttachmentInfo> colours;
   for (const device::ImageMemory* memory : target.colours) {
     const auto& image = static_cast<const ImageMemory&>(*memory);
@@ -154,7 +154,7 @@ void Recording::begin_rendering(const device::DrawImages& target) {
   const auto& farthest_image = static_cast<const ImageMemory&>(*target.depth);
   transition(farthest_image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
   VkClearValue farthest{};
-  farthest.depthStencil.depth = 1.0f;
+  farthest.depthStencil.depth = farthest_depth;
   const auto depth = attachment(farthest_image, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, farthest);
   VkRenderingInfo info{};
   info.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
@@ -176,7 +176,7 @@ void Recording::set_viewport(const device::DrawImages& target, const device::Vie
 
 void Recording::draw(const device::DrawImages& target, const device::Viewport& viewport, const device::Pipeline& pass,
                      const void* push, const device::Memory* indices, std::uint32_t vertices) {
-  begin_rendering(target);
+  begin_rendering(target, static_cast<const Pipeline&>(pass).farthest);
   set_viewport(target, viewport);
   bind(VK_PIPELINE_BIND_POINT_GRAPHICS, pass, push);
   if (indices == nullptr) {

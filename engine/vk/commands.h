@@ -41,7 +41,7 @@ class Recording : public device::Recording {
   // Moves every layer of an image from `from` (UNDEFINED discards its contents) to `to`, with a full barrier.
   void transition(const ImageMemory& image, VkImageLayout from, VkImageLayout to);
 
-  void begin_rendering(const device::DrawImages& target);
+  void begin_rendering(const device::DrawImages& target, float farthest_depth);
   void set_viewport(const device::DrawImages& target, const device::Viewport& viewport);
   void bind(VkPipelineBindPoint point, const device::Pipeline& pass, const void* push);
   void begin();

@@ -99,7 +99,7 @@ struct FixedState {
     depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
     depth.depthTestEnable = VK_TRUE;
     depth.depthWriteEnable = VK_TRUE;
-    depth.depthCompareOp = VK_COMPARE_OP_LESS;
+    depth.depthCompareOp = options.depth == device::Depth::rises ? VK_COMPARE_OP_LESS : VK_COMPARE_OP_GREATER;
     VkPipelineColorBlendAttachmentState opaque{};
     opaque.colorWriteMask =
         VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
@@ -143,6 +143,7 @@ Pipeline::Pipeline(Context& context, const device::Shader& shader, const device:
 Pipeline::Pipeline(Context& context, const device::GraphicsOptions& options, const std::string& name)
     : stages(VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT),
       push_size(options.vertex->push_size),
+      farthest(options.farthest()),
       layout(push_layout(context, push_size, stages, name)) {
   const UniqueShaderModule vertex = shader_module(context, options.vertex->code, name + ".vert");
   const Constants constants(options.variant);

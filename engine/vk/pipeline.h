@@ -14,11 +14,12 @@ struct Pipeline : device::Pipeline {
   Pipeline(Context& context, const device::Shader& shader, const device::ComputeOptions& options,
            const std::string& name);
 
-  // Triangle lists without vertex buffers, dynamic viewport and scissor, depth test LESS.
+  // Triangle lists without vertex buffers, dynamic viewport and scissor, what is nearest is seen.
   Pipeline(Context& context, const device::GraphicsOptions& options, const std::string& name);
 
   VkShaderStageFlags stages;  // that see the push constants
   std::uint32_t push_size;    // bytes
+  float farthest = 1;         // depth to which a draw clears
   UniquePipelineLayout layout;
   UniquePipeline pipeline;
 

@@ -112,10 +112,13 @@ View view_from(const std::string& text, const std::string& up, float vertical_fo
   return text.empty() ? view : parse_view(text, view);
 }
 
-std::vector<std::string> default_light_texts(const std::string& view, const std::string& up, float front) {
+std::vector<std::string> default_light_texts(const std::string& text, const std::string& up, float front,
+                                             const std::string& eye, const std::string& look_at) {
+  View view = view_from(text, up, View{}.vertical_fov, front);
+  if (!eye.empty()) view.eye = parse_place(eye, "eye");
+  if (!look_at.empty()) view.look_at = parse_place(look_at, "look-at");
   std::vector<std::string> texts;
-  for (const Light& light : default_lights(view_from(view, up, View{}.vertical_fov, front)))
-    texts.push_back(to_string(light));
+  for (const Light& light : default_lights(view)) texts.push_back(to_string(light));
   return texts;
 }
 
@@ -131,8 +134,10 @@ Picture render(Engine& engine, const std::string& view, const py::kwargs& given)
 }
 
 py::object pick(const Engine& engine, const std::array<float, 2>& at, const std::string& view, const std::string& up,
-                float vertical_fov, float aspect) {
-  const auto found = engine.pick(view_from(view, up, vertical_fov, engine.graph().front()), aspect, {at[0], at[1]});
+                float vertical_fov, float aspect, const std::optional<float>& orthographic) {
+  View seen_from = view_from(view, up, vertical_fov, engine.graph().front());
+  seen_from.orthographic = orthographic;
+  const auto found = engine.pick(seen_from, aspect, {at[0], at[1]});
   if (!found) return py::none();
   py::dict d;
   d["position"] = as_tuple(glm::dvec3(found->position));
@@ -304,6 +309,7 @@ void bind_views(py::class_<Engine>& bound) {
   bound
       .def("pick", &pick, py::arg("at"), py::arg("view") = "", py::arg("up") = usual_up,
            py::arg("vertical_fov") = View{}.vertical_fov, py::arg("aspect") = 1.0f,
+           py::arg("orthographic") = std::optional<float>(),
            "What a picture of this view and shape shows at (x, y), -1 to 1 from left to right and from bottom to top: "
            "position, at_rest (mm; edits are placed by it) and normal; None where there is nothing.")
       .def("leaving", &leaving, py::arg("face"), py::arg("direction"),
@@ -346,6 +352,7 @@ void bind_engine(py::module_& module) {
   const std::string usual_up(name_of(View{}.up));
   module.def(
       "default_lights", &default_light_texts, py::arg("view") = "", py::arg("up") = usual_up, py::arg("front") = 0.0f,
+      py::arg("eye") = "", py::arg("look_at") = "",
       "The lights a picture gets when nobody asks for others: a warm key light from behind the object as `view` "
       "sees it (without one the azimuth `front`, degrees, of QuadGraph.front), a cool one from the side, a little "
       "ambient light.");

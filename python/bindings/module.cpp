@@ -132,6 +132,7 @@ py::dict as_dict(const SolveReport& report) {
   d["bounces"] = bounces;
   d["replaced"] = report.replaced;
   d["missed"] = report.missed;
+  d["stopped"] = report.stopped;
   d["unmet"] = unmet(report);
   d["budget"] = report.budget;
   d["mesh_warning"] = report.mesh_warning;

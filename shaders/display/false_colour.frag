@@ -30,7 +30,7 @@ void main() {
   float edge = on_edge();
   if ((flags & FALSE_BEHIND) != 0u && dot(push.plane.xyz, position) > push.plane.w) discard;
   vec3 colour = (flags & FALSE_PLAIN) != 0u ? PLAIN : mapped_colour(value, push.diverging);
-  float facing = abs(dot(normalize(normal), normalize(push.eye - position)));
+  float facing = abs(dot(normalize(normal), towards_eye(push.eye, position)));
   if ((flags & FALSE_SHADED) != 0u) colour *= 0.35 + 0.65 * facing;
   colour_coverage = vec4(mix(colour, 0.25 * colour, edge), 1.0);
   nothing = nothing_either = vec4(0);

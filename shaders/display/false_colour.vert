@@ -15,5 +15,5 @@ void main() {
   barycentric[gl_VertexIndex % 3] = 1.0;
   value = vertex.value;
   flags = vertex.flags;
-  gl_Position = push.clip_from_world * vec4(position, 1.0);
+  gl_Position = push.clip_from_offset * vec4(position - push.origin, 1.0);
 }

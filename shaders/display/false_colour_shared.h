@@ -2,7 +2,7 @@
 #ifndef QUADGRAPH_FALSE_COLOUR_SHARED_H
 #define QUADGRAPH_FALSE_COLOUR_SHARED_H
 
-#include "shared/shared.h"
+#include "shared/eye.h"
 
 #ifdef __cplusplus
 namespace quadgraph::gpu {
@@ -26,9 +26,10 @@ QG_ARRAY(FalseVertices, FalseVertex);
 
 // false_colour.vert, false_colour.frag.
 struct FalseColourPush {
-  mat4 clip_from_world;
+  mat4 clip_from_offset;           // as of a SurfaceScene
   QG_REF(FalseVertices) vertices;  // three per triangle
-  vec3 eye;                        // mm
+  vec3 origin;                     // mm
+  vec4 eye;                        // shared/eye.h
   vec4 plane;                      // FALSE_BEHIND: drawn where dot(plane.xyz, position) <= plane.w
   uint diverging;                  // colour map
 };

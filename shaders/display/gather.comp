@@ -57,8 +57,8 @@ vec3 radiance_behind(vec3 ray) {
   return sum;
 }
 
-Leaving towards_eye(uint face, vec3 position, vec3 normal) {
-  vec3 v = normalize(scene.eye - position);
+// Along `v`, unit, towards the eye.
+Leaving leaving_along(vec3 v, uint face, vec3 position, vec3 normal) {
   return leaving(face, coordinates_in(face, position), v, normalize(normal), scene.scale,
                  scene.radiance_norm);
 }
@@ -87,10 +87,12 @@ void main() {
       normal += other.normal;
       specular += 0.25 * other.specular;
     }
-    Leaving light = towards_eye(first.face, 0.25 / share * position, normal);
+    position *= 0.25 / share;
+    vec3 v = towards_eye(scene.eye, position);
+    Leaving light = leaving_along(v, first.face, position, normal);
     scattered += share * light.radiance;
     seen += share * light.seen;
-    unscattered += share * light.seen * radiance_behind(normalize(0.25 / share * position - scene.eye));
+    unscattered += share * light.seen * radiance_behind(-v);
     alpha += share;
   }
   vec3 layers[PICTURE_LAYERS];

@@ -4,14 +4,17 @@
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 
-// Darkens what is seen beside the body. The shadow counts as coverage without light.
+// Darkens what is seen beside the body, by an eye above the ground. The shadow counts as coverage without light.
 struct GroundPush {
   Floats shadow;
   Floats alpha;  // per pixel, written
-  vec3 eye;              // mm, from the middle of the map
-  vec3 corner;           // direction from the eye to the upper left corner of the picture
-  vec3 right;            // from there to the upper right one
-  vec3 down;             // to the lower left one
+  // On the plane through what the camera looks at, mm.
+  vec3 target;           // the middle of the picture, from that of the map
+  vec3 corner;           // from there to the upper left corner of the picture
+  vec3 right;            // from its left to its right
+  vec3 down;             // from its top to its bottom
+  vec3 ahead;            // unit, along the view
+  float spread;          // 1/mm: over the distance of the eye; 0 of parallel rays
   float half_width;      // mm, of the map
   uint z_up;             // 1: the ground lies across z; 0: across y
   uint width;            // pixels
@@ -38,10 +41,11 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= push.width * push.height || push.alpha.at[i] >= 1.0) return;
   vec2 at = (vec2(i % push.width, i / push.width) + 0.5) / vec2(push.width, push.height);
-  vec3 ray = push.corner + at.x * push.right + at.y * push.down;
+  vec3 beside = push.corner + at.x * push.right + at.y * push.down;
+  vec3 point = push.target + beside, ray = push.ahead + push.spread * beside;
   uint axis = push.z_up != 0u ? 2u : 1u;
-  if (push.eye[axis] <= 0.0 || ray[axis] >= 0.0) return;
-  vec3 hit = push.eye - push.eye[axis] / ray[axis] * ray;
+  if (ray[axis] >= 0.0) return;
+  vec3 hit = point - point[axis] / ray[axis] * ray;
   float shadow = shadow_at((push.z_up != 0u ? hit.xy : hit.xz) / push.half_width);
   push.alpha.at[i] += (1.0 - push.alpha.at[i]) * shadow;
 }

@@ -21,7 +21,7 @@ void main() {
   roughness = SCENE.roughness;
   if (PLACED_ROUGHNESS) place_roughness(rest, dFdx(rest), dFdy(rest));
   vec3 n = normalize(normal);
-  vec3 v = normalize(SCENE.eye - position);
+  vec3 v = towards_eye(SCENE.eye, position);
   float share = fresnel_transmittance(clamp(dot(n, v), 0.0, 1.0), SCENE.eta) / SCENE.radiance_norm;
   scattered_coverage = vec4(exitance * share, 1.0);
   specular = vec4(specular_radiance(position, n, v, sky), 1.0);

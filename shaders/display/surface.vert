@@ -26,5 +26,5 @@ void main() {
     exitance += weight[k] * SCENE.exitance.at[face[k]];
     unscattered_exitance += weight[k] * SCENE.unscattered.at[face[k]];
   }
-  gl_Position = SCENE.clip_from_world * vec4(position, 1.0);
+  gl_Position = SCENE.clip_from_offset * vec4(position - SCENE.origin, 1.0);
 }

@@ -20,6 +20,6 @@ void main() {
   if (PLACED_ROUGHNESS) place_roughness(rest, dFdx(rest), dFdy(rest));
   vec3 n = normalize(normal);
   position_coverage = vec4(position, 1.0);
-  specular_face = vec4(specular_radiance(position, n, normalize(SCENE.eye - position), sky), face / FACE_HALF);
+  specular_face = vec4(specular_radiance(position, n, towards_eye(SCENE.eye, position), sky), face / FACE_HALF);
   normal_face = vec4(n, face % FACE_HALF);
 }

@@ -21,5 +21,5 @@ void main() {
   normal = SCENE.normals.at[vertex];
   face = SCENE.triangle_face.at[gl_VertexIndex / 3];
   sky = SCENE.sky.at[SCENE.face.at[vertex]];
-  gl_Position = SCENE.clip_from_world * vec4(position, 1.0);
+  gl_Position = SCENE.clip_from_offset * vec4(position - SCENE.origin, 1.0);
 }

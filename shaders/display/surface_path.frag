@@ -16,16 +16,17 @@ layout(location = 2) out vec4 unscattered;         // none, 1
 #include "display/specular.glsl"
 
 // Where a ray from the eye to `end` last leaves a tool: the point, and there the direction out of what is left; false
-// where it meets none.
+// where it meets none. From afar it is followed from before the body on.
 bool last_cut(PathTools tools, vec3 end, out vec3 point, out vec3 outward) {
-  vec3 way = end - SCENE.eye;
+  float far = SCENE.eye.w > 0.0 ? distance(SCENE.eye.xyz, end) : SCENE.reach;
+  vec3 way = -min(far, SCENE.reach) * towards_eye(SCENE.eye, end), start = end - way;
   float latest = 0.0;
   for (uint k = 0u; k < tools.count; ++k) {
     PathTool tool = tools.at.at[k];
-    vec2 span = tool_span(tool, SCENE.eye, way);
+    vec2 span = tool_span(tool, start, way);
     if (span.x >= span.y || span.y <= latest || span.y >= 1.0) continue;
     latest = span.y;
-    point = SCENE.eye + latest * way;
+    point = start + latest * way;
     outward = -tool_gradient(tool, point);
   }
   return latest > 0.0;
@@ -46,7 +47,7 @@ void main() {
       n = outward;
     }
   }
-  vec3 v = normalize(SCENE.eye - at);
+  vec3 v = towards_eye(SCENE.eye, at);
   if (dot(n, v) < 0.0) n = gl_FrontFacing ? normalize(n - 1.001 * dot(n, v) * v) : -n;
   float share = fresnel_transmittance(clamp(dot(n, v), 0.0, 1.0), SCENE.eta) / SCENE.radiance_norm;
   scattered_coverage = vec4(share * path_exitance(field, at), 1.0);

@@ -15,5 +15,5 @@ void main() {
   rest = vec3(0);
   if (PLACED_ROUGHNESS) rest = path_push.surface.rest.at[gl_VertexIndex];
   normal = SCENE.normals.at[gl_VertexIndex];
-  gl_Position = SCENE.clip_from_world * vec4(position, 1.0);
+  gl_Position = SCENE.clip_from_offset * vec4(position - SCENE.origin, 1.0);
 }

@@ -5,6 +5,7 @@
 #include "gather/gather_shared.h"
 #include "light/light_kinds.h"
 #include "shared/environment_picture.h"
+#include "shared/eye.h"
 #include "shared/image_levels.h"
 
 #ifdef __cplusplus
@@ -46,8 +47,10 @@ QG_ARRAY(LightShapes, LightShape);
 
 // All that surface.vert and surface.frag read.
 struct SurfaceScene {
-  mat4 clip_from_world;
-  vec3 eye;  // mm
+  mat4 clip_from_offset;  // of what is `origin` (mm) less than a place: engine/render/display/camera.h
+  vec3 origin;
+  vec4 eye;     // shared/eye.h
+  float reach;  // mm, more than the body is wide
   float eta;
   float roughness;      // GGX alpha
   float radiance_norm;  // integral of F_t cos over the hemisphere, sr

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/ext/matrix_clip_space.hpp>
-#include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
@@ -13,9 +11,74 @@
 namespace quadgraph {
 namespace {
 
-// From y up to the view's axis: z up is y up turned by 90 degrees about x.
-glm::vec3 turned(const glm::vec3& v, UpAxis up) {
-  return up == UpAxis::y ? v : glm::vec3(v.x, -v.z, v.y);
+constexpr double margin = 1.02;  // around an object that fits the picture
+
+// From y up to the view's axis: z up is y up turned by 90 degrees about x. And back.
+glm::dvec3 turned(const glm::dvec3& v, UpAxis up) {
+  return up == UpAxis::y ? v : glm::dvec3(v.x, -v.z, v.y);
+}
+glm::dvec3 turned_back(const glm::dvec3& v, UpAxis up) {
+  return up == UpAxis::y ? v : glm::dvec3(v.x, v.z, -v.y);
+}
+
+// Angles in radians.
+struct Pose {
+  double azimuth, elevation;
+  std::optional<double> distance;
+  glm::dvec3 target;
+};
+
+Pose pose_of(const View& view, const Sphere& bounds) {
+  Pose pose{glm::radians(double{view.azimuth}), glm::radians(double{view.elevation}), view.distance,
+            glm::dvec3(bounds.centre) + glm::dvec3(view.target)};
+  if (!view.eye) return pose;
+  pose.target = *view.look_at;
+  const glm::dvec3 way = turned_back(glm::dvec3(*view.eye) - pose.target, view.up);
+  const double level = std::hypot(way.x, way.z);
+  if (level > 0) pose.azimuth = std::atan2(way.x, way.z);
+  pose.elevation = std::atan2(way.y, level);
+  pose.distance = glm::length(way);
+  return pose;
+}
+
+struct Axes {
+  glm::dvec3 right, up, backward;
+};
+
+Axes axes_of(const Pose& pose, UpAxis up) {
+  const double sin_a = std::sin(pose.azimuth), cos_a = std::cos(pose.azimuth);
+  const double sin_e = std::sin(pose.elevation), cos_e = std::cos(pose.elevation);
+  const glm::dvec3 backward = turned({sin_a * cos_e, sin_e, cos_a * cos_e}, up);
+  const glm::dvec3 upward = turned({-sin_a * sin_e, cos_e, -cos_a * sin_e}, up);
+  return {glm::cross(upward, backward), upward, backward};
+}
+
+// Rows of a matrix: what each makes of a place is dot(along, place) + constant.
+void set_row(glm::mat4& matrix, int row, const glm::dvec3& along, double constant) {
+  for (int column = 0; column < 3; ++column) matrix[column][row] = static_cast<float>(along[column]);
+  matrix[3][row] = static_cast<float>(constant);
+}
+
+// Sets what takes places to clip space. Depth is fitted to the object and falls from 1 to 0, so that it is finest where
+// the eye is, which may all but touch the object. All differences of large numbers are taken here, in double precision.
+void set_clip(Camera& camera, const Axes& axes, const Sphere& bounds) {
+  const double radius = bounds.radius;
+  const double depth = glm::dot(camera.eye - glm::dvec3(bounds.centre), axes.backward);
+  const double near = std::max(depth - 1.01 * radius, 1e-6 * radius), far = std::max(depth + 1.01 * radius, 2 * near);
+  const bool close = !camera.parallel && glm::distance(camera.eye, glm::dvec3(bounds.centre)) < 2 * radius;
+  camera.origin = close ? camera.eye : camera.target;
+  const glm::dvec3 eye = camera.eye - glm::dvec3(camera.origin);
+  const double scale = camera.parallel ? 1 : camera.distance;
+  const double across = scale / camera.half_width, upward = scale / camera.half_height;
+  const double falls = (camera.parallel ? 1 : near) / (far - near), ahead = glm::dot(axes.backward, eye);
+  set_row(camera.clip_from_offset, 0, across * axes.right, -across * glm::dot(axes.right, eye));
+  set_row(camera.clip_from_offset, 1, upward * axes.up, -upward * glm::dot(axes.up, eye));
+  set_row(camera.clip_from_offset, 2, falls * axes.backward, falls * (far - ahead));
+  if (camera.parallel) {
+    set_row(camera.clip_from_offset, 3, glm::dvec3(0), 1);
+  } else {
+    set_row(camera.clip_from_offset, 3, -axes.backward, ahead);
+  }
 }
 
 }  // namespace
@@ -36,6 +99,17 @@ void check_view(const View& view) {
   check("field of view", view.vertical_fov, fov_range, "degrees");
   for (int axis = 0; axis < 3; ++axis) check("target", view.target[axis], {}, "mm");
   if (view.distance) check("distance", *view.distance, distance_range, "mm");
+  if (view.orthographic) check("orthographic", *view.orthographic, height_range, "mm");
+  if (view.eye.has_value() != view.look_at.has_value()) {
+    throw InputError(std::string("view: ") + (view.eye ? "look_at" : "eye") +
+                     " is missing, eye and look_at go together");
+  }
+  if (!view.eye) return;
+  for (int axis = 0; axis < 3; ++axis) {
+    check("eye", (*view.eye)[axis], {}, "mm");
+    check("look_at", (*view.look_at)[axis], {}, "mm");
+  }
+  if (*view.eye == *view.look_at) throw InputError("view: eye and look_at are the same place");
 }
 
 Sphere bounding_sphere(std::span<const glm::vec3> points) {
@@ -68,27 +142,71 @@ std::string to_string(const View& view) {
          (view.distance ? "," + number_text(*view.distance) : "");
 }
 
+std::string place_text(const glm::vec3& place) {
+  return number_text(place.x) + "," + number_text(place.y) + "," + number_text(place.z);
+}
+
+glm::vec3 parse_place(std::string_view text, const std::string& what) {
+  const auto parts = split(text, ',');
+  if (parts.size() != 3) throw InputError(what + ": found '" + std::string(text) + "', expected x,y,z (mm)");
+  glm::vec3 place(0);
+  for (int axis = 0; axis < 3; ++axis) {
+    place[axis] = static_cast<float>(parse_number(parts[static_cast<std::size_t>(axis)], what));
+  }
+  return place;
+}
+
+View by_angles(const View& view, const Sphere& bounds) {
+  if (!view.eye) return view;
+  const Pose pose = pose_of(view, bounds);
+  View same = view;
+  same.azimuth = static_cast<float>(glm::degrees(pose.azimuth));
+  same.elevation = static_cast<float>(glm::degrees(pose.elevation));
+  same.distance = static_cast<float>(*pose.distance);
+  same.target = glm::vec3(pose.target - glm::dvec3(bounds.centre));
+  same.eye.reset();
+  same.look_at.reset();
+  return same;
+}
+
+glm::vec4 Camera::seen_from() const {
+  return parallel ? glm::vec4(backward, 0) : glm::vec4(eye, 1);
+}
+
+glm::vec2 Camera::slopes() const {
+  return parallel ? glm::vec2(0) : glm::vec2(half_width / distance, half_height / distance);
+}
+
+ViewRay view_ray(const Camera& camera, const glm::vec2& at) {
+  const glm::dvec3 beside =
+      camera.half_width * at.x * glm::dvec3(camera.right) + camera.half_height * at.y * glm::dvec3(camera.up);
+  const glm::dvec3 through = camera.target + beside;
+  if (camera.parallel) return {camera.eye + beside, through, -glm::dvec3(camera.backward)};
+  return {camera.eye, through, glm::normalize(through - camera.eye)};
+}
+
 Camera place_camera(const View& view, const Sphere& bounds, float aspect) {
   check_view(view);
-  const float azimuth = glm::radians(view.azimuth), elevation = glm::radians(view.elevation);
-  const float half_height = std::tan(0.5f * glm::radians(view.vertical_fov));
-  const float narrow = std::atan(half_height * std::min(aspect, 1.0f));
-  const float distance = view.distance.value_or(1.02f * bounds.radius / std::sin(narrow));
-
-  Camera camera;
-  camera.backward = turned(
-      {std::sin(azimuth) * std::cos(elevation), std::sin(elevation), std::cos(azimuth) * std::cos(elevation)}, view.up);
-  camera.up =
-      turned({-std::sin(azimuth) * std::sin(elevation), std::cos(elevation), -std::cos(azimuth) * std::sin(elevation)},
-             view.up);
-  camera.right = glm::cross(camera.up, camera.backward);
-  camera.eye = bounds.centre + view.target + distance * camera.backward;
-
-  const float depth = distance + glm::dot(view.target, camera.backward);
-  const float near = std::max(depth - 1.01f * bounds.radius, 1e-3f * bounds.radius);
-  const float far = std::max(depth + 1.01f * bounds.radius, 2 * near);
-  camera.clip_from_world = glm::perspectiveRH_ZO(glm::radians(view.vertical_fov), aspect, near, far) *
-                           glm::lookAtRH(camera.eye, camera.eye - camera.backward, camera.up);
+  const Pose pose = pose_of(view, bounds);
+  const Axes axes = axes_of(pose, view.up);
+  const double radius = bounds.radius, narrower = std::min(double{aspect}, 1.0);
+  const double slope = std::tan(0.5 * glm::radians(double{view.vertical_fov}));
+  Camera camera{.parallel = view.orthographic.has_value(),
+                .target = pose.target,
+                .right = axes.right,
+                .up = axes.up,
+                .backward = axes.backward,
+                .reach = static_cast<float>(2.1 * radius)};
+  if (camera.parallel) {
+    camera.half_height = *view.orthographic > 0 ? 0.5 * double{*view.orthographic} : margin * radius / narrower;
+    camera.distance = glm::dot(glm::dvec3(bounds.centre) - pose.target, axes.backward) + 2 * radius;
+  } else {
+    camera.distance = pose.distance.value_or(margin * radius / std::sin(std::atan(slope * narrower)));
+    camera.half_height = slope * camera.distance;
+  }
+  camera.half_width = double{aspect} * camera.half_height;
+  camera.eye = pose.target + camera.distance * axes.backward;
+  set_clip(camera, axes, bounds);
   return camera;
 }
 

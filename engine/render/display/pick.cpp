@@ -4,7 +4,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <glm/trigonometric.hpp>
 #include <limits>
 
 namespace quadgraph {
@@ -22,17 +21,17 @@ glm::dmat3 frame_of(std::span<const glm::vec3> vertices, const glm::uvec3& t) {
   return {ab, ac, n / std::sqrt(std::max(glm::length(n), 1e-30))};
 }
 
-// Where a ray that comes from within to what has been `found` on triangle `t` has last left a tool.
+// Where a ray that comes from `start` and from within to what has been `found` on triangle `t` has last left a tool.
 void move_to_cut(Picked& found, const DisplayMesh& mesh, std::span<const glm::vec3> vertices, const glm::uvec3& t,
-                 const glm::vec3& eye, std::span<const gpu::PathTool> tools) {
-  const glm::vec3 way = found.position - eye;
+                 const glm::vec3& start, std::span<const gpu::PathTool> tools) {
+  const glm::vec3 way = found.position - start;
   if (glm::dot(way, found.normal) <= 0) return;
   float latest = 0;
   for (const gpu::PathTool& tool : tools) {
-    const glm::vec2 span = gpu::tool_span(tool, eye, way);
+    const glm::vec2 span = gpu::tool_span(tool, start, way);
     if (span.x >= span.y || span.y <= latest || span.y >= 1) continue;
     latest = span.y;
-    found.position = eye + latest * way;
+    found.position = start + latest * way;
     found.normal = -gpu::tool_gradient(tool, found.position);
   }
   if (latest == 0) return;
@@ -42,12 +41,9 @@ void move_to_cut(Picked& found, const DisplayMesh& mesh, std::span<const glm::ve
 }  // namespace
 
 std::optional<Picked> pick(const DisplayMesh& mesh, std::span<const glm::vec3> vertices, const Camera& camera,
-                           float vertical_fov, float aspect, const glm::vec2& at,
-                           std::span<const gpu::PathTool> tools) {
-  const float half = std::tan(0.5f * glm::radians(vertical_fov));
-  const glm::dvec3 origin(camera.eye);
-  const glm::dvec3 direction(
-      glm::normalize(aspect * half * at.x * camera.right + half * at.y * camera.up - camera.backward));
+                           const glm::vec2& at, std::span<const gpu::PathTool> tools) {
+  const ViewRay ray = view_ray(camera, at);
+  const glm::dvec3 &origin = ray.from, &direction = ray.along;
   double nearest = std::numeric_limits<double>::max();
   std::optional<Picked> found;
   glm::uvec3 triangle(0);
@@ -69,8 +65,10 @@ std::optional<Picked> pick(const DisplayMesh& mesh, std::span<const glm::vec3> v
     found = Picked{position, share.x * mesh.vertices[t.x] + share.y * mesh.vertices[t.y] + share.z * mesh.vertices[t.z],
                    glm::vec3(glm::normalize(glm::cross(ab, ac)))};
   }
-  if (found) found->to_rest = glm::mat3(frame_of(mesh.vertices, triangle) * glm::inverse(frame_of(vertices, triangle)));
-  if (found) move_to_cut(*found, mesh, vertices, triangle, camera.eye, tools);
+  if (!found) return found;
+  found->to_rest = glm::mat3(frame_of(mesh.vertices, triangle) * glm::inverse(frame_of(vertices, triangle)));
+  const double back = std::min(nearest, double{camera.reach});
+  move_to_cut(*found, mesh, vertices, triangle, glm::dvec3(found->position) - back * direction, tools);
   return found;
 }
 

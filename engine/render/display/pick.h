@@ -21,11 +21,10 @@ struct Picked {
 };
 
 // The nearest point of the display mesh, whose vertices are now at `vertices`, mm, on the ray through `at`: of a
-// picture seen from `camera`, -1 to 1 from left to right and from bottom to top. `aspect` is width / height. What is in
+// picture seen from `camera`, -1 to 1 from left to right and from bottom to top. What is in
 // `tools` is cut away, and cut faces are met as surface_path.frag shows them; at rest they lie where the triangle
 // behind them says. Empty where there is nothing.
 std::optional<Picked> pick(const DisplayMesh& mesh, std::span<const glm::vec3> vertices, const Camera& camera,
-                           float vertical_fov, float aspect, const glm::vec2& at,
-                           std::span<const gpu::PathTool> tools = {});
+                           const glm::vec2& at, std::span<const gpu::PathTool> tools = {});
 
 }  // namespace quadgraph

@@ -62,7 +62,7 @@ Plane plane_of(const InsideInput& input, const Show& show) {
   glm::vec3 normal(0);
   normal[show.axis] = 1;
   const float height = glm::dot(normal, input.bounds.centre) + show.offset;
-  if (glm::dot(normal, input.eye) < height) return {-normal, -height};
+  if (glm::dot(normal, glm::vec3(input.eye)) < input.eye.w * height) return {-normal, -height};
   return {normal, height};
 }
 
@@ -213,9 +213,9 @@ Inside tets_on_plane(const InsideInput& input, const Show& show) {
 }
 
 // A line from `a` to `b` as a strip that faces the eye, thinner than the tets are wide.
-void add_line(FalseMesh& mesh, const glm::vec3& a, const glm::vec3& b, const glm::vec3& eye, float width,
+void add_line(FalseMesh& mesh, const glm::vec3& a, const glm::vec3& b, const glm::vec4& eye, float width,
               const glm::vec2& values) {
-  const glm::vec3 across = glm::cross(b - a, eye - a);
+  const glm::vec3 across = glm::cross(b - a, gpu::towards_eye(eye, a));
   const float length = glm::length(across);
   if (!(length > 0)) return;
   const glm::vec3 side = (0.5f * width / length) * across;
@@ -224,8 +224,8 @@ void add_line(FalseMesh& mesh, const glm::vec3& a, const glm::vec3& b, const glm
 }
 
 // A small diamond that faces the eye.
-void add_dot(FalseMesh& mesh, const glm::vec3& at, const glm::vec3& eye, float width, float value) {
-  const glm::vec3 towards = glm::normalize(eye - at);
+void add_dot(FalseMesh& mesh, const glm::vec3& at, const glm::vec4& eye, float width, float value) {
+  const glm::vec3 towards = gpu::towards_eye(eye, at);
   const glm::vec3 other = std::abs(towards.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
   const glm::vec3 right = 0.5f * width * glm::normalize(glm::cross(other, towards));
   const glm::vec3 up = 0.5f * width * glm::normalize(glm::cross(towards, right));

@@ -21,7 +21,7 @@ struct InsideInput {
   const SolveReport& report;    // of the last solve
   const SolveOptions& options;  // of the same
   const Sphere& bounds;
-  glm::vec3 eye{0};  // mm; cuts are open towards it
+  glm::vec4 eye{0};  // shaders/shared/eye.h; cuts are open towards it
 };
 
 // Not of Quantity::picture. For Quantity::difference the simulation solves with the other method, and then again as it

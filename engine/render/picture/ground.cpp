@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/trigonometric.hpp>
 
 #include "engine/device/commands.h"
 #include "interface/display/ground.comp.h"
@@ -75,21 +74,25 @@ void Ground::make_map(const DisplayBuffers& mesh, const Sphere& bounds, UpAxis u
 PassStats Ground::run(const DisplayBuffers& mesh, const Sphere& bounds, const View& view, const Camera& camera,
                       const PictureBuffers& picture) {
   if (made_for_ != view.up) make_map(mesh, bounds, view.up);
-  const float half_height = std::tan(0.5f * glm::radians(view.vertical_fov));
-  const float half_width = half_height * static_cast<float>(picture.width) / static_cast<float>(picture.height);
+  const glm::vec3 right = static_cast<float>(camera.half_width) * camera.right;
+  const glm::vec3 up = static_cast<float>(camera.half_height) * camera.up;
   const gpu::GroundPush push{.shadow = shadow_.address(),
                              .alpha = picture.alpha.address(),
-                             .eye = camera.eye - middle_,
-                             .corner = -camera.backward - half_width * camera.right + half_height * camera.up,
-                             .right = 2 * half_width * camera.right,
-                             .down = -2 * half_height * camera.up,
+                             .target = camera.target - glm::dvec3(middle_),
+                             .corner = up - right,
+                             .right = 2.0f * right,
+                             .down = -2.0f * up,
+                             .ahead = -camera.backward,
+                             .spread = camera.parallel ? 0.0f : static_cast<float>(1 / camera.distance),
                              .half_width = half_width_,
                              .z_up = view.up == UpAxis::z ? 1u : 0u,
                              .width = picture.width,
                              .height = picture.height};
   device::Commands commands(device_, 1);
   commands.begin_pass("ground");
-  commands.dispatch(ground_, push, picture.pixels());
+  const int axis = axis_of(view.up);
+  const bool from_above = camera.parallel || camera.eye[axis] > double{middle_[axis]};
+  if (from_above) commands.dispatch(ground_, push, picture.pixels());
   commands.end_pass();
   return {"ground", commands.submit_and_wait()[0].time_ms, 2 * sizeof(float) * picture.pixels(), 1};
 }

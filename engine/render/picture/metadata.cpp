@@ -12,9 +12,16 @@ std::string joined(std::span<const Light> lights) {
   return text.empty() ? "none" : text;
 }
 
+std::string orthographic_text(float height) {
+  return height > 0 ? "orthographic, " + number_text(height) + " mm high" : "orthographic, all of the object";
+}
+
 std::string camera_text(const View& view) {
-  return "view " + to_string(view) + ", vertical field of view " + number_text(view.vertical_fov) + " degrees, " +
-         (view.up == UpAxis::y ? "y" : "z") + " up";
+  const std::string place =
+      view.eye ? "eye " + place_text(*view.eye) + " looks at " + place_text(*view.look_at) : "view " + to_string(view);
+  const std::string seen = view.orthographic ? orthographic_text(*view.orthographic)
+                                             : "vertical field of view " + number_text(view.vertical_fov) + " degrees";
+  return place + ", " + seen + ", " + (view.up == UpAxis::y ? "y" : "z") + " up";
 }
 
 std::string error_text(const std::optional<ErrorEstimate>& error) {

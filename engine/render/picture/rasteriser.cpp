@@ -25,8 +25,10 @@ namespace {
 constexpr std::uint32_t tile_pixels = 512;  // per side; 96 MiB of samples
 
 gpu::SurfaceScene scene(const RasterInput& input, const Camera& camera) {
-  gpu::SurfaceScene scene{.clip_from_world = camera.clip_from_world,
-                          .eye = camera.eye,
+  gpu::SurfaceScene scene{.clip_from_offset = camera.clip_from_offset,
+                          .origin = camera.origin,
+                          .eye = camera.seen_from(),
+                          .reach = camera.reach,
                           .eta = input.eta,
                           .roughness = input.roughness,
                           .radiance_norm = static_cast<float>(radiance_norm(input.eta)),
@@ -69,8 +71,10 @@ gpu::SurfacePush surface_push(std::uint64_t scene, const PlacedRoughness* placed
 
 gpu::SurfaceScene scene(const PathInput& input, const Camera& camera) {
   gpu::SurfaceScene scene{};
-  scene.clip_from_world = camera.clip_from_world;
-  scene.eye = camera.eye;
+  scene.clip_from_offset = camera.clip_from_offset;
+  scene.origin = camera.origin;
+  scene.eye = camera.seen_from();
+  scene.reach = camera.reach;
   scene.eta = input.eta;
   scene.roughness = input.roughness;
   scene.radiance_norm = static_cast<float>(radiance_norm(input.eta));
@@ -91,7 +95,11 @@ std::uint32_t variant_of(const Input& input) {
 
 device::GraphicsOptions pass_options(const device::Shader& vertex, const device::Shader& fragment,
                                      std::uint32_t variant = 0) {
-  return {.vertex = &vertex, .fragment = &fragment, .colours = SAMPLE_LAYERS, .variant = variant};
+  return {.vertex = &vertex,
+          .fragment = &fragment,
+          .colours = SAMPLE_LAYERS,
+          .variant = variant,
+          .depth = device::Depth::falls};
 }
 
 }  // namespace
@@ -235,9 +243,10 @@ void Rasteriser::record(device::Commands& commands, const PathInput& input, cons
 }
 
 void Rasteriser::record(device::Commands& commands, const FalseColours& input, const Camera& camera, const Tile& tile) {
-  const gpu::FalseColourPush push{.clip_from_world = camera.clip_from_world,
+  const gpu::FalseColourPush push{.clip_from_offset = camera.clip_from_offset,
                                   .vertices = input.vertices.address(),
-                                  .eye = camera.eye,
+                                  .origin = camera.origin,
+                                  .eye = camera.seen_from(),
                                   .plane = input.plane,
                                   .diverging = input.diverging ? 1u : 0u};
   commands.begin_pass("false colour");

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/trigonometric.hpp>
 
 #include "engine/device/commands.h"
 #include "engine/render/light/image_file.h"
@@ -21,16 +20,14 @@ const Surroundings::Seen& Surroundings::seen(const std::string& file) {
   return known;
 }
 
-bool Surroundings::run(std::span<const Light> lights, const View& view, const Camera& camera, PictureBuffers& picture,
-                       PassStats& pass) {
+bool Surroundings::run(std::span<const Light> lights, const Camera& camera, PictureBuffers& picture, PassStats& pass) {
   const auto around = [](const Light& light) { return form_of(light.kind).image == LightImage::around; };
   std::erase_if(seen_, [&](const auto& known) {
     return std::none_of(lights.begin(), lights.end(), [&](const Light& l) { return l.file == known.first; });
   });
   if (std::none_of(lights.begin(), lights.end(), around)) return false;
   picture.make_room_around(device_);
-  const float half_height = std::tan(0.5f * glm::radians(view.vertical_fov));
-  const float half_width = half_height * static_cast<float>(picture.width) / static_cast<float>(picture.height);
+  const glm::vec3 right = camera.slopes().x * camera.right, up = camera.slopes().y * camera.up;
   device::Commands commands(device_, 1);
   commands.begin_pass("surroundings");
   bool first = true;
@@ -38,17 +35,16 @@ bool Surroundings::run(std::span<const Light> lights, const View& view, const Ca
     if (!around(light)) continue;
     const Seen& image = seen(light.file);
     const glm::mat3 into = glm::transpose(environment_frame(light));
-    const gpu::SurroundingsPush push{
-        .texels = image.texels.address(),
-        .surroundings = picture.around.address(),
-        .image = {0, image.image->columns, image.image->rows, image.image->levels},
-        .corner = into * (-camera.backward - half_width * camera.right + half_height * camera.up),
-        .right = into * (2 * half_width * camera.right),
-        .down = into * (-2 * half_height * camera.up),
-        .power = light.power,
-        .width = picture.width,
-        .height = picture.height,
-        .first = first ? 1u : 0u};
+    const gpu::SurroundingsPush push{.texels = image.texels.address(),
+                                     .surroundings = picture.around.address(),
+                                     .image = {0, image.image->columns, image.image->rows, image.image->levels},
+                                     .corner = into * (up - right - camera.backward),
+                                     .right = into * (2.0f * right),
+                                     .down = into * (-2.0f * up),
+                                     .power = light.power,
+                                     .width = picture.width,
+                                     .height = picture.height,
+                                     .first = first ? 1u : 0u};
     commands.dispatch(pass_, push, picture.pixels());
     first = false;
   }

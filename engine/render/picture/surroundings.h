@@ -19,8 +19,7 @@ class Surroundings {
 
   // Writes picture.surroundings, the sum of all environment lights as sharp as their files are; false, and nothing, if
   // there is none. Throws InputError as read_image.
-  bool run(std::span<const Light> lights, const View& view, const Camera& camera, PictureBuffers& picture,
-           PassStats& pass);
+  bool run(std::span<const Light> lights, const Camera& camera, PictureBuffers& picture, PassStats& pass);
 
  private:
   struct Seen {

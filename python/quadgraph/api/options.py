@@ -80,7 +80,9 @@ class Camera(TypedDict, total=False):
     """Where a picture is taken from, degrees and mm.
 
     azimuth: left out, the body's front; elevation: above the ground; distance: left out, the body fits; up: "y" or "z";
-    fov: vertical; target: from the object's centre, what the middle of the picture shows.
+    fov: vertical; target: from the object's centre, what the middle of the picture shows; eye, look_at: places in the
+    body's coordinates, together and in place of azimuth, elevation, distance and target; orthographic: parallel rays,
+    with which the picture's height shows so many mm, 0 for the whole body.
     """
 
     azimuth: float
@@ -89,6 +91,9 @@ class Camera(TypedDict, total=False):
     up: Literal["y", "z"]
     fov: float
     target: Vector
+    eye: Vector
+    look_at: Vector
+    orthographic: float
 
 
 class PictureOptions(TypedDict, total=False):

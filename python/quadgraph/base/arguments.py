@@ -41,6 +41,13 @@ def share(text: str) -> float:
     return value
 
 
+def add_strict_argument(parser: argparse.ArgumentParser | argparse._ArgumentGroup) -> None:
+    """Add what makes of a missed error a failure."""
+    parser.add_argument(
+        "--strict", action="store_true", help="exit code 3 where --error is missed (default: a warning)"
+    )
+
+
 def add_device_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the choice of the device and Vulkan's validation layer."""
     parser.add_argument(

@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.table import Table
 
 from quadgraph.baking.budget import record
-from quadgraph.base.arguments import length_mm, positive_float, positive_int, share
+from quadgraph.base.arguments import add_strict_argument, length_mm, positive_float, positive_int, share
 from quadgraph.base.errors import InputError
 from quadgraph.base.units import UNITS_MM
 
@@ -54,8 +54,9 @@ def _add_error_options(group: argparse._ArgumentGroup) -> None:
         type=share,
         metavar="E",
         help="choose surface vertices, levels, model and cycles by measuring: as few as keep the relative RMS error of "
-        "the exitance below E, e.g. 2%%, over the whole and over the unlit surface; exit 3 if the mesh cannot",
+        "the exitance below E, e.g. 2%%, over the whole and over the unlit surface; a warning if the mesh cannot",
     )
+    add_strict_argument(group)
     group.add_argument("--material", metavar="M", help="material that the error is for, as in `render`")
     group.add_argument(
         "--light",
@@ -160,7 +161,7 @@ def interior(text: str) -> str | float:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Bake, telling the progress on standard error; 3 if an error was asked for and is not kept, else 0."""
+    """Bake, telling the progress on standard error; 3 with --strict if --error is not kept, else 0."""
     if args.surface_only:
         return _write_surface(args)
     _check_error_options(args)
@@ -171,7 +172,7 @@ def run(args: argparse.Namespace) -> int:
         print(json.dumps(report.as_dict(), indent=1))
     else:
         _print_report(report)
-    return 3 if report.budget and not report.budget["reached"] else 0
+    return 3 if args.strict and report.budget and not report.budget["reached"] else 0
 
 
 def _write_surface(args: argparse.Namespace) -> int:

@@ -43,7 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Render and write; 3 if a tolerance or an error was not met, else 0."""
+    """Render and write; 3 as `scene_options.exit_status` says."""
     if render_scene.is_scene(args.file):
         return render_scene.run(args)
     render_scene.refuse(args)
@@ -65,7 +65,7 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         atomic_file.write_json(args.json, report)
     print_summary(engine, report, args.output)
-    return 3 if report["unmet"] else 0
+    return scene_options.exit_status([report], args.strict)
 
 
 def print_summary(engine, report: dict, outputs: list[Path]) -> None:
@@ -79,7 +79,7 @@ def print_summary(engine, report: dict, outputs: list[Path]) -> None:
     )
     balance = "energy is not conserved" if report["path"] else f"energy balance {100 * worst:+.3f}%"
     console.print(f"{text.error_text(report)}, {balance}")
-    for sentence in text.solver_texts(report) + report["unmet"]:
+    for sentence in text.solver_texts(report):
         console.print(sentence)
     for path in outputs:
         console.print(f"picture: {path}")

@@ -62,7 +62,7 @@ def refuse(args: argparse.Namespace) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Render and write; 3 if a tolerance or an error was not met in some frame, else 0."""
+    """Render and write; 3 as `scene_options.exit_status` says of all frames."""
     core = load_core()
     for name, pointer in stated().items():
         if getattr(args, name) != args.unstated[name]:
@@ -82,7 +82,8 @@ def run(args: argparse.Namespace) -> int:
     reports = render(stage, file, frames, args.output)
     if args.json:
         atomic_file.write_json(args.json, reports if with_numbers else reports[0])
-    return summarise(stage, reports, args.output)
+    summarise(stage, reports, args.output)
+    return scene_options.exit_status(reports, args.strict)
 
 
 def check_output(path: Path, with_numbers: bool) -> None:
@@ -135,10 +136,10 @@ def write(stage, picture, path: Path, frame: float, films: dict[Path, film.Film]
     to(picture, named)
 
 
-def summarise(stage, reports: list[dict], outputs: list[Path]) -> int:
-    """Say what was made, of the frame with the largest error; the exit status."""
+def summarise(stage, reports: list[dict], outputs: list[Path]) -> None:
+    """Say what was made, of a frame that did not converge or else of the one with the largest error."""
     console = Console(highlight=False, soft_wrap=True)
-    worst = max(reports, key=lambda report: report["error"]["whole"] if report["error"] else 0.0)
+    worst = max(reports, key=lambda report: (bool(report["stopped"]), (report["error"] or {"whole": 0.0})["whole"]))
     seconds = sum(report["seconds"] for report in reports)
     console.print(text.size_text(stage.engine))
     if len(reports) == 1:
@@ -146,8 +147,7 @@ def summarise(stage, reports: list[dict], outputs: list[Path]) -> int:
     else:
         console.print(f"frames: {len(reports)} in {seconds:.1f} s; the worst of them is number {worst['frame']:g}")
     console.print(text.error_text(worst))
-    for sentence in text.solver_texts(worst) + worst["unmet"]:
+    for sentence in text.solver_texts(worst):
         console.print(sentence)
     for path in outputs:
         console.print(f"{'film' if film.is_film(path) else 'picture'}: {path}")
-    return 3 if any(report["unmet"] for report in reports) else 0

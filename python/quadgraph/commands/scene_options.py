@@ -5,11 +5,11 @@ from __future__ import annotations
 import argparse
 import contextlib
 import tempfile
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from quadgraph.base.arguments import add_device_arguments, length_mm
+from quadgraph.base.arguments import add_device_arguments, add_strict_argument, length_mm
 from quadgraph.base.errors import InputError
 from quadgraph.base.units import UNITS_MM
 from quadgraph.core import load_core
@@ -47,9 +47,10 @@ def keywords(args: argparse.Namespace, groups: Collection[str]) -> dict[str, Any
 def add_scene_arguments(
     parser: argparse.ArgumentParser, file_help: str = "a baked .qgraph", groups: Collection[str] = SOLVE_GROUPS
 ) -> None:
-    """Add FILE, the device options and the engine's scene options of these groups."""
+    """Add FILE, the options of a run and the engine's scene options of these groups."""
     parser.add_argument("file", metavar="FILE", type=Path, help=file_help)
     add_device_arguments(parser)
+    add_strict_argument(parser)
     for name in groups:
         group = parser.add_argument_group(name)
         for option in options((name,)):
@@ -125,7 +126,9 @@ def make_engine(args: argparse.Namespace) -> Engine:
     with baked_or_bare(args.file, getattr(args, "unit", None), getattr(args, "height", None)) as path:
         engine = core.Engine(path, device=args.device, validation=args.validation)
     engine.set_material(args.material)
-    seen_from = {name: value for name in ("view", "up") if (value := getattr(args, name, None)) is not None}
+    seen_from = {
+        name: value for name in ("view", "up", "eye", "look_at") if (value := getattr(args, name, None)) is not None
+    }
     engine.set_lights(args.light or core.default_lights(**seen_from, front=engine.graph.front))
     return engine
 
@@ -133,6 +136,11 @@ def make_engine(args: argparse.Namespace) -> Engine:
 def solve(engine: Engine, args: argparse.Namespace) -> dict:
     """Solve as the options say; the report of `Engine.solve`."""
     return engine.solve(**keywords(args, SOLVE_GROUPS))
+
+
+def exit_status(reports: Iterable[dict], strict: bool) -> int:
+    """3 if a solve did not converge or, where that is held against it, misses the error asked for, else 0."""
+    return 3 if any(report["stopped"] or (strict and report["missed"]) for report in reports) else 0
 
 
 def check_validation(engine: Engine) -> None:

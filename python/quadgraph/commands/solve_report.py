@@ -107,15 +107,17 @@ def path_text(path: dict) -> str:
 
 
 def solver_texts(report: dict) -> list[str]:
-    """Say what the bake knows of the error, which solver took another one's place, what warns of the answer, and where
-    it stopped if not on the finest level.
+    """Say what the bake knows of the error, which solver took another one's place, what warns of the answer, whether it
+    did not converge, and where it stopped if not on the finest level.
     """
     texts = [report["budget"]] if report["budget"] else []
     texts += [path_text(report["path"])] if report.get("path") else []
     if report["replaced"]:
         texts.append(f"solver: {report['replaced']}")
-    against = ("advice", "mesh_warning", "model_warning", "deformed")
+    against = ("missed", "advice", "mesh_warning", "model_warning", "deformed")
     texts += [f"warning: {report[name]}" for name in against if report.get(name)]
+    if report["stopped"]:
+        texts.append(f"failed: {report['stopped']}")
     if report["finest"] > 0:
         texts.append(f"level: {report['finest']} suffices; its solution is carried to the finest")
     return texts

@@ -16,21 +16,34 @@ const Sphere bounds{{10, 20, 30}, 40};
 
 // Where a point is seen, in clip coordinates: right and up.
 glm::vec2 seen(const View& view, const glm::vec3& point) {
-  const glm::vec4 clip = place_camera(view, bounds, 1).clip_from_world * glm::vec4(point, 1);
+  const glm::vec4 clip = place_camera(view, bounds, 1).clip(point);
   return {clip.x / clip.w, clip.y / clip.w};
+}
+
+const glm::vec3 eye(60, 50, 90), look_at(12, 18, 25);
+
+// In perspective and with parallel rays, by angles and by places.
+std::vector<View> views() {
+  return {{.azimuth = 30, .elevation = 20},
+          {.azimuth = 30, .elevation = 20, .up = UpAxis::z},
+          {.azimuth = 30, .elevation = 20, .orthographic = 90.0f},
+          {.eye = eye, .look_at = look_at},
+          {.up = UpAxis::z, .orthographic = 0.0f, .eye = eye, .look_at = look_at}};
 }
 
 }  // namespace
 
 TEST_CASE("what is dragged follows the hand") {
-  for (const UpAxis up : {UpAxis::y, UpAxis::z}) {
-    const View view{.azimuth = 30, .elevation = 20, .up = up};
+  for (const View& view : views()) {
     const glm::vec3 near = bounds.centre + 0.5f * bounds.radius * place_camera(view, bounds, 1).backward;
-    CHECK(seen(orbited(view, 10, 0), near).x > seen(view, near).x + 0.05f);
-    CHECK(seen(orbited(view, 0, 10), near).y > seen(view, near).y + 0.05f);
-    const glm::vec2 moved = seen(panned(view, bounds, 1, 0.25f, -0.1f), bounds.centre);
+    CHECK(seen(orbited(view, bounds, 10, 0), near).x > seen(view, near).x + 0.05f);
+    CHECK(seen(orbited(view, bounds, 0, 10), near).y > seen(view, near).y + 0.05f);
+    const glm::vec3 middle = place_camera(view, bounds, 1).target;
+    const glm::vec2 moved = seen(panned(view, bounds, 1, 0.25f, -0.1f), middle);
     CHECK(moved.x == doctest::Approx(0.5).epsilon(1e-3));
     CHECK(moved.y == doctest::Approx(-0.2).epsilon(1e-3));
+    const glm::vec3 beside = middle + place_camera(view, bounds, 1).right;
+    CHECK(seen(zoomed(view, bounds, 1, 1), beside).x == doctest::Approx(seen(view, beside).x / 0.875f).epsilon(1e-4));
     const Light light{.kind = LightKind::directional, .direction = -place_camera(view, bounds, 1).backward};
     const Light turned_light = turned(light, view, bounds, 15, 10);
     const Camera camera = place_camera(view, bounds, 1);
@@ -41,8 +54,10 @@ TEST_CASE("what is dragged follows the hand") {
 }
 
 TEST_CASE("a cut goes through the stroke, and takes what lies to the right of the hand's way") {
-  for (const glm::vec2 to : {glm::vec2(0.1f, 0.6f), glm::vec2(-0.5f, -0.3f)}) {
-    const View view{.azimuth = 30, .elevation = 20};
+  for (const auto& [view, to] : std::vector<std::pair<View, glm::vec2>>{{views()[0], {0.1f, 0.6f}},
+                                                                        {views()[0], {-0.5f, -0.3f}},
+                                                                        {views()[2], {-0.5f, -0.3f}},
+                                                                        {views()[3], {0.1f, 0.6f}}}) {
     const glm::vec2 from(0.1f, -0.2f), way = glm::normalize(to - from), right(way.y, -way.x);
     const BodyCut cut = cut_along(view, bounds, 1, from, to);
     CHECK_NOTHROW(check_cut(cut));
@@ -58,14 +73,14 @@ TEST_CASE("a cut goes through the stroke, and takes what lies to the right of th
 }
 
 TEST_CASE("a view can be turned, moved and zoomed for ever and stays one that can be shown") {
-  View view;
-  for (int i = 0; i < 400; ++i) {
-    view = orbited(view, 37, 23);
-    view = panned(view, bounds, 1.5f, 0.3f, -0.2f);
-    view = zoomed(view, bounds, 1.5f, i < 200 ? 1 : -1);
-    CHECK_NOTHROW(place_camera(view, bounds, 1.5f));
-    CHECK(std::abs(view.azimuth) <= 180);
-  }
+  for (View view : views())
+    for (int i = 0; i < 400; ++i) {
+      view = orbited(view, bounds, 37, 23);
+      view = panned(view, bounds, 1.5f, 0.3f, -0.2f);
+      view = zoomed(view, bounds, 1.5f, i < 200 ? 1 : -1);
+      CHECK_NOTHROW(place_camera(view, bounds, 1.5f));
+      CHECK(std::abs(view.azimuth) <= 180);
+    }
 }
 
 TEST_CASE("a light of another kind lights the object as strongly, and turns back into the same") {

@@ -91,7 +91,7 @@ TEST_CASE("what the brush touches goes with a body that has been turned and stre
   const std::vector<glm::uvec3> triangles = {{0, 1, 2}};
   const DisplayMesh mesh{rest, {}, triangles, {}, {}};
   const Camera camera = place_camera({.elevation = 0}, {{0.3f, 0.5f, 7}, 1}, 1);
-  const auto picked = pick(mesh, now, camera, View{}.vertical_fov, 1, {0, 0});
+  const auto picked = pick(mesh, now, camera, {0, 0});
   REQUIRE(picked.has_value());
   const Touch touch = touched(*picked, camera);
   CHECK(glm::distance(touch.at, glm::vec3(2, 0.25f, -0.3f)) < 1e-5f);

@@ -49,8 +49,12 @@ TEST_CASE("every option of the table is one of the command line and does what it
       CHECK(value_text(option.get(parsed({name, "ambient:1", name, "ambient:2"}))) == "ambient:1 ambient:2");
     } else {
       const std::string usual = value_text(option.get(Scene{}));
-      const std::string text = option.choices.empty() ? usual : std::string(option.choices.back().name);
-      CHECK(value_text(option.get(parsed({name, text.empty() ? "10,20" : text}))) == (text.empty() ? "10,20" : text));
+      std::string text = option.choices.empty() ? usual : std::string(option.choices.back().name);
+      if (text.empty()) text = option.kind == OptionKind::number ? "12" : option.name == "view" ? "10,20" : "1,2,30";
+      std::vector<std::string> given = {name, text};
+      if (option.name == "eye") given.insert(given.end(), {"--look-at", "0,0,0"});
+      if (option.name == "look-at") given.insert(given.end(), {"--eye", "0,0,0"});
+      CHECK(value_text(option.get(parsed(given))) == text);
     }
   }
 }

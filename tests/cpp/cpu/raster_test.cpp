@@ -1,6 +1,7 @@
 // The rasteriser of the processor: the rules of Vulkan, and the same samples as a Vulkan device draws.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/mat4x4.hpp>
 #include <memory>
@@ -26,21 +27,32 @@ struct Drawing {
   device::Cull cull = device::Cull::none;
   glm::mat4 clip_from_world{1};
   device::Viewport viewport{0, 0, side, side};
+  device::Depth depth = device::Depth::rises;
 };
 
-// Depth of every pixel, 1 where there is none.
+// 1 less the depth.
+glm::mat4 turned_round(glm::mat4 clip) {
+  for (int column = 0; column < 4; ++column) clip[column][2] = clip[column][3] - clip[column][2];
+  return clip;
+}
+
+// Depth of every pixel as it rises, 1 where there is none.
 std::vector<float> drawn(device::Device& device, const Drawing& what) {
   const auto vertices = device::upload<glm::vec3>(device, what.vertices, "test/vertices");
-  const device::GraphicsPass pass(device, {.vertex = &shader::shadow_vert, .fragment = nullptr, .cull = what.cull},
-                                  "depth");
+  const bool falls = what.depth == device::Depth::falls;
+  const device::GraphicsPass pass(
+      device, {.vertex = &shader::shadow_vert, .fragment = nullptr, .cull = what.cull, .depth = what.depth}, "depth");
   const device::Image image(device, {device::Format::depth32_float, side, side}, "test/depth");
   const device::Buffer depth(device, side * side * sizeof(float), device::Place::device, "test/copy");
+  const glm::mat4 clip = falls ? turned_round(what.clip_from_world) : what.clip_from_world;
   device::Commands commands(device);
-  commands.draw({{}, &image}, what.viewport, pass, gpu::ShadowPush{what.clip_from_world, vertices.address()}, nullptr,
+  commands.draw({{}, &image}, what.viewport, pass, gpu::ShadowPush{clip, vertices.address()}, nullptr,
                 static_cast<std::uint32_t>(what.vertices.size()));
   commands.copy(image, depth);
   commands.submit_and_wait();
-  return device::download<float>(device, depth);
+  std::vector<float> depths = device::download<float>(device, depth);
+  if (falls) std::ranges::transform(depths, depths.begin(), [](float z) { return 1 - z; });
+  return depths;
 }
 
 std::vector<float> drawn(const Drawing& what, unsigned threads = 0) {
@@ -209,11 +221,14 @@ TEST_CASE("a clipped triangle has the flat values of its first corner") {
   const device::Image depth(processor, {device::Format::depth32_float, side, side}, "test/depth");
   const device::Buffer pixels(processor, side * side * sizeof(glm::vec4), device::Place::device, "test/copy");
   device::Commands commands(processor);
-  commands.draw(
-      {{&first, &second, &third}, &depth}, {0, 0, side, side}, pass,
-      gpu::FalseColourPush{
-          .clip_from_world = glm::mat4(1), .vertices = vertices.address(), .eye = {}, .plane = {}, .diverging = 0},
-      nullptr, 3);
+  commands.draw({{&first, &second, &third}, &depth}, {0, 0, side, side}, pass,
+                gpu::FalseColourPush{.clip_from_offset = glm::mat4(1),
+                                     .vertices = vertices.address(),
+                                     .origin = {},
+                                     .eye = {},
+                                     .plane = {},
+                                     .diverging = 0},
+                nullptr, 3);
   commands.copy(first, pixels);
   commands.submit_and_wait();
   std::size_t seen = 0;
@@ -257,6 +272,15 @@ TEST_CASE("what is drawn does not depend on the number of threads") {
   for (const unsigned threads : {2u, 7u}) CHECK(drawn(what, threads) == alone);
 }
 
+TEST_CASE("what is nearest is seen, whether depth rises or falls") {
+  Drawing what{.vertices = scattered(500)};
+  const std::vector<float> rises = drawn(what);
+  what.depth = device::Depth::falls;
+  const Difference apart = difference(rises, drawn(what));
+  CHECK(apart.samples == 0);
+  CHECK(apart.depth < 1e-6);
+}
+
 TEST_CASE("the processor and a Vulkan device cover the same samples at the same depth") {
   CheckedContext vulkan({.validation = true, .device = "llvmpipe"});
   // Both round corners to 1/256 of a pixel, from clip coordinates in double here and in float there. Where that rounds
@@ -276,4 +300,5 @@ TEST_CASE("the processor and a Vulkan device cover the same samples at the same 
   for (glm::vec3& p : ahead) p = {8.0f * p.x, 8.0f * p.y, 12.0f * p.z - 1.0f};  // some behind the eye
   compare({.vertices = ahead, .clip_from_world = perspective(0.5f, 9)});
   compare({.vertices = scattered(500), .viewport = {-150, -90, 400, 300}});
+  compare({.vertices = scattered(500), .depth = device::Depth::falls});
 }

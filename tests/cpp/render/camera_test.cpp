@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
+#include "engine/base/error.h"
 #include "engine/render/light/default_lights.h"
 
 using namespace quadgraph;
@@ -22,7 +23,7 @@ View view(float azimuth, float elevation, UpAxis up = UpAxis::y, std::optional<f
 }
 
 glm::vec3 projected(const Camera& camera, const glm::vec3& point) {
-  const glm::vec4 clip = camera.clip_from_world * glm::vec4(point, 1);
+  const glm::vec4 clip = camera.clip(point);
   return glm::vec3(clip) / clip.w;
 }
 
@@ -62,7 +63,7 @@ TEST_CASE("the centre is in the middle of the picture, right is right, up is up,
     CHECK(std::abs(centre.y) < 1e-5f);
     CHECK(projected(camera, bounds.centre + camera.right).x > 0.01f);
     CHECK(projected(camera, bounds.centre + camera.up).y > 0.01f);
-    CHECK(projected(camera, bounds.centre + camera.backward).z < centre.z);
+    CHECK(projected(camera, bounds.centre + camera.backward).z > centre.z);
     CHECK(glm::dot(glm::cross(camera.right, camera.up), camera.backward) == doctest::Approx(1));
   }
 }
@@ -74,7 +75,7 @@ TEST_CASE("without a distance the whole sphere is seen and nearly fills the narr
     for (int i = 0; i < 3600; ++i) {
       // The silhouette: directions as far from the axis as the tangent cone is.
       const float turn = static_cast<float>(i) * 0.0017453293f;
-      const float back = bounds.radius / glm::distance(camera.eye, bounds.centre);
+      const float back = bounds.radius / glm::distance(glm::vec3(camera.eye), bounds.centre);
       const float out = std::sqrt(1 - back * back);
       const glm::vec3 direction =
           back * camera.backward + out * (std::cos(turn) * camera.right + std::sin(turn) * camera.up);
@@ -86,6 +87,53 @@ TEST_CASE("without a distance the whole sphere is seen and nearly fills the narr
     CHECK(widest < 1.0f);
     CHECK(widest > 0.95f);
   }
+}
+
+TEST_CASE("an orthographic picture shows as many mm as it says, at any distance, all of the object, nearest first") {
+  for (const float distance : {0.1f, 50.0f, 1e6f}) {
+    View ahead = view(33, 20, UpAxis::y, distance);
+    ahead.orthographic = 8;
+    const Camera camera = place_camera(ahead, bounds, 1.5f);
+    const glm::vec3 beside = bounds.centre + 3.0f * camera.right - 2.0f * camera.up;
+    for (const float depth : {-10.0f, 0.0f, 10.0f}) {
+      const glm::vec3 seen = projected(camera, beside + depth * camera.backward);
+      CHECK(seen.x == doctest::Approx(3 / (1.5 * 4)));
+      CHECK(seen.y == doctest::Approx(-2 / 4.0));
+      CHECK(seen.z == doctest::Approx(0.5 + 0.5 * depth / 10.1));
+    }
+    const ViewRay ray = view_ray(camera, {0.5f, -0.5f});
+    CHECK(glm::dot(ray.along, glm::dvec3(camera.backward)) == doctest::Approx(-1));
+    CHECK(glm::distance(glm::dvec3(beside), ray.through) < 1e-5);
+  }
+  View fit = view(33, 20, UpAxis::y, std::nullopt);
+  fit.orthographic = 0;
+  for (const float aspect : {0.5f, 1.0f, 2.0f}) {
+    const Camera camera = place_camera(fit, bounds, aspect);
+    CHECK(std::min(camera.half_width, camera.half_height) == doctest::Approx(1.02 * bounds.radius));
+  }
+}
+
+TEST_CASE("a view by places is one by angles") {
+  for (const UpAxis up : {UpAxis::y, UpAxis::z}) {
+    const View places{.up = up, .eye = glm::vec3(20, -5, 31), .look_at = glm::vec3(2, 4, -1)};
+    const Camera camera = place_camera(places, bounds, 1.5f);
+    CHECK(near(camera.eye, *places.eye));
+    CHECK(near(projected(camera, *places.look_at) * glm::vec3(1, 1, 0), {0, 0, 0}));
+    CHECK(glm::dot(camera.right, up == UpAxis::y ? glm::vec3(0, 1, 0) : glm::vec3(0, 0, 1)) == doctest::Approx(0));
+    const View angles = by_angles(places, bounds);
+    CHECK(!angles.eye);
+    const Camera same = place_camera(angles, bounds, 1.5f);
+    CHECK(near(same.eye, camera.eye));
+    CHECK(near(same.target, camera.target));
+    CHECK(near(same.up, camera.up));
+  }
+  const View above{.azimuth = 90, .eye = glm::vec3(1, 30, 3), .look_at = glm::vec3(1, 2, 3)};
+  CHECK(near(place_camera(above, bounds, 1).up, {-1, 0, 0}));
+  CHECK_THROWS_WITH_AS(check_view({.eye = glm::vec3(1)}), "view: look_at is missing, eye and look_at go together",
+                       InputError);
+  CHECK_THROWS_WITH_AS(check_view({.eye = glm::vec3(1), .look_at = glm::vec3(1)}),
+                       "view: eye and look_at are the same place", InputError);
+  CHECK_THROWS_AS(check_view({.orthographic = -1.0f}), InputError);
 }
 
 TEST_CASE("the default key light shines from behind the object, the second from the side, a little from everywhere") {

@@ -5,53 +5,11 @@
 #include <numbers>
 
 #include "engine/optics/fresnel.h"
-#include "engine/render/picture/rasteriser.h"
-#include "tests/cpp/fixtures/checked_context.h"
-#include "tests/cpp/fixtures/render_shapes.h"
+#include "tests/cpp/fixtures/display_stage.h"
 
 using namespace quadgraph;
 
 namespace {
-
-struct Stage {
-  CheckedContext checked;
-  device::Device& context = checked.context;
-  Shape shape;
-  DisplayBuffers mesh;
-  LevelBuffers level;
-  ShadowMaps shadows{context};
-  Rasteriser rasteriser{context};
-  device::Buffer exitance, unscattered;
-
-  Stage(Shape body, const glm::vec3& uniform_exitance)
-      : shape(std::move(body)), mesh(upload_as_display(context, shape)), level(upload_as_level(context, shape, 0)) {
-    set_exitance(std::vector<glm::vec3>(shape.vertices.size(), uniform_exitance));
-  }
-  Stage(const Stage&) = delete;
-  Stage& operator=(const Stage&) = delete;
-
-  void set_exitance(const std::vector<glm::vec3>& values) {
-    exitance = device::upload<glm::vec3>(context, values, "exitance");
-    unscattered =
-        device::upload<glm::vec3>(context, std::vector<glm::vec3>(values.size(), glm::vec3(0)), "unscattered");
-  }
-
-  Picture picture(const std::vector<Light>& lights, float eta, const View& view, std::uint32_t width,
-                  std::uint32_t height, float roughness = 0.3f) {
-    const Sphere bounds = bounding_sphere(shape.vertices);
-    shadows.update(mesh, {lights, bounds});
-    const Camera camera = place_camera(view, bounds, static_cast<float>(width) / static_cast<float>(height));
-    rasteriser.run({.mesh = mesh,
-                    .finest = level,
-                    .vertex_exitance = exitance,
-                    .vertex_unscattered = unscattered,
-                    .shadows = shadows,
-                    .eta = eta,
-                    .roughness = roughness},
-                   camera, width, height);
-    return read_picture(context, rasteriser.picture());
-  }
-};
 
 float brightest(const std::vector<float>& values) {
   return *std::max_element(values.begin(), values.end());
@@ -67,7 +25,7 @@ TEST_CASE("the norm of F_t: pi without a boundary, and 1 - the outside diffuse r
 
 TEST_CASE("without a boundary uniform exitance M is a flat picture of M / pi") {
   const glm::dvec3 exitance(1, 2, -0.5);
-  Stage stage(sphere({0, 0, 0}, 10, 5), exitance);
+  DisplayStage stage(sphere({0, 0, 0}, 10, 5), exitance);
   const Picture picture = stage.picture({}, 1.0f, {}, 64, 48);
   std::size_t covered = 0;
   double worst = 0;
@@ -87,7 +45,7 @@ TEST_CASE("without a boundary uniform exitance M is a flat picture of M / pi") {
 
 TEST_CASE("with a boundary radiance is M F_t(cos) / norm at every pixel") {
   constexpr float radius = 10;
-  Stage stage(sphere({0, 0, 0}, radius, 6), glm::vec3(1));
+  DisplayStage stage(sphere({0, 0, 0}, radius, 6), glm::vec3(1));
   const View view{.azimuth = 0, .elevation = 0, .distance = 1000.0f, .up = UpAxis::y, .vertical_fov = 1.2f};
   constexpr std::uint32_t side = 129;
   const Picture picture = stage.picture({}, 1.5f, view, side, side);
@@ -107,7 +65,7 @@ TEST_CASE("with a boundary radiance is M F_t(cos) / norm at every pixel") {
 }
 
 TEST_CASE("a picture of several tiles is the one of a single tile, finer") {
-  Stage stage(sphere({0, 0, 0}, 10, 5), glm::vec3(0));
+  DisplayStage stage(sphere({0, 0, 0}, 10, 5), glm::vec3(0));
   // Exitance that varies evenly across the picture, so that a tile out of place shows.
   std::vector<glm::vec3> exitance = stage.shape.vertices;
   for (glm::vec3& m : exitance) m.z = m.x + m.y;
@@ -137,7 +95,7 @@ TEST_CASE("a picture of several tiles is the one of a single tile, finer") {
 
 TEST_CASE("the surface reflects where the mirror direction is, and only with a boundary") {
   constexpr float radius = 10;
-  Stage stage(sphere({0, 0, 0}, radius, 6), glm::vec3(0));
+  DisplayStage stage(sphere({0, 0, 0}, radius, 6), glm::vec3(0));
   // Light from the right, camera in front: the mirror normal lies half-way, at x = sin 45 degrees.
   const std::vector<Light> lights = {parse_light("directional:-1,0,0:1")};
   const View view{.azimuth = 0, .elevation = 0, .distance = 1000.0f, .up = UpAxis::y, .vertical_fov = 1.2f};
@@ -163,7 +121,7 @@ TEST_CASE("the surface reflects where the mirror direction is, and only with a b
 TEST_CASE("a body in another's shadow reflects nothing") {
   Shape two = sphere({0, 0, 0}, 10, 5);
   two.append(sphere({0, 25, 0}, 12, 5));
-  Stage stage(two, glm::vec3(1));
+  DisplayStage stage(two, glm::vec3(1));
   // Light straight down: the upper sphere is wider and hides the whole lower one.
   const View view{.azimuth = 0, .elevation = 0, .distance = 300.0f, .up = UpAxis::y, .vertical_fov = 20};
   const Picture picture = stage.picture({parse_light("directional:0,-1,0:1")}, 1.5f, view, 256, 256);

@@ -213,16 +213,17 @@ def test_a_wrong_use_is_refused_in_words(mesh, tmp_path, given, word, capsys):
 
 
 def test_an_error_out_of_reach_is_said_to_be(tmp_path, capsys):
-    """All of so coarse a mesh is baked, and the exit status tells."""
+    """All of so coarse a mesh is baked, with a warning, and with --strict the exit status tells."""
     source, out = tmp_path / "lobes.ply", tmp_path / "out.qgraph"
     level_chains.SHAPES["lobes"](3).export(source)
     options = ["--height", "20mm", "--material", "marble", "--light", SUN, "--error", "0.2%"]
-    assert cli.main(["bake", str(source), "-o", str(out), *options]) == 3
-    assert "out of this mesh's reach" in capsys.readouterr().out
+    assert cli.main(["bake", str(source), "-o", str(out), *options]) == 0
+    assert "warning: error 0.2%: out of this mesh's reach" in capsys.readouterr().out
     record = qgraph_file.read(out).metadata["budget"]
     assert not record["reached"]
     assert record["measured"] > 0.002
     assert record["surface_vertices"] == record["mesh_vertices"]
+    assert cli.main(["bake", str(source), "-o", str(out), *options, "--strict"]) == 3
 
 
 def test_a_file_without_coarser_levels_is_measured_too(tmp_path):

@@ -51,8 +51,9 @@ def _verdict(budget: dict[str, Any]) -> str:
     head = f"error {percent(budget['error'])}"
     if budget["reached"]:
         return f"{head}: kept, {found}, measured for {budget['material']} in {lights}"
+    measured = f"{found}, measured for {budget['material']} in {lights}"
     vertices = f"all of its {budget['judged_vertices']:,} vertices"
-    return f"{head}: out of this mesh's reach: {vertices} have {found}, measured for {budget['material']} in {lights}"
+    return f"warning: {head}: out of this mesh's reach: {vertices} have {measured}"
 
 
 def _surface(budget: dict[str, Any]) -> str:
