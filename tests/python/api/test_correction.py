@@ -108,6 +108,17 @@ def test_frames_in_motion_stay_beside_what_a_solve_at_rest_finds(engine):
     assert np.allclose(*ends, rtol=0.01)
 
 
+def test_a_sweep_in_motion_goes_on_from_those_before(engine):
+    changes = []
+    for turn in np.radians(np.arange(0, 12) * 3):
+        engine.lights = [f"directional:{np.sin(turn)},0,{-np.cos(turn)}:1"]
+        solution = engine.solve(motion=True)
+        changes.append(solution.correction.sweeps[0].change.whole)
+    assert changes[0] > 0.08  # all that SP3 is off
+    assert max(changes[4:]) < 0.25 * changes[0]  # what one frame changed
+    assert solution.error.whole < 0.04
+
+
 @pytest.fixture
 def heard():
     """Ctrl-C is heard, also where the tests run in the background, whose processes ignore it."""
