@@ -91,8 +91,8 @@ const uint SOLVE_STALLED = 7u;       // the residual hardly falls for too many c
 // Levels that one solve works on at most; coarser ones of a file are left out.
 #define MAX_LEVELS 12
 
-// State of the solve of one level. `difference`, `change` and `algebraic` are of the exitance, as area-weighted RMS over
-// the whole surface (x), over its unlit part (y) and over its dimmest third (z), channels together.
+// State of the solve of one level. `difference`, `change` and `algebraic` are of the exitance, as area-weighted RMS
+// over the whole surface (x), over its unlit part (y) and over its dimmest third (z), channels together.
 struct SolveState {
   uvec3 gate[MAX_LEVELS];   // indirect workgroup counts of the iteration's passes on each level; zero when not wanted
   uvec3 coarse;             // of its pass on the coarsest level, which is one workgroup
