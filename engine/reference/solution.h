@@ -45,9 +45,9 @@ struct CorrectedSweep {
 // What the transport correction did (docs/physics.md, "Transport correction").
 struct CorrectionReport {
   std::vector<CorrectedSweep> sweeps;
-  double returns = 0;   // share of the scattered light that leaves which enters again, the largest of any channel
-  bool ahead = false;   // one sweep, from what those of the frames before have added to the solution
-  double segments = 0;  // tets that rays back from its points and faces crossed
+  double returns = 0;    // share of the scattered light that leaves which enters again, the largest of any channel
+  bool goes_on = false;  // one sweep, that goes on from those of the frames before
+  double segments = 0;   // tets that rays back from its points and faces crossed
 };
 
 // What Method::shortest_path did.

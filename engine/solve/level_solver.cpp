@@ -5,7 +5,6 @@
 
 #include "engine/base/error.h"
 #include "engine/solve/assembly.h"
-#include "engine/solve/surface_share.h"
 #include "interface/solver/cg_direction.comp.h"
 #include "interface/solver/cg_multiply.comp.h"
 #include "interface/solver/cg_start.comp.h"
@@ -133,7 +132,6 @@ void LevelSolver::record_origin(const device::Buffer& x) {
 
 void LevelSolver::record_start() {
   record_surface(op().x, op().surface_before, gpu::SURFACE_STORE);
-  record_surface_dimmest(work_, op());
   dispatch_start(started_ ? gpu::START_AGAIN : gpu::START_FIRST);
   // What stays as it is must be in both vectors of a relaxation.
   if (active_rows() < op().count) work_.recorder.copy(op().x, op().product, op().x.size());

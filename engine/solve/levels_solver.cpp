@@ -153,6 +153,8 @@ void LevelsSolver::record_first(std::uint32_t level) {
     const device::Buffer& target = warm_ ? op(level).p : op(level).x;
     parts_.operators.record_transfer(parts_.work, key_, level, target, op(level).state);
     solvers_[level]->record_origin(target);
+    const OperatorBuffers& rows = op(level);
+    record_surface_dimmest(parts_.work, rows.surface_start, rows.surface_share, rows.surface_count);
   }
   if (warm_) {
     parts_.operators.record_follow(parts_.work, key_, level, !alone);

@@ -24,12 +24,11 @@ void record_surface_share(Workspace& work, const LevelBuffers& level, Method met
                          3 * level.face_count * face_bytes + op.surface_count * sizeof(gpu::SurfaceShare));
 }
 
-void record_surface_dimmest(Workspace& work, const OperatorBuffers& op) {
-  const gpu::SurfaceDimmestPush push{
-      .m = op.surface_before.address(), .share = op.surface_share.address(), .count = op.surface_count};
+void record_surface_dimmest(Workspace& work, const device::Buffer& m, const device::Buffer& share,
+                            std::uint32_t count) {
+  const gpu::SurfaceDimmestPush push{.m = m.address(), .share = share.address(), .count = count};
   constexpr std::uint64_t bytes = 3 * (sizeof(glm::vec3) + sizeof(gpu::SurfaceShare));
-  work.recorder.dispatch(work.passes.of(shader::surface_dimmest), push, WORKGROUP_SIZE, "surface share",
-                         op.surface_count * bytes);
+  work.recorder.dispatch(work.passes.of(shader::surface_dimmest), push, WORKGROUP_SIZE, "surface share", count * bytes);
 }
 
 }  // namespace quadgraph

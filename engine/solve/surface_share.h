@@ -12,7 +12,8 @@ namespace quadgraph {
 void record_surface_share(Workspace& work, const LevelBuffers& level, Method method, const Boundary& boundary,
                           const OperatorBuffers& op);
 
-// What of it is of the dimmest third, for the exitance in op.surface_before.
-void record_surface_dimmest(Workspace& work, const OperatorBuffers& op);
+// What of the SurfaceShares of so many carriers is of the dimmest third, where these have the exitance m
+// (vec3, in any unit).
+void record_surface_dimmest(Workspace& work, const device::Buffer& m, const device::Buffer& share, std::uint32_t count);
 
 }  // namespace quadgraph

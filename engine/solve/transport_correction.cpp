@@ -8,6 +8,7 @@
 #include "engine/solve/assembly.h"
 #include "engine/solve/level_solver.h"
 #include "engine/solve/solver_choice.h"
+#include "engine/solve/surface_share.h"
 #include "interface/transport/transport_change.comp.h"
 #include "interface/transport/transport_faces.comp.h"
 #include "interface/transport/transport_load.comp.h"
@@ -57,10 +58,8 @@ constexpr double solver_left = left_by_first, mesh_left = 0.15, unseen = 0.004;
 // The halves share what their points see of the body; so much more than they differ by is the noise.
 constexpr double noise_over_difference = 1.2;
 
-// In motion a sweep starts ahead, from what those before have added to the solution.
 double share_left_by(const CorrectionReport& done) {
-  if (done.ahead) return left_by_next;
-  return done.sweeps.size() > 1 ? left_by_next : left_by_first + done.returns;
+  return done.goes_on || done.sweeps.size() > 1 ? left_by_next : left_by_first + done.returns;
 }
 
 // The error is that of means over patches, so many on the whole surface; about so many faces are around a vertex. What
@@ -135,7 +134,6 @@ TransportCorrection::TransportCorrection(device::Device& device, const Level& le
   }
   halves_ = room(halves * level.face_count() * vec3_bytes, "exitance of both halves");
   exitance_ = room(level.face_count() * vec3_bytes, "exitance");
-  share_ = room(level.surface_vertex_count * sizeof(gpu::SurfaceShare), "surface share");
   statistics_ = room(2 * sizeof(gpu::TransportChange), "change");
   statistics_on_host_ = room(2 * sizeof(gpu::TransportChange), "change, read back", device::Place::host);
 }
@@ -198,7 +196,7 @@ void TransportCorrection::record_change(const CorrectionParts& parts, bool ahead
                                 .faces = level.faces.address(),
                                 .face_offset = level.face_offset.address(),
                                 .face_incidence = level.face_incidence.address(),
-                                .share = share_.address(),
+                                .share = parts.operators.at(correction_key, 0).surface_share.address(),
                                 .scale = work.scale.address(),
                                 .gathered = samples_.gathered().address(),
                                 .change_a = change_[0].address(),
@@ -274,7 +272,7 @@ CorrectedSweep TransportCorrection::sweep(const CorrectionParts& parts, const Sa
   }
   solves_noise_ = relative(found[1].noise, found[1].size);
   record_faces(parts);
-  samples_.record_step(parts.transport, right_side_, change_, !moved_);
+  samples_.record_step(parts.transport, right_side_, change_, shares);
   samples_.record_state(parts.transport);
   if (!std::isfinite(found[0].change.x) || !std::isfinite(found[0].noise.x) || !std::isfinite(found[0].size.x)) {
     throw SolverError("transport correction: met a value that is not finite");
@@ -289,7 +287,8 @@ CorrectedSweep TransportCorrection::sweep(const CorrectionParts& parts, const Sa
 void TransportCorrection::start(const CorrectionParts& parts, const WalkTask& task, const TransportShares& shares) {
   Recorder& recorder = parts.transport.work.recorder;
   samples_.record_start(parts.transport, task, parts.solved.op, shares);
-  recorder.copy(parts.solved.op.surface_share, share_, share_.size());
+  OperatorBuffers& op = parts.operators.at(correction_key, 0);
+  record_surface_dimmest(parts.transport.work, parts.results.vertex_exitance(), op.surface_share, op.surface_count);
   const device::Buffer& exitance = parts.results.exitance();
   for (std::uint32_t half = 0; half < halves; ++half) {
     recorder.copy(exitance, halves_, exitance.size(), half * exitance.size());
@@ -298,19 +297,18 @@ void TransportCorrection::start(const CorrectionParts& parts, const WalkTask& ta
 
 // What is known of the frames before is carried on: of tets that are where they were, what rays found for the field
 // before, in its coefficients, is taken away by the same rays that see the present one, so that the mean is that of the
-// present one alone; of tets that have moved it is averaged.
+// present one alone; of tets that have moved it is averaged, and what lags so is not added up.
 TransportShares TransportCorrection::shares_in_motion(std::uint32_t frames) const {
   const float newest = std::max(least_share, 1.0f / static_cast<float>(frames + 1));
   const bool ahead = frames > 0;
-  if (moved_) return {.present = newest, .before = 0, .known = 1 - newest, .ahead = ahead};
+  if (moved_) return {.present = newest, .before = 0, .known = 1 - newest, .ahead = ahead, .adds = !ahead};
   return {.present = 1, .before = 1 - newest, .known = 1 - newest, .apart = edited_ && ahead, .ahead = ahead};
 }
 
 CorrectedSweep TransportCorrection::sweep_in_motion(const CorrectionParts& parts, const WalkTask& task,
-                                                    std::uint32_t frames) {
-  const TransportShares shares = shares_in_motion(frames);
+                                                    const TransportShares& shares) {
   start(parts, task, shares);
-  if (moved_ && frames > 0) samples_.record_carried(parts.transport, parts.boundary.k11);
+  if (moved_ && shares.ahead) samples_.record_carried(parts.transport, parts.boundary.k11);
   return sweep(parts, {motion_directions, motion_rays, 1}, shares);
 }
 
@@ -335,8 +333,9 @@ CorrectionReport TransportCorrection::run(const CorrectionParts& parts, const So
   CorrectionReport report;
   const std::uint32_t frames = std::exchange(frames_, 0);  // nothing is known where this does not come to its end
   if (options.warm) {
-    report.sweeps.push_back(sweep_in_motion(parts, task, frames));
-    report.ahead = frames > 0;
+    const TransportShares shares = shares_in_motion(frames);
+    report.sweeps.push_back(sweep_in_motion(parts, task, shares));
+    report.goes_on = shares.ahead && shares.adds;
     parts.transport.work.recorder.submit();
     report.returns = samples_.returns();
     frames_ = frames + 1;

@@ -84,7 +84,7 @@ class TransportCorrection {
   CorrectedSweep sweep(const CorrectionParts& parts, const Sampling& sampling, const TransportShares& shares);
   void start(const CorrectionParts& parts, const WalkTask& task, const TransportShares& shares);
   TransportShares shares_in_motion(std::uint32_t frames) const;
-  CorrectedSweep sweep_in_motion(const CorrectionParts& parts, const WalkTask& task, std::uint32_t frames);
+  CorrectedSweep sweep_in_motion(const CorrectionParts& parts, const WalkTask& task, const TransportShares& shares);
   void sweep_at_rest(const CorrectionParts& parts, const SolveOptions& options, CorrectionReport& report);
 
   TransportSamples samples_;
@@ -95,7 +95,6 @@ class TransportCorrection {
   // vec3 per vertex: b and x of the solve of each half, and b of the sweep before.
   std::array<device::Buffer, 2> right_side_, change_, known_;
   device::Buffer halves_, exitance_;                // vec3 per face, W/mm^2: of each half, and the mean
-  device::Buffer share_;                            // SurfaceShare, of what the correction starts from
   device::Buffer statistics_, statistics_on_host_;  // two TransportChange
 };
 

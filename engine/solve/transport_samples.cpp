@@ -348,7 +348,7 @@ void TransportSamples::record_smooth(const TransportParts& parts, const device::
 }
 
 void TransportSamples::record_step(const TransportParts& parts, const std::array<device::Buffer, 2>& load,
-                                   const std::array<device::Buffer, 2>& change, bool adds) {
+                                   const std::array<device::Buffer, 2>& change, const TransportShares& shares) {
   Workspace& work = parts.work;
   const std::uint32_t count = parts.level.vertex_count;
   const gpu::TransportMeanPush mean{load[0].address(), load[1].address(), swept_[0].address(), count};
@@ -362,7 +362,7 @@ void TransportSamples::record_step(const TransportParts& parts, const std::array
                                     .fluence = fluence_.address(),
                                     .added = added_.address(),
                                     .count = count,
-                                    .adds = adds ? 1.0f : 0.0f};
+                                    .adds = shares.adds ? 1.0f : 0.0f};
   work.recorder.dispatch(work.passes.of(shader::transport_step), step, count, "transport step", 7 * count * vec3_bytes);
 }
 

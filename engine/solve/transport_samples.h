@@ -31,6 +31,7 @@ struct TransportShares {
   float present = 1, before = 0, known = 0;
   bool apart = false;  // the field before is seen by itself, in the coefficients that it had
   bool ahead = false;  // the present field has what sweeps have added before
+  bool adds = true;    // what this one changes counts among that
 };
 
 // Power that the light's own rays brought, W, and of what is gathered the share that enters again.
@@ -78,9 +79,9 @@ class TransportSamples {
   void begin_seeds() { seed_ = draw_ = 0; }
 
   // A step of the fluence: what both halves of a load say of it, over the mass and smoothed, and the mean of two
-  // changes; with `adds` that counts among what sweeps have added.
+  // changes.
   void record_step(const TransportParts& parts, const std::array<device::Buffer, 2>& load,
-                   const std::array<device::Buffer, 2>& change, bool adds);
+                   const std::array<device::Buffer, 2>& change, const TransportShares& shares);
 
   // What the points of either half are missing, after draws of which so much counts; `known` is the share of what they
   // found before.
@@ -89,7 +90,6 @@ class TransportSamples {
   const device::Buffer& mass() const { return mass_; }    // vec3 per vertex, mm^2: integral of sigma_s' times its basis
 
   const device::Buffer& fluence() const { return fluence_; }    // vec3 per vertex, scaled; to be corrected
-  const device::Buffer& added() const { return added_; }        // vec3 per vertex, scaled: by sweeps so far
   const device::Buffer& load() const { return load_; }          // fixed point, per vertex two per half
   const device::Buffer& gathered() const { return gathered_; }  // vec3 per half and face, scaled
   const device::Buffer& unit() const { return unit_; }          // vec3: the scale of what was known
@@ -114,7 +114,7 @@ class TransportSamples {
   device::Buffer cells_;    // TransportCell per tet
   device::Buffer deposit_;  // fixed point, four per tet: power scattered for the first time
   device::Buffer fluence_, fluence_before_, fluence_seen_;  // vec3 per vertex, scaled
-  device::Buffer added_;                                    // the same
+  device::Buffer added_;                                    // the same, by sweeps so far
   device::Buffer source_before_, unit_;                     // vec3, four per tet; vec3
   device::Buffer fluence_apart_, source_apart_;             // vec3; made at first use
   device::Buffer optical_before_;                           // gpu::Optical per tet, or one

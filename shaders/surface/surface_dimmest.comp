@@ -5,8 +5,8 @@
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 
-// One workgroup: which carriers are of the third of the surface that has the least exitance M, to within an eighth of a
-// stop of M. None are where all is dark.
+// One workgroup: which carriers are of the third of the surface that has the least exitance M, the sum of its channels,
+// to within an eighth of a stop. None are where all is dark.
 struct SurfaceDimmestPush {
   Vec3s m;  // per carrier
   SurfaceShares share;
@@ -23,17 +23,22 @@ shared uint bins[BINS];
 shared float least_area, brightest;
 shared uint last;  // bin of the dimmest third
 
-// Of |M|^2; what is too dark for the others is in the first.
-uint bin_of(float square) {
-  float below = 0.5 * BINS_PER_STOP * (log2(brightest) - log2(square));
-  return square > 0.0 && below < float(BINS) ? BINS - 1u - uint(max(below, 0.0)) : 0u;
+float brightness(uint carrier) {
+  vec3 m = push.m.at[carrier];
+  return max(m.x + m.y + m.z, 0.0);
+}
+
+// What is too dark for the others is in the first.
+uint bin_of(float bright) {
+  float below = BINS_PER_STOP * (log2(brightest) - log2(bright));
+  return bright > 0.0 && below < float(BINS) ? BINS - 1u - uint(max(below, 0.0)) : 0u;
 }
 
 void find_extent() {
   float area = 0.0, most = 0.0;
   for (uint i = gl_LocalInvocationID.x; i < push.count; i += WORKGROUP_SIZE) {
     area += push.share.at[i].area.x;
-    most = max(most, dot(push.m.at[i], push.m.at[i]));
+    most = max(most, brightness(i));
   }
   vec3 sum = reduce_workgroup(vec3(area, 0, 0));
   if (gl_LocalInvocationID.x == 0u) {
@@ -57,7 +62,7 @@ void main() {
   find_extent();
   for (uint i = gl_LocalInvocationID.x; i < push.count; i += WORKGROUP_SIZE) {
     uint area = uint(push.share.at[i].area.x / least_area);
-    atomicAdd(bins[bin_of(dot(push.m.at[i], push.m.at[i]))], area);
+    atomicAdd(bins[bin_of(brightness(i))], area);
   }
   barrier();
   if (gl_LocalInvocationID.x == 0u) {
@@ -69,7 +74,7 @@ void main() {
   }
   barrier();
   for (uint i = gl_LocalInvocationID.x; i < push.count; i += WORKGROUP_SIZE) {
-    bool dim = brightest > 0.0 && bin_of(dot(push.m.at[i], push.m.at[i])) <= last;
+    bool dim = brightest > 0.0 && bin_of(brightness(i)) <= last;
     vec3 area = push.share.at[i].area;
     push.share.at[i].area = vec3(area.x, area.y, dim ? area.x : 0.0);
   }
