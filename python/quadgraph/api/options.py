@@ -6,17 +6,10 @@ Plain dicts at run time. Names and values are checked by the engine, which raise
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Literal, TypeAlias, TypedDict
+from typing import Any, Literal, TypedDict
 
+from quadgraph.api.choices import Method, Model, PathCost, PathSolver, Radiance, Solver, Source
 from quadgraph.api.values import RGB, Vector
-
-Method: TypeAlias = Literal["fem", "quadgraph-fv", "quadgraph-fdm", "polygrid", "polygrid-divergence", "shortest-path"]
-Solver: TypeAlias = Literal["fmg-pcg", "vcycle", "dpcg", "cascade", "jacobi", "auto"]
-Source: TypeAlias = Literal["buried", "diffuse"]
-Model: TypeAlias = Literal["diffusion", "sp3", "auto"]
-Radiance: TypeAlias = Literal["gathered", "lambertian", "single", "auto"]
-PathCost: TypeAlias = Literal["transport", "extinction"]
-PathSolver: TypeAlias = Literal["eikonal", "lattice"]
 
 
 class PathOptions(TypedDict, total=False):

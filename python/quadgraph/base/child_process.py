@@ -11,11 +11,13 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import FrameType
 
 from quadgraph.base.errors import ToolError
 
@@ -107,6 +109,26 @@ def _child_setup(parent: int, time_limit_s: float, memory_limit_bytes: int | Non
     return setup
 
 
+@contextmanager
+def _interrupts_wait() -> Iterator[None]:
+    """Hold an interrupt back until the block's end.
+
+    Python runs hooks while it forks, and an exception in one of them, that of an interrupt too, is printed and lost.
+    """
+    before = signal.getsignal(signal.SIGINT)
+    if threading.current_thread() is not threading.main_thread() or not callable(before):
+        yield  # only the main thread is interrupted, and it only where interrupts are not ignored
+        return
+    held: list[tuple[int, FrameType | None]] = []
+    signal.signal(signal.SIGINT, lambda number, frame: held.append((number, frame)))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+        if held:
+            before(*held[0])
+
+
 def _last_words(output: str) -> str:
     words = " / ".join(line.strip() for line in output.splitlines() if line.strip())
     return words[-_LAST_WORDS:] or "no output"
@@ -136,7 +158,8 @@ def run(
     # Without stdbuf an aborting TetGen loses its messages.
     prefix = [stdbuf, "-o0", "-e0"] if (stdbuf := shutil.which("stdbuf")) else []
     log = directory / "output.log"
-    with log.open("wb") as stream:
+    with log.open("wb") as stream, ExitStack() as held:
+        held.enter_context(_interrupts_wait())
         process = subprocess.Popen(
             [*prefix, str(program.path()), *arguments],
             cwd=directory,
@@ -149,6 +172,7 @@ def run(
         family = _FAMILY.get() or _Family()
         family.members.add(process)
         try:
+            held.close()
             # Joined first, asked second: stopped_on_exit does the opposite, so that no program is missed.
             if family.ended:
                 raise ToolError(f"{program.name}: stopped, the work it belongs to has ended")

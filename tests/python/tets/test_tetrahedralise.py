@@ -241,6 +241,22 @@ def test_child_dies_with_its_parent(tmp_path: Path) -> None:
         time.sleep(0.05)
 
 
+def test_an_interrupt_while_a_child_starts_is_not_lost(tmp_path: Path) -> None:
+    # Python runs this hook while it forks; an exception in a hook, also that of an interrupt, is printed and lost.
+    code = (
+        "import os, signal, sys; from pathlib import Path; from quadgraph.base.child_process import *\n"
+        "def hook():\n    os.kill(os.getpid(), signal.SIGINT)\n    return len('an interrupt is raised by now')\n"
+        "os.register_at_fork(after_in_parent=hook)\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "try:\n"
+        "    run(Program('sleep', ''), ['60'], directory=Path(sys.argv[1]), time_limit_s=60, memory_limit_bytes=None)\n"
+        "except KeyboardInterrupt:\n"
+        "    print('interrupted')\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code, str(tmp_path)], capture_output=True, text=True, timeout=30)
+    assert (done.stdout, done.stderr) == ("interrupted\n", "")
+
+
 def _alive(pid: int) -> bool:
     try:
         os.kill(pid, 0)
