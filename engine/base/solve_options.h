@@ -176,6 +176,7 @@ struct SolveOptions {
   bool correction = false;
   std::uint32_t sweeps = 0;
   std::uint32_t sweep_points = 20000;  // where a sweep evaluates it
+  std::uint32_t sweep_seed = 0;        // of all that sweeps draw
   // n > 0, with the links of a polygrid: on all levels but the coarsest only the first n layers of vertices below the
   // surface are solved for, the others keep what the coarser level has [PG Section 5.3, Fig. 8]; 0: all are.
   std::uint32_t active_layers = 0;

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "engine/file/section_table.h"
+#include "engine/optics/material.h"
+#include "engine/render/picture/metadata.h"
 #include "engine/scene/json_field.h"
 #include "engine/solve/asked_error.h"
 
@@ -17,6 +19,7 @@ namespace {
 // Most cycles of any setting that a bake tries.
 constexpr std::uint32_t most_cycles = 256;
 
+constexpr auto most_sweeps = static_cast<std::uint32_t>(sweeps_range.high);
 constexpr std::uint32_t most_vertices = std::numeric_limits<std::uint32_t>::max();
 constexpr double largest = std::numeric_limits<double>::max();
 
@@ -24,7 +27,7 @@ constexpr double largest = std::numeric_limits<double>::max();
 struct Trial {
   std::uint32_t surface_vertices, levels;  // of the file
   Model model;
-  std::uint32_t cycles;
+  std::uint32_t cycles, sweeps;
   double cost;   // bytes a frame reads and writes
   double error;  // relative RMS of the exitance, the largest of all lights and parts
   double share;  // of an error that is asked for: no more than this of it was kept with certainty
@@ -34,6 +37,7 @@ struct Record {
   std::string material;
   std::optional<std::vector<Light>> lights{};  // none: usual ones stood for any
   std::size_t usual_lights = 0;                // sets of them
+  bool inter_reflection = false;               // else the file does not say what the faces see
   std::vector<Trial> trials{};                 // on the file that was kept
 };
 
@@ -66,6 +70,7 @@ Trial trial_from(const JsonField& field) {
           .levels = field.at("levels").whole(1, qgraph_max_levels),
           .model = measured_model(field.at("model")),
           .cycles = field.at("cycles").whole(1, most_cycles),
+          .sweeps = field.at("sweeps").whole(0, most_sweeps),
           .cost = field.at("cost").number(0, largest),
           .error = largest_error(field.at("errors")),
           .share = share ? share->number(0, 1) : usual_measured_share};
@@ -91,6 +96,7 @@ Record record_from(const JsonField& field) {
   } else {
     record.usual_lights = some_members(lights, "an object of one set of lights or more").size();
   }
+  record.inter_reflection = field.at("inter_reflection").truth();
   const std::uint32_t vertices = field.at("surface_vertices").whole(0, most_vertices);
   const std::size_t levels = field.at("levels").items().size();
   const JsonField trials = field.at("trials");
@@ -113,22 +119,40 @@ bool same_lights(const std::vector<Light>& a, const std::vector<Light>& b) {
   return std::is_permutation(a.begin(), a.end(), b.begin(), b.end(), same_light);
 }
 
+// A material's text with all that it leaves out; that of coefficients on a grid as it is.
+std::string in_full(const std::string& material) {
+  try {
+    return material_text(parse_material(material));
+  } catch (const InputError&) {
+    return material;
+  }
+}
+
 // Why the record tells nothing of these options in this scene; empty if it does.
 std::string other_than_measured(const Record& record, const SolveOptions& options, const PresentScene& scene) {
-  if (scene.material != record.material) return record.material + ", not " + scene.material;
+  if (in_full(scene.material) != in_full(record.material)) return record.material + ", not " + scene.material;
   if (record.lights && !same_lights(*record.lights, scene.lights)) return "under other light";
   if (!scene.as_baked) return "the body at rest and without edits";
+  if (record.inter_reflection && !options.inter_reflection) return "inter-reflection, too";
   const bool measured = options.method == Method::fem && options.source == Source::buried &&
                         options.solver == SolverKind::fmg_pcg && options.cycles == 0;
-  return measured ? "" : "fem with the buried source and fmg-pcg";
+  if (!measured) return "fem with the buried source and fmg-pcg";
+  const bool usual = options.sweep_points == SolveOptions{}.sweep_points && options.sweep_seed == 0;
+  return usual ? "" : "sweeps of the usual points and seed";
+}
+
+// Whether a solve with these options may be one of that setting: a model or sweeps that are asked for are as asked.
+bool may_be(const Trial& trial, const SolveOptions& options) {
+  const bool model = options.model == Model::automatic || options.model == trial.model;
+  const bool sweeps = options.correction ? options.sweeps == 0 || options.sweeps == trial.sweeps : trial.sweeps == 0;
+  return model && sweeps;
 }
 
 // The cheapest that keeps the error.
 const Trial* cheapest(const Record& record, const SolveOptions& options) {
   const Trial* best = nullptr;
   for (const Trial& trial : record.trials) {
-    const bool wanted = options.model == Model::automatic || options.model == trial.model;
-    if (!wanted || trial.error > trial.share * options.error) continue;
+    if (!may_be(trial, options) || trial.error > trial.share * options.error) continue;
     if (best == nullptr || trial.cost < best->cost) best = &trial;
   }
   return best;
@@ -137,6 +161,12 @@ const Trial* cheapest(const Record& record, const SolveOptions& options) {
 std::string least_error(const Record& record) {
   const auto smaller = [](const Trial& a, const Trial& b) { return a.error < b.error; };
   return percent_text(std::min_element(record.trials.begin(), record.trials.end(), smaller)->error);
+}
+
+// Of a record that tells nothing of transport.
+std::string of_earlier(const SolveOptions& options) {
+  return "error " + percent_text(options.error) +
+         ": the bake, of an earlier version, measured against SP3 alone: the solve's own estimate decides; bake again";
 }
 
 MeasuredOptions taken(const Record& record, const SolveOptions& options, const PresentScene& scene) {
@@ -150,10 +180,13 @@ MeasuredOptions taken(const Record& record, const SolveOptions& options, const P
   found.options.tolerance = algebraic_share * options.error;
   found.options.model = best->model;
   found.options.cycles = best->cycles;
+  found.options.sweeps = best->sweeps;
+  found.options.correction = best->sweeps > 0;
   const std::string lights =
       record.lights ? "in this light" : "under " + std::to_string(record.usual_lights) + " usual sets of lights";
   found.sentence = asked + "kept, the bake measured " + percent_text(best->error) + " " + lights + " with " +
                    std::string(name_of(best->model)) + " and " + std::to_string(best->cycles) + " cycles";
+  if (best->sweeps > 0) found.sentence += ", sweeps of the transport equation: " + std::to_string(best->sweeps);
   return found;
 }
 
@@ -166,6 +199,7 @@ MeasuredOptions with_measured(const SolveOptions& options, const std::string& me
   try {
     const auto budget = JsonField(json, "").find("budget");
     if (!budget) return {options, ""};
+    if (budget->value().is_object() && !budget->find("inter_reflection")) return {options, of_earlier(options)};
     return taken(record_from(*budget), options, scene);
   } catch (const InputError& error) {
     fail_format(scene.file, "metadata", error.what());

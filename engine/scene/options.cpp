@@ -170,6 +170,12 @@ void add_light_paths(OptionTable& table) {
        .keyword = "sweep_points",
        .range = sweep_points_range,
        .help = "points inside the body at which a sweep evaluates the transport equation"});
+  table.member<&Scene::solve, &SolveOptions::sweep_seed>(
+      {.name = "sweep-seed",
+       .member = "/solver/sweep_seed",
+       .keyword = "sweep_seed",
+       .range = up_to_a_million,
+       .help = "what the points and rays of sweeps are drawn by: what two seeds differ by is noise"});
   table.member<&Scene::solve, &SolveOptions::active_layers>(
       {.name = "active-layers",
        .member = "/solver/active_layers",

@@ -315,7 +315,7 @@ CorrectedSweep TransportCorrection::sweep_in_motion(const CorrectionParts& parts
 // The second sweep and those behind it sample what the one before has changed, whose noise is small.
 void TransportCorrection::sweep_at_rest(const CorrectionParts& parts, const SolveOptions& options,
                                         CorrectionReport& report) {
-  samples_.begin_seeds();
+  samples_.begin_seeds(options.sweep_seed);
   const ErrorEstimate enough = wanted(options);
   const std::uint32_t most = options.sweeps > 0 ? options.sweeps : most_sweeps;
   do {

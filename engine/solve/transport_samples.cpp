@@ -37,6 +37,9 @@ constexpr std::uint32_t rays_at_rest = 16, rays_in_motion = 4;
 // Draws before the tets take their turns again: while a float tells them apart.
 constexpr std::uint32_t draws_apart = 1u << 16;
 
+// Passes between the numbers of one seed and the next, and draws.
+constexpr std::uint32_t passes_between = 1000003, draws_between = 61;
+
 // Sums of each of the WALK_SUMS of what is gathered.
 constexpr std::uint32_t gather_sums = 4;
 
@@ -242,6 +245,11 @@ void TransportSamples::record_source(const TransportParts& parts, const Transpor
                          "transport source",
                          4 * fluence_.size() + deposit_.size() + 3 * source_before_.size() +
                              level.tet_count * (sizeof(glm::uvec4) + 8 * vec3_bytes));
+}
+
+void TransportSamples::begin_seeds(std::uint32_t seed) {
+  seed_ = seed * passes_between;
+  draw_ = seed * draws_between;
 }
 
 void TransportSamples::record_exitance(const TransportParts& parts, std::uint32_t rays, float known) {

@@ -76,7 +76,8 @@ class TransportSamples {
   TransportPower power(const glm::dvec3& scale) const;
 
   std::uint32_t points() const { return points_wanted_; }  // of a draw, about
-  void begin_seeds() { seed_ = draw_ = 0; }
+  // Draws from here on are those of a seed.
+  void begin_seeds(std::uint32_t seed);
 
   // A step of the fluence: what both halves of a load say of it, over the mass and smoothed, and the mean of two
   // changes.

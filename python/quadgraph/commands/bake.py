@@ -53,8 +53,9 @@ def _add_error_options(group: argparse._ArgumentGroup) -> None:
         "--error",
         type=share,
         metavar="E",
-        help="choose surface vertices, levels, model and cycles by measuring: as few as keep the relative RMS error of "
-        "the exitance below E, e.g. 2%%, over the whole and over the unlit surface; a warning if the mesh cannot",
+        help="choose surface vertices, levels, model, cycles and sweeps by measuring: as few as keep the relative RMS "
+        "error of the exitance against transport below E, e.g. 2%%, over the whole and over the unlit surface; a "
+        "warning if the mesh cannot",
     )
     add_strict_argument(group)
     group.add_argument("--material", metavar="M", help="material that the error is for, as in `render`")

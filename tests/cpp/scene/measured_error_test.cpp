@@ -14,12 +14,13 @@ using namespace quadgraph;
 
 namespace {
 
-Json trial(const char* model, int cycles, double cost, double whole, double unlit) {
+Json trial(const char* model, int cycles, double cost, double whole, double unlit, int sweeps = 0) {
   return {{"surface_vertices", 500},
           {"levels", 2},
           {"deep", true},
           {"model", model},
           {"cycles", cycles},
+          {"sweeps", sweeps},
           {"cost", cost},
           {"errors", {{"given", {{"whole", whole}, {"unlit", unlit}}}}},
           {"share", 0.95}};
@@ -32,6 +33,7 @@ Json record() {
           {"material", "skin1"},
           {"lights", {{"given", {"directional:0,0,-1:1", "ambient:0.50"}}}},
           {"lights_given", true},
+          {"inter_reflection", true},
           {"surface_vertices", 500},
           {"levels", {500, 90}},
           {"trials",
@@ -89,6 +91,39 @@ TEST_CASE("the cheapest setting that was measured to keep an error takes its pla
   CHECK(asked({.error = 0.0502}, scene(), budget).options.cycles == 2);
 }
 
+TEST_CASE("sweeps are taken where a solve may have them") {
+  Json budget = record();
+  budget["trials"] = {trial("diffusion", 2, 100, 0.03, 0.04), trial("sp3", 2, 200, 0.01, 0.01, 1),
+                      trial("sp3", 2, 300, 0.004, 0.004, 2)};
+  const auto taken = [&](const SolveOptions& options) { return asked(options, scene(), budget); };
+  CHECK_FALSE(taken({.error = 0.05, .correction = true}).options.correction);
+  const MeasuredOptions one = taken({.error = 0.02, .correction = true});
+  CHECK(one.options.correction);
+  CHECK(one.options.sweeps == 1);
+  CHECK(one.sentence.find("1% in this light with sp3 and 2 cycles, sweeps of the transport equation: 1") !=
+        std::string::npos);
+  CHECK(taken({.error = 0.02, .correction = true, .sweeps = 2}).options.sweeps == 2);
+  CHECK(taken({.error = 0.02}).sentence.find("the solve's own estimate decides") != std::string::npos);
+  check_left({.error = 0.05, .correction = true, .sweep_seed = 1}, scene(), "sweeps of the usual points and seed");
+}
+
+TEST_CASE("a record tells of light that meets the body again where the file does") {
+  check_left({.error = 0.05, .inter_reflection = false}, scene(), "inter-reflection, too");
+  Json budget = record();
+  budget["inter_reflection"] = false;
+  for (const bool wanted : {false, true}) {
+    CHECK(asked({.error = 0.05, .inter_reflection = wanted}, scene(), budget).options.cycles == 3);
+  }
+}
+
+TEST_CASE("a record of an earlier version is left alone") {
+  Json budget = record();
+  budget.erase("inter_reflection");
+  const MeasuredOptions found = asked({.error = 0.05}, scene(), budget);
+  CHECK(found.options == SolveOptions{.error = 0.05});
+  CHECK(found.sentence.find("bake again") != std::string::npos);
+}
+
 TEST_CASE("a record under usual lights stands for any") {
   Json usual = record();
   usual["lights_given"] = false;
@@ -102,6 +137,16 @@ TEST_CASE("lights are the same in any order and however they are written") {
   std::swap(other.lights[0], other.lights[1]);
   other.lights[0].direction.x = 3e-7f;
   CHECK(asked({.error = 0.05}, other).options.cycles == 3);
+}
+
+TEST_CASE("a material is the same however it is written") {
+  Json budget = record();
+  budget["material"] = "sigma_s_prime=1.5,sigma_a=0.01";
+  PresentScene other = scene();
+  other.material = "sigma_s_prime=1.5/1.5/1.5,sigma_a=0.01/0.01/0.01,pattern=none";
+  CHECK(asked({.error = 0.05}, other, budget).options.cycles == 3);
+  other.material = "sigma_s_prime=1.5,sigma_a=0.011";
+  CHECK(asked({.error = 0.05}, other, budget).options.cycles == 0);
 }
 
 TEST_CASE("what was not measured is left to the estimate, and said to be") {
@@ -157,6 +202,7 @@ TEST_CASE("a record that no bake wrote is refused by file, field, found and allo
       {"/trials/1/model", "auto", "/budget/trials/1/model: found \"auto\", allowed is \"diffusion\" or \"sp3\""},
       {"/trials/4/cycles", 0, "/budget/trials/4/cycles: found 0, allowed is a whole number from 1 to 256"},
       {"/trials/4/cycles", 1000000000, "/budget/trials/4/cycles: found 1000000000, allowed is"},
+      {"/trials/4/sweeps", 101, "/budget/trials/4/sweeps: found 101, allowed is a whole number from 0 to 100"},
       {"/trials/4/cost", -1, "/budget/trials/4/cost: found -1, allowed is a number from 0"},
       {"/trials/4/share", 1.5, "/budget/trials/4/share: found 1.5, allowed is a number from 0 to 1"},
       {"/trials/4/errors", Json::object(), "/budget/trials/4/errors: found {}, allowed is an object"},

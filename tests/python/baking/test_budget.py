@@ -10,10 +10,10 @@ import pytest
 
 from quadgraph import cli
 from quadgraph.baking import pipeline
-from quadgraph.baking.budget import plan, trials
+from quadgraph.baking.budget import displayed, plan, trials
 from quadgraph.baking.budget import record as budget
 from quadgraph.baking.budget.displayed import Reference
-from quadgraph.baking.budget.trials import Trial
+from quadgraph.baking.budget.trials import Setting, Trial
 from quadgraph.baking.pipeline import BakeOptions
 from quadgraph.base.errors import FormatError, InputError
 from quadgraph.file import qgraph_file
@@ -23,14 +23,14 @@ from quadgraph_validation.bodies import level_chains
 core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 
 SUN = "directional:0.3,-0.2,-0.9:1"
-ERROR = 0.05
+ERROR = 0.08
 
 
 def law(vertices: int, model: str = "sp3", cycles: int = 2, *, order: float = 0.8, floor: float = 0.0) -> Trial:
     """A trial whose error falls with the number of vertices down to a floor, and whose cost rises with it."""
     error = float(np.hypot(2 * vertices**-order, floor))
     cost = 100.0 * vertices * (1 + cycles)
-    return Trial(vertices, 3, True, model, cycles, cost, {"sun": {"whole": error / 2, "unlit": error}})
+    return Trial(vertices, 3, True, model, cycles, 0, cost, {"sun": {"whole": error / 2, "unlit": error}})
 
 
 def test_a_forecast_follows_the_order_between_and_beyond_trials():
@@ -81,9 +81,9 @@ class Finer(Measured):
     def __init__(self, share: float) -> None:
         self.share, self.judged = share, []
 
-    def judge(self, path: int, model: str, cycles: int, deep: bool) -> Trial:
+    def judge(self, path: int, setting: Setting, deep: bool) -> Trial:
         self.judged.append(path)
-        found = law(path, model, cycles)
+        found = law(path, setting.model, setting.cycles)
         errors = {"sun": {part: self.share * error for part, error in found.errors["sun"].items()}}
         return replace(found, errors=errors, deep=deep)
 
@@ -111,7 +111,7 @@ def test_what_is_cheaper_and_in_doubt_is_held_against_a_finer_truth(finer, kept,
 @pytest.fixture(scope="module")
 def mesh(tmp_path_factory) -> Path:
     path = tmp_path_factory.mktemp("budget") / "lobes.ply"
-    level_chains.SHAPES["lobes"](4).export(path)
+    level_chains.SHAPES["lobes"](3).export(path)
     return path
 
 
@@ -141,7 +141,7 @@ def test_the_true_error_is_kept(judged):
 
 
 def test_hardly_anything_is_cheaper(judged):
-    assert judged["searched"] > 20
+    assert judged["searched"] >= 8
     assert max(judged["cheapest"]["errors"].values()) <= ERROR
     assert judged["ratio"] <= 1.5
     table = study.tables({"rows": [judged]})[0]
@@ -163,32 +163,37 @@ def test_the_file_tells_a_solve_what_keeps_the_error(baked, record):
     engine = core.Engine(baked)
     engine.set_material("skin1")
     engine.set_lights([SUN])
-    report = engine.solve(error=ERROR)
+    report = engine.solve(error=ERROR, correction=True)
     assert (report["model"], report["cycles"]) == (record["model"], record["cycles"])
-    assert report["levels"][-1]["iterations"] == record["cycles"]
-    assert "error 5%: kept, the bake measured" in report["budget"]
+    assert len(report["correction"]["sweeps"]) == record["sweeps"]
+    assert report["levels"][-1]["iterations"] % record["cycles"] == 0  # as many again for every bounce
+    assert "error 8%: kept, the bake measured" in report["budget"]
     assert not report["unmet"]
 
 
 def test_words_of_a_record_that_no_bake_wrote_are_refused():
     with pytest.raises(FormatError, match="budget"):
-        budget.sentences({"error": 0.02}, "x.qgraph")
+        budget.sentences({"error": 0.02, "inter_reflection": True}, "x.qgraph")
+
+
+def test_a_record_of_an_earlier_version_is_said_to_be_one():
+    assert "bake again" in "".join(budget.sentences({"error": 0.02}, "x.qgraph"))
 
 
 def test_what_was_left_out_is_said(record):
     text = "\n".join(budget.sentences(record, "x.qgraph"))
-    for word in ("error 5%: kept", f"of {record['mesh_vertices']:,} vertices", "cycles", "model", "interior"):
+    for word in ("error 8%: kept", f"of {record['mesh_vertices']:,} vertices", "cycles", "model", "interior"):
         assert word in text
 
 
 def test_info_says_what_was_left_out(baked, capsys):
     assert cli.main(["info", str(baked)]) == 0
-    assert "error 5%: kept" in capsys.readouterr().out
+    assert "error 8%: kept" in capsys.readouterr().out
 
 
 def test_render_keeps_the_error_by_the_file(baked, tmp_path, capsys):
     out = tmp_path / "out.png"
-    scene = ["--material", "skin1", "--light", SUN, "--error", "5%", "--no-inter-reflection", "--size", "32x32"]
+    scene = ["--material", "skin1", "--light", SUN, "--error", "8%", "--size", "32x32"]
     assert cli.main(["render", str(baked), *scene, "-o", str(out)]) == 0
     assert "kept, the bake measured" in capsys.readouterr().out
 
@@ -212,8 +217,9 @@ def test_a_wrong_use_is_refused_in_words(mesh, tmp_path, given, word, capsys):
     assert not out.exists()
 
 
-def test_an_error_out_of_reach_is_said_to_be(tmp_path, capsys):
+def test_an_error_out_of_reach_is_said_to_be(tmp_path, capsys, monkeypatch):
     """All of so coarse a mesh is baked, with a warning, and with --strict the exit status tells."""
+    monkeypatch.setattr(displayed, "_MOST_SEEDS", 1)  # the truth need not be known as well as that
     source, out = tmp_path / "lobes.ply", tmp_path / "out.qgraph"
     level_chains.SHAPES["lobes"](3).export(source)
     options = ["--height", "20mm", "--material", "marble", "--light", SUN, "--error", "0.2%"]
@@ -232,7 +238,8 @@ def test_a_file_without_coarser_levels_is_measured_too(tmp_path):
     level_chains.SHAPES["lobes"](3).export(source)
     pipeline.bake(source, path, BakeOptions(height_mm=5, levels=1, visibility_rays=0))
     reference = Reference(path, 1, tmp_path)
-    truths = {"given": reference.truth("ketchup", [SUN])}
+    truth = reference.truth("ketchup", [SUN], 1)
+    truths = {"given": replace(truth, exitance=truth.plain)}  # of SP3 alone, for no sweep is tried
     scene = trials.BudgetScene("ketchup", {"given": [SUN]}, True)
     found = trials.measure(path, scene, truths, reference.surface_vertices, "", ("sp3",))
     assert found[-1].error < 0.1

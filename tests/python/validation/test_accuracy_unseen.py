@@ -10,9 +10,9 @@ import pytest
 
 from quadgraph import cli
 from quadgraph.base.errors import InputError
+from quadgraph.mesh.patches import PATCHES, patches_of
 from quadgraph_validation.accuracy import unseen_motion, unseen_study, unseen_tables
 from quadgraph_validation.bodies import unseen_bodies, unseen_cases
-from quadgraph_validation.bodies.patches import PATCHES, patches_of
 from quadgraph_validation.truth.unseen_truth import UnseenTruth
 
 pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")

@@ -7,9 +7,9 @@ import pytest
 import trimesh
 
 from quadgraph.api.lights import AmbientLight, DirectionalLight, PointLight, RectangleLight, SpotLight
+from quadgraph.mesh.patches import patches_of
 from quadgraph.mesh.surface import Surface
 from quadgraph_validation.bodies.media import Medium
-from quadgraph_validation.bodies.patches import patches_of
 from quadgraph_validation.bodies.smooth_sky import SmoothSky, directions, drawn_sky
 from quadgraph_validation.bodies.unseen_cases import UnseenMedium
 from quadgraph_validation.truth import light_rays, monte_carlo

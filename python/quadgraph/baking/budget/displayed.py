@@ -1,4 +1,4 @@
-"""The exitance of baked files on the displayed surface, against that of the whole mesh cut finer."""
+"""The exitance of baked files on the displayed surface, against transport in the whole mesh cut finer."""
 
 from __future__ import annotations
 
@@ -13,11 +13,14 @@ from scipy.spatial import cKDTree
 from quadgraph.baking.budget import finer_levels, surface_errors
 from quadgraph.base.relative_error import relative_rms
 from quadgraph.core import load_core
+from quadgraph.mesh.patches import patches_of
+from quadgraph.mesh.surface import Surface
 
 if TYPE_CHECKING:
     from quadgraph.core import Engine
 
 TRUTH_TOLERANCE = 1e-4  # of errors of .3% and more
+_TRUTH_SWEEPS, _MOST_SEEDS = 3, 8
 # The four triangles that one is cut into: their corners (4, 3) in its barycentric coordinates (3,).
 _QUARTERS = 0.5 * np.array(
     [
@@ -33,13 +36,14 @@ _QUARTERS = 0.5 * np.array(
 class Solved:
     """One solve of a file: what it was asked, and what it did.
 
-    options: of Engine.solve; exitance: (n, 3) per displayed triangle, W/mm^2; cost: bytes that the passes of a frame
-    under new light read and write, shadow maps apart, for these are the same on every file; time_ms: of those passes on
-    the device; report: of Engine.solve.
+    options: of Engine.solve; exitance, plain: (n, 3) per displayed triangle, W/mm^2, with all sweeps and without any;
+    cost: bytes that the passes of a frame under new light read and write, shadow maps apart, for these are the same on
+    every file; time_ms: of those passes on the device; report: of Engine.solve.
     """
 
     options: dict[str, Any]
     exitance: np.ndarray
+    plain: np.ndarray
     cost: int
     time_ms: float
     report: dict[str, Any]
@@ -60,18 +64,18 @@ class DisplayedFile:
         self._corners = np.asarray(display["triangles"])
         self._place = self._faces[np.asarray(display["face"])], np.asarray(display["barycentric"])
 
-    def solve(self, lights: Sequence[str], **options: Any) -> Solved:
-        """Solve from nothing under light that is taken for new."""
+    def solve(self, lights: Sequence[str], sweeps: int = 0, **options: Any) -> Solved:
+        """Solve from nothing under light that is taken for new, and with sweeps once more without."""
         self._engine.set_lights(list(lights))
-        report = self._engine.solve(inter_reflection=False, **options)
+        report = self._engine.solve(**options)
+        plain = found = self._shown()
+        if sweeps:
+            self._engine.set_lights(list(lights))
+            report = self._engine.solve(correction=True, sweeps=sweeps, **options)
+            found = self._shown()
         passes = [entry for entry in self._engine.passes if entry["name"] != "shadow maps"]
-        return Solved(
-            options,
-            self._shown(),
-            sum(entry["bytes"] for entry in passes),
-            sum(entry["time_ms"] for entry in passes),
-            report,
-        )
+        cost, time_ms = (sum(entry[name] for entry in passes) for name in ("bytes", "time_ms"))
+        return Solved(options, found, plain, cost, time_ms, report)
 
     def _shown(self) -> np.ndarray:
         """Values at the corners of the file's own triangles, interpolated where the displayed ones have theirs."""
@@ -83,50 +87,86 @@ class DisplayedFile:
 
 @dataclass(frozen=True)
 class DisplayedTruth:
-    """Exitance on the displayed triangles, (n, 3) W/mm^2, their areas (n,) mm^2 and which are unlit (n,)."""
+    """What the displayed triangles are held against.
+
+    exitance, plain: (n, 3) W/mm^2 of transport and of SP3 alone; area: (n,) mm^2; unlit: (n,) bool; patch: (n,) of each
+    triangle, by which what is sampled is averaged, none across the edge of the unlit part; noise: relative, of what is
+    averaged.
+    """
 
     exitance: np.ndarray
+    plain: np.ndarray
     area: np.ndarray
     unlit: np.ndarray
+    patch: np.ndarray
+    noise: float
 
-    def error(self, exitance: np.ndarray) -> dict[str, float]:
-        """Relative RMS error of exitance (n, 3) by part, without the unlit one where it is small."""
+    def error(self, found: Solved) -> dict[str, float]:
+        """Relative RMS error of an exitance by part, without the unlit one where it is small.
+
+        Means over patches are held against transport; what varies within them, before any sweep, against SP3, of which
+        nothing is sampled.
+        """
+        relief = found.plain - self.plain
+        difference = self._mean(found.exitance - self.exitance) + relief - self._mean(relief)
         weights = surface_errors.weights_of(self.area, self.unlit)
-        return {part: relative_rms(weight, exitance - self.exitance, self.exitance) for part, weight in weights.items()}
+        return {part: relative_rms(weight, difference, self.exitance) for part, weight in weights.items()}
+
+    def _mean(self, values: np.ndarray) -> np.ndarray:
+        sums = np.stack([np.bincount(self.patch, self.area * column) for column in values.T], axis=1)
+        return (sums / np.bincount(self.patch, self.area)[:, None])[self.patch]
 
 
 class Reference:
     """A whole mesh's own chain of levels, its finest `cuts` times cut in eight, as the truth on displayed triangles.
 
     path: a file that was baked from the whole mesh, so that its triangles are the displayed ones; folder: of this mesh
-    alone, for the file that is cut, which is taken if it is there.
+    alone, for the file that is cut, which is taken if it is there; rays: per face, that find what faces see of each
+    other, 0 for none.
     """
 
-    def __init__(self, path: Path, cuts: int, folder: Path, device: str = "") -> None:
+    def __init__(self, path: Path, cuts: int, folder: Path, device: str = "", rays: int = 0) -> None:
         core = load_core()
         graph = core.load(path)
         corners = np.asarray(graph.display["vertices"], np.float64)[np.asarray(graph.display["triangles"])]
         cut = folder / f"cut-{cuts}.qgraph" if cuts else path
         if not cut.exists():
-            finer_levels.refined(path, cuts, cut)
+            finer_levels.refined(path, cuts, cut, rays)
         self._engine: Engine = core.Engine(cut, device=device)
         finest = self._engine.graph.levels[0]
         self.surface_vertices = finest.surface_vertex_count
+        self._patch = patches_of(_surface_of(corners))
         self._pieces = _pieces(finest, corners, cuts)
 
-    def truth(self, material: str, lights: Sequence[str]) -> DisplayedTruth:
-        """Solve SP3, which is the nearer one to transport."""
+    def truth(self, material: str, lights: Sequence[str], noise: float) -> DisplayedTruth:
+        """Solve SP3 and correct it by sweeps of one seed after the other, until no more than `noise` is left."""
         self._engine.set_material(material)
         self._engine.set_lights(list(lights))
-        self._engine.solve(model="sp3", tolerance=TRUTH_TOLERANCE, inter_reflection=False)
+        options: dict[str, Any] = {"model": "sp3", "tolerance": TRUTH_TOLERANCE}
+        self._engine.solve(**options)
         field = self._engine.surface_field()
         pieces = np.asarray(field["area"], np.float64)[self._pieces]
         area = pieces.sum(axis=1)
-        exitance, q = (self._mean(pieces / area[:, None], field[name]) for name in ("exitance", "q"))
-        return DisplayedTruth(exitance, area, surface_errors.unlit_part(area, q))
+        share = pieces / area[:, None]
+        plain, q = (self._mean(share, field[name]) for name in ("exitance", "q"))
+        unlit = surface_errors.unlit_part(area, q)
+        total, left, seed = np.zeros_like(plain), np.inf, 0
+        while seed < _MOST_SEEDS and not left <= noise:
+            report = self._engine.solve(correction=True, sweeps=_TRUTH_SWEEPS, sweep_seed=seed, **options)
+            total += self._mean(share, self._engine.surface_field()["exitance"])
+            seed += 1
+            of_one = report["correction"]["sweeps"][-1]["noise"]
+            left = max(of_one[part] for part in surface_errors.weights_of(area, unlit)) / np.sqrt(seed)
+        patch = np.unique(2 * self._patch + unlit, return_inverse=True)[1]
+        return DisplayedTruth(total / seed, plain, area, unlit, patch, float(left))
 
     def _mean(self, share: np.ndarray, values: np.ndarray) -> np.ndarray:
         return np.einsum("ij,ijc->ic", share, np.asarray(values, np.float64)[self._pieces])
+
+
+def _surface_of(corners: np.ndarray) -> Surface:
+    """Triangles that have nothing in common, of corners (n, 3, 3)."""
+    return Surface(corners.reshape(-1, 3), np.arange(corners.size // 3).reshape(-1, 3))
 
 
 def _pieces(level: Any, corners: np.ndarray, cuts: int) -> np.ndarray:

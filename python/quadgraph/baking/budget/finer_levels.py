@@ -15,10 +15,11 @@ from quadgraph.tets import graph, ordering, refine
 _ACCURACY = 1e-8  # of the least squares; fields are in single precision
 
 
-def refined(path: Path, count: int, output: Path) -> Path:
+def refined(path: Path, count: int, output: Path, rays: int = 0) -> Path:
     """Write the levels of a .qgraph below `count` levels more, each the finest so far with every tet cut in eight.
 
-    The body's shape stays as it is. Nodes are where a mesh has them that has not been relaxed.
+    The body's shape stays as it is. Nodes are where a mesh has them that has not been relaxed. rays: per face, that
+    find what faces see of each other, 0 for none.
     """
     sections = qgraph_file.read(path).sections
     graphs, level = [], 0
@@ -28,7 +29,7 @@ def refined(path: Path, count: int, output: Path) -> Path:
         level += 1
     for _ in range(count):
         graphs.insert(0, ordering.in_blocks(refine.refined(graphs[0])))
-    return graph_file.write(output, graphs)
+    return graph_file.write(output, graphs, rays)
 
 
 def at_corners(faces: np.ndarray, values: np.ndarray) -> np.ndarray:

@@ -1,8 +1,9 @@
 """A bake for an error: the fewest vertices, cycles and unknowns that keep it, found by measuring.
 
-The whole mesh's own chain of levels is baked, and its finest level cut in eight: the truth, solved with SP3. Levels of
-the chain, and then surfaces of sizes between them, are solved with every model and number of cycles and held against it
-on the displayed triangles, which counts relief that a simplified surface lacks as well as the error of the elements.
+The whole mesh's own chain of levels is baked, and its finest level cut in eight: the truth, solved with SP3 and
+corrected by sweeps of the transport equation. Levels of the chain, and then surfaces of sizes between them, are solved
+with every model and number of cycles, where that does not do with sweeps, and held against it on the displayed
+triangles, which counts relief that a simplified surface lacks as well as the error of the elements and of the model.
 The error falls with the number of vertices, smoothly enough that three surfaces of chosen sizes are enough. What would
 be cheaper and is so near to the error that this truth leaves it in doubt is held against a finer one.
 """
@@ -23,8 +24,10 @@ from quadgraph.baking import pipeline
 from quadgraph.baking.budget.displayed import DisplayedFile, DisplayedTruth, Reference
 from quadgraph.baking.budget.trials import (
     MODELS,
+    SWEEPS,
     BudgetScene,
     Forecast,
+    Setting,
     Trial,
     assemble,
     forecast,
@@ -51,7 +54,8 @@ _SAME = 0.03  # of the number of vertices: two surfaces nearer than this are one
 _DOUBT = 1.03  # times the error: what was measured to have no more may keep it
 _DOUBTS = 3  # so many are settled, the cheapest first
 _SURE = 0.98  # core.MEASURED_SHARE by a truth that was cut twice
-_MOST_CUT_TWICE = 4000  # vertices of a mesh that is
+_MOST_CUT_TWICE = 1000  # vertices of a mesh that is
+_NOISE = 0.2  # of the error, in the truth
 DEEP = 2.0  # diffusion lengths: what lies deeper decides .1% of the whole exitance and .35% of the unlit one
 
 
@@ -64,15 +68,16 @@ class Bench:
         self.candidates: dict[tuple[int, int], list[Level]] = {}  # by vertices on the surface and number of levels
         self.trials: list[Trial] = []
         self.models: Sequence[str] = MODELS
+        self.sweeps = 0
         self._truths: dict[str, DisplayedTruth] = {}
 
-    def find_truth(self, levels: list[Level], cuts: int = 1) -> None:
-        """Find the truth of the levels of the whole mesh, refined `cuts` times."""
+    def find_truth(self, levels: list[Level], error: float, cuts: int = 1) -> None:
+        """Find what settles an error: the truth of the levels of the whole mesh, refined `cuts` times."""
         path = self._written(levels, "whole.qgraph")
-        reference = Reference(path, cuts, self._folder, self._device)
+        reference = Reference(path, cuts, self._folder, self._device, self.rays)
         self.truth_vertices = reference.surface_vertices
         for name, lights in self.scene.lights.items():
-            self._truths[name] = reference.truth(self.scene.material, lights)
+            self._truths[name] = reference.truth(self.scene.material, lights, _NOISE * error)
             if not self._truths[name].exitance.any():
                 raise InputError(f"light {', '.join(lights)}: nothing leaves the body, which has no error then")
 
@@ -80,35 +85,48 @@ class Bench:
         """Measure a candidate with all of its levels, and with as few as bring it down to a small one.
 
         Cycles that go down to a handful of vertices reduce the error of a thin body much faster; on others they do not.
+        With sweeps, which cost far more than cycles, only the former.
         """
         found = []
-        for depth in sorted({len(levels), _shallow(levels)}):
+        for depth in sorted({len(levels), len(levels) if self.sweeps else _shallow(levels)}):
             path = self._written(levels[:depth], "trial.qgraph")
             deep = depth == len(levels)
-            found += measure(path, self.scene, self._truths, self.truth_vertices, self._device, self.models, deep)
+            how = (self.truth_vertices, self._device, self.models, deep, self.sweeps)
+            found += measure(path, self.scene, self._truths, *how)
             self.candidates[found[-1].surface_vertices, depth] = levels[:depth]
         self.trials += found
         return found
 
-    def judge(self, path: Path, model: str, cycles: int, deep: bool = False) -> Trial:
+    def judge(self, path: Path, setting: Setting, deep: bool = False) -> Trial:
         """Measure one setting on a file."""
         subject = DisplayedFile(path, self.scene.material, self._device)
-        assemble(subject, self.scene, model)
+        assemble(subject, self.scene, setting.model)
         known = known_share(subject, self.truth_vertices)
-        return trial(subject, self.scene, self._truths, known, model, cycles, deep)
+        return trial(subject, self.scene, self._truths, known, setting, deep)
 
     def settle(self, doubtful: Sequence[Trial], error: float, finer: Bench) -> None:
         """Measure trials again, by the truth of another bench, until one keeps the error."""
         for old in doubtful:
             path = self._written(self.candidates[old.surface_vertices, old.levels], "trial.qgraph")
-            new = replace(finer.judge(path, old.model, old.cycles, old.deep), share=_SURE)
+            setting = Setting(old.model, old.cycles, old.sweeps)
+            new = replace(finer.judge(path, setting, old.deep), share=_SURE)
             self.trials[self.trials.index(old)] = new
             if new.keeps(error):
                 return
 
+    @property
+    def rays(self) -> int:
+        """Per face, that find what faces see of each other."""
+        return self._options.visibility_rays
+
+    @property
+    def truth_noise(self) -> float:
+        """Of the truth under the light where it is largest."""
+        return max(truth.noise for truth in self._truths.values())
+
     def _written(self, levels: list[Level], name: str) -> Path:
         report = BakeReport(str(self._folder / name))
-        pipeline.write(self._whole, levels, replace(self._options, visibility_rays=0), report)
+        pipeline.write(self._whole, levels, self._options, report)
         return Path(report.output)
 
     def narrow(self, error: float) -> None:
@@ -144,10 +162,10 @@ def bake_for(
 ) -> BakeReport:
     """Bake `mesh` into `output` with no more than `error` needs, and report; `report.budget` tells what was measured.
 
-    error: relative RMS of the exitance against the whole mesh cut finer, the larger of the whole and the unlit surface,
-    above 0 and below 1; material, lights: as the engine reads them, without lights some usual ones. Where no setting
-    keeps the error the whole mesh is baked, and `report.budget["reached"]` is false. Raises InputError as
-    quadgraph.baking.pipeline.bake does, and where `options` say what the error is to choose.
+    error: relative RMS of the exitance against transport in the whole mesh cut finer, the larger of the whole and the
+    unlit surface, above 0 and below 1; material, lights: as the engine reads them, without lights some usual ones.
+    Where no setting keeps the error the whole mesh is baked, and `report.budget["reached"]` is false. Raises
+    InputError as quadgraph.baking.pipeline.bake does, and where `options` say what the error is to choose.
     """
     tell = progress or (lambda text: None)
     pipeline.check_options(output, options)
@@ -201,8 +219,11 @@ def _planned(
     levels = _levels(whole, replace(options, levels=depth_of(count)), report)
     tell(f"error: solving the whole mesh, {count:,} vertices")
     with report.timed("error"):
-        bench.find_truth(levels)
-        measure_chain(bench, levels, AIM * error, tell)
+        bench.find_truth(levels, error)
+        for bench.sweeps in SWEEPS:
+            measure_chain(bench, levels, AIM * error, tell)
+            if bench.best(AIM * error):
+                break
         bench.narrow(AIM * error)
     predicted = _refine(bench, whole, options, error, report, tell)
     _descend(bench, whole, options, error, report, tell)
@@ -210,7 +231,7 @@ def _planned(
         tell(f"error: {len(doubtful)} cheaper settings are in doubt, the truth is made finer")
         with report.timed("error"):
             finer = Bench(whole, options, scene, folder, device)
-            finer.find_truth(levels, 2)
+            finer.find_truth(levels, error, 2)
             bench.settle(doubtful, error, finer)
     chosen = bench.kept(error) or min(bench.trials, key=lambda t: (-t.surface_vertices, t.error))
     budget = _record(bench, chosen, predicted, len(prepared.surface.vertices), count, error)
@@ -323,12 +344,15 @@ def _record(
         "lights_given": bench.scene.given,
         "model": chosen.model,
         "cycles": chosen.cycles,
+        "sweeps": chosen.sweeps,
+        "inter_reflection": bench.rays > 0,
         "cost_bytes": chosen.cost,
         "surface_vertices": chosen.surface_vertices,
         "levels": [level.graph.surface_vertex_count for level in levels],
         "mesh_vertices": vertices,
         "judged_vertices": judged,
         "truth_vertices": bench.truth_vertices,
+        "truth_noise": bench.truth_noise,
         "predicted_vertices": None if predicted is None else predicted.surface_vertices,
         "diffusion_error": min(t.error for t in diffusion if t.surface_vertices == finest),
         "deep_share": _deep_share(levels[0], bench.scene.material),

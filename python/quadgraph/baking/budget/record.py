@@ -19,14 +19,17 @@ def sentences(budget: dict[str, Any], file: str) -> list[str]:
 
     budget: as quadgraph.baking.budget.plan writes it. Raises FormatError.
     """
+    if "inter_reflection" not in budget:
+        return ["error: measured against SP3 alone, by an earlier version: bake again"]
     try:
         return [
             _verdict(budget),
             _surface(budget),
             _model(budget),
             _cycles(budget),
+            _sweeps(budget),
             _interior(budget),
-            "not in this error: of the model against transport, of inter-reflection (docs/accuracy.md)",
+            _truth(budget),
         ]
     except _BROKEN as error:
         raise _no_record(file, error) from error
@@ -64,7 +67,7 @@ def _surface(budget: dict[str, Any]) -> str:
     if budget["judged_vertices"] < budget["mesh_vertices"]:
         text += f", of which {budget['judged_vertices']:,} stood for it: finer relief was not judged"
     finer = [t for t in budget["trials"] if t["surface_vertices"] > budget["surface_vertices"]]
-    same = [t for t in finer if t["model"] == budget["model"]]
+    same = [t for t in finer if _alike(t, budget)]
     if same:
         best = min(same, key=worst)
         text += (
@@ -78,7 +81,7 @@ def _model(budget: dict[str, Any]) -> str:
     diffusion = percent(budget["diffusion_error"])
     if budget["model"] == "sp3":
         return f"model: sp3; diffusion is {diffusion} off on the finest surface tried"
-    rows = [t for t in budget["trials"] if t["model"] == "sp3" and worst(t) <= budget["error"]]
+    rows = [t for t in budget["trials"] if _alike(t, budget | {"model": "sp3"}) and worst(t) <= budget["error"]]
     text = f"model: diffusion instead of sp3, {diffusion} off on the finest surface tried"
     if rows:
         dearer = min(t["cost"] for t in rows) / budget["cost_bytes"]
@@ -88,16 +91,27 @@ def _model(budget: dict[str, Any]) -> str:
 
 def _cycles(budget: dict[str, Any]) -> str:
     text = f"cycles: {budget['cycles']} on {len(budget['levels'])} levels of {_listed(budget['levels'])} vertices"
-    more = [
-        t
-        for t in budget["trials"]
-        if _of_file(t, budget) and t["model"] == budget["model"] and t["cycles"] > budget["cycles"]
-    ]
+    more = [t for t in budget["trials"] if _of_file(t, budget) and _alike(t, budget) and t["cycles"] > budget["cycles"]]
     if more:
         best = min(more, key=worst)
         dearer = best["cost"] / budget["cost_bytes"]
         text += f"; {best['cycles']} would leave {percent(worst(best))} for {dearer:.1f} times the work"
     return text
+
+
+def _sweeps(budget: dict[str, Any]) -> str:
+    least = min((worst(t) for t in budget["trials"] if t["sweeps"] == 0), default=0)
+    if budget["sweeps"]:
+        return f"sweeps: {budget['sweeps']} of the transport equation; without any the least error was {percent(least)}"
+    return "sweeps: none of the transport equation are needed"
+
+
+def _truth(budget: dict[str, Any]) -> str:
+    light = "light that meets the body again" if budget["inter_reflection"] else "nothing that enters again"
+    return (
+        f"measured against transport on {budget['truth_vertices']:,} vertices with {light}, "
+        f"known to {percent(budget['truth_noise'])} (docs/accuracy.md)"
+    )
 
 
 def _listed(counts: list[int]) -> str:
@@ -112,6 +126,11 @@ def _interior(budget: dict[str, Any]) -> str:
         f"interior: {percent(share)} of the vertices are deeper than two diffusion lengths and would hardly be missed; "
         "they stay, for a hollow shell is not baked"
     )
+
+
+def _alike(trial: dict[str, Any], budget: dict[str, Any]) -> bool:
+    """Whether it is of the model and the sweeps that were chosen."""
+    return (trial["model"], trial["sweeps"]) == (budget["model"], budget["sweeps"])
 
 
 def _of_file(trial: dict[str, Any], budget: dict[str, Any]) -> bool:

@@ -14,6 +14,8 @@ from quadgraph.baking.budget.displayed import DisplayedFile, DisplayedTruth
 
 MODELS = ("diffusion", "sp3")
 CYCLES = (1, 2, 3, 4, 6)  # on the finest level
+CORRECTED_CYCLES = (3,)  # the same, before sweeps, which cost far more and mend most of what is left
+SWEEPS = (0, 1, 2)  # of the transport equation
 STEPS = (8, 16, 32, 64, 128, 256)  # of conjugate gradients, where there is no coarser level
 _GAIN = 0.97  # of an error: more cycles than those that leave more of it are not tried
 _LOWEST_ORDER, _HIGHEST_ORDER = 0.25, 1.0  # of the error in the number of vertices, where it is not between two trials
@@ -29,11 +31,20 @@ class BudgetScene:
 
 
 @dataclass(frozen=True)
+class Setting:
+    """What a solve of any file is asked: a model, cycles on the finest level, and sweeps, 0 for no correction."""
+
+    model: str
+    cycles: int
+    sweeps: int
+
+
+@dataclass(frozen=True)
 class Trial:
     """One setting on one file. errors: relative RMS by light and part; cost: bytes read and written a frame, mean.
 
-    levels: of the file; deep: whether they go down as far as they can; share: of an error that these may have and
-    count as keeping it, for the truth that they were measured by has an error, too.
+    sweeps: of the transport equation; levels: of the file; deep: whether they go down as far as they can; share: of an
+    error that these may have and count as keeping it, for the truth that they were measured by has an error, too.
     """
 
     surface_vertices: int
@@ -41,6 +52,7 @@ class Trial:
     deep: bool
     model: str
     cycles: int
+    sweeps: int
     cost: float
     errors: dict[str, dict[str, float]]
     share: float = field(default_factory=lambda: core.MEASURED_SHARE)
@@ -55,9 +67,9 @@ class Trial:
         return self.error <= self.share * error
 
     @property
-    def setting(self) -> tuple[bool, str, int]:
+    def setting(self) -> tuple[bool, str, int, int]:
         """What is the same on another file."""
-        return self.deep, self.model, self.cycles
+        return self.deep, self.model, self.cycles, self.sweeps
 
     def as_dict(self) -> dict[str, Any]:
         """Ready for JSON."""
@@ -72,6 +84,7 @@ def measure(
     device: str,
     models: Iterable[str] = MODELS,
     deep: bool = False,
+    sweeps: int = 0,
 ) -> list[Trial]:
     """Every setting on one file, until more cycles bring nothing.
 
@@ -83,12 +96,19 @@ def measure(
     for model in models:
         least = np.inf
         assemble(subject, scene, model)
-        for cycles in CYCLES if subject.levels > 1 else STEPS:
-            trials.append(trial(subject, scene, truths, known, model, cycles, deep))
+        for cycles in _cycles(subject.levels, sweeps):
+            setting = Setting(model, cycles, sweeps)
+            trials.append(trial(subject, scene, truths, known, setting, deep))
             if trials[-1].error > _GAIN * least:
                 break
             least = trials[-1].error
     return trials
+
+
+def _cycles(levels: int, sweeps: int) -> tuple[int, ...]:
+    if levels == 1:
+        return STEPS
+    return CORRECTED_CYCLES if sweeps else CYCLES
 
 
 def assemble(subject: DisplayedFile, scene: BudgetScene, model: str) -> None:
@@ -110,17 +130,25 @@ def trial(
     scene: BudgetScene,
     truths: Mapping[str, DisplayedTruth],
     known: float,
-    model: str,
-    cycles: int,
+    setting: Setting,
     deep: bool = False,
 ) -> Trial:
     """One setting on one file; known: of `known_share`."""
     errors, costs = {}, []
     for name, lights in scene.lights.items():
-        solved = subject.solve(lights, model=model, cycles=cycles)
-        errors[name] = {part: error / known for part, error in truths[name].error(solved.exitance).items()}
+        solved = subject.solve(lights, setting.sweeps, model=setting.model, cycles=setting.cycles)
+        errors[name] = {part: error / known for part, error in truths[name].error(solved).items()}
         costs.append(solved.cost)
-    return Trial(subject.surface_vertices, subject.levels, deep, model, cycles, float(np.mean(costs)), errors)
+    return Trial(
+        surface_vertices=subject.surface_vertices,
+        levels=subject.levels,
+        deep=deep,
+        model=setting.model,
+        cycles=setting.cycles,
+        sweeps=setting.sweeps,
+        cost=float(np.mean(costs)),
+        errors=errors,
+    )
 
 
 @dataclass(frozen=True)
@@ -130,6 +158,7 @@ class Forecast:
     deep: bool
     model: str
     cycles: int
+    sweeps: int
     surface_vertices: float
     cost: float
 

@@ -17,7 +17,7 @@ from quadgraph.baking import pipeline
 from quadgraph.baking.budget import plan
 from quadgraph.baking.budget.displayed import DisplayedFile as File
 from quadgraph.baking.budget.plan import Bench
-from quadgraph.baking.budget.trials import BudgetScene, Trial, forecast
+from quadgraph.baking.budget.trials import BudgetScene, Setting, Trial, forecast
 from quadgraph.baking.budget.usual_lights import lights
 from quadgraph.baking.pipeline import BakeOptions, BakeReport, Level, Prepared
 from quadgraph.mesh import lod, mesh_io, repair
@@ -117,15 +117,17 @@ def original(subject: ChainSubject, meshes: Path, folder: Path) -> Path:
 
 def judge(mesh: Path, height: float, case: BudgetCase, folder: Path, device: str) -> dict[str, Any]:
     """Bake for the case's error, hold the file against a truth of its own, and search for cheaper settings."""
-    options = BakeOptions(height_mm=height, visibility_rays=0)
+    options = BakeOptions(height_mm=height)
     output = folder / "chosen.qgraph"
     prepared = pipeline.prepare(mesh, options, BakeReport(""), lambda text: None)
     around = lights(case.light, prepared.surface.vertices)
     found = plan.bake_for(mesh, output, options, case.error, case.material, around, device)
     budget = found.budget
     assert budget is not None, "a bake for an error tells what it measured"
-    search = Search(prepared, options, BudgetScene(case.material, {"given": around}, True), folder, device)
-    chosen = search.bench.judge(output, budget["model"], budget["cycles"])
+    scene = BudgetScene(case.material, {"given": around}, True)
+    search = Search(prepared, options, scene, case.error, folder, device)
+    search.bench.sweeps = budget["sweeps"]
+    chosen = search.bench.judge(output, Setting(budget["model"], budget["cycles"], budget["sweeps"]))
     cheapest = search.cheapest(case.error, chosen)
     return asdict(case) | {
         "vertices": len(prepared.surface.vertices),
@@ -148,13 +150,15 @@ def _facts(trial: Trial) -> dict[str, Any]:
 class Search:
     """Settings and surfaces of one case, against the mesh cut once more often than the bake has it."""
 
-    def __init__(self, whole: Prepared, options: BakeOptions, scene: BudgetScene, folder: Path, device: str) -> None:
+    def __init__(
+        self, whole: Prepared, options: BakeOptions, scene: BudgetScene, error: float, folder: Path, device: str
+    ) -> None:
         self._whole, self._options = whole, options
         self._folder, self._device = folder, device
         count = len(whole.surface.vertices)
         self._chain = self._baked(levels=plan.depth_of(count))
         self.bench = Bench(whole, options, scene, folder, device)
-        self.bench.find_truth(self._chain, 2 if count <= MOST_CUT_TWICE else 1)
+        self.bench.find_truth(self._chain, error, 2 if count <= MOST_CUT_TWICE else 1)
 
     def cheapest(self, error: float, chosen: Trial) -> Trial | None:
         """The cheapest setting that keeps it: of the levels of the whole mesh's chain, of surfaces around what is to be
@@ -210,7 +214,7 @@ class Search:
         least = [np.inf, np.inf]
         for _ in range(ALTERNATIONS + 1):  # the first of each assembles
             for k, (file, trial) in enumerate(zip(files, (chosen, cheapest), strict=True)):
-                solved = file.solve(lights_given, model=trial.model, cycles=trial.cycles)
+                solved = file.solve(lights_given, trial.sweeps, model=trial.model, cycles=trial.cycles)
                 least[k] = min(least[k], solved.time_ms)
         return least[0] / least[1]
 
@@ -242,4 +246,5 @@ def tables(record: dict[str, Any]) -> list[Table]:
 
 
 def _setting(trial: dict[str, Any]) -> str:
-    return f"{trial['surface_vertices']:,}/{trial['levels']}, {trial['model']}, {trial['cycles']}"
+    found = f"{trial['surface_vertices']:,}/{trial['levels']}, {trial['model']}, {trial['cycles']}"
+    return found + (f", {trial['sweeps']} sweeps" if trial["sweeps"] else "")

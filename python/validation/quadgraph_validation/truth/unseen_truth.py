@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from quadgraph.mesh.patches import patches_of
 from quadgraph_validation.base import store
-from quadgraph_validation.bodies.patches import patches_of
 from quadgraph_validation.bodies.unseen_cases import UnseenCase
 from quadgraph_validation.truth.mesh_walk import MeshWalker, WalkBatch
 

@@ -1,4 +1,4 @@
-"""A surface in compact patches of about the same area, over which what many walks leave is a number worth comparing."""
+"""A surface in compact patches of about the same area, over which what is sampled is a number worth comparing."""
 
 from __future__ import annotations
 
