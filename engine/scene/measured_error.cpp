@@ -137,7 +137,8 @@ std::string other_than_measured(const Record& record, const SolveOptions& option
   const bool measured = options.method == Method::fem && options.source == Source::buried &&
                         options.solver == SolverKind::fmg_pcg && options.cycles == 0;
   if (!measured) return "fem with the buried source and fmg-pcg";
-  const bool usual = options.sweep_points == SolveOptions{}.sweep_points && options.sweep_seed == 0;
+  const bool usual =
+      options.sweep_points == SolveOptions{}.sweep_points && options.sweep_seed == SolveOptions{}.sweep_seed;
   return usual ? "" : "sweeps of the usual points and seed";
 }
 
@@ -158,23 +159,29 @@ const Trial* cheapest(const Record& record, const SolveOptions& options) {
   return best;
 }
 
-std::string least_error(const Record& record) {
-  const auto smaller = [](const Trial& a, const Trial& b) { return a.error < b.error; };
-  return percent_text(std::min_element(record.trials.begin(), record.trials.end(), smaller)->error);
+// What it measured instead of a setting that keeps the error.
+std::string least_error(const Record& record, const SolveOptions& options) {
+  double least = largest;
+  for (const Trial& trial : record.trials) {
+    if (may_be(trial, options)) least = std::min(least, trial.error);
+  }
+  return least < largest ? "no less than " + percent_text(least) + " on this file" : "other models or sweeps";
 }
 
-// Of a record that tells nothing of transport.
-std::string of_earlier(const SolveOptions& options) {
-  return "error " + percent_text(options.error) +
-         ": the bake, of an earlier version, measured against SP3 alone: the solve's own estimate decides; bake again";
+std::string asked(const SolveOptions& options) {
+  return "error " + percent_text(options.error) + ": ";
+}
+
+// The options as they are, for the bake measured something else.
+MeasuredOptions left(const SolveOptions& options, const std::string& measured) {
+  return {options, asked(options) + "the bake measured " + measured + ": the solve's own estimate decides"};
 }
 
 MeasuredOptions taken(const Record& record, const SolveOptions& options, const PresentScene& scene) {
-  const std::string asked = "error " + percent_text(options.error) + ": ";
-  std::string other = other_than_measured(record, options, scene);
+  const std::string other = other_than_measured(record, options, scene);
+  if (!other.empty()) return left(options, other);
   const Trial* best = cheapest(record, options);
-  if (other.empty() && best == nullptr) other = "no less than " + least_error(record) + " on this file";
-  if (!other.empty()) return {options, asked + "the bake measured " + other + ": the solve's own estimate decides"};
+  if (best == nullptr) return left(options, least_error(record, options));
   MeasuredOptions found{options, ""};
   found.options.error = 0;
   found.options.tolerance = algebraic_share * options.error;
@@ -184,7 +191,7 @@ MeasuredOptions taken(const Record& record, const SolveOptions& options, const P
   found.options.correction = best->sweeps > 0;
   const std::string lights =
       record.lights ? "in this light" : "under " + std::to_string(record.usual_lights) + " usual sets of lights";
-  found.sentence = asked + "kept, the bake measured " + percent_text(best->error) + " " + lights + " with " +
+  found.sentence = asked(options) + "kept, the bake measured " + percent_text(best->error) + " " + lights + " with " +
                    std::string(name_of(best->model)) + " and " + std::to_string(best->cycles) + " cycles";
   if (best->sweeps > 0) found.sentence += ", sweeps of the transport equation: " + std::to_string(best->sweeps);
   return found;
@@ -199,7 +206,9 @@ MeasuredOptions with_measured(const SolveOptions& options, const std::string& me
   try {
     const auto budget = JsonField(json, "").find("budget");
     if (!budget) return {options, ""};
-    if (budget->value().is_object() && !budget->find("inter_reflection")) return {options, of_earlier(options)};
+    if (budget->value().is_object() && !budget->find("inter_reflection")) {
+      return left(options, "against SP3 alone, being of an earlier version (bake again)");
+    }
     return taken(record_from(*budget), options, scene);
   } catch (const InputError& error) {
     fail_format(scene.file, "metadata", error.what());

@@ -20,8 +20,9 @@ struct MeasuredOptions {
 };
 
 // The options with those that the bake measured to keep options.error, where it measured this scene on this file: a
-// model, a number of cycles and the tolerance of bounces, and no error that is left to estimate. Else the options as
-// they are, and why. metadata: of the file, a JSON object. Throws FormatError "<scene.file>: metadata: <path>: found
+// model, numbers of cycles and of sweeps and the tolerance of bounces, and no error that is left to estimate. Else the
+// options as they are, and why. metadata: of the file, a JSON object. Throws FormatError "<scene.file>: metadata:
+// <path>: found
 // ..., allowed is ..." where an error is asked for and the record is none that a bake writes.
 MeasuredOptions with_measured(const SolveOptions& options, const std::string& metadata, const PresentScene& scene);
 

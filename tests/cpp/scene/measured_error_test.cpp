@@ -103,7 +103,10 @@ TEST_CASE("sweeps are taken where a solve may have them") {
   CHECK(one.sentence.find("1% in this light with sp3 and 2 cycles, sweeps of the transport equation: 1") !=
         std::string::npos);
   CHECK(taken({.error = 0.02, .correction = true, .sweeps = 2}).options.sweeps == 2);
-  CHECK(taken({.error = 0.02}).sentence.find("the solve's own estimate decides") != std::string::npos);
+  CHECK(taken({.error = 0.02}).sentence ==
+        "error 2%: the bake measured no less than 4% on this file: the solve's own estimate decides");
+  CHECK(taken({.error = 0.02, .correction = true, .sweeps = 3}).sentence.find("other models or sweeps") !=
+        std::string::npos);
   check_left({.error = 0.05, .correction = true, .sweep_seed = 1}, scene(), "sweeps of the usual points and seed");
 }
 
@@ -167,7 +170,7 @@ TEST_CASE("what was not measured is left to the estimate, and said to be") {
   check_left({.source = Source::diffuse, .error = 0.05}, scene(), way);
   check_left({.cycles = 4, .error = 0.05}, scene(), way);
   check_left({.error = 0.01}, scene(), "no less than 1.2% on this file");
-  check_left({.model = Model::diffusion, .error = 0.04}, scene(), "no less than 1.2% on this file");
+  check_left({.model = Model::diffusion, .error = 0.04}, scene(), "no less than 4.5% on this file");
 }
 
 TEST_CASE("without an error, a record or levels to solve on nothing is said") {

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 import quadgraph
 from baked import write_levels
@@ -17,6 +18,7 @@ from quadgraph import cli
 from quadgraph.api.deformers import Stretch
 from quadgraph.base.errors import InputError
 from quadgraph.core import load_core
+from quadgraph.mesh.patches import patches_of
 from shapes import icosphere
 
 MATERIAL, SUN = "ketchup", "directional:0,0,-1:1"
@@ -141,6 +143,21 @@ def test_a_coarser_level_that_suffices_is_corrected_and_judged_on_the_finest(tmp
         change = loose.correction.sweeps[0].change
         for part in ("whole", "unlit", "dimmest"):
             assert getattr(change, part) == pytest.approx(getattr(whole, part), rel=0.3)
+
+
+def test_seeds_differ_by_the_noise_that_is_stated(engine):
+    def solved(seed):
+        noise = engine.solve(sweeps=1, sweep_seed=seed).correction.sweeps[0].noise.whole
+        field = engine.surface()
+        patch = patches_of(body)[cKDTree(body.corners.mean(axis=1)).query(field.position)[1]]
+        sums = [np.bincount(patch, field.area * channel) for channel in field.exitance.T]
+        return noise, np.stack(sums, axis=1), field.exitance
+
+    body = icosphere(3, 10)
+    noise, sums, fields = zip(*(solved(seed) for seed in range(6)), strict=True)
+    spread = np.sqrt((np.std(sums, axis=0, ddof=1) ** 2).sum() / (np.mean(sums, axis=0) ** 2).sum())
+    assert spread == pytest.approx(noise[0], rel=0.4)
+    assert np.array_equal(solved(3)[2], fields[3])
 
 
 @pytest.fixture

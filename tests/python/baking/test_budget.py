@@ -44,9 +44,9 @@ def test_a_forecast_follows_the_order_between_and_beyond_trials():
 def test_a_forecast_takes_the_cheapest_setting_and_none_that_never_gets_there():
     known = [law(n, model, cycles, floor=floor) for n in (200, 800, 3200) for model, cycles, floor in
              (("diffusion", 1, 0.03), ("sp3", 2, 0.0), ("sp3", 3, 0.0))]  # fmt: skip
-    assert trials.forecast(known, 0.02).model == "sp3"
-    assert trials.forecast(known, 0.02).cycles == 2
-    assert trials.forecast(known, 0.06).model == "diffusion"
+    assert trials.forecast(known, 0.02).setting.model == "sp3"
+    assert trials.forecast(known, 0.02).setting.cycles == 2
+    assert trials.forecast(known, 0.06).setting.model == "diffusion"
     assert trials.forecast(known, 1e-3) is None
 
 
@@ -81,11 +81,11 @@ class Finer(Measured):
     def __init__(self, share: float) -> None:
         self.share, self.judged = share, []
 
-    def judge(self, path: int, setting: Setting, deep: bool) -> Trial:
+    def judge(self, path: int, setting: Setting) -> Trial:
         self.judged.append(path)
         found = law(path, setting.model, setting.cycles)
         errors = {"sun": {part: self.share * error for part, error in found.errors["sun"].items()}}
-        return replace(found, errors=errors, deep=deep)
+        return replace(found, errors=errors, deep=setting.deep)
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,6 +11,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from quadgraph.baking.budget import finer_levels, surface_errors
+from quadgraph.base.errors import InputError
 from quadgraph.base.relative_error import relative_rms
 from quadgraph.core import load_core
 from quadgraph.mesh.patches import patches_of
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
 TRUTH_TOLERANCE = 1e-4  # of errors of .3% and more
 _TRUTH_SWEEPS, _MOST_SEEDS = 3, 8
+_MOST_SWEPT = 16000  # vertices on a surface that is cut for sweeps
 # The four triangles that one is cut into: their corners (4, 3) in its barycentric coordinates (3,).
 _QUARTERS = 0.5 * np.array(
     [
@@ -117,51 +119,86 @@ class DisplayedTruth:
         return (sums / np.bincount(self.patch, self.area)[:, None])[self.patch]
 
 
-class Reference:
-    """A whole mesh's own chain of levels, its finest `cuts` times cut in eight, as the truth on displayed triangles.
+class _CutMesh:
+    """A whole mesh's own chain of levels, its finest `cuts` times cut in eight, seen as the displayed triangles."""
 
-    path: a file that was baked from the whole mesh, so that its triangles are the displayed ones; folder: of this mesh
-    alone, for the file that is cut, which is taken if it is there; rays: per face, that find what faces see of each
-    other, 0 for none.
-    """
-
-    def __init__(self, path: Path, cuts: int, folder: Path, device: str = "", rays: int = 0) -> None:
+    def __init__(self, path: Path, cuts: int, folder: Path, device: str, rays: int) -> None:
         core = load_core()
-        graph = core.load(path)
-        corners = np.asarray(graph.display["vertices"], np.float64)[np.asarray(graph.display["triangles"])]
+        display = core.load(path).display
+        self.corners = np.asarray(display["vertices"], np.float64)[np.asarray(display["triangles"])]
         cut = folder / f"cut-{cuts}.qgraph" if cuts else path
         if not cut.exists():
             finer_levels.refined(path, cuts, cut, rays)
         self._engine: Engine = core.Engine(cut, device=device)
         finest = self._engine.graph.levels[0]
         self.surface_vertices = finest.surface_vertex_count
-        self._patch = patches_of(_surface_of(corners))
-        self._pieces = _pieces(finest, corners, cuts)
+        self._pieces = _pieces(finest, self.corners, cuts)
 
-    def truth(self, material: str, lights: Sequence[str], noise: float) -> DisplayedTruth:
-        """Solve SP3 and correct it by sweeps of one seed after the other, until no more than `noise` is left."""
+    def light(self, material: str, lights: Sequence[str]) -> None:
         self._engine.set_material(material)
         self._engine.set_lights(list(lights))
-        options: dict[str, Any] = {"model": "sp3", "tolerance": TRUTH_TOLERANCE}
-        self._engine.solve(**options)
-        field = self._engine.surface_field()
-        pieces = np.asarray(field["area"], np.float64)[self._pieces]
-        area = pieces.sum(axis=1)
-        share = pieces / area[:, None]
-        plain, q = (self._mean(share, field[name]) for name in ("exitance", "q"))
-        unlit = surface_errors.unlit_part(area, q)
-        total, left, seed = np.zeros_like(plain), np.inf, 0
-        while seed < _MOST_SEEDS and not left <= noise:
-            report = self._engine.solve(correction=True, sweeps=_TRUTH_SWEEPS, sweep_seed=seed, **options)
-            total += self._mean(share, self._engine.surface_field()["exitance"])
-            seed += 1
-            of_one = report["correction"]["sweeps"][-1]["noise"]
-            left = max(of_one[part] for part in surface_errors.weights_of(area, unlit)) / np.sqrt(seed)
-        patch = np.unique(2 * self._patch + unlit, return_inverse=True)[1]
-        return DisplayedTruth(total / seed, plain, area, unlit, patch, float(left))
 
-    def _mean(self, share: np.ndarray, values: np.ndarray) -> np.ndarray:
-        return np.einsum("ij,ijc->ic", share, np.asarray(values, np.float64)[self._pieces])
+    def solve(self, **options: Any) -> dict[str, Any]:
+        """Solve SP3, on the finest level; the report of Engine.solve."""
+        return self._engine.solve(model="sp3", tolerance=TRUTH_TOLERANCE, **options)
+
+    @property
+    def area(self) -> np.ndarray:
+        """(n,) mm^2 of the triangles."""
+        return self._of_pieces("area").sum(axis=1)
+
+    def shown(self, field: str) -> np.ndarray:
+        """(n, 3) means of a surface field of the last solve over the triangles."""
+        area = self._of_pieces("area")
+        return np.einsum("ij,ijc->ic", area / area.sum(axis=1)[:, None], self._of_pieces(field))
+
+    def _of_pieces(self, field: str) -> np.ndarray:
+        return np.asarray(self._engine.surface_field()[field], np.float64)[self._pieces]
+
+
+class Reference:
+    """The whole mesh cut finer, as the truth on the displayed triangles.
+
+    path: a file that was baked from the whole mesh, so that its triangles are the displayed ones; cuts: how often its
+    tets are cut in eight for SP3, and for the sweeps, which mend most of what a mesh leaves, where that has no more
+    than some vertices; folder: of this mesh alone, for files that are cut, which are taken if they are there; rays: per
+    face, that find what faces see of each other, 0 for none.
+    """
+
+    def __init__(self, path: Path, cuts: int, folder: Path, device: str = "", rays: int = 0) -> None:
+        self._fine = _CutMesh(path, cuts, folder, device, rays)
+        self.surface_vertices = self._fine.surface_vertices
+        small = self.surface_vertices <= _MOST_SWEPT
+        self._swept = self._fine if small else _CutMesh(path, 0, folder, device, rays)
+        self.swept_vertices = self._swept.surface_vertices
+        self._patch = patches_of(_surface_of(self._fine.corners))
+
+    def truth(self, material: str, lights: Sequence[str], noise: float) -> DisplayedTruth:
+        """Solve SP3 and correct it by sweeps of one seed after the other, until no more than `noise` is left.
+
+        Raises InputError where all is dark.
+        """
+        self._fine.light(material, lights)
+        self._fine.solve()
+        area, plain, q = self._fine.area, self._fine.shown("exitance"), self._fine.shown("q")
+        if not plain.any():
+            raise InputError(f"light {', '.join(lights)}: nothing leaves the body, which has no error then")
+        unlit = surface_errors.unlit_part(area, q)
+        self._swept.light(material, lights)
+        exitance, left = self._transport(surface_errors.weights_of(area, unlit), noise)
+        patch = np.unique(2 * self._patch + unlit, return_inverse=True)[1]
+        return DisplayedTruth(exitance, plain, area, unlit, patch, left)
+
+    def _transport(self, parts: Iterable[str], wanted: float) -> tuple[np.ndarray, float]:
+        """The mean over seeds, none of them that of the solves that are held against it, and its noise."""
+        found: list[np.ndarray] = []
+        left = np.inf
+        while len(found) < _MOST_SEEDS and left > wanted:
+            report = self._swept.solve(correction=True, sweeps=_TRUTH_SWEEPS, sweep_seed=1 + len(found))
+            found.append(self._swept.shown("exitance"))
+            noise = report["correction"]["sweeps"][-1]["noise"]
+            left = max(noise[part] for part in parts) / np.sqrt(len(found))
+        return np.mean(found, axis=0), float(left)
 
 
 def _surface_of(corners: np.ndarray) -> Surface:

@@ -75,11 +75,9 @@ class Bench:
         """Find what settles an error: the truth of the levels of the whole mesh, refined `cuts` times."""
         path = self._written(levels, "whole.qgraph")
         reference = Reference(path, cuts, self._folder, self._device, self.rays)
-        self.truth_vertices = reference.surface_vertices
+        self.truth_vertices, self.swept_vertices = reference.surface_vertices, reference.swept_vertices
         for name, lights in self.scene.lights.items():
             self._truths[name] = reference.truth(self.scene.material, lights, _NOISE * error)
-            if not self._truths[name].exitance.any():
-                raise InputError(f"light {', '.join(lights)}: nothing leaves the body, which has no error then")
 
     def add(self, levels: list[Level]) -> list[Trial]:
         """Measure a candidate with all of its levels, and with as few as bring it down to a small one.
@@ -97,19 +95,18 @@ class Bench:
         self.trials += found
         return found
 
-    def judge(self, path: Path, setting: Setting, deep: bool = False) -> Trial:
+    def judge(self, path: Path, setting: Setting) -> Trial:
         """Measure one setting on a file."""
         subject = DisplayedFile(path, self.scene.material, self._device)
         assemble(subject, self.scene, setting.model)
         known = known_share(subject, self.truth_vertices)
-        return trial(subject, self.scene, self._truths, known, setting, deep)
+        return trial(subject, self.scene, self._truths, known, setting)
 
     def settle(self, doubtful: Sequence[Trial], error: float, finer: Bench) -> None:
         """Measure trials again, by the truth of another bench, until one keeps the error."""
         for old in doubtful:
             path = self._written(self.candidates[old.surface_vertices, old.levels], "trial.qgraph")
-            setting = Setting(old.model, old.cycles, old.sweeps)
-            new = replace(finer.judge(path, setting, old.deep), share=_SURE)
+            new = replace(finer.judge(path, old.setting), share=_SURE)
             self.trials[self.trials.index(old)] = new
             if new.keeps(error):
                 return
@@ -220,7 +217,8 @@ def _planned(
     tell(f"error: solving the whole mesh, {count:,} vertices")
     with report.timed("error"):
         bench.find_truth(levels, error)
-        for bench.sweeps in SWEEPS:
+        for sweeps in SWEEPS:
+            bench.sweeps = sweeps
             measure_chain(bench, levels, AIM * error, tell)
             if bench.best(AIM * error):
                 break
@@ -332,7 +330,7 @@ def _record(
     bench: Bench, chosen: Trial, predicted: Forecast | None, vertices: int, judged: int, error: float
 ) -> dict[str, Any]:
     levels = bench.candidates[chosen.surface_vertices, chosen.levels]
-    diffusion = [t for t in bench.trials if t.model == "diffusion"]
+    diffusion = [t for t in bench.trials if (t.model, t.sweeps) == ("diffusion", chosen.sweeps)]
     finest = max(t.surface_vertices for t in diffusion)
     return {
         "error": error,
@@ -352,6 +350,7 @@ def _record(
         "mesh_vertices": vertices,
         "judged_vertices": judged,
         "truth_vertices": bench.truth_vertices,
+        "swept_vertices": bench.swept_vertices,
         "truth_noise": bench.truth_noise,
         "predicted_vertices": None if predicted is None else predicted.surface_vertices,
         "diffusion_error": min(t.error for t in diffusion if t.surface_vertices == finest),

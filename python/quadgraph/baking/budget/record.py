@@ -109,7 +109,7 @@ def _sweeps(budget: dict[str, Any]) -> str:
 def _truth(budget: dict[str, Any]) -> str:
     light = "light that meets the body again" if budget["inter_reflection"] else "nothing that enters again"
     return (
-        f"measured against transport on {budget['truth_vertices']:,} vertices with {light}, "
+        f"measured against transport on {budget['swept_vertices']:,} vertices with {light}, "
         f"known to {percent(budget['truth_noise'])} (docs/accuracy.md)"
     )
 

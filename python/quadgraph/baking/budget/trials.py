@@ -30,10 +30,15 @@ class BudgetScene:
     given: bool
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, order=True)
 class Setting:
-    """What a solve of any file is asked: a model, cycles on the finest level, and sweeps, 0 for no correction."""
+    """What may be the same on two files.
 
+    deep: whether the levels go down as far as they can; cycles: on the finest level; sweeps: of the transport equation,
+    0 for no correction.
+    """
+
+    deep: bool
     model: str
     cycles: int
     sweeps: int
@@ -43,8 +48,8 @@ class Setting:
 class Trial:
     """One setting on one file. errors: relative RMS by light and part; cost: bytes read and written a frame, mean.
 
-    sweeps: of the transport equation; levels: of the file; deep: whether they go down as far as they can; share: of an
-    error that these may have and count as keeping it, for the truth that they were measured by has an error, too.
+    levels: of the file; deep, model, cycles, sweeps: its setting; share: of an error that these may have and count as
+    keeping it, for the truth that they were measured by has an error, too.
     """
 
     surface_vertices: int
@@ -67,9 +72,9 @@ class Trial:
         return self.error <= self.share * error
 
     @property
-    def setting(self) -> tuple[bool, str, int, int]:
-        """What is the same on another file."""
-        return self.deep, self.model, self.cycles, self.sweeps
+    def setting(self) -> Setting:
+        """What may be the same on another file."""
+        return Setting(self.deep, self.model, self.cycles, self.sweeps)
 
     def as_dict(self) -> dict[str, Any]:
         """Ready for JSON."""
@@ -97,8 +102,7 @@ def measure(
         least = np.inf
         assemble(subject, scene, model)
         for cycles in _cycles(subject.levels, sweeps):
-            setting = Setting(model, cycles, sweeps)
-            trials.append(trial(subject, scene, truths, known, setting, deep))
+            trials.append(trial(subject, scene, truths, known, Setting(deep, model, cycles, sweeps)))
             if trials[-1].error > _GAIN * least:
                 break
             least = trials[-1].error
@@ -131,7 +135,6 @@ def trial(
     truths: Mapping[str, DisplayedTruth],
     known: float,
     setting: Setting,
-    deep: bool = False,
 ) -> Trial:
     """One setting on one file; known: of `known_share`."""
     errors, costs = {}, []
@@ -139,26 +142,14 @@ def trial(
         solved = subject.solve(lights, setting.sweeps, model=setting.model, cycles=setting.cycles)
         errors[name] = {part: error / known for part, error in truths[name].error(solved).items()}
         costs.append(solved.cost)
-    return Trial(
-        surface_vertices=subject.surface_vertices,
-        levels=subject.levels,
-        deep=deep,
-        model=setting.model,
-        cycles=setting.cycles,
-        sweeps=setting.sweeps,
-        cost=float(np.mean(costs)),
-        errors=errors,
-    )
+    return Trial(subject.surface_vertices, subject.levels, **asdict(setting), cost=float(np.mean(costs)), errors=errors)
 
 
 @dataclass(frozen=True)
 class Forecast:
     """A setting at the number of vertices where it is expected to meet an error, and its expected cost."""
 
-    deep: bool
-    model: str
-    cycles: int
-    sweeps: int
+    setting: Setting
     surface_vertices: float
     cost: float
 
@@ -172,7 +163,7 @@ def forecast(trials: Sequence[Trial], wanted: float) -> Forecast | None:
     for setting in sorted({trial.setting for trial in trials}):
         of = sorted((t for t in trials if t.setting == setting), key=lambda t: t.surface_vertices)
         if len(of) > 1 and (meets := _meets(of, wanted)) is not None:
-            found.append(Forecast(*setting, *meets))
+            found.append(Forecast(setting, *meets))
     return min(found, key=lambda f: f.cost, default=None)
 
 

@@ -127,7 +127,7 @@ def judge(mesh: Path, height: float, case: BudgetCase, folder: Path, device: str
     scene = BudgetScene(case.material, {"given": around}, True)
     search = Search(prepared, options, scene, case.error, folder, device)
     search.bench.sweeps = budget["sweeps"]
-    chosen = search.bench.judge(output, Setting(budget["model"], budget["cycles"], budget["sweeps"]))
+    chosen = search.bench.judge(output, Setting(False, budget["model"], budget["cycles"], budget["sweeps"]))
     cheapest = search.cheapest(case.error, chosen)
     return asdict(case) | {
         "vertices": len(prepared.surface.vertices),
