@@ -171,6 +171,10 @@ template <typename T>
 inline Vec3<T> clamp(Vec3<T> x, Vec3<T> low, Vec3<T> high) {
   return min(max(x, low), high);
 }
+inline float smoothstep(float low, float high, float x) {
+  const float t = clamp((x - low) / (high - low), 0.0f, 1.0f);
+  return t * t * (3.0f - 2.0f * t);
+}
 inline vec2 mix(vec2 a, vec2 b, float t) {
   return a * (1.0f - t) + b * t;
 }

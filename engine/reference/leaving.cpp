@@ -5,6 +5,7 @@
 #include <glm/gtx/component_wise.hpp>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "engine/optics/fresnel.h"
 #include "engine/reference/entering.h"
@@ -38,6 +39,39 @@ std::optional<Hit> first_met(const Level& level, const glm::dvec3& origin, const
   return first;
 }
 
+glm::dvec3 interpolated(const CornerNormals& normals, const glm::dvec3& barycentric) {
+  return glm::normalize(barycentric[0] * normals[0] + barycentric[1] * normals[1] + barycentric[2] * normals[2]);
+}
+
+// What of a share of at most `most` is followed through further parts of the body.
+double followed(double most) {
+  const double whole = gpu::FOLLOWED_WHOLE, none = gpu::GATHER_END,
+               t = std::clamp((most - none) / (whole - none), 0., 1.);
+  return t * t * (3 - 2 * t);
+}
+
+struct Branch {
+  glm::dvec3 share, direction;
+  Hit hit;
+};
+
+// Takes the branches that wait from the brightest on until one meets the body; of what goes past it, or is not
+// followed, the share is added to `seen`.
+std::optional<Branch> brightest_that_meets(const Level& level, std::vector<Escape>& waiting, glm::dvec3& seen) {
+  const auto dimmer = [](const Escape& a, const Escape& b) { return glm::compMax(a.share) < glm::compMax(b.share); };
+  while (!waiting.empty()) {
+    const auto most = std::max_element(waiting.begin(), waiting.end(), dimmer);
+    const Escape escape = *most;
+    if (glm::compMax(escape.share) <= double{gpu::GATHER_END}) break;
+    waiting.erase(most);
+    const auto hit = first_met(level, escape.point, escape.direction, escape.face);
+    const double share = hit && hit->outside ? followed(glm::compMax(escape.share)) : 0;
+    seen += (1 - share) * escape.share;
+    if (share > 0) return Branch{share * escape.share, escape.direction, *hit};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 LeavingLight leaving(const Level& level, const Problem& problem, const InsideLight& light,
@@ -45,8 +79,10 @@ LeavingLight leaving(const Level& level, const Problem& problem, const InsideLig
                      glm::dvec3 outside) {
   LeavingLight sum;
   glm::dvec3 share(1);
+  std::vector<Escape> waiting;
   for (std::uint32_t part = 0; part < gpu::VIEW_PARTS; ++part) {
-    const glm::dvec3 normal = frame_of(level, f).normal;
+    const glm::dvec3 normal =
+        part == 0 || light.normals.empty() ? frame_of(level, f).normal : interpolated(light.normals[f], barycentric);
     share *= fresnel_transmittance(std::clamp(glm::dot(outside, normal), 0.0, 1.0), problem.eta);
     const Gathered inside = gather(level, problem, light, f, barycentric, refract(-outside, normal, problem.eta));
     glm::dvec3 factor(0), rest(0), least(0);
@@ -57,16 +93,20 @@ LeavingLight leaving(const Level& level, const Problem& problem, const InsideLig
     }
     const glm::dvec3 radiance = factor * inside.radiance / (problem.eta * problem.eta) + rest / radiance_norm;
     sum.radiance += share * glm::max(radiance, least / radiance_norm);
-    sum.seen += share * (inside.seen - inside.escape.share);
-    share *= inside.escape.share;
-    if (glm::compMax(share) <= double{gpu::GATHER_END}) break;
-    const auto hit = first_met(level, inside.escape.point, inside.escape.direction, inside.escape.face);
-    if (!hit || !hit->outside) break;
-    f = hit->face;
-    barycentric = hit->barycentric;
-    outside = -inside.escape.direction;
+    for (Escape escape : inside.escapes) {
+      escape.share *= share;
+      waiting.push_back(escape);
+    }
+    share = glm::dvec3(0);
+    const auto next = brightest_that_meets(level, waiting, sum.seen);
+    if (!next) break;
+    share = next->share;
+    f = next->hit.face;
+    barycentric = next->hit.barycentric;
+    outside = -next->direction;
   }
   sum.seen += share;
+  for (const Escape& escape : waiting) sum.seen += escape.share;
   return sum;
 }
 

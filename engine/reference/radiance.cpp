@@ -92,21 +92,38 @@ class View {
 
   // Mirrors the ray, by the share that stays inside.
   glm::dvec3 meet_surface(std::uint32_t f, const glm::dvec3& direction) {
-    const glm::dvec3 normal = ray_.face_normal();
-    if (level_.reflecting(f)) return mirrored(direction, normal);
+    const glm::dvec3 flat = ray_.face_normal();
+    if (level_.reflecting(f)) return mirrored(direction, flat);
+    const glm::dvec3 normal = light_.normals.empty() ? flat : smooth_normal(f);
     const double cosine = std::clamp(glm::dot(direction, normal), 0.0, 1.0);
     const double kept = internal_reflectance(cosine, problem_.eta);
     const glm::dvec3 through = (1 - kept) * left_;
-    gathered_.seen += through;
-    if (glm::compMax(through) > glm::compMax(gathered_.escape.share)) {
+    if (kept < 1) {
       glm::dvec3 point(0);
       for (std::size_t k = 0; k < 4; ++k) point += ray_.corner(k).lambda * ray_.corner(k).position;
       const double outside = std::sqrt(std::max(1 - problem_.eta * problem_.eta * (1 - cosine * cosine), 0.0));
-      gathered_.escape = {through, f, point,
-                          glm::normalize(problem_.eta * (direction - cosine * normal) + outside * normal)};
+      const glm::dvec3 way = glm::normalize(problem_.eta * (direction - cosine * normal) + outside * normal);
+      gathered_.escapes.push_back({through, f, point, outward_of(flat, way)});
     }
     left_ *= kept;
-    return mirrored(direction, normal);
+    return -outward_of(flat, 2 * cosine * normal - direction);
+  }
+
+  // `way`, turned out of the face of normal `flat` if it is not.
+  static glm::dvec3 outward_of(const glm::dvec3& flat, const glm::dvec3& way) {
+    return glm::normalize(way + std::max(double{gpu::LEAST_VIEW_COSINE} - glm::dot(way, flat), 0.0) * flat);
+  }
+
+  // At the ray's point, on outside face f opposite to corner 3.
+  glm::dvec3 smooth_normal(std::uint32_t f) const {
+    glm::dvec3 sum(0);
+    for (int k = 0; k < 3; ++k) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        if (ray_.corner(c).vertex == level_.faces[f][k])
+          sum += ray_.corner(c).lambda * light_.normals[f][static_cast<std::size_t>(k)];
+      }
+    }
+    return glm::normalize(sum);
   }
 
   // Radiance at the ray's point, were all behind it as it is there; 0 in a clear region.

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/reference/operator.h"
+#include "engine/reference/smooth_normals.h"
 #include "engine/reference/uncollided.h"
 
 namespace quadgraph {
@@ -19,9 +20,11 @@ namespace quadgraph {
 struct InsideLight {
   std::span<const glm::dvec3> phi;
   const Uncollided& uncollided;
+  std::span<const CornerNormals> normals =
+      {};  // by which rays leave and are mirrored (smooth_normals); none: by the faces'
 };
 
-// Where most of a ray leaves the body, to go on outside.
+// Where a ray leaves the body, to go on outside.
 struct Escape {
   glm::dvec3 share{0};  // of the radiance behind that comes in, this face's transmittance included
   std::uint32_t face = 0;
@@ -30,8 +33,7 @@ struct Escape {
 
 struct Gathered {
   glm::dvec3 radiance{0};  // W/(mm^2 sr), inside
-  glm::dvec3 seen{0};      // share of the radiance behind the body that comes straight through, before the last face
-  Escape escape;           // by which most of that does
+  std::vector<Escape> escapes;
 };
 
 // What a ray gathers from the point `barycentric` of open face f along `direction` (unit, inward). It is mirrored at

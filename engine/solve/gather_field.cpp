@@ -1,6 +1,7 @@
 #include "engine/solve/gather_field.h"
 
 #include <cstring>
+#include <utility>
 
 #include "engine/reference/vertex_starts.h"
 #include "interface/gather/gather_exitance.comp.h"
@@ -8,6 +9,7 @@
 #include "interface/gather/gather_phi.comp.h"
 #include "interface/gather/gather_scale.comp.h"
 #include "interface/gather/gather_single.comp.h"
+#include "interface/gather/smooth_normals.comp.h"
 #include "interface/gather/uncollided.comp.h"
 
 namespace quadgraph {
@@ -22,6 +24,8 @@ constexpr std::uint64_t tet_bytes = 2 * sizeof(std::uint32_t) + vec3_bytes + siz
 // Nodes that the means of a vertex look at and take, about as many as where edges are half a mean free path long.
 constexpr std::uint64_t boxes_per_mean = 150, nodes_per_mean = 60;
 
+constexpr std::uint64_t faces_per_vertex = 6;
+constexpr std::uint64_t face_corner_bytes = sizeof(std::uint32_t) + sizeof(glm::uvec3) + 3 * vec3_bytes;
 constexpr std::uint64_t face_bytes = 2 * sizeof(std::uint32_t) + sizeof(glm::uvec3) + 7 * vec3_bytes;
 
 }  // namespace
@@ -34,6 +38,7 @@ GatherField::GatherField(device::Device& device, const Level& level, const BodyT
     return device::Buffer(device, bytes, device::Place::device, name);
   };
   solid_on_device_ = room(sizeof(gpu::SolidRef), "gather/body");
+  normals_ = room(3 * level.face_count() * vec3_bytes, "gather/smooth normals");
   points_ = room(level.vertex_count() * sizeof(gpu::GatherPoint), "gather/points");
   gathered_ = room(level.face_count() * vec3_bytes, "gather/gathered exitance");
   nodes_ = room((tree.nodes() + level.face_count()) * sizeof(gpu::GatherNode), "gather/nodes");
@@ -59,8 +64,19 @@ void GatherField::record_single(Workspace& work, const GatherInput& input) {
 }
 
 void GatherField::record_body(Workspace& work, const GatherInput& input) {
-  write_solid(work.recorder.device(), {input.body, input.tree.ref()});
+  write_solid(work.recorder.device(), {input.body, input.tree.ref(), normals_.address()});
   input.tree.record(work, input.level);
+  if (std::exchange(normals_behind_, false)) record_normals(work, input);
+}
+
+void GatherField::record_normals(Workspace& work, const GatherInput& input) {
+  const gpu::SmoothNormalsPush normals{.body = solid_on_device_.address(),
+                                       .face_offset = input.level.face_offset.address(),
+                                       .face_incidence = input.level.face_incidence.address(),
+                                       .normals = normals_.address()};
+  const std::uint64_t corners = 3ull * input.level.face_count;
+  work.recorder.dispatch(work.passes.of(shader::smooth_normals), normals, static_cast<std::uint32_t>(corners),
+                         "smooth normals", corners * (faces_per_vertex * face_corner_bytes + vec3_bytes));
 }
 
 void GatherField::write_solid(device::Device& device, const gpu::SolidRef& solid) {
@@ -100,7 +116,7 @@ void GatherField::record_uncollided(Workspace& work, const GatherInput& input) {
 void GatherField::record_scale(Workspace& work, const GatherInput& input) {
   const LevelBuffers& level = input.level;
   const gpu::GatherExitancePush exitance{
-      .body = solid_on_device_.address(), .points = points_.address(), .exitance = gathered_.address()};
+      .solid = solid_on_device_.address(), .points = points_.address(), .exitance = gathered_.address()};
   work.recorder.dispatch(work.passes.of(shader::gather_exitance), exitance, level.face_count, "gathered exitance",
                          level.face_count * (tets_per_ray * (tet_bytes + sizeof(gpu::GatherPoint)) + vec3_bytes));
   record_nodes(work, input);

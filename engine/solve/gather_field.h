@@ -30,6 +30,9 @@ class GatherField {
   // `tree`: of the level.
   GatherField(device::Device& device, const Level& level, const BodyTree& tree);
 
+  // The vertices of the level have moved.
+  void moved() { normals_behind_ = true; }
+
   // Fluence of both kinds at the vertices, exitance of what is gathered, and their scale.
   void record(Workspace& work, const GatherInput& input);
 
@@ -39,6 +42,7 @@ class GatherField {
 
   const gpu::SolidRef& solid() const { return solid_; }  // as it was last recorded
   const device::Buffer& solid_on_device() const { return solid_on_device_; }
+  const device::Buffer& normals() const { return normals_; }    // vec3, three per face: of the smooth surface
   const device::Buffer& points() const { return points_; }      // GatherPoint per vertex
   const device::Buffer& gathered() const { return gathered_; }  // vec3 per face, W/mm^2: exitance of what is gathered
   const device::Buffer& scale() const { return scale_; }        // GatherScale per surface vertex
@@ -47,14 +51,16 @@ class GatherField {
  private:
   void write_solid(device::Device& device, const gpu::SolidRef& solid);
   void record_body(Workspace& work, const GatherInput& input);
+  void record_normals(Workspace& work, const GatherInput& input);
   void record_points(Workspace& work, const GatherInput& input);
   void record_uncollided(Workspace& work, const GatherInput& input);
   void record_scale(Workspace& work, const GatherInput& input);
   void record_nodes(Workspace& work, const GatherInput& input);
 
   device::Buffer start_, nearest_;  // engine/reference/vertex_starts.h
-  device::Buffer solid_on_device_, points_, gathered_, nodes_, scale_;
+  device::Buffer solid_on_device_, normals_, points_, gathered_, nodes_, scale_;
   gpu::SolidRef solid_{};
+  bool normals_behind_ = true;
 };
 
 }  // namespace quadgraph

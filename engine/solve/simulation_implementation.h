@@ -113,6 +113,7 @@ struct Simulation::Implementation {
   // What was known of where the body is.
   void forget_place() {
     if (tree) tree->moved();
+    if (gather) gather->moved();
     solved.reset();
     unload();
   }

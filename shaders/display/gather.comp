@@ -11,6 +11,7 @@ SurfaceScene scene;
 #define BODY scene.solid.body
 #define TREE_BODY scene.solid.body
 #define TREE scene.solid.tree
+#define NORMALS scene.solid.normals
 #define POINTS scene.points
 #include "gather/leaving.glsl"
 

@@ -1,13 +1,18 @@
 // Radiance gathered along a view ray, and its scale. The shader that includes it defines
-// first BODY and POINTS (gather_fields.glsl).
+// first BODY and POINTS (gather_fields.glsl) and
+//   NORMALS  where those of the smooth surface are, e.g. those of a SolidRef
 #ifndef QUADGRAPH_GATHER_GLSL
 #define QUADGRAPH_GATHER_GLSL
+
+#ifndef NORMALS
+#error "gather.glsl: NORMALS is not defined"
+#endif
 
 #include "gather/gather_fields.glsl"
 #include "gather/gather_shared.h"
 #include "material/fresnel.glsl"
 
-// Where most of a ray leaves the body, to go on outside.
+// Where a ray leaves the body, to go on outside.
 struct Escape {
   vec3 share;      // of the light there that comes through, this surface included
   uint face;       // that it leaves by
@@ -15,26 +20,72 @@ struct Escape {
   vec3 direction;  // unit, outside
 };
 
+const Escape NO_ESCAPE = Escape(vec3(0), 0u, vec3(0), vec3(0));
+
 struct Gathered {
   vec3 radiance;  // W/(mm^2 sr)
   vec3 seen;      // share of the light behind the body that comes through, both surfaces but the first included
-  Escape escape;  // by which most of it does
+  Escape most, second;  // by which most of it does
 };
 
 float largest(vec3 v) {
   return max(v.x, max(v.y, v.z));
 }
 
-// At the ray's point, on the face opposite slot 3.
-Escape escape_here(vec3 share, uint face, vec3 direction, vec3 n, float cosine) {
+// `way`, unit, turned out of the face of unit normal `n` if it is not.
+vec3 outward_of(vec3 n, vec3 way) {
+  return normalize(way + max(LEAST_VIEW_COSINE - dot(way, n), 0.0) * n);
+}
+
+// Unit normal of the smooth surface at barycentric coordinates `l` of a face.
+vec3 smooth_normal(uint face, vec3 l) {
+  return normalize(l.x * NORMALS.at[3u * face] + l.y * NORMALS.at[3u * face + 1u] +
+                   l.z * NORMALS.at[3u * face + 2u]);
+}
+
+float coordinate_of(uint id) {
+  return id == corner_0.id ? corner_0.l : id == corner_1.id ? corner_1.l : corner_2.l;
+}
+
+// A surface that a ray meets from inside.
+struct Met {
+  vec3 normal;   // unit, of the smooth surface
+  float cosine;  // of the ray with it, at least 0
+};
+
+// At the ray's point, on outside face `face` opposite slot 3.
+Met met_from_inside(uint face, vec3 direction) {
+  uvec3 ids = BODY.faces.at[face];
+  vec3 n = smooth_normal(face, vec3(coordinate_of(ids.x), coordinate_of(ids.y), coordinate_of(ids.z)));
+  return Met(n, max(dot(direction, n), 0.0));
+}
+
+// At the ray's point, on a face of unit normal `flat_normal` opposite slot 3.
+Escape escape_here(vec3 share, uint face, vec3 direction, Met met, vec3 flat_normal) {
   vec3 point = corner_0.l * corner_0.position + corner_1.l * corner_1.position + corner_2.l * corner_2.position;
-  float cos_o = sqrt(max(1.0 - BODY.eta * BODY.eta * (1.0 - cosine * cosine), 0.0));
-  return Escape(share, face, point, normalize(BODY.eta * (direction - cosine * n) + cos_o * n));
+  float cos_o = sqrt(max(1.0 - BODY.eta * BODY.eta * (1.0 - met.cosine * met.cosine), 0.0));
+  vec3 outside = normalize(BODY.eta * (direction - met.cosine * met.normal) + cos_o * met.normal);
+  return Escape(share, face, point, outward_of(flat_normal, outside));
+}
+
+// Keeps the two of three by which most comes through; returns the share of the third.
+vec3 keep(inout Escape most, inout Escape second, Escape other) {
+  vec3 least = other.share;
+  if (largest(other.share) > largest(second.share)) {
+    least = second.share;
+    second = other;
+  }
+  if (largest(second.share) > largest(most.share)) {
+    Escape swapped = most;
+    most = second;
+    second = swapped;
+  }
+  return least;
 }
 
 // One step of transport: collided and uncollided fluence scattered into a ray that goes from its point into the body.
 Gathered gather(uint tet, vec3 direction) {
-  Gathered sum = Gathered(vec3(0), vec3(0), Escape(vec3(0), 0u, vec3(0), vec3(0)));
+  Gathered sum = Gathered(vec3(0), vec3(0), NO_ESCAPE, NO_ESCAPE);
   vec3 left = vec3(1);
   GatherPoint here = fields_here();
   for (uint step = 0u; step < GATHER_STEPS; ++step) {
@@ -55,19 +106,22 @@ Gathered gather(uint tet, vec3 direction) {
       enter(crossing);
       continue;
     }
+    uint face = crossing.x - BODY.tet_count;
     vec3 n = exit.outward / length(exit.outward);
-    float cosine = dot(direction, n);
-    if (BODY.face_kinds.at[crossing.x - BODY.tet_count] == FACE_OPEN) {
-      float reflected = internal_reflectance(cosine, BODY.eta);
+    if (BODY.face_kinds.at[face] == FACE_OPEN) {
+      Met met = met_from_inside(face, direction);
+      float reflected = internal_reflectance(met.cosine, BODY.eta);
       vec3 through = left * (1.0 - reflected);
       sum.seen += through;
-      if (largest(through) > largest(sum.escape.share)) {
-        sum.escape = escape_here(through, crossing.x - BODY.tet_count, direction, n, cosine);
+      if (largest(through) > largest(sum.second.share)) {
+        keep(sum.most, sum.second, escape_here(through, face, direction, met, n));
       }
       left *= reflected;
       if (reflected == 0.0) break;
+      direction = -outward_of(n, 2.0 * met.cosine * met.normal - direction);
+    } else {
+      direction = normalize(direction - 2.0 * dot(direction, n) * n);
     }
-    direction = normalize(direction - 2.0 * cosine * n);
   }
   sum.radiance += left * even_radiance(here);
   return sum;

@@ -9,14 +9,15 @@ layout(local_size_x = WORKGROUP_SIZE) in;
 
 // Exitance of what is gathered, per face.
 struct GatherExitancePush {
-  BodyRefs body;  // one
+  SolidRefs solid;  // one
   GatherPoints points;
   Vec3s exitance;  // W/mm^2, written
 };
 layout(push_constant, scalar) uniform Block { GatherExitancePush push; };
 
-BodyRef body;
-#define BODY body
+SolidRef solid;
+#define BODY solid.body
+#define NORMALS solid.normals
 #define POINTS push.points
 #include "gather/gather.glsl"
 
@@ -24,7 +25,7 @@ const float PI = 3.14159265;
 
 void main() {
   uint face = gl_GlobalInvocationID.x;
-  body = push.body.at[0];
+  solid = push.solid.at[0];
   if (face >= BODY.face_count) return;
   push.exitance.at[face] = vec3(0);
   if (BODY.face_kinds.at[face] != FACE_OPEN) return;

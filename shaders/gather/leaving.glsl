@@ -1,6 +1,6 @@
 // Light that leaves a body along a view ray, and what is seen through it. The shader that
-// includes it defines first POINTS (gather_fields.glsl) and BODY, TREE and TREE_BODY (face_tree.glsl), which belong
-// together.
+// includes it defines first POINTS (gather_fields.glsl), NORMALS (gather.glsl) and BODY, TREE and TREE_BODY
+// (face_tree.glsl), which belong together.
 #ifndef QUADGRAPH_LEAVING_GLSL
 #define QUADGRAPH_LEAVING_GLSL
 
@@ -14,7 +14,7 @@ vec3 view_ray(vec3 outward, vec3 n, vec3 face_normal) {
   float cos_o = clamp(dot(outward, n), 0.0, 1.0);
   float cos_i = sqrt(max(1.0 - (1.0 - cos_o * cos_o) / (BODY.eta * BODY.eta), 0.0));
   vec3 ray = normalize((cos_o / BODY.eta - cos_i) * n - outward / BODY.eta);
-  return normalize(ray - max(dot(ray, face_normal) + LEAST_VIEW_COSINE, 0.0) * face_normal);
+  return -outward_of(face_normal, -ray);
 }
 
 struct Leaving {
@@ -22,18 +22,25 @@ struct Leaving {
   vec3 seen;      // share of the light behind all parts of the body that comes through
 };
 
+// What of a share of at most `most` is followed through further parts of the body: all but little of what is much,
+// nothing of what is not, so that nothing changes at once from one view ray to the next.
+float followed(float most) {
+  return smoothstep(GATHER_END, FOLLOWED_WHOLE, most);
+}
+
 // Light that leaves face `face` at barycentric coordinates `l` along `outward`, at a surface of normal `n`. Fresnel and
-// refraction included: radiance over eta^2 is kept. Where enough of the ray comes out behind, it goes on to the next
-// part of the body, of whose surface only the face is known.
+// refraction included: radiance over eta^2 is kept. Where enough of a ray comes out behind, it goes on to the next
+// part of the body, the brightest branch first.
 Leaving leaving(uint face, vec3 l, vec3 outward, vec3 n, GatherScales scale, float radiance_norm) {
   Leaving sum = Leaving(vec3(0), vec3(0));
-  vec3 share = vec3(1);
+  vec3 share = vec3(1);  // of the light at `face`
+  Escape most = NO_ESCAPE, second = NO_ESCAPE;  // that wait to be followed
   for (uint part = 0u; part < VIEW_PARTS; ++part) {
     uvec3 ids = BODY.faces.at[face];
     mat3 corners = corners_of(ids);
     vec3 doubled = cross(corners[1] - corners[0], corners[2] - corners[0]);
     vec3 face_normal = doubled / max(length(doubled), 1e-30);
-    if (part > 0u) n = face_normal;
+    if (part > 0u) n = smooth_normal(face, l);
     share *= fresnel_transmittance(clamp(dot(outward, n), 0.0, 1.0), BODY.eta);
     uint tet = BODY.face_tets.at[face];
     start_on_face(tet, ids, corners, l);
@@ -45,17 +52,26 @@ Leaving leaving(uint face, vec3 l, vec3 outward, vec3 n, GatherScales scale, flo
     vec3 least = l.x * a.least + l.y * b.least + l.z * c.least;
     vec3 radiance = factor * inside.radiance / (BODY.eta * BODY.eta) + rest / radiance_norm;
     sum.radiance += share * max(radiance, least / radiance_norm);
-    sum.seen += share * (inside.seen - inside.escape.share);
-    share *= inside.escape.share;
-    if (largest(share) <= GATHER_END) break;
-    Hit hit = first_met(line_along(inside.escape.point, inside.escape.direction), inside.escape.face, FAR);
-    if (!hit.outside) break;
-    face = hit.face;
-    l = max(vec3(1.0 - hit.place.x - hit.place.y, hit.place), vec3(0));
-    l /= l.x + l.y + l.z;
-    outward = -inside.escape.direction;
+    sum.seen += share * (inside.seen - inside.most.share - inside.second.share);
+    inside.most.share *= share;
+    inside.second.share *= share;
+    sum.seen += keep(most, second, inside.most) + keep(most, second, inside.second);
+    share = vec3(0);
+    while (share == vec3(0) && largest(most.share) > GATHER_END) {
+      Escape way = most;
+      most = second;
+      second = NO_ESCAPE;
+      Hit hit = first_met(line_along(way.point, way.direction), way.face, FAR);
+      share = hit.outside ? followed(largest(way.share)) * way.share : vec3(0);
+      sum.seen += way.share - share;
+      face = hit.face;
+      l = max(vec3(1.0 - hit.place.x - hit.place.y, hit.place), vec3(0));
+      l /= l.x + l.y + l.z;
+      outward = -way.direction;
+    }
+    if (share == vec3(0)) break;
   }
-  sum.seen += share;
+  sum.seen += share + most.share + second.share;
   return sum;
 }
 

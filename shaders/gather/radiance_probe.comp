@@ -23,6 +23,7 @@ SolidRef solid;
 #define BODY solid.body
 #define TREE_BODY solid.body
 #define TREE solid.tree
+#define NORMALS solid.normals
 #define POINTS push.points
 #include "gather/leaving.glsl"
 

@@ -48,10 +48,11 @@ struct TreeRef {
   uint leaf_count;
 };
 
-// A body, and the tree over its faces.
+// A body, the tree over its faces, and the smooth surface that these stand for.
 struct SolidRef {
   BodyRef body;
   TreeRef tree;
+  QG_REF(Vec3s) normals;  // three per face, unit: at its corners
 };
 
 #ifndef __cplusplus

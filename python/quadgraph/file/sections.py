@@ -9,6 +9,7 @@ import numpy as np
 
 from quadgraph.file.qgraph_file import QGraphFile
 from quadgraph.mesh import display_map
+from quadgraph.mesh.creases import parted
 from quadgraph.mesh.surface import Surface
 from quadgraph.tets import transfer
 from quadgraph.tets.exchange import Seen
@@ -56,12 +57,13 @@ def display(surface: Surface, finest: Graph) -> dict[str, np.ndarray]:
     """Sections of the display mesh, tied to the outside faces of the finest level."""
     rounded = surface.rounded()
     face, coordinates = display_map.nearest_faces(rounded.vertices, finest.boundary)
+    vertex, triangles, normals = parted(surface)
     return {
-        "display/vertices": _f32(rounded.vertices),
-        "display/normals": _f32(display_map.vertex_normals(surface)),
-        "display/triangles": _u32(surface.triangles),
-        "display/face": _u32(face),
-        "display/barycentric": _f32(coordinates),
+        "display/vertices": _f32(rounded.vertices[vertex]),
+        "display/normals": _f32(normals),
+        "display/triangles": _u32(triangles),
+        "display/face": _u32(face[vertex]),
+        "display/barycentric": _f32(coordinates[vertex]),
     }
 
 

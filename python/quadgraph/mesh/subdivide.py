@@ -7,14 +7,12 @@ has it (curved PN triangles, Vlachos et al. 2001), so that a ball becomes rounde
 from __future__ import annotations
 
 import numpy as np
-from scipy import sparse
-from scipy.sparse.csgraph import connected_components
 
 from quadgraph.base.errors import InputError
+from quadgraph.mesh.creases import corner_normals, creases, unit
 from quadgraph.mesh.intersections import intersecting_triangles
 from quadgraph.mesh.surface import Surface
 
-CREASE_DEGREES = 40.0  # between the normals of two triangles: more is an edge of the body, which stays sharp
 MOST_STEPS = 5
 MOST_TRIANGLES = 20_000_000
 _STRAIGHT_DEGREES = 60.0  # a crease that turns more at a vertex has a corner there
@@ -42,16 +40,6 @@ def subdivide(surface: Surface, steps: int) -> Surface:
     for _ in range(steps):
         surface, sharp = _step(surface, sharp)
     return surface
-
-
-def creases(surface: Surface) -> np.ndarray:
-    """(e,) whether each edge of the topology is one of the body, by the angle between its two triangles."""
-    edges = surface.topology
-    normal = _unit(surface.doubled_normals)
-    order = np.argsort(edges.face_edges.ravel(), kind="stable")
-    pairs = (order // 3).reshape(-1, 2)
-    cosine = np.einsum("ij,ij->i", normal[pairs[:, 0]], normal[pairs[:, 1]])
-    return cosine < np.cos(np.radians(CREASE_DEGREES))
 
 
 def _step(surface: Surface, sharp: np.ndarray) -> tuple[Surface, np.ndarray]:
@@ -88,7 +76,7 @@ def _inherited(finer: Surface, edges: np.ndarray, sharp: np.ndarray, vertices: i
 def _over_smooth(surface: Surface, sharp: np.ndarray) -> np.ndarray:
     """(e, 3) offsets of the middles of edges, mm, by the normals of the smooth surface at their ends."""
     edges, face_edges = surface.topology.edges, surface.topology.face_edges
-    normals = _corner_normals(surface, sharp)
+    normals = corner_normals(surface, sharp)
     offsets, triangles = np.zeros((len(edges), 3)), surface.triangles
     for k in range(3):
         here, there = k, (k + 1) % 3
@@ -99,29 +87,6 @@ def _over_smooth(surface: Surface, sharp: np.ndarray) -> np.ndarray:
     return offsets
 
 
-def _corner_normals(surface: Surface, sharp: np.ndarray) -> np.ndarray:
-    """(m, 3, 3) normals at the corners of triangles, from the triangles up to the next crease.
-
-    Weighted so that they are those of the ball where all vertices are on one (Max 1999).
-    """
-    edge, count = surface.topology.face_edges, surface.triangles.size
-    corner = np.arange(count).reshape(-1, 3)
-    ends = np.stack([edge, np.roll(edge, 1, axis=1)], axis=2)  # the two edges at each corner
-    vertex = np.repeat(surface.triangles[:, :, None], 2, axis=2)
-    key, owner = (ends * len(surface.vertices) + vertex).ravel(), np.repeat(corner[:, :, None], 2, axis=2).ravel()
-    order = np.argsort(key, kind="stable")
-    same = (key[order][1:] == key[order][:-1]) & ~sharp[ends.ravel()[order][1:]]
-    joined = sparse.coo_matrix(
-        (np.ones(same.sum(), bool), (owner[order][1:][same], owner[order][:-1][same])), shape=(count, count)
-    )
-    groups, label = connected_components(joined, directed=False)
-    squared = (np.roll(surface.corners, -1, axis=1) - surface.corners) ** 2
-    squared = np.maximum(squared.sum(axis=2), np.finfo(np.float32).tiny)  # of edge k, from corner k on
-    weighted = surface.doubled_normals[:, None] / (squared * np.roll(squared, 1, axis=1))[:, :, None]
-    sums = np.stack([np.bincount(label, weighted[:, :, axis].ravel(), groups) for axis in range(3)], axis=1)
-    return _unit(sums)[label].reshape(-1, 3, 3)
-
-
 def _along_creases(surface: Surface, sharp: np.ndarray) -> np.ndarray:
     """(e, 3) offsets of the middles of sharp edges, mm, along curves through them; straight to corners."""
     edges, places = surface.topology.edges, surface.vertices
@@ -130,11 +95,11 @@ def _along_creases(surface: Surface, sharp: np.ndarray) -> np.ndarray:
     used = np.bincount(edges[at].ravel(), minlength=len(places))
     order = np.argsort(edges[at].ravel(), kind="stable")
     passed = order[used[edges[at].ravel()[order]] == 2].reshape(-1, 2)  # the two crease ends at each vertex on a curve
-    along = _unit(places[edges[at][:, 1]] - places[edges[at][:, 0]])
+    along = unit(places[edges[at][:, 1]] - places[edges[at][:, 0]])
     first, second = passed.T
     out = [along[ends // 2] * np.where(ends % 2, -1, 1)[:, None] for ends in (first, second)]  # away from the vertex
     turned = np.einsum("ij,ij->i", out[0], -out[1]) > np.cos(np.radians(_STRAIGHT_DEGREES))
-    tangent = _unit(out[1] - out[0]) * turned[:, None]
+    tangent = unit(out[1] - out[0]) * turned[:, None]
     for ends, sign in ((first, -1), (second, 1)):
         tangents[ends // 2, ends % 2] = sign * tangent * np.where(ends % 2, -1, 1)[:, None]
     straight = (tangents == 0).all(axis=2)
@@ -142,8 +107,3 @@ def _along_creases(surface: Surface, sharp: np.ndarray) -> np.ndarray:
     length = np.linalg.norm(places[edges[at][:, 1]] - places[edges[at][:, 0]], axis=1)
     offsets[at] = (tangents[:, 0] - tangents[:, 1]) * length[:, None] / 8
     return offsets
-
-
-def _unit(vectors: np.ndarray) -> np.ndarray:
-    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return vectors / np.maximum(length, np.finfo(float).tiny)

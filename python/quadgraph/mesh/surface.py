@@ -123,23 +123,30 @@ class Surface:
         """Handles of a closed 2-manifold, all components together."""
         return self.components - self.euler // 2
 
-    @cached_property
-    def non_manifold_vertices(self) -> np.ndarray:
-        """Indices of vertices whose faces form more than one fan (counted through shared edges)."""
+    def fans(self, cut: np.ndarray) -> np.ndarray:
+        """(m, 3) which fan each corner of a triangle is of, from 0 on.
+
+        Two corners at one vertex are of the same where their triangles share an edge that ends there and is not `cut`,
+        (e,) by the topology.
+        """
         corner = np.arange(self.triangles.size).reshape(-1, 3)
-        # Two corners at one vertex are joined when their faces share an edge that ends there.
         edge = self.topology.face_edges
         ends = np.stack([edge, np.roll(edge, 1, axis=1)], axis=2)
         vertex = np.repeat(self.triangles[:, :, None], 2, axis=2)
         key = (ends * len(self.vertices) + vertex).ravel()
         corner_of_end = np.repeat(corner[:, :, None], 2, axis=2).ravel()
         order = np.argsort(key, kind="stable")
-        same = key[order][1:] == key[order][:-1]
+        same = (key[order][1:] == key[order][:-1]) & ~cut[ends.ravel()[order][1:]]
         a, b = corner_of_end[order][1:][same], corner_of_end[order][:-1][same]
         size = self.triangles.size
         graph = sparse.coo_matrix((np.ones(len(a), bool), (a, b)), shape=(size, size))
-        _, fan = connected_components(graph, directed=False)
-        pairs = np.unique(np.stack([self.triangles.ravel(), fan], axis=1), axis=0)
+        return connected_components(graph, directed=False)[1].reshape(-1, 3)
+
+    @cached_property
+    def non_manifold_vertices(self) -> np.ndarray:
+        """Indices of vertices whose faces form more than one fan (counted through shared edges)."""
+        fan = self.fans(np.zeros(len(self.topology.edges), bool))
+        pairs = np.unique(np.stack([self.triangles.ravel(), fan.ravel()], axis=1), axis=0)
         vertices, fans = np.unique(pairs[:, 0], return_counts=True)
         return vertices[fans > 1]
 

@@ -92,10 +92,37 @@ TEST_CASE("the exitance of what is gathered is that of the CPU at every face") {
       }
       const auto solved = gathering.scene.simulation.phi();
       CHECK(relative_difference(phi, solved) < 1e-6);
-      const auto expected = gathered_exitance(gathering.scene.graph.levels()[0], gathering.problem(), {phi, fields});
+      const auto normals = smooth_normals(gathering.scene.graph.levels()[0]);
+      const auto expected =
+          gathered_exitance(gathering.scene.graph.levels()[0], gathering.problem(), {phi, fields, normals});
       // The device ends a ray by what the last tet gave, the CPU by what is at its end.
       CHECK(relative_difference(found, expected) < 2e-4);
     }
+  }
+}
+
+TEST_CASE("normals of the smooth surface are those of the CPU, and follow the shape") {
+  Gathering gathering(homogeneous(), ways[0]);
+  device::Device& context = gathering.scene.device.context;
+  Simulation& simulation = gathering.scene.simulation;
+  const Deformer twist{.kind = DeformerKind::twist, .degrees = 50};
+  const RestBox cube{{0, 0, 0}, {10, 10, 10}};
+  std::vector<glm::dvec3> flat;
+  for (const std::vector<Deformer>& list : {std::vector<Deformer>{}, std::vector{twist}}) {
+    CAPTURE(list.size());
+    if (simulation.set_deformation(list, cube)) {
+      simulation.solve({.method = Method::fem, .model = Model::sp3, .tolerance = 1e-6});
+    }
+    const auto vertices = device::download<glm::vec3>(context, simulation.level(0).vertices);
+    Level level = gathering.scene.graph.levels()[0];
+    level.vertices = vertices;
+    std::vector<glm::dvec3> expected;
+    for (const CornerNormals& normals : smooth_normals(level))
+      expected.insert(expected.end(), normals.begin(), normals.end());
+    const auto found = device::download<glm::vec3>(context, gathering.field().normals());
+    CHECK(relative_difference(found, expected) < 1e-5);
+    if (flat.empty()) flat = expected;
+    CHECK((relative_difference(flat, expected) > 0.05) == !list.empty());
   }
 }
 

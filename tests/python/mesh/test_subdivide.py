@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from quadgraph.base.errors import InputError
+from quadgraph.mesh.creases import creases
 from quadgraph.mesh.intersections import intersecting_triangles
-from quadgraph.mesh.subdivide import creases, subdivide
+from quadgraph.mesh.subdivide import subdivide
 from quadgraph.mesh.surface import Surface
 from shapes import cube, icosphere, torus
 

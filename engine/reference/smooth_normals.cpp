@@ -1,0 +1,47 @@
+#include "engine/reference/smooth_normals.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "engine/reference/entering.h"
+#include "shaders/gather/gather_shared.h"
+
+namespace quadgraph {
+namespace {
+
+glm::dvec3 weighed_normal(const Level& level, std::uint32_t f, int corner) {
+  const auto at = [&](int k) { return glm::dvec3(level.vertices[level.faces[f][k % 3]]); };
+  const glm::dvec3 a = at(corner + 1) - at(corner), b = at(corner + 2) - at(corner);
+  return glm::cross(a, b) / (glm::dot(a, a) * glm::dot(b, b));
+}
+
+}  // namespace
+
+std::vector<CornerNormals> smooth_normals(const Level& level) {
+  struct Corner {
+    std::uint32_t face;
+    int place;
+  };
+  std::vector<std::vector<Corner>> around(level.vertices.size());
+  for (std::uint32_t f = 0; f < level.face_count(); ++f) {
+    for (int k = 0; k < 3 && !level.reflecting(f); ++k) around[level.faces[f][k]].push_back({f, k});
+  }
+  std::vector<CornerNormals> normals;
+  for (std::uint32_t f = 0; f < level.face_count(); ++f) {
+    const glm::dvec3 own = frame_of(level, f).normal;
+    normals.push_back({own, own, own});
+    for (std::size_t k = 0; k < 3 && !level.reflecting(f); ++k) {
+      glm::dvec3 sum(0);
+      for (const Corner& other : around[level.faces[f][static_cast<int>(k)]]) {
+        const glm::dvec3 normal = weighed_normal(level, other.face, other.place);
+        sum += glm::smoothstep(double{gpu::CREASE_COSINE}, double{gpu::SMOOTH_COSINE},
+                               glm::dot(own, glm::normalize(normal))) *
+               normal;
+      }
+      normals.back()[k] = glm::normalize(sum);
+    }
+  }
+  return normals;
+}
+
+}  // namespace quadgraph
