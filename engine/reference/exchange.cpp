@@ -42,7 +42,7 @@ class Bounces {
 
   // One more bounce of the light in `result`; true if it changed less than `share` of what entered, in every channel.
   bool advance(double share) {
-    std::vector<glm::dvec3> radiosity = result_.solution.exitance;
+    std::vector<glm::dvec3> radiosity = result_.solution.flux;
     for (std::size_t f = 0; f < radiosity.size(); ++f) radiosity[f] += (1.0 - entering_) * result_.irradiance[f];
     const std::vector<glm::dvec3> before = std::exchange(result_.irradiance, received_irradiance(level_, radiosity));
     glm::dvec3 brought{0}, changed{0};

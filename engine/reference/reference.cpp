@@ -8,6 +8,7 @@
 #include "engine/base/error.h"
 #include "engine/file/geometry.h"
 #include "engine/optics/depth.h"
+#include "engine/reference/even_exitance.h"
 #include "engine/reference/source_walk.h"
 #include "engine/reference/stored_entries.h"
 #include "shaders/material/material.h"
@@ -145,6 +146,16 @@ std::vector<glm::dvec3> clipped_exitance(const Level& level, Method method, std:
   return faces;
 }
 
+// Of the lights, without what enters again: W/mm^2 per outside face.
+std::vector<glm::dvec3> from_outside(std::span<const EnteringLight> lights, std::size_t face_count) {
+  std::vector<glm::dvec3> q(face_count, glm::dvec3(0));
+  for (const EnteringLight& light : lights) {
+    if (light.beam.kind == gpu::BEAM_MEAN) continue;
+    for (std::size_t f = 0; f < face_count; ++f) q[f] += glm::dvec3(light.q[f]);
+  }
+  return q;
+}
+
 void add_surface(const Level& level, const Problem& problem, std::span<const EnteringLight> lights,
                  ReferenceSolution& solution) {
   const Boundary boundary = problem.boundary();
@@ -154,15 +165,19 @@ void add_surface(const Level& level, const Problem& problem, std::span<const Ent
   }
   solution.phi_face = over_faces(level, problem.method, solution.phi);
   if (problem.source == Source::buried) {
-    solution.exitance = clipped_exitance(level, problem.method, std::move(flux), solution.clipped);
+    solution.flux = clipped_exitance(level, problem.method, std::move(flux), solution.clipped);
   } else {
-    solution.exitance = over_faces(level, problem.method, flux);
+    solution.flux = over_faces(level, problem.method, flux);
     for (std::uint32_t f = 0; f < level.face_count(); ++f) {
       if (level.reflecting(f)) continue;
-      for (const EnteringLight& light : lights) solution.exitance[f] -= boundary.reflected * glm::dvec3(light.q[f]);
+      for (const EnteringLight& light : lights) solution.flux[f] -= boundary.reflected * glm::dvec3(light.q[f]);
     }
   }
-  solution.energy.scattered_out = surface_integral(level, solution.exitance);
+  solution.energy.scattered_out = surface_integral(level, solution.flux);
+  solution.exitance = solution.flux;
+  if (problem.method == Method::fem && problem.source == Source::buried) {
+    make_even(level, problem, from_outside(lights, level.face_count()), solution.exitance);
+  }
 }
 
 void add_absorbed(const Level& level, const Problem& problem, ReferenceSolution& solution) {

@@ -16,7 +16,8 @@ struct ReferenceSolution {
   std::vector<glm::dvec3> phi;       // W/mm^2 per carrier of the method
   std::vector<glm::dvec3> phi2;      // the same; 0 with diffusion
   std::vector<glm::dvec3> phi_face;  // W/mm^2 per surface node (fem: mean of the face's vertices)
-  std::vector<glm::dvec3> exitance;  // W/mm^2 per surface node, M of operator.h; never negative with the buried source
+  std::vector<glm::dvec3> flux;      // W/mm^2 per surface node, M of operator.h; never negative with the buried source
+  std::vector<glm::dvec3> exitance;  // the same, with fem and the buried source made even (even_exitance.h)
   std::vector<glm::dvec3> unscattered;  // W/mm^2 per surface node
   Energy energy;
   glm::dvec3 clipped{0};  // as in SolveReport

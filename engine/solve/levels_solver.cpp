@@ -100,7 +100,12 @@ bool LevelsSolver::bounces_on(std::uint32_t level) const {
 
 Solved LevelsSolver::solved(std::uint32_t level) {
   const bool buried = options_.source == Source::buried;
-  return {parts_.levels[level], op(level), key_.method, boundary_, buried ? &parts_.walks[level] : nullptr};
+  return {parts_.levels[level],
+          op(level),
+          key_.method,
+          boundary_,
+          parts_.coefficients.eta(),
+          buried ? &parts_.walks[level] : nullptr};
 }
 
 WalkTask LevelsSolver::walk_task() const {

@@ -208,7 +208,7 @@ struct Simulation::Implementation {
     const Boundary boundary = boundary_with(Model::diffusion);
     prepare_correction(boundary);
     forget_other_material();
-    const Solved of_solve{levels[0], operators.at(key, 0), Method::fem, boundary_with(key.model), &walks[0]};
+    const Solved of_solve{levels[0], operators.at(key, 0), Method::fem, boundary_with(key.model), eta, &walks[0]};
     const TransportParts transport{work, levels[0], beams, walks[0], gather->nearest(), *tree, report.inter_reflection};
     const CorrectionParts parts{transport, operators, boundary, of_solve, results, check};
     report.correction = correction->run(parts, options, {Method::fem, eta, coefficients.even(), options.mean_rays});
@@ -326,7 +326,7 @@ struct Simulation::Implementation {
     }
     const Boundary boundary =
         boundary_of(solved->method, solved_source, solved->model, static_cast<double>(coefficients.eta()));
-    return exitance_of(device, work, {levels[number], op, solved->method, boundary, nullptr});
+    return exitance_of(device, work, {levels[number], op, solved->method, boundary, coefficients.eta(), nullptr});
   }
 
   glm::vec3 scale() const { return device::download<gpu::Scale>(device, work.scale)[0].scale; }

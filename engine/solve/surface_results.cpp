@@ -2,11 +2,14 @@
 
 #include <algorithm>
 
+#include "engine/optics/fresnel.h"
 #include "engine/solve/assembly.h"
 #include "interface/source/vertex_unscattered.comp.h"
 #include "interface/surface/display_scale.comp.h"
 #include "interface/surface/energy.comp.h"
 #include "interface/surface/energy_total.comp.h"
+#include "interface/surface/even_faces.comp.h"
+#include "interface/surface/even_vertices.comp.h"
 #include "interface/surface/exitance.comp.h"
 #include "interface/surface/vertex_exitance.comp.h"
 #include "interface/transport/transport_result.comp.h"
@@ -76,6 +79,7 @@ SurfaceResults::SurfaceResults(device::Device& device, const LevelBuffers& level
   exitance_ = vector(level.face_count, "results/exitance");
   vertex_exitance_ = vector(level.surface_vertex_count, "results/exitance at vertices");
   vertex_unscattered_ = vector(level.surface_vertex_count, "results/unscattered light at vertices");
+  even_ = vector(level.surface_vertex_count, "results/even exitance at vertices");
   display_factor_ = vector(1, "results/display factor");
   clip_ = device::Buffer(device, sizeof(gpu::Clip), device::Place::device, "results/clip");
   clip_on_host_ = device::Buffer(device, sizeof(gpu::Clip), device::Place::host, "results/clip, read back");
@@ -99,6 +103,32 @@ void SurfaceResults::record_vertex_exitance(Workspace& work, const LevelBuffers&
   const std::uint64_t face_bytes = sizeof(std::uint32_t) + sizeof(glm::uvec3) + 4 * vec3_bytes;
   work.recorder.dispatch(work.passes.of(shader::vertex_exitance), push, level.surface_vertex_count, "exitance",
                          3 * level.face_count * face_bytes + vec3_bytes * level.surface_vertex_count);
+}
+
+// After the factor of the clip, which record_energy applies.
+void SurfaceResults::record_even(Workspace& work, const Solved& solved) {
+  if (solved.method != Method::fem || solved.walk == nullptr) return;
+  const LevelBuffers& level = solved.level;
+  const gpu::EvenRef even{.vertices = level.vertices.address(),
+                          .faces = level.faces.address(),
+                          .face_tets = level.face_tets.address(),
+                          .optical = level.optical.address(),
+                          .q = level.q.address(),
+                          .exitance = exitance_.address(),
+                          .kept = static_cast<float>(2 * fresnel_moment(1, solved.eta)),
+                          .even = level.even ? 1u : 0u};
+  constexpr std::uint64_t face_bytes = 2 * sizeof(std::uint32_t) + sizeof(glm::uvec3) + 7 * vec3_bytes;
+  const gpu::EvenVerticesPush vertices{.even = even,
+                                       .face_offset = level.face_offset.address(),
+                                       .face_incidence = level.face_incidence.address(),
+                                       .mean = even_.address(),
+                                       .count = level.surface_vertex_count};
+  work.recorder.dispatch(work.passes.of(shader::even_vertices), vertices, level.surface_vertex_count, "exitance",
+                         3 * level.face_count * face_bytes + vec3_bytes * level.surface_vertex_count);
+  const gpu::EvenFacesPush faces{
+      .even = even, .face_kinds = level.face_kind.address(), .mean = even_.address(), .count = level.face_count};
+  work.recorder.dispatch(work.passes.of(shader::even_faces), faces, level.face_count, "exitance",
+                         level.face_count * (face_bytes + 4 * vec3_bytes));
 }
 
 void SurfaceResults::record_display_scale(Workspace& work, const LevelBuffers& level) {
@@ -179,6 +209,7 @@ void SurfaceResults::record_energy(Workspace& work, const Solved& solved, const 
 void SurfaceResults::record(Workspace& work, const Solved& solved) {
   record_exitance(work, solved, phi_, exitance_, clip_);
   record_energy(work, solved, first_moment_of(solved.op));
+  record_even(work, solved);
   record_display(work, solved);
 }
 
@@ -199,6 +230,7 @@ void SurfaceResults::record_corrected(Workspace& work, const Solved& solved, con
   work.recorder.dispatch(work.passes.of(shader::transport_result), push, level.face_count, "exitance",
                          level.face_count * (sizeof(glm::uvec3) + 9 * vec3_bytes));
   record_energy(work, solved, {.x = fluence.address()});
+  record_even(work, solved);
   record_display(work, solved);
 }
 

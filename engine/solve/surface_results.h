@@ -18,6 +18,7 @@ struct Solved {
   const OperatorBuffers& op;
   Method method;
   Boundary boundary;
+  double eta;
   const SourceWalk* walk;  // of the buried source, whose exitance is clipped; null for the diffuse one
 };
 
@@ -61,12 +62,14 @@ class SurfaceResults {
 
  private:
   void record_vertex_exitance(Workspace& work, const LevelBuffers& level, const device::Buffer& faces, bool geometric);
+  void record_even(Workspace& work, const Solved& solved);
   void record_display_scale(Workspace& work, const LevelBuffers& level);
   void record_display(Workspace& work, const Solved& solved);
   void record_vertex_unscattered(Workspace& work, const Solved& solved);
   void record_energy(Workspace& work, const Solved& solved, const FirstMoment& fluence);
 
   device::Buffer phi_, exitance_, vertex_exitance_, vertex_unscattered_;
+  device::Buffer even_;            // vec3 per surface vertex, W/mm^2
   device::Buffer display_factor_;  // vec3
   device::Buffer clip_;            // Clip
   device::Buffer clip_on_host_;    // the same, mapped

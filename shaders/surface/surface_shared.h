@@ -36,6 +36,18 @@ QG_ARRAY(SurfaceShares, SurfaceShare);
 
 #endif
 
+// The exitance of a surface that is coarse for its material, on its way to be made even.
+struct EvenRef {
+  QG_REF(Vec3s) vertices;  // mm
+  QG_REF(Uvec3s) faces;
+  QG_REF(Uints) face_tets;
+  QG_REF(Opticals) optical;  // per tet
+  QG_REF(Vec3s) q;           // W/mm^2
+  QG_REF(Vec3s) exitance;    // W/mm^2
+  float kept;                // share of diffuse light inside that the surface reflects back
+  uint even;                 // 1: optical is the same everywhere
+};
+
 const uint SURFACE_STORE = 0u;       // before = M
 const uint SURFACE_CHANGE = 1u;      // change of M since `before`, then before = M; decides whether to go on
 const uint SURFACE_DIFFERENCE = 2u;  // difference of M from `before`

@@ -200,7 +200,7 @@ TEST_CASE("the first bounce between facing plates brings what the closed form le
   const BouncedSolution bounced = solve_with_bounces(level, medium(level), eta, std::span(&light, 1), options);
   REQUIRE(bounced.bounces.size() == 1);
   const auto alone = solve_reference(level, medium(level), eta, light, options);
-  std::vector<glm::dvec3> sent = alone.exitance;
+  std::vector<glm::dvec3> sent = alone.flux;
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {
     const glm::dvec3 at = corners_of(plates(), f).centre();
     sent[f] *= faces_lower(plates(), f) ? point_to_square(at.x, at.y, 10, 4) : 0.0;

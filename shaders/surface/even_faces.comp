@@ -1,0 +1,23 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "surface/even_face.glsl"
+
+layout(local_size_x = WORKGROUP_SIZE) in;
+
+// Makes the exitance of open faces even, by the means at their vertices. What all of them lose and gain is the same.
+struct EvenFacesPush {
+  EvenRef even;
+  Uints face_kinds;
+  Vec3s mean;  // W/mm^2, at surface vertices
+  uint count;
+};
+layout(push_constant, scalar) uniform Block { EvenFacesPush push; };
+
+void main() {
+  uint f = gl_GlobalInvocationID.x;
+  if (f >= push.count || push.face_kinds.at[f] != FACE_OPEN) return;
+  uvec3 ids = push.even.faces.at[f];
+  EvenFace face = even_face(push.even, f);
+  vec3 mean = (push.mean.at[ids.x] + push.mean.at[ids.y] + push.mean.at[ids.z]) / 3.0;
+  push.even.exitance.at[f] += face.share * (mean - face.far);
+}
