@@ -10,10 +10,10 @@
 
 namespace quadgraph {
 
-// Where edges are long against the mean free path linear elements scatter by some percent from vertex to vertex, as what
-// their tets keep of a source just below the surface differs. `exitance` (W/mm^2 per outside face), less what comes out
-// near where it went in (`q`, W/mm^2 that enters each face), is replaced by the mean at the vertices of means over the
-// faces around each. The power stays.
+// Where edges are long against the mean free path linear elements scatter by some percent from vertex to vertex, as
+// what their tets keep of a source just below the surface differs. `exitance` (W/mm^2 per outside face), less what
+// comes out near where it went in (`q`, W/mm^2 that enters each face), is replaced by the mean at the vertices of means
+// over the faces around each that are lit alike: none is carried across the edge of a shadow. The power stays.
 void make_even(const Level& level, const Problem& problem, std::span<const glm::dvec3> q,
                std::vector<glm::dvec3>& exitance);
 

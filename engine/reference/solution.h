@@ -45,6 +45,8 @@ struct CorrectedSweep {
 // What the transport correction did (docs/physics.md, "Transport correction").
 struct CorrectionReport {
   std::vector<CorrectedSweep> sweeps;
+  ErrorEstimate taken{.whole = 1, .unlit = 1, .dimmest = 1};  // of what the sweeps changed the share that counts: less
+                                                              // than 1 where that is little against the noise
   double returns = 0;    // share of the scattered light that leaves which enters again, the largest of any channel
   bool goes_on = false;  // one sweep, that goes on from those of the frames before
   double segments = 0;   // tets that rays back from its points and faces crossed

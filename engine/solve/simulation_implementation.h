@@ -212,7 +212,7 @@ struct Simulation::Implementation {
     const TransportParts transport{work, levels[0], beams, walks[0], gather->nearest(), *tree, report.inter_reflection};
     const CorrectionParts parts{transport, operators, boundary, of_solve, results, check};
     report.correction = correction->run(parts, options, {Method::fem, eta, coefficients.even(), options.mean_rays});
-    results.record_corrected(work, of_solve, correction->fluence(), correction->exitance());
+    results.record_corrected(work, of_solve, correction->fluence(), correction->exitance(), report.correction->taken);
     work.recorder.submit();
     report.energy = results.energy();
     const TransportPower power = correction->power(glm::dvec3(scale()), report.energy.scattered_out);

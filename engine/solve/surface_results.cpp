@@ -79,7 +79,7 @@ SurfaceResults::SurfaceResults(device::Device& device, const LevelBuffers& level
   exitance_ = vector(level.face_count, "results/exitance");
   vertex_exitance_ = vector(level.surface_vertex_count, "results/exitance at vertices");
   vertex_unscattered_ = vector(level.surface_vertex_count, "results/unscattered light at vertices");
-  even_ = vector(level.surface_vertex_count, "results/even exitance at vertices");
+  even_ = vector(2 * level.surface_vertex_count, "results/even exitance at vertices");
   display_factor_ = vector(1, "results/display factor");
   clip_ = device::Buffer(device, sizeof(gpu::Clip), device::Place::device, "results/clip");
   clip_on_host_ = device::Buffer(device, sizeof(gpu::Clip), device::Place::host, "results/clip, read back");
@@ -124,7 +124,7 @@ void SurfaceResults::record_even(Workspace& work, const Solved& solved) {
                                        .mean = even_.address(),
                                        .count = level.surface_vertex_count};
   work.recorder.dispatch(work.passes.of(shader::even_vertices), vertices, level.surface_vertex_count, "exitance",
-                         3 * level.face_count * face_bytes + vec3_bytes * level.surface_vertex_count);
+                         3 * level.face_count * face_bytes + 2 * vec3_bytes * level.surface_vertex_count);
   const gpu::EvenFacesPush faces{
       .even = even, .face_kinds = level.face_kind.address(), .mean = even_.address(), .count = level.face_count};
   work.recorder.dispatch(work.passes.of(shader::even_faces), faces, level.face_count, "exitance",
@@ -214,7 +214,7 @@ void SurfaceResults::record(Workspace& work, const Solved& solved) {
 }
 
 void SurfaceResults::record_corrected(Workspace& work, const Solved& solved, const device::Buffer& fluence,
-                                      const device::Buffer& exitance) {
+                                      const device::Buffer& exitance, const ErrorEstimate& taken) {
   const LevelBuffers& level = solved.level;
   const gpu::TransportResultPush push{.vertices = level.vertices.address(),
                                       .faces = level.faces.address(),
@@ -223,12 +223,15 @@ void SurfaceResults::record_corrected(Workspace& work, const Solved& solved, con
                                       .scale = work.scale.address(),
                                       .corrected = exitance.address(),
                                       .phi = phi_.address(),
+                                      .q = level.q.address(),
                                       .exitance = exitance_.address(),
                                       .clip = clip_.address(),
                                       .reduction = work.reduction.address(),
-                                      .count = level.face_count};
+                                      .count = level.face_count,
+                                      .taken_lit = static_cast<float>(taken.whole),
+                                      .taken_unlit = static_cast<float>(taken.unlit)};
   work.recorder.dispatch(work.passes.of(shader::transport_result), push, level.face_count, "exitance",
-                         level.face_count * (sizeof(glm::uvec3) + 9 * vec3_bytes));
+                         level.face_count * (sizeof(glm::uvec3) + 11 * vec3_bytes));
   record_energy(work, solved, {.x = fluence.address()});
   record_even(work, solved);
   record_display(work, solved);

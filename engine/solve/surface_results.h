@@ -52,9 +52,9 @@ class SurfaceResults {
   void record(Workspace& work, const Solved& solved);
 
   // Exitance and energy of a solution that the transport correction has changed: fluence at the vertices (vec3, scaled)
-  // and exitance of the faces, W/mm^2.
+  // and exitance of the faces, W/mm^2, of whose change so much counts (CorrectionReport).
   void record_corrected(Workspace& work, const Solved& solved, const device::Buffer& fluence,
-                        const device::Buffer& exitance);
+                        const device::Buffer& exitance, const ErrorEstimate& taken);
 
   // Energy of what was recorded last and has run, without the walk's share; and what was clipped in it.
   Energy energy() const;
@@ -69,7 +69,7 @@ class SurfaceResults {
   void record_energy(Workspace& work, const Solved& solved, const FirstMoment& fluence);
 
   device::Buffer phi_, exitance_, vertex_exitance_, vertex_unscattered_;
-  device::Buffer even_;            // vec3 per surface vertex, W/mm^2
+  device::Buffer even_;            // two vec3 per surface vertex, W/mm^2
   device::Buffer display_factor_;  // vec3
   device::Buffer clip_;            // Clip
   device::Buffer clip_on_host_;    // the same, mapped

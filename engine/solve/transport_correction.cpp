@@ -82,6 +82,26 @@ double excess_of(const ErrorEstimate& noise, const ErrorEstimate& before, const 
   return std::max(excess(noise.whole, before.whole, wanted.whole), excess(noise.unlit, before.unlit, wanted.unlit));
 }
 
+// What all sweeps have changed.
+ErrorEstimate change_of_all(const CorrectionReport& done) {
+  ErrorEstimate all;
+  for (const CorrectedSweep& sweep : done.sweeps) {
+    all = by_parts([](double before, double change) { return std::hypot(before, change); }, all, sweep.change);
+  }
+  return all;
+}
+
+// The share of a change that leaves the smallest error where the change is known but for so much noise. Nothing is
+// known of where the dimmest third begins: what is unlit takes the larger share of both.
+ErrorEstimate share_taken(const CorrectionReport& done) {
+  const auto share = [](double change, double noise) {
+    return noise > 0 ? change * change / (change * change + noise * noise) : 1;
+  };
+  ErrorEstimate taken = by_parts(share, change_of_all(done), done.sweeps.back().noise);
+  taken.unlit = taken.dimmest = std::max(taken.unlit, taken.dimmest);
+  return taken;
+}
+
 // Whether another sweep would change less than is wanted, or than the noise.
 bool last_of_all(const CorrectionReport& done, const ErrorEstimate& wanted) {
   const CorrectedSweep& last = done.sweeps.back();
@@ -95,10 +115,11 @@ bool last_of_all(const CorrectionReport& done, const ErrorEstimate& wanted) {
 void state_corrected_error(SolveReport& report) {
   const CorrectedSweep& last = report.correction->sweeps.back();
   const double share = share_left_by(*report.correction);
-  const auto of_model = [&](double change, double noise) {
-    return noise_over_difference * std::hypot(share * change, noise);
+  const auto of_model = [&](double change, double noise, double all, double taken) {
+    return noise_over_difference * std::hypot(share * change, taken * noise, (1 - taken) * all);
   };
-  report.model_error = by_parts(of_model, last.change, last.noise);
+  report.model_error =
+      by_parts(of_model, last.change, last.noise, change_of_all(*report.correction), report.correction->taken);
   if (report.algebraic) {
     report.algebraic = by_parts([](double part) { return solver_left * part; }, *report.algebraic);
   }
@@ -326,6 +347,7 @@ void TransportCorrection::sweep_at_rest(const CorrectionParts& parts, const Solv
     parts.transport.work.recorder.submit();
     report.returns = samples_.returns();
   } while (report.sweeps.size() < most && (options.sweeps > 0 || !last_of_all(report, enough)));
+  if (options.sweeps == 0) report.taken = share_taken(report);
 }
 
 CorrectionReport TransportCorrection::run(const CorrectionParts& parts, const SolveOptions& options,

@@ -8,7 +8,7 @@ layout(local_size_x = WORKGROUP_SIZE) in;
 struct EvenFacesPush {
   EvenRef even;
   Uints face_kinds;
-  Vec3s mean;  // W/mm^2, at surface vertices
+  Vec3s mean;  // W/mm^2, two per surface vertex
   uint count;
 };
 layout(push_constant, scalar) uniform Block { EvenFacesPush push; };
@@ -18,6 +18,7 @@ void main() {
   if (f >= push.count || push.face_kinds.at[f] != FACE_OPEN) return;
   uvec3 ids = push.even.faces.at[f];
   EvenFace face = even_face(push.even, f);
-  vec3 mean = (push.mean.at[ids.x] + push.mean.at[ids.y] + push.mean.at[ids.z]) / 3.0;
+  vec3 mean = vec3(0);
+  for (uint k = 0u; k < 3u; ++k) mean += push.mean.at[2u * ids[k] + face.lit] / 3.0;
   push.even.exitance.at[f] += face.share * (mean - face.far);
 }

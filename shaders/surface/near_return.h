@@ -10,13 +10,13 @@ using glm::clamp;
 using glm::sqrt;
 #endif
 
-// Where edges are EVEN_LONG mean free paths or longer the exitance is made even (even_vertices.comp); nothing where they
-// are half as long.
+// Where edges are EVEN_LONG mean free paths or longer the exitance is made even (even_vertices.comp); nothing where
+// they are half as long.
 const float EVEN_LONG = 4.0f;
 // Of what a half-space returns, what counts as coming out within about such an edge.
 const float NEAR_SHARE = 0.85f;
 
-// What a half-space returns of light that has entered it: isotropic scattering (van de Hulst 1980), of which the share
+// What a half-space returns of light that has entered it: isotropic scattering (Hulst 1980), of which the share
 // `kept` is reflected back in at the surface.
 QG_INLINE vec3 half_space_return(Optical o, float kept) {
   vec3 s = sqrt(clamp(o.sigma_a / sigma_t(o), vec3(0), vec3(1)));

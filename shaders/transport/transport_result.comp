@@ -6,8 +6,8 @@
 #include "shared/reduce.glsl"
 #include "shared/face_area.glsl"
 
-// Phi and exitance per face of what was corrected. Negative values count as 0, and the factor is found that restores the
-// power, as in exitance.comp.
+// Phi and exitance per face of what was corrected, of whose change a share is taken. Negative values count as 0, and the
+// factor is found that restores the power, as in exitance.comp.
 struct TransportResultPush {
   Vec3s vertices;
   Uvec3s faces;
@@ -16,29 +16,33 @@ struct TransportResultPush {
   Scales scale;
   Vec3s corrected;  // exitance, W/mm^2
   Vec3s phi;        // W/mm^2, written
-  Vec3s exitance;   // written
+  Vec3s q;          // W/mm^2, of the lights
+  Vec3s exitance;   // of the solve, then of the result
   Clips clip;
   Reduction reduction;
   uint count;
+  float taken_lit;  // the share, where light enters and where none does
+  float taken_unlit;
 };
 layout(push_constant, scalar) uniform Block { TransportResultPush push; };
 
 void main() {
-  vec3 negative = vec3(0), positive = vec3(0);
+  vec3 added = vec3(0), positive = vec3(0);  // integrals over the face
   EACH(f, push.count) {
     uvec3 ids = push.faces.at[f];
     vec3 phi = (push.fluence.at[ids.x] + push.fluence.at[ids.y] + push.fluence.at[ids.z]) / 3.0;
     bool open = push.face_kinds.at[f] == FACE_OPEN;
     push.phi.at[f] = open ? phi * push.scale.at[0].scale : vec3(0);
     vec3 m = open ? push.corrected.at[f] : vec3(0);
-    push.exitance.at[f] = max(m, vec3(0));
+    vec3 taken = max(mix(push.exitance.at[f], m, push.q.at[f] == vec3(0) ? push.taken_unlit : push.taken_lit), vec3(0));
+    push.exitance.at[f] = taken;
     float area = area_of(push.faces, push.vertices, f);
-    negative += area * max(-m, vec3(0));
-    positive += area * max(m, vec3(0));
+    added += area * (taken - m);
+    positive += area * taken;
   }
-  vec3 total_negative, total_positive;
-  if (!reduce_dispatch_pair(push.reduction, negative, positive, total_negative, total_positive)) return;
+  vec3 total_added, total_positive;
+  if (!reduce_dispatch_pair(push.reduction, added, positive, total_added, total_positive)) return;
   if (gl_LocalInvocationID.x != 0u) return;
-  vec3 share = mix(vec3(0), min(total_negative / total_positive, vec3(1)), greaterThan(total_positive, vec3(0)));
+  vec3 share = mix(vec3(0), min(total_added / total_positive, vec3(1)), greaterThan(total_positive, vec3(0)));
   push.clip.at[0] = Clip(1.0 - share, share);
 }

@@ -231,6 +231,32 @@ TEST_CASE("points are drawn until they leave the noise that is wanted, and the c
   CHECK(few.noise.whole < 1.25 * many.noise.whole);
 }
 
+TEST_CASE("of a change that is lost in its noise little is taken, and the power stays that of the sweep") {
+  Scene scene({8, 4});
+  gpu::Material dense = homogeneous(0.001f);
+  dense.sigma_s_prime *= 8;
+  scene.simulation.set_material(dense);
+  scene.light(one_side);
+  const auto solve = [&](const SolveOptions& options) {
+    const SolveReport report = scene.simulation.solve(options);
+    return std::pair{report, scene.simulation.surface_field().exitance};
+  };
+  SolveOptions few = swept(1);
+  few.sweep_points = 500;
+  const auto [plain_report, plain] = solve(swept(0));
+  const auto [asked_report, asked] = solve(few);
+  few.sweeps = 0;
+  const auto [report, found] = solve(few);
+  REQUIRE(report.correction->sweeps.size() == 1);
+  CHECK(asked_report.correction->taken.whole == 1);
+  CHECK(report.correction->taken.whole < 0.7);
+  CHECK(relative_difference(found, plain) < relative_difference(asked, plain));
+  CHECK(report.model_error->whole < asked_report.model_error->whole);
+  for (int c = 0; c < 3; ++c) {
+    CHECK(report.energy.scattered_out[c] == doctest::Approx(asked_report.energy.scattered_out[c]).epsilon(1e-5));
+  }
+}
+
 TEST_CASE("only fem with the buried source can be corrected") {
   Scene scene({4, 2});
   scene.simulation.set_material(homogeneous());

@@ -95,7 +95,7 @@ def test_info_json_tells_everything(capsys):
     tets = next(entry for entry in facts["sections"] if entry["name"] == "level0/tets")
     assert tets == {"name": "level0/tets", "type": "uint32", "shape": [24, 4], "bytes": 384}
     assert facts["levels"][0]["nodes"] == 36
-    assert facts["display"] == {"vertices": 8, "triangles": 12, "size_mm": [2, 2, 2]}
+    assert facts["display"] == {"vertices": 24, "triangles": 12, "size_mm": [2, 2, 2]}
 
 
 def test_info_for_people(capsys):

@@ -179,7 +179,7 @@ def test_a_hand_at_the_window(open_window, tmp_path: Path):
     left, right = sides(first)
     assert right > 1.2 * left
 
-    hand.drag(-320, 0, held="ctrl")
+    hand.drag(-400, 0, held="ctrl")
     dragged = hand.picture()
     left, right = sides(dragged)
     assert left > 1.2 * right

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -26,6 +27,15 @@ class AlgebraicJudge:
     area: np.ndarray
     unlit: np.ndarray
     exitance: np.ndarray
+    of_phi: Callable[[np.ndarray], np.ndarray] | None = (
+        None  # (n, 3) fluence at the vertices to the exitance; None: as shown
+    )
+
+    def error_of(self, engine: Engine) -> dict[str, float]:
+        """That of what an engine solved last: its exitance as it is shown, or before that is made even (`of_phi`)."""
+        if self.of_phi is None:
+            return self.error(engine.surface_field()["exitance"])
+        return self.error(self.of_phi(np.asarray(engine.phi(), np.float64)))
 
     def error(self, exitance: np.ndarray) -> dict[str, float]:
         """Relative RMS over area of the difference to the truth, channels together: "whole" surface, "unlit" part."""

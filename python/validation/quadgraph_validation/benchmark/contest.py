@@ -39,7 +39,9 @@ class Contest:
     def __init__(self, system: System, q: np.ndarray) -> None:
         self.system = system
         self.exact = np.column_stack([self._solve_exactly(c) for c in range(3)])
-        self.judge = AlgebraicJudge(system.area, unlit_part(system.area, q), system.exitance(self.exact))
+        self.judge = AlgebraicJudge(
+            system.area, unlit_part(system.area, q), system.exitance(self.exact), system.exitance
+        )
         weight = system.area[self.judge.unlit]
         self._weight = weight
         self.sizes = (weight[:, None] * self.judge.exitance[self.judge.unlit] ** 2).sum(axis=0)

@@ -142,7 +142,7 @@ def run(
         entrants.append(Entrant(rival, contest.system))
     last = runners[0].front()[-1]
     runners[0].time(last)
-    agreement = contest.judge.error(engine.surface_field()["exitance"])
+    agreement = contest.judge.error_of(engine)
     return {
         "name": scene.name,
         "material": scene.material,

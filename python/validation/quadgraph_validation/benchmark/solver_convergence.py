@@ -109,7 +109,7 @@ class SolverRunner:
         key = (iterations, tolerance)
         if key not in self._points:
             report, _ = self._solve(*key)
-            error = self._judge.error(self._engine.surface_field()["exitance"])
+            error = self._judge.error_of(self._engine)
             residual = report["levels"][-1]["residual"]
             self._points[key] = CurvePoint(*key, report["work"], residual, error["whole"], error["unlit"])
         return self._points[key]
