@@ -249,7 +249,9 @@ TEST_CASE("of a change that is lost in its noise little is taken, and the power 
   const auto [report, found] = solve(few);
   REQUIRE(report.correction->sweeps.size() == 1);
   CHECK(asked_report.correction->taken.whole == 1);
-  CHECK(report.correction->taken.whole < 0.7);
+  const double change = report.correction->sweeps[0].change.whole, noise = report.correction->sweeps[0].noise.whole;
+  CHECK(report.correction->taken.whole == doctest::Approx(change * change / (change * change + noise * noise)));
+  CHECK(report.correction->taken.whole < 0.9);
   CHECK(relative_difference(found, plain) < relative_difference(asked, plain));
   CHECK(report.model_error->whole < asked_report.model_error->whole);
   for (int c = 0; c < 3; ++c) {
