@@ -1,6 +1,7 @@
 #include "engine/reference/leaving.h"
 
 #include <algorithm>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtx/component_wise.hpp>
 #include <limits>
@@ -39,15 +40,9 @@ std::optional<Hit> first_met(const Level& level, const glm::dvec3& origin, const
   return first;
 }
 
-glm::dvec3 interpolated(const CornerNormals& normals, const glm::dvec3& barycentric) {
-  return glm::normalize(barycentric[0] * normals[0] + barycentric[1] * normals[1] + barycentric[2] * normals[2]);
-}
-
 // What of a share of at most `most` is followed through further parts of the body.
 double followed(double most) {
-  const double whole = gpu::FOLLOWED_WHOLE, none = gpu::GATHER_END,
-               t = std::clamp((most - none) / (whole - none), 0., 1.);
-  return t * t * (3 - 2 * t);
+  return glm::smoothstep(double{gpu::GATHER_END}, double{gpu::FOLLOWED_WHOLE}, most);
 }
 
 struct Branch {
@@ -82,7 +77,7 @@ LeavingLight leaving(const Level& level, const Problem& problem, const InsideLig
   std::vector<Escape> waiting;
   for (std::uint32_t part = 0; part < gpu::VIEW_PARTS; ++part) {
     const glm::dvec3 normal =
-        part == 0 || light.normals.empty() ? frame_of(level, f).normal : interpolated(light.normals[f], barycentric);
+        part == 0 || light.normals.empty() ? frame_of(level, f).normal : normal_at(light.normals[f], barycentric);
     share *= fresnel_transmittance(std::clamp(glm::dot(outside, normal), 0.0, 1.0), problem.eta);
     const Gathered inside = gather(level, problem, light, f, barycentric, refract(-outside, normal, problem.eta));
     glm::dvec3 factor(0), rest(0), least(0);

@@ -116,14 +116,13 @@ class View {
 
   // At the ray's point, on outside face f opposite to corner 3.
   glm::dvec3 smooth_normal(std::uint32_t f) const {
-    glm::dvec3 sum(0);
+    glm::dvec3 barycentric(0);
     for (int k = 0; k < 3; ++k) {
       for (std::size_t c = 0; c < 3; ++c) {
-        if (ray_.corner(c).vertex == level_.faces[f][k])
-          sum += ray_.corner(c).lambda * light_.normals[f][static_cast<std::size_t>(k)];
+        if (ray_.corner(c).vertex == level_.faces[f][k]) barycentric[k] = ray_.corner(c).lambda;
       }
     }
-    return glm::normalize(sum);
+    return normal_at(light_.normals[f], barycentric);
   }
 
   // Radiance at the ray's point, were all behind it as it is there; 0 in a clear region.

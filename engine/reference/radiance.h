@@ -20,8 +20,8 @@ namespace quadgraph {
 struct InsideLight {
   std::span<const glm::dvec3> phi;
   const Uncollided& uncollided;
-  std::span<const CornerNormals> normals =
-      {};  // by which rays leave and are mirrored (smooth_normals); none: by the faces'
+  // Those of smooth_normals, by which rays leave and are mirrored; without any, by the faces' own.
+  std::span<const CornerNormals> normals = {};
 };
 
 // Where a ray leaves the body, to go on outside.

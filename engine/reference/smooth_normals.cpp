@@ -1,10 +1,9 @@
 #include "engine/reference/smooth_normals.h"
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "engine/reference/entering.h"
-#include "shaders/gather/gather_shared.h"
+#include "shaders/shared/creases.h"
 
 namespace quadgraph {
 namespace {
@@ -16,6 +15,10 @@ glm::dvec3 weighed_normal(const Level& level, std::uint32_t f, int corner) {
 }
 
 }  // namespace
+
+glm::dvec3 normal_at(const CornerNormals& corners, const glm::dvec3& barycentric) {
+  return glm::normalize(barycentric[0] * corners[0] + barycentric[1] * corners[1] + barycentric[2] * corners[2]);
+}
 
 std::vector<CornerNormals> smooth_normals(const Level& level) {
   struct Corner {
@@ -34,9 +37,7 @@ std::vector<CornerNormals> smooth_normals(const Level& level) {
       glm::dvec3 sum(0);
       for (const Corner& other : around[level.faces[f][static_cast<int>(k)]]) {
         const glm::dvec3 normal = weighed_normal(level, other.face, other.place);
-        sum += glm::smoothstep(double{gpu::CREASE_COSINE}, double{gpu::SMOOTH_COSINE},
-                               glm::dot(own, glm::normalize(normal))) *
-               normal;
+        sum += double{gpu::smooth_share(static_cast<float>(glm::dot(own, glm::normalize(normal))))} * normal;
       }
       normals.back()[k] = glm::normalize(sum);
     }

@@ -8,8 +8,8 @@
 #include "interface/surface/display_scale.comp.h"
 #include "interface/surface/energy.comp.h"
 #include "interface/surface/energy_total.comp.h"
+#include "interface/surface/even_exitance.comp.h"
 #include "interface/surface/even_faces.comp.h"
-#include "interface/surface/even_vertices.comp.h"
 #include "interface/surface/exitance.comp.h"
 #include "interface/surface/vertex_exitance.comp.h"
 #include "interface/transport/transport_result.comp.h"
@@ -79,7 +79,8 @@ SurfaceResults::SurfaceResults(device::Device& device, const LevelBuffers& level
   exitance_ = vector(level.face_count, "results/exitance");
   vertex_exitance_ = vector(level.surface_vertex_count, "results/exitance at vertices");
   vertex_unscattered_ = vector(level.surface_vertex_count, "results/unscattered light at vertices");
-  even_ = vector(2 * level.surface_vertex_count, "results/even exitance at vertices");
+  even_ =
+      device::Buffer(device, level.face_count * sizeof(gpu::EvenFace), device::Place::device, "results/even exitance");
   display_factor_ = vector(1, "results/display factor");
   clip_ = device::Buffer(device, sizeof(gpu::Clip), device::Place::device, "results/clip");
   clip_on_host_ = device::Buffer(device, sizeof(gpu::Clip), device::Place::host, "results/clip, read back");
@@ -109,26 +110,29 @@ void SurfaceResults::record_vertex_exitance(Workspace& work, const LevelBuffers&
 void SurfaceResults::record_even(Workspace& work, const Solved& solved) {
   if (solved.method != Method::fem || solved.walk == nullptr) return;
   const LevelBuffers& level = solved.level;
-  const gpu::EvenRef even{.vertices = level.vertices.address(),
-                          .faces = level.faces.address(),
-                          .face_tets = level.face_tets.address(),
-                          .optical = level.optical.address(),
-                          .q = level.q.address(),
-                          .exitance = exitance_.address(),
-                          .kept = static_cast<float>(2 * fresnel_moment(1, solved.eta)),
-                          .even = level.even ? 1u : 0u};
-  constexpr std::uint64_t face_bytes = 2 * sizeof(std::uint32_t) + sizeof(glm::uvec3) + 7 * vec3_bytes;
-  const gpu::EvenVerticesPush vertices{.even = even,
+  const gpu::EvenFacesPush faces{.vertices = level.vertices.address(),
+                                 .faces = level.faces.address(),
+                                 .face_tets = level.face_tets.address(),
+                                 .optical = level.optical.address(),
+                                 .q = level.q.address(),
+                                 .exitance = exitance_.address(),
+                                 .even = even_.address(),
+                                 .count = level.face_count,
+                                 .kept = static_cast<float>(2 * fresnel_moment(1, solved.eta)),
+                                 .same_everywhere = level.even ? 1u : 0u};
+  work.recorder.dispatch(work.passes.of(shader::even_faces), faces, level.face_count, "even exitance",
+                         level.face_count * (sizeof(glm::uvec3) + sizeof(std::uint32_t) + 5 * vec3_bytes +
+                                             sizeof(gpu::Optical) + sizeof(gpu::EvenFace)));
+  const gpu::EvenExitancePush exitance{.faces = level.faces.address(),
+                                       .face_kinds = level.face_kind.address(),
                                        .face_offset = level.face_offset.address(),
                                        .face_incidence = level.face_incidence.address(),
-                                       .mean = even_.address(),
-                                       .count = level.surface_vertex_count};
-  work.recorder.dispatch(work.passes.of(shader::even_vertices), vertices, level.surface_vertex_count, "exitance",
-                         3 * level.face_count * face_bytes + 2 * vec3_bytes * level.surface_vertex_count);
-  const gpu::EvenFacesPush faces{
-      .even = even, .face_kinds = level.face_kind.address(), .mean = even_.address(), .count = level.face_count};
-  work.recorder.dispatch(work.passes.of(shader::even_faces), faces, level.face_count, "exitance",
-                         level.face_count * (face_bytes + 4 * vec3_bytes));
+                                       .even = even_.address(),
+                                       .exitance = exitance_.address(),
+                                       .count = level.face_count};
+  constexpr std::uint64_t faces_around = 18;
+  work.recorder.dispatch(work.passes.of(shader::even_exitance), exitance, level.face_count, "even exitance",
+                         level.face_count * faces_around * (sizeof(std::uint32_t) + sizeof(gpu::EvenFace)));
 }
 
 void SurfaceResults::record_display_scale(Workspace& work, const LevelBuffers& level) {

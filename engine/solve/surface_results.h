@@ -69,7 +69,7 @@ class SurfaceResults {
   void record_energy(Workspace& work, const Solved& solved, const FirstMoment& fluence);
 
   device::Buffer phi_, exitance_, vertex_exitance_, vertex_unscattered_;
-  device::Buffer even_;            // two vec3 per surface vertex, W/mm^2
+  device::Buffer even_;            // EvenFace per face
   device::Buffer display_factor_;  // vec3
   device::Buffer clip_;            // Clip
   device::Buffer clip_on_host_;    // the same, mapped

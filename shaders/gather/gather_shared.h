@@ -65,11 +65,6 @@ const uint GATHER_STEPS = 1024u;
 const float FOLLOWED_WHOLE = 5e-2f;
 // Parts of a body that a view ray and its branches go through at most.
 const uint VIEW_PARTS = 8u;
-// Faces whose normals are farther apart than 45 degrees meet in a crease of the body, which stays sharp; below 35 they
-// are smooth, and in between by a share, so that nothing jumps while a body bends. The bake's creases are at 40
-// degrees.
-const float CREASE_COSINE = 0.70710678f;
-const float SMOOTH_COSINE = 0.81915204f;
 // Optical depth from which on light that has not scattered counts as none, and tets on the way back to where it
 // entered.
 const float UNCOLLIDED_DEPTH = 16.0f;

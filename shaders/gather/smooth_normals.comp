@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "gather/gather_shared.h"
+#include "shared/creases.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 
@@ -39,7 +40,7 @@ void main() {
   if (body.face_kinds.at[face] == FACE_OPEN) {
     for (uint k = push.face_offset.at[v]; k < push.face_offset.at[v + 1u]; ++k) {
       vec3 normal = weighed_normal(push.face_incidence.at[k], v);
-      sum += smoothstep(CREASE_COSINE, SMOOTH_COSINE, dot(own, unit(normal))) * normal;
+      sum += smooth_share(dot(own, unit(normal))) * normal;
     }
   }
   push.normals.at[i] = sum == vec3(0) ? own : unit(sum);

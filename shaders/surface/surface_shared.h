@@ -36,17 +36,18 @@ QG_ARRAY(SurfaceShares, SurfaceShare);
 
 #endif
 
-// The exitance of a surface that is coarse for its material, on its way to be made even.
-struct EvenRef {
-  QG_REF(Vec3s) vertices;  // mm
-  QG_REF(Uvec3s) faces;
-  QG_REF(Uints) face_tets;
-  QG_REF(Opticals) optical;  // per tet
-  QG_REF(Vec3s) q;           // W/mm^2
-  QG_REF(Vec3s) exitance;    // W/mm^2
-  float kept;                // share of diffuse light inside that the surface reflects back
-  uint even;                 // 1: optical is the same everywhere
+// What of the exitance of a face is made even.
+struct EvenFace {
+  vec3 far;     // W/mm^2: all but light that comes out near where it went in
+  vec3 share;   // of it that is made even
+  vec3 normal;  // unit
+  float area;   // mm^2
+  uint lit;     // 1: light enters, 0: none does
 };
+#ifndef __cplusplus
+QG_ARRAY(EvenFaces, EvenFace);
+
+#endif
 
 const uint SURFACE_STORE = 0u;       // before = M
 const uint SURFACE_CHANGE = 1u;      // change of M since `before`, then before = M; decides whether to go on
