@@ -27,12 +27,11 @@ class AlgebraicJudge:
     area: np.ndarray
     unlit: np.ndarray
     exitance: np.ndarray
-    of_phi: Callable[[np.ndarray], np.ndarray] | None = (
-        None  # (n, 3) fluence at the vertices to the exitance; None: as shown
-    )
+    # From fluence (n, 3) at the vertices to exitance, where the truth is not made even; None: as it is shown.
+    of_phi: Callable[[np.ndarray], np.ndarray] | None = None
 
     def error_of(self, engine: Engine) -> dict[str, float]:
-        """That of what an engine solved last: its exitance as it is shown, or before that is made even (`of_phi`)."""
+        """That of what an engine solved last, as `error`."""
         if self.of_phi is None:
             return self.error(engine.surface_field()["exitance"])
         return self.error(self.of_phi(np.asarray(engine.phi(), np.float64)))
