@@ -21,8 +21,8 @@ _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is no
 
 @pytest.fixture(scope="module")
 def path(tmp_path_factory):
-    """A sphere of two levels, radius 4 mm: with edges below two mean free paths no exitance is made even."""
-    return write_levels(tmp_path_factory.mktemp("rivals") / "sphere.qgraph", [icosphere(3, 4), icosphere(2, 4)])
+    """A sphere of two levels, radius 10 mm."""
+    return write_levels(tmp_path_factory.mktemp("rivals") / "sphere.qgraph", [icosphere(3, 10), icosphere(2, 10)])
 
 
 @pytest.fixture(scope="module")
@@ -39,14 +39,56 @@ def contest(lit):
     return Contest(lit[1], lit[2])
 
 
+def made_even(level, material, q, exitance):
+    """Exitance (m, 3) of a smooth body of one material made even as docs/physics.md, "Exitance", has it."""
+    optical = _core.Material(material)
+    sigma_a, sigma_s = np.array(optical.sigma_a), np.array(optical.sigma_s_prime)
+    faces, places = np.asarray(level.faces), np.asarray(level.vertices, np.float64)
+    corners = places[faces]
+    edges = np.roll(corners, -1, axis=1) - corners
+    normal = np.cross(edges[:, 0], edges[:, 1])
+    area = np.linalg.norm(normal, axis=1) / 2
+    normal /= 2 * area[:, None]
+    edge = np.sqrt((edges**2).sum(axis=2).mean(axis=1))
+    share = np.clip(edge[:, None] * (sigma_a + sigma_s) / 2 - 1, 0, 1)
+    s = np.sqrt(sigma_a / (sigma_a + sigma_s))
+    back = (1 - s) * (1 - 0.139 * s) / (1 + 1.17 * s)
+    kept = internal_diffuse_reflectance(optical.eta)
+    far = exitance - np.minimum(0.85 * (1 - kept) * back / (1 - kept * back) * q, exitance)
+    lit = (q != 0).any(axis=1)
+    brought = np.zeros_like(exitance)
+    for v in range(faces.max() + 1):
+        around = np.flatnonzero((faces == v).any(axis=1))
+        weight = area[around, None] * share[around]
+        turn = np.clip(
+            (normal[around] @ normal[around].T - np.sqrt(0.5)) / (np.cos(np.radians(35)) - np.sqrt(0.5)), 0, 1
+        )
+        joined = turn**2 * (3 - 2 * turn) * (lit[around][:, None] == lit[around])
+        exchanged = np.einsum("fg,gc,fgc->fc", joined, weight, far[around] - far[around][:, None])
+        brought[around] += exchanged / weight.sum(axis=0) / 3
+    return exitance + share * brought
+
+
+def internal_diffuse_reflectance(eta):
+    """Of uniform light inside what a smooth surface reflects back, by Fresnel's equations."""
+    nodes, weights = np.polynomial.legendre.leggauss(200)
+    critical = np.sqrt(1 - 1 / eta**2)
+    mu = critical + (1 - critical) * (nodes + 1) / 2
+    outside = np.sqrt(1 - eta**2 * (1 - mu**2))
+    s, p = (eta * mu - outside) / (eta * mu + outside), (mu - eta * outside) / (mu + eta * outside)
+    return critical**2 + (1 - critical) * (weights * mu * (s**2 + p**2) / 2).sum()
+
+
 def test_the_matrices_are_symmetric_and_solved_directly_give_the_engines_exitance(lit):
-    engine, built, _ = lit
+    engine, built, q = lit
     x = np.column_stack([spsolve(a.tocsc(), built.b[:, c]) for c, a in enumerate(built.matrices)])
     for a in built.matrices:
         assert abs(a - a.T).max() < 1e-12 * abs(a).max()
-    engine.solve(solver="dpcg", model="diffusion", tolerance=1e-7, inter_reflection=False)
+    engine.solve(solver="dpcg", model="diffusion", tolerance=1e-6, inter_reflection=False)
     ours = engine.surface_field()["exitance"]
-    assert np.linalg.norm(built.exitance(x) - ours) < 2e-5 * np.linalg.norm(ours)
+    raw, exact = built.exitance(x), made_even(engine.graph.levels[0], "marble", q, built.exitance(x))
+    assert np.linalg.norm(exact - ours) < 2e-5 * np.linalg.norm(ours)
+    assert np.linalg.norm(exact - raw) > 1e-2 * np.linalg.norm(raw)
 
 
 def test_the_residual_is_measured_as_the_engine_reports_it(lit):
