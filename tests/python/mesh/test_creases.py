@@ -11,7 +11,7 @@ from quadgraph.mesh.creases import CREASE_DEGREES, parted
 from quadgraph.mesh.subdivide import subdivide
 from shapes import cube, icosphere
 
-SHARED = Path(__file__).parents[3] / "shaders" / "gather" / "gather_shared.h"
+CREASES = Path(__file__).parents[3] / "shaders" / "shared" / "creases.h"
 
 
 def test_a_ball_keeps_its_vertices_and_has_the_normals_of_the_sphere():
@@ -41,7 +41,7 @@ def test_vertices_within_a_flat_side_are_not_parted():
 
 
 def test_the_engine_smooths_on_both_sides_of_the_bakes_angle():
-    found = dict(re.findall(r"const float (CREASE_COSINE|SMOOTH_COSINE) = ([\d.]+)f;", SHARED.read_text()))
+    found = dict(re.findall(r"const float (CREASE_COSINE|SMOOTH_COSINE) = ([\d.]+)f;", CREASES.read_text()))
     sharp, smooth = (np.degrees(np.arccos(float(found[name]))) for name in ("CREASE_COSINE", "SMOOTH_COSINE"))
     assert smooth < CREASE_DEGREES < sharp
     assert abs((smooth + sharp) / 2 - CREASE_DEGREES) < 1e-3
