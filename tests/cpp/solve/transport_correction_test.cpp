@@ -149,7 +149,7 @@ Kept kept_in_motion(Scene& scene, std::uint32_t frames, const Move& move) {
     last = solve(quick, true);
   }
   SolveOptions exact = swept(4);
-  exact.sweep_points = 100000;
+  exact.sweep_points = 30000;
   const std::vector<glm::vec3> rest = solve(exact, false);
   return {relative_difference(last, rest), relative_difference(solve(swept(0), false), rest)};
 }
