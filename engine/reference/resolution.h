@@ -32,8 +32,9 @@ std::vector<SurfaceSample> surface_samples(const Level& level);
 double mean_chord(const Level& level);
 
 struct Resolution {
-  double error = 0;  // relative RMS error of the exitance over the lit surface, all channels together
-  double decay = 0;  // largest of any channel, mean over the surface
+  double error = 0;      // relative RMS error of the exitance over the lit surface, all channels together
+  double corrected = 0;  // the same after sweeps of the transport equation
+  double decay = 0;      // largest of any channel, mean over the surface
 };
 
 // Resolution of linear elements with the buried source. `optical`: one entry per sample.

@@ -221,7 +221,7 @@ struct Simulation::Implementation {
     report.energy.unscattered_out = power.unscattered;
     report.energy.re_entered = power.entered_again;
     report.clipped = results.clipped();
-    state_corrected_error(report);
+    state_corrected_error(report, resolution_with(key.model).front().corrected);
     const bool kept = report.error && certain(*report.error, options.error);
     report.missed = options.error > 0 && !kept ? missed(report.error, options.error) : "";
     report.model_warning.clear();

@@ -1,5 +1,6 @@
 #include "engine/solve/transport_correction.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -54,6 +55,10 @@ constexpr double left_by_first = 0.13, left_by_next = 0.3;
 // Of the solver's error the same. Of the mesh's the share that is left, and what no two levels tell apart: the light
 // and the medium as faces and tets have them.
 constexpr double solver_left = left_by_first, mesh_left = 0.15, unseen = 0.004;
+
+// So many times the mesh's error more is left where it is large, because tets cannot hold what the sweeps find. The
+// dimmest third, whose levels differ by as much as it has, has less.
+constexpr ErrorEstimate mesh_left_more{.whole = 1.2, .unlit = 1.2, .dimmest = 0};
 
 // The halves share what their points see of the body; so much more than they differ by is the noise.
 constexpr double noise_over_difference = 1.2;
@@ -112,7 +117,7 @@ bool last_of_all(const CorrectionReport& done, const ErrorEstimate& wanted) {
 
 }  // namespace
 
-void state_corrected_error(SolveReport& report) {
+void state_corrected_error(SolveReport& report, double unresolved) {
   const CorrectedSweep& last = report.correction->sweeps.back();
   const double share = share_left_by(*report.correction);
   const auto of_model = [&](double change, double noise, double all, double taken) {
@@ -125,8 +130,11 @@ void state_corrected_error(SolveReport& report) {
   }
   report.error.reset();
   if (!report.mesh_error) return;
-  const auto of_mesh = [](double part, double noise) { return noise > 0 ? std::hypot(mesh_left * part, unseen) : 0; };
-  report.mesh_error = by_parts(of_mesh, *report.mesh_error, last.noise);
+  const auto of_mesh = [&](double part, double noise, double more) {
+    const double left = std::min(1.0, std::hypot(mesh_left, more * part));
+    return noise > 0 ? std::hypot(left * part, unseen, unresolved) : 0;
+  };
+  report.mesh_error = by_parts(of_mesh, *report.mesh_error, last.noise, mesh_left_more);
   const auto all = [](double a, double b, double c) { return std::sqrt(a * a + b * b + c * c); };
   const ErrorEstimate solver = report.algebraic.value_or(ErrorEstimate{});
   report.error = by_parts(all, *report.model_error, *report.mesh_error, solver);

@@ -29,8 +29,9 @@ inline constexpr OperatorKey correction_key{Method::fem, Model::diffusion};
 
 // What the exitance is off by after all sweeps, by part: of the model, the noise and what another sweep would change;
 // of the mesh and of the solver what the sweeps leave, which sample where the solve is off, whatever the reason; and
-// all of it together. Calibrated on bodies that nobody tuned for (docs/accuracy.md).
-void state_corrected_error(SolveReport& report);
+// all of it together. Calibrated on bodies that nobody tuned for (docs/accuracy.md). unresolved: what sweeps lose in
+// elements as deep as those at the surface, a relative error.
+void state_corrected_error(SolveReport& report, double unresolved);
 
 // Of the extinction sigma_s' + sigma_a at the same places, summed over these and the channels: what changes, as a share
 // of it before. 1 where there are other places.

@@ -24,6 +24,7 @@ STUDIES = {
     "half-space": "half_space",
     "orders": "orders",
     "coarse": "coarse",
+    "dense": "dense",
     "radiance": "radiance",
     "scenes": "scenes",
     "estimate": "estimate",
@@ -32,10 +33,12 @@ STUDIES = {
     "unseen": "unseen",
 }
 
-_TABLE_WIDTH = 190  # characters of the table of unseen bodies; narrower, it cannot be read
+_WIDE = ("dense", "unseen")  # studies whose tables cannot be read narrower than this, characters
+_TABLE_WIDTH = 190
 
 # Studies of real bodies, which the CPU reference cannot stand in for, because only the engine does what they judge.
 ON_ENGINE = {
+    "dense": "makes its exitance even",
     "scenes": "makes pictures",
     "estimate": "estimates its error",
     "target": "stops at an error",
@@ -124,7 +127,7 @@ def run(args: argparse.Namespace) -> int:
         with Console(stderr=True).status(f"study: {args.study}"):
             record = study.run(body_of)
     console = Console(highlight=False)
-    console.width = max(console.width, _TABLE_WIDTH if args.study == "unseen" else 0)
+    console.width = max(console.width, _TABLE_WIDTH if args.study in _WIDE else 0)
     for table in study.tables(record):
         console.print(table)
     if args.json:
