@@ -91,12 +91,14 @@ struct SolveReport {
   bool inter_reflection = false;  // whether inter-reflection was computed
   std::string missed;             // what was wanted of the error and is not met; empty if all is
   // How the level that was solved last stopped short of the tolerance; empty if it did not, if a number of cycles was
-  // asked for, or if the error that was asked for is met all the same. Coarser levels only start it.
+  // asked for, or if the error that was asked for is met all the same. Coarser levels only start it. And what is wrong
+  // with the answer all the same (engine/render/verdict.h).
   std::string stopped;
   std::string budget;  // what the bake of the file has to say of the error that was asked for; empty if nothing
   // What else is to be said against the answer, of elements and of the model (engine/reference/resolution.h); empty if
   // nothing.
   std::string mesh_warning, model_warning;
+  std::string light_warning;                   // of lights that stand in the body; empty if none does
   std::string deformed;                        // tets of level 0 that a deformation has spoilt; empty if none is
   std::vector<glm::dvec3> bounces;             // W per channel that each bounce brought in
   std::optional<CorrectionReport> correction;  // of SolveOptions::sweeps

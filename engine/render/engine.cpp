@@ -7,6 +7,7 @@
 #include "engine/render/engine_implementation.h"
 #include "engine/render/picture/legend.h"
 #include "engine/render/picture/metadata.h"
+#include "engine/render/verdict.h"
 
 namespace quadgraph {
 namespace {
@@ -209,6 +210,7 @@ SolveReport Engine::solve(const SolveOptions& options, const std::function<void(
   self.deformed = false;
   self.report.reset();
   self.report = by_path ? self.solve_paths(options) : self.levels().solve(options, check);
+  judge(*self.report, self.lights, self.lights_inside());
   self.options = options;
   return *self.report;
 }

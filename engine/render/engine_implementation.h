@@ -13,6 +13,7 @@
 #include "engine/render/picture/ground.h"
 #include "engine/render/picture/rasteriser.h"
 #include "engine/render/picture/surroundings.h"
+#include "engine/render/verdict.h"
 
 namespace quadgraph {
 
@@ -94,6 +95,16 @@ struct Engine::Implementation {
     irradiance_passes = {shadows.update(mesh, set)};
     shadows_stale = false;
     return set;
+  }
+
+  // Which of the lights stand in the body. Only those are asked for that stand within its bounds.
+  std::vector<bool> lights_inside() const {
+    std::vector<bool> inside(lights.size());
+    for (std::size_t i = 0; i < lights.size() && simulation; ++i) {
+      if (!has_position(lights[i]) || glm::distance(lights[i].position, bounds.centre) > bounds.radius) continue;
+      inside[i] = is_inside(simulation->present_level(), lights[i].position);
+    }
+    return inside;
   }
 
   SolveReport solve_paths(const SolveOptions& wanted) {

@@ -6,10 +6,15 @@
 #include <string>
 
 #include "engine/base/error.h"
+#include "engine/base/range.h"
+#include "engine/base/text.h"
 #include "engine/device/commands.h"
 
 namespace quadgraph {
 namespace {
+
+// W/mm^2. Squared and summed over a surface it is within single precision.
+constexpr Range irradiance_range{.low = 0, .high = 1e15};
 
 void check_irradiance(std::span<const glm::vec3> q, std::uint32_t level, std::uint32_t count) {
   if (q.size() != count) {
@@ -18,10 +23,10 @@ void check_irradiance(std::span<const glm::vec3> q, std::uint32_t level, std::ui
   }
   for (std::size_t i = 0; i < q.size(); ++i) {
     for (int c = 0; c < 3; ++c) {
-      if (std::isfinite(q[i][c]) && q[i][c] >= 0) continue;
+      if (irradiance_range.contains(q[i][c])) continue;
       throw InputError("irradiance of level " + std::to_string(level) + ", surface node " + std::to_string(i) +
-                       ", channel " + std::to_string(c) + ": " + std::to_string(q[i][c]) +
-                       ", a finite number >= 0 is wanted");
+                       ", channel " + std::to_string(c) + ": found " + number_text(q[i][c]) + ", allowed is " +
+                       irradiance_range.text());
     }
   }
 }

@@ -12,6 +12,7 @@
 #include <glm/common.hpp>
 
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "engine/file/file_cache.h"
 
 namespace quadgraph {
@@ -19,6 +20,7 @@ namespace {
 
 constexpr std::int64_t largest_side = 16384;  // texels
 constexpr std::uint32_t largest_kept = 2048;  // the same
+constexpr float largest_texel = 1e15f;        // times the power of a light it is within single precision
 
 std::string extension_of(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
@@ -30,9 +32,10 @@ void check_values(const std::filesystem::path& path, Image& image) {
   for (std::size_t i = 0; i < image.texels.size(); ++i) {
     glm::vec3& texel = image.texels[i];
     for (int c = 0; c < 3; ++c) {
-      if (std::isfinite(texel[c])) continue;
+      if (std::abs(texel[c]) <= largest_texel) continue;
       throw InputError(path.string() + ": texel (" + std::to_string(i % image.width) + ", " +
-                       std::to_string(i / image.width) + ") is not a finite number");
+                       std::to_string(i / image.width) + "): found " + number_text(texel[c]) +
+                       ", allowed are finite numbers up to " + number_text(largest_texel));
     }
     texel = glm::max(texel, glm::vec3(0));
   }

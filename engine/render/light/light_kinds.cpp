@@ -14,7 +14,9 @@ namespace {
 using Fields = std::vector<LightField>;
 
 constexpr float pi = std::numbers::pi_v<float>;
-constexpr Range positive{.low = 0};
+constexpr Range positive{.low = 0, .high = largest_power};
+// Single precision cannot tell a narrower cone from its axis.
+constexpr double least_angle = 0.1;
 
 const LightField position{.name = "position",
                           .text = "X,Y,Z",
@@ -103,7 +105,7 @@ LightForm spot() {
                       .member = &Light::angle,
                       .unit = "degrees",
                       .help = "half angle of the cone",
-                      .range = {.low = 0, .high = 90, .above = true}},
+                      .range = {.low = least_angle, .high = 90}},
                      {.name = "edge",
                       .text = "EDGE",
                       .form = FieldForm::number,
@@ -172,7 +174,7 @@ LightForm projector() {
                       .member = &Light::angle,
                       .unit = "degrees",
                       .help = "vertical angle of the image",
-                      .range = {.low = 0, .high = 170, .above = true, .below = true}},
+                      .range = {.low = least_angle, .high = 170, .below = true}},
                      {.name = "up",
                       .text = "UX,UY,UZ",
                       .form = FieldForm::top,

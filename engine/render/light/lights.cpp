@@ -17,11 +17,16 @@ bool finite(const glm::vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
+// No component is larger than `limit`, or no number.
+bool within(const glm::vec3& v, float limit) {
+  return std::abs(v.x) <= limit && std::abs(v.y) <= limit && std::abs(v.z) <= limit;
+}
+
 // What is expected of a vector that is not, or null.
 const char* wrong_vector(FieldForm form, const glm::vec3& v, const Light& light) {
   switch (form) {
     case FieldForm::power:
-      return finite(v) && !glm::any(glm::lessThan(v, glm::vec3(0))) ? nullptr : "finite numbers >= 0";
+      return within(v, largest_power) && !glm::any(glm::lessThan(v, glm::vec3(0))) ? nullptr : "numbers from 0 to 1e15";
     case FieldForm::direction:
       return std::abs(glm::length(v) - 1.0f) < 1e-3f ? nullptr : "unit length";
     case FieldForm::axis:
@@ -31,7 +36,7 @@ const char* wrong_vector(FieldForm form, const glm::vec3& v, const Light& light)
                  ? nullptr
                  : "a vector that is not along the direction";
     default:
-      return finite(v) ? nullptr : "finite numbers";
+      return within(v, largest_length) ? nullptr : "numbers of at most 1e9 mm";
   }
 }
 
@@ -62,6 +67,10 @@ void check_light(const Light& light) {
   const std::string where = "light '" + to_string(light) + "'";
   for (const LightField& field : form.fields) check_field(field, light, where);
   if (form.check) form.check(light, where);
+}
+
+bool has_position(const Light& light) {
+  return form_of(light.kind).has(FieldForm::point);
 }
 
 SpotCosines spot_cosines(const Light& spot) {

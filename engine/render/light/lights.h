@@ -18,6 +18,11 @@ namespace quadgraph {
 
 enum class LightKind { directional, point, ambient, spot, rectangle, projector, environment };
 
+// What single precision has room for, squared and summed over a surface: of a power or its like, and of a place or
+// edge.
+inline constexpr float largest_power = 1e15f;
+inline constexpr float largest_length = 1e9f;  // mm
+
 // Members that a kind does not name are not used.
 struct Light {
   LightKind kind = LightKind::directional;
@@ -111,6 +116,9 @@ std::string to_string(const Light& light);
 // Throws InputError unless the numbers are finite and in their ranges, the power is >= 0 and a direction has unit
 // length.
 void check_light(const Light& light);
+
+// Whether it shines from a place: `position` counts.
+bool has_position(const Light& light);
 
 // Cosines of the angles from its axis at which a spot light begins to fade and ends. In between its intensity is
 // s^2 (3 - 2 s) of that on the axis, s linear in the cosine.

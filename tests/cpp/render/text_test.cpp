@@ -31,7 +31,7 @@ TEST_CASE("ambient light has an irradiance and nothing else") {
   CHECK(light.power == glm::vec3(0.5f, 1, 2));
   CHECK(to_string(light) == "ambient:0.5/1/2");
   CHECK_THROWS_WITH_AS(parse_light("ambient:1,2,3:4"), doctest::Contains("ambient:IRRADIANCE"), InputError);
-  CHECK_THROWS_WITH_AS(parse_light("ambient:-1"), doctest::Contains(">= 0"), InputError);
+  CHECK_THROWS_WITH_AS(parse_light("ambient:-1"), doctest::Contains("from 0 to 1e15"), InputError);
 }
 
 TEST_CASE("the text of a light reads back as the same light") {
@@ -54,7 +54,7 @@ TEST_CASE("a wrong light is refused with what was found and what is allowed") {
   CHECK_THROWS_WITH_AS(parse_light("spot:0,0,1:1"), doctest::Contains("spot:0,0,1:1"), InputError);
   CHECK_THROWS_WITH_AS(parse_light("spot:0,0,1:1"), doctest::Contains("directional:DX,DY,DZ:IRRADIANCE"), InputError);
   CHECK_THROWS_WITH_AS(parse_light("directional:0,0,0:1"), doctest::Contains("length 0"), InputError);
-  CHECK_THROWS_WITH_AS(parse_light("directional:0,0,1:-1"), doctest::Contains(">= 0"), InputError);
+  CHECK_THROWS_WITH_AS(parse_light("directional:0,0,1:-1"), doctest::Contains("from 0 to 1e15"), InputError);
   CHECK_THROWS_WITH_AS(parse_light("point:0,zero,1:1"), doctest::Contains("'zero'"), InputError);
   for (const char* text : {"",
                            "directional",

@@ -68,8 +68,11 @@ def test_solve_answers_with_every_method_model_and_source(sphere, tmp_path, caps
         for model in ("diffusion", "sp3", "auto"):
             path = tmp_path / f"{source}-{model}.json"
             way = ["--method", method, "--source", source, "--model", model]
-            assert cli.main(["solve", sphere, "--material", "skin1", *way, "--json", str(path)]) == 0
+            status = cli.main(["solve", sphere, "--material", "skin1", *way, "--json", str(path)])
             report = json.loads(path.read_text())
+            # What does not conserve energy may be out of balance by more than its error.
+            out_of_balance = method == "quadgraph-fdm" and "does not conserve energy" in report["stopped"]
+            assert status == (3 if out_of_balance else 0)
             assert (report["method"], report["source"]) == (method, source)
             published = (method, source) == ("quadgraph-fdm", "diffuse")
             automatic = "diffusion" if published else "sp3"
