@@ -10,9 +10,10 @@ import os
 import re
 import signal
 import sys
+import threading
 from collections.abc import Callable, Sequence
 from importlib.metadata import entry_points
-from types import ModuleType
+from types import FrameType, ModuleType
 from typing import Any
 
 from quadgraph.base.errors import InputError, QuadGraphError
@@ -105,9 +106,31 @@ def join_negative_values(arguments: Sequence[str]) -> list[str]:
     return joined
 
 
+class Stopped(KeyboardInterrupt):
+    """TERM or HUP, which clean up as Ctrl-C does."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(number)
+        self.status = 128 + number
+
+
+def heed_signals() -> None:
+    """Let TERM and HUP end the program as Ctrl-C does, where they are not ignored or somebody else's."""
+    if threading.current_thread() is not threading.main_thread():
+        return
+
+    def stop(number: int, _frame: FrameType | None) -> None:
+        raise Stopped(number)
+
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        if signal.getsignal(number) == signal.SIG_DFL:
+            signal.signal(number, stop)
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command line and return its exit status: 1 for an error, 2 for wrong usage, 130 for Ctrl-C."""
     given = join_negative_values(sys.argv[1:] if arguments is None else arguments)
+    heed_signals()
     commands = {name: importlib.import_module(f"quadgraph.commands.{name}") for name in SUBCOMMANDS}
     try:
         added = added_commands()
@@ -119,9 +142,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except QuadGraphError as error:
         print(f"quadgraph: error: {error}", file=sys.stderr)
         return 1
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as error:
         print("quadgraph: interrupted", file=sys.stderr)
-        return INTERRUPTED
+        return getattr(error, "status", INTERRUPTED)
     except BrokenPipeError:
         # The reader of our output is gone; what is left must not meet it again when Python ends.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from quadgraph.base import outputs
 from quadgraph.base.version import __version__
 from quadgraph.file import qgraph_file, sections
 from quadgraph.mesh import display_map, front, mesh_io
@@ -34,6 +35,7 @@ def write(
     out if it is None. Raises InputError for a file that cannot be read.
     """
     front.check(front_degrees)
+    outputs.check_outputs([Path(output)], [mesh])
     source = mesh_io.read_surface(mesh, unit=unit, height_mm=height_mm)
     surface = source.surface.compacted()
     normals = display_map.vertex_normals(surface)

@@ -17,7 +17,7 @@ from typing import Any
 
 from quadgraph.baking import inside
 from quadgraph.baking.inside import LevelSizes
-from quadgraph.base import child_process
+from quadgraph.base import child_process, outputs
 from quadgraph.base.errors import InputError, QuadGraphError
 from quadgraph.base.progress import ProgressCallback
 from quadgraph.base.version import __version__
@@ -34,6 +34,7 @@ from quadgraph.tets.tetrahedralise import (
 )
 
 ORDERS = {"blocks": ordering.in_blocks, "random": ordering.at_random}
+MOST_STEPS = 10000  # that spread the inner nodes
 WORKERS = 2  # levels filled with tets at the same time
 _PACKAGES = ("numpy", "scipy", "pymeshlab", "trimesh")
 _OPTIONS = (
@@ -157,6 +158,7 @@ def bake(
     """
     tell = progress or (lambda text: None)
     check_options(Path(output), options)
+    outputs.check_outputs([Path(output)], [mesh])
     report, start = BakeReport(str(output)), time.perf_counter()
     prepared = prepare(Path(mesh), options, report, tell)
     write(prepared, make_levels(prepared.surface, options, report, tell), options, report)
@@ -213,8 +215,8 @@ def check_options(output: Path, options: BakeOptions) -> None:
     """Refuse at once what would otherwise be found out after the work."""
     if options.order not in ORDERS:
         raise InputError(f"order: {options.order!r} found, allowed are {', '.join(ORDERS)}")
-    if options.relax_nodes < 0:
-        raise InputError(f"relax_nodes: {options.relax_nodes} found, 0 or more allowed")
+    if not 0 <= options.relax_nodes <= MOST_STEPS:
+        raise InputError(f"relax_nodes: {options.relax_nodes} found, 0 to {MOST_STEPS} allowed")
     exchange.check_rays(options.visibility_rays)
     inside.check_interior(options.interior, options.for_materials, options.mesher)
     front.check(options.front)

@@ -10,6 +10,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, BinaryIO
 
+from quadgraph.base import outputs
 from quadgraph.base.errors import InputError
 
 
@@ -19,6 +20,7 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
 
     Whatever interrupts the block, `path` is either untouched or complete. Raises InputError if it cannot be written.
     """
+    outputs.check_kind(path)
     try:
         handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".tmp")
         try:
@@ -26,7 +28,7 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
                 yield stream
                 stream.flush()
                 os.fsync(stream.fileno())
-                os.fchmod(stream.fileno(), 0o666 & ~_umask())
+                os.fchmod(stream.fileno(), 0o666 & ~umask())
             Path(temporary).replace(path)
         finally:
             with suppress(FileNotFoundError):
@@ -42,7 +44,8 @@ def write_json(path: Path, value: Any, dense: bool = False) -> None:
         stream.write((json.dumps(value, **form) + "\n").encode())
 
 
-def _umask() -> int:
+def umask() -> int:
+    """Return the permissions that new files are not to have."""
     # mkstemp makes private files; the only portable way to read the mask is to set it.
     mask = os.umask(0)
     os.umask(mask)

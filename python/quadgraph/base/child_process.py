@@ -111,22 +111,25 @@ def _child_setup(parent: int, time_limit_s: float, memory_limit_bytes: int | Non
 
 @contextmanager
 def _interrupts_wait() -> Iterator[None]:
-    """Hold an interrupt back until the block's end.
+    """Hold an interrupt, TERM and HUP back until the block's end.
 
     Python runs hooks while it forks, and an exception in one of them, that of an interrupt too, is printed and lost.
     """
-    before = signal.getsignal(signal.SIGINT)
-    if threading.current_thread() is not threading.main_thread() or not callable(before):
-        yield  # only the main thread is interrupted, and it only where interrupts are not ignored
+    if threading.current_thread() is not threading.main_thread():
+        yield  # only the main thread is interrupted
         return
     held: list[tuple[int, FrameType | None]] = []
-    signal.signal(signal.SIGINT, lambda number, frame: held.append((number, frame)))
+    before = {int(number): signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
+    ours = {number: handler for number, handler in before.items() if callable(handler)}  # others are not Python's
+    for number in ours:
+        signal.signal(number, lambda number, frame: held.append((number, frame)))
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        for number, handler in ours.items():
+            signal.signal(number, handler)
         if held:
-            before(*held[0])
+            ours[held[0][0]](*held[0])
 
 
 def _last_words(output: str) -> str:

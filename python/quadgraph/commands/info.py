@@ -16,6 +16,8 @@ from quadgraph.commands import device_memory
 from quadgraph.commands.bake import exchange_line, level_table
 from quadgraph.file import sections
 
+_LINE = 2000  # characters of a line that come from a file
+
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Register the subcommand."""
@@ -64,6 +66,12 @@ def describe(file) -> dict[str, Any]:
     }
 
 
+def printable(text: str) -> str:
+    """Return the text with what a terminal would obey written as it stands in the file, and cut short."""
+    shown = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text[:_LINE])
+    return shown + ("..." if len(text) > _LINE else "")
+
+
 def _print_facts(name: str, facts: dict[str, Any]) -> None:
     from quadgraph.baking import inside
 
@@ -88,7 +96,7 @@ def _print_facts(name: str, facts: dict[str, Any]) -> None:
         f"tools: {tools}",
     ]
     for line in lines:
-        console.print(line, markup=False, soft_wrap=True)
+        console.print(printable(line), markup=False, soft_wrap=True)
     console.print(exchange_line(facts["exchange"]), soft_wrap=True)
     for sentence in record.sentences(metadata["budget"], name) if "budget" in metadata else []:
         console.print(sentence, markup=False, soft_wrap=True)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from quadgraph.base import atomic_file
+from quadgraph.base import atomic_file, outputs
 from quadgraph.base.errors import InputError
 from quadgraph.commands import render_scene, scene_options
 from quadgraph.commands import solve_report as text
@@ -50,6 +50,7 @@ def run(args: argparse.Namespace) -> int:
     for path in args.output:
         if path.suffix.lower() not in WRITERS:
             raise InputError(f"{path}: output must end in {' or '.join(WRITERS)}")
+    outputs.check_outputs([*args.output, args.json], scene_options.inputs(args))
     start = time.perf_counter()
     engine = scene_options.make_engine(args)
     report = scene_options.solve(engine, args)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import re
 import time
 from collections.abc import Callable, Iterable
@@ -11,13 +12,15 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import Progress
 
-from quadgraph.base import atomic_file
+from quadgraph.base import atomic_file, outputs
 from quadgraph.base.arguments import positive_int
 from quadgraph.base.errors import InputError
 from quadgraph.commands import scene_options
 from quadgraph.commands import solve_report as text
 from quadgraph.core import load_core
 from quadgraph.file import film
+
+MOST_FRAMES = 1_000_000  # as in the engine (engine/scene/scene_file.cpp)
 
 
 def stated() -> dict[str, str]:
@@ -74,10 +77,12 @@ def run(args: argparse.Namespace) -> int:
         if not equals:
             raise InputError(f"--set {change}: allowed is PATH=VALUE, e.g. /camera/fov=40")
         file.set(pointer, value)
+    check_frames(args, file.frames)
     frames = [args.frame] if args.frames is None else range(args.frames or file.frames)
     with_numbers = args.frames is not None
     for path in args.output:
         check_output(path, with_numbers)
+    outputs.check_outputs([*args.output, args.json], [args.file, *named_files(args.file), *args.set])
     stage = core.Stage(device=args.device, validation=args.validation)
     reports = render(stage, file, frames, args.output)
     if args.json:
@@ -86,9 +91,31 @@ def run(args: argparse.Namespace) -> int:
     return scene_options.exit_status(reports, args.strict)
 
 
+def check_frames(args: argparse.Namespace, most: int) -> None:
+    """Raise InputError unless --frame and --frames are within what a scene may have."""
+    if not abs(args.frame) <= MOST_FRAMES:
+        raise InputError(f"--frame: found {args.frame:g}, allowed are finite numbers of at most {MOST_FRAMES}")
+    if (args.frames or 0) > MOST_FRAMES:
+        raise InputError(f"--frames: found {args.frames}, allowed are 1 to {MOST_FRAMES}; the scene has {most}")
+
+
+def named_files(path: Path) -> list[Path]:
+    """Files that the texts of a scene file name, as far as they are there."""
+    texts, waiting = [], [json.loads(path.read_text())]
+    while waiting:
+        value = waiting.pop()
+        if isinstance(value, (dict, list)):
+            waiting += value.values() if isinstance(value, dict) else value
+        elif isinstance(value, str) and "\0" not in value and len(value) < 4096:
+            texts.append(path.parent / value)
+    return [found for found in texts if found.is_file()]
+
+
 def check_output(path: Path, with_numbers: bool) -> None:
     """Raise InputError unless frames can be written to `path`."""
-    numbered = re.search(r"%0?\d*d", path.name) is not None
+    numbered = "%" in path.name
+    if numbered and not re.fullmatch(r"[^%]*%(0?[1-9])?d[^%]*", path.name):
+        raise InputError(f"{path}: one number like %04d is allowed in a name, of at most 9 digits")
     if film.is_film(path):
         if not with_numbers:
             raise InputError(f"{path}: a film needs --frames")

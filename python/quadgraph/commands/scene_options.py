@@ -133,6 +133,11 @@ def make_engine(args: argparse.Namespace) -> Engine:
     return engine
 
 
+def inputs(args: argparse.Namespace) -> list[Path | str | None]:
+    """The files, and the texts that may name some, that a run reads."""
+    return [args.file, args.material, *(args.light or [])]
+
+
 def solve(engine: Engine, args: argparse.Namespace) -> dict:
     """Solve as the options say; the report of `Engine.solve`."""
     return engine.solve(**keywords(args, SOLVE_GROUPS))

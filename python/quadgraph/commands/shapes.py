@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from quadgraph.base import outputs
 from quadgraph.base.arguments import positive_float
 from quadgraph.base.errors import InputError
 
@@ -39,6 +40,7 @@ def run(args: argparse.Namespace) -> int:
     """Read, carry to the tets, write; 0 on success."""
     from quadgraph.file import shapes_file
 
+    outputs.check_outputs([args.output], [args.body, args.rest, *args.frames])
     if len(args.frames) == 1 and args.frames[0].suffix.lower() in (".glb", ".gltf"):
         if args.rest:
             raise InputError("--rest: a glTF file has its own")

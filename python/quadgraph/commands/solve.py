@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from rich.console import Console
 
-from quadgraph.base import atomic_file, pass_report
+from quadgraph.base import atomic_file, outputs, pass_report
 from quadgraph.base.errors import InputError
 from quadgraph.commands import scene_options
 from quadgraph.commands import solve_report as text
@@ -38,6 +38,7 @@ def run(args: argparse.Namespace) -> int:
     """Solve and report; 3 as `scene_options.exit_status` says."""
     if args.field and args.field.suffix != ".npz":
         raise InputError(f"{args.field}: --field must end in .npz")
+    outputs.check_outputs([args.json, args.field], scene_options.inputs(args))
     engine = scene_options.make_engine(args)
     report = scene_options.solve(engine, args)
     scene_options.check_validation(engine)

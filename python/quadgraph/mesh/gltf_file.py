@@ -25,6 +25,7 @@ _TYPES: dict[int, type[np.number]] = {
     5126: np.float32,
 }
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
+_LARGEST = 1e12  # of the numbers of a transform
 _PACKED = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression")
 
 
@@ -36,6 +37,17 @@ def read(path: Path, wanted: Callable[[GltfFile], T]) -> T:
         raise
     except (OSError, KeyError, IndexError, ValueError, TypeError, struct.error) as error:
         raise InputError(f"{path}: cannot be read as glTF: {type(error).__name__} {error}") from error
+
+
+def check_plain(file: GltfFile) -> None:
+    """Raise InputError for what the reader of meshes would ignore: sparse accessors, matrices beyond belief."""
+    for number, accessor in enumerate(file.document.get("accessors", [])):
+        if "sparse" in accessor:
+            raise InputError(f"{file.path}, accessor {number}: sparse found, which is not read; write it without")
+    for number, node in enumerate(file.document.get("nodes", [])):
+        values = [float(x) for name in ("matrix", "translation", "rotation", "scale") for x in node.get(name, [])]
+        if not all(abs(value) <= _LARGEST for value in values):
+            raise InputError(f"{file.path}, node {number}: a transform with numbers above {_LARGEST:g} or none found")
 
 
 class GltfFile:

@@ -15,15 +15,18 @@ import trimesh
 
 from quadgraph.base.errors import InputError
 from quadgraph.base.units import UNITS_MM
+from quadgraph.mesh import gltf_file, ply_header
 from quadgraph.mesh.mesh_text import read_obj, read_off
 from quadgraph.mesh.surface import SourceMesh, Surface
 
+SIZES_MM = (1e-4, 1e7)  # of the longest side: squares, volumes and light are within single precision
 _HEIGHT_AXIS = 1  # y: height is the extent along it
 
 Arrays = tuple[np.ndarray, np.ndarray]
 
 
 def _read_ply(path: Path) -> Arrays:
+    ply_header.check(path)
     meshes = pymeshlab.MeshSet()
     with contextlib.chdir(os.curdir):  # where a file that cannot be read would leave us in its folder
         meshes.load_new_mesh(str(path))
@@ -40,13 +43,25 @@ def _weld(vertices: np.ndarray, triangles: np.ndarray) -> Arrays:
     return unique, inverse.reshape(-1)[triangles]
 
 
+def _check_stl(path: Path) -> None:
+    """Raise InputError for a binary file of another size than its count of triangles gives."""
+    data = path.read_bytes()
+    stated = int.from_bytes(data[80:84], "little")
+    if not data.lstrip().startswith(b"solid") and len(data) != 84 + 50 * stated:
+        raise InputError(
+            f"{path}: {len(data)} bytes found, {stated} triangles are stated, which take {84 + 50 * stated}"
+        )
+
+
 def _read_stl(path: Path) -> Arrays:
+    _check_stl(path)
     mesh: Any = trimesh.load(path, process=False, force="mesh")
     return _weld(np.asarray(mesh.vertices, np.float64), np.asarray(mesh.faces, np.int64))
 
 
 def _read_gltf(path: Path) -> Arrays:
     """All triangle meshes of the scene under their nodes' transforms, as one."""
+    gltf_file.check_plain(gltf_file.GltfFile(path))
     scene = trimesh.load_scene(path, process=False)
     parts = [part for part in scene.dump() if isinstance(part, trimesh.Trimesh)]
     if not parts:
@@ -86,6 +101,7 @@ def read_surface(path: str | Path, *, unit: str | None = None, height_mm: float 
     vertices, triangles = _guarded(reader, path)
     _check(path, vertices, triangles)
     unit_mm = _unit_mm(path, vertices, triangles, unit, height_mm)
+    _check_size(path, vertices[np.unique(triangles)], unit_mm)
     surface = Surface(vertices * unit_mm, triangles)
     digest = hashlib.sha256(content).hexdigest()
     return SourceMesh(surface, path.name, digest, unit_mm, len(vertices), len(triangles))
@@ -111,6 +127,17 @@ def _check(path: Path, vertices: np.ndarray, triangles: np.ndarray) -> None:
     if len(wrong):
         found, last = triangles[wrong[0]].tolist(), len(vertices) - 1
         raise InputError(f"{path}, triangle {wrong[0]}: vertex indices {found} found, allowed are 0 to {last}")
+
+
+def _check_size(path: Path, used: np.ndarray, unit_mm: float) -> None:
+    with np.errstate(over="ignore", invalid="ignore"):
+        longest = float((used.max(axis=0) - used.min(axis=0)).max()) * unit_mm
+        farthest = float(np.abs(used).max()) * unit_mm
+    if not SIZES_MM[0] <= longest <= SIZES_MM[1] or not farthest <= SIZES_MM[1]:
+        raise InputError(
+            f"{path}: a longest side of {longest:.3g} mm found, at most {farthest:.3g} mm from 0, allowed are "
+            f"{SIZES_MM[0]:g} to {SIZES_MM[1]:g} mm; state another unit or height"
+        )
 
 
 def _unit_mm(

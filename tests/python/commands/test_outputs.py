@@ -1,0 +1,71 @@
+"""Outputs: never a file that is read, never what is no regular file, and nothing left when a bake is ended."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from quadgraph.base import atomic_file
+from quadgraph.base.errors import InputError
+from quadgraph.base.outputs import check_outputs
+from quadgraph.cli import main
+from shapes import cube, icosphere, write_obj
+
+
+def test_an_output_that_is_read_is_refused_whatever_its_name(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a").mkdir()
+    file = tmp_path / "in.ply"
+    file.write_text("precious")
+    os.link(file, tmp_path / "hard.ply")
+    light = "projector:0,0,9:0,0,-1:20:in.ply:1"
+    for name in ("in.ply", "a/../in.ply", str(file), "hard.ply"):
+        for read in (file, "in.ply", light):
+            with pytest.raises(InputError, match="is read"):
+                check_outputs([Path(name)], [read])
+    with pytest.raises(InputError, match="two outputs"):
+        check_outputs([Path("out.png"), Path("a/../out.png")], [])
+    check_outputs([Path("out.png"), None, Path("out.json")], [file, "marble", light, None])
+
+
+@pytest.mark.parametrize("kind", ["fifo", "link", "folder"])
+def test_what_is_no_regular_file_is_not_replaced(tmp_path, kind):
+    path, target = tmp_path / "out.json", tmp_path / "target"
+    target.write_text("precious")
+    {"fifo": os.mkfifo, "link": lambda p: p.symlink_to(target), "folder": os.mkdir}[kind](path)
+    with pytest.raises(InputError, match="allowed is a regular file or a new name"):
+        atomic_file.write_json(path, {})
+    assert target.read_text() == "precious"
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["out.json", "target"]
+
+
+def test_a_bake_onto_its_mesh_leaves_it(tmp_path, capsys):
+    mesh = write_obj(cube(2.0), tmp_path / "in.obj")
+    before = mesh.read_bytes()
+    for more in ([], ["--surface-only"]):
+        assert main(["bake", str(mesh), "--unit", "mm", "-o", str(mesh), *more]) == 1
+        assert "is read" in capsys.readouterr().err
+        assert mesh.read_bytes() == before
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGINT])
+def test_a_bake_that_is_ended_leaves_nothing(tmp_path, number):
+    mesh = write_obj(icosphere(5, 20.0), tmp_path / "in.obj")
+    folder = tmp_path / "temporary"
+    folder.mkdir()
+    command = [sys.executable, "-m", "quadgraph.cli", "bake", mesh, "--unit", "mm", "-o", tmp_path / "out.qgraph"]
+    process = subprocess.Popen(command, env=os.environ | {"TMPDIR": str(folder)}, stderr=subprocess.PIPE)
+    while not any(folder.iterdir()):
+        assert process.poll() is None
+        time.sleep(0.01)
+    process.send_signal(number)
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == 128 + number, said
+    assert not any(folder.iterdir())
+    assert not (tmp_path / "out.qgraph").exists()
