@@ -1,6 +1,7 @@
 #include "engine/cpu/thread_pool.h"
 
 #include <sched.h>
+#include <unistd.h>
 
 #include <algorithm>
 
@@ -37,6 +38,11 @@ ThreadPool::ThreadPool(unsigned threads) {
 }
 
 ThreadPool::~ThreadPool() {
+  if (getpid() != process_) {
+    // A fork has none of the threads: what stands for them can be neither joined nor destroyed.
+    static_cast<void>(new std::vector<std::jthread>(std::move(others_)));
+    return;
+  }
   ends_ = true;
   ++round_;
   round_.notify_all();

@@ -1,6 +1,8 @@
 // Threads that share out the parts of a piece of work.
 #pragma once
 
+#include <unistd.h>
+
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -28,6 +30,7 @@ class ThreadPool {
   void take_parts();
   void serve();
 
+  pid_t process_ = getpid();
   std::vector<std::jthread> others_;
   const std::function<void(std::uint32_t, std::uint32_t)>* work_ = nullptr;
   std::uint32_t count_ = 0, part_ = 1;

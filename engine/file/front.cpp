@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/base/error.h"
+#include "engine/base/json_text.h"
 #include "engine/file/qgraph_layout.h"
 #include "engine/file/section_table.h"
 
@@ -29,6 +30,7 @@ std::string first_section(const std::filesystem::path& path) {
 }  // namespace
 
 float front_from(const std::string& metadata, const std::string& file) {
+  check_json(metadata);
   const auto json = nlohmann::json::parse(metadata, nullptr, false);
   if (!json.is_object() || !json.contains("front")) return 0;
   const auto& front = json["front"];
@@ -42,6 +44,8 @@ float front_of(const std::filesystem::path& file) {
   try {
     return front_from(first_section(file), file.string());
   } catch (const FormatError&) {
+    return 0;
+  } catch (const InputError&) {
     return 0;
   }
 }

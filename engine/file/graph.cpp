@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/base/error.h"
+#include "engine/base/json_text.h"
 #include "engine/file/front.h"
 #include "engine/file/section_table.h"
 #include "engine/file/validate.h"
@@ -114,6 +115,11 @@ std::uint32_t count_levels(const SectionTable& table) {
 }
 
 void check_metadata(const SectionTable& table, const std::string& text, std::size_t levels) {
+  try {
+    check_json(text);
+  } catch (const InputError& error) {
+    fail_format(table.file(), "metadata", error.what());
+  }
   const auto json = nlohmann::json::parse(text, nullptr, false);
   if (!json.is_object()) fail_format(table.file(), "metadata", "not a JSON object in UTF-8");
   for (const char* key : {"generator", "source", "unit_mm", "mesher", "repairs", "levels", "tools"}) {

@@ -77,6 +77,7 @@ struct PresentScene {
   bool as_baked = true;  // the body is at rest and has no edits
 };
 
+// Serves one thread at a time: another one that asks meanwhile, and a process forked later, get InputError.
 class Engine {
  public:
   // Loads a .qgraph onto a device. Throws FormatError, InputError, DeviceError.

@@ -6,6 +6,7 @@
 #include "engine/render/display/display_faces.h"
 #include "engine/render/display/display_motion.h"
 #include "engine/render/engine.h"
+#include "engine/render/in_use.h"
 #include "engine/render/inside/inside.h"
 #include "engine/render/light/hidden_sky.h"
 #include "engine/render/light/irradiance.h"
@@ -35,6 +36,7 @@ struct Engine::Implementation {
     shadows.update(mesh, {{}, bounds});
   }
 
+  InUse in_use;
   std::string source;
   QuadGraph graph;
   Sphere bounds;

@@ -3,16 +3,22 @@
 #include <zip.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstring>
 #include <memory>
-#include <regex>
+#include <optional>
 
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 
 namespace quadgraph {
 namespace {
 
-constexpr std::uint64_t largest_array = std::uint64_t{4} << 30;  // bytes: what a broken header may ask for
+constexpr std::uint64_t largest_array = std::uint64_t{4} << 30;  // bytes
+// What a member may take beyond its packed bytes, and how often those: a volume that is the same all over packs well,
+// and so does one that is made to fill memory.
+constexpr std::uint64_t free_bytes = std::uint64_t{128} << 20, most_packed = 20;
+constexpr std::size_t most_axes = 8;
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& what) {
   throw InputError(path.string() + ": cannot be read as .npz: " + what);
@@ -30,6 +36,10 @@ using Bytes = std::vector<char>;
 Bytes content(zip_t* archive, zip_uint64_t index, const std::filesystem::path& path) {
   zip_stat_t about;
   if (zip_stat_index(archive, index, 0, &about) != 0 || about.size > largest_array) fail(path, "a broken member");
+  if (about.size > about.comp_size * most_packed + free_bytes) {
+    fail(path, std::string(about.name) + " has " + std::to_string(about.size) + " bytes, packed in " +
+                   std::to_string(about.comp_size) + "; more than 128 MiB are allowed up to 20 times the packed ones");
+  }
   Bytes bytes(about.size);
   const std::unique_ptr<zip_file_t, CloseMember> member(zip_fopen_index(archive, index, 0));
   if (!member || zip_fread(member.get(), bytes.data(), about.size) != static_cast<zip_int64_t>(about.size)) {
@@ -60,6 +70,41 @@ Convert convert_of(const std::string& type) {
   return found == known.end() ? nullptr : found->second;
 }
 
+std::string_view trimmed(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(' ');
+  return begin == std::string_view::npos ? "" : text.substr(begin, text.find_last_not_of(' ') - begin + 1);
+}
+
+// What follows `key` in a header; empty if it is not there.
+std::string_view after(std::string_view header, std::string_view key) {
+  const std::size_t at = header.find(key);
+  return at == std::string_view::npos ? "" : trimmed(header.substr(at + key.size()));
+}
+
+// What stands between a first character and the next `end`, if that is what a text begins with.
+std::optional<std::string_view> between(std::string_view text, char begin, char end) {
+  const std::size_t last = text.starts_with(begin) ? text.find(end, 1) : std::string_view::npos;
+  if (last == std::string_view::npos) return std::nullopt;
+  return text.substr(1, last - 1);
+}
+
+// A type of NumPy is short.
+std::optional<std::string_view> quoted(std::string_view text) {
+  const auto type = between(text, '\'', '\'');
+  return type && type->size() > 1 && type->size() < 16 ? type : std::nullopt;
+}
+
+std::optional<std::string_view> in_brackets(std::string_view text) {
+  return between(text, '(', ')');
+}
+
+std::uint64_t extent(std::string_view word, const std::string& name, const std::filesystem::path& path) {
+  std::uint64_t value = 0;
+  const auto read = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (read.ec != std::errc() || read.ptr != word.data() + word.size()) fail(path, name + " has a header that is none");
+  return value;
+}
+
 // https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html
 NpzArray parsed(const Bytes& bytes, const std::string& name, const std::filesystem::path& path) {
   const auto byte = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<unsigned char>(bytes[i])); };
@@ -68,25 +113,26 @@ NpzArray parsed(const Bytes& bytes, const std::string& name, const std::filesyst
   std::size_t length = byte(8) | byte(9) << 8;
   if (start == 12) length |= byte(10) << 16 | byte(11) << 24;
   if (bytes.size() < start + length) fail(path, name + " is cut off");
-  const std::string header(bytes.data() + start, length);
-  std::smatch type, shape;
-  const bool understood = std::regex_search(header, type, std::regex("'descr': *'([^']+)'")) &&
-                          std::regex_search(header, shape, std::regex("'shape': *\\(([0-9, ]*)\\)")) &&
-                          std::regex_search(header, std::regex("'fortran_order': *(True|False)"));
-  if (!understood) fail(path, name + " has a header that is none");
-  NpzArray array{.type = type[1].str(), .shape = {}, .values = {}};
-  const std::string sizes = shape[1].str();
-  const std::regex number("[0-9]+");
+  const std::string_view header(bytes.data() + start, length);
+  const auto type = quoted(after(header, "'descr':"));
+  const auto sizes = in_brackets(after(header, "'shape':"));
+  const std::string_view order = after(header, "'fortran_order':");
+  if (!type || !sizes || !(order.starts_with("True") || order.starts_with("False"))) {
+    fail(path, name + " has a header that is none");
+  }
+  NpzArray array{.type = std::string(*type), .shape = {}, .values = {}};
   std::uint64_t count = 1;
-  for (std::sregex_iterator at(sizes.begin(), sizes.end(), number), end; at != end; ++at) {
-    if (at->str().size() > 10) fail(path, name + " has a header that is none");
-    array.shape.push_back(std::stoull(at->str()));
+  for (std::string_view word : split(*sizes, ',')) {
+    word = trimmed(word);
+    if (word.empty()) continue;
+    if (array.shape.size() == most_axes) fail(path, name + " has more than " + std::to_string(most_axes) + " axes");
+    array.shape.push_back(extent(word, name, path));
     count *= std::min(array.shape.back(), largest_array);
     if (count > largest_array) fail(path, name + " is too large");
   }
   const Convert as_numbers = convert_of(array.type);
   if (!as_numbers) return array;
-  if (header.find("'fortran_order': True") != std::string::npos && array.shape.size() > 1) {
+  if (order.starts_with("True") && array.shape.size() > 1) {
     fail(path, name + " is in Fortran order; numpy.ascontiguousarray brings it into C order");
   }
   const std::uint64_t item = static_cast<std::uint64_t>(array.type[2] - '0');
@@ -96,9 +142,17 @@ NpzArray parsed(const Bytes& bytes, const std::string& name, const std::filesyst
   return array;
 }
 
+void check_name(const std::string& name, std::span<const std::string_view> known, const std::filesystem::path& path) {
+  constexpr std::size_t shown = 60;  // characters
+  if (std::find(known.begin(), known.end(), name) != known.end()) return;
+  std::string all;
+  for (std::string_view each : known) all += (all.empty() ? "" : ", ") + std::string(each);
+  throw InputError(path.string() + ": " + name.substr(0, shown) + ": not known; allowed are " + all);
+}
+
 }  // namespace
 
-std::map<std::string, NpzArray> read_npz(const std::filesystem::path& path) {
+std::map<std::string, NpzArray> read_npz(const std::filesystem::path& path, std::span<const std::string_view> known) {
   int code = 0;
   const std::unique_ptr<zip_t, CloseArchive> archive(zip_open(path.c_str(), ZIP_RDONLY, &code));
   if (!archive) {
@@ -112,6 +166,7 @@ std::map<std::string, NpzArray> read_npz(const std::filesystem::path& path) {
   for (zip_int64_t i = 0; i < zip_get_num_entries(archive.get(), 0); ++i) {
     std::string name = zip_get_name(archive.get(), static_cast<zip_uint64_t>(i), 0);
     if (name.ends_with(".npy")) name.resize(name.size() - 4);
+    check_name(name, known, path);
     arrays[name] = parsed(content(archive.get(), static_cast<zip_uint64_t>(i), path), name, path);
   }
   return arrays;

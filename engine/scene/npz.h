@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace quadgraph {
@@ -17,7 +19,8 @@ struct NpzArray {
   bool numbers() const { return !values.empty() || type[1] == 'f' || type[1] == 'i' || type[1] == 'u'; }
 };
 
-// All of them by name, compressed or not. Throws InputError naming the file and what is wrong with it.
-std::map<std::string, NpzArray> read_npz(const std::filesystem::path& path);
+// All of them by name, compressed or not; those of other names than `known` are refused unread. Throws InputError
+// naming the file and what is wrong with it.
+std::map<std::string, NpzArray> read_npz(const std::filesystem::path& path, std::span<const std::string_view> known);
 
 }  // namespace quadgraph

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "engine/base/atomic_file.h"
+#include "engine/base/json_text.h"
 #include "engine/file/front.h"
 #include "engine/render/light/default_lights.h"
 #include "engine/scene/volume.h"
@@ -18,15 +19,24 @@ constexpr std::uint32_t format_version = 1;
 constexpr std::uint32_t most_frames = 1000000;
 
 Json parsed(const std::string& text, const std::filesystem::path& path) {
+  check_json(text);
   try {
     return Json::parse(text);
   } catch (const Json::parse_error& error) {
-    const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
-    throw InputError(path.string() + ": no JSON at line " + std::to_string(1 + std::count(text.begin(), end, '\n')));
+    throw InputError(path.string() + ": no JSON at " + json_place(text, error.byte > 0 ? error.byte - 1 : 0));
+  } catch (const Json::exception&) {
+    throw InputError(path.string() + ": a number is beyond double precision, allowed are up to 1.7e308");
   }
 }
 
 std::string content(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto kind = std::filesystem::status(path, error).type();
+  if (kind == std::filesystem::file_type::not_found) throw InputError(path.string() + ": cannot be read");
+  if (kind != std::filesystem::file_type::regular) throw InputError(path.string() + ": is no regular file");
+  if (std::filesystem::file_size(path) > json_bytes) {
+    throw InputError(path.string() + ": larger than the " + std::to_string(json_bytes) + " bytes that are allowed");
+  }
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
   if (!file || !(text << file.rdbuf())) throw InputError(path.string() + ": cannot be read");
@@ -107,6 +117,7 @@ void SceneFile::check() {
 }
 
 void SceneFile::set(const std::string& pointer, const std::string& value) {
+  check_json(value);
   const Json read = Json::parse(value, nullptr, false);
   SceneFile changed = *this;
   put(changed.document_, pointer, read.is_discarded() ? Json(value) : read);

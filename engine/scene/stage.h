@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 
+#include "engine/render/in_use.h"
 #include "engine/scene/scene.h"
 
 namespace quadgraph {
@@ -27,6 +28,7 @@ class Stage {
   const Scene& scene() const { return scene_; }
 
  private:
+  InUse in_use_;
   device::DeviceOptions options_;
   std::shared_ptr<device::Device> device_;  // null: by the options
   std::unique_ptr<Engine> engine_;

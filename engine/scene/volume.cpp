@@ -18,13 +18,7 @@ namespace {
 // The arrays of a file, and complaints about them.
 class Fields {
  public:
-  explicit Fields(const std::filesystem::path& path) : path_(path), arrays_(read_npz(path)) {
-    constexpr std::array<std::string_view, 5> known = {"sigma_s_prime", "sigma_a", "spacing", "origin", "eta"};
-    for (const auto& [name, array] : arrays_) {
-      if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-      refuse(name, "not known; allowed are sigma_s_prime, sigma_a, spacing, origin, eta");
-    }
-  }
+  explicit Fields(const std::filesystem::path& path) : path_(path), arrays_(read_npz(path, known)) {}
 
   [[noreturn]] void refuse(const std::string& name, const std::string& what) const {
     throw InputError(path_.string() + ": " + name + ": " + what);
@@ -65,6 +59,8 @@ class Fields {
   }
 
  private:
+  static constexpr std::array<std::string_view, 5> known = {"sigma_s_prime", "sigma_a", "spacing", "origin", "eta"};
+
   std::filesystem::path path_;
   std::map<std::string, NpzArray> arrays_;
 };

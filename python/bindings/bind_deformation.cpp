@@ -3,6 +3,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "engine/base/error.h"
+#include "engine/base/json_text.h"
 #include "engine/deform/deform.h"
 #include "engine/scene/deformer_json.h"
 #include "python/bindings/bindings.h"
@@ -13,6 +14,7 @@ namespace quadgraph::python {
 namespace {
 
 std::vector<Deformer> parsed(const std::string& text) {
+  check_json(text);
   const Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded()) throw InputError("deformation: the text is no JSON");
   std::vector<Deformer> list;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "engine/base/error.h"
+#include "engine/base/json_text.h"
 #include "engine/deform/motion.h"
 #include "engine/device/copy_bandwidth.h"
 #include "engine/device/device.h"
@@ -264,6 +265,7 @@ void bind_shortest_path(py::class_<Engine>& bound) {
       .def(
           "set_cuts",
           [](Engine& engine, const std::string& json) {
+            check_json(json);
             const Json list = Json::parse(json, nullptr, false);
             std::vector<BodyCut> cuts;
             for (const JsonField& cut : JsonField(list, "cuts").items()) cuts.push_back(cut_from(cut));

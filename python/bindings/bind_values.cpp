@@ -4,6 +4,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "engine/base/error.h"
+#include "engine/base/json_text.h"
 #include "engine/optics/material.h"
 #include "engine/scene/light_json.h"
 #include "engine/scene/scene.h"
@@ -17,6 +18,7 @@ namespace quadgraph::python {
 namespace {
 
 Json parsed(const std::string& text) {
+  check_json(text);
   Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded()) throw InputError("the text is no JSON");
   return json;

@@ -20,7 +20,9 @@ namespace {
 
 constexpr std::int64_t largest_side = 16384;  // texels
 constexpr std::uint32_t largest_kept = 2048;  // the same
-constexpr float largest_texel = 1e15f;        // times the power of a light it is within single precision
+// Texels of any file, and for each of its bytes: others are made to fill memory.
+constexpr std::int64_t free_texels = 50000000, texels_a_byte = 16;
+constexpr float largest_texel = 1e15f;  // times the power of a light it is within single precision
 
 std::string extension_of(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
@@ -94,7 +96,15 @@ Image image_of(const png_image& png, const Value* values, const Decode& decode) 
 }  // namespace
 
 void check_image_size(const std::filesystem::path& path, std::int64_t width, std::int64_t height) {
-  if (width >= 1 && height >= 1 && width <= largest_side && height <= largest_side) return;
+  const bool sides = width >= 1 && height >= 1 && width <= largest_side && height <= largest_side;
+  std::error_code error;
+  const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(path, error));
+  if (sides && !error && width * height > free_texels + texels_a_byte * bytes) {
+    throw InputError(path.string() + ": found " + std::to_string(width) + "x" + std::to_string(height) +
+                     " texels in a file of " + std::to_string(bytes) + " bytes, allowed are 50 million and " +
+                     std::to_string(texels_a_byte) + " for each byte; scale the image down");
+  }
+  if (sides) return;
   throw InputError(path.string() + ": found " + std::to_string(width) + "x" + std::to_string(height) +
                    " texels, expected 1 to " + std::to_string(largest_side) + " a side");
 }

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import re
 import time
 from collections.abc import Callable, Iterable
@@ -12,7 +11,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import Progress
 
-from quadgraph.base import atomic_file, outputs
+from quadgraph.base import atomic_file, json_text, outputs
 from quadgraph.base.arguments import positive_int
 from quadgraph.base.errors import InputError
 from quadgraph.commands import scene_options
@@ -101,7 +100,7 @@ def check_frames(args: argparse.Namespace, most: int) -> None:
 
 def named_files(path: Path) -> list[Path]:
     """Files that the texts of a scene file name, as far as they are there."""
-    texts, waiting = [], [json.loads(path.read_text())]
+    texts, waiting = [], [json_text.loads(path.read_bytes())]
     while waiting:
         value = waiting.pop()
         if isinstance(value, (dict, list)):

@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from quadgraph.base import json_text
 from quadgraph.base.atomic_file import replacing
 from quadgraph.base.errors import FormatError, InputError
 from quadgraph.file import qgraph_rules
@@ -214,8 +215,8 @@ def _read_metadata(sections: dict[str, np.ndarray], name: str) -> dict[str, Any]
     _require(first == "metadata", name, f"the first section is {first!r}, it must be 'metadata'")
     _require(sections[first].dtype == np.uint8 and sections[first].ndim == 1, name, "metadata: not u8 of rank 1")
     try:
-        metadata = json.loads(sections[first].tobytes().decode("utf-8"))
-    except (ValueError, RecursionError) as error:
-        raise FormatError(f"{name}: metadata: not UTF-8 JSON ({error})") from None
+        metadata = json_text.loads(sections[first].tobytes())
+    except InputError as error:
+        raise FormatError(f"{name}: metadata: {error}") from None
     _require(isinstance(metadata, dict), name, "metadata: not a JSON object")
     return metadata

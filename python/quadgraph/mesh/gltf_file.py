@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import json
 import struct
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from quadgraph.base import json_text
 from quadgraph.base.errors import InputError
 
 T = TypeVar("T")
@@ -59,7 +59,7 @@ class GltfFile:
         self.binary = b""
         if data[:4] == _GLB.to_bytes(4, "little"):
             data, self.binary = _chunks(data)
-        self.document: dict[str, Any] = json.loads(data)
+        self.document: dict[str, Any] = json_text.loads(data)
         for name in self.document.get("extensionsRequired", []):
             if name in _PACKED:
                 raise InputError(f"{path}: extension {name} found, which is not supported: write it without")

@@ -193,7 +193,7 @@ TEST_CASE("a value is set where it belongs, or nothing is") {
 }
 
 TEST_CASE("bad scenes: the path into the file, what was found, what is allowed") {
-  check_refused("{\"body\":\n \"a\",\n ]", "no JSON at line 3");
+  check_refused("{\"body\":\n \"a\",\n ]", "no JSON at line 3, column 2");
   check_refused("[]", "/: found [], allowed is an object of");
   check_refused("{}", "/body: found nothing, a value is required");
   check_refused(R"({"body": 3})", "/body: found 3, allowed is a text");
