@@ -148,20 +148,6 @@ void check_seen(const Place& place, const Level& level) {
   }
 }
 
-// Vertices of the face opposite to vertex k of a positive tet, counter-clockwise seen from outside.
-glm::uvec3 outward_face(const glm::uvec4& tet, int k) {
-  switch (k) {
-    case 0:
-      return {tet[1], tet[2], tet[3]};
-    case 1:
-      return {tet[0], tet[3], tet[2]};
-    case 2:
-      return {tet[0], tet[1], tet[3]};
-    default:
-      return {tet[0], tet[2], tet[1]};
-  }
-}
-
 bool equal_up_to_rotation(const glm::uvec3& a, const glm::uvec3& b) {
   return a == b || a == glm::uvec3(b.y, b.z, b.x) || a == glm::uvec3(b.z, b.x, b.y);
 }
@@ -219,6 +205,19 @@ void check_surface_vertices(const Place& place, const Level& level) {
 
 }  // namespace
 
+glm::uvec3 outward_face(const glm::uvec4& tet, int k) {
+  switch (k) {
+    case 0:
+      return {tet[1], tet[2], tet[3]};
+    case 1:
+      return {tet[0], tet[3], tet[2]};
+    case 2:
+      return {tet[0], tet[1], tet[3]};
+    default:
+      return {tet[0], tet[2], tet[1]};
+  }
+}
+
 std::uint32_t count_surface_vertices(const Level& level) {
   std::uint32_t largest = 0;
   for (const glm::uvec3& face : level.faces) largest = std::max({largest, face.x, face.y, face.z});
@@ -242,6 +241,8 @@ void validate_level(const Level& level, const Level* coarser, const std::string&
   check_vertices_used(place, level);
   check_links(place, level);
   check_surface_vertices(place, level);
+  validate_size(level.vertices, file, place.prefix + "vertices");
+  validate_nodes(level, file, index);
   if (coarser == nullptr) return;
   check_transfer(place, "inner", level.inner, level.tets.size(), coarser->tets.size());
   check_transfer(place, "surface", level.surface, level.faces.size(), coarser->faces.size());
@@ -267,6 +268,7 @@ void validate_display(const DisplayMesh& display, const Level* finest, const std
   }
   check_finite(place, "vertices", display.vertices);
   check_finite(place, "normals", display.normals);
+  validate_size(display.vertices, file, "display/vertices");
   check_indices(place, "triangles", display.triangles, count);
   for (std::size_t i = 0; i < count; ++i) {
     if (finest != nullptr && display.face[i] >= finest->faces.size()) place.fail("face", i, "index out of range");
@@ -275,6 +277,7 @@ void validate_display(const DisplayMesh& display, const Level* finest, const std
   if (finest == nullptr) return;
   const auto* weights = reinterpret_cast<const float*>(display.barycentric.data());
   check_weights(place, "barycentric", {weights, 3 * count}, 3);
+  validate_display_place(display, *finest, file);
 }
 
 }  // namespace quadgraph

@@ -21,6 +21,18 @@ void validate_grid_everywhere(std::span<const Level> levels, const std::string& 
 // At most one level has rows of what its faces see.
 void validate_seen_once(std::span<const Level> levels, const std::string& file);
 
+// Vertices of the face opposite to vertex k of a positive tet, counter-clockwise seen from outside.
+glm::uvec3 outward_face(const glm::uvec4& tet, int k);
+
+// The box around them is neither too small nor too large for single precision.
+void validate_size(std::span<const glm::vec3> vertices, const std::string& file, const std::string& section);
+
+// Inner nodes lie in their tets, surface nodes at the centroids of their faces.
+void validate_nodes(const Level& level, const std::string& file, std::uint32_t index);
+
+// Vertices of the display mesh lie where their faces are, and nothing is inside out.
+void validate_display_place(const DisplayMesh& display, const Level& finest, const std::string& file);
+
 // Largest vertex index in `faces` plus one.
 std::uint32_t count_surface_vertices(const Level& level);
 

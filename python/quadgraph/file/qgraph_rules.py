@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from quadgraph.base.errors import FormatError
+from quadgraph.file import place_rules
 from quadgraph.tets.tet_geometry import FACE_CORNERS, determinants
 
 MAX_LEVELS = 16
@@ -86,6 +87,8 @@ def check(sections: dict[str, np.ndarray], metadata: dict[str, Any], name: str) 
             prefix = f"level{i}/{transfer}"
             _check_range(sections[f"{prefix}_index"], coarse[key], f"{name}: {prefix}_index")
             _check_weights(sections[f"{prefix}_weight"], f"{name}: {prefix}_weight")
+    for i in range(levels):
+        place_rules.check_level({field: sections[f"level{i}/{field}"] for field in _LEVEL}, f"{name}: level{i}")
     _check_display(sections, _level_counts(sections, 0)["n_f"] if levels else None, name)
     _check_metadata(metadata, levels, name)
 
@@ -146,16 +149,20 @@ def _check_level(level: dict[str, np.ndarray], counts: dict[str, int], where: st
     _require(not len(orphans), f"{where}/vertices", f"vertex {orphans[0] if len(orphans) else ''} is used by no tet")
     used = np.unique(level["faces"])
     _require(len(used) == used[-1] + 1, f"{where}/vertices", "the vertices on the surface do not come first")
-    _check_inner_links(level["links"], n_t, f"{where}/links")
+    _check_inner_links(level["links"], level["tets"], n_t, f"{where}/links")
     _check_surface_links(level, n_t, n_f, where)
 
 
-def _check_inner_links(links: np.ndarray, n_t: int, where: str) -> None:
+def _check_inner_links(links: np.ndarray, tets: np.ndarray, n_t: int, where: str) -> None:
     # Each directed link as one number; symmetric if the set equals that of the reversed links.
     source, target = np.divmod(np.flatnonzero(links < n_t), 4)[0].astype(np.int64), links[links < n_t].astype(np.int64)
     forward, backward = np.sort(source * n_t + target), np.sort(target * n_t + source)
     _require(bool((forward == backward).all()), where, "inner links are not symmetric")
     _require(bool((source != target).all()), where, "a node is linked to itself")
+    tet, corner = np.nonzero(links < n_t)
+    across = tets[tet[:, None], FACE_CORNERS[corner]]
+    shared = (across[:, :, None] == tets[links[tet, corner]][:, None, :]).any(axis=2).all(axis=1)
+    _require(bool(shared.all()), where, "a link leads to a tet that does not have the face across which it is")
 
 
 def _check_surface_links(level: dict[str, np.ndarray], n_t: int, n_f: int, where: str) -> None:
@@ -235,10 +242,14 @@ def _check_display(sections: dict[str, np.ndarray], n_f: int | None, name: str) 
     counts = {"n_d": len(sections["display/vertices"]), "n_p": len(sections["display/triangles"])}
     _check_fields(sections, "display/", _DISPLAY_ALONE if n_f is None else _DISPLAY, counts, name)
     _check_range(sections["display/triangles"], counts["n_d"], f"{name}: display/triangles")
+    place_rules.check_size(sections["display/vertices"], f"{name}: display/vertices")
+    lengths = np.linalg.norm(sections["display/normals"].astype(np.float64), axis=1)
+    _require(bool((np.abs(lengths - 1) <= 1e-3).all()), f"{name}: display/normals", "a normal is not of unit length")
     if n_f is None:
         return
     _check_range(sections["display/face"], n_f, f"{name}: display/face")
     _check_weights(sections["display/barycentric"], f"{name}: display/barycentric")
+    place_rules.check_display(sections, name)
 
 
 def _check_metadata(metadata: dict[str, Any], levels: int, name: str) -> None:

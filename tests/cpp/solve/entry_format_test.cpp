@@ -12,7 +12,9 @@ TEST_CASE("a body squeezed until packed entries would round too much is solved l
                                     split_at_corners(box_level(2, 10.0f, 0.15f))};
   SolvedBody moved(open_device(test_device()), graph_of(levels));
   for (OwnedLevel& level : levels) {
-    for (glm::vec3& p : level.vertices) p = squeeze(p);
+    for (auto* points : {&level.vertices, &level.nodes}) {
+      for (glm::vec3& p : *points) p = squeeze(p);
+    }
   }
   SolvedBody fresh(open_device(test_device()), graph_of(levels));
   const gpu::Material material = homogeneous();

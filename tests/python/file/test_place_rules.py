@@ -1,0 +1,77 @@
+"""Files whose checksums are right and whose sections contradict each other: refused by both languages alike."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from quadgraph.baking.pipeline import BakeOptions, bake
+from quadgraph.base.errors import FormatError
+from quadgraph.file import qgraph_file
+from shapes import torus, write_obj
+
+CASES = {
+    "one vertex far away": ("display/vertices", lambda a: np.concatenate([a[:1] + 1e6, a[1:]])),
+    "all in one point": ("display/vertices", lambda a: a * 0),
+    "vertices shuffled": ("display/vertices", lambda a: np.roll(a, 7, axis=0)),
+    "vertices times 100": ("display/vertices", lambda a: a * 100),
+    "vertices elsewhere": ("display/vertices", lambda a: a + 50),
+    "normals inwards": ("display/normals", lambda a: -a),
+    "normals of no length": ("display/normals", lambda a: a * 0),
+    "normals of 1e30": ("display/normals", lambda a: a * 1e30),
+    "triangles inside out": ("display/triangles", lambda a: a[:, [0, 2, 1]]),
+    "one face for all": ("display/face", lambda a: a * 0),
+    "faces shuffled": ("display/face", lambda a: np.roll(a, 7)),
+    "nodes in one point": ("level0/nodes", lambda a: a * 0),
+    "nodes elsewhere": ("level0/nodes", lambda a: a + 5),
+    "nodes shuffled": ("level0/nodes", lambda a: np.roll(a, 7, axis=0)),
+    "nodes of a coarser level elsewhere": ("level1/nodes", lambda a: a + 5),
+    "links in another order": ("level0/links", lambda a: a[:, [1, 0, 2, 3]]),
+}
+
+
+@pytest.fixture(scope="module")
+def ring(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("places")
+    mesh = write_obj(torus(10, 4, 24, 12), folder / "ring.obj")
+    bake(mesh, folder / "ring.qgraph", BakeOptions(unit="mm", levels=2, surface_vertices=120))
+    return folder / "ring.qgraph"
+
+
+def sealed(ring, path, section: str, change) -> None:
+    """Write the file with one section changed and its checksums right."""
+    file = qgraph_file.read(ring)
+    sections = {name: array for name, array in file.sections.items() if name != "metadata"}
+    sections[section] = np.ascontiguousarray(change(sections[section])).astype(sections[section].dtype)
+    qgraph_file.write_sections(path, file.metadata, sections)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_sections_that_contradict_each_other_are_refused(ring, tmp_path, case):
+    core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
+    path = tmp_path / "bad.qgraph"
+    sealed(ring, path, *CASES[case])
+    for read in (qgraph_file.read, core.load):
+        with pytest.raises(FormatError, match=r"bad\.qgraph: (level|display)") as error:
+            read(path)
+        assert len(str(error.value)) < 500
+
+
+@pytest.mark.parametrize("scale", [1e-30, 1e-12, 1e12, 1e30])
+def test_bodies_beyond_single_precision_are_refused(ring, tmp_path, scale):
+    core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
+    file = qgraph_file.read(ring)
+    sections = {name: array for name, array in file.sections.items() if name != "metadata"}
+    for name in sections:
+        if name.endswith(("/vertices", "/nodes")):
+            sections[name] = (sections[name] * scale).astype("<f4")
+    path = tmp_path / "bad.qgraph"
+    qgraph_file.write_sections(path, file.metadata, sections)
+    for read in (qgraph_file.read, core.load):
+        with pytest.raises(FormatError, match=r"longest side|not positively oriented"):
+            read(path)
+
+
+def test_a_display_that_is_finer_than_the_faces_is_good(ring):
+    core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
+    assert len(core.load(ring).levels) == qgraph_file.read(ring).level_count == 2
