@@ -12,6 +12,7 @@ from rich.console import Console
 from rich.table import Table
 
 from quadgraph.baking.budget import record
+from quadgraph.base.errors import FormatError
 from quadgraph.commands import device_memory
 from quadgraph.commands.bake import exchange_line, level_table
 from quadgraph.file import sections
@@ -35,7 +36,11 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print(json.dumps(facts, indent=1))
     else:
-        _print_facts(str(args.file), facts)
+        try:
+            _print_facts(str(args.file), facts)
+        except (AttributeError, KeyError, TypeError, ValueError) as error:
+            what = printable(repr(error))[:200]
+            raise FormatError(f"{args.file}: metadata: not what a bake writes ({what}); bake it again") from error
     return 0
 
 

@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
+import tiny
 from baked import write_levels
 from quadgraph import cli
+from quadgraph.file import qgraph_file
 from shapes import icosphere
 
 _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
@@ -134,3 +136,34 @@ def test_mistakes_are_one_line_and_exit_with_1(sphere, tmp_path, capsys, argumen
     for word in words:
         assert word in captured.err
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"source": 5},
+        {"mesher": []},
+        {"levels": [None, {"vertices": "x"}]},
+        {"repairs": 3},
+        {"tools": []},
+        {"unit_mm": "x"},
+    ],
+)
+def test_info_names_metadata_that_no_bake_writes(tmp_path, capsys, change):
+    path = tmp_path / "odd.qgraph"
+    qgraph_file.write_sections(path, tiny.metadata(tiny.graphs()) | change, tiny.all_sections())
+    assert cli.main(["info", str(path)]) == 1
+    said = capsys.readouterr().err
+    assert f"{path}: metadata: not what a bake writes" in said
+    assert len(said) < 500 + len(str(path))
+
+
+def test_info_prints_no_escapes_of_a_file(tmp_path, capsys):
+    path = tmp_path / "odd.qgraph"
+    odd = {
+        "generator": "\x1b[31mred\x07",
+        "mesher": {"name": "\x1b]0;x", "version": "", "options": "", "grading": None},
+    }
+    qgraph_file.write_sections(path, tiny.metadata(tiny.graphs()) | odd, tiny.all_sections())
+    assert cli.main(["info", str(path)]) == 0
+    assert "\x1b" not in capsys.readouterr().out
