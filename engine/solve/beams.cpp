@@ -13,8 +13,8 @@
 namespace quadgraph {
 namespace {
 
-// W/mm^2. Squared and summed over a surface it is within single precision.
-constexpr Range irradiance_range{.low = 0, .high = 1e15};
+// W/mm^2. Solves are scaled; summed over a surface it is within single precision.
+constexpr Range irradiance_range{.low = 0, .high = 1e30};
 
 void check_irradiance(std::span<const glm::vec3> q, std::uint32_t level, std::uint32_t count) {
   if (q.size() != count) {
