@@ -50,7 +50,7 @@ def test_a_volume_of_one_value_is_the_material_of_that_value(tmp_path):
     colours = np.broadcast_to([0.01, 0.05, 0.2], (*SHAPE, 3))
     path = written(tmp_path / "even.npz", sigma_s_prime=np.ones(SHAPE), sigma_a=colours)
     exitance = []
-    for name, material in (("even", str(path)), ("same", "sigma_s_prime=1,sigma_a=0.01/0.05/0.2")):
+    for name, material in (("volume", str(path)), ("same", "sigma_s_prime=1,sigma_a=0.01/0.05/0.2")):
         field = tmp_path / f"{name}.npz"
         options = ["--model", "sp3", "--tolerance", "1e-5", "--field", str(field)]
         assert cli.main(["solve", str(body), "--material", material, *options]) == 0
