@@ -60,7 +60,13 @@ def test_a_bake_that_is_ended_leaves_nothing(tmp_path, number):
     folder = tmp_path / "temporary"
     folder.mkdir()
     command = [sys.executable, "-m", "quadgraph.cli", "bake", mesh, "--unit", "mm", "-o", tmp_path / "out.qgraph"]
-    process = subprocess.Popen(command, env=os.environ | {"TMPDIR": str(folder)}, stderr=subprocess.PIPE)
+    # Whoever starts the tests in the background, or with nohup, has them and their children ignore INT or HUP.
+    process = subprocess.Popen(
+        command,
+        env=os.environ | {"TMPDIR": str(folder)},
+        stderr=subprocess.PIPE,
+        preexec_fn=lambda: signal.signal(number, signal.SIG_DFL),
+    )
     while not any(folder.iterdir()):
         assert process.poll() is None
         time.sleep(0.01)
