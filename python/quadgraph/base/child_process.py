@@ -89,8 +89,13 @@ def stopped_on_exit() -> Iterator[None]:
 @contextmanager
 def workspace() -> Iterator[Path]:
     """A temporary directory for a program's files, gone afterwards."""
-    with tempfile.TemporaryDirectory(prefix="quadgraph-") as name:
-        yield Path(name)
+    with _interrupts_wait():
+        folder = tempfile.TemporaryDirectory(prefix="quadgraph-")
+    try:
+        yield Path(folder.name)
+    finally:
+        with _interrupts_wait():
+            folder.cleanup()
 
 
 def _child_setup(parent: int, time_limit_s: float, memory_limit_bytes: int | None) -> Callable[[], None]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib.util
 import os
-import tempfile
 from contextlib import suppress
 from fractions import Fraction
 from pathlib import Path
@@ -12,7 +11,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from quadgraph.base import atomic_file, outputs
+from quadgraph.base import atomic_file
 from quadgraph.base.errors import InputError
 
 if TYPE_CHECKING:
@@ -43,13 +42,10 @@ class Film:
         if size[0] % 2 or size[1] % 2:
             raise InputError(f"{path}: a film needs an even width and height, found {size[0]}x{size[1]}")
         self.path = path
-        outputs.check_kind(path)
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem[:200]}.", suffix=path.suffix.lower())
-            os.fchmod(handle, 0o666 & ~atomic_file.umask())
+            handle, self._temporary = atomic_file.new_file(path, path.suffix.lower())
             os.close(handle)
-            self._temporary = Path(name)
             self._container = av.open(self._temporary, "w")
         except OSError as error:
             raise InputError(f"{path}: cannot be written ({error.strerror})") from error

@@ -8,9 +8,9 @@ from __future__ import annotations
 import numpy as np
 
 from quadgraph.base.errors import FormatError
+from quadgraph.base.units import SIZES_MM
 from quadgraph.tets.tet_geometry import FACE_CORNERS
 
-SIZES_MM = (1e-4, 1e7)  # of the longest side and of coordinates
 NODE_TOLERANCE = 1e-5  # of the body's size: single precision, and its sums
 LARGEST_GAP = 0.5  # the same, from a display vertex to its place in a face
 GAP_TOLERANCE = 1e-4  # the same
@@ -30,7 +30,8 @@ def check_size(vertices: np.ndarray, where: str) -> None:
     _require(
         SIZES_MM[0] <= longest <= SIZES_MM[1] and far <= SIZES_MM[1],
         where,
-        f"longest side {longest:.6g} mm, at most {far:.6g} mm from 0 found, allowed are 0.0001 to 1e7 mm",
+        f"longest side {longest:.6g} mm, at most {far:.6g} mm from 0 found, "
+        f"allowed are {SIZES_MM[0]:g} to {SIZES_MM[1]:g} mm",
     )
 
 

@@ -14,12 +14,11 @@ import pymeshlab
 import trimesh
 
 from quadgraph.base.errors import InputError
-from quadgraph.base.units import UNITS_MM
+from quadgraph.base.units import SIZES_MM, UNITS_MM
 from quadgraph.mesh import gltf_file, ply_header
 from quadgraph.mesh.mesh_text import read_obj, read_off
 from quadgraph.mesh.surface import SourceMesh, Surface
 
-SIZES_MM = (1e-4, 1e7)  # of the longest side: squares, volumes and light are within single precision
 _HEIGHT_AXIS = 1  # y: height is the extent along it
 
 Arrays = tuple[np.ndarray, np.ndarray]
