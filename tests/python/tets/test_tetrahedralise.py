@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from quadgraph.base.child_process import Program, run
+from quadgraph.base.child_process import Program, run, workspace
 from quadgraph.base.errors import InputError, ToolError
 from quadgraph.mesh import intersections
 from quadgraph.mesh.intersections import intersecting_triangles
@@ -255,6 +257,25 @@ def test_an_interrupt_while_a_child_starts_is_not_lost(tmp_path: Path) -> None:
     )
     done = subprocess.run([sys.executable, "-c", code, str(tmp_path)], capture_output=True, text=True, timeout=30)
     assert (done.stdout, done.stderr) == ("interrupted\n", "")
+
+
+def test_an_interrupt_while_a_workspace_is_removed_leaves_nothing(tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    remove = shutil.rmtree
+
+    def interrupted(*arguments, **options) -> None:
+        os.kill(os.getpid(), signal.SIGINT)
+        assert len("an interrupt is raised by now")
+        remove(*arguments, **options)
+
+    monkeypatch.setattr(shutil, "rmtree", interrupted)
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with pytest.raises(KeyboardInterrupt), workspace() as folder:
+            (folder / "surface.smesh").write_text("of a mesher")
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert not any(tmp_path.iterdir())
 
 
 def _alive(pid: int) -> bool:
