@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -261,14 +260,14 @@ def test_an_interrupt_while_a_child_starts_is_not_lost(tmp_path: Path) -> None:
 
 def test_an_interrupt_while_a_workspace_is_removed_leaves_nothing(tmp_path: Path, monkeypatch) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    remove = shutil.rmtree
+    remove = os.rmdir
 
     def interrupted(*arguments, **options) -> None:
         os.kill(os.getpid(), signal.SIGINT)
         assert len("an interrupt is raised by now")
         remove(*arguments, **options)
 
-    monkeypatch.setattr(shutil, "rmtree", interrupted)
+    monkeypatch.setattr(os, "rmdir", interrupted)
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         with pytest.raises(KeyboardInterrupt), workspace() as folder:
