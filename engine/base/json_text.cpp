@@ -5,7 +5,9 @@
 #include "engine/base/error.h"
 
 namespace quadgraph {
+namespace {
 
+// "line 3, column 14" of a byte.
 std::string json_place(std::string_view text, std::size_t byte) {
   const std::string_view before = text.substr(0, std::min(byte, text.size()));
   const std::size_t line = before.rfind('\n');
@@ -13,6 +15,8 @@ std::string json_place(std::string_view text, std::size_t byte) {
   return "line " + std::to_string(1 + std::count(before.begin(), before.end(), '\n')) + ", column " +
          std::to_string(column);
 }
+
+}  // namespace
 
 void check_json(std::string_view text) {
   if (text.size() > json_bytes) {
@@ -34,6 +38,17 @@ void check_json(std::string_view text) {
     } else if (!quoted && (c == ']' || c == '}') && depth > 0) {
       --depth;
     }
+  }
+}
+
+nlohmann::ordered_json parse_json(std::string_view text) {
+  check_json(text);
+  try {
+    return nlohmann::ordered_json::parse(text);
+  } catch (const nlohmann::ordered_json::parse_error& error) {
+    throw InputError("no JSON at " + json_place(text, error.byte > 0 ? error.byte - 1 : 0));
+  } catch (const nlohmann::ordered_json::exception&) {
+    throw InputError("a number of the JSON is beyond double precision, allowed are up to 1.7e308");
   }
 }
 

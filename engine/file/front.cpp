@@ -1,7 +1,6 @@
 #include "engine/file/front.h"
 
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "engine/base/error.h"
 #include "engine/base/json_text.h"
@@ -30,8 +29,7 @@ std::string first_section(const std::filesystem::path& path) {
 }  // namespace
 
 float front_from(const std::string& metadata, const std::string& file) {
-  check_json(metadata);
-  const auto json = nlohmann::json::parse(metadata, nullptr, false);
+  const auto json = parse_json(metadata);
   if (!json.is_object() || !json.contains("front")) return 0;
   const auto& front = json["front"];
   if (!front.is_number() || front < -180 || front > 360) {

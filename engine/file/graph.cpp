@@ -6,7 +6,6 @@
 #include <cstring>
 #include <fstream>
 #include <new>
-#include <nlohmann/json.hpp>
 
 #include "engine/base/error.h"
 #include "engine/base/json_text.h"
@@ -114,13 +113,16 @@ std::uint32_t count_levels(const SectionTable& table) {
   return count;
 }
 
-void check_metadata(const SectionTable& table, const std::string& text, std::size_t levels) {
+nlohmann::ordered_json metadata_of(const SectionTable& table, const std::string& text) {
   try {
-    check_json(text);
+    return parse_json(text);
   } catch (const InputError& error) {
     fail_format(table.file(), "metadata", error.what());
   }
-  const auto json = nlohmann::json::parse(text, nullptr, false);
+}
+
+void check_metadata(const SectionTable& table, const std::string& text, std::size_t levels) {
+  const auto json = metadata_of(table, text);
   if (!json.is_object()) fail_format(table.file(), "metadata", "not a JSON object in UTF-8");
   for (const char* key : {"generator", "source", "unit_mm", "mesher", "repairs", "levels", "tools"}) {
     if (!json.contains(key)) fail_format(table.file(), "metadata", "key '" + std::string(key) + "' is missing");

@@ -59,7 +59,7 @@ device::Device& Engine::device() const {
 }
 
 Simulation& Engine::simulation() {
-  const auto turn = implementation_->in_use.take("engine");
+  const auto turn = implementation_->in_use.take();
   return implementation_->levels();
 }
 
@@ -73,7 +73,7 @@ void Engine::set_material(std::string_view text) {
 }
 
 void Engine::set_material(const gpu::Material& material) {
-  const auto turn = implementation_->in_use.take("engine");
+  const auto turn = implementation_->in_use.take();
   auto& self = *implementation_;
   check_material(material);
   if (self.simulation) self.simulation->set_material(material);
@@ -84,7 +84,7 @@ void Engine::set_material(const gpu::Material& material) {
 }
 
 void Engine::set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta) {
-  const auto turn = implementation_->in_use.take("engine");
+  const auto turn = implementation_->in_use.take();
   auto& self = *implementation_;
   self.levels().set_optical(level, optical, eta);
   self.paths.clear();
@@ -94,7 +94,7 @@ void Engine::set_optical(std::uint32_t level, std::span<const gpu::Optical> opti
 }
 
 void Engine::set_optical(const OpticalGrid& grid) {
-  const auto turn = implementation_->in_use.take("engine");
+  const auto turn = implementation_->in_use.take();
   auto& self = *implementation_;
   check_optical(grid.optical, grid.optical.size());
   check_eta(static_cast<double>(grid.eta));
@@ -105,7 +105,7 @@ void Engine::set_optical(const OpticalGrid& grid) {
 }
 
 void Engine::set_edits(std::span<const Edit> edits) {
-  const auto turn = implementation_->in_use.take("engine");
+  const auto turn = implementation_->in_use.take();
   for (std::size_t i = 0; i < edits.size(); ++i) {
     try {
       check_edit(edits[i]);
@@ -119,7 +119,7 @@ void Engine::set_edits(std::span<const Edit> edits) {
 }
 
 void Engine::set_cuts(std::span<const BodyCut> cuts) {
-  const auto turn = implementation_->in_use.take("engine");
+  const auto turn = implementation_->in_use.take();
   for (std::size_t i = 0; i < cuts.size(); ++i) {
     try {
       check_cut(cuts[i]);
@@ -132,7 +132,7 @@ void Engine::set_cuts(std::span<const BodyCut> cuts) {
 }
 
 void Engine::set_lights(std::vector<Light> lights) {
-  const auto turn = implementation_->in_use.take("engine");
+  const auto turn = implementation_->in_use.take();
   for (const Light& light : lights) check_light(light);
   implementation_->images.load(lights);
   implementation_->lights = std::move(lights);
@@ -147,7 +147,7 @@ PresentScene Engine::present_scene() const {
 }
 
 void Engine::set_deformation(std::span<const Deformer> list) {
-  const auto turn = implementation_->in_use.take("engine");
+  const auto turn = implementation_->in_use.take();
   auto& self = *implementation_;
   for (const Deformer& deformer : list) check_deformer(deformer);
   check_shapes(list, self.graph);
@@ -172,7 +172,7 @@ void Engine::set_deformation(std::span<const Deformer> list) {
 
 void Engine::set_irradiance(std::uint32_t level, std::span<const glm::vec3> q,
                             const std::optional<glm::vec3>& direction) {
-  const auto turn = implementation_->in_use.take("engine");
+  const auto turn = implementation_->in_use.take();
   auto& self = *implementation_;
   self.levels().set_irradiance(level, q, direction);
   if (!self.lights.empty()) self.shadows.update(self.mesh, {{}, self.bounds});
@@ -182,7 +182,7 @@ void Engine::set_irradiance(std::uint32_t level, std::span<const glm::vec3> q,
 }
 
 void Engine::update_irradiance() {
-  const auto turn = implementation_->in_use.take("engine");
+  const auto turn = implementation_->in_use.take();
   auto& self = *implementation_;
   if (self.material.empty()) throw InputError("irradiance: set a material first; the light that enters depends on eta");
   Simulation& simulation = self.levels();
@@ -201,7 +201,7 @@ void Engine::update_irradiance() {
 }
 
 void Engine::make_room(const SolveOptions& options) {
-  const auto turn = implementation_->in_use.take("engine");
+  const auto turn = implementation_->in_use.take();
   auto& self = *implementation_;
   if (options.method == Method::shortest_path) return static_cast<void>(solve(options));
   if (self.irradiance_stale) update_irradiance();
@@ -211,7 +211,7 @@ void Engine::make_room(const SolveOptions& options) {
 }
 
 SolveReport Engine::solve(const SolveOptions& options, const std::function<void()>& check) {
-  const auto turn = implementation_->in_use.take("engine");
+  const auto turn = implementation_->in_use.take();
   auto& self = *implementation_;
   const bool by_path = options.method == Method::shortest_path;
   if (!self.cut_tools.empty() && !by_path) throw InputError("cuts: only the method shortest-path knows them");
@@ -228,7 +228,7 @@ SolveReport Engine::solve(const SolveOptions& options, const std::function<void(
 }
 
 SurfaceField Engine::surface_field() const {
-  const auto turn = implementation_->in_use.take("engine");
+  const auto turn = implementation_->in_use.take();
   const auto& self = *implementation_;
   if (self.report && self.report->path) {
     throw InputError("surface field: shortest-path has none; exitance_at tells what leaves at any point");
@@ -237,14 +237,14 @@ SurfaceField Engine::surface_field() const {
 }
 
 std::vector<glm::vec3> Engine::exitance_at(std::span<const glm::vec3> points) const {
-  const auto turn = implementation_->in_use.take("engine");
+  const auto turn = implementation_->in_use.take();
   const auto& self = *implementation_;
   if (!self.report || !self.report->path) throw InputError("exitance at points: solve with shortest-path first");
   return self.paths.exitance_at(points);
 }
 
 const PictureBuffers& Engine::draw(const View& view, const RenderOptions& options) {
-  const auto turn = implementation_->in_use.take("engine");
+  const auto turn = implementation_->in_use.take();
   auto& self = *implementation_;
   check_options(options);
   if (!self.report) throw InputError("render: solve first; there is no exitance to show");
@@ -274,7 +274,7 @@ const PictureBuffers& Engine::draw(const View& view, const RenderOptions& option
 }
 
 Picture Engine::render(const View& view, const RenderOptions& options) {
-  const auto turn = implementation_->in_use.take("engine");
+  const auto turn = implementation_->in_use.take();
   Picture picture = read_picture(implementation_->device, draw(view, options));
   if (const auto& shown = legend()) draw_legend(picture, *shown);
   return picture;
@@ -285,14 +285,14 @@ const std::optional<Legend>& Engine::legend() const {
 }
 
 std::optional<Picked> Engine::pick(const View& view, float aspect, const glm::vec2& at) const {
-  const auto turn = implementation_->in_use.take("engine");
+  const auto turn = implementation_->in_use.take();
   auto& self = *implementation_;
   const auto vertices = device::download<glm::vec3>(self.device, self.mesh.vertices);
   return quadgraph::pick(self.graph.display(), vertices, place_camera(view, self.bounds, aspect), at, self.cut_tools);
 }
 
 Leaving Engine::leaving(std::span<const std::uint32_t> face, std::span<const glm::vec3> direction) {
-  const auto turn = implementation_->in_use.take("engine");
+  const auto turn = implementation_->in_use.take();
   auto& self = *implementation_;
   if (!self.report) throw InputError("radiance: solve first");
   const GatherField& field = self.gather(Gather::scaled);
@@ -301,7 +301,7 @@ Leaving Engine::leaving(std::span<const std::uint32_t> face, std::span<const glm
 }
 
 std::vector<PassStats> Engine::passes() const {
-  const auto turn = implementation_->in_use.take("engine");
+  const auto turn = implementation_->in_use.take();
   const auto& self = *implementation_;
   std::vector<PassStats> all;
   const bool by_path = self.report && self.report->path;
@@ -331,7 +331,7 @@ std::uint64_t Engine::peak_device_bytes() const {
 }
 
 Metadata Engine::metadata() const {
-  const auto turn = implementation_->in_use.take("engine");
+  const auto turn = implementation_->in_use.take();
   const auto& self = *implementation_;
   if (!self.report) return {};
   return describe({self.source, self.material, self.lights, self.deformation, self.options, *self.report, self.view,

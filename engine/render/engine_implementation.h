@@ -36,7 +36,7 @@ struct Engine::Implementation {
     shadows.update(mesh, {{}, bounds});
   }
 
-  InUse in_use;
+  InUse in_use{"engine"};
   std::string source;
   QuadGraph graph;
   Sphere bounds;

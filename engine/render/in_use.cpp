@@ -4,15 +4,16 @@
 
 namespace quadgraph {
 
-void InUse::enter(const std::string& what) {
+void InUse::enter() {
   if (getpid() != process_) {
-    throw InputError(what + ": made before this process was forked, threads and device stay with the parent; make " +
+    throw InputError(what_ + ": made before this process was forked, threads and device stay with the parent; make " +
                      "another in the child");
   }
   const std::thread::id me = std::this_thread::get_id();
   std::thread::id nobody{};
   if (user_.load() != me && !user_.compare_exchange_strong(nobody, me)) {
-    throw InputError(what + ": in use by another thread, one thread at a time is allowed; take turns, or make another");
+    throw InputError(what_ +
+                     ": in use by another thread, one thread at a time is allowed; take turns, or make another");
   }
   ++depth_;
 }

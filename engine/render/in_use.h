@@ -6,11 +6,15 @@
 #include <atomic>
 #include <string>
 #include <thread>
+#include <utility>
 
 namespace quadgraph {
 
 class InUse {
  public:
+  // `what` begins messages.
+  explicit InUse(std::string what) : what_(std::move(what)) {}
+
   // Of the thread that took it, until it ends.
   class Turn {
    public:
@@ -24,16 +28,17 @@ class InUse {
   };
 
   // Throws InputError where another thread has its turn, or in a process that was forked after this was made: threads
-  // and device stay with the parent. A thread may take several turns in each other. `what` begins the message.
-  [[nodiscard]] Turn take(const std::string& what) {
-    enter(what);
+  // and device stay with the parent. A thread may take several turns in each other.
+  [[nodiscard]] Turn take() {
+    enter();
     return Turn(*this);
   }
 
  private:
-  void enter(const std::string& what);
+  void enter();
   void leave();
 
+  std::string what_;
   std::atomic<std::thread::id> user_{};
   int depth_ = 0;  // turns of that thread
   pid_t process_ = getpid();

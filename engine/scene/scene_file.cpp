@@ -19,13 +19,10 @@ constexpr std::uint32_t format_version = 1;
 constexpr std::uint32_t most_frames = 1000000;
 
 Json parsed(const std::string& text, const std::filesystem::path& path) {
-  check_json(text);
   try {
-    return Json::parse(text);
-  } catch (const Json::parse_error& error) {
-    throw InputError(path.string() + ": no JSON at " + json_place(text, error.byte > 0 ? error.byte - 1 : 0));
-  } catch (const Json::exception&) {
-    throw InputError(path.string() + ": a number is beyond double precision, allowed are up to 1.7e308");
+    return parse_json(text);
+  } catch (const InputError& error) {
+    throw InputError(path.string() + ": " + error.what());
   }
 }
 

@@ -8,7 +8,7 @@
 namespace quadgraph {
 
 void Stage::show(const Scene& scene) {
-  const auto turn = in_use_.take("stage");
+  const auto turn = in_use_.take();
   const bool fresh = !engine_ || scene.body != scene_.body;
   if (fresh) {
     engine_.reset();  // two bodies need not fit beside each other
@@ -44,12 +44,12 @@ SolveReport Stage::solve(const std::function<void()>& check) {
 }
 
 SolveReport Stage::solve(const SolveOptions& options, const std::function<void()>& check) {
-  const auto turn = in_use_.take("stage");
+  const auto turn = in_use_.take();
   return solve_measured(engine(), options, check);
 }
 
 Picture Stage::render() {
-  const auto turn = in_use_.take("stage");
+  const auto turn = in_use_.take();
   return engine().render(scene_.view, scene_.render);
 }
 

@@ -28,7 +28,7 @@ class Stage {
   const Scene& scene() const { return scene_; }
 
  private:
-  InUse in_use_;
+  InUse in_use_{"stage"};
   device::DeviceOptions options_;
   std::shared_ptr<device::Device> device_;  // null: by the options
   std::unique_ptr<Engine> engine_;

@@ -14,9 +14,7 @@ namespace quadgraph::python {
 namespace {
 
 std::vector<Deformer> parsed(const std::string& text) {
-  check_json(text);
-  const Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded()) throw InputError("deformation: the text is no JSON");
+  const Json json = parse_json(text);
   std::vector<Deformer> list;
   for (const JsonField& field : JsonField(json, "").items()) list.push_back(deformer_from(field));
   return list;

@@ -265,8 +265,7 @@ void bind_shortest_path(py::class_<Engine>& bound) {
       .def(
           "set_cuts",
           [](Engine& engine, const std::string& json) {
-            check_json(json);
-            const Json list = Json::parse(json, nullptr, false);
+            const Json list = parse_json(json);
             std::vector<BodyCut> cuts;
             for (const JsonField& cut : JsonField(list, "cuts").items()) cuts.push_back(cut_from(cut));
             engine.set_cuts(cuts);

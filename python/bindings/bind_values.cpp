@@ -17,16 +17,9 @@ namespace py = pybind11;
 namespace quadgraph::python {
 namespace {
 
-Json parsed(const std::string& text) {
-  check_json(text);
-  Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded()) throw InputError("the text is no JSON");
-  return json;
-}
-
 // A scene of no body with these members.
 Scene members(const std::string& text) {
-  Json json = parsed(text);
+  Json json = parse_json(text);
   if (!json.is_object()) throw InputError("a JSON object is wanted");
   if (!json.contains("body")) json["body"] = "";
   return scene_from(JsonField(json, ""));
@@ -50,7 +43,7 @@ std::string material_json(const std::string& text) {
 // The camera that `text` says, or that of the members; without an azimuth the body's front.
 View view_of(const Engine& engine, const std::string& json, const std::string& text) {
   View view = members(json).view;
-  if (!parsed(json).contains("/camera/azimuth"_json_pointer)) {
+  if (!parse_json(json).contains("/camera/azimuth"_json_pointer)) {
     view.azimuth = first_view(engine.graph().front(), view.up).azimuth;
   }
   return text.empty() ? view : parse_view(text, view);
@@ -116,7 +109,7 @@ void bind_values(py::module_& module) {
   module.def(
       "light_text",
       [](const std::string& json) {
-        const Json light = parsed(json);
+        const Json light = parse_json(json);
         return to_string(light_from(JsonField(light, "light")));
       },
       py::arg("json"), "The text of a light, from its members. Raises InputError.");

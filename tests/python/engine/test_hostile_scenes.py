@@ -27,7 +27,7 @@ DEEP = "[" * 200_000 + "]" * 200_000
 def test_deep_scenes_are_refused_with_their_place(tmp_path, key, value):
     path = tmp_path / "scene.json"
     path.write_text(f'{{"body": "a.qgraph",\n"{key}": {value}}}')
-    with pytest.raises(Exception, match=r"nested deeper than 64 levels at line 2, column \d+"):
+    with pytest.raises(Exception, match=r"scene\.json: JSON nested deeper than 64 levels at line 2, column \d+"):
         core.SceneFile(path)
 
 
