@@ -136,6 +136,7 @@ void Engine::set_lights(std::vector<Light> lights) {
   for (const Light& light : lights) check_light(light);
   implementation_->images.load(lights);
   implementation_->lights = std::move(lights);
+  implementation_->in_body.reset();
   implementation_->irradiance_given = false;
   implementation_->shadows_stale = implementation_->irradiance_stale = true;
 }
@@ -177,6 +178,7 @@ void Engine::set_irradiance(std::uint32_t level, std::span<const glm::vec3> q,
   self.levels().set_irradiance(level, q, direction);
   if (!self.lights.empty()) self.shadows.update(self.mesh, {{}, self.bounds});
   self.lights.clear();
+  self.in_body.reset();
   self.irradiance_given = true;
   self.irradiance_stale = false;
 }

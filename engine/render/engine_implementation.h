@@ -73,10 +73,11 @@ struct Engine::Implementation {
   std::optional<Legend> legend;                         // of the last picture
   FalseColours false_colours;                           // the same
   PathMethod paths;
-  std::optional<Workspace> motion_work;  // of a surface without levels, made at first use
-  std::vector<gpu::PathTool> cut_tools;  // what is cut away
-  bool moved = false;                    // the display mesh is not at rest
-  bool edited = false;                   // the material has edits
+  std::optional<Workspace> motion_work;      // of a surface without levels, made at first use
+  std::vector<gpu::PathTool> cut_tools;      // what is cut away
+  std::optional<std::vector<bool>> in_body;  // of the present lights and shape, at first use
+  bool moved = false;                        // the display mesh is not at rest
+  bool edited = false;                       // the material has edits
 
   // Throws InputError where there are none.
   Simulation& levels() const {
@@ -87,6 +88,7 @@ struct Engine::Implementation {
 
   void stale() {
     shadows_stale = true;
+    in_body.reset();
     irradiance_stale = irradiance_stale || !lights.empty();
   }
 
@@ -100,13 +102,14 @@ struct Engine::Implementation {
   }
 
   // Which of the lights stand in the body. Only those are asked for that stand within its bounds.
-  std::vector<bool> lights_inside() const {
-    std::vector<bool> inside(lights.size());
+  const std::vector<bool>& lights_inside() {
+    if (in_body) return *in_body;
+    in_body.emplace(lights.size());
     for (std::size_t i = 0; i < lights.size() && simulation; ++i) {
       if (!has_position(lights[i]) || glm::distance(lights[i].position, bounds.centre) > bounds.radius) continue;
-      inside[i] = is_inside(simulation->present_level(), lights[i].position);
+      (*in_body)[i] = is_inside(simulation->present_level(), lights[i].position);
     }
-    return inside;
+    return *in_body;
   }
 
   SolveReport solve_paths(const SolveOptions& wanted) {

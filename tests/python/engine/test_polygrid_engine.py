@@ -198,9 +198,9 @@ def test_deep_nodes_keep_what_the_coarser_level_has(engine):
     errors, work = [], []
     for layers in (1, 2, 3, 4):
         report = engine.solve(**way, active_layers=layers)
-        assert all(level["converged"] for level in report["levels"][:-1])
-        # What few layers leave unaccounted for is said, as the method conserves nothing.
-        assert report["levels"][-1]["converged"] or report["stopped"].startswith("out of balance")
+        assert all(level["residual"] < way["tolerance"] for level in report["levels"])
+        # The solver gets there, but half of the light is unaccounted for, with as many layers as there are too.
+        assert "polygrid-divergence does not conserve energy" in report["stopped"]
         found = engine.surface_field()["exitance"]
         errors.append(np.linalg.norm(found - exact) / np.linalg.norm(exact))
         work.append(report["work"])

@@ -61,3 +61,15 @@ def test_irradiance_beyond_single_precision_is_refused(ring):
     q = np.full((len(engine.graph.levels[0].faces), 3), 3e38, np.float32)
     with pytest.raises(Exception, match=r"irradiance of level 0, surface node 0.*allowed is 0 to 1e\+30"):
         engine.set_irradiance(0, q)
+
+
+def test_a_light_that_moves_in_and_out_is_said_as_it_stands(ring):
+    engine = core.Engine(ring, device="cpu")
+    engine.set_material("marble")
+    for place, inside in (("10,0,0", True), ("0,0,0", False), ("0,10,0", True)):
+        engine.set_lights([f"point:{place}:5", "ambient:1"])
+        assert engine.solve()["light_warning"].startswith("light 1 (point) is in the body") == inside
+    q = np.ones((len(engine.graph.levels[0].faces), 3), np.float32)
+    engine.set_irradiance(0, q)
+    engine.set_irradiance(1, np.ones((len(engine.graph.levels[1].faces), 3), np.float32))
+    assert engine.solve()["light_warning"] == ""
