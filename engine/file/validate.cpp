@@ -114,40 +114,6 @@ void check_face_kinds(const Place& place, const Level& level) {
   }
 }
 
-// Rows begin one after the other, behind their own n_f + 1 beginnings, and end where the section does.
-void check_seen_rows(const Place& place, const Level& level) {
-  const std::size_t faces = level.faces.size();
-  if (level.seen.size() < faces + 1) {
-    place.fail("seen", std::to_string(level.seen.size()) + " values, expected at least " + std::to_string(faces + 1));
-  }
-  if (level.seen[0] != faces + 1) place.fail("seen", 0, "must begin at " + std::to_string(faces + 1));
-  if (level.seen[faces] != level.seen.size()) {
-    place.fail("seen", "the last row ends at " + std::to_string(level.seen[faces]) + ", the section at " +
-                           std::to_string(level.seen.size()));
-  }
-  for (std::size_t f = 0; f < faces; ++f) {
-    if (level.seen[f + 1] < level.seen[f]) place.fail("seen", f, "ends before it begins");
-    if (level.seen[f + 1] - level.seen[f] > level.seen_rays) place.fail("seen", f, "more entries than seen_rays");
-  }
-}
-
-void check_seen(const Place& place, const Level& level) {
-  if (level.seen.empty()) return;
-  if (level.seen_rays == 0) place.fail("seen_rays", "0 found, 1 or more allowed");
-  check_seen_rows(place, level);
-  for (std::size_t f = 0; f < level.faces.size(); ++f) {
-    const auto row = level.seen.subspan(level.seen[f], level.seen[f + 1] - level.seen[f]);
-    if (!std::is_sorted(row.begin(), row.end())) place.fail("seen", f, "faces are not in ascending order");
-    for (const std::uint32_t face : row) {
-      if (face >= level.faces.size()) {
-        place.fail("seen", f,
-                   "face " + std::to_string(face) + ", allowed is below " + std::to_string(level.faces.size()));
-      }
-      if (face == f) place.fail("seen", f, "a face does not see itself");
-    }
-  }
-}
-
 bool equal_up_to_rotation(const glm::uvec3& a, const glm::uvec3& b) {
   return a == b || a == glm::uvec3(b.y, b.z, b.x) || a == glm::uvec3(b.z, b.x, b.y);
 }
@@ -236,13 +202,14 @@ void validate_level(const Level& level, const Level* coarser, const std::string&
     if (level.face_tets[f] >= level.tets.size()) place.fail("face_tets", f, "index out of range");
   }
   check_face_kinds(place, level);
-  check_seen(place, level);
+  validate_seen(level, file, index);
   check_orientation(place, level);
   check_vertices_used(place, level);
   check_links(place, level);
   check_surface_vertices(place, level);
   validate_size(level.vertices, file, place.prefix + "vertices");
   validate_nodes(level, file, index);
+  validate_seen_again(level, file, index);
   if (coarser == nullptr) return;
   check_transfer(place, "inner", level.inner, level.tets.size(), coarser->tets.size());
   check_transfer(place, "surface", level.surface, level.faces.size(), coarser->faces.size());

@@ -18,6 +18,12 @@ void validate_grid(const Level& level, const std::string& file, std::uint32_t in
 // All levels have such links, or none.
 void validate_grid_everywhere(std::span<const Level> levels, const std::string& file);
 
+// The rows of what faces see, if there are any: where they begin and end, and what indices they hold.
+void validate_seen(const Level& level, const std::string& file, std::uint32_t index);
+
+// Some of these rows, spread evenly over the faces, are what their rays meet when they are cast again; all else is valid.
+void validate_seen_again(const Level& level, const std::string& file, std::uint32_t index);
+
 // At most one level has rows of what its faces see.
 void validate_seen_once(std::span<const Level> levels, const std::string& file);
 

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from quadgraph.base.errors import FormatError
-from quadgraph.file import place_rules
+from quadgraph.file import place_rules, seen_rules
+from quadgraph.tets import exchange
 from quadgraph.tets.tet_geometry import FACE_CORNERS, determinants
 
 MAX_LEVELS = 16
@@ -89,6 +90,11 @@ def check(sections: dict[str, np.ndarray], metadata: dict[str, Any], name: str) 
             _check_weights(sections[f"{prefix}_weight"], f"{name}: {prefix}_weight")
     for i in range(levels):
         place_rules.check_level({field: sections[f"level{i}/{field}"] for field in _LEVEL}, f"{name}: level{i}")
+        if f"level{i}/seen" in sections:
+            vertices, faces, seen = (sections[f"level{i}/{field}"] for field in ("vertices", "faces", "seen"))
+            seen_rules.check_some(
+                vertices, faces, seen, int(sections[f"level{i}/seen_rays"][0]), f"{name}: level{i}/seen"
+            )
     _check_display(sections, _level_counts(sections, 0)["n_f"] if levels else None, name)
     _check_metadata(metadata, levels, name)
 
@@ -217,7 +223,11 @@ def _check_seen(sections: dict[str, np.ndarray], levels: int, name: str) -> None
         counts = _level_counts(sections, i) | {"n_s": sections[f"level{i}/seen"].size}
         _check_fields(sections, f"level{i}/", _SEEN, counts, name)
         rays = int(sections[f"level{i}/seen_rays"][0])
-        _require(rays >= 1, f"{name}: level{i}/seen_rays", "0 found, 1 or more allowed")
+        _require(
+            1 <= rays <= exchange.MOST_RAYS,
+            f"{name}: level{i}/seen_rays",
+            f"{rays} found, 1 to {exchange.MOST_RAYS} allowed",
+        )
         _check_seen_rows(sections[f"level{i}/seen"].astype(np.int64), rays, counts["n_f"], f"{name}: level{i}/seen")
 
 

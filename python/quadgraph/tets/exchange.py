@@ -23,7 +23,7 @@ _TURN = 0.6180339887498949  # golden ratio - 1: azimuths of successive faces are
 _RAYS_AT_ONCE = 1 << 18  # about a quarter of a second, so that an interruption is heard
 _PAIRS_AT_ONCE = 1 << 20
 # Share of the body's size by which rays start above their face, a few times what single precision can tell apart.
-_LIFT = 1e-6
+LIFT = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,9 +103,9 @@ def table(graph: Graph, rays: int) -> np.ndarray:
     return np.concatenate([begins, *entries]).astype("<u4")
 
 
-def frames(graph: Graph) -> np.ndarray:
-    """(n_f, 3, 3) unit vectors t1 (along the first edge), t2 and the outward normal of every outside face."""
-    corners = graph.vertices[graph.faces]
+def frames(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """(n_f, 3, 3) unit vectors t1 (along the first edge), t2 and the outward normal of (n_f, 3) faces."""
+    corners = vertices[faces]
     first = corners[:, 1] - corners[:, 0]
     normal = np.cross(first, corners[:, 2] - corners[:, 0])
     t1 = first / np.linalg.norm(first, axis=1)[:, None]
@@ -143,10 +143,10 @@ class _Caster:
         used = graph.vertices[: graph.surface_vertex_count]
         low, high = used.min(axis=0), used.max(axis=0)
         corners = (used - (low + high) / 2)[graph.faces]
-        self.frames = frames(graph)
+        self.frames = frames(graph.vertices, graph.faces)
         self.corner = corners[:, 0]
         self.edges = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-        self.origins = corners.mean(axis=1) + _LIFT * np.linalg.norm(high - low) * self.frames[:, 2]
+        self.origins = corners.mean(axis=1) + LIFT * np.linalg.norm(high - low) * self.frames[:, 2]
         self.scene, self.mesh = _scene(corners)
 
     def first_faces(self, faces: np.ndarray, directions: np.ndarray) -> np.ndarray:

@@ -6,19 +6,26 @@
 #include <string>
 
 #include "engine/base/error.h"
+#include "tests/cpp/fixtures/exchange_fixtures.h"
 #include "tests/cpp/fixtures/qgraph_bytes.h"
-#include "tests/cpp/fixtures/test_graphs.h"
 
 using namespace quadgraph;
 
 namespace {
 
-// A cube of 12 faces of which 2 sees 5 twice and 7, and 11 sees 0.
-OwnedLevel seeing_cube() {
-  OwnedLevel level = split_at_centroids(box_level(1, 1.0f));
-  level.seen = {13, 13, 13, 16, 16, 16, 16, 16, 16, 16, 16, 16, 17, 5, 5, 7, 0};
-  level.seen_rays = 3;
+// Two slabs of 12 faces each across a gap; those at the gap see each other.
+OwnedLevel seeing_slabs() {
+  OwnedLevel level = facing_slabs(1, 1.0f, 0.5f, 0.25f);
+  bake_seen(level, 16);
   return level;
+}
+
+// A row with different entries, and where it begins.
+std::uint32_t seeing_row(const OwnedLevel& level) {
+  for (std::uint32_t f = 0; f < level.faces.size(); ++f) {
+    if (level.seen[f] < level.seen[f + 1] && level.seen[level.seen[f]] < level.seen[level.seen[f + 1] - 1]) return f;
+  }
+  return 0;
 }
 
 std::string refusal(const std::vector<std::byte>& bytes) {
@@ -31,7 +38,7 @@ std::string refusal(const std::vector<std::byte>& bytes) {
 }
 
 std::string refusal_after(const std::function<void(OwnedLevel&)>& change) {
-  OwnedLevel level = seeing_cube();
+  OwnedLevel level = seeing_slabs();
   change(level);
   return refusal(graph_of(level));
 }
@@ -52,10 +59,11 @@ bool safe_to_use(const Level& level) {
 }  // namespace
 
 TEST_CASE("what faces see is optional and read as written") {
-  const OwnedLevel level = seeing_cube();
+  const OwnedLevel level = seeing_slabs();
   const QuadGraph graph = QuadGraph::parse(graph_of(level), "seen");
   const Level& read = graph.levels()[0];
-  CHECK(read.seen_rays == 3);
+  CHECK(read.seen_rays == 16);
+  CHECK(read.seen.size() > 25);
   CHECK(std::vector<std::uint32_t>(read.seen.begin(), read.seen.end()) == level.seen);
   const QuadGraph plain = QuadGraph::parse(graph_of(split_at_centroids(box_level(1, 1.0f))), "plain");
   CHECK(plain.levels()[0].seen.empty());
@@ -63,8 +71,8 @@ TEST_CASE("what faces see is optional and read as written") {
 }
 
 TEST_CASE("a body that sees nothing of itself has rows without entries") {
-  OwnedLevel level = seeing_cube();
-  level.seen.assign(13, 13);
+  OwnedLevel level = split_at_centroids(box_level(1, 1.0f));
+  bake_seen(level, 16);
   CHECK(QuadGraph::parse(graph_of(level), "sky").levels()[0].seen.size() == 13);
 }
 
@@ -73,35 +81,70 @@ TEST_CASE("broken rules of what faces see are named") {
     std::function<void(OwnedLevel&)> change;
     std::string said;
   };
+  const OwnedLevel good = seeing_slabs();
+  const std::uint32_t f = seeing_row(good), begin = good.seen[f];
+  const std::string row = "level0/seen: row " + std::to_string(f) + ": ", size = std::to_string(good.seen.size());
+  REQUIRE(f > 0);
   const std::vector<Case> cases = {
-      {[](auto& l) { l.seen_rays = 0; }, "level0/seen_rays: 0 found, 1 or more allowed"},
-      {[](auto& l) { l.seen_rays = 2; }, "level0/seen: row 2: more entries than seen_rays"},
-      {[](auto& l) { l.seen.resize(12); }, "level0/seen: 12 values, expected at least 13"},
-      {[](auto& l) { l.seen[0] = 12; }, "level0/seen: row 0: must begin at 13"},
-      {[](auto& l) { l.seen.push_back(1); }, "level0/seen: the last row ends at 17, the section at 18"},
-      {[](auto& l) { l.seen[12] = 18; }, "level0/seen: the last row ends at 18, the section at 17"},
-      {[](auto& l) { l.seen[4] = 15; }, "level0/seen: row 3: ends before it begins"},
-      {[](auto& l) { l.seen[1] = 4000000000u; }, "level0/seen: row 0: more entries than seen_rays"},
-      {[](auto& l) { l.seen[16] = 12; }, "level0/seen: row 11: face 12, allowed is below 12"},
-      {[](auto& l) { l.seen[16] = 11; }, "level0/seen: row 11: a face does not see itself"},
-      {[](auto& l) { std::swap(l.seen[14], l.seen[15]); }, "level0/seen: row 2: faces are not in ascending order"},
+      {[](auto& l) { l.seen_rays = 0; }, "level0/seen_rays: 0 found, 1 to 4096 allowed"},
+      {[](auto& l) { l.seen_rays = 1000000; }, "level0/seen_rays: 1000000 found, 1 to 4096 allowed"},
+      {[](auto& l) { l.seen_rays = 1; }, row + "more entries than seen_rays"},
+      {[](auto& l) { l.seen.resize(24); }, "level0/seen: 24 values, expected at least 25"},
+      {[](auto& l) { l.seen[0] = 24; }, "level0/seen: row 0: must begin at 25"},
+      {[](auto& l) { l.seen.push_back(1); }, "level0/seen: the last row ends at " + size},
+      {[](auto& l) { l.seen[24] = 4000; }, "level0/seen: the last row ends at 4000, the section at " + size},
+      {[f](auto& l) { l.seen[f + 1] = l.seen[f] - 1; }, row + "ends before it begins"},
+      {[f](auto& l) { l.seen[f] = 4000000000u; }, "more entries than seen_rays"},
+      {[f](auto& l) { l.seen[l.seen[f + 1] - 1] = 24; }, row + "face 24, allowed is below 24"},
+      {[f, begin](auto& l) { std::fill(&l.seen[begin], &l.seen[l.seen[f + 1]], f); },
+       row + "a face does not see itself"},
+      {[f](auto& l) { std::reverse(&l.seen[l.seen[f]], &l.seen[l.seen[f + 1]]); },
+       row + "faces are not in ascending order"},
   };
   for (const Case& broken : cases) {
     const std::string message = refusal_after(broken.change);
-    INFO("said '" << message << "'");
+    INFO("said '" << message << "', expected '" << broken.said << "'");
     CHECK(message.find(broken.said) != std::string::npos);
   }
 }
 
+TEST_CASE("rows that are not what their rays meet are refused") {
+  const std::vector<std::function<void(OwnedLevel&)>> lies = {
+      [](auto& l) { l.seen.assign(25, 25); },  // nothing
+      [](auto& l) {                            // others' faces
+        for (std::uint32_t f = 0; f < 24; ++f) std::fill(&l.seen[l.seen[f]], &l.seen[l.seen[f + 1]], (f + 1) % 24);
+      },
+      [](auto& l) { l.seen_rays = 4096; },
+      [](auto& l) {  // the rows of other faces
+        const OwnedLevel good = l;
+        for (std::uint32_t f = 0; f < 24; ++f) l.seen[f] = l.seen[std::min(f + 1, 24u)];
+        l.seen[0] = 25;
+      },
+  };
+  for (const auto& lie : lies) {
+    const std::string message = refusal_after(lie);
+    INFO("said '" << message << "'");
+    CHECK(message.find("rows meet other faces than are stored") != std::string::npos);
+    CHECK(message.ends_with("; bake the body again"));
+  }
+}
+
+TEST_CASE("a ray that grazes an edge may meet either face") {
+  OwnedLevel level = seeing_slabs();
+  const std::uint32_t f = seeing_row(level);
+  level.seen[level.seen[f]] = level.seen[level.seen[f] + 1];
+  CHECK(refusal(graph_of(level)).empty());
+}
+
 TEST_CASE("only one level may tell what its faces see") {
-  const std::string message = refusal(graph_of({seeing_cube(), seeing_cube()}));
+  const std::string message = refusal(graph_of({seeing_slabs(), seeing_slabs()}));
   INFO("said '" << message << "'");
   CHECK(message.find("level1/seen: only one level may have it") != std::string::npos);
 }
 
 TEST_CASE("rows of what faces see need the number of rays, and the number the rows") {
   for (const std::string kept : {"level0/seen", "level0/seen_rays"}) {
-    std::vector<std::byte> bytes = graph_of(seeing_cube());
+    std::vector<std::byte> bytes = graph_of(seeing_slabs());
     for (std::size_t i = 0; i < entries_present(bytes); ++i) {
       auto section = read_at<QgraphSection>(bytes, entry_offset(i));
       const std::string name = section.name.data();
@@ -117,7 +160,7 @@ TEST_CASE("rows of what faces see need the number of rays, and the number the ro
 }
 
 TEST_CASE("10,000 corruptions of what faces see behind valid checksums are refused or harmless") {
-  const std::vector<std::byte> whole = graph_of(seeing_cube());
+  const std::vector<std::byte> whole = graph_of(seeing_slabs());
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < entries_present(whole); ++i) {
     const auto section = read_at<QgraphSection>(whole, entry_offset(i));

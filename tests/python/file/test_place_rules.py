@@ -10,6 +10,15 @@ from quadgraph.base.errors import FormatError
 from quadgraph.file import qgraph_file
 from shapes import torus, write_obj
 
+
+def seen_by(seen: np.ndarray, change) -> np.ndarray:
+    """Rows of what faces see, changed, as the file keeps them."""
+    count = int(seen[0]) - 1
+    rows = change([seen[int(seen[f]) : int(seen[f + 1])] for f in range(count)])
+    begins = count + 1 + np.concatenate([[0], np.cumsum([len(row) for row in rows])])
+    return np.concatenate([begins, *rows])
+
+
 CASES = {
     "one vertex far away": ("display/vertices", lambda a: np.concatenate([a[:1] + 1e6, a[1:]])),
     "all in one point": ("display/vertices", lambda a: a * 0),
@@ -26,6 +35,14 @@ CASES = {
     "nodes elsewhere": ("level0/nodes", lambda a: a + 5),
     "nodes shuffled": ("level0/nodes", lambda a: np.roll(a, 7, axis=0)),
     "nodes of a coarser level elsewhere": ("level1/nodes", lambda a: a + 5),
+    "rows of other faces": ("level0/seen", lambda a: seen_by(a, lambda rows: rows[7:] + rows[:7])),
+    "faces that nobody sees": ("level0/seen", lambda a: seen_by(a, lambda rows: [row[:0] for row in rows])),
+    "the same face everywhere": (
+        "level0/seen",
+        lambda a: seen_by(a, lambda rows: [row * 0 + (i < 9) for i, row in enumerate(rows)]),
+    ),
+    "more rays than the rows are of": ("level0/seen_rays", lambda a: a * 2),
+    "rays that no bake sends": ("level0/seen_rays", lambda a: a * 0 + 1000000),
     "links in another order": ("level0/links", lambda a: a[:, [1, 0, 2, 3]]),
 }
 

@@ -81,11 +81,13 @@ def _with_seen(parts: tuple[dict, dict[str, np.ndarray]], level: int = 0) -> dic
 
 
 def test_what_faces_see_is_optional_and_read_as_written(parts, data, tmp_path):
+    """A cube sees the sky alone."""
     core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
     path, written = tmp_path / "seen.qgraph", _with_seen(parts)
+    written["level0/seen"] = np.full(13, 13, "<u4")
     qgraph_file.write(path, parts[0], written)
     finest, coarsest = core.load(path).levels
-    assert list(finest.seen) == list(written["level0/seen"])
+    assert list(finest.seen) == [13] * 13
     assert finest.seen_rays == 3
     assert (len(coarsest.seen), coarsest.seen_rays) == (0, 0)
     assert qgraph_file.read(path).sections["level0/seen"].tolist() == list(finest.seen)
@@ -94,7 +96,7 @@ def test_what_faces_see_is_optional_and_read_as_written(parts, data, tmp_path):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda s: s.update({"level0/seen_rays": np.zeros(1, "<u4")}), r"level0/seen_rays: 0 found"),
+        (lambda s: s.update({"level0/seen_rays": np.zeros(1, "<u4")}), r"level0/seen_rays: 0 found, 1 to 4096 allowed"),
         (
             lambda s: s.update({"level0/seen_rays": np.array([2], "<u4")}),
             r"level0/seen: a row has 3 entries, at most 2",
@@ -107,6 +109,10 @@ def test_what_faces_see_is_optional_and_read_as_written(parts, data, tmp_path):
         (lambda s: s["level0/seen"].__setitem__(16, 12), r"level0/seen: index 12 found, 0 to 11 allowed"),
         (lambda s: s["level0/seen"].__setitem__(16, 11), r"level0/seen: a face does not see itself"),
         (lambda s: s["level0/seen"].__setitem__(14, 8), r"level0/seen: faces of a row are not in ascending order"),
+        (
+            lambda s: None,
+            r"level0/seen: 4 of the 36 rays of 12 rows meet other faces than are stored, allowed are 2; bake",
+        ),
         (lambda s: s.pop("level0/seen"), r"section level0/seen is missing"),
         (lambda s: s.pop("level0/seen_rays"), r"section level0/seen_rays is missing"),
     ],

@@ -61,7 +61,7 @@ def point_to_square(point: np.ndarray) -> np.ndarray:
 
 
 def test_rays_are_weighted_by_the_cosine(plates):
-    frames = exchange.frames(plates)
+    frames = exchange.frames(plates.vertices, plates.faces)
     way = exchange.directions(frames, np.arange(len(plates.faces)), 256)
     np.testing.assert_allclose(np.linalg.norm(way, axis=2), 1, atol=1e-12)
     cosine = np.einsum("nrk,nk->nr", way, frames[:, 2])
@@ -167,7 +167,7 @@ def test_a_fresh_matrix_after_a_rigid_motion_is_the_stored_one(plates, shell):
 def test_where_single_precision_fails_double_decides(plates, monkeypatch):
     """A ray tracer that says only wrong faces, seen from behind, changes at most rays that graze an edge."""
     right = exchange.table(plates, 16)
-    normals = exchange.frames(plates)[:, 2]
+    normals = exchange.frames(plates.vertices, plates.faces)[:, 2]
     wrong = SimpleNamespace(run=lambda origins, ways: (ways @ normals.T).argmax(axis=1).astype(np.int32))
     monkeypatch.setattr(exchange, "_scene", lambda corners: (wrong, None))
     again = exchange.table(plates, 16)

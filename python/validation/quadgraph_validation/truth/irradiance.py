@@ -71,7 +71,7 @@ def _beam(
 
 def _sky(scene: StudyScene, mesh: Graph, occluder: Occluder, rays: int) -> np.ndarray:
     centre, normal, _ = face_frames(mesh)
-    frames = exchange.frames(mesh)
+    frames = exchange.frames(mesh.vertices, mesh.faces)
     share = np.empty(len(centre))
     step = max(1, _RAYS_AT_ONCE // rays)
     for begin in range(0, len(centre), step):
