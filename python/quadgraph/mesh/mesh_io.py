@@ -2,37 +2,24 @@
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
-import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pymeshlab
 import trimesh
 
 from quadgraph.base.errors import InputError
 from quadgraph.base.units import SIZES_MM, UNITS_MM
-from quadgraph.mesh import gltf_file, ply_header
+from quadgraph.mesh import gltf_file
 from quadgraph.mesh.mesh_text import read_obj, read_off
+from quadgraph.mesh.ply import read_ply
 from quadgraph.mesh.surface import SourceMesh, Surface
 
 _HEIGHT_AXIS = 1  # y: height is the extent along it
 
 Arrays = tuple[np.ndarray, np.ndarray]
-
-
-def _read_ply(path: Path) -> Arrays:
-    ply_header.check(path)
-    meshes = pymeshlab.MeshSet()
-    with contextlib.chdir(os.curdir):  # where a file that cannot be read would leave us in its folder
-        meshes.load_new_mesh(str(path))
-    mesh = meshes.current_mesh()
-    if not mesh.face_number():
-        return mesh.vertex_matrix(), np.empty((0, 3), np.int64)
-    return mesh.vertex_matrix(), mesh.face_matrix().astype(np.int64)
 
 
 def _weld(vertices: np.ndarray, triangles: np.ndarray) -> Arrays:
@@ -61,7 +48,7 @@ def _read_stl(path: Path) -> Arrays:
 def _read_gltf(path: Path) -> Arrays:
     """All triangle meshes of the scene under their nodes' transforms, as one."""
     gltf_file.check_plain(gltf_file.GltfFile(path))
-    scene = trimesh.load_scene(path, process=False)
+    scene = trimesh.load_scene(path, process=False, skip_materials=True)  # images would be decoded
     parts = [part for part in scene.dump() if isinstance(part, trimesh.Trimesh)]
     if not parts:
         return np.empty((0, 3)), np.empty((0, 3), np.int64)
@@ -74,7 +61,7 @@ def _read_gltf(path: Path) -> Arrays:
 _READERS: dict[str, Callable[[Path], Arrays]] = {
     ".obj": read_obj,
     ".off": read_off,
-    ".ply": _read_ply,
+    ".ply": read_ply,
     ".stl": _read_stl,
     ".gltf": _read_gltf,
     ".glb": _read_gltf,

@@ -120,7 +120,7 @@ def test_bad_options(tmp_path: Path, options: dict, words: str) -> None:
         ("a.off", "OFF\n3 1 0\n0 0 nan\n1 0 0\n0 1 0\n3 0 1 2\n", "vertex 0"),
         ("a.off", "", "OFF"),
         ("a.ply", "", "PLY"),
-        ("a.ply", "ply\nformat ascii 1.0\nend_header\n", "0 vertices|PLY"),
+        ("a.ply", "ply\nformat ascii 1.0\nend_header\n", "0 vertices"),
         ("a.stl", "solid nothing", "STL|0 triangles"),
         ("a.glb", "glTF", "GLB"),
         ("a.gltf", "{}", "GLTF|0 triangles"),
@@ -140,14 +140,6 @@ def test_truncated_binary_files_are_refused(tmp_path: Path) -> None:
         path.write_bytes(path.read_bytes()[:-40])
         with pytest.raises(InputError, match=f"ball.{extension}"):
             read_surface(path, unit="mm")
-
-
-def test_a_file_that_cannot_be_read_leaves_us_where_we_are(tmp_path: Path) -> None:
-    path, here = tmp_path / "bad.ply", Path.cwd()
-    path.write_text("ply\nformat ascii 1.0\n")
-    with pytest.raises(InputError):
-        read_surface(path, unit="mm")
-    assert Path.cwd() == here
 
 
 def test_missing_file(tmp_path: Path) -> None:
