@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <future>
 #include <new>
 
 #include "engine/base/error.h"
@@ -182,14 +183,25 @@ void QuadGraph::read(const std::string& name) {
   front_ = front_from(metadata_, name);
   for (std::uint32_t i = 0; i < count; ++i) levels_.push_back(read_level(table, i, i + 1 == count));
   display_ = read_display(table, count > 0);
+  validate(name);
+}
+
+void QuadGraph::validate(const std::string& name) {
+  const auto count = static_cast<std::uint32_t>(levels_.size());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    validate_indices(levels_[i], name, i);
+    levels_[i].surface_vertex_count = count_surface_vertices(levels_[i]);
+  }
+  validate_display(display_, levels_.empty() ? nullptr : &levels_[0], name);
+  // Beside the rest where a thread is to be had; else in get().
+  std::future<void> places = std::async([&] { validate_places(levels_, display_, name); });
   for (std::uint32_t i = 0; i < count; ++i) {
     validate_level(levels_[i], i + 1 < count ? &levels_[i + 1] : nullptr, name, i);
-    levels_[i].surface_vertex_count = count_surface_vertices(levels_[i]);
     validate_grid(levels_[i], name, i);
   }
   validate_grid_everywhere(levels_, name);
   validate_seen_once(levels_, name);
-  validate_display(display_, levels_.empty() ? nullptr : &levels_[0], name);
+  places.get();
 }
 
 }  // namespace quadgraph

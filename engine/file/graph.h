@@ -91,6 +91,7 @@ class QuadGraph {
   QuadGraph() = default;
   void allocate(std::size_t size);
   void read(const std::string& name);
+  void validate(const std::string& name);
 
   std::unique_ptr<std::byte[], AlignedDelete> bytes_;
   std::size_t byte_size_ = 0;

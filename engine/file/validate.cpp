@@ -88,12 +88,6 @@ void check_shapes(const Place& place, const Level& level) {
   expect_rows(place, "nodes", level.nodes.size(), level.tets.size() + level.faces.size());
 }
 
-void check_orientation(const Place& place, const Level& level) {
-  for (std::size_t t = 0; t < level.tets.size(); ++t) {
-    if (!(tet_determinant(level, level.tets[t]) > 0)) place.fail("tets", t, "not positively oriented");
-  }
-}
-
 // The row of a vertex without a tet would be empty, and the fem system singular.
 void check_vertices_used(const Place& place, const Level& level) {
   std::vector<bool> used(level.vertices.size(), false);
@@ -190,7 +184,7 @@ std::uint32_t count_surface_vertices(const Level& level) {
   return largest + 1;
 }
 
-void validate_level(const Level& level, const Level* coarser, const std::string& file, std::uint32_t index) {
+void validate_indices(const Level& level, const std::string& file, std::uint32_t index) {
   const Place place{file, "level" + std::to_string(index) + "/"};
   check_shapes(place, level);
   check_finite(place, "vertices", level.vertices);
@@ -203,13 +197,15 @@ void validate_level(const Level& level, const Level* coarser, const std::string&
   }
   check_face_kinds(place, level);
   validate_seen(level, file, index);
-  check_orientation(place, level);
+  validate_size(level.vertices, file, place.prefix + "vertices");
+}
+
+void validate_level(const Level& level, const Level* coarser, const std::string& file, std::uint32_t index) {
+  const Place place{file, "level" + std::to_string(index) + "/"};
+  validate_tets(level, file, index);
   check_vertices_used(place, level);
   check_links(place, level);
   check_surface_vertices(place, level);
-  validate_size(level.vertices, file, place.prefix + "vertices");
-  validate_nodes(level, file, index);
-  validate_seen_again(level, file, index);
   if (coarser == nullptr) return;
   check_transfer(place, "inner", level.inner, level.tets.size(), coarser->tets.size());
   check_transfer(place, "surface", level.surface, level.faces.size(), coarser->faces.size());
@@ -244,7 +240,6 @@ void validate_display(const DisplayMesh& display, const Level* finest, const std
   if (finest == nullptr) return;
   const auto* weights = reinterpret_cast<const float*>(display.barycentric.data());
   check_weights(place, "barycentric", {weights, 3 * count}, 3);
-  validate_display_place(display, *finest, file);
 }
 
 }  // namespace quadgraph

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <limits>
+#include <optional>
 
 #include "engine/base/text.h"
 #include "engine/file/geometry.h"
@@ -16,22 +17,31 @@ constexpr double least_size = 1e-4, largest_size = 1e7;  // mm, of the longest s
 constexpr double node_tolerance = 1e-5;                  // of the body's size: single precision, and its sums
 constexpr double largest_gap = 0.5;                      // the same, from a display vertex to its place in a face
 constexpr double gap_tolerance = 1e-4;                   // the same
-constexpr std::size_t most_samples = 32;                 // display vertices that are held against all faces
+constexpr std::size_t most_held = 16;                    // display vertices that are held against all faces
+constexpr std::size_t most_averaged = 1024;              // vertices and triangles whose normals are averaged
 constexpr double least_agreement = 0.1;                  // mean cosine of normals that belong together
 
 std::string of_mm(double value) {
   return number_text(static_cast<float>(value)) + " mm";
 }
 
-// Of the box around points, and how far it reaches from 0: what single precision is relative to.
-double size_of(std::span<const glm::vec3> points) {
-  glm::dvec3 low(std::numeric_limits<double>::max()), high(-low), far(0);
-  for (const glm::vec3& point : points) {
-    low = glm::min(low, glm::dvec3(point));
-    high = glm::max(high, glm::dvec3(point));
-    far = glm::max(far, glm::abs(glm::dvec3(point)));
+struct Box {
+  glm::vec3 low, high;  // mm
+
+  // Of the box, and how far it reaches from 0: what single precision is relative to.
+  double size() const {
+    const glm::dvec3 reach(glm::max(glm::abs(low), glm::abs(high)));
+    return std::max(glm::length(glm::dvec3(high) - glm::dvec3(low)), glm::length(reach));
   }
-  return std::max(glm::length(high - low), glm::length(far));
+};
+
+Box box_of(std::span<const glm::vec3> points) {
+  Box box{points[0], points[0]};
+  for (const glm::vec3& point : points) {
+    box.low = glm::min(box.low, point);
+    box.high = glm::max(box.high, point);
+  }
+  return box;
 }
 
 glm::dvec3 centroid(const Level& level, const glm::uvec3& face) {
@@ -53,33 +63,72 @@ glm::dvec3 direction(const glm::dvec3& v) {
   return length > 0 ? v / length : glm::dvec3(0);
 }
 
-void check_gaps(const DisplayMesh& display, const Level& finest, double size, const std::string& file) {
-  const std::size_t count = display.vertices.size(), step = std::max<std::size_t>(count / most_samples, 1);
-  for (std::size_t i = 0; i < count; ++i) {
-    const glm::dvec3 vertex(display.vertices[i]);
-    const double gap = glm::length(vertex - place_of(display, finest, i));
-    if (!(gap <= largest_gap * size)) {
-      fail_format(file, "display/vertices",
-                  "row " + std::to_string(i) + ": " + of_mm(gap) + " from its place in its face, allowed are " +
-                      of_mm(largest_gap * size));
+// Some rows of many, spread evenly: every `step`-th.
+std::size_t step_for(std::size_t count, std::size_t samples) {
+  return std::max<std::size_t>(count / samples, 1);
+}
+
+// Squared distances from points to the nearest of others.
+class Nearest {
+ public:
+  void add(const glm::vec3& point) {
+    x_.push_back(point.x);
+    y_.push_back(point.y);
+    z_.push_back(point.z);
+    least_.push_back(std::numeric_limits<float>::max());
+  }
+
+  // Points in the inner loop, so that several lie in one register.
+  void hold_against(std::span<const glm::vec3> others) {
+    for (const glm::vec3& other : others) {
+      for (std::size_t k = 0; k < least_.size(); ++k) {
+        const float x = x_[k] - other.x, y = y_[k] - other.y, z = z_[k] - other.z, square = x * x + y * y + z * z;
+        least_[k] = square < least_[k] ? square : least_[k];
+      }
     }
-    if (i % step != 0) continue;
-    double nearest = std::numeric_limits<double>::max();
-    for (const glm::uvec3& face : finest.faces)
-      nearest = std::min(nearest, glm::length(vertex - centroid(finest, face)));
-    if (gap <= nearest + gap_tolerance * size) continue;
+  }
+
+  double distance(std::size_t k) const { return std::sqrt(static_cast<double>(least_[k])); }
+
+ private:
+  std::vector<float> x_, y_, z_, least_;
+};
+
+double gap_of(const DisplayMesh& display, const Level& finest, std::size_t i) {
+  return glm::length(glm::dvec3(display.vertices[i]) - place_of(display, finest, i));
+}
+
+void check_gaps(const DisplayMesh& display, const Level& finest, double size, const std::string& file) {
+  for (std::size_t i = 0; i < display.vertices.size(); ++i) {
+    const glm::dvec3 away = glm::dvec3(display.vertices[i]) - place_of(display, finest, i);
+    if (glm::dot(away, away) <= largest_gap * size * largest_gap * size) continue;
+    fail_format(file, "display/vertices",
+                "row " + std::to_string(i) + ": " + of_mm(glm::length(away)) +
+                    " from its place in its face, allowed are " + of_mm(largest_gap * size));
+  }
+}
+
+void check_nearest(const DisplayMesh& display, const Level& finest, double size, const std::string& file) {
+  const std::size_t count = display.vertices.size(), step = step_for(count, most_held);
+  Nearest nearest;
+  for (std::size_t i = 0; i < count; i += step) nearest.add(display.vertices[i]);
+  nearest.hold_against(finest.nodes.subspan(finest.tets.size()));
+  for (std::size_t i = 0; i < count; i += step) {
+    const double gap = gap_of(display, finest, i), least = nearest.distance(i / step);
+    if (gap <= least + gap_tolerance * size) continue;
     fail_format(
         file, "display/face",
-        "row " + std::to_string(i) + ": " + of_mm(gap) + " from the vertex, a face lies within " + of_mm(nearest));
+        "row " + std::to_string(i) + ": " + of_mm(gap) + " from the vertex, a face lies within " + of_mm(least));
   }
 }
 
 void check_agreement(const DisplayMesh& display, const Level& finest, const std::string& file) {
   double normals = 0, triangles = 0, area = 0;
   const auto outward = [&](std::size_t i) { return direction(face_vector(finest, finest.faces[display.face[i]])); };
-  for (std::size_t i = 0; i < display.vertices.size(); ++i)
-    normals += glm::dot(glm::dvec3(display.normals[i]), outward(i));
-  for (const glm::uvec3& t : display.triangles) {
+  const std::size_t count = display.vertices.size(), step = step_for(count, most_averaged);
+  for (std::size_t i = 0; i < count; i += step) normals += glm::dot(glm::dvec3(display.normals[i]), outward(i));
+  for (std::size_t i = 0; i < display.triangles.size(); i += step_for(display.triangles.size(), most_averaged)) {
+    const glm::uvec3& t = display.triangles[i];
     const glm::dvec3 a(display.vertices[t.x]);
     const glm::dvec3 twice = glm::cross(glm::dvec3(display.vertices[t.y]) - a, glm::dvec3(display.vertices[t.z]) - a);
     triangles += glm::dot(twice, outward(t.x));
@@ -91,53 +140,84 @@ void check_agreement(const DisplayMesh& display, const Level& finest, const std:
                 "on average at a cosine of " + number_text(static_cast<float>(agreement)) +
                     " to the outward normals of the faces, allowed are 0.1 or more");
   };
-  require("display/normals", normals / static_cast<double>(display.vertices.size()));
+  require("display/normals", normals / static_cast<double>((count + step - 1) / step));
   require("display/triangles", area > 0 ? triangles / area : 0);
+}
+
+// Whether a point lies on the inner side of all faces of a positive tet.
+bool inside(const Level& level, const glm::uvec4& tet, const glm::dvec3& point) {
+  const glm::dvec3 a = glm::dvec3(level.vertices[tet[0]]) - point, b = glm::dvec3(level.vertices[tet[1]]) - point,
+                   c = glm::dvec3(level.vertices[tet[2]]) - point, d = glm::dvec3(level.vertices[tet[3]]) - point;
+  const glm::dvec3 ab = glm::cross(a, b), cd = glm::cross(c, d);
+  return glm::dot(b, cd) >= 0 && glm::dot(a, cd) <= 0 && glm::dot(d, ab) >= 0 && glm::dot(c, ab) <= 0;
+}
+
+// mm, the farthest that a point lies outside of the planes of a tet's faces.
+double farthest_outside(const Level& level, const glm::uvec4& tet, const glm::dvec3& point) {
+  double farthest = 0;
+  for (int k = 0; k < 4; ++k) {
+    const glm::uvec3 face = outward_face(tet, k);
+    const glm::dvec3 vector = face_vector(level, face);
+    farthest = std::max(farthest, glm::dot(vector, point - glm::dvec3(level.vertices[face.x])) / glm::length(vector));
+  }
+  return farthest;
 }
 
 }  // namespace
 
 void validate_size(std::span<const glm::vec3> vertices, const std::string& file, const std::string& section) {
-  glm::dvec3 low(std::numeric_limits<double>::max()), high(-low);
-  double far = 0;
-  for (const glm::vec3& vertex : vertices) {
-    for (int c = 0; c < 3; ++c) {
-      low[c] = std::min(low[c], static_cast<double>(vertex[c]));
-      high[c] = std::max(high[c], static_cast<double>(vertex[c]));
-      far = std::max(far, std::abs(static_cast<double>(vertex[c])));
-    }
-  }
-  const double longest = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+  const Box box = box_of(vertices);
+  const glm::dvec3 sides = glm::dvec3(box.high) - glm::dvec3(box.low);
+  const glm::vec3 reach = glm::max(glm::abs(box.low), glm::abs(box.high));
+  const double longest = std::max({sides.x, sides.y, sides.z}), far = std::max({reach.x, reach.y, reach.z});
   if (longest >= least_size && longest <= largest_size && far <= largest_size) return;
   fail_format(
       file, section,
       "longest side " + of_mm(longest) + ", at most " + of_mm(far) + " from 0 found, allowed are 0.0001 to 1e7 mm");
 }
 
-void validate_nodes(const Level& level, const std::string& file, std::uint32_t index) {
-  const std::string section = "level" + std::to_string(index) + "/nodes";
-  const double allowed = node_tolerance * size_of(level.vertices);
+void validate_tets(const Level& level, const std::string& file, std::uint32_t index) {
+  const std::string prefix = "level" + std::to_string(index) + "/";
+  std::optional<double> allowed;
+  const auto lies_outside = [&](std::size_t t, const glm::dvec3& node) {
+    if (!allowed) allowed = node_tolerance * box_of(level.vertices).size();
+    return !(farthest_outside(level, level.tets[t], node) <= *allowed);
+  };
   for (std::size_t t = 0; t < level.tets.size(); ++t) {
-    const glm::dvec3 node(level.nodes[t]);
-    for (int k = 0; k < 4; ++k) {
-      const glm::uvec3 face = outward_face(level.tets[t], k);
-      const glm::dvec3 vector = face_vector(level, face);
-      const double outside = glm::dot(vector, node - glm::dvec3(level.vertices[face.x]));
-      if (outside <= allowed * glm::length(vector)) continue;
-      fail_format(file, section, "row " + std::to_string(t) + ": lies outside of its tet");
+    const auto row = [&] { return "row " + std::to_string(t) + ": "; };
+    if (!(tet_determinant(level, level.tets[t]) > 0)) {
+      fail_format(file, prefix + "tets", row() + "not positively oriented");
     }
+    const glm::dvec3 node(level.nodes[t]);
+    if (inside(level, level.tets[t], node) || !lies_outside(t, node)) continue;
+    fail_format(file, prefix + "nodes", row() + "lies outside of its tet");
   }
+}
+
+void validate_surface_nodes(const Level& level, const std::string& file, std::uint32_t index) {
+  const double allowed = node_tolerance * box_of(level.vertices).size();
   for (std::size_t f = 0; f < level.faces.size(); ++f) {
-    const double off = glm::length(glm::dvec3(level.nodes[level.tets.size() + f]) - centroid(level, level.faces[f]));
-    if (off <= allowed) continue;
-    fail_format(file, section,
-                "row " + std::to_string(level.tets.size() + f) + ": " + of_mm(off) + " from the centroid of its face");
+    const glm::dvec3 off = glm::dvec3(level.nodes[level.tets.size() + f]) - centroid(level, level.faces[f]);
+    if (glm::dot(off, off) <= allowed * allowed) continue;
+    fail_format(file, "level" + std::to_string(index) + "/nodes",
+                "row " + std::to_string(level.tets.size() + f) + ": " + of_mm(glm::length(off)) +
+                    " from the centroid of its face");
   }
 }
 
 void validate_display_place(const DisplayMesh& display, const Level& finest, const std::string& file) {
-  check_gaps(display, finest, size_of(finest.vertices), file);
+  const double size = box_of(finest.vertices).size();
+  check_gaps(display, finest, size, file);
+  check_nearest(display, finest, size, file);
   check_agreement(display, finest, file);
+}
+
+void validate_places(std::span<const Level> levels, const DisplayMesh& display, const std::string& file) {
+  for (std::uint32_t i = 0; i < levels.size(); ++i) {
+    validate_surface_nodes(levels[i], file, i);
+    validate_seen_again(levels[i], file, i);
+  }
+  if (!levels.empty()) validate_display_place(display, levels[0], file);
 }
 
 }  // namespace quadgraph

@@ -20,10 +20,16 @@ namespace {
 constexpr std::uint32_t most_rays = 4096;                  // the bake takes no more
 constexpr double lift = 1e-6;                              // of the body's size, by which rays start above their face
 constexpr double golden_turn = 0.6180339887498949;         // azimuths of successive faces are spread evenly
-constexpr std::size_t most_rows = 16, least_rows = 4;      // that are cast again
-constexpr std::size_t pair_budget = std::size_t{1} << 24;  // rays times faces, where that leaves least_rows
-constexpr double differing_share = 0.01;                   // of all these rays: those that graze an edge
+constexpr std::size_t most_rows = 32, least_rows = 4;      // that are cast again
+constexpr std::size_t pair_budget = std::size_t{1} << 22;  // rays times faces, where that leaves least_rows
+constexpr std::size_t most_candidates = 64, most_places = 2048;  // faces that rows are chosen from, vertices by which
+constexpr double relief = 1e-3;           // of the body's size, how far above a face a vertex counts
+constexpr double differing_share = 0.01;  // of all these rays: those that graze an edge
 constexpr std::size_t least_differing = 2;
+
+double square(const glm::dvec3& v) {
+  return glm::dot(v, v);
+}
 
 using Corners = std::array<glm::dvec3, 3>;
 
@@ -82,17 +88,17 @@ class Row {
   // Corners in the frame of the face that sends the rays, its lifted centroid at 0.
   void meet(const Corners& c, std::uint32_t face) {
     // Normals of the planes through the origin and an edge; a ray between all three meets the face.
-    const glm::dvec3 ab = glm::cross(c[0], c[1]), bc = glm::cross(c[1], c[2]), ca = glm::cross(c[2], c[0]);
+    glm::dvec3 ab = glm::cross(c[0], c[1]), bc = glm::cross(c[1], c[2]), ca = glm::cross(c[2], c[0]);
     const double volume = glm::dot(c[0], bc);  // six times that of the tet with the origin; negative from outside
     if (volume == 0) return;
-    const double sign = volume > 0 ? 1 : -1;
+    for (glm::dvec3* normal : {&ab, &bc, &ca}) *normal /= volume;
     const auto [begin, end] = range(c);
     for (std::size_t i = begin; i < end; ++i) {
-      const double p = sign * glm::dot(ab, ways_[i]), q = sign * glm::dot(bc, ways_[i]),
-                   r = sign * glm::dot(ca, ways_[i]);
-      const double nearness = (p + q + r) * sign / volume;  // 1 / distance
-      if (p < 0 || q < 0 || r < 0 || !(nearness > nearest_[i].nearness)) continue;
-      nearest_[i] = {nearness, face, volume < 0};
+      const double p = glm::dot(ab, ways_[i]), q = glm::dot(bc, ways_[i]), r = glm::dot(ca, ways_[i]);
+      const double nearness = p + q + r;  // 1 / distance
+      if (std::min(std::min(p, q), r) >= 0 && nearness > nearest_[i].nearness) {
+        nearest_[i] = {nearness, face, volume < 0};
+      }
     }
   }
 
@@ -113,14 +119,14 @@ class Row {
     bool outside = false;
   };
 
-  // First ray, and the one after the last, at the angles from z of a cone around a triangle.
+  // First ray, and the one after the last, at the angles from z of the cone around a sphere around a triangle.
   std::array<std::size_t, 2> range(const Corners& c) const {
-    const Corners units = {glm::normalize(c[0]), glm::normalize(c[1]), glm::normalize(c[2])};
-    const glm::dvec3 middle = glm::normalize(units[0] + units[1] + units[2]);
-    const double cosine =
-        std::min({glm::dot(units[0], middle), glm::dot(units[1], middle), glm::dot(units[2], middle)});
-    if (!(cosine > 0)) return {0, ways_.size()};
-    const double z = middle.z, across = std::sqrt(std::max((1 - z * z) * (1 - cosine * cosine), 0.0));
+    const glm::dvec3 middle = (c[0] + c[1] + c[2]) / 3.0;
+    const double radius = std::sqrt(std::max({square(c[0] - middle), square(c[1] - middle), square(c[2] - middle)})),
+                 distance = glm::length(middle), sine = radius / distance;
+    if (!(sine < 1)) return {0, ways_.size()};
+    const double z = middle.z / distance, cosine = std::sqrt(1 - sine * sine),
+                 across = std::sqrt(std::max(1 - z * z, 0.0)) * sine;
     const double highest = z >= cosine ? 1 : std::clamp(z * cosine + across, 0.0, 1.0);
     const double lowest = std::clamp(z * cosine - across, 0.0, 1.0);
     // z of ray i is sqrt(1 - (i + 1/2) / rays); one more on either side for rounding.
@@ -149,14 +155,29 @@ class Caster {
       low = glm::min(low, glm::dvec3(vertex));
       high = glm::max(high, glm::dvec3(vertex));
     }
-    lift_ = lift * glm::length(high - low);
+    size_ = glm::length(high - low);
+  }
+
+  // Faces whose rays are to be cast: some that have the most of the body above them, some with less, some with none.
+  std::vector<std::uint32_t> rows() const {
+    const std::size_t faces = level_.faces.size(), count = std::min(most_candidates, faces),
+                      wanted = std::clamp(pair_budget / (faces * level_.seen_rays), least_rows, most_rows),
+                      rows = std::min(wanted, count);
+    std::vector<std::array<std::size_t, 2>> candidates;  // vertices above, face
+    for (std::size_t k = 0; k < count; ++k) candidates.push_back({above(k * faces / count), k * faces / count});
+    std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a[0] > b[0]; });
+    std::vector<std::uint32_t> chosen;
+    for (std::size_t k = 0; k < rows; ++k) {
+      chosen.push_back(static_cast<std::uint32_t>(candidates[k * count / rows][1]));
+    }
+    return chosen;
   }
 
   std::vector<std::uint32_t> cast(std::uint32_t face) {
     const glm::uvec3& own = level_.faces[face];
     const glm::dvec3 a(level_.vertices[own.x]), b(level_.vertices[own.y]), c(level_.vertices[own.z]);
     const glm::dvec3 n = glm::normalize(face_vector(level_, own)), t1 = glm::normalize(b - a);
-    const glm::dvec3 origin = (a + b + c) / 3.0 + lift_ * n;
+    const glm::dvec3 origin = (a + b + c) / 3.0 + lift * size_ * n;
     const glm::dmat3 to_local = glm::transpose(glm::dmat3(t1, glm::cross(n, t1), n));
     for (std::size_t v = 0; v < local_.size(); ++v) local_[v] = to_local * (glm::dvec3(level_.vertices[v]) - origin);
     Row row(face, level_.seen_rays);
@@ -169,9 +190,23 @@ class Caster {
   }
 
  private:
+  // How many of some vertices lie clearly above a face.
+  std::size_t above(std::size_t face) const {
+    const glm::dvec3 n = glm::normalize(face_vector(level_, level_.faces[face]));
+    const glm::uvec3& own = level_.faces[face];
+    const double level = glm::dot(n, (glm::dvec3(level_.vertices[own.x]) + glm::dvec3(level_.vertices[own.y]) +
+                                      glm::dvec3(level_.vertices[own.z])) /
+                                         3.0);
+    std::size_t result = 0;
+    for (std::size_t v = 0; v < local_.size(); v += std::max<std::size_t>(local_.size() / most_places, 1)) {
+      result += glm::dot(n, glm::dvec3(level_.vertices[v])) - level > relief * size_ ? 1 : 0;
+    }
+    return result;
+  }
+
   const Level& level_;
   std::vector<glm::dvec3> local_;  // surface vertices, mm
-  double lift_ = 0;                // mm
+  double size_ = 0;                // mm
 };
 
 }  // namespace
@@ -200,13 +235,12 @@ void validate_seen(const Level& level, const std::string& file, std::uint32_t in
 
 void validate_seen_again(const Level& level, const std::string& file, std::uint32_t index) {
   if (level.seen.empty()) return;
-  const std::size_t faces = level.faces.size(), wanted = pair_budget / (faces * level.seen_rays),
-                    rows = std::min(std::clamp(wanted, least_rows, most_rows), faces), rays = rows * level.seen_rays;
   Caster caster(level);
+  const std::vector<std::uint32_t> rows = caster.rows();
+  const std::size_t rays = rows.size() * level.seen_rays;
   std::size_t unsaid = 0, invented = 0;
-  for (std::size_t k = 0; k < rows; ++k) {
-    const std::size_t f = k * faces / rows;
-    const std::vector<std::uint32_t> met = caster.cast(static_cast<std::uint32_t>(f));
+  for (const std::uint32_t f : rows) {
+    const std::vector<std::uint32_t> met = caster.cast(f);
     unsaid += missing(met, row_of(level, f));
     invented += missing(row_of(level, f), met);
   }
@@ -215,7 +249,7 @@ void validate_seen_again(const Level& level, const std::string& file, std::uint3
                                        least_differing);
   if (differing <= allowed) return;
   fail(file, index,
-       std::to_string(differing) + " of the " + std::to_string(rays) + " rays of " + std::to_string(rows) +
+       std::to_string(differing) + " of the " + std::to_string(rays) + " rays of " + std::to_string(rows.size()) +
            " rows meet other faces than are stored, allowed are " + std::to_string(allowed) + "; bake the body again");
 }
 

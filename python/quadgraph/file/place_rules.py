@@ -14,7 +14,8 @@ from quadgraph.tets.tet_geometry import FACE_CORNERS
 NODE_TOLERANCE = 1e-5  # of the body's size: single precision, and its sums
 LARGEST_GAP = 0.5  # the same, from a display vertex to its place in a face
 GAP_TOLERANCE = 1e-4  # the same
-MOST_SAMPLES = 32  # display vertices that are held against all faces
+MOST_HELD = 16  # display vertices that are held against all faces
+MOST_AVERAGED = 1024  # vertices and triangles whose normals are averaged
 LEAST_AGREEMENT = 0.1  # mean cosine of normals that belong together
 
 
@@ -40,19 +41,38 @@ def check_level(level: dict[str, np.ndarray], where: str) -> None:
     check_size(level["vertices"], f"{where}/vertices")
     vertices, tets, nodes = level["vertices"].astype(np.float64), level["tets"], level["nodes"].astype(np.float64)
     allowed = NODE_TOLERANCE * _size(vertices)
-    for corners in FACE_CORNERS:
-        face = vertices[tets[:, corners]]
-        vector = _face_vectors(face)
-        outside = np.einsum("ij,ij->i", vector, nodes[: len(tets)] - face[:, 0])
-        wrong = np.flatnonzero(~(outside <= allowed * np.linalg.norm(vector, axis=1)))
-        _require(not len(wrong), f"{where}/nodes", f"row {wrong[0] if len(wrong) else 0}: lies outside of its tet")
-    off = np.linalg.norm(nodes[len(tets) :] - vertices[level["faces"]].mean(axis=1), axis=1)
-    worst = int(off.argmax())
+    for tet in np.flatnonzero(~_inside(vertices, tets, nodes[: len(tets)])):
+        faces = vertices[tets[tet][FACE_CORNERS]]
+        vectors = _face_vectors(faces)
+        outside = np.einsum("ij,ij->i", vectors, nodes[tet] - faces[:, 0]) / np.linalg.norm(vectors, axis=1)
+        _require(bool((outside <= allowed).all()), f"{where}/nodes", f"row {tet}: lies outside of its tet")
+    off = nodes[len(tets) :] - vertices[level["faces"]].mean(axis=1)
+    square = np.einsum("ij,ij->i", off, off)
+    worst = int(square.argmax())
     _require(
-        bool(off[worst] <= allowed),
+        bool(square[worst] <= allowed**2),
         f"{where}/nodes",
-        f"row {len(tets) + worst}: {off[worst]:.6g} mm from the centroid of its face",
+        f"row {len(tets) + worst}: {square[worst] ** 0.5:.6g} mm from the centroid of its face",
     )
+
+
+def _inside(vertices: np.ndarray, tets: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Whether each of (n, 3) points lies on the inner side of all faces of its positive tet.
+
+    By components, each contiguous: several times faster than rows of three.
+    """
+    places, own = np.ascontiguousarray(vertices.T), np.ascontiguousarray(points.T)
+    a, b, c, d = ([places[k][tets[:, corner]] - own[k] for k in range(3)] for corner in range(4))
+    ab, cd = _cross(a, b), _cross(c, d)
+    return (_dot(b, cd) >= 0) & (_dot(a, cd) <= 0) & (_dot(d, ab) >= 0) & (_dot(c, ab) <= 0)
+
+
+def _cross(a: list[np.ndarray], b: list[np.ndarray]) -> list[np.ndarray]:
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def _dot(a: list[np.ndarray], b: list[np.ndarray]) -> np.ndarray:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def check_display(sections: dict[str, np.ndarray], name: str) -> None:
@@ -60,31 +80,41 @@ def check_display(sections: dict[str, np.ndarray], name: str) -> None:
     vertices = sections["display/vertices"].astype(np.float64)
     finest, faces = sections["level0/vertices"].astype(np.float64), sections["level0/faces"]
     corners = finest[faces[sections["display/face"]]]
-    gap = np.linalg.norm(vertices - np.einsum("ij,ijk->ik", sections["display/barycentric"], corners), axis=1)
-    size = _size(finest)
+    weights = sections["display/barycentric"].astype(np.float64)
+    away = vertices - sum(weights[:, [k]] * corners[:, k] for k in range(3))
+    gap, size = np.sqrt(np.einsum("ij,ij->i", away, away)), _size(finest)
     worst = int(gap.argmax())
     _require(
         bool(gap[worst] <= LARGEST_GAP * size),
         f"{name}: display/vertices",
         f"row {worst}: {gap[worst]:.6g} mm from its place in its face, allowed are {LARGEST_GAP * size:.6g} mm",
     )
-    centroids = finest[faces].mean(axis=1)
-    for i in range(0, len(vertices), max(len(vertices) // MOST_SAMPLES, 1)):
-        nearest = float(np.sqrt(((centroids - vertices[i]) ** 2).sum(axis=1).min()))
+    nodes = np.ascontiguousarray(sections["level0/nodes"][-len(faces) :].T.astype(np.float64))
+    for i in range(0, len(vertices), _step(len(vertices), MOST_HELD)):
+        nearest = float(np.sqrt(sum((nodes[k] - vertices[i, k]) ** 2 for k in range(3)).min()))
         _require(
             bool(gap[i] <= nearest + GAP_TOLERANCE * size),
             f"{name}: display/face",
             f"row {i}: {gap[i]:.6g} mm from the vertex, a face lies within {nearest:.6g} mm",
         )
-    _check_agreement(sections, vertices, _unit(_face_vectors(corners)), name)
+    _check_agreement(sections, vertices, corners, name)
 
 
-def _check_agreement(sections: dict[str, np.ndarray], vertices: np.ndarray, outward: np.ndarray, name: str) -> None:
+def _step(count: int, samples: int) -> int:
+    """Rows from one to the next of some of many, spread evenly."""
+    return max(count // samples, 1)
+
+
+def _check_agreement(sections: dict[str, np.ndarray], vertices: np.ndarray, corners: np.ndarray, name: str) -> None:
+    some = slice(None, None, _step(len(vertices), MOST_AVERAGED))
+    normals = float(
+        np.einsum("ij,ij->i", sections["display/normals"][some], _unit(_face_vectors(corners[some]))).mean()
+    )
     triangles = sections["display/triangles"]
-    twice = _face_vectors(vertices[triangles])
+    triangles = triangles[:: _step(len(triangles), MOST_AVERAGED)]
+    twice, outward = _face_vectors(vertices[triangles]), _unit(_face_vectors(corners[triangles[:, 0]]))
     area = float(np.linalg.norm(twice, axis=1).sum())
-    normals = float(np.einsum("ij,ij->i", sections["display/normals"], outward).mean())
-    turned = float(np.einsum("ij,ij->i", twice, outward[triangles[:, 0]]).sum()) / area if area > 0 else 0.0
+    turned = float(np.einsum("ij,ij->i", twice, outward).sum()) / area if area > 0 else 0.0
     for section, agreement in (("normals", normals), ("triangles", turned)):
         _require(
             agreement >= LEAST_AGREEMENT,

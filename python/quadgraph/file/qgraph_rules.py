@@ -166,8 +166,8 @@ def _check_inner_links(links: np.ndarray, tets: np.ndarray, n_t: int, where: str
     _require(bool((forward == backward).all()), where, "inner links are not symmetric")
     _require(bool((source != target).all()), where, "a node is linked to itself")
     tet, corner = np.nonzero(links < n_t)
-    across = tets[tet[:, None], FACE_CORNERS[corner]]
-    shared = (across[:, :, None] == tets[links[tet, corner]][:, None, :]).any(axis=2).all(axis=1)
+    across, others = tets[tet[:, None], FACE_CORNERS[corner]].T, tets[links[tet, corner]].T
+    shared = np.all([np.any([vertex == other for other in others], axis=0) for vertex in across], axis=0)
     _require(bool(shared.all()), where, "a link leads to a tet that does not have the face across which it is")
 
 

@@ -10,22 +10,23 @@ import numpy as np
 from quadgraph.base.errors import FormatError
 from quadgraph.tets import exchange
 
-MOST_ROWS, LEAST_ROWS = 16, 4
-PAIR_BUDGET = 1 << 24  # rays times faces, where that leaves LEAST_ROWS
+MOST_ROWS, LEAST_ROWS = 32, 4
+PAIR_BUDGET = 1 << 22  # rays times faces, where that leaves LEAST_ROWS
+MOST_CANDIDATES, MOST_PLACES = 64, 2048  # faces that rows are chosen from, and vertices by which
+RELIEF = 1e-3  # of the body's size, how far above a face a vertex counts
 DIFFERING_SHARE, LEAST_DIFFERING = 0.01, 2  # of all these rays: those that graze an edge, by another rounding
 
 
 def check_some(vertices: np.ndarray, faces: np.ndarray, seen: np.ndarray, rays: int, where: str) -> None:
-    """Hold rows spread evenly over the faces against rays that are cast again.
+    """Hold some rows against rays that are cast again.
 
     vertices: (n_v, 3), mm; faces: (n_f, 3); seen: rows whose indices are in range (docs/qgraph-format.md).
     Raises FormatError, beginning with `where`, if too many rays meet other faces than the rows tell.
     """
-    wanted = PAIR_BUDGET // (len(faces) * rays)
-    count = min(max(LEAST_ROWS, min(wanted, MOST_ROWS)), len(faces))
-    rows = np.arange(count) * len(faces) // count
     surface = vertices[: int(faces.max()) + 1].astype(np.float64)
-    lift = exchange.LIFT * float(np.linalg.norm(np.ptp(surface, axis=0)))
+    size = float(np.linalg.norm(np.ptp(surface, axis=0)))
+    rows = _rows(surface, faces, rays, size)
+    count, lift = len(rows), exchange.LIFT * size
     frames = exchange.frames(surface, faces[rows])
     ways = exchange.directions(np.broadcast_to(np.eye(3), frames.shape), rows, rays)
     missing = invented = 0
@@ -41,6 +42,18 @@ def check_some(vertices: np.ndarray, faces: np.ndarray, seen: np.ndarray, rays: 
             f"{where}: {differing} of the {count * rays} rays of {count} rows meet other faces than are stored, "
             f"allowed are {allowed}; bake the body again"
         )
+
+
+def _rows(surface: np.ndarray, faces: np.ndarray, rays: int, size: float) -> np.ndarray:
+    """Faces whose rays are cast again: some with the most of the body above them, some with less, some with none."""
+    candidates = np.arange(min(MOST_CANDIDATES, len(faces))) * len(faces) // min(MOST_CANDIDATES, len(faces))
+    normals = exchange.frames(surface, faces[candidates])[:, 2]
+    levels = np.einsum("ij,ij->i", normals, surface[faces[candidates]].mean(axis=1))
+    heights = normals @ surface[:: max(len(surface) // MOST_PLACES, 1)].T - levels[:, None]
+    order = np.argsort(-(heights > RELIEF * size).sum(axis=1), kind="stable")
+    wanted = PAIR_BUDGET // (len(faces) * rays)
+    count = min(max(LEAST_ROWS, min(wanted, MOST_ROWS)), len(candidates))
+    return candidates[order[np.arange(count) * len(candidates) // count]]
 
 
 def _met(vertices: np.ndarray, faces: np.ndarray, own: int, ways: np.ndarray) -> np.ndarray:
@@ -69,17 +82,15 @@ def _met(vertices: np.ndarray, faces: np.ndarray, own: int, ways: np.ndarray) ->
 
 
 def _ray_ranges(corners: np.ndarray, rays: int) -> tuple[np.ndarray, np.ndarray]:
-    """First ray, and the one after the last, at the angles from z of cones around (n, 3, 3) triangles."""
-    units = corners / np.maximum(np.linalg.norm(corners, axis=2, keepdims=True), 1e-300)
-    middle = units.sum(axis=1)
-    middle /= np.maximum(np.linalg.norm(middle, axis=1, keepdims=True), 1e-300)
-    cosine = np.clip(np.einsum("ijk,ik->ij", units, middle).min(axis=1), -1, 1)
-    sine, z = np.sqrt(1 - cosine**2), np.clip(middle[:, 2], -1, 1)
-    across = np.sqrt(1 - z**2) * sine
-    highest = np.where(z >= cosine, 1.0, np.maximum(z * cosine + across, 0))
-    lowest = np.maximum(z * cosine - across, 0)
-    wide = cosine <= 0
-    highest[wide], lowest[wide] = 1, 0
+    """First ray and the one after the last at the angles from z of cones around spheres around (n, 3, 3) triangles."""
+    middle = corners.mean(axis=1)
+    radius = np.sqrt(((corners - middle[:, None]) ** 2).sum(axis=2).max(axis=1))
+    distance = np.maximum(np.linalg.norm(middle, axis=1), 1e-300)
+    sine, z = np.minimum(radius / distance, 1), np.clip(middle[:, 2] / distance, -1, 1)
+    cosine, across = np.sqrt(1 - sine**2), np.sqrt(1 - z**2) * sine
+    wide = sine >= 1
+    highest = np.where(wide | (z >= cosine), 1, np.clip(z * cosine + across, 0, 1))
+    lowest = np.where(wide, 0, np.clip(z * cosine - across, 0, 1))
     # z of ray i is sqrt(1 - (i + 1/2) / rays); one more on either side for rounding.
     begin = np.floor((1 - highest**2) * rays - 1.5).astype(np.int64)
     end = np.ceil((1 - lowest**2) * rays + 1.5).astype(np.int64)
