@@ -1,7 +1,10 @@
 #include "engine/cpu/recording.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
+#include <exception>
+#include <thread>
 
 #include "engine/cpu/objects.h"
 #include "engine/cpu/raster.h"
@@ -9,8 +12,9 @@
 namespace quadgraph::cpu {
 namespace {
 
-// Parts that a dispatch is shared out in, for each thread: what one part takes longer, others make up for.
-constexpr std::uint32_t parts_of_thread = 16;
+// Parts that a dispatch is shared out in, for each thread: what one part takes longer, others make up for, and between
+// two the device's check is heeded.
+constexpr std::uint32_t parts_of_thread = 64;
 
 // Bytes of a copy that a thread takes at once.
 constexpr std::uint64_t copied_at_once = 1 << 20;
@@ -66,9 +70,21 @@ void Recording::update(const device::Memory& target, std::span<const std::byte> 
 void Recording::dispatch(const device::Pipeline& pass, const void* push, std::uint32_t groups) {
   const auto& pipeline = static_cast<const ComputePipeline&>(pass);
   const std::uint32_t part = std::max(groups / (parts_of_thread * processor_.threads().threads()), 1u);
+  const auto caller = std::this_thread::get_id();
+  std::atomic<bool> given_up = false;
+  std::exception_ptr why;
   processor_.threads().run(groups, part, [&](std::uint32_t begin, std::uint32_t end) {
+    if (given_up.load(std::memory_order_relaxed)) return;
     pipeline.kernel(push, groups, begin, end, pipeline.variant);
+    if (std::this_thread::get_id() != caller) return;
+    try {
+      processor_.heed();
+    } catch (...) {
+      why = std::current_exception();
+      given_up.store(true, std::memory_order_relaxed);
+    }
   });
+  if (why) std::rethrow_exception(why);
 }
 
 void Recording::dispatch_indirect(const device::Pipeline& pass, const void* push, const device::Memory& arguments,
@@ -83,6 +99,7 @@ void Recording::draw(const device::DrawImages& target, const device::Viewport& v
   const auto& pipeline = static_cast<const GraphicsPipeline&>(pass);
   const auto* numbers = indices == nullptr ? nullptr : reinterpret_cast<const std::uint32_t*>(bytes_of(*indices));
   rasterise(processor_.threads(), target, viewport, pipeline, push, numbers, vertices, processor_.draw_memory());
+  processor_.heed();
 }
 
 void Recording::begin_pass(const std::string& name) {

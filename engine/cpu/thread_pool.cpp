@@ -72,7 +72,9 @@ void ThreadPool::run(std::uint32_t count, std::uint32_t part,
                      const std::function<void(std::uint32_t, std::uint32_t)>& work) {
   const DenormalsAreZero denormals;
   if (others_.empty() || count <= part) {
-    if (count > 0) work(0, count);
+    for (std::uint64_t begin = 0; begin < count; begin += part) {
+      work(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(std::min<std::uint64_t>(begin + part, count)));
+    }
     return;
   }
   work_ = &work;

@@ -21,9 +21,8 @@ class ThreadPool {
 
   unsigned threads() const { return static_cast<unsigned>(others_.size()) + 1; }
 
-  // Calls work(begin, end) for parts of [0, count), each once, on all threads; waits for them. Parts are of at most
-  // `part`, but for a single thread, which gets them all as one. One call at a time, and not from within `work`. What
-  // throws ends the program. Denormals are zero in `work`.
+  // Calls work(begin, end) for parts of [0, count), of at most `part` and each once, on all threads; waits for them.
+  // One call at a time, and not from within `work`. What throws ends the program. Denormals are zero in `work`.
   void run(std::uint32_t count, std::uint32_t part, const std::function<void(std::uint32_t, std::uint32_t)>& work);
 
  private:

@@ -1,10 +1,31 @@
 #include "engine/device/device.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "engine/device/live_objects.h"
 
 namespace quadgraph::device {
+
+void Device::set_check(std::function<void()> check, std::chrono::milliseconds pause) {
+  check_ = std::move(check);
+  pause_ = pause;
+}
+
+void Device::heed() {
+  if (!interruptible_ || given_up_ || !check_) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (now - checked_ < pause_) return;
+  checked_ = now;
+  given_up_ = true;
+  check_();
+  given_up_ = false;
+}
+
+Interruptible::Interruptible(Device& device) : device_(device), outer_(device.interruptible_) {
+  if (!outer_) device_.given_up_ = false;
+  device_.interruptible_ = true;
+}
 
 void Device::count(const std::string& purpose, std::uint64_t bytes) {
   allocated_bytes_ += bytes;

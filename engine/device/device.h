@@ -2,7 +2,9 @@
 // in this room borrows a Device and must die before it.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <span>
@@ -29,6 +31,10 @@ struct DeviceOptions {
   // The surface of the window to present to (engine/vk/context.h); null: no window, and nothing that windows need is
   // asked of the device.
   std::shared_ptr<const vk::SurfaceSource> surface = nullptr;
+  // Called between pieces of work that may be given up (Interruptible), a pause after the last call at the earliest, on
+  // the thread that waits for them; gives the work up by throwing.
+  std::function<void()> check = nullptr;
+  std::chrono::milliseconds pause{50};
 };
 
 enum class Place {
@@ -153,6 +159,12 @@ class Device {
   virtual std::unique_ptr<Pipeline> compile(const GraphicsOptions& options, const std::string& name) = 0;
   virtual std::unique_ptr<Recording> record(std::uint32_t max_passes) = 0;
 
+  // Calls DeviceOptions::check where it is due. For recordings, between pieces of work.
+  void heed();
+
+  // As DeviceOptions.
+  void set_check(std::function<void()> check, std::chrono::milliseconds pause);
+
   // Books of Buffer and Image.
   void count(const std::string& purpose, std::uint64_t bytes);
   void uncount(const std::string& purpose, std::uint64_t bytes) noexcept;
@@ -167,10 +179,31 @@ class Device {
   const void* books_ = this;  // in live_objects.h
 
  private:
+  friend class Interruptible;
+
+  std::function<void()> check_;
+  std::chrono::milliseconds pause_{0};
+  std::chrono::steady_clock::time_point checked_;  // last
+  bool interruptible_ = false, given_up_ = false;
   std::uint64_t allocated_bytes_ = 0;
   std::uint64_t peak_allocated_bytes_ = 0;
   std::uint64_t allocation_count_ = 0;
   std::map<std::string, std::uint64_t> allocated_by_purpose_;
+};
+
+// While it lives, the device's work may be given up half-way. Then no buffer that was being written may be relied upon.
+class Interruptible {
+ public:
+  explicit Interruptible(Device& device);
+  ~Interruptible() { device_.interruptible_ = outer_; }
+  Interruptible(const Interruptible&) = delete;
+  Interruptible& operator=(const Interruptible&) = delete;
+
+  bool given_up() const { return device_.given_up_; }
+
+ private:
+  Device& device_;
+  bool outer_;
 };
 
 }  // namespace quadgraph::device

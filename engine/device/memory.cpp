@@ -53,6 +53,7 @@ void write_bytes(Device& device, const Buffer& target, std::span<const std::byte
     throw InputError("buffer holds " + std::to_string(target.size()) + " bytes, got " + std::to_string(data.size()));
   }
   if (data.empty()) return;
+  device.heed();
   if (target.mapped() != nullptr) {
     std::memcpy(target.mapped(), data.data(), data.size());
     return;

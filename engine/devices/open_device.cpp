@@ -22,14 +22,7 @@ std::shared_ptr<device::Device> open_gpu(const device::DeviceOptions& options) {
   return nullptr;
 }
 
-}  // namespace
-
-std::string wanted_device(const device::DeviceOptions& options) {
-  const char* usual = std::getenv("QUADGRAPH_DEVICE");
-  return options.device.empty() && usual != nullptr ? usual : options.device;
-}
-
-std::shared_ptr<device::Device> open_device(const device::DeviceOptions& given) {
+std::shared_ptr<device::Device> choose(const device::DeviceOptions& given) {
   device::DeviceOptions options = given;
   options.device = wanted_device(given);
   if (options.device.empty()) {
@@ -38,6 +31,19 @@ std::shared_ptr<device::Device> open_device(const device::DeviceOptions& given) 
   }
   if (options.device == device::processor) return std::make_shared<cpu::Processor>();
   return open_vulkan(options);
+}
+
+}  // namespace
+
+std::string wanted_device(const device::DeviceOptions& options) {
+  const char* usual = std::getenv("QUADGRAPH_DEVICE");
+  return options.device.empty() && usual != nullptr ? usual : options.device;
+}
+
+std::shared_ptr<device::Device> open_device(const device::DeviceOptions& options) {
+  auto device = choose(options);
+  device->set_check(options.check, options.pause);
+  return device;
 }
 
 }  // namespace quadgraph

@@ -39,6 +39,8 @@ std::vector<std::uint32_t> nearest_open(const Level& level) {
   // Distance, vertex, surface vertex: equal distances are settled by number, so that the answer is one.
   using Offer = std::tuple<double, std::uint32_t, std::uint32_t>;
   std::priority_queue<Offer, std::vector<Offer>, std::greater<>> offers;
+  constexpr Offer nothing{std::numeric_limits<double>::infinity(), none, none};
+  std::vector<Offer> best(level.vertices.size(), nothing);
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {
     if (level.reflecting(f)) continue;
     for (int k = 0; k < 3; ++k) offers.emplace(0.0, level.faces[f][k], level.faces[f][k]);
@@ -52,7 +54,10 @@ std::vector<std::uint32_t> nearest_open(const Level& level) {
     for (std::uint32_t e = around.offset[v]; e < around.offset[v + 1]; ++e) {
       const std::uint32_t u = around.neighbour[e];
       if (nearest[u] != none) continue;
-      offers.emplace(glm::distance(glm::dvec3(level.vertices[u]), glm::dvec3(level.vertices[s])), u, s);
+      const Offer offer{glm::distance(glm::dvec3(level.vertices[u]), glm::dvec3(level.vertices[s])), u, s};
+      if (offer >= best[u]) continue;
+      best[u] = offer;
+      offers.push(offer);
     }
   }
   for (std::uint32_t v = 0; v < nearest.size(); ++v) {

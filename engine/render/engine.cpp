@@ -1,7 +1,5 @@
 #include "engine/render/engine.h"
 
-#include <algorithm>
-
 #include "engine/base/text.h"
 #include "engine/optics/material.h"
 #include "engine/render/engine_implementation.h"
@@ -10,37 +8,6 @@
 #include "engine/render/verdict.h"
 
 namespace quadgraph {
-namespace {
-
-// Adds to the entry of the same name.
-void add(std::vector<PassStats>& passes, const PassStats& more) {
-  auto same = std::find_if(passes.begin(), passes.end(), [&](const auto& p) { return p.name == more.name; });
-  if (same == passes.end()) same = passes.insert(passes.end(), {.name = more.name});
-  same->time_ms += more.time_ms;
-  same->bytes += more.bytes;
-  same->count += more.count;
-}
-
-void check_roughness(float roughness) {
-  if (roughness_range.contains(roughness)) return;
-  throw InputError("roughness: found " + number_text(roughness) + ", expected " + roughness_range.text());
-}
-
-}  // namespace
-
-void check_options(const RenderOptions& options) {
-  for (std::uint32_t side : {options.width, options.height}) {
-    if (!side_range.contains(side)) {
-      throw InputError("size: found " + std::to_string(options.width) + "x" + std::to_string(options.height) +
-                       ", expected " + side_range.text() + " pixels a side");
-    }
-  }
-  check_roughness(options.roughness);
-  if (!options.roughness_map) return;
-  if (!options.roughness_map->image) throw InputError("roughness_map, image: found none");
-  check_roughness(options.roughness_map->roughness);
-  check_placement(options.roughness_map->placement);
-}
 
 Engine::Engine(const std::filesystem::path& path, const device::DeviceOptions& device)
     : Engine(path, open_device(device)) {}
@@ -187,19 +154,8 @@ void Engine::update_irradiance() {
   const auto turn = implementation_->in_use.take();
   auto& self = *implementation_;
   if (self.material.empty()) throw InputError("irradiance: set a material first; the light that enters depends on eta");
-  Simulation& simulation = self.levels();
-  const LightSet lights = self.cast_shadows();
-  simulation.set_beams(lights.beams);
-  if (lights.environments > 0) {
-    if (!self.hidden) self.hidden.emplace(self.device, self.graph);
-    self.irradiance_passes.push_back(self.hidden->run(simulation, self.shadows, lights.environments, self.eta));
-  }
-  for (std::uint32_t level = 0; level < simulation.level_count(); ++level) {
-    add(self.irradiance_passes, self.irradiance.run(simulation.level(level), level, self.shadows, self.eta,
-                                                    self.hidden ? self.hidden->hidden(level) : 0));
-  }
-  simulation.irradiance_changed();
-  self.irradiance_stale = false;
+  self.levels();
+  self.interruptible([&] { self.update_irradiance(); });
 }
 
 void Engine::make_room(const SolveOptions& options) {
@@ -208,8 +164,10 @@ void Engine::make_room(const SolveOptions& options) {
   if (options.method == Method::shortest_path) return static_cast<void>(solve(options));
   if (self.irradiance_stale) update_irradiance();
   const bool gathered = gathers(options.method, options.source);
-  self.levels().make_room(options, gathered);
-  if (gathered) self.display_room();
+  self.interruptible([&] {
+    self.levels().make_room(options, gathered);
+    if (gathered) self.display_room();
+  });
 }
 
 SolveReport Engine::solve(const SolveOptions& options, const std::function<void()>& check) {
@@ -223,7 +181,8 @@ SolveReport Engine::solve(const SolveOptions& options, const std::function<void(
   if (self.deformed && self.simulation) self.deformation_passes = self.simulation->deformation_passes();
   self.deformed = false;
   self.report.reset();
-  self.report = by_path ? self.solve_paths(options) : self.levels().solve(options, check);
+  self.report =
+      self.interruptible([&] { return by_path ? self.solve_paths(options) : self.levels().solve(options, check); });
   judge(*self.report, self.lights, self.lights_inside());
   self.options = options;
   return *self.report;
@@ -253,25 +212,10 @@ const PictureBuffers& Engine::draw(const View& view, const RenderOptions& option
   const Camera camera =
       place_camera(view, self.bounds, static_cast<float>(options.width) / static_cast<float>(options.height));
   self.view = view;
-  if (options.show.quantity != Quantity::picture) {
-    self.draw_inside(camera, options);
-    return self.rasteriser.picture();
-  }
-  self.legend.reset();
-  const auto& map = options.roughness_map;
-  self.images.set_roughness(options.roughness, map ? map->roughness : 0);
-  self.radiance = self.draw_surface(camera, options);
-  if (options.ground) {
-    if (!self.ground) self.ground.emplace(self.device);
-    self.render_passes.push_back(self.ground->run(self.mesh, self.bounds, view, camera, self.rasteriser.picture()));
-  }
-  if (options.surroundings) {
-    if (!self.surroundings) self.surroundings.emplace(self.device);
-    PictureBuffers& picture = self.rasteriser.picture();
-    PassStats pass;
-    picture.has_surroundings = self.surroundings->run(self.lights, camera, picture, pass);
-    if (picture.has_surroundings) self.render_passes.push_back(pass);
-  }
+  self.interruptible([&] {
+    options.show.quantity == Quantity::picture ? self.draw_picture(view, camera, options)
+                                               : self.draw_inside(camera, options);
+  });
   return self.rasteriser.picture();
 }
 
@@ -297,9 +241,11 @@ Leaving Engine::leaving(std::span<const std::uint32_t> face, std::span<const glm
   const auto turn = implementation_->in_use.take();
   auto& self = *implementation_;
   if (!self.report) throw InputError("radiance: solve first");
-  const GatherField& field = self.gather(Gather::scaled);
-  if (!self.probe) self.probe.emplace(self.device);
-  return self.probe->run(self.levels().present_level(), field, self.eta, face, direction);
+  return self.interruptible([&] {
+    const GatherField& field = self.gather(Gather::scaled);
+    if (!self.probe) self.probe.emplace(self.device);
+    return self.probe->run(self.levels().present_level(), field, self.eta, face, direction);
+  });
 }
 
 std::vector<PassStats> Engine::passes() const {

@@ -86,6 +86,28 @@ struct Engine::Implementation {
                      "'quadgraph bake' makes the others' levels");
   }
 
+  // Does what the device's check may end half-way. Then what was set is kept, and nothing that was derived from it.
+  template <typename Work>
+  auto interruptible(const Work& work) -> decltype(work()) {
+    const device::Interruptible scope(device);
+    try {
+      return work();
+    } catch (...) {
+      if (scope.given_up()) start_over();
+      throw;
+    }
+  }
+
+  void start_over() {
+    if (simulation) simulation->start_over();
+    paths.start_over();
+    hidden.reset();
+    probe.reset();
+    ground.reset();
+    report.reset();
+    stale();
+  }
+
   void stale() {
     shadows_stale = true;
     in_body.reset();
@@ -99,6 +121,21 @@ struct Engine::Implementation {
     irradiance_passes = {shadows.update(mesh, set)};
     shadows_stale = false;
     return set;
+  }
+
+  void update_irradiance() {
+    const LightSet set = cast_shadows();
+    simulation->set_beams(set.beams);
+    if (set.environments > 0) {
+      if (!hidden) hidden.emplace(device, graph);
+      irradiance_passes.push_back(hidden->run(*simulation, shadows, set.environments, eta));
+    }
+    for (std::uint32_t level = 0; level < simulation->level_count(); ++level) {
+      add(irradiance_passes,
+          irradiance.run(simulation->level(level), level, shadows, eta, hidden ? hidden->hidden(level) : 0));
+    }
+    simulation->irradiance_changed();
+    irradiance_stale = false;
   }
 
   // Which of the lights stand in the body. Only those are asked for that stand within its bounds.
@@ -196,6 +233,24 @@ struct Engine::Implementation {
                                                .gather = view_rays ? &*view_rays : nullptr},
                                    camera, render.width, render.height);
     return leaves;
+  }
+
+  void draw_picture(const View& from, const Camera& camera, const RenderOptions& render) {
+    legend.reset();
+    const auto& map = render.roughness_map;
+    images.set_roughness(render.roughness, map ? map->roughness : 0);
+    radiance = draw_surface(camera, render);
+    if (render.ground) {
+      if (!ground) ground.emplace(device);
+      render_passes.push_back(ground->run(mesh, bounds, from, camera, rasteriser.picture()));
+    }
+    if (render.surroundings) {
+      if (!surroundings) surroundings.emplace(device);
+      PictureBuffers& picture = rasteriser.picture();
+      PassStats pass;
+      picture.has_surroundings = surroundings->run(lights, camera, picture, pass);
+      if (picture.has_surroundings) render_passes.push_back(pass);
+    }
   }
 
   void display_room() {

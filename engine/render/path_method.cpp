@@ -64,6 +64,13 @@ void PathMethod::set(std::span<const BodyCut> cuts) {
   device::rewrite<gpu::PathTool>(device_, tools, "path/cuts", tools_);
 }
 
+void PathMethod::start_over() {
+  parts_.reset();
+  passes_.clear();
+  stale_ = true;
+  body_.reset();
+}
+
 PathMethod::Parts& PathMethod::parts() {
   if (!parts_) parts_ = std::make_unique<Parts>(device_);
   if (!stale_) return *parts_;

@@ -38,6 +38,9 @@ class PathMethod {
   // What is cut away from now on; checked before.
   void set(std::span<const BodyCut> cuts);
 
+  // Work of the device was given up half-way: keeps what was set, and nothing that was derived from it.
+  void start_over();
+
   // The mesh is no longer what it was at the last solve.
   void set_moved() { body_.reset(); }
 

@@ -41,6 +41,9 @@ class Coefficients {
   // One entry per sample of level `number`.
   std::vector<gpu::Optical> at(std::uint32_t number, std::span<const SurfaceSample> samples);
 
+  // Buffers may hold anything: they are evaluated again.
+  void forget() { changed(); }
+
   // The model that is meant where `wanted` is automatic. Edited coefficients are evaluated for that.
   Model resolve(Workspace& work, Model wanted, Method method, Source source, std::vector<LevelBuffers>& levels);
 

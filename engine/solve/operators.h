@@ -48,6 +48,9 @@ class Operators {
   // Vertices of a level have been moved by the device; `conduction`: its mean, as format_of takes it.
   void remeasure(std::uint32_t number, double conduction);
 
+  // What was made is made again.
+  void forget() { levels_.clear(); }
+
   // All vertices lie as in the file again.
   void put_back();
 

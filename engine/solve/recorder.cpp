@@ -47,6 +47,12 @@ void Recorder::submit() {
   for (const device::PassTime& time : running->submit_and_wait()) stats(time.name).time_ms += time.time_ms;
 }
 
+void Recorder::abandon() {
+  commands_.reset();
+  timed_ = 0;
+  clear();
+}
+
 void Recorder::did(const std::string& name, std::uint32_t count, std::uint64_t bytes_each) {
   PassStats& pass = stats(name);
   pass.count += count;

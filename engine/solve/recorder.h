@@ -49,6 +49,9 @@ class Recorder {
   // Runs what is recorded and waits.
   void submit();
 
+  // Drops what is recorded, and the passes counted so far.
+  void abandon();
+
   // Counts `count` indirect dispatches that did work.
   void did(const std::string& name, std::uint32_t count, std::uint64_t bytes_each);
 

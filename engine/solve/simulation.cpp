@@ -95,6 +95,10 @@ SolveReport Simulation::solve(const SolveOptions& options, const std::function<v
   return implementation_->solve(options, check);
 }
 
+void Simulation::start_over() {
+  implementation_->start_over();
+}
+
 const std::vector<PassStats>& Simulation::passes() const {
   return implementation_->passes;
 }

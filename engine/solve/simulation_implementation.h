@@ -118,6 +118,29 @@ struct Simulation::Implementation {
     unload();
   }
 
+  // Work was given up half-way: keeps what was set, and nothing that was derived from it.
+  void start_over() {
+    work.recorder.abandon();
+    passes.clear();
+    operators.forget();
+    coefficients.forget();
+    exchange.put_back(device, levels);
+    for (std::uint32_t i = 0; i < levels.size(); ++i) {
+      levels[i].links = {};
+      levels[i].nodes = {};
+      if (shape.set() || !shape.is({})) exchange.moved(i);
+    }
+    walks.clear();
+    for (std::uint32_t i = 0; i < levels.size(); ++i) walks.emplace_back(device, shape.levels()[i], i);
+    correction.reset();
+    gather.reset();
+    tree.reset();
+    gathers_now.reset();
+    corrected = false;
+    solved.reset();
+    disassemble();
+  }
+
   bool deform(std::span<const Deformer> list, const RestBox& box, const std::function<void(Workspace&)>& also) {
     if (shape.is(list)) return false;
     work.recorder.clear();

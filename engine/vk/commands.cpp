@@ -243,6 +243,7 @@ void Recording::end_and_run() {
   submit.pCommandBufferInfos = &command_info;
   check(vkQueueSubmit2(context_.queue(), 1, &submit, fence), "vkQueueSubmit2");
   check(vkWaitForFences(context_.device(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+  context_.heed();
 }
 
 std::vector<device::PassTime> Recording::submit_and_wait() {

@@ -64,7 +64,7 @@ py::list as_list(const std::vector<PassStats>& passes) {
 }
 
 std::unique_ptr<Engine> make_engine(const std::filesystem::path& path, const std::string& device, bool validation) {
-  return std::make_unique<Engine>(path, device::DeviceOptions{validation, device, nullptr});
+  return std::make_unique<Engine>(path, device::DeviceOptions{validation, device, nullptr, heed_signals});
 }
 
 void set_lights(Engine& engine, const std::vector<std::string>& texts) {

@@ -55,7 +55,7 @@ void bind_scene_file(py::module_& module) {
 void bind_stage(py::module_& module) {
   py::class_<Stage>(module, "Stage", "An Engine that shows a Scene.")
       .def(py::init([](const std::string& device, bool validation) {
-             return std::make_unique<Stage>(device::DeviceOptions{validation, device, nullptr});
+             return std::make_unique<Stage>(device::DeviceOptions{validation, device, nullptr, heed_signals});
            }),
            py::arg("device") = "", py::arg("validation") = false)
       .def("show", &Stage::show, py::arg("scene"), py::call_guard<py::gil_scoped_release>(),

@@ -1,0 +1,138 @@
+// Work of the device that is given up half-way, and what an engine answers after it.
+#include <doctest/doctest.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/deform/deformer.h"
+#include "engine/render/engine.h"
+#include "tests/cpp/fixtures/test_device.h"
+
+using namespace quadgraph;
+
+namespace {
+
+struct GivenUp {};
+
+// An engine on the cube, whose device asks between all pieces of work whether to go on.
+class Impatient {
+ public:
+  Impatient() { engine.set_lights({parse_light("directional:0,0.2,-1:1/2/3"), parse_light("ambient:0.3")}); }
+  ~Impatient() {
+    for (const auto& message : engine.device().validation_messages()) FAIL_CHECK(message);
+  }
+  Impatient(const Impatient&) = delete;
+  Impatient& operator=(const Impatient&) = delete;
+
+  // Whether `work` was given up, as the device asked for the time `number`, from 1; with fewer questions it is not.
+  template <typename Work>
+  bool gives_up(const Work& work, std::uint64_t number) {
+    asked = 0;
+    last = number;
+    bool given_up = false;
+    try {
+      work();
+    } catch (const GivenUp&) {
+      given_up = true;
+    }
+    last = never;
+    return given_up;
+  }
+
+ private:
+  device::DeviceOptions asking() {
+    device::DeviceOptions options = test_device();
+    options.pause = std::chrono::milliseconds(0);
+    options.check = [this] {
+      if (++asked >= last) throw GivenUp();
+    };
+    return options;
+  }
+
+  std::uint64_t last = never;
+
+ public:
+  static constexpr std::uint64_t never = std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t asked = 0;
+  Engine engine{std::filesystem::path(QUADGRAPH_TEST_DATA) / "tiny.qgraph", asking()};
+};
+
+// A handful of numbers of [1, count], denser at the beginning, and the last one.
+std::vector<std::uint64_t> some_of(std::uint64_t count) {
+  std::vector<std::uint64_t> numbers;
+  for (double k = 1; k < static_cast<double>(count); k = 2.5 * k + 1) numbers.push_back(static_cast<std::uint64_t>(k));
+  numbers.push_back(count);
+  return numbers;
+}
+
+struct Answer {
+  std::vector<glm::vec3> exitance{};
+  std::vector<float> scattered{}, specular{}, alpha{};
+  glm::dvec3 entered{}, absorbed{};
+
+  bool operator==(const Answer&) const = default;
+};
+
+const RenderOptions small{.width = 12, .height = 9, .ground = true};
+
+Answer answer(Engine& engine, const SolveOptions& options) {
+  const SolveReport report = engine.solve(options);
+  const Picture picture = engine.render(View{}, small);
+  Answer found{.scattered = picture.scattered, .specular = picture.specular, .alpha = picture.alpha};
+  if (report.path) return found;
+  found.exitance = engine.surface_field().exitance;
+  found.entered = report.energy.entered;
+  found.absorbed = report.energy.absorbed;
+  return found;
+}
+
+struct Way {
+  SolveOptions options;
+  bool bent = false;
+};
+
+std::vector<Way> ways() {
+  const SolverKind solver = SolverKind::dpcg;
+  return {{{.method = Method::fem, .solver = solver, .correction = true}},
+          {{.method = Method::fem, .solver = solver, .correction = true}, true},
+          {{.method = Method::fem, .solver = SolverKind::fmg_pcg, .model = Model::sp3}},
+          {{.method = Method::quadgraph_fv, .solver = solver}, true},
+          {{.method = Method::shortest_path}}};
+}
+
+void bend(Engine& engine) {
+  engine.set_deformation(std::vector{Deformer{.degrees = 20}});
+}
+
+}  // namespace
+
+TEST_CASE("a solve or picture that is given up at any piece of its work leaves an engine that answers as a new one") {
+  for (const auto& [options, bent] : ways()) {
+    CAPTURE(name_of(options.method));
+    CAPTURE(bent);
+    Impatient fresh;
+    fresh.engine.set_material("sigma_s_prime=2/1.5/1,sigma_a=0.1/.02/.01,eta=1.4");
+    if (bent) bend(fresh.engine);
+    fresh.asked = 0;
+    const Answer expected = answer(fresh.engine, options);
+    const std::uint64_t count = fresh.asked;
+    CHECK(count > 20);
+    Impatient tried;
+    tried.engine.set_material("sigma_s_prime=1,sigma_a=0.2,eta=1.3");
+    answer(tried.engine, options);
+    tried.engine.set_material("sigma_s_prime=2/1.5/1,sigma_a=0.1/.02/.01,eta=1.4");
+    if (bent) bend(tried.engine);
+    int given_up = 0;
+    for (const std::uint64_t number : some_of(count)) {
+      CAPTURE(number);
+      if (!tried.gives_up([&] { answer(tried.engine, options); }, number)) continue;
+      ++given_up;
+      CHECK_THROWS_AS(tried.engine.render(View{}, small), InputError);
+      CHECK((answer(tried.engine, options) == expected));
+    }
+    CHECK(given_up >= 3);
+  }
+}
