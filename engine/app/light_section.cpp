@@ -164,7 +164,7 @@ void draw_lights(State& state, const Sphere& bounds) {
     ImGui::PopID();
   }
   if (state.light < lights.size()) draw_light(state, bounds);
-  if (ImGui::Button("Add##light")) {
+  if (ImGui::Button("Add##light") && lights.size() < most_lights) {
     lights.push_back(default_lights(state.scene.view).front());
     select(lights.size() - 1);
   }

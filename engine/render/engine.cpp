@@ -100,6 +100,7 @@ void Engine::set_cuts(std::span<const BodyCut> cuts) {
 
 void Engine::set_lights(std::vector<Light> lights) {
   const auto turn = implementation_->in_use.take();
+  check_light_count(lights.size());
   for (const Light& light : lights) check_light(light);
   implementation_->images.load(lights);
   implementation_->lights = std::move(lights);

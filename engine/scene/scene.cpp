@@ -188,7 +188,9 @@ Scene scene_from(const JsonField& document) {
     for (const JsonField& edit : edits->items()) scene.edits.push_back(edit_from(edit));
   }
   if (const auto lights = document.find("lights")) {
-    for (const JsonField& light : lights->items()) scene.lights.push_back(light_from(light));
+    const std::vector<JsonField> items = lights->items();
+    lights->within([&] { check_light_count(items.size()); });
+    for (const JsonField& light : items) scene.lights.push_back(light_from(light));
   }
   if (const auto deformation = document.find("deformation")) {
     for (const JsonField& deformer : deformation->items()) scene.deformation.push_back(deformer_from(deformer));

@@ -109,6 +109,22 @@ gpu::LightRecord light_record(const Light& light) {
 }
 
 LightSet::LightSet(std::span<const Light> lights, const Sphere& bounds, const LightImages* images) : bounds_(bounds) {
+  add(lights, images);
+  while (map_bytes() > most_map_bytes) {
+    const std::uint32_t halvings = halvings_ + 1;
+    *this = LightSet({}, bounds);
+    halvings_ = halvings;
+    add(lights, images);
+  }
+}
+
+std::uint64_t LightSet::map_bytes() const {
+  std::uint64_t bytes = 0;
+  for (const gpu::ShadowView& view : views) bytes += std::uint64_t{view.size} * view.size * sizeof(float);
+  return bytes;
+}
+
+void LightSet::add(std::span<const Light> lights, const LightImages* images) {
   for (const Light& light : lights) {
     if (light.kind == LightKind::rectangle) {
       add_patches(light);
@@ -119,7 +135,7 @@ LightSet::LightSet(std::span<const Light> lights, const Sphere& bounds, const Li
       continue;
     } else {
       add(light_record(light), light.kind == LightKind::spot ? spot_shape(light) : gpu::LightShape{},
-          shadow_views(light, bounds));
+          shadow_views(light, bounds_, halvings_));
     }
     beams.push_back(beam_of(light, records.back(), shapes.back()));
   }
@@ -146,7 +162,7 @@ void LightSet::add_environment(const Light& light, const EnvironmentImage& image
   ++environments;
   for (const Sun& sun : image.environment.suns) {
     const Light peak{.direction = -(frame * sun.towards), .power = light.power * sun.irradiance};
-    add(light_record(peak), {}, shadow_views(peak, bounds_));
+    add(light_record(peak), {}, shadow_views(peak, bounds_, halvings_));
     beams.push_back(beam_of(peak, records.back(), shapes.back()));
   }
 }
@@ -155,7 +171,7 @@ void LightSet::add_projector(const Light& light, const ProjectedImage& image) {
   const gpu::LightShape shape = projector_shape(light, image);
   gpu::LightRecord record = light_record(light);
   record.power *= 0.25f * glm::length(shape.right) * glm::length(shape.up);  // over the image's area at 1 mm
-  add(record, shape, shadow_views(light, bounds_));
+  add(record, shape, shadow_views(light, bounds_, halvings_));
 }
 
 void LightSet::add_patches(const Light& rectangle) {
@@ -165,7 +181,7 @@ void LightSet::add_patches(const Light& rectangle) {
       record.towards_or_at += 0.5f * (patch_node[i] * rectangle.u + patch_node[j] * rectangle.v);
       gpu::LightShape shape = patch_shape(rectangle, i, j);
       shape.parts = parts_of(shape.width, record.towards_or_at, bounds_);
-      add(record, shape, patch_views(record.towards_or_at, shape.axis, bounds_));
+      add(record, shape, patch_views(record.towards_or_at, shape.axis, bounds_, halvings_));
     }
   }
 }

@@ -13,6 +13,9 @@
 
 namespace quadgraph {
 
+// Four halvings fit most_lights rectangles, each of 16 patches of six views, into it.
+inline constexpr std::uint64_t most_map_bytes = std::uint64_t{512} << 20;
+
 class LightSet {
  public:
   std::vector<gpu::LightRecord> records;
@@ -22,16 +25,21 @@ class LightSet {
   std::uint32_t environments = 0;
   bool shaped = false;  // some kind beyond directional, point and ambient
 
-  // The records of all lights on a body within `bounds`. `images` has loaded theirs, if they have any.
+  // The records of all lights on a body within `bounds`. `images` has loaded theirs, if they have any. Shadow maps are
+  // halved in size until all together take no more than most_map_bytes, which few lights never do.
   LightSet(std::span<const Light> lights, const Sphere& bounds, const LightImages* images = nullptr);
 
+  std::uint64_t map_bytes() const;  // of all views
+
  private:
+  void add(std::span<const Light> lights, const LightImages* images);
   void add(gpu::LightRecord record, const gpu::LightShape& shape, std::span<const gpu::ShadowView> own);
   void add_environment(const Light& light, const EnvironmentImage& image);
   void add_projector(const Light& light, const ProjectedImage& image);
   void add_patches(const Light& rectangle);
 
   Sphere bounds_;
+  std::uint32_t halvings_ = 0;  // of the sides of shadow maps
 };
 
 // Axes of an environment's image in the world: right, up and ahead.

@@ -69,6 +69,12 @@ void check_light(const Light& light) {
   if (form.check) form.check(light, where);
 }
 
+void check_light_count(std::size_t count) {
+  if (count <= most_lights) return;
+  throw InputError("lights: found " + std::to_string(count) + ", allowed are at most " + std::to_string(most_lights) +
+                   "; leave some out, or show many in the image of an environment");
+}
+
 bool has_position(const Light& light) {
   return form_of(light.kind).has(FieldForm::point);
 }

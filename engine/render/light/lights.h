@@ -23,6 +23,9 @@ enum class LightKind { directional, point, ambient, spot, rectangle, projector, 
 inline constexpr float largest_power = 1e15f;
 inline constexpr float largest_length = 1e9f;  // mm
 
+// Of a scene; their shadow maps share 512 MiB.
+inline constexpr std::size_t most_lights = 1024;
+
 // Members that a kind does not name are not used.
 struct Light {
   LightKind kind = LightKind::directional;
@@ -116,6 +119,9 @@ std::string to_string(const Light& light);
 // Throws InputError unless the numbers are finite and in their ranges, the power is >= 0 and a direction has unit
 // length.
 void check_light(const Light& light);
+
+// Throws InputError unless there are at most most_lights.
+void check_light_count(std::size_t count);
 
 // Whether it shines from a place: `position` counts.
 bool has_position(const Light& light);

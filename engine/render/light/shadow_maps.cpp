@@ -1,10 +1,20 @@
 #include "engine/render/light/shadow_maps.h"
 
+#include <algorithm>
+
 #include "engine/device/commands.h"
 #include "interface/light/shadow.vert.h"
 
 namespace quadgraph {
 namespace {
+
+constexpr std::size_t most_own = 128;                            // views, each with a buffer of its own
+constexpr std::uint64_t shared_bytes = std::uint64_t{64} << 20;  // of a buffer that views share
+constexpr std::size_t views_at_once = 1024;                      // in one submission
+
+std::uint64_t bytes_of(const gpu::ShadowView& view) {
+  return std::uint64_t{view.size} * view.size * sizeof(float);
+}
 
 device::Image depth_image(device::Device& device, std::uint32_t size) {
   return {device, {device::Format::depth32_float, size, size}, "shadows/depth"};
@@ -28,24 +38,49 @@ device::Image& ShadowMaps::image_for(std::size_t view, std::uint32_t size) {
   return maps_[view];
 }
 
-const device::Buffer& ShadowMaps::buffer_for(std::size_t view, std::uint64_t bytes) {
-  if (view >= depths_.size()) depths_.resize(view + 1);
-  device::Buffer& depth = depths_[view];
-  if (depth.size() != bytes) depth = {device_, bytes, device::Place::device, "shadows/map"};
-  return depth;
+// Buffers for the maps of all views, and where in them each lies.
+void ShadowMaps::make_places(const std::vector<gpu::ShadowView>& views) {
+  const bool shared = views.size() > most_own;
+  std::vector<std::uint64_t> sizes;
+  places_.clear();
+  for (const gpu::ShadowView& view : views) {
+    const std::uint64_t bytes = bytes_of(view);
+    if (sizes.empty() || !shared || sizes.back() + bytes > shared_bytes) sizes.push_back(0);
+    places_.push_back({sizes.size() - 1, sizes.back()});
+    sizes.back() += bytes;
+  }
+  depths_.resize(sizes.size());
+  for (std::size_t k = 0; k < sizes.size(); ++k) {
+    if (depths_[k].size() != sizes[k]) depths_[k] = {device_, sizes[k], device::Place::device, "shadows/map"};
+  }
+  if (!shared) whole_.clear();
 }
 
-PassStats ShadowMaps::update(const DisplayBuffers& mesh, const LightSet& lights) {
-  std::vector<gpu::ShadowView> views = lights.views;
+// The address of the copy. An image fills the beginning of a buffer, so that it reaches a shared one by way of another.
+std::uint64_t ShadowMaps::copy_to_place(device::Commands& commands, const device::Image& image, std::size_t view) {
+  const Place& place = places_[view];
+  const device::Buffer& target = depths_[place.buffer];
+  const std::uint32_t size = image.options().width;
+  const std::uint64_t bytes = std::uint64_t{size} * size * sizeof(float);
+  if (target.size() == bytes) {
+    commands.copy(image, target);
+  } else {
+    device::Buffer& whole = whole_[size];
+    if (!whole.exists()) whole = {device_, bytes, device::Place::device, "shadows/whole"};
+    commands.copy(image, whole);
+    commands.copy(whole, target, bytes, place.offset);
+  }
+  return target.address() + place.offset;
+}
+
+PassStats ShadowMaps::draw(const DisplayBuffers& mesh, std::span<gpu::ShadowView> views, std::size_t first) {
   PassStats stats{.name = "shadow maps"};
   device::Commands commands(device_, 1);
   commands.begin_pass(stats.name);
-  if (maps_.size() > views.size()) maps_.resize(views.size());
-  if (depths_.size() > views.size()) depths_.resize(views.size());
   for (std::size_t k = 0; k < views.size(); ++k) {
     gpu::ShadowView& view = views[k];
-    const std::uint64_t map_bytes = std::uint64_t{view.size} * view.size * sizeof(float);
-    const device::Image& image = image_for(k, view.size);
+    const std::uint64_t map_bytes = bytes_of(view);
+    const device::Image& image = image_for(first + k, view.size);
     const auto size = static_cast<float>(view.size);
     commands.draw({{}, &image}, {0, 0, size, size}, pass_,
                   gpu::ShadowPush{view.clip_from_world, mesh.vertices.address()}, &mesh.triangles,
@@ -53,15 +88,28 @@ PassStats ShadowMaps::update(const DisplayBuffers& mesh, const LightSet& lights)
     view.depth = image.address();
     stats.bytes += mesh.vertices.size() + mesh.triangles.size() + map_bytes;
     if (view.depth == 0) {
-      const device::Buffer& depth = buffer_for(k, map_bytes);
-      view.depth = depth.address();
-      commands.copy(image, depth);
+      view.depth = copy_to_place(commands, image, first + k);
       stats.bytes += 2 * map_bytes;
     }
     ++stats.count;
   }
   commands.end_pass();
   stats.time_ms = commands.submit_and_wait()[0].time_ms;
+  return stats;
+}
+
+PassStats ShadowMaps::update(const DisplayBuffers& mesh, const LightSet& lights) {
+  std::vector<gpu::ShadowView> views = lights.views;
+  if (maps_.size() > views.size()) maps_.resize(views.size());
+  if (views.empty() || image_for(0, views[0].size).address() == 0) make_places(views);
+  PassStats stats{.name = "shadow maps"};
+  for (std::size_t first = 0; first < views.size(); first += views_at_once) {
+    const std::size_t count = std::min(views_at_once, views.size() - first);
+    const PassStats part = draw(mesh, std::span(views).subspan(first, count), first);
+    stats.time_ms += part.time_ms;
+    stats.bytes += part.bytes;
+    stats.count += part.count;
+  }
 
   light_count_ = static_cast<std::uint32_t>(lights.records.size());
   shaped_ = lights.shaped;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <span>
 #include <vector>
 
 #include "engine/base/pass_stats.h"
@@ -28,7 +29,15 @@ class ShadowMaps {
 
  private:
   device::Image& image_for(std::size_t view, std::uint32_t size);
-  const device::Buffer& buffer_for(std::size_t view, std::uint64_t bytes);
+  void make_places(const std::vector<gpu::ShadowView>& views);
+  std::uint64_t copy_to_place(device::Commands& commands, const device::Image& image, std::size_t view);
+  PassStats draw(const DisplayBuffers& mesh, std::span<gpu::ShadowView> views, std::size_t first);
+
+  // A piece of a buffer.
+  struct Place {
+    std::size_t buffer = 0;
+    std::uint64_t offset = 0;
+  };
 
   device::Device& device_;
   device::GraphicsPass pass_;
@@ -37,10 +46,13 @@ class ShadowMaps {
   device::Buffer lights_;
   device::Buffer shapes_;
   device::Buffer views_;
-  // Where images are read in place, an image per view; else images by size, and per view a buffer copied from them.
+  // Where images are read in place, an image per view; else images by size, and buffers copied from them: one per view,
+  // or, as devices allow some thousand buffers only, where there are many views large ones that they share.
   std::map<std::uint32_t, device::Image> images_;
   std::vector<device::Image> maps_;
   std::vector<device::Buffer> depths_;
+  std::vector<Place> places_;                      // of views in depths_
+  std::map<std::uint32_t, device::Buffer> whole_;  // by size, between an image and its place; where buffers are shared
 };
 
 }  // namespace quadgraph

@@ -16,9 +16,9 @@ glm::vec3 any_up(const glm::vec3& axis) {
   return std::abs(axis.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
 }
 
-gpu::ShadowView directional_view(const Light& light, const Sphere& bounds) {
+gpu::ShadowView directional_view(const Light& light, const Sphere& bounds, std::uint32_t size) {
   gpu::ShadowView view{};
-  view.size = gpu::SHADOW_SIZE;
+  view.size = size;
   // Two texels of margin, so that filtering never leaves the map on the object.
   const float half = bounds.radius * (1.0f + 4.0f / static_cast<float>(view.size));
   const float distance = 1.02f * bounds.radius;
@@ -73,36 +73,37 @@ std::vector<gpu::ShadowView> views_from(const glm::vec3& position, const Sphere&
   return cube_views(position, bounds, cube_size);
 }
 
-std::vector<gpu::ShadowView> point_views(const glm::vec3& position, const Sphere& bounds) {
-  return views_from(position, bounds, gpu::SHADOW_SIZE, gpu::SHADOW_CUBE_SIZE);
+std::vector<gpu::ShadowView> point_views(const glm::vec3& position, const Sphere& bounds, std::uint32_t halvings) {
+  return views_from(position, bounds, gpu::SHADOW_SIZE >> halvings, gpu::SHADOW_CUBE_SIZE >> halvings);
 }
 
 // The cone, if that is narrower than the body.
-std::vector<gpu::ShadowView> spot_views(const Light& light, const Sphere& bounds) {
+std::vector<gpu::ShadowView> spot_views(const Light& light, const Sphere& bounds, std::uint32_t halvings) {
   constexpr float widest = 75;  // degrees; of one view that still has fine texels everywhere
   const glm::vec3 to_centre = bounds.centre - light.position;
   const float r = bounds.radius, ahead = glm::dot(to_centre, light.direction);
-  const auto distant = distant_view(light.position, bounds, gpu::SHADOW_SIZE);
+  const auto distant = distant_view(light.position, bounds, gpu::SHADOW_SIZE >> halvings);
   const bool narrower = !distant || glm::radians(light.angle) < std::asin(r / glm::length(to_centre));
-  if (light.angle > widest || !narrower) return point_views(light.position, bounds);
+  if (light.angle > widest || !narrower) return point_views(light.position, bounds, halvings);
   const float near = std::max(ahead - 1.02f * r, 1e-3f * r);
   return {perspective_view(light.position, light.direction, std::tan(glm::radians(light.angle)), near,
-                           std::max(ahead + 1.02f * r, 2 * near), gpu::SHADOW_SIZE)};
+                           std::max(ahead + 1.02f * r, 2 * near), gpu::SHADOW_SIZE >> halvings)};
 }
 
 }  // namespace
 
-std::vector<gpu::ShadowView> shadow_views(const Light& light, const Sphere& bounds) {
-  if (light.kind == LightKind::directional) return {directional_view(light, bounds)};
-  if (light.kind == LightKind::spot) return spot_views(light, bounds);
+std::vector<gpu::ShadowView> shadow_views(const Light& light, const Sphere& bounds, std::uint32_t halvings) {
+  if (light.kind == LightKind::directional) return {directional_view(light, bounds, gpu::SHADOW_SIZE >> halvings)};
+  if (light.kind == LightKind::spot) return spot_views(light, bounds, halvings);
   const LightForm& form = form_of(light.kind);
   if (!form.has(FieldForm::point) || form.has(FieldForm::edge)) return {};
-  return point_views(light.position, bounds);
+  return point_views(light.position, bounds, halvings);
 }
 
-std::vector<gpu::ShadowView> patch_views(const glm::vec3& position, const glm::vec3& axis, const Sphere& bounds) {
+std::vector<gpu::ShadowView> patch_views(const glm::vec3& position, const glm::vec3& axis, const Sphere& bounds,
+                                         std::uint32_t halvings) {
   if (glm::dot(bounds.centre - position, axis) < -bounds.radius) return {};
-  return views_from(position, bounds, gpu::SHADOW_PATCH_SIZE, gpu::SHADOW_PATCH_CUBE_SIZE);
+  return views_from(position, bounds, gpu::SHADOW_PATCH_SIZE >> halvings, gpu::SHADOW_PATCH_CUBE_SIZE >> halvings);
 }
 
 }  // namespace quadgraph

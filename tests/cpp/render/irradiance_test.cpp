@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "engine/base/error.h"
 #include "engine/optics/fresnel.h"
 #include "tests/cpp/fixtures/checked_context.h"
 #include "tests/cpp/fixtures/render_shapes.h"
@@ -122,6 +123,47 @@ TEST_CASE("q follows the cosine and the exact Fresnel transmittance, and lights 
     if (std::abs(n.y) > 0.1f) CHECK(q[f].b == doctest::Approx(expected(n.y, 3)).epsilon(1e-4));
     CHECK(q[f].g == 0);
   }
+}
+
+TEST_CASE("shadow maps of many lights are halved until they share their memory") {
+  const Sphere bounds{{0, 0, 0}, 10};
+  const auto sides = [&](const char* text, std::size_t count) {
+    const LightSet set(std::vector<Light>(count, parse_light(text)), bounds);
+    CHECK(set.map_bytes() <= most_map_bytes);
+    CHECK(set.records.size() >= count);
+    return set.views.front().size;
+  };
+  CHECK(sides("directional:0,0,-1:1", 1) == gpu::SHADOW_SIZE);
+  CHECK(sides("directional:0,0,-1:1", 32) == gpu::SHADOW_SIZE);
+  CHECK(sides("directional:0,0,-1:1", 33) == gpu::SHADOW_SIZE / 2);
+  CHECK(sides("point:0,0,10:1", 21) == gpu::SHADOW_CUBE_SIZE);
+  CHECK(sides("point:0,0,10:1", most_lights) == gpu::SHADOW_CUBE_SIZE / 8);
+  CHECK(sides("rectangle:0,0,10:1,0,0:0,1,0:1", most_lights) == gpu::SHADOW_PATCH_CUBE_SIZE / 16);
+}
+
+TEST_CASE("many lights bring what one brings, within the memory of their maps") {
+  CheckedContext checked;
+  const Shape shape = sphere({0, 0, 0}, 10, 4);
+  const DisplayBuffers mesh = upload_as_display(checked.context, shape);
+  const auto with = [&](std::size_t count) {
+    const Light light{.direction = glm::normalize(glm::vec3(1, 2, 3)), .power = glm::vec3(1.0f / count)};
+    const std::vector<Light> lights(count, light);
+    const LevelBuffers level = upload_as_level(checked.context, shape, count);
+    ShadowMaps shadows(checked.context);
+    shadows.update(mesh, {lights, bounding_sphere(shape.vertices)});
+    CHECK(checked.context.allocated_by_purpose().at("shadows") < most_map_bytes + (64u << 20));
+    IrradiancePass(checked.context).run(level, 0, shadows, 1.0f);
+    return entered(shape, device::download<glm::vec3>(checked.context, level.q)).x;
+  };
+  CHECK(with(150) == doctest::Approx(with(1)).epsilon(1e-3));
+}
+
+TEST_CASE("more lights than a scene may have are refused") {
+  CHECK_NOTHROW(check_light_count(most_lights));
+  CHECK_THROWS_WITH_AS(check_light_count(3000),
+                       "lights: found 3000, allowed are at most 1024; leave some out, or show many in the image of an "
+                       "environment",
+                       InputError);
 }
 
 TEST_CASE("every light has its own quarters, which make up q") {

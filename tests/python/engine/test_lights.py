@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
+
 import numpy as np
 import pytest
 from PIL import Image
 
 import light_truth
+import tiny
 from baked import write_levels
 from quadgraph.base.errors import InputError
 from shapes import icosphere, torus
@@ -183,3 +187,17 @@ def test_a_picture_that_is_none_is_refused(engines, tmp_path, name, content, sai
         with pytest.raises(InputError, match=said) as refusal:
             engines["sphere"].set_lights([light])
         assert name in str(refusal.value)
+
+
+def test_more_lights_than_a_scene_may_have_are_refused(tmp_path):
+    path = tmp_path / "scene.json"
+    light = {"type": "directional", "direction": [0, 0, -1], "irradiance": 1}
+    schema = json.loads((Path(__file__).parents[3] / "docs" / "scene.schema.json").read_text())
+    assert schema["properties"]["lights"]["maxItems"] == 1024
+    path.write_text(json.dumps({"quadgraph_scene": 1, "body": str(tiny.PATH), "lights": [light] * 1025}))
+    with pytest.raises(InputError, match=r"scene\.json: /lights: lights: found 1025, allowed are at most 1024"):
+        _core.SceneFile(path)
+    engine = _core.Engine(tiny.PATH, device="cpu")
+    with pytest.raises(InputError, match="lights: found 1025, allowed are at most 1024"):
+        engine.set_lights(["directional:0,0,-1:1"] * 1025)
+    engine.set_lights(["directional:0,0,-1:1"] * 1024)
