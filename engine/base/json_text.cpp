@@ -7,6 +7,8 @@
 namespace quadgraph {
 namespace {
 
+constexpr std::size_t shown_digits = 40;
+
 // "line 3, column 14" of a byte.
 std::string json_place(std::string_view text, std::size_t byte) {
   const std::string_view before = text.substr(0, std::min(byte, text.size()));
@@ -14,6 +16,12 @@ std::string json_place(std::string_view text, std::size_t byte) {
   const std::size_t column = before.size() - (line == std::string_view::npos ? 0 : line + 1) + 1;
   return "line " + std::to_string(1 + std::count(before.begin(), before.end(), '\n')) + ", column " +
          std::to_string(column);
+}
+
+// What stands in quotes in the message of a number that is too large.
+std::string quoted(std::string_view message) {
+  const std::size_t begin = message.find('\'') + 1, end = message.rfind('\'');
+  return begin > 0 && end > begin ? std::string(message.substr(begin, end - begin)) : "one";
 }
 
 }  // namespace
@@ -47,8 +55,10 @@ nlohmann::ordered_json parse_json(std::string_view text) {
     return nlohmann::ordered_json::parse(text);
   } catch (const nlohmann::ordered_json::parse_error& error) {
     throw InputError("no JSON at " + json_place(text, error.byte > 0 ? error.byte - 1 : 0));
-  } catch (const nlohmann::ordered_json::exception&) {
-    throw InputError("a number of the JSON is beyond double precision, allowed are up to 1.7e308");
+  } catch (const nlohmann::ordered_json::exception& error) {
+    const std::string number = quoted(error.what());
+    throw InputError("a number beyond double precision at " + json_place(text, text.find(number)) + ": found " +
+                     number.substr(0, shown_digits) + ", allowed are up to 1.7e308");
   }
 }
 

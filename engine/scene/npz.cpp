@@ -164,7 +164,9 @@ std::map<std::string, NpzArray> read_npz(const std::filesystem::path& path, std:
   }
   std::map<std::string, NpzArray> arrays;
   for (zip_int64_t i = 0; i < zip_get_num_entries(archive.get(), 0); ++i) {
-    std::string name = zip_get_name(archive.get(), static_cast<zip_uint64_t>(i), 0);
+    const char* stored = zip_get_name(archive.get(), static_cast<zip_uint64_t>(i), 0);
+    if (!stored) fail(path, "a member without a name");
+    std::string name = stored;
     if (name.ends_with(".npy")) name.resize(name.size() - 4);
     check_name(name, known, path);
     arrays[name] = parsed(content(archive.get(), static_cast<zip_uint64_t>(i), path), name, path);

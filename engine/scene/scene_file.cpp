@@ -3,20 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <set>
 #include <sstream>
 
 #include "engine/base/atomic_file.h"
 #include "engine/base/json_text.h"
+#include "engine/base/text.h"
 #include "engine/file/front.h"
 #include "engine/render/light/default_lights.h"
+#include "engine/scene/track_parts.h"
 #include "engine/scene/volume.h"
 
 namespace quadgraph {
 namespace {
 
 constexpr std::uint32_t format_version = 1;
-constexpr std::uint32_t most_frames = 1000000;
 
 Json parsed(const std::string& text, const std::filesystem::path& path) {
   try {
@@ -98,19 +98,41 @@ void SceneFile::check() {
   tracks_.clear();
   front_ = 0;
   first_view_.reset();
-  std::set<double> keys{0};
+  double last = 0;
   if (const auto tracks = field.find("tracks")) {
     for (const JsonField& track : tracks->items()) {
       tracks_.emplace_back(track);
-      for (const auto& [frame, value] : tracks_.back().keys()) keys.insert(frame);
+      last = std::max(last, tracks_.back().keys().back().first);
     }
   }
-  frames_ = static_cast<std::uint32_t>(std::clamp(std::ceil(*keys.rbegin()) + 1, 1.0, double{most_frames}));
+  still_ = document_;
+  still_.erase("tracks");
+  frames_ = static_cast<std::uint32_t>(std::clamp(std::ceil(last) + 1, 1.0, double{most_frames}));
   if (const auto frames = field.find("frames")) frames_ = frames->whole(1, most_frames);
   if (const auto rate = field.find("frames_per_second")) frames_per_second_ = rate->number(1, 1000);
   front_ = front_of(at(0).body);
   first_view_ = at(0).view;
-  for (double frame : keys) at(frame);
+  check_keys();
+}
+
+void SceneFile::check_keys() const {
+  const std::vector<TrackPart> parts = track_parts(still_, tracks_);
+  double values = 0;
+  for (const TrackPart& part : parts) values += part.values();
+  if (values > most_key_values) {
+    throw InputError("/tracks: found keys that change " + number_text(values) + " values in all, allowed are " +
+                     number_text(most_key_values) + "; use fewer keys");
+  }
+  for (const TrackPart& part : parts) {
+    for (double frame : part.frames) {
+      try {
+        shown(part.at(frame));
+      } catch (const InputError&) {
+        at(frame);  // which names the place in the whole scene
+        throw;
+      }
+    }
+  }
 }
 
 void SceneFile::set(const std::string& pointer, const std::string& value) {
@@ -123,8 +145,14 @@ void SceneFile::set(const std::string& pointer, const std::string& value) {
 }
 
 Scene SceneFile::at(double frame) const {
-  Json document = document_;
+  Json document = still_;
   for (const Track& track : tracks_) track.apply(frame, document);
+  return shown(std::move(document));
+}
+
+Scene SceneFile::shown(Json document) const {
+  const auto body = JsonField(document, "").find("body");
+  if (body && body->value() == "") body->refuse("the name of a .qgraph file");
   each_file(document,
             [&](const std::filesystem::path& file) { return file.is_relative() ? path_.parent_path() / file : file; });
   Scene scene = scene_from(JsonField(document, ""));

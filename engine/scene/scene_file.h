@@ -12,12 +12,15 @@
 
 namespace quadgraph {
 
+inline constexpr std::uint32_t most_frames = 1000000;
+inline constexpr double most_key_values = 1e8;  // that are read when a scene is checked at all keys of its tracks
+
 class SceneFile {
  public:
-  // Reads a JSON file and checks the scene at every key of its tracks. A relative body and relative images of lights
-  // are looked for beside the file; a camera without azimuth looks at the body's front (engine/file/front.h), and a
-  // scene that says nothing of lights gets default_lights of its first view.
-  // Throws InputError naming the file, the path into it, what was found and what is allowed.
+  // Reads a JSON file and checks at every key of its tracks what they change. A relative body and relative images of
+  // lights are looked for beside the file; a camera without azimuth looks at the body's front (engine/file/front.h),
+  // and a scene that says nothing of lights gets default_lights of its first view. Throws InputError naming the file,
+  // the path into it, what was found and what is allowed.
   static SceneFile load(const std::filesystem::path& path);
 
   // Parses JSON text without a file: relative names are looked for in the working directory.
@@ -44,8 +47,10 @@ class SceneFile {
   SceneFile(Json document, std::filesystem::path path);
 
   void check();
+  void check_keys() const;
+  Scene shown(Json document) const;
 
-  Json document_;
+  Json document_, still_;       // still_: without tracks
   std::filesystem::path path_;  // empty: of no file
   std::vector<Track> tracks_;
   std::uint32_t frames_ = 1;

@@ -57,7 +57,8 @@ Track::Track(const JsonField& field) : where_(field.path()) {
 }
 
 Json Track::at(double frame) const {
-  const auto after = std::find_if(keys_.begin(), keys_.end(), [&](const auto& key) { return key.first > frame; });
+  const auto after = std::upper_bound(keys_.begin(), keys_.end(), frame,
+                                      [](double wanted, const auto& key) { return wanted < key.first; });
   if (after == keys_.begin()) return keys_.front().second;
   const auto before = after - 1;
   if (after == keys_.end() || between_ == Between::step) return before->second;

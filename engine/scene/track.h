@@ -35,11 +35,13 @@ class Track {
   // last. Throws InputError as `put`.
   void apply(double frame, Json& document) const;
 
+  // The value of a frame, and the pointer to where it belongs.
+  Json at(double frame) const;
+  const std::string& target() const { return target_; }
+
   const std::vector<std::pair<double, Json>>& keys() const { return keys_; }
 
  private:
-  Json at(double frame) const;
-
   std::string where_;  // the track's own path
   std::string target_;
   Between between_ = Between::linear;

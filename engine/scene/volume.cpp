@@ -4,12 +4,14 @@
 #include <cctype>
 #include <cmath>
 #include <glm/common.hpp>
+#include <limits>
 #include <map>
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/optics/fresnel.h"
 #include "engine/optics/material.h"
+#include "engine/render/light/lights.h"
 #include "engine/scene/npz.h"
 
 namespace quadgraph {
@@ -41,7 +43,8 @@ class Fields {
         std::all_of(array.values.begin(), array.values.end(), [](double v) { return std::isfinite(v); });
     if (array.shape.size() > 1 || (found != least && found != most) || !finite) {
       const std::string wanted = std::to_string(least) + (most > least ? " or " + std::to_string(most) : "");
-      refuse(name, listed(array.values) + " found, " + wanted + " finite number(s) wanted");
+      const std::string given = found > shown ? std::to_string(found) + " numbers" : listed(array.values);
+      refuse(name, given + " found, " + wanted + " finite number(s) wanted");
     }
     return array.values;
   }
@@ -59,6 +62,7 @@ class Fields {
   }
 
  private:
+  static constexpr std::size_t shown = 8;  // numbers that an error repeats
   static constexpr std::array<std::string_view, 5> known = {"sigma_s_prime", "sigma_a", "spacing", "origin", "eta"};
 
   std::filesystem::path path_;
@@ -71,10 +75,11 @@ const NpzArray& coefficient(const Fields& fields, const std::string& name) {
   if ((axes != 3 && axes != 4) || array.values.empty() || (axes == 4 && array.shape[3] != 3)) {
     fields.refuse(name, "shape " + Fields::shape_text(array.shape) + " found, (nz, ny, nx) or (nz, ny, nx, 3) wanted");
   }
-  for (double value : array.values) {
-    if (!(std::isfinite(value) && value >= 0)) {
-      fields.refuse(name, "negative or not finite somewhere, numbers >= 0 (1/mm) allowed");
-    }
+  for (std::size_t i = 0; i < array.values.size(); ++i) {
+    const double value = array.values[i];
+    if (value >= 0 && value <= std::numeric_limits<float>::max()) continue;
+    fields.refuse(name, number_text(value) + " found in number " + std::to_string(i) +
+                            ", allowed are finite numbers >= 0 (1/mm) in single precision");
   }
   return array;
 }
@@ -124,11 +129,18 @@ Volume read_volume(const std::filesystem::path& path) {
   const std::vector<double> spacing = fields.few("spacing", 1, 3);
   for (int axis = 0; axis < 3; ++axis) {
     volume.spacing[axis] = spacing[spacing.size() == 3 ? static_cast<std::size_t>(axis) : 0];
-    if (!(volume.spacing[axis] > 0))
-      fields.refuse("spacing", Fields::listed(spacing) + " found, more than 0 mm allowed");
+    if (!(volume.spacing[axis] > 0 && volume.spacing[axis] <= largest_length)) {
+      fields.refuse("spacing", Fields::listed(spacing) + " found, more than 0 and at most " +
+                                   number_text(largest_length) + " mm allowed");
+    }
   }
   if (fields.has("origin")) {
     const std::vector<double> origin = fields.few("origin", 3, 3);
+    for (double place : origin) {
+      if (std::abs(place) <= largest_length) continue;
+      fields.refuse("origin",
+                    Fields::listed(origin) + " found, at most " + number_text(largest_length) + " mm from 0 allowed");
+    }
     volume.origin = glm::dvec3(origin[0], origin[1], origin[2]);
   }
   if (fields.has("eta")) {
@@ -165,26 +177,6 @@ std::vector<gpu::Optical> Volume::at(std::span<const glm::vec3> points, const gl
                           mixed(row(low[1], high[2]), row(high[1], high[2]), t.y), t.z));
   }
   return found;
-}
-
-void set_material(Engine& engine, std::string_view text) {
-  if (!is_volume(text)) return engine.set_material(text);
-  set_material(engine, read_volume(text));
-}
-
-void set_material(Engine& engine, const Volume& volume) {
-  const std::span<const Level> levels = engine.graph().levels();
-  const RestBox box = rest_box(levels.empty() ? engine.graph().display().vertices : levels[0].vertices);
-  const glm::dvec3 centre = 0.5 * (box.low + box.high);
-  for (std::uint32_t i = 0; i < levels.size(); ++i) {
-    engine.set_optical(i, volume.at(levels[i].nodes, centre), volume.eta);
-  }
-  const glm::uvec3 size(volume.cells[0], volume.cells[1], volume.cells[2]);
-  engine.set_optical(OpticalGrid{.size = size,
-                                 .optical = volume.optical,
-                                 .spacing = glm::vec3(volume.spacing),
-                                 .first = glm::vec3(volume.first(centre)),
-                                 .eta = volume.eta});
 }
 
 }  // namespace quadgraph

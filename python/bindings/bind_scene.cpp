@@ -40,6 +40,7 @@ void bind_scene_type(py::module_& module) {
 }
 
 void bind_scene_file(py::module_& module) {
+  module.attr("MOST_FRAMES") = most_frames;
   py::class_<SceneFile>(module, "SceneFile", "A scene that may change from frame to frame (docs/scene.md).")
       .def(py::init(&SceneFile::load), py::arg("path"), "Raises InputError naming file, path into it, found, allowed.")
       .def(py::init<const Scene&>(), py::arg("scene"), "One that does not change.")

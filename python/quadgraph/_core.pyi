@@ -22,6 +22,7 @@ CELL_INSIDE: int
 CELL_SOLID: int
 CELL_SURFACE: int
 MEASURED_SHARE: float
+MOST_FRAMES: int
 PATH_FAR: float
 
 class Level:

@@ -115,7 +115,8 @@ Image read_exr(const std::filesystem::path& path) {
   } catch (const InputError&) {
     throw;
   } catch (const std::exception& error) {
-    throw InputError(path.string() + ": " + error.what());
+    const std::string what = error.what();  // OpenEXR says nothing of a file that ends within its header
+    throw InputError(path.string() + ": " + (what.empty() ? "cannot be read as EXR: cut off" : what));
   }
 }
 

@@ -19,8 +19,6 @@ from quadgraph.commands import solve_report as text
 from quadgraph.core import load_core
 from quadgraph.file import film
 
-MOST_FRAMES = 1_000_000  # as in the engine (engine/scene/scene_file.cpp)
-
 
 def stated() -> dict[str, str]:
     """Arguments that a scene file says, and where it says them."""
@@ -92,10 +90,11 @@ def run(args: argparse.Namespace) -> int:
 
 def check_frames(args: argparse.Namespace, most: int) -> None:
     """Raise InputError unless --frame and --frames are within what a scene may have."""
-    if not abs(args.frame) <= MOST_FRAMES:
-        raise InputError(f"--frame: found {args.frame:g}, allowed are finite numbers of at most {MOST_FRAMES}")
-    if (args.frames or 0) > MOST_FRAMES:
-        raise InputError(f"--frames: found {args.frames}, allowed are 1 to {MOST_FRAMES}; the scene has {most}")
+    bound = load_core().MOST_FRAMES
+    if not abs(args.frame) <= bound:
+        raise InputError(f"--frame: found {args.frame:g}, allowed are finite numbers of at most {bound}")
+    if (args.frames or 0) > bound:
+        raise InputError(f"--frames: found {str(args.frames)[:40]}, allowed are 1 to {bound}; the scene has {most}")
 
 
 def named_files(path: Path) -> list[Path]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import os
+import re
 import struct
 import zipfile
 import zlib
@@ -14,7 +15,7 @@ import numpy as np
 import pytest
 
 import tiny
-from quadgraph.base.errors import FormatError
+from quadgraph.base.errors import FormatError, InputError
 from quadgraph.file import qgraph_file
 
 core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
@@ -41,11 +42,63 @@ def test_what_is_no_json_is_said_with_line_and_column(tmp_path, text, place):
         core.SceneFile(path)
 
 
-def test_numbers_beyond_double_precision_are_said(tmp_path):
-    path = tmp_path / "scene.json"
-    path.write_text('{"body": "a.qgraph", "frames": 1e999}')
-    with pytest.raises(Exception, match="beyond double precision"):
+def refusal(path: Path, document: dict | str) -> str:
+    """What is said of a scene file."""
+    path.write_text(document if isinstance(document, str) else json.dumps(document))
+    with pytest.raises(InputError) as error:
         core.SceneFile(path)
+    assert len(str(error.value)) < 480
+    return str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("value", "message"),
+    [
+        ("1e999", "beyond double precision at line 2, column 12: found 1e999"),
+        ("-" + "9" * 5000, f"beyond double precision at line 2, column 12: found -{'9' * 39},"),
+        ("123456789012345678901234567890", "/frames: found 1.2345678901234568e+29, allowed is a whole number from 1"),
+        ("18446744073709551616", "/frames: found 1.8446744073709552e+19, allowed"),
+        ("-9223372036854775809", "/frames: found -9.223372036854776e+18, allowed"),
+    ],
+)
+def test_numbers_beyond_64_bits_are_said_with_their_place(tmp_path, value, message):
+    assert message in refusal(tmp_path / "scene.json", f'{{"body": "a.qgraph",\n "frames": {value}}}')
+
+
+def test_a_scene_without_a_body_is_refused(tmp_path):
+    assert '/body: found "", allowed is the name of a .qgraph file' in refusal(tmp_path / "scene.json", {"body": ""})
+
+
+LIGHT = {"type": "ambient", "irradiance": 1}
+
+
+def tracked(path: str, keys: list, **more: object) -> dict:
+    return {"body": "a.qgraph", "tracks": [{"path": path, "keys": keys}], **more}
+
+
+def test_keys_are_checked_with_what_they_change_alone(tmp_path):
+    """300,000 keys beside 1,000 lights: the whole scene at each of them would take minutes."""
+    document = tracked("/camera/azimuth", [[i, i % 360] for i in range(300_000)], lights=[LIGHT] * 1000)
+    (tmp_path / "scene.json").write_text(json.dumps(document))
+    assert core.SceneFile(tmp_path / "scene.json").frames == 300_000
+    document = tracked("/lights/999/irradiance", [[0, 1], [10, -1]], lights=[LIGHT] * 1000)
+    assert "/lights/999: light 'ambient:-1', irradiance: found -1" in refusal(tmp_path / "scene.json", document)
+
+
+def test_more_values_at_keys_than_are_checked_are_refused(tmp_path):
+    edit = {"operation": "multiply", "sigma_a": 2, "stroke": [[i, 0, 0] for i in range(10_000)], "radius": 1}
+    document = tracked("/edits/0/radius", [[i, 1] for i in range(10_000)], edits=[edit])
+    assert "/tracks: found keys that change 400090000 values" in refusal(tmp_path / "scene.json", document)
+
+
+@pytest.mark.parametrize(
+    "content", [b"", b"\x76\x2f\x31\x01", b"\x76\x2f\x31\x01\2\0\0\0", b"\x76\x2f\x31\x01\2\0\0\0chan"]
+)
+def test_an_image_that_ends_in_its_header_is_named_with_a_reason(tmp_path, content):
+    (tmp_path / "short.exr").write_bytes(content)
+    placed = {"image": "short.exr", "placement": {"centre": [0, 0, 0], "size": [1, 1, 1]}}
+    said = refusal(tmp_path / "scene.json", {"body": "a.qgraph", "picture": {"roughness_map": placed}})
+    assert re.search(r"short\.exr: \w+", said)
 
 
 @pytest.mark.parametrize("key", ["front", "unknown"])

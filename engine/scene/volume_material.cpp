@@ -1,0 +1,25 @@
+#include "engine/scene/volume.h"
+
+namespace quadgraph {
+
+void set_material(Engine& engine, std::string_view text) {
+  if (!is_volume(text)) return engine.set_material(text);
+  set_material(engine, read_volume(text));
+}
+
+void set_material(Engine& engine, const Volume& volume) {
+  const std::span<const Level> levels = engine.graph().levels();
+  const RestBox box = rest_box(levels.empty() ? engine.graph().display().vertices : levels[0].vertices);
+  const glm::dvec3 centre = 0.5 * (box.low + box.high);
+  for (std::uint32_t i = 0; i < levels.size(); ++i) {
+    engine.set_optical(i, volume.at(levels[i].nodes, centre), volume.eta);
+  }
+  const glm::uvec3 size(volume.cells[0], volume.cells[1], volume.cells[2]);
+  engine.set_optical(OpticalGrid{.size = size,
+                                 .optical = volume.optical,
+                                 .spacing = glm::vec3(volume.spacing),
+                                 .first = glm::vec3(volume.first(centre)),
+                                 .eta = volume.eta});
+}
+
+}  // namespace quadgraph
