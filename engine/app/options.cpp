@@ -2,8 +2,10 @@
 
 #include <CLI/CLI.hpp>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "engine/base/error.h"
+#include "engine/base/outputs.h"
 #include "engine/file/front.h"
 #include "engine/render/light/default_lights.h"
 #include "engine/scene/options.h"
@@ -106,12 +108,33 @@ Scene scene_of(const Typed& typed, const CLI::App& app) {
   return scene;
 }
 
+// All texts of a scene, some of which name the files that it reads.
+std::vector<std::string> texts_of(const Scene& scene) {
+  std::vector<std::string> texts;
+  const Json document = to_json(scene);
+  std::vector<const Json*> waiting = {&document};
+  while (!waiting.empty()) {
+    const Json& value = *waiting.back();
+    waiting.pop_back();
+    if (value.is_string()) texts.push_back(value.get<std::string>());
+    if (value.is_structured()) {
+      for (const Json& item : value) waiting.push_back(&item);
+    }
+  }
+  return texts;
+}
+
 AppOptions understood(const Typed& typed, const CLI::App& app) {
   AppOptions options;
   options.headless = typed.headless;
   options.output = typed.output;
   if (options.headless) check_output(options);
   options.scene = scene_of(typed, app);
+  if (options.headless) {
+    std::vector<std::string> inputs = texts_of(options.scene);
+    inputs.push_back(typed.file);
+    check_not_read(options.output, inputs);
+  }
   options.device.validation = typed.validation;
   options.device.device = typed.device;
   options.json = typed.json;

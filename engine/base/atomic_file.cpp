@@ -17,16 +17,6 @@ namespace {
 
 constexpr int most_trials = 100;  // of names that others hold
 
-void check_kind(const std::filesystem::path& path) {
-  std::error_code error;
-  const auto kind = std::filesystem::symlink_status(path, error).type();
-  if (kind == std::filesystem::file_type::regular || kind == std::filesystem::file_type::not_found) return;
-  const char* what = kind == std::filesystem::file_type::symlink     ? "a link"
-                     : kind == std::filesystem::file_type::directory ? "a folder"
-                                                                     : "no regular file";
-  throw InputError(path.string() + ": is " + what + ", allowed is a regular file or a new name");
-}
-
 // An empty file of a name that nobody can foresee, beside `path`; it is nobody else's and no link.
 std::filesystem::path new_file(const std::filesystem::path& path) {
   std::random_device random;
@@ -45,9 +35,19 @@ std::filesystem::path new_file(const std::filesystem::path& path) {
 
 }  // namespace
 
+void check_replaceable(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto kind = std::filesystem::symlink_status(path, error).type();
+  if (kind == std::filesystem::file_type::regular || kind == std::filesystem::file_type::not_found) return;
+  const char* what = kind == std::filesystem::file_type::symlink     ? "a link"
+                     : kind == std::filesystem::file_type::directory ? "a folder"
+                                                                     : "no regular file";
+  throw InputError(path.string() + ": is " + what + ", allowed is a regular file or a new name");
+}
+
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path& temporary)>& write) {
-  check_kind(path);
+  check_replaceable(path);
   const std::filesystem::path temporary = new_file(path);
   try {
     write(temporary);

@@ -111,3 +111,59 @@ def test_help_lists_units():
     assert result.returncode == 0
     for word in ("W/mm^2", "degrees", "--headless", "--exposure", "--tolerance"):
         assert word in result.stdout
+
+
+EDIT = {
+    "operation": "add",
+    "sigma_a": [0.5, 0.5, 0.5],
+    "image": "edit.png",
+    "mask": "mask.png",
+    "placement": {"centre": [1, 1, 2], "direction": [0, 0, -1], "size": [2, 2, 1]},
+}
+PROJECTOR = {"type": "projector", "position": [1, 1, 50], "direction": [0, 0, -1], "angle": 20, "power": 1}
+
+
+@pytest.fixture
+def scene(tmp_path: Path) -> Path:
+    """A scene that reads a body and four images, all in the test's folder."""
+    for name in ("edit.png", "mask.png", "light.png", "rough.png"):
+        Image.new("RGB", (4, 4), "white").save(tmp_path / name)
+    (tmp_path / "body.qgraph").write_bytes(tiny.PATH.read_bytes())
+    document = {
+        "quadgraph_scene": 1,
+        "body": "body.qgraph",
+        "edits": [EDIT],
+        "lights": [{**PROJECTOR, "file": "light.png"}],
+        "picture": {"roughness_map": {"image": "rough.png", "placement": EDIT["placement"]}},
+    }
+    path = tmp_path / "scene.json"
+    path.write_text(json.dumps(document))
+    return path
+
+
+@pytest.mark.parametrize("read", ["edit.png", "mask.png", "light.png", "rough.png"])
+def test_a_picture_replaces_nothing_that_the_scene_reads(scene: Path, read: str):
+    before = (scene.parent / read).read_bytes()
+    for name in (scene.parent / read, scene.parent / ".." / scene.parent.name / read):
+        assert_refused(run(scene, "--headless", "-o", name), read, "is read", "give the output another name")
+    os.link(scene.parent / read, scene.parent / "hard.png")
+    assert_refused(run(scene, "--headless", "-o", scene.parent / "hard.png"), "hard.png: is read", read)
+    assert (scene.parent / read).read_bytes() == before
+    result = run(scene, "--headless", "-o", scene.parent / "new.png", "--size", "32x32")
+    assert result.returncode == 0, result.stderr
+
+
+def test_a_picture_replaces_no_body_and_no_scene(scene: Path):
+    for read in ("body.qgraph", "scene.json"):
+        os.link(scene.parent / read, scene.parent / f"{read}.png")
+        result = run(scene, "--headless", "-o", scene.parent / f"{read}.png")
+        assert_refused(result, f"{read}.png: is read", "give the output another name")
+
+
+def test_a_picture_replaces_regular_files_alone_and_says_so_before_work(scene: Path):
+    (scene.parent / "link.png").symlink_to(scene.parent / "elsewhere.png")
+    (scene.parent / "folder.png").mkdir()
+    os.mkfifo(scene.parent / "pipe.png")
+    for name, what in {"link.png": "a link", "folder.png": "a folder", "pipe.png": "no regular file"}.items():
+        result = run(scene, "--headless", "-o", scene.parent / name, "--device", "no such device")
+        assert_refused(result, f"{name}: is {what}", "allowed is a regular file or a new name")
