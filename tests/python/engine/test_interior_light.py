@@ -33,7 +33,7 @@ def far_side(folder: Path, subdivisions: int, wanted: str | float | None, materi
     return float(field["area"][far].astype(float) @ field["exitance"][far, 0].astype(float))
 
 
-@pytest.mark.parametrize("subdivisions", [4, 5])
+@pytest.mark.parametrize("subdivisions", [4, pytest.param(5, marks=pytest.mark.long)])
 def test_the_far_side_is_as_bright_as_on_a_much_finer_mesh(tmp_path: Path, subdivisions: int) -> None:
     truth = far_side(tmp_path, subdivisions, 0.6)
     usual, of_surface = (far_side(tmp_path, subdivisions, wanted) / truth - 1 for wanted in (None, "surface"))
@@ -44,6 +44,7 @@ def test_the_far_side_is_as_bright_as_on_a_much_finer_mesh(tmp_path: Path, subdi
     assert of_surface < -0.1
 
 
+@pytest.mark.long
 def test_the_error_falls_with_the_square_of_the_edge(tmp_path: Path) -> None:
     """On a surface that is fine enough not to have a part in it."""
     truth = far_side(tmp_path, 5, 0.5)

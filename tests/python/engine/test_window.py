@@ -109,6 +109,10 @@ class Hand:
         seen = time.monotonic() + 3
         while not self.busy() and time.monotonic() < seen:
             time.sleep(0.02)
+        self.calm()
+
+    def calm(self) -> None:
+        """Wait until the picture of what has been seen has converged."""
         deadline = time.monotonic() + 60
         quiet = 0
         while quiet < 3:  # a change that has just come may not be in the title yet

@@ -23,8 +23,8 @@ EDIT, MASK, RADIUS, TO_DEPTH = 233, 433, 458, 508  # a section to open, and in i
 
 
 def press(hand: Hand, y: int, *held: str) -> None:
-    """Click into the panel at that height, once it has settled."""
-    hand.settle()
+    """Click into the panel at that height, once it is calm."""
+    hand.calm()
     down, up = (["keydown", *held], ["keyup", *held]) if held else ([], [])
     hand.do("mousemove", "100", str(y), *down, "click", "1", *up, "sleep", "0.3")
 
@@ -114,7 +114,7 @@ def test_a_projector_takes_the_image_that_is_typed(open_window, tmp_path: Path):
 
 def test_a_stamp_prints_its_mask_where_the_hand_lets_it_go(open_window, tmp_path: Path):
     """The upper half of a square of 8 mm, at first on the middle of a ball, then to its right and there undone."""
-    body = write_levels(tmp_path / "ball.qgraph", [icosphere(5, 10), icosphere(4, 10)])
+    body = write_levels(tmp_path / "ball.qgraph", [icosphere(4, 10), icosphere(3, 10)])
     texels = np.zeros((32, 32), np.uint8)
     texels[:16] = 255
     Image.fromarray(texels).save(tmp_path / "upper.png")
