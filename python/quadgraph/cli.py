@@ -10,13 +10,15 @@ import os
 import re
 import signal
 import sys
+import tempfile
 import threading
 from collections.abc import Callable, Sequence
 from importlib.metadata import entry_points
 from types import FrameType, ModuleType
-from typing import Any
+from typing import Any, NoReturn
 
 from quadgraph.base.errors import InputError, QuadGraphError
+from quadgraph.base.message import shortened
 from quadgraph.base.version import __version__
 
 # Modules that import nothing heavy: what a subcommand needs, it imports when it runs.
@@ -27,7 +29,7 @@ INTERRUPTED = 128 + signal.SIGINT
 
 
 class CommandParser(argparse.ArgumentParser):
-    """The parser of a subcommand. One whose arguments need the compiled engine has `declare` add them when it is used,
+    """The parser of the command line, or of a subcommand. One whose arguments need the compiled engine has `declare` add them when it is used,
     so that all others, and the list of subcommands, do without it.
     """
 
@@ -39,6 +41,16 @@ class CommandParser(argparse.ArgumentParser):
         if declare is not None:
             declare(self)
         return super().parse_known_args(args, namespace)
+
+    def error(self, message: str) -> NoReturn:
+        """Say what is wrong with the usage, however long what was typed is, and exit with 2."""
+        super().error(shortened(message))
+
+    def _get_values(self, action, arg_strings):
+        """Refuse `--name=--`, which argparse takes for no value at all."""
+        if action.option_strings and "--" in arg_strings:
+            raise argparse.ArgumentError(action, "'--' found, a value is wanted")
+        return super()._get_values(action, arg_strings)
 
 
 class Added:
@@ -69,7 +81,7 @@ def added_commands() -> dict[str, ModuleType]:
 
 def build_parser(commands: dict[str, ModuleType], added: dict[str, ModuleType]) -> argparse.ArgumentParser:
     """Return the parser of the whole command line: the package's own subcommands, and those that are added to them."""
-    parser = argparse.ArgumentParser(
+    parser = CommandParser(
         prog="quadgraph",
         description="Real-time rendering of heterogeneous translucent objects.",
         formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -146,9 +158,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print("quadgraph: interrupted", file=sys.stderr)
         return getattr(error, "status", INTERRUPTED)
     except BrokenPipeError:
-        # The reader of our output is gone; what is left must not meet it again when Python ends.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _drop_output()  # its reader is gone
         return 1
+    except OSError as error:
+        # Files that are read and written have errors of their own: this is standard output, or a temporary file.
+        _drop_output()
+        where = error.filename or f"standard output, or a temporary file in {tempfile.gettempdir()}"
+        print(f"quadgraph: error: {where}: {error.strerror or error}", file=sys.stderr)
+        return 1
+
+
+def _drop_output() -> None:
+    """Let what is left of standard output not meet its reader, or a full disk, again when Python ends."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 if __name__ == "__main__":

@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from quadgraph import core
 from quadgraph.api.values import RGB, Floats, Vector, plain
+from quadgraph.base.atomic_file import replacing
 from quadgraph.base.errors import InputError
 from quadgraph.base.units import DEFAULT_ETA
 
@@ -113,10 +114,10 @@ class VolumeMaterial:
         return array
 
     def save(self, path: str | Path) -> None:
-        """Write the .npz file that --material and scene files take."""
+        """Write the .npz file that --material and scene files take. Raises InputError if it cannot be written."""
         members = {name: getattr(self, name) for name in ("eta", "sigma_s_prime", "sigma_a", "spacing", "origin")}
         arrays: dict[str, Any] = {name: np.asarray(value) for name, value in members.items() if value is not None}
-        with Path(path).open("wb") as stream:
+        with replacing(Path(path)) as stream:
             np.savez(stream, **arrays)
 
     def set_on(self, engine: core.Engine) -> None:

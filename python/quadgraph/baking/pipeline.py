@@ -220,6 +220,7 @@ def check_options(output: Path, options: BakeOptions) -> None:
     exchange.check_rays(options.visibility_rays)
     inside.check_interior(options.interior, options.for_materials, options.mesher)
     front.check(options.front)
+    child_process.check_limits(options.time_limit_s, options.memory_limit_bytes)
     _check_polygrid_options(options)
     subdivide.check(options.refine)
     if not output.parent.is_dir():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import re
+from collections.abc import Callable
 
 from quadgraph.base.units import UNITS_MM
 
@@ -14,6 +15,18 @@ def positive_float(text: str) -> float:
     if not 0 < value < float("inf"):
         raise argparse.ArgumentTypeError(f"{text}: must be a positive number")
     return value
+
+
+def up_to(most: float) -> Callable[[str], float]:
+    """Argument type: a number above zero and at most `most`."""
+
+    def bounded(text: str) -> float:
+        value = float(text)
+        if not 0 < value <= most:
+            raise argparse.ArgumentTypeError(f"{text[:40]}: must be above 0 and at most {most:g}")
+        return value
+
+    return bounded
 
 
 def positive_int(text: str) -> int:

@@ -19,8 +19,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from types import FrameType
 
-from quadgraph.base.errors import ToolError
+from quadgraph.base.errors import InputError, ToolError
 
+MOST_TIME_S = 1e6  # that a program may be given
+MOST_MEMORY_BYTES = 10**15
 _PR_SET_PDEATHSIG = 1
 _LAST_WORDS = 600  # characters of a failed program's output that its error repeats
 _WAITING = 4  # times its limit that a program may take by the clock: other programs want the processor too
@@ -67,6 +69,17 @@ class _Family:
 
 
 _FAMILY: ContextVar[_Family | None] = ContextVar("family", default=None)
+
+
+def check_limits(time_limit_s: float, memory_limit_bytes: int) -> None:
+    """Raise InputError for limits that the system cannot hold a program to."""
+    if not 0 < time_limit_s <= MOST_TIME_S:
+        raise InputError(f"time_limit: {time_limit_s:g} s found, allowed are more than 0 and at most {MOST_TIME_S:g}")
+    if not 0 < memory_limit_bytes <= MOST_MEMORY_BYTES:
+        raise InputError(
+            f"memory_limit: {memory_limit_bytes / 1e9:g} GB found, allowed are more than 0 and at most "
+            f"{MOST_MEMORY_BYTES / 1e9:g}"
+        )
 
 
 @contextmanager

@@ -12,7 +12,8 @@ from rich.console import Console
 from rich.table import Table
 
 from quadgraph.baking.budget import record
-from quadgraph.base.arguments import add_strict_argument, length_mm, positive_float, positive_int, share
+from quadgraph.base.arguments import add_strict_argument, length_mm, positive_float, positive_int, share, up_to
+from quadgraph.base.child_process import MOST_MEMORY_BYTES, MOST_TIME_S
 from quadgraph.base.errors import InputError
 from quadgraph.base.units import UNITS_MM
 
@@ -32,12 +33,15 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     _add_size_options(parser)
     parser.add_argument(
         "--time-limit",
-        type=positive_float,
+        type=up_to(MOST_TIME_S),
         metavar="S",
         help="CPU seconds for each run of the mesher; its wall time may be four times as long (default: 300)",
     )
     parser.add_argument(
-        "--memory-limit", type=positive_float, metavar="GB", help="memory for each run of the mesher (default: 4.3)"
+        "--memory-limit",
+        type=up_to(MOST_MEMORY_BYTES / 1e9),
+        metavar="GB",
+        help="memory for each run of the mesher (default: 4.3)",
     )
     parser.add_argument("--json", action="store_true", help="print the report as JSON on standard output")
     parser.add_argument(

@@ -128,9 +128,11 @@ def check_output(path: Path, with_numbers: bool) -> None:
 def render(stage, file, frames: Iterable[float], outputs: list[Path]) -> list[dict]:
     """Render frames and write each to all outputs; one report per frame."""
     first = file.at(0)
-    films = {path: film.Film(path, first.size, file.frames_per_second) for path in outputs if film.is_film(path)}
+    films: dict[Path, film.Film] = {}
     reports = []
     try:
+        for path in filter(film.is_film, outputs):
+            films[path] = film.Film(path, first.size, file.frames_per_second)
         with Progress(console=Console(stderr=True), transient=True) as progress:
             for frame in progress.track(list(frames), description="frames"):
                 start = time.perf_counter()
@@ -157,7 +159,10 @@ def write(stage, picture, path: Path, frame: float, films: dict[Path, film.Film]
         return
     to: Callable = stage.write_png if path.suffix.lower() == ".png" else stage.write_exr
     named = path.with_name(path.name % int(frame)) if "%" in path.name else path
-    named.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        named.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{named.parent}: cannot be made ({error.strerror})") from error
     to(picture, named)
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import importlib.util
 import os
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
@@ -32,6 +33,17 @@ def check() -> None:
         raise InputError("films need PyAV: pip install '.[film]' in the source tree, or render into frames/%04d.png")
 
 
+@contextmanager
+def _writing(path: Path) -> Iterator[None]:
+    """Let what cannot be written, or encoded, be an InputError."""
+    import av
+
+    try:
+        yield
+    except (OSError, av.FFmpegError) as error:
+        raise InputError(f"{path}: cannot be written ({error.strerror})") from error
+
+
 class Film:
     """A film under a temporary name beside `path`, which it becomes when it is finished."""
 
@@ -42,13 +54,11 @@ class Film:
         if size[0] % 2 or size[1] % 2:
             raise InputError(f"{path}: a film needs an even width and height, found {size[0]}x{size[1]}")
         self.path = path
-        try:
+        with _writing(path):
             path.parent.mkdir(parents=True, exist_ok=True)
             handle, self._temporary = atomic_file.new_file(path, path.suffix.lower())
             os.close(handle)
             self._container = av.open(self._temporary, "w")
-        except OSError as error:
-            raise InputError(f"{path}: cannot be written ({error.strerror})") from error
         rate = Fraction(frames_per_second).limit_denominator(1001)
         stream = self._container.add_stream(_CODECS[path.suffix.lower()], rate=rate, options={"crf": "18"})
         self._stream = cast("VideoStream", stream)
@@ -56,21 +66,23 @@ class Film:
         self._stream.pix_fmt = "yuv420p"
 
     def add(self, srgb: np.ndarray) -> None:
-        """Add a frame, (height, width, 3) uint8."""
+        """Add a frame, (height, width, 3) uint8. Raises InputError if it cannot be written."""
         import av
 
-        for packet in self._stream.encode(av.VideoFrame.from_ndarray(srgb, format="rgb24")):
-            self._container.mux(packet)
+        with _writing(self.path):
+            for packet in self._stream.encode(av.VideoFrame.from_ndarray(srgb, format="rgb24")):
+                self._container.mux(packet)
 
     def finish(self) -> None:
-        """End the film and give it its name."""
-        for packet in self._stream.encode():
-            self._container.mux(packet)
-        self._container.close()
-        self._temporary.replace(self.path)
+        """End the film and give it its name. Raises InputError if it cannot be written."""
+        with _writing(self.path):
+            for packet in self._stream.encode():
+                self._container.mux(packet)
+            self._container.close()
+            self._temporary.replace(self.path)
 
     def discard(self) -> None:
         """Remove what is left of a film that was not finished."""
-        self._container.close()
-        with suppress(FileNotFoundError):
-            self._temporary.unlink()
+        with suppress(InputError), _writing(self.path):
+            self._container.close()
+        self._temporary.unlink(missing_ok=True)

@@ -138,6 +138,10 @@ def test_a_reader_that_leaves_causes_no_traceback():
         ["bake", "a.obj", "-o", "a.qgraph", "--visibility-rays", "-1"],
         ["bake", "a.obj", "-o", "a.qgraph", "--order", "sideways"],
         ["bake", "a.obj", "-o", "a.qgraph", "--time-limit", "nan"],
+        ["bake", "a.obj", "-o", "a.qgraph", "--time-limit", "1e300"],
+        ["bake", "a.obj", "-o", "a.qgraph", "--memory-limit", "1e308"],
+        ["bake", "a.obj", "-o", "a.qgraph", "--interior=--"],
+        ["bake", "a.obj", "-o--"],
         ["info"],
     ],
 )

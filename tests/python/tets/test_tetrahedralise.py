@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from quadgraph.base.child_process import Program, run, workspace
+from quadgraph.base.child_process import Program, check_limits, run, workspace
 from quadgraph.base.errors import InputError, ToolError
 from quadgraph.mesh import intersections
 from quadgraph.mesh.intersections import intersecting_triangles
@@ -284,3 +284,17 @@ def _alive(pid: int) -> bool:
         return False
     state = Path(f"/proc/{pid}/stat")
     return state.exists() and state.read_text().rsplit(")", 1)[1].split()[0] != "Z"
+
+
+@pytest.mark.parametrize(
+    ("limits", "message"),
+    [
+        ({"time_limit_s": 1e300}, r"time_limit: 1e\+300 s found, allowed are more than 0 and at most 1e\+06"),
+        ({"time_limit_s": float("nan")}, "time_limit: nan s found"),
+        ({"memory_limit_bytes": 10**30}, r"memory_limit: 1e\+21 GB found, allowed are more than 0 and at most 1e\+06"),
+        ({"memory_limit_bytes": 0}, "memory_limit: 0 GB found"),
+    ],
+)
+def test_limits_that_the_system_cannot_hold_are_refused(limits, message):
+    with pytest.raises(InputError, match=message):
+        check_limits(**({"time_limit_s": 1.0, "memory_limit_bytes": 1} | limits))
