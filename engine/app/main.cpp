@@ -8,6 +8,7 @@
 #include "engine/app/options.h"
 #include "engine/app/report.h"
 #include "engine/app/show_window.h"
+#include "engine/base/message.h"
 #include "engine/render/picture/metadata.h"
 #include "engine/scene/stage.h"
 
@@ -69,7 +70,7 @@ int main(int argc, char** argv) {
     if (!options) return exit_code;
     return options->headless ? write_one(*options) : show_window(*options);
   } catch (const std::exception& error) {
-    std::string line = error.what();
+    std::string line = shortened(error.what());
     std::replace(line.begin(), line.end(), '\n', ' ');
     std::cerr << "quadgraph-engine: " << line << "\n";
     return EXIT_FAILURE;

@@ -39,6 +39,9 @@ void check_replaceable(const std::filesystem::path& path) {
   std::error_code error;
   const auto kind = std::filesystem::symlink_status(path, error).type();
   if (kind == std::filesystem::file_type::regular || kind == std::filesystem::file_type::not_found) return;
+  if (kind == std::filesystem::file_type::none) {
+    throw InputError(path.string() + ": cannot be written (" + error.message() + "); give another name");
+  }
   const char* what = kind == std::filesystem::file_type::symlink     ? "a link"
                      : kind == std::filesystem::file_type::directory ? "a folder"
                                                                      : "no regular file";

@@ -5,26 +5,33 @@
 #include <stdexcept>
 #include <string>
 
+#include "engine/base/message.h"
+
 namespace quadgraph {
 
+// What all have in common: the message is kept short (engine/base/message.h).
+struct Error : std::runtime_error {
+  explicit Error(const std::string& message) : std::runtime_error(shortened(message)) {}
+};
+
 // A .qgraph file that breaks docs/qgraph-format.md.
-struct FormatError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct FormatError : Error {
+  using Error::Error;
 };
 
 // A scene, option or array that cannot be used.
-struct InputError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct InputError : Error {
+  using Error::Error;
 };
 
 // A linear solve that broke down or diverged.
-struct SolverError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct SolverError : Error {
+  using Error::Error;
 };
 
 // A device that failed, has no room left, or lacks what the engine needs.
-struct DeviceError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct DeviceError : Error {
+  using Error::Error;
 };
 
 }  // namespace quadgraph

@@ -29,8 +29,10 @@ INTERRUPTED = 128 + signal.SIGINT
 
 
 class CommandParser(argparse.ArgumentParser):
-    """The parser of the command line, or of a subcommand. One whose arguments need the compiled engine has `declare` add them when it is used,
-    so that all others, and the list of subcommands, do without it.
+    """The parser of a command line.
+
+    One whose arguments need the compiled engine has `declare` add them when it is used, so that all others, and the list
+    of subcommands, do without it.
     """
 
     declare: Callable[[argparse.ArgumentParser], None] | None = None
@@ -164,7 +166,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         # Files that are read and written have errors of their own: this is standard output, or a temporary file.
         _drop_output()
         where = error.filename or f"standard output, or a temporary file in {tempfile.gettempdir()}"
-        print(f"quadgraph: error: {where}: {error.strerror or error}", file=sys.stderr)
+        print(f"quadgraph: error: {shortened(f'{where}: {error.strerror or error}')}", file=sys.stderr)
         return 1
 
 

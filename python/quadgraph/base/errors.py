@@ -1,8 +1,13 @@
 """The failures a caller can meet; every message says where, what was found, and what is allowed."""
 
+from quadgraph.base.message import shortened
+
 
 class QuadGraphError(Exception):
-    """Base of all errors that the command line turns into one line and a non-zero exit code."""
+    """Base of all errors that the command line turns into one line and a non-zero exit code; it keeps them short."""
+
+    def __init__(self, message: object = "") -> None:
+        super().__init__(shortened(str(message)))
 
 
 class FormatError(QuadGraphError):

@@ -1,0 +1,19 @@
+"""Texts of errors, kept short whatever they quote."""
+
+import re
+
+MOST = 440  # characters; and the program's name before them is still less than 480
+_KEPT_OF_WORD = 45
+_LONG_WORD = re.compile(r"\S{101,}")
+_KEPT_FIRST, _KEPT_LAST = 180, 250  # of a whole text
+
+
+def shortened(text: str) -> str:
+    """Leave out the middle of long words, and then of the whole, where a text is longer than MOST.
+
+    What it begins with, the place, and what it ends with, the next step, stay. engine/base/message.h does the same.
+    """
+    if len(text) <= MOST:
+        return text
+    text = _LONG_WORD.sub(lambda word: f"{word[0][:_KEPT_OF_WORD]}...{word[0][-_KEPT_OF_WORD:]}", text)
+    return text if len(text) <= MOST else f"{text[:_KEPT_FIRST]}...{text[-_KEPT_LAST:]}"
