@@ -1,0 +1,200 @@
+"""A child process under limits of memory and time, signals sent to it, and what it leaves running."""
+
+from __future__ import annotations
+
+import os
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import uuid
+from pathlib import Path
+
+from attack.case import Case, Outcome
+
+ROOT = Path(__file__).resolve().parents[2]
+MARK = "QUADGRAPH_ATTACK"  # in the environment of a child and of all that it starts
+ADDRESSES = 64 * 10**9  # bytes: what is mapped is no measure, but more than this is refused by the system
+POLL = 0.02  # s
+TICKS = os.sysconf("SC_CLK_TCK")
+PAGE = os.sysconf("SC_PAGE_SIZE")
+GRACE = 1.0  # s, in which what a child started may end after it
+WALL = 4.0  # seconds of wall time allowed for each of processor time: others may be at work
+
+
+def program(name: str) -> str:
+    """The path of one of the programs that cases run."""
+    if name == "python":
+        return sys.executable
+    if name == "sh":
+        return "/bin/sh"
+    folders = [Path(sys.executable).parent, ROOT / "build" / "engine" / "app", *os.get_exec_path()]
+    found = shutil.which(name, path=os.pathsep.join(map(str, folders)))
+    if found is None:
+        raise FileNotFoundError(f"{name}: not built (run tools/setup)")
+    return found
+
+
+def command_line(case: Case) -> list[str]:
+    """What is run: the case's command, in a shell that sets limits which a child must have from its first moment."""
+    line = [program(case.command[0]), *case.command[1:]]
+    limits = ""
+    if case.blocks is not None:
+        limits += f"trap '' XFSZ; ulimit -f {case.blocks}; "
+    if case.files is not None:
+        limits += f"ulimit -n {case.files}; "
+    return ["/bin/sh", "-c", f'{limits}exec "$@"', "sh", *line] if limits else line
+
+
+def environment(case: Case, folder: Path, mark: str) -> dict[str, str]:
+    """The variables of a case: temporary files and caches beside its folder."""
+    kept = {key: value for key, value in os.environ.items() if not key.startswith(("PYTEST_", "QUADGRAPH_"))}
+    (folder.parent / "tmp").mkdir(exist_ok=True)
+    own = {"TMPDIR": str(folder.parent / "tmp"), "HOME": str(folder.parent / "home"), MARK: mark}
+    own |= {"OPENBLAS_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1", "QUADGRAPH_DEVICE": "cpu"}
+    return kept | own | dict(case.environment)
+
+
+def descendants(pid: int) -> list[int]:
+    """A process and all below it."""
+    found, todo = [], [pid]
+    while todo:
+        each = todo.pop()
+        found.append(each)
+        for task in Path(f"/proc/{each}/task").glob("*/children"):
+            try:
+                todo += map(int, task.read_text().split())
+            except (OSError, ValueError):
+                continue
+    return found
+
+
+def resident(pids: list[int]) -> int:
+    """Bytes of memory that processes hold together."""
+    total = 0
+    for pid in pids:
+        try:
+            total += int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * PAGE
+        except (OSError, IndexError):
+            continue
+    return total
+
+
+def processor_time(pid: int) -> float:
+    """Seconds that a process and those it waited for have computed; 0 where it is gone."""
+    try:
+        fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    except OSError:
+        return 0.0
+    return sum(map(int, fields[11:15])) / TICKS
+
+
+def heeds(pid: int) -> bool:
+    """Whether a process has set what it does on TERM."""
+    try:
+        status = Path(f"/proc/{pid}/status").read_text()
+    except OSError:
+        return False
+    caught = next((line.split()[1] for line in status.splitlines() if line.startswith("SigCgt")), "0")
+    return bool(int(caught, 16) >> (signal.SIGTERM - 1) & 1)
+
+
+def marked(mark: str) -> list[int]:
+    """Processes of a case, by its mark in their environment."""
+    found = []
+    for entry in Path("/proc").iterdir():
+        if entry.name.isdigit():
+            try:
+                if f"{MARK}={mark}".encode() in (entry / "environ").read_bytes():
+                    found.append(int(entry.name))
+            except OSError:
+                continue
+    return found
+
+
+def end(pids: list[int]) -> None:
+    """End processes that the case started."""
+    for pid in pids:
+        try:
+            os.kill(pid, signal.SIGKILL)
+        except ProcessLookupError:
+            continue
+
+
+class Watch:
+    """One child from its start to its end."""
+
+    def __init__(self, case: Case, process: subprocess.Popen, mark: str, memory: int) -> None:
+        self.case, self.process, self.mark, self.memory = case, process, mark, memory
+        self.start = time.monotonic()
+        self.peak, self.limit = 0, ""
+        self.signals = list(case.signals)
+        self.heeded: float | None = None  # when signals began to be heeded
+        self.first: tuple[float, float] | None = None  # wall and processor time of the first signal
+
+    def step(self) -> None:
+        """Measure, send signals that are due, and end what is beyond its limits."""
+        pids, now = descendants(self.process.pid), time.monotonic()
+        self.peak = max(self.peak, resident(pids))
+        computed = processor_time(self.process.pid)
+        if self.peak > self.memory:
+            self.limit = "memory"
+        elif computed > self.case.seconds or now - self.start > WALL * self.case.seconds:
+            self.limit = "time"
+        if self.limit:
+            end(list({*pids, *marked(self.mark)}))
+        elif self.signals:
+            self.send(now, computed)
+
+    def send(self, now: float, computed: float) -> None:
+        """Send the next signal if its time has come."""
+        if self.heeded is None and (self.case.command[0] != "quadgraph" or heeds(self.process.pid)):
+            self.heeded = now
+        if self.heeded is not None and now - self.heeded >= self.signals[0][0]:
+            self.first = self.first or (now, computed)
+            self.process.send_signal(self.signals.pop(0)[1])
+
+    def finish(self, usage: resource.struct_rusage, out: Path, err: Path) -> Outcome:
+        """The outcome, once the child has ended."""
+        now = time.monotonic()
+        orphans = marked(self.mark)
+        while orphans and time.monotonic() - now < GRACE:
+            time.sleep(POLL)
+            orphans = marked(self.mark)
+        end(orphans)
+        peak = max(self.peak, usage.ru_maxrss * 1024)
+        limit = "memory" if peak > self.memory else self.limit
+        computed = usage.ru_utime + usage.ru_stime
+        after = None if self.first is None else (now - self.first[0], computed - self.first[1])
+        texts = [path.read_text(errors="replace") for path in (out, err)]
+        code = self.process.returncode
+        return Outcome(code, *texts, now - self.start, peak, limit, after, len(orphans))
+
+
+def run(case: Case, folder: Path, input_bytes: int) -> Outcome:
+    """Run a case in its folder, which holds so many bytes; memory may be what the case allows and 20 times those."""
+    mark = uuid.uuid4().hex
+    out, err = folder.parent / "stdout", folder.parent / "stderr"
+    variables = environment(case, folder, mark)
+    with out.open("wb") as stdout, err.open("wb") as stderr:
+        process = subprocess.Popen(
+            command_line(case),
+            cwd=folder,
+            env=variables,
+            stdin=subprocess.DEVNULL,
+            stdout=stdout,
+            stderr=stderr,
+            start_new_session=True,
+        )
+    resource.prlimit(process.pid, resource.RLIMIT_AS, (ADDRESSES, ADDRESSES))
+    resource.prlimit(process.pid, resource.RLIMIT_CORE, (0, 0))
+    watch = Watch(case, process, mark, case.memory + 20 * input_bytes)
+    while True:
+        ended, status, usage = os.wait4(process.pid, os.WNOHANG)
+        if ended:
+            process.returncode = os.waitstatus_to_exitcode(status)
+            return watch.finish(usage, out, err)
+        watch.step()
+        time.sleep(POLL)
