@@ -220,8 +220,10 @@ def test_a_wrong_use_is_refused_in_words(mesh, tmp_path, given, word, capsys):
 def test_an_error_out_of_reach_is_said_to_be(tmp_path, capsys, monkeypatch):
     """All of so coarse a mesh is baked, with a warning, and with --strict the exit status tells."""
     monkeypatch.setattr(displayed, "_MOST_SEEDS", 1)  # the truth need not be known as well as that
-    source, out = tmp_path / "lobes.ply", tmp_path / "out.qgraph"
+    source, out, reports = tmp_path / "lobes.ply", tmp_path / "out.qgraph", []
     level_chains.SHAPES["lobes"](3).export(source)
+    bake_for = plan.bake_for
+    monkeypatch.setattr(plan, "bake_for", lambda *given, **more: reports.append(bake_for(*given, **more)) or reports[0])
     options = ["--height", "20mm", "--material", "marble", "--light", SUN, "--error", "0.2%"]
     assert cli.main(["bake", str(source), "-o", str(out), *options]) == 0
     assert "warning: error 0.2%: out of this mesh's reach" in capsys.readouterr().out
@@ -229,6 +231,7 @@ def test_an_error_out_of_reach_is_said_to_be(tmp_path, capsys, monkeypatch):
     assert not record["reached"]
     assert record["measured"] > 0.002
     assert record["surface_vertices"] == record["mesh_vertices"]
+    monkeypatch.setattr(plan, "bake_for", lambda *given, **more: reports[0])
     assert cli.main(["bake", str(source), "-o", str(out), *options, "--strict"]) == 3
 
 
