@@ -31,8 +31,8 @@ INTERRUPTED = 128 + signal.SIGINT
 class CommandParser(argparse.ArgumentParser):
     """The parser of a command line.
 
-    One whose arguments need the compiled engine has `declare` add them when it is used, so that all others, and the list
-    of subcommands, do without it.
+    One whose arguments need the compiled engine has `declare` add them when it is used, so that all others, and the
+    list of subcommands, do without it.
     """
 
     declare: Callable[[argparse.ArgumentParser], None] | None = None
@@ -123,51 +123,70 @@ def join_negative_values(arguments: Sequence[str]) -> list[str]:
 class Stopped(KeyboardInterrupt):
     """TERM or HUP, which clean up as Ctrl-C does."""
 
-    def __init__(self, number: int) -> None:
-        super().__init__(number)
-        self.status = 128 + number
+
+_SENT: list[int] = []  # signals that were heeded in this run of `main`
 
 
 def heed_signals() -> None:
-    """Let TERM and HUP end the program as Ctrl-C does, where they are not ignored or somebody else's."""
+    """Let TERM and HUP end the program as Ctrl-C does, and remember all three, where they are not ignored or somebody
+    else's.
+    """
     if threading.current_thread() is not threading.main_thread():
         return
 
     def stop(number: int, _frame: FrameType | None) -> None:
-        raise Stopped(number)
+        _SENT.append(number)
+        raise KeyboardInterrupt if number == signal.SIGINT else Stopped(number)
 
-    for number in (signal.SIGTERM, signal.SIGHUP):
-        if signal.getsignal(number) == signal.SIG_DFL:
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        if signal.getsignal(number) in (signal.SIG_DFL, signal.default_int_handler):
             signal.signal(number, stop)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command line and return its exit status: 1 for an error, 2 for wrong usage, 130 for Ctrl-C."""
-    given = join_negative_values(sys.argv[1:] if arguments is None else arguments)
+    _SENT.clear()
     heed_signals()
-    commands = {name: importlib.import_module(f"quadgraph.commands.{name}") for name in SUBCOMMANDS}
     try:
-        added = added_commands()
-        check_installed(given, added)
-        args = build_parser(commands, added).parse_args(given)
-        status = (commands | added)[args.command].run(args)
-        sys.stdout.flush()
-        return status
-    except QuadGraphError as error:
-        print(f"quadgraph: error: {error}", file=sys.stderr)
-        return 1
-    except KeyboardInterrupt as error:
-        print("quadgraph: interrupted", file=sys.stderr)
-        return getattr(error, "status", INTERRUPTED)
-    except BrokenPipeError:
-        _drop_output()  # its reader is gone
-        return 1
-    except OSError as error:
-        # Files that are read and written have errors of their own: this is standard output, or a temporary file.
+        return _run(join_negative_values(sys.argv[1:] if arguments is None else arguments))
+    except KeyboardInterrupt:
+        return _interrupted()
+    except Exception as error:
+        # A module whose import is interrupted makes an error of its own of that.
+        return _interrupted() if _SENT else _failed(error)
+
+
+def _run(given: Sequence[str]) -> int:
+    commands = {name: importlib.import_module(f"quadgraph.commands.{name}") for name in SUBCOMMANDS}
+    added = added_commands()
+    check_installed(given, added)
+    args = build_parser(commands, added).parse_args(given)
+    status = (commands | added)[args.command].run(args)
+    sys.stdout.flush()
+    return status
+
+
+def _interrupted() -> int:
+    print("quadgraph: interrupted", file=sys.stderr)
+    return 128 + _SENT[0] if _SENT else INTERRUPTED
+
+
+def _failed(error: Exception) -> int:
+    """Say what went wrong where it is ours or the system's to say, and return the exit status; raise all else."""
+    if not isinstance(error, QuadGraphError | OSError):
+        raise error
+    if isinstance(error, OSError):
         _drop_output()
-        where = error.filename or f"standard output, or a temporary file in {tempfile.gettempdir()}"
-        print(f"quadgraph: error: {shortened(f'{where}: {error.strerror or error}')}", file=sys.stderr)
+    if isinstance(error, BrokenPipeError):  # the reader of our output is gone
         return 1
+    text = str(error)
+    if isinstance(error, OSError):
+        # Files that are read and written have errors of their own: this is standard output, or a temporary file.
+        folder = tempfile.tempdir or os.environ.get("TMPDIR") or "/tmp"
+        where = error.filename or f"standard output, or a temporary file in {folder}"
+        text = shortened(f"{where}: {error.strerror or error}")
+    print(f"quadgraph: error: {text}", file=sys.stderr)
+    return 1
 
 
 def _drop_output() -> None:

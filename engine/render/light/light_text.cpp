@@ -116,7 +116,9 @@ Light parse_light(std::string_view text) {
     check_light(light);
     return light;
   }
-  throw InputError(where + ": expected " + light_forms());
+  std::string forms;
+  for (const LightForm& form : light_kinds()) forms += text_form(form) + ", ";
+  throw InputError(where + ": expected " + forms + "the last one number or R/G/B (docs/lights.md)");
 }
 
 std::string to_string(const Light& light) {

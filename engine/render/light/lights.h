@@ -106,7 +106,7 @@ std::string text_form(const LightForm& form);
 // What an optional field has where nobody says it, as parse_light reads it; empty for one that is required.
 std::string default_text(const LightField& field);
 
-// The text forms of all light kinds with their help, for --help and error messages.
+// The text forms of all light kinds with their help, for --help.
 const std::string& light_forms();
 
 // Parses one of the text forms; the power is one number or R/G/B. A direction need not be of unit length. Throws
