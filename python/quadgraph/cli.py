@@ -22,7 +22,7 @@ from quadgraph.base.message import shortened
 from quadgraph.base.version import __version__
 
 # Modules that import nothing heavy: what a subcommand needs, it imports when it runs.
-SUBCOMMANDS = ("bake", "shapes", "volume", "info", "view", "render", "solve")
+SUBCOMMANDS = ("bake", "shapes", "volume", "info", "view", "render", "solve", "cache")
 # The subcommands that quadgraph-validation brings along; their modules come through its entry points.
 VALIDATION = ("bench", "accuracy", "reference", "chart", "tables", "polygrid", "stability")
 INTERRUPTED = 128 + signal.SIGINT
@@ -125,22 +125,37 @@ class Stopped(KeyboardInterrupt):
 
 
 _SENT: list[int] = []  # signals that were heeded in this run of `main`
+_AGAIN = 0.02  # s, after which a signal is sent again that came in an import
 
 
 def heed_signals() -> None:
-    """Let TERM and HUP end the program as Ctrl-C does, and remember all three, where they are not ignored or somebody
-    else's.
+    """Let TERM and HUP end the program as Ctrl-C does, where they are not ignored or somebody else's.
+
+    All three wait until what is being imported is: modules make errors of their own of an interrupt, or forget it.
     """
     if threading.current_thread() is not threading.main_thread():
         return
 
-    def stop(number: int, _frame: FrameType | None) -> None:
+    def again(_number: int, _frame: FrameType | None) -> None:
+        signal.raise_signal(_SENT[0])
+
+    def stop(number: int, frame: FrameType | None) -> None:
         _SENT.append(number)
-        raise KeyboardInterrupt if number == signal.SIGINT else Stopped(number)
+        if _in_import(frame):
+            signal.signal(signal.SIGALRM, again)
+            signal.setitimer(signal.ITIMER_REAL, _AGAIN)
+        else:
+            raise KeyboardInterrupt if number == signal.SIGINT else Stopped(number)
 
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         if signal.getsignal(number) in (signal.SIG_DFL, signal.default_int_handler):
             signal.signal(number, stop)
+
+
+def _in_import(frame: FrameType | None) -> bool:
+    while frame is not None and frame.f_code.co_filename != "<frozen importlib._bootstrap>":
+        frame = frame.f_back
+    return frame is not None
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -152,8 +167,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return _interrupted()
     except Exception as error:
-        # A module whose import is interrupted makes an error of its own of that.
-        return _interrupted() if _SENT else _failed(error)
+        return _failed(error)
 
 
 def _run(given: Sequence[str]) -> int:

@@ -75,3 +75,41 @@ def test_a_bake_that_is_ended_leaves_nothing(tmp_path, number):
     assert process.returncode == 128 + number, said
     assert not any(folder.iterdir())
     assert not (tmp_path / "out.qgraph").exists()
+
+
+IMPORTING = """
+import sys, time
+from quadgraph import cli
+cli.heed_signals()
+try:
+    import forgetful
+    time.sleep(60)
+except KeyboardInterrupt as error:
+    print(type(error).__name__, "forgetful" in sys.modules)
+"""
+FORGETFUL = """
+import os, signal
+try:
+    os.kill(os.getpid(), signal.{name})
+    for _ in range(1000):
+        pass
+except BaseException:
+    pass
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "kind"), [("SIGTERM", "Stopped"), ("SIGHUP", "Stopped"), ("SIGINT", "KeyboardInterrupt")]
+)
+def test_a_signal_during_an_import_is_heeded_after_it(tmp_path, name, kind):
+    """Modules that import others in a try of their own would forget it, and the program go on to its end."""
+    (tmp_path / "forgetful.py").write_text(FORGETFUL.format(name=name))
+    done = subprocess.run(
+        [sys.executable, "-c", IMPORTING],
+        env=os.environ | {"PYTHONPATH": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        timeout=50,
+        preexec_fn=lambda: [signal.signal(n, signal.SIG_DFL) for n in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)],
+    )
+    assert done.stdout == f"{kind} True\n", done.stderr
