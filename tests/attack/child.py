@@ -8,9 +8,11 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 import uuid
 from pathlib import Path
+from typing import IO
 
 from attack.case import Case, Outcome
 
@@ -18,6 +20,7 @@ ROOT = Path(__file__).resolve().parents[2]
 MARK = "QUADGRAPH_ATTACK"  # in the environment of a child and of all that it starts
 ADDRESSES = 64 * 10**9  # bytes: what is mapped is no measure, but more than this is refused by the system
 POLL = 0.02  # s
+PRINTED = 2**24  # bytes
 TICKS = os.sysconf("SC_CLK_TCK")
 PAGE = os.sysconf("SC_PAGE_SIZE")
 GRACE = 1.0  # s, in which what a child started may end after it
@@ -123,6 +126,26 @@ def end(pids: list[int]) -> None:
             continue
 
 
+class Stream(threading.Thread):
+    """What a child prints: files would be under the limits that it has."""
+
+    def __init__(self, pipe: IO[bytes]) -> None:
+        super().__init__(daemon=True)
+        self.pipe, self.data = pipe, b""
+        self.start()
+
+    def run(self) -> None:
+        """Read to the end, and keep the first PRINTED bytes."""
+        while block := self.pipe.read1(65536):  # type: ignore[attr-defined]
+            if len(self.data) < PRINTED:
+                self.data += block
+
+    def text(self) -> str:
+        """All of it, once everybody who may write has ended."""
+        self.join(GRACE)
+        return self.data.decode(errors="replace")
+
+
 class Watch:
     """One child from its start to its end."""
 
@@ -156,7 +179,7 @@ class Watch:
             self.first = self.first or (now, computed)
             self.process.send_signal(self.signals.pop(0)[1])
 
-    def finish(self, usage: resource.struct_rusage, out: Path, err: Path) -> Outcome:
+    def finish(self, usage: resource.struct_rusage, streams: list[Stream]) -> Outcome:
         """The outcome, once the child has ended."""
         now = time.monotonic()
         orphans = marked(self.mark)
@@ -168,7 +191,7 @@ class Watch:
         limit = "memory" if peak > self.memory else self.limit
         computed = usage.ru_utime + usage.ru_stime
         after = None if self.first is None else (now - self.first[0], computed - self.first[1])
-        texts = [path.read_text(errors="replace") for path in (out, err)]
+        texts = [stream.text() for stream in streams]
         code = self.process.returncode
         return Outcome(code, *texts, now - self.start, peak, limit, after, len(orphans))
 
@@ -176,18 +199,16 @@ class Watch:
 def run(case: Case, folder: Path, input_bytes: int) -> Outcome:
     """Run a case in its folder, which holds so many bytes; memory may be what the case allows and 20 times those."""
     mark = uuid.uuid4().hex
-    out, err = folder.parent / "stdout", folder.parent / "stderr"
-    variables = environment(case, folder, mark)
-    with out.open("wb") as stdout, err.open("wb") as stderr:
-        process = subprocess.Popen(
-            command_line(case),
-            cwd=folder,
-            env=variables,
-            stdin=subprocess.DEVNULL,
-            stdout=stdout,
-            stderr=stderr,
-            start_new_session=True,
-        )
+    process = subprocess.Popen(
+        command_line(case),
+        cwd=folder,
+        env=environment(case, folder, mark),
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        start_new_session=True,
+    )
+    streams = [Stream(pipe) for pipe in (process.stdout, process.stderr) if pipe]
     resource.prlimit(process.pid, resource.RLIMIT_AS, (ADDRESSES, ADDRESSES))
     resource.prlimit(process.pid, resource.RLIMIT_CORE, (0, 0))
     watch = Watch(case, process, mark, case.memory + 20 * input_bytes)
@@ -195,6 +216,6 @@ def run(case: Case, folder: Path, input_bytes: int) -> Outcome:
         ended, status, usage = os.wait4(process.pid, os.WNOHANG)
         if ended:
             process.returncode = os.waitstatus_to_exitcode(status)
-            return watch.finish(usage, out, err)
+            return watch.finish(usage, streams)
         watch.step()
         time.sleep(POLL)

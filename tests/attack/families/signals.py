@@ -32,7 +32,7 @@ COMMANDS = {
     "long solve": (
         ("solve", "body.qgraph", *DEVICE, "--field", "out.npz", "--method", "quadgraph-fv", "--cycles", "1000000"),
         "out.npz",
-        3.0,
+        1.2,
     ),
     "shortest path": (
         ("render", "surface.qgraph", *DEVICE, "--method", "shortest-path", "--path-cells", "96", "-o", "out.png"),
@@ -40,8 +40,8 @@ COMMANDS = {
         3.0,
     ),
     "render": (("render", "body.qgraph", *DEVICE, "--size", "256x256", "-o", "out.png"), "out.png", 1.5),
-    "frames": (("render", "scene.json", *DEVICE, "--frames", "30", "-o", "frame%04d.png"), "frame*.png", 4.0),
-    "film": (("render", "scene.json", *DEVICE, "--frames", "30", "-o", "out.mp4"), "out.mp4", 4.0),
+    "frames": (("render", "scene.json", *DEVICE, "--frames", "30", "-o", "frame%04d.png"), "frame*.png", 1.8),
+    "film": (("render", "scene.json", *DEVICE, "--frames", "30", "-o", "out.mp4"), "out.mp4", 1.8),
     "shapes": (("shapes", "body.qgraph", "mesh.ply", "mesh.ply", "-o", "out.qshapes"), "out.qshapes", 1.0),
 }
 
