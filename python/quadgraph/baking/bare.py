@@ -13,7 +13,6 @@ from quadgraph.file import qgraph_file, sections
 from quadgraph.mesh import display_map, front, mesh_io
 from quadgraph.mesh.surface import SourceMesh
 
-HEIGHT_MM = 100.0  # of a mesh that is shown without a word on its size
 SUFFIXES = mesh_io.SUFFIXES
 
 
@@ -27,16 +26,17 @@ def write(
     output: Path,
     unit: str | None = None,
     height_mm: float | None = None,
+    longest_mm: float | None = None,
     front_degrees: float | None = None,
 ) -> SourceMesh:
     """Write a mesh as it is, open, broken or not, with nothing repaired.
 
-    unit, height_mm: as mesh_io.read_surface. front_degrees: azimuth from where it is shown when nobody says so; found
-    out if it is None. Raises InputError for a file that cannot be read.
+    unit, height_mm, longest_mm: as mesh_io.read_surface. front_degrees: azimuth from where it is shown when nobody says
+    so; found out if it is None. Raises InputError for a file that cannot be read.
     """
     front.check(front_degrees)
     outputs.check_outputs([Path(output)], [mesh])
-    source = mesh_io.read_surface(mesh, unit=unit, height_mm=height_mm)
+    source = mesh_io.read_surface(mesh, unit=unit, height_mm=height_mm, longest_mm=longest_mm)
     surface = source.surface.compacted()
     normals = display_map.vertex_normals(surface)
     length = np.linalg.norm(normals, axis=1, keepdims=True)

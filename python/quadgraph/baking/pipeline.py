@@ -53,8 +53,9 @@ _OPTIONS = (
 
 @dataclass(frozen=True)
 class BakeOptions:
-    """Options of a bake. Exactly one of `unit` ("mm", "cm", "m") and `height_mm` must be given.
+    """Options of a bake.
 
+    unit ("mm", "cm", "m"), height_mm, longest_mm: the body's size as mesh_io.read_surface takes it, at most one;
     levels: None for as many as make sense; mesher: "tetgen", "cgal" or "polygrid"; grading: K of the paper's sizing
     field, for cgal; cubes and cells: of a polygrid (tets/polygrid/build.py), None for the usual; relax_nodes: steps
     that spread the inner nodes; order: "blocks" or "random"; surface_vertices: about how many the finest simulation
@@ -69,6 +70,7 @@ class BakeOptions:
 
     unit: str | None = None
     height_mm: float | None = None
+    longest_mm: float | None = None
     levels: int | None = None
     mesher: str = "tetgen"
     grading: float | None = None
@@ -169,7 +171,11 @@ def bake(
 def prepare(mesh: Path, options: BakeOptions, report: BakeReport, tell: ProgressCallback) -> Prepared:
     """Read and repair. Raises InputError."""
     with report.timed("read"):
-        source = mesh_io.read_surface(mesh, unit=options.unit, height_mm=options.height_mm)
+        source = mesh_io.read_surface(
+            mesh, unit=options.unit, height_mm=options.height_mm, longest_mm=options.longest_mm
+        )
+    if source.size_note:
+        report.notes.append(source.size_note)
     tell(f"read {source.name}: {source.vertices:,} vertices, {source.triangles:,} triangles")
     with report.timed("repair"):
         surface, repairs = repair.repair(source.surface, source.name)

@@ -12,10 +12,10 @@ from rich.console import Console
 from rich.table import Table
 
 from quadgraph.baking.budget import record
-from quadgraph.base.arguments import add_strict_argument, length_mm, positive_float, positive_int, share, up_to
+from quadgraph.base.arguments import add_strict_argument, positive_float, positive_int, share, up_to
 from quadgraph.base.child_process import MOST_MEMORY_BYTES, MOST_TIME_S
 from quadgraph.base.errors import InputError
-from quadgraph.base.units import UNITS_MM
+from quadgraph.commands import own_mesh
 
 if TYPE_CHECKING:
     from quadgraph.baking.pipeline import BakeReport
@@ -25,10 +25,14 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Register the subcommand."""
     parser = subparsers.add_parser("bake", help="a mesh into a .qgraph file", description=__doc__)
     parser.add_argument("mesh", metavar="MESH", type=Path, help="OBJ, PLY, STL, OFF, glTF or GLB")
-    parser.add_argument("-o", "--output", metavar="FILE", type=Path, required=True, help="the .qgraph to write")
-    size = parser.add_mutually_exclusive_group()
-    size.add_argument("--unit", choices=tuple(UNITS_MM), help="unit of the mesh file's coordinates")
-    size.add_argument("--height", type=length_mm, metavar="L", help="height of the object along y, like 100mm or 1.8m")
+    parser.add_argument(
+        "-o",
+        "--output",
+        metavar="FILE",
+        type=Path,
+        help="the .qgraph to write (default: the mesh's name in the present folder, where there is none of it yet)",
+    )
+    own_mesh.add_size_arguments(parser)
     _add_mesh_options(parser)
     _add_size_options(parser)
     parser.add_argument(
@@ -167,6 +171,8 @@ def interior(text: str) -> str | float:
 
 def run(args: argparse.Namespace) -> int:
     """Bake, telling the progress on standard error; 3 with --strict if --error is not kept, else 0."""
+    if args.output is None:
+        args.output = _own_name(args.mesh)
     if args.surface_only:
         return _write_surface(args)
     _check_error_options(args)
@@ -180,16 +186,27 @@ def run(args: argparse.Namespace) -> int:
     return 3 if args.strict and report.budget and not report.budget["reached"] else 0
 
 
+def _own_name(mesh: Path) -> Path:
+    """The name of a bake that nobody gave one. Raises InputError where there is such a file."""
+    path = Path(f"{mesh.stem}.qgraph")
+    if path.exists() or path.is_symlink():
+        raise InputError(f"{path}: is there already, and no --output is given; -o {path} replaces it")
+    return path
+
+
 def _write_surface(args: argparse.Namespace) -> int:
     """Write a file without levels."""
     from quadgraph.baking import bare
 
-    left_alone = {"mesh", "output", "unit", "height", "surface_only", "command", "mesher", "order", "device", "front"}
+    left_alone = {"mesh", "output", *own_mesh.SIZES, "surface_only", "command", "mesher", "order", "device", "front"}
     for name, value in vars(args).items():
         if name not in left_alone and value:
             raise InputError(f"--{name.replace('_', '-')}: found with --surface-only, which makes no levels")
-    source = bare.write(args.mesh, args.output, args.unit, args.height, args.front)
-    Console(highlight=False).print(
+    source = bare.write(args.mesh, args.output, **own_mesh.sizes(args), front_degrees=args.front)
+    console = Console(highlight=False)
+    if source.size_note:
+        console.print(source.size_note, markup=False, soft_wrap=True)
+    console.print(
         f"{args.output}: the surface alone, {source.triangles:,} triangles; --method shortest-path shows it",
         soft_wrap=True,
     )
@@ -224,8 +241,6 @@ def _options(args: argparse.Namespace):
     from quadgraph.baking.pipeline import BakeOptions
 
     given = {
-        "unit": args.unit,
-        "height_mm": args.height,
         "levels": args.levels,
         "mesher": args.mesher,
         "grading": args.grading,
@@ -242,7 +257,7 @@ def _options(args: argparse.Namespace):
         "time_limit_s": args.time_limit,
         "memory_limit_bytes": int(args.memory_limit * 1e9) if args.memory_limit else None,
     }
-    return BakeOptions(**{name: value for name, value in given.items() if value is not None})
+    return BakeOptions(**own_mesh.sizes(args), **{name: value for name, value in given.items() if value is not None})
 
 
 def _print_report(report: BakeReport) -> None:
@@ -251,7 +266,7 @@ def _print_report(report: BakeReport) -> None:
     for entry in report.repairs:
         console.print(f"repaired: {entry['what']}: {entry['count']:,}", markup=False)
     for note in report.notes:
-        console.print(note, markup=False)
+        console.print(note, markup=False, soft_wrap=True)
     if report.polygrid:
         from quadgraph.tets.polygrid.grid_report import sentences
 

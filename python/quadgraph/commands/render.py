@@ -26,7 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add all arguments, which follow from the engine's options of a scene_options."""
     scene_options.add_scene_arguments(
         parser,
-        "a baked .qgraph, a scene .json (docs/scene.md), or a mesh for --method shortest-path",
+        "a mesh, a baked .qgraph, or a scene .json (docs/scene.md)",
         (*scene_options.SOLVE_GROUPS, *scene_options.PICTURE_GROUPS),
     )
     parser.add_argument(

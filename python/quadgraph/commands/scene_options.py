@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import contextlib
-import tempfile
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from quadgraph.base.arguments import add_device_arguments, add_strict_argument, length_mm
+from quadgraph.base.arguments import add_device_arguments, add_strict_argument
 from quadgraph.base.errors import InputError
-from quadgraph.base.units import UNITS_MM
+from quadgraph.commands import own_mesh
 from quadgraph.core import load_core
 
 if TYPE_CHECKING:
@@ -45,7 +43,9 @@ def keywords(args: argparse.Namespace, groups: Collection[str]) -> dict[str, Any
 
 
 def add_scene_arguments(
-    parser: argparse.ArgumentParser, file_help: str = "a baked .qgraph", groups: Collection[str] = SOLVE_GROUPS
+    parser: argparse.ArgumentParser,
+    file_help: str = "a mesh, or a baked .qgraph",
+    groups: Collection[str] = SOLVE_GROUPS,
 ) -> None:
     """Add FILE, the options of a run and the engine's scene options of these groups."""
     parser.add_argument("file", metavar="FILE", type=Path, help=file_help)
@@ -55,7 +55,7 @@ def add_scene_arguments(
         group = parser.add_argument_group(name)
         for option in options((name,)):
             add_option(group, option)
-    add_size_arguments(parser.add_argument_group("Mesh without bake"))
+    own_mesh.add_size_arguments(parser.add_argument_group("Mesh of your own"))
 
 
 def add_option(group: argparse._ArgumentGroup, option: SceneOption) -> None:
@@ -90,40 +90,10 @@ def value_of(option: SceneOption) -> Callable[[str], Any]:
     return value
 
 
-def add_size_arguments(group: argparse._ArgumentGroup) -> None:
-    """Add the size of a mesh that is shown without a bake."""
-    size = group.add_mutually_exclusive_group()
-    size.add_argument("--unit", choices=tuple(UNITS_MM), help="of the coordinates, where FILE is a mesh without bake")
-    size.add_argument(
-        "--height",
-        type=length_mm,
-        metavar="L",
-        help="of such a mesh along y, like 100mm or 1.8m (default: 100mm)",
-    )
-
-
-@contextlib.contextmanager
-def baked_or_bare(file: Path, unit: str | None, height_mm: float | None) -> Iterator[Path]:
-    """The file, or if it is a mesh, one without levels made of it, which is there as long as the block runs."""
-    from quadgraph.baking import bare
-
-    if not bare.is_mesh(file):
-        if unit is not None or height_mm is not None:
-            raise InputError(f"{file}: --unit and --height are for meshes; a baked file knows its size")
-        yield file
-        return
-    if unit is None and height_mm is None:
-        height_mm = bare.HEIGHT_MM
-    with tempfile.TemporaryDirectory(prefix="quadgraph-") as folder:
-        path = Path(folder) / f"{file.stem}.qgraph"
-        bare.write(file, path, unit, height_mm)
-        yield path
-
-
 def make_engine(args: argparse.Namespace) -> Engine:
     """Load `args.file` and set material and lights. Raises FormatError, InputError, DeviceError."""
     core = load_core()
-    with baked_or_bare(args.file, getattr(args, "unit", None), getattr(args, "height", None)) as path:
+    with own_mesh.body(args.file, args, surface_only=args.method == "shortest-path") as path:
         engine = core.Engine(path, device=args.device, validation=args.validation)
     engine.set_material(args.material)
     seen_from = {

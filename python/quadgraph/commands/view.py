@@ -7,12 +7,11 @@ import os
 import shutil
 import subprocess
 import sys
+from itertools import pairwise
 from pathlib import Path
 
-from quadgraph.base.arguments import length_mm
 from quadgraph.base.errors import InputError
-from quadgraph.base.units import UNITS_MM
-from quadgraph.commands.scene_options import baked_or_bare
+from quadgraph.commands import own_mesh
 
 PROGRAM = "quadgraph-engine"
 
@@ -27,10 +26,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--material, --light, --view, --method and so on, as in `quadgraph render`.",
     )
     parser.add_argument("file", metavar="FILE", type=Path, help="a baked .qgraph, a scene .json, or a mesh")
-    parser.add_argument("--unit", choices=tuple(UNITS_MM), help="unit of a mesh; stands before FILE")
-    parser.add_argument(
-        "--height", type=length_mm, metavar="L", help="height of a mesh along y (default: 100mm); stands before FILE"
-    )
+    own_mesh.add_size_arguments(parser, "; stands before FILE")
     parser.add_argument("options", nargs=argparse.REMAINDER, metavar="OPTION", help=f"options of {PROGRAM}")
 
 
@@ -46,10 +42,12 @@ def find_program() -> str:
 
 def run(args: argparse.Namespace) -> int:
     """Open the window; the program's exit status once it is closed."""
-    from quadgraph.baking import bare
+    with own_mesh.body(args.file, args, surface_only=_by_shortest_path(args.options)) as path:
+        return subprocess.run([find_program(), path, *args.options], check=False).returncode
 
-    if not bare.is_mesh(args.file):
-        return subprocess.run([find_program(), args.file, *args.options], check=False).returncode
-    method = [] if "--method" in args.options else ["--method", "shortest-path"]
-    with baked_or_bare(args.file, args.unit, args.height) as path:
-        return subprocess.run([find_program(), path, *method, *args.options], check=False).returncode
+
+def _by_shortest_path(options: list[str]) -> bool:
+    """Whether the program is asked for the method that takes a mesh as it is."""
+    given = [text.removeprefix("--method=") for text in options if text.startswith("--method=")]
+    given += [value for name, value in pairwise(options) if name == "--method"]
+    return given[-1:] == ["shortest-path"]

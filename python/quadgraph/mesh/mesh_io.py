@@ -11,13 +11,10 @@ import numpy as np
 import trimesh
 
 from quadgraph.base.errors import InputError
-from quadgraph.base.units import SIZES_MM, UNITS_MM
-from quadgraph.mesh import gltf_file
+from quadgraph.mesh import gltf_file, mesh_size
 from quadgraph.mesh.mesh_text import read_obj, read_off
 from quadgraph.mesh.ply import read_ply
 from quadgraph.mesh.surface import SourceMesh, Surface
-
-_HEIGHT_AXIS = 1  # y: height is the extent along it
 
 Arrays = tuple[np.ndarray, np.ndarray]
 
@@ -69,12 +66,20 @@ _READERS: dict[str, Callable[[Path], Arrays]] = {
 SUFFIXES = tuple(_READERS)
 
 
-def read_surface(path: str | Path, *, unit: str | None = None, height_mm: float | None = None) -> SourceMesh:
+def read_surface(
+    path: str | Path,
+    *,
+    unit: str | None = None,
+    height_mm: float | None = None,
+    longest_mm: float | None = None,
+) -> SourceMesh:
     """Read a mesh and scale it to millimetres.
 
-    Exactly one of the two must be given: unit "mm", "cm" or "m" of the file's coordinates, or the object's height_mm
-    (its extent along y). Polygons are cut into triangles; STL and glTF vertices at one position are joined. Nothing
-    is repaired. Raises InputError for a file or option that cannot be used, naming file and field.
+    unit "mm", "cm" or "m" of the file's coordinates, the object's height_mm (its extent along y) or longest_mm (the
+    longest side of its bounding box): at most one. Without one the size is as usual, which `SourceMesh.size_note`
+    says: that of glTF in metres where that is plausible, else 100 mm along the longest side. Polygons are cut into
+    triangles; STL and glTF vertices at one position are joined. Nothing is repaired. Raises InputError for a file or
+    option that cannot be used, naming file and field.
     """
     path = Path(path)
     reader = _READERS.get(path.suffix.lower())
@@ -86,11 +91,10 @@ def read_surface(path: str | Path, *, unit: str | None = None, height_mm: float 
         raise InputError(f"{path}: cannot be read: {error.strerror}") from error
     vertices, triangles = _guarded(reader, path)
     _check(path, vertices, triangles)
-    unit_mm = _unit_mm(path, vertices, triangles, unit, height_mm)
-    _check_size(path, vertices[np.unique(triangles)], unit_mm)
+    unit_mm, note = mesh_size.scale_of(path, vertices[np.unique(triangles)], unit, height_mm, longest_mm)
     surface = Surface(vertices * unit_mm, triangles)
     digest = hashlib.sha256(content).hexdigest()
-    return SourceMesh(surface, path.name, digest, unit_mm, len(vertices), len(triangles))
+    return SourceMesh(surface, path.name, digest, unit_mm, len(vertices), len(triangles), note)
 
 
 def _guarded(reader: Callable[[Path], Arrays], path: Path) -> Arrays:
@@ -113,47 +117,3 @@ def _check(path: Path, vertices: np.ndarray, triangles: np.ndarray) -> None:
     if len(wrong):
         found, last = triangles[wrong[0]].tolist(), len(vertices) - 1
         raise InputError(f"{path}, triangle {wrong[0]}: vertex indices {found} found, allowed are 0 to {last}")
-
-
-def _check_size(path: Path, used: np.ndarray, unit_mm: float) -> None:
-    with np.errstate(over="ignore", invalid="ignore"):
-        longest = float((used.max(axis=0) - used.min(axis=0)).max()) * unit_mm
-        farthest = float(np.abs(used).max()) * unit_mm
-    if not SIZES_MM[0] <= longest <= SIZES_MM[1] or not farthest <= SIZES_MM[1]:
-        raise InputError(
-            f"{path}: a longest side of {longest:.3g} mm found, at most {farthest:.3g} mm from 0, allowed are "
-            f"{SIZES_MM[0]:g} to {SIZES_MM[1]:g} mm; state another unit or height"
-        )
-
-
-def _unit_mm(
-    path: Path, vertices: np.ndarray, triangles: np.ndarray, unit: str | None, height_mm: float | None
-) -> float:
-    used = vertices[np.unique(triangles)]
-    low, high = used.min(axis=0), used.max(axis=0)
-    if unit is not None and height_mm is not None:
-        raise InputError(f"{path}: both unit and height given; state one")
-    if unit is not None:
-        if unit not in UNITS_MM:
-            raise InputError(f"{path}, unit: '{unit}' found, allowed are {', '.join(UNITS_MM)}")
-        return UNITS_MM[unit]
-    if height_mm is None:
-        raise InputError(_unit_question(path, low, high))
-    extent = float(high[_HEIGHT_AXIS] - low[_HEIGHT_AXIS])
-    if not (np.isfinite(height_mm) and height_mm > 0):
-        raise InputError(f"{path}, height: {height_mm!r} mm found, allowed is a finite number above 0")
-    if extent <= 0:
-        raise InputError(f"{path}, height: the mesh has no extent along y; state its unit instead")
-    return float(height_mm) / extent
-
-
-def _unit_question(path: Path, low: np.ndarray, high: np.ndarray) -> str:
-    """What to say when neither unit nor height was given: the box, and what each choice would make of it."""
-    box = " to ".join("(" + ", ".join(f"{x:.6g}" for x in corner) + ")" for corner in (low, high))
-    choices = ", ".join(
-        f"{unit} makes it {' x '.join(f'{x * scale:.4g}' for x in high - low)} mm" for unit, scale in UNITS_MM.items()
-    )
-    return (
-        f"{path}: state its unit (--unit mm, cm or m) or its height along y (--height 100mm); "
-        f"its bounding box is {box}: {choices}"
-    )

@@ -172,7 +172,8 @@ class Surface:
 class SourceMesh:
     """A surface as read from a file: `vertices` and `triangles` count what the file held.
 
-    unit_mm: length of one unit of the file, mm; sha256: of the file's bytes, hexadecimal.
+    unit_mm: length of one unit of the file, mm; sha256: of the file's bytes, hexadecimal; size_note: a sentence on
+    the size where nobody chose it.
     """
 
     surface: Surface
@@ -181,6 +182,7 @@ class SourceMesh:
     unit_mm: float
     vertices: int
     triangles: int
+    size_note: str = ""
 
     def metadata(self) -> dict[str, str | int]:
         """What a .qgraph keeps of it as `source`."""

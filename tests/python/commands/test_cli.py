@@ -128,7 +128,6 @@ def test_a_reader_that_leaves_causes_no_traceback():
         [],
         ["polish"],
         ["bake"],
-        ["bake", "a.obj"],
         ["bake", "a.obj", "-o", "a.qgraph", "--unit", "inch"],
         ["bake", "a.obj", "-o", "a.qgraph", "--unit", "mm", "--height", "1mm"],
         ["bake", "a.obj", "-o", "a.qgraph", "--height", "100"],
@@ -166,11 +165,6 @@ def test_errors_are_one_line_and_exit_with_1(tmp_path, capsys):
         assert captured.err.startswith("quadgraph: error: ")
         assert captured.err.count("\n") == 1
     assert not list(tmp_path.iterdir())
-
-
-def test_a_missing_unit_is_asked_for(sphere, tmp_path, capsys):
-    assert cli.main(["bake", str(sphere), "-o", str(tmp_path / "a.qgraph")]) == 1
-    assert "--unit" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(("text", "expected"), [("100mm", 100), ("1.5cm", 15), ("2 m", 2000), ("1e-1m", 100)])

@@ -245,12 +245,12 @@ def test_meshes_are_rendered_at_once(tmp_path: Path, capsys):
     assert main([*arguments, "--json", str(report), "-o", str(picture)]) == 0
     assert picture.stat().st_size > 1000
     told = json.loads(report.read_text())
-    assert told["path"]["cell"] == pytest.approx(100 / 24)  # 100 mm high where nobody says
+    assert told["path"]["cell"] == pytest.approx(100 / 24)  # 100 mm long where nobody says
     assert "paths: eikonal, cost transport" in capsys.readouterr().out
-    assert main(["render", str(mesh), "-o", str(picture)]) == 1
-    assert "a surface without levels" in capsys.readouterr().err
     baked = tmp_path / "mesh.qgraph"
     assert main(["bake", str(mesh), "--surface-only", "--height", "20mm", "-o", str(baked)]) == 0
+    assert main(["render", str(baked), "-o", str(picture)]) == 1
+    assert "a surface without levels" in capsys.readouterr().err
     assert main(["info", str(baked)]) == 0
     assert "levels: none" in capsys.readouterr().out
     assert main(["bake", str(mesh), "--surface-only", "--levels", "2", "--unit", "mm", "-o", str(baked)]) == 1

@@ -82,20 +82,30 @@ def test_gltf_nodes_are_placed(tmp_path: Path) -> None:
     assert source.surface.vertices[:, 0].max() == pytest.approx(11)
 
 
-def test_unit_is_asked_for(tmp_path: Path) -> None:
-    path = write(cube(2), tmp_path / "cube.ply")
-    with pytest.raises(InputError) as refusal:
-        read_surface(path)
-    words = str(refusal.value)
-    for part in ("cube.ply", "--unit", "--height", "(-1, -1, -1) to (1, 1, 1)", "cm makes it 20 x 20 x 20 mm"):
-        assert part in words
+def test_a_body_of_no_stated_size_is_as_large_as_usual_and_says_so(tmp_path: Path) -> None:
+    found = read_surface(write(Surface(cube(2).vertices * [1, 1.5, 2], cube(2).triangles), tmp_path / "box.ply"))
+    assert found.unit_mm == 25
+    for part in ("box.ply", "longest side is 100 mm", "(50 x 75 x 100 mm)", "--longest", "--height", "--unit"):
+        assert part in found.size_note
+    assert read_surface(tmp_path / "box.ply", longest_mm=8).unit_mm == 2
+    assert read_surface(tmp_path / "box.ply", height_mm=6).unit_mm == 2
+    assert not read_surface(tmp_path / "box.ply", unit="cm").size_note
+
+
+@pytest.mark.parametrize(("edge", "unit_mm"), [(0.08, 1000), (2.5, 1000), (80, 1.25), (0.0005, 200_000)])
+def test_gltf_is_in_metres_where_that_is_plausible(tmp_path: Path, edge: float, unit_mm: float) -> None:
+    found = read_surface(write(cube(edge), tmp_path / "cube.glb"))
+    assert found.unit_mm == pytest.approx(unit_mm, rel=1e-5)
+    assert ("metre" in found.size_note) == (unit_mm == 1000)
 
 
 @pytest.mark.parametrize(
     ("options", "words"),
     [
         ({"unit": "inch"}, "inch"),
-        ({"unit": "mm", "height_mm": 3.0}, "both"),
+        ({"unit": "mm", "height_mm": 3.0}, "both unit and height"),
+        ({"longest_mm": 3.0, "height_mm": 3.0}, "both height and longest"),
+        ({"longest_mm": -1.0}, "longest"),
         ({"height_mm": 0.0}, "height"),
         ({"height_mm": float("nan")}, "height"),
     ],

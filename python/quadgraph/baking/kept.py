@@ -1,0 +1,142 @@
+"""Bodies that commands bake by themselves, kept in the user's cache folder from one run to the next."""
+
+from __future__ import annotations
+
+import fcntl
+import hashlib
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from quadgraph.baking.pipeline import BakeOptions, bake
+from quadgraph.base.cache_folder import cache_folder
+from quadgraph.base.progress import ProgressCallback
+from quadgraph.base.version import __version__
+from quadgraph.mesh import gltf_file
+
+MOST_BYTES = 4_000_000_000  # of all bodies; the longest unused go first
+_ROOMS = ("base", "mesh", "tets", "file", "baking")  # what a bake is made by
+
+
+@dataclass(frozen=True)
+class KeptBody:
+    """A body in the cache folder: its file, bytes, and when it was used last, s since 1970."""
+
+    path: Path
+    size: int
+    used: float
+
+
+def folder() -> Path:
+    """Where bodies are kept."""
+    return cache_folder() / "bodies"
+
+
+@contextmanager
+def body(mesh: Path, options: BakeOptions, tell: ProgressCallback) -> Iterator[Path]:
+    """Give the .qgraph of a mesh, baked unless one of the same content and options is kept.
+
+    It stays in the cache folder, or where that cannot be written is there as long as the block runs. Several processes
+    may ask at once: one bakes, the others wait for it. Raises what `pipeline.bake` raises.
+    """
+    name = f"{mesh.stem[:80]}-{_key(mesh, options)[:24]}.qgraph"
+    try:
+        place = folder()
+        place.mkdir(parents=True, exist_ok=True)
+        with _turn(place / f"{name}.lock", tell):
+            path = _kept(mesh, place / name, options, tell)
+    except OSError as error:
+        tell(f"{error.filename or folder()}: {error.strerror}; the bake of {mesh.name} is not kept")
+        with tempfile.TemporaryDirectory(prefix="quadgraph-") as temporary:
+            path = Path(temporary) / f"{mesh.stem}.qgraph"
+            bake(mesh, path, options, tell)
+            yield path
+        return
+    yield path
+
+
+def bodies() -> list[KeptBody]:
+    """What is kept, the last used first."""
+    found = []
+    for path in folder().glob("*.qgraph"):
+        with suppress(FileNotFoundError):
+            state = path.stat()
+            found.append(KeptBody(path, state.st_size, state.st_mtime))
+    return sorted(found, key=lambda each: -each.used)
+
+
+def clear() -> list[KeptBody]:
+    """Remove all bodies; returns them. A program that has opened one keeps what it opened. Raises OSError."""
+    gone = bodies()
+    if folder().is_dir():
+        shutil.rmtree(folder())
+    return gone
+
+
+def _kept(mesh: Path, path: Path, options: BakeOptions, tell: ProgressCallback) -> Path:
+    if path.exists():
+        os.utime(path)
+        return path
+    report = bake(mesh, path, options, tell)
+    for note in report.notes:
+        tell(note)
+    tell(f"baked {mesh.name} in {report.seconds['total']:.0f} s, kept for the next time (quadgraph cache)")
+    _trim(path)
+    return path
+
+
+def _trim(newest: Path) -> None:
+    """Remove what was not used for longest until the rest is within bounds."""
+    room = MOST_BYTES
+    for each in bodies():
+        room -= each.size
+        if room < 0 and each.path != newest:
+            each.path.unlink(missing_ok=True)
+
+
+@contextmanager
+def _turn(path: Path, tell: ProgressCallback) -> Iterator[None]:
+    """Hold a lock as long as the block runs; it ends with the process, however that ends."""
+    with path.open("w") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            tell(f"another program is baking {path.name.removesuffix('.qgraph.lock')}; waiting for it")
+            fcntl.flock(file, fcntl.LOCK_EX)
+        try:
+            yield
+        finally:
+            path.unlink(missing_ok=True)
+
+
+def _key(mesh: Path, options: BakeOptions) -> str:
+    """Of what a bake is made of: the mesh's files, options, and the code that bakes."""
+    digest = hashlib.sha256(f"{__version__} {_code()} {mesh.suffix.lower()} {options!r}".encode())
+    for path in _files(mesh):
+        with suppress(OSError):  # the reader says what is wrong with it
+            digest.update(hashlib.sha256(path.read_bytes()).digest())
+    return digest.hexdigest()
+
+
+def _files(mesh: Path) -> list[Path]:
+    """A mesh's own file, and those that a .gltf names."""
+    if mesh.suffix.lower() != ".gltf":
+        return [mesh]
+    buffers = gltf_file.read(mesh, lambda file: file.document.get("buffers", []))
+    names = [str(each["uri"]) for each in buffers if "uri" in each]
+    return [mesh, *(mesh.parent / name for name in names if not name.startswith("data:"))]
+
+
+@cache
+def _code() -> str:
+    digest = hashlib.sha256()
+    package = Path(__file__).resolve().parents[1]
+    for room in _ROOMS:
+        for path in sorted((package / room).rglob("*.py")):
+            digest.update(path.read_bytes())
+    return digest.hexdigest()

@@ -1,0 +1,75 @@
+"""A mesh in the place of a baked file: its size, and the bake that a command does by itself."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+
+from quadgraph.base.arguments import length_mm
+from quadgraph.base.errors import InputError
+from quadgraph.base.units import UNITS_MM
+
+SIZES = ("unit", "height", "longest")
+
+
+def add_size_arguments(parser: argparse.ArgumentParser | argparse._ArgumentGroup, more: str = "") -> None:
+    """Add how large the body of a mesh is; `more`: what else help texts say."""
+    size = parser.add_mutually_exclusive_group()
+    size.add_argument("--unit", choices=tuple(UNITS_MM), help=f"unit of a mesh's coordinates{more}")
+    size.add_argument(
+        "--height", type=length_mm, metavar="L", help=f"a mesh's extent along y, like 100mm or 1.8m{more}"
+    )
+    size.add_argument(
+        "--longest",
+        type=length_mm,
+        metavar="L",
+        help=f"longest side of a mesh{more} (default: glTF in metres where that is plausible, else 100mm)",
+    )
+
+
+def sizes(args: argparse.Namespace) -> dict[str, Any]:
+    """Keyword arguments of BakeOptions for what the arguments say of the size."""
+    names = {"unit": "unit", "height": "height_mm", "longest": "longest_mm"}
+    return {names[name]: value for name in SIZES if (value := getattr(args, name, None)) is not None}
+
+
+@contextlib.contextmanager
+def body(file: Path, args: argparse.Namespace, surface_only: bool) -> Iterator[Path]:
+    """Give a baked file as it is, and of a mesh one that is made of it, there as long as the block runs.
+
+    surface_only: without levels, which takes no time and any mesh; else baked, and kept for the next time. Progress is
+    told on standard error. Raises InputError, ToolError.
+    """
+    from quadgraph.baking import bare
+
+    if not bare.is_mesh(file):
+        if sizes(args):
+            raise InputError(f"{file}: --unit, --height and --longest are for meshes; a baked file knows its size")
+        yield file
+        return
+    errors = Console(stderr=True, highlight=False, soft_wrap=True)
+
+    def tell(text: str) -> None:
+        errors.print(text, markup=False)
+
+    if not surface_only:
+        from quadgraph.baking import kept
+        from quadgraph.baking.pipeline import BakeOptions
+
+        with contextlib.ExitStack() as stack:
+            with errors.status(f"baking {file.name}, once for this mesh and size"):
+                path = stack.enter_context(kept.body(file, BakeOptions(**sizes(args)), tell))
+            yield path
+        return
+    with tempfile.TemporaryDirectory(prefix="quadgraph-") as folder:
+        path = Path(folder) / f"{file.stem}.qgraph"
+        note = bare.write(file, path, **sizes(args)).size_note
+        if note:
+            tell(note)
+        yield path
