@@ -90,12 +90,14 @@ class Engine:
         function: given points of the body at rest, (n, 3) float32 mm, returns sigma_s_prime and sigma_a, 1/mm, both of
         a shape that broadcasts to (n, 3); it is called once for every level. Raises InputError.
         """
+        if np.ndim(eta) or np.asarray(eta).dtype.kind not in "fiub":
+            raise InputError(f"eta: {type(eta).__name__} found, a number is wanted")
         for number, level in enumerate(self._engine.graph.levels):
             points = np.array(level.nodes)
             scattering, absorption = (
                 np.broadcast_to(np.asarray(c, np.float32), points.shape) for c in function(points)
             )
-            self._engine.set_optical(number, scattering, absorption, eta)
+            self._engine.set_optical(number, scattering, absorption, float(eta))
         self._material = None
 
     @property

@@ -29,9 +29,10 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Read, validate and tell; 0 on success."""
-    from quadgraph.file import qgraph_file
+    from quadgraph.file import qgraph_file, stated
 
     file = qgraph_file.read(args.file)
+    stated.check(file, str(args.file))
     facts = describe(file) | {"device_memory": device_memory.ask(args.file)}
     if args.json:
         print(json.dumps(facts, indent=1))

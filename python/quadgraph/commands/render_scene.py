@@ -73,7 +73,10 @@ def run(args: argparse.Namespace) -> int:
         pointer, equals, value = change.partition("=")
         if not equals:
             raise InputError(f"--set {change}: allowed is PATH=VALUE, e.g. /camera/fov=40")
-        file.set(pointer, value)
+        try:
+            file.set(pointer, value)
+        except InputError as error:
+            raise InputError(f"--set {pointer}: {error}") from None
     check_frames(args, file.frames)
     frames = [args.frame] if args.frames is None else range(args.frames or file.frames)
     with_numbers = args.frames is not None

@@ -104,6 +104,8 @@ def read(path: Path) -> QGraphFile:
     Raises FormatError that names the file, the section and the broken rule; InputError if it cannot be read.
     """
     try:
+        if not Path(path).is_file() and Path(path).exists():
+            raise InputError(f"{path}: cannot be read (no regular file)")
         data = Path(path).read_bytes()
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror})") from error

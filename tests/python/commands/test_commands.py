@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 
 import numpy as np
 import pytest
@@ -156,6 +157,23 @@ def test_info_names_metadata_that_no_bake_writes(tmp_path, capsys, change):
     said = capsys.readouterr().err
     assert f"{path}: metadata: not what a bake writes" in said
     assert len(said) < 500 + len(str(path))
+
+
+@pytest.mark.parametrize("key", ["vertices", "surface_vertices", "tets", "faces", "volume_mm3", "area_mm2"])
+def test_info_holds_what_is_stated_of_levels_against_the_sections(tmp_path, capsys, key):
+    path = tmp_path / "odd.qgraph"
+    metadata = tiny.metadata(tiny.graphs())
+    metadata["levels"][1][key] += 1
+    qgraph_file.write_sections(path, metadata, tiny.all_sections())
+    assert cli.main(["info", str(path)]) == 1
+    assert f"levels/1/{key}: {metadata['levels'][1][key]} stated" in capsys.readouterr().err
+
+
+def test_a_pipe_is_no_body(tmp_path, capsys):
+    """Nobody writes into it: reading it would never end."""
+    os.mkfifo(tmp_path / "pipe.qgraph")
+    assert cli.main(["info", str(tmp_path / "pipe.qgraph")]) == 1
+    assert "pipe.qgraph: cannot be read (no regular file)" in capsys.readouterr().err
 
 
 def test_info_prints_no_escapes_of_a_file(tmp_path, capsys):

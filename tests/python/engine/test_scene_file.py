@@ -120,6 +120,7 @@ def test_a_volume_lies_beside_its_scene(folder, tmp_path):
     [
         (["--material", "jade"], "--material: not beside a scene file; change it there, or with --set /material=..."),
         (["--set", "/camera/fov"], "--set /camera/fov: allowed is PATH=VALUE"),
+        (["--set", f"/material={'[' * 65}"], "--set /material: JSON nested deeper than 64 levels"),
         (["--set", "/camera/fov=500"], "/camera: view, field of view: found 500"),
         (["--frames", "-o", "a.png"], "a.png: a number, e.g. %04d, in the name of every frame is wanted"),
         (["-o", "%d.png"], "%d.png: no number without --frames is wanted"),
