@@ -173,7 +173,7 @@ class Watch:
 
     def send(self, now: float, computed: float) -> None:
         """Send the next signal if its time has come."""
-        if self.heeded is None and (self.case.command[0] != "quadgraph" or heeds(self.process.pid)):
+        if self.heeded is None and (self.case.command[0] == "quadgraph-engine" or heeds(self.process.pid)):
             self.heeded = now
         if self.heeded is not None and now - self.heeded >= self.signals[0][0]:
             self.first = self.first or (now, computed)

@@ -239,7 +239,7 @@ def gltf_additions(rng: Rng) -> Case:
     path, value = additions[key]
     form = "gltf" if key == "uri" else texts.pick(rng, ["gltf", "glb"])
     data = gltf(ring(), lambda whole: texts.replaced(whole, path, value), form == "glb")
-    expect = "" if key in ("draco", "scale") else "refused"
+    expect = "" if key in ("draco", "scale", "cycle") else "refused"
     return bake(rng, f"{form}, {key} {value!r:.40}", f"mesh.{form}", data, expect=expect)
 
 
