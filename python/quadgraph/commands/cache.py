@@ -35,5 +35,6 @@ def run(args: argparse.Namespace) -> int:
             table.add_row(each.path.name, f"{each.size / 1e6:.1f}", used)
         console.print(table)
     kept_or_gone = "removed from" if args.what == "clear" else f"of at most {kept.MOST_BYTES / 1e9:g} GB in"
-    console.print(f"{len(found)} bodies, {total / 1e6:.1f} MB {kept_or_gone} {kept.folder()}", markup=False)
+    count = f"{len(found)} {'body' if len(found) == 1 else 'bodies'}"
+    console.print(f"{count}, {total / 1e6:.1f} MB {kept_or_gone} {kept.folder()}", markup=False)
     return 0

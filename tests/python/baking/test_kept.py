@@ -114,7 +114,7 @@ def test_the_command_lists_and_clears(mesh, cache, capsys):
     assert cli.main(["cache"]) == 0
     assert name in capsys.readouterr().out
     assert cli.main(["cache", "clear"]) == 0
-    assert "1 bodies" in capsys.readouterr().out
+    assert "1 body, " in capsys.readouterr().out
     assert not cache.exists()
     assert cli.main(["cache", "list"]) == 0
     assert "0 bodies" in capsys.readouterr().out
