@@ -57,7 +57,7 @@ nlohmann::ordered_json parse_json(std::string_view text) {
     throw InputError("no JSON at " + json_place(text, error.byte > 0 ? error.byte - 1 : 0));
   } catch (const nlohmann::ordered_json::exception& error) {
     const std::string number = quoted(error.what());
-    throw InputError("a number beyond double precision at " + json_place(text, text.find(number)) + ": found " +
+    throw InputError("a JSON number beyond double precision at " + json_place(text, text.find(number)) + ": found " +
                      number.substr(0, shown_digits) + ", allowed are up to 1.7e308");
   }
 }

@@ -35,7 +35,7 @@ def read(path: Path, wanted: Callable[[GltfFile], T]) -> T:
         return wanted(GltfFile(path))
     except InputError:
         raise
-    except (OSError, KeyError, IndexError, ValueError, TypeError, struct.error) as error:
+    except (OSError, LookupError, ValueError, TypeError, AttributeError, struct.error) as error:
         raise InputError(f"{path}: cannot be read as glTF: {type(error).__name__} {error}") from error
 
 
@@ -58,8 +58,8 @@ class GltfFile:
         data = path.read_bytes()
         self.binary = b""
         if data[:4] == _GLB.to_bytes(4, "little"):
-            data, self.binary = _chunks(data)
-        self.document: dict[str, Any] = json_text.loads(data)
+            data, self.binary = _chunks(path, data)
+        self.document: dict[str, Any] = _document(path, data)
         for name in self.document.get("extensionsRequired", []):
             if name in _PACKED:
                 raise InputError(f"{path}: extension {name} found, which is not supported: write it without")
@@ -136,12 +136,26 @@ class GltfFile:
         return (self.path.parent / uri).read_bytes()
 
 
-def _chunks(data: bytes) -> tuple[bytes, bytes]:
+def _document(path: Path, text: bytes) -> dict[str, Any]:
+    try:
+        document = json_text.loads(text)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+    if not isinstance(document, dict):
+        raise InputError(f"{path}: cannot be read as glTF: {type(document).__name__} found, an object is wanted")
+    return document
+
+
+def _chunks(path: Path, data: bytes) -> tuple[bytes, bytes]:
     parts, at = {}, 12
     while at + 8 <= len(data):
         size, kind = struct.unpack_from("<II", data, at)
+        if size > len(data) - at - 8:
+            raise InputError(f"{path}: a chunk of {size} bytes found, {len(data) - at - 8} are left in the file")
         parts[kind] = data[at + 8 : at + 8 + size]
         at += 8 + size
+    if _JSON_CHUNK not in parts:
+        raise InputError(f"{path}: no chunk of JSON found")
     return parts[_JSON_CHUNK], parts.get(_BINARY_CHUNK, b"")
 
 

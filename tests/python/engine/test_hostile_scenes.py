@@ -170,6 +170,16 @@ def test_members_that_fill_memory_or_that_nobody_asks_for_are_not_read(tmp_path)
             core.Volume(path)
 
 
+def test_a_directory_that_says_more_than_the_file_has_is_not_believed(tmp_path):
+    """Sizes of a member, packed and not, as the central directory of the archive has them."""
+    path = npz(tmp_path / "v.npz", sigma_s_prime=GRID, sigma_a=GRID, spacing=SPACING)
+    data = bytearray(path.read_bytes())
+    struct.pack_into("<II", data, data.index(b"PK\1\2") + 20, 2_000_000_000, 4_000_000_000)
+    path.write_bytes(data)
+    with pytest.raises(InputError, match="has 4000000000 bytes, packed in"):
+        core.Volume(path)
+
+
 def test_images_that_fill_memory_are_refused_unread(tmp_path):
     def chunk(kind: bytes, data: bytes) -> bytes:
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))

@@ -104,6 +104,23 @@ def test_what_is_not_read_of_a_gltf_is_refused(tmp_path):
         read_surface(far, unit="mm")
 
 
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"glTF\2\0\0\0\x1c\0\0\0\xff\xff\xff\x7fJSON{}  ", "a chunk of 2147483647 bytes found, 4 are left"),
+        (b"glTF\2\0\0\0\x18\0\0\0\4\0\0\0BIN\0{}  ", "no chunk of JSON found"),
+        (b'{"asset": ]', "no JSON at line 1, column 11"),
+        (b"[1, 2]", "list found, an object is wanted"),
+    ],
+)
+def test_what_is_no_gltf_is_refused_by_name(tmp_path, content, message):
+    path = tmp_path / ("bad.glb" if content.startswith(b"glTF") else "bad.gltf")
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=message) as error:
+        read_surface(path, unit="mm")
+    assert str(path) in str(error.value)
+
+
 @pytest.mark.parametrize("scale", [1e-30, 1e-12, 1e12, 1e300])
 def test_bodies_beyond_single_precision_are_refused(tmp_path, scale):
     path = tmp_path / "body.obj"
