@@ -44,12 +44,11 @@ def body(mesh: Path, options: BakeOptions, tell: ProgressCallback) -> Iterator[P
     It stays in the cache folder, or where that cannot be written is there as long as the block runs. Several processes
     may ask at once: one bakes, the others wait for it. Raises what `pipeline.bake` raises.
     """
-    name = f"{mesh.stem[:80]}-{_key(mesh, options)[:24]}.qgraph"
+    place = folder() / _key(mesh, options)[:24]
     try:
-        place = folder()
         place.mkdir(parents=True, exist_ok=True)
-        with _turn(place / f"{name}.lock", tell):
-            path = _kept(mesh, place / name, options, tell)
+        with _turn(place, mesh.name, tell):
+            path = _kept(mesh, place / f"{mesh.stem}.qgraph", options, tell)
     except OSError as error:
         tell(f"{error.filename or folder()}: {error.strerror}; the bake of {mesh.name} is not kept")
         with tempfile.TemporaryDirectory(prefix="quadgraph-") as temporary:
@@ -63,7 +62,7 @@ def body(mesh: Path, options: BakeOptions, tell: ProgressCallback) -> Iterator[P
 def bodies() -> list[KeptBody]:
     """What is kept, the last used first."""
     found = []
-    for path in folder().glob("*.qgraph"):
+    for path in folder().glob("*/*.qgraph"):
         with suppress(FileNotFoundError):
             state = path.stat()
             found.append(KeptBody(path, state.st_size, state.st_mtime))
@@ -97,21 +96,29 @@ def _trim(newest: Path) -> None:
         room -= each.size
         if room < 0 and each.path != newest:
             each.path.unlink(missing_ok=True)
+            _remove_empty(each.path.parent)
+
+
+def _remove_empty(place: Path) -> None:
+    with suppress(OSError):
+        place.rmdir()
 
 
 @contextmanager
-def _turn(path: Path, tell: ProgressCallback) -> Iterator[None]:
-    """Hold a lock as long as the block runs; it ends with the process, however that ends."""
-    with path.open("w") as file:
+def _turn(place: Path, name: str, tell: ProgressCallback) -> Iterator[None]:
+    """Hold the lock of a folder as long as the block runs; it ends with the process, however that ends."""
+    handle = os.open(place, os.O_RDONLY | os.O_DIRECTORY)
+    try:
         try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            tell(f"another program is baking {path.name.removesuffix('.qgraph.lock')}; waiting for it")
-            fcntl.flock(file, fcntl.LOCK_EX)
-        try:
-            yield
-        finally:
-            path.unlink(missing_ok=True)
+            tell(f"another program is baking {name}; waiting for it")
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        place.mkdir(exist_ok=True)  # it may have failed there, and cleaned up
+        yield
+    finally:
+        os.close(handle)
+        _remove_empty(place)
 
 
 def _key(mesh: Path, options: BakeOptions) -> str:

@@ -32,7 +32,7 @@ def run(args: argparse.Namespace) -> int:
         table = Table("body", "MB", "used last")
         for each in found:
             used = time.strftime("%Y-%m-%d %H:%M", time.localtime(each.used))
-            table.add_row(each.path.name, f"{each.size / 1e6:.1f}", used)
+            table.add_row(str(each.path.relative_to(kept.folder())), f"{each.size / 1e6:.1f}", used)
         console.print(table)
     kept_or_gone = "removed from" if args.what == "clear" else f"of at most {kept.MOST_BYTES / 1e9:g} GB in"
     count = f"{len(found)} {'body' if len(found) == 1 else 'bodies'}"
