@@ -12,7 +12,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
-DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(DOCS.rglob("*.md"))]
+DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "SECURITY.md", *sorted(DOCS.rglob("*.md"))]
 CODE_FOLDERS = ("engine", "shaders", "python", "tools", "tests")
 CODE_SUFFIXES = {".h", ".cpp", ".glsl", ".comp", ".vert", ".frag", ".py", ""}
 

@@ -14,6 +14,7 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/file/file_cache.h"
+#include "engine/render/light/lights.h"
 
 namespace quadgraph {
 namespace {
@@ -22,7 +23,6 @@ constexpr std::int64_t largest_side = 16384;  // texels
 constexpr std::uint32_t largest_kept = 2048;  // the same
 // Texels of any file, and for each of its bytes: others are made to fill memory.
 constexpr std::int64_t free_texels = 50000000, texels_a_byte = 16;
-constexpr float largest_texel = 1e15f;  // times the power of a light it is within single precision
 
 std::string extension_of(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
@@ -34,10 +34,10 @@ void check_values(const std::filesystem::path& path, Image& image) {
   for (std::size_t i = 0; i < image.texels.size(); ++i) {
     glm::vec3& texel = image.texels[i];
     for (int c = 0; c < 3; ++c) {
-      if (std::abs(texel[c]) <= largest_texel) continue;
+      if (std::abs(texel[c]) <= largest_power) continue;
       throw InputError(path.string() + ": texel (" + std::to_string(i % image.width) + ", " +
                        std::to_string(i / image.width) + "): found " + number_text(texel[c]) +
-                       ", allowed are finite numbers up to " + number_text(largest_texel));
+                       ", allowed are finite numbers up to " + number_text(largest_power));
     }
     texel = glm::max(texel, glm::vec3(0));
   }

@@ -25,7 +25,7 @@ _TYPES: dict[int, type[np.number]] = {
     5126: np.float32,
 }
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
-_LARGEST = 1e12  # of the numbers of a transform
+LARGEST = 1e12  # of the numbers of a transform
 _PACKED = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression")
 
 
@@ -46,8 +46,8 @@ def check_plain(file: GltfFile) -> None:
             raise InputError(f"{file.path}, accessor {number}: sparse found, which is not read; write it without")
     for number, node in enumerate(file.document.get("nodes", [])):
         values = [float(x) for name in ("matrix", "translation", "rotation", "scale") for x in node.get(name, [])]
-        if not all(abs(value) <= _LARGEST for value in values):
-            raise InputError(f"{file.path}, node {number}: a transform with numbers above {_LARGEST:g} or none found")
+        if not all(abs(value) <= LARGEST for value in values):
+            raise InputError(f"{file.path}, node {number}: a transform with numbers above {LARGEST:g} or none found")
 
 
 class GltfFile:
