@@ -23,9 +23,34 @@ std::string ends_of(const std::string& text, std::size_t first, std::size_t last
   return text.substr(0, first) + dots + text.substr(from);
 }
 
+// Whether a terminal would obey the character that begins there: a control character of ASCII but for a tab and the
+// end of a line, or one of the second set, U+0080 to U+009F.
+bool obeyed(const std::string& text, std::size_t at) {
+  const auto byte = static_cast<unsigned char>(text[at]);
+  if (byte == 0xc2u && at + 1 < text.size()) return static_cast<unsigned char>(text[at + 1]) < 0xa0u;
+  return (byte < 0x20u && byte != '\t' && byte != '\n') || byte == 0x7fu;
+}
+
+// The text with what a terminal would obey as \xNN.
+std::string printable(const std::string& text) {
+  constexpr const char* digits = "0123456789abcdef";
+  std::string result;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    if (!obeyed(text, at)) {
+      result += text[at];
+      continue;
+    }
+    if (static_cast<unsigned char>(text[at]) == 0xc2u) ++at;
+    const auto byte = static_cast<unsigned char>(text[at]);
+    result += {'\\', 'x', digits[byte / 16], digits[byte % 16]};
+  }
+  return result;
+}
+
 }  // namespace
 
-std::string shortened(const std::string& text) {
+std::string shortened(const std::string& said) {
+  const std::string text = printable(said);
   if (text.size() <= message_bytes) return text;
   std::string result;
   for (std::size_t at = 0; at < text.size();) {

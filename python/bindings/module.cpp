@@ -158,7 +158,11 @@ namespace {
 void register_errors() {
   py::register_exception_translator([](std::exception_ptr error) {
     const auto raise = [](const char* name, const std::exception& e) {
-      PyErr_SetString(py::module_::import("quadgraph.base.errors").attr(name).ptr(), e.what());
+      // What is repeated of a file need not be UTF-8.
+      const std::string_view said = e.what();
+      const auto text = py::reinterpret_steal<py::str>(
+          PyUnicode_DecodeUTF8(said.data(), static_cast<Py_ssize_t>(said.size()), "backslashreplace"));
+      PyErr_SetObject(py::module_::import("quadgraph.base.errors").attr(name).ptr(), text.ptr());
     };
     try {
       if (error) std::rethrow_exception(error);

@@ -15,6 +15,10 @@ TEST_CASE("short messages stay as they are") {
   CHECK(std::string(InputError("a: found 1, allowed is 2").what()) == "a: found 1, allowed is 2");
 }
 
+TEST_CASE("what a terminal would obey is written out") {
+  CHECK(shortened("a\x1b[31m\x7f\r \u009b\u00a0\u20ac\n\tb\xc2") == "a\\x1b[31m\\x7f\\x0d \\x9b\u00a0\u20ac\n\tb\xc2");
+}
+
 TEST_CASE("long words lose their middle, all else stays") {
   const std::string word(100000, 'x'), kept = std::string(44, 'x') + "..." + std::string(43, 'x');  // and the marks
   CHECK(shortened("a.json: /lights/0: found '" + word + "', allowed is b") ==

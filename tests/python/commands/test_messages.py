@@ -71,6 +71,14 @@ def test_long_arguments_are_refused_in_short(capfd, tmp_path: Path, monkeypatch,
     assert not list(tmp_path.iterdir())
 
 
+def test_both_languages_write_out_what_a_terminal_obeys():
+    text = "a\x1b[31m\x7f\r \x9b\xa0\n\tb"
+    with pytest.raises(InputError) as error:
+        core.Engine(text)
+    assert str(error.value) == shortened(f"{text}: cannot be read (No such file or directory)")
+    assert str(error.value).startswith("a\\x1b[31m\\x7f\\x0d \\x9b\xa0\n\tb:")
+
+
 @pytest.mark.parametrize("text", [LONG, WORDS, f"{WORDS}{LONG}", f"a.json: '{LONG}'; {WORDS}", "a" * (MOST + 1)])
 def test_both_languages_shorten_alike(text: str):
     with pytest.raises(InputError) as error:

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 import tiny
+from quadgraph import Engine
 from quadgraph.base.errors import FormatError, InputError
 from quadgraph.file import qgraph_file
 
@@ -208,3 +209,10 @@ def test_pictures_replace_no_pipe_and_no_link(tmp_path, kind):
             write()
     assert target.read_text() == "precious"
     assert sorted(p.name for p in tmp_path.iterdir()) == ["out.png", "target"]
+
+
+def test_what_is_no_utf8_in_a_file_is_repeated_all_the_same(tmp_path):
+    path = tmp_path / "sky.hdr"
+    path.write_bytes(b"#?RADIANCE\nFORMAT=\xff\xfe\n\n-Y 1 +X 1\nabcd")
+    with pytest.raises(Exception, match=r"sky\.hdr: found 'FORMAT=\\xff\\xfe', expected"):
+        Engine(tiny.PATH, device="cpu").lights = [f"environment:{path}:0:1"]
