@@ -10,8 +10,10 @@
 namespace quadgraph {
 namespace {
 
-// The metadata is the first section.
+// The metadata is the first section. A pipe, whose end nobody may ever write, is not waited for.
 std::string first_section(const std::filesystem::path& path) {
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(path, none)) return {};
   std::ifstream stream(path, std::ios::binary);
   QgraphHeader header{};
   QgraphSection section{};

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from quadgraph.base import json_text
+from quadgraph.base import json_text, regular_file
 from quadgraph.base.atomic_file import replacing
 from quadgraph.base.errors import FormatError, InputError
 from quadgraph.file import qgraph_rules
@@ -104,9 +104,7 @@ def read(path: Path) -> QGraphFile:
     Raises FormatError that names the file, the section and the broken rule; InputError if it cannot be read.
     """
     try:
-        if not Path(path).is_file() and Path(path).exists():
-            raise InputError(f"{path}: cannot be read (no regular file)")
-        data = Path(path).read_bytes()
+        data = regular_file.read_bytes(Path(path))
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror})") from error
     return parse(data, str(path))

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import trimesh
 
+from quadgraph.base import regular_file
 from quadgraph.base.errors import InputError
 from quadgraph.mesh import gltf_file, mesh_size
 from quadgraph.mesh.mesh_text import read_obj, read_off
@@ -86,7 +87,7 @@ def read_surface(
     if reader is None:
         raise InputError(f"{path}: extension '{path.suffix}' found, allowed are {', '.join(_READERS)}")
     try:
-        content = path.read_bytes()
+        content = regular_file.read_bytes(path)
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from error
     vertices, triangles = _guarded(reader, path)

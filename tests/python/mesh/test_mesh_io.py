@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import os
 from pathlib import Path
 
 import numpy as np
@@ -162,3 +163,10 @@ def test_bundled_bunny(bunny_path: Path) -> None:
     assert source.surface.is_closed_manifold
     assert source.surface.volume > 0
     assert np.ptp(source.surface.vertices[:, 1]) == pytest.approx(100)
+
+
+def test_a_pipe_is_no_mesh(tmp_path: Path) -> None:
+    """Nobody writes into it: reading it would never end."""
+    os.mkfifo(tmp_path / "pipe.ply")
+    with pytest.raises(InputError, match=r"pipe\.ply: cannot be read: no regular file"):
+        read_surface(tmp_path / "pipe.ply", unit="mm")
