@@ -176,7 +176,8 @@ def _run(given: Sequence[str]) -> int:
     check_installed(given, added)
     args = build_parser(commands, added).parse_args(given)
     status = (commands | added)[args.command].run(args)
-    sys.stdout.flush()
+    if sys.stdout is not None:  # it is where the process was started without one
+        sys.stdout.flush()
     return status
 
 
@@ -205,7 +206,8 @@ def _failed(error: Exception) -> int:
 
 def _drop_output() -> None:
     """Let what is left of standard output not meet its reader, or a full disk, again when Python ends."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    if sys.stdout is not None:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 if __name__ == "__main__":

@@ -116,6 +116,12 @@ def test_info_needs_neither_the_engine_nor_pymeshlab():
     assert done.returncode == 0, done.stderr
 
 
+def test_without_standard_output_nothing_fails():
+    command = f"{sys.executable} -m quadgraph.cli info {tiny.PATH} --json >&-"
+    done = subprocess.run(command, shell=True, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
 def test_a_reader_that_leaves_causes_no_traceback():
     command = f"{sys.executable} -m quadgraph.cli info {tiny.PATH} --json | true"
     done = subprocess.run(command, shell=True, capture_output=True, text=True)
