@@ -17,6 +17,10 @@ from attack.child import ROOT, program
 
 DATA = ROOT / "tests" / "data"
 BAKE = ("--unit", "mm", "--levels", "2", "--visibility-rays", "64")
+OTHERS = {
+    "surface": ("--unit", "mm", "--surface-only"),
+    "single": ("--unit", "mm", "--levels", "1", "--surface-vertices", "100"),
+}
 SOLVED = ("--no-correction", "--light", "directional:0.3,-0.5,-1:1", "--light", "ambient:0.1")
 
 
@@ -34,11 +38,11 @@ class Bodies:
         self._lock = threading.RLock()
 
     def body(self, name: str = "ring") -> Path:
-        """The .qgraph of a body: ring, surface (the ring without levels), tiny or polygrid."""
+        """The .qgraph of a body: ring, single (one level), surface (no level), tiny or polygrid."""
         if name in ("tiny", "polygrid"):
             return DATA / f"{name}.qgraph"
         text = ring().export(file_type="ply", encoding="ascii")
-        options = ("--unit", "mm", "--surface-only") if name == "surface" else BAKE
+        options = OTHERS.get(name, BAKE)
 
         def bake(path: Path) -> None:
             mesh = path.with_suffix(".ply")

@@ -60,7 +60,7 @@ def numbers(rng: Rng) -> Case:
 
 
 def _with_option(command: str, option: str, value: str) -> Case:
-    words = (option.strip("-"), option[2:].replace("-", "_"), option, "relax", "argument")
+    words = (option.strip("-"), option[2:].replace("-", "_"), option, "relax", "material", "argument")
     name = f"{command} {option}={value[:40]!r}"
     given = f"{option}={value}"
     if command == "bake":
@@ -190,11 +190,9 @@ def streams(rng: Rng) -> Case:
     command = texts.pick(
         rng, ['"$0" info body.qgraph', '"$0" solve body.qgraph --device cpu --no-correction', '"$0" --help']
     )
-    tail = texts.pick(
-        rng, ["> /dev/full", ">&-", "| head -c 10 > /dev/null", "2>&-", "<&-", "> /dev/full 2> /dev/full"]
-    )
+    tail = texts.pick(rng, ["> /dev/full", ">&-", "| head -c 10 > /dev/null", "2>&-", "<&-", "2> /dev/full"])
     line = ("sh", "-c", f"{command} {tail}", program("quadgraph"))
-    return Case(f"{command[5:20]} {tail}", line, (), put, expect="" if "full" in tail else "fine")
+    return Case(f"{command[5:20]} {tail}", line, (), put, expect="" if tail == "> /dev/full" else "fine")
 
 
 def wrong_files(rng: Rng) -> Case:
@@ -220,7 +218,37 @@ def wrong_files(rng: Rng) -> Case:
     return Case(f"{command[0]} {command[1]:.10} of {kind}", command, shown, prepare, expect="refused")
 
 
+def answers(rng: Rng) -> Case:
+    """Options that are allowed, on any body: an answer that is in balance, or that says it is none."""
+    body = texts.pick(rng, ["ring", "single", "tiny", "polygrid", "surface"])
+    methods = ["fem", "quadgraph-fv", "quadgraph-fdm", "shortest-path", "polygrid", "polygrid-divergence"]
+    method = "shortest-path" if body == "surface" else texts.pick(rng, methods)
+    choices = {
+        "--solver": ["fmg-pcg", "vcycle", "dpcg", "cascade", "auto"],
+        "--source": ["buried", "diffuse"],
+        "--model": ["diffusion", "sp3", "auto"],
+        "--material": ["marble", "skin1", "jade", "ketchup", "wholemilk", "wood", "sigma_s_prime=0.5,sigma_a=0.001"],
+        "--sweeps": ["1", "2"],
+        "--bounces": ["1", "0"],
+        "--path-cells": ["8", "24"],
+    }
+    chosen = [str(name) for name in rng.choice(list(choices), int(rng.integers(1, 4)), replace=False)]
+    options = [word for name in chosen for word in (name, texts.pick(rng, choices[name]))]
+    field = () if method == "shortest-path" else ("--field", "field.npz")
+    line = ("quadgraph", "solve", "body.qgraph", *DEVICE, "--json", "report.json", *field, "--method", method)
+
+    def prepare(place: Place) -> None:
+        place.bodies.put(place.folder, body)
+
+    fitting = body in ("ring", "single") and method in ("fem", "quadgraph-fv", "quadgraph-fdm")
+    name = f"solve of {body}, {method} {' '.join(options)}"
+    words = ("polygrid", "body.qgraph", "method", "solver", "model", "source")
+    expect = "fine" if fitting and not {"--source", "--model", "--solver"} & set(chosen) else ""
+    return Case(name, (*line, *options), words, prepare, SOLVE_OUTPUTS, judge=solved(), expect=expect, seconds=60)
+
+
 RECIPES = (
+    answers,
     numbers,
     lights,
     words,

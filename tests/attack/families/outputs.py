@@ -31,13 +31,15 @@ def put(place: Place) -> None:
 
 
 # What is read, and a command that would write onto it.
-ONTO = {
-    "mesh.ply": ("quadgraph", "bake", "mesh.ply", "--unit", "mm", "--surface-only", "-o", "{}"),
-    "body.qgraph": ("quadgraph", "solve", "body.qgraph", *DEVICE, "--no-correction", "--json", "{}"),
-    "v.npz": ("quadgraph", "solve", "body.qgraph", *DEVICE, "--no-correction", "--material", "v.npz", "--field", "{}"),
-    "image.png": ("quadgraph", "render", "body.qgraph", *SMALL, "--light", LIGHT, "-o", "{}"),
-}
-ENGINE = ("quadgraph-engine", "body.qgraph", "--headless", *SMALL, "--light", LIGHT, "-o", "{}")
+ONTO = (
+    ("mesh.ply", ("quadgraph", "bake", "mesh.ply", "--unit", "mm", "--surface-only", "-o", "{}")),
+    ("mesh.ply", ("quadgraph", "shapes", "body.qgraph", "mesh.ply", "mesh.ply", "-o", "{}")),
+    ("body.qgraph", ("quadgraph", "solve", "body.qgraph", *DEVICE, "--no-correction", "--json", "{}")),
+    ("v.npz", ("quadgraph", "solve", "body.qgraph", *DEVICE, "--material", "v.npz", "--field", "{}")),
+    ("image.png", ("quadgraph", "render", "body.qgraph", *SMALL, "--light", LIGHT, "-o", "{}")),
+    ("image.png", ("quadgraph-engine", "body.qgraph", "--headless", *SMALL, "--light", LIGHT, "-o", "{}")),
+    ("scene.json", ("quadgraph", "render", "scene.json", *DEVICE, "-o", "out.png", "--json", "{}")),
+)
 
 
 def another_way(rng: Rng, place_name: str) -> tuple[str, bool]:
@@ -49,9 +51,8 @@ def another_way(rng: Rng, place_name: str) -> tuple[str, bool]:
 
 def onto_input(rng: Rng) -> Case:
     """An output that is read, by whatever name."""
-    file = texts.pick(rng, list(ONTO))
+    file, line = texts.pick(rng, ONTO)
     name, hard = another_way(rng, file)
-    line = ENGINE if file == "image.png" and rng.integers(2) else ONTO[file]
 
     def prepare(place: Place) -> None:
         put(place)
@@ -69,6 +70,7 @@ def two_outputs(rng: Rng) -> Case:
         ("quadgraph", "solve", "body.qgraph", *DEVICE, "--no-correction", "--json", first, "--json", second),
         ("quadgraph", "render", "body.qgraph", *SMALL, "-o", "o.png", "-o", "below/../o.png"),
         ("quadgraph", "solve", "body.qgraph", *DEVICE, "--json", "o.npz", "--field", "beside/o.npz"),
+        ("quadgraph", "render", "body.qgraph", *SMALL, "-o", "o.png", "--json", "./o.png"),
     ]
     line = texts.pick(rng, lines)
     outputs = ("o.json",) if first in line else ()
