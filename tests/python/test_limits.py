@@ -9,6 +9,7 @@ import pytest
 
 from quadgraph.baking import kept, pipeline
 from quadgraph.base import child_process, json_text, message, units
+from quadgraph.file import npz
 from quadgraph.mesh import gltf_file, ply_header
 
 ROOT = Path(__file__).parents[2]
@@ -89,3 +90,4 @@ def test_both_languages_have_the_same_bounds():
     )
     assert tuple(constant("file/validate_geometry.cpp", n) for n in ("least_size", "largest_size")) == units.SIZES_MM
     assert constant("base/message.h", "message_bytes") == message.MOST
+    assert list(NPZ.values()) == [npz.FREE_BYTES, npz.MOST_PACKED, npz.MOST_AXES]

@@ -20,9 +20,11 @@ from quadgraph.base.atomic_file import replacing
 from quadgraph.base.child_process import Program, run, workspace
 from quadgraph.base.errors import InputError, ToolError
 from quadgraph.base.units import DEFAULT_ETA
+from quadgraph.file import npz
 
 _CHILD = Path(__file__).with_name("openvdb_child.py")
 _TIME_LIMIT_S, _MEMORY_LIMIT_BYTES = 300.0, 4 << 30
+_MEMBERS = ("sigma_s_prime", "sigma_a", "spacing", "origin", "eta")
 _REFUSED = 2  # its exit status where a file does not serve
 
 
@@ -139,8 +141,7 @@ def _coefficient(path: Path, name: str, field: Field, grids: dict[str, np.ndarra
 
 def _stored(path: Path) -> Volume:
     try:
-        with np.load(_readable(path), allow_pickle=False) as stored:
-            arrays = dict(stored)
+        arrays = npz.read(path, _MEMBERS)
         scattering, absorption = arrays["sigma_s_prime"], arrays["sigma_a"]
         spacing = np.broadcast_to(np.asarray(arrays["spacing"], np.float64).ravel(), 3)
         alike = scattering.shape[:3] == absorption.shape[:3]
@@ -149,5 +150,5 @@ def _stored(path: Path) -> Volume:
         middle = -0.5 * spacing * (np.array(scattering.shape[2::-1]) - 1)
         origin = np.asarray(arrays.get("origin", middle), np.float64)
         return Volume(scattering, absorption, spacing, origin, float(arrays.get("eta", DEFAULT_ETA)))
-    except (KeyError, ValueError, TypeError, OSError, EOFError) as error:
+    except (KeyError, ValueError, TypeError) as error:
         raise InputError(f"{path}: no volume of sigma_s_prime, sigma_a and spacing: {error}") from error
