@@ -155,7 +155,7 @@ def _chunks(path: Path, data: bytes) -> tuple[bytes, bytes]:
         parts[kind] = data[at + 8 : at + 8 + size]
         at += 8 + size
     if _JSON_CHUNK not in parts:
-        raise InputError(f"{path}: no chunk of JSON found")
+        raise InputError(f"{path}: cannot be read as GLB: no chunk of JSON found")
     return parts[_JSON_CHUNK], parts.get(_BINARY_CHUNK, b"")
 
 
