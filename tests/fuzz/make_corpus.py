@@ -13,11 +13,12 @@ from typing import Any
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
+MATERIAL = "sigma_s_prime=1/2/3,sigma_a=0.1"  # those of colours take a fit of a quarter of a second each
 TRACKS = [
     {"path": "/lights/0/irradiance", "keys": [[0, 1], [4, 2], [9, 0]], "between": "smooth"},
     {"path": "/camera/azimuth", "keys": [[0, 0], [10, 360]]},
     {"path": "/camera/target", "keys": [[0, [0, 0, 0]], [5, [1, 2, 3]]]},
-    {"path": "/material", "keys": [[0, "skin1"], [3, "wood"]], "between": "step"},
+    {"path": "/material", "keys": [[0, "skin1"], [3, MATERIAL]], "between": "step"},
 ]
 LIGHTS = [
     {"type": "ambient", "irradiance": 1},
@@ -43,7 +44,8 @@ def main(folder: Path) -> None:
     for path in (ROOT / "tests/data").glob("*.qgraph"):
         shutil.copy(path, folder / "reader")
     for path in (ROOT / "docs/scenes").glob("*.json"):
-        shutil.copy(path, folder / "scene")
+        scene = json.loads(path.read_text())
+        (folder / "scene" / path.name).write_text(json.dumps(scene | {"material": MATERIAL}))
     found = words(json.loads((ROOT / "docs/scene.schema.json").read_text()))
     (folder / "scene.dict").write_text("".join(f'"\\"{word}\\""\n' for word in sorted(found)))
     tracked = {"quadgraph_scene": 1, "body": "a.qgraph", "lights": LIGHTS, "tracks": TRACKS, "frames": 20}
