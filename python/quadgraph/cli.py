@@ -6,12 +6,14 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import math
 import os
 import re
 import signal
 import sys
 import tempfile
 import threading
+import time
 from collections.abc import Callable, Sequence
 from importlib.metadata import entry_points
 from types import FrameType, ModuleType
@@ -126,25 +128,33 @@ class Stopped(KeyboardInterrupt):
 
 _SENT: list[int] = []  # signals that were heeded in this run of `main`
 _AGAIN = 0.02  # s, after which a signal is sent again that came in an import
+_SETTLING = 1.0  # s after a signal in which another one would meet the cleaning up
 
 
 def heed_signals() -> None:
     """Let TERM and HUP end the program as Ctrl-C does, where they are not ignored or somebody else's.
 
     All three wait until what is being imported is: modules make errors of their own of an interrupt, or forget it.
+    Another one within a second says nothing new.
     """
     if threading.current_thread() is not threading.main_thread():
         return
+
+    heeded = -math.inf
 
     def again(_number: int, _frame: FrameType | None) -> None:
         signal.raise_signal(_SENT[0])
 
     def stop(number: int, frame: FrameType | None) -> None:
+        nonlocal heeded
+        if time.monotonic() < heeded + _SETTLING:
+            return
         _SENT.append(number)
         if _in_import(frame):
             signal.signal(signal.SIGALRM, again)
             signal.setitimer(signal.ITIMER_REAL, _AGAIN)
         else:
+            heeded = time.monotonic()
             raise KeyboardInterrupt if number == signal.SIGINT else Stopped(number)
 
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):

@@ -113,3 +113,36 @@ def test_a_signal_during_an_import_is_heeded_after_it(tmp_path, name, kind):
         preexec_fn=lambda: [signal.signal(n, signal.SIG_DFL) for n in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)],
     )
     assert done.stdout == f"{kind} True\n", done.stderr
+
+
+AGAIN = """
+import os, signal, time
+from quadgraph import cli
+cli.heed_signals()
+try:
+    os.kill(os.getpid(), signal.SIGTERM)
+    time.sleep(60)
+except cli.Stopped:
+    for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT):
+        os.kill(os.getpid(), number)
+    print("cleaned up")
+time.sleep(1.1)
+try:
+    os.kill(os.getpid(), signal.SIGHUP)
+    time.sleep(60)
+except cli.Stopped:
+    print("ended")
+"""
+
+
+def test_more_signals_do_not_meet_the_cleaning_up():
+    """Those that follow at once are the same wish; a later one is heeded again."""
+    numbers = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+    done = subprocess.run(
+        [sys.executable, "-c", AGAIN],
+        capture_output=True,
+        text=True,
+        timeout=50,
+        preexec_fn=lambda: [signal.signal(number, signal.SIG_DFL) for number in numbers],
+    )
+    assert done.stdout == "cleaned up\nended\n", done.stderr
