@@ -137,7 +137,8 @@ def arrays(rng: Rng) -> Case:
     call = texts.pick(
         rng,
         [
-            "engine._engine.set_irradiance(values)",
+            "engine._engine.set_irradiance(0, values)",
+            f"[engine._engine.set_irradiance(k, np.full((n, 3), {value})) for k, n in ((0, 576), (1, 144))]",
             "engine.fluence_at(values)",
             "engine.set_coefficients(lambda points: (values, 0.1))",
             "engine.set_coefficients(lambda points: (1.0, values))",

@@ -183,8 +183,8 @@ def bodies(rng: Rng) -> Case:
         os.mkfifo(place.folder / "fifo")
         (place.folder / "link").symlink_to("link")
 
-    text = json.dumps(SCENE | {"body": name})
-    return scene(rng, f"body {name[:20]!r}", text, "refused", extra=extra, names=(f"{name[:20]}: ",))
+    text, shown = json.dumps(SCENE | {"body": name}), ascii(name)[1:21] if name else "scene.json"
+    return scene(rng, f"body {name[:20]!r}", text, "refused", extra=extra, names=(shown.strip("'"),))
 
 
 def deformers(rng: Rng) -> Case:
