@@ -58,12 +58,13 @@ def display(surface: Surface, finest: Graph) -> dict[str, np.ndarray]:
     rounded = surface.rounded()
     face, coordinates = display_map.nearest_faces(rounded.vertices, finest.boundary)
     vertex, triangles, normals = parted(surface)
+    face, coordinates = display_map.faces_of_sides(face[vertex], coordinates[vertex], normals, finest.boundary)
     return {
         "display/vertices": _f32(rounded.vertices[vertex]),
         "display/normals": _f32(normals),
         "display/triangles": _u32(triangles),
-        "display/face": _u32(face[vertex]),
-        "display/barycentric": _f32(coordinates[vertex]),
+        "display/face": _u32(face),
+        "display/barycentric": _f32(coordinates),
     }
 
 

@@ -9,6 +9,7 @@ from quadgraph.mesh.surface import Surface
 
 _NEAR_FACES = 12  # nearest face centroids tried per point
 _NEAR_VERTICES = 3  # nearest vertices, all of whose faces are tried
+_ASIDE = 0.5  # cosine of a face's normal to a point's, below which another face at the same corner is tried
 
 
 def vertex_normals(surface: Surface) -> np.ndarray:
@@ -37,6 +38,41 @@ def nearest_faces(points: np.ndarray, surface: Surface) -> tuple[np.ndarray, np.
     return face, coordinates
 
 
+def faces_of_sides(
+    face: np.ndarray, coordinates: np.ndarray, normals: np.ndarray, surface: Surface
+) -> tuple[np.ndarray, np.ndarray]:
+    """As `nearest_faces` found, but for points at corners of faces that look elsewhere than their (n, 3) unit normals.
+
+    There another face at the corner is taken, whose normal is nearest: sharp edges part display vertices, of which
+    each belongs to one side.
+    """
+    face, coordinates = face.copy(), coordinates.copy()
+    doubled = surface.doubled_normals
+    unit = doubled / np.maximum(np.linalg.norm(doubled, axis=1, keepdims=True), np.finfo(float).tiny)
+    agreement = np.einsum("ij,ij->i", unit[face], normals)
+    some = np.flatnonzero((agreement < _ASIDE) & (coordinates.max(axis=1) == 1))
+    if not len(some):
+        return face, coordinates
+    vertex = surface.triangles[face[some], coordinates[some].argmax(axis=1)]
+    best = agreement[some]
+    for place in _places_around(vertex, surface).T:
+        found = np.einsum("ij,ij->i", unit[place // 3], normals[some])
+        better = found > best
+        best[better], face[some[better]] = found[better], place[better] // 3
+        coordinates[some[better]] = np.eye(3)[place[better] % 3]
+    return face, coordinates
+
+
+def _places_around(vertex: np.ndarray, surface: Surface) -> np.ndarray:
+    """(n, most) places in the flat list of triangles where each of (n,) vertices is a corner, repeated to fill rows."""
+    flat = surface.triangles.ravel()
+    order = np.argsort(flat, kind="stable")
+    degree = np.bincount(flat, minlength=len(surface.vertices))
+    start = np.concatenate([[0], np.cumsum(degree)])
+    turns = np.arange(int(degree[vertex].max()))
+    return order[start[vertex][:, None] + turns % degree[vertex][:, None]]
+
+
 def _a_face_of_each_vertex(surface: Surface) -> tuple[np.ndarray, np.ndarray]:
     flat = surface.triangles.ravel()
     where = np.zeros(len(surface.vertices), np.int64)
@@ -63,15 +99,7 @@ def _candidates(points: np.ndarray, surface: Surface) -> list[np.ndarray]:
     used = np.unique(surface.triangles)
     near = min(_NEAR_VERTICES, len(used))
     vertices = used[cKDTree(surface.vertices[used]).query(points, k=near)[1].reshape(-1, near)]
-    flat = surface.triangles.ravel()
-    order = np.argsort(flat, kind="stable")
-    degree = np.bincount(flat, minlength=len(surface.vertices))
-    start = np.concatenate([[0], np.cumsum(degree)])
-    around = [
-        order[start[vertices[:, k]] + turn % degree[vertices[:, k]]] // 3
-        for k in range(near)
-        for turn in range(int(degree[vertices[:, k]].max()))
-    ]
+    around = [places // 3 for k in range(near) for places in _places_around(vertices[:, k], surface).T]
     return [*faces.T, *around]
 
 

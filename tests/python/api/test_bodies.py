@@ -208,6 +208,6 @@ def test_an_option_that_is_not_allowed_is_named(engine, options):
 
 @pytest.mark.parametrize("eta", ["1.3", [1.3, 1.4], None])
 def test_an_index_that_is_no_number_is_named(engine, eta):
-    with pytest.raises(InputError, match="eta: .* found, a number is wanted"):
+    with pytest.raises(InputError, match=r"eta: .* found, a number is wanted"):
         engine.set_coefficients(lambda points: (1.0, 0.1), eta)
     engine.set_coefficients(lambda points: (1.0, 0.1), np.float32(1.3))

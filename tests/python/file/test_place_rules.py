@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import trimesh
 
+from baked import write_levels
 from quadgraph.baking.pipeline import BakeOptions, bake
 from quadgraph.base.errors import FormatError
 from quadgraph.file import qgraph_file
-from shapes import torus, write_obj
+from shapes import from_trimesh, torus, write_obj
 
 
 def seen_by(seen: np.ndarray, change) -> np.ndarray:
@@ -92,3 +94,24 @@ def test_bodies_beyond_single_precision_are_refused(ring, tmp_path, scale):
 def test_a_display_that_is_finer_than_the_faces_is_good(ring):
     core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
     assert len(core.load(ring).levels) == qgraph_file.read(ring).level_count == 2
+
+
+SOLIDS = {
+    "right-angled tetrahedron": [[0, 0, 0], [9, 0, 0], [0, 9, 0], [0, 0, 9]],
+    "flat tetrahedron": [[0, 0, 0], [9, 0, 1], [1, 9, 0], [7, 6, 2]],
+    "spike": [[2, 0, 0], [-1, 1.7, 0], [-1, -1.7, 0], [0, 0, 20]],
+}
+
+
+@pytest.mark.parametrize("corners", SOLIDS.values(), ids=SOLIDS.keys())
+def test_bodies_of_sharp_corners_are_read_and_each_side_has_a_face_of_its_own(tmp_path, corners):
+    """Every corner is a display vertex for each of its sides, with a normal near that side's."""
+    core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
+    hull = trimesh.convex.convex_hull(np.array(corners, float))
+    path = write_levels(tmp_path / "sharp.qgraph", [from_trimesh(hull)])
+    file = qgraph_file.read(path)
+    core.load(path)
+    faces = file.sections["level0/vertices"][file.sections["level0/faces"][file.sections["display/face"]]]
+    normals = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    assert np.einsum("ij,ij->i", normals, file.sections["display/normals"]).min() > 0.7

@@ -60,7 +60,7 @@ def test_a_surface_without_area_is_seen_from_z():
 
 def test_an_azimuth_out_of_range_is_refused(tmp_path):
     with pytest.raises(InputError, match="front: 400 found, allowed are -180 to 360"):
-        bare.write(tmp_path / "none.obj", tmp_path / "x.qgraph", "mm", None, 400)
+        bare.write(tmp_path / "none.obj", tmp_path / "x.qgraph", "mm", front_degrees=400)
 
 
 @pytest.mark.parametrize("front_degrees", ["left", True, 400, None])
