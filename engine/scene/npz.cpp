@@ -18,6 +18,8 @@ constexpr std::uint64_t largest_array = std::uint64_t{4} << 30;  // bytes
 // What a member may take beyond its packed bytes, and how often those: a volume that is the same all over packs well,
 // and so does one that is made to fill memory.
 constexpr std::uint64_t free_bytes = std::uint64_t{128} << 20, most_packed = 20;
+// The same for numbers, which are read as double precision however few bytes they have in the file.
+constexpr std::uint64_t free_numbers = free_bytes / sizeof(float);
 constexpr std::size_t most_axes = 8;
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& what) {
@@ -138,6 +140,11 @@ NpzArray parsed(const Bytes& bytes, const std::string& name, const std::filesyst
   }
   const std::uint64_t item = static_cast<std::uint64_t>(array.type[2] - '0');
   if (bytes.size() - start - length != count * item) fail(path, name + " is cut off");
+  const std::uint64_t most_numbers = free_numbers + std::filesystem::file_size(path) * most_packed / sizeof(double);
+  if (count > most_numbers) {
+    fail(path, name + " has " + std::to_string(count) + " numbers, a file of its size may have " +
+                   std::to_string(most_numbers) + " an array; write a coarser grid");
+  }
   array.values.resize(count);
   as_numbers(bytes.data() + start + length, array.values);
   return array;

@@ -123,7 +123,9 @@ Volume read_volume(const std::filesystem::path& path) {
   }
   Volume volume;
   volume.cells = {grid[2], grid[1], grid[0]};
-  for (std::size_t i = 0; i < grid[0] * grid[1] * grid[2]; ++i) {
+  const std::size_t count = grid[0] * grid[1] * grid[2];
+  volume.optical.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
     volume.optical.push_back({cell_of(scattering, i), cell_of(absorption, i)});
   }
   const std::vector<double> spacing = fields.few("spacing", 1, 3);

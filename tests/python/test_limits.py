@@ -60,6 +60,7 @@ SENTENCES = (
     f"at most {json_text.DEPTH} levels of brackets in each other and {json_text.BYTES >> 20} MiB",
     f"a member may take {NPZ['free_bytes'] / 2**20:g} MiB and {NPZ['most_packed']:g} times its packed bytes; "
     f"at most {NPZ['most_axes']:g} axes",
+    f"at most {NPZ['free_bytes'] / 4e6:.3g} million numbers and {NPZ['most_packed'] / 8:g} for each byte of the file",
     f"at most {IMAGE['largest_side']:g} texels a side, {IMAGE['free_texels'] / 1e6:g} million texels and "
     f"{IMAGE['texels_a_byte']:g} for each byte of the file",
     f"a header has at most {ply_header.HEADER_BYTES >> 10} KiB",

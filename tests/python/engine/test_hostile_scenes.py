@@ -171,6 +171,13 @@ def test_members_that_fill_memory_or_that_nobody_asks_for_are_not_read(tmp_path)
             core.Volume(path)
 
 
+def test_many_numbers_of_a_byte_each_are_refused_before_they_are_double_precision(tmp_path):
+    path = tmp_path / "v.npz"
+    np.savez_compressed(path, sigma_a=np.zeros((340, 340, 340), "u1"))
+    with pytest.raises(InputError, match="39304000 numbers, a file of its size may have 33"):
+        core.Volume(path)
+
+
 def test_a_directory_that_says_more_than_the_file_has_is_not_believed(tmp_path):
     """Sizes of a member, packed and not, as the central directory of the archive has them."""
     path = npz(tmp_path / "v.npz", sigma_s_prime=GRID, sigma_a=GRID, spacing=SPACING)
