@@ -12,6 +12,7 @@ from quadgraph.mesh.tet_files import read_faces, write_smesh
 TETGEN = Program("tetgen", "install Debian's package tetgen: apt install tetgen")
 # Time limits of the test for self-intersection, which takes about 0.1 ms a vertex on an idle core: room for a busy one.
 _TEST_TIME_LIMIT_S, _TEST_TIME_PER_VERTEX_S = 120.0, 2e-3
+_TEST_MEMORY_BYTES, _TEST_MEMORY_PER_VERTEX = 2_000_000_000, 20_000  # it takes 2,600 a vertex
 
 
 def _time_limit_s(vertices: int) -> float:
@@ -27,8 +28,13 @@ def intersecting_triangles(surface: Surface) -> np.ndarray:
     """
     with workspace() as directory:
         write_smesh(surface, directory / "surface.smesh")
-        done = run(TETGEN, ["-d", "surface.smesh"], directory=directory,
-                   time_limit_s=_time_limit_s(len(surface.vertices)), memory_limit_bytes=None)  # fmt: skip
+        done = run(
+            TETGEN,
+            ["-d", "surface.smesh"],
+            directory=directory,
+            time_limit_s=_time_limit_s(len(surface.vertices)),
+            memory_limit_bytes=_TEST_MEMORY_BYTES + _TEST_MEMORY_PER_VERTEX * len(surface.vertices),
+        )
         crossing = read_faces(directory / "surface.1.face")
     if not len(crossing) and "No faces are intersecting" not in done.output:
         raise ToolError(f"tetgen -d: no verdict on self-intersection: {done.output[-300:].strip()}")
