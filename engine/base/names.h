@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/closest_name.h"
 #include "engine/base/error.h"
 
 namespace quadgraph {
@@ -37,11 +38,14 @@ constexpr std::string_view name_of(Enum value) {
 template <HasNames Enum>
 Enum from_name(std::string_view name) {
   std::string allowed;
+  std::vector<std::string_view> names;
   for (const Named<Enum>& named : Names<Enum>::values) {
     if (named.name == name) return named.value;
     allowed += (allowed.empty() ? "" : ", ") + std::string(named.name);
+    names.push_back(named.name);
   }
-  throw InputError(std::string(Names<Enum>::what) + " '" + std::string(name) + "': allowed are " + allowed);
+  throw InputError(std::string(Names<Enum>::what) + " '" + std::string(name) + "'" + meant(name, names) +
+                   ": allowed are " + allowed);
 }
 
 // All values, in the order of the table.

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "engine/base/closest_name.h"
 #include "engine/base/error.h"
 #include "engine/optics/colour.h"
 #include "engine/optics/fresnel.h"
@@ -77,9 +78,8 @@ std::string joined(std::span<const std::string_view> names) {
   return text;
 }
 
-std::string all_names() {
-  const std::vector<std::string>& names = material_names();
-  return joined(std::vector<std::string_view>(names.begin(), names.end()));
+std::vector<std::string_view> all_names() {
+  return {material_names().begin(), material_names().end()};
 }
 
 [[noreturn]] void bad_field(std::string_view key, std::string_view found, const std::string& allowed) {
@@ -196,8 +196,8 @@ gpu::Material named(std::string_view name) {
   }
   const auto made = std::find_if(procedural.begin(), procedural.end(), [&](const auto& p) { return p.name == name; });
   if (made != procedural.end()) return parse_material(made->text);
-  throw InputError("material '" + std::string(name) + "': allowed are " + all_names() +
-                   ", or sigma_s_prime=...,sigma_a=...,eta=...");
+  throw InputError("material '" + std::string(name) + "'" + meant(name, all_names()) + ": allowed are " +
+                   joined(all_names()) + ", or sigma_s_prime=...,sigma_a=...,eta=...");
 }
 
 // What a text has set of a material.

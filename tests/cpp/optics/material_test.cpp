@@ -119,6 +119,31 @@ TEST_CASE("what cannot be a material is refused by the field") {
   check_refused("granite", "wholemilk");
 }
 
+TEST_CASE("who slips in a name is told what it may have been, and nobody else is") {
+  const auto said = [](const char* text) -> std::string {
+    try {
+      parse_material(text);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  for (const auto& [found, name] : std::vector<std::pair<const char*, const char*>>{{"jed", "jade"},
+                                                                                    {"Marble", "marble"},
+                                                                                    {"whole-milk", "wholemilk"},
+                                                                                    {"marble_vein", "marble-veins"},
+                                                                                    {"skin", "skin1"},
+                                                                                    {"wodo", "wood"}}) {
+    CAPTURE(found);
+    CHECK(said(found).find("did you mean '" + std::string(name) + "'?") != std::string::npos);
+  }
+  for (const char* found : {"gold", "xyz", "", "a", "marblemarblemarblemarblemarblemarblemarblemarble"}) {
+    CAPTURE(found);
+    CHECK(said(found).find("allowed are") != std::string::npos);
+    CHECK(said(found).find("did you mean") == std::string::npos);
+  }
+}
+
 TEST_CASE("patterns stay between the two materials, reach both, and are the same wherever they are evaluated") {
   for (const std::string name : {"marble-veins", "jade", "agate", "wax", "wood", "checker"}) {
     CAPTURE(name);
