@@ -102,6 +102,11 @@ void Recording::draw(const device::DrawImages& target, const device::Viewport& v
   processor_.heed();
 }
 
+std::vector<device::PassTime> Recording::submit_and_wait() {
+  processor_.heed();
+  return passes_;
+}
+
 void Recording::begin_pass(const std::string& name) {
   passes_.push_back({name, 0});
   pass_start_ = std::chrono::steady_clock::now();

@@ -27,7 +27,7 @@ class Recording : public device::Recording {
             const void* push, const device::Memory* indices, std::uint32_t vertices) override;
   void begin_pass(const std::string& name) override;
   void end_pass() override;
-  std::vector<device::PassTime> submit_and_wait() override { return passes_; }
+  std::vector<device::PassTime> submit_and_wait() override;
 
  private:
   Processor& processor_;

@@ -120,7 +120,7 @@ struct Simulation::Implementation {
 
   // Work was given up half-way: keeps what was set, and nothing that was derived from it.
   void start_over() {
-    work.recorder.abandon();
+    work.start_over();
     passes.clear();
     operators.forget();
     coefficients.forget();

@@ -17,6 +17,11 @@ Workspace::Workspace(device::Device& device, std::uint64_t max_elements)
     : recorder(device),
       reduction(device, reduction_bytes(max_elements), device::Place::device, "solver/reduction"),
       scale(device, sizeof(gpu::Scale), device::Place::device, "solver/scale") {
+  start_over();
+}
+
+void Workspace::start_over() {
+  recorder.abandon();
   recorder.fill(reduction, 0);
   recorder.submit();
 }

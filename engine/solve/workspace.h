@@ -15,6 +15,9 @@ struct Workspace {
 
   // `max_elements`: invocations of the largest dispatch that reduces.
   Workspace(device::Device& device, std::uint64_t max_elements);
+
+  // Drops what is recorded; what a dispatch that was given up half-way has left in the reduction counts no more.
+  void start_over();
 };
 
 }  // namespace quadgraph
