@@ -43,13 +43,13 @@ std::size_t slips(const std::string& a, const std::string& b) {
 std::string meant(std::string_view found, std::span<const std::string_view> names) {
   if (found.empty() || found.size() > longest) return "";
   const std::string written = plain(found);
-  const std::size_t allowed = std::max<std::size_t>(written.size() / 3, 1);
+  const std::size_t allowed = written.size() / 3;  // none in names of one or two letters
   std::size_t least = allowed + 2;
   std::string_view closest;
   for (const std::string_view name : names) {
     const std::string other = plain(name);
     const std::size_t distance = slips(written, other);
-    const bool same_start = !written.empty() && other.starts_with(written.front());
+    const bool same_start = allowed > 0 && other.starts_with(written.front());
     if (distance >= least || distance > allowed + (same_start ? 1 : 0)) continue;
     least = distance;
     closest = name;

@@ -189,7 +189,7 @@ def test_without_a_finest_level_there_is_no_file(sphere, tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({}, "unit"),
+        ({"unit": "mm", "height_mm": 5.0}, "both unit and height"),
         ({"unit": "inch"}, "inch"),
         ({"unit": "mm", "levels": 17}, "levels: 17"),
         ({"unit": "mm", "order": "alphabetical"}, "order: 'alphabetical'"),

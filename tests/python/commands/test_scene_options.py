@@ -133,7 +133,7 @@ def test_keywords_are_those_of_the_table():
         engine.solve(metod="fem")
     with pytest.raises(TypeError, match=r"solve\(\), cycles: found 'three', expected a whole number \(0 to 1000000\)"):
         engine.solve(cycles="three")
-    with pytest.raises(InputError, match="method 'fen': allowed are fem"):
+    with pytest.raises(InputError, match=r"method 'fen' \(did you mean 'fem'\?\): allowed are fem"):
         engine.solve(method="fen")
     report = engine.solve(tolerance=np.float32(0.01), cycles=np.int64(1), inter_reflection=np.bool_(False))
     assert report["levels"][-1]["iterations"] == 1
