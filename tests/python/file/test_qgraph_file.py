@@ -13,7 +13,7 @@ import tiny
 from quadgraph.base.errors import FormatError, InputError
 from quadgraph.file import qgraph_file, sections
 
-GOLDEN = "8c9f850cb04075eb41f785c660b5bd1efbfe52ba30344b0f36e67b941e2255f5"
+GOLDEN = "ecfb3d78283e90e1633fb45583bc7ca231ef80abb6ae186e5c5a9eff49386e50"
 
 
 @pytest.fixture(scope="module")
