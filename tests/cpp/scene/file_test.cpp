@@ -208,7 +208,8 @@ TEST_CASE("bad scenes: the path into the file, what was found, what is allowed")
                 "/lights/0/direction: found [0,0,0], allowed is a direction");
   check_refused(R"({"body": "a", "camera": {"elevation": 91}})", "/camera: view, elevation: found 91");
   check_refused(R"({"body": "a", "camera": {"up": "x"}})", "/camera/up: up 'x': allowed are y, z");
-  check_refused(R"({"body": "a", "solver": {"method": "fen"}})", "/solver/method: method 'fen' (did you mean 'fem'?): allowed are");
+  check_refused(R"({"body": "a", "solver": {"method": "fen"}})",
+                "/solver/method: method 'fen' (did you mean 'fem'?): allowed are");
   check_refused(R"({"body": "a", "solver": {"tolerance": 2}})", "/solver: tolerance");
   check_refused(R"({"body": "a", "solver": {"bounces": 1.5}})",
                 "/solver/bounces: found 1.5, allowed is a whole number");
