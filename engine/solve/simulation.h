@@ -102,9 +102,9 @@ class Simulation {
   void make_room(const SolveOptions& options, bool gather);
 
   // Solves for the present coefficients and light, all levels. Throws InputError before they are set, SolverError when
-  // conjugate gradients break down or a value is not finite. `check` is called between two draws of
-  // points of a correction at rest; what it throws ends the solve, and there is no solution. Device work before may be
-  // gone on from, unlike where the device's own check gives it up.
+  // conjugate gradients break down or a value is not finite. `check` is called between two draws of points of a
+  // correction at rest; what it throws ends the solve, and there is no solution. Later solves go on from what it did,
+  // unlike where the device's own check gives its work up.
   SolveReport solve(const SolveOptions& options, const std::function<void()>& check = {});
 
   // To be called where work of the device was given up half-way (device::Interruptible): keeps what was set, and

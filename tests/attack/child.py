@@ -53,7 +53,7 @@ def command_line(case: Case) -> list[str]:
 
 def environment(case: Case, folder: Path, mark: str) -> dict[str, str]:
     """The variables of a case: temporary files and caches beside its folder."""
-    kept = {key: value for key, value in os.environ.items() if not key.startswith(("PYTEST_", "QUADGRAPH_"))}
+    kept = {key: value for key, value in os.environ.items() if not key.startswith(("PYTEST_", "QUADGRAPH_", "XDG_"))}
     (folder.parent / "tmp").mkdir(exist_ok=True)
     own = {"TMPDIR": str(folder.parent / "tmp"), "HOME": str(folder.parent / "home"), MARK: mark}
     own |= {"OPENBLAS_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1", "QUADGRAPH_DEVICE": "cpu"}
@@ -62,13 +62,13 @@ def environment(case: Case, folder: Path, mark: str) -> dict[str, str]:
 
 def descendants(pid: int) -> list[int]:
     """A process and all below it."""
-    found, todo = [], [pid]
-    while todo:
-        each = todo.pop()
+    found, waiting = [], [pid]
+    while waiting:
+        each = waiting.pop()
         found.append(each)
         for task in Path(f"/proc/{each}/task").glob("*/children"):
             try:
-                todo += map(int, task.read_text().split())
+                waiting += map(int, task.read_text().split())
             except (OSError, ValueError):
                 continue
     return found

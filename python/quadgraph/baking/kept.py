@@ -5,10 +5,9 @@ from __future__ import annotations
 import fcntl
 import hashlib
 import os
-import shutil
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -70,10 +69,9 @@ def bodies() -> list[KeptBody]:
 
 
 def clear() -> list[KeptBody]:
-    """Remove all bodies; returns them. A program that has opened one keeps what it opened. Raises OSError."""
-    gone = bodies()
-    if folder().is_dir():
-        shutil.rmtree(folder())
+    """Remove all bodies but those that are being baked, and tell which. What a program has opened it keeps."""
+    gone = [each for each in bodies() if _removed(each)]
+    _remove_empty(folder())
     return gone
 
 
@@ -95,8 +93,15 @@ def _trim(newest: Path) -> None:
     for each in bodies():
         room -= each.size
         if room < 0 and each.path != newest:
-            each.path.unlink(missing_ok=True)
-            _remove_empty(each.path.parent)
+            _removed(each)
+
+
+def _removed(each: KeptBody) -> bool:
+    """Remove a body and say so, unless its folder is at work."""
+    with suppress(OSError), _locked(each.path.parent, fcntl.LOCK_NB):
+        each.path.unlink()
+        return True
+    return False
 
 
 def _remove_empty(place: Path) -> None:
@@ -106,19 +111,29 @@ def _remove_empty(place: Path) -> None:
 
 @contextmanager
 def _turn(place: Path, name: str, tell: ProgressCallback) -> Iterator[None]:
-    """Hold the lock of a folder as long as the block runs; it ends with the process, however that ends."""
-    handle = os.open(place, os.O_RDONLY | os.O_DIRECTORY)
-    try:
+    """Hold the lock of a folder as long as the block runs, and say so where it has to be waited for."""
+    with ExitStack() as stack:
         try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            stack.enter_context(_locked(place, fcntl.LOCK_NB))
         except BlockingIOError:
             tell(f"another program is baking {name}; waiting for it")
-            fcntl.flock(handle, fcntl.LOCK_EX)
-        place.mkdir(exist_ok=True)  # it may have failed there, and cleaned up
+            stack.enter_context(_locked(place))
+        place.mkdir(exist_ok=True)  # who had it may have failed there, and cleaned up
         yield
+
+
+@contextmanager
+def _locked(place: Path, how: int = 0) -> Iterator[None]:
+    """Hold the lock of a folder, which is removed if it is empty then. The lock ends with the process in any case."""
+    handle = os.open(place, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | how)
+        try:
+            yield
+        finally:
+            _remove_empty(place)
     finally:
         os.close(handle)
-        _remove_empty(place)
 
 
 def _key(mesh: Path, options: BakeOptions) -> str:

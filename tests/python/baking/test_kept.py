@@ -108,6 +108,19 @@ def test_programs_that_ask_at_once_bake_once(mesh, cache):
     assert len({text.splitlines()[-1] for text in said}) == 1
 
 
+def test_what_is_being_baked_is_neither_cleared_nor_trimmed(mesh, monkeypatch):
+    """Another program holds the lock of a folder as long as it bakes."""
+    busy, idle = asked(mesh, longest_mm=10), asked(mesh, longest_mm=11)
+    with kept._locked(busy.parent):
+        monkeypatch.setattr(kept, "MOST_BYTES", 1)
+        newest = asked(mesh, longest_mm=12)
+        assert {each.path for each in kept.bodies()} == {busy, newest}
+        assert [each.path for each in kept.clear()] == [newest]
+        assert busy.exists()
+    assert [each.path for each in kept.clear()] == [busy]
+    assert not idle.exists()
+
+
 def test_the_command_lists_and_clears(mesh, cache, capsys):
     name = asked(mesh).name
     assert cli.main(["cache"]) == 0

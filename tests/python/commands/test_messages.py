@@ -32,7 +32,7 @@ COMMANDS = {
     "an output": (["render", tiny.PATH, "-o", f"{LONG}.png"], 1, "File name too long"),
     "a value": (["render", tiny.PATH, "-o", "a.png", "--size", LONG], 1, "', expected WIDTHxHEIGHT"),
     "a choice": (["render", tiny.PATH, "-o", "a.png", "--method", LONG], 2, "'polygrid-divergence', 'shortest-path')"),
-    "an option": (["render", tiny.PATH, "-o", "a.png", f"--{LONG}"], 2, "xxx"),
+    "an option": (["render", tiny.PATH, "-o", "a.png", f"--{LONG}"], 2, LONG[-3:]),
     "a command": ([LONG], 2, "'stability')"),
     "a height": (["bake", "a.obj", "-o", "a.qgraph", "--height", LONG], 2, "like 100mm"),
 }
