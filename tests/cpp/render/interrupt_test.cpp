@@ -114,18 +114,20 @@ void bend(Engine& engine) {
 }  // namespace
 
 TEST_CASE("a solve or picture that is given up at any piece of its work leaves an engine that answers as a new one") {
-  for (const auto& [options, bent, file] : ways()) {
+  for (const Way& way : ways()) {
+    const SolveOptions& options = way.options;
+    const bool bent = way.bent;
     CAPTURE(name_of(options.method));
     CAPTURE(bent);
-    CAPTURE(std::string(file));
-    Impatient fresh(file);
+    CAPTURE(std::string(way.file));
+    Impatient fresh(way.file);
     fresh.engine.set_material("sigma_s_prime=2/1.5/1,sigma_a=0.1/.02/.01,eta=1.4");
     if (bent) bend(fresh.engine);
     fresh.asked = 0;
     const Answer expected = answer(fresh.engine, options);
     const std::uint64_t count = fresh.asked;
     CHECK(count > 20);
-    Impatient tried(file);
+    Impatient tried(way.file);
     tried.engine.set_material("sigma_s_prime=1,sigma_a=0.2,eta=1.3");
     answer(tried.engine, options);
     tried.engine.set_material("sigma_s_prime=2/1.5/1,sigma_a=0.1/.02/.01,eta=1.4");
