@@ -48,11 +48,11 @@ def numbers(value: Any) -> Iterator[float]:
 
 
 def _error(report: dict[str, Any]) -> float:
-    for name in ("error", "algebraic"):
-        found = report.get(name)
-        if isinstance(found, dict) and isinstance(found.get("whole"), int | float):
-            return float(found["whole"])
-    return 0.0
+    """The error that is printed of the whole surface: all of it, or the solver's and the model's where that is all."""
+    wholes = {name: (report.get(name) or {}).get("whole") for name in ("error", "algebraic", "model_error")}
+    if wholes["error"] is not None:
+        return float(wholes["error"])
+    return math.hypot(wholes["algebraic"] or 0.0, wholes["model_error"] or 0.0)
 
 
 def wrong_report(report: dict[str, Any], lit: bool = True) -> str:

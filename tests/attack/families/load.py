@@ -149,9 +149,9 @@ def no_temporary_folder(rng: Rng) -> Case:
 
 
 def few_files(rng: Rng) -> Case:
-    """A process that may open few files."""
+    """A process that may open few files; of fewer than six Python cannot read its own modules."""
     line = texts.pick(rng, [outputs.WRITERS[name] for name in ("out.json", "out.png", "out.exr")])
-    files = int(rng.integers(4, 30))
+    files = int(rng.integers(6, 30))
     return Case(f"{line[0]} {line[1]}, {files} files", line, (), outputs.put, (line[-1],), files=files)
 
 
