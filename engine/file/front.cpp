@@ -19,9 +19,8 @@ std::string first_section(const std::filesystem::path& path) {
   QgraphSection section{};
   stream.read(reinterpret_cast<char*>(&header), sizeof header);
   stream.read(reinterpret_cast<char*>(&section), sizeof section);
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (!stream || error || header.magic != qgraph_magic || section.size > size) return {};
+  const std::uintmax_t size = std::filesystem::file_size(path, none);
+  if (!stream || none || header.magic != qgraph_magic || section.size > size) return {};
   std::string text(section.size, '\0');
   stream.seekg(static_cast<std::streamoff>(section.offset));
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));

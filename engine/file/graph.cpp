@@ -10,6 +10,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/json_text.h"
+#include "engine/base/regular_file.h"
 #include "engine/file/front.h"
 #include "engine/file/section_table.h"
 #include "engine/file/validate.h"
@@ -152,9 +153,7 @@ QuadGraph QuadGraph::parse(std::span<const std::byte> bytes, const std::string& 
 }
 
 QuadGraph QuadGraph::load(const std::filesystem::path& path) {
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error) throw InputError(path.string() + ": cannot be read (" + error.message() + ")");
+  const std::uintmax_t size = bytes_of_regular_file(path);
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw InputError(path.string() + ": cannot be opened (" + errno_text() + ")");
   std::array<char, sizeof(QgraphHeader)> first{};

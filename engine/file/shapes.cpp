@@ -8,6 +8,7 @@
 #include <string>
 
 #include "engine/base/error.h"
+#include "engine/base/regular_file.h"
 #include "engine/file/file_cache.h"
 #include "engine/file/section_table.h"
 
@@ -24,11 +25,10 @@ struct Bytes {
 };
 
 Bytes read_file(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary | std::ios::ate);
-  if (!stream) throw InputError(path.string() + ": cannot be read (" + std::strerror(errno) + ")");
   Bytes bytes;
-  bytes.size = static_cast<std::size_t>(stream.tellg());
-  stream.seekg(0);
+  bytes.size = bytes_of_regular_file(path);
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw InputError(path.string() + ": cannot be read (" + std::strerror(errno) + ")");
   bytes.data.reset(static_cast<std::byte*>(::operator new[](bytes.size + 1, std::align_val_t{qgraph_alignment})));
   if (!stream.read(reinterpret_cast<char*>(bytes.data.get()), static_cast<std::streamsize>(bytes.size))) {
     throw InputError(path.string() + ": cannot be read to its end");

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "engine/base/error.h"
+#include "engine/base/regular_file.h"
 #include "engine/base/text.h"
 
 namespace quadgraph {
@@ -38,7 +39,7 @@ using Bytes = std::vector<char>;
 Bytes content(zip_t* archive, zip_uint64_t index, const std::filesystem::path& path) {
   zip_stat_t about;
   if (zip_stat_index(archive, index, 0, &about) != 0 || about.size > largest_array) fail(path, "a broken member");
-  const std::uint64_t packed = std::min<std::uint64_t>(about.comp_size, std::filesystem::file_size(path));
+  const std::uint64_t packed = std::min<std::uint64_t>(about.comp_size, bytes_of_regular_file(path));
   if (about.size > packed * most_packed + free_bytes) {
     fail(path, std::string(about.name) + " has " + std::to_string(about.size) + " bytes, packed in " +
                    std::to_string(packed) + "; more than 128 MiB are allowed up to 20 times the packed ones");
@@ -140,7 +141,7 @@ NpzArray parsed(const Bytes& bytes, const std::string& name, const std::filesyst
   }
   const std::uint64_t item = static_cast<std::uint64_t>(array.type[2] - '0');
   if (bytes.size() - start - length != count * item) fail(path, name + " is cut off");
-  const std::uint64_t most_numbers = free_numbers + std::filesystem::file_size(path) * most_packed / sizeof(double);
+  const std::uint64_t most_numbers = free_numbers + bytes_of_regular_file(path) * most_packed / sizeof(double);
   if (count > most_numbers) {
     fail(path, name + " has " + std::to_string(count) + " numbers, a file of its size may have " +
                    std::to_string(most_numbers) + " an array; write a coarser grid");
@@ -161,6 +162,7 @@ void check_name(const std::string& name, std::span<const std::string_view> known
 }  // namespace
 
 std::map<std::string, NpzArray> read_npz(const std::filesystem::path& path, std::span<const std::string_view> known) {
+  bytes_of_regular_file(path);
   int code = 0;
   const std::unique_ptr<zip_t, CloseArchive> archive(zip_open(path.c_str(), ZIP_RDONLY, &code));
   if (!archive) {

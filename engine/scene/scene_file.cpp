@@ -7,6 +7,7 @@
 
 #include "engine/base/atomic_file.h"
 #include "engine/base/json_text.h"
+#include "engine/base/regular_file.h"
 #include "engine/base/text.h"
 #include "engine/file/front.h"
 #include "engine/render/light/default_lights.h"
@@ -27,11 +28,7 @@ Json parsed(const std::string& text, const std::filesystem::path& path) {
 }
 
 std::string content(const std::filesystem::path& path) {
-  std::error_code error;
-  const auto kind = std::filesystem::status(path, error).type();
-  if (kind == std::filesystem::file_type::not_found) throw InputError(path.string() + ": cannot be read");
-  if (kind != std::filesystem::file_type::regular) throw InputError(path.string() + ": is no regular file");
-  if (std::filesystem::file_size(path) > json_bytes) {
+  if (bytes_of_regular_file(path) > json_bytes) {
     throw InputError(path.string() + ": larger than the " + std::to_string(json_bytes) + " bytes that are allowed");
   }
   std::ifstream file(path, std::ios::binary);

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import io
 import math
 import os
 import re
@@ -172,12 +173,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command line and return its exit status: 1 for an error, 2 for wrong usage, 130 for Ctrl-C."""
     _SENT.clear()
     heed_signals()
+    _print_any_character()
     try:
         return _run(join_negative_values(sys.argv[1:] if arguments is None else arguments))
     except KeyboardInterrupt:
         return _interrupted()
     except Exception as error:
         return _failed(error)
+
+
+def _print_any_character() -> None:
+    """Let characters that the encoding of standard output lacks be printed as escapes, and be no error."""
+    if isinstance(sys.stdout, io.TextIOWrapper) and sys.stdout.errors == "strict":
+        sys.stdout.reconfigure(errors="backslashreplace")
 
 
 def _run(given: Sequence[str]) -> int:

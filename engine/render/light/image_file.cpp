@@ -12,6 +12,7 @@
 #include <glm/common.hpp>
 
 #include "engine/base/error.h"
+#include "engine/base/regular_file.h"
 #include "engine/base/text.h"
 #include "engine/file/file_cache.h"
 #include "engine/render/light/lights.h"
@@ -97,9 +98,8 @@ Image image_of(const png_image& png, const Value* values, const Decode& decode) 
 
 void check_image_size(const std::filesystem::path& path, std::int64_t width, std::int64_t height) {
   const bool sides = width >= 1 && height >= 1 && width <= largest_side && height <= largest_side;
-  std::error_code error;
-  const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(path, error));
-  if (sides && !error && width * height > free_texels + texels_a_byte * bytes) {
+  const auto bytes = static_cast<std::int64_t>(bytes_of_regular_file(path));
+  if (sides && width * height > free_texels + texels_a_byte * bytes) {
     throw InputError(path.string() + ": found " + std::to_string(width) + "x" + std::to_string(height) +
                      " texels in a file of " + std::to_string(bytes) + " bytes, allowed are 50 million and " +
                      std::to_string(texels_a_byte) + " for each byte; scale the image down");
@@ -155,7 +155,7 @@ Image read_image(const std::filesystem::path& path) {
   if (read == nullptr) {
     throw InputError(path.string() + ": expected an image whose name ends in .exr, .hdr or .png");
   }
-  if (!std::filesystem::is_regular_file(path)) throw InputError(path.string() + ": no such file");
+  bytes_of_regular_file(path);
   Image image = read(path);
   check_values(path, image);
   return image;

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -174,6 +176,18 @@ def test_a_pipe_is_no_body(tmp_path, capsys):
     os.mkfifo(tmp_path / "pipe.qgraph")
     assert cli.main(["info", str(tmp_path / "pipe.qgraph")]) == 1
     assert "pipe.qgraph: cannot be read (no regular file)" in capsys.readouterr().err
+
+
+def test_info_prints_what_the_encoding_of_its_output_lacks():
+    run = subprocess.run(
+        [sys.executable, "-m", "quadgraph.cli", "info", tiny.PATH],
+        env=os.environ | {"PYTHONIOENCODING": "ascii", "LC_ALL": "C"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert run.returncode == 0, run.stderr
+    assert r"18.43\xb0" in run.stdout
 
 
 def test_info_prints_no_escapes_of_a_file(tmp_path, capsys):

@@ -172,7 +172,7 @@ def test_pictures_in_runs_and_in_exr_are_the_same(engines, tmp_path):
 @pytest.mark.parametrize(
     ("name", "content", "said"),
     [
-        ("none.hdr", None, "no such file"),
+        ("none.hdr", None, "No such file"),
         ("short.hdr", b"#?RADIANCE\n\n-Y 2 +X 2\n1234", "in its texels"),
         ("large.hdr", b"#?RADIANCE\n\n-Y 2 +X 20000\n", "1 to 16384"),
         ("text.png", b"text", "text.png"),
