@@ -8,7 +8,9 @@
 namespace quadgraph {
 
 std::uintmax_t bytes_of_regular_file(const std::filesystem::path& path) {
-  const auto refuse = [&](const std::string& why) { throw InputError(path.string() + ": cannot be read (" + why + ")"); };
+  const auto refuse = [&](const std::string& why) {
+    throw InputError(path.string() + ": cannot be read (" + why + ")");
+  };
   std::error_code error;
   const bool regular = std::filesystem::is_regular_file(path, error);
   if (error) refuse(error.message());

@@ -7,7 +7,8 @@
 namespace quadgraph {
 
 // The bytes of a regular file. Throws InputError if there is none of that name, if the system does not let it be looked
-// at (a loop of links, a folder without the right), or if it is something else: nobody may ever write the end of a pipe.
+// at (a loop of links, a folder without the right), or if it is something else: nobody may ever write the end of a
+// pipe.
 std::uintmax_t bytes_of_regular_file(const std::filesystem::path& path);
 
 }  // namespace quadgraph

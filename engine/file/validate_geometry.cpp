@@ -98,13 +98,33 @@ double gap_of(const DisplayMesh& display, const Level& finest, std::size_t i) {
   return glm::length(glm::dvec3(display.vertices[i]) - place_of(display, finest, i));
 }
 
+// mm, how far `away` from a place in a face leads along the face, towards a corner farther from the place than `least`
+// mm. None of the place that is nearest.
+double along_face(const Level& level, const glm::uvec3& face, const glm::dvec3& place, const glm::dvec3& away,
+                  double least) {
+  double farthest = 0;
+  for (int k = 0; k < 3; ++k) {
+    const glm::dvec3 side = glm::dvec3(level.vertices[face[k]]) - place;
+    const double length = glm::length(side);
+    if (length > least) farthest = std::max(farthest, glm::dot(away, side) / length);
+  }
+  return farthest;
+}
+
 void check_gaps(const DisplayMesh& display, const Level& finest, double size, const std::string& file) {
   for (std::size_t i = 0; i < display.vertices.size(); ++i) {
-    const glm::dvec3 away = glm::dvec3(display.vertices[i]) - place_of(display, finest, i);
-    if (glm::dot(away, away) <= largest_gap * size * largest_gap * size) continue;
-    fail_format(file, "display/vertices",
-                "row " + std::to_string(i) + ": " + of_mm(glm::length(away)) +
-                    " from its place in its face, allowed are " + of_mm(largest_gap * size));
+    const glm::dvec3 place = place_of(display, finest, i), away = glm::dvec3(display.vertices[i]) - place;
+    if (glm::dot(away, away) > largest_gap * size * largest_gap * size) {
+      fail_format(file, "display/vertices",
+                  "row " + std::to_string(i) + ": " + of_mm(glm::length(away)) +
+                      " from its place in its face, allowed are " + of_mm(largest_gap * size));
+    }
+    const double along = along_face(finest, finest.faces[display.face[i]], place, away, node_tolerance * size);
+    if (along > node_tolerance * size) {
+      fail_format(file, "display/vertices",
+                  "row " + std::to_string(i) + ": its place is not the nearest in its face, which goes on for " +
+                      of_mm(along) + " towards it");
+    }
   }
 }
 

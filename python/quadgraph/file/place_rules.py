@@ -89,6 +89,13 @@ def check_display(sections: dict[str, np.ndarray], name: str) -> None:
         f"{name}: display/vertices",
         f"row {worst}: {gap[worst]:.6g} mm from its place in its face, allowed are {LARGEST_GAP * size:.6g} mm",
     )
+    along = _along_faces(corners, vertices - away, away, NODE_TOLERANCE * size)
+    worst = int(along.argmax())
+    _require(
+        bool(along[worst] <= NODE_TOLERANCE * size),
+        f"{name}: display/vertices",
+        f"row {worst}: its place is not the nearest in its face, which goes on for {along[worst]:.6g} mm towards it",
+    )
     nodes = np.ascontiguousarray(sections["level0/nodes"][-len(faces) :].T.astype(np.float64))
     for i in range(0, len(vertices), _step(len(vertices), MOST_HELD)):
         nearest = float(np.sqrt(sum((nodes[k] - vertices[i, k]) ** 2 for k in range(3)).min()))
@@ -98,6 +105,16 @@ def check_display(sections: dict[str, np.ndarray], name: str) -> None:
             f"row {i}: {gap[i]:.6g} mm from the vertex, a face lies within {nearest:.6g} mm",
         )
     _check_agreement(sections, vertices, corners, name)
+
+
+def _along_faces(corners: np.ndarray, places: np.ndarray, away: np.ndarray, least: float) -> np.ndarray:
+    """How far each of (n, 3) `away` from places in faces leads along the face, mm: towards one of its (n, 3, 3) corners
+    that is farther from the place than `least`. None of places that are nearest.
+    """
+    sides = corners - places[:, None]
+    lengths = np.sqrt(np.einsum("ijk,ijk->ij", sides, sides))
+    lengths[lengths <= least] = np.inf
+    return np.maximum(np.einsum("ijk,ik->ij", sides, away) / lengths, 0).max(axis=1)
 
 
 def _step(count: int, samples: int) -> int:

@@ -242,8 +242,9 @@ def answers(rng: Rng) -> Case:
 
     fitting = body in ("ring", "single") and method in ("fem", "quadgraph-fv", "quadgraph-fdm")
     name = f"solve of {body}, {method} {' '.join(options)}"
-    words = ("polygrid", "body.qgraph", "method", "solver", "model", "source")
-    expect = "fine" if fitting and not {"--source", "--model", "--solver"} & set(chosen) else ""
+    words = ("polygrid", "body.qgraph", "method", "solver", "model", "source", "sweeps")
+    doubtful = {"--source", "--model", "--solver"} | ({"--sweeps"} if method != "fem" else set())
+    expect = "fine" if fitting and not doubtful & set(chosen) else ""
     return Case(name, (*line, *options), words, prepare, SOLVE_OUTPUTS, judge=solved(), expect=expect, seconds=60)
 
 

@@ -160,7 +160,9 @@ def table(rng: Rng) -> Case:
     def change(header: np.ndarray, entries: np.ndarray) -> None:
         entry = entries[draw % len(entries) : draw % len(entries) + 1]
         if field in ("section_count", "file_size"):
-            header[field] = (int(header[field][0]) + 2**power) % (2**32 if field == "section_count" else 2**64)
+            header[field] = (int(header[field][0]) + 2 ** (power % 32 if field == "section_count" else power)) % (
+                2**32 if field == "section_count" else 2**64
+            )
         elif field == "name":
             entry[field] = np.void(
                 texts.pick(np.random.default_rng(draw), [b"", b"x" * 64, b"level0/tets\xff", b"a b"])

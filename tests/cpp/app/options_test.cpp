@@ -9,12 +9,13 @@
 #include "engine/base/error.h"
 #include "engine/render/light/default_lights.h"
 #include "engine/scene/options.h"
+#include "tests/cpp/fixtures/test_data.h"
 
 using namespace quadgraph;
 
 namespace {
 
-const std::string cube = std::string(QUADGRAPH_TEST_DATA) + "/tiny.qgraph";
+const std::string cube = test_data("tiny.qgraph").string();
 
 Scene parsed(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), {"quadgraph-engine", cube, "--headless", "-o", "a.png"});

@@ -3,6 +3,7 @@
 
 #include "engine/cpu/processor.h"
 #include "tests/cpp/fixtures/all_work.h"
+#include "tests/cpp/fixtures/test_device.h"
 #include "tests/cpp/fixtures/walk_fixtures.h"
 
 using namespace quadgraph;
@@ -14,7 +15,7 @@ std::shared_ptr<device::Device> processor() {
 }
 
 std::shared_ptr<device::Device> vulkan() {
-  return open_device({.validation = true, .device = "llvmpipe"});
+  return open_device(test_vulkan_device());
 }
 
 void check_near(const Found& here, const Found& there) {
@@ -63,7 +64,7 @@ TEST_CASE("a solve is the solution of the reference") {
 }
 
 TEST_CASE("the walk leaves the same power everywhere, whatever light it starts from") {
-  CheckedContext here({.device = "cpu"}), there({.validation = true, .device = "llvmpipe"});
+  CheckedContext here({.device = "cpu"}), there(test_vulkan_device());
   // Bent, so that no ray meets an edge of the surface, where a last bit says through which face it leaves.
   WalkInput input{.level = moved(box_level(4, 4.0f, 0.3f), bent),
                   .optical = [](const glm::vec3& p) { return optical_of({1.0f, p.x, p.y + p.z}, {0.1f, 0.0f, 0.02f}); },

@@ -6,12 +6,14 @@
 #include <filesystem>
 
 #include "engine/render/engine.h"
+#include "tests/cpp/fixtures/test_data.h"
+#include "tests/cpp/fixtures/test_device.h"
 
 using namespace quadgraph;
 
 namespace {
 
-const std::filesystem::path cube = std::filesystem::path(QUADGRAPH_TEST_DATA) / "tiny.qgraph";
+const std::filesystem::path cube = test_data("tiny.qgraph");
 
 struct Lit {
   Engine engine;
@@ -62,7 +64,7 @@ std::vector<float> flat(const std::vector<glm::vec3>& values) {
 }  // namespace
 
 TEST_CASE("light, pictures and leaving radiance are the same on both") {
-  Lit here({.device = "cpu"}), there({.validation = true, .device = "llvmpipe"});
+  Lit here({.device = "cpu"}), there(test_vulkan_device());
   for (std::uint32_t level = 0; level < there.engine.graph().levels().size(); ++level) {
     const auto q = [&](Lit& lit) {
       return device::download<float>(lit.engine.device(), lit.engine.simulation().level(level).q);

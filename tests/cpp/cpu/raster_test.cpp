@@ -15,6 +15,7 @@
 #include "interface/display/false_colour.vert.h"
 #include "interface/light/shadow.vert.h"
 #include "tests/cpp/fixtures/checked_context.h"
+#include "tests/cpp/fixtures/test_device.h"
 
 using namespace quadgraph;
 
@@ -282,7 +283,7 @@ TEST_CASE("what is nearest is seen, whether depth rises or falls") {
 }
 
 TEST_CASE("the processor and a Vulkan device cover the same samples at the same depth") {
-  CheckedContext vulkan({.validation = true, .device = "llvmpipe"});
+  CheckedContext vulkan(test_vulkan_device());
   // Both round corners to 1/256 of a pixel, from clip coordinates in double here and in float there. Where that rounds
   // a corner the other way, which is one in 250, its edges move by 1/256 of a pixel, and less than one sample of 256
   // along them changes sides: of 1500 corners, about one sample in all.

@@ -8,6 +8,7 @@
 #include "engine/base/error.h"
 #include "engine/reference/reference.h"
 #include "tests/cpp/fixtures/qgraph_bytes.h"
+#include "tests/cpp/fixtures/test_data.h"
 
 using namespace quadgraph;
 
@@ -16,7 +17,7 @@ namespace {
 using Bytes = std::vector<std::byte>;
 
 Bytes tiny() {
-  const auto path = std::filesystem::path(QUADGRAPH_TEST_DATA) / "tiny.qgraph";
+  const auto path = test_data("tiny.qgraph");
   std::ifstream stream(path, std::ios::binary);
   Bytes bytes(std::filesystem::file_size(path));
   stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));

@@ -13,6 +13,7 @@
 #include "engine/base/error.h"
 #include "engine/file/graph.h"
 #include "tests/cpp/fixtures/qgraph_bytes.h"
+#include "tests/cpp/fixtures/test_data.h"
 #include "tests/cpp/fixtures/test_graphs.h"
 
 using namespace quadgraph;
@@ -21,7 +22,7 @@ namespace {
 
 using Bytes = std::vector<std::byte>;
 
-const std::filesystem::path tiny_path = std::filesystem::path(QUADGRAPH_TEST_DATA) / "tiny.qgraph";
+const std::filesystem::path tiny_path = test_data("tiny.qgraph");
 
 Bytes tiny() {
   std::ifstream stream(tiny_path, std::ios::binary);
@@ -122,7 +123,7 @@ TEST_CASE("the golden file loads, from disk as from memory") {
 
 TEST_CASE("what cannot be read is an input error that names the path") {
   CHECK_THROWS_WITH_AS(QuadGraph::load("/nowhere/a.qgraph"), doctest::Contains("/nowhere/a.qgraph"), InputError);
-  CHECK_THROWS_WITH_AS(QuadGraph::load(QUADGRAPH_TEST_DATA), doctest::Contains(QUADGRAPH_TEST_DATA), InputError);
+  CHECK_THROWS_WITH_AS(QuadGraph::load(test_data()), doctest::Contains(test_data().c_str()), InputError);
 }
 
 TEST_CASE("a huge file that is none of ours is refused without being read") {

@@ -18,12 +18,13 @@
 #include "engine/base/error.h"
 #include "tests/cpp/fixtures/graph_cases.h"
 #include "tests/cpp/fixtures/qgraph_bytes.h"
+#include "tests/cpp/fixtures/test_data.h"
 
 using namespace quadgraph;
 
 namespace {
 
-const std::filesystem::path grid_path = std::filesystem::path(QUADGRAPH_TEST_DATA) / "polygrid.qgraph";
+const std::filesystem::path grid_path = test_data("polygrid.qgraph");
 constexpr std::array<Method, 2> grid_methods = {Method::polygrid, Method::polygrid_divergence};
 
 using Links = std::vector<std::uint32_t>;

@@ -12,13 +12,14 @@
 #include "engine/render/engine.h"
 #include "engine/render/picture/legend.h"
 #include "shaders/display/colour_map.h"
+#include "tests/cpp/fixtures/test_data.h"
 #include "tests/cpp/fixtures/test_device.h"
 
 using namespace quadgraph;
 
 namespace {
 
-const std::filesystem::path cube = std::filesystem::path(QUADGRAPH_TEST_DATA) / "tiny.qgraph";
+const std::filesystem::path cube = test_data("tiny.qgraph");
 
 double area_of(const FalseMesh& mesh) {
   double sum = 0;

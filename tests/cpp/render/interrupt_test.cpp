@@ -9,6 +9,7 @@
 #include "engine/base/error.h"
 #include "engine/deform/deformer.h"
 #include "engine/render/engine.h"
+#include "tests/cpp/fixtures/test_data.h"
 #include "tests/cpp/fixtures/test_device.h"
 
 using namespace quadgraph;
@@ -20,7 +21,7 @@ struct GivenUp {};
 // An engine on a file of the tests' data, whose device asks between all pieces of work whether to go on.
 class Impatient {
  public:
-  explicit Impatient(const char* file) : engine(std::filesystem::path(QUADGRAPH_TEST_DATA) / file, asking()) {
+  explicit Impatient(const char* file) : engine(test_data(file), asking()) {
     engine.set_lights({parse_light("directional:0,0.2,-1:1/2/3"), parse_light("ambient:0.3")});
   }
   ~Impatient() {

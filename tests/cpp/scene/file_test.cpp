@@ -11,13 +11,14 @@
 #include "engine/render/light/default_lights.h"
 #include "engine/scene/scene_file.h"
 #include "engine/scene/stage.h"
+#include "tests/cpp/fixtures/test_data.h"
 #include "tests/cpp/fixtures/test_device.h"
 
 using namespace quadgraph;
 
 namespace {
 
-const std::filesystem::path cube = std::filesystem::path(QUADGRAPH_TEST_DATA) / "tiny.qgraph";
+const std::filesystem::path cube = test_data("tiny.qgraph");
 
 // A folder of the test's own.
 struct Folder {
@@ -236,7 +237,7 @@ TEST_CASE("bad scenes: the path into the file, what was found, what is allowed")
   check_refused(track(R"("path": "/lights/0/power", "keys": [[0, 1]])"), "/lights");
   check_refused(track(R"("path": "/camera/fov", "keys": [[0, 20], [5, 200]])"), "/camera: view, field of view");
   const std::string said = refusal([] { SceneFile::load("/nowhere/scene.json"); });
-  CHECK(said == "/nowhere/scene.json: cannot be read");
+  CHECK(said == "/nowhere/scene.json: cannot be read (No such file or directory)");
 }
 
 TEST_CASE("a stage that went through other scenes shows the same as a fresh one") {

@@ -8,6 +8,7 @@
 #include "engine/vk/context.h"
 #include "interface/material/evaluate_material.comp.h"
 #include "shaders/material/material.h"
+#include "tests/cpp/fixtures/test_device.h"
 
 using namespace quadgraph;
 
@@ -27,7 +28,7 @@ gpu::Material veined() {
 }  // namespace
 
 TEST_CASE("a material evaluated on the GPU equals the same code on the CPU") {
-  vk::Context context({.validation = true, .device = ""});
+  vk::Context context(test_vulkan_device());
   std::vector<glm::vec3> nodes;
   for (int i = 0; i < 1000; ++i) {
     nodes.emplace_back(0.31f * static_cast<float>(i) - 150.0f, 7.0f - 0.17f * static_cast<float>(i),
@@ -72,7 +73,7 @@ TEST_CASE("a device that does not exist is named in the error, with those that d
 }
 
 TEST_CASE("every pass takes time, together no more than went by") {
-  vk::Context context({.validation = true, .device = ""});
+  vk::Context context(test_vulkan_device());
   {
     constexpr std::uint32_t few = 1000, many = 1000000;
     const device::Buffer nodes(context, many * sizeof(glm::vec3), device::Place::device, "nodes");

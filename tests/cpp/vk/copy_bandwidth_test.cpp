@@ -9,11 +9,12 @@
 #include "engine/vk/context.h"
 #include "interface/shared/copy.comp.h"
 #include "shaders/shared/shared.h"
+#include "tests/cpp/fixtures/test_device.h"
 
 using namespace quadgraph;
 
 TEST_CASE("copying: positive both ways, the faster one counts, and all memory is given back") {
-  vk::Context context({.validation = true, .device = ""});
+  vk::Context context(test_vulkan_device());
   constexpr std::uint64_t bytes = 8u << 20;
   const device::CopyBandwidth copied = device::copy_bandwidth(context, bytes, 2);
   CHECK(copied.kernel > 0);
@@ -26,7 +27,7 @@ TEST_CASE("copying: positive both ways, the faster one counts, and all memory is
 }
 
 TEST_CASE("the pass copies every element and nothing beyond") {
-  vk::Context context({.validation = true, .device = ""});
+  vk::Context context(test_vulkan_device());
   std::vector<glm::uvec4> values(1000);
   for (std::uint32_t i = 0; i < values.size(); ++i) values[i] = glm::uvec4(i, 3 * i, ~i, 7);
   const auto source = device::upload<glm::uvec4>(context, values, "source");

@@ -7,11 +7,12 @@
 #include "engine/device/commands.h"
 #include "engine/device/live_objects.h"
 #include "engine/vk/context.h"
+#include "tests/cpp/fixtures/test_device.h"
 
 using namespace quadgraph;
 
 TEST_CASE("a buffer larger than the device allows is refused by name, without allocating") {
-  vk::Context context({.validation = true, .device = ""});
+  vk::Context context(test_vulkan_device());
   const std::uint64_t size = context.max_buffer_bytes() + 4;
   REQUIRE(context.max_buffer_bytes() > 0);
   CHECK_THROWS_WITH_AS(device::Buffer(context, size, device::Place::device, "level 7 weight"),
@@ -21,7 +22,7 @@ TEST_CASE("a buffer larger than the device allows is refused by name, without al
 }
 
 TEST_CASE("contents survive a round trip, and reads and writes stay within a buffer") {
-  vk::Context context({.validation = true, .device = ""});
+  vk::Context context(test_vulkan_device());
   {
     std::vector<std::uint32_t> values(1001);
     std::iota(values.begin(), values.end(), 7u);
@@ -43,7 +44,7 @@ TEST_CASE("contents survive a round trip, and reads and writes stay within a buf
 }
 
 TEST_CASE("moving a buffer moves its memory") {
-  vk::Context context({.validation = true, .device = ""});
+  vk::Context context(test_vulkan_device());
   {
     device::Buffer first(context, 256, device::Place::device, "first");
     device::Buffer second(context, 1024, device::Place::device, "second");
@@ -61,7 +62,7 @@ TEST_CASE("moving a buffer moves its memory") {
 }
 
 TEST_CASE("memory is counted by purpose, and every allocation") {
-  vk::Context context({.validation = true, .device = ""});
+  vk::Context context(test_vulkan_device());
   {
     const device::Buffer first(context, 4096, device::Place::device, "operator/level 0 weight");
     device::Buffer second(context, 8192, device::Place::device, "operator/level 1 weight");
@@ -84,7 +85,7 @@ TEST_CASE("objects are counted by kind, by device, and gone with their owner") {
   const std::uint64_t first = device::devices_opened();
   const device::LiveObjects others = device::live_objects();
   {
-    vk::Context context({.validation = true, .device = ""});
+    vk::Context context(test_vulkan_device());
     CHECK(device::devices_opened() == first + 1);
     const device::LiveObjects bare = device::live_objects(first);
     CHECK(bare.at("device") == 1);

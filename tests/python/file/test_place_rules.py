@@ -23,6 +23,7 @@ def seen_by(seen: np.ndarray, change) -> np.ndarray:
 
 CASES = {
     "one vertex far away": ("display/vertices", lambda a: np.concatenate([a[:1] + 1e6, a[1:]])),
+    "rough": ("display/vertices", lambda a: a + np.random.default_rng(1).normal(size=a.shape).astype("f4") * 0.05),
     "all in one point": ("display/vertices", lambda a: a * 0),
     "vertices shuffled": ("display/vertices", lambda a: np.roll(a, 7, axis=0)),
     "vertices times 100": ("display/vertices", lambda a: a * 100),
