@@ -19,6 +19,7 @@ constexpr double largest_gap = 0.5;                      // the same, from a dis
 constexpr double gap_tolerance = 1e-4;                   // the same
 constexpr std::size_t most_held = 16;                    // display vertices that are held against all faces
 constexpr std::size_t most_averaged = 1024;              // vertices and triangles whose normals are averaged
+constexpr double largest_open = 1e-6;                    // of the area: a hole in a surface that bakes close
 constexpr double least_agreement = 0.1;                  // mean cosine of normals that belong together
 
 std::string of_mm(double value) {
@@ -142,6 +143,23 @@ void check_nearest(const DisplayMesh& display, const Level& finest, double size,
   }
 }
 
+// What a body is in is closed: the area vectors add up to 0.
+void check_closed(const DisplayMesh& display, const std::string& file) {
+  glm::dvec3 sum(0);
+  double area = 0;
+  for (const glm::uvec3& t : display.triangles) {
+    const glm::dvec3 a(display.vertices[t.x]);
+    const glm::dvec3 twice = glm::cross(glm::dvec3(display.vertices[t.y]) - a, glm::dvec3(display.vertices[t.z]) - a);
+    sum += twice;
+    area += glm::length(twice);
+  }
+  if (glm::length(sum) <= largest_open * area) return;
+  fail_format(file, "display/triangles",
+              "do not close: the sum of their area vectors is " +
+                  number_text(static_cast<float>(glm::length(sum) / area)) + " of their area, allowed is " +
+                  number_text(static_cast<float>(largest_open)));
+}
+
 void check_agreement(const DisplayMesh& display, const Level& finest, const std::string& file) {
   double normals = 0, triangles = 0, area = 0;
   const auto outward = [&](std::size_t i) { return direction(face_vector(finest, finest.faces[display.face[i]])); };
@@ -229,6 +247,7 @@ void validate_display_place(const DisplayMesh& display, const Level& finest, con
   const double size = box_of(finest.vertices).size();
   check_gaps(display, finest, size, file);
   check_nearest(display, finest, size, file);
+  check_closed(display, file);
   check_agreement(display, finest, file);
 }
 

@@ -18,7 +18,7 @@ from typing import Any
 from quadgraph.baking import inside
 from quadgraph.baking.inside import LevelSizes
 from quadgraph.base import child_process, outputs
-from quadgraph.base.errors import InputError, QuadGraphError
+from quadgraph.base.errors import InputError, QuadGraphError, ToolError
 from quadgraph.base.progress import ProgressCallback
 from quadgraph.base.version import __version__
 from quadgraph.file import qgraph_file, sections
@@ -162,10 +162,20 @@ def bake(
     check_options(Path(output), options)
     outputs.check_outputs([Path(output)], [mesh])
     report, start = BakeReport(str(output)), time.perf_counter()
-    prepared = prepare(Path(mesh), options, report, tell)
-    write(prepared, make_levels(prepared.surface, options, report, tell), options, report)
+    with naming(mesh):
+        prepared = prepare(Path(mesh), options, report, tell)
+        write(prepared, make_levels(prepared.surface, options, report, tell), options, report)
     report.seconds["total"] = time.perf_counter() - start
     return report
+
+
+@contextmanager
+def naming(mesh: str | Path) -> Iterator[None]:
+    """Let errors of the programs that fill a mesh with tets begin with its name."""
+    try:
+        yield
+    except ToolError as error:
+        raise ToolError(f"{mesh}: {error}") from error
 
 
 def prepare(mesh: Path, options: BakeOptions, report: BakeReport, tell: ProgressCallback) -> Prepared:

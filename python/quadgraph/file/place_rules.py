@@ -14,6 +14,7 @@ from quadgraph.tets.tet_geometry import FACE_CORNERS
 NODE_TOLERANCE = 1e-5  # of the body's size: single precision, and its sums
 LARGEST_GAP = 0.5  # the same, from a display vertex to its place in a face
 GAP_TOLERANCE = 1e-4  # the same
+LARGEST_OPEN = 1e-6  # of the area: a hole in a surface that bakes close
 MOST_HELD = 16  # display vertices that are held against all faces
 MOST_AVERAGED = 1024  # vertices and triangles whose normals are averaged
 LEAST_AGREEMENT = 0.1  # mean cosine of normals that belong together
@@ -104,6 +105,7 @@ def check_display(sections: dict[str, np.ndarray], name: str) -> None:
             f"{name}: display/face",
             f"row {i}: {gap[i]:.6g} mm from the vertex, a face lies within {nearest:.6g} mm",
         )
+    _check_closed(sections, name)
     _check_agreement(sections, vertices, corners, name)
 
 
@@ -120,6 +122,18 @@ def _along_faces(corners: np.ndarray, places: np.ndarray, away: np.ndarray, leas
 def _step(count: int, samples: int) -> int:
     """Rows from one to the next of some of many, spread evenly."""
     return max(count // samples, 1)
+
+
+def _check_closed(sections: dict[str, np.ndarray], name: str) -> None:
+    """The display mesh that a body is in is closed: its area vectors add up to 0."""
+    twice = _face_vectors(sections["display/vertices"].astype(np.float64)[sections["display/triangles"]])
+    area = float(np.sqrt(np.einsum("ij,ij->i", twice, twice)).sum())
+    share = float(np.linalg.norm(twice.sum(axis=0))) / area if area > 0 else 0.0
+    _require(
+        share <= LARGEST_OPEN,
+        f"{name}: display/triangles",
+        f"do not close: the sum of their area vectors is {share:.6g} of their area, allowed is {LARGEST_OPEN:g}",
+    )
 
 
 def _check_agreement(sections: dict[str, np.ndarray], vertices: np.ndarray, corners: np.ndarray, name: str) -> None:

@@ -57,7 +57,10 @@ def fill(
         raise ToolError("tetgen: made no tetrahedra; the surface is not closed")
     n = len(surface.vertices)
     if len(vertices) < n or not np.array_equal(vertices[:n], surface.vertices):
-        raise ToolError("tetgen: the surface's vertices are not the first of its output, as option -Y promises")
+        raise ToolError(
+            "tetgen: vertices of the surface were left out or moved, as where two of them nearly meet; merge or move such "
+            "ones, or try --mesher cgal"
+        )
     return vertices, tets, MesherInfo("tetgen", _version(), options)
 
 

@@ -78,7 +78,7 @@ def _with_option(command: str, option: str, value: str) -> Case:
     if command == "engine":
         return Case(name, (*engine(), given), words, put, ("out.png",), judge=rendered(size=None), seconds=40)
     file = "scene.json" if option in ("--frame", "--frames") else "body.qgraph"
-    size = () if option == "--size" else ("--size", "32x32")
+    size = () if option == "--size" or file == "scene.json" else ("--size", "32x32")
     target = "%04d.png" if option == "--frames" else "out.png"
     line = ("quadgraph", "render", file, "-o", target, *DEVICE, *size, given)
     return Case(name, line, words, put, ("*.png",), seconds=40, partial=True)

@@ -32,6 +32,8 @@ CASES = {
     "normals of no length": ("display/normals", lambda a: a * 0),
     "normals of 1e30": ("display/normals", lambda a: a * 1e30),
     "triangles inside out": ("display/triangles", lambda a: a[:, [0, 2, 1]]),
+    "triangles left out": ("display/triangles", lambda a: a[: len(a) // 2]),
+    "a triangle left out": ("display/triangles", lambda a: a[1:]),
     "one face for all": ("display/face", lambda a: a * 0),
     "faces shuffled": ("display/face", lambda a: np.roll(a, 7)),
     "nodes in one point": ("level0/nodes", lambda a: a * 0),

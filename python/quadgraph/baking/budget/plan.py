@@ -169,12 +169,12 @@ def bake_for(
     _check(options, error)
     load_core().Material(material)
     report, start = BakeReport(str(output)), time.perf_counter()
-    prepared = pipeline.prepare(mesh, options, report, tell)
-    scene = _scene(prepared, material, lights)
-    with tempfile.TemporaryDirectory(prefix="quadgraph-budget-") as folder:
+    with pipeline.naming(mesh), tempfile.TemporaryDirectory(prefix="quadgraph-budget-") as folder:
+        prepared = pipeline.prepare(mesh, options, report, tell)
+        scene = _scene(prepared, material, lights)
         levels, budget = _planned(prepared, options, scene, error, Path(folder), device, report, tell)
-    chosen = replace(options, surface_vertices=budget["surface_vertices"])
-    pipeline.write(prepared, levels, chosen, report, budget)
+        chosen = replace(options, surface_vertices=budget["surface_vertices"])
+        pipeline.write(prepared, levels, chosen, report, budget)
     report.budget = budget
     report.seconds["total"] = time.perf_counter() - start
     return report
