@@ -58,7 +58,7 @@ def fill(
     n = len(surface.vertices)
     if len(vertices) < n or not np.array_equal(vertices[:n], surface.vertices):
         raise ToolError(
-            "tetgen: vertices of the surface were left out or moved, as where two of them nearly meet; merge or move such "
+            "tetgen: vertices of the surface were left out or moved, as where two nearly meet; merge or move such "
             "ones, or try --mesher cgal"
         )
     return vertices, tets, MesherInfo("tetgen", _version(), options)
