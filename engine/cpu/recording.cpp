@@ -35,9 +35,9 @@ void share_out(ThreadPool& threads, std::uint64_t bytes, const Part& part) {
 }  // namespace
 
 void Recording::copy(const device::Memory& source, const device::Memory& target, std::uint64_t bytes,
-                     std::uint64_t target_offset) {
+                     std::uint64_t target_offset, std::uint64_t source_offset) {
   share_out(processor_.threads(), bytes, [&](std::uint64_t begin, std::uint64_t end) {
-    std::memcpy(bytes_of(target) + target_offset + begin, bytes_of(source) + begin, end - begin);
+    std::memcpy(bytes_of(target) + target_offset + begin, bytes_of(source) + source_offset + begin, end - begin);
   });
 }
 

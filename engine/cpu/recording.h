@@ -15,7 +15,7 @@ class Recording : public device::Recording {
   explicit Recording(Processor& processor) : processor_(processor) {}
 
   void copy(const device::Memory& source, const device::Memory& target, std::uint64_t bytes,
-            std::uint64_t target_offset) override;
+            std::uint64_t target_offset, std::uint64_t source_offset) override;
   void copy(const device::ImageMemory& source, const device::Memory& target, std::uint32_t width,
             std::uint32_t height) override;
   void fill(const device::Memory& target, std::uint64_t bytes, std::uint32_t value) override;

@@ -29,7 +29,15 @@ class Commands {
   Device& device() { return device_; }
 
   void copy(const Buffer& source, const Buffer& target, std::uint64_t bytes, std::uint64_t target_offset = 0) {
-    recording_->copy(source.memory(), target.memory(), bytes, target_offset);
+    recording_->copy(source.memory(), target.memory(), bytes, target_offset, 0);
+  }
+
+  // A part of a buffer to staging memory, and back.
+  void copy(const Buffer& source, std::uint64_t offset, const Memory& staging, std::uint64_t bytes) {
+    recording_->copy(source.memory(), staging, bytes, 0, offset);
+  }
+  void copy(const Memory& staging, const Buffer& target, std::uint64_t offset, std::uint64_t bytes) {
+    recording_->copy(staging, target.memory(), bytes, offset, 0);
   }
 
   // Layer after layer, rows tightly packed, of an image that was drawn into. With a width and a height only its upper

@@ -12,6 +12,20 @@ void Device::set_check(std::function<void()> check, std::chrono::milliseconds pa
   pause_ = pause;
 }
 
+const Memory& Device::staging(std::uint64_t bytes) {
+  if (staging_ && staging_bytes_ >= bytes) return *staging_;
+  drop_staging();
+  staging_ = allocate(bytes, Place::host, "staging");
+  staging_bytes_ = bytes;
+  count("staging", staging_->allocated);
+  return *staging_;
+}
+
+void Device::drop_staging() noexcept {
+  if (staging_) uncount("staging", staging_->allocated);
+  staging_.reset();
+}
+
 void Device::heed() {
   if (!interruptible_ || given_up_ || !check_) return;
   const auto now = std::chrono::steady_clock::now();

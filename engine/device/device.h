@@ -116,7 +116,8 @@ struct DrawImages {
 class Recording {
  public:
   virtual ~Recording() = default;
-  virtual void copy(const Memory& source, const Memory& target, std::uint64_t bytes, std::uint64_t target_offset) = 0;
+  virtual void copy(const Memory& source, const Memory& target, std::uint64_t bytes, std::uint64_t target_offset,
+                    std::uint64_t source_offset) = 0;
   virtual void copy(const ImageMemory& source, const Memory& target, std::uint32_t width, std::uint32_t height) = 0;
   virtual void fill(const Memory& target, std::uint64_t bytes, std::uint32_t value) = 0;
   virtual void update(const Memory& target, std::span<const std::byte> data) = 0;
@@ -159,6 +160,13 @@ class Device {
   virtual std::unique_ptr<Pipeline> compile(const GraphicsOptions& options, const std::string& name) = 0;
   virtual std::unique_ptr<Recording> record(std::uint32_t max_passes) = 0;
 
+  // Host memory for uploads and read-backs, of at least so many bytes, which it keeps: a driver takes milliseconds to
+  // make some.
+  const Memory& staging(std::uint64_t bytes);
+
+  // Replaces the first bytes of device memory, at most 65536, a multiple of 4, before what is submitted next.
+  virtual void update(const Memory& target, std::span<const std::byte> data) = 0;
+
   // Calls DeviceOptions::check where it is due. For recordings, between pieces of work.
   void heed();
 
@@ -178,9 +186,14 @@ class Device {
   std::vector<std::string> messages_;
   const void* books_ = this;  // in live_objects.h
 
+  // Of the derived device while it still can.
+  void drop_staging() noexcept;
+
  private:
   friend class Interruptible;
 
+  std::unique_ptr<Memory> staging_;
+  std::uint64_t staging_bytes_ = 0;
   std::function<void()> check_;
   std::chrono::milliseconds pause_{0};
   std::chrono::steady_clock::time_point checked_;  // last

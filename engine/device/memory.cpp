@@ -1,5 +1,7 @@
 #include "engine/device/memory.h"
 
+#include <algorithm>
+#include <bit>
 #include <cstring>
 
 #include "engine/base/error.h"
@@ -8,8 +10,9 @@
 namespace quadgraph::device {
 namespace {
 
-// Bytes that a command takes along (vkCmdUpdateBuffer).
+// Bytes that Device::update takes.
 constexpr std::size_t largest_update = 65536;
+constexpr std::size_t least_staging = 65536, most_staging = std::size_t{16} << 20;  // bytes
 
 std::unique_ptr<Memory> allocated(Device& device, std::uint64_t size, Place place, const std::string& name) {
   if (size > device.max_buffer_bytes()) {
@@ -32,6 +35,15 @@ std::unique_ptr<ImageMemory> allocated(Device& device, const ImageOptions& optio
                      std::to_string(limit));
   }
   return device.allocate(options, name);
+}
+
+// Calls move(staging, offset, bytes) for parts that staging memory has room for.
+template <typename Move>
+void in_parts(Device& device, std::size_t size, const Move& move) {
+  const Memory& staging = device.staging(std::min(std::bit_ceil(std::max(size, least_staging)), most_staging));
+  for (std::size_t offset = 0; offset < size; offset += most_staging) {
+    move(staging, offset, std::min(most_staging, size - offset));
+  }
 }
 
 }  // namespace
@@ -58,16 +70,16 @@ void write_bytes(Device& device, const Buffer& target, std::span<const std::byte
     std::memcpy(target.mapped(), data.data(), data.size());
     return;
   }
-  Commands commands(device);
   if (data.size() <= largest_update && data.size() % 4 == 0) {
-    commands.update(target, data);
-    commands.submit_and_wait();
+    device.update(target.memory(), data);
     return;
   }
-  const Buffer staging(device, data.size(), Place::host, "staging/upload");
-  std::memcpy(staging.mapped(), data.data(), data.size());
-  commands.copy(staging, target, data.size());
-  commands.submit_and_wait();
+  in_parts(device, data.size(), [&](const Memory& staging, std::size_t offset, std::size_t bytes) {
+    std::memcpy(staging.mapped, data.data() + offset, bytes);
+    Commands commands(device);
+    commands.copy(staging, target, offset, bytes);
+    commands.submit_and_wait();
+  });
 }
 
 void read_bytes(Device& device, const Buffer& source, std::span<std::byte> target) {
@@ -80,11 +92,12 @@ void read_bytes(Device& device, const Buffer& source, std::span<std::byte> targe
     std::memcpy(target.data(), source.mapped(), target.size());
     return;
   }
-  const Buffer staging(device, target.size(), Place::host, "staging/read-back");
-  Commands commands(device);
-  commands.copy(source, staging, target.size());
-  commands.submit_and_wait();
-  std::memcpy(target.data(), staging.mapped(), target.size());
+  in_parts(device, target.size(), [&](const Memory& staging, std::size_t offset, std::size_t bytes) {
+    Commands commands(device);
+    commands.copy(source, offset, staging, bytes);
+    commands.submit_and_wait();
+    std::memcpy(target.data() + offset, staging.mapped, bytes);
+  });
 }
 
 }  // namespace quadgraph::device

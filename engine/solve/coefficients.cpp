@@ -1,6 +1,7 @@
 #include "engine/solve/coefficients.h"
 
 #include <algorithm>
+#include <bit>
 #include <string>
 
 #include "engine/base/error.h"
@@ -12,6 +13,7 @@
 #include "engine/optics/model.h"
 #include "engine/reference/operator.h"
 #include "engine/solve/assembly.h"
+#include "interface/material/least_albedo.comp.h"
 #include "shaders/material/material.h"
 
 namespace quadgraph {
@@ -120,14 +122,27 @@ Model Coefficients::resolve(Workspace& work, Model wanted, Method method, Source
     if (!edited_albedo_) {
       make_room(method, levels);
       record(work, levels);
-      work.recorder.submit();
-      std::vector<gpu::Optical> optical(count(levels[0], extent_));
-      device::read_bytes(device_, levels[0].optical, std::as_writable_bytes(std::span(optical)));
-      edited_albedo_ = least_albedo(optical);
+      edited_albedo_ = measured_albedo(work, levels[0]);
     }
     least = *edited_albedo_;
   }
   return resolve_model(wanted, method, source, least, static_cast<double>(eta_));
+}
+
+double Coefficients::measured_albedo(Workspace& work, const LevelBuffers& level) {
+  constexpr std::uint32_t one = std::bit_cast<std::uint32_t>(1.0f);
+  if (!least_.exists()) {
+    least_ = {device_, sizeof(float), device::Place::device, "material/least albedo"};
+    least_on_host_ = {device_, sizeof(float), device::Place::host, "material/least albedo on the host"};
+  }
+  const std::uint32_t elements = count(level, extent_);
+  work.recorder.fill(least_, one);
+  work.recorder.dispatch(work.passes.of(shader::least_albedo),
+                         gpu::LeastAlbedoPush{level.optical.address(), least_.address(), elements}, elements,
+                         "least albedo", std::uint64_t{elements} * sizeof(gpu::Optical));
+  work.recorder.copy(least_, least_on_host_, sizeof(float));
+  work.recorder.submit();
+  return least_on_host_.mapped_as<float>()[0];
 }
 
 std::uint32_t Coefficients::count(const LevelBuffers& level, Extent extent) {

@@ -61,6 +61,7 @@ class Coefficients {
   static std::uint32_t count(const LevelBuffers& level, Extent extent);
 
   void changed();
+  double measured_albedo(Workspace& work, const LevelBuffers& level);
   bool layered() const { return material_ && material_->pattern == gpu::PATTERN_LAYERS; }
   bool wants_depth() const { return layered() || edits_.wants_depth(); }
   const std::vector<float>& depth(std::uint32_t number);
@@ -79,6 +80,7 @@ class Coefficients {
   std::optional<Extent> evaluated_;  // the present coefficients, there
   float eta_ = 1;
   std::vector<std::optional<double>> albedo_;       // the least one of every level, before edits
+  device::Buffer least_, least_on_host_;            // of edited coefficients
   std::optional<double> edited_albedo_;             // the least one of the finest level after them
   std::vector<std::vector<gpu::Optical>> sampled_;  // of every level whose coefficients were given
 };

@@ -23,42 +23,57 @@ VkRenderingAttachmentInfo attachment(const ImageMemory& image, VkImageLayout lay
 
 }  // namespace
 
-Recording::Recording(Context& context, std::uint32_t max_passes)
-    : context_(context), max_passes_(max_passes), host_timed_(context.info().cpu) {
+RecordingParts::RecordingParts(Context& context, std::uint32_t wanted) : query_count(wanted) {
   VkCommandPoolCreateInfo pool_info{};
   pool_info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
   pool_info.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
   pool_info.queueFamilyIndex = context.queue_family();
-  VkCommandPool pool = VK_NULL_HANDLE;
-  check(vkCreateCommandPool(context.device(), &pool_info, nullptr, &pool), "vkCreateCommandPool");
-  pool_ = UniqueCommandPool(context.device(), pool);
+  VkCommandPool made_pool = VK_NULL_HANDLE;
+  check(vkCreateCommandPool(context.device(), &pool_info, nullptr, &made_pool), "vkCreateCommandPool");
+  pool = UniqueCommandPool(context.device(), made_pool);
 
   VkCommandBufferAllocateInfo buffer_info{};
   buffer_info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-  buffer_info.commandPool = pool;
+  buffer_info.commandPool = made_pool;
   buffer_info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
   buffer_info.commandBufferCount = 1;
-  check(vkAllocateCommandBuffers(context.device(), &buffer_info, &commands_), "vkAllocateCommandBuffers");
+  check(vkAllocateCommandBuffers(context.device(), &buffer_info, &commands), "vkAllocateCommandBuffers");
 
-  if (max_passes > 0 && !host_timed_) {
+  if (query_count > 0) {
     VkQueryPoolCreateInfo query_info{};
     query_info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
     query_info.queryType = VK_QUERY_TYPE_TIMESTAMP;
-    query_info.queryCount = 2 * max_passes;
-    VkQueryPool queries = VK_NULL_HANDLE;
-    check(vkCreateQueryPool(context.device(), &query_info, nullptr, &queries), "vkCreateQueryPool");
-    queries_ = UniqueQueryPool(context.device(), queries);
-    vkResetQueryPool(context.device(), queries, 0, 2 * max_passes);
+    query_info.queryCount = query_count;
+    VkQueryPool made_queries = VK_NULL_HANDLE;
+    check(vkCreateQueryPool(context.device(), &query_info, nullptr, &made_queries), "vkCreateQueryPool");
+    queries = UniqueQueryPool(context.device(), made_queries);
   }
 
+  VkFenceCreateInfo fence_info{};
+  fence_info.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
+  VkFence made_fence = VK_NULL_HANDLE;
+  check(vkCreateFence(context.device(), &fence_info, nullptr, &made_fence), "vkCreateFence");
+  fence = UniqueFence(context.device(), made_fence);
+}
+
+Recording::Recording(Context& context, std::uint32_t max_passes)
+    : context_(context), max_passes_(max_passes), host_timed_(context.info().cpu) {
+  const std::uint32_t queries = host_timed_ ? 0 : 2 * max_passes;
+  parts_ = context.take_parts(queries);
+  if (queries > 0) vkResetQueryPool(context.device(), parts_->queries.get(), 0, queries);
   begin();
+}
+
+Recording::~Recording() {
+  if (vkResetCommandPool(context_.device(), parts_->pool.get(), 0) != VK_SUCCESS) return;
+  context_.give_back(std::move(parts_));
 }
 
 void Recording::begin() {
   VkCommandBufferBeginInfo info{};
   info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
   info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-  check(vkBeginCommandBuffer(commands_, &info), "vkBeginCommandBuffer");
+  check(vkBeginCommandBuffer(parts_->commands, &info), "vkBeginCommandBuffer");
 }
 
 void Recording::barrier() {
@@ -72,8 +87,23 @@ void Recording::barrier() {
   info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
   info.memoryBarrierCount = 1;
   info.pMemoryBarriers = &memory;
-  vkCmdPipelineBarrier2(commands_, &info);
+  vkCmdPipelineBarrier2(parts_->commands, &info);
   unfinished_ = true;
+}
+
+// What was written is seen by the host after the fence.
+void Recording::show_to_host() {
+  VkMemoryBarrier2 memory{};
+  memory.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
+  memory.srcStageMask = all_stages;
+  memory.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
+  memory.dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT;
+  memory.dstAccessMask = VK_ACCESS_2_HOST_READ_BIT;
+  VkDependencyInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+  info.memoryBarrierCount = 1;
+  info.pMemoryBarriers = &memory;
+  vkCmdPipelineBarrier2(parts_->commands, &info);
 }
 
 void Recording::transition(const ImageMemory& image, VkImageLayout from, VkImageLayout to) {
@@ -93,14 +123,14 @@ void Recording::transition(const ImageMemory& image, VkImageLayout from, VkImage
   info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
   info.imageMemoryBarrierCount = 1;
   info.pImageMemoryBarriers = &barrier;
-  vkCmdPipelineBarrier2(commands_, &info);
+  vkCmdPipelineBarrier2(parts_->commands, &info);
   unfinished_ = true;
 }
 
 void Recording::copy(const device::Memory& source, const device::Memory& target, std::uint64_t bytes,
-                     std::uint64_t target_offset) {
-  const VkBufferCopy region{0, target_offset, bytes};
-  vkCmdCopyBuffer(commands_, handle_of(source), handle_of(target), 1, &region);
+                     std::uint64_t target_offset, std::uint64_t source_offset) {
+  const VkBufferCopy region{source_offset, target_offset, bytes};
+  vkCmdCopyBuffer(parts_->commands, handle_of(source), handle_of(target), 1, &region);
   barrier();
 }
 
@@ -110,37 +140,37 @@ void Recording::copy(const device::ImageMemory& source, const device::Memory& ta
   VkBufferImageCopy region{};
   region.imageSubresource = {image.aspect(), 0, 0, image.options.layers};
   region.imageExtent = {width, height, 1};
-  vkCmdCopyImageToBuffer(commands_, image.image.get(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, handle_of(target), 1,
-                         &region);
+  vkCmdCopyImageToBuffer(parts_->commands, image.image.get(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, handle_of(target),
+                         1, &region);
   barrier();
 }
 
 void Recording::update(const device::Memory& target, std::span<const std::byte> data) {
-  vkCmdUpdateBuffer(commands_, handle_of(target), 0, data.size(), data.data());
+  vkCmdUpdateBuffer(parts_->commands, handle_of(target), 0, data.size(), data.data());
   barrier();
 }
 
 void Recording::fill(const device::Memory& target, std::uint64_t, std::uint32_t value) {
-  vkCmdFillBuffer(commands_, handle_of(target), 0, VK_WHOLE_SIZE, value);
+  vkCmdFillBuffer(parts_->commands, handle_of(target), 0, VK_WHOLE_SIZE, value);
   barrier();
 }
 
 void Recording::bind(VkPipelineBindPoint point, const device::Pipeline& pass, const void* push) {
   const auto& pipeline = static_cast<const Pipeline&>(pass);
-  vkCmdBindPipeline(commands_, point, pipeline.pipeline.get());
-  vkCmdPushConstants(commands_, pipeline.layout.get(), pipeline.stages, 0, pipeline.push_size, push);
+  vkCmdBindPipeline(parts_->commands, point, pipeline.pipeline.get());
+  vkCmdPushConstants(parts_->commands, pipeline.layout.get(), pipeline.stages, 0, pipeline.push_size, push);
 }
 
 void Recording::dispatch(const device::Pipeline& pass, const void* push, std::uint32_t groups) {
   bind(VK_PIPELINE_BIND_POINT_COMPUTE, pass, push);
-  vkCmdDispatch(commands_, groups, 1, 1);
+  vkCmdDispatch(parts_->commands, groups, 1, 1);
   barrier();
 }
 
 void Recording::dispatch_indirect(const device::Pipeline& pass, const void* push, const device::Memory& arguments,
                                   std::uint64_t offset) {
   bind(VK_PIPELINE_BIND_POINT_COMPUTE, pass, push);
-  vkCmdDispatchIndirect(commands_, handle_of(arguments), offset);
+  vkCmdDispatchIndirect(parts_->commands, handle_of(arguments), offset);
   barrier();
 }
 
@@ -163,15 +193,15 @@ void Recording::begin_rendering(const device::DrawImages& target, float farthest
   info.colorAttachmentCount = static_cast<std::uint32_t>(colours.size());
   info.pColorAttachments = colours.data();
   info.pDepthAttachment = &depth;
-  vkCmdBeginRendering(commands_, &info);
+  vkCmdBeginRendering(parts_->commands, &info);
 }
 
 // A negative height turns y up (VK_KHR_maintenance1).
 void Recording::set_viewport(const device::DrawImages& target, const device::Viewport& viewport) {
   const VkViewport turned{viewport.x, viewport.y + viewport.height, viewport.width, -viewport.height, 0.0f, 1.0f};
   const VkRect2D scissor{{0, 0}, {target.width, target.height}};
-  vkCmdSetViewport(commands_, 0, 1, &turned);
-  vkCmdSetScissor(commands_, 0, 1, &scissor);
+  vkCmdSetViewport(parts_->commands, 0, 1, &turned);
+  vkCmdSetScissor(parts_->commands, 0, 1, &scissor);
 }
 
 void Recording::draw(const device::DrawImages& target, const device::Viewport& viewport, const device::Pipeline& pass,
@@ -180,12 +210,12 @@ void Recording::draw(const device::DrawImages& target, const device::Viewport& v
   set_viewport(target, viewport);
   bind(VK_PIPELINE_BIND_POINT_GRAPHICS, pass, push);
   if (indices == nullptr) {
-    vkCmdDraw(commands_, vertices, 1, 0, 0);
+    vkCmdDraw(parts_->commands, vertices, 1, 0, 0);
   } else {
-    vkCmdBindIndexBuffer(commands_, handle_of(*indices), 0, VK_INDEX_TYPE_UINT32);
-    vkCmdDrawIndexed(commands_, vertices, 1, 0, 0, 0);
+    vkCmdBindIndexBuffer(parts_->commands, handle_of(*indices), 0, VK_INDEX_TYPE_UINT32);
+    vkCmdDrawIndexed(parts_->commands, vertices, 1, 0, 0, 0);
   }
-  vkCmdEndRendering(commands_);
+  vkCmdEndRendering(parts_->commands);
   for (const device::ImageMemory* image : target.colours) {
     transition(static_cast<const ImageMemory&>(*image), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
@@ -202,7 +232,7 @@ void Recording::begin_pass(const std::string& name) {
     flush();
     pass_start_ = std::chrono::steady_clock::now();
   } else {
-    vkCmdWriteTimestamp2(commands_, all_stages, queries_.get(), query);
+    vkCmdWriteTimestamp2(parts_->commands, all_stages, parts_->queries.get(), query);
   }
 }
 
@@ -213,7 +243,7 @@ void Recording::end_pass() {
     passes_.back().time_ms = elapsed.count();
   } else {
     const auto query = static_cast<std::uint32_t>(2 * passes_.size() - 1);
-    vkCmdWriteTimestamp2(commands_, all_stages, queries_.get(), query);
+    vkCmdWriteTimestamp2(parts_->commands, all_stages, parts_->queries.get(), query);
   }
 }
 
@@ -222,27 +252,33 @@ void Recording::flush() {
   if (!unfinished_) return;
   unfinished_ = false;
   end_and_run();
-  check(vkResetCommandPool(context_.device(), pool_.get(), 0), "vkResetCommandPool");
+  check(vkResetCommandPool(context_.device(), parts_->pool.get(), 0), "vkResetCommandPool");
   begin();
 }
 
-void Recording::end_and_run() {
-  check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
-  VkFenceCreateInfo fence_info{};
-  fence_info.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
-  VkFence fence = VK_NULL_HANDLE;
-  check(vkCreateFence(context_.device(), &fence_info, nullptr, &fence), "vkCreateFence");
-  const UniqueFence owned_fence(context_.device(), fence);
+VkCommandBufferSubmitInfo Recording::finished() {
+  check(vkEndCommandBuffer(parts_->commands), "vkEndCommandBuffer");
+  VkCommandBufferSubmitInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO;
+  info.commandBuffer = parts_->commands;
+  return info;
+}
 
-  VkCommandBufferSubmitInfo command_info{};
-  command_info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO;
-  command_info.commandBuffer = commands_;
+// Updates that wait come first.
+void Recording::end_and_run() {
+  show_to_host();
+  const std::unique_ptr<Recording> updates = context_.take_updates();
+  std::vector<VkCommandBufferSubmitInfo> command_infos;
+  if (updates) command_infos.push_back(updates->finished());
+  command_infos.push_back(finished());
   VkSubmitInfo2 submit{};
   submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2;
-  submit.commandBufferInfoCount = 1;
-  submit.pCommandBufferInfos = &command_info;
+  submit.commandBufferInfoCount = static_cast<std::uint32_t>(command_infos.size());
+  submit.pCommandBufferInfos = command_infos.data();
+  const VkFence fence = parts_->fence.get();
   check(vkQueueSubmit2(context_.queue(), 1, &submit, fence), "vkQueueSubmit2");
   check(vkWaitForFences(context_.device(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+  check(vkResetFences(context_.device(), 1, &fence), "vkResetFences");
   context_.heed();
 }
 
@@ -254,7 +290,7 @@ std::vector<device::PassTime> Recording::submit_and_wait() {
 std::vector<device::PassTime> Recording::read_times() {
   if (passes_.empty() || host_timed_) return passes_;
   std::vector<std::uint64_t> ticks(2 * passes_.size());
-  check(vkGetQueryPoolResults(context_.device(), queries_.get(), 0, static_cast<std::uint32_t>(ticks.size()),
+  check(vkGetQueryPoolResults(context_.device(), parts_->queries.get(), 0, static_cast<std::uint32_t>(ticks.size()),
                               ticks.size() * sizeof(std::uint64_t), ticks.data(), sizeof(std::uint64_t),
                               VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
         "vkGetQueryPoolResults");

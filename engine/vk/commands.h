@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,12 +14,24 @@
 
 namespace quadgraph::vk {
 
+// What a recording is made of. They are used again: drivers take long to make a pool.
+struct RecordingParts {
+  RecordingParts(Context& context, std::uint32_t queries);
+
+  UniqueCommandPool pool;
+  VkCommandBuffer commands = VK_NULL_HANDLE;
+  UniqueQueryPool queries;
+  std::uint32_t query_count = 0;
+  UniqueFence fence;
+};
+
 class Recording : public device::Recording {
  public:
   Recording(Context& context, std::uint32_t max_passes);
+  ~Recording() override;
 
   void copy(const device::Memory& source, const device::Memory& target, std::uint64_t bytes,
-            std::uint64_t target_offset) override;
+            std::uint64_t target_offset, std::uint64_t source_offset) override;
   void copy(const device::ImageMemory& source, const device::Memory& target, std::uint32_t width,
             std::uint32_t height) override;
   void fill(const device::Memory& target, std::uint64_t bytes, std::uint32_t value) override;
@@ -32,11 +45,13 @@ class Recording : public device::Recording {
   void end_pass() override;
   std::vector<device::PassTime> submit_and_wait() override;
 
-  VkCommandBuffer handle() const { return commands_; }
+  VkCommandBuffer handle() const { return parts_->commands; }
 
  private:
   // All writes before are visible to all that follows: the one barrier the engine needs between passes.
   void barrier();
+
+  void show_to_host();
 
   // Moves every layer of an image from `from` (UNDEFINED discards its contents) to `to`, with a full barrier.
   void transition(const ImageMemory& image, VkImageLayout from, VkImageLayout to);
@@ -45,14 +60,13 @@ class Recording : public device::Recording {
   void set_viewport(const device::DrawImages& target, const device::Viewport& viewport);
   void bind(VkPipelineBindPoint point, const device::Pipeline& pass, const void* push);
   void begin();
+  VkCommandBufferSubmitInfo finished();
   void end_and_run();
   void flush();
   std::vector<device::PassTime> read_times();
 
   Context& context_;
-  UniqueCommandPool pool_;
-  VkCommandBuffer commands_ = VK_NULL_HANDLE;
-  UniqueQueryPool queries_;
+  std::unique_ptr<RecordingParts> parts_;
   std::uint32_t max_passes_ = 0;
   bool host_timed_ = false;
   bool unfinished_ = false;  // something has been recorded since the last flush

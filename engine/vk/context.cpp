@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "engine/base/error.h"
+#include "engine/vk/commands.h"
 #include "engine/vk/features.h"
 
 namespace quadgraph::vk {
@@ -105,6 +106,18 @@ std::string result_name(VkResult result) {
   }
 }
 
+// An instance that lives as long as the process. With the last one the loader unloads the drivers, and NVIDIA's can be
+// loaded no more than about fifteen times.
+void keep_drivers_loaded() {
+  static const VkInstance kept = [] {
+    VkInstanceCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
+    VkInstance made = VK_NULL_HANDLE;
+    return vkCreateInstance(&info, nullptr, &made) == VK_SUCCESS ? made : VK_NULL_HANDLE;
+  }();
+  static_cast<void>(kept);
+}
+
 }  // namespace
 
 void check(VkResult result, std::string_view call) {
@@ -129,7 +142,41 @@ Context::~Context() {
   destroy();
 }
 
+void Context::update(const device::Memory& target, std::span<const std::byte> data) {
+  if (!updates_) updates_ = std::make_unique<Recording>(*this, 0);
+  updates_->update(target, data);
+}
+
+std::unique_ptr<Recording> Context::take_updates() noexcept {
+  return std::move(updates_);
+}
+
+void Context::finish_updates() noexcept {
+  const std::unique_ptr<Recording> last = take_updates();
+  if (!last) return;
+  try {
+    last->submit_and_wait();
+  } catch (const DeviceError&) {  // a device that is lost; what comes next says so
+  }
+}
+
+std::unique_ptr<RecordingParts> Context::take_parts(std::uint32_t queries) {
+  const auto fits = [&](const auto& parts) { return parts->query_count >= queries; };
+  const auto found = std::find_if(idle_.begin(), idle_.end(), fits);
+  if (found == idle_.end()) return std::make_unique<RecordingParts>(*this, queries);
+  std::unique_ptr<RecordingParts> taken = std::move(*found);
+  idle_.erase(found);
+  return taken;
+}
+
+void Context::give_back(std::unique_ptr<RecordingParts> parts) noexcept {
+  idle_.push_back(std::move(parts));
+}
+
 void Context::destroy() noexcept {
+  updates_.reset();
+  idle_.clear();
+  drop_staging();
   if (device_ != VK_NULL_HANDLE) {
     vkDestroyDevice(device_, nullptr);
     device::count_closed(device_);
@@ -165,6 +212,7 @@ void Context::create_instance(const device::DeviceOptions& options) {
   info.ppEnabledExtensionNames = extensions.data();
   info.enabledLayerCount = options.validation ? 1 : 0;
   info.ppEnabledLayerNames = &validation_layer;
+  keep_drivers_loaded();
   check(vkCreateInstance(&info, nullptr, &instance_), "vkCreateInstance");
 }
 

@@ -21,6 +21,9 @@ struct SurfaceSource {
   std::function<VkSurfaceKHR(VkInstance)> create;  // throws DeviceError; the device destroys what it returns
 };
 
+class Recording;
+struct RecordingParts;
+
 class Context : public device::Device {
  public:
   explicit Context(const device::DeviceOptions& options = {});
@@ -47,6 +50,18 @@ class Context : public device::Device {
   std::unique_ptr<device::Pipeline> compile(const device::GraphicsOptions& options, const std::string& name) override;
   std::unique_ptr<device::Recording> record(std::uint32_t max_passes) override;
 
+  void update(const device::Memory& target, std::span<const std::byte> data) override;
+
+  // Updates that have not been submitted yet, which become the caller's; null if there are none.
+  std::unique_ptr<Recording> take_updates() noexcept;
+
+  // Submits them: what they write to is going to be destroyed.
+  void finish_updates() noexcept;
+
+  // Parts for a recording with room for so many timestamps, and back when it is done with them.
+  std::unique_ptr<RecordingParts> take_parts(std::uint32_t queries);
+  void give_back(std::unique_ptr<RecordingParts> parts) noexcept;
+
   // Names an object for validation messages and debuggers; does nothing without the debug extension.
   void set_name(VkObjectType type, std::uint64_t handle, const std::string& name) const;
 
@@ -62,6 +77,8 @@ class Context : public device::Device {
                                                    VkDebugUtilsMessageTypeFlagsEXT types,
                                                    const VkDebugUtilsMessengerCallbackDataEXT* data, void* user);
 
+  std::vector<std::unique_ptr<RecordingParts>> idle_;
+  std::unique_ptr<Recording> updates_;
   VkInstance instance_ = VK_NULL_HANDLE;
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
   VkSurfaceKHR surface_ = VK_NULL_HANDLE;

@@ -51,7 +51,8 @@ UniqueImage create_image(Context& context, const device::ImageOptions& options, 
 
 }  // namespace
 
-BufferMemory::BufferMemory(Context& context, std::uint64_t size, device::Place place, const std::string& name) {
+BufferMemory::BufferMemory(Context& its_context, std::uint64_t size, device::Place place, const std::string& name)
+    : context(its_context) {
   VkBufferCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
   info.size = std::max<std::uint64_t>(size, 4);

@@ -13,7 +13,9 @@ namespace quadgraph::vk {
 
 struct BufferMemory : device::Memory {
   BufferMemory(Context& context, std::uint64_t size, device::Place place, const std::string& name);
+  ~BufferMemory() override { context.finish_updates(); }
 
+  Context& context;
   UniqueMemory memory;
   UniqueBuffer buffer;
 };

@@ -123,15 +123,26 @@ std::vector<std::string> default_light_texts(const std::string& text, const std:
   return texts;
 }
 
-Picture render(Engine& engine, const std::string& view, const py::kwargs& given) {
+Scene pictured(Engine& engine, const std::string& view, const py::kwargs& given) {
   Scene scene = scene_of("render", given, {camera_group, picture_group});
   if (view.empty()) {
     scene.view.azimuth = first_view(engine.graph().front(), scene.view.up).azimuth;
   } else {
     scene.view = parse_view(view, scene.view);
   }
+  return scene;
+}
+
+Picture render(Engine& engine, const std::string& view, const py::kwargs& given) {
+  const Scene scene = pictured(engine, view, given);
   const py::gil_scoped_release release;
   return engine.render(scene.view, scene.render);
+}
+
+void draw(Engine& engine, const std::string& view, const py::kwargs& given) {
+  const Scene scene = pictured(engine, view, given);
+  const py::gil_scoped_release release;
+  engine.draw(scene.view, scene.render);
 }
 
 py::object pick(const Engine& engine, const std::array<float, 2>& at, const std::string& view, const std::string& up,
@@ -318,7 +329,9 @@ void bind_views(py::class_<Engine>& bound) {
            "outward directions (n, 3): radiance (n, 3) of scattered light, transmittance (n, 3) of the body.")
       .def(
           "phi", [](Engine& engine) { return own(engine.simulation().phi()); }, "Per carrier of level 0, W/mm^2.")
-      .def("render", &render, py::arg("view") = "", render_help().c_str());
+      .def("render", &render, py::arg("view") = "", render_help().c_str())
+      .def("draw", &draw, py::arg("view") = "",
+           "What `render` does, with the same keywords, but the picture stays on the device.");
 }
 
 // What the engine says of itself: device, memory, time per pass.

@@ -54,14 +54,16 @@ void cross_triangle(ivec3 a, ivec3 b, ivec3 c, uint axis, uint stripe, uint stri
       ivec3 side = ivec3(side_of(q, r, s), side_of(r, p, s), side_of(p, q, s));
       if (doubled < 0) side = -side;
       if (any(lessThan(side, ivec3(0)))) continue;
-      // The weights of a point on an edge are as good as the edge's own rounding; they need not be better.
-      vec3 weight = vec3(side) / (float(side.x) + float(side.y) + float(side.z));
+      // The weights of a point on an edge are as good as the edge's own rounding; they need not be better. From one
+      // corner, so that a face across the axis lies where it is however a device divides.
+      vec2 weight = vec2(side.yz) / (float(side.x) + float(side.y) + float(side.z));
       Crossing found;
       found.axis = axis;
       found.column = uvec3(0);
       found.column[u] = uint(x);
       found.column[v] = uint(y);
-      found.at = dot(weight, vec3(a[axis], b[axis], c[axis])) / float(PATH_SUBCELLS);
+      vec2 beyond = vec2(b[axis] - a[axis], c[axis] - a[axis]);
+      found.at = (float(a[axis]) + dot(weight, beyond)) / float(PATH_SUBCELLS);
       found.turn = doubled > 0 ? -1 : 1;
       crossed(found);
     }

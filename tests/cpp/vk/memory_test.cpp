@@ -11,13 +11,23 @@
 
 using namespace quadgraph;
 
+namespace {
+
+// Bytes of buffers and images, but for the staging memory, which is kept.
+std::uint64_t in_use(const device::Device& device) {
+  const auto staging = device.allocated_by_purpose().find("staging");
+  return device.allocated_bytes() - (staging == device.allocated_by_purpose().end() ? 0 : staging->second);
+}
+
+}  // namespace
+
 TEST_CASE("a buffer larger than the device allows is refused by name, without allocating") {
   vk::Context context(test_vulkan_device());
   const std::uint64_t size = context.max_buffer_bytes() + 4;
   REQUIRE(context.max_buffer_bytes() > 0);
   CHECK_THROWS_WITH_AS(device::Buffer(context, size, device::Place::device, "level 7 weight"),
                        doctest::Contains("level 7 weight"), DeviceError);
-  CHECK(context.allocated_bytes() == 0);
+  CHECK(in_use(context) == 0);
   for (const auto& message : context.validation_messages()) FAIL_CHECK(message);
 }
 
@@ -39,7 +49,7 @@ TEST_CASE("contents survive a round trip, and reads and writes stay within a buf
     CHECK(empty.size() == 0);
     CHECK(device::download<std::uint32_t>(context, empty).empty());
   }
-  CHECK(context.allocated_bytes() == 0);
+  CHECK(in_use(context) == 0);
   for (const auto& message : context.validation_messages()) FAIL_CHECK(message);
 }
 
@@ -57,7 +67,7 @@ TEST_CASE("moving a buffer moves its memory") {
     second = device::Buffer();
     CHECK(context.allocated_bytes() < both);
   }
-  CHECK(context.allocated_bytes() == 0);
+  CHECK(in_use(context) == 0);
   for (const auto& message : context.validation_messages()) FAIL_CHECK(message);
 }
 
