@@ -24,7 +24,12 @@ def machine(copied: dict[str, Any]) -> dict[str, Any]:
 
 
 def commit() -> str:
-    """Return the commit of the source tree with '-dirty' if it was changed, 'unknown' outside one."""
+    """Return the commit of the source tree with '-dirty' if it was changed, 'unknown' outside one.
+
+    QUADGRAPH_COMMIT of the environment says it for programs that were carried elsewhere (tools/gpu).
+    """
+    if carried := os.environ.get("QUADGRAPH_COMMIT"):
+        return carried
     command = ["git", "-C", str(Path(__file__).parent), "describe", "--always", "--dirty", "--abbrev=12"]
     try:
         return subprocess.run(command, capture_output=True, text=True, check=True, timeout=10).stdout.strip()

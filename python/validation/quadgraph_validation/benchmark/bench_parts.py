@@ -48,11 +48,11 @@ class Parts:
         """Error against work and time on every scene."""
         return [solver_convergence.run(scene, self.device, self.repeats, self.tell) for scene in self._scenes()]
 
-    def live(self) -> dict[str, Any]:
-        """Frames while light, material and shape change."""
+    def live(self, side: int) -> dict[str, Any]:
+        """Frames of side x side pixels while light, material and shape change."""
         path = self.file or self._bunny(_PASSES_HEIGHT_MM, "blocks")
         self.tell("live: light, material and shape change")
-        return live.run(path, self.material, self.device, self.repeats, self.copied["gb_per_s"])
+        return live.run(path, self.material, self.device, self.repeats, self.copied["gb_per_s"], side)
 
     def rivals(self) -> list[dict[str, Any]]:
         """Our two best solvers beside other people's on every scene."""

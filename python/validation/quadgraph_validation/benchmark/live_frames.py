@@ -21,7 +21,7 @@ from quadgraph_validation.benchmark import figures
 from quadgraph_validation.benchmark.bench_scene import Device
 from quadgraph_validation.benchmark.frame_passes import frame_figures, median_passes
 
-SIDE = 512  # pixels
+SIDE = 512  # pixels, where none are asked for
 _CONVERGED = 1e-4  # algebraic error of what frames are held against
 KINDS = {
     "light": ("lights",),
@@ -30,8 +30,12 @@ KINDS = {
 }
 
 
-def run(path: Path, material: str, device: Device, repeats: int, copy_gb_per_s: float) -> dict[str, Any]:
-    """Frames as the window has them in motion, with Lambertian radiance; of each kind medians over `repeats`."""
+def run(
+    path: Path, material: str, device: Device, repeats: int, copy_gb_per_s: float, side: int = SIDE
+) -> dict[str, Any]:
+    """Frames as the window has them in motion, with Lambertian radiance, left on the device; of each kind medians over
+    `repeats`.
+    """
     core = load_core()
     with tempfile.TemporaryDirectory(prefix="quadgraph-live-") as folder:
         scene = Path(folder) / "scene.json"
@@ -40,12 +44,12 @@ def run(path: Path, material: str, device: Device, repeats: int, copy_gb_per_s: 
     stage = core.Stage(device=device.name, validation=device.validation)
     stage.show(file.at(0))
     report = stage.solve()
-    kinds = [_measure(file, stage, name, repeats, copy_gb_per_s) for name in KINDS]
+    kinds = [_measure(file, stage, name, repeats, copy_gb_per_s, side) for name in KINDS]
     level = stage.engine.graph.levels[0]
     return {
         "file": path.name,
         "material": material,
-        "side": SIDE,
+        "side": side,
         "model": report["model"],
         "tets": len(level.tets),
         "faces": len(level.faces),
@@ -53,7 +57,7 @@ def run(path: Path, material: str, device: Device, repeats: int, copy_gb_per_s: 
     }
 
 
-def _measure(file: Any, stage: Any, name: str, repeats: int, copy_gb_per_s: float) -> dict[str, Any]:
+def _measure(file: Any, stage: Any, name: str, repeats: int, copy_gb_per_s: float, side: int) -> dict[str, Any]:
     taken: list[tuple[float, list[dict]]] = []
     for frame in range(1, repeats + 2):  # the first makes room
         for part in KINDS[name]:
@@ -61,7 +65,7 @@ def _measure(file: Any, stage: Any, name: str, repeats: int, copy_gb_per_s: floa
         start = time.perf_counter()
         stage.show(file.at(0))
         stage.engine.solve(motion=True)
-        stage.engine.render(width=SIDE, height=SIDE, radiance="lambertian")
+        stage.engine.draw(width=side, height=side, radiance="lambertian")
         taken.append((1e3 * (time.perf_counter() - start), stage.engine.passes))
     wall_ms, passes = zip(*taken[1:], strict=True)
     return {

@@ -23,7 +23,7 @@ _TABLE_WIDTH = 140  # characters; narrower, the tables cannot be read
 _SLOWER = 3  # exit status
 _MEASURING = (
     *("file", "passes", "solvers", "live", "rivals", "scaling"),
-    *("sizes", "random_order", "bodies", "chart", "json", "device", "validation"),
+    *("sizes", "side", "random_order", "bodies", "chart", "json", "device", "validation"),
 )
 _RULE = (
     "A figure is the median of its runs. It is slower, or faster, if it changed by more than 2% and by more than the "
@@ -48,6 +48,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     what.add_argument("--passes", action="store_true", help="ms, bytes, GB/s and share of copying of every pass")
     what.add_argument("--solvers", action="store_true", help="error against work and time, all solvers")
     what.add_argument("--live", action="store_true", help="a frame while light, material and shape change, by pass")
+    what.add_argument("--side", type=positive_int, metavar="N", help="pixels a side of --live (default: 512)")
     what.add_argument("--rivals", action="store_true", help="SciPy's CG and PyAMG on the identical system")
     what.add_argument("--scaling", action="store_true", help="cycles and time from 3 thousand to 2 million tets")
     what.add_argument(
@@ -143,14 +144,17 @@ def _compare(args: argparse.Namespace) -> int:
 def _measure(args: argparse.Namespace, folder: Path, copied: dict[str, Any], tell: ProgressCallback) -> dict[str, Any]:
     from quadgraph_validation.benchmark.bench_parts import Parts
     from quadgraph_validation.benchmark.bench_scene import Device
+    from quadgraph_validation.benchmark.live_frames import SIDE
     from quadgraph_validation.benchmark.scaling import SURFACE_VERTICES
 
     device = Device(args.device, args.validation)
     parts = Parts(args.file, args.random_order, args.material, args.repeats, device, folder, copied, tell)
     record: dict[str, Any] = {}
-    for name in ("passes", "live", "solvers", "rivals"):
+    for name in ("passes", "solvers", "rivals"):
         if getattr(args, name):
             record[name] = getattr(parts, name)()
+    if args.live:
+        record["live"] = parts.live(args.side or SIDE)
     if args.scaling:
         record["scaling"] = parts.scaling(args.sizes or SURFACE_VERTICES)
     return record
@@ -163,6 +167,8 @@ def _check(args: argparse.Namespace) -> None:
             raise InputError(f"{path}: no such file")
     if args.random_order and not (args.file and args.passes):
         raise InputError("--random-order needs --passes and the FILE to compare with")
+    if args.side and not args.live:
+        raise InputError("--side belongs to --live, which is absent")
     if args.sizes and not args.scaling:
         raise InputError("--sizes belongs to --scaling, which is absent")
     if args.chart:
