@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // quadgraph-cgal-mesh SURFACE.off STEM [--grading K] [--largest L] [--time-limit SECONDS]: writes STEM.node and
-// STEM.ele.
+// STEM.ele. With --alpha A [--offset O] instead: writes STEM.off, a closed surface around what SURFACE.off has.
 #include <CGAL/version.h>
 
 #include <cmath>
@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "tools/cgal_mesh/mesher.h"
+#include "tools/cgal_mesh/wrap.h"
 
 namespace {
 
@@ -25,11 +26,16 @@ constexpr int kExitFailed = 1, kExitUsage = 2, kExitMemory = 3;
 
 constexpr const char* kUsage =
     "usage: quadgraph-cgal-mesh SURFACE.off STEM [--grading K] [--largest L] [--time-limit SECONDS]\n"
+    "       quadgraph-cgal-mesh SURFACE.off STEM --alpha A [--offset O]\n"
     "Fills a closed triangle surface with tetrahedra of size min over the surface of (K * distance + local edge\n"
     "length) and writes them as TetGen does: STEM.node, STEM.ele, indices from 0.\n"
     "  --grading K           growth of the size with depth, above 0 (default 1)\n"
     "  --largest L           no size is above it, above 0 (default: any)\n"
     "  --time-limit SECONDS  for the optimisation after refinement (default 240)\n"
+    "  --alpha A             wrap triangles of any kind instead, and write STEM.off: a closed surface around them "
+    "that\n"
+    "                        covers holes narrower than A\n"
+    "  --offset O            distance of that surface from them (default A / 30)\n"
     "  --version             version of CGAL\n"
     "Exit status: 0 done, 1 failed, 2 wrong usage, 3 out of memory.\n";
 
@@ -64,8 +70,14 @@ void write(const Tets& tets, const std::string& stem) {
   if (!nodes || !elements) throw std::runtime_error(stem + ".node, " + stem + ".ele: cannot be written");
 }
 
+struct Wrap {
+  double alpha = 0, offset = 0;  // 0: not given
+};
+
 // Where an option's value goes; null of other words.
-double* option(Options& options, const std::string& word) {
+double* option(Options& options, Wrap& wrap, const std::string& word) {
+  if (word == "--alpha") return &wrap.alpha;
+  if (word == "--offset") return &wrap.offset;
   if (word == "--grading") return &options.grading;
   if (word == "--largest") return &options.largest;
   return word == "--time-limit" ? &options.time_limit_s : nullptr;
@@ -73,6 +85,7 @@ double* option(Options& options, const std::string& word) {
 
 int run(const std::vector<std::string>& arguments) {
   Options options;
+  Wrap wrap;
   std::vector<std::string> names;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const std::string& word = arguments[i];
@@ -80,7 +93,7 @@ int run(const std::vector<std::string>& arguments) {
       std::cout << (word == "--help" ? kUsage : CGAL_VERSION_STR "\n");
       return EXIT_SUCCESS;
     }
-    if (double* value = option(options, word)) {
+    if (double* value = option(options, wrap, word)) {
       if (++i == arguments.size()) throw UsageError(word + ": its value is missing");
       *value = positive(word, arguments[i]);
     } else if (word.starts_with("--")) {
@@ -90,6 +103,12 @@ int run(const std::vector<std::string>& arguments) {
     }
   }
   if (names.size() != 2) throw UsageError("two names expected, " + std::to_string(names.size()) + " found");
+  if (wrap.offset > 0 && wrap.alpha == 0) throw UsageError("--offset: belongs to --alpha, which is absent");
+  if (wrap.alpha > 0) {
+    const double offset = wrap.offset > 0 ? wrap.offset : wrap.alpha / 30;
+    quadgraph::cgal::wrap_surface(names[0], names[1] + ".off", wrap.alpha, offset);
+    return EXIT_SUCCESS;
+  }
   write(quadgraph::cgal::mesh_surface(names[0], options), names[1]);
   return EXIT_SUCCESS;
 }

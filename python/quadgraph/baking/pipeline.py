@@ -22,7 +22,7 @@ from quadgraph.base.errors import InputError, QuadGraphError, ToolError
 from quadgraph.base.progress import ProgressCallback
 from quadgraph.base.version import __version__
 from quadgraph.file import qgraph_file, sections
-from quadgraph.mesh import front, lod, mesh_io, repair, subdivide
+from quadgraph.mesh import front, lod, mesh_io, solid, subdivide, wrap
 from quadgraph.mesh.surface import MesherInfo, Repair, SourceMesh, Surface
 from quadgraph.tets import exchange, graph, ordering, relax
 from quadgraph.tets.polygrid import build as polygrid
@@ -38,6 +38,7 @@ MOST_STEPS = 10000  # that spread the inner nodes
 WORKERS = 2  # levels filled with tets at the same time
 _PACKAGES = ("numpy", "scipy", "pymeshlab", "trimesh")
 _OPTIONS = (
+    "wrap",
     "levels",
     "surface_vertices",
     "refine",
@@ -56,7 +57,8 @@ class BakeOptions:
     """Options of a bake.
 
     unit ("mm", "cm", "m"), height_mm, longest_mm: the body's size as mesh_io.read_surface takes it, at most one;
-    levels: None for as many as make sense; mesher: "tetgen", "cgal" or "polygrid"; grading: K of the paper's sizing
+    wrap: mm, or "auto": bake a closed surface around a mesh that is no solid (`quadgraph.mesh.wrap`); levels: None for
+    as many as make sense; mesher: "tetgen", "cgal" or "polygrid"; grading: K of the paper's sizing
     field, for cgal; cubes and cells: of a polygrid (tets/polygrid/build.py), None for the usual; relax_nodes: steps
     that spread the inner nodes; order: "blocks" or "random"; surface_vertices: about how many the finest simulation
     surface has, None for all of the input's; refine: times that every triangle of the simulation surface is cut into
@@ -71,6 +73,7 @@ class BakeOptions:
     unit: str | None = None
     height_mm: float | None = None
     longest_mm: float | None = None
+    wrap: float | str | None = None
     levels: int | None = None
     mesher: str = "tetgen"
     grading: float | None = None
@@ -179,7 +182,7 @@ def naming(mesh: str | Path) -> Iterator[None]:
 
 
 def prepare(mesh: Path, options: BakeOptions, report: BakeReport, tell: ProgressCallback) -> Prepared:
-    """Read and repair. Raises InputError."""
+    """Read, wrap where that is asked for, and repair. Raises InputError, and ToolError where the wrap fails."""
     with report.timed("read"):
         source = mesh_io.read_surface(
             mesh, unit=options.unit, height_mm=options.height_mm, longest_mm=options.longest_mm
@@ -187,8 +190,10 @@ def prepare(mesh: Path, options: BakeOptions, report: BakeReport, tell: Progress
     if source.size_note:
         report.notes.append(source.size_note)
     tell(f"read {source.name}: {source.vertices:,} vertices, {source.triangles:,} triangles")
+    limits = options.time_limit_s, options.memory_limit_bytes
     with report.timed("repair"):
-        surface, repairs = repair.repair(source.surface, source.name)
+        surface, repairs, notes = solid.solid(source.surface, source.name, options.wrap, limits, tell)
+    report.notes += notes
     for entry in repairs:
         tell(f"repaired: {entry.what}: {entry.count:,}")
     with report.timed("front"):
@@ -239,6 +244,8 @@ def check_options(output: Path, options: BakeOptions) -> None:
     child_process.check_limits(options.time_limit_s, options.memory_limit_bytes)
     _check_polygrid_options(options)
     subdivide.check(options.refine)
+    if isinstance(options.wrap, str) and options.wrap != wrap.AUTO:
+        raise InputError(f"wrap: {options.wrap!r} found, allowed are a size in mm and {wrap.AUTO}")
     if not output.parent.is_dir():
         raise InputError(f"{output}: the folder {output.parent} does not exist")
     if output.is_dir():

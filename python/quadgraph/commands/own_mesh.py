@@ -15,11 +15,14 @@ from quadgraph.base.arguments import length_mm
 from quadgraph.base.errors import InputError
 from quadgraph.base.units import UNITS_MM
 
-SIZES = ("unit", "height", "longest")
+SIZES = ("unit", "height", "longest", "wrap")
 
 
 def add_size_arguments(parser: argparse.ArgumentParser | argparse._ArgumentGroup, more: str = "") -> None:
-    """Add how large the body of a mesh is; `more`: what else help texts say."""
+    """Add how large the body of a mesh is, and what is baked for one that is no solid.
+
+    more: what else help texts say.
+    """
     size = parser.add_mutually_exclusive_group()
     size.add_argument("--unit", choices=tuple(UNITS_MM), help=f"unit of a mesh's coordinates{more}")
     size.add_argument(
@@ -31,11 +34,23 @@ def add_size_arguments(parser: argparse.ArgumentParser | argparse._ArgumentGroup
         metavar="L",
         help=f"longest side of a mesh{more} (default: glTF in metres where that is plausible, else 100mm)",
     )
+    parser.add_argument(
+        "--wrap",
+        type=wrap_size,
+        metavar="SIZE",
+        help="bake a closed surface around a mesh that is open, torn, crossing or in pieces: it covers holes narrower "
+        f"than SIZE, like 2mm; auto: the finest of a few sizes that does not go in through a hole{more}",
+    )
+
+
+def wrap_size(text: str) -> float | str:
+    """Argument type: auto, or a length, mm."""
+    return text if text == "auto" else length_mm(text)
 
 
 def sizes(args: argparse.Namespace) -> dict[str, Any]:
-    """Keyword arguments of BakeOptions for what the arguments say of the size."""
-    names = {"unit": "unit", "height": "height_mm", "longest": "longest_mm"}
+    """Keyword arguments of BakeOptions for what the arguments say of the size and the wrap."""
+    names = {"unit": "unit", "height": "height_mm", "longest": "longest_mm", "wrap": "wrap"}
     return {names[name]: value for name in SIZES if (value := getattr(args, name, None)) is not None}
 
 
@@ -50,7 +65,9 @@ def body(file: Path, args: argparse.Namespace, surface_only: bool) -> Iterator[P
 
     if not bare.is_mesh(file):
         if sizes(args):
-            raise InputError(f"{file}: --unit, --height and --longest are for meshes; a baked file knows its size")
+            raise InputError(
+                f"{file}: --unit, --height, --longest and --wrap are for meshes; a baked file knows its size"
+            )
         yield file
         return
     errors = Console(stderr=True, highlight=False, soft_wrap=True)
@@ -67,6 +84,8 @@ def body(file: Path, args: argparse.Namespace, surface_only: bool) -> Iterator[P
                 path = stack.enter_context(kept.body(file, BakeOptions(**sizes(args)), tell))
             yield path
         return
+    if getattr(args, "wrap", None) is not None:
+        raise InputError("--wrap: found with --method shortest-path, which takes any mesh as it is")
     with tempfile.TemporaryDirectory(prefix="quadgraph-") as folder:
         path = Path(folder) / f"{file.stem}.qgraph"
         note = bare.write(file, path, **sizes(args)).size_note

@@ -24,9 +24,10 @@ _FLAT_SHARE = 1e-6  # volume over area times diagonal: below it there is no inte
 class _Work:
     """The surface under repair, with the report as it grows."""
 
-    def __init__(self, surface: Surface, name: str) -> None:
+    def __init__(self, surface: Surface, name: str, next_step: str) -> None:
         self.surface = surface
         self.name = name
+        self.next_step = next_step
         self.counts: dict[str, int] = {}
 
     def done(self, result: tuple[Surface, int], what: str) -> None:
@@ -37,10 +38,10 @@ class _Work:
     def refuse(self, what: str, places: np.ndarray) -> InputError:
         """An InputError about the box around `places` (k, 3), mm."""
         low, high = (", ".join(f"{x:.4g}" for x in corner) for corner in (places.min(axis=0), places.max(axis=0)))
-        return InputError(f"{self.name}: {what}, between ({low}) and ({high}) mm")
+        return InputError(f"{self.name}: {what}, between ({low}) and ({high}) mm{self.next_step}")
 
 
-def repair(surface: Surface, name: str) -> tuple[Surface, list[Repair]]:
+def repair(surface: Surface, name: str, next_step: str = "") -> tuple[Surface, list[Repair]]:
     """Make a surface (mm) fit for the mesher, by safe steps only, each reported; coordinates as float32 holds them.
 
     Merges duplicate vertices (equal, then within 1e-6 of the diagonal), drops unreferenced vertices, degenerate and
@@ -49,9 +50,9 @@ def repair(surface: Surface, name: str) -> tuple[Surface, list[Repair]]:
     crossing triangles when they are at most 2% of all. A surface without defects comes back as it is with no repairs.
 
     Raises InputError naming `name`, what is wrong, counts and the place: open shell, non-manifold, one-sided, no
-    volume, or crossings that cannot be cut away.
+    volume, or crossings that cannot be cut away. next_step: what such a message ends with.
     """
-    work = _Work(surface.rounded(), name)
+    work = _Work(surface.rounded(), name, next_step)
     _clean(work)
     _close(work)
     _check_volume(work)
@@ -76,6 +77,10 @@ def _clean(work: _Work) -> None:
 
 def _drop_tiny(work: _Work) -> None:
     kept, pieces = weld.drop_tiny_pieces(work.surface, _TINY_SHARE)
+    if not len(kept.triangles):
+        raise work.refuse(
+            f"torn: {pieces} loose pieces, each of less than {100 * _TINY_SHARE:g}% of the area", work.surface.vertices
+        )
     if pieces:
         work.done((kept.compacted(), pieces), "tiny loose pieces dropped")
 

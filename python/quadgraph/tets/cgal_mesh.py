@@ -7,16 +7,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from quadgraph.base.child_process import Program, run, workspace
+from quadgraph.base.child_process import run, workspace
 from quadgraph.base.errors import ToolError
 from quadgraph.mesh.surface import MesherInfo, Surface
 from quadgraph.mesh.tet_files import read_tets, write_off
+from quadgraph.mesh.wrap import CGAL_MESH
 
-CGAL_MESH = Program(
-    "quadgraph-cgal-mesh",
-    "build it with CMake option QUADGRAPH_CGAL (Debian's package libcgal-dev)",
-    environment="QUADGRAPH_CGAL_MESH",
-)
 _RESERVE = 0.8  # share of the time limit that the program may plan with; the rest is for reading and writing
 
 

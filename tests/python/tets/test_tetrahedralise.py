@@ -18,7 +18,7 @@ from quadgraph.base.errors import InputError, ToolError
 from quadgraph.mesh import intersections
 from quadgraph.mesh.intersections import intersecting_triangles
 from quadgraph.mesh.surface import Surface
-from quadgraph.tets.cgal_mesh import CGAL_MESH
+from quadgraph.mesh.wrap import CGAL_MESH
 from quadgraph.tets.interior import Limits, of_size
 from quadgraph.tets.tet_geometry import determinants
 from quadgraph.tets.tet_rounding import orient, round_to_float32
