@@ -28,15 +28,16 @@ def write(
     height_mm: float | None = None,
     longest_mm: float | None = None,
     front_degrees: float | None = None,
+    up: str = "y",
 ) -> SourceMesh:
     """Write a mesh as it is, open, broken or not, with nothing repaired.
 
-    unit, height_mm, longest_mm: as mesh_io.read_surface. front_degrees: azimuth from where it is shown when nobody says
-    so; found out if it is None. Raises InputError for a file that cannot be read.
+    unit, height_mm, longest_mm, up: as mesh_io.read_surface. front_degrees: azimuth from where it is shown when nobody
+    says so; found out if it is None. Raises InputError for a file that cannot be read.
     """
     front.check(front_degrees)
     outputs.check_outputs([Path(output)], [mesh])
-    source = mesh_io.read_surface(mesh, unit=unit, height_mm=height_mm, longest_mm=longest_mm)
+    source = mesh_io.read_surface(mesh, unit=unit, height_mm=height_mm, longest_mm=longest_mm, up=up)
     surface = source.surface.compacted()
     normals = display_map.vertex_normals(surface)
     length = np.linalg.norm(normals, axis=1, keepdims=True)
@@ -46,6 +47,7 @@ def write(
         "source": source.metadata(),
         "unit_mm": source.unit_mm,
         "mesher": {"name": "none", "version": "", "options": "", "grading": None},
+        "options": {"up": up},
         "repairs": [],
         "levels": [],
         "front": front.azimuth(surface) if front_degrees is None else front_degrees,

@@ -38,6 +38,7 @@ MOST_STEPS = 10000  # that spread the inner nodes
 WORKERS = 2  # levels filled with tets at the same time
 _PACKAGES = ("numpy", "scipy", "pymeshlab", "trimesh")
 _OPTIONS = (
+    "up",
     "wrap",
     "levels",
     "surface_vertices",
@@ -56,23 +57,24 @@ _OPTIONS = (
 class BakeOptions:
     """Options of a bake.
 
-    unit ("mm", "cm", "m"), height_mm, longest_mm: the body's size as mesh_io.read_surface takes it, at most one;
-    wrap: mm, or "auto": bake a closed surface around a mesh that is no solid (`quadgraph.mesh.wrap`); levels: None for
-    as many as make sense; mesher: "tetgen", "cgal" or "polygrid"; grading: K of the paper's sizing
-    field, for cgal; cubes and cells: of a polygrid (tets/polygrid/build.py), None for the usual; relax_nodes: steps
-    that spread the inner nodes; order: "blocks" or "random"; surface_vertices: about how many the finest simulation
-    surface has, None for all of the input's; refine: times that every triangle of the simulation surface is cut into
-    four, curved where the body is smooth; interior: how large tets are deep inside, "auto" by the shape, "surface" as
-    the surface makes them, or an edge length in mm (of coarser levels twice that, four times, ...), None for "auto"
-    with tetgen and "surface" with cgal; for_materials: texts of materials that they are sized for instead;
-    visibility_rays: from each face of one level, to find what sees what, 0 for none; limits hold for each run of the
-    mesher; front: azimuth in degrees from where the body is shown when nobody says so, None for
+    unit ("mm", "cm", "m"), height_mm, longest_mm: the body's size as mesh_io.read_surface takes it, at most one; up:
+    the mesh's axis that points up, "y" or "z"; wrap: mm, or "auto": bake a closed surface around a mesh that is no
+    solid (`quadgraph.mesh.wrap`); levels: None for as many as make sense; mesher: "tetgen", "cgal" or "polygrid";
+    grading: K of the paper's sizing field, for cgal; cubes and cells: of a polygrid (tets/polygrid/build.py), None for
+    the usual; relax_nodes: steps that spread the inner nodes; order: "blocks" or "random"; surface_vertices: about how
+    many the finest simulation surface has, None for all of the input's; refine: times that every triangle of the
+    simulation surface is cut into four, curved where the body is smooth; interior: how large tets are deep inside,
+    "auto" by the shape, "surface" as the surface makes them, or an edge length in mm (of coarser levels twice that,
+    four times, ...), None for "auto" with tetgen and "surface" with cgal; for_materials: texts of materials that they
+    are sized for instead; visibility_rays: from each face of one level, to find what sees what, 0 for none; limits hold
+    for each run of the mesher; front: azimuth in degrees from where the body is shown when nobody says so, None for
     `quadgraph.mesh.front.azimuth`.
     """
 
     unit: str | None = None
     height_mm: float | None = None
     longest_mm: float | None = None
+    up: str = "y"
     wrap: float | str | None = None
     levels: int | None = None
     mesher: str = "tetgen"
@@ -185,7 +187,7 @@ def prepare(mesh: Path, options: BakeOptions, report: BakeReport, tell: Progress
     """Read, wrap where that is asked for, and repair. Raises InputError, and ToolError where the wrap fails."""
     with report.timed("read"):
         source = mesh_io.read_surface(
-            mesh, unit=options.unit, height_mm=options.height_mm, longest_mm=options.longest_mm
+            mesh, unit=options.unit, height_mm=options.height_mm, longest_mm=options.longest_mm, up=options.up
         )
     if source.size_note:
         report.notes.append(source.size_note)

@@ -15,6 +15,7 @@ from quadgraph.baking.budget import record
 from quadgraph.base.arguments import add_strict_argument, positive_float, positive_int, share, up_to
 from quadgraph.base.child_process import MOST_MEMORY_BYTES, MOST_TIME_S
 from quadgraph.base.errors import InputError
+from quadgraph.base.units import UPS
 from quadgraph.commands import own_mesh
 
 if TYPE_CHECKING:
@@ -33,6 +34,12 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         help="the .qgraph to write (default: the mesh's name in the present folder, where there is none of it yet)",
     )
     own_mesh.add_size_arguments(parser)
+    parser.add_argument(
+        "--up",
+        choices=UPS,
+        default="y",
+        help="axis of the mesh's coordinates that points up: of the body it is y (default: %(default)s)",
+    )
     _add_mesh_options(parser)
     _add_size_options(parser)
     parser.add_argument(
@@ -199,11 +206,11 @@ def _write_surface(args: argparse.Namespace) -> int:
     from quadgraph.baking import bare
 
     left_alone = {"mesh", "output", "surface_only", "command", "mesher", "order", "device", "front"}
-    left_alone |= {"unit", "height", "longest"}
+    left_alone |= {"unit", "height", "longest", "up"}
     for name, value in vars(args).items():
         if name not in left_alone and value:
             raise InputError(f"--{name.replace('_', '-')}: found with --surface-only, which makes no levels")
-    source = bare.write(args.mesh, args.output, **own_mesh.sizes(args), front_degrees=args.front)
+    source = bare.write(args.mesh, args.output, **own_mesh.sizes(args), front_degrees=args.front, up=args.up)
     console = Console(highlight=False)
     if source.size_note:
         console.print(source.size_note, markup=False, soft_wrap=True)
@@ -242,6 +249,7 @@ def _options(args: argparse.Namespace):
     from quadgraph.baking.pipeline import BakeOptions
 
     given = {
+        "up": args.up,
         "levels": args.levels,
         "mesher": args.mesher,
         "grading": args.grading,

@@ -26,7 +26,7 @@ def add_size_arguments(parser: argparse.ArgumentParser | argparse._ArgumentGroup
     size = parser.add_mutually_exclusive_group()
     size.add_argument("--unit", choices=tuple(UNITS_MM), help=f"unit of a mesh's coordinates{more}")
     size.add_argument(
-        "--height", type=length_mm, metavar="L", help=f"a mesh's extent along y, like 100mm or 1.8m{more}"
+        "--height", type=length_mm, metavar="L", help=f"a mesh's extent upwards, like 100mm or 1.8m{more}"
     )
     size.add_argument(
         "--longest",

@@ -15,13 +15,14 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from quadgraph.base.errors import InputError
+from quadgraph.base.errors import FormatError, InputError
+from quadgraph.base.units import UPS
 from quadgraph.file import qgraph_file
 from quadgraph.mesh.display_map import nearest_faces
 from quadgraph.mesh.gltf_file import GltfFile, read
 from quadgraph.mesh.gltf_morph import read_targets
 from quadgraph.mesh.gltf_skin import has_skin, read_frames
-from quadgraph.mesh.mesh_io import read_surface
+from quadgraph.mesh.mesh_io import read_surface, stood_up
 from quadgraph.mesh.surface import Surface
 
 _SUFFIXES = (".obj", ".off", ".ply")  # those whose vertices keep their order
@@ -57,7 +58,17 @@ def from_gltf(body: Path, path: Path, rate: float = 24, animation: str | None = 
     file = qgraph_file.read(body)
     unit_mm = file.metadata["unit_mm"]
     vertices, triangles, moves = read(path, lambda gltf: _moves_of(gltf, rate, animation))
-    return of_moves(file, Surface(vertices * unit_mm, triangles), moves * unit_mm)
+    up = _up(file, body)
+    return of_moves(file, Surface(stood_up(vertices, up) * unit_mm, triangles), stood_up(moves, up) * unit_mm)
+
+
+def _up(file: qgraph_file.QGraphFile, body: Path) -> str:
+    """The axis that points up in the mesh of a body; files from before it was kept have y."""
+    options = file.metadata.get("options")
+    up = options.get("up", "y") if isinstance(options, dict) else "y"
+    if up not in UPS:
+        raise FormatError(f"{body}: metadata: options/up: {str(up)[:40]!r} found, allowed are {' and '.join(UPS)}")
+    return up
 
 
 def _moves_of(file: GltfFile, rate: float, animation: str | None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -75,8 +86,9 @@ def from_frames(body: Path, rest: Path, frames: Sequence[Path]) -> StoredShapes:
     .obj, .ply or .off, all with the vertices and triangles of `rest` in its order. Raises InputError, FormatError.
     """
     file = qgraph_file.read(body)
-    start = _read(rest, file.metadata["unit_mm"])
-    moves = [_moved(start, frame, file.metadata["unit_mm"]) for frame in frames]
+    way = file.metadata["unit_mm"], _up(file, body)
+    start = _read(rest, *way)
+    moves = [_moved(start, frame, *way) for frame in frames]
     return of_moves(file, start, np.array(moves))
 
 
@@ -101,15 +113,15 @@ def _rows(shapes: np.ndarray) -> np.ndarray:
     return np.ascontiguousarray(shapes.reshape(-1, 3), np.float32)
 
 
-def _read(path: Path, unit_mm: float) -> Surface:
+def _read(path: Path, unit_mm: float, up: str) -> Surface:
     if path.suffix.lower() not in _SUFFIXES:
         raise InputError(f"{path}: extension '{path.suffix}' found, of frames allowed are {', '.join(_SUFFIXES)}")
-    surface = read_surface(path, unit="mm").surface
+    surface = read_surface(path, unit="mm", up=up).surface
     return Surface(surface.vertices * unit_mm, surface.triangles)
 
 
-def _moved(start: Surface, path: Path, unit_mm: float) -> np.ndarray:
-    frame = _read(path, unit_mm)
+def _moved(start: Surface, path: Path, unit_mm: float, up: str) -> np.ndarray:
+    frame = _read(path, unit_mm, up)
     if frame.vertices.shape != start.vertices.shape or not np.array_equal(frame.triangles, start.triangles):
         raise InputError(
             f"{path}: {len(frame.vertices)} vertices and {len(frame.triangles)} triangles found, wanted are the "

@@ -12,6 +12,7 @@ import trimesh
 
 from quadgraph.base import regular_file
 from quadgraph.base.errors import InputError
+from quadgraph.base.units import UPS
 from quadgraph.mesh import gltf_file, mesh_size
 from quadgraph.mesh.mesh_text import read_obj, read_off
 from quadgraph.mesh.ply import read_ply
@@ -73,14 +74,15 @@ def read_surface(
     unit: str | None = None,
     height_mm: float | None = None,
     longest_mm: float | None = None,
+    up: str = "y",
 ) -> SourceMesh:
-    """Read a mesh and scale it to millimetres.
+    """Read a mesh, scale it to millimetres and stand it up along y.
 
-    unit "mm", "cm" or "m" of the file's coordinates, the object's height_mm (its extent along y) or longest_mm (the
+    unit "mm", "cm" or "m" of the file's coordinates, the object's height_mm (its extent upwards) or longest_mm (the
     longest side of its bounding box): at most one. Without one the size is as usual, which `SourceMesh.size_note`
-    says: that of glTF in metres where that is plausible, else 100 mm along the longest side. Polygons are cut into
-    triangles; STL and glTF vertices at one position are joined. Nothing is repaired. Raises InputError for a file or
-    option that cannot be used, naming file and field.
+    says: that of glTF in metres where that is plausible, else 100 mm along the longest side. up: the axis that
+    points up in the file, "y" or "z". Polygons are cut into triangles; STL and glTF vertices at one position are
+    joined. Nothing is repaired. Raises InputError for a file or option that cannot be used, naming file and field.
     """
     path = Path(path)
     reader = _READERS.get(path.suffix.lower())
@@ -92,10 +94,18 @@ def read_surface(
         raise InputError(f"{path}: cannot be read: {error.strerror}") from error
     vertices, triangles = _guarded(reader, path)
     _check(path, vertices, triangles)
+    vertices = stood_up(vertices, up)
     unit_mm, note = mesh_size.scale_of(path, vertices[np.unique(triangles)], unit, height_mm, longest_mm)
     surface = Surface(vertices * unit_mm, triangles)
     digest = hashlib.sha256(content).hexdigest()
     return SourceMesh(surface, path.name, digest, unit_mm, len(vertices), len(triangles), note)
+
+
+def stood_up(vectors: np.ndarray, up: str) -> np.ndarray:
+    """Vectors (..., 3) of a file whose axis `up` points up, with y up; right-handed as before. Raises InputError."""
+    if up not in UPS:
+        raise InputError(f"up: {up!r} found, allowed are {' and '.join(UPS)}")
+    return vectors if up == "y" else np.stack([vectors[..., 0], vectors[..., 2], -vectors[..., 1]], axis=-1)
 
 
 def _guarded(reader: Callable[[Path], Arrays], path: Path) -> Arrays:

@@ -11,7 +11,7 @@ import pytest
 import trimesh
 
 from quadgraph.base.errors import InputError
-from quadgraph.mesh.mesh_io import read_surface
+from quadgraph.mesh.mesh_io import read_surface, stood_up
 from quadgraph.mesh.surface import Surface
 from shapes import cube, icosphere
 
@@ -52,6 +52,19 @@ def test_height_is_the_extent_along_y(tmp_path: Path) -> None:
     source = read_surface(path, height_mm=100)
     assert source.unit_mm == pytest.approx(50)
     assert np.ptp(source.surface.vertices, axis=0) == pytest.approx([250, 100, 350])
+
+
+def test_what_points_up_in_the_file_does_in_the_body(tmp_path: Path) -> None:
+    path = tmp_path / "box.obj"
+    path.write_text(trimesh.creation.box((1, 2, 3)).export(file_type="obj"))
+    for up, sides in (("y", (5, 10, 15)), ("z", (5, 15, 10))):
+        surface = read_surface(path, unit="cm", up=up).surface
+        assert np.allclose(np.ptp(surface.vertices, axis=0), np.array(sides) * 2)
+        assert surface.volume == pytest.approx(6000)  # turned, not mirrored
+    assert read_surface(path, height_mm=30, up="z").unit_mm == pytest.approx(10)
+    assert stood_up(np.array([[1.0, 2.0, 3.0]]), "z").tolist() == [[1.0, 3.0, -2.0]]
+    with pytest.raises(InputError, match="up: 'x' found, allowed are y and z"):
+        read_surface(path, unit="cm", up="x")
 
 
 def test_polygons_and_texture_seams_of_obj(tmp_path: Path) -> None:
