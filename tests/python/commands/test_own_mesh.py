@@ -61,7 +61,7 @@ def test_a_bake_names_its_file_and_replaces_none_by_itself(folder, capsys):
 def test_a_baked_file_knows_its_size(folder, capsys):
     assert cli.main(["bake", "ball.obj", "--levels", "1"]) == 0
     assert cli.main(["render", "ball.qgraph", "--longest", "3mm", *SCENE, "-o", "a.png"]) == 1
-    assert "--longest are for meshes" in capsys.readouterr().err
+    assert "--longest and --wrap are for meshes" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
