@@ -76,34 +76,23 @@ void Recording::begin() {
   check(vkBeginCommandBuffer(parts_->commands, &info), "vkBeginCommandBuffer");
 }
 
-void Recording::barrier() {
+void Recording::show_to(VkPipelineStageFlags2 stages, VkAccessFlags2 access) {
   VkMemoryBarrier2 memory{};
   memory.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
   memory.srcStageMask = all_stages;
   memory.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
-  memory.dstStageMask = all_stages;
-  memory.dstAccessMask = all_access;
+  memory.dstStageMask = stages;
+  memory.dstAccessMask = access;
   VkDependencyInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
   info.memoryBarrierCount = 1;
   info.pMemoryBarriers = &memory;
   vkCmdPipelineBarrier2(parts_->commands, &info);
-  unfinished_ = true;
 }
 
-// What was written is seen by the host after the fence.
-void Recording::show_to_host() {
-  VkMemoryBarrier2 memory{};
-  memory.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
-  memory.srcStageMask = all_stages;
-  memory.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
-  memory.dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT;
-  memory.dstAccessMask = VK_ACCESS_2_HOST_READ_BIT;
-  VkDependencyInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
-  info.memoryBarrierCount = 1;
-  info.pMemoryBarriers = &memory;
-  vkCmdPipelineBarrier2(parts_->commands, &info);
+void Recording::barrier() {
+  show_to(all_stages, all_access);
+  unfinished_ = true;
 }
 
 void Recording::transition(const ImageMemory& image, VkImageLayout from, VkImageLayout to) {
@@ -266,7 +255,7 @@ VkCommandBufferSubmitInfo Recording::finished() {
 
 // Updates that wait come first.
 void Recording::end_and_run() {
-  show_to_host();
+  show_to(VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
   const std::unique_ptr<Recording> updates = context_.take_updates();
   std::vector<VkCommandBufferSubmitInfo> command_infos;
   if (updates) command_infos.push_back(updates->finished());

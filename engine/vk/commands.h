@@ -48,10 +48,11 @@ class Recording : public device::Recording {
   VkCommandBuffer handle() const { return parts_->commands; }
 
  private:
-  // All writes before are visible to all that follows: the one barrier the engine needs between passes.
-  void barrier();
+  // All writes before are seen by these stages of what follows.
+  void show_to(VkPipelineStageFlags2 stages, VkAccessFlags2 access);
 
-  void show_to_host();
+  // By all of what follows: the one barrier the engine needs between passes.
+  void barrier();
 
   // Moves every layer of an image from `from` (UNDEFINED discards its contents) to `to`, with a full barrier.
   void transition(const ImageMemory& image, VkImageLayout from, VkImageLayout to);
