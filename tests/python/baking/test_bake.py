@@ -181,7 +181,7 @@ def test_the_chain_ends_where_a_coarse_level_fails(sphere, tmp_path, monkeypatch
 
 def test_without_a_finest_level_there_is_no_file(sphere, tmp_path, monkeypatch):
     _failing_below(monkeypatch, 10**6)
-    with pytest.raises(ToolError, match="made no tetrahedra"):
+    with pytest.raises(ToolError, match=f"{sphere}: tetgen: made no tetrahedra"):
         pipeline.bake(sphere, tmp_path / "none.qgraph", pipeline.BakeOptions(unit="cm"))
     assert not list(tmp_path.iterdir())
 

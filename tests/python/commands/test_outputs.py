@@ -115,6 +115,35 @@ def test_a_signal_during_an_import_is_heeded_after_it(tmp_path, name, kind):
     assert done.stdout == f"{kind} True\n", done.stderr
 
 
+WAITING = """
+import os, signal, time
+from quadgraph import cli
+cli.heed_signals()
+try:
+    import forgetful
+    os.kill(os.getpid(), signal.SIGHUP)
+    time.sleep(60)
+except cli.Stopped:
+    signal.signal(signal.SIGALRM, signal.SIG_DFL)  # as when Python ends
+time.sleep(0.2)
+print("ended")
+"""
+
+
+def test_a_signal_that_waits_for_an_import_does_not_come_after_the_end(tmp_path):
+    """Another one is heeded first; the timer of the one that waits would end the process with SIGALRM."""
+    (tmp_path / "forgetful.py").write_text(FORGETFUL.format(name="SIGTERM"))
+    done = subprocess.run(
+        [sys.executable, "-c", WAITING],
+        env=os.environ | {"PYTHONPATH": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        timeout=50,
+        preexec_fn=lambda: [signal.signal(n, signal.SIG_DFL) for n in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)],
+    )
+    assert (done.returncode, done.stdout) == (0, "ended\n"), done.stderr
+
+
 AGAIN = """
 import os, signal, time
 from quadgraph import cli
