@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -132,10 +131,6 @@ std::unique_ptr<device::Pipeline> Processor::compile(const device::Shader& shade
 
 std::unique_ptr<device::Pipeline> Processor::compile(const device::GraphicsOptions& options, const std::string&) {
   return std::make_unique<GraphicsPipeline>(options, level_);
-}
-
-void Processor::update(const device::Memory& target, std::span<const std::byte> data) {
-  std::memcpy(target.mapped, data.data(), data.size());
 }
 
 std::unique_ptr<device::Recording> Processor::record(std::uint32_t) {

@@ -28,7 +28,6 @@ class Processor : public device::Device {
                                             const std::string& name) override;
   std::unique_ptr<device::Pipeline> compile(const device::GraphicsOptions& options, const std::string& name) override;
   std::unique_ptr<device::Recording> record(std::uint32_t max_passes) override;
-  void update(const device::Memory& target, std::span<const std::byte> data) override;
 
  private:
   void check_room(std::uint64_t size) const;

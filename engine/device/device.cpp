@@ -26,6 +26,16 @@ void Device::drop_staging() noexcept {
   staging_.reset();
 }
 
+void Device::update(const Memory& target, std::span<const std::byte> data) {
+  if (!updates_) updates_ = record(0);
+  updates_->update(target, data);
+}
+
+void Device::drop_transfers() noexcept {
+  updates_.reset();
+  drop_staging();
+}
+
 void Device::heed() {
   if (!interruptible_ || given_up_ || !check_) return;
   const auto now = std::chrono::steady_clock::now();

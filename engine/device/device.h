@@ -164,8 +164,12 @@ class Device {
   // make some.
   const Memory& staging(std::uint64_t bytes);
 
-  // Replaces the first bytes of device memory, at most 65536, a multiple of 4, before what is submitted next.
-  virtual void update(const Memory& target, std::span<const std::byte> data) = 0;
+  // Replaces the first bytes of memory that the host does not see, at most 65536, a multiple of 4, before what is
+  // submitted next.
+  void update(const Memory& target, std::span<const std::byte> data);
+
+  // Updates that have not been submitted yet, which become the caller's; null if there are none.
+  std::unique_ptr<Recording> take_updates() noexcept { return std::move(updates_); }
 
   // Calls DeviceOptions::check where it is due. For recordings, between pieces of work.
   void heed();
@@ -186,12 +190,15 @@ class Device {
   std::vector<std::string> messages_;
   const void* books_ = this;  // in live_objects.h
 
-  // Of the derived device while it still can.
-  void drop_staging() noexcept;
+  // Staging memory and updates, of the derived device while it still can.
+  void drop_transfers() noexcept;
 
  private:
   friend class Interruptible;
 
+  void drop_staging() noexcept;
+
+  std::unique_ptr<Recording> updates_;
   std::unique_ptr<Memory> staging_;
   std::uint64_t staging_bytes_ = 0;
   std::function<void()> check_;

@@ -1,5 +1,6 @@
 #include "engine/vk/commands.h"
 
+#include <array>
 #include <cassert>
 
 #include "engine/vk/pipeline.h"
@@ -256,14 +257,15 @@ VkCommandBufferSubmitInfo Recording::finished() {
 // Updates that wait come first.
 void Recording::end_and_run() {
   show_to(VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
-  const std::unique_ptr<Recording> updates = context_.take_updates();
-  std::vector<VkCommandBufferSubmitInfo> command_infos;
-  if (updates) command_infos.push_back(updates->finished());
-  command_infos.push_back(finished());
+  const std::unique_ptr<device::Recording> updates = context_.take_updates();
+  std::array<VkCommandBufferSubmitInfo, 2> infos{};
+  std::uint32_t count = 0;
+  if (updates) infos[count++] = static_cast<Recording&>(*updates).finished();
+  infos[count++] = finished();
   VkSubmitInfo2 submit{};
   submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2;
-  submit.commandBufferInfoCount = static_cast<std::uint32_t>(command_infos.size());
-  submit.pCommandBufferInfos = command_infos.data();
+  submit.commandBufferInfoCount = count;
+  submit.pCommandBufferInfos = infos.data();
   const VkFence fence = parts_->fence.get();
   check(vkQueueSubmit2(context_.queue(), 1, &submit, fence), "vkQueueSubmit2");
   check(vkWaitForFences(context_.device(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");

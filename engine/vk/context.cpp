@@ -106,8 +106,8 @@ std::string result_name(VkResult result) {
   }
 }
 
-// An instance that lives as long as the process. With the last one the loader unloads the drivers, and NVIDIA's can be
-// loaded no more than about fifteen times.
+// An instance that lives as long as the process. With the last one the loader unloads the drivers, and NVIDIA's was
+// refused after a process had loaded it often enough.
 void keep_drivers_loaded() {
   static const VkInstance kept = [] {
     VkInstanceCreateInfo info{};
@@ -142,17 +142,8 @@ Context::~Context() {
   destroy();
 }
 
-void Context::update(const device::Memory& target, std::span<const std::byte> data) {
-  if (!updates_) updates_ = std::make_unique<Recording>(*this, 0);
-  updates_->update(target, data);
-}
-
-std::unique_ptr<Recording> Context::take_updates() noexcept {
-  return std::move(updates_);
-}
-
 void Context::finish_updates() noexcept {
-  const std::unique_ptr<Recording> last = take_updates();
+  const std::unique_ptr<device::Recording> last = take_updates();
   if (!last) return;
   try {
     last->submit_and_wait();
@@ -174,9 +165,8 @@ void Context::give_back(std::unique_ptr<RecordingParts> parts) noexcept {
 }
 
 void Context::destroy() noexcept {
-  updates_.reset();
+  drop_transfers();
   idle_.clear();
-  drop_staging();
   if (device_ != VK_NULL_HANDLE) {
     vkDestroyDevice(device_, nullptr);
     device::count_closed(device_);

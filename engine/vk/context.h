@@ -21,7 +21,6 @@ struct SurfaceSource {
   std::function<VkSurfaceKHR(VkInstance)> create;  // throws DeviceError; the device destroys what it returns
 };
 
-class Recording;
 struct RecordingParts;
 
 class Context : public device::Device {
@@ -50,12 +49,7 @@ class Context : public device::Device {
   std::unique_ptr<device::Pipeline> compile(const device::GraphicsOptions& options, const std::string& name) override;
   std::unique_ptr<device::Recording> record(std::uint32_t max_passes) override;
 
-  void update(const device::Memory& target, std::span<const std::byte> data) override;
-
-  // Updates that have not been submitted yet, which become the caller's; null if there are none.
-  std::unique_ptr<Recording> take_updates() noexcept;
-
-  // Submits them: what they write to is going to be destroyed.
+  // Submits updates that wait: what they write to may be going to be destroyed.
   void finish_updates() noexcept;
 
   // Parts for a recording with room for so many timestamps, and back when it is done with them.
@@ -78,7 +72,6 @@ class Context : public device::Device {
                                                    const VkDebugUtilsMessengerCallbackDataEXT* data, void* user);
 
   std::vector<std::unique_ptr<RecordingParts>> idle_;
-  std::unique_ptr<Recording> updates_;
   VkInstance instance_ = VK_NULL_HANDLE;
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
   VkSurfaceKHR surface_ = VK_NULL_HANDLE;

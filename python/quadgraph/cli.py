@@ -128,7 +128,6 @@ class Stopped(KeyboardInterrupt):
 
 
 _SENT: list[int] = []  # signals that were heeded in this run of `main`
-_ENDED: list[bool] = []  # whether that run is over: then nothing is left to stop
 _AGAIN = 0.02  # s, after which a signal is sent again that came in an import
 _SETTLING = 1.0  # s after a signal in which another one would meet the cleaning up
 
@@ -143,14 +142,13 @@ def heed_signals() -> None:
         return
 
     heeded = -math.inf
-    _ENDED.clear()
 
     def again(_number: int, _frame: FrameType | None) -> None:
         signal.raise_signal(_SENT[0])
 
     def stop(number: int, frame: FrameType | None) -> None:
         nonlocal heeded
-        if _ENDED or time.monotonic() < heeded + _SETTLING:
+        if time.monotonic() < heeded + _SETTLING:
             return
         _SENT.append(number)
         if _in_import(frame):
@@ -184,7 +182,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except Exception as error:
         return _failed(error)
     finally:
-        _ENDED.append(True)
         if _SENT:  # one that still waits for an import would come when Python has no handler any more
             signal.setitimer(signal.ITIMER_REAL, 0)
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // quadgraph-cgal-mesh SURFACE.off STEM [--grading K] [--largest L] [--time-limit SECONDS]: writes STEM.node and
-// STEM.ele. With --alpha A [--offset O] instead: writes STEM.off, a closed surface around what SURFACE.off has.
+// STEM.ele. With --alpha A --offset O instead: writes STEM.off, a closed surface around what SURFACE.off has.
 #include <CGAL/version.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ constexpr int kExitFailed = 1, kExitUsage = 2, kExitMemory = 3;
 
 constexpr const char* kUsage =
     "usage: quadgraph-cgal-mesh SURFACE.off STEM [--grading K] [--largest L] [--time-limit SECONDS]\n"
-    "       quadgraph-cgal-mesh SURFACE.off STEM --alpha A [--offset O]\n"
+    "       quadgraph-cgal-mesh SURFACE.off STEM --alpha A --offset O\n"
     "Fills a closed triangle surface with tetrahedra of size min over the surface of (K * distance + local edge\n"
     "length) and writes them as TetGen does: STEM.node, STEM.ele, indices from 0.\n"
     "  --grading K           growth of the size with depth, above 0 (default 1)\n"
@@ -35,7 +35,7 @@ constexpr const char* kUsage =
     "  --alpha A             wrap triangles of any kind instead, and write STEM.off: a closed surface around them "
     "that\n"
     "                        covers holes narrower than A\n"
-    "  --offset O            distance of that surface from them (default A / 30)\n"
+    "  --offset O            distance of that surface from them\n"
     "  --version             version of CGAL\n"
     "Exit status: 0 done, 1 failed, 2 wrong usage, 3 out of memory.\n";
 
@@ -103,10 +103,9 @@ int run(const std::vector<std::string>& arguments) {
     }
   }
   if (names.size() != 2) throw UsageError("two names expected, " + std::to_string(names.size()) + " found");
-  if (wrap.offset > 0 && wrap.alpha == 0) throw UsageError("--offset: belongs to --alpha, which is absent");
+  if ((wrap.alpha > 0) != (wrap.offset > 0)) throw UsageError("--alpha and --offset belong together");
   if (wrap.alpha > 0) {
-    const double offset = wrap.offset > 0 ? wrap.offset : wrap.alpha / 30;
-    quadgraph::cgal::wrap_surface(names[0], names[1] + ".off", wrap.alpha, offset);
+    quadgraph::cgal::wrap_surface(names[0], names[1] + ".off", wrap.alpha, wrap.offset);
     return EXIT_SUCCESS;
   }
   write(quadgraph::cgal::mesh_surface(names[0], options), names[1]);

@@ -205,8 +205,10 @@ def _write_surface(args: argparse.Namespace) -> int:
     """Write a file without levels."""
     from quadgraph.baking import bare
 
-    left_alone = {"mesh", "output", "surface_only", "command", "mesher", "order", "device", "front"}
-    left_alone |= {"unit", "height", "longest", "up"}
+    left_alone = {
+        *("mesh", "output", "unit", "height", "longest", "up", "front"),
+        *("surface_only", "command", "mesher", "order", "device"),
+    }
     for name, value in vars(args).items():
         if name not in left_alone and value:
             raise InputError(f"--{name.replace('_', '-')}: found with --surface-only, which makes no levels")

@@ -15,7 +15,7 @@ from quadgraph.base.arguments import length_mm
 from quadgraph.base.errors import InputError
 from quadgraph.base.units import UNITS_MM
 
-SIZES = ("unit", "height", "longest", "wrap")
+_MEMBERS = {"unit": "unit", "height": "height_mm", "longest": "longest_mm", "wrap": "wrap"}  # of BakeOptions
 
 
 def add_size_arguments(parser: argparse.ArgumentParser | argparse._ArgumentGroup, more: str = "") -> None:
@@ -50,8 +50,7 @@ def wrap_size(text: str) -> float | str:
 
 def sizes(args: argparse.Namespace) -> dict[str, Any]:
     """Keyword arguments of BakeOptions for what the arguments say of the size and the wrap."""
-    names = {"unit": "unit", "height": "height_mm", "longest": "longest_mm", "wrap": "wrap"}
-    return {names[name]: value for name in SIZES if (value := getattr(args, name, None)) is not None}
+    return {member: value for name, member in _MEMBERS.items() if (value := getattr(args, name, None)) is not None}
 
 
 @contextlib.contextmanager

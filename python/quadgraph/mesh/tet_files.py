@@ -56,20 +56,6 @@ def write_off(surface: Surface, path: Path) -> None:
     path.write_text(f"OFF\n{len(surface.vertices)} {len(surface.triangles)} 0\n{points}{facets}")
 
 
-def read_off(path: Path) -> Surface:
-    """Triangles of an OFF file that CGAL wrote; raises ToolError if it is missing or incomplete."""
-    try:
-        words = path.read_text().split()
-        vertices, triangles = int(words[1]), int(words[2])
-        points = np.array(words[4 : 4 + 3 * vertices], np.float64).reshape(vertices, 3)
-        facets = np.array(words[4 + 3 * vertices :], np.int64).reshape(triangles, 4)
-    except (OSError, ValueError, IndexError) as error:
-        raise ToolError(f"{path.name}: {error}") from error
-    if (facets[:, 0] != 3).any() or (triangles and facets[:, 1:].max() >= vertices):
-        raise ToolError(f"{path.name}: has faces that are no triangles of its vertices")
-    return Surface(points, facets[:, 1:])
-
-
 def _read_table(path: Path, columns: int, dtype: type) -> np.ndarray:
     """Rows of a TetGen file without its index column; raises ToolError if its header and content disagree."""
     with path.open() as lines:

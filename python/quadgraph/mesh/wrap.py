@@ -8,11 +8,11 @@ import numpy as np
 import pymeshlab
 
 from quadgraph.base.child_process import Program, run, workspace
-from quadgraph.base.errors import InputError, ToolError
+from quadgraph.base.errors import InputError
 from quadgraph.base.progress import ProgressCallback
-from quadgraph.mesh import weld
+from quadgraph.mesh import mesh_text, weld
 from quadgraph.mesh.surface import Surface
-from quadgraph.mesh.tet_files import read_off, write_off
+from quadgraph.mesh.tet_files import write_off
 
 CGAL_MESH = Program(
     "quadgraph-cgal-mesh",
@@ -77,20 +77,26 @@ def wrap(
     sizes = [share * diagonal for share in _AUTO_SHARES] if size == AUTO else [float(size)]
     with workspace() as directory:
         write_off(found, directory / "mesh.off")
-        best, before = None, 0.0
-        for alpha in sizes:
+
+        def wrapped(alpha: float) -> Surface:
             tell(f"wrapping at {alpha:.3g} mm")
             arguments = ["mesh.off", "wrap", "--alpha", repr(alpha), "--offset", repr(_OFFSET_SHARE * alpha)]
             run(CGAL_MESH, arguments, directory=directory, time_limit_s=time_limit_s,
                 memory_limit_bytes=memory_limit_bytes)  # fmt: skip
-            tried = read_off(directory / "wrap.off")
-            inside = tried.volume - _OFFSET_SHARE * alpha * tried.area
-            if best is not None and inside < _HOLLOW * before:
+            return Surface(*mesh_text.read_off(directory / "wrap.off"))
+
+        chosen, best = sizes[0], wrapped(sizes[0])
+        for finer in sizes[1:]:
+            tried = wrapped(finer)
+            if _inside(tried, finer) < _HOLLOW * _inside(best, chosen):
                 break
-            best, before = (tried, alpha), inside
-    if best is None:
-        raise ToolError(f"{CGAL_MESH.name}: made no wrap")
-    return Wrap(*best, *_distances(best[0], found))
+            chosen, best = finer, tried
+    return Wrap(best, chosen, *_distances(best, found))
+
+
+def _inside(wrapped: Surface, size: float) -> float:
+    """Volume of a wrap without what its offset adds, mm³."""
+    return wrapped.volume - _OFFSET_SHARE * size * wrapped.area
 
 
 def _distances(wrapped: Surface, mesh: Surface) -> tuple[float, float]:

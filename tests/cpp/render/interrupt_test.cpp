@@ -141,6 +141,7 @@ TEST_CASE("a solve or picture that is given up at any piece of its work leaves a
       CHECK_THROWS_AS(tried.engine.render(View{}, small), InputError);
       CHECK((answer(tried.engine, options) == expected));
     }
-    CHECK(given_up >= 2);  // a GPU asks less often: not between the parts of a pass
+    const bool gpu = !tried.engine.device().info().cpu;  // asks less often: not between the parts of a pass
+    CHECK(given_up >= (gpu ? 2 : 3));
   }
 }

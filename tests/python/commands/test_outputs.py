@@ -98,20 +98,25 @@ except BaseException:
 """
 
 
+def run_script(script: str, folder: Path) -> subprocess.CompletedProcess[str]:
+    """Run Python on a text that may import what is in a folder, with signals as a shell leaves them."""
+    return subprocess.run(
+        [sys.executable, "-c", script],
+        env=os.environ | {"PYTHONPATH": str(folder)},
+        capture_output=True,
+        text=True,
+        timeout=50,
+        preexec_fn=lambda: [signal.signal(n, signal.SIG_DFL) for n in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)],
+    )
+
+
 @pytest.mark.parametrize(
     ("name", "kind"), [("SIGTERM", "Stopped"), ("SIGHUP", "Stopped"), ("SIGINT", "KeyboardInterrupt")]
 )
 def test_a_signal_during_an_import_is_heeded_after_it(tmp_path, name, kind):
     """Modules that import others in a try of their own would forget it, and the program go on to its end."""
     (tmp_path / "forgetful.py").write_text(FORGETFUL.format(name=name))
-    done = subprocess.run(
-        [sys.executable, "-c", IMPORTING],
-        env=os.environ | {"PYTHONPATH": str(tmp_path)},
-        capture_output=True,
-        text=True,
-        timeout=50,
-        preexec_fn=lambda: [signal.signal(n, signal.SIG_DFL) for n in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)],
-    )
+    done = run_script(IMPORTING, tmp_path)
     assert done.stdout == f"{kind} True\n", done.stderr
 
 
@@ -133,15 +138,25 @@ print("ended")
 def test_a_signal_that_waits_for_an_import_does_not_come_after_the_end(tmp_path):
     """Another one is heeded first; the timer of the one that waits would end the process with SIGALRM."""
     (tmp_path / "forgetful.py").write_text(FORGETFUL.format(name="SIGTERM"))
-    done = subprocess.run(
-        [sys.executable, "-c", WAITING],
-        env=os.environ | {"PYTHONPATH": str(tmp_path)},
-        capture_output=True,
-        text=True,
-        timeout=50,
-        preexec_fn=lambda: [signal.signal(n, signal.SIG_DFL) for n in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)],
-    )
+    done = run_script(WAITING, tmp_path)
     assert (done.returncode, done.stdout) == (0, "ended\n"), done.stderr
+
+
+AFTERWARDS = """
+import os, signal, time
+from quadgraph import cli
+print(cli.main(["cache"]))
+try:
+    os.kill(os.getpid(), signal.SIGINT)
+    time.sleep(60)
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+
+
+def test_a_program_that_ran_a_command_line_can_still_be_interrupted(tmp_path):
+    done = run_script(AFTERWARDS, tmp_path)
+    assert done.stdout.endswith("0\ninterrupted\n"), done.stderr
 
 
 AGAIN = """
@@ -164,14 +179,7 @@ except cli.Stopped:
 """
 
 
-def test_more_signals_do_not_meet_the_cleaning_up():
+def test_more_signals_do_not_meet_the_cleaning_up(tmp_path):
     """Those that follow at once are the same wish; a later one is heeded again."""
-    numbers = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-    done = subprocess.run(
-        [sys.executable, "-c", AGAIN],
-        capture_output=True,
-        text=True,
-        timeout=50,
-        preexec_fn=lambda: [signal.signal(number, signal.SIG_DFL) for number in numbers],
-    )
+    done = run_script(AGAIN, tmp_path)
     assert done.stdout == "cleaned up\nended\n", done.stderr

@@ -64,13 +64,13 @@ def soup() -> Surface:
 
 def fins() -> Surface:
     """A cube with sheets that stand on its edges: edges of three triangles and more, everywhere."""
-    box, sheets = cube(8), []
+    sheets = []
     for axis in range(3):
         sheet = trimesh.creation.box((12, 12, 12)).subdivide()
         flat = sheet.vertices.copy()
         flat[:, axis] = 0
         sheets.append(Surface(flat + 4, sheet.faces.astype(np.int64)))
-    return join(moved(box, 0, 0, 0), *sheets)
+    return join(cube(8), *sheets)
 
 
 DEFECTS = {
@@ -92,13 +92,14 @@ DEFECTS = {
     "many holes": lambda: without(
         icosphere(4, 10), np.random.default_rng(3).random(len(icosphere(4, 10).triangles)) < 0.3
     ),
-    "walls without thickness": lambda: join(bowl(), moved(bowl(), 0, 0, 0), moved(bowl(4.0), 0, 0, 0)),
+    "walls without thickness": lambda: join(bowl(), bowl(), bowl(4.0)),
 }
 
 
 @pytest.mark.parametrize("defect", DEFECTS)
 def test_what_cannot_be_repaired_is_refused_with_the_way_out_and_baked_with_it(tmp_path: Path, defect: str):
-    mesh = write_obj(DEFECTS[defect](), tmp_path / "mesh.obj")
+    surface = DEFECTS[defect]()
+    mesh = write_obj(surface, tmp_path / "mesh.obj")
     options = {"unit": "mm", "levels": 1, "visibility_rays": 0, "relax_nodes": 0}
     with pytest.raises(InputError, match=r"mesh\.obj: .*(; --wrap auto bakes a closed surface around it)"):
         bake(mesh, tmp_path / "body.qgraph", BakeOptions(**options))
@@ -108,10 +109,9 @@ def test_what_cannot_be_repaired_is_refused_with_the_way_out_and_baked_with_it(t
     assert file.metadata["options"]["wrap"] == "auto"
     assert file.metadata["repairs"][0]["what"].startswith("wrapped at ")
     size = float(file.metadata["repairs"][0]["what"].split()[2])
-    low, high = DEFECTS[defect]().vertices.min(axis=0), DEFECTS[defect]().vertices.max(axis=0)
     found = file.sections["display/vertices"]
-    assert (found.min(axis=0) > low - size / 20).all()
-    assert (found.max(axis=0) < high + size / 20).all()
+    assert (found.min(axis=0) > surface.vertices.min(axis=0) - size / 20).all()
+    assert (found.max(axis=0) < surface.vertices.max(axis=0) + size / 20).all()
 
 
 def test_auto_does_not_go_in_through_a_hole():

@@ -93,6 +93,17 @@ def test_live_frames_do_more_the_more_changes(sphere, tmp_path, capsys):
     assert "off by" in printed
 
 
+def test_a_frame_has_the_pixels_that_are_asked_for(sphere, tmp_path, capsys):
+    live = [bench(tmp_path, sphere, "--live", "--side", side)["live"] for side in ("64", "128")]
+    resolve = [
+        next(each["bytes"] for each in found["kinds"][0]["passes"] if each["name"] == "resolve") for found in live
+    ]
+    assert [found["side"] for found in live] == [64, 128]
+    assert resolve[1] == 4 * resolve[0]
+    assert cli.main(["bench", sphere, "--side", "64"]) == 1
+    assert "--side belongs to --live, which is absent" in capsys.readouterr().err
+
+
 def test_solvers_have_curves_and_targets_and_are_drawn(sphere, tmp_path, capsys):
     pytest.importorskip("matplotlib", reason="matplotlib is not installed: pip install './python/validation[bench]'")
     record = bench(tmp_path, sphere, "--solvers", "--chart", str(tmp_path / "images"))

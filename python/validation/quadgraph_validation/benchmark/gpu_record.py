@@ -18,13 +18,14 @@ from quadgraph.core import load_core
 
 SCHEMA = "quadgraph-gpu/1"
 _PARTS = ("live", "live-1024", "passes", "solvers", "scaling")
+_PROCESSOR = "quadgraph cpu "  # what the drivers of processors are called
 _MACHINE = ("device", "driver", "copy", "cores", "commit", "version")
 
 
 def device(name: str) -> str:
     """The whole name of the device of that name, "" for the first GPU; "" if that is the processor."""
     found = load_core().copy_bandwidth(name)
-    return "" if found["device"] == load_core().copy_bandwidth("cpu")["device"] else str(found["device"])
+    return "" if found["driver"].startswith(_PROCESSOR) else str(found["device"])
 
 
 def record(folder: Path) -> dict[str, Any]:
@@ -95,8 +96,9 @@ def main() -> int:
     parser.add_argument("of", help="part of a device's name, or the folder")
     args = parser.parse_args()
     if args.what == "device":
-        print(device(args.of))
-        return 0 if device(args.of) else 1
+        found_device = device(args.of)
+        print(found_device)
+        return 0 if found_device else 1
     found = record(Path(args.of))
     atomic_file.write_json(Path(args.of) / "gpu.json", found)
     print("\n".join(summary(found)))
