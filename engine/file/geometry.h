@@ -1,4 +1,4 @@
-// Measures of a level's elements, in double precision.
+// Faces of a level's tets, and measures of its elements in double precision.
 #pragma once
 
 #include <algorithm>
@@ -10,6 +10,20 @@
 #include "engine/file/graph.h"
 
 namespace quadgraph {
+
+// Vertices of the face opposite to vertex k of a positive tet, counter-clockwise seen from outside.
+inline glm::uvec3 outward_face(const glm::uvec4& tet, int k) {
+  switch (k) {
+    case 0:
+      return {tet[1], tet[2], tet[3]};
+    case 1:
+      return {tet[0], tet[3], tet[2]};
+    case 2:
+      return {tet[0], tet[1], tet[3]};
+    default:
+      return {tet[0], tet[2], tet[1]};
+  }
+}
 
 // Six times the volume, mm^3; positive for a positively oriented tet.
 inline double tet_determinant(const Level& level, const glm::uvec4& tet) {

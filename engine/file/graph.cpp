@@ -146,10 +146,14 @@ void QuadGraph::AlignedDelete::operator()(std::byte* p) const {
 
 QuadGraph QuadGraph::parse(std::span<const std::byte> bytes, const std::string& name) {
   QuadGraph graph;
-  graph.allocate(bytes.size());
-  std::copy(bytes.begin(), bytes.end(), graph.bytes_.get());
-  graph.read(name);
+  const std::span<std::byte> own = graph.allocate(bytes.size());
+  std::copy(bytes.begin(), bytes.end(), own.begin());
+  graph.read(own, name);
   return graph;
+}
+
+void QuadGraph::check(std::span<const std::byte> bytes, const std::string& name) {
+  QuadGraph().read(bytes, name);
 }
 
 QuadGraph QuadGraph::load(const std::filesystem::path& path) {
@@ -162,20 +166,21 @@ QuadGraph QuadGraph::load(const std::filesystem::path& path) {
                  path.string());
   stream.seekg(0);
   QuadGraph graph;
-  graph.allocate(size);
-  stream.read(reinterpret_cast<char*>(graph.bytes_.get()), static_cast<std::streamsize>(size));
+  const std::span<std::byte> own = graph.allocate(size);
+  stream.read(reinterpret_cast<char*>(own.data()), static_cast<std::streamsize>(size));
   if (static_cast<std::uintmax_t>(stream.gcount()) != size) throw InputError(path.string() + ": short read");
-  graph.read(path.string());
+  graph.read(own, path.string());
   return graph;
 }
 
-void QuadGraph::allocate(std::size_t size) {
+std::span<std::byte> QuadGraph::allocate(std::size_t size) {
   bytes_.reset(static_cast<std::byte*>(::operator new[](size, block_alignment)));
-  byte_size_ = size;
+  return {bytes_.get(), size};
 }
 
-void QuadGraph::read(const std::string& name) {
-  const SectionTable table({bytes_.get(), byte_size_}, name);
+void QuadGraph::read(std::span<const std::byte> bytes, const std::string& name) {
+  byte_size_ = bytes.size();
+  const SectionTable table(bytes, name);
   const std::uint32_t count = count_levels(table);
   metadata_ = table.text("metadata");
   check_metadata(table, metadata_, count);

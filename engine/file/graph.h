@@ -77,6 +77,9 @@ class QuadGraph {
   // Reads and validates a file's bytes in memory; `name` stands for the file in messages. Throws FormatError.
   static QuadGraph parse(std::span<const std::byte> bytes, const std::string& name);
 
+  // Validates a file's bytes where they lie, which must be at a multiple of four. Throws FormatError.
+  static void check(std::span<const std::byte> bytes, const std::string& name);
+
   const std::vector<Level>& levels() const { return levels_; }  // finest first; empty: a surface alone
   const DisplayMesh& display() const { return display_; }
   const std::string& metadata() const { return metadata_; }  // JSON text, checked to be an object
@@ -89,8 +92,8 @@ class QuadGraph {
   };
 
   QuadGraph() = default;
-  void allocate(std::size_t size);
-  void read(const std::string& name);
+  std::span<std::byte> allocate(std::size_t size);
+  void read(std::span<const std::byte> bytes, const std::string& name);
   void validate(const std::string& name);
 
   std::unique_ptr<std::byte[], AlignedDelete> bytes_;

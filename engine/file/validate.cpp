@@ -42,14 +42,16 @@ void check_finite(const Place& place, const std::string& section, std::span<cons
   }
 }
 
+void check_index(const Place& place, const std::string& section, std::size_t row, std::size_t index,
+                 std::size_t limit) {
+  if (index < limit) return;
+  place.fail(section, row, "index " + std::to_string(index) + ", allowed is below " + std::to_string(limit));
+}
+
 template <typename Vector>
 void check_indices(const Place& place, const std::string& section, std::span<const Vector> values, std::size_t limit) {
   for (std::size_t i = 0; i < values.size(); ++i) {
-    for (int c = 0; c < Vector::length(); ++c) {
-      if (values[i][c] >= limit) {
-        place.fail(section, i, "index " + std::to_string(values[i][c]) + ", allowed is below " + std::to_string(limit));
-      }
-    }
+    for (int c = 0; c < Vector::length(); ++c) check_index(place, section, i, values[i][c], limit);
   }
 }
 
@@ -70,13 +72,11 @@ void check_weights(const Place& place, const std::string& section, std::span<con
 
 void check_transfer(const Place& place, const std::string& name, const Transfer& transfer, std::size_t rows,
                     std::size_t sources) {
-  expect_rows(place, name + "_index", transfer.index.size() / transfer.width, rows);
+  const std::string indices = name + "_index";
+  expect_rows(place, indices, transfer.index.size() / transfer.width, rows);
   expect_rows(place, name + "_weight", transfer.weight.size() / transfer.width, rows);
   for (std::size_t i = 0; i < transfer.index.size(); ++i) {
-    if (transfer.index[i] >= sources) {
-      place.fail(name + "_index", i / transfer.width,
-                 "index " + std::to_string(transfer.index[i]) + ", allowed is below " + std::to_string(sources));
-    }
+    check_index(place, indices, i / transfer.width, transfer.index[i], sources);
   }
   check_weights(place, name + "_weight", transfer.weight, transfer.width);
 }
@@ -120,25 +120,56 @@ void check_outside_link(const Place& place, const Level& level, std::size_t t, i
   }
 }
 
-// The neighbour across face k must link back, across a face with the same three vertices.
-void check_inner_link(const Place& place, const Level& level, std::size_t t, int k) {
+// Whether the neighbour across face k links back, across a face with the same three vertices.
+bool linked_back(const Level& level, std::size_t t, int k) {
   const std::uint32_t other = level.links[t][k];
   const glm::uvec3 face = outward_face(level.tets[t], k);
   for (int back = 0; back < 4; ++back) {
     if (level.links[other][back] != t) continue;
     const glm::uvec3 seen = outward_face(level.tets[other], back);
-    if (equal_up_to_rotation(face, glm::uvec3(seen.x, seen.z, seen.y))) return;
+    if (equal_up_to_rotation(face, glm::uvec3(seen.x, seen.z, seen.y))) return true;
   }
-  place.fail("links", t, "no link back from tet " + std::to_string(other) + " across the same face");
+  return false;
 }
+
+// One of the two directions of each link is looked up: as every one of them has another back, and there are as many of
+// the others, all have.
+class InnerLinks {
+ public:
+  InnerLinks(const Place& place, const Level& level) : place_(place), level_(level) {}
+
+  void add(std::size_t t, int k) {
+    (level_.links[t][k] > t ? forward_ : backward_) += 1;
+    if (level_.links[t][k] >= t && !linked_back(level_, t, k)) fail(t, k);
+  }
+
+  void finish() const {
+    if (forward_ == backward_) return;
+    for (std::size_t t = 0; t < level_.tets.size(); ++t) {
+      for (int k = 0; k < 4; ++k) {
+        if (level_.links[t][k] < t && !linked_back(level_, t, k)) fail(t, k);
+      }
+    }
+  }
+
+ private:
+  [[noreturn]] void fail(std::size_t t, int k) const {
+    place_.fail("links", t, "no link back from tet " + std::to_string(level_.links[t][k]) + " across the same face");
+  }
+
+  const Place& place_;
+  const Level& level_;
+  std::size_t forward_ = 0, backward_ = 0;
+};
 
 void check_links(const Place& place, const Level& level) {
   std::vector<bool> linked(level.faces.size(), false);
+  InnerLinks inner(place, level);
   for (std::size_t t = 0; t < level.tets.size(); ++t) {
     int outside = 0;
     for (int k = 0; k < 4; ++k) {
       if (level.links[t][k] < level.tets.size()) {
-        check_inner_link(place, level, t, k);
+        inner.add(t, k);
         continue;
       }
       check_outside_link(place, level, t, k);
@@ -147,6 +178,7 @@ void check_links(const Place& place, const Level& level) {
     }
     if (outside > 1) place.fail("links", t, "more than one outside face");
   }
+  inner.finish();
   const auto lonely = std::find(linked.begin(), linked.end(), false);
   if (lonely != linked.end()) {
     place.fail("faces", static_cast<std::size_t>(lonely - linked.begin()), "no tet links this surface node");
@@ -165,19 +197,6 @@ void check_surface_vertices(const Place& place, const Level& level) {
 
 }  // namespace
 
-glm::uvec3 outward_face(const glm::uvec4& tet, int k) {
-  switch (k) {
-    case 0:
-      return {tet[1], tet[2], tet[3]};
-    case 1:
-      return {tet[0], tet[3], tet[2]};
-    case 2:
-      return {tet[0], tet[1], tet[3]};
-    default:
-      return {tet[0], tet[2], tet[1]};
-  }
-}
-
 std::uint32_t count_surface_vertices(const Level& level) {
   std::uint32_t largest = 0;
   for (const glm::uvec3& face : level.faces) largest = std::max({largest, face.x, face.y, face.z});
@@ -193,7 +212,7 @@ void validate_indices(const Level& level, const std::string& file, std::uint32_t
   check_indices(place, "faces", level.faces, level.vertices.size());
   check_indices(place, "links", level.links, level.nodes.size());
   for (std::size_t f = 0; f < level.face_tets.size(); ++f) {
-    if (level.face_tets[f] >= level.tets.size()) place.fail("face_tets", f, "index out of range");
+    check_index(place, "face_tets", f, level.face_tets[f], level.tets.size());
   }
   check_face_kinds(place, level);
   validate_seen(level, file, index);
@@ -234,7 +253,7 @@ void validate_display(const DisplayMesh& display, const Level* finest, const std
   validate_size(display.vertices, file, "display/vertices");
   check_indices(place, "triangles", display.triangles, count);
   for (std::size_t i = 0; i < count; ++i) {
-    if (finest != nullptr && display.face[i] >= finest->faces.size()) place.fail("face", i, "index out of range");
+    if (finest != nullptr) check_index(place, "face", i, display.face[i], finest->faces.size());
     if (std::abs(glm::length(display.normals[i]) - 1.0f) > 1e-3f) place.fail("normals", i, "not of unit length");
   }
   if (finest == nullptr) return;

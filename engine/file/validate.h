@@ -30,9 +30,6 @@ void validate_seen_again(const Level& level, const std::string& file, std::uint3
 // At most one level has rows of what its faces see.
 void validate_seen_once(std::span<const Level> levels, const std::string& file);
 
-// Vertices of the face opposite to vertex k of a positive tet, counter-clockwise seen from outside.
-glm::uvec3 outward_face(const glm::uvec4& tet, int k);
-
 // The box around them is neither too small nor too large for single precision.
 void validate_size(std::span<const glm::vec3> vertices, const std::string& file, const std::string& section);
 

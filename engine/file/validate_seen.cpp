@@ -59,7 +59,12 @@ void check_rows(const Level& level, const std::string& file, std::uint32_t index
   }
   for (std::size_t f = 0; f < faces; ++f) {
     if (level.seen[f + 1] < level.seen[f]) fail(file, index, at(f) + "ends before it begins");
-    if (level.seen[f + 1] - level.seen[f] > level.seen_rays) fail(file, index, at(f) + "more entries than seen_rays");
+    const std::size_t entries = level.seen[f + 1] - level.seen[f];
+    if (entries > level.seen_rays) {
+      fail(file, index,
+           at(f) + std::to_string(entries) + " entries, allowed are at most " + std::to_string(level.seen_rays) +
+               ", the rays of a face");
+    }
   }
 }
 

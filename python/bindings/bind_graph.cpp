@@ -89,6 +89,17 @@ py::dict layout() {
   return d;
 }
 
+void check(const py::buffer& buffer, const std::string& name) {
+  const py::buffer_info info = buffer.request();
+  const std::span bytes(static_cast<const std::byte*>(info.ptr), static_cast<std::size_t>(info.size * info.itemsize));
+  const py::gil_scoped_release release;
+  if (reinterpret_cast<std::uintptr_t>(info.ptr) % 4 == 0) {
+    QuadGraph::check(bytes, name);
+  } else {
+    QuadGraph::parse(bytes, name);
+  }
+}
+
 }  // namespace
 
 void bind_graph(py::module_& module) {
@@ -129,6 +140,9 @@ void bind_graph(py::module_& module) {
         return QuadGraph::parse(std::as_bytes(std::span(text)), name);
       },
       py::arg("bytes"), py::arg("name") = "<bytes>", "The same from bytes in memory.");
+  module.def("check_qgraph", &check, py::arg("bytes"), py::arg("name"),
+             "Hold a .qgraph file's bytes against every rule of docs/qgraph-format.md. Raises FormatError naming the "
+             "section and the broken rule, its message beginning with `name`.");
   module.def("qgraph_layout", &layout, "Names, offsets and sizes of the header's and the section table's fields.");
 }
 

@@ -21,6 +21,7 @@ from quadgraph.base import child_process, outputs
 from quadgraph.base.errors import InputError, QuadGraphError, ToolError
 from quadgraph.base.progress import ProgressCallback
 from quadgraph.base.version import __version__
+from quadgraph.core import load_core
 from quadgraph.file import qgraph_file, sections
 from quadgraph.mesh import front, lod, mesh_io, solid, subdivide, wrap
 from quadgraph.mesh.surface import MesherInfo, Repair, SourceMesh, Surface
@@ -246,12 +247,11 @@ def check_options(output: Path, options: BakeOptions) -> None:
     child_process.check_limits(options.time_limit_s, options.memory_limit_bytes)
     _check_polygrid_options(options)
     subdivide.check(options.refine)
-    if isinstance(options.wrap, str) and options.wrap != wrap.AUTO:
-        raise InputError(f"wrap: {options.wrap!r} found, allowed are a size in mm and {wrap.AUTO}")
+    wrap.check(options.wrap)
     if not output.parent.is_dir():
         raise InputError(f"{output}: the folder {output.parent} does not exist")
-    if output.is_dir():
-        raise InputError(f"{output}: is a folder, a file name is needed")
+    outputs.check_kind(output)
+    load_core()  # holds what is written to the rules of the file
 
 
 def _check_polygrid_options(options: BakeOptions) -> None:

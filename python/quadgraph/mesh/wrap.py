@@ -27,6 +27,12 @@ _FINEST, _COARSEST = 1 / 1000, 1.0  # of the diagonal
 _SAMPLES = 50_000  # of the wrap's surface, whose distance is measured
 
 
+def check(size: float | str | None) -> None:
+    """Raise InputError for a text other than AUTO."""
+    if isinstance(size, str) and size != AUTO:
+        raise InputError(f"wrap: {size!r} found, allowed are a size in mm and {AUTO}")
+
+
 @dataclass(frozen=True)
 class Wrap:
     """A wrap and how far it is from the mesh: all lengths in mm.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import subprocess
 from dataclasses import replace
 
 from attack import texts
@@ -155,6 +156,58 @@ def few_files(rng: Rng) -> Case:
     return Case(f"{line[0]} {line[1]}, {files} files", line, (), outputs.put, (line[-1],), files=files)
 
 
+# The time of day jumps to and fro by years, from one question to the next.
+CLOCK = """
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <stdlib.h>
+#include <sys/time.h>
+#include <time.h>
+
+static long jump(void) {
+  static unsigned asked;
+  return atol(getenv("JUMP")) * (asked++ % 3 - 1L);
+}
+
+int clock_gettime(clockid_t clock, struct timespec* now) {
+  int (*real)(clockid_t, struct timespec*) = dlsym(RTLD_NEXT, "clock_gettime");
+  int result = real(clock, now);
+  if (clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE) now->tv_sec += jump();
+  return result;
+}
+
+int gettimeofday(struct timeval* now, void* zone) {
+  struct timespec ts;
+  clock_gettime(CLOCK_REALTIME, &ts);
+  now->tv_sec = ts.tv_sec;
+  now->tv_usec = ts.tv_nsec / 1000;
+  return 0;
+}
+
+time_t time(time_t* now) {
+  struct timespec ts;
+  clock_gettime(CLOCK_REALTIME, &ts);
+  if (now) *now = ts.tv_sec;
+  return ts.tv_sec;
+}
+"""
+
+
+def jumping_clock(rng: Rng) -> Case:
+    """A clock that is set forward and back while a program runs."""
+    baked = ("quadgraph", "render", "mesh.ply", "--unit", "mm", *outputs.SMALL, "-o", "out.png")
+    line, seconds = texts.pick(rng, [*outputs.WRITERS.values(), baked]), int(10 ** rng.uniform(0, 9))
+
+    def prepare(place: Place) -> None:
+        outputs.put(place)
+        command = ["cc", "-shared", "-fPIC", "-o", place.folder / "clock.so", "-x", "c", "-", "-ldl"]
+        subprocess.run(command, input=CLOCK, text=True, check=True, capture_output=True)
+
+    preloaded = {"LD_PRELOAD": "./clock.so", "JUMP": str(seconds)}
+    name = f"{line[0]} {line[1]} to {line[-1]}, a clock that jumps by {seconds} s"
+    return Case(name, line, (), prepare, (line[-1],), environment=preloaded, judge=whole, expect="fine", seconds=40)
+
+
 def two_writers(rng: Rng) -> Case:
     """Two processes that write one output at once: it is whole, and one of theirs."""
     file = texts.pick(rng, [name for name in outputs.WRITERS if name != "out.mp4"])
@@ -189,5 +242,6 @@ RECIPES = (
     read_only,
     no_temporary_folder,
     few_files,
+    jumping_clock,
     two_writers,
 )

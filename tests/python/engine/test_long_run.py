@@ -177,6 +177,25 @@ def rounds_of_frames(folder: Path, rounds: int, frames: int, device: str) -> lis
     return after
 
 
+@pytest.mark.long
+def test_a_hundred_thousand_frames_take_no_more_memory_than_ten_thousand(tmp_path):
+    """The light turns, and with it the material of every fourth frame; each is solved and drawn."""
+    engine = _core.Engine(write_levels(tmp_path / "sphere.qgraph", [icosphere(1, 10)]), device="cpu")
+    device, host = [], []
+    for tenth in range(10):
+        for frame in range(10_000):
+            engine.set_material(MATERIALS[frame // 4 % len(MATERIALS)])
+            engine.set_lights([f"directional:{frame % 7 - 3},-1,{tenth - 5}:1"])
+            balance = engine.solve(model="diffusion", correction=False)["energy"]["balance"]
+            assert np.abs(balance).max() < 1e-3, (tenth, frame)
+            engine.render(f"{7 * frame % 360},10", width=8, height=8)
+        device.append(_core.live_objects())
+        host.append(resident())
+    print(f"live {device[0]} and {device[-1]}, resident {[round(bytes_ / 1e6, 1) for bytes_ in host]} MB")
+    assert device[1:] == device[:-1]
+    assert max(host) <= host[0] + HOST_SLACK
+
+
 def show(stage, scene) -> bool:
     """Whether there were tets inside out. Fails where something is not finite."""
     stage.show(scene)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import subprocess
 import sys
@@ -75,3 +76,17 @@ def test_a_fork_is_told_at_once_and_makes_its_own(ring):
     assert done.returncode == 0, done.stderr
     assert "made before this process was forked" in said[0]
     assert said[1:] == ["True", "True"]
+
+
+def test_twenty_engines_of_one_process_answer_alike_and_leave_nothing(ring):
+    before = core.live_objects()
+    engines = [core.Engine(ring, device="cpu") for _ in range(20)]
+    for engine in engines:
+        engine.set_material("marble")
+    answers = [engine.solve()["energy"]["entered"] for engine in engines]
+    assert answers[1:] == answers[:-1]
+    with_twenty = core.live_objects()
+    assert with_twenty["device"] == before.get("device", 0) + 20
+    del engine, engines
+    gc.collect()
+    assert core.live_objects() == before

@@ -99,22 +99,22 @@ def test_what_faces_see_is_optional_and_read_as_written(parts, data, tmp_path):
         (lambda s: s.update({"level0/seen_rays": np.zeros(1, "<u4")}), r"level0/seen_rays: 0 found, 1 to 4096 allowed"),
         (
             lambda s: s.update({"level0/seen_rays": np.array([2], "<u4")}),
-            r"level0/seen: a row has 3 entries, at most 2",
+            r"level0/seen: row 2: 3 entries, allowed are at most 2",
         ),
-        (lambda s: s.update({"level0/seen_rays": np.array([2, 2], "<u4")}), r"level0/seen_rays: shape \(2,\)"),
-        (lambda s: s.update({"level0/seen": s["level0/seen"][:12]}), r"level0/seen: 12 values found, at least 13"),
+        (lambda s: s.update({"level0/seen_rays": np.array([2, 2], "<u4")}), r"level0/seen_rays: one number expected"),
+        (lambda s: s.update({"level0/seen": s["level0/seen"][:12]}), r"level0/seen: 12 values, expected at least 13"),
         (lambda s: s.update({"level0/seen": s["level0/seen"][:-1]}), r"level0/seen: the last row ends at 17"),
-        (lambda s: s["level0/seen"].__setitem__(0, 12), r"level0/seen: the first row begins at 12, 13 allowed"),
-        (lambda s: s["level0/seen"].__setitem__(4, 15), r"level0/seen: a row ends before it begins"),
-        (lambda s: s["level0/seen"].__setitem__(16, 12), r"level0/seen: index 12 found, 0 to 11 allowed"),
-        (lambda s: s["level0/seen"].__setitem__(16, 11), r"level0/seen: a face does not see itself"),
-        (lambda s: s["level0/seen"].__setitem__(14, 8), r"level0/seen: faces of a row are not in ascending order"),
+        (lambda s: s["level0/seen"].__setitem__(0, 12), r"level0/seen: row 0: must begin at 13"),
+        (lambda s: s["level0/seen"].__setitem__(4, 15), r"level0/seen: row 3: ends before it begins"),
+        (lambda s: s["level0/seen"].__setitem__(16, 12), r"level0/seen: row 11: face 12, allowed is below 12"),
+        (lambda s: s["level0/seen"].__setitem__(16, 11), r"level0/seen: row 11: a face does not see itself"),
+        (lambda s: s["level0/seen"].__setitem__(14, 8), r"level0/seen: row 2: faces are not in ascending order"),
         (
             lambda s: None,
             r"level0/seen: 4 of the 36 rays of 12 rows meet other faces than are stored, allowed are 2; bake",
         ),
-        (lambda s: s.pop("level0/seen"), r"section level0/seen is missing"),
-        (lambda s: s.pop("level0/seen_rays"), r"section level0/seen_rays is missing"),
+        (lambda s: s.pop("level0/seen"), r"expected 'level0/seen'"),
+        (lambda s: s.pop("level0/seen_rays"), r"expected 'level0/seen_rays'"),
     ],
 )
 def test_broken_rules_of_what_faces_see_are_named(parts, change, message, tmp_path):
@@ -152,7 +152,7 @@ def test_trailing_bytes_are_refused(data, extra):
     with pytest.raises(FormatError, match="file_size"):
         qgraph_file.parse(bytes(longer), "longer")
     longer[24:32] = len(longer).to_bytes(8, "little")
-    with pytest.raises(FormatError, match="sections end at"):
+    with pytest.raises(FormatError, match="the last section ends at"):
         qgraph_file.parse(bytes(longer), "longer")
 
 
@@ -163,7 +163,7 @@ def test_huge_shapes_are_refused_before_anything_is_allocated(data):
     forged[entry + 104 : entry + 112] = (2**64 - 12).to_bytes(8, "little")
     table = bytes(forged[64 : 64 + 128 * int.from_bytes(forged[16:20], "little")])
     forged[20:24] = zlib.crc32(table).to_bytes(4, "little")
-    with pytest.raises(FormatError, match="level0/vertices: size"):
+    with pytest.raises(FormatError, match="level0/vertices: shape does not fit"):
         qgraph_file.parse(bytes(forged), "forged")
 
 
@@ -191,24 +191,24 @@ def _unlink(sections: dict[str, np.ndarray]) -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (_poke("level0/tets", (0, 0), 14), r"level0/tets: index 14 found, 0 to 13 allowed"),
-        (_swap("level0/tets", (0, 0), (0, 1)), r"level0/tets: tet 0 is not positively oriented"),
-        (_poke("level1/vertices", (0, 0), np.nan), r"level1/vertices: a value is not finite"),
-        (_poke("level0/face_tets", 0, 24), r"level0/face_tets: index 24"),
-        (_swap("level0/face_tets", 0, 1), r"level0/face_tets: a surface node's link is another tet"),
-        (_swap("level0/faces", (0, 0), (0, 1)), r"level0/faces: a face is not the outward face"),
-        (_poke("level0/links", (0, 0), 36), r"level0/links: index 36"),
-        (_unlink, r"level0/links: inner links are not symmetric"),
-        (_poke("level0/inner_weight", (0, 0), -0.5), r"level0/inner_weight: a weight is negative"),
-        (_poke("level0/surface_weight", (0, 0), 7), r"level0/surface_weight: weights of a row sum to"),
-        (_poke("level0/barycentric_index", (0, 0), 12), r"level0/barycentric_index: index 12"),
-        (_poke("display/triangles", (0, 0), 24), r"display/triangles: index 24"),
-        (_poke("display/face", 0, 12), r"display/face: index 12"),
-        (_poke("display/barycentric", (0, 0), 2), r"display/barycentric: weights"),
-        (lambda s: s.pop("level0/inner_index"), r"section level0/inner_index is missing"),
-        (lambda s: s.update(extra=np.zeros(1, "<u4")), r"section extra is not known"),
-        (lambda s: s.update({"level0/tets": s["level0/tets"].astype("<f4")}), r"level0/tets: type float32"),
-        (lambda s: s.update({"level0/nodes": s["level0/nodes"][:-1]}), r"level0/nodes: shape \(35, 3\)"),
+        (_poke("level0/tets", (0, 0), 14), r"level0/tets: row 0: index 14, allowed is below 14"),
+        (_swap("level0/tets", (0, 0), (0, 1)), r"level0/tets: row 0: not positively oriented"),
+        (_poke("level1/vertices", (0, 0), np.nan), r"level1/vertices: row 0: a value is not finite"),
+        (_poke("level0/face_tets", 0, 24), r"level0/face_tets: row 0: index 24, allowed is below 24"),
+        (_swap("level0/face_tets", 0, 1), r"level0/face_tets: row 0: does not name the tet"),
+        (_swap("level0/faces", (0, 0), (0, 1)), r"level0/faces: row 0: not the outward face"),
+        (_poke("level0/links", (0, 0), 36), r"level0/links: row 0: index 36"),
+        (_unlink, r"level0/links: row 0: no link back from tet 2"),
+        (_poke("level0/inner_weight", (0, 0), -0.5), r"level0/inner_weight: row 0: a weight is negative"),
+        (_poke("level0/surface_weight", (0, 0), 7), r"level0/surface_weight: row 0: weights sum to"),
+        (_poke("level0/barycentric_index", (0, 0), 12), r"level0/barycentric_index: row 0: index 12"),
+        (_poke("display/triangles", (0, 0), 24), r"display/triangles: row 0: index 24"),
+        (_poke("display/face", 0, 12), r"display/face: row 0: index 12"),
+        (_poke("display/barycentric", (0, 0), 2), r"display/barycentric: row 0: weights"),
+        (lambda s: s.pop("level0/inner_index"), r"expected 'level0/inner_index'"),
+        (lambda s: s.update(extra=np.zeros(1, "<u4")), r"found 'extra', expected no more sections"),
+        (lambda s: s.update({"level0/tets": s["level0/tets"].astype("<f4")}), "level0/tets: wrong type or shape"),
+        (lambda s: s.update({"level0/nodes": s["level0/nodes"][:-1]}), r"level0/nodes: 35 rows, expected 36"),
     ],
 )
 def test_broken_rules_are_named(parts, change, message, tmp_path):
