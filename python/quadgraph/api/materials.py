@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from quadgraph import core
+from quadgraph.api.coefficients import Box, Coefficients, grid_of
 from quadgraph.api.values import RGB, Floats, Vector, plain
 from quadgraph.base.atomic_file import replacing
 from quadgraph.base.errors import InputError
@@ -103,6 +104,22 @@ class VolumeMaterial:
             raise InputError(f"spacing: {self.spacing} found, one number or three above 0 (mm) allowed")
         if not 1 <= self.eta <= 3:
             raise InputError(f"eta: {self.eta} found, 1 to 3 allowed")
+
+    @classmethod
+    def from_function(
+        cls, function: Coefficients, box: Box, spacing: float | Vector, eta: float = DEFAULT_ETA
+    ) -> VolumeMaterial:
+        """Sample a function of position on a grid.
+
+        function: given points of the body at rest, (n, 3) float32 mm, returns sigma_s_prime and sigma_a, 1/mm, each one
+        number, (n,), (n, 3), or (3,) for all points; box: the lowest and the highest corner, mm, as `Engine.box` has
+        them; spacing: of the samples, mm, the first at the lowest corner: a step of the function is smeared over as
+        much. `Engine.set_coefficients` samples at the middles of the tets instead. Raises InputError, also where the
+        grid would have more than 11,184,810 cells.
+        """
+        scattering, absorption = grid_of(function, box, spacing)
+        low = tuple(float(each) for each in np.asarray(box, float)[0])
+        return cls(scattering, absorption, spacing, low, eta)
 
     def _cells(self, name: str) -> Floats:
         """One of the coefficients as (nz, ny, nx, 3). Raises InputError."""
