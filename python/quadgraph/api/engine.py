@@ -44,16 +44,30 @@ class Engine:
         Raises FormatError, InputError, DeviceError.
         """
         self._open: core.Engine | None = core.Engine(Path(path), device, validation)
+        self._name = Path(path).name
         self._material: Material | VolumeMaterial | str | None = None
         self._solution: Solution | None = None
         self.lights = core.default_lights("", "y", self._open.graph.front)
 
     @classmethod
-    def _around(cls, engine: core.Engine) -> Self:
-        """Return one around the engine of a stage, whose scene sets material and lights."""
+    def _around(cls, engine: core.Engine, name: str) -> Self:
+        """Return one around the engine of a stage, whose scene sets material and lights; `name`: of the body's file."""
         self = cls.__new__(cls)
-        self._open, self._material, self._lights, self._solution = engine, None, (), None
+        self._open, self._name, self._material, self._lights, self._solution = engine, name, None, (), None
         return self
+
+    def __repr__(self) -> str:
+        """Return body, material, lights, method and device in one line."""
+        if self._open is None:
+            return f"Engine({self._name}, closed)"
+        levels, (low, high) = self._open.graph.levels, self.box
+        parts = [f"{' x '.join(f'{each:.4g}' for each in high - low)} mm"]
+        parts += [f"{len(levels[0].tets):,} tets, {len(levels)} level{'s' * (len(levels) > 1)}"] if levels else []
+        if (material := self._material) is not None:
+            parts.append(f"material {material}" if isinstance(material, str) else f"a {type(material).__name__}")
+        parts += [f"{len(self._lights)} light{'s' * (len(self._lights) != 1)}"] if self._lights else []
+        parts += [f"solved by {self._solution.method}"] if self._solution else []
+        return f"Engine({self._name}: {', '.join(parts)}; {self.device})"
 
     @property
     def _engine(self) -> core.Engine:

@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from quadgraph import core
 from quadgraph.api.coefficients import Box, Coefficients, grid_of
+from quadgraph.api.reprs import members_text, text, with_unit
 from quadgraph.api.values import RGB, Floats, Vector, plain
 from quadgraph.base.atomic_file import replacing
 from quadgraph.base.errors import InputError
@@ -23,7 +24,7 @@ from quadgraph.base.units import DEFAULT_ETA
 PatternName: TypeAlias = Literal["none", "veins", "clouds", "bands", "rings", "spots", "checker", "layers"]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Material:
     """Coefficients, 1/mm: one number, or red, green, blue. Where one is wanted, the text of --material does as well.
 
@@ -46,6 +47,10 @@ class Material:
         for each in fields(self):
             object.__setattr__(self, each.name, plain(getattr(self, each.name)))
         core.material_json(self.text)
+
+    def __repr__(self) -> str:
+        """Return name and members in one line, with their units."""
+        return members_text(self)
 
     @staticmethod
     def parse(text: str) -> Material:
@@ -76,7 +81,7 @@ def _numbers(value: object) -> str:
     return "/".join(map(str, value)) if isinstance(value, tuple) else str(value)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class VolumeMaterial:
     """Coefficients at the middles of the cells of a grid, linear between them.
 
@@ -104,6 +109,15 @@ class VolumeMaterial:
             raise InputError(f"spacing: {self.spacing} found, one number or three above 0 (mm) allowed")
         if not 1 <= self.eta <= 3:
             raise InputError(f"eta: {self.eta} found, 1 to 3 allowed")
+
+    def __repr__(self) -> str:
+        """Return cells and ranges in one line, with their units."""
+        size = " x ".join(map(str, np.shape(self.sigma_a)[2::-1]))
+        ranges = ", ".join(
+            f"{name}={np.min(values):.4g} to {np.max(values):.4g} 1/mm"
+            for name, values in (("sigma_s_prime", self.sigma_s_prime), ("sigma_a", self.sigma_a))
+        )
+        return f"VolumeMaterial({size} cells of {with_unit('spacing', self.spacing)}, {ranges}, eta={text(self.eta)})"
 
     @classmethod
     def from_function(

@@ -35,6 +35,10 @@ class Stage:
         """Close."""
         self.close()
 
+    def __repr__(self) -> str:
+        """Return what is shown, in one line."""
+        return "Stage(closed)" if self._stage is None else f"Stage({self._engine or 'no scene is shown'})"
+
     def close(self) -> None:
         """Free the device's memory; whatever is asked afterwards raises InputError."""
         self._forget()
@@ -72,7 +76,7 @@ class Stage:
         self._open.show(wanted._compiled())
         self._scene = wanted
         if self._engine is None:
-            self._engine = Engine._around(self._open.engine)
+            self._engine = Engine._around(self._open.engine, Path(wanted.body).name)
 
     def solve(self) -> Solution:
         """Solve with the scene's options. Raises InputError, SolverError."""

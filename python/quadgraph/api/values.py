@@ -10,6 +10,8 @@ from typing import Any, ClassVar, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from quadgraph.api.reprs import members_text
+
 Floats: TypeAlias = npt.NDArray[np.float32]
 Doubles: TypeAlias = npt.NDArray[np.float64]
 Vector: TypeAlias = Sequence[float] | npt.NDArray[np.floating[Any]]  # x, y, z
@@ -32,7 +34,7 @@ def plain_members(members: Mapping[str, Any]) -> dict[str, Any]:
     return {name: plain_members(v) if isinstance(v, Mapping) else plain(v) for name, v in members.items()}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Value:
     """A value of one `type`; members that are None are left to the engine."""
 
@@ -42,6 +44,10 @@ class Value:
         """Make members plain."""
         for each in fields(self):
             object.__setattr__(self, each.name, plain(getattr(self, each.name)))
+
+    def __repr__(self) -> str:
+        """Return name and members in one line, with their units."""
+        return members_text(self)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the object that a scene file has for it: `type` and the members that are not None."""
