@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from quadgraph.api.values import Floats, Vector
+from quadgraph.api.values import Floats, Vector, numbers, single
 from quadgraph.base.errors import InputError
 
 Coefficients: TypeAlias = Callable[[Floats], tuple[npt.ArrayLike, npt.ArrayLike]]
@@ -43,7 +43,8 @@ def grid_of(function: Coefficients, box: Box, spacing: float | Vector) -> tuple[
     # A rounding error of the box's size is no reason for another layer.
     counts = np.maximum(np.ceil(extent / steps - 1e-6), 0) + 1
     if math.prod(counts.tolist()) > MOST_CELLS:
-        least = (math.prod(extent.tolist()) / MOST_CELLS) ** (1 / 3)
+        wide = extent[extent > 0].tolist()
+        least = (math.prod(wide) / MOST_CELLS) ** (1 / len(wide))
         size = " x ".join(f"{count:.6g}" for count in counts)
         raise InputError(
             f"spacing: {_listed(steps)} mm makes {size} cells in the box, at most {MOST_CELLS:,} are allowed: "
@@ -59,38 +60,29 @@ def grid_of(function: Coefficients, box: Box, spacing: float | Vector) -> tuple[
 def _checked(name: str, values: npt.ArrayLike, points: Floats) -> Floats:
     """Values of a function at points as (n, 3) float32. Raises InputError."""
     where, n = f"{name} of the function", len(points)
-    try:
-        array = np.asarray(values)
-    except ValueError as error:
-        raise InputError(f"{where}: rows of several lengths found, numbers are wanted") from error
-    if array.dtype.kind not in "fiub":
-        raise InputError(f"{where}: {array.dtype} found, numbers are wanted")
+    array = numbers(where, values, "numbers are wanted")
     try:
         array = np.broadcast_to(array[:, None] if array.shape == (n,) else array, points.shape)
     except ValueError as error:
         wanted = f"one number, ({n},), ({n}, 3) or (3,) is wanted for {n} points"
         raise InputError(f"{where}: shape {array.shape} found; {wanted}") from error
-    with np.errstate(over="ignore"):
-        single = array.astype(np.float32)
-    wrong = ~(np.isfinite(single) & (single >= 0))
+    found = single(array)
+    wrong = ~(np.isfinite(found) & (found >= 0))
     if wrong.any():
         row, channel = np.argwhere(wrong)[0]
         raise InputError(
             f"{where}: {array[row, channel]} found at {_listed(points[row])} mm, finite numbers >= 0 (1/mm) in single "
             "precision are allowed"
         )
-    return single
+    return found
 
 
 def _corners(box: Box) -> npt.NDArray[np.float64]:
     """The corners of a box, (2, 3) mm. Raises InputError."""
-    try:
-        corners = np.asarray(box, np.float64)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"box: {_what(box)} found, the lowest and the highest corner are wanted (mm)") from error
+    corners = numbers("box", box, "the lowest and the highest corner are wanted (mm)").astype(np.float64)
     if corners.shape != (2, 3):
         raise InputError(f"box: shape {corners.shape} found, (2, 3) is wanted: lowest and highest corner (mm)")
-    if not (np.isfinite(corners).all() and (corners[0] <= corners[1]).all()):
+    if not (np.isfinite(single(corners)).all() and (corners[0] <= corners[1]).all()):
         raise InputError(
             f"box: {_listed(corners[0])} to {_listed(corners[1])} mm found, finite corners are wanted, the lowest first"
         )
@@ -99,17 +91,14 @@ def _corners(box: Box) -> npt.NDArray[np.float64]:
 
 def _steps(spacing: float | Vector) -> npt.NDArray[np.float64]:
     """The spacing along x, y, z, mm. Raises InputError."""
-    try:
-        steps = np.asarray(spacing, np.float64)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"spacing: {_what(spacing)} found, one number or three are wanted (mm)") from error
+    steps = numbers("spacing", spacing, "one number or three are wanted (mm)").astype(np.float64)
     if steps.shape not in ((), (3,)) or not (np.isfinite(steps).all() and (steps > 0).all()):
         raise InputError(f"spacing: {spacing} found, one number or three above 0 (mm) allowed")
     return np.broadcast_to(steps, 3)
 
 
-def _listed(numbers: npt.NDArray[Any]) -> str:
-    return "(" + ", ".join(f"{number:.6g}" for number in numbers) + ")"
+def _listed(found: npt.NDArray[Any]) -> str:
+    return "(" + ", ".join(f"{number:.6g}" for number in found) + ")"
 
 
 def _what(found: object) -> str:

@@ -22,7 +22,7 @@ from quadgraph.api.mesh_fields import MeshFields, Part, of_body, of_surface
 from quadgraph.api.options import MOTION, Camera, MotionOptions, PictureOptions
 from quadgraph.api.picture import Picture
 from quadgraph.api.solution import Solution
-from quadgraph.api.values import Floats, plain_members
+from quadgraph.api.values import Floats, numbers, plain_members, single
 from quadgraph.base.errors import InputError
 from quadgraph.base.units import DEFAULT_ETA
 
@@ -212,8 +212,9 @@ class Engine:
 
     def _fields(self, part: Part) -> MeshFields:
         """Mesh and fields of a part. Raises InputError."""
-        if part not in get_args(Part):
-            raise InputError(f"part: {part!r} found, {' or '.join(map(repr, get_args(Part)))} allowed")
+        if not isinstance(part, str) or part not in get_args(Part):
+            found = repr(part) if isinstance(part, str) else type(part).__name__
+            raise InputError(f"part: {found} found, {' or '.join(map(repr, get_args(Part)))} allowed")
         level = self._engine.graph.levels[0]
         if part == "surface":
             surface = self.surface()
@@ -273,11 +274,7 @@ class Engine:
 
 def _as_points(points: npt.ArrayLike) -> Floats:
     """Points, mm, as float32. Raises InputError."""
-    try:
-        with np.errstate(over="ignore"):
-            places = np.asarray(points, np.float32)
-    except (TypeError, ValueError) as error:
-        raise InputError("points: no array of numbers found, (n, 3) or (..., 3) is wanted (mm)") from error
+    places = single(numbers("points", points, "(n, 3) or (..., 3) is wanted (mm)"))
     if places.ndim < 1 or places.shape[-1] != 3:
         raise InputError(f"points: shape {places.shape} found, (n, 3) or (..., 3) is wanted (mm)")
     return places

@@ -74,7 +74,10 @@ class Stage:
         if self._scene is None or self._scene.body != wanted.body:
             self._forget()
         self._open.show(wanted._compiled())
+        moved = self._scene is not None and self._scene.deformation != wanted.deformation
         self._scene = wanted
+        if self._engine is not None and moved:
+            self._engine._solution = None
         if self._engine is None:
             self._engine = Engine._around(self._open.engine, Path(wanted.body).name)
 

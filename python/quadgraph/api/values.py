@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from quadgraph.api.reprs import members_text
+from quadgraph.base.errors import InputError
 
 Floats: TypeAlias = npt.NDArray[np.float32]
 Doubles: TypeAlias = npt.NDArray[np.float64]
@@ -27,6 +28,24 @@ def plain(value: object) -> Any:
     if isinstance(value, list | tuple):
         return tuple(plain(item) for item in value)
     return value
+
+
+def numbers(name: str, value: object, wanted: str) -> npt.NDArray[Any]:
+    """An array of real numbers. Raises InputError that names the value, what was found and what is `wanted`."""
+    try:
+        array = np.asarray(value)
+    except ValueError as error:
+        raise InputError(f"{name}: rows of several lengths found, {wanted}") from error
+    if array.dtype.kind not in "fiub":
+        found = "text" if array.dtype.kind in "SU" else "no number" if array.dtype.kind == "O" else array.dtype
+        raise InputError(f"{name}: {found} found, {wanted}")
+    return array
+
+
+def single(values: npt.NDArray[Any]) -> Floats:
+    """Numbers in single precision, infinite where they are beyond it."""
+    with np.errstate(over="ignore"):
+        return values.astype(np.float32)
 
 
 def plain_members(members: Mapping[str, Any]) -> dict[str, Any]:

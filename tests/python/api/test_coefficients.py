@@ -167,14 +167,17 @@ def test_what_a_function_must_not_return_is_named(engine, returned, said):
     [
         (BOX, 0, "spacing: 0 found, one number or three above 0"),
         (BOX, (1, 2), "spacing: .* found"),
-        (BOX, "fine", "spacing: str found"),
+        (BOX, "fine", "spacing: text found"),
         (BOX, float("nan"), "spacing: nan found"),
         (BOX, 1e-3, "spacing: .* makes 16001 x 8001 x 8001 cells in the box, at most 11,184,810 .* about 0.0473"),
         (BOX, 1e-300, "take more"),
+        (([0, 0, 0], [10, 10, 0]), 1e-4, r"100001 x 100001 x 1 cells .* about 0.00314 mm"),
+        (BOX, 1 + 2j, "spacing: complex128 found"),
         ((BOX[1], BOX[0]), 1, "box: .* the lowest first"),
         ((BOX[0], (np.inf, 1, 1)), 1, "box: .* finite corners"),
+        ((BOX[0], (1e300, 4, 4)), 1, "box: .* finite corners"),
         (BOX[0], 1, r"box: shape \(3,\) found, \(2, 3\) is wanted"),
-        ("all", 1, "box: str found"),
+        ("all", 1, "box: text found"),
     ],
 )
 def test_a_grid_that_cannot_be_is_named(box, spacing, said):
@@ -196,7 +199,7 @@ def test_points_of_any_shape_are_found(engine):
     assert np.isnan(engine.fluence_at([[0, 0, np.nan], [0, 0, 1e200]])).all()
 
 
-@pytest.mark.parametrize("points", [0, [], [[0, 0]], "middle", [[0, 0, "up"]], [[0, 0], [0]]])
+@pytest.mark.parametrize("points", [0, [], [[0, 0]], "x", [[0, 0, "up"]], [[0, 0], [0]], [[0, 0, 1j]], [[None] * 3]])
 def test_points_of_another_shape_are_named(engine, points):
     engine.material = "wax"
     engine.solve(cycles=1, correction=False)

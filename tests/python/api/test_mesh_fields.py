@@ -151,7 +151,7 @@ def test_pyvista_finds_the_same_fluence(engine):
     assert sampled == pytest.approx(engine.fluence_at(points), rel=1e-3)
 
 
-@pytest.mark.parametrize("part", ["inside", "", None])
+@pytest.mark.parametrize("part", ["inside", "", None, np.ones(2)])
 def test_a_part_that_there_is_not_is_named(engine, part):
     engine.solve()
     with pytest.raises(InputError, match=r"part: .* found, 'body' or 'surface' allowed"):
