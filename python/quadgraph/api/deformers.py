@@ -20,7 +20,7 @@ Triangles: TypeAlias = Sequence[Sequence[int]] | npt.NDArray[np.integer[Any]]
 Points: TypeAlias = Sequence[Vector] | npt.NDArray[np.floating[Any]]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Deformer(Value):
     """Base of all steps. Where one is wanted, the object of a scene file does as well.
 
@@ -28,7 +28,7 @@ class Deformer(Value):
     """
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class _AboutCentre(Deformer):
     """What turns or scales about a point."""
 
@@ -36,7 +36,7 @@ class _AboutCentre(Deformer):
     centre: Vector | None = None
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class _AlongAxis(_AboutCentre):
     """What changes along an axis, within a range of it."""
 
@@ -44,7 +44,7 @@ class _AlongAxis(_AboutCentre):
     range_mm: Vector | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Twist(_AlongAxis):
     """Sections across the axis turn, by up to `degrees` (at most 3600)."""
 
@@ -52,7 +52,7 @@ class Twist(_AlongAxis):
     degrees: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Bend(_AlongAxis):
     """The axis becomes an arc of `degrees` to the side `towards`, its length kept."""
 
@@ -61,7 +61,7 @@ class Bend(_AlongAxis):
     towards: Vector | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Taper(_AlongAxis):
     """Sections across the axis are scaled, from 1 to `factor`."""
 
@@ -69,7 +69,7 @@ class Taper(_AlongAxis):
     factor: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Stretch(_AlongAxis):
     """The range along the axis becomes `factor` times as long."""
 
@@ -77,7 +77,7 @@ class Stretch(_AlongAxis):
     factor: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Transform(_AboutCentre):
     """Scaled along x, y, z about the centre, turned about the axis, moved by `translate`, mm."""
 
@@ -87,7 +87,7 @@ class Transform(_AboutCentre):
     translate: Vector | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Lattice(Deformer):
     """Free-form deformation by displacements of the control points of a box [Sederberg and Parry 1986].
 
@@ -101,7 +101,7 @@ class Lattice(Deformer):
     box: Mapping[str, Vector] | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Cage(Deformer):
     """Mean value coordinates in a closed triangle mesh [Ju et al. 2005].
 
@@ -124,13 +124,17 @@ class Shapes:
         """Copy the arrays. Raises InputError."""
         self._shapes = core.Shapes(np.asarray(display, np.float32), [np.asarray(each, np.float32) for each in levels])
 
+    def __repr__(self) -> str:
+        """Return their number."""
+        return f"Shapes({self.count})"
+
     @property
     def count(self) -> int:
         """How many shapes there are."""
         return self._shapes.count
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Displaced(Deformer):
     """The weighted sum of given displacements of all vertices.
 

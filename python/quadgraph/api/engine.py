@@ -3,28 +3,32 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self, TypeAlias, Unpack
+from typing import TYPE_CHECKING, Any, Literal, Self, Unpack, get_args, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from quadgraph import core
+from quadgraph.api.coefficients import Coefficients, coefficients_at
 from quadgraph.api.deformers import Deformer, as_dict
 from quadgraph.api.fields import Fluence, SurfaceField
 from quadgraph.api.lights import Light, as_light
 from quadgraph.api.materials import Material, VolumeMaterial
+from quadgraph.api.mesh_fields import MeshFields, Part, of_body, of_surface
 from quadgraph.api.options import MOTION, Camera, MotionOptions, PictureOptions
 from quadgraph.api.picture import Picture
 from quadgraph.api.solution import Solution
-from quadgraph.api.values import Floats, plain_members
+from quadgraph.api.values import Floats, numbers, plain_members, single
 from quadgraph.base.errors import InputError
 from quadgraph.base.units import DEFAULT_ETA
 
-Coefficients: TypeAlias = Callable[[Floats], tuple[npt.ArrayLike, npt.ArrayLike]]
+if TYPE_CHECKING:
+    import meshio
+    import pyvista
 
 
 class Engine:
@@ -40,16 +44,30 @@ class Engine:
         Raises FormatError, InputError, DeviceError.
         """
         self._open: core.Engine | None = core.Engine(Path(path), device, validation)
+        self._name = Path(path).name
         self._material: Material | VolumeMaterial | str | None = None
         self._solution: Solution | None = None
         self.lights = core.default_lights("", "y", self._open.graph.front)
 
     @classmethod
-    def _around(cls, engine: core.Engine) -> Self:
-        """Return one around the engine of a stage, whose scene sets material and lights."""
+    def _around(cls, engine: core.Engine, name: str) -> Self:
+        """Return one around the engine of a stage, whose scene sets material and lights; `name`: of the body's file."""
         self = cls.__new__(cls)
-        self._open, self._material, self._lights, self._solution = engine, None, (), None
+        self._open, self._name, self._material, self._lights, self._solution = engine, name, None, (), None
         return self
+
+    def __repr__(self) -> str:
+        """Return body, material, lights, method and device in one line."""
+        if self._open is None:
+            return f"Engine({self._name}, closed)"
+        levels, (low, high) = self._open.graph.levels, self.box
+        parts = [f"{' x '.join(f'{each:.4g}' for each in high - low)} mm"]
+        parts += [f"{len(levels[0].tets):,} tets, {len(levels)} level{'s' * (len(levels) > 1)}"] if levels else []
+        if (material := self._material) is not None:
+            parts.append(f"material {material}" if isinstance(material, str) else f"a {type(material).__name__}")
+        parts += [f"{len(self._lights)} light{'s' * (len(self._lights) != 1)}"] if self._lights else []
+        parts += [f"solved by {self._solution.method}"] if self._solution else []
+        return f"Engine({self._name}: {', '.join(parts)}; {self.device})"
 
     @property
     def _engine(self) -> core.Engine:
@@ -87,16 +105,15 @@ class Engine:
     def set_coefficients(self, function: Coefficients, eta: float = DEFAULT_ETA) -> None:
         """Take coefficients from a function in place of a material (not with shortest-path, which wants a grid).
 
-        function: given points of the body at rest, (n, 3) float32 mm, returns sigma_s_prime and sigma_a, 1/mm, both of
-        a shape that broadcasts to (n, 3); it is called once for every level. Raises InputError.
+        function: given points of the body at rest, (n, 3) float32 mm, returns sigma_s_prime and sigma_a, 1/mm, each one
+        number, (n,), (n, 3), or (3,) for all points; it is called once for every level, at the middles of tets and
+        outside faces. `VolumeMaterial.from_function` makes a grid of it. Raises InputError, and sets nothing, for other
+        shapes and for numbers that are negative or not finite.
         """
         if np.ndim(eta) or np.asarray(eta).dtype.kind not in "fiub":
             raise InputError(f"eta: {type(eta).__name__} found, a number is wanted")
-        for number, level in enumerate(self._engine.graph.levels):
-            points = np.array(level.nodes)
-            scattering, absorption = (
-                np.broadcast_to(np.asarray(c, np.float32), points.shape) for c in function(points)
-            )
+        found = [coefficients_at(function, np.array(level.nodes)) for level in self._engine.graph.levels]
+        for number, (scattering, absorption) in enumerate(found):
             self._engine.set_optical(number, scattering, absorption, float(eta))
         self._material = None
 
@@ -161,12 +178,50 @@ class Engine:
         return Fluence(*core.fluence(self._engine, self._solved_inside()))
 
     def fluence_at(self, points: npt.ArrayLike) -> Floats:
-        """Return the fluence of scattered light, W/mm^2, at points (n, 3), mm, of the shape as it is shown: (n, 3).
+        """Return the fluence of scattered light, W/mm^2, at points (..., 3), mm, of the shape as it is shown: (..., 3).
 
         Linear between the vertices of tets with fem and polygrids, one value a tet with quadgraph-fv and
-        quadgraph-fdm; NaN outside the body. Raises InputError as `fluence`.
+        quadgraph-fdm; NaN outside the body. Raises InputError as `fluence`, and for points of another shape.
         """
-        return core.fluence_at(self._engine, self._solved_inside(), np.asarray(points, np.float32))
+        method, places = self._solved_inside(), _as_points(points)
+        return core.fluence_at(self._engine, method, places.reshape(-1, 3)).reshape(places.shape)
+
+    def to_meshio(self, part: Part = "body") -> meshio.Mesh:
+        """Return the last solution on the mesh of the shape as it is shown, mm, as meshio has it; it writes .vtu files.
+
+        part: "body", the tets, with `fluence` of scattered light, W/mm^2, in cells (the mean of each) and at points (a
+        method with one value a tet: the mean of the tets around, weighted by their volumes), and `sigma_s_prime` and
+        `sigma_a`, 1/mm, in cells, as the solve had them; or "surface", the outside triangles, with `q`, `phi`,
+        `exitance` and `unscattered` of `SurfaceField` in cells. All are (n, 3), red, green, blue. Raises InputError as
+        `fluence`, for another part, and without the package: pip install 'quadgraph[meshio]'.
+        """
+        return self._fields(part).to_meshio()
+
+    @overload
+    def to_pyvista(self, part: Literal["body"] = "body") -> pyvista.UnstructuredGrid: ...
+    @overload
+    def to_pyvista(self, part: Literal["surface"]) -> pyvista.PolyData: ...
+
+    def to_pyvista(self, part: Part = "body") -> pyvista.UnstructuredGrid | pyvista.PolyData:
+        """Return what `to_meshio` does as PyVista, and so VTK, has it: an unstructured grid of tets, or for "surface" a
+        mesh of triangles.
+
+        Raises InputError as `to_meshio`; the package is had by pip install 'quadgraph[pyvista]'.
+        """
+        return self._fields(part).to_pyvista()
+
+    def _fields(self, part: Part) -> MeshFields:
+        """Mesh and fields of a part. Raises InputError."""
+        if not isinstance(part, str) or part not in get_args(Part):
+            found = repr(part) if isinstance(part, str) else type(part).__name__
+            raise InputError(f"part: {found} found, {' or '.join(map(repr, get_args(Part)))} allowed")
+        level = self._engine.graph.levels[0]
+        if part == "surface":
+            surface = self.surface()
+            return of_surface(core.solved_tets(self._engine)[0], np.array(level.faces), surface)
+        fluence = self.fluence()
+        vertices, scattering, absorption = core.solved_tets(self._engine)
+        return of_body(vertices, np.array(level.tets), fluence.values, scattering, absorption)
 
     def _solved_inside(self) -> str:
         """The method of the last solve, if it left fluence in the tets. Raises InputError."""
@@ -215,6 +270,14 @@ class Engine:
         for each in self._engine.passes:
             times[each["name"]] = times.get(each["name"], 0.0) + each["time_ms"]
         return times
+
+
+def _as_points(points: npt.ArrayLike) -> Floats:
+    """Points, mm, as float32. Raises InputError."""
+    places = single(numbers("points", points, "(n, 3) or (..., 3) is wanted (mm)"))
+    if places.ndim < 1 or places.shape[-1] != 3:
+        raise InputError(f"points: shape {places.shape} found, (n, 3) or (..., 3) is wanted (mm)")
+    return places
 
 
 @cache

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
+from quadgraph.api.reprs import channels
 from quadgraph.api.values import Floats
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class SurfaceField:
     """One sample per outside face of the finest level, float32, whatever the method.
 
@@ -24,8 +27,14 @@ class SurfaceField:
     exitance: Floats
     unscattered: Floats
 
+    def __repr__(self) -> str:
+        """Return number, area and mean exitance in one line."""
+        mean = np.average(self.exitance, axis=0, weights=self.area)
+        faces = f"{len(self.area):,} faces, {self.area.sum():.4g} mm^2"
+        return f"SurfaceField({faces}, exitance {channels(mean, 'W/mm^2')} on average)"
 
-@dataclass(frozen=True, eq=False)
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Fluence:
     """Fluence of scattered light in the body, at the points where the method has its unknowns, float32.
 
@@ -35,3 +44,7 @@ class Fluence:
 
     points: Floats
     values: Floats
+
+    def __repr__(self) -> str:
+        """Return number and range in one line."""
+        return f"Fluence({len(self.points):,} points, {self.values.min():.4g} to {self.values.max():.4g} W/mm^2)"

@@ -11,7 +11,7 @@ from quadgraph import core
 from quadgraph.api.values import RGB, Value, Vector
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Light(Value):
     """Base of all lights. Where one is wanted, the text that --light takes does as well.
 
@@ -29,7 +29,7 @@ class Light(Value):
         return core.light_text(json.dumps(self.to_dict()))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class DirectionalLight(Light):
     """Parallel light. direction: the way it travels; irradiance: W/mm^2 on a plane that faces it."""
 
@@ -38,7 +38,7 @@ class DirectionalLight(Light):
     irradiance: RGB
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class PointLight(Light):
     """Isotropic light from a point: power / (4 pi d^2) at distance d. position: mm; power: W."""
 
@@ -47,7 +47,7 @@ class PointLight(Light):
     power: RGB
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class AmbientLight(Light):
     """Uniform light from all sides that the body does not hide. irradiance: W/mm^2."""
 
@@ -55,7 +55,7 @@ class AmbientLight(Light):
     irradiance: RGB
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class SpotLight(Light):
     """A cone of light. position: mm; direction: of its axis, the way the light travels; power: W in the whole cone.
 
@@ -70,7 +70,7 @@ class SpotLight(Light):
     edge: float | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class RectangleLight(Light):
     """A rectangle of uniform radiance power / (pi |u x v|) on the side to which u x v points.
 
@@ -84,7 +84,7 @@ class RectangleLight(Light):
     power: RGB
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ProjectorLight(Light):
     """An image thrown on the body. position: mm; direction: of its axis; up: to the image's top.
 
@@ -101,7 +101,7 @@ class ProjectorLight(Light):
     up: Vector | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class EnvironmentLight(Light):
     """All that is around, a picture by longitude and latitude. file: .exr or .hdr.
 

@@ -14,6 +14,8 @@ import numpy as np
 import numpy.typing as npt
 
 from quadgraph import core
+from quadgraph.api.coefficients import Box, Coefficients, grid_of
+from quadgraph.api.reprs import members_text, text, with_unit
 from quadgraph.api.values import RGB, Floats, Vector, plain
 from quadgraph.base.atomic_file import replacing
 from quadgraph.base.errors import InputError
@@ -22,7 +24,7 @@ from quadgraph.base.units import DEFAULT_ETA
 PatternName: TypeAlias = Literal["none", "veins", "clouds", "bands", "rings", "spots", "checker", "layers"]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Material:
     """Coefficients, 1/mm: one number, or red, green, blue. Where one is wanted, the text of --material does as well.
 
@@ -45,6 +47,10 @@ class Material:
         for each in fields(self):
             object.__setattr__(self, each.name, plain(getattr(self, each.name)))
         core.material_json(self.text)
+
+    def __repr__(self) -> str:
+        """Return name and members in one line, with their units."""
+        return members_text(self)
 
     @staticmethod
     def parse(text: str) -> Material:
@@ -75,7 +81,7 @@ def _numbers(value: object) -> str:
     return "/".join(map(str, value)) if isinstance(value, tuple) else str(value)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class VolumeMaterial:
     """Coefficients at the middles of the cells of a grid, linear between them.
 
@@ -103,6 +109,31 @@ class VolumeMaterial:
             raise InputError(f"spacing: {self.spacing} found, one number or three above 0 (mm) allowed")
         if not 1 <= self.eta <= 3:
             raise InputError(f"eta: {self.eta} found, 1 to 3 allowed")
+
+    def __repr__(self) -> str:
+        """Return cells and ranges in one line, with their units."""
+        size = " x ".join(map(str, np.shape(self.sigma_a)[2::-1]))
+        ranges = ", ".join(
+            f"{name}={np.min(values):.4g} to {np.max(values):.4g} 1/mm"
+            for name, values in (("sigma_s_prime", self.sigma_s_prime), ("sigma_a", self.sigma_a))
+        )
+        return f"VolumeMaterial({size} cells of {with_unit('spacing', self.spacing)}, {ranges}, eta={text(self.eta)})"
+
+    @classmethod
+    def from_function(
+        cls, function: Coefficients, box: Box, spacing: float | Vector, eta: float = DEFAULT_ETA
+    ) -> VolumeMaterial:
+        """Sample a function of position on a grid.
+
+        function: given points of the body at rest, (n, 3) float32 mm, returns sigma_s_prime and sigma_a, 1/mm, each one
+        number, (n,), (n, 3), or (3,) for all points; box: the lowest and the highest corner, mm, as `Engine.box` has
+        them; spacing: of the samples, mm, the first at the lowest corner: a step of the function is smeared over as
+        much. `Engine.set_coefficients` samples at the middles of the tets instead. Raises InputError, also where the
+        grid would have more than 11,184,810 cells.
+        """
+        scattering, absorption = grid_of(function, box, spacing)
+        low = tuple(float(each) for each in np.asarray(box, float)[0])
+        return cls(scattering, absorption, spacing, low, eta)
 
     def _cells(self, name: str) -> Floats:
         """One of the coefficients as (nz, ny, nx, 3). Raises InputError."""

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from quadgraph import core
+from quadgraph.api.reprs import share
 from quadgraph.api.values import Floats, plain
 from quadgraph.base.errors import InputError
 
@@ -27,6 +28,11 @@ class Picture:
         self._layers = layers
         self._metadata = list(metadata)
         self._options = dict(options)
+
+    def __repr__(self) -> str:
+        """Return its size, and what of it the body covers."""
+        height, width = self.alpha.shape
+        return f"Picture({width} x {height} pixels, {share(float(self.alpha.mean()))} of them the body)"
 
     @property
     def scattered(self) -> Floats:

@@ -8,10 +8,12 @@ from typing import Any, Self
 
 import numpy as np
 
+from quadgraph.api.reprs import channels, farthest, share
+from quadgraph.api.solution_table import summary, table
 from quadgraph.api.values import Doubles
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Energy:
     """Power per channel, W, (3,) float64 each: what enters goes out again or is absorbed, by a conservative method.
 
@@ -31,6 +33,12 @@ class Energy:
         """Return it from the compiled engine's report."""
         return cls(**{name: np.array(power) for name, power in report.items()})
 
+    def __repr__(self) -> str:
+        """Return the powers in one line, and the balance in per cent."""
+        names = ("entered", "re_entered", "scattered_out", "absorbed", "unscattered_out")
+        powers = ", ".join(f"{name}={channels(getattr(self, name), 'W')}" for name in names)
+        return f"Energy({powers}, balance={share(farthest(self.balance))})"
+
 
 @dataclass(frozen=True)
 class LevelReport:
@@ -43,7 +51,7 @@ class LevelReport:
     converged: bool
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ErrorEstimate:
     """Relative RMS error of the exitance, weighted by area: over the whole surface, over its unlit part, and over the
     third of it with the least exitance. A part is 0 where there is none or where it cannot be told.
@@ -52,6 +60,10 @@ class ErrorEstimate:
     whole: float
     unlit: float
     dimmest: float
+
+    def __repr__(self) -> str:
+        """Return its parts in per cent."""
+        return f"ErrorEstimate(whole={share(self.whole)}, unlit={share(self.unlit)}, dimmest={share(self.dimmest)})"
 
 
 @dataclass(frozen=True)
@@ -100,7 +112,7 @@ class PathReport:
     rounds: int
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Solution:
     """What a solve did.
 
@@ -170,3 +182,11 @@ class Solution:
     def converged(self) -> bool:
         """Whether all that was asked for is met."""
         return not self.unmet
+
+    def __repr__(self) -> str:
+        """Return method, powers and error in one line."""
+        return f"Solution({summary(self)})"
+
+    def _repr_html_(self) -> str:
+        """Show powers and errors in a notebook."""
+        return table(self)

@@ -35,6 +35,10 @@ class Stage:
         """Close."""
         self.close()
 
+    def __repr__(self) -> str:
+        """Return what is shown, in one line."""
+        return "Stage(closed)" if self._stage is None else f"Stage({self._engine or 'no scene is shown'})"
+
     def close(self) -> None:
         """Free the device's memory; whatever is asked afterwards raises InputError."""
         self._forget()
@@ -70,9 +74,12 @@ class Stage:
         if self._scene is None or self._scene.body != wanted.body:
             self._forget()
         self._open.show(wanted._compiled())
+        moved = self._scene is not None and self._scene.deformation != wanted.deformation
         self._scene = wanted
+        if self._engine is not None and moved:
+            self._engine._solution = None
         if self._engine is None:
-            self._engine = Engine._around(self._open.engine)
+            self._engine = Engine._around(self._open.engine, Path(wanted.body).name)
 
     def solve(self) -> Solution:
         """Solve with the scene's options. Raises InputError, SolverError."""

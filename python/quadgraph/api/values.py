@@ -10,6 +10,9 @@ from typing import Any, ClassVar, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from quadgraph.api.reprs import members_text
+from quadgraph.base.errors import InputError
+
 Floats: TypeAlias = npt.NDArray[np.float32]
 Doubles: TypeAlias = npt.NDArray[np.float64]
 Vector: TypeAlias = Sequence[float] | npt.NDArray[np.floating[Any]]  # x, y, z
@@ -27,12 +30,30 @@ def plain(value: object) -> Any:
     return value
 
 
+def numbers(name: str, value: object, wanted: str) -> npt.NDArray[Any]:
+    """An array of real numbers. Raises InputError that names the value, what was found and what is `wanted`."""
+    try:
+        array = np.asarray(value)
+    except ValueError as error:
+        raise InputError(f"{name}: rows of several lengths found, {wanted}") from error
+    if array.dtype.kind not in "fiub":
+        found = "text" if array.dtype.kind in "SU" else "no number" if array.dtype.kind == "O" else array.dtype
+        raise InputError(f"{name}: {found} found, {wanted}")
+    return array
+
+
+def single(values: npt.NDArray[Any]) -> Floats:
+    """Numbers in single precision, infinite where they are beyond it."""
+    with np.errstate(over="ignore"):
+        return values.astype(np.float32)
+
+
 def plain_members(members: Mapping[str, Any]) -> dict[str, Any]:
     """Return an object of a scene file with plain values."""
     return {name: plain_members(v) if isinstance(v, Mapping) else plain(v) for name, v in members.items()}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Value:
     """A value of one `type`; members that are None are left to the engine."""
 
@@ -42,6 +63,10 @@ class Value:
         """Make members plain."""
         for each in fields(self):
             object.__setattr__(self, each.name, plain(getattr(self, each.name)))
+
+    def __repr__(self) -> str:
+        """Return name and members in one line, with their units."""
+        return members_text(self)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the object that a scene file has for it: `type` and the members that are not None."""

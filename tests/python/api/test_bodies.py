@@ -147,6 +147,18 @@ def test_a_stage_shows_shapes_in_memory(ball, lifted):
         assert np.abs(stage.engine.surface().position - rest - np.array(LIFT)).max() < 1e-5
 
 
+def test_a_stage_has_no_solution_of_a_body_that_it_moved(ball):
+    with quadgraph.Stage() as stage:
+        stage.show(quadgraph.Scene(ball, MEDIUM, [SUN]))
+        solution = stage.solve()
+        stage.show(quadgraph.Scene(ball, quadgraph.Material(1, 0.5), [SUN]))
+        assert stage.engine.solution is solution
+        stage.show(quadgraph.Scene(ball, MEDIUM, [SUN], deformation=[quadgraph.Twist(20)]))
+        assert stage.engine.solution is None
+        with pytest.raises(InputError, match="nothing was solved since the body was loaded or moved"):
+            stage.engine.fluence_at((0, 0, 0))
+
+
 def test_no_file_has_shapes_in_memory(ball, lifted, tmp_path):
     file = quadgraph.SceneFile(quadgraph.Scene(ball, deformation=[quadgraph.Displaced(lifted, frame=1)]))
     file.set("/camera/fov", 40)

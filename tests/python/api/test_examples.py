@@ -29,4 +29,5 @@ def test_the_picture_shows_the_body():
 
 
 def test_every_example_is_run():
-    assert {path.name for path in FOLDER.glob("*.py")} == EXPECTED.keys() | {"picture.py"}
+    notebooks = {path.with_suffix(".py").name for path in FOLDER.glob("*.ipynb")}  # test_notebooks.py
+    assert {path.name for path in FOLDER.glob("*.py")} == EXPECTED.keys() | {"picture.py"} | notebooks

@@ -75,3 +75,20 @@ def test_after_an_exception_amid_its_work_an_engine_answers_as_a_new_one(ring, a
                 given_up += 1
             assert np.array_equal(answer(tried), expected)
     assert given_up > 0
+
+
+def test_signals_are_heeded_while_fluence_is_looked_up(ring):
+    """Without a look at them in between all of a call's would be one, at its end."""
+    heard = []
+    before = signal.signal(signal.SIGALRM, lambda number, frame: heard.append(number))
+    try:
+        with engine_on(ring) as engine:
+            engine.solve(cycles=1, correction=False)
+            points = np.full((2_000_000, 3), (10, 0, 0), np.float32)
+            signal.setitimer(signal.ITIMER_REAL, 0.001, 0.001)
+            engine.fluence_at(points)
+            signal.setitimer(signal.ITIMER_REAL, 0)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+    assert len(heard) > 3
