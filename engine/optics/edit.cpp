@@ -19,9 +19,9 @@ void check(bool fits, const char* field, double found, const char* allowed) {
 
 void check_by(const std::optional<glm::vec3>& by, const char* field, Edit::Operation operation) {
   for (int c = 0; by && c < 3; ++c) {
-    const double value = static_cast<double>((*by)[c]);
-    const bool fits = std::isfinite(value) && (value >= 0 || operation == Edit::Operation::add);
-    check(fits, field, value, operation == Edit::Operation::add ? "a finite number" : "a number >= 0");
+    const double value = static_cast<double>((*by)[c]), most = static_cast<double>(gpu::COEFFICIENT_MAX);
+    const bool adds = operation == Edit::Operation::add;
+    check(value >= (adds ? -most : 0) && value <= most, field, value, adds ? "-1e6 to 1e6" : "0 to 1e6");
   }
 }
 

@@ -9,8 +9,10 @@
 
 #include "engine/base/closest_name.h"
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "engine/optics/colour.h"
 #include "engine/optics/fresnel.h"
+#include "shaders/material/optics.h"
 
 namespace quadgraph {
 namespace {
@@ -96,16 +98,6 @@ float parse_number(std::string_view key, std::string_view text) {
   return value;
 }
 
-std::vector<std::string_view> split(std::string_view text, char separator) {
-  std::vector<std::string_view> parts;
-  for (;;) {
-    const std::size_t at = text.find(separator);
-    parts.push_back(text.substr(0, at));
-    if (at == std::string_view::npos) return parts;
-    text.remove_prefix(at + 1);
-  }
-}
-
 glm::vec3 parse_colour(std::string_view key, std::string_view text) {
   const auto parts = split(text, '/');
   if (parts.size() == 1) return glm::vec3(parse_number(key, text));
@@ -179,8 +171,8 @@ bool take_field(gpu::Material& material, std::string_view key, std::string_view 
 
 void check_colour(std::string_view key, const glm::vec3& value) {
   for (int c = 0; c < 3; ++c) {
-    const bool fits = std::isfinite(value[c]) && value[c] >= 0;
-    if (!fits) bad_field(key, std::to_string(value[c]), "a number >= 0 (1/mm)");
+    const bool fits = value[c] >= 0 && value[c] <= gpu::COEFFICIENT_MAX;
+    if (!fits) bad_field(key, number_text(value[c]), "0 to 1e6 (1/mm)");
   }
 }
 

@@ -23,7 +23,7 @@ std::string_view pattern_name(const gpu::Material& material);
 // the colour that a thick body shows in white light (engine/optics/colour.h) and 1 / sigma_t, mm. "NAME,key=value"
 // overrides a named material. "pattern=veins,period=16,sharpness=14" mixes in second_sigma_s_prime and second_sigma_a,
 // or second_reflectance and second_mean_free_path. Throws InputError naming the field, what was found and what is
-// allowed (sigma_s_prime, sigma_a >= 0, eta in [1, 3], mean_free_path > 0; all finite).
+// allowed (sigma_s_prime, sigma_a 0 to 1e6, eta in [1, 3], mean_free_path > 0; all finite).
 gpu::Material parse_material(std::string_view text);
 
 // Throws InputError if a coefficient is out of range.

@@ -14,8 +14,8 @@ namespace {
 
 bool in_range(const gpu::Optical& optical) {
   for (int c = 0; c < 3; ++c) {
-    if (!(optical.sigma_s_prime[c] >= 0 && std::isfinite(optical.sigma_s_prime[c]))) return false;
-    if (!(optical.sigma_a[c] >= 0 && std::isfinite(optical.sigma_a[c]))) return false;
+    if (!(optical.sigma_s_prime[c] >= 0 && optical.sigma_s_prime[c] <= gpu::COEFFICIENT_MAX)) return false;
+    if (!(optical.sigma_a[c] >= 0 && optical.sigma_a[c] <= gpu::COEFFICIENT_MAX)) return false;
   }
   return true;
 }
@@ -65,7 +65,7 @@ void check_optical(std::span<const gpu::Optical> optical, std::size_t count) {
   }
   for (std::size_t i = 0; i < optical.size(); ++i) {
     if (!in_range(optical[i])) {
-      throw InputError("optical[" + std::to_string(i) + "]: sigma_s_prime and sigma_a must be finite numbers >= 0");
+      throw InputError("optical[" + std::to_string(i) + "]: sigma_s_prime and sigma_a must be 0 to 1e6 (1/mm)");
     }
   }
 }

@@ -76,7 +76,7 @@ struct Rows {
 // Carriers of a method on a level: rows of its operator, each with one unknown (diffusion) or two (sp3).
 std::uint32_t carrier_count(const Level& level, Method method);
 
-// Throw InputError unless there are `count` coefficients, all finite and >= 0; unless eta is in [min_eta, max_eta].
+// Throw InputError unless there are `count` coefficients, all 0 to 1e6 1/mm; unless eta is in [min_eta, max_eta].
 void check_optical(std::span<const gpu::Optical> optical, std::size_t count);
 void check_eta(double eta);
 

@@ -4,7 +4,6 @@
 #include <cctype>
 #include <cmath>
 #include <glm/common.hpp>
-#include <limits>
 #include <map>
 
 #include "engine/base/error.h"
@@ -13,6 +12,7 @@
 #include "engine/optics/material.h"
 #include "engine/render/light/lights.h"
 #include "engine/scene/npz.h"
+#include "shaders/material/optics.h"
 
 namespace quadgraph {
 namespace {
@@ -77,9 +77,8 @@ const NpzArray& coefficient(const Fields& fields, const std::string& name) {
   }
   for (std::size_t i = 0; i < array.values.size(); ++i) {
     const double value = array.values[i];
-    if (value >= 0 && value <= std::numeric_limits<float>::max()) continue;
-    fields.refuse(name, number_text(value) + " found in number " + std::to_string(i) +
-                            ", allowed are finite numbers >= 0 (1/mm) in single precision");
+    if (value >= 0 && value <= gpu::COEFFICIENT_MAX) continue;
+    fields.refuse(name, number_text(value) + " found in number " + std::to_string(i) + ", allowed are 0 to 1e6 (1/mm)");
   }
   return array;
 }

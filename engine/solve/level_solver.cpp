@@ -277,7 +277,9 @@ bool LevelSolver::failed() const {
 std::string LevelSolver::failure() const {
   const char* what = "stalls";
   if (state_.status == gpu::SOLVE_NOT_POSITIVE) {
-    what = "met a direction of non-positive energy: the matrix is not positive definite";
+    what =
+        "met a direction of non-positive energy: the matrix is not positive definite in single precision; take "
+        "coefficients of the material that lie closer together, or another solver";
   }
   if (state_.status == gpu::SOLVE_NOT_FINITE) what = "met a value that is not finite";
   if (state_.status == gpu::SOLVE_DIVERGED) what = "diverges";

@@ -4,6 +4,7 @@
 #include "engine/optics/fresnel.h"
 #include "engine/optics/material.h"
 #include "python/bindings/bindings.h"
+#include "shaders/material/optics.h"
 
 namespace py = pybind11;
 
@@ -19,6 +20,7 @@ void bind_materials(py::module_& module) {
                              [](const gpu::Material& m) { return as_tuple(glm::dvec3(m.sigma_s_prime)); })
       .def_property_readonly("sigma_a", [](const gpu::Material& m) { return as_tuple(glm::dvec3(m.sigma_a)); })
       .def_readonly("eta", &gpu::Material::eta);
+  module.attr("COEFFICIENT_MAX") = gpu::COEFFICIENT_MAX;
   module.def("material_names", &material_names, "Materials that have a name, in the order in which they are offered.");
   module.def("fresnel_transmittance", &fresnel_transmittance, py::arg("cos_i"), py::arg("eta"),
              "Unpolarised transmittance from outside at incidence cosine cos_i.");

@@ -22,6 +22,7 @@ _Option = bool | float | str | Sequence[str]
 CELL_INSIDE: int
 CELL_SOLID: int
 CELL_SURFACE: int
+COEFFICIENT_MAX: float
 MEASURED_SHARE: float
 MOST_FRAMES: int
 PATH_FAR: float

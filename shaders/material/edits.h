@@ -2,10 +2,12 @@
 #ifndef QUADGRAPH_EDITS_H
 #define QUADGRAPH_EDITS_H
 
+#include "material/optics.h"
 #include "shared/image_levels.h"
 
 #ifdef __cplusplus
 namespace quadgraph::gpu {
+using glm::clamp;
 using glm::sqrt;
 #endif
 
@@ -64,9 +66,10 @@ QG_INLINE float box_weight(MaterialEdit e, vec3 place) {
 }
 
 QG_INLINE vec3 edited_coefficient(uint operation, vec3 value, vec3 by, float weight) {
-  if (operation == EDIT_MULTIPLY) return value * mix(vec3(1.0f), by, weight);
-  if (operation == EDIT_ADD) return max(value + weight * by, vec3(0.0f));
-  return mix(value, by, weight);
+  vec3 edited = mix(value, by, weight);
+  if (operation == EDIT_MULTIPLY) edited = value * mix(vec3(1.0f), by, weight);
+  if (operation == EDIT_ADD) edited = value + weight * by;
+  return clamp(edited, vec3(0.0f), vec3(COEFFICIENT_MAX));
 }
 
 // `factor`: what its image makes of its coefficients.

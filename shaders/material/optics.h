@@ -9,6 +9,9 @@ namespace quadgraph::gpu {
 using glm::max;
 #endif
 
+// Largest scattering or absorption, 1/mm: a mean free path of a nanometre. Edits take more as this.
+const float COEFFICIENT_MAX = 1e6f;
+
 // Floor of sigma_t in the operators, 1/mm. A clear region has no diffusion coefficient; with a mean free path of ten
 // metres fluence is uniform across it, and single precision still carries the contrast to any measured material.
 const float SIGMA_T_MIN = 1e-4f;

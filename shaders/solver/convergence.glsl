@@ -11,13 +11,17 @@ bvec3 not_finite(vec3 v) {
 // Below this residual a channel is left alone: nothing that single precision holds would change.
 const float SOLVED = 1e-8;
 
+// A square below which it is left alone, too: sums of such products leave the range of single precision. A channel of
+// which nearly all is absorbed before it scatters gets there while the others are far from solved.
+const float NEGLIGIBLE = 1e-30;
+
 // Channels that still have a residual; one without light has none.
 bvec3 unsolved(vec3 square, vec3 norm) {
-  return greaterThan(square, SOLVED * SOLVED * norm);
+  return greaterThan(square, max(SOLVED * SOLVED * norm, vec3(NEGLIGIBLE)));
 }
 
 float worst_residual(vec3 square, vec3 norm) {
-  vec3 ratio = mix(vec3(0), square / norm, greaterThan(norm, vec3(0)));
+  vec3 ratio = mix(vec3(0), square / norm, greaterThan(min(square, norm), vec3(NEGLIGIBLE)));
   return sqrt(max(ratio.x, max(ratio.y, ratio.z)));
 }
 

@@ -33,11 +33,13 @@ def brief(value: float) -> str:
 
 
 POWER, LENGTH = (constant("render/light/lights.h", name) for name in ("largest_power", "largest_length"))
+COEFFICIENT = constant("../shaders/material/optics.h", "COEFFICIENT_MAX")
 IRRADIANCE = constant("solve/beams.cpp", "irradiance_range{.low = 0, .high")
 SMALL, LARGE = map(brief, units.SIZES_MM)
 FRAMES = constant("scene/scene_file.h", "most_frames")
 ALLOWED = {
     "power, irradiance or radiance of a light, texels of images": f"0 to {brief(POWER)}",
+    "scattering and absorption": f"0 to {brief(COEFFICIENT)} 1/mm",
     "irradiance given to `set_irradiance`": f"0 to {brief(IRRADIANCE)} W/mm²",
     "lights of a scene": f"at most {constant('render/light/lights.h', 'most_lights'):,.0f}",
     "places and edges of lights": f"at most {brief(LENGTH)} mm from 0 in each direction",

@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from quadgraph import core
 from quadgraph.api.values import Floats, Vector, numbers, single
 from quadgraph.base.errors import InputError
 
@@ -67,12 +68,11 @@ def _checked(name: str, values: npt.ArrayLike, points: Floats) -> Floats:
         wanted = f"one number, ({n},), ({n}, 3) or (3,) is wanted for {n} points"
         raise InputError(f"{where}: shape {array.shape} found; {wanted}") from error
     found = single(array)
-    wrong = ~(np.isfinite(found) & (found >= 0))
+    wrong = ~((found >= 0) & (found <= core.COEFFICIENT_MAX))
     if wrong.any():
         row, channel = np.argwhere(wrong)[0]
         raise InputError(
-            f"{where}: {array[row, channel]} found at {_listed(points[row])} mm, finite numbers >= 0 (1/mm) in single "
-            "precision are allowed"
+            f"{where}: {array[row, channel]} found at {_listed(points[row])} mm, allowed are 0 to 1e6 (1/mm)"
         )
     return found
 

@@ -195,7 +195,7 @@ def prepare(mesh: Path, options: BakeOptions, report: BakeReport, tell: Progress
     tell(f"read {source.name}: {source.vertices:,} vertices, {source.triangles:,} triangles")
     limits = options.time_limit_s, options.memory_limit_bytes
     with report.timed("repair"):
-        surface, repairs, notes = solid.solid(source.surface, source.name, options.wrap, limits, tell)
+        surface, repairs, notes = solid.solid(source, options.wrap, limits, tell)
     report.notes += notes
     for entry in repairs:
         tell(f"repaired: {entry.what}: {entry.count:,}")

@@ -16,7 +16,7 @@ from quadgraph.base.units import UPS
 from quadgraph.mesh import gltf_file, mesh_size
 from quadgraph.mesh.mesh_text import read_obj, read_off
 from quadgraph.mesh.ply import read_ply
-from quadgraph.mesh.surface import SourceMesh, Surface
+from quadgraph.mesh.surface import FileFrame, SourceMesh, Surface
 
 Arrays = tuple[np.ndarray, np.ndarray]
 
@@ -98,7 +98,7 @@ def read_surface(
     unit_mm, note = mesh_size.scale_of(path, vertices[np.unique(triangles)], unit, height_mm, longest_mm)
     surface = Surface(vertices * unit_mm, triangles)
     digest = hashlib.sha256(content).hexdigest()
-    return SourceMesh(surface, path.name, digest, unit_mm, len(vertices), len(triangles), note)
+    return SourceMesh(surface, path.name, digest, FileFrame(unit_mm, up), len(vertices), len(triangles), note)
 
 
 def stood_up(vectors: np.ndarray, up: str) -> np.ndarray:

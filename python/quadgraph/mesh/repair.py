@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import connected_components
 from quadgraph.base.errors import InputError
 from quadgraph.mesh import weld
 from quadgraph.mesh.intersections import intersecting_triangles
-from quadgraph.mesh.surface import Repair, Surface
+from quadgraph.mesh.surface import MILLIMETRES, FileFrame, Repair, Surface
 
 _NEAR_SHARE = 1e-6  # of the diagonal: vertices nearer than this are one
 _TINY_SHARE = 1e-3  # of the area: loose pieces below it are dropped
@@ -24,9 +24,10 @@ _FLAT_SHARE = 1e-6  # volume over area times diagonal: below it there is no inte
 class _Work:
     """The surface under repair, with the report as it grows."""
 
-    def __init__(self, surface: Surface, name: str, next_step: str) -> None:
+    def __init__(self, surface: Surface, name: str, frame: FileFrame, next_step: str) -> None:
         self.surface = surface
         self.name = name
+        self.frame = frame
         self.next_step = next_step
         self.counts: dict[str, int] = {}
 
@@ -37,11 +38,12 @@ class _Work:
 
     def refuse(self, what: str, places: np.ndarray) -> InputError:
         """An InputError about the box around `places` (k, 3), mm."""
-        low, high = (", ".join(f"{x:.4g}" for x in corner) for corner in (places.min(axis=0), places.max(axis=0)))
-        return InputError(f"{self.name}: {what}, between ({low}) and ({high}) mm{self.next_step}")
+        return InputError(f"{self.name}: {what}, {self.frame.box(places)}{self.next_step}")
 
 
-def repair(surface: Surface, name: str, next_step: str = "") -> tuple[Surface, list[Repair]]:
+def repair(
+    surface: Surface, name: str, frame: FileFrame = MILLIMETRES, next_step: str = ""
+) -> tuple[Surface, list[Repair]]:
     """Make a surface (mm) fit for the mesher, by safe steps only, each reported; coordinates as float32 holds them.
 
     Merges duplicate vertices (equal, then within 1e-6 of the diagonal), drops unreferenced vertices, degenerate and
@@ -50,9 +52,10 @@ def repair(surface: Surface, name: str, next_step: str = "") -> tuple[Surface, l
     crossing triangles when they are at most 2% of all. A surface without defects comes back as it is with no repairs.
 
     Raises InputError naming `name`, what is wrong, counts and the place: open shell, non-manifold, one-sided, no
-    volume, or crossings that cannot be cut away. next_step: what such a message ends with.
+    volume, or crossings that cannot be cut away. frame: in whose coordinates the place is told; next_step: what such a
+    message ends with.
     """
-    work = _Work(surface.rounded(), name, next_step)
+    work = _Work(surface.rounded(), name, frame, next_step)
     _clean(work)
     _close(work)
     _check_volume(work)

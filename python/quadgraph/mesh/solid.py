@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from quadgraph.base.progress import ProgressCallback
 from quadgraph.mesh import repair, wrap
-from quadgraph.mesh.surface import Repair, Surface
+from quadgraph.mesh.surface import Repair, SourceMesh, Surface
 
 _NEXT_STEP = "; --wrap auto bakes a closed surface around it"
 
 
 def solid(
-    surface: Surface,
-    name: str,
+    source: SourceMesh,
     wrap_size: float | str | None,
     limits: tuple[float, int],
     tell: ProgressCallback,
@@ -22,9 +21,9 @@ def solid(
     Raises what wrap.wrap and repair.repair raise.
     """
     if wrap_size is None:
-        repaired, repairs = repair.repair(surface, name, _NEXT_STEP)
+        repaired, repairs = repair.repair(source.surface, source.name, source.frame, _NEXT_STEP)
         return repaired, repairs, []
-    around = wrap.wrap(surface, wrap_size, name, *limits, tell)
-    repaired, repairs = repair.repair(around.surface, name)
+    around = wrap.wrap(source.surface, wrap_size, source.name, *limits, tell)
+    repaired, repairs = repair.repair(around.surface, source.name, source.frame)
     done = Repair(f"wrapped at {around.size:.3g} mm, triangles", around.triangles)
     return repaired, [done, *repairs], [around.sentence()]

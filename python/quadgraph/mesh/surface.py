@@ -169,20 +169,45 @@ class Surface:
 
 
 @dataclass(frozen=True)
+class FileFrame:
+    """How a file has what we have in mm with y up. unit_mm: length of one unit of the file, mm; up: "y" or "z"."""
+
+    unit_mm: float = 1.0
+    up: str = "y"
+
+    def box(self, places: np.ndarray) -> str:
+        """Say where places (k, 3), mm, lie between, in the file's coordinates."""
+        found = np.asarray(places) / self.unit_mm
+        if self.up == "z":
+            found = np.stack([found[:, 0], -found[:, 2], found[:, 1]], axis=-1)
+        low, high = (", ".join(f"{x:.4g}" for x in corner) for corner in (found.min(axis=0), found.max(axis=0)))
+        unit = "mm" if self == MILLIMETRES else f"of the file, whose unit is {self.unit_mm:.4g} mm"
+        return f"between ({low}) and ({high}) {unit}"
+
+
+MILLIMETRES = FileFrame()
+
+
+@dataclass(frozen=True)
 class SourceMesh:
     """A surface as read from a file: `vertices` and `triangles` count what the file held.
 
-    unit_mm: length of one unit of the file, mm; sha256: of the file's bytes, hexadecimal; size_note: a sentence on
-    the size where nobody chose it.
+    frame: of the file's coordinates; sha256: of the file's bytes, hexadecimal; size_note: a sentence on the size where
+    nobody chose it.
     """
 
     surface: Surface
     name: str
     sha256: str
-    unit_mm: float
+    frame: FileFrame
     vertices: int
     triangles: int
     size_note: str = ""
+
+    @property
+    def unit_mm(self) -> float:
+        """Length of one unit of the file, mm."""
+        return self.frame.unit_mm
 
     def metadata(self) -> dict[str, str | int]:
         """What a .qgraph keeps of it as `source`."""

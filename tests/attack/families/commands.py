@@ -126,7 +126,6 @@ def words(rng: Rng) -> Case:
         ("--device", texts.word(rng, 4)),
         ("--unit", "mm", "--unit", "parsec"),
         ("-o",),
-        ("--",),
         ("@body.qgraph",),
         ("--method=" + texts.word(rng, 4),),
         ("body.qgraph",) * int(10 ** rng.uniform(0, 4)),

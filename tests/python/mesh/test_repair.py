@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 import time
 from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 
 from quadgraph.base.errors import InputError
 from quadgraph.mesh.intersections import intersecting_triangles
@@ -177,3 +179,22 @@ def test_bad_meshes_are_repaired_or_refused(shared: Path, name: str, words: str 
         assert name in str(refusal.value)
         assert "mm" in str(refusal.value)
     assert time.monotonic() - began < 60
+
+
+@pytest.mark.parametrize(
+    ("options", "place"),
+    [
+        ({"unit": "mm"}, "between (-0.7, 0.9, -0.7) and (0.7, 0.9, 0.7) mm"),
+        ({"unit": "m"}, "between (-0.7, 0.9, -0.7) and (0.7, 0.9, 0.7) of the file, whose unit is 1000 mm"),
+        ({"longest_mm": 60, "up": "z"}, "between (-0.7, 0.9, -0.7) and (0.7, 0.9, 0.7) of the file, whose unit is"),
+    ],
+)
+def test_a_refusal_tells_the_place_in_the_coordinates_of_the_file(tmp_path, options, place):
+    box = trimesh.creation.box((1.4, 1.8, 1.4)).subdivide().subdivide()
+    opened = box.submesh([np.flatnonzero(box.triangles_center[:, 1] < 0.89)], append=True)
+    path = tmp_path / "box.ply"
+    opened.export(path)
+    source = read_surface(path, **options)
+    with pytest.raises(InputError, match=re.escape("box.ply: open shell: 1 holes, ")) as refused:
+        repair(source.surface, source.name, source.frame)
+    assert place in str(refused.value)

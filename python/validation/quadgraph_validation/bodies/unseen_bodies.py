@@ -2,27 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import trimesh
-from scipy import ndimage
 
 from quadgraph.base.errors import InputError
-from quadgraph.mesh import lod, repair
 from quadgraph.mesh.surface import Surface
-from quadgraph_validation.base import extra_module
+from quadgraph_validation.bodies.implicit import Field, least, meshed, valid
 
 LENGTH = (10.0, 100.0)  # mm, longest side
 TRIANGLES = (8_000, 30_000)
 _CELLS = 112  # along the box in which a body is blended
 _HALF = 1.7  # of that box; bodies are about 1 in radius
 _TRIES = 20  # bodies drawn until one has a valid surface
-
-# Signed distance, or what is like it near the surface, at points (..., 3).
-Field = Callable[[np.ndarray], np.ndarray]
 
 
 def surface_of(seed: int) -> Surface:
@@ -32,7 +25,7 @@ def surface_of(seed: int) -> Surface:
         field = _drawn(generator)
         triangles = int(np.exp(generator.uniform(*np.log(TRIANGLES))))
         length = float(np.exp(generator.uniform(*np.log(LENGTH))))
-        found = _valid(_meshed(field), triangles)
+        found = valid(meshed(field, _HALF, _CELLS), triangles)
         if found is not None:
             return Surface(found.vertices * length / np.ptp(found.vertices, axis=0).max(), found.triangles).rounded()
     raise InputError(f"seed {seed}: no valid body in {_TRIES} tries; take another seed")
@@ -56,16 +49,10 @@ def _drawn(generator: np.random.Generator) -> Field:
         value = parts[0][0](points)
         for part, added in parts[1:]:
             other = part(points)
-            value = _least(value, other, blend) if added else -_least(-value, other, blend)
+            value = least(value, other, blend) if added else -least(-value, other, blend)
         return value
 
     return field
-
-
-def _least(a: np.ndarray, b: np.ndarray, blend: float) -> np.ndarray:
-    """The smaller of both, rounded where they are within `blend` of each other."""
-    near = np.maximum(blend - np.abs(a - b), 0) / blend
-    return np.minimum(a, b) - near**2 * blend / 4
 
 
 def _way(generator: np.random.Generator) -> np.ndarray:
@@ -133,34 +120,3 @@ def _box(generator: np.random.Generator, half: np.ndarray, edge: float) -> Field
         return np.linalg.norm(np.maximum(beyond, 0), axis=-1) + np.minimum(beyond.max(axis=-1), 0) - edge
 
     return field
-
-
-def _meshed(field: Field) -> Any:
-    """The largest piece without its cavities, by marching cubes, its steps smoothed away."""
-    measure: Any = extra_module.load("skimage.measure", "walks")
-    axis = np.linspace(-_HALF, _HALF, _CELLS)
-    value = field(np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), axis=-1))
-    label, count = ndimage.label(value < 0)
-    sizes = ndimage.sum_labels(np.ones_like(value), label, np.arange(1, count + 1))
-    solid = ndimage.binary_fill_holes(label == 1 + int(np.argmax(sizes)))
-    value = np.where(solid, -np.abs(value), np.abs(value))
-    value[:, :, [0, -1]] = value[:, [0, -1]] = value[[0, -1]] = 1
-    corners, triangles, _, _ = measure.marching_cubes(value, 0.0, gradient_direction="ascent")
-    mesh = trimesh.Trimesh(corners, triangles, process=True)
-    return trimesh.smoothing.filter_taubin(mesh, iterations=10)
-
-
-def _valid(mesh: Any, triangles: int) -> Surface | None:
-    """A surface of about so many triangles that a bake has nothing to repair in; None if there is none."""
-    fine = Surface(np.asarray(mesh.vertices, np.float64), np.asarray(mesh.faces, np.int64))
-    if fine.volume < 0:
-        fine = Surface(fine.vertices, fine.triangles[:, ::-1])
-    if not fine.is_closed_manifold or fine.components != 1:
-        return None
-    try:
-        count = triangles // 2
-        coarse = lod.simplify(fine, count) if count < 0.9 * len(fine.vertices) else fine
-        repaired, done = repair.repair(coarse, "body")
-    except InputError:
-        return None
-    return None if done else repaired
