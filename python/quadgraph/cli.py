@@ -25,7 +25,7 @@ from quadgraph.base.message import shortened
 from quadgraph.base.version import __version__
 
 # Modules that import nothing heavy: what a subcommand needs, it imports when it runs.
-SUBCOMMANDS = ("bake", "shapes", "volume", "info", "view", "render", "solve", "cache")
+SUBCOMMANDS = ("bake", "shapes", "volume", "info", "view", "render", "solve", "cache", "doctor")
 # The subcommands that quadgraph-validation brings along; their modules come through its entry points.
 VALIDATION = ("bench", "accuracy", "reference", "chart", "tables", "polygrid", "stability")
 INTERRUPTED = 128 + signal.SIGINT
