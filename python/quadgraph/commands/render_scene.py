@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import re
 import time
 from collections.abc import Callable, Iterable
@@ -11,10 +12,10 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import Progress
 
-from quadgraph.base import atomic_file, json_text, outputs
+from quadgraph.base import atomic_file, image_file, json_text, outputs
 from quadgraph.base.arguments import positive_int
 from quadgraph.base.errors import InputError
-from quadgraph.commands import scene_options
+from quadgraph.commands import picture_output, scene_options
 from quadgraph.commands import solve_report as text
 from quadgraph.core import load_core
 from quadgraph.file import film
@@ -43,8 +44,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="?",
         const=0,
         metavar="N",
-        help="render the first N, without N all of the scene, into a numbered OUT, e.g. frames/%%04d.png or .exr, or a "
-        "film, e.g. turn.mp4",
+        help="render the first N, without N all of the scene, into a numbered OUT, e.g. frames/%%04d.png, .jpg or "
+        ".exr, or a film, e.g. turn.mp4",
     )
     parser.set_defaults(unstated={name: parser.get_default(name) for name in stated()})
 
@@ -80,8 +81,11 @@ def run(args: argparse.Namespace) -> int:
     check_frames(args, file.frames)
     frames = [args.frame] if args.frames is None else range(args.frames or file.frames)
     with_numbers = args.frames is not None
+    transparent = json.loads(file.at(0).json())["picture"]["background"] == "transparent"
     for path in args.output:
         check_output(path, with_numbers)
+        if transparent:
+            picture_output.check_opaque(path)
     outputs.check_outputs([*args.output, args.json], [args.file, *named_files(args.file), *args.set])
     stage = core.Stage(device=args.device, validation=args.validation)
     reports = render(stage, file, frames, args.output)
@@ -121,8 +125,9 @@ def check_output(path: Path, with_numbers: bool) -> None:
         if not with_numbers:
             raise InputError(f"{path}: a film needs --frames")
         film.check()
-    elif path.suffix.lower() not in (".png", ".exr"):
-        raise InputError(f"{path}: output must end in .png, .exr or {' or '.join(film.SUFFIXES)}")
+    elif path.suffix.lower() not in picture_output.SUFFIXES:
+        allowed = (*picture_output.SUFFIXES, *film.SUFFIXES)
+        raise InputError(f"{path}: output must end in {', '.join(allowed[:-1])} or {allowed[-1]}")
     elif numbered != with_numbers:
         wanted = "a number, e.g. %04d, in the name of every frame" if with_numbers else "no number without --frames"
         raise InputError(f"{path}: {wanted} is wanted")
@@ -160,13 +165,16 @@ def write(stage, picture, path: Path, frame: float, films: dict[Path, film.Film]
     if path in films:
         films[path].add(stage.srgb(picture))
         return
-    to: Callable = stage.write_png if path.suffix.lower() == ".png" else stage.write_exr
     named = path.with_name(path.name % int(frame)) if "%" in path.name else path
     try:
         named.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"{named.parent}: cannot be made ({error.strerror})") from error
-    to(picture, named)
+    if image_file.is_jpeg(path):
+        image_file.write(named, stage.srgb(picture), stage.engine.metadata)
+    else:
+        to: Callable = stage.write_png if path.suffix.lower() == ".png" else stage.write_exr
+        to(picture, named)
 
 
 def summarise(stage, reports: list[dict], outputs: list[Path]) -> None:
