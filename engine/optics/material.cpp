@@ -243,7 +243,7 @@ std::string_view material_source(std::string_view name) {
   const bool is_measured = std::any_of(measured.begin(), measured.end(), [&](const auto& m) { return m.name == name; });
   if (is_measured) return "measured: Jensen et al. 2001, Figure 5";
   named(name);
-  return "made up for its look";
+  return "made up: chosen by eye, to look like what the name says";
 }
 
 std::string_view pattern_name(const gpu::Material& material) {

@@ -21,14 +21,26 @@ from types import FrameType, ModuleType
 from typing import Any, NoReturn
 
 from quadgraph.base.errors import InputError, QuadGraphError
-from quadgraph.base.message import shortened
+from quadgraph.base.message import meant, shortened
 from quadgraph.base.version import __version__
 
-# Modules that import nothing heavy: what a subcommand needs, it imports when it runs.
-SUBCOMMANDS = ("bake", "shapes", "volume", "info", "view", "render", "solve", "cache", "doctor")
+# Their modules import nothing heavy: what a subcommand needs, it imports when it runs.
+SUBCOMMANDS = {
+    "bake": "bake",
+    "shapes": "shapes",
+    "volume": "volume",
+    "info": "info",
+    "view": "view",
+    "render": "render",
+    "solve": "solve",
+    "materials": "material_list",
+    "cache": "cache",
+    "doctor": "doctor",
+}
 # The subcommands that quadgraph-validation brings along; their modules come through its entry points.
 VALIDATION = ("bench", "accuracy", "reference", "chart", "tables", "polygrid", "stability")
 INTERRUPTED = 128 + signal.SIGINT
+_CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")  # as argparse says it
 
 
 class CommandParser(argparse.ArgumentParser):
@@ -42,13 +54,24 @@ class CommandParser(argparse.ArgumentParser):
 
     def parse_known_args(self, args=None, namespace=None):
         """Parse like ArgumentParser, with all arguments declared."""
+        self.declare_all()
+        parsed, rest = super().parse_known_args(args, namespace)
+        unknown = [text.partition("=")[0] for text in rest if text.startswith("-")]
+        if unknown:
+            slip = meant(unknown[0], self._option_string_actions)
+            self.error(f"unrecognized arguments: {' '.join(rest)}{slip}")
+        return parsed, rest
+
+    def declare_all(self) -> None:
+        """Add the arguments that are added when they are needed."""
         declare, self.declare = self.declare, None
         if declare is not None:
             declare(self)
-        return super().parse_known_args(args, namespace)
 
     def error(self, message: str) -> NoReturn:
-        """Say what is wrong with the usage, however long what was typed is, and exit with 2."""
+        """Say what is wrong with the usage, however long what was typed is, and what was meant, and exit with 2."""
+        if choice := _CHOICE.search(message):
+            message += meant(choice[1], re.findall(r"'([^']*)'", choice[2]))
         super().error(shortened(message))
 
     def _get_values(self, action, arg_strings):
@@ -193,7 +216,7 @@ def _print_any_character() -> None:
 
 
 def _run(given: Sequence[str]) -> int:
-    commands = {name: importlib.import_module(f"quadgraph.commands.{name}") for name in SUBCOMMANDS}
+    commands = {name: importlib.import_module(f"quadgraph.commands.{module}") for name, module in SUBCOMMANDS.items()}
     added = added_commands()
     check_installed(given, added)
     args = build_parser(commands, added).parse_args(given)
