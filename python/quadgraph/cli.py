@@ -33,6 +33,7 @@ SUBCOMMANDS = {
     "view": "view",
     "render": "render",
     "solve": "solve",
+    "turntable": "turntable",
     "materials": "material_list",
     "cache": "cache",
     "doctor": "doctor",
@@ -40,6 +41,7 @@ SUBCOMMANDS = {
 # The subcommands that quadgraph-validation brings along; their modules come through its entry points.
 VALIDATION = ("bench", "accuracy", "reference", "chart", "tables", "polygrid", "stability")
 INTERRUPTED = 128 + signal.SIGINT
+_NAME_ROOM = 12  # letters of a subcommand's name in the list of them, and two blanks
 _CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")  # as argparse says it
 
 
@@ -81,6 +83,15 @@ class CommandParser(argparse.ArgumentParser):
         return super()._get_values(action, arg_strings)
 
 
+class Listing(argparse.RawDescriptionHelpFormatter):
+    """A help with every subcommand on one line; argparse forgets how far their names are indented."""
+
+    def __init__(self, prog: str) -> None:
+        """Leave room for their names."""
+        super().__init__(prog)
+        self._action_max_length = _NAME_ROOM + 2
+
+
 class Added:
     """The subparsers as a module of the second group sees them: help lines are kept for a heading apart."""
 
@@ -90,7 +101,7 @@ class Added:
 
     def add_parser(self, name: str, help: str, **options: Any) -> argparse.ArgumentParser:
         """Add a subcommand that the list of the first group does not show."""
-        self._lines.append(f"    {name:<10}{help}")
+        self._lines.append(f"    {name:<{_NAME_ROOM}}{help}")
         return self._subparsers.add_parser(name, **options)
 
     def text(self) -> str:
@@ -112,7 +123,7 @@ def build_parser(commands: dict[str, ModuleType], added: dict[str, ModuleType]) 
     parser = CommandParser(
         prog="quadgraph",
         description="Real-time rendering of heterogeneous translucent objects.",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+        formatter_class=Listing,
     )
     parser.add_argument("--version", action="version", version=f"%(prog)s {__version__}")
     subparsers = parser.add_subparsers(dest="command", metavar="COMMAND", required=True, parser_class=CommandParser)
