@@ -49,20 +49,37 @@ class CommandParser(argparse.ArgumentParser):
     """The parser of a command line.
 
     One whose arguments need the compiled engine has `declare` add them when it is used, so that all others, and the
-    list of subcommands, do without it.
+    list of subcommands, do without it. What such a parser returns has also `given`, the names of the arguments that
+    were typed.
     """
 
     declare: Callable[[argparse.ArgumentParser], None] | None = None
 
     def parse_known_args(self, args=None, namespace=None):
         """Parse like ArgumentParser, with all arguments declared."""
+        told = self.declare is not None
         self.declare_all()
         parsed, rest = super().parse_known_args(args, namespace)
+        if told:
+            parsed.given = frozenset(vars(self._typed(args)))
         unknown = [text.partition("=")[0] for text in rest if text.startswith("-")]
         if unknown:
             slip = meant(unknown[0], self._option_string_actions)
             self.error(f"unrecognized arguments: {' '.join(rest)}{slip}")
         return parsed, rest
+
+    def _typed(self, args: Sequence[str]) -> argparse.Namespace:
+        """What `args` say, without any default."""
+        kept = [(action, action.default) for action in self._actions]
+        others, self._defaults = self._defaults, {}
+        try:
+            for action in self._actions:
+                action.default = argparse.SUPPRESS
+            return super().parse_known_args(args, argparse.Namespace())[0]
+        finally:
+            self._defaults = others
+            for action, default in kept:
+                action.default = default
 
     def declare_all(self) -> None:
         """Add the arguments that are added when they are needed."""

@@ -14,16 +14,10 @@ from rich.progress import Progress
 from quadgraph.base import atomic_file, json_text, outputs
 from quadgraph.base.arguments import positive_int
 from quadgraph.base.errors import InputError
-from quadgraph.commands import frame_output, picture_output, scene_options
+from quadgraph.commands import frame_output, picture_output, scene_options, scene_overrides
 from quadgraph.commands import solve_report as text
 from quadgraph.core import load_core
 from quadgraph.file import film
-
-
-def stated() -> dict[str, str]:
-    """Arguments that a scene file says, and where it says them."""
-    said = scene_options.options((*scene_options.SOLVE_GROUPS, *scene_options.PICTURE_GROUPS))
-    return {scene_options.destination(option): option.member for option in said} | {"unit": "/body", "height": "/body"}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -34,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="PATH=VALUE",
-        help="change what the scene says, e.g. /camera/fov=40 or /material=jade; several allowed",
+        help="change anything that the scene says, e.g. /lights/0/power=2, after all other options; several allowed",
     )
     group.add_argument("--frame", type=float, default=0.0, metavar="F", help="the one to render (default: 0)")
     group.add_argument(
@@ -46,7 +40,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="render the first N, without N all of the scene, into a numbered OUT, e.g. frames/%%04d.png, .jpg or "
         ".exr, or a film, e.g. turn.mp4 or turn.gif",
     )
-    parser.set_defaults(unstated={name: parser.get_default(name) for name in stated()})
 
 
 def is_scene(path: Path) -> bool:
@@ -64,11 +57,8 @@ def refuse(args: argparse.Namespace) -> None:
 def run(args: argparse.Namespace) -> int:
     """Render and write; 3 as `scene_options.exit_status` says of all frames."""
     core = load_core()
-    for name, pointer in stated().items():
-        if getattr(args, name) != args.unstated[name]:
-            option = name.replace("_", "-")
-            raise InputError(f"--{option}: not beside a scene file; change it there, or with --set {pointer}=...")
     file = core.SceneFile(args.file)
+    scene_overrides.apply(file, args.file, args)
     for change in args.set:
         pointer, equals, value = change.partition("=")
         if not equals:
@@ -85,7 +75,8 @@ def run(args: argparse.Namespace) -> int:
         frame_output.check(path, with_numbers)
         if transparent:
             picture_output.check_opaque(path)
-    outputs.check_outputs([*args.output, args.json], [args.file, *named_files(args.file), *args.set])
+    read = [*scene_options.inputs(args), *named_files(args.file), *args.set]
+    outputs.check_outputs([*args.output, args.json], read)
     stage = core.Stage(device=args.device, validation=args.validation)
     reports = render(stage, file, frames, args.output)
     if args.json:

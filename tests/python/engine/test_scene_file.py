@@ -118,7 +118,6 @@ def test_a_volume_lies_beside_its_scene(folder, tmp_path):
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        (["--material", "jade"], "--material: not beside a scene file; change it there, or with --set /material=..."),
         (["--set", "/camera/fov"], "--set /camera/fov: allowed is PATH=VALUE"),
         (["--set", f"/material={'[' * 65}"], "--set /material: JSON nested deeper than 64 levels"),
         (["--set", "/camera/fov=500"], "/camera: view, field of view: found 500"),
