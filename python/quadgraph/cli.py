@@ -34,6 +34,7 @@ SUBCOMMANDS = {
     "render": "render",
     "solve": "solve",
     "turntable": "turntable",
+    "sheet": "sheet",
     "compare": "compare",
     "materials": "material_list",
     "cache": "cache",
