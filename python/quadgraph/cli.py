@@ -15,14 +15,15 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from importlib.metadata import entry_points
 from types import FrameType, ModuleType
-from typing import Any, NoReturn
+from typing import Any
 
 from quadgraph.base.errors import InputError, QuadGraphError
-from quadgraph.base.message import meant, shortened
+from quadgraph.base.message import shortened
 from quadgraph.base.version import __version__
+from quadgraph.commands.command_parser import NAME_ROOM, CommandParser, Listing
 
 # Their modules import nothing heavy: what a subcommand needs, it imports when it runs.
 SUBCOMMANDS = {
@@ -38,77 +39,12 @@ SUBCOMMANDS = {
     "compare": "compare",
     "materials": "material_list",
     "cache": "cache",
+    "completion": "completion",
     "doctor": "doctor",
 }
 # The subcommands that quadgraph-validation brings along; their modules come through its entry points.
 VALIDATION = ("bench", "accuracy", "reference", "chart", "tables", "polygrid", "stability")
 INTERRUPTED = 128 + signal.SIGINT
-_NAME_ROOM = 12  # letters of a subcommand's name in the list of them, and two blanks
-_CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")  # as argparse says it
-
-
-class CommandParser(argparse.ArgumentParser):
-    """The parser of a command line.
-
-    One whose arguments need the compiled engine has `declare` add them when it is used, so that all others, and the
-    list of subcommands, do without it. What such a parser returns has also `given`, the names of the arguments that
-    were typed.
-    """
-
-    declare: Callable[[argparse.ArgumentParser], None] | None = None
-
-    def parse_known_args(self, args=None, namespace=None):
-        """Parse like ArgumentParser, with all arguments declared."""
-        told = self.declare is not None
-        self.declare_all()
-        parsed, rest = super().parse_known_args(args, namespace)
-        if told:
-            parsed.given = frozenset(vars(self._typed(args)))
-        unknown = [text.partition("=")[0] for text in rest if text.startswith("-")]
-        if unknown:
-            slip = meant(unknown[0], self._option_string_actions)
-            self.error(f"unrecognized arguments: {' '.join(rest)}{slip}")
-        return parsed, rest
-
-    def _typed(self, args: Sequence[str]) -> argparse.Namespace:
-        """What `args` say, without any default."""
-        kept = [(action, action.default) for action in self._actions]
-        others, self._defaults = self._defaults, {}
-        try:
-            for action in self._actions:
-                action.default = argparse.SUPPRESS
-            return super().parse_known_args(args, argparse.Namespace())[0]
-        finally:
-            self._defaults = others
-            for action, default in kept:
-                action.default = default
-
-    def declare_all(self) -> None:
-        """Add the arguments that are added when they are needed."""
-        declare, self.declare = self.declare, None
-        if declare is not None:
-            declare(self)
-
-    def error(self, message: str) -> NoReturn:
-        """Say what is wrong with the usage, however long what was typed is, and what was meant, and exit with 2."""
-        if choice := _CHOICE.search(message):
-            message += meant(choice[1], re.findall(r"'([^']*)'", choice[2]))
-        super().error(shortened(message))
-
-    def _get_values(self, action, arg_strings):
-        """Refuse `--name=--`, which argparse takes for no value at all."""
-        if action.option_strings and "--" in arg_strings:
-            raise argparse.ArgumentError(action, "'--' found, a value is wanted")
-        return super()._get_values(action, arg_strings)
-
-
-class Listing(argparse.RawDescriptionHelpFormatter):
-    """A help with every subcommand on one line; argparse forgets how far their names are indented."""
-
-    def __init__(self, prog: str) -> None:
-        """Leave room for their names."""
-        super().__init__(prog)
-        self._action_max_length = _NAME_ROOM + 2
 
 
 class Added:
@@ -120,7 +56,7 @@ class Added:
 
     def add_parser(self, name: str, help: str, **options: Any) -> argparse.ArgumentParser:
         """Add a subcommand that the list of the first group does not show."""
-        self._lines.append(f"    {name:<{_NAME_ROOM}}{help}")
+        self._lines.append(f"    {name:<{NAME_ROOM}}{help}")
         return self._subparsers.add_parser(name, **options)
 
     def text(self) -> str:
@@ -152,6 +88,7 @@ def build_parser(commands: dict[str, ModuleType], added: dict[str, ModuleType]) 
     for module in added.values():
         module.add_parser(second)
     parser.epilog = second.text()
+    parser.set_defaults(whole=parser)  # for a subcommand that tells of all of them
     return parser
 
 

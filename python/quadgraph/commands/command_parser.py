@@ -1,0 +1,77 @@
+"""Parsers of command lines, which say what a slip was meant for, and know what was typed."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from collections.abc import Callable, Sequence
+from typing import NoReturn
+
+from quadgraph.base.message import meant, shortened
+
+NAME_ROOM = 12  # letters of a subcommand's name in the list of them, and two blanks
+_CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")  # as argparse says it
+
+
+class CommandParser(argparse.ArgumentParser):
+    """The parser of a command line.
+
+    One whose arguments need the compiled engine has `declare` add them when it is used, so that all others, and the
+    list of subcommands, do without it. What such a parser returns has also `given`, the names of the arguments that
+    were typed.
+    """
+
+    declare: Callable[[argparse.ArgumentParser], None] | None = None
+
+    def parse_known_args(self, args=None, namespace=None):
+        """Parse like ArgumentParser, with all arguments declared."""
+        told = self.declare is not None
+        self.declare_all()
+        parsed, rest = super().parse_known_args(args, namespace)
+        if told:
+            parsed.given = frozenset(vars(self._typed(args)))
+        unknown = [text.partition("=")[0] for text in rest if text.startswith("-")]
+        if unknown:
+            slip = meant(unknown[0], self._option_string_actions)
+            self.error(f"unrecognized arguments: {' '.join(rest)}{slip}")
+        return parsed, rest
+
+    def _typed(self, args: Sequence[str]) -> argparse.Namespace:
+        """What `args` say, without any default."""
+        kept = [(action, action.default) for action in self._actions]
+        others, self._defaults = self._defaults, {}
+        try:
+            for action in self._actions:
+                action.default = argparse.SUPPRESS
+            return super().parse_known_args(args, argparse.Namespace())[0]
+        finally:
+            self._defaults = others
+            for action, default in kept:
+                action.default = default
+
+    def declare_all(self) -> None:
+        """Add the arguments that are added when they are needed."""
+        declare, self.declare = self.declare, None
+        if declare is not None:
+            declare(self)
+
+    def error(self, message: str) -> NoReturn:
+        """Say what is wrong with the usage, however long what was typed is, and what was meant, and exit with 2."""
+        if choice := _CHOICE.search(message):
+            message += meant(choice[1], re.findall(r"'([^']*)'", choice[2]))
+        super().error(shortened(message))
+
+    def _get_values(self, action, arg_strings):
+        """Refuse `--name=--`, which argparse takes for no value at all."""
+        if action.option_strings and "--" in arg_strings:
+            raise argparse.ArgumentError(action, "'--' found, a value is wanted")
+        return super()._get_values(action, arg_strings)
+
+
+class Listing(argparse.RawDescriptionHelpFormatter):
+    """A help with every subcommand on one line; argparse forgets how far their names are indented."""
+
+    def __init__(self, prog: str) -> None:
+        """Leave room for their names."""
+        super().__init__(prog)
+        self._action_max_length = NAME_ROOM + 2
