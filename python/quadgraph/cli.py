@@ -5,6 +5,7 @@ those that an installed distribution names under the entry point group `quadgrap
 from __future__ import annotations
 
 import argparse
+import functools
 import importlib
 import io
 import math
@@ -23,6 +24,7 @@ from typing import Any
 from quadgraph.base.errors import InputError, QuadGraphError
 from quadgraph.base.message import shortened
 from quadgraph.base.version import __version__
+from quadgraph.commands import config
 from quadgraph.commands.command_parser import NAME_ROOM, CommandParser, Listing
 
 # Their modules import nothing heavy: what a subcommand needs, it imports when it runs.
@@ -88,8 +90,30 @@ def build_parser(commands: dict[str, ModuleType], added: dict[str, ModuleType]) 
     for module in added.values():
         module.add_parser(second)
     parser.epilog = second.text()
-    parser.set_defaults(whole=parser)  # for a subcommand that tells of all of them
+    if "completion" in subparsers.choices:
+        subparsers.choices["completion"].set_defaults(whole=parser)  # it tells of all of them
     return parser
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Let the user's file of defaults be read when one of its commands is parsed; not for one that helps to mend it."""
+    (subparsers,) = (action for action in parser._actions if isinstance(action, argparse._SubParsersAction))
+    parsers = {name: each for name, each in subparsers.choices.items() if isinstance(each, CommandParser)}
+
+    def known() -> set[str] | None:
+        try:
+            for each in parsers.values():
+                each.declare_all()
+        except InputError:  # there is no engine, whose options would be known
+            return None
+        return {name for each in parsers.values() for name in config.options_of(each)}
+
+    def defaults(command: str, each: argparse.ArgumentParser) -> dict[str, Any]:
+        return config.apply(config.load(parsers), command, each, known)
+
+    for name, each in parsers.items():
+        if name not in ("doctor", "completion"):
+            each.configure = functools.partial(defaults, name)
 
 
 def check_installed(arguments: Sequence[str], added: dict[str, ModuleType]) -> None:
@@ -186,7 +210,10 @@ def _run(given: Sequence[str]) -> int:
     commands = {name: importlib.import_module(f"quadgraph.commands.{module}") for name, module in SUBCOMMANDS.items()}
     added = added_commands()
     check_installed(given, added)
-    args = build_parser(commands, added).parse_args(given)
+    parser = build_parser(commands, added)
+    if config.OFF not in given:
+        configure(parser)
+    args = parser.parse_args(given)
     status = (commands | added)[args.command].run(args)
     if sys.stdout is not None:  # it is where the process was started without one
         sys.stdout.flush()

@@ -21,6 +21,7 @@ from quadgraph.commands import contact_sheet, difference, render_scene, scene_op
 from quadgraph.core import load_core
 
 _LINEAR, _DISPLAYED = (".exr", ".hdr"), (".png",)
+_OF_PICTURES = {"a", "b", "output", "scale", "json", "device", "validation", "exposure", "background", "no_config"}
 _LEAST_WIDTH = 240  # pixels of a picture on the sheet: smaller ones are shown larger
 
 
@@ -80,7 +81,7 @@ def sides(args: argparse.Namespace) -> tuple[Side, Side]:
     """Read or render both; bodies with the lights and the view of the first."""
     paths = (args.a, args.b)
     pictures = [path.suffix.lower() in (*_LINEAR, *_DISPLAYED) for path in paths]
-    typed = sorted(args.given - {"a", "b", "output", "scale", "json", "device", "validation", "exposure", "background"})
+    typed = sorted(args.given - _OF_PICTURES)
     if all(pictures) and typed:
         raise InputError(f"--{typed[0].replace('_', '-')}: found with two pictures, is for what is rendered")
     return read(args.a, args), read(args.b, args)

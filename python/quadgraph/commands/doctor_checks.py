@@ -17,6 +17,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from quadgraph.base import config_file
 from quadgraph.base.cache_folder import cache_folder
 from quadgraph.base.errors import QuadGraphError
 from quadgraph.base.message import shortened
@@ -173,6 +174,16 @@ def folders() -> Iterator[Check]:
     yield Check("cache", not reason, False, found, cure if reason else None)
 
 
+def defaults() -> Iterator[Check]:
+    """The user's file of defaults."""
+    try:
+        said = config_file.load()
+        path = config_file.place()
+        yield Check("config", True, False, f"{path}, {len(said)} entries" if path.exists() else f"none ({path})")
+    except (QuadGraphError, OSError, RuntimeError) as error:
+        yield Check("config", False, False, str(error), "correct it, or use --no-config")
+
+
 def cannot_write(place: Path) -> str:
     """Why no file can be made in a folder, or in the first above it that there is; nothing where one can."""
     there = next(folder for folder in (place, *place.absolute().parents) if folder.exists())
@@ -207,6 +218,7 @@ GROUPS: dict[str, Callable[[], Iterator[Check]]] = {
     "bakes": meshers,
     "window": window,
     "folders": folders,
+    "config": defaults,
     "extras": extras,
 }
 

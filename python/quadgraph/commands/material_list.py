@@ -108,7 +108,7 @@ def draw(args: argparse.Namespace, listed: Sequence[dict[str, Any]]) -> int:
     """Write the sheet of swatches; 3 as `scene_options.exit_status` says."""
     image_file.check(args.output)
     outputs.check_outputs([args.output], [args.body, *scene_options.inputs(args)])
-    check_sides(args.size, len(listed))
+    check_sides(args, len(listed))
     if args.body is None and own_mesh.sizes(args):
         raise InputError("--unit, --height, --longest and --wrap: found without --body, whose size they are")
     if args.body is None and not (args.view or args.eye):
@@ -128,10 +128,10 @@ def draw(args: argparse.Namespace, listed: Sequence[dict[str, Any]]) -> int:
     return scene_options.exit_status(reports, args.strict)
 
 
-def check_sides(size: str, count: int) -> None:
+def check_sides(args: argparse.Namespace, count: int) -> None:
     """Raise InputError if so many pictures of a size make a sheet that is too large."""
-    width, height = (int(side) for side in size.split("x"))
+    width, height = scene_options.size_of(args)
     if count * width * height > contact_sheet.MOST_PIXELS:
         raise InputError(
-            f"--size: found {size} for {count} pictures, allowed are {contact_sheet.MOST_PIXELS} pixels in all"
+            f"--size: found {args.size} for {count} pictures, allowed are {contact_sheet.MOST_PIXELS} pixels in all"
         )

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import math
+import re
 from collections.abc import Callable, Collection, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -94,6 +96,26 @@ def value_of(option: SceneOption) -> Callable[[str], Any]:
             raise argparse.ArgumentTypeError(str(error)) from error
 
     return value
+
+
+def size_of(args: argparse.Namespace) -> tuple[int, int]:
+    """Width and height, pixels. Raises InputError."""
+    found = re.fullmatch(r"([0-9]{1,5})x([0-9]{1,5})", args.size)
+    if not found:
+        raise InputError(f"--size: found '{args.size}', expected WIDTHxHEIGHT, e.g. 640x480")
+    return int(found[1]), int(found[2])
+
+
+def numbers_of(name: str, text: str, counts: Collection[int]) -> list[float]:
+    """Numbers that are joined by commas in the text of an option. Raises InputError."""
+    try:
+        found = [float(part) for part in text.split(",")]
+    except ValueError:
+        found = []
+    if len(found) not in counts or not all(map(math.isfinite, found)):
+        wanted = " or ".join(map(str, counts))
+        raise InputError(f"--{name}: found '{text}', expected {wanted} finite numbers joined by commas")
+    return found
 
 
 def make_engine(args: argparse.Namespace) -> Engine:

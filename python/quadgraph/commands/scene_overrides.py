@@ -69,7 +69,7 @@ def _lights(texts: list[str]) -> dict[str, Any]:
 
 
 def _view(text: str) -> dict[str, Any]:
-    angles = [float(part) for part in text.split(",")]
+    angles = scene_options.numbers_of("view", text, (2, 3))
     return {f"/camera/{name}": None for name in (*_ANGLES, *_PLACES)} | {
         f"/camera/{name}": angle for name, angle in zip(_ANGLES, angles, strict=False)
     }
@@ -78,13 +78,13 @@ def _view(text: str) -> dict[str, Any]:
 def _place(name: str) -> Callable[[str], dict[str, Any]]:
     def place(text: str) -> dict[str, Any]:
         away = {f"/camera/{other}": None for other in (*_ANGLES, "target")}
-        return away | {f"/camera/{name}": [float(part) for part in text.split(",")]}
+        return away | {f"/camera/{name}": scene_options.numbers_of(name.replace("_", "-"), text, (3,))}
 
     return place
 
 
 def _size(text: str) -> dict[str, Any]:
-    width, height = (int(side) for side in text.split("x"))
+    width, height = scene_options.size_of(argparse.Namespace(size=text))
     return {"/picture/width": width, "/picture/height": height}
 
 

@@ -48,7 +48,7 @@ def run(args: argparse.Namespace) -> int:
     materials = split(args.materials or [scene_options.default_of("material")])
     image_file.check(args.output)
     outputs.check_outputs([args.output, args.json], [*args.bodies, *materials, *scene_options.inputs(args)])
-    material_list.check_sides(args.size, len(args.bodies) * len(materials))
+    material_list.check_sides(args, len(args.bodies) * len(materials))
     for body in args.bodies:
         if render_scene.is_scene(body):
             raise InputError(f"{body}: a scene names its own material; meshes and baked .qgraph files are wanted")

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from quadgraph.base.errors import InputError
+from quadgraph.commands.scene_options import numbers_of
 from quadgraph.core import load_core
 
 if TYPE_CHECKING:
@@ -40,11 +41,11 @@ def rotation(up: str, degrees: float) -> np.ndarray:
 def view(args: argparse.Namespace, engine: Engine, degrees: float) -> dict[str, str]:
     """Keyword arguments of `Engine.render` for the camera of the arguments, turned."""
     if args.eye:
-        target = np.array([float(part) for part in args.look_at.split(",")]) if args.look_at else middle(engine)
-        eye = np.array([float(part) for part in args.eye.split(",")])
+        target = np.array(numbers_of("look-at", args.look_at, (3,))) if args.look_at else middle(engine)
+        eye = np.array(numbers_of("eye", args.eye, (3,)))
         return {"eye": _text(target + rotation(args.up, degrees) @ (eye - target))}
     front = float(engine.graph.front) if args.up == "y" else 0.0
-    azimuth, *rest = [float(part) for part in args.view.split(",")] if args.view else [front, _ELEVATION]
+    azimuth, *rest = numbers_of("view", args.view, (2, 3)) if args.view else [front, _ELEVATION]
     return {"view": _text([(azimuth + degrees) % 360, *rest])}
 
 

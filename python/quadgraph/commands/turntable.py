@@ -69,9 +69,8 @@ def run(args: argparse.Namespace) -> int:
         if args.background == "transparent":
             picture_output.check_opaque(path)
     outputs.check_outputs([*args.output, args.json], scene_options.inputs(args))
-    width, height = (int(side) for side in args.size.split("x"))
     rate = args.frames / args.seconds if args.seconds else _RATE
-    with frame_output.Frames(args.output, (width, height), rate) as written:
+    with frame_output.Frames(args.output, scene_options.size_of(args), rate) as written:
         reports = render(args, written)
     if args.json:
         atomic_file.write_json(args.json, reports)
@@ -128,7 +127,7 @@ class Turn:
         options = scene_options.keywords(self._args, scene_options.PICTURE_GROUPS)
         options |= turning.view(self._args, self._engine, of_camera)
         if share != 1:
-            options["size"] = "x".join(str(max(16, int(share * int(side)))) for side in self._args.size.split("x"))
+            options["size"] = "x".join(str(max(16, int(share * side))) for side in scene_options.size_of(self._args))
         picture = self._engine.render(**options)
         scene_options.check_validation(self._engine)
         return picture

@@ -61,6 +61,7 @@ def test_a_sheet_has_a_swatch_for_each_in_its_colour(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
+        (["-o", "a.png", "--size", "big"], "--size: found 'big', expected WIDTHxHEIGHT"),
         (["-o", "a.exr"], "a.exr: output must end in .png, .jpg or .jpeg"),
         (["-o", "a.png", "--size", "9000x9000"], "--size: found 9000x9000 for 19 pictures, allowed are"),
         (["-o", "a.png", "--unit", "mm"], "found without --body"),

@@ -156,6 +156,9 @@ def test_files_that_are_typed_are_those_of_the_working_directory(scene, tmp_path
 @pytest.mark.parametrize(
     ("options", "said"),
     [
+        (["--size", "40"], "--size: found '40', expected WIDTHxHEIGHT"),
+        (["--view", "a"], "--view: found 'a', expected 2 or 3 finite numbers"),
+        (["--eye", "0,0,inf", "--look-at", "0,0,0"], "--eye: found '0,0,inf', expected 3 finite numbers"),
         (["--height", "2cm"], "--height: not beside a scene file, whose /body is a baked .qgraph"),
         (["--material", "marbel"], "(did you mean 'marble'?)"),
         (["--eye", "0,0,9"], "look_at"),

@@ -128,6 +128,9 @@ def test_a_light_that_turns_is_solved_for_in_every_frame(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
+        (["-o", "a.gif", "--size", "40"], "--size: found '40', expected WIDTHxHEIGHT"),
+        (["-o", "a.gif", "--view", "a,b"], "view, azimuth: found 'a', expected a finite number"),
+        (["-o", "a.gif", "--eye", "1,2"], "eye"),
         (["-o", "a.png"], "a.png: a number, e.g. %04d, in the name of every frame is wanted"),
         (["-o", "a.avi"], "a.avi: output must end in .png, .jpg, .jpeg, .exr, .mp4, .webm or .gif"),
         (["-o", "a.gif", "--seconds", "0.1"], "a.gif: found 480 frames a second, a .gif has at most 50"),
