@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -37,12 +38,14 @@ def write(path: Path, srgb: npt.NDArray[np.uint8], metadata: Sequence[tuple[str,
 
     check(path)
     picture = Image.fromarray(np.ascontiguousarray(srgb))
-    with replacing(path) as stream:
-        if is_jpeg(path):
-            comment = "\n".join(f"{name}: {value}" for name, value in metadata).encode()[:_MOST_COMMENT]
-            picture.save(stream, "JPEG", quality=_QUALITY, subsampling=0, comment=comment)
-            return
+    encoded = io.BytesIO()  # into a file Pillow writes by itself, and does not see that there is no room
+    if is_jpeg(path):
+        comment = "\n".join(f"{name}: {value}" for name, value in metadata).encode()[:_MOST_COMMENT]
+        picture.save(encoded, "JPEG", quality=_QUALITY, subsampling=0, comment=comment)
+    else:
         texts = PngImagePlugin.PngInfo()
         for name, value in metadata:
             texts.add_text(name, value)
-        picture.save(stream, "PNG", pnginfo=texts)
+        picture.save(encoded, "PNG", pnginfo=texts)
+    with replacing(path) as stream:
+        stream.write(encoded.getbuffer())

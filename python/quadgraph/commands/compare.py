@@ -69,6 +69,7 @@ def run(args: argparse.Namespace) -> int:
     if a.linear.shape != b.linear.shape:
         sizes = [f"{side.linear.shape[1]}x{side.linear.shape[0]}" for side in (a, b)]
         raise InputError(f"{args.a} and {args.b}: {sizes[0]} and {sizes[1]} pixels, the same size is wanted")
+    check_room(args, a.linear.shape)
     found = difference.measure(a.linear, b.linear)
     scale = args.scale or found.usual_scale
     if args.output:
@@ -114,6 +115,15 @@ def read(path: Path, args: argparse.Namespace) -> Side:
 def radiance(picture) -> np.ndarray:
     """What is seen of the body, (h, w, 3), W/(mm^2 sr): the sum of the layers."""
     return np.maximum(picture.scattered, 0) + picture.specular + picture.unscattered
+
+
+def check_room(args: argparse.Namespace, shape: tuple[int, ...]) -> None:
+    """Raise InputError if a sheet is asked for that is too large."""
+    if args.output and 3 * shape[0] * shape[1] > contact_sheet.MOST_PIXELS:
+        raise InputError(
+            f"{args.output}: three pictures of {shape[1]}x{shape[0]} pixels, a sheet has room for "
+            f"{contact_sheet.MOST_PIXELS} in all; leave --output out for the numbers alone"
+        )
 
 
 def sheet(args: argparse.Namespace, a: Side, b: Side, found: difference.Difference, scale: float) -> np.ndarray:

@@ -143,7 +143,7 @@ def window() -> Iterator[Check]:
     try:
         program = view.find_program()
     except QuadGraphError as error:
-        yield Check("window", False, False, str(error), BUILD)
+        yield Check("window", False, False, str(error), f"{BUILD} --vulkan")
         return
     if "error" in tried("devices"):
         yield Check("window", False, False, "a window needs Vulkan, see above", VULKAN)

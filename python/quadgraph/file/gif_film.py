@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 from contextlib import suppress
 from pathlib import Path
@@ -53,12 +54,13 @@ class GifFilm:
         ends = [round(100 * (number + 1) / self._rate) for number in range(len(self._frames))]
         delays = [10 * (end - start) for start, end in zip([0, *ends], ends, strict=False)]
         first, *others = self._frames
+        encoded = io.BytesIO()  # into a file Pillow writes by itself, and does not see that there is no room
+        first.save(encoded, "GIF", save_all=True, append_images=others, duration=delays, loop=0, disposal=1)
         try:
-            with self._temporary.open("wb") as stream:
-                first.save(stream, "GIF", save_all=True, append_images=others, duration=delays, loop=0, disposal=1)
+            self._temporary.write_bytes(encoded.getbuffer())
             self._temporary.replace(self.path)
         except OSError as error:
-            raise InputError(f"{self.path}: cannot be written ({error.strerror or error})") from error
+            raise InputError(f"{self.path}: cannot be written ({error.strerror})") from error
 
     def discard(self) -> None:
         """Remove what is left of a film that was not finished."""

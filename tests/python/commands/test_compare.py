@@ -113,6 +113,14 @@ def test_people_are_told(tmp_path, capsys):
         assert sheet.format == "JPEG"
 
 
+def test_a_sheet_that_is_too_large_is_refused_and_numbers_are_told(tmp_path, monkeypatch, capsys):
+    a = write_exr(tmp_path / "a.exr", gradient())
+    monkeypatch.setattr(contact_sheet, "MOST_PIXELS", 3 * 12 * 20 - 1)
+    assert cli.main(["compare", str(a), str(a), "-o", str(tmp_path / "b.png")]) == 1
+    assert "three pictures of 20x12 pixels, a sheet has room for 719 in all" in capsys.readouterr().err
+    assert compared(capsys, a, a)["most"] == 0
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
