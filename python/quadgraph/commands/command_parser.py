@@ -19,7 +19,7 @@ class CommandParser(argparse.ArgumentParser):
 
     One whose arguments need the compiled engine has `declare` add them when it is used, so that all others, and the
     list of subcommands, do without it. What the parser of a subcommand returns has also `given`, the names of the
-    arguments that were typed. `configure` may change defaults before that, and returns those that it has changed, by
+    options that were typed. `configure` may change defaults before that, and returns those that it has changed, by
     destination.
     """
 
@@ -57,17 +57,20 @@ class CommandParser(argparse.ArgumentParser):
         return result
 
     def _typed(self, args: Sequence[str]) -> argparse.Namespace:
-        """What `args` say, without any default."""
-        kept = [(action, action.default) for action in self._actions]
+        """What `args` say of options, without any default."""
+        options = [action for action in self._actions if action.option_strings]
+        kept = [(action, action.default) for action in options]
         others, self._defaults = self._defaults, {}
         try:
-            for action in self._actions:
+            for action in options:
                 action.default = argparse.SUPPRESS
-            return super().parse_known_args(args, argparse.Namespace())[0]
+            found = super().parse_known_args(args, argparse.Namespace())[0]
         finally:
             self._defaults = others
             for action, default in kept:
                 action.default = default
+        names = {action.dest for action in options}
+        return argparse.Namespace(**{name: value for name, value in vars(found).items() if name in names})
 
     def declare_all(self) -> None:
         """Add the arguments that are added when they are needed."""

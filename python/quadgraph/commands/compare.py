@@ -21,7 +21,7 @@ from quadgraph.commands import contact_sheet, difference, render_scene, scene_op
 from quadgraph.core import load_core
 
 _LINEAR, _DISPLAYED = (".exr", ".hdr"), (".png",)
-_OF_PICTURES = {"a", "b", "output", "scale", "json", "device", "validation", "exposure", "background", "no_config"}
+_OF_PICTURES = {"output", "scale", "json", "device", "validation", "exposure", "background", "no_config"}
 _LEAST_WIDTH = 240  # pixels of a picture on the sheet: smaller ones are shown larger
 
 
