@@ -62,7 +62,8 @@ def measure(a: np.ndarray, b: np.ndarray) -> Difference:
 
 def coloured(signed: np.ndarray, scale: float) -> np.ndarray:
     """Colours (..., 3) uint8 of signed values: blue below 0, orange above, the brighter the nearer to `scale`."""
-    share = np.clip(signed / scale, -1, 1)[..., None]
+    with np.errstate(over="ignore"):
+        share = np.clip(signed / scale, -1, 1)[..., None]
     end = np.where(share < 0, _DARKER, _BRIGHTER)
     return np.rint(_SAME + np.sqrt(np.abs(share)) * (end - _SAME)).astype(np.uint8)
 

@@ -13,12 +13,12 @@ from pathlib import Path
 from typing import Any
 
 from rich.console import Console
-from rich.progress import Progress
 from rich.table import Table
 
 from quadgraph.base import image_file, outputs
 from quadgraph.base.errors import InputError
 from quadgraph.commands import contact_sheet, own_mesh, reference_body, scene_options
+from quadgraph.commands.progress_bar import progress_bar
 from quadgraph.core import load_core
 
 _SIDE = 160  # pixels of a swatch
@@ -117,7 +117,7 @@ def draw(args: argparse.Namespace, listed: Sequence[dict[str, Any]]) -> int:
     with reference_body.body() if args.body is None else nullcontext(args.body) as body:
         engine = scene_options.load_engine(body, args)
     engine.set_lights(scene_options.lights(engine, args))
-    with Progress(console=Console(stderr=True), transient=True) as progress:
+    with progress_bar() as progress:
         for each in progress.track(listed, description="swatches"):
             engine.set_material(each["name"])
             picture, report = scene_options.picture(engine, args)

@@ -9,13 +9,13 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from rich.console import Console
-from rich.progress import Progress
 
 from quadgraph.base import atomic_file, json_text, outputs
 from quadgraph.base.arguments import positive_int
 from quadgraph.base.errors import InputError
 from quadgraph.commands import frame_output, picture_output, scene_options, scene_overrides
 from quadgraph.commands import solve_report as text
+from quadgraph.commands.progress_bar import progress_bar
 from quadgraph.core import load_core
 from quadgraph.file import film
 
@@ -112,7 +112,7 @@ def render(stage, file, frames: Iterable[float], outputs: list[Path]) -> list[di
     reports = []
     with (
         frame_output.Frames(outputs, file.at(0).size, file.frames_per_second) as written,
-        Progress(console=Console(stderr=True), transient=True) as progress,
+        progress_bar() as progress,
     ):
         for frame in progress.track(list(frames), description="frames"):
             start = time.perf_counter()

@@ -100,9 +100,10 @@ def value_of(option: SceneOption) -> Callable[[str], Any]:
 
 def size_of(args: argparse.Namespace) -> tuple[int, int]:
     """Width and height, pixels. Raises InputError."""
+    low, high, *_ = next(option.range for option in load_core().scene_options() if option.name == "width")
     found = re.fullmatch(r"([0-9]{1,5})x([0-9]{1,5})", args.size)
-    if not found:
-        raise InputError(f"--size: found '{args.size}', expected WIDTHxHEIGHT, e.g. 640x480")
+    if not found or not all(low <= int(side) <= high for side in found.groups()):
+        raise InputError(f"--size: found '{args.size}', expected WIDTHxHEIGHT, {low:g} to {high:g} pixels each")
     return int(found[1]), int(found[2])
 
 

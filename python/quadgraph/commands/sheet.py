@@ -10,11 +10,11 @@ from pathlib import Path
 
 import numpy as np
 from rich.console import Console
-from rich.progress import Progress
 
 from quadgraph.base import atomic_file, image_file, outputs
 from quadgraph.base.errors import InputError
 from quadgraph.commands import contact_sheet, material_list, render_scene, scene_options
+from quadgraph.commands.progress_bar import progress_bar
 from quadgraph.core import load_core
 
 _SIDE = 192  # pixels of a picture
@@ -87,7 +87,7 @@ def split(texts: list[str]) -> list[str]:
 def render(args: argparse.Namespace, materials: list[str]) -> tuple[list[np.ndarray], list[dict]]:
     """A tile with its words, and a report, for each body and material, row after row."""
     tiles, reports = [], []
-    with Progress(console=Console(stderr=True), transient=True) as progress:
+    with progress_bar() as progress:
         task = progress.add_task("pictures", total=len(args.bodies) * len(materials))
         for body in args.bodies:
             engine = scene_options.load_engine(body, args)

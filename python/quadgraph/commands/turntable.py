@@ -12,17 +12,18 @@ import time
 from pathlib import Path
 
 from rich.console import Console
-from rich.progress import Progress
 
 from quadgraph.base import atomic_file, outputs
 from quadgraph.base.arguments import positive_float, positive_int
 from quadgraph.base.errors import InputError
 from quadgraph.commands import frame_output, picture_output, render_scene, scene_options, turning
 from quadgraph.commands import solve_report as text
+from quadgraph.commands.progress_bar import progress_bar
 from quadgraph.core import load_core
 
 _FRAMES = 48
 _RATE = 24.0  # frames a second
+_SLOWEST, _QUICKEST = 0.1, 1000.0  # frames a second
 _SEEN = 6  # of all frames, from which the exposure follows
 
 
@@ -70,6 +71,11 @@ def run(args: argparse.Namespace) -> int:
             picture_output.check_opaque(path)
     outputs.check_outputs([*args.output, args.json], scene_options.inputs(args))
     rate = args.frames / args.seconds if args.seconds else _RATE
+    if not _SLOWEST <= rate <= _QUICKEST:
+        raise InputError(
+            f"--seconds: found {args.seconds:g} for {args.frames} frames, which is {rate:.3g} a second; allowed are "
+            f"{_SLOWEST:g} to {_QUICKEST:g}"
+        )
     with frame_output.Frames(args.output, scene_options.size_of(args), rate) as written:
         reports = render(args, written)
     if args.json:
@@ -83,7 +89,7 @@ def render(args: argparse.Namespace, written: frame_output.Frames) -> list[dict]
     turn = Turn(args, engine)
     start = time.perf_counter()
     reports = []
-    with Progress(console=Console(stderr=True), transient=True) as progress:
+    with progress_bar() as progress:
         if args.exposure == "auto":
             count = min(_SEEN, args.frames)
             seen = [

@@ -96,6 +96,7 @@ def test_colours_say_which_is_brighter_and_the_bar_how_much():
     assert high[0] > high[2]
     assert none.max() < 30
     np.testing.assert_array_equal(difference.coloured(np.array([5.0]), 2.0)[0], high)  # beyond the scale
+    np.testing.assert_array_equal(difference.coloured(np.array([5.0]), 1e-320)[0], high)
     bar = difference.bar(240, 0.0125).astype(int)
     row = bar[len(bar) // 2]
     assert row[75, 2] > row[75, 0]
