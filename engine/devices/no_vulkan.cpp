@@ -8,4 +8,8 @@ std::shared_ptr<device::Device> open_vulkan(const device::DeviceOptions& options
                     "': this build has no Vulkan, so cpu is the only one (tools/setup --vulkan adds it)");
 }
 
+std::vector<vk::Surveyed> survey_vulkan() {
+  throw DeviceError("this build has no Vulkan (tools/setup --vulkan adds it)");
+}
+
 }  // namespace quadgraph

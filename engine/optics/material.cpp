@@ -149,7 +149,7 @@ struct Set {
 
 std::uint32_t parse_pattern(std::string_view text) {
   const auto found = std::find(patterns.begin(), patterns.end(), text);
-  if (found == patterns.end()) bad_field("pattern", text, joined(patterns));
+  if (found == patterns.end()) bad_field("pattern", text, joined(patterns) + meant(text, patterns));
   return static_cast<std::uint32_t>(found - patterns.begin());
 }
 
@@ -229,6 +229,13 @@ const std::vector<std::string>& material_names() {
     return list;
   }();
   return names;
+}
+
+std::string_view material_source(std::string_view name) {
+  const bool is_measured = std::any_of(measured.begin(), measured.end(), [&](const auto& m) { return m.name == name; });
+  if (is_measured) return "measured: Jensen et al. 2001, Figure 5";
+  named(name);
+  return "made up: chosen by eye, to look like what the name says";
 }
 
 std::string_view pattern_name(const gpu::Material& material) {

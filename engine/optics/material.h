@@ -15,6 +15,9 @@ inline constexpr float default_eta = 1.3f;
 // Names in the order they are listed to the user.
 const std::vector<std::string>& material_names();
 
+// Where the coefficients of such a name are from, in words. Throws InputError if there is none of it.
+std::string_view material_source(std::string_view name);
+
 // "none", "veins", "clouds", ..., as `pattern=` takes it.
 std::string_view pattern_name(const gpu::Material& material);
 

@@ -102,6 +102,7 @@ void set_stops(Scene& scene, const OptionValue& value) {
 
 OptionValue background_of(const Scene& scene) {
   const ToneOptions &tone = scene.tone, usual;
+  if (tone.transparent) return std::string("transparent");
   if (tone.background_top == usual.background_top && tone.background_bottom == usual.background_bottom) {
     return std::string("studio");
   }

@@ -296,7 +296,7 @@ void add_tone(OptionTable& table) {
               .member = "/picture/background",
               .own_form = true,
               .metavar = "COLOUR",
-              .help = "studio, black, white, linear grey or R/G/B in [0, 1] (PNG)"},
+              .help = "studio, black, white, transparent (PNG only), linear grey or R/G/B in [0, 1]"},
              background_of, set_background);
 }
 

@@ -138,18 +138,25 @@ Json solve_json(const Scene& scene) {
   return json;
 }
 
-void background_from(const JsonField& field, ToneOptions& tone) {
-  if (field.value().is_object()) {
-    field.allow({"top", "bottom"});
-    ToneOptions end;
-    background_from(field.at("top"), end);
-    tone.background_top = end.background_top;
-    background_from(field.at("bottom"), end);
-    tone.background_bottom = end.background_bottom;
-    return;
-  }
+void plain_background_from(const JsonField& field, ToneOptions& tone) {
   const std::string text = numbers(field);
   field.within([&] { parse_background(text, tone); });
+}
+
+// One end of a gradient.
+ToneOptions end_from(const JsonField& field) {
+  ToneOptions end;
+  plain_background_from(field, end);
+  if (end.transparent) field.refuse("a grey or R/G/B in [0, 1]");
+  return end;
+}
+
+void background_from(const JsonField& field, ToneOptions& tone) {
+  if (!field.value().is_object()) return plain_background_from(field, tone);
+  field.allow({"top", "bottom"});
+  tone.background_top = end_from(field.at("top")).background_top;
+  tone.background_bottom = end_from(field.at("bottom")).background_bottom;
+  tone.transparent = false;
 }
 
 RoughnessMap roughness_map_from(const JsonField& field) {
@@ -174,7 +181,10 @@ Json picture_json(const Scene& scene) {
                              {"roughness", real_json(map->roughness)}};
   }
   const ToneOptions& tone = scene.tone;
-  json["background"] = {{"top", rgb_json(tone.background_top)}, {"bottom", rgb_json(tone.background_bottom)}};
+  json["background"] = "transparent";
+  if (!tone.transparent) {
+    json["background"] = {{"top", rgb_json(tone.background_top)}, {"bottom", rgb_json(tone.background_bottom)}};
+  }
   return json;
 }
 

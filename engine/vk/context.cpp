@@ -7,6 +7,7 @@
 #include "engine/base/error.h"
 #include "engine/vk/commands.h"
 #include "engine/vk/features.h"
+#include "engine/vk/physical_device.h"
 
 namespace quadgraph::vk {
 namespace {
@@ -27,11 +28,6 @@ bool layer_present(const char* name) {
   return std::any_of(layers.begin(), layers.end(), [&](const auto& l) { return std::strcmp(l.layerName, name) == 0; });
 }
 
-bool named(const std::vector<VkExtensionProperties>& extensions, const char* name) {
-  return std::any_of(extensions.begin(), extensions.end(),
-                     [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
-}
-
 bool extension_present(const char* name) {
   std::uint32_t count = 0;
   check(vkEnumerateInstanceExtensionProperties(nullptr, &count, nullptr), "vkEnumerateInstanceExtensionProperties");
@@ -39,46 +35,6 @@ bool extension_present(const char* name) {
   check(vkEnumerateInstanceExtensionProperties(nullptr, &count, extensions.data()),
         "vkEnumerateInstanceExtensionProperties");
   return named(extensions, name);
-}
-
-bool can_swap(VkPhysicalDevice device) {
-  std::uint32_t count = 0;
-  check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr), "vkEnumerateDeviceExtensionProperties");
-  std::vector<VkExtensionProperties> extensions(count);
-  check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data()),
-        "vkEnumerateDeviceExtensionProperties");
-  return named(extensions, VK_KHR_SWAPCHAIN_EXTENSION_NAME);
-}
-
-// The first family whose queues draw, compute and, where there is a surface, present to it.
-std::optional<std::uint32_t> find_family(VkPhysicalDevice device, VkSurfaceKHR surface) {
-  std::uint32_t count = 0;
-  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
-  std::vector<VkQueueFamilyProperties> families(count);
-  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
-  constexpr VkQueueFlags wanted = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
-  for (std::uint32_t family = 0; family < count; ++family) {
-    VkBool32 presents = VK_TRUE;
-    if (surface != VK_NULL_HANDLE) {
-      check(vkGetPhysicalDeviceSurfaceSupportKHR(device, family, surface, &presents),
-            "vkGetPhysicalDeviceSurfaceSupportKHR");
-    }
-    if ((families[family].queueFlags & wanted) == wanted && presents == VK_TRUE) return family;
-  }
-  return std::nullopt;
-}
-
-int preference(VkPhysicalDeviceType type) {
-  switch (type) {
-    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
-      return 0;
-    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
-      return 1;
-    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
-      return 2;
-    default:
-      return 3;
-  }
 }
 
 std::string result_name(VkResult result) {
@@ -206,21 +162,6 @@ void Context::create_instance(const device::DeviceOptions& options) {
   check(vkCreateInstance(&info, nullptr, &instance_), "vkCreateInstance");
 }
 
-// Empty if the device can run the engine, else what it lacks.
-std::string Context::what_is_missing(VkPhysicalDevice device) const {
-  VkPhysicalDeviceProperties properties;
-  vkGetPhysicalDeviceProperties(device, &properties);
-  if (properties.apiVersion < VK_API_VERSION_1_3) return "Vulkan 1.3";
-  Features features;
-  vkGetPhysicalDeviceFeatures2(device, &features.base);
-  for (const auto& [name, value] : features.required()) {
-    if (*value == VK_FALSE) return name;
-  }
-  if (surface_ != VK_NULL_HANDLE && !can_swap(device)) return VK_KHR_SWAPCHAIN_EXTENSION_NAME;
-  if (!find_family(device, VK_NULL_HANDLE)) return "a queue that both draws and computes";
-  return find_family(device, surface_) ? "" : "a queue that draws, computes and presents to this window";
-}
-
 void Context::create_messenger() {
   if (!debug_utils_) throw DeviceError("validation needs VK_EXT_debug_utils, which the loader does not offer");
   VkDebugUtilsMessengerCreateInfoEXT info{};
@@ -242,17 +183,12 @@ VkBool32 Context::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtil
 }
 
 void Context::pick_device(const std::string& wanted) {
-  std::uint32_t count = 0;
-  check(vkEnumeratePhysicalDevices(instance_, &count, nullptr), "vkEnumeratePhysicalDevices");
-  std::vector<VkPhysicalDevice> devices(count);
-  check(vkEnumeratePhysicalDevices(instance_, &count, devices.data()), "vkEnumeratePhysicalDevices");
-
   std::string seen;
   int best = 4;
-  for (VkPhysicalDevice candidate : devices) {
+  for (VkPhysicalDevice candidate : physical_devices(instance_)) {
     VkPhysicalDeviceProperties properties;
     vkGetPhysicalDeviceProperties(candidate, &properties);
-    const std::string missing = what_is_missing(candidate);
+    const std::string missing = what_is_missing(candidate, surface_);
     seen += std::string(seen.empty() ? "" : "; ") + properties.deviceName;
     if (!missing.empty()) seen += " (lacks " + missing + ")";
     const bool meant = lower(properties.deviceName).find(lower(wanted)) != std::string::npos;

@@ -64,7 +64,6 @@ class Context : public device::Device {
   void create_messenger();
   void pick_device(const std::string& wanted);
   void read_properties();
-  std::string what_is_missing(VkPhysicalDevice device) const;
   void create_device();
   void destroy() noexcept;
   static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,

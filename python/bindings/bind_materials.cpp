@@ -22,6 +22,8 @@ void bind_materials(py::module_& module) {
       .def_readonly("eta", &gpu::Material::eta);
   module.attr("COEFFICIENT_MAX") = gpu::COEFFICIENT_MAX;
   module.def("material_names", &material_names, "Materials that have a name, in the order in which they are offered.");
+  module.def("material_source", &material_source, py::arg("name"),
+             "Where the coefficients of a material of that name are from, in words. Raises InputError.");
   module.def("fresnel_transmittance", &fresnel_transmittance, py::arg("cos_i"), py::arg("eta"),
              "Unpolarised transmittance from outside at incidence cosine cos_i.");
   module.def("internal_diffuse_reflectance", &internal_diffuse_reflectance, py::arg("eta"), "The published F_dr.");

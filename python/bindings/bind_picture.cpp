@@ -2,7 +2,9 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include "engine/base/error.h"
 #include "engine/render/engine.h"
+#include "engine/render/light/image_file.h"
 #include "engine/scene/options.h"
 #include "python/bindings/bindings.h"
 
@@ -24,11 +26,41 @@ py::array pixels(const Picture& picture, const std::vector<float>& values, py::s
   return view(values.data(), std::move(shape), owner);
 }
 
+Picture picture_of(const FloatArray& radiance) {
+  if (radiance.ndim() != 3 || radiance.shape(2) != 3 || radiance.size() == 0) {
+    throw InputError("radiance: an array (h, w, 3) is wanted");
+  }
+  Picture picture;
+  picture.width = static_cast<std::uint32_t>(radiance.shape(1));
+  picture.height = static_cast<std::uint32_t>(radiance.shape(0));
+  picture.scattered.assign(radiance.data(), radiance.data() + radiance.size());
+  const std::vector<float> nothing(picture.scattered.size());
+  picture.specular = picture.unscattered = picture.transmittance = nothing;
+  for (std::size_t i = 0; i < picture.scattered.size(); i += 3) {
+    const float* rgb = &picture.scattered[i];
+    picture.alpha.push_back(rgb[0] > 0 || rgb[1] > 0 || rgb[2] > 0 ? 1.0f : 0.0f);
+  }
+  return picture;
+}
+
 // One of the RGB layers of a picture.
 template <std::vector<float> Picture::* layer>
 py::array rgb_layer(py::object self) {
   const auto& picture = self.cast<const Picture&>();
   return pixels(picture, picture.*layer, 3, self);
+}
+
+void bind_image(py::module_& module) {
+  module.def(
+      "read_image",
+      [](const std::filesystem::path& path) {
+        const Image image = read_image(path);
+        const auto* values = reinterpret_cast<const float*>(image.texels.data());
+        return py::array_t<float>({py::ssize_t{image.height}, py::ssize_t{image.width}, py::ssize_t{3}}, values);
+      },
+      py::arg("path"),
+      "(h, w, 3) float32, linear, top row first: of .exr, .hdr, or .png, whose sRGB is decoded and whose alpha is left "
+      "out. Raises InputError.");
 }
 
 }  // namespace
@@ -41,9 +73,13 @@ py::array_t<std::uint8_t> srgb_array(const Picture& picture, const ToneOptions& 
 }
 
 void bind_picture(py::module_& module) {
+  bind_image(module);
   const std::string usual_exposure = value_text(option_named("exposure").get(Scene{}));
   const std::string usual_background = value_text(option_named("background").get(Scene{}));
   py::class_<Picture>(module, "Picture", "Linear radiance in W/(mm^2 sr), premultiplied by alpha; top row first.")
+      .def(py::init(&picture_of), py::arg("radiance"),
+           "From radiance alone, (h, w, 3): all of it scattered, covered where there is any. Raises InputError.")
+      .def_property_readonly("auto_exposure", &auto_exposure, "Stops that the exposure 'auto' takes.")
       .def_property_readonly("scattered", &rgb_layer<&Picture::scattered>,
                              "(h, w, 3): light that was scattered in the body.")
       .def_property_readonly("specular", &rgb_layer<&Picture::specular>, "(h, w, 3): light reflected by the surface.")

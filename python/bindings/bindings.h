@@ -31,6 +31,7 @@ void bind_deformation(pybind11::module_& module);
 void bind_options(pybind11::module_& module);
 void bind_fluence(pybind11::module_& module);
 void bind_values(pybind11::module_& module);
+void bind_devices(pybind11::module_& module);
 
 // Converted to C order and float32 if need be.
 using IndexArray = pybind11::array_t<std::uint32_t, pybind11::array::c_style | pybind11::array::forcecast>;

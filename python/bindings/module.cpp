@@ -196,4 +196,5 @@ PYBIND11_MODULE(_core, module) {
   quadgraph::python::bind_fluence(module);
   quadgraph::python::bind_scene(module);
   quadgraph::python::bind_values(module);
+  quadgraph::python::bind_devices(module);
 }

@@ -5,6 +5,7 @@ those that an installed distribution names under the entry point group `quadgrap
 from __future__ import annotations
 
 import argparse
+import functools
 import importlib
 import io
 import math
@@ -15,47 +16,37 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from importlib.metadata import entry_points
 from types import FrameType, ModuleType
-from typing import Any, NoReturn
+from typing import Any
 
 from quadgraph.base.errors import InputError, QuadGraphError
 from quadgraph.base.message import shortened
 from quadgraph.base.version import __version__
+from quadgraph.commands import config
+from quadgraph.commands.command_parser import NAME_ROOM, CommandParser, Listing
 
-# Modules that import nothing heavy: what a subcommand needs, it imports when it runs.
-SUBCOMMANDS = ("bake", "shapes", "volume", "info", "view", "render", "solve", "cache")
+# Their modules import nothing heavy: what a subcommand needs, it imports when it runs.
+SUBCOMMANDS = {
+    "bake": "bake",
+    "shapes": "shapes",
+    "volume": "volume",
+    "info": "info",
+    "view": "view",
+    "render": "render",
+    "solve": "solve",
+    "turntable": "turntable",
+    "sheet": "sheet",
+    "compare": "compare",
+    "materials": "material_list",
+    "cache": "cache",
+    "completion": "completion",
+    "doctor": "doctor",
+}
 # The subcommands that quadgraph-validation brings along; their modules come through its entry points.
 VALIDATION = ("bench", "accuracy", "reference", "chart", "tables", "polygrid", "stability")
 INTERRUPTED = 128 + signal.SIGINT
-
-
-class CommandParser(argparse.ArgumentParser):
-    """The parser of a command line.
-
-    One whose arguments need the compiled engine has `declare` add them when it is used, so that all others, and the
-    list of subcommands, do without it.
-    """
-
-    declare: Callable[[argparse.ArgumentParser], None] | None = None
-
-    def parse_known_args(self, args=None, namespace=None):
-        """Parse like ArgumentParser, with all arguments declared."""
-        declare, self.declare = self.declare, None
-        if declare is not None:
-            declare(self)
-        return super().parse_known_args(args, namespace)
-
-    def error(self, message: str) -> NoReturn:
-        """Say what is wrong with the usage, however long what was typed is, and exit with 2."""
-        super().error(shortened(message))
-
-    def _get_values(self, action, arg_strings):
-        """Refuse `--name=--`, which argparse takes for no value at all."""
-        if action.option_strings and "--" in arg_strings:
-            raise argparse.ArgumentError(action, "'--' found, a value is wanted")
-        return super()._get_values(action, arg_strings)
 
 
 class Added:
@@ -67,7 +58,7 @@ class Added:
 
     def add_parser(self, name: str, help: str, **options: Any) -> argparse.ArgumentParser:
         """Add a subcommand that the list of the first group does not show."""
-        self._lines.append(f"    {name:<10}{help}")
+        self._lines.append(f"    {name:<{NAME_ROOM}}{help}")
         return self._subparsers.add_parser(name, **options)
 
     def text(self) -> str:
@@ -89,7 +80,7 @@ def build_parser(commands: dict[str, ModuleType], added: dict[str, ModuleType]) 
     parser = CommandParser(
         prog="quadgraph",
         description="Real-time rendering of heterogeneous translucent objects.",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+        formatter_class=Listing,
     )
     parser.add_argument("--version", action="version", version=f"%(prog)s {__version__}")
     subparsers = parser.add_subparsers(dest="command", metavar="COMMAND", required=True, parser_class=CommandParser)
@@ -99,7 +90,30 @@ def build_parser(commands: dict[str, ModuleType], added: dict[str, ModuleType]) 
     for module in added.values():
         module.add_parser(second)
     parser.epilog = second.text()
+    if "completion" in subparsers.choices:
+        subparsers.choices["completion"].set_defaults(whole=parser)  # it tells of all of them
     return parser
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Let the user's file of defaults be read when one of its commands is parsed; not for one that helps to mend it."""
+    (subparsers,) = (action for action in parser._actions if isinstance(action, argparse._SubParsersAction))
+    parsers = {name: each for name, each in subparsers.choices.items() if isinstance(each, CommandParser)}
+
+    def known() -> set[str] | None:
+        try:
+            for each in parsers.values():
+                each.declare_all()
+        except InputError:  # there is no engine, whose options would be known
+            return None
+        return {name for each in parsers.values() for name in config.options_of(each)}
+
+    def defaults(command: str, each: argparse.ArgumentParser) -> dict[str, Any]:
+        return config.apply(config.load(parsers), command, each, known)
+
+    for name, each in parsers.items():
+        if name not in ("doctor", "completion"):
+            each.configure = functools.partial(defaults, name)
 
 
 def check_installed(arguments: Sequence[str], added: dict[str, ModuleType]) -> None:
@@ -193,10 +207,13 @@ def _print_any_character() -> None:
 
 
 def _run(given: Sequence[str]) -> int:
-    commands = {name: importlib.import_module(f"quadgraph.commands.{name}") for name in SUBCOMMANDS}
+    commands = {name: importlib.import_module(f"quadgraph.commands.{module}") for name, module in SUBCOMMANDS.items()}
     added = added_commands()
     check_installed(given, added)
-    args = build_parser(commands, added).parse_args(given)
+    parser = build_parser(commands, added)
+    if config.OFF not in given:
+        configure(parser)
+    args = parser.parse_args(given)
     status = (commands | added)[args.command].run(args)
     if sys.stdout is not None:  # it is where the process was started without one
         sys.stdout.flush()

@@ -8,6 +8,9 @@ import os
 # these tests take a hundred times as long, and its version 0.3.30 can hang (OpenBLAS issue 5520).
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+# Nor does a test depend on who runs it: no file of defaults is there.
+os.environ["XDG_CONFIG_HOME"] = os.devnull
+
 from pathlib import Path
 
 import pytest

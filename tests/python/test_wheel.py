@@ -33,7 +33,8 @@ def imported(folder: Path) -> set[str]:
 
 def names(requirements: list[str]) -> set[str]:
     """The modules of requirements."""
-    return {re.split(r"[;>=\[]", text)[0].strip() for text in requirements}
+    found = {re.split(r"[;>=\[]", text)[0].strip() for text in requirements}
+    return {"PIL" if name == "pillow" else name for name in found}
 
 
 def test_the_wheel_is_the_package_alone():

@@ -1,6 +1,8 @@
 // Lights as text.
+#include <algorithm>
 #include <glm/geometric.hpp>
 
+#include "engine/base/closest_name.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/render/display/camera.h"
@@ -117,8 +119,14 @@ Light parse_light(std::string_view text) {
     return light;
   }
   std::string forms;
-  for (const LightForm& form : light_kinds()) forms += text_form(form) + ", ";
-  throw InputError(where + ": expected " + forms + "the last one number or R/G/B (docs/lights.md)");
+  std::vector<std::string_view> names;
+  for (const LightForm& form : light_kinds()) {
+    forms += text_form(form) + ", ";
+    names.push_back(form.name);
+  }
+  const bool known = std::find(names.begin(), names.end(), parts[0]) != names.end();
+  throw InputError(where + (known ? "" : meant(parts[0], names)) + ": expected " + forms +
+                   "the last one number or R/G/B (docs/lights.md)");
 }
 
 std::string to_string(const Light& light) {

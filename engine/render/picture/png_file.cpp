@@ -54,17 +54,19 @@ std::vector<png_text> texts(const Metadata& metadata) {
 }
 
 // False on an error of libpng, which leaves by longjmp: nothing with a destructor may live in here.
-bool write_all(PngWriter& writer, std::FILE* file, const Picture& picture, const std::uint8_t* rows,
+bool write_all(PngWriter& writer, std::FILE* file, const Picture& picture, const std::vector<std::uint8_t>& rows,
                const png_text* text, int text_count) {
   png_structp png = writer.png;
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_init_io(png, file);
-  png_set_IHDR(png, writer.info, picture.width, picture.height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+  const std::size_t row = rows.size() / picture.height;
+  png_set_IHDR(png, writer.info, picture.width, picture.height, 8,
+               row == std::size_t{4} * picture.width ? PNG_COLOR_TYPE_RGBA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_sRGB_gAMA_and_cHRM(png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
   png_set_text(png, writer.info, text, text_count);
   png_write_info(png, writer.info);
-  for (std::size_t y = 0; y < picture.height; ++y) png_write_row(png, rows + 3 * y * picture.width);
+  for (std::size_t y = 0; y < picture.height; ++y) png_write_row(png, rows.data() + y * row);
   png_write_end(png, writer.info);
   return true;
 }
@@ -77,6 +79,24 @@ float dither(std::size_t x, std::size_t y) {
   return outer - std::floor(outer);
 }
 
+// Linear display colour of the object in a channel of a pixel, premultiplied by alpha.
+float object_colour(const Picture& picture, float scale, std::size_t pixel, std::size_t channel) {
+  const float radiance = picture.radiance(3 * pixel + channel);
+  if (picture.false_colour) return radiance;
+  const float alpha = picture.alpha[pixel];
+  return alpha > 0 ? alpha * filmic(scale * radiance / alpha) : 0.0f;
+}
+
+// The share of what is behind that a pixel shows.
+float seen_behind(const Picture& picture, std::size_t pixel, std::size_t channel) {
+  return 1.0f - picture.alpha[pixel] + picture.transmittance[3 * pixel + channel];
+}
+
+std::uint8_t code_of(float shown, float threshold) {
+  const float code = 255.0f * srgb_encode(std::clamp(shown, 0.0f, 1.0f));
+  return static_cast<std::uint8_t>(std::min(std::floor(code + threshold), 255.0f));
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> to_srgb8(const Picture& picture, const ToneOptions& options) {
@@ -87,35 +107,45 @@ std::vector<std::uint8_t> to_srgb8(const Picture& picture, const ToneOptions& op
     const glm::vec3 background = options.background_top * (1.0f - down) + options.background_bottom * down;
     for (std::size_t x = 0; x < picture.width; ++x) {
       const std::size_t i = y * picture.width + x;
-      const float alpha = picture.alpha[i];
       const float threshold = dither(x, y);
       for (std::size_t c = 0; c < 3; ++c) {
-        const float radiance = picture.radiance(3 * i + c);
-        const float object = picture.false_colour ? radiance
-                             : alpha > 0          ? alpha * filmic(scale * radiance / alpha)
-                                                  : 0.0f;
-        const float behind = 1.0f - alpha + picture.transmittance[3 * i + c];
-        const float backdrop = picture.surroundings.empty() ? background[static_cast<int>(c)]
-                                                            : filmic(scale * picture.surroundings[3 * i + c]);
-        const float shown = object + behind * backdrop;
-        const float code = 255.0f * srgb_encode(std::clamp(shown, 0.0f, 1.0f));
-        bytes[3 * i + c] = static_cast<std::uint8_t>(std::min(std::floor(code + threshold), 255.0f));
+        const float backdrop = picture.surroundings.empty() || options.transparent
+                                   ? background[static_cast<int>(c)]
+                                   : filmic(scale * picture.surroundings[3 * i + c]);
+        const float shown = object_colour(picture, scale, i, c) + seen_behind(picture, i, c) * backdrop;
+        bytes[3 * i + c] = code_of(shown, threshold);
       }
     }
   }
   return bytes;
 }
 
+std::vector<std::uint8_t> to_srgba8(const Picture& picture, const ToneOptions& options) {
+  const float scale = std::exp2(exposure_of(picture, options));
+  std::vector<std::uint8_t> bytes(std::size_t{4} * picture.width * picture.height);
+  for (std::size_t i = 0; i < picture.alpha.size(); ++i) {
+    float behind = 0;
+    for (std::size_t c = 0; c < 3; ++c) behind += seen_behind(picture, i, c) / 3;
+    const float opacity = std::clamp(1.0f - behind, 0.0f, 1.0f);
+    const float threshold = dither(i % picture.width, i / picture.width);
+    for (std::size_t c = 0; c < 3 && opacity > 0; ++c) {
+      bytes[4 * i + c] = code_of(object_colour(picture, scale, i, c) / opacity, threshold);
+    }
+    bytes[4 * i + 3] = static_cast<std::uint8_t>(std::lround(255.0f * opacity));
+  }
+  return bytes;
+}
+
 void write_png(const std::filesystem::path& path, const Picture& picture, const ToneOptions& options,
                const Metadata& metadata) {
-  const auto rows = to_srgb8(picture, options);
+  const auto rows = options.transparent ? to_srgba8(picture, options) : to_srgb8(picture, options);
   const Metadata all = with_exposure(metadata, picture, options);
   write_atomically(path, [&](const std::filesystem::path& temporary) {
     File file(std::fopen(temporary.c_str(), "wb"), std::fclose);
     if (!file) throw std::runtime_error(std::strerror(errno));
     PngWriter writer;
     const auto text = texts(all);
-    if (!write_all(writer, file.get(), picture, rows.data(), text.data(), static_cast<int>(text.size()))) {
+    if (!write_all(writer, file.get(), picture, rows, text.data(), static_cast<int>(text.size()))) {
       throw std::runtime_error(writer.error);
     }
     if (std::fclose(file.release()) != 0) throw std::runtime_error(std::strerror(errno));

@@ -70,14 +70,16 @@ std::optional<float> parse_exposure(std::string_view text) {
 }
 
 void parse_background(std::string_view text, ToneOptions& options) {
+  options.transparent = text == "transparent";
   if (text == "studio") {
     options.background_top = ToneOptions().background_top;
     options.background_bottom = ToneOptions().background_bottom;
     return;
   }
-  const glm::vec3 colour = text == "black"   ? glm::vec3(0)
-                           : text == "white" ? glm::vec3(1)
-                                             : parse_rgb(text, "background (studio, black, white, grey or R/G/B)");
+  const glm::vec3 colour = text == "black" || options.transparent ? glm::vec3(0)
+                           : text == "white"
+                               ? glm::vec3(1)
+                               : parse_rgb(text, "background (studio, black, white, transparent, grey or R/G/B)");
   if (glm::any(glm::lessThan(colour, glm::vec3(0))) || glm::any(glm::greaterThan(colour, glm::vec3(1)))) {
     throw InputError("background: found '" + std::string(text) + "', expected values in [0, 1]");
   }

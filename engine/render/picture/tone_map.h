@@ -15,6 +15,7 @@ struct ToneOptions {
   // Linear display colour in [0, 1] behind the object at the top and at the bottom of the picture.
   glm::vec3 background_top{0.008f, 0.0085f, 0.01f};
   glm::vec3 background_bottom{0.05f, 0.052f, 0.057f};
+  bool transparent = false;  // in PNG nothing is behind the object, neither that nor the surroundings
 
   bool operator==(const ToneOptions&) const = default;
 };
@@ -52,8 +53,8 @@ float exposure_of(const Picture& picture, const ToneOptions& options);
 // Parses "auto" or a number of stops. Throws InputError.
 std::optional<float> parse_exposure(std::string_view text);
 
-// Parses "studio" (the default gradient), "black", "white", or a linear grey or R/G/B in [0, 1] into `options`. Throws
-// InputError.
+// Parses "studio" (the default gradient), "black", "white", "transparent" (black where there is no alpha), or a linear
+// grey or R/G/B in [0, 1] into `options`. Throws InputError.
 void parse_background(std::string_view text, ToneOptions& options);
 
 }  // namespace quadgraph

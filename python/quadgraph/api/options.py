@@ -96,7 +96,8 @@ class PictureOptions(TypedDict, total=False):
     width, height: pixels, 1 to 16384; roughness: of the surface, GGX alpha; radiance: how it leaves the surface; show:
     "picture", or what is inside (docs/window.md, "Views of the inside"); ground: a shadow where the body stands;
     surroundings: what environment lights show, behind it; roughness_map: as in scene files; exposure: "auto" or stops;
-    background: "studio", "black", "white", a grey, three numbers, or {"top": ..., "bottom": ...}, linear.
+    background: "studio", "black", "white", "transparent" (PNG only), a grey, three numbers, or {"top": ...,
+    "bottom": ...}, linear.
     """
 
     width: int

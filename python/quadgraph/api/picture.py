@@ -14,6 +14,7 @@ import numpy.typing as npt
 from quadgraph import core
 from quadgraph.api.reprs import share
 from quadgraph.api.values import Floats, plain
+from quadgraph.base import image_file
 from quadgraph.base.errors import InputError
 
 
@@ -70,18 +71,28 @@ class Picture:
         return dict(self._metadata)
 
     def srgb(self, **tone: Any) -> npt.NDArray[np.uint8]:
-        """(h, w, 3) uint8 sRGB, tone mapped; `exposure` and `background` as in `PictureOptions`. Raises InputError."""
+        """(h, w, 3) uint8 sRGB, tone mapped; `exposure` and `background` as in `PictureOptions`. Raises InputError.
+
+        With the background "transparent" it is black where there is nothing.
+        """
         return core.srgb(self._layers, self._tone(tone))
 
     def save(self, path: str | Path, **tone: Any) -> None:
-        """Write .png (8-bit sRGB, as `srgb`) or .exr (float32, linear and not exposed, with layers) at once.
+        """Write .png or .jpg (8-bit sRGB, as `srgb`) or .exr (float32, linear and not exposed, with layers) at once.
 
-        Raises InputError for another ending, or if it cannot be written.
+        With the background "transparent" a .png has an alpha channel, and a .jpg is refused. Raises InputError for
+        that, for another ending, or if it cannot be written.
         """
+        if image_file.is_jpeg(Path(path)):
+            options = json.loads(self._tone(tone))["picture"]
+            if options.get("background") == "transparent":
+                raise InputError(f"{path}: background 'transparent' found, which only .png and .exr keep")
+            image_file.write(Path(path), self.srgb(**tone), self._metadata)
+            return
         writers = {".png": core.write_png, ".exr": core.write_exr}
         write = writers.get(Path(path).suffix.lower())
         if write is None:
-            raise InputError(f"{path}: a picture must end in {' or '.join(writers)}")
+            raise InputError(f"{path}: a picture must end in {', '.join(image_file.SUFFIXES)} or .exr")
         write(self._layers, Path(path), self._metadata, self._tone(tone))
 
     def _tone(self, changes: Mapping[str, Any]) -> str:

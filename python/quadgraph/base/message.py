@@ -1,6 +1,8 @@
 """Texts of errors, kept short whatever they quote."""
 
+import difflib
 import re
+from collections.abc import Iterable
 
 MOST = 440  # characters; and the program's name before them is still less than 480
 _KEPT_OF_WORD = 45
@@ -20,3 +22,9 @@ def shortened(text: str) -> str:
         return text
     text = _LONG_WORD.sub(lambda word: f"{word[0][:_KEPT_OF_WORD]}...{word[0][-_KEPT_OF_WORD:]}", text)
     return text if len(text) <= MOST else f"{text[:_KEPT_FIRST]}...{text[-_KEPT_LAST:]}"
+
+
+def meant(found: str, names: Iterable[str]) -> str:
+    """` (did you mean 'NAME'?)` with the one of `names` that `found` is a slip of; else nothing."""
+    close = difflib.get_close_matches(found[:MOST], list(names), n=1, cutoff=0.65)
+    return f" (did you mean '{close[0]}'?)" if close else ""

@@ -207,10 +207,10 @@ def _write_surface(args: argparse.Namespace) -> int:
 
     left_alone = {
         *("mesh", "output", "unit", "height", "longest", "up", "front"),
-        *("surface_only", "command", "mesher", "order", "device"),
+        *("surface_only", "mesher", "order", "device", "no_config"),
     }
-    for name, value in vars(args).items():
-        if name not in left_alone and value:
+    for name in sorted(args.given - left_alone):
+        if getattr(args, name):
             raise InputError(f"--{name.replace('_', '-')}: found with --surface-only, which makes no levels")
     source = bare.write(args.mesh, args.output, **own_mesh.sizes(args), front_degrees=args.front, up=args.up)
     console = Console(highlight=False)

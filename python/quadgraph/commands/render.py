@@ -9,11 +9,8 @@ from pathlib import Path
 from rich.console import Console
 
 from quadgraph.base import atomic_file, outputs
-from quadgraph.base.errors import InputError
-from quadgraph.commands import render_scene, scene_options
+from quadgraph.commands import picture_output, render_scene, scene_options
 from quadgraph.commands import solve_report as text
-
-WRITERS = (".png", ".exr")
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -36,7 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="append",
         required=True,
         metavar="OUT",
-        help="out.png (8-bit sRGB, tone mapped) or out.exr (float32 linear, with layers); several allowed",
+        help="out.png or out.jpg (8-bit sRGB, tone mapped) or out.exr (float32 linear, with layers); several allowed",
     )
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the report here")
     render_scene.add_arguments(parser)
@@ -48,8 +45,7 @@ def run(args: argparse.Namespace) -> int:
         return render_scene.run(args)
     render_scene.refuse(args)
     for path in args.output:
-        if path.suffix.lower() not in WRITERS:
-            raise InputError(f"{path}: output must end in {' or '.join(WRITERS)}")
+        picture_output.check(path, args.background)
     outputs.check_outputs([*args.output, args.json], scene_options.inputs(args))
     start = time.perf_counter()
     engine = scene_options.make_engine(args)
@@ -57,10 +53,7 @@ def run(args: argparse.Namespace) -> int:
     picture = engine.render(**scene_options.keywords(args, scene_options.PICTURE_GROUPS))
     scene_options.check_validation(engine)
     for path in args.output:
-        if path.suffix.lower() == ".png":
-            picture.write_png(path, engine.metadata, args.exposure, args.background)
-        else:
-            picture.write_exr(path, engine.metadata, args.exposure)
+        picture_output.write(picture, path, engine, args)
     report |= {"passes": engine.passes, "device": engine.device_name, "driver": engine.driver}
     report["seconds"] = time.perf_counter() - start
     if args.json:

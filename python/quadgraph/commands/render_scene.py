@@ -3,27 +3,21 @@
 from __future__ import annotations
 
 import argparse
-import re
+import json
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from pathlib import Path
 
 from rich.console import Console
-from rich.progress import Progress
 
 from quadgraph.base import atomic_file, json_text, outputs
 from quadgraph.base.arguments import positive_int
 from quadgraph.base.errors import InputError
-from quadgraph.commands import scene_options
+from quadgraph.commands import frame_output, picture_output, scene_options, scene_overrides
 from quadgraph.commands import solve_report as text
+from quadgraph.commands.progress_bar import progress_bar
 from quadgraph.core import load_core
 from quadgraph.file import film
-
-
-def stated() -> dict[str, str]:
-    """Arguments that a scene file says, and where it says them."""
-    said = scene_options.options((*scene_options.SOLVE_GROUPS, *scene_options.PICTURE_GROUPS))
-    return {scene_options.destination(option): option.member for option in said} | {"unit": "/body", "height": "/body"}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -34,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="PATH=VALUE",
-        help="change what the scene says, e.g. /camera/fov=40 or /material=jade; several allowed",
+        help="change anything that the scene says, e.g. /lights/0/power=2, after all other options; several allowed",
     )
     group.add_argument("--frame", type=float, default=0.0, metavar="F", help="the one to render (default: 0)")
     group.add_argument(
@@ -43,10 +37,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="?",
         const=0,
         metavar="N",
-        help="render the first N, without N all of the scene, into a numbered OUT, e.g. frames/%%04d.png or .exr, or a "
-        "film, e.g. turn.mp4",
+        help="render the first N, without N all of the scene, into a numbered OUT, e.g. frames/%%04d.png, .jpg or "
+        ".exr, or a film, e.g. turn.mp4 or turn.gif",
     )
-    parser.set_defaults(unstated={name: parser.get_default(name) for name in stated()})
 
 
 def is_scene(path: Path) -> bool:
@@ -64,11 +57,8 @@ def refuse(args: argparse.Namespace) -> None:
 def run(args: argparse.Namespace) -> int:
     """Render and write; 3 as `scene_options.exit_status` says of all frames."""
     core = load_core()
-    for name, pointer in stated().items():
-        if getattr(args, name) != args.unstated[name]:
-            option = name.replace("_", "-")
-            raise InputError(f"--{option}: not beside a scene file; change it there, or with --set {pointer}=...")
     file = core.SceneFile(args.file)
+    scene_overrides.apply(file, args.file, args)
     for change in args.set:
         pointer, equals, value = change.partition("=")
         if not equals:
@@ -80,9 +70,13 @@ def run(args: argparse.Namespace) -> int:
     check_frames(args, file.frames)
     frames = [args.frame] if args.frames is None else range(args.frames or file.frames)
     with_numbers = args.frames is not None
+    transparent = json.loads(file.at(0).json())["picture"]["background"] == "transparent"
     for path in args.output:
-        check_output(path, with_numbers)
-    outputs.check_outputs([*args.output, args.json], [args.file, *named_files(args.file), *args.set])
+        frame_output.check(path, with_numbers)
+        if transparent:
+            picture_output.check_opaque(path)
+    read = [*scene_options.inputs(args), *named_files(args.file), *args.set]
+    outputs.check_outputs([*args.output, args.json], read)
     stage = core.Stage(device=args.device, validation=args.validation)
     reports = render(stage, file, frames, args.output)
     if args.json:
@@ -112,75 +106,49 @@ def named_files(path: Path) -> list[Path]:
     return [found for found in texts if found.is_file()]
 
 
-def check_output(path: Path, with_numbers: bool) -> None:
-    """Raise InputError unless frames can be written to `path`."""
-    numbered = "%" in path.name
-    if numbered and not re.fullmatch(r"[^%]*%(0?[1-9])?d[^%]*", path.name):
-        raise InputError(f"{path}: one number like %04d is allowed in a name, of at most 9 digits")
-    if film.is_film(path):
-        if not with_numbers:
-            raise InputError(f"{path}: a film needs --frames")
-        film.check()
-    elif path.suffix.lower() not in (".png", ".exr"):
-        raise InputError(f"{path}: output must end in .png, .exr or {' or '.join(film.SUFFIXES)}")
-    elif numbered != with_numbers:
-        wanted = "a number, e.g. %04d, in the name of every frame" if with_numbers else "no number without --frames"
-        raise InputError(f"{path}: {wanted} is wanted")
-
-
 def render(stage, file, frames: Iterable[float], outputs: list[Path]) -> list[dict]:
     """Render frames and write each to all outputs; one report per frame."""
-    first = file.at(0)
-    films: dict[Path, film.Film] = {}
+    shown = frame_output.Shown(stage.srgb, stage.write_png, stage.write_exr, lambda: stage.engine.metadata)
     reports = []
-    try:
-        for path in filter(film.is_film, outputs):
-            films[path] = film.Film(path, first.size, file.frames_per_second)
-        with Progress(console=Console(stderr=True), transient=True) as progress:
-            for frame in progress.track(list(frames), description="frames"):
-                start = time.perf_counter()
-                stage.show(file.at(frame))
-                report = stage.solve()
-                picture = stage.render()
-                scene_options.check_validation(stage.engine)
-                for path in outputs:
-                    write(stage, picture, path, frame, films)
-                report |= {"frame": frame, "seconds": time.perf_counter() - start}
-                reports.append(report | {"passes": stage.engine.passes})
-        for open_film in films.values():
-            open_film.finish()
-    finally:
-        for open_film in films.values():
-            open_film.discard()
+    with (
+        frame_output.Frames(outputs, file.at(0).size, file.frames_per_second) as written,
+        progress_bar() as progress,
+    ):
+        for frame in progress.track(list(frames), description="frames"):
+            start = time.perf_counter()
+            stage.show(file.at(frame))
+            report = stage.solve()
+            picture = stage.render()
+            scene_options.check_validation(stage.engine)
+            written.add(picture, frame, shown)
+            report |= {"frame": frame, "seconds": time.perf_counter() - start}
+            reports.append(report | {"passes": stage.engine.passes})
+        written.finish()
     return reports
 
 
-def write(stage, picture, path: Path, frame: float, films: dict[Path, film.Film]) -> None:
-    """Write one frame to one output."""
-    if path in films:
-        films[path].add(stage.srgb(picture))
-        return
-    to: Callable = stage.write_png if path.suffix.lower() == ".png" else stage.write_exr
-    named = path.with_name(path.name % int(frame)) if "%" in path.name else path
-    try:
-        named.parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"{named.parent}: cannot be made ({error.strerror})") from error
-    to(picture, named)
+def badness(report: dict) -> tuple[bool, float]:
+    """Larger for a report that did not converge, and then for one with a larger error."""
+    return bool(report["stopped"]), (report["error"] or {"whole": 0.0})["whole"]
 
 
 def summarise(stage, reports: list[dict], outputs: list[Path]) -> None:
     """Say what was made, of a frame that did not converge or else of the one with the largest error."""
     console = Console(highlight=False, soft_wrap=True)
-    worst = max(reports, key=lambda report: (bool(report["stopped"]), (report["error"] or {"whole": 0.0})["whole"]))
+    worst = max(reports, key=badness)
     seconds = sum(report["seconds"] for report in reports)
     console.print(text.size_text(stage.engine))
     if len(reports) == 1:
         console.print(f"frame: {sum(p['time_ms'] for p in worst['passes']):.0f} ms on the device, {seconds:.1f} s")
     else:
         console.print(f"frames: {len(reports)} in {seconds:.1f} s; the worst of them is number {worst['frame']:g}")
-    console.print(text.error_text(worst))
-    for sentence in text.solver_texts(worst):
+    print_answer(console, worst, outputs)
+
+
+def print_answer(console: Console, report: dict, outputs: list[Path]) -> None:
+    """Say how good an answer is, and what was written."""
+    console.print(text.error_text(report))
+    for sentence in text.solver_texts(report):
         console.print(sentence)
     for path in outputs:
         console.print(f"{'film' if film.is_film(path) else 'picture'}: {path}")

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import math
+import re
 from collections.abc import Callable, Collection, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,7 +15,7 @@ from quadgraph.commands import own_mesh
 from quadgraph.core import load_core
 
 if TYPE_CHECKING:
-    from quadgraph.core import Engine, SceneOption
+    from quadgraph.core import Engine, Picture, SceneOption
 
 
 # Groups of the engine's scene options: what a solve takes, and a picture besides.
@@ -47,14 +49,20 @@ def add_scene_arguments(
     file_help: str = "a mesh, or a baked .qgraph",
     groups: Collection[str] = SOLVE_GROUPS,
 ) -> None:
-    """Add FILE, the options of a run and the engine's scene options of these groups."""
+    """Add FILE and what `add_run_arguments` adds."""
     parser.add_argument("file", metavar="FILE", type=Path, help=file_help)
+    add_run_arguments(parser, groups)
+
+
+def add_run_arguments(parser: argparse.ArgumentParser, groups: Collection[str], without: Collection[str] = ()) -> None:
+    """Add the options of a run, and the engine's scene options of these groups but those named `without`."""
     add_device_arguments(parser)
     add_strict_argument(parser)
     for name in groups:
         group = parser.add_argument_group(name)
         for option in options((name,)):
-            add_option(group, option)
+            if option.name not in without:
+                add_option(group, option)
     own_mesh.add_size_arguments(parser.add_argument_group("Mesh of your own"))
 
 
@@ -90,27 +98,67 @@ def value_of(option: SceneOption) -> Callable[[str], Any]:
     return value
 
 
+def size_of(args: argparse.Namespace) -> tuple[int, int]:
+    """Width and height, pixels. Raises InputError."""
+    low, high, *_ = next(option.range for option in load_core().scene_options() if option.name == "width")
+    found = re.fullmatch(r"([0-9]{1,5})x([0-9]{1,5})", args.size)
+    if not found or not all(low <= int(side) <= high for side in found.groups()):
+        raise InputError(f"--size: found '{args.size}', expected WIDTHxHEIGHT, {low:g} to {high:g} pixels each")
+    return int(found[1]), int(found[2])
+
+
+def numbers_of(name: str, text: str, counts: Collection[int]) -> list[float]:
+    """Numbers that are joined by commas in the text of an option. Raises InputError."""
+    try:
+        found = [float(part) for part in text.split(",")]
+    except ValueError:
+        found = []
+    if len(found) not in counts or not all(map(math.isfinite, found)):
+        wanted = " or ".join(map(str, counts))
+        raise InputError(f"--{name}: found '{text}', expected {wanted} finite numbers joined by commas")
+    return found
+
+
 def make_engine(args: argparse.Namespace) -> Engine:
     """Load `args.file` and set material and lights. Raises FormatError, InputError, DeviceError."""
-    core = load_core()
-    with own_mesh.body(args.file, args, surface_only=args.method == "shortest-path") as path:
-        engine = core.Engine(path, device=args.device, validation=args.validation)
+    engine = load_engine(args.file, args)
     engine.set_material(args.material)
+    engine.set_lights(lights(engine, args))
+    return engine
+
+
+def load_engine(file: Path, args: argparse.Namespace) -> Engine:
+    """Load a body, baked first where it is a mesh. Raises FormatError, InputError, DeviceError."""
+    core = load_core()
+    with own_mesh.body(file, args, surface_only=args.method == "shortest-path") as path:
+        return core.Engine(path, device=args.device, validation=args.validation)
+
+
+def lights(engine: Engine, args: argparse.Namespace) -> list[str]:
+    """The lights that the arguments say, or else the usual ones about their view."""
     seen_from = {
         name: value for name in ("view", "up", "eye", "look_at") if (value := getattr(args, name, None)) is not None
     }
-    engine.set_lights(args.light or core.default_lights(**seen_from, front=engine.graph.front))
-    return engine
+    return args.light or load_core().default_lights(**seen_from, front=engine.graph.front)
 
 
 def inputs(args: argparse.Namespace) -> list[Path | str | None]:
     """The files, and the texts that may name some, that a run reads."""
-    return [args.file, args.material, *(args.light or [])]
+    texts = [getattr(args, name, None) for name in ("file", "material")]
+    return [*texts, *(args.light or [])]
 
 
 def solve(engine: Engine, args: argparse.Namespace) -> dict:
     """Solve as the options say; the report of `Engine.solve`."""
     return engine.solve(**keywords(args, SOLVE_GROUPS))
+
+
+def picture(engine: Engine, args: argparse.Namespace) -> tuple[Picture, dict]:
+    """Solve and render as the options say; the picture, and the report of `Engine.solve`."""
+    report = solve(engine, args)
+    made = engine.render(**keywords(args, PICTURE_GROUPS))
+    check_validation(engine)
+    return made, report
 
 
 def exit_status(reports: Iterable[dict], strict: bool) -> int:

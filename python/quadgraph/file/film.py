@@ -1,4 +1,4 @@
-"""Films of rendered frames, encoded by PyAV (H.264 in .mp4, VP9 in .webm)."""
+"""Films of rendered frames, encoded by PyAV (H.264 in .mp4, VP9 in .webm) or Pillow (.gif)."""
 
 from __future__ import annotations
 
@@ -14,23 +14,31 @@ import numpy as np
 
 from quadgraph.base import atomic_file
 from quadgraph.base.errors import InputError
+from quadgraph.file.gif_film import GIF, GifFilm
 
 if TYPE_CHECKING:
     from av.video.stream import VideoStream
 
 _CODECS = {".mp4": "libx264", ".webm": "libvpx-vp9"}
-SUFFIXES = tuple(_CODECS)
+SUFFIXES = (*_CODECS, GIF)
 
 
 def is_film(path: Path) -> bool:
     """Whether a file is to be a film, by its name."""
-    return path.suffix.lower() in _CODECS
+    return path.suffix.lower() in SUFFIXES
 
 
-def check() -> None:
-    """Raise InputError if films cannot be encoded here."""
-    if importlib.util.find_spec("av") is None:
-        raise InputError("films need PyAV: pip install '.[film]' in the source tree, or render into frames/%04d.png")
+def check(path: Path) -> None:
+    """Raise InputError if a film of that name cannot be encoded here."""
+    if path.suffix.lower() in _CODECS and importlib.util.find_spec("av") is None:
+        raise InputError(
+            f"{path}: needs PyAV: pip install '.[film]' in the source tree, or write {path.stem}.gif or frames/%04d.png"
+        )
+
+
+def open_film(path: Path, size: tuple[int, int], frames_per_second: float) -> Film | GifFilm:
+    """A film of the kind that its name says; size: width and height, pixels. Raises InputError as both kinds do."""
+    return (GifFilm if path.suffix.lower() == GIF else Film)(path, size, frames_per_second)
 
 
 @contextmanager

@@ -25,6 +25,7 @@ NUMBERS = {
         "--view", "--eye", "--look-at", "--fov", "--orthographic", "--size", "--roughness", "--exposure",
         "--background", "--frame", "--frames", "--show",
     ),
+    "turntable": ("--view", "--eye", "--size", "--exposure", "--background", "--frames", "--seconds"),
 }  # fmt: skip
 ENGINE = ("--view", "--fov", "--size", "--roughness", "--tolerance", "--cycles", "--sweep-points", "--exposure")
 SLOW = (
@@ -54,7 +55,8 @@ def numbers(rng: Rng) -> Case:
         value = {"--size": "x", "--view": ","}.get(option, ",").join(
             texts.number(rng) for _ in range(2 + (option[2] in "el"))
         )
-    if option in SLOW and value.isdigit() and len(value) < 8:
+    many = option in SLOW or (command, option) == ("turntable", "--frames")
+    if many and value.isdigit() and len(value) < 8:
         value = str(int(value) % 20)  # more is right, and takes its time
     return _with_option(command, option, value)
 
@@ -77,6 +79,10 @@ def _with_option(command: str, option: str, value: str) -> Case:
         return Case(name, (*solve(), given), words, put, SOLVE_OUTPUTS, judge=solved(), seconds=40)
     if command == "engine":
         return Case(name, (*engine(), given), words, put, ("out.png",), judge=rendered(size=None), seconds=40)
+    if command == "turntable":
+        rest = tuple(word for word in ("--size=32x32", "--frames=2") if not word.startswith(option))
+        line = ("quadgraph", "turntable", "body.qgraph", "-o", "out.gif", *DEVICE, "--no-correction", *rest, given)
+        return Case(name, line, words, put, ("out.gif",), seconds=40)
     file = "scene.json" if option in ("--frame", "--frames") else "body.qgraph"
     size = () if option == "--size" or file == "scene.json" else ("--size", "32x32")
     target = "%04d.png" if option == "--frames" else "out.png"
@@ -119,7 +125,7 @@ def _no_power(outcome: Outcome) -> bool:
 
 def words(rng: Rng) -> Case:
     """Options that are none, twice, long, or without a value."""
-    command = texts.pick(rng, ["bake", "solve", "render", "info", "shapes", "volume"])
+    command = texts.pick(rng, ["bake", "solve", "render", "info", "shapes", "volume", "turntable", "sheet"])
     kinds = [
         (f"--{texts.word(rng, 5)}",),
         ("--device",),
@@ -133,9 +139,8 @@ def words(rng: Rng) -> Case:
     ]
     more = tuple(word.replace("\0", "") for word in texts.pick(rng, kinds))
     name = f"{command} {more[0][:40]!a} ({len(more)})"
-    return Case(
-        name, ("quadgraph", command, "body.qgraph", *more), (), put, expect="refused" if command != "info" else ""
-    )
+    right = command == "info" or (command, more) == ("solve", ("--",))  # which ends the options, and says no more
+    return Case(name, ("quadgraph", command, "body.qgraph", *more), (), put, expect="" if right else "refused")
 
 
 def frame_names(rng: Rng) -> Case:

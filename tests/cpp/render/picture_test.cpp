@@ -118,6 +118,23 @@ TEST_CASE("automatic exposure keeps what is of one colour from clipping") {
   CHECK(of({2, 0.01f, 0.01f}) == doctest::Approx(std::log2(exposure_most / 2)));
 }
 
+TEST_CASE("a picture with straight alpha, laid over black, is the picture on black but for rounding") {
+  const Picture picture = sample_picture();
+  const ToneOptions black{.exposure_stops = 0.0f, .background_top = glm::vec3(0), .background_bottom = glm::vec3(0)};
+  const auto opaque = to_srgb8(picture, black), clear = to_srgba8(picture, black);
+  REQUIRE(clear.size() == picture.alpha.size() * 4);
+  const auto decoded = [](std::uint8_t code) {
+    const double share = code / 255.0;
+    return share <= 0.04045 ? share / 12.92 : std::pow((share + 0.055) / 1.055, 2.4);
+  };
+  for (std::size_t i = 0; i < picture.alpha.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double laid = decoded(clear[4 * i + c]) * clear[4 * i + 3] / 255.0;
+      CHECK(laid == doctest::Approx(decoded(opaque[3 * i + c])).epsilon(0.02).scale(1));
+    }
+  }
+}
+
 TEST_CASE("a black picture is shown black on its background, which is seen through it as it lets light through") {
   Picture picture = sample_picture();
   for (auto* layer : {&picture.scattered, &picture.specular, &picture.unscattered}) layer->assign(layer->size(), 0);

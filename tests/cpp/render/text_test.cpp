@@ -111,7 +111,10 @@ TEST_CASE("a background is a name, a grey or a colour between black and white") 
   CHECK(options.background_bottom == options.background_top);
   parse_background("white", options);
   CHECK(options.background_top == glm::vec3(1));
+  parse_background("transparent", options);
+  CHECK(options.transparent);
   parse_background("studio", options);
+  CHECK(!options.transparent);
   CHECK(options.background_bottom == ToneOptions().background_bottom);
   CHECK_THROWS_WITH_AS(parse_background("2", options), doctest::Contains("[0, 1]"), InputError);
   CHECK_THROWS_AS(parse_background("blue", options), InputError);

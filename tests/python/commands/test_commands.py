@@ -113,7 +113,7 @@ def test_a_missed_error_is_a_warning_and_fails_where_it_is_held_against_the_solv
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["render", "{sphere}", "-o", "a.jpg"], ["a.jpg", ".png", ".exr"]),
+        (["render", "{sphere}", "-o", "a.bmp"], ["a.bmp", ".png", ".exr"]),
         (["render", "{sphere}", "-o", "{folder}/none/a.png"], ["none"]),
         (["render", "{sphere}", "-o", "{folder}/a.png", "--material", "granite"], ["granite", "marble"]),
         (["render", "{sphere}", "-o", "{folder}/a.png", "--light", "laser:1"], ["laser", "directional"]),

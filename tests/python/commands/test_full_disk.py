@@ -42,6 +42,9 @@ def scene(folder: Path) -> Path:
         ("out.json", 100, ["solve", "BODY", "--json", "OUT"]),
         ("out.npz", 100, ["solve", "BODY", "--field", "OUT"]),
         ("out.qgraph", 100, ["bake", "MESH", "--unit", "mm", "--surface-only", "-o", "OUT"]),
+        ("out.jpg", 400, ["render", "BODY", "-o", "OUT", "--size", "64x64"]),
+        ("out.gif", 400, ["turntable", "BODY", "-o", "OUT", "--size", "64x64", "--frames", "3"]),
+        ("sheet.png", 400, ["sheet", "BODY", "-o", "OUT", "--size", "64x64"]),
         ("out.mp4", 500, ["render", "SCENE", "--frames", "-o", "OUT"]),
     ],
 )

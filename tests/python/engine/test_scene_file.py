@@ -118,14 +118,13 @@ def test_a_volume_lies_beside_its_scene(folder, tmp_path):
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        (["--material", "jade"], "--material: not beside a scene file; change it there, or with --set /material=..."),
         (["--set", "/camera/fov"], "--set /camera/fov: allowed is PATH=VALUE"),
         (["--set", f"/material={'[' * 65}"], "--set /material: JSON nested deeper than 64 levels"),
         (["--set", "/camera/fov=500"], "/camera: view, field of view: found 500"),
         (["--frames", "-o", "a.png"], "a.png: a number, e.g. %04d, in the name of every frame is wanted"),
         (["-o", "%d.png"], "%d.png: no number without --frames is wanted"),
         (["-o", "a.mp4"], "a.mp4: a film needs --frames"),
-        (["-o", "a.gif"], "a.gif: output must end in .png, .exr or .mp4 or .webm"),
+        (["-o", "a.avi"], "a.avi: output must end in .png, .jpg, .jpeg, .exr, .mp4, .webm or .gif"),
         (["--frames", "-o", "a.mp4", "--set", "/picture/width=33"], "a film needs an even width and height"),
     ],
 )

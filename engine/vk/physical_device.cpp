@@ -1,0 +1,80 @@
+#include "engine/vk/physical_device.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "engine/vk/features.h"
+#include "engine/vk/handle.h"
+
+namespace quadgraph::vk {
+namespace {
+
+bool can_swap(VkPhysicalDevice device) {
+  std::uint32_t count = 0;
+  check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr), "vkEnumerateDeviceExtensionProperties");
+  std::vector<VkExtensionProperties> extensions(count);
+  check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data()),
+        "vkEnumerateDeviceExtensionProperties");
+  return named(extensions, VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+}
+
+}  // namespace
+
+bool named(const std::vector<VkExtensionProperties>& extensions, const char* name) {
+  return std::any_of(extensions.begin(), extensions.end(),
+                     [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
+}
+
+std::vector<VkPhysicalDevice> physical_devices(VkInstance instance) {
+  std::uint32_t count = 0;
+  check(vkEnumeratePhysicalDevices(instance, &count, nullptr), "vkEnumeratePhysicalDevices");
+  std::vector<VkPhysicalDevice> devices(count);
+  check(vkEnumeratePhysicalDevices(instance, &count, devices.data()), "vkEnumeratePhysicalDevices");
+  return devices;
+}
+
+std::optional<std::uint32_t> find_family(VkPhysicalDevice device, VkSurfaceKHR surface) {
+  std::uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  constexpr VkQueueFlags wanted = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+  for (std::uint32_t family = 0; family < count; ++family) {
+    VkBool32 presents = VK_TRUE;
+    if (surface != VK_NULL_HANDLE) {
+      check(vkGetPhysicalDeviceSurfaceSupportKHR(device, family, surface, &presents),
+            "vkGetPhysicalDeviceSurfaceSupportKHR");
+    }
+    if ((families[family].queueFlags & wanted) == wanted && presents == VK_TRUE) return family;
+  }
+  return std::nullopt;
+}
+
+int preference(VkPhysicalDeviceType type) {
+  switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+      return 0;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+      return 1;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+      return 2;
+    default:
+      return 3;
+  }
+}
+
+std::string what_is_missing(VkPhysicalDevice device, VkSurfaceKHR surface) {
+  VkPhysicalDeviceProperties properties;
+  vkGetPhysicalDeviceProperties(device, &properties);
+  if (properties.apiVersion < VK_API_VERSION_1_3) return "Vulkan 1.3";
+  Features features;
+  vkGetPhysicalDeviceFeatures2(device, &features.base);
+  for (const auto& [name, value] : features.required()) {
+    if (*value == VK_FALSE) return name;
+  }
+  if (surface != VK_NULL_HANDLE && !can_swap(device)) return VK_KHR_SWAPCHAIN_EXTENSION_NAME;
+  if (!find_family(device, VK_NULL_HANDLE)) return "a queue that both draws and computes";
+  return find_family(device, surface) ? "" : "a queue that draws, computes and presents to this window";
+}
+
+}  // namespace quadgraph::vk
