@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import argparse
 import functools
+import importlib
 import os
 import re
 import subprocess
@@ -12,6 +14,8 @@ import tomllib
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
+
+from quadgraph import cli
 
 ROOT = Path(__file__).resolve().parents[3]
 PAGES = [
@@ -109,6 +113,13 @@ def script(page: str, *, long: bool) -> tuple[Command, ...]:
     """The commands of a page that a test runs: without those of `never`, and of `long` unless they are asked for."""
     left_out = exceptions()["never"] | ({} if long else exceptions()["long"])
     return tuple(command for command in commands(page) if command not in left_out)
+
+
+@functools.cache
+def parser() -> argparse.ArgumentParser:
+    """The parser of `quadgraph`, with the subcommands of the validation."""
+    own = {name: importlib.import_module(f"quadgraph.commands.{name}") for name in cli.SUBCOMMANDS}
+    return cli.build_parser(own, cli.added_commands())
 
 
 def environment(folder: Path) -> dict[str, str]:

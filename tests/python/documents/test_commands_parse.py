@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import argparse
-import importlib
 import subprocess
-from functools import cache
 from pathlib import Path
 
 import pytest
-from shell_pages import BLOCK, PAGES, PROGRAMS, ROOT, commands, exceptions, started
+from shell_pages import BLOCK, PAGES, PROGRAMS, ROOT, commands, exceptions, parser, started
 
 import quadgraph
 from engine_program import ENGINE
@@ -19,12 +16,6 @@ pytest.importorskip("quadgraph._core", reason="the compiled engine is not built:
 pytest.importorskip("quadgraph_validation", reason="quadgraph-validation is not installed: run tools/setup")
 
 WITH_COMMANDS = [page for page in PAGES if commands(page)]
-
-
-@cache
-def parser() -> argparse.ArgumentParser:
-    own = {name: importlib.import_module(f"quadgraph.commands.{name}") for name in cli.SUBCOMMANDS}
-    return cli.build_parser(own, cli.added_commands())
 
 
 def engine_fault(words: list[str], folder: Path) -> str:

@@ -6,6 +6,7 @@ exceptions.toml names, on the bunny that tools/demo bakes.
 
 from __future__ import annotations
 
+import faulthandler
 import shutil
 import subprocess
 import sys
@@ -47,11 +48,10 @@ def furnish(folder: Path, page: str, mesh: Path, body: Path) -> None:
     if page != "docs/deformation.md":  # which bakes its own
         shutil.copy(body, folder / "bunny.qgraph")
     rest = trimesh.load(mesh, process=False, force="mesh")
-    scale = 100 / np.ptp(rest.vertices[:, 1])
     (folder / "walk").mkdir()
     for step in range(3):
-        way = rest.vertices * scale * [1, 1 + 0.02 * step, 1]
-        write_obj(Surface(way, rest.faces), folder / "walk" / f"{step}.obj")
+        stretched = np.array(rest.vertices) * [1, 1 + 0.02 * step, 1]
+        write_obj(Surface(stretched, np.array(rest.faces)), folder / "walk" / f"{step}.obj")
 
 
 def run(folder: Path, commands: tuple[Command, ...]) -> None:
@@ -115,6 +115,7 @@ def test_the_short_commands_of_a_page_run(page, tmp_path, ball):
 def test_all_commands_of_a_page_run(page, tmp_path, demo):
     if "montage" in " ".join(command.text for command in script(page, long=True)) and not shutil.which("montage"):
         pytest.skip("ImageMagick is not installed (tools/packages.txt)")
+    faulthandler.cancel_dump_traceback_later()  # a page may take longer than what pytest takes for a hang
     furnish(tmp_path, page, *demo)
     run(tmp_path, script(page, long=True))
     run_python(tmp_path, page)
