@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import shlex
 import subprocess
 from pathlib import Path
 
@@ -15,7 +17,13 @@ from quadgraph import cli
 pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 pytest.importorskip("quadgraph_validation", reason="quadgraph-validation is not installed: run tools/setup")
 
+STANDING_FOR = {"STUDY": "slab", "SCENE": "sphere", "N": "1"}
 WITH_COMMANDS = [page for page in PAGES if commands(page)]
+
+
+def prose(page: str) -> str:
+    """A page without its blocks of code."""
+    return BLOCK.sub("", (ROOT / page).read_text())
 
 
 def engine_fault(words: list[str], folder: Path) -> str:
@@ -73,11 +81,20 @@ def test_a_stale_command_is_found(line, said, tmp_path, capsys):
 
 
 @pytest.mark.parametrize("page", PAGES)
+def test_commands_in_sentences_can_be_read(page, tmp_path, capsys):
+    """Spans of code that begin with a subcommand and an argument; STUDY and the like stand for one."""
+    spans = re.findall(rf"`(quadgraph (?:{'|'.join([*cli.SUBCOMMANDS, *cli.VALIDATION])}) [^`]+)`", prose(page))
+    lines = [tuple(STANDING_FOR.get(word, word) for word in shlex.split(span)) for span in spans]
+    faults = {" ".join(words): fault(words, tmp_path, capsys) for words in lines}
+    assert {line: said for line, said in faults.items() if said} == {}
+
+
+@pytest.mark.parametrize("page", PAGES)
 def test_commands_stand_in_blocks_of_their_own(page):
     """A block without a language, or an indented one, would be read by no test."""
     text = (ROOT / page).read_text()
-    outside = BLOCK.sub("", text)
-    assert not [line for line in outside.splitlines() if line.startswith(("    quadgraph", "    tools/", "    pip "))]
+    indented = ("    quadgraph", "    tools/", "    pip ")
+    assert not [line for line in prose(page).splitlines() if line.startswith(indented)]
     bare = [content for name, content in BLOCK.findall(text) if name not in ("sh", "python")]
     assert not [line for content in bare for line in content.splitlines() if line.startswith(PROGRAMS)]
 
