@@ -35,7 +35,7 @@ SCENES = {"docs/deformation.md": "twist.json", "docs/scene.md": "scene.json"}  #
 
 def furnish(folder: Path, page: str, mesh: Path, body: Path) -> None:
     """Give a page what its reader has: the repository's documents, the demo's body, and meshes of their own."""
-    shutil.copytree(ROOT / "docs", folder / "docs", ignore=shutil.ignore_patterns("truth"))
+    shutil.copytree(ROOT / "docs", folder / "docs")
     (folder / "out" / "tour").mkdir(parents=True)
     shutil.copy(body, folder / "out" / "bunny.qgraph")
     shutil.copy(ROOT / "docs/benchmarks/chart.json", folder / "chart.json")
