@@ -35,6 +35,7 @@ LONGEST = (
     "test_repair.py",
     "test_tables.py",
     "test_window_methods.py",
+    "test_commands_run.py",
     "test_engine.py",
 )
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from urllib.parse import unquote
 
 import pytest
+from PIL import Image
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
@@ -152,6 +153,15 @@ def test_every_reference_is_cited():
     for entry in ENTRY.finditer(prose(DOCS / "references.md")):
         by_tag = re.search(rf"\b{re.escape(entry['tag'])}\b", cited)
         assert by_tag or (entry["author"].lower(), entry["year"]) in named, entry["tag"]
+
+
+def test_the_readme_is_one_screen_with_one_picture():
+    text = (ROOT / "README.md").read_text()
+    pictures = re.findall(r"!\[[^\]]+\]\(([^)]+)\)", text)
+    assert len(text.splitlines()) <= 80
+    assert len(pictures) == 1
+    with Image.open(ROOT / pictures[0]) as picture:
+        assert picture.width >= 1200
 
 
 def test_every_page_is_in_the_index():

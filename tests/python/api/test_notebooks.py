@@ -10,8 +10,8 @@ from types import ModuleType
 
 import pytest
 
-nbformat = pytest.importorskip("nbformat", reason="the extra docs is not installed: tools/setup --tests")
-pytest.importorskip("jupytext", reason="the extra docs is not installed: tools/setup --tests")
+nbformat = pytest.importorskip("nbformat", reason="the extra notebook is not installed: tools/setup --tests")
+pytest.importorskip("jupytext", reason="the extra notebook is not installed: tools/setup --tests")
 
 ROOT = Path(__file__).resolve().parents[3]
 PROGRAM = ROOT / "docs/examples/first_light.py"
