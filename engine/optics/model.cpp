@@ -8,6 +8,7 @@
 #include <glm/vec2.hpp>
 
 #include "engine/optics/boundary.h"
+#include "shaders/material/optics.h"
 
 namespace quadgraph {
 namespace {
@@ -81,6 +82,18 @@ double least_albedo(std::span<const gpu::Optical> optical) {
   double least = 1;
   for (const gpu::Optical& o : optical) least = std::min(least, least_albedo(o.sigma_s_prime, o.sigma_a));
   return least;
+}
+
+double entry_contrast(const gpu::Material& material, float spacing) {
+  const std::array<gpu::Optical, 2> sets = {
+      {{material.sigma_s_prime, material.sigma_a}, {material.second_sigma_s_prime, material.second_sigma_a}}};
+  return entry_contrast(std::span(sets).first(material.pattern == gpu::PATTERN_NONE ? 1 : 2), spacing);
+}
+
+double entry_contrast(std::span<const gpu::Optical> optical, float spacing) {
+  float most = 1;
+  for (const gpu::Optical& o : optical) most = std::max(most, gpu::entry_contrast(o, spacing));
+  return static_cast<double>(most);
 }
 
 Model resolve_model(Model wanted, Method method, Source source, double albedo, double eta) {

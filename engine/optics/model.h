@@ -21,6 +21,10 @@ double diffusion_error(double albedo, double eta);
 double least_albedo(const gpu::Material& material);
 double least_albedo(std::span<const gpu::Optical> optical);
 
+// Largest of gpu::entry_contrast, on elements of size `spacing` (mm).
+double entry_contrast(const gpu::Material& material, float spacing);
+double entry_contrast(std::span<const gpu::Optical> optical, float spacing);
+
 // `wanted`; for `automatic` diffusion where it was published (quadgraph-fdm and polygrid with the diffuse source knows
 // no other model) and where its error at `albedo` is at most model_tolerance, else sp3.
 Model resolve_model(Model wanted, Method method, Source source, double albedo, double eta);

@@ -13,7 +13,7 @@
 #include "engine/optics/model.h"
 #include "engine/reference/operator.h"
 #include "engine/solve/assembly.h"
-#include "interface/material/least_albedo.comp.h"
+#include "interface/material/optical_range.comp.h"
 #include "shaders/material/material.h"
 
 namespace quadgraph {
@@ -34,12 +34,12 @@ Coefficients::Coefficients(device::Device& device, std::span<const Level> rest)
       depth_(rest.size()),
       depth_buffers_(rest.size()),
       spacing_(rest.size()),
-      albedo_(rest.size()),
+      range_(rest.size()),
       sampled_(rest.size()) {}
 
 void Coefficients::changed() {
   evaluated_.reset();
-  edited_albedo_.reset();
+  edited_.reset();
 }
 
 void Coefficients::set(const gpu::Material& material) {
@@ -48,19 +48,19 @@ void Coefficients::set(const gpu::Material& material) {
   for (device::Buffer& given : given_) given = {};
   changed();
   eta_ = material.eta;
-  std::fill(albedo_.begin(), albedo_.end(), least_albedo(material));
+  std::fill(range_.begin(), range_.end(), Range{least_albedo(material), entry_contrast(material, spacing(0))});
 }
 
 void Coefficients::set(std::uint32_t number, std::span<const gpu::Optical> optical, float eta,
                        std::span<const SurfaceSample> samples) {
   check_optical(optical, rest_[number].node_count());
   check_eta(static_cast<double>(eta));
-  if (material_) std::fill(albedo_.begin(), albedo_.end(), std::nullopt);
+  if (material_) std::fill(range_.begin(), range_.end(), std::nullopt);
   material_.reset();
   device::rewrite(device_, optical, "material/level " + std::to_string(number) + " given", given_[number]);
   changed();
   eta_ = eta;
-  albedo_[number] = least_albedo(optical);
+  range_[number] = Range{least_albedo(optical), entry_contrast(optical, spacing(0))};
   sampled_[number].clear();
   for (const SurfaceSample& sample : samples) sampled_[number].push_back(optical[sample.tet]);
 }
@@ -106,43 +106,50 @@ std::vector<gpu::Optical> Coefficients::at(std::uint32_t number, std::span<const
 
 void Coefficients::check() const {
   if (material_) return;
-  const auto missing = std::find(albedo_.begin(), albedo_.end(), std::nullopt);
-  if (missing == albedo_.end()) return;
-  if (std::all_of(albedo_.begin(), albedo_.end(), [](const auto& albedo) { return !albedo; })) {
+  const auto missing = std::find_if(range_.begin(), range_.end(), [](const auto& range) { return !range; });
+  if (missing == range_.end()) return;
+  if (std::all_of(range_.begin(), range_.end(), [](const auto& range) { return !range; })) {
     throw InputError("no material has been set");
   }
-  throw InputError("optical: set for some levels, but not for level " + std::to_string(missing - albedo_.begin()));
+  throw InputError("optical: set for some levels, but not for level " + std::to_string(missing - range_.begin()));
 }
 
 Model Coefficients::resolve(Workspace& work, Model wanted, Method method, Source source,
                             std::vector<LevelBuffers>& levels) {
   double least = 1;
-  for (const auto& albedo : albedo_) least = std::min(least, *albedo);
-  if (wanted == Model::automatic && !edits_.edits.empty()) {
-    if (!edited_albedo_) {
+  for (const auto& range : range_) least = std::min(least, range->albedo);
+  if (!edits_.edits.empty()) {
+    if (!edited_) {
       make_room(method, levels);
       record(work, levels);
-      edited_albedo_ = measured_albedo(work, levels[0]);
+      edited_ = measured(work, levels[0]);
     }
-    least = *edited_albedo_;
+    least = edited_->albedo;
   }
   return resolve_model(wanted, method, source, least, static_cast<double>(eta_));
 }
 
-double Coefficients::measured_albedo(Workspace& work, const LevelBuffers& level) {
+double Coefficients::contrast() const {
+  return edited_ ? edited_->contrast : range_[0]->contrast;
+}
+
+Coefficients::Range Coefficients::measured(Workspace& work, const LevelBuffers& level) {
   constexpr std::uint32_t one = std::bit_cast<std::uint32_t>(1.0f);
-  if (!least_.exists()) {
-    least_ = {device_, sizeof(float), device::Place::device, "material/least albedo"};
-    least_on_host_ = {device_, sizeof(float), device::Place::host, "material/least albedo on the host"};
+  if (!measured_.exists()) {
+    measured_ = {device_, 2 * sizeof(float), device::Place::device, "material/range"};
+    measured_on_host_ = {device_, 2 * sizeof(float), device::Place::host, "material/range on the host"};
   }
   const std::uint32_t elements = count(level, extent_);
-  work.recorder.fill(least_, one);
-  work.recorder.dispatch(work.passes.of(shader::least_albedo),
-                         gpu::LeastAlbedoPush{level.optical.address(), least_.address(), elements}, elements,
-                         "least albedo", std::uint64_t{elements} * sizeof(gpu::Optical));
-  work.recorder.copy(least_, least_on_host_, sizeof(float));
+  work.recorder.fill(measured_, one);
+  work.recorder.dispatch(
+      work.passes.of(shader::optical_range),
+      gpu::OpticalRangePush{
+          .optical = level.optical.address(), .range = measured_.address(), .spacing = spacing(0), .count = elements},
+      elements, "optical range", std::uint64_t{elements} * sizeof(gpu::Optical));
+  work.recorder.copy(measured_, measured_on_host_, 2 * sizeof(float));
   work.recorder.submit();
-  return least_on_host_.mapped_as<float>()[0];
+  const std::span<const float> found = measured_on_host_.mapped_as<float>();
+  return {static_cast<double>(found[0]), static_cast<double>(found[1])};
 }
 
 std::uint32_t Coefficients::count(const LevelBuffers& level, Extent extent) {

@@ -47,6 +47,9 @@ class Coefficients {
   // The model that is meant where `wanted` is automatic. Edited coefficients are evaluated for that.
   Model resolve(Workspace& work, Model wanted, Method method, Source source, std::vector<LevelBuffers>& levels);
 
+  // How far the channels lie apart in an operator's entries (gpu::entry_contrast), once `resolve` was called.
+  double contrast() const;
+
   // Room in `levels` for the coefficients that a method needs, and what they are evaluated at. To be called before a
   // solve.
   void make_room(Method method, std::vector<LevelBuffers>& levels);
@@ -55,13 +58,18 @@ class Coefficients {
   void record(Workspace& work, const std::vector<LevelBuffers>& levels);
 
  private:
+  // Of the coefficients of a level: the least albedo, and gpu::entry_contrast on elements of the finest level's size.
+  struct Range {
+    double albedo = 1, contrast = 1;
+  };
+
   // Where coefficients are wanted: linear elements take those of the tets, and where these are all the same, of one.
   enum class Extent { one, tets, nodes };
 
   static std::uint32_t count(const LevelBuffers& level, Extent extent);
 
   void changed();
-  double measured_albedo(Workspace& work, const LevelBuffers& level);
+  Range measured(Workspace& work, const LevelBuffers& level);
   bool layered() const { return material_ && material_->pattern == gpu::PATTERN_LAYERS; }
   bool wants_depth() const { return layered() || edits_.wants_depth(); }
   const std::vector<float>& depth(std::uint32_t number);
@@ -79,9 +87,9 @@ class Coefficients {
   Extent extent_ = Extent::one;
   std::optional<Extent> evaluated_;  // the present coefficients, there
   float eta_ = 1;
-  std::vector<std::optional<double>> albedo_;       // the least one of every level, before edits
-  device::Buffer least_, least_on_host_;            // of edited coefficients
-  std::optional<double> edited_albedo_;             // the least one of the finest level after them
+  std::vector<std::optional<Range>> range_;         // of every level, before edits
+  device::Buffer measured_, measured_on_host_;      // of edited coefficients
+  std::optional<Range> edited_;                     // of the finest level, after edits
   std::vector<std::vector<gpu::Optical>> sampled_;  // of every level whose coefficients were given
 };
 

@@ -7,6 +7,7 @@
 #ifdef __cplusplus
 namespace quadgraph::gpu {
 using glm::max;
+using glm::min;
 #endif
 
 // Largest scattering or absorption, 1/mm: a mean free path of a nanometre. Edits take more as this.
@@ -24,6 +25,12 @@ QG_INLINE vec3 sigma_t(Optical o) {
 // Diffusion coefficient, mm.
 QG_INLINE vec3 kappa(Optical o) {
   return vec3(1.0f / 3.0f) / sigma_t(o);
+}
+
+// Largest entry of linear elements of size `spacing` (mm) of any channel over that of another: stiffness and mass.
+QG_INLINE float entry_contrast(Optical o, float spacing) {
+  vec3 size = kappa(o) + (spacing * spacing / 20.0f) * o.sigma_a;
+  return max(size.x, max(size.y, size.z)) / min(size.x, min(size.y, size.z));
 }
 
 #ifdef __cplusplus

@@ -62,3 +62,16 @@ TEST_CASE("a clear region or a vein decides") {
   CHECK(least_albedo(std::span(optical).first(1)) == doctest::Approx(2 / 2.001));
   CHECK(least_albedo(parse_material("marble-veins")) == doctest::Approx(1.2 / 2.05).epsilon(1e-5));
 }
+
+TEST_CASE("channels that lie far apart are told by what their entries are") {
+  const gpu::Material even = parse_material("sigma_s_prime=2,sigma_a=0.01");
+  CHECK(entry_contrast(even, 1) == doctest::Approx(1));
+  // On small elements the conduction 1 / (3 sigma_t), on large ones the absorption.
+  const gpu::Material apart = parse_material("sigma_s_prime=1/1/100,sigma_a=0.05/0.05/5");
+  CHECK(entry_contrast(apart, 1e-4f) == doctest::Approx(100).epsilon(1e-4));
+  CHECK(entry_contrast(apart, 1e3f) == doctest::Approx(100).epsilon(1e-2));
+  for (const std::string& name : material_names()) {
+    CAPTURE(name);
+    CHECK(entry_contrast(parse_material(name), 1) < 20);
+  }
+}

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 
 from baked import write_levels
 from quadgraph.file.graph_file import write
 from quadgraph_validation.bodies.meshes import box, face_frames
-from shapes import icosphere, join, moved
+from shapes import icosphere, join, moved, torus
 
 _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 
@@ -112,3 +114,24 @@ def test_slivers_and_needles(tmp_path, model):
         engine = _core.Engine(write(tmp_path / f"{name}.qgraph", [mesh]), validation=True)
         # In the needle fluence hardly varies between neighbours: a float holds no more of the difference.
         check(engine, lambda nodes: even(nodes, 1.0, 0.05), model, balance=1e-5 if name == "slivers" else 1e-4)
+
+
+@pytest.mark.parametrize("model", ["diffusion", "sp3"])
+@pytest.mark.parametrize("contrast", [10, 100, 1e4, 1e6])
+@pytest.mark.parametrize("edited", [False, True])
+def test_a_channel_does_not_depend_on_the_others(tmp_path, model, contrast, edited):
+    """However much more another one absorbs: packed entries share an exponent between channels."""
+    body = write_levels(tmp_path / "ring.qgraph", [torus(10, 4, 24, 12)])
+    engine = _core.Engine(body, device="cpu")
+    engine.set_lights(["directional:0.3,-0.5,-1:1"])
+
+    def exitance(blue: float):
+        given = 1 if edited else blue
+        engine.set_material(f"sigma_s_prime=1/1/{given:f},sigma_a=.05/.05/{0.05 * given:f}")
+        edit = {"operation": "multiply", "sigma_s_prime": [1, 1, blue], "sigma_a": [1, 1, blue]}
+        engine.set_edits(json.dumps([edit] if edited else []))
+        engine.solve(model=model, correction=False, tolerance=1e-4)
+        return engine.surface_field()["exitance"][:, 0].copy()
+
+    alone, beside = exitance(1), exitance(contrast)
+    assert np.linalg.norm(beside - alone) < 1e-3 * np.linalg.norm(alone)
