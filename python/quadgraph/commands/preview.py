@@ -33,8 +33,8 @@ def show(program: str, mesh: Path, args: argparse.Namespace, options: list[str])
     with child_process.workspace() as folder, ExitStack() as children:
         (folder / "preview").mkdir()
         preview = folder / "preview" / f"{mesh.stem}.qgraph"
-        bare.write(mesh, preview, **surface)
-        bake = _Bake(mesh, args, folder)
+        size_note = bare.write(mesh, preview, **surface).size_note
+        bake = _Bake(mesh, args, folder, size_note)
         try:
             bake.start(children)
             window = children.enter_context(
@@ -51,7 +51,7 @@ def show(program: str, mesh: Path, args: argparse.Namespace, options: list[str])
 class _Bake:
     """A bake in a child process, which says how it stands: on standard error, and in a file for the window."""
 
-    def __init__(self, mesh: Path, args: argparse.Namespace, folder: Path) -> None:
+    def __init__(self, mesh: Path, args: argparse.Namespace, folder: Path, size_note: str) -> None:
         self.news = folder / "news.json"
         self.closing = threading.Event()  # the window is closed, and nobody waits for the body
         self.failed = False
@@ -59,11 +59,14 @@ class _Bake:
         self._options = BakeOptions(**own_mesh.sizes(args))
         self._arguments = own_mesh.size_texts(args)
         self._folder = folder
+        self._size_note = size_note
         self._console = Console(stderr=True, highlight=False, soft_wrap=True)
         self._follower: threading.Thread | None = None
 
     def start(self, children: ExitStack) -> None:
         """Start the child, which ends with `children`, and follow what it says."""
+        if self._size_note:
+            self._tell(self._size_note)
         body = self._folder / f"{self._mesh.stem}.qgraph"
         command = [sys.executable, "-m", "quadgraph.cli", "bake", *self._arguments]
         report = children.enter_context((self._folder / "report.json").open("w"))
@@ -107,7 +110,8 @@ class _Bake:
     def _finish(self, body: Path) -> None:
         report = json.loads((self._folder / "report.json").read_text())
         for note in report["notes"]:
-            self._tell(note)
+            if note != self._size_note:  # which was told at first
+                self._tell(note)
         took = f"baked {self._mesh.name} in {report['seconds']['total']:.0f} s"
         try:
             body = kept.adopt(self._mesh, self._options, body)
