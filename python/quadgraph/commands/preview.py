@@ -68,7 +68,8 @@ class _Bake:
         if self._size_note:
             self._tell(self._size_note)
         body = self._folder / f"{self._mesh.stem}.qgraph"
-        command = [sys.executable, "-P", "-m", "quadgraph.cli", "bake", *self._arguments]
+        # The window, which shares the processor with it, comes first.
+        command = ["nice", sys.executable, "-P", "-m", "quadgraph.cli", "bake", *self._arguments]
         report = children.enter_context((self._folder / "report.json").open("w"))
         child = children.enter_context(
             child_process.beside(
