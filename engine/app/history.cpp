@@ -37,6 +37,12 @@ Scene History::redo(const Scene& scene) {
   return step(scene, now_, future_, past_);
 }
 
+void History::change_all(const std::function<void(Scene&)>& change) {
+  change(now_);
+  for (Scene& scene : past_) change(scene);
+  for (Scene& scene : future_) change(scene);
+}
+
 void History::refuse(const Scene& scene) {
   if (past_.empty() || seen_as(now_, scene) != scene) return;
   now_ = std::move(past_.back());

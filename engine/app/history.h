@@ -1,6 +1,7 @@
 // What the scene was before, to go back to.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "engine/scene/scene.h"
@@ -21,6 +22,9 @@ class History {
 
   // Forgets `scene`, which was noted last and cannot be shown.
   void refuse(const Scene& scene);
+
+  // Changes the scene as it is noted at every time.
+  void change_all(const std::function<void(Scene&)>& change);
 
   bool can_undo() const { return !past_.empty(); }
   bool can_redo() const { return !future_.empty(); }

@@ -16,7 +16,7 @@ namespace {
 
 // What the user typed, before it is understood.
 struct Typed {
-  std::string file, output, device;
+  std::string file, output, preview, device;
   std::map<std::string_view, std::vector<std::string>> texts;  // of the scene's options, by name
   std::map<std::string_view, bool> flags;
   bool headless = false, validation = false, json = false, strict = false;
@@ -57,6 +57,13 @@ void declare(CLI::App& app, Typed& typed) {
     if (!option.on_command_line) continue;
     option.kind == OptionKind::flag ? declare_flag(app, option, typed) : declare_option(app, option, typed);
   }
+  app.add_option(
+         "--preview", typed.preview,
+         "in a window: the object is a preview, shown by shortest paths. NEWS is a JSON file, replaced while the "
+         "window is open: {\"progress\": TEXT}, then {\"body\": FILE.qgraph}, to which it changes over, or "
+         "{\"failed\": TEXT}")
+      ->type_name("NEWS")
+      ->group("Run");
   app.add_option("--device", typed.device, "cpu, or part of a Vulkan device's name; default: a GPU, else cpu")
       ->group("Run");
   app.add_flag("--validation", typed.validation,
@@ -135,6 +142,10 @@ AppOptions understood(const Typed& typed, const CLI::App& app) {
     inputs.push_back(typed.file);
     check_not_read(options.output, inputs);
   }
+  if (!typed.preview.empty() && options.headless) {
+    throw InputError("--preview: found with --headless; pictures are made of what is there");
+  }
+  options.preview = typed.preview;
   options.device.validation = typed.validation;
   options.device.device = typed.device;
   options.json = typed.json;

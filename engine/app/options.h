@@ -9,9 +9,10 @@
 namespace quadgraph {
 
 struct AppOptions {
-  Scene scene;                   // with lights
-  bool headless = false;         // a picture, and no window
-  std::filesystem::path output;  // headless: .png or .exr; else what pictures that the user asks for are called
+  Scene scene;                    // with lights
+  bool headless = false;          // a picture, and no window
+  std::filesystem::path output;   // headless: .png or .exr; else what pictures that the user asks for are called
+  std::filesystem::path preview;  // the body is one, and this file says what becomes of it; else empty
   device::DeviceOptions device;
   bool json = false;
   bool strict = false;  // headless: an error that is missed fails

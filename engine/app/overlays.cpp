@@ -71,6 +71,21 @@ void draw_colour_bar(const Legend& legend, float left, float unit) {
   ImGui::End();
 }
 
+void draw_preview(const std::string& text, float left, float unit) {
+  if (text.empty()) return;
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({left + 12 * unit, 12 * unit}, ImGuiCond_Always);
+  ImGui::SetNextWindowSizeConstraints({0, 0}, {size.x - left - 24 * unit, size.y});
+  ImGui::SetNextWindowBgAlpha(0.85f);
+  ImGui::Begin("preview", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
+                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
+  ImGui::PushTextWrapPos(size.x - left - 48 * unit);
+  ImGui::TextColored({0.95f, 0.65f, 0.32f, 1}, "%s", text.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::End();
+}
+
 void draw_message(const State& state, float left, float unit) {
   if (state.message.empty()) return;
   const ImVec2 size = ImGui::GetIO().DisplaySize;

@@ -12,6 +12,9 @@ void draw_help(State& state, float unit);
 // What the colours mean, over the picture's lower edge. `left`: where the picture begins, window coordinates.
 void draw_colour_bar(const Legend& legend, float left, float unit);
 
+// What the picture shows in the place of the body, over it; nothing if that is empty.
+void draw_preview(const std::string& text, float left, float unit);
+
 // The last thing to tell the user, in the picture's lower left corner.
 void draw_message(const State& state, float left, float unit);
 

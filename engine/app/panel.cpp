@@ -213,6 +213,7 @@ void tell_errors(const SolveReport& report) {
 
 void draw_frame(const Measured& measured) {
   if (!section("Frame")) return;
+  if (measured.frame_ms == 0) return tell("State", "the first picture is being made");
   const SolveReport& report = measured.solve;
   const glm::dvec3 balance = report.energy.balance();
   const double worst = std::max({std::abs(balance.x), std::abs(balance.y), std::abs(balance.z)});

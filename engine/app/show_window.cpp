@@ -43,10 +43,12 @@ int show_window(const AppOptions& options) {
   const std::string wanted = wanted_device(options.device);
   const bool on_processor = wanted.empty() ? presenter->info().cpu : wanted == device::processor;
   Stage stage(on_processor ? open_device({.device = device::processor}) : presenter);
-  stage.show(options.scene);
+  std::optional<Preview> preview;
+  if (!options.preview.empty()) preview.emplace(options.preview, options.scene);
+  stage.show(preview ? Preview::before(options.scene) : options.scene);
   {
     const std::filesystem::path stem = options.output.empty() ? name.stem() : options.output;
-    Viewer(window, *presenter, stage, stem).run();
+    Viewer(window, *presenter, stage, stem, preview).run();
   }
   refuse_messages(*presenter);
   return EXIT_SUCCESS;

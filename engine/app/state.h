@@ -47,6 +47,7 @@ struct State {
   std::string material_text, image_text;     // being typed
   std::optional<LightKind> kind_with_image;  // what the selected light is to be once its image is known
   bool panel = true, help = false;
+  std::string preview;   // what is shown in the place of the body, empty where it is the body
   std::string message;   // the last thing to tell the user
   bool refused = false;  // it is a complaint
 

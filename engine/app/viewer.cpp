@@ -20,6 +20,7 @@ namespace {
 constexpr double budget_ms = 90;              // of a picture in motion: ten a second
 constexpr double settle_after = 0.25;         // seconds without a change
 constexpr double idle_wait = 0.5;             // seconds
+constexpr double news_wait = 0.1;             // seconds, while a body is being baked
 constexpr float degrees_per_height = 180.0f;  // of a drag over the height of the picture
 
 struct Interrupted {};
@@ -30,21 +31,22 @@ double milliseconds(std::chrono::steady_clock::duration duration) {
 
 }  // namespace
 
-Viewer::Viewer(Window& window, vk::Context& presenter, Stage& stage, std::filesystem::path stem)
+Viewer::Viewer(Window& window, vk::Context& presenter, Stage& stage, std::filesystem::path stem,
+               std::optional<Preview> preview)
     : window_(window),
       presenter_(presenter),
       stage_(stage),
-      engine_(stage.engine()),
       swapchain_(presenter_, window.width(), window.height()),
       interface_(window, presenter_, swapchain_),
-      tone_mapper_(engine_.device()),
+      tone_mapper_(stage.engine().device()),
       pace_(budget_ms),
       stem_(std::move(stem)),
+      preview_(std::move(preview)),
       history_(stage.scene()) {
   state_.scene = stage.scene();
-  state_.front = engine_.graph().front();
-  if (!engine_.graph().levels().empty()) state_.methods = methods_of(engine_.graph().levels()[0]);
-  state_.brush = Brush::for_body(engine_.bounds().radius);
+  take_up_body();
+  if (preview_) state_.preview = preview_->label();
+  state_.brush = Brush::for_body(engine().bounds().radius);
 }
 
 // The last frame may still read the pixels.
@@ -53,6 +55,11 @@ Viewer::~Viewer() {
 }
 
 void Viewer::run() {
+  // What is said of it is seen before its first picture is made; Dear ImGui shows what is new in its second frame.
+  for (int frame = 0; preview_ && frame < 2; ++frame) {
+    build_widgets({});
+    present();
+  }
   while (!window_.closing()) {
     window_.poll(patience());
     swapchain_.resize(window_.width(), window_.height());
@@ -60,6 +67,7 @@ void Viewer::run() {
     if (!events.empty()) frames_wanted_ = 3;
     handle(events);
     fulfil_wishes();
+    follow_preview();
     keep_up();
     build_widgets(events);
     present();
@@ -70,6 +78,7 @@ void Viewer::run() {
 double Viewer::patience() const {
   if (frames_wanted_ > 0 || window_.events_wait() || !shown_) return 0;
   if (swapchain_.width() > 0 && part() != shown_part_) return 0;
+  if (preview_ && !preview_->failed()) return news_wait;
   return measured_.settled ? idle_wait : 0.5 * settle_after;
 }
 
@@ -82,8 +91,8 @@ Viewer::Part Viewer::part() const {
 CommandContext Viewer::command_context() const {
   const Part now = part();
   const auto height = static_cast<float>(std::max(now.height, 1u));
-  return {engine_.bounds(), std::max(static_cast<float>(now.width), 1.0f) / height,
-          static_cast<std::uint32_t>(engine_.graph().levels().size())};
+  return {engine().bounds(), std::max(static_cast<float>(now.width), 1.0f) / height,
+          static_cast<std::uint32_t>(engine().graph().levels().size())};
 }
 
 void Viewer::handle(const std::vector<Event>& events) {
@@ -174,7 +183,7 @@ glm::vec2 Viewer::pointer() const {
 // Where the pointer meets the body.
 std::optional<Touch> Viewer::pointed_at() const {
   const CommandContext context = command_context();
-  const auto found = engine_.pick(state_.scene.view, context.aspect, pointer());
+  const auto found = engine().pick(state_.scene.view, context.aspect, pointer());
   if (!found) return std::nullopt;
   return touched(*found, place_camera(state_.scene.view, context.bounds, context.aspect));
 }
@@ -184,11 +193,12 @@ void Viewer::build_widgets(const std::vector<Event>& events) {
   if (state_.focus_picture) ImGui::SetWindowFocus(nullptr);
   state_.can_undo = history_.can_undo();
   state_.can_redo = history_.can_redo();
-  if (state_.panel) draw_panel(state_, {engine_, measured_, interface_.unit()});
+  if (state_.panel) draw_panel(state_, {engine(), measured_, interface_.unit()});
   if (state_.help) draw_help(state_, interface_.unit());
   const float left = static_cast<float>(part().left) / window_.pixels_per_unit();
-  if (const auto& legend = engine_.legend()) draw_colour_bar(*legend, left, interface_.unit());
+  if (const auto& legend = engine().legend()) draw_colour_bar(*legend, left, interface_.unit());
   draw_message(state_, left, interface_.unit());
+  draw_preview(state_.preview, left, interface_.unit());
   draw_knife(state_.knife, left, interface_.unit());
   if (!dragging_ && !ImGui::IsAnyItemActive()) history_.note(state_.scene);
   ImGui::Render();
@@ -238,7 +248,7 @@ void Viewer::keep_up() {
 SolveOptions Viewer::options_of_solve(bool settle) const {
   const SolveOptions& options = state_.scene.solve;
   if (settle) return options;
-  SolveOptions quick = in_motion(options, engine_.graph().levels());
+  SolveOptions quick = in_motion(options, engine().graph().levels());
   quick.correction = quick.correction && pace_.corrects();
   return quick;
 }
@@ -290,7 +300,7 @@ void Viewer::make_picture(bool settle, bool gather) {
   options.width = settle ? now.width : side(now.width);
   options.height = settle ? now.height : side(now.height);
   if (!gather) options.radiance = Radiance::lambertian;
-  const PictureBuffers& picture = engine_.draw(state_.scene.view, options);
+  const PictureBuffers& picture = engine().draw(state_.scene.view, options);
   measured_.exposure_stops = tone_mapper_.exposure(picture, state_.scene.tone);
   show(tone_mapper_.run(picture, state_.scene.tone, measured_.exposure_stops,
                         {now.width, now.height, swapchain_.blue_first()}));
@@ -299,7 +309,7 @@ void Viewer::make_picture(bool settle, bool gather) {
 // Brings pixels to the device that presents them, where another has made them.
 void Viewer::show(const device::Buffer& pixels) {
   pixels_ = &pixels;
-  if (&engine_.device() == &presenter_) return;
+  if (&engine().device() == &presenter_) return;
   const auto bytes = pixels.mapped_as<std::byte>();
   if (presented_.size() < bytes.size()) {
     presented_ = device::Buffer(presenter_, bytes.size(), device::Place::host, "picture/presented");
@@ -316,9 +326,9 @@ void Viewer::measure(Clock::time_point start, double draw_ms, bool gathered) {
   pictures_.push_back(now);
   std::erase_if(pictures_, [&](const auto& time) { return milliseconds(now - time) > 1000; });
   measured_.frames_per_second = std::max(static_cast<double>(pictures_.size()), 1000 / measured_.frame_ms);
-  measured_.passes = engine_.passes();
-  measured_.device_bytes = engine_.device_bytes();
-  measured_.peak_device_bytes = engine_.peak_device_bytes();
+  measured_.passes = engine().passes();
+  measured_.device_bytes = engine().device_bytes();
+  measured_.peak_device_bytes = engine().peak_device_bytes();
 }
 
 void Viewer::present() {
@@ -342,6 +352,7 @@ void Viewer::present() {
 
 void Viewer::save_scene() {
   try {
+    if (preview_) throw InputError("the scene can be saved once the body is baked: this is a preview");
     std::filesystem::path path;
     do {
       path = stem_.string() + "-" + std::to_string(++scenes_written_) + ".json";
@@ -363,15 +374,15 @@ void Viewer::write_picture() {
     RenderOptions options = state_.scene.render;
     options.width = shown_part_.width;
     options.height = shown_part_.height;
-    const Picture picture = engine_.render(state_.scene.view, options);
+    const Picture picture = engine().render(state_.scene.view, options);
     std::filesystem::path png, exr;
     do {
       png = stem_.string() + "-" + std::to_string(++pictures_written_) + ".png";
       exr = png;
       exr.replace_extension(".exr");
     } while (std::filesystem::exists(png) || std::filesystem::exists(exr));
-    write_png(png, picture, state_.scene.tone, engine_.metadata());
-    write_exr(exr, picture, state_.scene.tone, engine_.metadata());
+    write_png(png, picture, state_.scene.tone, engine().metadata());
+    write_exr(exr, picture, state_.scene.tone, engine().metadata());
     state_.say("saved: " + png.string() + ", " + exr.string());
   } catch (const DeviceError&) {
     throw;

@@ -8,6 +8,7 @@
 #include "engine/app/history.h"
 #include "engine/app/interface.h"
 #include "engine/app/pace.h"
+#include "engine/app/preview.h"
 #include "engine/app/state.h"
 #include "engine/app/window.h"
 #include "engine/render/picture/tone_mapper.h"
@@ -19,8 +20,10 @@ namespace quadgraph {
 class Viewer {
  public:
   // Views the scene that the stage shows, in frames of the window's Vulkan device. `stem`: file name, without
-  // extension, of saved images and scenes. All three must outlive the viewer.
-  Viewer(Window& window, vk::Context& presenter, Stage& stage, std::filesystem::path stem);
+  // extension, of saved images and scenes.
+  // `preview`: of the body that the scene shows, where it is one. All three must outlive the viewer.
+  Viewer(Window& window, vk::Context& presenter, Stage& stage, std::filesystem::path stem,
+         std::optional<Preview> preview = std::nullopt);
 
   ~Viewer();
   Viewer(const Viewer&) = delete;
@@ -39,6 +42,7 @@ class Viewer {
     bool operator==(const Part&) const = default;
   };
 
+  Engine& engine() const { return stage_.engine(); }  // another one once the body is another
   Part part() const;
   CommandContext command_context() const;
   double patience() const;
@@ -50,6 +54,9 @@ class Viewer {
   std::optional<Touch> pointed_at() const;
   void fulfil_wishes();
   void build_widgets(const std::vector<Event>& events);
+  void follow_preview();
+  void change_over(const std::filesystem::path& body);
+  void take_up_body();
   void keep_up();
   void remake(bool settle);
   void solve(bool settle);
@@ -64,12 +71,12 @@ class Viewer {
   Window& window_;
   vk::Context& presenter_;
   Stage& stage_;
-  Engine& engine_;
   vk::Swapchain swapchain_;
   Interface interface_;
   ToneMapper tone_mapper_;
   Pace pace_;
   std::filesystem::path stem_;
+  std::optional<Preview> preview_;  // what is shown, until it is changed for the baked body
   std::uint32_t pictures_written_ = 0, scenes_written_ = 0;
   State state_;
   History history_;

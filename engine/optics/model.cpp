@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/mat2x2.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vec2.hpp>
@@ -84,16 +85,16 @@ double least_albedo(std::span<const gpu::Optical> optical) {
   return least;
 }
 
-double entry_contrast(const gpu::Material& material, float spacing) {
-  const std::array<gpu::Optical, 2> sets = {
-      {{material.sigma_s_prime, material.sigma_a}, {material.second_sigma_s_prime, material.second_sigma_a}}};
-  return entry_contrast(std::span(sets).first(material.pattern == gpu::PATTERN_NONE ? 1 : 2), spacing);
+glm::vec2 packed_rounding(const gpu::Material& material, float spacing) {
+  const std::array<gpu::Optical, 2> sets = {{{material.sigma_s_prime, material.sigma_a},
+                                             {material.second_sigma_s_prime, material.second_sigma_a}}};
+  return packed_rounding(std::span(sets).first(material.pattern == gpu::PATTERN_NONE ? 1 : 2), spacing);
 }
 
-double entry_contrast(std::span<const gpu::Optical> optical, float spacing) {
-  float most = 1;
-  for (const gpu::Optical& o : optical) most = std::max(most, gpu::entry_contrast(o, spacing));
-  return static_cast<double>(most);
+glm::vec2 packed_rounding(std::span<const gpu::Optical> optical, float spacing) {
+  glm::vec2 most(1);
+  for (const gpu::Optical& o : optical) most = glm::max(most, gpu::packed_rounding(o, spacing));
+  return most;
 }
 
 Model resolve_model(Model wanted, Method method, Source source, double albedo, double eta) {

@@ -1,6 +1,7 @@
 // Which model a scene needs: what diffusion would get wrong, from closed forms.
 #pragma once
 
+#include <glm/vec2.hpp>
 #include <span>
 
 #include "engine/base/solve_options.h"
@@ -21,9 +22,9 @@ double diffusion_error(double albedo, double eta);
 double least_albedo(const gpu::Material& material);
 double least_albedo(std::span<const gpu::Optical> optical);
 
-// Largest of gpu::entry_contrast, on elements of size `spacing` (mm).
-double entry_contrast(const gpu::Material& material, float spacing);
-double entry_contrast(std::span<const gpu::Optical> optical, float spacing);
+// Largest of gpu::packed_rounding, on elements of size `spacing` (mm); at least 1.
+glm::vec2 packed_rounding(const gpu::Material& material, float spacing);
+glm::vec2 packed_rounding(std::span<const gpu::Optical> optical, float spacing);
 
 // `wanted`; for `automatic` diffusion where it was published (quadgraph-fdm and polygrid with the diffuse source knows
 // no other model) and where its error at `albedo` is at most model_tolerance, else sp3.

@@ -48,7 +48,7 @@ void Coefficients::set(const gpu::Material& material) {
   for (device::Buffer& given : given_) given = {};
   changed();
   eta_ = material.eta;
-  std::fill(range_.begin(), range_.end(), Range{least_albedo(material), entry_contrast(material, spacing(0))});
+  std::fill(range_.begin(), range_.end(), Range{least_albedo(material), quadgraph::packed_rounding(material, spacing(0))});
 }
 
 void Coefficients::set(std::uint32_t number, std::span<const gpu::Optical> optical, float eta,
@@ -60,7 +60,7 @@ void Coefficients::set(std::uint32_t number, std::span<const gpu::Optical> optic
   device::rewrite(device_, optical, "material/level " + std::to_string(number) + " given", given_[number]);
   changed();
   eta_ = eta;
-  range_[number] = Range{least_albedo(optical), entry_contrast(optical, spacing(0))};
+  range_[number] = Range{least_albedo(optical), quadgraph::packed_rounding(optical, spacing(0))};
   sampled_[number].clear();
   for (const SurfaceSample& sample : samples) sampled_[number].push_back(optical[sample.tet]);
 }
@@ -129,15 +129,16 @@ Model Coefficients::resolve(Workspace& work, Model wanted, Method method, Source
   return resolve_model(wanted, method, source, least, static_cast<double>(eta_));
 }
 
-double Coefficients::contrast() const {
-  return edited_ ? edited_->contrast : range_[0]->contrast;
+double Coefficients::packed_rounding(Model model) const {
+  const glm::vec2& rounding = edited_ ? edited_->rounding : range_[0]->rounding;
+  return static_cast<double>(model == Model::sp3 ? rounding.y : rounding.x);
 }
 
 Coefficients::Range Coefficients::measured(Workspace& work, const LevelBuffers& level) {
   constexpr std::uint32_t one = std::bit_cast<std::uint32_t>(1.0f);
   if (!measured_.exists()) {
-    measured_ = {device_, 2 * sizeof(float), device::Place::device, "material/range"};
-    measured_on_host_ = {device_, 2 * sizeof(float), device::Place::host, "material/range on the host"};
+    measured_ = {device_, 3 * sizeof(float), device::Place::device, "material/range"};
+    measured_on_host_ = {device_, 3 * sizeof(float), device::Place::host, "material/range on the host"};
   }
   const std::uint32_t elements = count(level, extent_);
   work.recorder.fill(measured_, one);
@@ -146,10 +147,10 @@ Coefficients::Range Coefficients::measured(Workspace& work, const LevelBuffers& 
       gpu::OpticalRangePush{
           .optical = level.optical.address(), .range = measured_.address(), .spacing = spacing(0), .count = elements},
       elements, "optical range", std::uint64_t{elements} * sizeof(gpu::Optical));
-  work.recorder.copy(measured_, measured_on_host_, 2 * sizeof(float));
+  work.recorder.copy(measured_, measured_on_host_, 3 * sizeof(float));
   work.recorder.submit();
   const std::span<const float> found = measured_on_host_.mapped_as<float>();
-  return {static_cast<double>(found[0]), static_cast<double>(found[1])};
+  return {static_cast<double>(found[0]), {found[1], found[2]}};
 }
 
 std::uint32_t Coefficients::count(const LevelBuffers& level, Extent extent) {

@@ -47,8 +47,8 @@ class Coefficients {
   // The model that is meant where `wanted` is automatic. Edited coefficients are evaluated for that.
   Model resolve(Workspace& work, Model wanted, Method method, Source source, std::vector<LevelBuffers>& levels);
 
-  // How far the channels lie apart in an operator's entries (gpu::entry_contrast), once `resolve` was called.
-  double contrast() const;
+  // gpu::packed_rounding of a model, the largest of the finest level, once `resolve` was called.
+  double packed_rounding(Model model) const;
 
   // Room in `levels` for the coefficients that a method needs, and what they are evaluated at. To be called before a
   // solve.
@@ -58,9 +58,10 @@ class Coefficients {
   void record(Workspace& work, const std::vector<LevelBuffers>& levels);
 
  private:
-  // Of the coefficients of a level: the least albedo, and gpu::entry_contrast on elements of the finest level's size.
+  // Of the coefficients of a level: the least albedo, and gpu::packed_rounding on elements of the finest level's size.
   struct Range {
-    double albedo = 1, contrast = 1;
+    double albedo = 1;
+    glm::vec2 rounding{1};
   };
 
   // Where coefficients are wanted: linear elements take those of the tets, and where these are all the same, of one.

@@ -12,12 +12,6 @@ namespace {
 // packed entries change the exitance by less than 1e-3.
 constexpr double packed_conduction = 50;
 
-// Contrast of the channels (gpu::entry_contrast) from which operators are stored in single precision: packed numbers of
-// three channels share an exponent, and below it change the exitance of the least by less than 1e-3.
-double packed_contrast(Model model) {
-  return model == Model::sp3 ? 20 : 300;
-}
-
 }  // namespace
 
 void Operators::create(device::Device& device, std::span<const Level> levels, const OperatorKey& key, bool even,
@@ -89,8 +83,8 @@ void Operators::remeasure(std::uint32_t number, double conduction) {
   moved(number);
 }
 
-void Operators::contrasted(const OperatorKey& key, double contrast) {
-  if (!(contrast > packed_contrast(key.model)) || plain_.contains(key)) return;
+void Operators::rounded(const OperatorKey& key, double rounding) {
+  if (!(rounding > 1) || plain_.contains(key)) return;
   plain_.insert(key);
   levels_.erase(key);
 }

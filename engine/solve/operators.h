@@ -48,8 +48,8 @@ class Operators {
   // Vertices of a level have been moved by the device; `conduction`: its mean, as format_of takes it.
   void remeasure(std::uint32_t number, double conduction);
 
-  // The channels lie so far apart in the entries of an operator that is to be created.
-  void contrasted(const OperatorKey& key, double contrast);
+  // What the coefficients of an operator that is to be created make of packed entries (Coefficients::packed_rounding).
+  void rounded(const OperatorKey& key, double rounding);
 
   // What was made is made again.
   void forget() { levels_.clear(); }
@@ -77,7 +77,7 @@ class Operators {
   static void write_gates(device::Device& device, const std::vector<OfLevel>& levels, std::uint32_t number);
 
   std::map<OperatorKey, std::vector<OfLevel>> levels_;
-  std::set<OperatorKey> plain_;  // on all levels, since a motion or a contrast
+  std::set<OperatorKey> plain_;  // on all levels, since a motion or by their material
   bool moved_on_device_ = false, plain_on_device_ = false;
 };
 

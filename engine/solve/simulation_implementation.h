@@ -271,7 +271,7 @@ struct Simulation::Implementation {
       if (!there) shape.record_nodes(work, i, levels[i]);
     }
     const bool two_steps = (options.smoothing > 0 ? options.smoothing : rules_of(options.solver).smoothing) == 2;
-    operators.contrasted(key, coefficients.contrast());
+    operators.rounded(key, coefficients.packed_rounding(key.model));
     operators.create(device, shape.levels(), key, coefficients.even(), two_steps);
     const std::optional<std::uint32_t> bounced = bounces_wanted(options) ? exchange.level() : std::nullopt;
     if (bounced) exchange.make_room(work, levels);
@@ -282,7 +282,7 @@ struct Simulation::Implementation {
   }
 
   void correction_room(std::uint32_t points) {
-    operators.contrasted(correction_key, coefficients.contrast());
+    operators.rounded(correction_key, coefficients.packed_rounding(correction_key.model));
     operators.create(device, shape.levels(), correction_key, coefficients.even(), false);
     if (!correction) correction.emplace(device, shape.levels()[0]);
     correction->make_room(device, points);

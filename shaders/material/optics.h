@@ -27,10 +27,17 @@ QG_INLINE vec3 kappa(Optical o) {
   return vec3(1.0f / 3.0f) / sigma_t(o);
 }
 
-// Largest entry of linear elements of size `spacing` (mm) of any channel over that of another: stiffness and mass.
-QG_INLINE float entry_contrast(Optical o, float spacing) {
-  vec3 size = kappa(o) + (spacing * spacing / 20.0f) * o.sigma_a;
-  return max(size.x, max(size.y, size.z)) / min(size.x, min(size.y, size.z));
+QG_INLINE float contrast(vec3 large, vec3 small) {
+  return max(large.x, max(large.y, large.z)) / min(small.x, min(small.y, small.z));
+}
+
+// How much packed entries (solver/packing.h), in which three channels share an exponent, round the channel that loses
+// most on elements of size `spacing` (mm), by the sizes of stiffness and mass: in shares of what changes its exitance by
+// about 1e-3. x: diffusion, y: SP3, which packs the masses for themselves.
+QG_INLINE vec2 packed_rounding(Optical o, float spacing) {
+  vec3 mass = (spacing * spacing / 20.0f) * o.sigma_a, size = kappa(o) + mass, extinction = sigma_t(o);
+  float entries = contrast(size, size) / 15.0f;
+  return vec2(entries, max(entries, max(contrast(extinction, extinction) / 40.0f, contrast(mass, size) / 0.5f)));
 }
 
 #ifdef __cplusplus

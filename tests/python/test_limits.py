@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from quadgraph.api import coefficients
 from quadgraph.baking import kept, pipeline
 from quadgraph.base import child_process, json_text, message, units
 from quadgraph.file import npz
@@ -48,6 +49,7 @@ ALLOWED = {
     "`--frames`, `--frame`": f"at most {FRAMES:,.0f}",
     "values that keys of tracks change": f"{brief(constant('scene/scene_file.h', 'most_key_values'))}: of each part",
     "spacing and origin of a volume": f"at most {brief(LENGTH)} mm, as places of lights",
+    "cells that `VolumeMaterial.from_function` samples": f"at most {coefficients.MOST_CELLS:,}",
     "`--time-limit`, `--memory-limit`": f"at most {brief(child_process.MOST_TIME_S)} s, "
     f"{brief(child_process.MOST_MEMORY_BYTES / 1e9)} GB",
     "number in the name of a frame": "one, `%0Nd`, N at most 9",

@@ -10,9 +10,12 @@ import tomllib
 import zipfile
 from pathlib import Path
 
+import pytest
+
 from quadgraph import cli
 
 ROOT = Path(__file__).resolve().parents[2]
+TOOL = ROOT / "tools/wheel"
 
 
 def project(path: Path) -> dict:
@@ -45,12 +48,30 @@ def test_the_wheel_is_the_package_alone():
     assert not {path.stem for path in (ROOT / packages[0] / "commands").glob("*.py")} & set(cli.VALIDATION)
 
 
-def test_the_wheel_has_the_types(tmp_path):
+def test_the_wheel_has_the_types_and_the_licences(tmp_path):
     """One without the compiled module, which is made in a second."""
     wanted = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation"]
     subprocess.run([*wanted, "--config-settings=wheel.cmake=false", "-w", tmp_path, ROOT], check=True)
     (wheel,) = tmp_path.glob("*.whl")
-    assert {"quadgraph/py.typed", "quadgraph/_core.pyi"} <= set(zipfile.ZipFile(wheel).namelist())
+    found = set(zipfile.ZipFile(wheel).namelist())
+    assert {"quadgraph/py.typed", "quadgraph/_core.pyi"} <= found
+    (metadata,) = {name.partition("/")[0] for name in found if ".dist-info/" in name}
+    assert {f"{metadata}/licenses/LICENSE", f"{metadata}/licenses/tools/cgal_mesh/LICENSE.md"} <= found
+
+
+def test_the_packages_of_the_bare_system_are_those_that_the_page_names():
+    (line,) = re.findall(r"^PACKAGES = \((.*)\)", TOOL.read_text(), re.MULTILINE)
+    (command,) = re.findall(r"^    apt install (.*?) *#", (ROOT / "docs/compatibility.md").read_text(), re.MULTILINE)
+    assert set(re.findall(r'"(.*?)"', line)) == {"python3", *command.split()}
+
+
+@pytest.mark.long
+@pytest.mark.skipif(not Path("/etc/debian_version").exists(), reason="the wheel is built on Debian")
+def test_the_wheel_works_in_an_environment_of_its_own(tmp_path):
+    """Built whole, repaired, installed, and used: minutes, a first time twenty."""
+    done = subprocess.run([sys.executable, TOOL, "-o", tmp_path], check=True, capture_output=True, text=True)
+    (wheel,) = tmp_path.glob("*.whl")
+    assert f"{wheel}: works" in done.stdout
 
 
 def test_the_product_imports_what_it_declares_and_no_more():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import fcntl
 import hashlib
 import os
+import shutil
 import tempfile
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
@@ -13,6 +14,7 @@ from functools import cache
 from pathlib import Path
 
 from quadgraph.baking.pipeline import BakeOptions, bake
+from quadgraph.base import atomic_file
 from quadgraph.base.cache_folder import cache_folder
 from quadgraph.base.progress import ProgressCallback
 from quadgraph.base.version import __version__
@@ -43,7 +45,7 @@ def body(mesh: Path, options: BakeOptions, tell: ProgressCallback) -> Iterator[P
     It stays in the cache folder, or where that cannot be written is there as long as the block runs. Several processes
     may ask at once: one bakes, the others wait for it. Raises what `pipeline.bake` raises.
     """
-    place = folder() / _key(mesh, options)[:24]
+    place = _place(mesh, options)
     try:
         place.mkdir(parents=True, exist_ok=True)
         with _turn(place, mesh.name, tell):
@@ -56,6 +58,31 @@ def body(mesh: Path, options: BakeOptions, tell: ProgressCallback) -> Iterator[P
             yield path
         return
     yield path
+
+
+def find(mesh: Path, options: BakeOptions) -> Path | None:
+    """The .qgraph of a mesh if one of the same content and options is kept."""
+    path = _place(mesh, options) / f"{mesh.stem}.qgraph"
+    with suppress(OSError):
+        os.utime(path)
+        return path
+    return None
+
+
+def adopt(mesh: Path, options: BakeOptions, baked: Path) -> Path:
+    """Keep what a mesh was baked to with these options; the kept file.
+
+    Raises OSError or InputError where the cache folder cannot be written or another program is baking the same.
+    """
+    place = _place(mesh, options)
+    path = place / f"{mesh.stem}.qgraph"
+    place.mkdir(parents=True, exist_ok=True)
+    with _locked(place, fcntl.LOCK_NB):
+        if not path.exists():
+            with baked.open("rb") as source, atomic_file.replacing(path) as stream:
+                shutil.copyfileobj(source, stream)
+            _trim(path)
+    return path
 
 
 def bodies() -> list[KeptBody]:
@@ -73,6 +100,10 @@ def clear() -> list[KeptBody]:
     gone = [each for each in bodies() if _removed(each)]
     _remove_empty(folder())
     return gone
+
+
+def _place(mesh: Path, options: BakeOptions) -> Path:
+    return folder() / _key(mesh, options)[:24]
 
 
 def _kept(mesh: Path, path: Path, options: BakeOptions, tell: ProgressCallback) -> Path:

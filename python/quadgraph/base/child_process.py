@@ -18,6 +18,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import FrameType
+from typing import Any
 
 from quadgraph.base.errors import InputError, ToolError
 
@@ -25,6 +26,7 @@ MOST_TIME_S = 1e6  # that a program may be given
 MOST_MEMORY_BYTES = 10**15
 _PR_SET_PDEATHSIG = 1
 _LAST_WORDS = 600  # characters of a failed program's output that its error repeats
+_PATIENCE_S = 2.0  # for a program of ours to clean up
 _WAITING = 4  # times its limit that a program may take by the clock: other programs want the processor too
 _LIBC = ctypes.CDLL(None, use_errno=True)
 
@@ -115,16 +117,48 @@ def _child_setup(parent: int, time_limit_s: float, memory_limit_bytes: int | Non
     processor_s = math.ceil(time_limit_s)
 
     def setup() -> None:
-        # A killed parent takes its children along; the second line covers a parent that died before the first.
-        _LIBC.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
-        if os.getppid() != parent:
-            os._exit(1)
+        _die_with(parent, signal.SIGKILL)
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         resource.setrlimit(resource.RLIMIT_CPU, (processor_s, processor_s + 1))
         if memory_limit_bytes is not None:
             resource.setrlimit(resource.RLIMIT_AS, (memory_limit_bytes, memory_limit_bytes))
 
     return setup
+
+
+def _die_with(parent: int, number: signal.Signals) -> None:
+    """Let a killed parent take its child along; the second line covers a parent that died before the first."""
+    _LIBC.prctl(_PR_SET_PDEATHSIG, number)
+    if os.getppid() != parent:
+        os._exit(1)
+
+
+@contextmanager
+def beside(command: list[str], **options: Any) -> Iterator[subprocess.Popen[str]]:
+    """Start a program of ours that runs beside this one: told to end (TERM) when the block or this process does.
+
+    options: of subprocess.Popen. One that does not end then is killed with its group. Raises OSError where it cannot be
+    started.
+    """
+    parent = os.getpid()
+    with _interrupts_wait():
+        process = subprocess.Popen(
+            command,
+            stdin=subprocess.DEVNULL,
+            text=True,
+            start_new_session=True,
+            preexec_fn=lambda: _die_with(parent, signal.SIGTERM),
+            **options,
+        )
+    try:
+        yield process
+    finally:
+        with _interrupts_wait():
+            process.terminate()
+            try:
+                process.wait(timeout=_PATIENCE_S)
+            except subprocess.TimeoutExpired:
+                _kill_group(process)
 
 
 @contextmanager
@@ -155,7 +189,7 @@ def _last_words(output: str) -> str:
     return words[-_LAST_WORDS:] or "no output"
 
 
-def _kill_group(process: subprocess.Popen[bytes]) -> None:
+def _kill_group(process: subprocess.Popen[Any]) -> None:
     with suppress(ProcessLookupError):
         os.killpg(process.pid, signal.SIGKILL)
     process.wait()

@@ -185,7 +185,7 @@ def run(args: argparse.Namespace) -> int:
     _check_error_options(args)
     errors = Console(stderr=True, highlight=False)
     with errors.status(f"baking {args.mesh.name}"):
-        report = _bake(args, lambda text: errors.print(text, markup=False))
+        report = _bake(args, lambda text: errors.print(text, markup=False, soft_wrap=True))
     if args.json:
         print(json.dumps(report.as_dict(), indent=1))
     else:

@@ -22,8 +22,10 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "view",
         help="a baked object or a scene in a window",
         description=__doc__,
-        epilog=f"F1 in the window lists the keyboard shortcuts. Options after FILE are those of {PROGRAM} --help: "
-        "--material, --light, --view, --method and so on, as in `quadgraph render`.",
+        epilog="A mesh is shown at once, as a preview of its surface, while it is baked; the window then changes over "
+        "to the body, which is kept for the next time (quadgraph cache). F1 in the window lists the keyboard "
+        f"shortcuts. Options after FILE are those of {PROGRAM} --help: --material, --light, --view, --method and so "
+        "on, as in `quadgraph render`.",
     )
     parser.add_argument("file", metavar="FILE", type=Path, help="a baked .qgraph, a scene .json, or a mesh")
     own_mesh.add_size_arguments(parser, "; stands before FILE")
@@ -41,9 +43,24 @@ def find_program() -> str:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Open the window; the program's exit status once it is closed."""
+    """Open the window; the program's exit status once it is closed, 1 where a mesh could not be baked."""
+    program = find_program()
+    if _bakes(args.file, args.options):
+        from quadgraph.baking import kept
+        from quadgraph.baking.pipeline import BakeOptions
+        from quadgraph.commands import preview
+
+        if kept.find(args.file, BakeOptions(**own_mesh.sizes(args))) is None:
+            return preview.show(program, args.file, args, args.options)
     with own_mesh.body(args.file, args, surface_only=_by_shortest_path(args.options)) as path:
-        return subprocess.run([find_program(), path, *args.options], check=False).returncode
+        return subprocess.run([program, path, *args.options], check=False).returncode
+
+
+def _bakes(file: Path, options: list[str]) -> bool:
+    """Whether a window is asked for, of a mesh and by a method that solves in a baked body."""
+    from quadgraph.baking import bare
+
+    return bare.is_mesh(file) and not _by_shortest_path(options) and "--headless" not in options
 
 
 def _by_shortest_path(options: list[str]) -> bool:

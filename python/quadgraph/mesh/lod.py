@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-import pymeshlab
 from scipy.spatial import cKDTree
 
 from quadgraph.base.errors import InputError, ToolError
 from quadgraph.base.progress import ProgressCallback
+from quadgraph.mesh import meshlab
 from quadgraph.mesh.intersections import intersecting_triangles
 from quadgraph.mesh.slivers import raise_angles
 from quadgraph.mesh.surface import Surface
@@ -107,6 +107,7 @@ def _decimate(fine: Surface, target: int, quality: float, guarded: np.ndarray) -
     pymeshlab rather than fast-simplification: the latter is ten times faster, but breaks the manifold of detailed
     surfaces and leaves more and thinner slivers at the same deviation.
     """
+    pymeshlab = meshlab.load()
     meshes = pymeshlab.MeshSet()
     meshes.add_mesh(
         pymeshlab.Mesh(fine.vertices, fine.triangles.astype(np.int32), f_scalar_array=guarded.astype(np.float64))

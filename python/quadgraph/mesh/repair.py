@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
-import pymeshlab
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
 from quadgraph.base.errors import InputError
-from quadgraph.mesh import weld
+from quadgraph.mesh import meshlab, weld
 from quadgraph.mesh.intersections import intersecting_triangles
 from quadgraph.mesh.surface import MILLIMETRES, FileFrame, Repair, Surface
 
@@ -199,12 +200,13 @@ def _check_volume(work: _Work) -> None:
         )
 
 
-def _meshlab(surface: Surface) -> pymeshlab.MeshSet:
+def _meshlab(surface: Surface) -> Any:
+    pymeshlab = meshlab.load()
     meshes = pymeshlab.MeshSet()
     meshes.add_mesh(pymeshlab.Mesh(surface.vertices, surface.triangles.astype(np.int32)))
     return meshes
 
 
-def _back(meshes: pymeshlab.MeshSet) -> Surface:
+def _back(meshes: Any) -> Surface:
     mesh = meshes.current_mesh()
     return Surface(mesh.vertex_matrix(), mesh.face_matrix().astype(np.int64)).compacted()

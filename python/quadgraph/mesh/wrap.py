@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import pymeshlab
 
 from quadgraph.base.child_process import Program, run, workspace
 from quadgraph.base.errors import InputError
 from quadgraph.base.progress import ProgressCallback
-from quadgraph.mesh import mesh_text, weld
+from quadgraph.mesh import mesh_text, meshlab, weld
 from quadgraph.mesh.surface import Surface
 from quadgraph.mesh.tet_files import write_off
 
@@ -110,6 +109,7 @@ def _distances(wrapped: Surface, mesh: Surface) -> tuple[float, float]:
 
     Not of its vertices: all of them lie at the offset.
     """
+    pymeshlab = meshlab.load()
     meshes = pymeshlab.MeshSet()
     for each in (wrapped, mesh):
         meshes.add_mesh(pymeshlab.Mesh(each.vertices, each.triangles.astype(np.int32)))

@@ -101,3 +101,20 @@ TEST_CASE("what the brush touches goes with a body that has been turned and stre
   const Picked flat{.position = {0, 0, 0}, .at_rest = {0, 0, 0}, .normal = above.up};
   CHECK(glm::distance(touched(flat, above).upright, -above.backward) < 1e-5f);
 }
+
+TEST_CASE("what becomes of the body is true of all scenes that one can go back to") {
+  Scene scene;
+  History history(scene);
+  scene.material = "milk";
+  history.note(scene);
+  scene.material = "skin1";
+  history.note(scene);
+  scene = history.undo(scene);
+  const auto bake = [](Scene& each) { each.body = "baked.qgraph"; };
+  bake(scene);
+  history.change_all(bake);
+  CHECK(history.undo(scene).material == "marble");
+  CHECK(history.undo(scene).body == "baked.qgraph");
+  CHECK(history.redo(scene).body == "baked.qgraph");
+  CHECK(history.redo(scene).body == "baked.qgraph");
+}

@@ -66,3 +66,10 @@ TEST_CASE("a window has a ground without being asked, a picture has not") {
   CHECK(parse_command_line(2, argv, code)->scene.render.ground);
   CHECK_FALSE(parsed({}).render.ground);
 }
+
+TEST_CASE("a preview is for a window") {
+  CHECK_THROWS_AS(parsed({"--preview", "news.json"}), InputError);
+  int code = 0;
+  const char* argv[] = {"quadgraph-engine", cube.c_str(), "--preview", "news.json"};
+  CHECK(parse_command_line(4, argv, code)->preview == "news.json");
+}

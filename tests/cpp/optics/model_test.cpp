@@ -63,15 +63,16 @@ TEST_CASE("a clear region or a vein decides") {
   CHECK(least_albedo(parse_material("marble-veins")) == doctest::Approx(1.2 / 2.05).epsilon(1e-5));
 }
 
-TEST_CASE("channels that lie far apart are told by what their entries are") {
-  const gpu::Material even = parse_material("sigma_s_prime=2,sigma_a=0.01");
-  CHECK(entry_contrast(even, 1) == doctest::Approx(1));
-  // On small elements the conduction 1 / (3 sigma_t), on large ones the absorption.
-  const gpu::Material apart = parse_material("sigma_s_prime=1/1/100,sigma_a=0.05/0.05/5");
-  CHECK(entry_contrast(apart, 1e-4f) == doctest::Approx(100).epsilon(1e-4));
-  CHECK(entry_contrast(apart, 1e3f) == doctest::Approx(100).epsilon(1e-2));
+TEST_CASE("channels that lie far apart are not packed") {
+  const auto rounding = [](const char* text, float spacing) { return packed_rounding(parse_material(text), spacing); };
+  CHECK(rounding("sigma_s_prime=2,sigma_a=0.01", 1) == glm::vec2(1));
+  CHECK(rounding("sigma_s_prime=1/1/20,sigma_a=0.05/0.05/1", 1e-3f).x > 1);
+  CHECK(rounding("sigma_s_prime=1/1/20,sigma_a=0.05/0.05/1", 1e3f).x > 1);
+  // On elements in which one channel is absorbed and another not.
+  CHECK(rounding("sigma_s_prime=1/1/1,sigma_a=0.01/0.01/1", 1) == glm::vec2(1));
+  CHECK(rounding("sigma_s_prime=1/1/1,sigma_a=0.01/0.01/1", 3).y > 1);
   for (const std::string& name : material_names()) {
     CAPTURE(name);
-    CHECK(entry_contrast(parse_material(name), 1) < 20);
+    CHECK(packed_rounding(parse_material(name), 1) == glm::vec2(1));
   }
 }

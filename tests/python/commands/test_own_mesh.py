@@ -64,6 +64,21 @@ def test_a_baked_file_knows_its_size(folder, capsys):
     assert "--longest and --wrap are for meshes" in capsys.readouterr().err
 
 
+PROGRAM = f"""#!{sys.executable}
+import json, pathlib, sys, time
+from quadgraph.file import qgraph_file
+body, said = sys.argv[1], {{}}
+if "--preview" in sys.argv:
+    assert not qgraph_file.read(body).metadata["levels"]
+    news = pathlib.Path(sys.argv[sys.argv.index("--preview") + 1])
+    while not said.keys() & {{"body", "failed"}}:
+        time.sleep(.02)
+        said = json.loads(news.read_text()) if news.exists() else {{}}
+    body = said["body"]
+sys.exit(10 + len(qgraph_file.read(body).metadata["levels"]))
+"""
+
+
 @pytest.mark.parametrize(
     ("options", "levels"),
     [
@@ -75,15 +90,13 @@ def test_a_baked_file_knows_its_size(folder, capsys):
     ],
 )
 def test_the_window_gets_a_bake_unless_the_method_takes_any_mesh(folder, monkeypatch, options, levels):
-    """The program in its place says how many levels it was given."""
+    """The program in its place says how many levels it was given: of a preview, those of what it is told of then."""
     program = folder / "program"
-    program.write_text(
-        f"#!{sys.executable}\nimport sys; from quadgraph.file import qgraph_file\n"
-        "sys.exit(10 + len(qgraph_file.read(sys.argv[1]).metadata['levels']))"
-    )
+    program.write_text(PROGRAM)
     program.chmod(0o755)
     monkeypatch.setattr(view, "find_program", lambda: str(program))
-    assert cli.main(["view", "--longest", "10mm", "ball.obj", *options]) == 10 + min(levels, 1)
+    for _ in range(2):  # the second time it is kept
+        assert cli.main(["view", "--longest", "10mm", "ball.obj", *options]) == 10 + min(levels, 1)
 
 
 def test_ctrl_c_while_a_mesh_is_baked_keeps_nothing(folder):

@@ -55,12 +55,14 @@ def display() -> Iterator[str]:
 class Hand:
     """A running window and what can be done to it."""
 
-    def __init__(self, server: str, folder: Path, *arguments: str, body: Path = tiny.PATH):
+    def __init__(
+        self, server: str, folder: Path, *arguments: str, body: Path = tiny.PATH, program: tuple[str, ...] = ()
+    ):
         self.environment = os.environ | {"DISPLAY": server}
         self.environment.pop("WAYLAND_DISPLAY", None)
         self.folder = folder
         self.process = subprocess.Popen(
-            [ENGINE, str(body), "--validation", *arguments],
+            [*(program or (str(ENGINE),)), str(body), "--validation", *arguments],
             env=self.environment,
             cwd=folder,
             stdout=subprocess.PIPE,
@@ -156,8 +158,8 @@ def open_window(server: str, tmp_path: Path) -> Iterator:
     """Opens windows, and closes what a failed test has left open."""
     hands: list[Hand] = []
 
-    def start(*arguments: str, body: Path = tiny.PATH) -> Hand:
-        hands.append(Hand(server, tmp_path, *arguments, body=body))
+    def start(*arguments: str, body: Path = tiny.PATH, program: tuple[str, ...] = ()) -> Hand:
+        hands.append(Hand(server, tmp_path, *arguments, body=body, program=program))
         return hands[-1]
 
     yield start
