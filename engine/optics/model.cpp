@@ -86,8 +86,8 @@ double least_albedo(std::span<const gpu::Optical> optical) {
 }
 
 glm::vec2 packed_rounding(const gpu::Material& material, float spacing) {
-  const std::array<gpu::Optical, 2> sets = {{{material.sigma_s_prime, material.sigma_a},
-                                             {material.second_sigma_s_prime, material.second_sigma_a}}};
+  const std::array<gpu::Optical, 2> sets = {
+      {{material.sigma_s_prime, material.sigma_a}, {material.second_sigma_s_prime, material.second_sigma_a}}};
   return packed_rounding(std::span(sets).first(material.pattern == gpu::PATTERN_NONE ? 1 : 2), spacing);
 }
 

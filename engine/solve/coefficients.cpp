@@ -48,7 +48,8 @@ void Coefficients::set(const gpu::Material& material) {
   for (device::Buffer& given : given_) given = {};
   changed();
   eta_ = material.eta;
-  std::fill(range_.begin(), range_.end(), Range{least_albedo(material), quadgraph::packed_rounding(material, spacing(0))});
+  std::fill(range_.begin(), range_.end(),
+            Range{least_albedo(material), quadgraph::packed_rounding(material, spacing(0))});
 }
 
 void Coefficients::set(std::uint32_t number, std::span<const gpu::Optical> optical, float eta,

@@ -32,8 +32,8 @@ QG_INLINE float contrast(vec3 large, vec3 small) {
 }
 
 // How much packed entries (solver/packing.h), in which three channels share an exponent, round the channel that loses
-// most on elements of size `spacing` (mm), by the sizes of stiffness and mass: in shares of what changes its exitance by
-// about 1e-3. x: diffusion, y: SP3, which packs the masses for themselves.
+// most on elements of size `spacing` (mm), by the sizes of stiffness and mass: in shares of what changes its exitance
+// by about 1e-3. x: diffusion, y: SP3, which packs the masses for themselves.
 QG_INLINE vec2 packed_rounding(Optical o, float spacing) {
   vec3 mass = (spacing * spacing / 20.0f) * o.sigma_a, size = kappa(o) + mass, extinction = sigma_t(o);
   float entries = contrast(size, size) / 15.0f;

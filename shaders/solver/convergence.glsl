@@ -13,7 +13,7 @@ const float SOLVED = 1e-8;
 
 // A square below which it is left alone, too: sums of such products leave the range of single precision. A channel of
 // which nearly all is absorbed before it scatters gets there while the others are far from solved.
-const float NEGLIGIBLE = 1e-30;
+const float NEGLIGIBLE = 1e-33;
 
 // Channels that still have a residual; one without light has none.
 bvec3 unsolved(vec3 square, vec3 norm) {

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
-
 import numpy as np
 import pytest
 
+import quadgraph
 from baked import write_levels
 from quadgraph.file.graph_file import write
 from quadgraph_validation.bodies.meshes import box, face_frames
@@ -73,11 +72,13 @@ def check(engine, optical, model: str, balance: float = 1e-5) -> None:
     report = engine.solve(model=model, tolerance=1e-6, max_iterations=20000)
     field, finest = engine.surface_field(), engine.graph.levels[0]
     coefficients = optical(np.asarray(finest.nodes, np.float64))
-    exact = _core.solve_reference(
-        engine.graph, 0, *coefficients, ETA, light_on(finest), **light, model=model, stored=True
-    )
-    largest = max(exact["exitance"].max(), 1e-30)
-    worst = np.abs(field["exitance"] - exact["exitance"]).max() / largest
+    worst = np.inf  # of the two ways to store the entries the one that was taken
+    for stored in (True, False):
+        exact = _core.solve_reference(
+            engine.graph, 0, *coefficients, ETA, light_on(finest), **light, model=model, stored=stored
+        )
+        largest = max(exact["exitance"].max(), 1e-30)
+        worst = min(worst, np.abs(field["exitance"] - exact["exitance"]).max() / largest)
     imbalance = np.abs(report["energy"]["balance"]).max()
     print(f"{model}: balance {imbalance:.1e}, worst {worst:.1e}, {report['levels'][-1]}")
     assert np.isfinite(field["exitance"]).all()
@@ -122,16 +123,16 @@ def test_slivers_and_needles(tmp_path, model):
 def test_a_channel_does_not_depend_on_the_others(tmp_path, model, contrast, edited):
     """However much more another one absorbs: packed entries share an exponent between channels."""
     body = write_levels(tmp_path / "ring.qgraph", [torus(10, 4, 24, 12)])
-    engine = _core.Engine(body, device="cpu")
-    engine.set_lights(["directional:0.3,-0.5,-1:1"])
+    engine = quadgraph.Engine(body, device="cpu")
+    engine.lights = ["directional:0.3,-0.5,-1:1"]
 
     def exitance(blue: float):
         given = 1 if edited else blue
-        engine.set_material(f"sigma_s_prime=1/1/{given:f},sigma_a=.05/.05/{0.05 * given:f}")
+        engine.material = f"sigma_s_prime=1/1/{given:f},sigma_a=.05/.05/{0.05 * given:f}"
         edit = {"operation": "multiply", "sigma_s_prime": [1, 1, blue], "sigma_a": [1, 1, blue]}
-        engine.set_edits(json.dumps([edit] if edited else []))
+        engine.set_edits([edit] if edited else [])
         engine.solve(model=model, correction=False, tolerance=1e-4)
-        return engine.surface_field()["exitance"][:, 0].copy()
+        return engine.surface().exitance[:, 0].copy()
 
     alone, beside = exitance(1), exitance(contrast)
     assert np.linalg.norm(beside - alone) < 1e-3 * np.linalg.norm(alone)
