@@ -7,6 +7,7 @@ on an open surface; both become a ToolError here.
 from __future__ import annotations
 
 import re
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -20,6 +21,7 @@ from quadgraph.mesh.tet_files import read_tets, write_smesh, write_volumes
 
 OPTIONS = "-pYq1.4/0"  # piecewise linear complex, surface kept, radius-edge ratio 1.4, no dihedral bound
 REFINE = "-rYq1.4/0a"  # the same on tets that are there, with the volumes of a .vol file
+_LEAST_REFINING_S, _MOST_REFINING = 20, 30  # s, and times what filling took: where it goes on for longer it has no end
 _PASSES = 3  # a limit holds for what becomes of a tet, so that large ones are asked for again
 
 
@@ -36,22 +38,27 @@ def fill(
     """
     options = OPTIONS
 
-    def made(directory: Path, arguments: list[str], stem: str) -> tuple[np.ndarray, np.ndarray]:
-        done = run(TETGEN, arguments, directory=directory, time_limit_s=time_limit_s,
-                   memory_limit_bytes=memory_limit_bytes)  # fmt: skip
+    def made(directory: Path, arguments: list[str], stem: str, seconds: float) -> tuple[np.ndarray, np.ndarray]:
+        done = run(TETGEN, arguments, directory=directory, time_limit_s=seconds, memory_limit_bytes=memory_limit_bytes)
         if not (directory / f"{stem}.ele").exists():
             raise ToolError(f"tetgen: wrote no tetrahedra: {done.output[-300:].strip()}")
         return read_tets(directory / stem)
 
     with workspace() as directory:
         write_smesh(surface, directory / "surface.smesh")
-        vertices, tets = made(directory, [OPTIONS + ("" if limits else "F"), "surface.smesh"], "surface.1")
+        start = time.perf_counter()
+        vertices, tets = made(
+            directory, [OPTIONS + ("" if limits else "F"), "surface.smesh"], "surface.1", time_limit_s
+        )
+        refining = max(_LEAST_REFINING_S, _MOST_REFINING * (time.perf_counter() - start))
         for number in range(1, 1 + _PASSES):
             volumes = limits(vertices, tets) if limits and len(tets) else None
             if volumes is None:
                 break
             write_volumes(volumes, directory / f"surface.{number}.vol")
-            vertices, tets = made(directory, [REFINE, f"surface.{number}"], f"surface.{number + 1}")
+            vertices, tets = made(
+                directory, [REFINE, f"surface.{number}"], f"surface.{number + 1}", min(time_limit_s, refining)
+            )
             options = f"{OPTIONS}, {REFINE}"
     if not len(tets):
         raise ToolError("tetgen: made no tetrahedra; the surface is not closed")
