@@ -21,6 +21,7 @@ from attack.physics import SOLVE_OUTPUTS, SOLVED, solve, solved
 from attack.texts import Rng
 
 VOLUME = ("--material", "v.npz", "--no-correction", *SOLVED[1:])
+BLOCK = 1 << 20  # bytes of zeros that are packed at once
 
 
 def using(
@@ -56,12 +57,20 @@ def grid(**changed: object) -> dict[str, np.ndarray]:
     return {name: np.asarray(value) for name, value in (fields | changed).items() if value is not None}
 
 
-def zipped(members: dict[str, bytes], pack: int = zipfile.ZIP_DEFLATED) -> bytes:
-    """Members as an archive."""
+def zipped(
+    members: dict[str, bytes], pack: int = zipfile.ZIP_DEFLATED, zeros: tuple[str, bytes, int] = ("", b"", 0)
+) -> bytes:
+    """Members as an archive. zeros: the name of one more, how it begins, and how many zeros follow."""
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w", pack) as archive:
         for name, data in members.items():
             archive.writestr(name, data)
+        name, begin, count = zeros
+        if name:
+            with archive.open(name, "w", force_zip64=True) as member:
+                member.write(begin)
+                for start in range(0, count, BLOCK):
+                    member.write(bytes(min(BLOCK, count - start)))
     return stream.getvalue()
 
 
@@ -108,10 +117,11 @@ def archives(rng: Rng) -> Case:
             data[spot + 24 : spot + 28] = struct.pack("<I", min(int(10**size), 2**32 - 1))
         elif kind in ("zeros", "junk"):
             side = int((10**size / 8) ** (1 / 3))
-            big = npy("'<f8'", f"({side}, {side}, {side})", bytes(8 * side**3))
+            head = npy("'<f8'", f"({side}, {side}, {side})", b"")
             name = "sigma_a.npy" if kind == "zeros" else "junk.npy"
             good = {f"{n}.npy": npy(f"'{a.dtype.str}'", str(a.shape), a.tobytes()) for n, a in grid().items()}
-            return zipped(good | {name: big})
+            good.pop(name, None)
+            return zipped(good, zeros=(name, head, 8 * side**3))
         elif kind == "bytes":
             return texts.random_bytes(rng, bytes(data), 8)
         elif kind == "twice":
