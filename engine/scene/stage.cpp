@@ -50,7 +50,12 @@ SolveReport Stage::solve(const SolveOptions& options, const std::function<void()
 
 Picture Stage::render() {
   const auto turn = in_use_.take();
-  return engine().render(scene_.view, scene_.render);
+  Engine& shown = engine();
+  try {
+    return shown.render(scene_.view, scene_.render);
+  } catch (const InputError& error) {  // what the body does not have, such as a level that is to be shown
+    throw InputError(scene_.body.string() + ": " + error.what());
+  }
 }
 
 Engine& Stage::engine() {

@@ -223,3 +223,14 @@ def test_what_is_no_utf8_in_a_file_is_repeated_all_the_same(tmp_path):
     path.write_bytes(b"#?RADIANCE\nFORMAT=\xff\xfe\n\n-Y 1 +X 1\nabcd")
     with pytest.raises(Exception, match=r"sky\.hdr: found 'FORMAT=\\xff\\xfe', expected"):
         Engine(tiny.PATH, device="cpu").lights = [f"environment:{path}:0:1"]
+
+
+def test_a_level_that_the_body_does_not_have_is_said_with_the_body(tmp_path):
+    (tmp_path / "tiny.qgraph").write_bytes(tiny.PATH.read_bytes())
+    scene = {"quadgraph_scene": 1, "body": "tiny.qgraph", "picture": {"width": 8, "height": 8, "show": "levels:9"}}
+    (tmp_path / "scene.json").write_text(json.dumps(scene))
+    stage = core.Stage(device="cpu")
+    stage.show(core.SceneFile(tmp_path / "scene.json").at(0))
+    stage.solve()
+    with pytest.raises(InputError, match=r"tiny\.qgraph: show, level: found 9, expected 0 to 1"):
+        stage.render()
