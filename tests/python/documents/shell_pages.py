@@ -118,7 +118,7 @@ def script(page: str, *, long: bool) -> tuple[Command, ...]:
 @functools.cache
 def parser() -> argparse.ArgumentParser:
     """The parser of `quadgraph`, with the subcommands of the validation."""
-    own = {name: importlib.import_module(f"quadgraph.commands.{name}") for name in cli.SUBCOMMANDS}
+    own = {name: importlib.import_module(f"quadgraph.commands.{module}") for name, module in cli.SUBCOMMANDS.items()}
     return cli.build_parser(own, cli.added_commands())
 
 
