@@ -166,7 +166,12 @@ def test_one_that_is_interrupted_leaves_nothing(tmp_path, name):
     if name.endswith("mp4"):
         pytest.importorskip("av")
     command = [sys.executable, "-m", "quadgraph.cli", "turntable", str(tiny.PATH), "--frames", "5000", *FAST]
-    process = subprocess.Popen([*command, "-o", str(tmp_path / name)], stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        [*command, "-o", str(tmp_path / name)],
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
     until = time.monotonic() + 60
     while not list(tmp_path.iterdir()) and time.monotonic() < until:
         time.sleep(0.05)

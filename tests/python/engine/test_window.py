@@ -6,6 +6,7 @@ import contextlib
 import json
 import os
 import shutil
+import signal
 import subprocess
 import time
 from collections.abc import Iterator
@@ -68,6 +69,7 @@ class Hand:
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,
+            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
         )
         self.window = self.do("search", "--sync", "--onlyvisible", "--name", "QuadGraph").split()[0]
         self.do("windowmove", self.window, "0", "0", "windowsize", "--sync", self.window, *map(str, SIZE))
