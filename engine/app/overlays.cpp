@@ -9,6 +9,27 @@
 #include "shaders/display/colour_map.h"
 
 namespace quadgraph {
+namespace {
+
+// Words in the picture's upper or lower left corner.
+void draw_note(const char* name, const std::string& text, const ImVec4& colour, bool below, float left, float unit) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const float end = below ? 1 : 0;
+  ImGui::SetNextWindowPos({left + 12 * unit, below ? size.y - 12 * unit : 12 * unit}, ImGuiCond_Always, {0, end});
+  ImGui::SetNextWindowSizeConstraints({0, 0}, {size.x - left - 24 * unit, size.y});
+  ImGui::SetNextWindowBgAlpha(0.85f);
+  ImGui::Begin(name, nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
+                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
+  ImGui::PushTextWrapPos(size.x - left - 48 * unit);
+  ImGui::PushStyleColor(ImGuiCol_Text, colour);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopStyleColor();
+  ImGui::PopTextWrapPos();
+  ImGui::End();
+}
+
+}  // namespace
 
 void draw_help(State& state, float unit) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
@@ -73,35 +94,13 @@ void draw_colour_bar(const Legend& legend, float left, float unit) {
 
 void draw_preview(const std::string& text, float left, float unit) {
   if (text.empty()) return;
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({left + 12 * unit, 12 * unit}, ImGuiCond_Always);
-  ImGui::SetNextWindowSizeConstraints({0, 0}, {size.x - left - 24 * unit, size.y});
-  ImGui::SetNextWindowBgAlpha(0.85f);
-  ImGui::Begin("preview", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
-                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
-  ImGui::PushTextWrapPos(size.x - left - 48 * unit);
-  ImGui::TextColored({0.95f, 0.65f, 0.32f, 1}, "%s", text.c_str());
-  ImGui::PopTextWrapPos();
-  ImGui::End();
+  draw_note("preview", text, {0.95f, 0.65f, 0.32f, 1}, false, left, unit);
 }
 
 void draw_message(const State& state, float left, float unit) {
   if (state.message.empty()) return;
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({left + 12 * unit, size.y - 12 * unit}, ImGuiCond_Always, {0, 1});
-  ImGui::SetNextWindowSizeConstraints({0, 0}, {size.x - left - 24 * unit, size.y});
-  ImGui::SetNextWindowBgAlpha(0.85f);
-  ImGui::Begin("message", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
-                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
-  ImGui::PushTextWrapPos(size.x - left - 48 * unit);
   const ImVec4 colour = state.refused ? ImVec4(1, 0.55f, 0.45f, 1) : ImVec4(0.9f, 0.9f, 0.89f, 1);
-  ImGui::PushStyleColor(ImGuiCol_Text, colour);
-  ImGui::TextUnformatted(state.message.c_str());
-  ImGui::PopStyleColor();
-  ImGui::PopTextWrapPos();
-  ImGui::End();
+  draw_note("message", state.message, colour, true, left, unit);
 }
 
 void draw_knife(const Knife& knife, float left, float unit) {

@@ -34,7 +34,7 @@ Coefficients::Coefficients(device::Device& device, std::span<const Level> rest)
       depth_(rest.size()),
       depth_buffers_(rest.size()),
       spacing_(rest.size()),
-      range_(rest.size()),
+      albedo_(rest.size()),
       sampled_(rest.size()) {}
 
 void Coefficients::changed() {
@@ -48,20 +48,21 @@ void Coefficients::set(const gpu::Material& material) {
   for (device::Buffer& given : given_) given = {};
   changed();
   eta_ = material.eta;
-  std::fill(range_.begin(), range_.end(),
-            Range{least_albedo(material), quadgraph::packed_rounding(material, spacing(0))});
+  std::fill(albedo_.begin(), albedo_.end(), least_albedo(material));
+  rounding_ = quadgraph::packed_rounding(material, spacing(0));
 }
 
 void Coefficients::set(std::uint32_t number, std::span<const gpu::Optical> optical, float eta,
                        std::span<const SurfaceSample> samples) {
   check_optical(optical, rest_[number].node_count());
   check_eta(static_cast<double>(eta));
-  if (material_) std::fill(range_.begin(), range_.end(), std::nullopt);
+  if (material_) std::fill(albedo_.begin(), albedo_.end(), std::nullopt);
   material_.reset();
   device::rewrite(device_, optical, "material/level " + std::to_string(number) + " given", given_[number]);
   changed();
   eta_ = eta;
-  range_[number] = Range{least_albedo(optical), quadgraph::packed_rounding(optical, spacing(0))};
+  albedo_[number] = least_albedo(optical);
+  if (number == 0) rounding_ = quadgraph::packed_rounding(optical, spacing(0));
   sampled_[number].clear();
   for (const SurfaceSample& sample : samples) sampled_[number].push_back(optical[sample.tet]);
 }
@@ -107,18 +108,18 @@ std::vector<gpu::Optical> Coefficients::at(std::uint32_t number, std::span<const
 
 void Coefficients::check() const {
   if (material_) return;
-  const auto missing = std::find_if(range_.begin(), range_.end(), [](const auto& range) { return !range; });
-  if (missing == range_.end()) return;
-  if (std::all_of(range_.begin(), range_.end(), [](const auto& range) { return !range; })) {
+  const auto missing = std::find(albedo_.begin(), albedo_.end(), std::nullopt);
+  if (missing == albedo_.end()) return;
+  if (std::all_of(albedo_.begin(), albedo_.end(), [](const auto& albedo) { return !albedo; })) {
     throw InputError("no material has been set");
   }
-  throw InputError("optical: set for some levels, but not for level " + std::to_string(missing - range_.begin()));
+  throw InputError("optical: set for some levels, but not for level " + std::to_string(missing - albedo_.begin()));
 }
 
 Model Coefficients::resolve(Workspace& work, Model wanted, Method method, Source source,
                             std::vector<LevelBuffers>& levels) {
   double least = 1;
-  for (const auto& range : range_) least = std::min(least, range->albedo);
+  for (const auto& albedo : albedo_) least = std::min(least, *albedo);
   if (!edits_.edits.empty()) {
     if (!edited_) {
       make_room(method, levels);
@@ -131,7 +132,7 @@ Model Coefficients::resolve(Workspace& work, Model wanted, Method method, Source
 }
 
 double Coefficients::packed_rounding(Model model) const {
-  const glm::vec2& rounding = edited_ ? edited_->rounding : range_[0]->rounding;
+  const glm::vec2& rounding = edited_ ? edited_->rounding : rounding_;
   return static_cast<double>(model == Model::sp3 ? rounding.y : rounding.x);
 }
 

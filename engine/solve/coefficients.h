@@ -58,7 +58,7 @@ class Coefficients {
   void record(Workspace& work, const std::vector<LevelBuffers>& levels);
 
  private:
-  // Of the coefficients of a level: the least albedo, and gpu::packed_rounding on elements of the finest level's size.
+  // Of coefficients of the finest level: the least albedo, and gpu::packed_rounding on its elements.
   struct Range {
     double albedo = 1;
     glm::vec2 rounding{1};
@@ -88,9 +88,10 @@ class Coefficients {
   Extent extent_ = Extent::one;
   std::optional<Extent> evaluated_;  // the present coefficients, there
   float eta_ = 1;
-  std::vector<std::optional<Range>> range_;         // of every level, before edits
+  std::vector<std::optional<double>> albedo_;       // the least one of every level, before edits
+  glm::vec2 rounding_{1};                           // gpu::packed_rounding of the finest one, before edits
   device::Buffer measured_, measured_on_host_;      // of edited coefficients
-  std::optional<Range> edited_;                     // of the finest level, after edits
+  std::optional<Range> edited_;                     // after edits
   std::vector<std::vector<gpu::Optical>> sampled_;  // of every level whose coefficients were given
 };
 

@@ -147,10 +147,7 @@ void Context::create_instance(const device::DeviceOptions& options) {
     for (const std::string& name : options.surface->instance_extensions) extensions.push_back(name.c_str());
   }
 
-  VkApplicationInfo application{};
-  application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
-  application.pApplicationName = "quadgraph";
-  application.apiVersion = VK_API_VERSION_1_3;
+  const VkApplicationInfo application = application_info();
   VkInstanceCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
   info.pApplicationInfo = &application;

@@ -20,6 +20,14 @@ bool can_swap(VkPhysicalDevice device) {
 
 }  // namespace
 
+VkApplicationInfo application_info() {
+  VkApplicationInfo application{};
+  application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
+  application.pApplicationName = "quadgraph";
+  application.apiVersion = VK_API_VERSION_1_3;
+  return application;
+}
+
 bool named(const std::vector<VkExtensionProperties>& extensions, const char* name) {
   return std::any_of(extensions.begin(), extensions.end(),
                      [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });

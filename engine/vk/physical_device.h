@@ -10,6 +10,9 @@
 
 namespace quadgraph::vk {
 
+// What an instance is told of this program.
+VkApplicationInfo application_info();
+
 bool named(const std::vector<VkExtensionProperties>& extensions, const char* name);
 
 // All that an instance finds. Throws DeviceError.

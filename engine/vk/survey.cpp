@@ -31,10 +31,7 @@ Surveyed surveyed(VkPhysicalDevice device) {
 }  // namespace
 
 std::vector<Surveyed> survey() {
-  VkApplicationInfo application{};
-  application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
-  application.pApplicationName = "quadgraph";
-  application.apiVersion = VK_API_VERSION_1_3;
+  const VkApplicationInfo application = application_info();
   VkInstanceCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
   info.pApplicationInfo = &application;

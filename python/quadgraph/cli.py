@@ -22,7 +22,7 @@ from types import FrameType, ModuleType
 from typing import Any
 
 from quadgraph.base.errors import InputError, QuadGraphError
-from quadgraph.base.message import shortened
+from quadgraph.base.message import ERROR, shortened
 from quadgraph.base.version import __version__
 from quadgraph.commands import config
 from quadgraph.commands.command_parser import NAME_ROOM, CommandParser, Listing
@@ -239,7 +239,7 @@ def _failed(error: Exception) -> int:
         folder = tempfile.tempdir or os.environ.get("TMPDIR") or "/tmp"
         where = error.filename or f"standard output, or a temporary file in {folder}"
         text = shortened(f"{where}: {error.strerror or error}")
-    print(f"quadgraph: error: {text}", file=sys.stderr)
+    print(f"{ERROR}{text}", file=sys.stderr)
     return 1
 
 

@@ -11,6 +11,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # Nor does a test depend on who runs it: no file of defaults is there.
 os.environ["XDG_CONFIG_HOME"] = os.devnull
 
+import shutil
 from pathlib import Path
 
 import pytest
@@ -74,3 +75,22 @@ def bunny_qgraph(bunny_path: Path, tmp_path_factory: pytest.TempPathFactory) -> 
     path = tmp_path_factory.mktemp("bunny") / "bunny.qgraph"
     bake(bunny_path, path, BakeOptions(height_mm=100.0, surface_vertices=6000))
     return path
+
+
+@pytest.fixture(scope="module")
+def browser():
+    """Chromium without a window, driven by selenium; skips, saying why, where they are not there."""
+    pytest.importorskip("selenium", reason="selenium is not installed: run tools/setup")
+    from selenium import webdriver
+    from selenium.webdriver.chrome.service import Service
+
+    chromium, driver = shutil.which("chromium"), shutil.which("chromedriver")
+    if not (chromium and driver):
+        pytest.skip("no chromium and chromium-driver: apt-get install --no-install-recommends them as root")
+    options = webdriver.ChromeOptions()
+    options.binary_location = chromium
+    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    with webdriver.Chrome(options=options, service=Service(driver)) as found:
+        yield found

@@ -86,7 +86,7 @@ class Picture:
         if image_file.is_jpeg(Path(path)):
             options = json.loads(self._tone(tone))["picture"]
             if options.get("background") == "transparent":
-                raise InputError(f"{path}: background 'transparent' found, which only .png and .exr keep")
+                image_file.check_transparent(Path(path))
             image_file.write(Path(path), self.srgb(**tone), self._metadata)
             return
         writers = {".png": core.write_png, ".exr": core.write_exr}

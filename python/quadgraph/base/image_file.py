@@ -29,6 +29,15 @@ def check(path: Path) -> None:
         raise InputError(f"{path}: output must end in {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]}")
 
 
+def check_transparent(path: Path) -> None:
+    """Raise InputError for the name of a kind of file that has no transparency."""
+    if path.suffix.lower() not in (".png", ".exr"):
+        raise InputError(
+            f"{path}: background 'transparent' found, allowed are colours: only .png (and .exr, always) keeps what is "
+            "transparent"
+        )
+
+
 def write(path: Path, srgb: npt.NDArray[np.uint8], metadata: Sequence[tuple[str, str]] = ()) -> None:
     """Write a picture, (h, w, 3), with its metadata: texts of a PNG, the comment of a JPEG.
 

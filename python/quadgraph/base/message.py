@@ -4,6 +4,7 @@ import difflib
 import re
 from collections.abc import Iterable
 
+ERROR = "quadgraph: error: "  # how the command line begins a line that says what went wrong
 MOST = 440  # characters; and the program's name before them is still less than 480
 _KEPT_OF_WORD = 45
 _LONG_WORD = re.compile(r"\S{101,}")

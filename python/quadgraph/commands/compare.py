@@ -54,8 +54,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="luminance that the ends of the colours of B - A stand for (default: 99.5%% of what differs is within)",
     )
     parser.add_argument("--json", action="store_true", help="print the numbers as JSON on standard output")
-    groups = (*scene_options.SOLVE_GROUPS, *scene_options.PICTURE_GROUPS)
-    scene_options.add_run_arguments(parser, groups)
+    scene_options.add_run_arguments(parser, scene_options.RENDER_GROUPS)
 
 
 def run(args: argparse.Namespace) -> int:

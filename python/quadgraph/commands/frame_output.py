@@ -3,30 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-import numpy as np
-
-from quadgraph.base import image_file
 from quadgraph.base.errors import InputError
 from quadgraph.commands import picture_output
 from quadgraph.file import film
 
 if TYPE_CHECKING:
     from quadgraph.core import Picture
-
-
-@dataclass(frozen=True)
-class Shown:
-    """What becomes of a picture, with one exposure and background: rows of sRGB, files, and what made it."""
-
-    srgb: Callable[[Picture], np.ndarray]
-    write_png: Callable[[Picture, Path], None]
-    write_exr: Callable[[Picture, Path], None]
-    metadata: Callable[[], Sequence[tuple[str, str]]]
 
 
 def check(path: Path, with_numbers: bool) -> None:
@@ -68,7 +54,7 @@ class Frames:
         """Remove what is left of films that were not finished."""
         self._discard()
 
-    def add(self, picture: Picture, frame: float, shown: Shown) -> None:
+    def add(self, picture: Picture, frame: float, shown: picture_output.Shown) -> None:
         """Write one frame to all outputs. Raises InputError if it cannot be written."""
         for path in self._outputs:
             if path in self._films:
@@ -86,14 +72,9 @@ class Frames:
             each.discard()
 
 
-def _write(picture: Picture, path: Path, shown: Shown) -> None:
+def _write(picture: Picture, path: Path, shown: picture_output.Shown) -> None:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"{path.parent}: cannot be made ({error.strerror})") from error
-    if image_file.is_jpeg(path):
-        image_file.write(path, shown.srgb(picture), shown.metadata())
-    elif path.suffix.lower() == ".png":
-        shown.write_png(picture, path)
-    else:
-        shown.write_exr(picture, path)
+    picture_output.write(picture, path, shown)

@@ -1,10 +1,14 @@
-"""Files of one picture, by their names: .png, .jpg and .exr."""
+"""Files of pictures, by their names: .png, .jpg and .exr."""
 
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from quadgraph.base import image_file
 from quadgraph.base.errors import InputError
@@ -15,28 +19,53 @@ if TYPE_CHECKING:
 SUFFIXES = (*image_file.SUFFIXES, ".exr")
 
 
+@dataclass(frozen=True)
+class Shown:
+    """What becomes of a picture, with one exposure and background: rows of sRGB, files, and what made it."""
+
+    srgb: Callable[[Picture], np.ndarray]
+    write_png: Callable[[Picture, Path], None]
+    write_exr: Callable[[Picture, Path], None]
+    metadata: Callable[[], Sequence[tuple[str, str]]]
+
+
+def shown(engine: Engine, exposure: str, background: str) -> Shown:
+    """What becomes of an engine's pictures."""
+    return Shown(
+        lambda picture: picture.srgb(exposure, background),
+        lambda picture, path: picture.write_png(path, engine.metadata, exposure, background),
+        lambda picture, path: picture.write_exr(path, engine.metadata, exposure),
+        lambda: engine.metadata,
+    )
+
+
+def add_arguments(parser: argparse.ArgumentParser, files: str, report: str) -> None:
+    """Add --output, which takes such files, several if asked, and --json for such a report."""
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        action="append",
+        required=True,
+        metavar="OUT",
+        help=f"{files}; several allowed",
+    )
+    parser.add_argument("--json", type=Path, metavar="FILE", help=f"write {report} here")
+
+
 def check(path: Path, background: str) -> None:
     """Raise InputError unless a picture with such a background can be written to a file of that name."""
     if path.suffix.lower() not in SUFFIXES:
         raise InputError(f"{path}: output must end in {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]}")
     if background == "transparent":
-        check_opaque(path)
+        image_file.check_transparent(path)
 
 
-def check_opaque(path: Path) -> None:
-    """Raise InputError for a kind of file that has no transparency."""
-    if path.suffix.lower() not in (".png", ".exr"):
-        raise InputError(
-            f"{path}: background 'transparent' found, allowed are colours: only .png (and .exr, always) keeps what is "
-            "transparent"
-        )
-
-
-def write(picture: Picture, path: Path, engine: Engine, args: argparse.Namespace) -> None:
-    """Write a picture with the exposure and background of the arguments. Raises InputError if it cannot be written."""
-    if path.suffix.lower() == ".exr":
-        picture.write_exr(path, engine.metadata, args.exposure)
-    elif image_file.is_jpeg(path):
-        image_file.write(path, picture.srgb(args.exposure, args.background), engine.metadata)
+def write(picture: Picture, path: Path, how: Shown) -> None:
+    """Write a picture by the name of the file. Raises InputError if it cannot be written."""
+    if image_file.is_jpeg(path):
+        image_file.write(path, how.srgb(picture), how.metadata())
+    elif path.suffix.lower() == ".png":
+        how.write_png(picture, path)
     else:
-        picture.write_png(path, engine.metadata, args.exposure, args.background)
+        how.write_exr(picture, path)

@@ -18,9 +18,8 @@ from quadgraph.baking import bare, kept
 from quadgraph.baking.pipeline import BakeOptions
 from quadgraph.base import atomic_file, child_process
 from quadgraph.base.errors import InputError
+from quadgraph.base.message import ERROR
 from quadgraph.commands import own_mesh
-
-_ERROR = "quadgraph: error: "  # how the command line begins a line that says what went wrong
 
 
 def show(program: str, mesh: Path, args: argparse.Namespace, options: list[str]) -> int:
@@ -103,7 +102,7 @@ class _Bake:
             self._finish(body)
             return
         self.failed = True
-        how = f"the bake was ended by {signal.Signals(-status).name}" if status < 0 else last.removeprefix(_ERROR)
+        how = f"the bake was ended by {signal.Signals(-status).name}" if status < 0 else last.removeprefix(ERROR)
         self._announce("failed", how)
         if status < 0:
             self._tell(how)

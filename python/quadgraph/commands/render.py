@@ -22,20 +22,10 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add all arguments, which follow from the engine's options of a scene_options."""
     scene_options.add_scene_arguments(
-        parser,
-        "a mesh, a baked .qgraph, or a scene .json (docs/scene.md)",
-        (*scene_options.SOLVE_GROUPS, *scene_options.PICTURE_GROUPS),
+        parser, "a mesh, a baked .qgraph, or a scene .json (docs/scene.md)", scene_options.RENDER_GROUPS
     )
-    parser.add_argument(
-        "-o",
-        "--output",
-        type=Path,
-        action="append",
-        required=True,
-        metavar="OUT",
-        help="out.png or out.jpg (8-bit sRGB, tone mapped) or out.exr (float32 linear, with layers); several allowed",
-    )
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write the report here")
+    files = "out.png or out.jpg (8-bit sRGB, tone mapped) or out.exr (float32 linear, with layers)"
+    picture_output.add_arguments(parser, files, "the report")
     render_scene.add_arguments(parser)
 
 
@@ -52,8 +42,9 @@ def run(args: argparse.Namespace) -> int:
     report = scene_options.solve(engine, args)
     picture = engine.render(**scene_options.keywords(args, scene_options.PICTURE_GROUPS))
     scene_options.check_validation(engine)
+    shown = picture_output.shown(engine, args.exposure, args.background)
     for path in args.output:
-        picture_output.write(picture, path, engine, args)
+        picture_output.write(picture, path, shown)
     report |= {"passes": engine.passes, "device": engine.device_name, "driver": engine.driver}
     report["seconds"] = time.perf_counter() - start
     if args.json:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from quadgraph.base import atomic_file, json_text, outputs
+from quadgraph.base import atomic_file, image_file, json_text, outputs
 from quadgraph.base.arguments import positive_int
 from quadgraph.base.errors import InputError
 from quadgraph.commands import frame_output, picture_output, scene_options, scene_overrides
@@ -74,7 +74,7 @@ def run(args: argparse.Namespace) -> int:
     for path in args.output:
         frame_output.check(path, with_numbers)
         if transparent:
-            picture_output.check_opaque(path)
+            image_file.check_transparent(path)
     read = [*scene_options.inputs(args), *named_files(args.file), *args.set]
     outputs.check_outputs([*args.output, args.json], read)
     stage = core.Stage(device=args.device, validation=args.validation)
@@ -108,7 +108,7 @@ def named_files(path: Path) -> list[Path]:
 
 def render(stage, file, frames: Iterable[float], outputs: list[Path]) -> list[dict]:
     """Render frames and write each to all outputs; one report per frame."""
-    shown = frame_output.Shown(stage.srgb, stage.write_png, stage.write_exr, lambda: stage.engine.metadata)
+    shown = picture_output.Shown(stage.srgb, stage.write_png, stage.write_exr, lambda: stage.engine.metadata)
     reports = []
     with (
         frame_output.Frames(outputs, file.at(0).size, file.frames_per_second) as written,

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 # Groups of the engine's scene options: what a solve takes, and a picture besides.
 SOLVE_GROUPS = ("Scene", "Solver", "Method shortest-path")
 PICTURE_GROUPS = ("Camera", "Picture")
+RENDER_GROUPS = (*SOLVE_GROUPS, *PICTURE_GROUPS)
 
 
 def options(groups: Collection[str]) -> list[SceneOption]:

@@ -45,7 +45,7 @@ def apply(file: Any, path: Path, args: argparse.Namespace) -> None:
 def changes(args: argparse.Namespace) -> dict[str, Any]:
     """JSON values that options say by their pointers into a scene; None takes a member away. Raises InputError."""
     found: dict[str, Any] = {}
-    for option in scene_options.options((*scene_options.SOLVE_GROUPS, *scene_options.PICTURE_GROUPS)):
+    for option in scene_options.options(scene_options.RENDER_GROUPS):
         name = scene_options.destination(option)
         if name not in args.given:
             continue

@@ -9,11 +9,10 @@ from __future__ import annotations
 import argparse
 import statistics
 import time
-from pathlib import Path
 
 from rich.console import Console
 
-from quadgraph.base import atomic_file, outputs
+from quadgraph.base import atomic_file, image_file, outputs
 from quadgraph.base.arguments import positive_float, positive_int
 from quadgraph.base.errors import InputError
 from quadgraph.commands import frame_output, picture_output, render_scene, scene_options, turning
@@ -35,18 +34,9 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add all arguments, those of a render among them."""
-    groups = (*scene_options.SOLVE_GROUPS, *scene_options.PICTURE_GROUPS)
-    scene_options.add_scene_arguments(parser, "a mesh, or a baked .qgraph", groups)
-    parser.add_argument(
-        "-o",
-        "--output",
-        type=Path,
-        action="append",
-        required=True,
-        metavar="OUT",
-        help="turn.mp4, turn.webm, turn.gif, or numbered pictures like turn/%%03d.png, .jpg or .exr; several allowed",
-    )
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write a report of each frame here")
+    scene_options.add_scene_arguments(parser, "a mesh, or a baked .qgraph", scene_options.RENDER_GROUPS)
+    files = "turn.mp4, turn.webm, turn.gif, or numbered pictures like turn/%%03d.png, .jpg or .exr"
+    picture_output.add_arguments(parser, files, "a report of each frame")
     group = parser.add_argument_group("of the turn")
     group.add_argument("--turn", choices=tuple(turning.kinds()), default="camera", help="what turns (default: camera)")
     group.add_argument(
@@ -68,7 +58,7 @@ def run(args: argparse.Namespace) -> int:
     for path in args.output:
         frame_output.check(path, with_numbers=True)
         if args.background == "transparent":
-            picture_output.check_opaque(path)
+            image_file.check_transparent(path)
     outputs.check_outputs([*args.output, args.json], scene_options.inputs(args))
     rate = args.frames / args.seconds if args.seconds else _RATE
     if not _SLOWEST <= rate <= _QUICKEST:
@@ -138,12 +128,6 @@ class Turn:
         scene_options.check_validation(self._engine)
         return picture
 
-    def shown(self) -> frame_output.Shown:
+    def shown(self) -> picture_output.Shown:
         """How its pictures become files."""
-        background = self._args.background
-        return frame_output.Shown(
-            lambda picture: picture.srgb(self.exposure, background),
-            lambda picture, path: picture.write_png(path, self._engine.metadata, self.exposure, background),
-            lambda picture, path: picture.write_exr(path, self._engine.metadata, self.exposure),
-            lambda: self._engine.metadata,
-        )
+        return picture_output.shown(self._engine, self.exposure, self._args.background)

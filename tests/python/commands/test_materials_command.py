@@ -11,7 +11,6 @@ from PIL import Image
 import tiny
 from quadgraph import cli
 from quadgraph.commands import contact_sheet, reference_body
-from quadgraph.mesh.surface import Surface
 
 _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 
@@ -78,7 +77,7 @@ def test_what_cannot_be_drawn_is_said_before_any_work(arguments, said, tmp_path,
 
 
 def test_the_body_of_swatches_is_closed_and_symmetric():
-    surface = Surface(*reference_body.surface())
+    surface = reference_body.surface()
     assert not len(surface.topology.boundary)
     assert not len(surface.topology.non_manifold)
     assert surface.topology.balance.any() == 0

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import time
 
 import pytest
@@ -13,28 +12,10 @@ from quadgraph_validation.chart import chart_page
 POINTS = ".scatterlayer .points path.point"
 
 
-@pytest.fixture(scope="module")
-def browser():
-    pytest.importorskip("selenium", reason="selenium is not installed: run tools/setup")
-    from selenium import webdriver
-    from selenium.webdriver.chrome.service import Service
-
-    chromium, driver = shutil.which("chromium"), shutil.which("chromedriver")
-    if not (chromium and driver):
-        pytest.skip("no chromium and chromium-driver: apt-get install --no-install-recommends them as root")
-    options = webdriver.ChromeOptions()
-    options.binary_location = chromium
-    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"):
-        options.add_argument(argument)
-    options.add_argument("--window-size=1300,1200")
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    with webdriver.Chrome(options=options, service=Service(driver)) as found:
-        yield found
-
-
 @pytest.fixture
 def opened(browser, tmp_path):
     path = chart_page.write(tmp_path / "chart.html", record())
+    browser.set_window_size(1300, 1200)
     browser.get(path.as_uri())
     wait_for(lambda: len(elements(browser, f"#chart-sphere {POINTS}")) == 4 * 13)
     yield browser

@@ -9,7 +9,7 @@ import numpy as np
 
 from quadgraph.base.errors import InputError
 from quadgraph.mesh.surface import Surface
-from quadgraph_validation.bodies.implicit import Field, least, meshed, valid
+from quadgraph_validation.bodies.implicit import Field, box, capsule, least, meshed, valid
 
 Place: TypeAlias = Sequence[float] | np.ndarray
 _UP = np.array([0.0, 1.0, 0.0])
@@ -33,24 +33,14 @@ def _ball(centre: Place, radii: float | tuple[float, ...]) -> Field:
 
 def _capsule(start: Place, end: Place, thick: float, thin: float | None = None) -> Field:
     """From one end, as thick as `thick`, to the other."""
-    a, way = np.array(start, float), np.subtract(end, start, dtype=float)
-    last = thick if thin is None else thin
-
-    def field(p: np.ndarray) -> np.ndarray:
-        along = np.clip((p - a) @ way / (way @ way), 0, 1)
-        return np.linalg.norm(p - a - along[..., None] * way, axis=-1) - (thick + (last - thick) * along)
-
-    return field
+    way = np.subtract(end, start, dtype=float)
+    length = float(np.linalg.norm(way))
+    return capsule(np.array(start, float), way / length, length, thick, thick if thin is None else thin)
 
 
 def _box(half: tuple[float, float, float], edge: float) -> Field:
-    size = np.array(half) - edge
-
-    def field(p: np.ndarray) -> np.ndarray:
-        beyond = np.abs(p) - size
-        return np.linalg.norm(np.maximum(beyond, 0), axis=-1) + np.minimum(beyond.max(axis=-1), 0) - edge
-
-    return field
+    """A box of these half sides, its edges rounded."""
+    return box(np.array(half) - edge, edge, np.eye(3))
 
 
 def _turned(profile: str) -> Field:
@@ -118,23 +108,6 @@ def _candle() -> Field:
         way = np.array([np.sin(turn), 0, np.cos(turn)])
         drips.append(_capsule(24.6 * way + 31 * _UP, 25.4 * way + end * _UP, 1.7, 2.4))
     return _union([body, *drips], 2.0)
-
-
-def _hand() -> Field:
-    """A left hand of 180 mm, its palm towards +z."""
-    palm = _union([_box((38, 42, 12), 11), _capsule((0, -36, 0), (0, -84, 0), 27, 25)], 18)
-    fingers = [
-        ((-29, 34, 0), (-40, 78, 4), (-43, 102, 9), 9.0, 7.2),
-        ((-10, 40, 0), (-13, 92, 3), (-13, 122, 9), 9.6, 7.6),
-        ((10, 40, 0), (13, 90, 3), (14, 118, 9), 9.4, 7.4),
-        ((29, 33, 0), (38, 70, 4), (42, 92, 9), 8.2, 6.4),
-    ]
-    parts = [palm]
-    for knuckle, middle, tip, thick, thin in fingers:
-        parts += [_capsule(knuckle, middle, thick, 0.92 * thick), _capsule(middle, tip, 0.92 * thick, thin)]
-    thumb = [_capsule((30, -18, 6), (62, 16, 14), 13, 11), _capsule((62, 16, 14), (76, 46, 18), 11, 8.5)]
-    flat = _union([*parts, *thumb], 7)
-    return lambda p: flat(p + np.array([0.0, 20.0, 0.0]))
 
 
 def _crown() -> Field:
@@ -213,7 +186,6 @@ BODIES: dict[str, tuple[Callable[[], Field], float, int, int]] = {
     "crown": (_crown, 36.0, 220, 50_000),
     "egg": (_egg, 34.0, 100, 12_000),
     "grapes": (_grapes, 48.0, 180, 40_000),
-    "hand": (_hand, 130.0, 180, 30_000),
     "leaf": (_leaf, 64.0, 300, 60_000),
     "pawn": (_pawn, 44.0, 180, 24_000),
     "soap": (_soap, 48.0, 160, 24_000),

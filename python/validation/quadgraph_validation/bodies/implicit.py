@@ -24,6 +24,26 @@ def least(a: np.ndarray, b: np.ndarray, blend: float) -> np.ndarray:
     return np.minimum(a, b) - near**2 * blend / 4
 
 
+def capsule(start: np.ndarray, way: np.ndarray, length: float, thick: float, thin: float) -> Field:
+    """A capsule along a unit vector, of one thickness where it starts and another at its end."""
+
+    def field(p: np.ndarray) -> np.ndarray:
+        along = np.clip((p - start) @ way / length, 0, 1)
+        return np.linalg.norm(p - start - along[..., None] * length * way, axis=-1) - (thick + (thin - thick) * along)
+
+    return field
+
+
+def box(half: np.ndarray, edge: float, turn: np.ndarray) -> Field:
+    """A turned box, `edge` larger than `half` says on all sides, by which it is rounded."""
+
+    def field(p: np.ndarray) -> np.ndarray:
+        beyond = np.abs(p @ turn) - half
+        return np.linalg.norm(np.maximum(beyond, 0), axis=-1) + np.minimum(beyond.max(axis=-1), 0) - edge
+
+    return field
+
+
 def meshed(field: Field, half: float, cells: int) -> Any:
     """The largest piece without its cavities, in units of cells, by marching cubes, its steps smoothed away.
 

@@ -9,7 +9,7 @@ import trimesh
 
 from quadgraph.base.errors import InputError
 from quadgraph.mesh.surface import Surface
-from quadgraph_validation.bodies.implicit import Field, least, meshed, valid
+from quadgraph_validation.bodies.implicit import Field, box, capsule, least, meshed, valid
 
 LENGTH = (10.0, 100.0)  # mm, longest side
 TRIANGLES = (8_000, 30_000)
@@ -68,7 +68,7 @@ def _turn(generator: np.random.Generator) -> np.ndarray:
 
 def _core(generator: np.random.Generator) -> Field:
     if generator.random() < 0.5:
-        return _box(generator, generator.uniform(0.25, 0.6, 3), generator.uniform(0.05, 0.2))
+        return box(generator.uniform(0.25, 0.6, 3), generator.uniform(0.05, 0.2), _turn(generator))
     radii, turn = generator.uniform(0.3, 0.7, 3), _turn(generator)
     return lambda p: (np.linalg.norm(p @ turn / radii, axis=-1) - 1) * radii.min()
 
@@ -78,12 +78,7 @@ def _limb(generator: np.random.Generator) -> Field:
     start, way = generator.uniform(-0.3, 0.3, 3), _way(generator)
     length = generator.uniform(0.4, 1.1)
     thick, thin = np.exp(generator.uniform(np.log(0.06), np.log(0.35), 2))
-
-    def field(p: np.ndarray) -> np.ndarray:
-        along = np.clip((p - start) @ way / length, 0, 1)
-        return np.linalg.norm(p - start - along[..., None] * length * way, axis=-1) - (thick + (thin - thick) * along)
-
-    return field
+    return capsule(start, way, length, thick, thin)
 
 
 def _handle(generator: np.random.Generator) -> Field:
@@ -101,7 +96,7 @@ def _handle(generator: np.random.Generator) -> Field:
 def _wall(generator: np.random.Generator) -> Field:
     """A thin rounded plate that stands out of the core."""
     size = np.array([generator.uniform(0.03, 0.08), *generator.uniform(0.3, 0.6, 2)])
-    plate = _box(generator, size, 0.02)
+    plate = box(size, 0.02, _turn(generator))
     middle = _way(generator) * generator.uniform(0.3, 0.7)
     return lambda p: plate(p - middle)
 
@@ -109,14 +104,3 @@ def _wall(generator: np.random.Generator) -> Field:
 def _pocket(generator: np.random.Generator) -> Field:
     middle, radius = _way(generator) * generator.uniform(0.3, 0.8), generator.uniform(0.1, 0.35)
     return lambda p: np.linalg.norm(p - middle, axis=-1) - radius
-
-
-def _box(generator: np.random.Generator, half: np.ndarray, edge: float) -> Field:
-    """A turned box with rounded edges."""
-    turn = _turn(generator)
-
-    def field(p: np.ndarray) -> np.ndarray:
-        beyond = np.abs(p @ turn) - half
-        return np.linalg.norm(np.maximum(beyond, 0), axis=-1) + np.minimum(beyond.max(axis=-1), 0) - edge
-
-    return field
