@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import atexit
 import json
 import os
-import tempfile
+import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -13,16 +14,34 @@ from typing import Any, BinaryIO
 from quadgraph.base import outputs
 from quadgraph.base.errors import InputError
 
+_unfinished: dict[Path, int] = {}  # temporary files and the processes that make them
+
 
 def new_file(path: Path, suffix: str) -> tuple[int, Path]:
     """Make an empty file beside `path`, of a name that nobody can foresee; it is open for writing.
 
+    Until `discard` it is one that goes when Python ends: a signal may come before the caller knows of the file.
     Raises InputError if `path` is no regular file or new name, OSError if there is no room or right to write.
     """
     outputs.check_kind(path)
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem[:200]}.", suffix=suffix)
-    os.fchmod(handle, 0o666 & ~_umask())
-    return handle, Path(name)
+    stem = os.fsdecode(os.fsencode(path.stem)[:200])
+    temporary = path.parent / f".{stem}.{secrets.token_hex(8)}{suffix}"
+    _unfinished[temporary] = os.getpid()
+    return os.open(temporary, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o666), temporary
+
+
+def discard(temporary: Path) -> None:
+    """Remove a file of `new_file`, if it has not become another."""
+    temporary.unlink(missing_ok=True)
+    _unfinished.pop(temporary, None)
+
+
+@atexit.register
+def _discard_all() -> None:
+    for temporary, process in list(_unfinished.items()):
+        if process == os.getpid():
+            with suppress(OSError):
+                discard(temporary)
 
 
 @contextmanager
@@ -40,8 +59,7 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
                 os.fsync(stream.fileno())
             temporary.replace(path)
         finally:
-            with suppress(FileNotFoundError):
-                temporary.unlink()
+            discard(temporary)
     except OSError as error:
         raise InputError(f"{path}: cannot be written ({error.strerror})") from error
 
@@ -51,10 +69,3 @@ def write_json(path: Path, value: Any, dense: bool = False) -> None:
     form = {"separators": (",", ":")} if dense else {"indent": 1}
     with replacing(path) as stream:
         stream.write((json.dumps(value, **form) + "\n").encode())
-
-
-def _umask() -> int:
-    # mkstemp makes private files; the only portable way to read the mask is to set it.
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

@@ -88,9 +88,10 @@ class Film:
                 self._container.mux(packet)
             self._container.close()
             self._temporary.replace(self.path)
+        atomic_file.discard(self._temporary)
 
     def discard(self) -> None:
         """Remove what is left of a film that was not finished."""
         with suppress(InputError), _writing(self.path):
             self._container.close()
-        self._temporary.unlink(missing_ok=True)
+        atomic_file.discard(self._temporary)

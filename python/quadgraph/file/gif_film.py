@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import os
-from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -61,8 +60,8 @@ class GifFilm:
             self._temporary.replace(self.path)
         except OSError as error:
             raise InputError(f"{self.path}: cannot be written ({error.strerror})") from error
+        atomic_file.discard(self._temporary)
 
     def discard(self) -> None:
         """Remove what is left of a film that was not finished."""
-        with suppress(FileNotFoundError):
-            self._temporary.unlink()
+        atomic_file.discard(self._temporary)

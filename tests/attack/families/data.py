@@ -279,7 +279,7 @@ def odd_files(rng: Rng) -> Case:
 
 
 def material_text(rng: Rng) -> str:
-    """A material of the command line with numbers of any size."""
+    """A material of the command line with numbers of any size; no longer than a word of a command may be, 128 kB."""
     sigma = [texts.number(rng) if rng.integers(3) == 0 else f"{10 ** rng.uniform(-12, 9):.4g}" for _ in range(6)]
     eta = texts.number(rng) if rng.integers(3) == 0 else f"{rng.uniform(1, 3):.3f}"
     forms = [
@@ -290,7 +290,7 @@ def material_text(rng: Rng) -> str:
         f"marble,sigma_a={sigma[0]},pattern={texts.pick(rng, ['rings', 'veins', 'checker', 'x'])},period={sigma[1]}",
         f"jade,period={texts.number(rng)},sharpness={texts.number(rng)},eta={eta}",
         f"marble,{texts.word(rng, 4)}",
-        f"{'marble,eta=1.3,' * int(10 ** rng.uniform(0, 4))}eta={eta}",
+        f"{'marble,eta=1.3,' * int(10 ** rng.uniform(0, 3.9))}eta={eta}",
     ]
     return texts.pick(rng, forms).replace("\0", "")
 
