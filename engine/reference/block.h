@@ -52,6 +52,15 @@ inline glm::dvec3 dot(const Field& a, const Field& b) {
   return a.phi * b.phi + a.phi2 * b.phi2;
 }
 
+// a / b per channel, 0 where b is not above 0.
+inline glm::dvec3 safe_ratio(const glm::dvec3& a, const glm::dvec3& b) {
+  glm::dvec3 result{0};
+  for (int c = 0; c < 3; ++c) {
+    if (b[c] > 0) result[c] = a[c] / b[c];
+  }
+  return result;
+}
+
 // The inverse of a positive definite block times r; with diffusion phi2 stays 0.
 Field solve(const Block& a, const Field& r);
 

@@ -10,13 +10,9 @@
 namespace quadgraph {
 namespace {
 
-std::span<const std::uint32_t> row(const Level& level, std::uint32_t f) {
-  return level.seen.subspan(level.seen[f], level.seen[f + 1] - level.seen[f]);
-}
-
 // Share of the directions from face f that meet the body.
 double body_visibility(const Level& level, std::uint32_t f) {
-  return static_cast<double>(row(level, f).size()) / static_cast<double>(level.seen_rays);
+  return static_cast<double>(seen_from(level, f).size()) / static_cast<double>(level.seen_rays);
 }
 
 bool sees_itself(const Level& level) {
@@ -65,25 +61,6 @@ class Bounces {
 };
 
 }  // namespace
-
-std::vector<glm::dvec3> received_irradiance(const Level& level, std::span<const glm::dvec3> radiosity) {
-  std::vector<glm::dvec3> irradiance(level.faces.size(), glm::dvec3(0));
-  glm::dvec3 sent{0}, arrived{0};
-  for (std::uint32_t f = 0; f < level.face_count(); ++f) {
-    if (level.reflecting(f)) continue;
-    for (const std::uint32_t face : row(level, f)) irradiance[f] += radiosity[face];
-    irradiance[f] /= static_cast<double>(level.seen_rays);
-    const double area = face_area(level, level.faces[f]);
-    sent += area * body_visibility(level, f) * radiosity[f];
-    arrived += area * irradiance[f];
-  }
-  glm::dvec3 factor{0};
-  for (int c = 0; c < 3; ++c) {
-    if (arrived[c] > 0) factor[c] = sent[c] / arrived[c];
-  }
-  for (glm::dvec3& e : irradiance) e *= factor;
-  return irradiance;
-}
 
 std::vector<double> sky_visibility(const Level& level) {
   std::vector<double> sky(level.faces.size(), 1.0);

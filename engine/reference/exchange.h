@@ -11,14 +11,10 @@
 #include <span>
 #include <vector>
 
+#include "engine/reference/received.h"
 #include "engine/reference/reference.h"
 
 namespace quadgraph {
-
-// E, W/mm^2 per outside face, from J, W/mm^2 per outside face: the mean of J over the rays of a face, scaled by one
-// factor per channel so that as much light arrives as left towards the body: sum A E = sum A J (1 - sky). Nothing
-// arrives at reflecting faces. `level` must have rows `seen`.
-std::vector<glm::dvec3> received_irradiance(const Level& level, std::span<const glm::dvec3> radiosity);
 
 // Share of the cosine-weighted directions from each outside face that meet the sky; all 1 if the level has no rows.
 std::vector<double> sky_visibility(const Level& level);

@@ -4,6 +4,7 @@
 
 #include "engine/file/geometry.h"
 #include "engine/reference/discretisation.h"
+#include "engine/reference/elements.h"
 #include "shaders/material/optics.h"
 
 namespace quadgraph {
@@ -56,31 +57,32 @@ Block& entry(Rows& rows, std::uint32_t row, std::uint32_t column) {
   return rows.weight[static_cast<std::size_t>(std::lower_bound(begin, end, column) - rows.column.begin())];
 }
 
+ElementCoefficients element_of(const gpu::Optical& optical) {
+  return {glm::dvec3(gpu::kappa(optical)), glm::dvec3(optical.sigma_a), relaxation_of(optical)};
+}
+
 // Stiffness and consistent masses of one tet. The diagonal stiffness is minus the sum of the off-diagonals, so that
 // constants are reproduced to rounding.
-void add_tet(const TetGeometry& g, const glm::uvec4& tet, const gpu::Optical& optical, const Problem& problem,
-             Rows& rows) {
+void add_tet(const TetGeometry& g, const glm::uvec4& tet, const ElementCoefficients& element, Model model, Rows& rows) {
   const Boundary none;
-  const glm::dvec3 absorption = glm::dvec3(optical.sigma_a) * (g.volume / 20.0);
-  const glm::dvec3 relaxation = relaxation_of(optical) * (g.volume / 20.0);
+  const glm::dvec3 absorption = element.absorption * (g.volume / 20.0);
+  const glm::dvec3 relaxation = element.relaxation * (g.volume / 20.0);
   for (int i = 0; i < 4; ++i) {
     Terms own{.absorption = 2.0 * absorption, .relaxation = 2.0 * relaxation};
     for (int j = 0; j < 4; ++j) {
       if (i == j) continue;
-      const Terms terms{
-          .stiffness = glm::dvec3(gpu::kappa(optical)) * (glm::dot(g.gradient[i], g.gradient[j]) * g.volume),
-          .absorption = absorption,
-          .relaxation = relaxation};
-      entry(rows, tet[i], tet[j]) += block_of(terms, problem.model, none);
+      const Terms terms{.stiffness = element.kappa * (glm::dot(g.gradient[i], g.gradient[j]) * g.volume),
+                        .absorption = absorption,
+                        .relaxation = relaxation};
+      entry(rows, tet[i], tet[j]) += block_of(terms, model, none);
       own.stiffness -= terms.stiffness;
     }
-    rows.diagonal[tet[i]] += block_of(own, problem.model, none);
+    rows.diagonal[tet[i]] += block_of(own, model, none);
   }
 }
 
-void add_face(const Level& level, const glm::uvec3& face, const Problem& problem, const Boundary& boundary,
-              Rows& rows) {
-  const Block mass = block_of({.boundary = glm::dvec3(face_area(level, face) / 12.0)}, problem.model, boundary);
+void add_face(const Level& level, const glm::uvec3& face, Model model, const Boundary& boundary, Rows& rows) {
+  const Block mass = block_of({.boundary = glm::dvec3(face_area(level, face) / 12.0)}, model, boundary);
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       if (i != j) entry(rows, face[i], face[j]) += mass;
@@ -92,20 +94,51 @@ void add_face(const Level& level, const glm::uvec3& face, const Problem& problem
 
 }  // namespace
 
-Rows assemble_fem(const Level& level, const Problem& problem) {
+Rows assemble_elements(const Level& level, std::span<const ElementCoefficients> elements, Model model,
+                       const Boundary& boundary) {
   Rows rows;
   build_pattern(level, rows);
   rows.weight.assign(rows.column.size(), Block{});
   rows.diagonal.assign(level.vertices.size(), Block{});
   rows.to_phi.assign(level.vertices.size(), glm::dvec3(1));
   for (std::uint32_t t = 0; t < level.tet_count(); ++t) {
-    add_tet(tet_geometry(level, level.tets[t]), level.tets[t], problem.optical[t], problem, rows);
+    add_tet(tet_geometry(level, level.tets[t]), level.tets[t], elements[t], model, rows);
   }
-  const Boundary boundary = problem.boundary();
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {
-    if (!level.reflecting(f)) add_face(level, level.faces[f], problem, boundary, rows);
+    if (!level.reflecting(f)) add_face(level, level.faces[f], model, boundary, rows);
   }
   return rows;
+}
+
+Rows assemble_fem(const Level& level, const Problem& problem) {
+  std::vector<ElementCoefficients> elements;
+  for (std::uint32_t t = 0; t < level.tet_count(); ++t) elements.push_back(element_of(problem.optical[t]));
+  return assemble_elements(level, elements, problem.model, problem.boundary());
+}
+
+std::vector<ElementCoefficients> element_products(const Level& level, std::span<const Field> left,
+                                                  std::span<const Field> right, Model model) {
+  const Boundary none;
+  const Block stiffness = block_of({.stiffness = glm::dvec3(1)}, model, none);
+  const Block absorption = block_of({.absorption = glm::dvec3(1)}, model, none);
+  const Block relaxation = block_of({.relaxation = glm::dvec3(1)}, model, none);
+  std::vector<ElementCoefficients> products(level.tets.size());
+  for (std::size_t t = 0; t < products.size(); ++t) {
+    const TetGeometry g = tet_geometry(level, level.tets[t]);
+    for (int i = 0; i < 4; ++i) {
+      Field slope, mass;  // rows of what the elements make of `right`
+      for (int j = 0; j < 4; ++j) {
+        const Field& x = right[level.tets[t][j]];
+        slope = slope + glm::dvec3(glm::dot(g.gradient[i], g.gradient[j]) * g.volume) * x;
+        mass = mass + glm::dvec3((i == j ? 2.0 : 1.0) * g.volume / 20.0) * x;
+      }
+      const Field& y = left[level.tets[t][i]];
+      products[t].kappa += dot(y, stiffness * slope);
+      products[t].absorption += dot(y, absorption * mass);
+      products[t].relaxation += dot(y, relaxation * mass);
+    }
+  }
+  return products;
 }
 
 std::vector<glm::dvec3> surface_load_fem(const Level& level, std::span<const glm::vec3> q) {

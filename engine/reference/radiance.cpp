@@ -7,25 +7,13 @@
 #include <glm/gtx/component_wise.hpp>
 
 #include "engine/optics/fresnel.h"
+#include "engine/reference/attenuation.h"
 #include "engine/reference/entering.h"
 #include "engine/reference/tet_ray.h"
 #include "shaders/gather/gather_shared.h"
 
 namespace quadgraph {
 namespace {
-
-// Integral of e^(-x s) (a + (b - a) s) over s from 0 to 1, x >= 0.
-double weighted(double a, double b, double x) {
-  double whole, moment;  // of e^(-x s) and of s e^(-x s)
-  if (x < 1e-3) {        // the closed forms lose digits; the series is exact to 1e-14
-    whole = 1 - x * (0.5 - x * (1.0 / 6 - x * (1.0 / 24 - x / 120)));
-    moment = 0.5 - x * (1.0 / 3 - x * (1.0 / 8 - x * (1.0 / 30 - x / 144)));
-  } else {
-    whole = -std::expm1(-x) / x;
-    moment = (whole - std::exp(-x)) / x;
-  }
-  return a * whole + (b - a) * moment;
-}
 
 // Values at the two ends of a segment.
 struct Ends {
