@@ -16,16 +16,37 @@ namespace quadgraph {
 // Whether one ray from the middle of a face stands for all of it.
 bool enters_evenly(const FaceFrame& frame, const Quarters& quarters);
 
+// Light as the quarters of faces have it.
+class QuarterLight {
+ public:
+  explicit QuarterLight(std::span<const Quarters> quarters) : quarters_(quarters) {}
+
+  std::array<double, 3> of(std::uint32_t f, std::uint32_t quarter, double area) const {
+    const Quarters& q = quarters_[f];
+    const glm::dvec3 mean = (glm::dvec3(q[0]) + glm::dvec3(q[1]) + glm::dvec3(q[2]) + glm::dvec3(q[3])) / 4.0;
+    const glm::dvec3 power = (quarter == 4 ? mean : glm::dvec3(q[quarter])) * area;
+    return {power.x, power.y, power.z};
+  }
+
+ private:
+  std::span<const Quarters> quarters_;
+};
+
 // `Light` gives the power (W, by channel) that enters: of(face, quarter, area), quarter 4 for the whole face. `Sink` is
-// that of Ray, and entered(channel, power).
+// that of Ray, and entered(channel, power); `end` too.
 template <class Medium, class Light, class Sink>
 class Beam {
  public:
   using Power = typename Ray<Medium, Sink>::Power;
 
-  Beam(const Level& level, const Problem& problem, const Medium& medium, const gpu::BeamRecord& beam, Light& light,
-       Sink& sink)
-      : level_(level), problem_(problem), beam_(beam), light_(light), ray_(level, problem, medium, sink), sink_(sink) {}
+  Beam(const Level& level, const Problem& problem, const Medium& medium, const gpu::BeamRecord& beam,
+       const Light& light, Sink& sink, double end = gpu::WALK_END)
+      : level_(level),
+        problem_(problem),
+        beam_(beam),
+        light_(light),
+        ray_(level, problem, medium, sink, end),
+        sink_(sink) {}
 
   // Light through an open face; `quarters` decides by how many rays.
   void enter(std::uint32_t f, const Quarters& quarters) {
@@ -69,7 +90,7 @@ class Beam {
   const Level& level_;
   const Problem& problem_;
   const gpu::BeamRecord& beam_;
-  Light& light_;
+  const Light& light_;
   Ray<Medium, Sink> ray_;
   Sink& sink_;
 };

@@ -41,6 +41,14 @@ struct Gathered {
 Gathered gather(const Level& level, const Problem& problem, const InsideLight& light, std::uint32_t f,
                 const glm::dvec3& barycentric, const glm::dvec3& direction);
 
+// The way into the body of a ray that leaves face f along `outside` (unit, away from the face), and what of the
+// radiance inside leaves: (1 - R) / eta^2.
+struct Inward {
+  glm::dvec3 direction{0};  // unit
+  double leaves = 0;
+};
+Inward inward_of(const Level& level, double eta, std::uint32_t f, const glm::dvec3& outside);
+
 // W/(mm^2 sr), radiance of scattered light that leaves along `outside` (unit, away from the face): (1 - R) L / eta^2.
 glm::dvec3 gathered_radiance(const Level& level, const Problem& problem, const InsideLight& light, std::uint32_t f,
                              const glm::dvec3& barycentric, const glm::dvec3& outside);

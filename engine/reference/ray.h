@@ -18,14 +18,15 @@ namespace quadgraph {
 // `Medium` is one of medium.h. What the ray leaves goes to `Sink`, by channel, in W:
 //   scattered(carrier, channel, power), absorbed(channel, power), unscattered(face, channel, power) and
 //   trapped(channel, power), of light that stays in a clear region.
+// A ray ends where each channel has kept less than `end` of its power.
 template <class Medium, class Sink>
 class Ray {
  public:
   using Real = typename Medium::Real;
   using Power = std::array<Real, 3>;
 
-  Ray(const Level& level, const Problem& problem, const Medium& medium, Sink& sink)
-      : level_(level), problem_(problem), medium_(medium), sink_(sink), way_(level) {}
+  Ray(const Level& level, const Problem& problem, const Medium& medium, Sink& sink, double end)
+      : level_(level), problem_(problem), medium_(medium), sink_(sink), end_(end), way_(level) {}
 
   // From the point with coordinates `barycentric` of outside face f, with `power` (W) along `direction` (unit, inside).
   void run(std::uint32_t f, const glm::dvec3& barycentric, const glm::dvec3& direction, const Power& power) {
@@ -38,7 +39,7 @@ class Ray {
       if (!exit.found) return stop();
       const bool clear = scatter(exit);
       const std::uint32_t next = way_.leave(exit);
-      if (!clear && kept_less_than(static_cast<double>(gpu::WALK_END))) return stop();
+      if (!clear && kept_less_than(end_)) return stop();
       if (next < level_.tet_count()) {
         way_.enter(next);
       } else {
@@ -118,6 +119,7 @@ class Ray {
   const Problem& problem_;
   const Medium& medium_;
   Sink& sink_;
+  double end_;
   TetRay way_;
   glm::dvec3 direction_{0};
   Power power_{};

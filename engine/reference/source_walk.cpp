@@ -8,22 +8,6 @@
 namespace quadgraph {
 namespace {
 
-// Light as the quarters of faces have it.
-class QuarterLight {
- public:
-  explicit QuarterLight(std::span<const Quarters> quarters) : quarters_(quarters) {}
-
-  std::array<double, 3> of(std::uint32_t f, std::uint32_t quarter, double area) const {
-    const Quarters& q = quarters_[f];
-    const glm::dvec3 mean = (glm::dvec3(q[0]) + glm::dvec3(q[1]) + glm::dvec3(q[2]) + glm::dvec3(q[3])) / 4.0;
-    const glm::dvec3 power = (quarter == 4 ? mean : glm::dvec3(q[quarter])) * area;
-    return {power.x, power.y, power.z};
-  }
-
- private:
-  std::span<const Quarters> quarters_;
-};
-
 class Collect {
  public:
   explicit Collect(WalkResult& result) : result_(result) {}

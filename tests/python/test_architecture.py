@@ -14,6 +14,7 @@ FLOORS = {
         "optics",
         "deform",
         "reference",
+        "derivative",
         "device",
         "vk",
         "cpu",
@@ -44,7 +45,7 @@ FLOORS = {
         "display",
     ),
 }
-BODIES = ("file", "optics", "deform", "reference")
+BODIES = ("file", "optics", "deform", "reference", "derivative")
 # Rooms that know less of each other than their floors allow: the device knows no body, a body no device, one kind of
 # device nothing of another, and what computes on devices only what they have in common.
 STRANGERS = {(room, body) for room in ("device", "vk", "cpu", "devices") for body in BODIES}

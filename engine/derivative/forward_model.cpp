@@ -1,0 +1,239 @@
+#include "engine/derivative/forward_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "engine/base/error.h"
+#include "engine/derivative/again.h"
+#include "engine/derivative/elements_by_tet.h"
+#include "engine/derivative/source.h"
+#include "engine/derivative/surface.h"
+#include "engine/file/geometry.h"
+#include "engine/optics/fresnel.h"
+#include "engine/reference/row_solver.h"
+
+namespace quadgraph {
+namespace {
+
+using Vectors = std::vector<glm::dvec3>;
+
+constexpr std::uint32_t most_bounces = 256;
+
+double size_of(const Vectors& values) {
+  double sum = 0;
+  for (const glm::dvec3& value : values) sum += glm::dot(value, value);
+  return std::sqrt(sum);
+}
+
+double distance(const Vectors& a, const Vectors& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += glm::dot(a[i] - b[i], a[i] - b[i]);
+  return std::sqrt(sum);
+}
+
+Vectors scaled(Vectors values, double factor) {
+  for (glm::dvec3& value : values) value *= factor;
+  return values;
+}
+
+void check_size(const std::string& name, std::size_t found, std::size_t wanted) {
+  if (found != wanted) {
+    throw InputError(name + ": " + std::to_string(found) + " entries, wanted are " + std::to_string(wanted));
+  }
+}
+
+void check_values(const std::string& name, const Vectors& values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      if (!(values[i][c] >= 0 && std::isfinite(values[i][c]))) {
+        throw InputError(name + "[" + std::to_string(i) + "]: " + std::to_string(values[i][c]) +
+                         ", allowed is a number >= 0");
+      }
+    }
+  }
+}
+
+}  // namespace
+
+struct ForwardModel::State {
+  State(const Level& of, Parameters parameters, std::vector<BeamLight> given, const ForwardOptions& asked)
+      : level(of), at(std::move(parameters)), lights(std::move(given)), options(asked), outgoing(of.faces.size()) {
+    check();
+    rows = assemble_elements(level, elements_of(at), options.model, boundary());
+    if (sees_itself()) again.emplace(level, problem(), at);
+    solve();
+  }
+
+  void check() const {
+    check_sizes(at);
+    check_values("scattering", at.scattering);
+    check_values("absorption", at.absorption);
+    check_values("power", at.power);
+    check_eta(options.eta);
+    if (options.model == Model::automatic) throw InputError("model 'auto': name one");
+    for (const BeamLight& light : lights) check_size("light", light.quarters.size(), level.faces.size());
+  }
+
+  void check_sizes(const Parameters& parameters) const {
+    check_size("scattering", parameters.scattering.size(), level.tets.size());
+    check_size("absorption", parameters.absorption.size(), level.tets.size());
+    check_size("power", parameters.power.size(), lights.size());
+  }
+
+  Problem problem() const { return {Method::fem, Source::buried, options.model, {}, options.eta}; }
+  Boundary boundary() const { return problem().boundary(); }
+  bool sees_itself() const { return options.bounces && level.seen.size() > level.faces.size() + 1; }
+  double entering() const { return diffuse_transmittance(options.eta); }
+  Entering entering_light() const { return {lights, again_q}; }
+
+  std::vector<Field> solved(const std::vector<Field>& b) const {
+    SolveOptions how = {.solver = SolverKind::dpcg, .model = options.model, .tolerance = options.tolerance};
+    how.max_iterations = 100000;
+    LevelReport report;
+    std::vector<Field> answer = solve_rows(rows, b, how, report);
+    if (!report.converged) {
+      throw SolverError("a solve ended at a residual of " + std::to_string(report.residual) + ", not at the tolerance");
+    }
+    return answer;
+  }
+
+  static std::vector<Field> load(const Vectors& scattered) {
+    std::vector<Field> b(scattered.size());
+    for (std::size_t i = 0; i < b.size(); ++i) b[i].phi = scattered[i];
+    return b;
+  }
+
+  Vectors flux_of(const std::vector<Field>& fluence) const {
+    const Boundary k = boundary();
+    Vectors flux;
+    for (const Field& value : fluence) flux.push_back(k.k11 * value.phi + k.k12 * value.phi2);
+    return flux;
+  }
+
+  // W per face over its area.
+  Vectors per_area(Vectors power) const {
+    for (std::uint32_t f = 0; f < level.face_count(); ++f) power[f] /= face_area(level, level.faces[f]);
+    return power;
+  }
+
+  // Goes on with bounces until one changes E by little: `bounce` makes the next E of the last.
+  template <class Bounce>
+  void settle(Vectors& e, const Bounce& bounce) const {
+    for (std::uint32_t k = 0; k < most_bounces; ++k) {
+      Vectors next = bounce(e);
+      const double change = distance(next, e);
+      e = std::move(next);
+      if (change <= options.tolerance * size_of(e)) return;
+    }
+    throw SolverError("inter-reflection did not settle in " + std::to_string(most_bounces) + " bounces");
+  }
+
+  void solve() {
+    const Walked own = walk(level, problem(), at, {lights, {}});
+    Walked all = own;
+    const auto answer = [&](const Vectors& e) {
+      all = own;
+      if (again) again->add(scaled(e, entering()), all);
+      x = solved(load(all.scattered));
+      return surface_light(level, flux_of(x), e, 1 - entering());
+    };
+    if (again) {
+      received.assign(level.faces.size(), glm::dvec3(0));
+      settle(received, [&](const Vectors& e) { return answer(e).received; });
+      again_q = scaled(received, entering());
+    }
+    outgoing.exitance = answer(received).exitance;
+    outgoing.unscattered = per_area(all.unscattered);
+    surface.emplace(level, flux_of(x), received, 1 - entering());
+  }
+
+  const Level& level;
+  Parameters at;
+  std::vector<BeamLight> lights;
+  ForwardOptions options;
+  Rows rows;
+  std::optional<AgainMatrix> again;
+  std::vector<Field> x;
+  Vectors received, again_q;  // W/mm^2 per face; empty where the body sees nothing of itself
+  std::optional<Surface> surface;
+  Outgoing outgoing;
+};
+
+ForwardModel::ForwardModel(const Level& level, Parameters at, std::vector<BeamLight> lights,
+                           const ForwardOptions& options)
+    : state_(std::make_unique<State>(level, std::move(at), std::move(lights), options)) {}
+
+ForwardModel::~ForwardModel() = default;
+
+const Parameters& ForwardModel::at() const {
+  return state_->at;
+}
+
+const Outgoing& ForwardModel::outgoing() const {
+  return state_->outgoing;
+}
+
+Outgoing ForwardModel::tangent(const Parameters& along) const {
+  const State& s = *state_;
+  s.check_sizes(along);
+  Walked own = walk_tangent(s.level, s.problem(), s.at, along, s.entering_light());
+  const Rows change =
+      assemble_elements(s.level, elements_along(s.at, along), s.options.model, Boundary{});
+  const std::vector<Field> moved = quadgraph::apply(change, s.x);
+  Walked all = own;
+  const auto answer = [&](const Vectors& e) {
+    all = own;
+    if (s.again) s.again->add(scaled(e, s.entering()), all);
+    std::vector<Field> b = State::load(all.scattered);
+    for (std::size_t i = 0; i < b.size(); ++i) b[i] = b[i] - moved[i];
+    return s.surface->tangent(s.flux_of(s.solved(b)), e);
+  };
+  Vectors received;
+  if (s.again) {
+    received.assign(s.level.faces.size(), glm::dvec3(0));
+    s.settle(received, [&](const Vectors& e) { return answer(e).received; });
+  }
+  Outgoing result(s.level.faces.size());
+  result.exitance = answer(received).exitance;
+  result.unscattered = s.per_area(all.unscattered);
+  return result;
+}
+
+Parameters ForwardModel::adjoint(const Outgoing& weights) const {
+  State& s = *state_;
+  check_size("exitance", weights.exitance.size(), s.level.faces.size());
+  check_size("unscattered", weights.unscattered.size(), s.level.faces.size());
+  Walked by_walked(s.level);
+  by_walked.unscattered = s.per_area(weights.unscattered);
+  std::vector<Field> by_load;
+  const Boundary k = s.boundary();
+  // Of the derivatives by E of the bounce after, those by E of the bounce before.
+  const auto back = [&](const Vectors& by_received) {
+    const Surface::Inputs by = s.surface->adjoint({weights.exitance, by_received});
+    std::vector<Field> by_fluence(by.flux.size());
+    for (std::size_t i = 0; i < by.flux.size(); ++i) by_fluence[i] = {k.k11 * by.flux[i], k.k12 * by.flux[i]};
+    by_load = s.solved(by_fluence);
+    for (std::size_t i = 0; i < by_load.size(); ++i) by_walked.scattered[i] = by_load[i].phi;
+    Vectors before = by.received;
+    if (s.again) {
+      const Vectors by_q = s.again->transposed(by_walked);
+      for (std::size_t f = 0; f < before.size(); ++f) before[f] += s.entering() * by_q[f];
+    }
+    return before;
+  };
+  Vectors by_received;
+  if (s.again) {
+    by_received.assign(s.level.faces.size(), glm::dvec3(0));
+    s.settle(by_received, back);
+  }
+  back(by_received);
+  Parameters gradient(s.level.tets.size(), s.lights.size());
+  walk_adjoint(s.level, s.problem(), s.at, by_walked, s.entering_light(), gradient);
+  add_by_elements(s.at, element_products(s.level, by_load, s.x, s.options.model), -1.0, gradient);
+  return gradient;
+}
+
+}  // namespace quadgraph

@@ -1,0 +1,54 @@
+// What a body answers to light as a function of what it is made of, with its exact derivatives: J v and J^T w.
+//
+// The function is that of the CPU reference for linear elements and the buried source (engine/reference/reference.h),
+// on one level, with the inter-reflection of exchange.h, and without evening out (even_exitance.h):
+//
+//   b = rays of the lights and of q,   A x = b,   M = positive(k11 phi + k12 phi2),   E = received(M + (1 - T_d) E),
+//   q = T_d E
+//
+// Tangent and adjoint solve the same symmetric A with other right-hand sides, once for every bounce; all that lies
+// between is differentiated by the numbers that the reference's own kernels run on (dual.h, traced.h).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "engine/derivative/parameters.h"
+#include "engine/file/graph.h"
+#include "engine/reference/operator.h"
+#include "engine/reference/uncollided.h"
+
+namespace quadgraph {
+
+struct ForwardOptions {
+  Model model = Model::sp3;  // not `automatic`
+  double eta = 1;
+  bool bounces = true;       // light that leaves the body and meets it again
+  double tolerance = 1e-12;  // of solves and bounces
+};
+
+class ForwardModel {
+ public:
+  // Solves at `at`, whose arrays have one entry per tet and per light. `level` and what `lights` refer to must stay
+  // alive. Throws InputError on a wrong size or a value that is not finite or negative, and as solve_reference does.
+  ForwardModel(const Level& level, Parameters at, std::vector<BeamLight> lights, const ForwardOptions& options);
+  ~ForwardModel();
+  ForwardModel(const ForwardModel&) = delete;
+  ForwardModel& operator=(const ForwardModel&) = delete;
+
+  const Parameters& at() const;
+  const Outgoing& outgoing() const;
+
+  // J v: how what leaves changes along a direction. Throws InputError on a wrong size.
+  Outgoing tangent(const Parameters& along) const;
+
+  // J^T w: the derivative of the sum of all that leaves, times its weight, by every parameter. Throws InputError on a
+  // wrong size.
+  Parameters adjoint(const Outgoing& weights) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace quadgraph

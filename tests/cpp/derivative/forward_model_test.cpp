@@ -1,0 +1,243 @@
+// Derivatives of what a body answers: against differences (Taylor), forward against adjoint, and the answer itself
+// against the reference; on slivers, at jumps of the coefficients, and where a body sees itself.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+
+#include "engine/derivative/forward_model.h"
+#include "engine/file/geometry.h"
+#include "engine/reference/exchange.h"
+#include "tests/cpp/fixtures/graph_cases.h"
+#include "tests/cpp/fixtures/seeing_levels.h"
+
+using namespace quadgraph;
+
+namespace {
+
+using Vectors = std::vector<glm::dvec3>;
+
+// Inner vertices moved by nearly half a cell, then squeezed to a fifth: slivers.
+OwnedLevel slivers() {
+  OwnedLevel level = box_level(3, 4.0f, 0.45f);
+  for (auto* points : {&level.vertices, &level.nodes}) {
+    for (glm::vec3& p : *points) p.z *= 0.2f;
+  }
+  return level;
+}
+
+OwnedLevel seeing() {
+  OwnedLevel level = facing_plates(2, 4.0f, 1.5f, 1.0f);
+  see(level, 64);
+  return level;
+}
+
+struct Body {
+  const char* name;
+  OwnedLevel level;
+};
+
+std::vector<Body> bodies() {
+  return {{"slivers", slivers()}, {"plates", seeing()}};
+}
+
+// Coefficients that jump by a factor of eight between neighbouring octants, and differ by tet and channel beside it.
+Parameters jumping(const Level& level, std::size_t lights, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> near(0.8, 1.25);
+  Parameters at(level.tets.size(), lights);
+  for (std::size_t t = 0; t < level.tets.size(); ++t) {
+    const glm::vec3& p = level.nodes[t];
+    const bool dense = std::sin(1.7f * p.x) * std::sin(1.3f * p.y) > 0;
+    for (int c = 0; c < 3; ++c) {
+      at.scattering[t][c] = (dense ? 2.4 : 0.3) * near(random);
+      at.absorption[t][c] = (dense ? 0.01 : 0.08) * (c + 1) * near(random);
+    }
+  }
+  for (glm::dvec3& power : at.power) power = {near(random), near(random), near(random)};
+  return at;
+}
+
+// Relative changes at random.
+Parameters direction(const Parameters& at, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  Parameters along = at;
+  for (Vectors* values : {&along.scattering, &along.absorption, &along.power}) {
+    for (glm::dvec3& value : *values) value *= glm::dvec3(normal(random), normal(random), normal(random));
+  }
+  return along;
+}
+
+Parameters moved(const Parameters& at, const Parameters& along, double h) {
+  Parameters to = at;
+  for (std::size_t t = 0; t < at.scattering.size(); ++t) {
+    to.scattering[t] += h * along.scattering[t];
+    to.absorption[t] += h * along.absorption[t];
+  }
+  for (std::size_t l = 0; l < at.power.size(); ++l) to.power[l] += h * along.power[l];
+  return to;
+}
+
+double product(const Vectors& a, const Vectors& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += glm::dot(a[i], b[i]);
+  return sum;
+}
+
+double product(const Outgoing& a, const Outgoing& b) {
+  return product(a.exitance, b.exitance) + product(a.unscattered, b.unscattered);
+}
+
+double product(const Parameters& a, const Parameters& b) {
+  return product(a.scattering, b.scattering) + product(a.absorption, b.absorption) + product(a.power, b.power);
+}
+
+// |to - from - h slope|
+double rest(const Outgoing& to, const Outgoing& from, const Outgoing& slope, double h) {
+  double sum = 0;
+  for (std::size_t f = 0; f < to.exitance.size(); ++f) {
+    const glm::dvec3 scattered = to.exitance[f] - from.exitance[f] - h * slope.exitance[f];
+    const glm::dvec3 clear = to.unscattered[f] - from.unscattered[f] - h * slope.unscattered[f];
+    sum += glm::dot(scattered, scattered) + glm::dot(clear, clear);
+  }
+  return std::sqrt(sum);
+}
+
+// A beam at an angle, a point of light near the body, and even light.
+struct Lights {
+  explicit Lights(const Level& level) {
+    for (const glm::vec3& q : one_side(level)) oblique.push_back({q, 0.9f * q, 1.1f * q, q});
+    for (std::size_t f = 0; f < level.faces.size(); ++f) {
+      const glm::vec3 q(f % 3 == 0 ? 0.5f : 0.0f, 0.3f, f % 2 == 0 ? 0.2f : 0.4f);
+      uneven.push_back({q, 0.5f * q, 2.0f * q, q});
+      even.push_back({glm::vec3(0.4f), glm::vec3(0.4f), glm::vec3(0.4f), glm::vec3(0.4f)});
+    }
+    beams = {{{gpu::BEAM_DIRECTIONAL, glm::normalize(glm::vec3(1, 0.3f, 0.2f)), {}, {}}, oblique},
+             {{gpu::BEAM_POINT, glm::vec3(-3, 9, 4), {}, {}}, uneven},
+             {{gpu::BEAM_LAMBERTIAN, {}, {}, {}}, even}};
+  }
+
+  std::vector<Quarters> oblique, uneven, even;
+  std::vector<BeamLight> beams;
+};
+
+}  // namespace
+
+TEST_CASE("what is left of a Taylor step falls with its square, each term on and off") {
+  for (const Body& body : bodies()) {
+    const Level level = body.level.view();
+    const Lights lights(level);
+    for (const Model model : both_models) {
+      for (const bool bounces : {false, true}) {
+        const ForwardOptions options = {.model = model, .eta = 1.3, .bounces = bounces, .tolerance = 1e-14};
+        const Parameters at = jumping(level, 3, 1);
+        for (const std::string term : {"all", "scattering", "absorption", "power"}) {
+          Parameters along = direction(at, 2);
+          if (term == "absorption" || term == "power") along.scattering.assign(along.scattering.size(), glm::dvec3(0));
+          if (term == "scattering" || term == "power") along.absorption.assign(along.absorption.size(), glm::dvec3(0));
+          if (term != "all" && term != "power") along.power.assign(3, glm::dvec3(0));
+          const ForwardModel here(level, at, lights.beams, options);
+          const Outgoing slope = here.tangent(along);
+          std::vector<double> rests;
+          for (const double h : {0.008, 0.004, 0.002, 0.001, 0.0005}) {
+            const ForwardModel there(level, moved(at, along, h), lights.beams, options);
+            rests.push_back(rest(there.outgoing(), here.outgoing(), slope, h));
+          }
+          const double size = std::sqrt(product(here.outgoing(), here.outgoing()));
+          INFO(std::string(body.name), " ", static_cast<int>(model), bounces, " ", term);
+          if (term == "power") {  // linear
+            CHECK(rests.back() <= 1e-11 * size);
+            continue;
+          }
+          CHECK(rests.front() > 1e-8 * size);
+          for (std::size_t i = 1; i < rests.size(); ++i) {
+            CHECK(rests[i - 1] / rests[i] == doctest::Approx(4.0).epsilon(0.01));
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("forward and adjoint derivatives are each other's transpose") {
+  for (const Body& body : bodies()) {
+    const Level level = body.level.view();
+    const Lights lights(level);
+    std::mt19937 random(3);
+    std::normal_distribution<double> normal;
+    Outgoing weights(level.faces.size());
+    for (Vectors* values : {&weights.exitance, &weights.unscattered}) {
+      for (glm::dvec3& value : *values) value = {normal(random), normal(random), normal(random)};
+    }
+    for (const Model model : both_models) {
+      for (const bool bounces : {false, true}) {
+        for (const double eta : {1.0, 1.4}) {
+          const ForwardOptions options = {.model = model, .eta = eta, .bounces = bounces, .tolerance = 1e-15};
+          const Parameters at = jumping(level, 3, 4);
+          const Parameters along = direction(at, 5);
+          const ForwardModel here(level, at, lights.beams, options);
+          const Outgoing change = here.tangent(along);
+          const Parameters gradient = here.adjoint(weights);
+          const double size = std::sqrt(product(change, change) * product(weights, weights));
+          INFO(std::string(body.name), " ", static_cast<int>(model), bounces, " ", eta);
+          CHECK(std::abs(product(change, weights) - product(gradient, along)) <= 1e-12 * size);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("the answer that is differentiated is the reference's") {
+  for (const Body& body : bodies()) {
+    const Level level = body.level.view();
+    const Lights lights(level);
+    const std::vector<glm::vec3> q = one_side(level);
+    const gpu::BeamRecord& beam = lights.beams[0].beam;
+    std::vector<Quarters> quarters;
+    for (const glm::vec3& value : q) quarters.push_back({value, value, value, value});
+    for (const Model model : both_models) {
+      Parameters at = jumping(level, 1, 6);
+      at.power[0] = glm::dvec3(1);
+      Opticals optical(level.nodes.size());
+      for (std::size_t t = 0; t < at.scattering.size(); ++t) {
+        optical[t] = {glm::vec3(at.scattering[t]), glm::vec3(at.absorption[t])};
+        at.scattering[t] = glm::dvec3(optical[t].sigma_s_prime);
+        at.absorption[t] = glm::dvec3(optical[t].sigma_a);
+      }
+      SolveOptions usual = reference_options();
+      usual.model = model;
+      const std::vector<EnteringLight> entering = {{beam, q}};
+      const BouncedSolution expected = solve_with_bounces(level, optical, 1.3, entering, usual);
+      const ForwardModel found(level, at, {{beam, quarters}}, {.model = model, .eta = 1.3});
+      // Its rays go on where the reference's end, with no more than WALK_END of what entered.
+      glm::dvec3 entered(0), scattered(0), clear(0);
+      for (std::uint32_t f = 0; f < level.face_count(); ++f) {
+        const double area = face_area(level, level.faces[f]);
+        entered += area * glm::dvec3(q[f]);
+        scattered += area * glm::abs(found.outgoing().exitance[f] - expected.solution.flux[f]);
+        clear += area * glm::abs(found.outgoing().unscattered[f] - expected.solution.unscattered[f]);
+      }
+      for (int c = 0; c < 3; ++c) {
+        CHECK(scattered[c] <= double{gpu::WALK_END} * entered[c]);
+        CHECK(clear[c] <= double{gpu::WALK_END} * entered[c]);
+      }
+    }
+  }
+}
+
+TEST_CASE("wrong sizes and values are refused by name") {
+  const OwnedLevel owned = box_level(2, 2.0f);
+  const Level level = owned.view();
+  const Lights lights(level);
+  const Parameters at = jumping(level, 3, 1);
+  Parameters few = at, negative = at;
+  few.absorption.pop_back();
+  negative.scattering[3].y = -1;
+  CHECK_THROWS_WITH(ForwardModel(level, few, lights.beams, {}), doctest::Contains("absorption: 47 entries"));
+  CHECK_THROWS_WITH(ForwardModel(level, negative, lights.beams, {}), doctest::Contains("scattering[3]: -1"));
+  CHECK_THROWS_WITH(ForwardModel(level, at, {}, {}), doctest::Contains("power: 3 entries"));
+  const ForwardModel model(level, at, lights.beams, {});
+  CHECK_THROWS_WITH(model.tangent(few), doctest::Contains("absorption: 47 entries"));
+  CHECK_THROWS_WITH(model.adjoint(Outgoing(1)), doctest::Contains("exitance: 1 entries"));
+}
