@@ -59,11 +59,18 @@ void check_values(const std::string& name, const Vectors& values) {
 }  // namespace
 
 struct ForwardModel::State {
-  State(const Level& of, Parameters parameters, std::vector<BeamLight> given, const ForwardOptions& asked)
-      : level(of), at(std::move(parameters)), lights(std::move(given)), options(asked), outgoing(of.faces.size()) {
+  State(const Level& of, Parameters parameters, std::vector<BeamLight> given, std::vector<ViewSample> views,
+        const ForwardOptions& asked)
+      : level(of),
+        at(std::move(parameters)),
+        lights(std::move(given)),
+        samples(std::move(views)),
+        options(asked),
+        problem{Method::fem, Source::buried, asked.model, {}, asked.eta},
+        outgoing(of.faces.size(), samples.size()) {
     check();
     rows = assemble_elements(level, elements_of(at), options.model, boundary());
-    if (sees_itself()) again.emplace(level, problem(), at);
+    if (sees_itself()) again.emplace(level, problem, at);
     solve();
   }
 
@@ -75,6 +82,18 @@ struct ForwardModel::State {
     check_eta(options.eta);
     if (options.model == Model::automatic) throw InputError("model 'auto': name one");
     for (const BeamLight& light : lights) check_size("light", light.quarters.size(), level.faces.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) check_sample(i);
+  }
+
+  void check_sample(std::size_t i) const {
+    const std::uint32_t f = samples[i].face;
+    if (f >= level.face_count() || level.reflecting(f)) {
+      throw InputError("samples[" + std::to_string(i) + "]: face " + std::to_string(f) + ", allowed are open ones of " +
+                       std::to_string(level.face_count()));
+    }
+    if (!(glm::dot(samples[i].outside, frame_of(level, f).normal) > 0)) {
+      throw InputError("samples[" + std::to_string(i) + "]: a direction into the body, allowed is one out of it");
+    }
   }
 
   void check_sizes(const Parameters& parameters) const {
@@ -83,8 +102,7 @@ struct ForwardModel::State {
     check_size("power", parameters.power.size(), lights.size());
   }
 
-  Problem problem() const { return {Method::fem, Source::buried, options.model, {}, options.eta}; }
-  Boundary boundary() const { return problem().boundary(); }
+  Boundary boundary() const { return problem.boundary(); }
   bool sees_itself() const { return options.bounces && level.seen.size() > level.faces.size() + 1; }
   double entering() const { return diffuse_transmittance(options.eta); }
   Entering entering_light() const { return {lights, again_q}; }
@@ -132,7 +150,7 @@ struct ForwardModel::State {
   }
 
   void solve() {
-    const Walked own = walk(level, problem(), at, {lights, {}});
+    const Walked own = walk(level, problem, at, {lights, {}});
     Walked all = own;
     const auto answer = [&](const Vectors& e) {
       all = own;
@@ -148,23 +166,35 @@ struct ForwardModel::State {
     outgoing.exitance = answer(received).exitance;
     outgoing.unscattered = per_area(all.unscattered);
     surface.emplace(level, flux_of(x), received, 1 - entering());
+    if (samples.empty()) return;
+    shape.emplace(level, vertex_starts(level));
+    fields = InsideFields(level.vertices.size());
+    for (std::size_t v = 0; v < x.size(); ++v) fields.phi[v] = x[v].phi;
+    inside().uncollided(entering_light(), fields);
+    outgoing.radiance = inside().gathered(fields, samples);
   }
+
+  Inside inside() const { return {level, problem, at, *shape}; }
 
   const Level& level;
   Parameters at;
   std::vector<BeamLight> lights;
+  std::vector<ViewSample> samples;
   ForwardOptions options;
+  Problem problem;
   Rows rows;
   std::optional<AgainMatrix> again;
   std::vector<Field> x;
   Vectors received, again_q;  // W/mm^2 per face; empty where the body sees nothing of itself
   std::optional<Surface> surface;
+  std::optional<FollowedShape> shape;  // where there are samples
+  InsideFields fields{0};
   Outgoing outgoing;
 };
 
 ForwardModel::ForwardModel(const Level& level, Parameters at, std::vector<BeamLight> lights,
-                           const ForwardOptions& options)
-    : state_(std::make_unique<State>(level, std::move(at), std::move(lights), options)) {}
+                           std::vector<ViewSample> samples, const ForwardOptions& options)
+    : state_(std::make_unique<State>(level, std::move(at), std::move(lights), std::move(samples), options)) {}
 
 ForwardModel::~ForwardModel() = default;
 
@@ -179,26 +209,32 @@ const Outgoing& ForwardModel::outgoing() const {
 Outgoing ForwardModel::tangent(const Parameters& along) const {
   const State& s = *state_;
   s.check_sizes(along);
-  Walked own = walk_tangent(s.level, s.problem(), s.at, along, s.entering_light());
-  const Rows change =
-      assemble_elements(s.level, elements_along(s.at, along), s.options.model, Boundary{});
+  Walked own = walk_tangent(s.level, s.problem, s.at, along, s.entering_light());
+  const Rows change = assemble_elements(s.level, elements_along(s.at, along), s.options.model, Boundary{});
   const std::vector<Field> moved = quadgraph::apply(change, s.x);
   Walked all = own;
+  std::vector<Field> change_of_x;
   const auto answer = [&](const Vectors& e) {
     all = own;
     if (s.again) s.again->add(scaled(e, s.entering()), all);
     std::vector<Field> b = State::load(all.scattered);
     for (std::size_t i = 0; i < b.size(); ++i) b[i] = b[i] - moved[i];
-    return s.surface->tangent(s.flux_of(s.solved(b)), e);
+    change_of_x = s.solved(b);
+    return s.surface->tangent(s.flux_of(change_of_x), e);
   };
   Vectors received;
   if (s.again) {
     received.assign(s.level.faces.size(), glm::dvec3(0));
     s.settle(received, [&](const Vectors& e) { return answer(e).received; });
   }
-  Outgoing result(s.level.faces.size());
+  Outgoing result(s.level.faces.size(), s.samples.size());
   result.exitance = answer(received).exitance;
   result.unscattered = s.per_area(all.unscattered);
+  if (s.samples.empty()) return result;
+  InsideFields fields(change_of_x.size());
+  for (std::size_t v = 0; v < change_of_x.size(); ++v) fields.phi[v] = change_of_x[v].phi;
+  s.inside().uncollided_tangent(along, s.entering_light(), scaled(received, s.entering()), fields);
+  result.radiance = s.inside().gathered_tangent(s.fields, along, fields, s.samples);
   return result;
 }
 
@@ -206,6 +242,14 @@ Parameters ForwardModel::adjoint(const Outgoing& weights) const {
   State& s = *state_;
   check_size("exitance", weights.exitance.size(), s.level.faces.size());
   check_size("unscattered", weights.unscattered.size(), s.level.faces.size());
+  check_size("radiance", weights.radiance.size(), s.samples.size());
+  Parameters gradient(s.level.tets.size(), s.lights.size());
+  InsideFields by_fields(s.level.vertices.size());
+  Vectors by_again(s.again_q.size(), glm::dvec3(0));
+  if (!s.samples.empty()) {
+    s.inside().gathered_adjoint(s.fields, weights.radiance, s.samples, gradient, by_fields);
+    s.inside().uncollided_adjoint(by_fields, s.entering_light(), gradient, by_again);
+  }
   Walked by_walked(s.level);
   by_walked.unscattered = s.per_area(weights.unscattered);
   std::vector<Field> by_load;
@@ -214,13 +258,15 @@ Parameters ForwardModel::adjoint(const Outgoing& weights) const {
   const auto back = [&](const Vectors& by_received) {
     const Surface::Inputs by = s.surface->adjoint({weights.exitance, by_received});
     std::vector<Field> by_fluence(by.flux.size());
-    for (std::size_t i = 0; i < by.flux.size(); ++i) by_fluence[i] = {k.k11 * by.flux[i], k.k12 * by.flux[i]};
+    for (std::size_t i = 0; i < by.flux.size(); ++i) {
+      by_fluence[i] = {k.k11 * by.flux[i] + by_fields.phi[i], k.k12 * by.flux[i]};
+    }
     by_load = s.solved(by_fluence);
     for (std::size_t i = 0; i < by_load.size(); ++i) by_walked.scattered[i] = by_load[i].phi;
     Vectors before = by.received;
     if (s.again) {
       const Vectors by_q = s.again->transposed(by_walked);
-      for (std::size_t f = 0; f < before.size(); ++f) before[f] += s.entering() * by_q[f];
+      for (std::size_t f = 0; f < before.size(); ++f) before[f] += s.entering() * (by_q[f] + by_again[f]);
     }
     return before;
   };
@@ -230,8 +276,7 @@ Parameters ForwardModel::adjoint(const Outgoing& weights) const {
     s.settle(by_received, back);
   }
   back(by_received);
-  Parameters gradient(s.level.tets.size(), s.lights.size());
-  walk_adjoint(s.level, s.problem(), s.at, by_walked, s.entering_light(), gradient);
+  walk_adjoint(s.level, s.problem, s.at, by_walked, s.entering_light(), gradient);
   add_by_elements(s.at, element_products(s.level, by_load, s.x, s.options.model), -1.0, gradient);
   return gradient;
 }

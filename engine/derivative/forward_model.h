@@ -1,10 +1,11 @@
 // What a body answers to light as a function of what it is made of, with its exact derivatives: J v and J^T w.
 //
 // The function is that of the CPU reference for linear elements and the buried source (engine/reference/reference.h),
-// on one level, with the inter-reflection of exchange.h, and without evening out (even_exitance.h):
+// on one level, with the inter-reflection of exchange.h and the gathered radiance of radiance.h, but without what is
+// done to them for display (even_exitance.h, gather_scale.h, smooth normals):
 //
 //   b = rays of the lights and of q,   A x = b,   M = positive(k11 phi + k12 phi2),   E = received(M + (1 - T_d) E),
-//   q = T_d E
+//   q = T_d E,   L = gathered(phi, rays back from the vertices to the lights and to q)
 //
 // Tangent and adjoint solve the same symmetric A with other right-hand sides, once for every bounce; all that lies
 // between is differentiated by the numbers that the reference's own kernels run on (dual.h, traced.h).
@@ -13,6 +14,7 @@
 #include <memory>
 #include <vector>
 
+#include "engine/derivative/inside.h"
 #include "engine/derivative/parameters.h"
 #include "engine/file/graph.h"
 #include "engine/reference/operator.h"
@@ -30,8 +32,10 @@ struct ForwardOptions {
 class ForwardModel {
  public:
   // Solves at `at`, whose arrays have one entry per tet and per light. `level` and what `lights` refer to must stay
-  // alive. Throws InputError on a wrong size or a value that is not finite or negative, and as solve_reference does.
-  ForwardModel(const Level& level, Parameters at, std::vector<BeamLight> lights, const ForwardOptions& options);
+  // alive. Throws InputError on a wrong size, a value that is not finite or negative, or a sample at no open face, and
+  // as solve_reference does.
+  ForwardModel(const Level& level, Parameters at, std::vector<BeamLight> lights, std::vector<ViewSample> samples,
+               const ForwardOptions& options);
   ~ForwardModel();
   ForwardModel(const ForwardModel&) = delete;
   ForwardModel& operator=(const ForwardModel&) = delete;

@@ -18,12 +18,14 @@ struct Parameters {
       : scattering(tets, glm::dvec3(0)), absorption(tets, glm::dvec3(0)), power(lights, glm::dvec3(0)) {}
 };
 
-// Light that leaves a body, its derivatives, or weights of both; W/mm^2 per outside face, 0 at reflecting ones.
+// Light that leaves a body, its derivatives, or weights of both.
 struct Outgoing {
-  std::vector<glm::dvec3> exitance;     // of light that was scattered: the flux of ReferenceSolution
-  std::vector<glm::dvec3> unscattered;  // of light that was not
+  std::vector<glm::dvec3> exitance;     // W/mm^2 per outside face, 0 at reflecting ones: flux of ReferenceSolution
+  std::vector<glm::dvec3> unscattered;  // the same, of light that was not scattered
+  std::vector<glm::dvec3> radiance;     // W/(mm^2 sr) per view sample: gathered_radiance
 
-  explicit Outgoing(std::size_t faces) : exitance(faces, glm::dvec3(0)), unscattered(faces, glm::dvec3(0)) {}
+  Outgoing(std::size_t faces, std::size_t samples)
+      : exitance(faces, glm::dvec3(0)), unscattered(faces, glm::dvec3(0)), radiance(samples, glm::dvec3(0)) {}
 };
 
 }  // namespace quadgraph

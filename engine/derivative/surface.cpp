@@ -42,14 +42,15 @@ void put_slopes(const std::vector<Dual>& from, int c, std::vector<glm::dvec3>& t
 
 SurfaceLight surface_light(const Level& level, std::span<const glm::dvec3> flux, std::span<const glm::dvec3> received,
                            double reflected) {
-  auto [exitance, again] =
-      light_of(level, std::vector<glm::dvec3>(flux.begin(), flux.end()), received, reflected);
+  auto [exitance, again] = light_of(level, std::vector<glm::dvec3>(flux.begin(), flux.end()), received, reflected);
   return {std::move(exitance), std::move(again)};
 }
 
 Surface::Surface(const Level& level, std::span<const glm::dvec3> flux, std::span<const glm::dvec3> received,
                  double reflected)
-    : level_(level), flux_(flux.begin(), flux.end()), received_(received.begin(), received.end()),
+    : level_(level),
+      flux_(flux.begin(), flux.end()),
+      received_(received.begin(), received.end()),
       reflected_(reflected) {
   for (int c = 0; c < 3; ++c) record(c, channels_[static_cast<std::size_t>(c)]);
 }
@@ -88,8 +89,10 @@ Surface::Inputs Surface::adjoint(const SurfaceLight& weights) {
   result.received.resize(received_.size(), glm::dvec3(0));
   for (int c = 0; c < 3; ++c) {
     Channel& channel = channels_[static_cast<std::size_t>(c)];
-    for (std::size_t f = 0; f < channel.exitance.size(); ++f) channel.tape.weigh(channel.exitance[f], weights.exitance[f][c]);
-    for (std::size_t f = 0; f < channel.received.size(); ++f) channel.tape.weigh(channel.received[f], weights.received[f][c]);
+    for (std::size_t f = 0; f < channel.exitance.size(); ++f)
+      channel.tape.weigh(channel.exitance[f], weights.exitance[f][c]);
+    for (std::size_t f = 0; f < channel.received.size(); ++f)
+      channel.tape.weigh(channel.received[f], weights.received[f][c]);
     std::fill(channel.by_flux.begin(), channel.by_flux.end(), 0.0);
     std::fill(channel.by_received.begin(), channel.by_received.end(), 0.0);
     channel.tape.back();

@@ -22,8 +22,7 @@ struct SurfaceLight {
 class Surface {
  public:
   // `reflected`: 1 - T_d. `received` is empty where the body sees nothing of itself.
-  Surface(const Level& level, std::span<const glm::dvec3> flux, std::span<const glm::dvec3> received,
-          double reflected);
+  Surface(const Level& level, std::span<const glm::dvec3> flux, std::span<const glm::dvec3> received, double reflected);
 
   // The derivatives of what comes of these, per vertex and face.
   SurfaceLight tangent(std::span<const glm::dvec3> flux, std::span<const glm::dvec3> received) const;

@@ -22,6 +22,12 @@ struct InsideValues {
   Real phi, entry, depth;
 };
 
+// Where a ray ends: each channel of it has less than `end` left, and behind lies less than `end` of its radiance unless
+// less than `least` is left.
+struct ViewEnd {
+  double end{gpu::GATHER_END}, least{gpu::GATHER_LEAST};
+};
+
 // `Medium` is one of medium.h; `Inside` gives InsideValues at(vertex, channel) of its numbers.
 template <class Medium, class Inside>
 class ViewRay {
@@ -30,8 +36,8 @@ class ViewRay {
   using Radiance = std::array<Real, 3>;  // W/(mm^2 sr), inside
 
   ViewRay(const Level& level, const Problem& problem, const Medium& medium, const Inside& inside,
-          std::span<const CornerNormals> normals)
-      : level_(level), problem_(problem), medium_(medium), inside_(inside), normals_(normals), ray_(level) {}
+          std::span<const CornerNormals> normals, const ViewEnd& end = {})
+      : level_(level), problem_(problem), medium_(medium), inside_(inside), normals_(normals), end_(end), ray_(level) {}
 
   Radiance run(std::uint32_t f, const glm::dvec3& barycentric, glm::dvec3 direction) {
     radiance_.fill(Real(0));
@@ -76,7 +82,7 @@ class ViewRay {
 
   // By linear interpolation.
   static Values mean(const std::array<Values, 4>& at, const std::array<double, 4>& share) {
-    const auto sum = [&](Real Values::*part) {
+    const auto sum = [&](Real Values::* part) {
       return at[0].*part * share[0] + at[1].*part * share[1] + at[2].*part * share[2] + at[3].*part * share[3];
     };
     return {sum(&Values::phi), sum(&Values::entry), sum(&Values::depth)};
@@ -103,10 +109,8 @@ class ViewRay {
   bool ended() const {
     for (std::size_t c = 0; c < 3; ++c) {
       const double left = value_of(left_[c]);
-      if (left > static_cast<double>(gpu::GATHER_END)) return false;
-      if (left > static_cast<double>(gpu::GATHER_LEAST) &&
-          left * even_value(c) > static_cast<double>(gpu::GATHER_END) * value_of(radiance_[c]))
-        return false;
+      if (left > end_.end) return false;
+      if (left > end_.least && left * even_value(c) > end_.end * value_of(radiance_[c])) return false;
     }
     return true;
   }
@@ -172,6 +176,7 @@ class ViewRay {
   const Medium& medium_;
   const Inside& inside_;
   std::span<const CornerNormals> normals_;
+  ViewEnd end_;
   TetRay ray_;
   std::array<Coefficients<Real>, 3> here_{};        // by channel
   std::array<std::array<Values, 4>, 3> corners_{};  // by channel, of the ray's corners
