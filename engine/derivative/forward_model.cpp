@@ -105,13 +105,13 @@ struct ForwardModel::State {
   Boundary boundary() const { return problem.boundary(); }
   bool sees_itself() const { return options.bounces && level.seen.size() > level.faces.size() + 1; }
   double entering() const { return diffuse_transmittance(options.eta); }
-  Entering entering_light() const { return {lights, again_q}; }
+  Entering entering_light() const { return {lights, again_q, options.check}; }
 
   std::vector<Field> solved(const std::vector<Field>& b) const {
     SolveOptions how = {.solver = SolverKind::dpcg, .model = options.model, .tolerance = options.tolerance};
     how.max_iterations = 100000;
     LevelReport report;
-    std::vector<Field> answer = solve_rows(rows, b, how, report);
+    std::vector<Field> answer = solve_rows(rows, b, how, report, options.check);
     if (!report.converged) {
       throw SolverError("a solve ended at a residual of " + std::to_string(report.residual) + ", not at the tolerance");
     }
@@ -150,7 +150,7 @@ struct ForwardModel::State {
   }
 
   void solve() {
-    const Walked own = walk(level, problem, at, {lights, {}});
+    const Walked own = walk(level, problem, at, {lights, {}, options.check});
     Walked all = own;
     const auto answer = [&](const Vectors& e) {
       all = own;

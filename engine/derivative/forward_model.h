@@ -11,6 +11,7 @@
 // between is differentiated by the numbers that the reference's own kernels run on (dual.h, traced.h).
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -27,6 +28,8 @@ struct ForwardOptions {
   double eta = 1;
   bool bounces = true;       // light that leaves the body and meets it again
   double tolerance = 1e-12;  // of solves and bounces
+  // Called now and then while something is computed; what it throws ends that.
+  std::function<void()> check = {};
 };
 
 class ForwardModel {

@@ -39,6 +39,7 @@ UncollidedLight<typename Numbers::Real> light_at(const Follower<Numbers>& follow
   for (std::size_t i = 0; i < light.lights.size(); ++i) {
     add(sum, follower.at(v, light.lights[i].beam, LitQuarters(numbers, light.lights[i].quarters, i)));
   }
+  if (light.check) light.check();
   if (!light.again.empty()) add(sum, follower.at(v, {gpu::BEAM_MEAN, {}, {}, {}}, again));
   return sum;
 }
@@ -98,8 +99,8 @@ struct TracedFields {
 
 // Calls take(sample, radiance) for each.
 template <class Numbers, class Fields, class Take>
-void gather_all(const Inside& inside, const Numbers& numbers, const Fields& fields,
-                std::span<const ViewSample> samples, const Take& take) {
+void gather_all(const Inside& inside, const Numbers& numbers, const Fields& fields, std::span<const ViewSample> samples,
+                const Take& take) {
   ViewRay ray(inside.level, inside.problem, numbers, fields, {}, {differentiable_end, differentiable_end});
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Inward inward = inward_of(inside.level, inside.problem.eta, samples[i].face, samples[i].outside);

@@ -102,6 +102,7 @@ void walk_all(const Level& level, const Problem& problem, const Numbers& numbers
       if (level.reflecting(f)) continue;
       beam.enter(f, quarters(f));
       after();
+      if (light.check) light.check();
     }
   };
   for (std::size_t i = 0; i < light.lights.size(); ++i) {

@@ -1,6 +1,7 @@
 // The buried source with derivatives: what lights, and what enters again, leave along their rays.
 #pragma once
 
+#include <functional>
 #include <glm/vec3.hpp>
 #include <span>
 #include <vector>
@@ -25,6 +26,8 @@ struct Walked {
 struct Entering {
   std::span<const BeamLight> lights;
   std::span<const glm::dvec3> again;  // empty: none
+  // Called face by face; what it throws ends the walk.
+  std::function<void()> check;
 };
 
 // Where each channel of a ray has kept less of its power, the ray ends; at WALK_END, where the engine's do, an end that

@@ -46,9 +46,10 @@ constexpr double fem_bound = 4.0;
 
 // Relaxation x += damping D^-1 (b - A x) from x = 0. Damping 1 is the published scheme.
 void relax(const Rows& rows, const Vector& b, double damping, const SolveOptions& options, Vector& x,
-           LevelReport& report) {
+           LevelReport& report, const std::function<void()>& check) {
   const glm::dvec3 reference = scaled_norm(rows, b);
   for (;;) {
+    if (check) check();
     Vector r = quadgraph::apply(rows, x);
     for (std::size_t i = 0; i < r.size(); ++i) r[i] = b[i] - r[i];
     report.residual = relative(scaled_norm(rows, r), reference);
@@ -59,13 +60,14 @@ void relax(const Rows& rows, const Vector& b, double damping, const SolveOptions
 }
 
 // Conjugate gradients preconditioned by the diagonal blocks, every channel with its own step lengths.
-void conjugate_gradients(const Rows& rows, const Vector& b, const SolveOptions& options, Vector& x,
-                         LevelReport& report) {
+void conjugate_gradients(const Rows& rows, const Vector& b, const SolveOptions& options, Vector& x, LevelReport& report,
+                         const std::function<void()>& check) {
   const glm::dvec3 reference = scaled_norm(rows, b);
   Vector r = b;
   Vector z(r.size()), p(r.size());
   glm::dvec3 rz_before{0};
   for (;;) {
+    if (check) check();
     for (std::size_t i = 0; i < r.size(); ++i) z[i] = solve(rows.diagonal[i], r[i]);
     const glm::dvec3 rz = dot(r, z);
     report.residual = relative(rz, reference);
@@ -94,13 +96,13 @@ void conjugate_gradients(const Rows& rows, const Vector& b, const SolveOptions& 
 }  // namespace
 
 std::vector<Field> solve_rows(const Rows& rows, const std::vector<Field>& b, const SolveOptions& options,
-                              LevelReport& report) {
+                              LevelReport& report, const std::function<void()>& check) {
   Vector x(rows.size());
   if (symmetric(options.method) && options.solver != SolverKind::cascade && options.solver != SolverKind::jacobi) {
-    conjugate_gradients(rows, b, options, x, report);
+    conjugate_gradients(rows, b, options, x, report, check);
   } else {
     const double damping = options.method == Method::fem ? 2.0 / fem_bound : 1.0;
-    relax(rows, b, damping, options, x, report);
+    relax(rows, b, damping, options, x, report, check);
   }
   report.converged = report.residual <= options.tolerance;
   return x;

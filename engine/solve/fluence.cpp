@@ -43,8 +43,8 @@ std::vector<glm::vec3> fluence_at(Simulation& simulation, Method method, std::sp
   return found;
 }
 
-std::vector<gpu::Optical> tet_coefficients(device::Device& device, const Simulation& simulation) {
-  const LevelBuffers& level = simulation.level(0);
+std::vector<gpu::Optical> tet_coefficients(device::Device& device, const Simulation& simulation, std::uint32_t number) {
+  const LevelBuffers& level = simulation.level(number);
   if (!level.optical.exists()) throw InputError("coefficients: nothing was solved since the body was loaded");
   std::vector<gpu::Optical> optical = device::download<gpu::Optical>(device, level.optical);
   // Nodes of tets come first; those of faces may follow.

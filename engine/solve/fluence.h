@@ -29,6 +29,7 @@ std::vector<glm::vec3> fluence_at(Simulation& simulation, Method method, std::sp
 
 // Coefficients in the tets of level 0 that the last solve was for, edits among them, 1/mm; one per tet. Throws
 // InputError before a solve.
-std::vector<gpu::Optical> tet_coefficients(device::Device& device, const Simulation& simulation);
+std::vector<gpu::Optical> tet_coefficients(device::Device& device, const Simulation& simulation,
+                                           std::uint32_t level = 0);
 
 }  // namespace quadgraph

@@ -122,6 +122,11 @@ std::vector<glm::vec3> Simulation::exitance_on(std::uint32_t level) {
   return implementation_->exitance_on(level);
 }
 
+std::vector<LevelBeam> Simulation::light_on(std::uint32_t level) {
+  const LevelBuffers& buffers = implementation_->solved_level(level);
+  return level_light(implementation_->device, implementation_->beams, buffers);
+}
+
 const device::Buffer& Simulation::vertex_exitance() const {
   return implementation_->results.vertex_exitance();
 }

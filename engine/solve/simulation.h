@@ -22,6 +22,7 @@
 #include "engine/optics/edit.h"
 #include "engine/reference/solution.h"
 #include "engine/solve/level_buffers.h"
+#include "engine/solve/level_light.h"
 #include "shaders/solver/solve_shared.h"
 
 namespace quadgraph {
@@ -121,6 +122,10 @@ class Simulation {
   // The exitance that the last solve found on a level, W/mm^2 per outside face, scattered. Throws InputError if it did
   // not go over that level.
   std::vector<glm::vec3> exitance_on(std::uint32_t level);
+
+  // The beams of the last solve's light on any level, without what enters again. Throws InputError before a solve and
+  // where there is no such level.
+  std::vector<LevelBeam> light_on(std::uint32_t level);
 
   // vec3 per surface vertex of level 0, W/mm^2, for display: of scattered light, and of light that was not.
   const device::Buffer& vertex_exitance() const;

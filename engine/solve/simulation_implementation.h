@@ -344,6 +344,12 @@ struct Simulation::Implementation {
     return *gather;
   }
 
+  const LevelBuffers& solved_level(std::uint32_t number) const {
+    solved_key();
+    if (number < levels.size()) return levels[number];
+    throw InputError("level " + std::to_string(number) + ": the body has " + std::to_string(levels.size()));
+  }
+
   std::vector<glm::vec3> exitance_on(std::uint32_t number) {
     OperatorBuffers& op = operators.at(solved_key(), number);
     if (number >= levels.size() || !op.solved) {

@@ -111,17 +111,6 @@ py::dict reference(const QuadGraph& graph, std::uint32_t index, const FloatArray
   return solution_dict(std::move(solution));
 }
 
-using DoubleArray = py::array_t<double, py::array::c_style | py::array::forcecast>;
-
-std::vector<glm::dvec3> double_vectors(const DoubleArray& array, std::size_t count, const std::string& what) {
-  if (array.ndim() != 2 || static_cast<std::size_t>(array.shape(0)) != count || array.shape(1) != 3) {
-    throw InputError(what + ": expected shape (" + std::to_string(count) + ", 3)");
-  }
-  std::vector<glm::dvec3> values;
-  for (py::ssize_t i = 0; i < array.shape(0); ++i) values.emplace_back(array.at(i, 0), array.at(i, 1), array.at(i, 2));
-  return values;
-}
-
 py::dict radiance_dict(const QuadGraph& graph, std::uint32_t index, const FloatArray& sigma_s_prime,
                        const FloatArray& sigma_a, double eta, const FloatArray& q,
                        const std::optional<std::array<float, 3>>& direction, const DoubleArray& phi,
@@ -130,8 +119,8 @@ py::dict radiance_dict(const QuadGraph& graph, std::uint32_t index, const FloatA
   const auto optical = optical_from(sigma_s_prime, sigma_a, level.node_count());
   check_optical(optical, level.node_count());
   check_eta(eta);
-  const std::vector<glm::dvec3> fluence = double_vectors(phi, level.vertex_count(), "phi");
-  const std::vector<glm::dvec3> ways = double_vectors(outside, faces.size(), "outside");
+  const std::vector<glm::dvec3> fluence = vectors(phi, level.vertex_count(), "phi");
+  const std::vector<glm::dvec3> ways = vectors(outside, faces.size(), "outside");
   for (const std::uint32_t f : faces) {
     if (f >= level.face_count()) throw InputError("faces: " + std::to_string(f) + " is not a face of the level");
   }

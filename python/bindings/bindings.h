@@ -31,11 +31,14 @@ void bind_deformation(pybind11::module_& module);
 void bind_options(pybind11::module_& module);
 void bind_fluence(pybind11::module_& module);
 void bind_values(pybind11::module_& module);
+void bind_derivative(pybind11::module_& module);
 void bind_devices(pybind11::module_& module);
 
 // Converted to C order and float32 if need be.
 using IndexArray = pybind11::array_t<std::uint32_t, pybind11::array::c_style | pybind11::array::forcecast>;
 using FloatArray = pybind11::array_t<float, pybind11::array::c_style | pybind11::array::forcecast>;
+
+using DoubleArray = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
 
 // A read-only array over memory that `owner` keeps alive.
 template <typename Scalar>
@@ -63,6 +66,9 @@ pybind11::array own(std::vector<Scalar>&& values) {
 
 // `array` as vectors of three; InputError naming `what` unless its shape is (count, 3).
 std::span<const glm::vec3> vectors(const FloatArray& array, std::size_t count, const std::string& what);
+
+// The same in double precision.
+std::vector<glm::dvec3> vectors(const DoubleArray& array, std::size_t count, const std::string& what);
 
 // Zips sigma_s_prime and sigma_a, (n, 3) in 1/mm, into one entry per node.
 std::vector<gpu::Optical> optical_from(const FloatArray& sigma_s_prime, const FloatArray& sigma_a, std::size_t count);

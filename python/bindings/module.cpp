@@ -8,14 +8,26 @@ namespace py = pybind11;
 
 namespace quadgraph::python {
 
+namespace {
+
+void check_shape(const py::array& array, std::size_t count, const std::string& what) {
+  if (array.ndim() == 2 && array.shape(1) == 3 && static_cast<std::size_t>(array.shape(0)) == count) return;
+  std::string shape;
+  for (py::ssize_t d = 0; d < array.ndim(); ++d) shape += (d > 0 ? ", " : "") + std::to_string(array.shape(d));
+  throw InputError(what + ": shape (" + shape + "), expected (" + std::to_string(count) + ", 3)");
+}
+
+}  // namespace
+
 std::span<const glm::vec3> vectors(const FloatArray& array, std::size_t count, const std::string& what) {
-  const bool fits = array.ndim() == 2 && array.shape(1) == 3 && static_cast<std::size_t>(array.shape(0)) == count;
-  if (!fits) {
-    std::string shape;
-    for (py::ssize_t d = 0; d < array.ndim(); ++d) shape += (d > 0 ? ", " : "") + std::to_string(array.shape(d));
-    throw InputError(what + ": shape (" + shape + "), expected (" + std::to_string(count) + ", 3)");
-  }
+  check_shape(array, count, what);
   return {reinterpret_cast<const glm::vec3*>(array.data()), count};
+}
+
+std::vector<glm::dvec3> vectors(const DoubleArray& array, std::size_t count, const std::string& what) {
+  check_shape(array, count, what);
+  const auto* data = reinterpret_cast<const glm::dvec3*>(array.data());
+  return {data, data + count};
 }
 
 std::vector<gpu::Optical> optical_from(const FloatArray& sigma_s_prime, const FloatArray& sigma_a, std::size_t count) {
@@ -194,6 +206,7 @@ PYBIND11_MODULE(_core, module) {
   quadgraph::python::bind_engine(module);
   quadgraph::python::bind_live_objects(module);
   quadgraph::python::bind_fluence(module);
+  quadgraph::python::bind_derivative(module);
   quadgraph::python::bind_scene(module);
   quadgraph::python::bind_values(module);
   quadgraph::python::bind_devices(module);

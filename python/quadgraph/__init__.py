@@ -22,6 +22,7 @@ if TYPE_CHECKING:
         Transform,
         Twist,
     )
+    from quadgraph.api.derivatives import ForwardModel, Gradient, Outgoing, Views
     from quadgraph.api.engine import Engine
     from quadgraph.api.fields import Fluence, SurfaceField
     from quadgraph.api.lights import (
@@ -78,12 +79,15 @@ __all__ = [
     "ErrorEstimate",
     "Fluence",
     "FormatError",
+    "ForwardModel",
+    "Gradient",
     "InputError",
     "Lattice",
     "LevelReport",
     "Light",
     "Material",
     "MotionOptions",
+    "Outgoing",
     "PathOptions",
     "PathReport",
     "Picture",
@@ -106,6 +110,7 @@ __all__ = [
     "ToolError",
     "Transform",
     "Twist",
+    "Views",
     "VolumeMaterial",
     "__version__",
     "bake",
@@ -116,6 +121,7 @@ __all__ = [
 # Where the public names live: found when they are first asked for, so that the command line starts without them.
 _PLACES = {
     "quadgraph.api.deformers": "Bend Cage Deformer Displaced Lattice Shapes Stretch Taper Transform Twist",
+    "quadgraph.api.derivatives": "ForwardModel Gradient Outgoing Views",
     "quadgraph.api.engine": "Engine",
     "quadgraph.api.fields": "Fluence SurfaceField",
     "quadgraph.api.lights": "AmbientLight DirectionalLight EnvironmentLight Light PointLight ProjectorLight "

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 _Floats = npt.NDArray[np.float32]
 _Doubles = npt.NDArray[np.float64]
+_Three = tuple[_Doubles, _Doubles, _Doubles]
 _Whole = npt.NDArray[np.uint32]
 _Report = dict[str, Any]
 _Path = str | PathLike[str]
@@ -221,6 +222,27 @@ class Engine:
     def peak_device_bytes(self) -> int: ...
     @property
     def validation_messages(self) -> list[str]: ...
+
+class ForwardModel:
+    def __init__(
+        self,
+        engine: Engine,
+        level: int,
+        sigma_s_prime: npt.ArrayLike | None,
+        sigma_a: npt.ArrayLike | None,
+        faces: npt.ArrayLike,
+        barycentric: npt.ArrayLike,
+        direction: npt.ArrayLike,
+        model: str,
+        bounces: bool,
+        tolerance: float,
+    ) -> None: ...
+    def adjoint(self, exitance: npt.ArrayLike, unscattered: npt.ArrayLike, radiance: npt.ArrayLike) -> _Three: ...
+    @property
+    def outgoing(self) -> _Three: ...
+    @property
+    def parameters(self) -> _Three: ...
+    def tangent(self, sigma_s_prime: npt.ArrayLike, sigma_a: npt.ArrayLike, power: npt.ArrayLike) -> _Three: ...
 
 class Scene:
     def __init__(self, body: _Path) -> None: ...

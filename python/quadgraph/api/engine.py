@@ -15,6 +15,7 @@ import numpy.typing as npt
 from quadgraph import core
 from quadgraph.api.coefficients import Coefficients, coefficients_at
 from quadgraph.api.deformers import Deformer, as_dict
+from quadgraph.api.derivatives import ForwardModel, Views, forward_model
 from quadgraph.api.fields import Fluence, SurfaceField
 from quadgraph.api.lights import Light, as_light
 from quadgraph.api.materials import Material, VolumeMaterial
@@ -222,6 +223,27 @@ class Engine:
         fluence = self.fluence()
         vertices, scattering, absorption = core.solved_tets(self._engine)
         return of_body(vertices, np.array(level.tets), fluence.values, scattering, absorption)
+
+    def forward_model(
+        self,
+        *,
+        level: int = 0,
+        sigma_s_prime: npt.ArrayLike | None = None,
+        sigma_a: npt.ArrayLike | None = None,
+        views: Views | None = None,
+        model: Literal["sp3", "diffusion"] = "sp3",
+        bounces: bool = True,
+        tolerance: float = 1e-10,
+    ) -> ForwardModel:
+        """Return the light that leaves as a function of coefficients and powers, with exact derivatives.
+
+        Solved anew on one level of the body at rest, for the light of the last solve. sigma_s_prime, sigma_a: (n_t, 3)
+        1/mm, in place of those of the last solve; bounces: with light that leaves one part and enters another;
+        tolerance: of solves and bounces. Raises InputError before a solve, for a deformed body, for a ray that starts
+        at no open face or goes into the body, and for other shapes and values; SolverError where a solve does not end.
+        """
+        coefficients = (sigma_s_prime, sigma_a)
+        return forward_model(self._engine, level, coefficients, views, model, bounces, tolerance)
 
     def _solved_inside(self) -> str:
         """The method of the last solve, if it left fluence in the tets. Raises InputError."""

@@ -11,6 +11,7 @@ FOLDER = Path(__file__).resolve().parents[3] / "docs/examples"
 EXPECTED = {
     "energy_balance.py": pytest.approx(0, abs=1e-5),
     "fluence.py": pytest.approx(0, abs=1e-5),
+    "inverse.py": pytest.approx(0, abs=0.1),
     "lights_and_materials.py": pytest.approx(2, rel=1e-5),
 }
 

@@ -1,0 +1,131 @@
+"""Derivatives of outgoing light: each other's transpose, the slope of what the engine itself solves, and refusals."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import quadgraph
+from baked import write_levels
+from quadgraph.base.errors import InputError
+from shapes import icosphere
+
+pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
+
+
+@pytest.fixture(scope="module")
+def engine(tmp_path_factory):
+    """A ball in two lights."""
+    path = write_levels(tmp_path_factory.mktemp("ball") / "ball.qgraph", [icosphere(2, 8), icosphere(1, 8)])
+    with quadgraph.Engine(path, device="cpu") as engine:
+        engine.material = "skin1,eta=1.3"
+        engine.lights = [
+            quadgraph.DirectionalLight(direction=(0.3, -0.2, -1), irradiance=(1, 0.8, 0.6)),
+            quadgraph.PointLight(position=(20, 5, 3), power=(900, 500, 700)),
+        ]
+        engine.solve(tolerance=1e-6, correction=False, model="sp3", method="fem")
+        yield engine
+
+
+def views(engine: quadgraph.Engine) -> quadgraph.Views:
+    """From every fifth face, a little off its normal."""
+    surface = engine.surface()
+    faces = np.arange(0, len(surface.normal), 5)
+    way = surface.normal[faces] + np.array([0.2, 0.1, -0.1])
+    way /= np.linalg.norm(way, axis=1, keepdims=True)
+    return quadgraph.Views(faces, way, np.full((len(faces), 3), 1 / 3))
+
+
+def dot(a: tuple, b: tuple) -> float:
+    return float(sum((x * y).sum() for x, y in zip(a, b, strict=True)))
+
+
+def test_forward_and_adjoint_are_transposed(engine):
+    model = engine.forward_model(views=views(engine), tolerance=1e-13)
+    rng = np.random.default_rng(5)
+    along = [rng.normal(size=each.shape) for each in model.vjp()]
+    weights = [rng.normal(size=each.shape) for each in model.outgoing]
+    change, gradient = model.jvp(*along), model.vjp(*weights)
+    size = np.sqrt(dot(change, change) * dot(weights, weights))
+    assert abs(dot(change, weights) - dot(gradient, along)) <= 1e-11 * size
+
+
+def test_the_slope_is_that_of_differences(engine):
+    model = engine.forward_model(views=views(engine), tolerance=1e-13)
+    rng = np.random.default_rng(6)
+    along = [rng.normal(size=model.sigma_a.shape) * each for each in (model.sigma_s_prime, model.sigma_a)]
+    slope = model.jvp(*along)
+    sides = []
+    for step in (1e-4, -1e-4):
+        moved = (model.sigma_s_prime + step * along[0], model.sigma_a + step * along[1])
+        sides.append(
+            engine.forward_model(sigma_s_prime=moved[0], sigma_a=moved[1], views=views(engine), tolerance=1e-13)
+        )
+    for name in quadgraph.Outgoing._fields:
+        found = (getattr(sides[0].outgoing, name) - getattr(sides[1].outgoing, name)) / 2e-4
+        wanted = getattr(slope, name)
+        assert np.linalg.norm(found - wanted) <= 1e-5 * max(np.linalg.norm(wanted), 1e-12), name
+
+
+def test_a_change_of_the_engine_is_as_foretold(engine):
+    """The power that leaves, by the device in single precision, against the derivative; evening out keeps it."""
+    area = engine.surface().area[:, None]
+    weights = np.repeat(area, 3, axis=1)
+    before = engine.solve(tolerance=1e-6, correction=False, model="sp3", method="fem").energy.scattered_out
+    model = engine.forward_model()
+    assert (area * model.outgoing.exitance).sum(axis=0) == pytest.approx(before, rel=1e-3)
+    share = 0.02
+    gradient = model.vjp(exitance=weights)
+    foretold = share * (gradient.sigma_a * model.sigma_a).sum(axis=0)
+    scattering, absorption = model.sigma_s_prime[0], model.sigma_a[0]
+    engine.set_coefficients(lambda _points: (scattering, (1 + share) * absorption), eta=1.3)
+    after = engine.solve(tolerance=1e-6, correction=False, model="sp3", method="fem").energy.scattered_out
+    engine.material = "skin1,eta=1.3"
+    engine.solve(tolerance=1e-6, correction=False, model="sp3", method="fem")
+    assert (foretold < 0).all()
+    assert after - before == pytest.approx(foretold, rel=0.03)
+
+
+def test_exitance_grows_with_power_and_is_linear_in_it(engine):
+    model = engine.forward_model(bounces=False)
+    count = len(model.vjp().power)
+    both = model.jvp(power=np.ones((count, 3)))
+    assert both.exitance == pytest.approx(model.outgoing.exitance, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"level": 2}, "level: 2 found, 0 to 1 allowed"),
+        ({"tolerance": 0.0}, "tolerance: 0 found"),
+        ({"sigma_a": np.ones((3, 3))}, r"sigma_a: shape \(3, 3\) found"),
+        ({"sigma_a": "much"}, "sigma_a: text found"),
+        ({"model": "p9"}, "p9"),
+        ({"views": quadgraph.Views([0], [[0, 0, 0]], [[1, 0, 0]])}, "samples\\[0\\]: a direction into the body"),
+        ({"views": quadgraph.Views([10**6], [[0, 0, 1]], [[1, 0, 0]])}, "samples\\[0\\]: face 1000000"),
+        ({"views": quadgraph.Views([-1], [[0, 0, 1]], [[1, 0, 0]])}, "views: face"),
+    ],
+)
+def test_what_does_not_fit_is_refused(engine, options, message):
+    with pytest.raises(InputError, match=message):
+        engine.forward_model(**options)
+
+
+def test_weights_and_directions_of_other_shapes_are_refused(engine):
+    model = engine.forward_model()
+    with pytest.raises(InputError, match=r"exitance: shape \(1, 3\) found, \(320, 3\) is wanted"):
+        model.vjp(exitance=np.ones((1, 3)))
+    with pytest.raises(InputError, match="sigma_a: numbers that are not finite"):
+        model.jvp(sigma_a=np.full(model.sigma_a.shape, np.nan))
+
+
+def test_a_body_that_is_deformed_or_not_solved_is_refused(engine, tmp_path):
+    path = write_levels(tmp_path / "ball.qgraph", [icosphere(1, 8)])
+    with quadgraph.Engine(path, device="cpu") as other:
+        other.material = "marble"
+        with pytest.raises(InputError, match="no solution"):
+            other.forward_model()
+        other.set_deformation([quadgraph.Twist(degrees=20)])
+        other.solve(correction=False)
+        with pytest.raises(InputError, match="the body is deformed"):
+            other.forward_model()
