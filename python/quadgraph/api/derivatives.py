@@ -53,12 +53,14 @@ class ForwardModel:
 
     The function is the solve by linear elements with buried source and inter-reflection, and gathered radiance, without
     the transport correction and what is done for display (docs/physics.md, "Derivatives"). `Engine.forward_model` makes
-    one. Its mesh: vertices (n_v, 3) mm, tets (n_t, 4), faces (n_f, 3), counter-clockwise from outside.
+    one. Its mesh: vertices (n_v, 3) mm, tets (n_t, 4), faces (n_f, 3), counter-clockwise from outside. bounces: whether
+    light that leaves one part and enters another is in it.
     """
 
-    def __init__(self, model: core.ForwardModel, level: core.Level) -> None:
+    def __init__(self, model: core.ForwardModel, level: core.Level, bounces: bool) -> None:
         """Take what `Engine.forward_model` made."""
         self._model = model
+        self.bounces = bounces
         self.vertices, self.tets, self.faces = (np.array(each) for each in (level.vertices, level.tets, level.faces))
         self.outgoing = Outgoing(*model.outgoing)
         self._parameters = Gradient(*model.parameters)
@@ -67,7 +69,8 @@ class ForwardModel:
     def __repr__(self) -> str:
         """Return the sizes in one line."""
         exitance, _, radiance = self.outgoing
-        return f"ForwardModel({len(self.sigma_a):,} tets to {len(exitance):,} faces and {len(radiance):,} rays)"
+        sizes = f"{len(self.sigma_a):,} tets to {len(exitance):,} faces and {len(radiance):,} rays"
+        return f"ForwardModel({sizes}, {'with' if self.bounces else 'without'} inter-reflection)"
 
     def jvp(
         self,
@@ -102,7 +105,7 @@ def forward_model(
     coefficients: tuple[npt.ArrayLike | None, npt.ArrayLike | None],
     views: Views | None,
     model: str,
-    bounces: bool,
+    bounces: bool | None,
     tolerance: float,
 ) -> ForwardModel:
     """Make what `Engine.forward_model` returns. Raises as it does."""
@@ -111,6 +114,10 @@ def forward_model(
         raise InputError(f"level: {level} found, 0 to {len(levels) - 1} allowed")
     if not 0 < tolerance < 1:
         raise InputError(f"tolerance: {tolerance:g} found, allowed is more than 0 and less than 1")
+    own = [number for number, each in enumerate(levels) if len(each.seen) > len(each.faces) + 1]
+    if bounces and own and level not in own:
+        known = f"level {own[0]} of the file knows what its faces see"
+        raise InputError(f"bounces: {known}, not level {level}; False is allowed")
     rays = views or Views([], np.empty((0, 3)), np.empty((0, 3)))
     face = numbers("views: face", rays.face, "(n,) is wanted")
     if face.ndim != 1 or (face < 0).any():
@@ -122,8 +129,8 @@ def forward_model(
     places = _as_doubles("views: barycentric", rays.barycentric, (len(face), 3))
     ways = _as_doubles("views: direction", rays.direction, (len(face), 3))
     rays_in = face.astype(np.uint32), places, ways
-    found = core.ForwardModel(engine, level, scattering, absorption, *rays_in, model, bounces, tolerance)
-    return ForwardModel(found, levels[level])
+    found = core.ForwardModel(engine, level, scattering, absorption, *rays_in, model, bounces is not False, tolerance)
+    return ForwardModel(found, levels[level], bounces is not False and level in own)
 
 
 def _as_doubles(name: str, values: npt.ArrayLike | None, shape: tuple[int, ...]) -> Doubles:

@@ -8,7 +8,7 @@ import pytest
 import quadgraph
 from baked import write_levels
 from quadgraph.base.errors import InputError
-from shapes import icosphere
+from shapes import icosphere, join, moved
 
 pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 
@@ -91,6 +91,20 @@ def test_exitance_grows_with_power_and_is_linear_in_it(engine):
     count = len(model.vjp().power)
     both = model.jvp(power=np.ones((count, 3)))
     assert both.exitance == pytest.approx(model.outgoing.exitance, rel=1e-9)
+
+
+def test_bounces_are_on_the_level_that_knows_what_its_faces_see(tmp_path):
+    """Two balls, one of which shines on the other; of small levels it is the finest."""
+    levels = [join(ball, moved(ball, 18, 0, 0)) for ball in (icosphere(2, 8), icosphere(1, 8))]
+    path = write_levels(tmp_path / "balls.qgraph", levels, rays=64)
+    with quadgraph.Engine(path, device="cpu") as engine:
+        engine.material = "marble"
+        engine.solve(correction=False)
+        mutual, own, coarse = (engine.forward_model(**each) for each in ({}, {"bounces": False}, {"level": 1}))
+        assert (mutual.bounces, own.bounces, coarse.bounces) == (True, False, False)
+        assert (mutual.outgoing.exitance.sum(axis=0) > 1.001 * own.outgoing.exitance.sum(axis=0)).all()
+        with pytest.raises(InputError, match="bounces: level 0 of the file knows what its faces see, not level 1"):
+            engine.forward_model(level=1, bounces=True)
 
 
 @pytest.mark.parametrize(
