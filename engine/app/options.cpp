@@ -19,7 +19,7 @@ struct Typed {
   std::string file, output, preview, device;
   std::map<std::string_view, std::vector<std::string>> texts;  // of the scene's options, by name
   std::map<std::string_view, bool> flags;
-  bool headless = false, validation = false, json = false, strict = false;
+  bool headless = false, copy_body = false, validation = false, json = false, strict = false;
 };
 
 void declare_flag(CLI::App& app, const SceneOption& option, Typed& typed) {
@@ -63,6 +63,9 @@ void declare(CLI::App& app, Typed& typed) {
          "window is open: {\"progress\": TEXT}, then {\"body\": FILE.qgraph}, to which it changes over, or "
          "{\"failed\": TEXT}")
       ->type_name("NEWS")
+      ->group("Run");
+  app.add_flag("--copy-body", typed.copy_body,
+               "in a window: the object will not stay where it is; scenes that are saved get a copy of it beside them")
       ->group("Run");
   app.add_option("--device", typed.device, "cpu, or part of a Vulkan device's name; default: a GPU, else cpu")
       ->group("Run");
@@ -145,7 +148,9 @@ AppOptions understood(const Typed& typed, const CLI::App& app) {
   if (!typed.preview.empty() && options.headless) {
     throw InputError("--preview: found with --headless; pictures are made of what is there");
   }
+  if (typed.copy_body && options.headless) throw InputError("--copy-body: found with --headless, which saves no scene");
   options.preview = typed.preview;
+  options.copy_body = typed.copy_body;
   options.device.validation = typed.validation;
   options.device.device = typed.device;
   options.json = typed.json;

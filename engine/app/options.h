@@ -13,6 +13,7 @@ struct AppOptions {
   bool headless = false;          // a picture, and no window
   std::filesystem::path output;   // headless: .png or .exr; else what pictures that the user asks for are called
   std::filesystem::path preview;  // the body is one, and this file says what becomes of it; else empty
+  bool copy_body = false;         // scenes that the user saves get a copy of the body beside them
   device::DeviceOptions device;
   bool json = false;
   bool strict = false;  // headless: an error that is missed fails

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/app/body_copy.h"
 #include "engine/app/gestures.h"
 #include "engine/app/overlays.h"
 #include "engine/app/panel.h"
@@ -31,8 +32,7 @@ double milliseconds(std::chrono::steady_clock::duration duration) {
 
 }  // namespace
 
-Viewer::Viewer(Window& window, vk::Context& presenter, Stage& stage, std::filesystem::path stem,
-               std::optional<Preview> preview)
+Viewer::Viewer(Window& window, vk::Context& presenter, Stage& stage, Saving saving, std::optional<Preview> preview)
     : window_(window),
       presenter_(presenter),
       stage_(stage),
@@ -40,7 +40,7 @@ Viewer::Viewer(Window& window, vk::Context& presenter, Stage& stage, std::filesy
       interface_(window, presenter_, swapchain_),
       tone_mapper_(stage.engine().device()),
       pace_(budget_ms),
-      stem_(std::move(stem)),
+      saving_(std::move(saving)),
       preview_(std::move(preview)),
       history_(stage.scene()) {
   state_.scene = stage.scene();
@@ -355,10 +355,12 @@ void Viewer::save_scene() {
     if (preview_) throw InputError("the scene can be saved once the body is baked: this is a preview");
     std::filesystem::path path;
     do {
-      path = stem_.string() + "-" + std::to_string(++scenes_written_) + ".json";
+      path = saving_.stem.string() + "-" + std::to_string(++scenes_written_) + ".json";
     } while (std::filesystem::exists(path));
     Scene scene = state_.scene;
-    scene.body = std::filesystem::absolute(scene.body);
+    if (saving_.copy_body) scene.body = copied_into(path.parent_path(), scene.body);
+    const std::filesystem::path from_here = std::filesystem::proximate(scene.body);
+    if (*from_here.begin() != "..") scene.body = from_here;  // so that the file names it by its own place
     SceneFile(scene).save(path);
     state_.say("saved: " + path.string());
   } catch (const std::exception& error) {
@@ -377,7 +379,7 @@ void Viewer::write_picture() {
     const Picture picture = engine().render(state_.scene.view, options);
     std::filesystem::path png, exr;
     do {
-      png = stem_.string() + "-" + std::to_string(++pictures_written_) + ".png";
+      png = saving_.stem.string() + "-" + std::to_string(++pictures_written_) + ".png";
       exr = png;
       exr.replace_extension(".exr");
     } while (std::filesystem::exists(png) || std::filesystem::exists(exr));

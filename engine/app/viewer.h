@@ -17,12 +17,17 @@
 
 namespace quadgraph {
 
+// What the user saves from a window.
+struct Saving {
+  std::filesystem::path stem;  // file name of pictures and scenes, without number and extension
+  bool copy_body = false;      // the body does not stay where it is: scenes get a copy beside them (body_copy.h)
+};
+
 class Viewer {
  public:
-  // Views the scene that the stage shows, in frames of the window's Vulkan device. `stem`: file name, without
-  // extension, of saved images and scenes.
-  // `preview`: of the body that the scene shows, where it is one. All three must outlive the viewer.
-  Viewer(Window& window, vk::Context& presenter, Stage& stage, std::filesystem::path stem,
+  // Views the scene that the stage shows, in frames of the window's Vulkan device. `preview`: of the body
+  // that the scene shows, where it is one. The window, the device and the stage must outlive the viewer.
+  Viewer(Window& window, vk::Context& presenter, Stage& stage, Saving saving,
          std::optional<Preview> preview = std::nullopt);
 
   ~Viewer();
@@ -75,7 +80,7 @@ class Viewer {
   Interface interface_;
   ToneMapper tone_mapper_;
   Pace pace_;
-  std::filesystem::path stem_;
+  Saving saving_;
   std::optional<Preview> preview_;  // what is shown, until it is changed for the baked body
   std::uint32_t pictures_written_ = 0, scenes_written_ = 0;
   State state_;

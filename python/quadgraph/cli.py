@@ -7,22 +7,15 @@ from __future__ import annotations
 import argparse
 import functools
 import importlib
-import io
-import math
-import os
 import re
-import signal
 import sys
-import tempfile
-import threading
-import time
 from collections.abc import Sequence
 from importlib.metadata import entry_points
-from types import FrameType, ModuleType
+from types import ModuleType
 from typing import Any
 
-from quadgraph.base.errors import InputError, QuadGraphError
-from quadgraph.base.message import ERROR, shortened
+from quadgraph.base import program
+from quadgraph.base.errors import InputError
 from quadgraph.base.version import __version__
 from quadgraph.commands import config
 from quadgraph.commands.command_parser import NAME_ROOM, CommandParser, Listing
@@ -46,7 +39,6 @@ SUBCOMMANDS = {
 }
 # The subcommands that quadgraph-validation brings along; their modules come through its entry points.
 VALIDATION = ("bench", "accuracy", "reference", "chart", "tables", "polygrid", "stability")
-INTERRUPTED = 128 + signal.SIGINT
 
 
 class Added:
@@ -137,73 +129,9 @@ def join_negative_values(arguments: Sequence[str]) -> list[str]:
     return joined
 
 
-class Stopped(KeyboardInterrupt):
-    """TERM or HUP, which clean up as Ctrl-C does."""
-
-
-_SENT: list[int] = []  # signals that were heeded in this run of `main`
-_AGAIN = 0.02  # s, after which a signal is sent again that came in an import
-_SETTLING = 1.0  # s after a signal in which another one would meet the cleaning up
-
-
-def heed_signals() -> None:
-    """Let TERM and HUP end the program as Ctrl-C does, where they are not ignored or somebody else's.
-
-    All three wait until what is being imported is: modules make errors of their own of an interrupt, or forget it.
-    Another one within a second says nothing new.
-    """
-    if threading.current_thread() is not threading.main_thread():
-        return
-
-    heeded = -math.inf
-
-    def again(_number: int, _frame: FrameType | None) -> None:
-        signal.raise_signal(_SENT[0])
-
-    def stop(number: int, frame: FrameType | None) -> None:
-        nonlocal heeded
-        if time.monotonic() < heeded + _SETTLING:
-            return
-        _SENT.append(number)
-        if _in_import(frame):
-            signal.signal(signal.SIGALRM, again)
-            signal.setitimer(signal.ITIMER_REAL, _AGAIN)
-        else:
-            heeded = time.monotonic()
-            signal.setitimer(signal.ITIMER_REAL, 0)
-            raise KeyboardInterrupt if number == signal.SIGINT else Stopped(number)
-
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        if signal.getsignal(number) in (signal.SIG_DFL, signal.default_int_handler):
-            signal.signal(number, stop)
-
-
-def _in_import(frame: FrameType | None) -> bool:
-    while frame is not None and frame.f_code.co_filename != "<frozen importlib._bootstrap>":
-        frame = frame.f_back
-    return frame is not None
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command line and return its exit status: 1 for an error, 2 for wrong usage, 130 for Ctrl-C."""
-    _SENT.clear()
-    heed_signals()
-    _print_any_character()
-    try:
-        return _run(join_negative_values(sys.argv[1:] if arguments is None else arguments))
-    except KeyboardInterrupt:
-        return _interrupted()
-    except Exception as error:
-        return _failed(error)
-    finally:
-        if _SENT:  # one that still waits for an import would come when Python has no handler any more
-            signal.setitimer(signal.ITIMER_REAL, 0)
-
-
-def _print_any_character() -> None:
-    """Let characters that the encoding of standard output lacks be printed as escapes, and be no error."""
-    if isinstance(sys.stdout, io.TextIOWrapper) and sys.stdout.errors == "strict":
-        sys.stdout.reconfigure(errors="backslashreplace")
+    return program.ended(lambda: _run(join_negative_values(sys.argv[1:] if arguments is None else arguments)))
 
 
 def _run(given: Sequence[str]) -> int:
@@ -218,35 +146,6 @@ def _run(given: Sequence[str]) -> int:
     if sys.stdout is not None:  # it is where the process was started without one
         sys.stdout.flush()
     return status
-
-
-def _interrupted() -> int:
-    print("quadgraph: interrupted", file=sys.stderr)
-    return 128 + _SENT[0] if _SENT else INTERRUPTED
-
-
-def _failed(error: Exception) -> int:
-    """Say what went wrong where it is ours or the system's to say, and return the exit status; raise all else."""
-    if not isinstance(error, QuadGraphError | OSError):
-        raise error
-    if isinstance(error, OSError):
-        _drop_output()
-    if isinstance(error, BrokenPipeError):  # the reader of our output is gone
-        return 1
-    text = str(error)
-    if isinstance(error, OSError):
-        # Files that are read and written have errors of their own: this is standard output, or a temporary file.
-        folder = tempfile.tempdir or os.environ.get("TMPDIR") or "/tmp"
-        where = error.filename or f"standard output, or a temporary file in {folder}"
-        text = shortened(f"{where}: {error.strerror or error}")
-    print(f"{ERROR}{text}", file=sys.stderr)
-    return 1
-
-
-def _drop_output() -> None:
-    """Let what is left of standard output not meet its reader, or a full disk, again when Python ends."""
-    if sys.stdout is not None:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 if __name__ == "__main__":

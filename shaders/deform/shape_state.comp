@@ -71,7 +71,7 @@ void main() {
   EACH(i, push.tet_count) {
     TetState state = state_of(i);
     counts += state.quality <= 0.0 ? vec3(1, 0, 0) : state.quality < push.least.quality ? vec3(0, 1, 0) : vec3(0);
-    sums.xy += vec2(state.conduction, state.volume);
+    sums += vec3(state.conduction, state.volume, 0);
     least = min(least, state.quality);
   }
   EACH(f, push.face_count) {

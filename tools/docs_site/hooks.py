@@ -69,6 +69,8 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     for target, make in reference_pages.PAGES.items():
         files.append(File.generated(config, target, content=make(ROOT)))
     files.append(File.generated(config, "site.css", content=(Path(__file__).parent / "site.css").read_text()))
+    shim = ROOT / "third_party/iframe-worker/shim.js"
+    files.append(File.generated(config, "iframe-worker.js", content=shim.read_text()))
     for file in [file for file in files if file.src_uri.startswith("benchmarks/truth/")]:
         files.remove(file)
     return files

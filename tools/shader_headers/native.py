@@ -17,6 +17,7 @@ FLOAT = re.compile(r"(?<![\w.])((?:\d+\.\d*|\.\d+)(?:[eE][-+]?\d+)?|\d+[eE][-+]?
 SWIZZLE = re.compile(r"(?<=[\w)\]])(?<!\bpush)\.([xyzw]{1,4})\b")
 CHANGED = re.compile(r"(\batomic\w+\([^,]*)\.([xyzw]),")
 ASSIGNED = re.compile(r"(?<=[\w)\]])\.([xyzw])(?= *[-+*/&|^]?=(?!=))")
+LOST = re.compile(r"(?<=[\w)\]])\.[xyzw]{2,4}(?= *[-+*/&|^]?=(?!=))")  # several components are a copy in C++
 OUT_PARAMETER = re.compile(r"\b(?:inout|out) (\w+) (?=\w+[,)\[])")
 STAGE_VARIABLE = re.compile(r"^layout\(location = (\d+)\) (?:flat )?(in|out) (?:flat )?(\w+) (\w+);")
 PUSH = re.compile(r"^layout\(push_constant, scalar\) uniform Block \{ (\w+) ", re.M)
@@ -66,6 +67,8 @@ def native_line(line: str) -> str:
         code, count = pattern.subn(replacement, code)
         if count:
             break
+    if LOST.search(code):
+        raise ValueError(f"assigns to several components, which C++ would lose: {line.strip()}")
     if not DIRECTIVE.match(code):
         for pattern, replacement in WORDS:
             code = pattern.sub(replacement, code)

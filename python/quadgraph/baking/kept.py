@@ -5,7 +5,6 @@ from __future__ import annotations
 import fcntl
 import hashlib
 import os
-import shutil
 import tempfile
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
@@ -14,7 +13,6 @@ from functools import cache
 from pathlib import Path
 
 from quadgraph.baking.pipeline import BakeOptions, bake
-from quadgraph.base import atomic_file
 from quadgraph.base.cache_folder import cache_folder
 from quadgraph.base.progress import ProgressCallback
 from quadgraph.base.version import __version__
@@ -67,22 +65,6 @@ def find(mesh: Path, options: BakeOptions) -> Path | None:
         os.utime(path)
         return path
     return None
-
-
-def adopt(mesh: Path, options: BakeOptions, baked: Path) -> Path:
-    """Keep what a mesh was baked to with these options; the kept file.
-
-    Raises OSError or InputError where the cache folder cannot be written or another program is baking the same.
-    """
-    place = _place(mesh, options)
-    path = place / f"{mesh.stem}.qgraph"
-    place.mkdir(parents=True, exist_ok=True)
-    with _locked(place, fcntl.LOCK_NB):
-        if not path.exists():
-            with baked.open("rb") as source, atomic_file.replacing(path) as stream:
-                shutil.copyfileobj(source, stream)
-            _trim(path)
-    return path
 
 
 def bodies() -> list[KeptBody]:

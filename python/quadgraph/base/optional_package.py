@@ -13,6 +13,4 @@ def optional_package(name: str, extra: str) -> ModuleType:
     try:
         return importlib.import_module(name)
     except ImportError as error:
-        raise InputError(
-            f"{name} cannot be imported ({error}): pip install 'quadgraph[{extra}]', in the source tree '.[{extra}]'"
-        ) from error
+        raise InputError(f"{name} cannot be imported ({error}): pip install 'quadgraph[{extra}]'") from error

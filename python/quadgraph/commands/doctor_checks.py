@@ -200,7 +200,7 @@ def extras() -> Iterator[Check]:
     from quadgraph.file import openvdb
 
     there = importlib.util.find_spec("av") is not None
-    cure = "in the source tree: pip install '.[film]'"
+    cure = "pip install 'quadgraph[film]'"
     yield Check("films", there, False, "PyAV " + importlib.metadata.version("av") if there else "no PyAV: no .mp4 and "
                 "no .webm", None if there else cure)  # fmt: skip
     try:

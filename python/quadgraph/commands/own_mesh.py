@@ -53,12 +53,6 @@ def sizes(args: argparse.Namespace) -> dict[str, Any]:
     return {_MEMBERS[name]: value for name, value in _given(args).items()}
 
 
-def size_texts(args: argparse.Namespace) -> list[str]:
-    """The same as arguments of a command line that has add_size_arguments."""
-    lengths = {name: value if isinstance(value, str) else f"{value!r}mm" for name, value in _given(args).items()}
-    return [text for name, value in lengths.items() for text in (f"--{name}", value)]
-
-
 def _given(args: argparse.Namespace) -> dict[str, Any]:
     return {name: value for name in _MEMBERS if (value := getattr(args, name, None)) is not None}
 

@@ -14,8 +14,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from quadgraph.baking import bare, kept
-from quadgraph.baking.pipeline import BakeOptions
+from quadgraph.baking import bare
 from quadgraph.base import atomic_file, child_process
 from quadgraph.base.errors import InputError
 from quadgraph.base.message import ERROR
@@ -37,7 +36,7 @@ def show(program: str, mesh: Path, args: argparse.Namespace, options: list[str])
         try:
             bake.start(children)
             window = children.enter_context(
-                child_process.beside([program, str(preview), "--preview", str(bake.news), *options])
+                child_process.beside([program, str(preview), "--copy-body", "--preview", str(bake.news), *options])
             )
             status = window.wait()
         finally:
@@ -55,8 +54,7 @@ class _Bake:
         self.closing = threading.Event()  # the window is closed, and nobody waits for the body
         self.failed = False
         self._mesh = mesh
-        self._options = BakeOptions(**own_mesh.sizes(args))
-        self._arguments = own_mesh.size_texts(args)
+        self._sizes = own_mesh.sizes(args)
         self._folder = folder
         self._size_note = size_note
         self._console = Console(stderr=True, highlight=False, soft_wrap=True)
@@ -66,20 +64,19 @@ class _Bake:
         """Start the child, which ends with `children`, and follow what it says."""
         if self._size_note:
             self._tell(self._size_note)
-        body = self._folder / f"{self._mesh.stem}.qgraph"
         # The window, which shares the processor with it, comes first.
-        command = ["nice", sys.executable, "-P", "-m", "quadgraph.cli", "bake", *self._arguments]
-        report = children.enter_context((self._folder / "report.json").open("w"))
+        command = ["nice", sys.executable, "-P", "-m", "quadgraph.commands.preview_child"]
+        answer = children.enter_context((self._folder / "answer.json").open("w"))
         child = children.enter_context(
             child_process.beside(
-                [*command, "--json", "-o", str(body), "--", str(self._mesh)],
-                stdout=report,
+                [*command, str(self._mesh), json.dumps(self._sizes), str(self._folder)],
+                stdout=answer,
                 stderr=subprocess.PIPE,
                 # What a child leaves that had to be killed is in the folder that goes.
                 env=os.environ | {"TMPDIR": str(self._folder)},
             )
         )
-        self._follower = threading.Thread(target=self._follow, args=(child, body), name="bake of the preview")
+        self._follower = threading.Thread(target=self._follow, args=(child,), name="bake of the preview")
         self._follower.start()
 
     def join(self) -> None:
@@ -87,38 +84,27 @@ class _Bake:
         if self._follower is not None:
             self._follower.join()
 
-    def _follow(self, child: subprocess.Popen[str], body: Path) -> None:
+    def _follow(self, child: subprocess.Popen[str]) -> None:
         last = ""
         assert child.stderr is not None
         with child.stderr, self._console.status(f"baking {self._mesh.name}, once for this mesh and size"):
             for line in child.stderr:
                 last = line.strip() or last
+                if last == self._size_note:  # which was told at first
+                    continue
                 self._tell(last)
                 self._announce("progress", last)
         status = child.wait()
         if self.closing.is_set():
             return
         if status == 0:
-            self._finish(body)
+            self._announce("body", json.loads((self._folder / "answer.json").read_text())["body"])
             return
         self.failed = True
         how = f"the bake was ended by {signal.Signals(-status).name}" if status < 0 else last.removeprefix(ERROR)
         self._announce("failed", how)
         if status < 0:
             self._tell(how)
-
-    def _finish(self, body: Path) -> None:
-        report = json.loads((self._folder / "report.json").read_text())
-        for note in report["notes"]:
-            if note != self._size_note:  # which was told at first
-                self._tell(note)
-        took = f"baked {self._mesh.name} in {report['seconds']['total']:.0f} s"
-        try:
-            body = kept.adopt(self._mesh, self._options, body)
-            self._tell(f"{took}, kept for the next time (quadgraph cache)")
-        except (OSError, InputError) as error:
-            self._tell(f"{took}, not kept: {error}")
-        self._announce("body", str(body.resolve()))
 
     def _tell(self, text: str) -> None:
         if not self.closing.is_set():

@@ -53,7 +53,9 @@ def run(args: argparse.Namespace) -> int:
         if kept.find(args.file, BakeOptions(**own_mesh.sizes(args))) is None:
             return preview.show(program, args.file, args, args.options)
     with own_mesh.body(args.file, args, surface_only=_by_shortest_path(args.options)) as path:
-        return subprocess.run([program, path, *args.options], check=False).returncode
+        # A scene that is saved must not name a file of the cache, or a temporary one.
+        keeping = [] if path == args.file or "--headless" in args.options else ["--copy-body"]
+        return subprocess.run([program, path, *keeping, *args.options], check=False).returncode
 
 
 def _bakes(file: Path, options: list[str]) -> bool:

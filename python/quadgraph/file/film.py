@@ -32,7 +32,7 @@ def check(path: Path) -> None:
     """Raise InputError if a film of that name cannot be encoded here."""
     if path.suffix.lower() in _CODECS and importlib.util.find_spec("av") is None:
         raise InputError(
-            f"{path}: needs PyAV: pip install '.[film]' in the source tree, or write {path.stem}.gif or frames/%04d.png"
+            f"{path}: needs PyAV: pip install 'quadgraph[film]', or write {path.stem}.gif or frames/%04d.png"
         )
 
 

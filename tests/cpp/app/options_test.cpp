@@ -67,6 +67,14 @@ TEST_CASE("a window has a ground without being asked, a picture has not") {
   CHECK_FALSE(parsed({}).render.ground);
 }
 
+TEST_CASE("a scene that is saved gets a copy of its body where a window is told to make one") {
+  CHECK_THROWS_AS(parsed({"--copy-body"}), InputError);
+  int code = 0;
+  const char* argv[] = {"quadgraph-engine", cube.c_str(), "--copy-body"};
+  CHECK(parse_command_line(3, argv, code)->copy_body);
+  CHECK_FALSE(parse_command_line(2, argv, code)->copy_body);
+}
+
 TEST_CASE("a preview is for a window") {
   CHECK_THROWS_AS(parsed({"--preview", "news.json"}), InputError);
   int code = 0;

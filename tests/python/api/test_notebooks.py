@@ -62,7 +62,8 @@ def test_a_notebook_that_is_behind_is_seen(tool, tmp_path):
 
 
 @pytest.mark.long
-def test_a_notebook_runs(tool, tmp_path):
+def test_a_notebook_runs(tool, tmp_path, monkeypatch):
+    monkeypatch.setenv("MPLCONFIGDIR", str(tmp_path / "matplotlib"))  # it complains where it has none to write to
     tool.run(PROGRAM, tmp_path / "again.ipynb")
     assert tool.faults(PROGRAM, tmp_path / "again.ipynb") == []
     assert agree(texts(tmp_path / "again.ipynb"))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import os
 import subprocess
 import sys
@@ -12,7 +11,7 @@ import pytest
 
 from quadgraph import cli
 from quadgraph.baking import kept
-from quadgraph.baking.pipeline import BakeOptions, bake
+from quadgraph.baking.pipeline import BakeOptions
 from quadgraph.base.errors import InputError
 from shapes import cube, icosphere, write_obj
 
@@ -133,31 +132,9 @@ def test_the_command_lists_and_clears(mesh, cache, capsys):
     assert "0 bodies" in capsys.readouterr().out
 
 
-def test_a_body_that_was_baked_elsewhere_is_found_once_it_is_adopted(mesh, cache, tmp_path):
+def test_a_body_is_found_once_it_is_kept(mesh):
     options = BakeOptions(**QUICK)
     assert kept.find(mesh, options) is None
-    baked = tmp_path / "elsewhere.qgraph"
-    bake(mesh, baked, options)
-    path = kept.adopt(mesh, options, baked)
-    assert path.read_bytes() == baked.read_bytes()
+    path = asked(mesh)
     assert kept.find(mesh, options) == path
     assert kept.find(mesh, BakeOptions(**QUICK, longest_mm=3)) is None
-    assert [each.path for each in kept.bodies()] == [path]
-    assert path.is_relative_to(cache)
-
-
-def test_a_body_is_not_adopted_while_another_program_bakes_it(mesh, cache, tmp_path):
-    options = BakeOptions(**QUICK)
-    any_file = tmp_path / "any.qgraph"
-    any_file.write_bytes(b"a body")
-    place = kept.adopt(mesh, options, any_file).parent
-    kept.clear()
-    place.mkdir(parents=True)
-    handle = os.open(place, os.O_RDONLY)
-    try:
-        fcntl.flock(handle, fcntl.LOCK_EX)
-        with pytest.raises(BlockingIOError):
-            kept.adopt(mesh, options, any_file)
-    finally:
-        os.close(handle)
-    assert kept.find(mesh, options) is None

@@ -79,8 +79,8 @@ def test_a_bake_that_is_ended_leaves_nothing(tmp_path, number):
 
 IMPORTING = """
 import sys, time
-from quadgraph import cli
-cli.heed_signals()
+from quadgraph.base import program
+program.heed_signals()
 try:
     import forgetful
     time.sleep(60)
@@ -122,13 +122,13 @@ def test_a_signal_during_an_import_is_heeded_after_it(tmp_path, name, kind):
 
 WAITING = """
 import os, signal, time
-from quadgraph import cli
-cli.heed_signals()
+from quadgraph.base import program
+program.heed_signals()
 try:
     import forgetful
     os.kill(os.getpid(), signal.SIGHUP)
     time.sleep(60)
-except cli.Stopped:
+except program.Stopped:
     signal.signal(signal.SIGALRM, signal.SIG_DFL)  # as when Python ends
 time.sleep(0.2)
 print("ended")
@@ -161,12 +161,12 @@ def test_a_program_that_ran_a_command_line_can_still_be_interrupted(tmp_path):
 
 AGAIN = """
 import os, signal, time
-from quadgraph import cli
-cli.heed_signals()
+from quadgraph.base import program
+program.heed_signals()
 try:
     os.kill(os.getpid(), signal.SIGTERM)
     time.sleep(60)
-except cli.Stopped:
+except program.Stopped:
     for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT):
         os.kill(os.getpid(), number)
     print("cleaned up")
@@ -174,7 +174,7 @@ time.sleep(1.1)
 try:
     os.kill(os.getpid(), signal.SIGHUP)
     time.sleep(60)
-except cli.Stopped:
+except program.Stopped:
     print("ended")
 """
 

@@ -156,9 +156,10 @@ def test_pages_fit_the_screen(site, address, browser, screen, names, tmp_path):
     assert faults == {}
 
 
-def test_the_search_finds_a_page(address, browser):
+@pytest.mark.parametrize("where", ["a server", "the disk"])
+def test_the_search_finds_a_page(where, site, address, browser):
     on_screen(browser, "desktop")
-    browser.get(f"{address}/index.html?q=orange")
+    browser.get(f"{site.as_uri() if where == 'the disk' else address}/index.html?q=orange")
     wait_for(lambda: browser.execute_script("return document.querySelectorAll('.md-search-result__item').length") > 0)
     links = browser.execute_script(
         "return [...document.querySelectorAll('.md-search-result__item a')].map(link => link.getAttribute('href'))"

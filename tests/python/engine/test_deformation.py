@@ -42,6 +42,20 @@ def engine():
     assert engine.validation_messages == []
 
 
+def test_the_thickness_of_a_body_is_known_in_every_shape(engine):
+    """In mean free paths, which is what a warning of the model goes by: it grows and shrinks with the body."""
+    engine.set_material("sigma_s_prime=0.4,sigma_a=0.2")
+    said = []
+    for factor in (1, 1000):
+        engine.set_deformation([{"type": "transform", "scale": factor}])
+        said.append(engine.solve(correction=False)["model_warning"])
+    engine.set_deformation([])
+    said.append(engine.solve(correction=False)["model_warning"])
+    engine.set_material("marble")
+    assert said[:2] == [said[2], ""]
+    assert "mean free paths" in said[2]
+
+
 def test_every_kind_is_written_out_and_read_back_as_it_is():
     written = _core.check_deformation(EVERY_KIND)
     assert _core.check_deformation(written) == written

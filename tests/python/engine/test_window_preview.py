@@ -13,6 +13,7 @@ import pytest
 from test_window import LIGHTS, PANEL, SIZE, Hand, open_window, pytestmark, server
 
 from baked import write_levels
+from quadgraph import cli
 from quadgraph.baking import bare
 from quadgraph.mesh.surface import Surface
 from shapes import icosphere, write_obj
@@ -82,7 +83,7 @@ def test_a_preview_changes_over_to_its_body_and_keeps_what_the_user_did(open_win
     hand.keys("ctrl+s")
     wait_until((tmp_path / "ball-1.json").exists, hand)
     scene = json.loads((tmp_path / "ball-1.json").read_text())
-    assert (scene["body"], scene["solver"]["method"]) == (str(body), "fem")
+    assert (scene["body"], scene["solver"]["method"]) == ("baked/ball.qgraph", "fem")
     assert scene["material"] != "skin1"
     hand.keys("ctrl+z")
     undone = hand.picture()
@@ -154,6 +155,28 @@ def test_a_mesh_is_seen_at_once_and_then_baked(open_window, places, tmp_path: Pa
     assert not list(temporary.iterdir())
     again = open_window(*MATERIAL, *LIGHTS, body=mesh, program=VIEW)
     assert np.abs(again.picture() - baked).max() <= 1
+    again.close()
+
+
+@pytest.mark.parametrize("options", [[], ["--method", "shortest-path"]])
+def test_a_saved_scene_of_a_mesh_outlives_the_cache(open_window, places, tmp_path: Path, options):
+    """Seen as a preview that is baked, and by shortest paths, of which nothing is kept."""
+    cache, temporary = places
+    mesh = write_obj(icosphere(2, 10), tmp_path / "ball.obj")
+    hand = open_window(*MATERIAL, *LIGHTS, *options, body=mesh, program=VIEW)
+    if not options:
+        wait_until(lambda: list(cache.glob("*/ball.qgraph")), hand, 120)
+        wait_until(lambda: not labelled(seen(hand)), hand)
+    shown = hand.picture()
+    hand.keys("ctrl+s")
+    wait_until((tmp_path / "ball-1.json").exists, hand)
+    assert json.loads((tmp_path / "ball-1.json").read_text())["body"] == "ball.qgraph"
+    hand.keys("q")
+    assert hand.process.wait(timeout=20) == 0
+    assert cli.main(["cache", "clear"]) == 0
+    assert not list(temporary.iterdir())
+    again = open_window(body=tmp_path / "ball-1.json")
+    assert np.abs(again.picture()[: SIZE[1] - 80] - shown[: SIZE[1] - 80]).max() <= 1
     again.close()
 
 

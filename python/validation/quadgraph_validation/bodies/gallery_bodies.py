@@ -43,9 +43,14 @@ def _box(half: tuple[float, float, float], edge: float) -> Field:
     return box(np.array(half) - edge, edge, np.eye(3))
 
 
-def _turned(profile: str) -> Field:
-    """What a closed profile, its corners as radius,height, sweeps about the y axis."""
+def _turned(profile: str, edge: float) -> Field:
+    """What a profile, corners as radius,height from axis to axis, sweeps about the y axis.
+
+    edge: mm that its corners are cut by at first, and then, as far as that leaves corners, by less.
+    """
     corners = np.array([corner.split(",") for corner in profile.split()], float)
+    for most in (edge, 0.4 * edge):
+        corners = _cut(corners, most)
     edges = np.roll(corners, -1, axis=0) - corners
 
     def field(p: np.ndarray) -> np.ndarray:
@@ -60,6 +65,14 @@ def _turned(profile: str) -> Field:
         return np.where(inside, -1, 1) * np.sqrt(square)
 
     return field
+
+
+def _cut(corners: np.ndarray, most: float) -> np.ndarray:
+    """A line of straight pieces with its corners cut, by `most` and at most a third of a piece."""
+    pieces = np.diff(corners, axis=0)
+    share = np.minimum(most / np.linalg.norm(pieces, axis=1), 1 / 3)[:, None]
+    between = np.stack([corners[:-1] + share * pieces, corners[1:] - share * pieces], axis=1).reshape(-1, 2)
+    return np.vstack([corners[:1], between[1:-1], corners[-1:]])
 
 
 def _union(parts: list[Field], blend: float) -> Field:
@@ -84,12 +97,12 @@ def _gummy_bear() -> Field:
     parts += [_capsule((5.0 * side, 1.2, 1.5), (4.6 * side, -1.6, 6.2), 2.2, 2.0) for side in both]
     parts += [_capsule((3.6 * side, -9.0, 1.0), (4.4 * side, -9.6, 7.4), 3.0, 2.6) for side in both]
     bear = _union(parts, 1.3)
-    eyes = _union([_ball((1.9 * side, 8.4, 4.6), 0.7) for side in both], 0.1)
-    return _without(bear, eyes, 0.3)
+    eyes = _union([_ball((2.0 * side, 8.6, 4.7), 0.95) for side in both], 0.1)
+    return _without(bear, eyes, 0.25)
 
 
 def _soap() -> Field:
-    """A bar of 84 x 28 x 56 mm with an oval sunk into its top."""
+    """A bar of 86 x 32 x 58 mm with an oval sunk into its top."""
     bar = _union([_box((42, 14, 28), 13), _ball((0, 0, 0), (41, 16, 27))], 4)
 
     def oval(p: np.ndarray) -> np.ndarray:
@@ -100,44 +113,77 @@ def _soap() -> Field:
 
 
 def _candle() -> Field:
-    """A candle of 72 mm that has burnt down into itself, wax that ran down its side."""
-    body = _turned("0,-36 24,-36 25,-34 25,30 23.5,33 21.5,31 20.5,24 17,8 9,-3 0,-6")
-    turns, ends = (0.3, 0.9, 1.5, 2.6, 3.6, 4.4, 5.4), (6, -12, 14, -4, 10, -18, 2)  # of what ran down, mm
-    drips = []
+    """A candle of 70 mm that has burnt down into itself, wax that ran down its side."""
+    body = _turned("0,-36 24,-36 25.2,-20 24.6,10 25,33.5 20.6,33.5 19.6,22 16.5,8 9,-4 0,-7", 2.2)
+    turns, ends = (0.15, 0.8, 1.5, 2.6, 3.5, 4.4, 5.5), (10, -8, 15, -4, 12, -14, 4)  # of what ran down, mm
+    drips: list[Field] = []
     for turn, end in zip(turns, ends, strict=True):
         way = np.array([np.sin(turn), 0, np.cos(turn)])
-        drips.append(_capsule(24.6 * way + 31 * _UP, 25.4 * way + end * _UP, 1.7, 2.4))
-    return _union([body, *drips], 2.0)
+        drips += [_capsule(23.6 * way + 31 * _UP, 24.4 * way + end * _UP, 2.0, 1.7), _ball(24.6 * way + end * _UP, 2.6)]
+    return _union([body, *drips], 2.4)
 
 
 def _crown() -> Field:
-    """The crown that a drop throws up from milk, 60 mm across, and the drop above it."""
-    wall = _turned("0,-13 27,-13 29,-12 27,-10.4 22.5,-8 21.5,-2 23.8,6 22.6,6.4 19.6,-2 19.2,-8 14,-10.6 0,-11")
+    """The crown that a drop throws up from milk, 68 mm across, and the drop that follows in its middle."""
+    wall = _turned(
+        "0,-14.5 34,-14.5 34,-11 27.5,-10.6 24,-8 22.6,-2 23.8,4 25.6,8.2 "
+        "23.6,8.2 21.2,1 20.4,-5 18.6,-9 14,-11 0,-11.2",
+        1.2,
+    )
     count = 17
     turns = 2 * np.pi * (np.arange(count) + 0.25 * np.sin(5.0 * np.arange(count))) / count
-    heights = 12 + 3.5 * np.sin(7.0 * np.arange(count) + 1)
+    heights = 13 + 3.5 * np.sin(7.0 * np.arange(count) + 1)
     parts: list[Field] = [wall]
     for turn, height in zip(turns, heights, strict=True):
         way = np.array([np.sin(turn), 0, np.cos(turn)])
-        foot, tip = 23.0 * way + _UP * 5.4, (24.6 + 0.22 * height) * way + _UP * height
-        parts += [_capsule(foot, tip, 1.5, 0.95), _ball(tip + 0.8 * _UP, 1.9)]
-    jet = [_capsule((0, -7, 0), (0, 9, 0), 5.5, 2.0), _ball((0, 11.5, 0), 4.2)]
-    return _union([*parts, *jet], 1.6)
+        foot, tip = 24.4 * way + _UP * 6.2, (25.4 + 0.22 * height) * way + _UP * height
+        parts += [_capsule(foot, tip, 1.7, 1.0), _ball(tip + 0.8 * _UP, 1.9)]
+    jet = [_capsule((0, -8, 0), (0, 8, 0), 5.5, 2.0), _ball((0, 10.5, 0), 3.8)]
+    return _union([*parts, *jet], 2.2)
+
+
+def _hand() -> Field:
+    """A hand of 240 mm with its wrist, fingers up and spread, its palm towards +z."""
+    palm = _union([_box((37, 40, 10), 9.5), _ball((20, -24, 5), (17, 26, 10)), _ball((-24, -18, 3), (13, 28, 10))], 12)
+    wrist = _capsule((0, -34, 0), (0, -102, 0), 24, 22)
+    # Of each finger where it begins, how far it leans outwards in degrees, its three bones and its thickness, mm.
+    fingers = [
+        (-29, 30, -14, (24, 17, 13), 7.4),
+        (-11, 37, -5, (32, 22, 15), 8.4),
+        (8, 38, 3, (34, 24, 15), 8.6),
+        (27, 32, 11, (30, 20, 14), 8.2),
+        (27, -18, 46, (36, 24, 18), 11.0),
+    ]
+    parts = []
+    for x, y, lean, bones, thick in fingers:
+        at = np.array([x, y, 0.0])
+        finger = []
+        for number, bone in enumerate(bones):
+            turn, bent = np.radians(lean * (1 - 0.2 * number)), np.radians(8 * number)
+            to = at + bone * np.array([np.sin(turn), np.cos(turn) * np.cos(bent), np.sin(bent)])
+            finger.append(_capsule(at, to, thick, 0.91 * thick))
+            at, thick = to, 0.91 * thick
+        parts.append(_union(finger, 1.0))
+    return _union([_union([palm, wrist], 18), *parts], 6.0)
 
 
 def _leaf() -> Field:
-    """A leaf of 90 mm, half a millimetre thin between veins of two."""
+    """A leaf of 105 mm with its stalk, a millimetre thin between veins of three, bent along and across."""
 
     def field(p: np.ndarray) -> np.ndarray:
         x, y, z = p[..., 0], p[..., 1], p[..., 2]
         along = np.clip((y + 42) / 84, 0, 1)
-        width = 27 * np.sin(np.pi * along**0.8) ** 0.9 * (1 - 0.3 * along) + 0.01
-        bend = 5.5 * (x / 27) ** 2 + 4.0 * np.sin(2.2 * along) + 0.7 * np.sin(0.42 * y) * np.abs(x) / 27
+        width = 25 * np.sin(np.pi * along**0.75) ** 0.8 * (1 - 0.35 * along) + 0.01
+        bend = 7 * (x / 25) ** 2 + 9 * (along - 0.3) ** 2 - 1.2 * np.sin(0.3 * y + 2 * np.sign(x)) * (x / 25) ** 2
         off = np.abs(z - bend)
-        side = np.abs(np.mod(np.abs(x) * 0.75 - y + 2.5, 11) - 5.5)  # mm, from the nearest side vein
-        vein = np.maximum(0.65 * np.exp(-((side / 0.9) ** 2)), 1.25 * np.exp(-((x / 1.3) ** 2)) * (1.1 - 0.7 * along))
-        blade = np.maximum(off - 0.55 - vein, (np.abs(x) - width) * 0.7)
-        stalk = _capsule((0, -60, -1.0), (0, -38, 0.4), 1.5, 1.9)(p)
+        # mm from the nearest side vein; those of the left side begin between those of the right
+        across = np.abs(x)
+        side = np.abs(np.mod(1.05 * across - 0.013 * across**2 - y + np.where(x < 0, 6.5, 2), 9) - 4.5)
+        fine = 0.22 * np.exp(-((np.abs(np.mod(0.9 * y + 1.1 * across, 3) - 1.5) / 0.35) ** 2)) * (across > 1)
+        vein = np.maximum(0.75 * np.exp(-((side / 0.75) ** 2)) * (1 - 0.5 * across / 25), fine)
+        vein = np.maximum(vein, 1.5 * np.exp(-((x / 1.2) ** 2)) * (1.1 - 0.8 * along))
+        blade = np.maximum(off - 0.5 - vein, (across - width) * 0.7)
+        stalk = _capsule((0, -62, 5.5), (0, -38, 1.0), 1.3, 1.7)(p)
         return least(blade, stalk, 1.5)
 
     return field
@@ -146,12 +192,13 @@ def _leaf() -> Field:
 def _bowl() -> Field:
     """A bowl of 90 mm with a wall of 3, on a foot."""
     return _turned(
-        "0,-22 17,-22 18.5,-20.5 17,-17 24,-14 35,-4 42,10 45,26 43.4,27.6 41.6,26 38.6,11 32,-1 22,-10.5 0,-13"
+        "0,-22 18,-22 17,-16.5 27,-12.5 36.5,-3 42,9 45,27.6 41.6,27.6 38.8,10.5 33.4,-0.5 24.5,-9.2 12,-12.6 0,-13",
+        3.0,
     )
 
 
 def _grapes() -> Field:
-    """A bunch of 70 mm, its berries grown together where they touch, and a stalk."""
+    """A bunch of 86 mm with its stalk, its berries grown together where they touch."""
     generator = np.random.default_rng(4)
     parts: list[Field] = []
     for row, count in enumerate((7, 8, 7, 5, 4, 2, 1)):
@@ -167,8 +214,8 @@ def _grapes() -> Field:
 
 def _pawn() -> Field:
     """A pawn of 80 mm."""
-    profile = "0,-40 20,-40 21,-38 21,-33 18.5,-31 17,-27 12,-21 9,-10 7.6,4 7.6,10 12.5,12 13,13.5 12,15 8.2,16.5 0,17"
-    return _union([_turned(profile), _ball((0, 26.5, 0), 12.5)], 1.5)
+    profile = "0,-40 21,-40 21,-33 18.5,-31 17,-27 12,-21 9,-10 7.6,4 7.6,10 13,12 13,15 8.2,16.5 0,17"
+    return _union([_turned(profile, 1.0), _ball((0, 26.5, 0), 12.5)], 1.5)
 
 
 def _egg() -> Field:
@@ -181,12 +228,13 @@ def _egg() -> Field:
 # Field, half the side of the box that it is in (mm), cells along that, triangles.
 BODIES: dict[str, tuple[Callable[[], Field], float, int, int]] = {
     "bear": (_gummy_bear, 15.0, 150, 24_000),
-    "bowl": (_bowl, 50.0, 200, 40_000),
-    "candle": (_candle, 40.0, 180, 40_000),
-    "crown": (_crown, 36.0, 220, 50_000),
-    "egg": (_egg, 34.0, 100, 12_000),
+    "bowl": (_bowl, 50.0, 190, 70_000),
+    "candle": (_candle, 40.0, 170, 36_000),
+    "crown": (_crown, 38.0, 220, 50_000),
+    "egg": (_egg, 34.0, 140, 40_000),
     "grapes": (_grapes, 48.0, 180, 40_000),
-    "leaf": (_leaf, 64.0, 300, 60_000),
+    "hand": (_hand, 132.0, 200, 40_000),
+    "leaf": (_leaf, 66.0, 330, 70_000),
     "pawn": (_pawn, 44.0, 180, 24_000),
     "soap": (_soap, 48.0, 160, 24_000),
 }
