@@ -9,6 +9,7 @@ from quadgraph.base.errors import ToolError
 from quadgraph.tets.tet_geometry import determinants
 
 _ROUNDS = 20
+_MANY, _PATIENCE = 100, 3  # flat tets, and rounds that leave no fewer: more rounds take minutes and mend nothing
 
 
 def _round(points: np.ndarray) -> np.ndarray:
@@ -31,10 +32,15 @@ def round_to_float32(vertices: np.ndarray, tets: np.ndarray, fixed: int) -> np.n
     does not help, naming the place.
     """
     rounded = _round(vertices)
+    least, waited = len(tets) + 1, 0
     for _ in range(_ROUNDS):
         flat = np.flatnonzero(determinants(rounded, tets) <= 0)
         if not len(flat):
             return rounded
+        waited = 0 if len(flat) < least else waited + 1
+        if waited >= _PATIENCE and len(flat) > _MANY:
+            break
+        least = min(least, len(flat))
         free = np.unique(tets[flat])
         for vertex in free[free >= fixed]:
             _centre(rounded, tets[(tets == vertex).any(axis=1)], vertex)

@@ -19,6 +19,7 @@ from quadgraph.mesh import intersections
 from quadgraph.mesh.intersections import intersecting_triangles
 from quadgraph.mesh.surface import Surface
 from quadgraph.mesh.wrap import CGAL_MESH
+from quadgraph.tets import tet_rounding
 from quadgraph.tets.interior import Limits, of_size
 from quadgraph.tets.tet_geometry import determinants
 from quadgraph.tets.tet_rounding import orient, round_to_float32
@@ -197,6 +198,18 @@ def test_rounding_that_cannot_help_is_refused() -> None:
     flat = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0.0]])
     with pytest.raises(ToolError, match="no volume"):
         round_to_float32(flat, orient(flat, np.array([[0, 1, 2, 3]])), 4)
+
+
+def test_rounding_gives_many_flat_tets_up_that_do_not_become_fewer(monkeypatch) -> None:
+    """Moving a vertex mends nothing where its whole star lies in a plane, and a round over many takes its time."""
+    one = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0.0]])
+    count = 200
+    vertices = (one + np.array([3.0, 0, 0]) * np.arange(count)[:, None, None]).reshape(-1, 3)
+    moved = []
+    monkeypatch.setattr(tet_rounding, "_centre", lambda _vertices, _star, vertex: moved.append(int(vertex)))
+    with pytest.raises(ToolError, match=f"{count} tetrahedra have no volume"):
+        round_to_float32(vertices, np.arange(4 * count).reshape(-1, 4), 0)
+    assert 1 <= moved.count(0) <= 5
 
 
 def test_missing_program_names_its_package(tmp_path: Path) -> None:
