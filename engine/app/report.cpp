@@ -71,6 +71,7 @@ Json as_json(const SolveReport& report) {
   json["algebraic"] = as_json(report.algebraic);
   json["mesh_error"] = as_json(report.mesh_error);
   json["model_error"] = as_json(report.model_error);
+  json["light_error"] = as_json(report.light_error);
   json["error"] = as_json(report.error);
   json["advice"] = report.advice;
   json["replaced"] = report.replaced;
@@ -164,6 +165,7 @@ void tell_levels(std::ostream& out, const RunReport& report) {
   tell_part(out, "  mesh   ", report.solve.mesh_error);
   tell_part(out, "  solver ", report.solve.algebraic);
   tell_part(out, "  model  ", report.solve.model_error);
+  tell_part(out, "  light  ", report.solve.light_error);
 }
 
 }  // namespace

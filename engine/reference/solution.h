@@ -85,7 +85,10 @@ struct SolveReport {
   // share of it that is the finer one's own, and no less than what elements as deep as those at the surface leave
   // (engine/reference/resolution.h). Empty with a single level. After a correction what that leaves of it.
   std::optional<ErrorEstimate> mesh_error;
-  // All of these together, and without a correction those but the model's. Empty where nothing is known of the mesh.
+  // What the exitance is off by because the irradiance is (engine/solve/light_error.h); of what is corrected at rest,
+  // under lights. Else empty.
+  std::optional<ErrorEstimate> light_error;
+  // All of these together, as far as they are known. Empty where nothing is known of the mesh.
   std::optional<ErrorEstimate> error;
   std::string advice;             // of an error above 5%: where it comes from and what to do; else empty
   bool inter_reflection = false;  // whether inter-reflection was computed

@@ -178,12 +178,16 @@ SolveReport Engine::solve(const SolveOptions& options, const std::function<void(
   if (!self.cut_tools.empty() && !by_path) throw InputError("cuts: only the method shortest-path knows them");
   self.gather_passes.clear();
   self.deformation_passes.clear();
+  self.light_passes.clear();
   if (!by_path && self.irradiance_stale) update_irradiance();
   if (self.deformed && self.simulation) self.deformation_passes = self.simulation->deformation_passes();
   self.deformed = false;
   self.report.reset();
   self.report =
       self.interruptible([&] { return by_path ? self.solve_paths(options) : self.levels().solve(options, check); });
+  if (self.report->correction && !options.warm && !self.lights.empty()) {
+    self.interruptible([&] { self.state_light_error(options); });
+  }
   judge(*self.report, self.lights, self.lights_inside());
   self.options = options;
   return *self.report;
@@ -256,8 +260,8 @@ std::vector<PassStats> Engine::passes() const {
   const bool by_path = self.report && self.report->path;
   const std::vector<PassStats> none;
   const auto& solved = by_path ? self.paths.passes() : self.simulation ? self.simulation->passes() : none;
-  for (const auto* passes :
-       {&self.deformation_passes, &self.irradiance_passes, &solved, &self.gather_passes, &self.render_passes}) {
+  for (const auto* passes : {&self.deformation_passes, &self.irradiance_passes, &solved, &self.light_passes,
+                             &self.gather_passes, &self.render_passes}) {
     all.insert(all.end(), passes->begin(), passes->end());
   }
   return all;

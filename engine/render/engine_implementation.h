@@ -10,6 +10,7 @@
 #include "engine/render/inside/inside.h"
 #include "engine/render/light/hidden_sky.h"
 #include "engine/render/light/irradiance.h"
+#include "engine/render/light/light_samples.h"
 #include "engine/render/path_method.h"
 #include "engine/render/picture/ground.h"
 #include "engine/render/picture/rasteriser.h"
@@ -31,6 +32,7 @@ struct Engine::Implementation {
         images(device),
         shadows(device),
         irradiance(device),
+        light_samples(device),
         rasteriser(device),
         paths(device) {
     shadows.update(mesh, {{}, bounds});
@@ -48,6 +50,7 @@ struct Engine::Implementation {
   LightImages images;
   ShadowMaps shadows;
   IrradiancePass irradiance;
+  LightSamples light_samples;
   std::optional<HiddenSky> hidden;  // where there is an environment, made at first use
   Rasteriser rasteriser;
 
@@ -63,7 +66,7 @@ struct Engine::Implementation {
   Radiance radiance = Radiance::automatic;  // of the last picture
   std::optional<RadianceProbe> probe;       // made at first use
   device::Buffer triangle_face;             // display_faces.h, made at first use
-  std::vector<PassStats> deformation_passes, irradiance_passes, gather_passes, render_passes;
+  std::vector<PassStats> deformation_passes, irradiance_passes, light_passes, gather_passes, render_passes;
   bool deformed = false;                                // since the last solve
   std::string deformation;                              // in words
   std::optional<Ground> ground;                         // made at first use
@@ -136,6 +139,13 @@ struct Engine::Implementation {
     }
     simulation->irradiance_changed();
     irradiance_stale = false;
+  }
+
+  // Of the report, which is of a correction at rest.
+  void state_light_error(const SolveOptions& wanted) {
+    const LightRoom room = simulation->light_room(wanted);
+    light_passes = {light_samples.run(simulation->level(0), shadows, room, eta)};
+    simulation->state_light_error(wanted, *report);
   }
 
   // Which of the lights stand in the body. Only those are asked for that stand within its bounds.

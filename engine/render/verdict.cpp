@@ -45,7 +45,8 @@ std::string not_finite(const SolveReport& report) {
     return "not finite: the power that " + std::string(what) +
            " is beyond single precision; weaker light, or a smaller or less remote body, is within it";
   }
-  for (const auto& estimate : {report.error, report.mesh_error, report.algebraic, report.model_error}) {
+  for (const auto& estimate :
+       {report.error, report.mesh_error, report.algebraic, report.model_error, report.light_error}) {
     if (!finite(estimate)) return "not finite: the estimate of the error is no number";
   }
   return "";

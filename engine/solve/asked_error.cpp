@@ -48,6 +48,11 @@ std::string missed(const std::optional<ErrorEstimate>& estimate, double wanted) 
          " times that; a file with more vertices on its surface would come closer";
 }
 
+void state_missed(SolveReport& report, double wanted) {
+  const bool kept = report.error && certain(*report.error, wanted);
+  report.missed = wanted > 0 && !kept ? missed(report.error, wanted) : "";
+}
+
 std::string advice(const SolveReport& report) {
   constexpr double large = 0.05;
   const auto most = [](const std::optional<ErrorEstimate>& part) {
@@ -55,8 +60,12 @@ std::string advice(const SolveReport& report) {
   };
   if (most(report.error) <= large) return "";
   const double mesh = most(report.mesh_error), solver = most(report.algebraic), model = most(report.model_error);
+  const double light = most(report.light_error);
   const std::string off = "the error is stated as " + percent_text(most(report.error)) + ", most of it ";
   if (!report.correction && mesh >= solver) return off + "the mesh's: a correction would take most of that away";
+  if (light > std::max({mesh, solver, model})) {
+    return off + "the light's: fewer lights have finer shadow maps";
+  }
   if (solver > std::max(mesh, model)) return off + "the solver's: a smaller --tolerance brings it down";
   if (mesh > model) return off + "the mesh's: a file with more vertices has less";
   const CorrectedSweep& last = report.correction->sweeps.back();

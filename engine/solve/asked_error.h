@@ -26,6 +26,9 @@ std::string percent_text(double share);
 // In words, of an error that is not certain; no estimate: of a file that has none.
 std::string missed(const std::optional<ErrorEstimate>& estimate, double wanted);
 
+// Says of a report anew whether an error that was wanted, 0 if none was, is missed.
+void state_missed(SolveReport& report, double wanted);
+
 // In words, of a stated error above 5%: the largest of its parts, and what makes it smaller; empty below.
 std::string advice(const SolveReport& report);
 

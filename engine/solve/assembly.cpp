@@ -202,12 +202,13 @@ void load_fv(Workspace& work, const LevelBuffers& level, const Boundary& boundar
                          "right-hand side", right_hand_side_bytes(op) + level.face_count * face_bytes);
 }
 
-void load_fem(Workspace& work, const LevelBuffers& level, const Boundary& boundary, OperatorBuffers& op) {
+void load_fem(Workspace& work, const LevelBuffers& level, std::uint64_t q, const Boundary& boundary,
+              OperatorBuffers& op) {
   const gpu::RightHandSideFemPush push{.vertices = level.vertices.address(),
                                        .faces = level.faces.address(),
                                        .face_offset = level.face_offset.address(),
                                        .face_incidence = level.face_incidence.address(),
-                                       .q = level.q.address(),
+                                       .q = q,
                                        .scale = work.scale.address(),
                                        .side = op.right_hand_side(work.reduction),
                                        .count = op.count,
@@ -307,10 +308,14 @@ void record_diffuse_load(Workspace& work, const LevelBuffers& level, Method meth
       return load_fv(work, level, boundary, op);
     case Discretisation::fem:
     case Discretisation::polygrid:
-      return load_fem(work, level, boundary, op);
+      return load_fem(work, level, level.q.address(), boundary, op);
     case Discretisation::none:
       break;
   }
+}
+
+void record_surface_load(Workspace& work, const LevelBuffers& level, std::uint64_t q, OperatorBuffers& op) {
+  load_fem(work, level, q, {.k11 = 1, .source = 1}, op);
 }
 
 void record_damping(Workspace& work, Method method, OperatorBuffers& op) {

@@ -40,6 +40,9 @@ void record_scale(Workspace& work, const LevelBuffers& finest);
 void record_diffuse_load(Workspace& work, const LevelBuffers& level, Method method, const Boundary& boundary,
                          OperatorBuffers& op);
 
+// b of fem where light is scattered at the surface itself, and its norm. q: address of what is, W/mm^2, vec3 per face.
+void record_surface_load(Workspace& work, const LevelBuffers& level, std::uint64_t q, OperatorBuffers& op);
+
 // The step of the relaxation: 1 for the graph methods, as published; for fem the largest that cannot diverge.
 void record_damping(Workspace& work, Method method, OperatorBuffers& op);
 

@@ -95,6 +95,31 @@ SolveReport Simulation::solve(const SolveOptions& options, const std::function<v
   return implementation_->solve(options, check);
 }
 
+LightRoom Simulation::light_room(const SolveOptions& options) {
+  Implementation& self = *implementation_;
+  return {self.beams.on_device, self.light_error->difference(), self.tree->ref(), entering_rays(options.mean_rays)};
+}
+
+void Simulation::state_light_error(const SolveOptions& options, SolveReport& report) {
+  Implementation& self = *implementation_;
+  const Boundary boundary = boundary_of(Method::fem, Source::buried, Model::diffusion, double{eta()});
+  SurfaceField field = surface_of(present_level());
+  field.q = device::download<glm::vec3>(self.device, self.levels[0].q);
+  field.exitance = device::download<glm::vec3>(self.device, self.results.exitance());
+  const LitSolution solution{.work = self.work,
+                             .level = self.levels[0],
+                             .operators = self.operators,
+                             .key = correction_key,
+                             .boundary = boundary,
+                             .field = field,
+                             .unlit = device::download<gpu::Scale>(self.device, self.work.scale)[0].unlit,
+                             .share = share_of_surface_light(report.energy, boundary, self.optical_at(0))};
+  add_light_error(report, self.light_error->estimate(solution));
+  state_missed(report, options.error);
+  report.advice = advice(report);
+  self.passes = self.work.recorder.passes();
+}
+
 void Simulation::start_over() {
   implementation_->start_over();
 }

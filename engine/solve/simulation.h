@@ -23,6 +23,7 @@
 #include "engine/reference/solution.h"
 #include "engine/solve/level_buffers.h"
 #include "engine/solve/level_light.h"
+#include "shaders/shared/body_shared.h"
 #include "shaders/solver/solve_shared.h"
 
 namespace quadgraph {
@@ -34,6 +35,14 @@ struct Workspace;
 enum class Gather {
   scaled,  // all light scattered once more, scaled to the exitance
   single,  // light that is scattered once in all, beside the exitance of a diffuser
+};
+
+// What samples of the light on level 0 are taken with, all of it on the device, in the present shape.
+struct LightRoom {
+  const device::Buffer& beams;       // gpu::Beam, in the order of set_beams
+  const device::Buffer& difference;  // to be written (engine/solve/light_error.h)
+  gpu::TreeRef tree;
+  std::uint32_t rays;  // a face, of light from all around
 };
 
 class Simulation {
@@ -107,6 +116,12 @@ class Simulation {
   // correction at rest; what it throws ends the solve, and there is no solution. Later solves go on from what it did,
   // unlike where the device's own check gives its work up.
   SolveReport solve(const SolveOptions& options, const std::function<void()>& check = {});
+
+  // Where to say how far q is off, after a solve with these options that was corrected and is not warm.
+  LightRoom light_room(const SolveOptions& options);
+
+  // The error of the light, of what was said there, and with it all that `report`, of that solve, says of its error.
+  void state_light_error(const SolveOptions& options, SolveReport& report);
 
   // To be called where work of the device was given up half-way (device::Interruptible): keeps what was set, and
   // nothing that was derived from it.

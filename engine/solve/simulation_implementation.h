@@ -20,6 +20,7 @@
 #include "engine/solve/level_solver.h"
 #include "engine/solve/level_upload.h"
 #include "engine/solve/levels_solver.h"
+#include "engine/solve/light_error.h"
 #include "engine/solve/simulation.h"
 #include "engine/solve/solver_choice.h"
 #include "engine/solve/surface_results.h"
@@ -44,6 +45,7 @@ struct Simulation::Implementation {
   std::optional<GatherField> gather;              // the same
   std::optional<Gather> gathers_now;              // of the last solution
   std::optional<TransportCorrection> correction;  // made at first use
+  std::optional<LightError> light_error;          // the same
   bool corrected = false;                         // the last solution is
   std::vector<gpu::Optical> corrected_optical;    // at the surface, of the last correction
   double corrected_eta = 0;                       // the same
@@ -133,6 +135,7 @@ struct Simulation::Implementation {
     walks.clear();
     for (std::uint32_t i = 0; i < levels.size(); ++i) walks.emplace_back(device, shape.levels()[i], i);
     correction.reset();
+    light_error.reset();
     gather.reset();
     tree.reset();
     gathers_now.reset();
@@ -245,8 +248,7 @@ struct Simulation::Implementation {
     report.energy.re_entered = power.entered_again;
     report.clipped = results.clipped();
     state_corrected_error(report, resolution_with(key.model).front().corrected);
-    const bool kept = report.error && certain(*report.error, options.error);
-    report.missed = options.error > 0 && !kept ? missed(report.error, options.error) : "";
+    state_missed(report, options.error);
     report.model_warning.clear();
   }
 
@@ -278,7 +280,9 @@ struct Simulation::Implementation {
     for (std::uint32_t i = 0; i < levels.size() && options.source == Source::buried; ++i) {
       walks[i].make_room(device, levels[i], beams, key.method, bounced && i <= *bounced);
     }
-    if (corrects(options)) correction_room(options.sweep_points);
+    if (!corrects(options)) return;
+    correction_room(options.sweep_points);
+    if (!options.warm && !light_error) light_error.emplace(device, shape.levels()[0]);
   }
 
   void correction_room(std::uint32_t points) {

@@ -45,6 +45,10 @@ constexpr std::uint32_t gather_sums = 4;
 
 }  // namespace
 
+std::uint32_t entering_rays(bool mean_rays) {
+  return mean_rays ? rays_in_motion : rays_at_rest;
+}
+
 TransportSamples::TransportSamples(device::Device& device, const Level& level) {
   const auto room = [&](std::uint64_t bytes, const char* name, device::Place place = device::Place::device) {
     return device::Buffer(device, bytes, place, "transport/" + std::string(name));
@@ -169,7 +173,7 @@ void TransportSamples::record_walk(const TransportParts& parts, const WalkTask& 
     if (kind == gpu::BEAM_MEAN) continue;
     push.sky = beam.floats == gpu::BEAM_FACE || beam.picture != 0 ? 1 : 0;
     const bool directed = push.sky == 1 || kind != gpu::BEAM_LAMBERTIAN;
-    push.rays = !directed ? rays_of(kind, task.mean_rays) : task.mean_rays ? rays_in_motion : rays_at_rest;
+    push.rays = directed ? entering_rays(task.mean_rays) : rays_of(kind, task.mean_rays);
     work.recorder.dispatch(work.passes.of(shader::transport_walk), push, std::uint64_t{level.face_count} * push.rays,
                            "transport walk", walk_bytes(level, push.rays));
     push.beam += sizeof(gpu::Beam);

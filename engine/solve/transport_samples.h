@@ -39,6 +39,9 @@ struct TransportPower {
   glm::dvec3 entered{0}, absorbed{0}, unscattered{0}, entered_again{0}, share_again{0};
 };
 
+// Rays a face by which light enters whose directions are known.
+std::uint32_t entering_rays(bool mean_rays);
+
 class TransportSamples {
  public:
   // `level`: the finest, whose tets stay what they are.

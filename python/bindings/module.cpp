@@ -159,6 +159,7 @@ py::dict as_dict(const SolveReport& report) {
   d["algebraic"] = error_dict(report.algebraic);
   d["mesh_error"] = error_dict(report.mesh_error);
   d["model_error"] = error_dict(report.model_error);
+  d["light_error"] = error_dict(report.light_error);
   d["error"] = error_dict(report.error);
   d["advice"] = report.advice;
   return d;

@@ -38,6 +38,10 @@ struct ShadowView {
   float texel;           // directional: mm; point: mm at 1 mm from the light
 };
 
+// light_error.comp: samples of the light on a face that share nothing, and turns in which the points of each are taken.
+const uint LIGHT_SAMPLES = 2u;
+const uint LIGHT_TURNS = 4u;
+
 #ifndef __cplusplus
 QG_ARRAY(ShadowViews, ShadowView);
 QG_ARRAY(LightRecords, LightRecord);

@@ -1,6 +1,5 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shared/environment_picture.h"
 #include "source/walk_shared.h"
 #include "transport/transport_shared.h"
 
@@ -27,9 +26,8 @@ TransportFieldRef field;
 #define BODY field.body
 #include "source/walk_ray.glsl"
 #include "source/walk_start.glsl"
+#include "transport/entering_rays.glsl"
 #include "transport/transport_surface.glsl"
-
-const uint SKY_CANDIDATES = 8u;  // directions that one is drawn from, by what it brings
 
 uint state;
 vec3 entered, entered_again;
@@ -88,48 +86,6 @@ void follow(BeamRecord way, uint ray, uint face, Frame at, vec3 power) {
   follow_reflected(incoming(way, ray, at), face, at.position, at.normal, power);
 }
 
-// W/(mm^2 sr) from a direction.
-vec3 sky_radiance(Beam beam, vec3 towards) {
-  if (uvec2(beam.picture) == uvec2(0)) return beam.colour / 3.1415927;
-  mat3 frame = mat3(beam.way.u, beam.way.v, beam.way.travel_or_from);
-  return max(beam.colour * environment_in(beam.picture, frame, ENVIRONMENT_RAYS, towards), vec3(0));
-}
-
-// A ray of the sky that enters a face where nothing hides it.
-struct SkyRay {
-  vec3 towards;  // outside
-  vec3 let_in;   // of what comes from there, pi times radiance times transmittance, by the chance that it was drawn
-};
-
-// Drawn among candidates by what they bring (resampled importance sampling, Talbot, Cline and Egbert 2005), which are
-// spread over the hemisphere by its cosine.
-SkyRay drawn_from_sky(Beam beam, uint number, vec3 normal, vec3 tangent) {
-  SkyRay drawn = SkyRay(normal, vec3(0));
-  vec3 other = cross(normal, tangent);
-  float all = 0.0, chosen = 1.0;
-  for (uint k = 0u; k < SKY_CANDIDATES; ++k) {
-    uint n = SKY_CANDIDATES * number + k;
-    float square = spread_number(0u, n, 0u), azimuth = 6.2831853 * spread_number(0u, n, 1u);
-    vec3 across = cos(azimuth) * tangent + sin(azimuth) * other;
-    vec3 towards = sqrt(square) * normal + sqrt(1.0 - square) * across;
-    vec3 let_in = 3.1415927 * fresnel_transmittance(sqrt(square), BODY.eta) * sky_radiance(beam, towards);
-    float weight = let_in.x + let_in.y + let_in.z;
-    all += weight;
-    if (uniform_number(state) * all < weight) {
-      drawn = SkyRay(towards, let_in);
-      chosen = weight;
-    }
-  }
-  drawn.let_in *= all / (float(SKY_CANDIDATES) * chosen);
-  return drawn;
-}
-
-// Barycentric coordinates of a place on a face, anywhere in it. number: of the ray, among all of the surface.
-vec3 spread_over_face(uint number) {
-  float side = sqrt(spread_number(0u, number, 3u)), along = side * spread_number(0u, number, 4u);
-  return vec3(1.0 - side, side - along, along);
-}
-
 // From where it entered, and on from there what the surface reflects. direction: outside, the way the light travels.
 void enter(OpenFace open, uint face, vec3 l, vec3 direction, vec3 power) {
   entered += power;
@@ -143,7 +99,7 @@ void walk_from_sky(Beam beam, uint face, uint ray) {
   if (!opens(face, open)) return;
   uint number = push.rays * face + ray;
   state = hash(face ^ hash(ray));
-  SkyRay drawn = drawn_from_sky(beam, number, open.normal, normalize(open.corners[1] - open.corners[0]));
+  SkyRay drawn = drawn_from_sky(beam, number, open.normal, open.corners[1] - open.corners[0], BODY.eta, state);
   vec3 power = open.area / float(push.rays) * drawn.let_in * push.scale.at[0].inverse;
   if (power == vec3(0)) return;
   vec3 l = spread_over_face(number), point = open.corners * l;
@@ -158,12 +114,7 @@ void walk_from_quarter(Beam beam, uint face, uint ray) {
   uint number = push.rays * face + ray, quarter = ray % FACE_QUARTERS;
   vec3 q = beam_light(beam, push.beam_q, BODY.face_count, face, quarter) * push.scale.at[0].inverse;
   if (q == vec3(0)) return;
-  vec3 l = 0.5 * spread_over_face(number);
-  if (quarter == FACE_CENTRE) {
-    l = 0.5 - l;
-  } else {
-    l[quarter] += 0.5;
-  }
+  vec3 l = spread_over_quarter(number, quarter);
   state = hash(face ^ hash(ray));
   Frame at = Frame(open.corners * l, open.normal, vec3(0), number);  // it has a direction without a tangent
   enter(open, face, l, incoming(beam.way, ray, at), open.area / float(push.rays) * q);

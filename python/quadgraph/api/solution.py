@@ -120,7 +120,8 @@ class Solution:
     cycles: that were asked for, 0 if none; levels: in the order solved, coarsest first; finest: the level solved last;
     work: products of all levels, in products of level 0; clipped: (3,) share of the exitance that was below zero and
     taken from the rest; error: estimate of the whole error, with algebraic, the solver's part, mesh_error, the mesh's,
-    and model_error, the model's, of each what a correction leaves, and None where it cannot be told;
+    and model_error, the model's, of each what a correction leaves, light_error, that of shadows and of the sampling of
+    lights and skies, after a correction at rest, and None where it cannot be told;
     advice: of an error above 5%, where it comes from and what to do; inter_reflection: whether it was followed;
     bounces: (n, 3) W that each brought in; unmet: what was asked for and is not met, in words; missed: of that, the
     error; stopped: of that, how the solve did not converge; budget: what the bake of the file has to say of the error
@@ -144,6 +145,7 @@ class Solution:
     algebraic: ErrorEstimate | None
     mesh_error: ErrorEstimate | None
     model_error: ErrorEstimate | None
+    light_error: ErrorEstimate | None
     error: ErrorEstimate | None
     advice: str
     inter_reflection: bool
@@ -170,6 +172,7 @@ class Solution:
             "algebraic": report["algebraic"] and ErrorEstimate(**report["algebraic"]),
             "mesh_error": report["mesh_error"] and ErrorEstimate(**report["mesh_error"]),
             "model_error": report["model_error"] and ErrorEstimate(**report["model_error"]),
+            "light_error": report["light_error"] and ErrorEstimate(**report["light_error"]),
             "error": report["error"] and ErrorEstimate(**report["error"]),
             "bounces": np.array(report["bounces"]).reshape(-1, 3),
             "unmet": tuple(report["unmet"]),

@@ -70,10 +70,12 @@ def error_text(report: dict) -> str:
     parts = [f"solver {parts_text(report['algebraic'])}"]
     if report["correction"]:
         parts.append(f"model {parts_text(report['model_error'])}, after {correction_text(report['correction'])}")
+    if report["light_error"]:
+        parts.append(f"light {parts_text(report['light_error'])}")
     if report["error"] is None:
         return f"error: of the mesh not estimated (a single level); {'; '.join(parts)} (estimate)"
     parts.insert(0, f"mesh {parts_text(report['mesh_error'])}")
-    without = "" if report["correction"] else ", without that of the model"
+    without = "" if report["correction"] else ", without those of model and light"
     return f"error: {parts_text(report['error'])} (estimate{without}): {'; '.join(parts)}"
 
 

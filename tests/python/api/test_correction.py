@@ -51,14 +51,15 @@ def test_scenes_commands_and_engines_are_corrected_unless_they_say_no(ball, engi
     assert np.array_equal(engine.surface().exitance, fields["plain"])
 
 
-def test_the_error_is_the_sum_of_its_parts_and_has_none_of_the_model_without_a_correction(engine):
+def test_the_error_is_the_sum_of_its_parts_and_has_none_of_model_and_light_without_a_correction(engine):
     corrected = engine.solve()
-    parts = (corrected.mesh_error, corrected.algebraic, corrected.model_error)
+    parts = (corrected.mesh_error, corrected.algebraic, corrected.model_error, corrected.light_error)
     for name in ("whole", "unlit", "dimmest"):
         whole = np.sqrt(sum(getattr(part, name) ** 2 for part in parts))
         assert getattr(corrected.error, name) == pytest.approx(whole, rel=1e-6)
     plain = engine.solve(correction=False)
     assert plain.model_error is None
+    assert plain.light_error is None
 
 
 def test_what_a_sweep_changes_is_told_of_the_third_that_sends_out_least(ball, engine):

@@ -31,6 +31,7 @@ STUDIES = {
     "target": "target",
     "budget": "budget",
     "unseen": "unseen",
+    "light": "light",
 }
 
 _WIDE = ("dense", "unseen")  # studies whose tables cannot be read narrower than this, characters
@@ -44,6 +45,7 @@ ON_ENGINE = {
     "target": "stops at an error",
     "budget": "is baked for",
     "unseen": "prints an error",
+    "light": "prints an error",
 }
 
 
@@ -60,7 +62,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     )
     _add_bodies_options(parser.add_argument_group("scenes, estimate, target, budget"))
     _add_scenes_options(parser.add_argument_group("scenes, unseen"))
-    _add_unseen_options(parser.add_argument_group("unseen"))
+    _add_unseen_options(parser.add_argument_group("unseen; of these, light takes --seed and --count"))
 
 
 def _add_bodies_options(group: argparse._ArgumentGroup) -> None:
@@ -138,6 +140,9 @@ def run(args: argparse.Namespace) -> int:
 def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
     if args.study == "scenes":
         return study.run(args.device, args.meshes, args.truth or COMMITTED_TRUTH, args.scene, args.images)
+    if args.study == "light":
+        with Console(stderr=True).status("study: light"):
+            return study.run(study.LightRun(args.seed, args.count, args.device))
     if args.study == "unseen":
         truths, sweeps = args.truth or cache_folder(), args.sweeps or (None,)
         wanted = study.UnseenRun(
