@@ -8,23 +8,25 @@ import numpy as np
 
 from quadgraph.acquisition.fitting import Fit
 from quadgraph.acquisition.problem import Problem
+from quadgraph.acquisition.start import ENCODED, Ranking
 
 FAR = 4.0  # chi^2 per degree of freedom, from which on photographs and predictions disagree
-_ENCODED = (0.3, 0.65)  # exponent of values against predictions where they are encoded for displays: 1 / 2.2
+_LESS = 0.75  # of the spread that linear values leave, which encoded ones have to leave at most
 _BETTER = 0.15  # of correlation, by which another assumption has to win
+_FREE = 0.15  # of correlation, that centring gains by itself
 _LIT = 0.05  # of the brightest, from which on a pixel is part of a silhouette
 _OVERLAP = 0.8  # of two silhouettes, their intersection over their union
 _FLIPS = {"left to right": np.s_[:, ::-1], "upside down": np.s_[::-1, :], "by half a turn": np.s_[::-1, ::-1]}
 
 
-def findings(problem: Problem, found: Fit) -> list[str]:
+def findings(problem: Problem, found: Fit, ranking: Ranking) -> list[str]:
     """Sentences, each with the path of what is probably wrong; none where photographs and predictions agree."""
     said = list(_disagreement(found))
     if not said:
-        return list(_silhouettes(problem, found)) or said
-    for number in range(len(problem.measured)):
+        return list(_silhouettes(problem, found))
+    said += _encoding(ranking)
+    for number in range(len(problem.measured)) if len(said) == 1 else ():
         said += _of_photograph(problem, found, number)
-    said += _encoding(problem, found)
     if len(said) == 1:
         said.append(
             "no single cause was found: check pose, units (mm), places of lights and cameras, eta, and whether the "
@@ -43,19 +45,37 @@ def _disagreement(found: Fit) -> Iterator[str]:
 
 
 def _of_photograph(problem: Problem, found: Fit, number: int) -> list[str]:
-    """Findings on one photograph: its outline, its axes, and its lights."""
+    """What explains one photograph much better than what the capture says of it: its place, its axes or its lights."""
     if not np.nanmax(found.by_photograph[number]) > FAR:
         return []
-    path = problem.measured[number].stated.path
+    one = problem.measured[number]
+    values, expected = _grey(one.values), _grey(found.pictures[number].radiance)
     outline = _outline(problem, found, number)
-    turned = _turned(problem, found, number)
-    if turned:
-        return [f"{path}.file: fits much better turned {turned}: an axis of the picture or of the camera is flipped"]
-    other = _other_lights(problem, found, number)
-    if other:
-        names = " + ".join(other)
-        return [f"{path}.lights: fits the picture of {names} much better than that of the stated: lights are swapped"]
+    path = one.stated.path
+    scores = {
+        f"{path}.file: fits much better turned {name}: an axis of the picture or of the camera is flipped": _alike(
+            values[turn], expected
+        )
+        for name, turn in _FLIPS.items()
+    }
+    for other, picture in zip(problem.measured, found.pictures, strict=True):
+        if other.stated.camera == one.stated.camera and other.stated.lights != one.stated.lights:
+            names = " + ".join(other.stated.lights)
+            sentence = f"{path}.lights: fits the picture of {names} much better than its own: lights are swapped"
+            scores[sentence] = _alike(values, _grey(picture.radiance))
+    if outline:
+        scores[outline] = _alike(_centred(values), _centred(expected)) - _FREE
+    best = max(scores, key=lambda sentence: scores[sentence])
+    if scores[best] > _alike(values, expected) + _BETTER:
+        return [best]
     return [outline] if outline else []
+
+
+def _centred(picture: np.ndarray) -> np.ndarray:
+    """A grey picture with the middle of what is lit in the middle."""
+    lit = picture > _LIT * np.quantile(picture, 0.99)
+    shift = np.array(picture.shape) / 2 - _middle(lit)
+    return np.roll(picture, np.round(shift).astype(int), axis=(0, 1))
 
 
 def _silhouettes(problem: Problem, found: Fit) -> Iterator[str]:
@@ -91,46 +111,14 @@ def _middle(part: np.ndarray) -> np.ndarray:
     return np.argwhere(part).mean(axis=0) if part.any() else np.zeros(2)
 
 
-def _turned(problem: Problem, found: Fit, number: int) -> str:
-    """How a photograph is turned, if it matches its prediction much better then."""
-    values, expected = _grey(problem.measured[number].values), _grey(found.pictures[number].radiance)
-    straight = _alike(values, expected)
-    scores = {name: _alike(values[turn], expected) for name, turn in _FLIPS.items()}
-    best = max(scores, key=lambda name: scores[name])
-    return best if scores[best] > straight + _BETTER else ""
-
-
-def _other_lights(problem: Problem, found: Fit, number: int) -> tuple[str, ...]:
-    """Lights of another photograph by the same camera, whose prediction this one matches much better."""
-    one = problem.measured[number]
-    values = _grey(one.values)
-    stated = _alike(values, _grey(found.pictures[number].radiance))
-    best = stated + _BETTER
-    lights: tuple[str, ...] = ()
-    for other, picture in zip(problem.measured, found.pictures, strict=True):
-        if other.stated.camera == one.stated.camera and other.stated.lights != one.stated.lights:
-            score = _alike(values, _grey(picture.radiance))
-            if score > best:
-                best, lights = score, other.stated.lights
-    return lights
-
-
-def _encoding(problem: Problem, found: Fit) -> list[str]:
+def _encoding(ranking: Ranking) -> list[str]:
     """Whether values go with a power of the predictions, as those do that are encoded for displays."""
-    exponents = []
-    for number, one in enumerate(problem.measured):
-        counted = problem.counted[number]
-        value, expected = one.values[counted], found.pictures[number].radiance[counted]
-        lit = (value > 0.02 * value.max()) & (expected > 0)
-        if lit.sum() > 16:
-            x, y = np.log(expected[lit]), np.log(value[lit])
-            exponents.append(np.std(y) / max(np.std(x), 1e-9) * np.sign(np.corrcoef(x, y)[0, 1]))
-    middle = float(np.median(exponents)) if exponents else 1.0
-    if not _ENCODED[0] < middle < _ENCODED[1]:
+    linear, encoded = ranking.spreads
+    if encoded > _LESS * linear:
         return []
     return [
-        f"photographs: values go with the power {middle:.2f} of what is predicted: they are probably encoded for "
-        "displays (sRGB, a power of about 0.45); develop them linearly"
+        f"photographs: values go with the power {ENCODED:.2f} of what is predicted: they are probably encoded for "
+        "displays (sRGB); develop them linearly"
     ]
 
 

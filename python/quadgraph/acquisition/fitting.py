@@ -245,14 +245,14 @@ class _Model:
         return _Judged(covariance, chi, by_photograph, gains)
 
     def _covariance(self, channel: int, reduced: np.ndarray, weight: np.ndarray, expected: np.ndarray) -> np.ndarray:
-        """Of the logarithms: noise apart in each pixel, the engine's own error alike within a patch of a picture."""
+        """Of the logarithms: noise apart in each pixel, the engine's own error alike in each of `Problem.blocks`."""
         matrix = reduced.T @ (weight[:, None] * reduced)
         inverse = np.linalg.pinv(matrix, rcond=1e-14)
         noise = self._noise[channel]
         scaled = weight[:, None] * reduced
         middle = scaled.T @ (noise[:, None] * scaled)
         error = np.sqrt(np.maximum(self._variances[channel] - noise, 0))
-        block = self._problem.pixels[channel].block
+        block = self._problem.blocks(self.pictures, channel)
         patches = np.stack([np.bincount(block, scaled[:, row] * error) for row in range(2)], axis=1)
         return inverse @ (middle + patches.T @ patches) @ inverse
 

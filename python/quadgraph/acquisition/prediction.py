@@ -27,13 +27,14 @@ CHANNELS = ("red", "green", "blue")
 class Predicted:
     """One picture: radiance (h, w, 3) of light that was scattered inside, W/(mm^2 sr); gloss (h, w, 3), what reached
     the camera without; alpha (h, w), share of a pixel that the body covers; error (h, w, 3), relative, as the engine
-    estimates its own.
+    estimates its own; band (h, w, 3): 0 bright, 1 dim, 2 of the dimmest third, each with an estimate of its own.
     """
 
     radiance: np.ndarray
     gloss: np.ndarray
     alpha: np.ndarray
     error: np.ndarray
+    band: np.ndarray
 
 
 class Predictor:
@@ -113,23 +114,31 @@ def _predicted(picture: core.Picture, report: dict[str, Any]) -> Predicted:
     radiance = np.array(picture.scattered, np.float64)
     alpha = np.array(picture.alpha, np.float64)
     gloss = np.array(picture.specular, np.float64) + np.array(picture.unscattered, np.float64)
-    return Predicted(radiance, gloss, alpha, _errors(radiance, report))
+    band = _bands(radiance)
+    return Predicted(radiance, gloss, alpha, _errors(report)[band], band)
 
 
-def _errors(radiance: np.ndarray, report: dict[str, Any]) -> np.ndarray:
-    """Relative error of each pixel, from the estimates of a solve."""
+def _errors(report: dict[str, Any]) -> np.ndarray:
+    """(3,) relative errors of the bands of brightness, from the estimates of a solve."""
     estimate, untold = report["error"], 0.0
     if estimate is None:
-        estimate, untold = report["model_error"] or {"whole": 0.0, "unlit": 0.0}, _UNKNOWN_MESH
+        estimate, untold = report["model_error"] or dict.fromkeys(("whole", "unlit", "dimmest"), 0.0), _UNKNOWN_MESH
     whole = max(float(np.hypot(estimate["whole"], untold)), LEAST_ERROR)
     unlit = max(estimate["unlit"], whole)
-    errors = np.full(radiance.shape, whole)
+    dimmest = max(estimate["dimmest"], unlit)
+    return np.array([whole, unlit, dimmest])
+
+
+def _bands(radiance: np.ndarray) -> np.ndarray:
+    """(h, w, 3) the band of brightness of each pixel."""
+    bands = np.zeros(radiance.shape, np.int64)
     for channel in range(3):
         value = radiance[..., channel]
         seen = value[value > 0]
         if seen.size:
-            errors[..., channel][value < _DIM * np.quantile(seen, 0.95)] = unlit
-    return errors
+            bands[..., channel][value < _DIM * np.quantile(seen, 0.95)] = 1
+            bands[..., channel][value < np.quantile(seen, 1 / 3)] = 2
+    return bands
 
 
 def check_seen(capture: Capture, pictures: list[Predicted]) -> None:

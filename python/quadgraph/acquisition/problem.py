@@ -16,21 +16,21 @@ from quadgraph.base.errors import InputError
 _COVERED = 0.999  # share of a pixel that the body has to cover
 _GLOSS = 0.01  # over scattered light, from which on a pixel is left out
 _DARK = 1e-4  # of the brightest pixel, below which a prediction is not held to anything
+_LIT = 0.02  # of the brightest value: dimmer ones are too noisy for logarithms
 _HUBER = 3.0  # standard deviations, beyond which a residual counts linearly
-_BLOCKS = 2  # along a side of a picture: within one, the engine's own error is taken to be the same
+_BANDS = 3  # of brightness: in each, the engine's own error is taken to be the same wherever the lights are
 LEAST_PIXELS = 16  # of a channel
 
 
 @dataclass(eq=False)
 class Pixels:
     """What counts of one channel of all photographs: data (n,); photograph (n,), which of them; at, indices into each
-    picture's pixels, by photograph; block (n,), patches over which the engine's error is the same.
+    picture's pixels, by photograph.
     """
 
     data: np.ndarray
     photograph: np.ndarray
     at: list[np.ndarray]
-    block: np.ndarray
 
     def take(self, pictures: Sequence[np.ndarray], channel: int) -> np.ndarray:
         """(n,) of a value (h, w, 3) a photograph."""
@@ -61,17 +61,13 @@ class Problem:
         self._exposure = np.array([each.stated.exposure for each in measured])
 
     def _pixels(self, channel: int) -> Pixels:
-        data, photograph, at, block = [], [], [], []
+        data, photograph, at = [], [], []
         for number, (one, counted) in enumerate(zip(self.measured, self.counted, strict=True)):
             index = np.flatnonzero(counted[..., channel])
-            height, width = counted.shape[:2]
-            row, column = np.divmod(index, width)
-            patch = (row * _BLOCKS // height) * _BLOCKS + column * _BLOCKS // width
             data.append(one.values[..., channel].ravel()[index])
             photograph.append(np.full(len(index), number))
-            block.append(patch + number * _BLOCKS**2)
             at.append(index)
-        found = Pixels(np.concatenate(data), np.concatenate(photograph), at, np.concatenate(block))
+        found = Pixels(np.concatenate(data), np.concatenate(photograph), at)
         if len(found.data) < LEAST_PIXELS or not (found.data > 0).any():
             raise InputError(
                 f"{self.capture.path}: photographs: {CHANNELS[channel]} has {len(found.data)} pixels that count and "
@@ -79,6 +75,27 @@ class Problem:
                 "in all three channels, or write grey photographs, one channel in all three"
             )
         return found
+
+    def blocks(self, pictures: Sequence[Predicted], channel: int) -> np.ndarray:
+        """(n,) numbers of parts within which the engine's own error is alike: of the same lights and brightness."""
+        lights = [each.stated.lights for each in self.measured]
+        number = np.array([lights.index(each) for each in lights])
+        pixels = self.pixels[channel]
+        return pixels.take([each.band for each in pictures], channel) + _BANDS * number[pixels.photograph]
+
+    def spread(self, pictures: Sequence[Predicted], power: float) -> float:
+        """Variance of logarithms of data less `power` times those of predictions, apart from a factor a photograph."""
+        total, count = 0.0, 0
+        for channel, pixels in enumerate(self.pixels):
+            value = self.values([each.radiance for each in pictures], channel)
+            lit = (value > 0) & (pixels.data > _LIT * pixels.data.max())
+            left = np.log(pixels.data[lit]) - power * np.log(value[lit])
+            photograph = pixels.photograph[lit]
+            number = np.maximum(np.bincount(photograph, minlength=len(self.measured)), 1)
+            mean = np.bincount(photograph, left, len(self.measured)) / number
+            total += float(((left - mean[photograph]) ** 2).sum())
+            count += len(left)
+        return total / max(count, 1)
 
     def values(self, pictures: Sequence[np.ndarray], channel: int) -> np.ndarray:
         """(n,) what pixels would be with all unknown gains at 1, from radiances (h, w, 3) a photograph."""

@@ -22,6 +22,7 @@ from quadgraph.base.progress import ProgressCallback
 
 NAMES = ("sigma_a", "sigma_s_prime")
 _UNDETERMINED = 0.35  # standard deviation of a logarithm, from which on a coefficient is said not to be determined
+_ANYTHING = 5.0  # the same, from which on nothing is known of it
 _TIED = 0.98  # correlation of a channel's two coefficients, from which on that is said
 
 
@@ -103,11 +104,11 @@ def recover(
         first = predictor.predict(start.middle(predictor.size_mm), False, work.step)
         prediction.check_seen(capture, first)
         problem = Problem(capture, measured, first)
-        starts = start.ranked(problem, predictor, grid, work.step)
-        tell(f"start: {_text(np.exp(starts[0]))}")
-        found = fit(problem, predictor, starts, corrected, tell, work.step)
+        ranking = start.ranked(problem, predictor, grid, work.step)
+        tell(f"start: {_text(np.exp(ranking.starts[0]))}")
+        found = fit(problem, predictor, ranking.starts, corrected, tell, work.step)
         notes = list(predictor.notes)
-        findings = diagnosis.findings(problem, found)
+        findings = diagnosis.findings(problem, found, ranking)
     advance(1.0)
     return Recovered(capture, measured, problem, found, undetermined(found), findings, notes)
 
@@ -119,11 +120,7 @@ def undetermined(found: Fit) -> list[str]:
         for channel, colour in enumerate(CHANNELS):
             deviation = found.deviations[row, channel]
             if deviation > _UNDETERMINED:
-                most = found.coefficients[row, channel] * np.exp(2 * min(deviation, 50))
-                said.append(
-                    f"{name} of {colour} is not determined: its standard deviation is a factor of "
-                    f"{np.exp(min(deviation, 50)):.3g}; most that two of them allow is {most:.3g} 1/mm"
-                )
+                said.append(f"{name} of {colour} is not determined: {_open(found, row, channel)}")
     for channel, colour in enumerate(CHANNELS):
         if abs(found.correlations[channel]) > _TIED:
             said.append(
@@ -133,6 +130,15 @@ def undetermined(found: Fit) -> list[str]:
     if not found.converged:
         said.append(f"the fit did not settle in {OUTER} steps")
     return said
+
+
+def _open(found: Fit, row: int, channel: int) -> str:
+    """How open a coefficient is, in words."""
+    deviation, value = found.deviations[row, channel], found.coefficients[row, channel]
+    if deviation > _ANYTHING:
+        return "the photographs say nothing of its size"
+    most = value * np.exp(2 * deviation)
+    return f"its standard deviation is a factor of {np.exp(deviation):.3g}; two of them allow up to {most:.3g} 1/mm"
 
 
 class _ShareDone:

@@ -33,6 +33,12 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         help="write coefficients, standard deviations, chi^2, gains and what is to be said against them here",
     )
     parser.add_argument(
+        "--report",
+        metavar="FILE",
+        type=Path,
+        help="write one .html that needs nothing else: photographs, predictions, residuals, coefficients, convergence",
+    )
+    parser.add_argument(
         "--correction",
         action=argparse.BooleanOptionalAction,
         default=True,
@@ -53,8 +59,10 @@ def run(args: argparse.Namespace) -> int:
 
     if args.output.suffix.lower() != ".npz":
         raise InputError(f"{args.output}: output must end in .npz")
+    if args.report and args.report.suffix.lower() != ".html":
+        raise InputError(f"{args.report}: a report must end in .html")
     stated = capture.read(args.file)
-    outputs.check_outputs([args.output, args.json], stated.files())
+    outputs.check_outputs([args.output, args.json, args.report], stated.files())
     errors = Console(stderr=True, highlight=False, soft_wrap=True)
     with progress_bar() as bar:
         task = bar.add_task("acquire", total=1.0)
@@ -69,6 +77,10 @@ def run(args: argparse.Namespace) -> int:
     found.material.save(args.output)
     if args.json:
         atomic_file.write_json(args.json, found.report())
+    if args.report:
+        from quadgraph.acquisition import report_page
+
+        report_page.write(args.report, found)
     _summarise(found, args.output)
     return DISAGREES if found.findings or not found.fit.converged else 0
 
