@@ -35,10 +35,11 @@ SUBCOMMANDS = {
     "materials": "material_list",
     "cache": "cache",
     "completion": "completion",
+    "acquire": "acquire",
     "doctor": "doctor",
 }
 # The subcommands that quadgraph-validation brings along; their modules come through its entry points.
-VALIDATION = ("bench", "accuracy", "reference", "chart", "tables", "polygrid", "stability")
+VALIDATION = ("bench", "accuracy", "reference", "photograph", "chart", "tables", "polygrid", "stability")
 
 
 class Added:

@@ -44,7 +44,7 @@ def test_the_wheel_is_the_package_alone():
     packages = project(ROOT / "pyproject.toml")["tool"]["scikit-build"]["wheel"]["packages"]
     assert packages == ["python/quadgraph"]
     rooms = {path.name for path in (ROOT / packages[0]).iterdir() if (path / "__init__.py").is_file()}
-    assert rooms == {"api", "base", "mesh", "tets", "file", "baking", "commands"}
+    assert rooms == {"api", "base", "mesh", "tets", "file", "baking", "acquisition", "commands"}
     assert not {path.stem for path in (ROOT / packages[0] / "commands").glob("*.py")} & set(cli.VALIDATION)
 
 

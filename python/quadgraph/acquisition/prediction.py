@@ -1,0 +1,158 @@
+"""What the engine predicts for the photographs of a capture, for homogeneous coefficients."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from quadgraph import core
+from quadgraph.acquisition.capture import Capture
+from quadgraph.base.errors import InputError
+
+LEAST_ERROR = 0.005  # relative, of a picture whose own estimate is below that
+_UNKNOWN_MESH = 0.02  # relative, taken for the mesh's part where a body of one level leaves it untold
+_DIM = 0.2  # of the 95th percentile of what is seen: below, the estimate of the unlit part counts
+_STAGES = 16  # engines at most
+# What a capture leaves open: one model for all coefficients, and solves whose differences are derivatives.
+_SOLVER = {"model": "sp3", "tolerance": 1e-4}
+CHANNELS = ("red", "green", "blue")
+
+
+@dataclass(frozen=True, eq=False)
+class Predicted:
+    """One picture: radiance (h, w, 3) of light that was scattered inside, W/(mm^2 sr); gloss (h, w, 3), what reached
+    the camera without; alpha (h, w), share of a pixel that the body covers; error (h, w, 3), relative, as the engine
+    estimates its own; band (h, w, 3): 0 bright, 1 dim, 2 of the dimmest third, each with an estimate of its own.
+    """
+
+    radiance: np.ndarray
+    gloss: np.ndarray
+    alpha: np.ndarray
+    error: np.ndarray
+    band: np.ndarray
+
+
+class Predictor:
+    """The engine with a capture's body, ready to predict all its photographs for one pair of coefficients a channel."""
+
+    def __init__(self, capture: Capture, body: Path, device: str = "", validation: bool = False) -> None:
+        """body: the baked file; device, validation: as `Stage` has them. Raises FormatError, InputError,
+        DeviceError.
+        """
+        self._capture = capture
+        self._body = body
+        wanted = [(each.lights, each.camera) for each in capture.photographs]
+        self._solves: dict[tuple[str, ...], list[str]] = {}
+        for lights, camera in dict.fromkeys(wanted):
+            self._solves.setdefault(lights, []).append(camera)
+        # One for each set of lights keeps what depends on lights alone, which is most of an uncorrected solve.
+        self._stages = [core.Stage(device, validation) for _ in range(min(len(self._solves), _STAGES))]
+        self.notes: list[str] = []  # what the engine says against its last answers, each once
+
+    @property
+    def solves(self) -> int:
+        """How many solves a prediction of all photographs takes."""
+        return len(self._solves)
+
+    @property
+    def size_mm(self) -> float:
+        """The middle one of the three sides of the box around the body."""
+        vertices = core.load(self._body).display["vertices"]
+        return float(np.median(vertices.max(axis=0) - vertices.min(axis=0)))
+
+    def predict(
+        self, coefficients: np.ndarray, corrected: bool, tell: Callable[[], None] = lambda: None
+    ) -> list[Predicted]:
+        """One picture a photograph.
+
+        coefficients: (2, 3), sigma_a and sigma_s_prime in 1/mm of red, green, blue; corrected: by sweeps of the
+        transport equation; tell: is called after each solve. Raises InputError, SolverError.
+        """
+        found: dict[tuple[tuple[str, ...], str], Predicted] = {}
+        self.notes = []
+        for number, (lights, cameras) in enumerate(self._solves.items()):
+            stage = self._stages[number % len(self._stages)]
+            report: dict[str, Any] | None = None
+            for camera in cameras:
+                stage.show(self._scene(coefficients, corrected, lights, camera))
+                if report is None:
+                    report = stage.solve()
+                    self._note(report)
+                found[lights, camera] = _predicted(stage.render(), report)
+            if messages := stage.engine.validation_messages:
+                raise InputError("Vulkan validation: " + " | ".join(messages))
+            tell()
+        return [found[each.lights, each.camera] for each in self._capture.photographs]
+
+    def _scene(self, coefficients: np.ndarray, corrected: bool, lights: tuple[str, ...], camera: str) -> core.Scene:
+        capture = self._capture
+        absorption, scattering = coefficients.tolist()
+        width, height = capture.sizes[camera]
+        document = {
+            "body": str(self._body.absolute()),
+            "material": {"sigma_s_prime": scattering, "sigma_a": absorption, "eta": capture.eta},
+            "lights": [capture.lights[name] for name in lights],
+            "deformation": capture.deformation,
+            "camera": capture.cameras[camera],
+            "solver": _SOLVER | capture.solver | {"correction": corrected},
+            "picture": {"width": width, "height": height},
+        }
+        return core.scene_file(json.dumps(document)).at(0)
+
+    def _note(self, report: dict[str, Any]) -> None:
+        for name in ("stopped", "mesh_warning", "model_warning", "light_warning"):
+            if report[name] and report[name] not in self.notes:
+                self.notes.append(report[name])
+
+
+def _predicted(picture: core.Picture, report: dict[str, Any]) -> Predicted:
+    radiance = np.array(picture.scattered, np.float64)
+    alpha = np.array(picture.alpha, np.float64)
+    gloss = np.array(picture.specular, np.float64) + np.array(picture.unscattered, np.float64)
+    band = _bands(radiance)
+    return Predicted(radiance, gloss, alpha, _errors(report)[band], band)
+
+
+def _errors(report: dict[str, Any]) -> np.ndarray:
+    """(3,) relative errors of the bands of brightness, from the estimates of a solve."""
+    estimate, untold = report["error"], 0.0
+    if estimate is None:
+        estimate, untold = report["model_error"] or dict.fromkeys(("whole", "unlit", "dimmest"), 0.0), _UNKNOWN_MESH
+    whole = max(float(np.hypot(estimate["whole"], untold)), LEAST_ERROR)
+    unlit = max(estimate["unlit"], whole)
+    dimmest = max(estimate["dimmest"], unlit)
+    return np.array([whole, unlit, dimmest])
+
+
+def _bands(radiance: np.ndarray) -> np.ndarray:
+    """(h, w, 3) the band of brightness of each pixel."""
+    bands = np.zeros(radiance.shape, np.int64)
+    for channel in range(3):
+        value = radiance[..., channel]
+        seen = value[value > 0]
+        if seen.size:
+            bands[..., channel][value < _DIM * np.quantile(seen, 0.95)] = 1
+            bands[..., channel][value < np.quantile(seen, 1 / 3)] = 2
+    return bands
+
+
+def check_seen(capture: Capture, pictures: list[Predicted]) -> None:
+    """Raise InputError for a photograph whose camera does not see the body, or sees nothing of it that is lit."""
+    for stated, picture in zip(capture.photographs, pictures, strict=True):
+        where = f"{capture.path}: {stated.path}"
+        covered = picture.alpha > 0.999
+        if covered.sum() < 16:
+            raise InputError(
+                f"{where}.camera: the body covers {int(covered.sum())} pixels of '{stated.camera}', allowed are 16 or "
+                "more; check body, unit (mm), deformation, and the camera's places (mm)"
+            )
+        if not (picture.radiance[covered] > 0).any():
+            raise InputError(
+                f"{where}.lights: none of {', '.join(stated.lights)} brings light to what '{stated.camera}' sees; "
+                "check directions and places of the lights (mm)"
+            )

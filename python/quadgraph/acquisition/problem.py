@@ -1,0 +1,158 @@
+"""Photographs against predictions: weighted residuals, with unknown gains eliminated in closed form."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import ndimage
+
+from quadgraph.acquisition.capture import Capture
+from quadgraph.acquisition.photographs import Measured
+from quadgraph.acquisition.prediction import CHANNELS, Predicted
+from quadgraph.base.errors import InputError
+
+_COVERED = 0.999  # share of a pixel that the body has to cover
+_GLOSS = 0.01  # over scattered light, from which on a pixel is left out
+_DARK = 1e-4  # of the brightest pixel, below which a prediction is not held to anything
+_LIT = 0.02  # of the brightest value: dimmer ones are too noisy for logarithms
+_HUBER = 3.0  # standard deviations, beyond which a residual counts linearly
+_BANDS = 3  # of brightness: in each, the engine's own error is taken to be the same wherever the lights are
+LEAST_PIXELS = 16  # of a channel
+
+
+@dataclass(eq=False)
+class Pixels:
+    """What counts of one channel of all photographs: data (n,); photograph (n,), which of them; at, indices into each
+    picture's pixels, by photograph.
+    """
+
+    data: np.ndarray
+    photograph: np.ndarray
+    at: list[np.ndarray]
+
+    def take(self, pictures: Sequence[np.ndarray], channel: int) -> np.ndarray:
+        """(n,) of a value (h, w, 3) a photograph."""
+        return np.concatenate([each[..., channel].ravel()[at] for each, at in zip(pictures, self.at, strict=True)])
+
+
+class Problem:
+    """The photographs of a capture, and which of their pixels count."""
+
+    def __init__(self, capture: Capture, measured: list[Measured], pictures: list[Predicted]) -> None:
+        """pictures: a first prediction, by which the pixels are chosen. Raises InputError where nothing is left."""
+        self.capture, self.measured = capture, measured
+        self.counted = [
+            _counted(one, picture, capture.polarised) for one, picture in zip(measured, pictures, strict=True)
+        ]
+        for one, counted in zip(measured, self.counted, strict=True):
+            if not counted.any():
+                where = f"{capture.path}: {one.stated.path}"
+                raise InputError(
+                    f"{where}: no pixel is left to fit: what the body covers is masked, saturated, dark or has gloss; "
+                    'check the mask, or photograph through crossed polarisers and state "polarised": true'
+                )
+        self.pixels = [self._pixels(channel) for channel in range(3)]
+        known = [each.stated.gain for each in measured]
+        self.groups = [name for name in dict.fromkeys(known) if isinstance(name, str)]
+        self._factor = np.array([1.0 if isinstance(gain, str) else gain for gain in known])
+        self._group = np.array([self.groups.index(gain) if isinstance(gain, str) else -1 for gain in known])
+        self._exposure = np.array([each.stated.exposure for each in measured])
+
+    def _pixels(self, channel: int) -> Pixels:
+        data, photograph, at = [], [], []
+        for number, (one, counted) in enumerate(zip(self.measured, self.counted, strict=True)):
+            index = np.flatnonzero(counted[..., channel])
+            data.append(one.values[..., channel].ravel()[index])
+            photograph.append(np.full(len(index), number))
+            at.append(index)
+        found = Pixels(np.concatenate(data), np.concatenate(photograph), at)
+        if len(found.data) < LEAST_PIXELS or not (found.data > 0).any():
+            raise InputError(
+                f"{self.capture.path}: photographs: {CHANNELS[channel]} has {len(found.data)} pixels that count and "
+                f"{int((found.data > 0).sum())} above 0, allowed are {LEAST_PIXELS} or more with light; light the body "
+                "in all three channels, or write grey photographs, one channel in all three"
+            )
+        return found
+
+    def blocks(self, pictures: Sequence[Predicted], channel: int) -> np.ndarray:
+        """(n,) numbers of parts within which the engine's own error is alike: of the same lights and brightness."""
+        lights = [each.stated.lights for each in self.measured]
+        number = np.array([lights.index(each) for each in lights])
+        pixels = self.pixels[channel]
+        return pixels.take([each.band for each in pictures], channel) + _BANDS * number[pixels.photograph]
+
+    def spread(self, pictures: Sequence[Predicted], power: float) -> float:
+        """Variance of logarithms of data less `power` times those of predictions, apart from a factor a photograph."""
+        total, count = 0.0, 0
+        for channel, pixels in enumerate(self.pixels):
+            value = self.values([each.radiance for each in pictures], channel)
+            lit = (value > 0) & (pixels.data > _LIT * pixels.data.max())
+            left = np.log(pixels.data[lit]) - power * np.log(value[lit])
+            photograph = pixels.photograph[lit]
+            number = np.maximum(np.bincount(photograph, minlength=len(self.measured)), 1)
+            mean = np.bincount(photograph, left, len(self.measured)) / number
+            total += float(((left - mean[photograph]) ** 2).sum())
+            count += len(left)
+        return total / max(count, 1)
+
+    def values(self, pictures: Sequence[np.ndarray], channel: int) -> np.ndarray:
+        """(n,) what pixels would be with all unknown gains at 1, from radiances (h, w, 3) a photograph."""
+        photograph = self.pixels[channel].photograph
+        return self.pixels[channel].take(pictures, channel) * (self._exposure * self._factor)[photograph]
+
+    def variances(self, pictures: Sequence[Predicted], channel: int, floor: float) -> tuple[np.ndarray, np.ndarray]:
+        """(n,) variance of a pixel's noise, and of that with the engine's error; floor: least relative error."""
+        radiances = [each.radiance for each in pictures]
+        value = self.values(radiances, channel)
+        gain = self.gains(value, self.pixels[channel].data, np.maximum(value, value.max() * _DARK) ** 2, channel)
+        scale = (self._exposure * self._factor)[:, None, None, None] * gain[:, None, None, None]
+        expected = [factor * radiance for factor, radiance in zip(scale, radiances, strict=True)]
+        noise = self.pixels[channel].take(
+            [one.variance_of(value) for one, value in zip(self.measured, expected, strict=True)], channel
+        )
+        error = np.maximum(self.pixels[channel].take([each.error for each in pictures], channel), floor)
+        return noise, noise + (error * self.pixels[channel].take(expected, channel)) ** 2
+
+    def gains(self, value: np.ndarray, data: np.ndarray, variance: np.ndarray, channel: int) -> np.ndarray:
+        """(photographs,) best unknown gains, 1 where a gain is known."""
+        photograph = self.pixels[channel].photograph
+        group = self._group[photograph]
+        unknown = group >= 0
+        count = len(self.groups)
+        above = np.bincount(group[unknown], (value * data / variance)[unknown], count)
+        below = np.bincount(group[unknown], (value * value / variance)[unknown], count)
+        found = np.where(below > 0, above / np.maximum(below, 1e-300), 1.0)
+        return np.where(self._group >= 0, found[self._group] if count else 1.0, 1.0)
+
+    def without_gains(self, columns: np.ndarray, value: np.ndarray, weight: np.ndarray, channel: int) -> np.ndarray:
+        """Columns (n, k) less what unknown gains could do: orthogonal to `value` within each group, by weights."""
+        group = self._group[self.pixels[channel].photograph]
+        result = np.array(columns)
+        for number in range(len(self.groups)):
+            mine = group == number
+            part, w = value[mine], weight[mine]
+            norm = float((w * part * part).sum())
+            if norm > 0:
+                result[mine] -= np.outer(part, (w * part) @ columns[mine] / norm)
+        return result
+
+
+def _counted(one: Measured, picture: Predicted, polarised: bool) -> np.ndarray:
+    """(h, w, 3) which pixels count: well within the body, lit, without gloss, neither masked nor saturated."""
+    inside = ndimage.binary_erosion(picture.alpha > _COVERED, np.ones((3, 3)), border_value=1)
+    bright = picture.radiance > _DARK * picture.radiance.max(axis=(0, 1))
+    matt = np.ones(bright.shape, bool) if polarised else picture.gloss <= _GLOSS * picture.radiance
+    return inside[..., None] & bright & matt & one.usable
+
+
+def huber_weights(residual: np.ndarray) -> np.ndarray:
+    """Weights of residuals, in standard deviations, that make least squares robust (Huber)."""
+    return np.minimum(1.0, _HUBER / np.maximum(np.abs(residual), 1e-300))
+
+
+def huber_cost(residual: np.ndarray) -> float:
+    """Sum of squares, beyond the threshold linear."""
+    size = np.abs(residual)
+    return float(np.where(size <= _HUBER, size**2, _HUBER * (2 * size - _HUBER)).sum())

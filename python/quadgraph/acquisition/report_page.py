@@ -1,0 +1,160 @@
+"""What was recovered as one HTML file that needs nothing else: photographs, predictions, residuals, convergence."""
+
+from __future__ import annotations
+
+import base64
+import html
+import io
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from quadgraph.acquisition.prediction import CHANNELS
+from quadgraph.acquisition.recovery import NAMES, Recovered
+from quadgraph.base.atomic_file import replacing
+
+_WHITE = 0.995  # quantile of a photograph that is shown as white
+_MOST = 4.0  # standard deviations, at which residuals have their full colour
+_LEFT_OUT = (128, 128, 128)
+_SIZE, _EDGE = (480, 200), 40  # of the drawing of the convergence
+_COLOURS = ("#c0392b", "#1e8449", "#2471a3")
+_STYLE = """
+:root { color-scheme: light dark; --line: #8886; }
+body { font: 15px/1.5 system-ui, sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; }
+table { border-collapse: collapse; margin: 1rem 0; }
+td, th { padding: .3rem .8rem .3rem 0; text-align: left; border-bottom: 1px solid var(--line); vertical-align: top; }
+td.number { font-variant-numeric: tabular-nums; white-space: nowrap; }
+figure { display: inline-block; margin: 0 1rem 1rem 0; }
+figcaption { font-size: 13px; }
+img { width: 220px; image-rendering: pixelated; display: block; background: #000; }
+.said { border-left: 4px solid #d68910; padding-left: .8rem; }
+svg text { fill: currentColor; font: 12px system-ui, sans-serif; }
+"""
+
+
+def write(path: Path, found: Recovered) -> None:
+    """Write the page. Raises InputError if it cannot be written."""
+    with replacing(path) as stream:
+        stream.write(page(found).encode())
+
+
+def page(found: Recovered) -> str:
+    """The whole document; the same result makes the same page."""
+    name = html.escape(found.capture.path.name)
+    body = [f"<h1>What {name} says of {html.escape(found.capture.body.name)}</h1>"]
+    body += [_coefficients(found), _said(found)]
+    body += [f"<h2>Photographs</h2>{_scale()}", *_photographs(found)]
+    body += ["<h2>Convergence</h2>", _convergence(found)]
+    head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{name}</title>'
+    head = f"<head>{head}<style>{_STYLE}</style></head>"
+    return f'<!doctype html>\n<html lang="en">{head}\n<body>{"".join(body)}</body></html>\n'
+
+
+def _coefficients(found: Recovered) -> str:
+    """Coefficients and their standard deviations, a row a coefficient."""
+    fit = found.fit
+    rows = [["", *CHANNELS]]
+    for row, name in enumerate(NAMES):
+        values = zip(fit.coefficients[row], fit.deviations[row], strict=True)
+        rows.append([f"{name}, 1/mm", *(f"{value:.4g} ± {value * deviation:.2g}" for value, deviation in values)])
+    rows.append(["correlation of the two", *(f"{value:+.2f}" for value in fit.correlations)])
+    rows.append(["χ² per degree of freedom", *(f"{value:.3g}" for value in fit.chi_squared)])
+    rows.append(["index of refraction", f"{found.capture.eta:g} (stated)", "", ""])
+    return _table(rows)
+
+
+def _table(rows: list[list[str]]) -> str:
+    head, *rest = ([html.escape(cell) for cell in row] for row in rows)
+    lines = ["".join(f"<th>{cell}</th>" for cell in head)]
+    for name, *cells in rest:
+        lines.append(f"<th>{name}</th>" + "".join(f'<td class="number">{cell}</td>' for cell in cells))
+    return "<table>" + "".join(f"<tr>{line}</tr>" for line in lines) + "</table>"
+
+
+def _said(found: Recovered) -> str:
+    """What is to be said against the result."""
+    sentences = [*found.findings, *found.undetermined, *found.notes]
+    if not sentences:
+        return "<p>Photographs and predictions agree, and the photographs determine all coefficients.</p>"
+    return '<div class="said">' + "".join(f"<p>{html.escape(each)}</p>" for each in sentences) + "</div>"
+
+
+def _scale() -> str:
+    return (
+        "<p>Each photograph beside its prediction, both shown alike, with what is left between them in standard "
+        f"deviations: blue {-_MOST:g}, white 0, red +{_MOST:g} (the photograph is brighter). Grey pixels do not count."
+        "</p>"
+    )
+
+
+def _photographs(found: Recovered) -> Iterable[str]:
+    """A row of three pictures for each photograph."""
+    for number, (one, picture) in enumerate(zip(found.measured, found.fit.pictures, strict=True)):
+        stated = one.stated
+        gain = stated.gain if isinstance(stated.gain, float) else 1.0
+        expected = stated.exposure * gain * found.fit.gains[number] * picture.radiance
+        deviation = np.sqrt(one.variance_of(expected) + (picture.error * expected) ** 2)
+        white = float(np.quantile(one.values, _WHITE)) or 1.0
+        counted = np.asarray(found.problem.counted[number]).any(axis=2)
+        left = np.where(found.problem.counted[number], (one.values - expected) / deviation, 0).sum(axis=2)
+        left /= np.maximum(found.problem.counted[number].sum(axis=2), 1)
+        chi = ", ".join(f"{value:.2f}" for value in found.fit.by_photograph[number])
+        lights = html.escape(" + ".join(stated.lights))
+        yield f"<h3>{html.escape(stated.file.name)}: {html.escape(stated.camera)}, {lights}</h3>"
+        yield _figure(_srgb(one.values / white), "photograph", stated.file.name)
+        yield _figure(_srgb(expected / white), "prediction", stated.file.name)
+        yield _figure(_signed(left, counted), f"residual; χ² a pixel {chi}", stated.file.name)
+
+
+def _figure(pixels: np.ndarray, what: str, name: str) -> str:
+    """An embedded picture, (h, w, 3) uint8, with its caption."""
+    from PIL import Image
+
+    encoded = io.BytesIO()
+    Image.fromarray(pixels).save(encoded, "PNG")
+    data = base64.b64encode(encoded.getvalue()).decode()
+    alt = html.escape(f"{what} of {name}", quote=True)
+    caption = f"<figcaption>{html.escape(what)}</figcaption>"
+    return f'<figure><img src="data:image/png;base64,{data}" alt="{alt}">{caption}</figure>'
+
+
+def _srgb(value: np.ndarray) -> np.ndarray:
+    """Linear values as bytes for a display (IEC 61966-2-1)."""
+    value = np.clip(value, 0, 1)
+    encoded = np.where(value <= 0.0031308, 12.92 * value, 1.055 * value ** (1 / 2.4) - 0.055)
+    return np.round(255 * encoded).astype(np.uint8)
+
+
+def _signed(value: np.ndarray, counted: Any) -> np.ndarray:
+    """Residuals from blue over white to red; what does not count is grey."""
+    share = np.clip(value / _MOST, -1, 1)[..., None]
+    red, blue = np.array([178.0, 24.0, 43.0]), np.array([33.0, 102.0, 172.0])
+    colour = 255 + np.where(share > 0, share * (red - 255), -share * (blue - 255))
+    return np.where(counted[..., None], colour, _LEFT_OUT).astype(np.uint8)
+
+
+def _convergence(found: Recovered) -> str:
+    """Chi^2 per degree of freedom of each outer step, by channel, on a logarithmic scale."""
+    steps = np.array([each.chi_squared for each in found.fit.steps])
+    logs = np.log10(np.maximum(steps, 1e-6))
+    low, high = min(float(logs.min()), 0.0) - 0.1, max(float(logs.max()), 0.0) + 0.1
+    width, height = _SIZE
+    x = _EDGE + np.arange(len(steps)) * (width - 2 * _EDGE) / max(len(steps) - 1, 1)
+
+    def y(value: np.ndarray | float) -> np.ndarray | float:
+        return height - _EDGE / 2 - (value - low) / (high - low) * (height - _EDGE)
+
+    parts = [f'<line x1="{_EDGE}" x2="{width - _EDGE}" y1="{y(0.0):.1f}" y2="{y(0.0):.1f}" stroke="#888"/>']
+    parts.append(f'<text x="{_EDGE - 16}" y="{y(0.0) + 4:.1f}">1</text>')
+    for channel, colour in enumerate(_COLOURS):
+        points = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, np.asarray(y(logs[:, channel])), strict=True))
+        parts.append(f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="2"/>')
+    drawing = f'<svg viewBox="0 0 {width} {height}" width="{width}" role="img">{"".join(parts)}</svg>'
+    rows = [["step", *(f"χ², {name}" for name in CHANNELS), *(f"{name}, 1/mm" for name in NAMES)]]
+    for number, step in enumerate(found.fit.steps, 1):
+        coefficients = (" / ".join(f"{value:.4g}" for value in row) for row in step.coefficients)
+        rows.append([str(number), *(f"{value:.3g}" for value in step.chi_squared), *coefficients])
+    caption = "<figcaption>χ² per degree of freedom, by step and channel</figcaption>"
+    return f"<figure>{drawing}{caption}</figure>{_table(rows)}"

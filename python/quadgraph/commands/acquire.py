@@ -1,0 +1,111 @@
+"""`quadgraph acquire`: what a homogeneous body is made of, from photographs of it (docs/acquisition.md).
+
+Finds absorption and reduced scattering of red, green and blue, with their standard deviations, and writes them as
+--material takes them. Bodies that differ from place to place are not recovered.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from quadgraph.base.arguments import add_device_arguments
+from quadgraph.base.errors import InputError
+
+if TYPE_CHECKING:
+    from quadgraph.acquisition.recovery import Recovered
+
+DISAGREES = 3  # exit code
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Register the subcommand."""
+    parser = subparsers.add_parser("acquire", help="coefficients of a body, from photographs", description=__doc__)
+    parser.add_argument("file", metavar="CAPTURE", type=Path, help="capture.json (docs/acquisition.md)")
+    parser.add_argument(
+        "-o", "--output", metavar="OUT", type=Path, required=True, help="the .npz to write, as --material takes it"
+    )
+    parser.add_argument(
+        "--json",
+        metavar="FILE",
+        type=Path,
+        help="write coefficients, standard deviations, chi^2, gains and what is to be said against them here",
+    )
+    parser.add_argument(
+        "--report",
+        metavar="FILE",
+        type=Path,
+        help="write one .html that needs nothing else: photographs, predictions, residuals, coefficients, convergence",
+    )
+    parser.add_argument(
+        "--correction",
+        action=argparse.BooleanOptionalAction,
+        default=True,
+        help="predict by the engine corrected by sweeps of the transport equation; without, the coefficients are those "
+        "of its moment equations (default: --correction)",
+    )
+    add_device_arguments(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Recover and write; 3 where photographs contradict what the capture says, or the fit did not settle."""
+    from rich.console import Console
+
+    from quadgraph.acquisition import capture
+    from quadgraph.acquisition.recovery import recover
+    from quadgraph.base import atomic_file, outputs
+    from quadgraph.commands.progress_bar import progress_bar
+
+    if args.output.suffix.lower() != ".npz":
+        raise InputError(f"{args.output}: output must end in .npz")
+    if args.report and args.report.suffix.lower() != ".html":
+        raise InputError(f"{args.report}: a report must end in .html")
+    stated = capture.read(args.file)
+    outputs.check_outputs([args.output, args.json, args.report], stated.files())
+    errors = Console(stderr=True, highlight=False, soft_wrap=True)
+    with progress_bar() as bar:
+        task = bar.add_task("acquire", total=1.0)
+
+        def tell(text: str) -> None:
+            (bar.console if bar.console.is_terminal else errors).print(text, markup=False)
+
+        def advance(share: float) -> None:
+            bar.update(task, completed=share)
+
+        found = recover(stated, args.correction, tell, advance, args.device, args.validation)
+    found.material.save(args.output)
+    if args.json:
+        atomic_file.write_json(args.json, found.report())
+    if args.report:
+        from quadgraph.acquisition import report_page
+
+        report_page.write(args.report, found)
+    _summarise(found, args.output)
+    return DISAGREES if found.findings or not found.fit.converged else 0
+
+
+def _summarise(found: Recovered, output: Path) -> None:
+    from rich.console import Console
+
+    console = Console(highlight=False, soft_wrap=True)
+    for line in lines(found):
+        console.print(line, markup=False)
+    console.print(f"material: {output}")
+
+
+def lines(found: Recovered) -> list[str]:
+    """What was found, a line a coefficient, and what is to be said of it."""
+    from quadgraph.acquisition.prediction import CHANNELS
+    from quadgraph.acquisition.recovery import NAMES
+
+    fit = found.fit
+    said = []
+    for row, name in enumerate(NAMES):
+        values = (
+            f"{colour} {value:.4g} ± {value * deviation:.2g}"
+            for colour, value, deviation in zip(CHANNELS, fit.coefficients[row], fit.deviations[row], strict=True)
+        )
+        said.append(f"{name}, 1/mm: {', '.join(values)}")
+    said.append(f"chi^2 per degree of freedom: {', '.join(f'{value:.3g}' for value in fit.chi_squared)}")
+    return [*said, *found.undetermined, *found.findings, *found.notes]

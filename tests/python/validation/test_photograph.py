@@ -1,0 +1,102 @@
+"""`quadgraph photograph`: its walks keep the laws of light, and its captures are what `acquire` reads."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from baked import write_levels
+from quadgraph.acquisition import capture, photographs
+from quadgraph.base.errors import InputError
+from quadgraph.cli import main
+from shapes import icosphere
+
+pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
+camera_walks = pytest.importorskip("quadgraph_validation.truth.camera_walks", reason="needs the extra walks")
+
+RADIUS = 10.0
+EYE = camera_walks.Eye(np.array([0.0, 0.0, 60.0]), np.zeros(3), 24.0, "y", 16, 16)
+AMBIENT = {"type": "ambient", "irradiance": [0.5, 1.0, 2.0]}
+KEY = {"type": "rectangle", "centre": [0, 40, 60], "u": [60, 0, 0], "v": [0, -40, 30], "power": [3.0, 3.0, 3.0]}
+
+
+def see(lights: list[dict], channel: int, sigma_a: float, sigma_s: float, eta: float, seed: int = 3):
+    """A ball seen from EYE."""
+    walker = camera_walks.CameraWalker(icosphere(3, RADIUS), lights)
+    return walker.see(EYE, channel, sigma_a, sigma_s, eta, 100, seed, lambda _share: None)
+
+
+@pytest.mark.parametrize("eta", [1.0, 1.4])
+def test_a_body_that_absorbs_nothing_looks_like_what_is_around_it(eta):
+    """In a uniform field radiance is the same everywhere; of it the surface reflects a share, which is left out."""
+    seen = see([AMBIENT], 1, 0.0, 3.0, eta)
+    middle = seen.radiance[0, 6:10, 6:10]
+    through = 1 - ((eta - 1) / (eta + 1)) ** 2  # it is looked at straight on
+    assert abs(middle.mean() / (through / np.pi) - 1) < 0.02
+    assert (seen.radiance[0, 0] == 0).all()  # beside the body
+
+
+def test_powers_and_channels_scale_what_is_seen():
+    one, other = (see([AMBIENT, KEY], channel, 0.05, 1.0, 1.3) for channel in (0, 2))
+    np.testing.assert_allclose(4 * one.radiance[0].mean(), other.radiance[0].mean(), rtol=0.05)
+    assert one.radiance[1].max() > 0
+    again = see([AMBIENT, KEY], 0, 0.05, 1.0, 1.3)
+    np.testing.assert_array_equal(again.radiance, one.radiance)
+
+
+def test_lights_that_walks_cannot_meet_are_refused():
+    with pytest.raises(InputError, match=r"lights\[0\]: point found, allowed with walks are rectangle and ambient"):
+        camera_walks.CameraWalker(icosphere(2, RADIUS), [{"type": "point", "position": [0, 0, 40], "power": 1}])
+
+
+@pytest.fixture
+def scene(tmp_path) -> Path:
+    """A scene of a ball under two lights."""
+    write_levels(tmp_path / "ball.qgraph", [icosphere(2, RADIUS)])
+    document = {
+        "body": "ball.qgraph",
+        "material": {"sigma_s_prime": [1.0, 0.8, 0.6], "sigma_a": [0.02, 0.05, 0.1], "eta": 1.3},
+        "lights": [KEY, AMBIENT],
+        "camera": {"azimuth": 10},
+        "picture": {"width": 16, "height": 12},
+    }
+    path = tmp_path / "scene.json"
+    path.write_text(json.dumps(document))
+    return path
+
+
+@pytest.mark.parametrize("by", [["--walks", "16"], ["--by", "engine", "--device", "cpu", "--gains", "20%"]])
+def test_a_capture_is_one_that_can_be_read(scene, tmp_path, by, capsys):
+    path = tmp_path / "photos.json"
+    assert main(["photograph", str(scene), "--capture", str(path), "--azimuths", "0,120,240", *by]) == 0
+    assert ("inverse crime" in capsys.readouterr().err) == ("engine" in by)
+    found = capture.read(path)
+    assert len(found.photographs) == 6
+    measured = photographs.read_all(found)
+    assert all(0.5 < each.values.max() <= 1 for each in measured)
+    gains = [each.gain for each in found.photographs]
+    assert gains == ([f"photographs[{k}]" for k in range(6)] if "--gains" in by else [1.0] * 6)
+    truth = json.loads((tmp_path / "photos-truth.json").read_text())
+    np.testing.assert_allclose(truth["sigma_a"], [0.02, 0.05, 0.1], rtol=1e-6)
+    assert "sigma_a" not in path.read_text()
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"material": "jade"}, "pattern"),
+        ({"lights": []}, "/lights: found none"),
+        ({"camera": {"orthographic": 30}}, "/camera/orthographic: found"),
+        ({"lights": [{"type": "point", "position": [0, 0, 40], "power": 1}]}, "or take --by engine"),
+    ],
+)
+def test_what_cannot_be_photographed_is_refused(scene, tmp_path, change, said, capsys):
+    scene.write_text(json.dumps(json.loads(scene.read_text()) | change))
+    path = tmp_path / "photos.json"
+    assert main(["photograph", str(scene), "--capture", str(path), "--walks", "4"]) == 1
+    assert said in capsys.readouterr().err
+    assert not path.exists()
+    assert not list(tmp_path.glob("*.exr"))
