@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from scipy import ndimage
 
 from quadgraph.acquisition.fitting import Fit
 from quadgraph.acquisition.problem import Problem
@@ -15,7 +16,7 @@ _LESS = 0.75  # of the spread that linear values leave, which encoded ones have 
 _BETTER = 0.15  # of correlation, by which another assumption has to win
 _FREE = 0.15  # of correlation, that centring gains by itself
 _LIT = 0.05  # of the brightest, from which on a pixel is part of a silhouette
-_OVERLAP = 0.8  # of two silhouettes, their intersection over their union
+_BESIDE = 0.03  # of what is lit, that has to lie beside the body to say that it is elsewhere
 _FLIPS = {"left to right": np.s_[:, ::-1], "upside down": np.s_[::-1, :], "by half a turn": np.s_[::-1, ::-1]}
 
 
@@ -94,15 +95,15 @@ def _outline(problem: Problem, found: Fit, number: int) -> str:
     unmasked = one.usable.any(axis=2)
     photographed = (seen > _LIT * np.quantile(seen, 0.99)) & unmasked
     predicted = (expected > _LIT * np.quantile(expected, 0.99)) & unmasked
-    union = (photographed | predicted).sum()
-    overlap = (photographed & predicted).sum() / union if union else 1.0
-    if overlap >= _OVERLAP:
+    body = ndimage.binary_dilation(picture.alpha > 0, np.ones((3, 3)))
+    beside = (photographed & ~body).sum() / max(photographed.sum(), 1)
+    if beside < _BESIDE:
         return ""
     shift = _middle(photographed) - _middle(predicted)
     size = np.sqrt(photographed.sum() / max(predicted.sum(), 1))
     return (
-        f"{one.stated.path}.camera: what is lit overlaps with the prediction by {overlap:.0%}; the photograph's is "
-        f"{shift[1]:+.0f} pixels to the right, {shift[0]:+.0f} down and {size:.2f} times as large: pose, camera, "
+        f"{one.stated.path}.camera: {beside:.0%} of what is lit lies beside the body; what is lit is {shift[1]:+.0f} "
+        f"pixels to the right of its prediction, {shift[0]:+.0f} down and {size:.2f} times as large: pose, camera, "
         "unit or mask is wrong"
     )
 
