@@ -50,7 +50,8 @@ def _of_photograph(problem: Problem, found: Fit, number: int) -> list[str]:
     if not np.nanmax(found.by_photograph[number]) > FAR:
         return []
     one = problem.measured[number]
-    values, expected = _grey(one.values), _grey(found.pictures[number].radiance)
+    # By the first predictions: a fit to what is wrong may have left every shape behind.
+    values, expected = _grey(one.values), _grey(problem.first[number].radiance)
     outline = _outline(problem, found, number)
     path = one.stated.path
     scores = {
@@ -59,7 +60,7 @@ def _of_photograph(problem: Problem, found: Fit, number: int) -> list[str]:
         )
         for name, turn in _FLIPS.items()
     }
-    for other, picture in zip(problem.measured, found.pictures, strict=True):
+    for other, picture in zip(problem.measured, problem.first, strict=True):
         if other.stated.camera == one.stated.camera and other.stated.lights != one.stated.lights:
             names = " + ".join(other.stated.lights)
             sentence = f"{path}.lights: fits the picture of {names} much better than its own: lights are swapped"
