@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from scipy import ndimage
 
 from quadgraph.acquisition.fitting import Fit
 from quadgraph.acquisition.problem import Problem
@@ -15,7 +16,7 @@ _LESS = 0.75  # of the spread that linear values leave, which encoded ones have 
 _BETTER = 0.15  # of correlation, by which another assumption has to win
 _FREE = 0.15  # of correlation, that centring gains by itself
 _LIT = 0.05  # of the brightest, from which on a pixel is part of a silhouette
-_OVERLAP = 0.8  # of two silhouettes, their intersection over their union
+_BESIDE = 0.03  # of what is lit, that has to lie beside the body to say that it is elsewhere
 _FLIPS = {"left to right": np.s_[:, ::-1], "upside down": np.s_[::-1, :], "by half a turn": np.s_[::-1, ::-1]}
 
 
@@ -49,7 +50,8 @@ def _of_photograph(problem: Problem, found: Fit, number: int) -> list[str]:
     if not np.nanmax(found.by_photograph[number]) > FAR:
         return []
     one = problem.measured[number]
-    values, expected = _grey(one.values), _grey(found.pictures[number].radiance)
+    # By the first predictions: a fit to what is wrong may have left every shape behind.
+    values, expected = _grey(one.values), _grey(problem.first[number].radiance)
     outline = _outline(problem, found, number)
     path = one.stated.path
     scores = {
@@ -58,7 +60,7 @@ def _of_photograph(problem: Problem, found: Fit, number: int) -> list[str]:
         )
         for name, turn in _FLIPS.items()
     }
-    for other, picture in zip(problem.measured, found.pictures, strict=True):
+    for other, picture in zip(problem.measured, problem.first, strict=True):
         if other.stated.camera == one.stated.camera and other.stated.lights != one.stated.lights:
             names = " + ".join(other.stated.lights)
             sentence = f"{path}.lights: fits the picture of {names} much better than its own: lights are swapped"
@@ -94,15 +96,15 @@ def _outline(problem: Problem, found: Fit, number: int) -> str:
     unmasked = one.usable.any(axis=2)
     photographed = (seen > _LIT * np.quantile(seen, 0.99)) & unmasked
     predicted = (expected > _LIT * np.quantile(expected, 0.99)) & unmasked
-    union = (photographed | predicted).sum()
-    overlap = (photographed & predicted).sum() / union if union else 1.0
-    if overlap >= _OVERLAP:
+    body = ndimage.binary_dilation(picture.alpha > 0, np.ones((3, 3)))
+    beside = (photographed & ~body).sum() / max(photographed.sum(), 1)
+    if beside < _BESIDE:
         return ""
     shift = _middle(photographed) - _middle(predicted)
     size = np.sqrt(photographed.sum() / max(predicted.sum(), 1))
     return (
-        f"{one.stated.path}.camera: what is lit overlaps with the prediction by {overlap:.0%}; the photograph's is "
-        f"{shift[1]:+.0f} pixels to the right, {shift[0]:+.0f} down and {size:.2f} times as large: pose, camera, "
+        f"{one.stated.path}.camera: {beside:.0%} of what is lit lies beside the body; what is lit is {shift[1]:+.0f} "
+        f"pixels to the right of its prediction, {shift[0]:+.0f} down and {size:.2f} times as large: pose, camera, "
         "unit or mask is wrong"
     )
 

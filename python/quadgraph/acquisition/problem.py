@@ -42,7 +42,7 @@ class Problem:
 
     def __init__(self, capture: Capture, measured: list[Measured], pictures: list[Predicted]) -> None:
         """pictures: a first prediction, by which the pixels are chosen. Raises InputError where nothing is left."""
-        self.capture, self.measured = capture, measured
+        self.capture, self.measured, self.first = capture, measured, pictures
         self.counted = [
             _counted(one, picture, capture.polarised) for one, picture in zip(measured, pictures, strict=True)
         ]

@@ -124,7 +124,7 @@ def change(folder: Path, photograph: dict[str, Any], how: Callable[[np.ndarray],
         (flipped, "photographs[0].file: fits much better turned left to right"),
         pytest.param(encoded, "encoded for displays", marks=pytest.mark.long),
         pytest.param(swapped, "lights are swapped", marks=pytest.mark.long),
-        pytest.param(moved, "photographs[2].camera: what is lit overlaps", marks=pytest.mark.long),
+        pytest.param(moved, "of what is lit lies beside the body", marks=pytest.mark.long),
     ],
 )
 def test_spoilt_photographs_are_named(twin, tmp_path, spoil, said, capsys):
