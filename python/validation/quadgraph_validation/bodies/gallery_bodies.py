@@ -225,10 +225,92 @@ def _egg() -> Field:
     )
 
 
+# Where the lids of the left eye begin and end, mm: two pieces of the upper one, two of the lower.
+_LIDS = (
+    (2.6, 31.4, 15.2, 6.2, 34.0, 15.9),
+    (6.2, 34.0, 15.9, 10.4, 31.6, 13.4),
+    (3.0, 31.0, 15.2, 6.4, 29.4, 15.4),
+    (6.4, 29.4, 15.4, 10.2, 31.2, 13.4),
+)
+
+
+def _bust_head() -> Field:
+    """The head of the bust without its hair, on its neck, its face towards +z."""
+    both = [-1.0, 1.0]
+    skull = [_ball((0, 39, -3), (17, 19, 21)), _ball((0, 27.5, 5), (13.0, 17, 12.6))]
+    skull += [_ball((0, 18, 6), (9.4, 8, 8.6)), _ball((0, 12.2, 12.6), (3.8, 3.2, 3.4))]
+    skull += [_ball((8.2 * side, 24.5, 10), (4.6, 4.2, 4.6)) for side in both]
+    head = _union(skull, 6.0)
+    sockets = _union([_ball((6.4 * side, 32.0, 18.6), (4.6, 3.2, 4.2)) for side in both], 0.5)
+    head = _without(head, sockets, 2.6)
+    eyes = _union([_ball((6.2 * side, 31.8, 12.2), 4.1) for side in both], 0.1)
+    head = _union([head, eyes], 0.5)
+    lids = [_capsule((x * side, y, z), (u * side, v, w), 0.75) for side in both for x, y, z, u, v, w in _LIDS]
+    head = _union([head, _union(lids, 0.5)], 0.7)
+    brows = [_capsule((2.2 * side, 36.2, 16.9), (10.6 * side, 35.6, 11.6), 1.8, 0.8) for side in both]
+    nose = [_capsule((0, 36.5, 17.2), (0, 26.2, 20.4), 1.7, 1.8), _ball((0, 25.4, 20.6), 2.2)]
+    nose += [_ball((2.3 * side, 24.6, 18.6), (1.6, 1.5, 2.1)) for side in both]
+    head = _union([head, _union(nose, 1.5), *brows], 2.2)
+    lips = [_capsule((0.9 * side, 19.9, 17.0), (4.7 * side, 18.6, 15.7), 1.3, 0.6) for side in both]
+    lips += [_capsule((-1.9, 17.0, 16.7), (1.9, 17.0, 16.7), 1.4)]
+    head = _union([head, *lips], 1.0)
+    slit = _union([_capsule((0, 18.4, 18.4), (4.6 * side, 18.5, 16.5), 0.5, 0.4) for side in both], 0.2)
+    head = _without(head, slit, 1.0)
+    ears = _union([_ball((16.3 * side, 30, -1.5), (2.2, 5.8, 3.8)) for side in both], 0.5)
+    bowls = _union([_ball((18.9 * side, 31, -0.6), (1.5, 3.2, 1.8)) for side in both], 0.1)
+    head = _union([head, _without(ears, bowls, 1.2)], 1.2)
+    return _union([head, _capsule((0, 22, -4), (0, -10, -6), 8.8, 10.8)], 4.0)
+
+
+def _bust_hair() -> Field:
+    """The hair of the bust, in waves from a parting back into a knot."""
+
+    def field(p: np.ndarray) -> np.ndarray:
+        x, y, z = p[..., 0], p[..., 1], p[..., 2]
+        cap = _ball((0, 40, -4.2), (18.6, 20.2, 21.6))(p)
+        turn = np.arctan2(np.abs(x), y - 37)  # about the axis of the knot, 0 at the parting
+        strands = np.cos(19 * turn + 1.3 * np.sin(0.42 * z + 4 * turn))
+        cap = cap - 0.75 * strands * np.clip(np.hypot(x, y - 37) / 9 - 0.3, 0, 1) * np.clip(np.abs(x) / 3, 0.4, 1)
+        edge = 0.5 * (z - 11) - 0.78 * (y - 42) + 1.4 - 0.2 * np.abs(x)  # beyond the hairline
+        return -least(-cap, -edge, 1.6)
+
+    knot = _ball((0, 37, -27), (8.5, 8.5, 7.5))
+    return _union([field, knot], 2.0)
+
+
+def _bust() -> Field:
+    """A classical bust of 122 mm on its socle, hair in a knot, a cloth about its shoulders."""
+    both = [-1.0, 1.0]
+    parts = [_ball((0, -24, -2), (30, 24, 17)), _capsule((0, -6, -6), (0, -14, -6), 14)]
+    parts += [_capsule((10 * side, -9, -5), (36 * side, -17, -5), 9, 11.5) for side in both]
+    torso = _union(parts, 9.0)
+
+    def cloth(p: np.ndarray) -> np.ndarray:
+        x, y, z = p[..., 0], p[..., 1], p[..., 2]
+        hang = y - 0.011 * (x - 4) ** 2 + 0.1 * x + 0.35 * np.sin(0.2 * x)
+        depth = (0.75 + 0.25 * np.cos(0.37 * hang + 0.06 * x)) * np.clip((z + 10) / 10, 0, 1)
+        folds = depth * np.cos(hang + 0.8 * np.sin(0.09 * x + 1))
+        over = hang + 17.0 - 14 * np.clip(-z / 6, 0, 1)  # the neckline, higher behind
+        return -least(-(torso(p) - 2.0 - 0.9 * folds), -over, 2.5)
+
+    body = _union([_bust_head(), torso], 6.0)
+    body = _union([body, cloth], 0.8)
+    body = _union([body, _bust_hair()], 0.8)
+    kept = _ball((0, 14, -4), (43, 53, 60))
+
+    def outside(p: np.ndarray) -> np.ndarray:
+        return -np.where(p[..., 1] < 14, kept(p), np.abs(p[..., 0]) - 43)
+
+    body = _without(body, outside, 2.5)
+    socle = "0,-62 22,-62 22,-57 19.5,-55.5 17,-52 11,-47 10,-42 13,-37 13,-33 0,-33"
+    return _union([body, _turned(socle, 1.0)], 1.5)
+
+
 # Field, half the side of the box that it is in (mm), cells along that, triangles.
 BODIES: dict[str, tuple[Callable[[], Field], float, int, int]] = {
     "bear": (_gummy_bear, 15.0, 150, 24_000),
     "bowl": (_bowl, 50.0, 190, 70_000),
+    "bust": (_bust, 66.0, 260, 70_000),
     "candle": (_candle, 40.0, 170, 36_000),
     "crown": (_crown, 38.0, 220, 50_000),
     "egg": (_egg, 34.0, 140, 40_000),
