@@ -227,10 +227,10 @@ def _egg() -> Field:
 
 # Where the lids of the left eye begin and end, mm: two pieces of the upper one, two of the lower.
 _LIDS = (
-    (2.6, 31.4, 15.2, 6.2, 34.0, 15.9),
-    (6.2, 34.0, 15.9, 10.4, 31.6, 13.4),
-    (3.0, 31.0, 15.2, 6.4, 29.4, 15.4),
-    (6.4, 29.4, 15.4, 10.2, 31.2, 13.4),
+    (2.5, 31.4, 15.8, 6.2, 34.0, 17.0),
+    (6.2, 34.0, 17.0, 10.6, 31.6, 14.1),
+    (2.8, 31.0, 15.8, 6.4, 29.3, 16.5),
+    (6.4, 29.3, 16.5, 10.4, 31.2, 14.1),
 )
 
 
@@ -241,11 +241,11 @@ def _bust_head() -> Field:
     skull += [_ball((0, 18, 6), (9.4, 8, 8.6)), _ball((0, 12.2, 12.6), (3.8, 3.2, 3.4))]
     skull += [_ball((8.2 * side, 24.5, 10), (4.6, 4.2, 4.6)) for side in both]
     head = _union(skull, 6.0)
-    sockets = _union([_ball((6.4 * side, 32.0, 18.6), (4.6, 3.2, 4.2)) for side in both], 0.5)
+    sockets = _union([_ball((6.4 * side, 32.0, 18.6), (4.7, 3.4, 3.9)) for side in both], 0.5)
     head = _without(head, sockets, 2.6)
-    eyes = _union([_ball((6.2 * side, 31.8, 12.2), 4.1) for side in both], 0.1)
+    eyes = _union([_ball((6.3 * side, 31.7, 12.9), 4.2) for side in both], 0.1)
     head = _union([head, eyes], 0.5)
-    lids = [_capsule((x * side, y, z), (u * side, v, w), 0.75) for side in both for x, y, z, u, v, w in _LIDS]
+    lids = [_capsule((x * side, y, z), (u * side, v, w), 0.9) for side in both for x, y, z, u, v, w in _LIDS]
     head = _union([head, _union(lids, 0.5)], 0.7)
     brows = [_capsule((2.2 * side, 36.2, 16.9), (10.6 * side, 35.6, 11.6), 1.8, 0.8) for side in both]
     nose = [_capsule((0, 36.5, 17.2), (0, 26.2, 20.4), 1.7, 1.8), _ball((0, 25.4, 20.6), 2.2)]
@@ -310,7 +310,7 @@ def _bust() -> Field:
 BODIES: dict[str, tuple[Callable[[], Field], float, int, int]] = {
     "bear": (_gummy_bear, 15.0, 150, 24_000),
     "bowl": (_bowl, 50.0, 190, 70_000),
-    "bust": (_bust, 66.0, 260, 70_000),
+    "bust": (_bust, 66.0, 280, 80_000),
     "candle": (_candle, 40.0, 170, 36_000),
     "crown": (_crown, 38.0, 220, 50_000),
     "egg": (_egg, 34.0, 140, 40_000),
