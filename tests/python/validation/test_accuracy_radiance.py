@@ -110,5 +110,5 @@ def test_the_reference_refuses_what_does_not_fit():
     answer = radiance_study.solved(body, CASES[0], SP3)
     with pytest.raises(InputError, match="999999 is not a face"):
         answer.leaving(np.array([0, 999999]), np.array([[0.0, 0.0, -1.0]] * 2))
-    with pytest.raises(InputError, match=r"outside: expected shape \(2, 3\)"):
+    with pytest.raises(InputError, match=r"outside: shape \(1, 3\), expected \(2, 3\)"):
         answer.leaving(np.array([0, 1]), np.array([[0.0, 0.0, -1.0]]))
