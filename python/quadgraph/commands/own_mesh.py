@@ -18,28 +18,23 @@ from quadgraph.base.units import UNITS_MM
 _MEMBERS = {"unit": "unit", "height": "height_mm", "longest": "longest_mm", "wrap": "wrap"}  # of BakeOptions
 
 
-def add_size_arguments(parser: argparse.ArgumentParser | argparse._ArgumentGroup, more: str = "") -> None:
-    """Add how large the body of a mesh is, and what is baked for one that is no solid.
-
-    more: what else help texts say.
-    """
+def add_size_arguments(parser: argparse.ArgumentParser | argparse._ArgumentGroup) -> None:
+    """Add how large the body of a mesh is, and what is baked for one that is no solid."""
     size = parser.add_mutually_exclusive_group()
-    size.add_argument("--unit", choices=tuple(UNITS_MM), help=f"unit of a mesh's coordinates{more}")
-    size.add_argument(
-        "--height", type=length_mm, metavar="L", help=f"a mesh's extent upwards, like 100mm or 1.8m{more}"
-    )
+    size.add_argument("--unit", choices=tuple(UNITS_MM), help="unit of a mesh's coordinates")
+    size.add_argument("--height", type=length_mm, metavar="L", help="a mesh's extent upwards, like 100mm or 1.8m")
     size.add_argument(
         "--longest",
         type=length_mm,
         metavar="L",
-        help=f"longest side of a mesh{more} (default: glTF in metres where that is plausible, else 100mm)",
+        help="longest side of a mesh (default: glTF in metres where that is plausible, else 100mm)",
     )
     parser.add_argument(
         "--wrap",
         type=wrap_size,
         metavar="SIZE",
         help="bake a closed surface around a mesh that is open, torn, crossing or in pieces: it covers holes narrower "
-        f"than SIZE, like 2mm; auto: the finest of a few sizes that does not go in through a hole{more}",
+        "than SIZE, like 2mm; auto: the finest of a few sizes that does not go in through a hole",
     )
 
 

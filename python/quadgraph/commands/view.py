@@ -28,7 +28,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "on, as in `quadgraph render`.",
     )
     parser.add_argument("file", metavar="FILE", type=Path, help="a baked .qgraph, a scene .json, or a mesh")
-    own_mesh.add_size_arguments(parser, "; stands before FILE")
+    own_mesh.add_size_arguments(parser)
     parser.add_argument("options", nargs=argparse.REMAINDER, metavar="OPTION", help=f"options of {PROGRAM}")
 
 
@@ -45,6 +45,7 @@ def find_program() -> str:
 def run(args: argparse.Namespace) -> int:
     """Open the window; the program's exit status once it is closed, 1 where a mesh could not be baked."""
     program = find_program()
+    _take_sizes(args)
     if _bakes(args.file, args.options):
         from quadgraph.baking import kept
         from quadgraph.baking.pipeline import BakeOptions
@@ -56,6 +57,13 @@ def run(args: argparse.Namespace) -> int:
         # A scene that is saved must not name a file of the cache, or a temporary one.
         keeping = [] if path == args.file or "--headless" in args.options else ["--copy-body"]
         return subprocess.run([program, path, *keeping, *args.options], check=False).returncode
+
+
+def _take_sizes(args: argparse.Namespace) -> None:
+    """Take what is said of a mesh after FILE from the options of the program."""
+    parser = argparse.ArgumentParser(prog="quadgraph view", add_help=False, allow_abbrev=False)
+    own_mesh.add_size_arguments(parser)
+    args.options = parser.parse_known_args(args.options, args)[1]
 
 
 def _bakes(file: Path, options: list[str]) -> bool:
