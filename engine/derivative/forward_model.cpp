@@ -14,6 +14,7 @@
 #include "engine/file/geometry.h"
 #include "engine/optics/fresnel.h"
 #include "engine/reference/row_solver.h"
+#include "shaders/material/optics.h"
 
 namespace quadgraph {
 namespace {
@@ -21,6 +22,8 @@ namespace {
 using Vectors = std::vector<glm::dvec3>;
 
 constexpr std::uint32_t most_bounces = 256;
+constexpr double most_power = 1e15;  // of a factor of a light
+constexpr double least_unit = 1e-6;  // how far from 1 a length or a sum may be
 
 double size_of(const Vectors& values) {
   double sum = 0;
@@ -45,12 +48,12 @@ void check_size(const std::string& name, std::size_t found, std::size_t wanted) 
   }
 }
 
-void check_values(const std::string& name, const Vectors& values) {
+void check_values(const std::string& name, const Vectors& values, double most) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     for (int c = 0; c < 3; ++c) {
-      if (!(values[i][c] >= 0 && std::isfinite(values[i][c]))) {
-        throw InputError(name + "[" + std::to_string(i) + "]: " + std::to_string(values[i][c]) +
-                         ", allowed is a number >= 0");
+      if (!(values[i][c] >= 0 && values[i][c] <= most)) {
+        throw InputError(name + "[" + std::to_string(i) + "]: " + std::to_string(values[i][c]) + ", allowed is 0 to " +
+                         std::to_string(most));
       }
     }
   }
@@ -76,9 +79,9 @@ struct ForwardModel::State {
 
   void check() const {
     check_sizes(at);
-    check_values("scattering", at.scattering);
-    check_values("absorption", at.absorption);
-    check_values("power", at.power);
+    check_values("scattering", at.scattering, gpu::COEFFICIENT_MAX);
+    check_values("absorption", at.absorption, gpu::COEFFICIENT_MAX);
+    check_values("power", at.power, most_power);
     check_eta(options.eta);
     if (options.model == Model::automatic) throw InputError("model 'auto': name one");
     for (const BeamLight& light : lights) check_size("light", light.quarters.size(), level.faces.size());
@@ -93,6 +96,16 @@ struct ForwardModel::State {
     }
     if (!(glm::dot(samples[i].outside, frame_of(level, f).normal) > 0)) {
       throw InputError("samples[" + std::to_string(i) + "]: a direction into the body, allowed is one out of it");
+    }
+    if (!(std::abs(glm::length(samples[i].outside) - 1) <= least_unit)) {
+      throw InputError("samples[" + std::to_string(i) + "]: a direction of length " +
+                       std::to_string(glm::length(samples[i].outside)) + ", allowed is 1");
+    }
+    const glm::dvec3& place = samples[i].barycentric;
+    if (!(std::min({place.x, place.y, place.z}) >= 0 && std::abs(place.x + place.y + place.z - 1) <= least_unit)) {
+      throw InputError("samples[" + std::to_string(i) + "]: barycentric " + std::to_string(place.x) + ", " +
+                       std::to_string(place.y) + ", " + std::to_string(place.z) +
+                       ", allowed are numbers >= 0 that sum to 1");
     }
   }
 
@@ -239,7 +252,7 @@ Outgoing ForwardModel::tangent(const Parameters& along) const {
 }
 
 Parameters ForwardModel::adjoint(const Outgoing& weights) const {
-  State& s = *state_;
+  const State& s = *state_;
   check_size("exitance", weights.exitance.size(), s.level.faces.size());
   check_size("unscattered", weights.unscattered.size(), s.level.faces.size());
   check_size("radiance", weights.radiance.size(), s.samples.size());

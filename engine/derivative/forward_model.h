@@ -35,7 +35,7 @@ struct ForwardOptions {
 class ForwardModel {
  public:
   // Solves at `at`, whose arrays have one entry per tet and per light. `level` and what `lights` refer to must stay
-  // alive. Throws InputError on a wrong size, a value that is not finite or negative, or a sample at no open face, and
+  // alive. Throws InputError on a wrong size, a value out of range, or a sample that does not leave an open face, and
   // as solve_reference does.
   ForwardModel(const Level& level, Parameters at, std::vector<BeamLight> lights, std::vector<ViewSample> samples,
                const ForwardOptions& options);

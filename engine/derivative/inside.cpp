@@ -1,35 +1,10 @@
 #include "engine/derivative/inside.h"
 
-#include <array>
-
-#include "engine/derivative/media.h"
+#include "engine/derivative/lights.h"
 #include "engine/reference/view_ray.h"
 
 namespace quadgraph {
 namespace {
-
-template <class Numbers>
-class LitQuarters {
- public:
-  using Value = std::array<typename Numbers::Real, 3>;
-
-  LitQuarters(const Numbers& numbers, std::span<const Quarters> quarters, std::size_t number)
-      : numbers_(numbers), quarters_(quarters), number_(number) {}
-
-  Value at(std::uint32_t f, std::uint32_t quarter) const {
-    Value value{};
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double q{quarters_[f][quarter][static_cast<int>(c)]};
-      if (q > 0) value[c] = numbers_.power(number_, static_cast<int>(c)) * q;
-    }
-    return value;
-  }
-
- private:
-  const Numbers& numbers_;
-  std::span<const Quarters> quarters_;
-  std::size_t number_;
-};
 
 // The light at a vertex of all beams; `again` gives what enters again as numbers.
 template <class Numbers, class Again>
@@ -37,36 +12,12 @@ UncollidedLight<typename Numbers::Real> light_at(const Follower<Numbers>& follow
                                                  std::uint32_t v, const Entering& light, const Again& again) {
   UncollidedLight<typename Numbers::Real> sum;
   for (std::size_t i = 0; i < light.lights.size(); ++i) {
-    add(sum, follower.at(v, light.lights[i].beam, LitQuarters(numbers, light.lights[i].quarters, i)));
+    add(sum, follower.at(v, light.lights[i].beam, GivenLight(numbers, light.lights[i].quarters, i)));
   }
   if (light.check) light.check();
   if (!light.again.empty()) add(sum, follower.at(v, {gpu::BEAM_MEAN, {}, {}, {}}, again));
   return sum;
 }
-
-struct PlainAgain {
-  std::span<const glm::dvec3> q;
-
-  std::array<double, 3> at(std::uint32_t f, std::uint32_t) const { return {q[f][0], q[f][1], q[f][2]}; }
-};
-
-struct DualAgain {
-  std::span<const glm::dvec3> q, slope;
-
-  std::array<Dual, 3> at(std::uint32_t f, std::uint32_t) const {
-    return {Dual(q[f][0], slope[f][0]), Dual(q[f][1], slope[f][1]), Dual(q[f][2], slope[f][2])};
-  }
-};
-
-struct TracedAgain {
-  std::span<const glm::dvec3> q;
-  std::span<glm::dvec3> by;
-
-  std::array<Traced, 3> at(std::uint32_t f, std::uint32_t) const {
-    Tape& tape = Tape::active();
-    return {tape.input(q[f][0], by[f][0]), tape.input(q[f][1], by[f][1]), tape.input(q[f][2], by[f][2])};
-  }
-};
 
 struct PlainFields {
   const InsideFields& fields;
@@ -116,7 +67,7 @@ void Inside::uncollided(const Entering& light, InsideFields& fields) const {
   const PlainNumbers numbers(at);
   const Follower follower(level, problem, numbers, shape);
   for (std::uint32_t v = 0; v < level.vertex_count(); ++v) {
-    const auto here = light_at(follower, numbers, v, light, PlainAgain{light.again});
+    const auto here = light_at(follower, numbers, v, light, AgainLight<double>{light.again});
     fields.entry[v] = {here.entry[0], here.entry[1], here.entry[2]};
     fields.depth[v] = {here.depth[0], here.depth[1], here.depth[2]};
   }
@@ -127,7 +78,7 @@ void Inside::uncollided_tangent(const Parameters& along, const Entering& light, 
   const DualNumbers numbers(at, along);
   const Follower follower(level, problem, numbers, shape);
   for (std::uint32_t v = 0; v < level.vertex_count(); ++v) {
-    const auto here = light_at(follower, numbers, v, light, DualAgain{light.again, again});
+    const auto here = light_at(follower, numbers, v, light, DualAgainLight{light.again, again});
     fields.entry[v] = {here.entry[0].slope, here.entry[1].slope, here.entry[2].slope};
     fields.depth[v] = {here.depth[0].slope, here.depth[1].slope, here.depth[2].slope};
   }
@@ -141,7 +92,7 @@ void Inside::uncollided_adjoint(const InsideFields& weights, const Entering& lig
   const Follower follower(level, problem, numbers, shape);
   for (std::uint32_t v = 0; v < level.vertex_count(); ++v) {
     if (weights.entry[v] == glm::dvec3(0) && weights.depth[v] == glm::dvec3(0)) continue;
-    const auto here = light_at(follower, numbers, v, light, TracedAgain{light.again, by_again});
+    const auto here = light_at(follower, numbers, v, light, TracedAgainLight{light.again, by_again});
     for (std::size_t c = 0; c < 3; ++c) {
       tape.weigh(here.entry[c], weights.entry[v][static_cast<int>(c)]);
       tape.weigh(here.depth[c], weights.depth[v][static_cast<int>(c)]);

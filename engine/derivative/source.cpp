@@ -1,51 +1,12 @@
 #include "engine/derivative/source.h"
 
-#include <array>
 #include <cstdint>
 
-#include "engine/derivative/media.h"
+#include "engine/derivative/lights.h"
 #include "engine/reference/beam.h"
 
 namespace quadgraph {
 namespace {
-
-// One of the lights, as its quarters and power say.
-template <class Numbers>
-class GivenLight {
- public:
-  using Power = std::array<typename Numbers::Real, 3>;
-
-  GivenLight(const Numbers& numbers, std::span<const Quarters> quarters, std::size_t number)
-      : numbers_(numbers), light_(quarters), number_(number) {}
-
-  Power of(std::uint32_t f, std::uint32_t quarter, double area) const {
-    const std::array<double, 3> watt = light_.of(f, quarter, area);
-    Power power{};
-    for (std::size_t c = 0; c < 3; ++c) {
-      if (watt[c] > 0) power[c] = numbers_.power(number_, static_cast<int>(c)) * watt[c];
-    }
-    return power;
-  }
-
- private:
-  const Numbers& numbers_;
-  QuarterLight light_;
-  std::size_t number_;
-};
-
-// What enters again.
-template <class Real>
-class AgainLight {
- public:
-  explicit AgainLight(std::span<const glm::dvec3> q) : q_(q) {}
-
-  std::array<Real, 3> of(std::uint32_t f, std::uint32_t, double area) const {
-    return {Real(q_[f][0] * area), Real(q_[f][1] * area), Real(q_[f][2] * area)};
-  }
-
- private:
-  std::span<const glm::dvec3> q_;
-};
 
 // Adds up values or slopes.
 class Sum {
@@ -106,13 +67,13 @@ void walk_all(const Level& level, const Problem& problem, const Numbers& numbers
     }
   };
   for (std::size_t i = 0; i < light.lights.size(); ++i) {
-    GivenLight given(numbers, light.lights[i].quarters, i);
+    const GivenLight given(numbers, light.lights[i].quarters, i);
     Beam beam(level, problem, numbers, light.lights[i].beam, given, sink, differentiable_end);
     enter(beam, [&](std::uint32_t f) { return light.lights[i].quarters[f]; });
   }
   if (light.again.empty()) return;
   const gpu::BeamRecord mean{gpu::BEAM_MEAN, {}, {}, {}};
-  AgainLight<typename Numbers::Real> again(light.again);
+  const AgainLight<typename Numbers::Real> again{light.again};
   Beam beam(level, problem, numbers, mean, again, sink, differentiable_end);
   enter(beam, [](std::uint32_t) { return Quarters{}; });
 }

@@ -51,9 +51,7 @@ Surface::Surface(const Level& level, std::span<const glm::dvec3> flux, std::span
     : level_(level),
       flux_(flux.begin(), flux.end()),
       received_(received.begin(), received.end()),
-      reflected_(reflected) {
-  for (int c = 0; c < 3; ++c) record(c, channels_[static_cast<std::size_t>(c)]);
-}
+      reflected_(reflected) {}
 
 void Surface::record(int c, Channel& channel) const {
   const Tape::Recording recording(channel.tape);
@@ -83,12 +81,14 @@ SurfaceLight Surface::tangent(std::span<const glm::dvec3> flux, std::span<const 
   return result;
 }
 
-Surface::Inputs Surface::adjoint(const SurfaceLight& weights) {
+Surface::Inputs Surface::adjoint(const SurfaceLight& weights) const {
+  const std::lock_guard lock(serving_);
   Inputs result;
   result.flux.resize(flux_.size(), glm::dvec3(0));
   result.received.resize(received_.size(), glm::dvec3(0));
   for (int c = 0; c < 3; ++c) {
     Channel& channel = channels_[static_cast<std::size_t>(c)];
+    if (channel.exitance.empty()) record(c, channel);
     for (std::size_t f = 0; f < channel.exitance.size(); ++f)
       channel.tape.weigh(channel.exitance[f], weights.exitance[f][c]);
     for (std::size_t f = 0; f < channel.received.size(); ++f)

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <glm/vec3.hpp>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -30,8 +31,8 @@ class Surface {
   struct Inputs {
     std::vector<glm::dvec3> flux, received;
   };
-  // The derivatives of weighted results by both.
-  Inputs adjoint(const SurfaceLight& weights);
+  // The derivatives of weighted results by both. Several threads may ask: one is served after the other.
+  Inputs adjoint(const SurfaceLight& weights) const;
 
  private:
   struct Channel {
@@ -45,7 +46,8 @@ class Surface {
   const Level& level_;
   std::vector<glm::dvec3> flux_, received_;
   double reflected_;
-  std::array<Channel, 3> channels_;
+  mutable std::mutex serving_;
+  mutable std::array<Channel, 3> channels_;  // recorded when first wanted
 };
 
 // The values themselves.

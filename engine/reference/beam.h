@@ -16,24 +16,8 @@ namespace quadgraph {
 // Whether one ray from the middle of a face stands for all of it.
 bool enters_evenly(const FaceFrame& frame, const Quarters& quarters);
 
-// Light as the quarters of faces have it.
-class QuarterLight {
- public:
-  explicit QuarterLight(std::span<const Quarters> quarters) : quarters_(quarters) {}
-
-  std::array<double, 3> of(std::uint32_t f, std::uint32_t quarter, double area) const {
-    const Quarters& q = quarters_[f];
-    const glm::dvec3 mean = (glm::dvec3(q[0]) + glm::dvec3(q[1]) + glm::dvec3(q[2]) + glm::dvec3(q[3])) / 4.0;
-    const glm::dvec3 power = (quarter == 4 ? mean : glm::dvec3(q[quarter])) * area;
-    return {power.x, power.y, power.z};
-  }
-
- private:
-  std::span<const Quarters> quarters_;
-};
-
-// `Light` gives the power (W, by channel) that enters: of(face, quarter, area), quarter 4 for the whole face. `Sink` is
-// that of Ray, and entered(channel, power); `end` too.
+// `Light` gives what enters, W/mm^2 by channel, as QuarterLight does. `Sink` is that of Ray, and entered(channel,
+// power); `end` too.
 template <class Medium, class Light, class Sink>
 class Beam {
  public:
@@ -51,11 +35,17 @@ class Beam {
   // Light through an open face; `quarters` decides by how many rays.
   void enter(std::uint32_t f, const Quarters& quarters) {
     const FaceFrame frame = frame_of(level_, f);
-    if (enters_evenly(frame, quarters)) return from(f, frame, 3, light_.of(f, 4, frame.area));
-    for (std::uint32_t k = 0; k < 4; ++k) from(f, frame, k, light_.of(f, k, frame.area / 4));
+    if (enters_evenly(frame, quarters)) return from(f, frame, 3, power_of(f, QuarterLight::whole, frame.area));
+    for (std::uint32_t k = 0; k < 4; ++k) from(f, frame, k, power_of(f, k, frame.area / 4));
   }
 
  private:
+  Power power_of(std::uint32_t f, std::uint32_t quarter, double area) const {
+    Power power = light_.at(f, quarter);
+    for (auto& part : power) part = part * area;
+    return power;
+  }
+
   // From the middle of a quarter; the last is the one in the middle of the face.
   void from(std::uint32_t f, const FaceFrame& frame, std::uint32_t quarter, const Power& power) {
     glm::dvec3 barycentric(1.0 / 3);

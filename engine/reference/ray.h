@@ -66,14 +66,12 @@ class Ray {
     for (int c = 0; c < 3; ++c) {
       Real& power = power_[static_cast<std::size_t>(c)];
       const Coefficients<Real> here = medium_.at(way_.tet(), c);
-      const Real tau = here.extinction() * exit.length, albedo = here.albedo();
-      const Taken<Real> part = taken(tau);
+      const Real tau = here.extinction() * exit.length, passing = power * exit.length;
       clear = clear && value_of(here.extinction()) == 0;
-      sink_.absorbed(c, power * (1.0 - albedo) * part.whole);
-      const Real scattered = power * albedo;
+      sink_.absorbed(c, passing * here.absorption * weighted(1.0, 1.0, tau));
+      const Real scattered = passing * here.scattering;
       for (std::size_t k = 0; k < 4; ++k) {
-        const double from = way_.corner(k).lambda;
-        deposit(k, c, scattered * (from * part.whole + (exit.lambda[k] - from) * part.moment));
+        deposit(k, c, scattered * weighted(way_.corner(k).lambda, exit.lambda[k], tau));
       }
       power = power * exp(-tau);
     }

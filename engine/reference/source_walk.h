@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <glm/vec3.hpp>
 #include <span>
 #include <vector>
@@ -15,6 +16,25 @@ namespace quadgraph {
 
 // Transmitted irradiance on the quarters of a face, W/mm^2: at its three corners, then in the middle.
 using Quarters = std::array<glm::vec3, 4>;
+
+// Light as the quarters of faces have it, W/mm^2 by channel.
+class QuarterLight {
+ public:
+  static constexpr std::uint32_t whole = 4;
+
+  explicit QuarterLight(std::span<const Quarters> quarters) : quarters_(quarters) {}
+
+  // Of a quarter, or the mean of all: `whole`.
+  std::array<double, 3> at(std::uint32_t f, std::uint32_t quarter) const {
+    const Quarters& q = quarters_[f];
+    const glm::dvec3 mean = (glm::dvec3(q[0]) + glm::dvec3(q[1]) + glm::dvec3(q[2]) + glm::dvec3(q[3])) / 4.0;
+    const glm::dvec3 value = quarter == whole ? mean : glm::dvec3(q[quarter]);
+    return {value.x, value.y, value.z};
+  }
+
+ private:
+  std::span<const Quarters> quarters_;
+};
 
 struct WalkResult {
   // W per carrier of the method: the power that scatters for the first time, integrated against the carrier's basis

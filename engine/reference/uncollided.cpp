@@ -1,28 +1,8 @@
 #include "engine/reference/uncollided.h"
 
-#include <array>
-
 #include "engine/reference/follower.h"
 
 namespace quadgraph {
-namespace {
-
-// Light as the quarters of faces have it.
-class LitQuarters {
- public:
-  explicit LitQuarters(std::span<const Quarters> quarters) : quarters_(quarters) {}
-
-  std::array<double, 3> at(std::uint32_t f, std::uint32_t quarter) const {
-    const glm::dvec3 q(quarters_[f][quarter]);
-    return {q.x, q.y, q.z};
-  }
-
- private:
-  std::span<const Quarters> quarters_;
-};
-
-}  // namespace
-
 OpenFaces open_faces(const Level& level) {
   std::vector<std::vector<std::uint32_t>> around(level.vertices.size());
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {
@@ -45,7 +25,7 @@ Uncollided uncollided(const Level& level, const Problem& problem, std::span<cons
   Uncollided result;
   for (std::uint32_t v = 0; v < level.vertex_count(); ++v) {
     UncollidedLight<double> sum;
-    for (const BeamLight& light : beams) add(sum, follower.at(v, light.beam, LitQuarters(light.quarters)));
+    for (const BeamLight& light : beams) add(sum, follower.at(v, light.beam, QuarterLight(light.quarters)));
     result.entry.emplace_back(sum.entry[0], sum.entry[1], sum.entry[2]);
     result.depth.emplace_back(sum.depth[0], sum.depth[1], sum.depth[2]);
   }

@@ -9,7 +9,7 @@
 namespace quadgraph {
 namespace {
 
-// shaders/shared/beam_light.glsl on the host.
+// shaders/source/beam_light.glsl on the host.
 glm::vec3 beam_light(const gpu::Beam& beam, std::span<const float> stored, std::uint32_t quarter) {
   if (beam.floats == gpu::BEAM_RGB) return {stored[0], stored[1], stored[2]};
   if (beam.floats == gpu::BEAM_RGB_QUARTERS) {

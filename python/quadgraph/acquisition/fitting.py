@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quadgraph.acquisition.prediction import Predicted, Predictor
+from quadgraph.acquisition.prediction import LEAST_ERROR, Predicted, Predictor
 from quadgraph.acquisition.problem import Problem, huber_cost, huber_weights
 from quadgraph.base.progress import ProgressCallback
 
@@ -23,7 +23,6 @@ _SAME = 0.005  # relative change of chi^2, below which a step changes nothing
 _ROUGH = 0.03  # the same of the first fit, which is not corrected yet
 _LONGEST = 1.5  # of a logarithm, in one step
 _BOUNDS = np.log([1e-7, 1e4])  # of coefficients, 1/mm
-_FLOOR = 0.005  # least relative error of a prediction
 
 Advance = Callable[[], None]
 
@@ -147,7 +146,7 @@ class _Model:
             for number, (one, other) in enumerate(zip(self.pictures, plain, strict=True)):
                 lit = other.radiance > 0
                 self._ratios[number][lit] = one.radiance[lit] / other.radiance[lit]
-        pairs = [self._problem.variances(self.pictures, channel, _FLOOR) for channel in range(3)]
+        pairs = [self._problem.variances(self.pictures, channel, LEAST_ERROR) for channel in range(3)]
         self._noise, self._variances = [noise for noise, _ in pairs], [variance for _, variance in pairs]
 
     def _plain(self, theta: np.ndarray) -> list[Predicted]:

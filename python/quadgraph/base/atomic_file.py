@@ -25,9 +25,13 @@ def new_file(path: Path, suffix: str) -> tuple[int, Path]:
     """
     outputs.check_kind(path)
     stem = os.fsdecode(os.fsencode(path.stem)[:200])
-    temporary = path.parent / f".{stem}.{secrets.token_hex(8)}{suffix}"
+    temporary = path.parent.absolute() / f".{stem}.{secrets.token_hex(8)}{suffix}"
     _unfinished[temporary] = os.getpid()
-    return os.open(temporary, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o666), temporary
+    try:
+        return os.open(temporary, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o666), temporary
+    except OSError:  # nothing was made, or what is there is somebody else's
+        del _unfinished[temporary]
+        raise
 
 
 def discard(temporary: Path) -> None:

@@ -40,22 +40,23 @@ def read_until(child: subprocess.Popen[str], text: str) -> None:
         assert line, f"it ended without {text!r}"
 
 
-def test_who_waits_for_a_body_gets_the_one_that_another_bakes(tmp_path: Path, cache: Path):
-    mesh = write_obj(icosphere(4, 10), tmp_path / "ball.obj")
+def start_two(mesh: Path) -> tuple[subprocess.Popen[str], subprocess.Popen[str]]:
+    """One that bakes, and another that waits for it."""
     first = start(mesh)
-    read_until(first, "read ball.obj")
+    read_until(first, f"read {mesh.name}")
     second = start(mesh)
-    read_until(second, "another program is baking ball.obj")
+    read_until(second, f"another program is baking {mesh.name}")
+    return first, second
+
+
+def test_who_waits_for_a_body_gets_the_one_that_another_bakes(tmp_path: Path, cache: Path):
+    first, second = start_two(write_obj(icosphere(4, 10), tmp_path / "ball.obj"))
     bodies = [json.loads(child.communicate(timeout=120)[0])["body"] for child in (first, second)]
     assert bodies == [str(path) for path in cache.glob("*/ball.qgraph")] * 2
 
 
 def test_who_waits_for_a_bake_that_is_ended_bakes(tmp_path: Path, cache: Path):
-    mesh = write_obj(icosphere(5, 10), tmp_path / "ball.obj")
-    first = start(mesh)
-    read_until(first, "read ball.obj")
-    second = start(mesh)
-    read_until(second, "another program is baking ball.obj")
+    first, second = start_two(write_obj(icosphere(5, 10), tmp_path / "ball.obj"))
     first.terminate()
     first.communicate(timeout=20)
     read_until(second, "kept for the next time")

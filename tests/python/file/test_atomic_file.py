@@ -26,6 +26,18 @@ def test_a_temporary_file_goes_when_python_ends(tmp_path, ending):
     assert left_by(tmp_path, ending) == []
 
 
+def test_it_goes_from_where_it_was_made(tmp_path):
+    (tmp_path / "other").mkdir()
+    assert left_by(tmp_path, "os.chdir('other')") == ["other"]
+
+
+def test_what_could_not_be_made_is_forgotten(tmp_path):
+    path = tmp_path / "not there" / "out.json"
+    with pytest.raises(FileNotFoundError):
+        atomic_file.new_file(path, ".tmp")
+    assert not [each for each in atomic_file._unfinished if each.parent == path.parent]
+
+
 def test_what_became_an_output_stays(tmp_path):
     assert left_by(tmp_path, "name.replace('out.mp4')") == ["out.mp4"]
 

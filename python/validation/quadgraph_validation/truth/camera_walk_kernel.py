@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 
 from quadgraph_validation.truth.triangle_tree import ENTERING, LEAVING, first_hit
-from quadgraph_validation.truth.walk_kernel import _bent, _free, _isotropic, _lighter, fresnel, random
+from quadgraph_validation.truth.walk_kernel import _at_face, _bent, _free, _isotropic, _lighter, fresnel, random
 
 _EVENTS = 1_000_000  # after which a walk is given up: trapped in an edge
 
@@ -107,12 +107,5 @@ def _walk(tree, near, sigma_s, sigma_a, eta, lights, eye, way, face, reach, stat
             weight, scattered = _lighter(weight * sigma_s / sigma_t, state), True
             dx, dy, dz = _isotropic(state)
             continue
-        nx, ny, nz = tree.normal[face]
-        cosine = min(abs(dx * nx + dy * ny + dz * nz), 1.0)
-        ratio = eta if inside else 1 / eta
-        reflected, beyond = fresnel(cosine, ratio)
-        if random(state) < reflected:
-            dx, dy, dz = _bent(dx, dy, dz, nx, ny, nz, 1.0, -2 * side * cosine)
-            continue
-        dx, dy, dz = _bent(dx, dy, dz, nx, ny, nz, ratio, side * (beyond - ratio * cosine))
-        inside = not inside
+        dx, dy, dz, through = _at_face(tree.normal[face], dx, dy, dz, inside, side, eta, state)
+        inside = inside != through

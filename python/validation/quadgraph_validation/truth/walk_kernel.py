@@ -152,6 +152,20 @@ def _bent(dx, dy, dz, nx, ny, nz, along, turn):
 
 
 @njit(cache=True)
+def _at_face(normal, dx, dy, dz, inside, side, eta, state):
+    """The way on of a walk that meets a face, mirrored or refracted by chance, and whether it goes through."""
+    nx, ny, nz = normal
+    cosine = min(abs(dx * nx + dy * ny + dz * nz), 1.0)
+    ratio = eta if inside else 1 / eta
+    reflected, beyond = fresnel(cosine, ratio)
+    if random(state) < reflected:
+        dx, dy, dz = _bent(dx, dy, dz, nx, ny, nz, 1.0, -2 * side * cosine)
+        return dx, dy, dz, False
+    dx, dy, dz = _bent(dx, dy, dz, nx, ny, nz, ratio, side * (beyond - ratio * cosine))
+    return dx, dy, dz, True
+
+
+@njit(cache=True)
 def _leave(tally, at, weight, scattered, fresh):
     """Count what leaves through a patch."""
     if scattered:
@@ -195,16 +209,11 @@ def follow(tree, near, volume, eta, patch, origins, ways, again, seed, tally):
                     dx, dy, dz = _isotropic(state)
                 continue
             met, tally.rest[2] = True, tally.rest[2] + (0 if met else 1)
-            nx, ny, nz = tree.normal[face]
-            cosine = min(abs(dx * nx + dy * ny + dz * nz), 1.0)
-            ratio = eta if inside else 1 / eta
-            reflected, beyond = fresnel(cosine, ratio)
-            if random(state) < reflected:
-                dx, dy, dz = _bent(dx, dy, dz, nx, ny, nz, 1.0, -2 * side * cosine)
+            dx, dy, dz, through = _at_face(tree.normal[face], dx, dy, dz, inside, side, eta, state)
+            if not through:
                 if inside or again:
                     continue
                 break
-            dx, dy, dz = _bent(dx, dy, dz, nx, ny, nz, ratio, side * (beyond - ratio * cosine))
             at = patch[tree.number[face]]
             if inside:
                 _leave(tally, at, weight, scattered, fresh)
