@@ -39,9 +39,7 @@ template <class Real>
 struct AgainLight {
   std::span<const glm::dvec3> q;
 
-  std::array<Real, 3> at(std::uint32_t f, std::uint32_t) const {
-    return {Real(q[f][0]), Real(q[f][1]), Real(q[f][2])};
-  }
+  std::array<Real, 3> at(std::uint32_t f, std::uint32_t) const { return {Real(q[f][0]), Real(q[f][1]), Real(q[f][2])}; }
 };
 
 // The same with derivatives.

@@ -13,6 +13,7 @@ from functools import cache
 from pathlib import Path
 
 from quadgraph.baking.pipeline import BakeOptions, bake
+from quadgraph.base import regular_file
 from quadgraph.base.cache_folder import cache_folder
 from quadgraph.base.progress import ProgressCallback
 from quadgraph.base.version import __version__
@@ -154,7 +155,7 @@ def _key(mesh: Path, options: BakeOptions) -> str:
     digest = hashlib.sha256(f"{__version__} {_code()} {mesh.suffix.lower()} {options!r}".encode())
     for path in _files(mesh):
         with suppress(OSError):  # the reader says what is wrong with it
-            digest.update(hashlib.sha256(path.read_bytes()).digest())
+            digest.update(hashlib.sha256(regular_file.read_bytes(path)).digest())
     return digest.hexdigest()
 
 

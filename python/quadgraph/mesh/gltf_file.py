@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from quadgraph.base import json_text
+from quadgraph.base import json_text, regular_file
 from quadgraph.base.errors import InputError
 
 T = TypeVar("T")
@@ -40,10 +40,16 @@ def read(path: Path, wanted: Callable[[GltfFile], T]) -> T:
 
 
 def check_plain(file: GltfFile) -> None:
-    """Raise InputError for what the reader of meshes would ignore: sparse accessors, matrices beyond belief."""
+    """Raise InputError for what the reader of meshes ignores or trusts: what is in no buffer, huge transforms."""
     for number, accessor in enumerate(file.document.get("accessors", [])):
         if "sparse" in accessor:
             raise InputError(f"{file.path}, accessor {number}: sparse found, which is not read; write it without")
+        if "bufferView" not in accessor:  # all zeros, as many as it says
+            raise InputError(f"{file.path}, accessor {number}: no bufferView found, one is wanted")
+    for number, buffer in enumerate(file.document.get("buffers", [])):
+        name = buffer.get("uri", "data:")
+        if not name.startswith("data:") and not (file.path.parent / name).is_file():
+            raise InputError(f"{file.path}, buffer {number}: {name} found, which is no file beside it")
     for number, node in enumerate(file.document.get("nodes", [])):
         values = [float(x) for name in ("matrix", "translation", "rotation", "scale") for x in node.get(name, [])]
         if not all(abs(value) <= LARGEST for value in values):
@@ -105,10 +111,13 @@ class GltfFile:
     def accessor(self, index: int) -> np.ndarray:
         """(count, width) of it; whole numbers as int64, or float64 where they are normalised."""
         accessor = self.document["accessors"][index]
-        width, kind = _WIDTHS[accessor["type"]], _TYPES[accessor["componentType"]]
-        values = np.zeros((accessor["count"], width), np.float64 if kind is np.float32 else np.int64)
-        if "bufferView" in accessor:
-            values[:] = self._view(accessor, kind, accessor["count"], width)
+        width, kind, count = _WIDTHS[accessor["type"]], _TYPES[accessor["componentType"]], accessor["count"]
+        found = self._view(accessor, kind, count, width) if "bufferView" in accessor else None
+        if found is None and not 0 <= count * width <= self._bytes():
+            raise InputError(f"{self.path}, accessor {index}: count {count} found, more than the buffers can need")
+        values = np.zeros((count, width), np.float64 if kind is np.float32 else np.int64)
+        if found is not None:
+            values[:] = found
         if "sparse" in accessor:
             sparse = accessor["sparse"]
             where = self._view(sparse["indices"], _TYPES[sparse["indices"]["componentType"]], sparse["count"], 1)[:, 0]
@@ -123,9 +132,13 @@ class GltfFile:
         size = np.dtype(kind).itemsize
         first = view.get("byteOffset", 0) + holder.get("byteOffset", 0)
         stride = view.get("byteStride", size * width)
-        if first + stride * (count - 1) + size * width > len(data):
+        if first < 0 or count < 0 or stride < size or first + stride * (count - 1) + size * width > len(data):
             raise InputError(f"{self.path}: an accessor reaches beyond its buffer")
         return np.ndarray((count, width), kind, data, first, (stride, size))
+
+    def _bytes(self) -> int:
+        """Of all buffers together."""
+        return sum(len(self._buffer(index)) for index in range(len(self.document.get("buffers", []))))
 
     def _buffer(self, index: int) -> bytes:
         uri = self.document["buffers"][index].get("uri")
@@ -133,7 +146,7 @@ class GltfFile:
             return self.binary
         if uri.startswith("data:"):
             return base64.b64decode(uri.split(",", 1)[1])
-        return (self.path.parent / uri).read_bytes()
+        return regular_file.read_bytes(self.path.parent / uri)
 
 
 def _document(path: Path, text: bytes) -> dict[str, Any]:

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from quadgraph.base.errors import InputError
+from quadgraph.mesh import gltf_file
 from quadgraph.mesh.mesh_io import read_surface
 from shapes import cube
 
@@ -94,11 +95,34 @@ def gltf(path: Path, change) -> Path:
     return path
 
 
+def _unstored(document):
+    del document["accessors"][0]["bufferView"]
+
+
+def test_memory_is_not_taken_for_numbers_that_a_gltf_does_not_store(tmp_path):
+    path = gltf(tmp_path / "zeros.gltf", lambda d: d["accessors"][0].update(count=1 << 40) or _unstored(d))
+    with pytest.raises(InputError, match="accessor 0: count 1099511627776 found"):
+        gltf_file.read(path, lambda file: file.accessor(0))
+    path = gltf(path, lambda d: d["accessors"][0].update(count=1 << 40))
+    with pytest.raises(InputError, match="reaches beyond its buffer"):
+        gltf_file.read(path, lambda file: file.accessor(0))
+    path = gltf(path, lambda d: d["bufferViews"][0].update(byteStride=0))
+    with pytest.raises(InputError, match="reaches beyond its buffer"):
+        gltf_file.read(path, lambda file: file.accessor(0))
+    assert gltf_file.read(gltf(path, _unstored), lambda file: file.accessor(0)).tolist() == [[0, 0, 0]] * 8
+
+
 def test_what_is_not_read_of_a_gltf_is_refused(tmp_path):
     assert read_surface(gltf(tmp_path / "good.gltf", lambda document: None), unit="mm").vertices == 8
     sparse = gltf(tmp_path / "sparse.gltf", lambda d: d["accessors"][0].update(sparse={"count": 1}))
     with pytest.raises(InputError, match="accessor 0: sparse found"):
         read_surface(sparse, unit="mm")
+    zeros = gltf(tmp_path / "zeros.gltf", lambda d: d["accessors"][0].update(count=1 << 32) or _unstored(d))
+    with pytest.raises(InputError, match="accessor 0: no bufferView found"):
+        read_surface(zeros, unit="mm")
+    device = gltf(tmp_path / "device.gltf", lambda d: d["buffers"][0].update(uri="/dev/zero"))
+    with pytest.raises(InputError, match="buffer 0: /dev/zero found, which is no file"):
+        read_surface(device, unit="mm")
     far = gltf(tmp_path / "far.gltf", lambda d: d["nodes"][0].update(matrix=[1e300] * 16))
     with pytest.raises(InputError, match="node 0: a transform with numbers above 1e"):
         read_surface(far, unit="mm")
