@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from baked import write_levels
+from quadgraph import VolumeMaterial, core
 from quadgraph.acquisition import capture, photographs
 from quadgraph.base.errors import InputError
 from quadgraph.cli import main
@@ -16,6 +17,8 @@ from shapes import icosphere
 
 pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 camera_walks = pytest.importorskip("quadgraph_validation.truth.camera_walks", reason="needs the extra walks")
+known_material = pytest.importorskip("quadgraph_validation.truth.known_material")
+walk_kernel = pytest.importorskip("quadgraph_validation.truth.walk_kernel")
 
 RADIUS = 10.0
 EYE = camera_walks.Eye(np.array([0.0, 0.0, 60.0]), np.zeros(3), 24.0, "y", 16, 16)
@@ -26,7 +29,8 @@ KEY = {"type": "rectangle", "centre": [0, 40, 60], "u": [60, 0, 0], "v": [0, -40
 def see(lights: list[dict], channel: int, sigma_a: float, sigma_s: float, eta: float, seed: int = 3):
     """A ball seen from EYE."""
     walker = camera_walks.CameraWalker(icosphere(3, RADIUS), lights)
-    return walker.see(EYE, channel, sigma_a, sigma_s, eta, 100, seed, lambda _share: None)
+    material = known_material.KnownMaterial.even(np.full(3, sigma_s), np.full(3, sigma_a), eta)
+    return walker.see(EYE, channel, material.in_channel(channel), eta, 100, seed, lambda _share: None)
 
 
 @pytest.mark.parametrize("eta", [1.0, 1.4])
@@ -45,6 +49,11 @@ def test_powers_and_channels_scale_what_is_seen():
     assert one.radiance[1].max() > 0
     again = see([AMBIENT, KEY], 0, 0.05, 1.0, 1.3)
     np.testing.assert_array_equal(again.radiance, one.radiance)
+
+
+@pytest.mark.parametrize("sigma_a", [0.0, 0.3])
+def test_nothing_is_seen_where_nothing_scatters(sigma_a):
+    assert not see([AMBIENT], 1, sigma_a, 0.0, 1.3).radiance.any()
 
 
 def test_lights_that_walks_cannot_meet_are_refused():
@@ -84,10 +93,53 @@ def test_a_capture_is_one_that_can_be_read(scene, tmp_path, by, capsys):
     assert "sigma_a" not in path.read_text()
 
 
+@pytest.mark.parametrize("by", [["--walks", "16"], ["--by", "engine", "--device", "cpu"]])
+def test_a_volume_is_photographed_and_named_in_the_truth(scene, tmp_path, by):
+    (tmp_path / "materials").mkdir()
+    absorption = np.array([0.02, 0.05, 0.1]) * np.linspace(1, 3, 4)[:, None, None, None]
+    VolumeMaterial(np.full((4, 1, 1, 3), 0.8), absorption, 5.0, (0, 0, -7.5), 1.25).save(
+        tmp_path / "materials" / "deep.npz"
+    )
+    scene.write_text(json.dumps(json.loads(scene.read_text()) | {"material": "materials/deep.npz"}))
+    path = tmp_path / "captures" / "photos.json"
+    path.parent.mkdir()
+    assert main(["photograph", str(scene), "--capture", str(path), *by]) == 0
+    found = capture.read(path)
+    assert found.eta == pytest.approx(1.25)
+    measured = photographs.read_all(found)
+    assert all(each.values.max() > 0.5 for each in measured)
+    truth = json.loads((path.parent / "photos-truth.json").read_text())
+    assert (path.parent / truth["material"]).samefile(tmp_path / "materials" / "deep.npz")
+    assert truth["eta"] == pytest.approx(1.25)
+    assert "sigma_a" not in truth
+    assert "deep.npz" not in path.read_text()
+
+
+@pytest.mark.parametrize("origin", [None, (-4.0, 1.0, -9.0)])
+def test_a_volume_lies_where_the_engine_lays_it(scene, tmp_path, origin):
+    """Axes of one cell, grey beside coloured coefficients, and places beside the grid among them."""
+    generator = np.random.default_rng(4)
+    grey, coloured = generator.random((3, 1, 5)), generator.random((3, 1, 5, 3))
+    VolumeMaterial(grey, coloured, (2.0, 3.0, 4.0), origin, 1.5).save(tmp_path / "field.npz")
+    scene.write_text(json.dumps(json.loads(scene.read_text()) | {"material": "field.npz"}))
+    found = known_material.of_scene(scene, core.SceneFile(scene).at(0))
+    vertices = core.load(tmp_path / "ball.qgraph").levels[0].vertices
+    points = generator.uniform(-12, 12, (200, 3))
+    centre = (vertices.min(axis=0) + vertices.max(axis=0)) / 2
+    wanted = core.Volume(tmp_path / "field.npz").at(points, centre)
+    for channel in range(3):
+        volume = found.in_channel(channel)
+        for values, those in zip((volume.scattering, volume.absorption), wanted, strict=True):
+            here = [walk_kernel._at(values, volume, *point) for point in points]
+            np.testing.assert_allclose(here, those[:, channel], atol=1e-5)
+
+
 @pytest.mark.parametrize(
     ("change", "said"),
     [
         ({"material": "jade"}, "pattern"),
+        ({"material": "nowhere.npz"}, "nowhere.npz: cannot be read"),
+        ({"edits": [{"operation": "multiply", "sigma_a": 2}]}, "/edits: found"),
         ({"lights": []}, "/lights: found none"),
         ({"camera": {"orthographic": 30}}, "/camera/orthographic: found"),
         ({"lights": [{"type": "point", "position": [0, 0, 40], "power": 1}]}, "or take --by engine"),

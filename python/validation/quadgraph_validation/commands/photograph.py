@@ -24,7 +24,9 @@ _MOST_SIDE, _MOST_BITS = 4096, 24
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Register the subcommand."""
     parser = subparsers.add_parser("photograph", help="a capture of a scene that is known", description=__doc__)
-    parser.add_argument("scene", metavar="SCENE", type=Path, help="a scene .json of one material throughout")
+    parser.add_argument(
+        "scene", metavar="SCENE", type=Path, help="a scene .json of one material throughout, or of a volume (.npz)"
+    )
     parser.add_argument(
         "--capture", metavar="FILE", type=Path, required=True, help="the capture .json to write, photographs beside it"
     )
@@ -86,7 +88,7 @@ def run(args: argparse.Namespace) -> int:
     names = [f"{camera}-{light}" for camera in cameras for light in found.lights]
     written = [photographed.photograph_path(args.capture, name) for name in names]
     written += [args.capture, photographed.truth_path(args.capture)]
-    outputs.check_outputs(written, [args.scene, found.body, args.body])
+    outputs.check_outputs(written, [args.scene, found.body, found.material.file, args.body])
     console = Console(stderr=True, highlight=False, soft_wrap=True)
     with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
         task = bar.add_task("photograph", total=1.0)

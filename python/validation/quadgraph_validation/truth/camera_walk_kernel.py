@@ -12,7 +12,16 @@ import numpy as np
 from numba import njit
 
 from quadgraph_validation.truth.triangle_tree import ENTERING, LEAVING, first_hit
-from quadgraph_validation.truth.walk_kernel import _at_face, _bent, _free, _isotropic, _lighter, fresnel, random
+from quadgraph_validation.truth.walk_kernel import (
+    _at,
+    _at_face,
+    _bent,
+    _free,
+    _isotropic,
+    _lighter,
+    fresnel,
+    random,
+)
 
 _EVENTS = 1_000_000  # after which a walk is given up: trapped in an edge
 
@@ -53,11 +62,11 @@ def _shone(lights, k, x, y, z, dx, dy, dz, reach):
 
 
 @njit(cache=True, nogil=True)
-def seen(tree, near, sigma_s, sigma_a, eta, lights, eye, ways, samples, seed, total, squares):
+def seen(tree, near, volume, eta, lights, eye, ways, samples, seed, total, squares):
     """Add to `total` (n, k) the radiance that pixels see of each light alone, W/(mm^2 sr), scattered light only.
 
-    ways (n, s, 3): unit ways of the rays of each pixel from the eye (3,); samples: walks a ray; squares (n, k): sums of
-    squares of the mean of each ray's walks, for its noise.
+    volume: a WalkVolume, of a majorant above 0; ways (n, s, 3): unit ways of the rays of each pixel from the eye (3,);
+    samples: walks a ray; squares (n, k): sums of squares of the mean of each ray's walks, for its noise.
     """
     state = np.array([seed], np.uint64)
     count = len(lights.radiance)
@@ -70,7 +79,7 @@ def seen(tree, near, sigma_s, sigma_a, eta, lights, eye, ways, samples, seed, to
                 continue
             found[:] = 0
             for _ in range(samples):
-                _walk(tree, near, sigma_s, sigma_a, eta, lights, eye, way, face, reach, state, found)
+                _walk(tree, near, volume, eta, lights, eye, way, face, reach, state, found)
             for k in range(count):
                 value = found[k] / samples
                 total[pixel, k] += value
@@ -78,7 +87,7 @@ def seen(tree, near, sigma_s, sigma_a, eta, lights, eye, ways, samples, seed, to
 
 
 @njit(cache=True)
-def _walk(tree, near, sigma_s, sigma_a, eta, lights, eye, way, face, reach, state, found):
+def _walk(tree, near, volume, eta, lights, eye, way, face, reach, state, found):
     """One walk that enters where a ray meets the body; adds what it meets of each light to `found`."""
     nx, ny, nz = tree.normal[face]
     cosine = min(abs(way[0] * nx + way[1] * ny + way[2] * nz), 1.0)
@@ -87,12 +96,13 @@ def _walk(tree, near, sigma_s, sigma_a, eta, lights, eye, way, face, reach, stat
     x, y, z = eye[0] + reach * way[0], eye[1] + reach * way[1], eye[2] + reach * way[2]
     turn = cosine / eta - beyond
     dx, dy, dz = _bent(way[0], way[1], way[2], nx, ny, nz, 1 / eta, turn)
-    sigma_t = sigma_s + sigma_a
+    even, majorant = volume.scattering.size == 1, volume.majorant
+    sigma_s, sigma_t = volume.scattering[0, 0, 0], majorant
     inside, scattered, skip = True, False, face
     for _ in range(_EVENTS):
         if weight <= 0:
             return
-        flight = -np.log(1 - random(state)) / sigma_t if inside else np.inf
+        flight = -np.log(1 - random(state)) / majorant if inside else np.inf
         side = LEAVING if inside else ENTERING
         face, reach = -1, flight
         if flight == np.inf or flight >= _free(near, x, y, z):
@@ -104,6 +114,11 @@ def _walk(tree, near, sigma_s, sigma_a, eta, lights, eye, way, face, reach, stat
             return
         x, y, z, skip = x + reach * dx, y + reach * dy, z + reach * dz, face
         if face < 0:
+            if not even:
+                sigma_s = _at(volume.scattering, volume, x, y, z)
+                sigma_t = sigma_s + _at(volume.absorption, volume, x, y, z)
+                if random(state) * majorant >= sigma_t:
+                    continue  # delta tracking goes on as if there were no collision
             weight, scattered = _lighter(weight * sigma_s / sigma_t, state), True
             dx, dy, dz = _isotropic(state)
             continue

@@ -1,4 +1,4 @@
-"""Photographs of a homogeneous body by random walks: the truth that acquisition is held against."""
+"""Photographs of a body by random walks: the truth that acquisition is held against."""
 
 from __future__ import annotations
 
@@ -77,8 +77,7 @@ class CameraWalker:
         self,
         eye: Eye,
         channel: int,
-        sigma_a: float,
-        sigma_s_prime: float,
+        volume: walk_kernel.WalkVolume,
         eta: float,
         walks: int,
         seed: int,
@@ -86,12 +85,16 @@ class CameraWalker:
     ) -> CameraPicture:
         """What a camera sees in one channel; walks: of each pixel; the same seed gives the same picture.
 
-        advance: is called with the share that is done. KeyboardInterrupt passes through within a tenth of a second.
+        volume: coefficients of the channel; eta: index of refraction inside over outside; advance: is called with the
+        share that is done. KeyboardInterrupt passes through within a tenth of a second.
         """
         rays = max(int(np.sqrt(walks)), 2)
         samples = -(-walks // rays)
         lights = self._in_channel(channel)
         count = len(self._lights)
+        shape = (count, eye.height, eye.width)
+        if not volume.scattering.any():
+            return CameraPicture(np.zeros(shape), np.zeros(shape))
         pieces = [range(row, min(row + _ROWS, eye.height)) for row in range(0, eye.height, _ROWS)]
 
         def work(number: int) -> tuple[np.ndarray, np.ndarray]:
@@ -99,7 +102,7 @@ class CameraWalker:
             ways = np.ascontiguousarray(eye.ways(pieces[number], rays, generator))
             total, squares = np.zeros((2, len(ways), count))
             start = generator.integers(2**64, dtype=np.uint64)
-            what = (self._tree, self._near, sigma_s_prime, sigma_a, eta, lights, eye.eye, ways)
+            what = (self._tree, self._near, volume, eta, lights, eye.eye, ways)
             camera_walk_kernel.seen(*what, samples, start, total, squares)
             return total / rays, squares / rays
 
@@ -114,7 +117,6 @@ class CameraWalker:
                 raise
         mean, square = (np.concatenate([piece[k] for piece in done]).T for k in range(2))
         noise = np.sqrt(np.maximum(square - mean**2, 0) / (rays - 1))
-        shape = (count, eye.height, eye.width)
         return CameraPicture(mean.reshape(shape), noise.reshape(shape))
 
     def _in_channel(self, channel: int) -> camera_walk_kernel.WideLights:

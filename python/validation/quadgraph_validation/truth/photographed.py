@@ -15,7 +15,9 @@ from scipy import ndimage
 from quadgraph import core
 from quadgraph.base.errors import InputError
 from quadgraph.mesh.surface import Surface
+from quadgraph_validation.truth import known_material
 from quadgraph_validation.truth.camera_walks import CameraWalker, Eye
+from quadgraph_validation.truth.known_material import KnownMaterial
 
 WHITE = 0.8  # value of the brightest pixel of a photograph: its exposure sees to that
 SATURATION = 1.0
@@ -42,36 +44,26 @@ class PhotographOptions:
 
 @dataclass(frozen=True, eq=False)
 class Subject:
-    """A scene with one material throughout, as its file has it. document: all members; lights by their names."""
+    """A scene as its file has it. document: all members; lights by their names."""
 
     path: Path
     document: dict[str, Any]
     body: Path
-    sigma_a: np.ndarray
-    sigma_s_prime: np.ndarray
-    eta: float
+    material: KnownMaterial
     lights: dict[str, dict[str, Any]] = field(default_factory=dict)
 
 
 def subject(path: Path) -> Subject:
-    """Read a scene. Raises InputError where its material differs from place to place."""
+    """Read a scene. Raises InputError for edits, patterns, parallel rays and darkness."""
     scene = core.SceneFile(path).at(0)
     document = json.loads(scene.json())
-    if scene.material.lower().endswith(".npz") or document.get("edits"):
-        raise InputError(f"{path}: /material: a volume or edits found, allowed is one material throughout")
-    material = json.loads(core.material_json(scene.material))
-    if material.get("pattern", "none") != "none":
-        raise InputError(
-            f"{path}: /material: pattern '{material['pattern']}' found, allowed is one material throughout"
-        )
+    material = known_material.of_scene(path, scene)
     if "orthographic" in document["camera"]:
         raise InputError(f"{path}: /camera/orthographic: found, allowed is a perspective camera")
     if not document["lights"]:
         raise InputError(f"{path}: /lights: found none, allowed is one or more")
-    found = core.Material(scene.material)
     lights = {f"light{number}": _placed(light, path.parent) for number, light in enumerate(document["lights"], 1)}
-    absorption, scattering = np.array(found.sigma_a, float), np.array(found.sigma_s_prime, float)
-    return Subject(path, document, Path(scene.body), absorption, scattering, float(found.eta), lights)
+    return Subject(path, document, Path(scene.body), material, lights)
 
 
 def _placed(light: dict[str, Any], folder: Path) -> dict[str, Any]:
@@ -134,8 +126,8 @@ def by_walks(
             def tell(share: float, done: int = done) -> None:
                 advance((done + share) / steps)
 
-            coefficients = (float(found.sigma_a[channel]), float(found.sigma_s_prime[channel]), found.eta)
-            channels.append(walker.see(eye, channel, *coefficients, options.walks, options.seed + number, tell))
+            medium = (found.material.in_channel(channel), found.material.eta)
+            channels.append(walker.see(eye, channel, *medium, options.walks, options.seed + number, tell))
         for k, light in enumerate(found.lights):
             radiance = np.stack([each.radiance[k] for each in channels], axis=-1)
             result[name, light] = radiance, np.stack([each.noise[k] for each in channels], axis=-1)
@@ -224,17 +216,12 @@ def write(
         entries.append({"file": file.name} | each.stated)
     lights = {name: _beside(light, path.parent) for name, light in found.lights.items()}
     document: dict[str, Any] = {"quadgraph_capture": 1, "body": os.path.relpath(found.body, path.parent)}
-    document |= {"eta": round(found.eta, 6), "polarised": True}
+    document |= {"eta": round(found.material.eta, 6), "polarised": True}
     if found.document.get("deformation"):
         document["deformation"] = found.document["deformation"]
     document |= {"cameras": cameras, "lights": lights, "photographs": entries}
-    truth = {
-        "scene": str(found.path),
-        "sigma_a": found.sigma_a.tolist(),
-        "sigma_s_prime": found.sigma_s_prime.tolist(),
-        "eta": found.eta,
-        "gains": {each.name: each.gain for each in photographs},
-    }
+    gains = {each.name: each.gain for each in photographs}
+    truth = {"scene": str(found.path)} | found.material.stated(path.parent) | {"gains": gains}
     atomic_file.write_json(truth_path(path), truth | how)
     atomic_file.write_json(path, document)
 
