@@ -63,7 +63,9 @@ class Fields {
 
  private:
   static constexpr std::size_t shown = 8;  // numbers that an error repeats
-  static constexpr std::array<std::string_view, 5> known = {"sigma_s_prime", "sigma_a", "spacing", "origin", "eta"};
+  // Deviations are for those who acquired the coefficients.
+  static constexpr std::array<std::string_view, 7> known = {
+      "sigma_s_prime", "sigma_a", "spacing", "origin", "eta", "sigma_s_prime_deviation", "sigma_a_deviation"};
 
   std::filesystem::path path_;
   std::map<std::string, NpzArray> arrays_;

@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include "engine/base/error.h"
 #include "engine/scene/scene_file.h"
 #include "engine/scene/stage.h"
 #include "engine/scene/volume.h"
@@ -53,6 +54,20 @@ void bind_scene_file(py::module_& module) {
       .def("save", &SceneFile::save, py::arg("path"), "Raises InputError naming the file.");
 }
 
+py::tuple view_rays(Stage& stage, const DoubleArray& pixels) {
+  if (pixels.ndim() != 2 || pixels.shape(1) != 2) throw InputError("pixels: allowed is the shape (n, 2)");
+  const Scene& scene = stage.scene();
+  const glm::dvec2 size(scene.render.width, scene.render.height);
+  const Camera camera = place_camera(scene.view, stage.engine().bounds(), static_cast<float>(size.x / size.y));
+  std::vector<glm::dvec3> from, along;
+  for (py::ssize_t i = 0; i < pixels.shape(0); ++i) {
+    const ViewRay ray = view_ray(camera, glm::vec2(2 * pixels.at(i, 0) / size.x - 1, 1 - 2 * pixels.at(i, 1) / size.y));
+    from.push_back(ray.from);
+    along.push_back(ray.along);
+  }
+  return py::make_tuple(own(std::move(from)), own(std::move(along)));
+}
+
 void bind_stage(py::module_& module) {
   py::class_<Stage>(module, "Stage", "An Engine that shows a Scene.")
       .def(py::init([](const std::string& device, bool validation) {
@@ -88,6 +103,9 @@ void bind_stage(py::module_& module) {
             write_exr(path, picture, stage.scene().tone, stage.engine().metadata());
           },
           py::arg("picture"), py::arg("path"), "Linear and not exposed.")
+      .def("view_rays", &view_rays, py::arg("pixels"),
+           "Rays through (n, 2) places of the scene's picture, counted in pixels right and down from its corner: where "
+           "they come from, mm, and their unit directions, (n, 3) each. Raises InputError.")
       .def_property_readonly("scene", &Stage::scene)
       .def_property_readonly("engine", &Stage::engine, py::return_value_policy::reference_internal);
 }

@@ -35,21 +35,21 @@ def potato(subdivisions: int) -> Surface:
     return Surface(ball.vertices * [1, 0.8, 0.9] * (1 + 0.12 * np.sin(x / 6 + 1) + 0.1 * np.cos(y / 7)), ball.triangles)
 
 
-def bodies(folder: Path) -> tuple[Path, Path]:
-    """The body to fit on, baked coarsely, and the same shape in a finer mesh."""
+def bodies(folder: Path, vertices: int = 800, finer: int = 4) -> tuple[Path, Path]:
+    """The body to fit on, baked coarsely, and the same shape in a finer mesh, of so many subdivisions."""
     mesh = write_obj(potato(4), folder / "potato.obj")
-    bake(mesh, folder / "potato.qgraph", BakeOptions(unit="mm", surface_vertices=800))
-    return folder / "potato.qgraph", write_levels(folder / "finer.qgraph", [potato(4)])
+    bake(mesh, folder / "potato.qgraph", BakeOptions(unit="mm", surface_vertices=vertices))
+    return folder / "potato.qgraph", write_levels(folder / "finer.qgraph", [potato(finer)])
 
 
 def photographed(
-    body: Path, material: Mapping[str, Any], lights: Mapping[str, Any], camera: Mapping[str, Any]
+    body: Path, material: Mapping[str, Any] | Path, lights: Mapping[str, Any], camera: Mapping[str, Any]
 ) -> np.ndarray:
     """(h, w, 3) W/(mm^2 sr) of scattered light."""
     around = {name: value for name, value in camera.items() if name not in ("width", "height")}
     document = {
         "body": str(body),
-        "material": {**material, "eta": ETA},
+        "material": str(material) if isinstance(material, Path) else {**material, "eta": ETA},
         "lights": [lights],
         "camera": around,
         "picture": {"width": camera["width"], "height": camera["height"]},
@@ -60,7 +60,7 @@ def photographed(
     return np.array(stage.render().scattered, np.float64)
 
 
-def write(folder: Path, material: Mapping[str, Any], seed: int, gains: bool = False) -> Path:
+def write(folder: Path, material: Mapping[str, Any] | Path, seed: int, gains: bool = False) -> Path:
     """Photograph the finer body of `folder`, each light from each camera, and write capture.json for the coarser.
 
     gains: unknown, and 20% off.

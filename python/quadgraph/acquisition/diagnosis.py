@@ -10,6 +10,7 @@ from scipy import ndimage
 from quadgraph.acquisition.fitting import Fit
 from quadgraph.acquisition.problem import Problem
 from quadgraph.acquisition.start import ENCODED, Ranking
+from quadgraph.acquisition.volume_fit import VolumeFit
 
 FAR = 4.0  # chi^2 per degree of freedom, from which on photographs and predictions disagree
 _LESS = 0.75  # of the spread that linear values leave, which encoded ones have to leave at most
@@ -31,9 +32,21 @@ def findings(problem: Problem, found: Fit, ranking: Ranking) -> list[str]:
     if len(said) == 1:
         said.append(
             "no single cause was found: check pose, units (mm), places of lights and cameras, eta, and whether the "
-            "body is the same throughout (only homogeneous bodies are recovered)"
+            "body is the same throughout, or else state --volume"
         )
     return said
+
+
+def of_volume(found: VolumeFit) -> list[str]:
+    """The same of a volume, which may take much that is wrong with photographs into its coefficients."""
+    worst = float(found.chi_squared.max())
+    if worst <= FAR:
+        return []
+    return [
+        f"photographs and predictions disagree: chi^2 per square is {worst:.3g}, 1 is expected; the coefficients are "
+        "not to be trusted. Check pose, units (mm), places of lights and cameras, and eta: without --volume more is "
+        "said of what is wrong"
+    ]
 
 
 def _disagreement(found: Fit) -> Iterator[str]:

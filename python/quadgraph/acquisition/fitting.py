@@ -70,10 +70,11 @@ def fit(
     corrected: bool,
     tell: ProgressCallback,
     advance: Advance,
+    outer: int = OUTER,
 ) -> Fit:
     """Fit from the best of several starts, logarithms (2, 3) each.
 
-    advance: is called after each solve. Raises SolverError, InputError.
+    advance: is called after each solve; outer: steps at most. Raises SolverError, InputError.
     """
     levels = _Model(problem, predictor, advance)
     levels.renew(starts[0], False)
@@ -82,7 +83,7 @@ def fit(
     theta = np.array([tries[costs[:, channel].argmin()][:, channel] for channel in range(3)]).T
     steps: list[Step] = []
     converged = False
-    for number in range(OUTER):
+    for number in range(outer):
         levels.renew(theta, corrected)
         judged = levels.judged(theta)
         steps.append(Step(np.exp(theta), judged.chi_squared))

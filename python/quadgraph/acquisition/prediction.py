@@ -1,4 +1,4 @@
-"""What the engine predicts for the photographs of a capture, for homogeneous coefficients."""
+"""What the engine predicts for the photographs of a capture."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import numpy as np
 
 from quadgraph import core
 from quadgraph.acquisition.capture import Capture
+from quadgraph.api.derivatives import ForwardModel, Views, forward_model
 from quadgraph.base.errors import InputError
 
 LEAST_ERROR = 0.005  # relative, of a picture whose own estimate is below that
@@ -20,6 +21,9 @@ _DIM = 0.2  # of the 95th percentile of what is seen: below, the estimate of the
 _STAGES = 16  # engines at most
 # What a capture leaves open: one model for all coefficients, and solves whose differences are derivatives.
 _SOLVER = {"model": "sp3", "tolerance": 1e-4}
+_ANY = np.ones((2, 3))  # coefficients where lights alone matter, 1/mm
+_TOLERANCE = 1e-7  # of the solves of derivatives
+NAMES = ("sigma_a", "sigma_s_prime")
 CHANNELS = ("red", "green", "blue")
 
 
@@ -38,7 +42,7 @@ class Predicted:
 
 
 class Predictor:
-    """The engine with a capture's body, ready to predict all its photographs for one pair of coefficients a channel."""
+    """The engine with a capture's body, ready to predict all its photographs."""
 
     def __init__(self, capture: Capture, body: Path, device: str = "", validation: bool = False) -> None:
         """body: the baked file; device, validation: as `Stage` has them. Raises FormatError, InputError,
@@ -52,6 +56,7 @@ class Predictor:
             self._solves.setdefault(lights, []).append(camera)
         # One for each set of lights keeps what depends on lights alone, which is most of an uncorrected solve.
         self._stages = [core.Stage(device, validation) for _ in range(min(len(self._solves), _STAGES))]
+        self._lit: list[tuple[str, ...] | None] = [None] * len(self._stages)  # by what each was solved last
         self.notes: list[str] = []  # what the engine says against its last answers, each once
 
     @property
@@ -60,18 +65,23 @@ class Predictor:
         return len(self._solves)
 
     @property
+    def graph(self) -> core.QuadGraph:
+        """The baked body."""
+        return core.load(self._body)
+
+    @property
     def size_mm(self) -> float:
         """The middle one of the three sides of the box around the body."""
-        vertices = core.load(self._body).display["vertices"]
+        vertices = self.graph.display["vertices"]
         return float(np.median(vertices.max(axis=0) - vertices.min(axis=0)))
 
     def predict(
-        self, coefficients: np.ndarray, corrected: bool, tell: Callable[[], None] = lambda: None
+        self, coefficients: np.ndarray | Path, corrected: bool, tell: Callable[[], None] = lambda: None
     ) -> list[Predicted]:
         """One picture a photograph.
 
-        coefficients: (2, 3), sigma_a and sigma_s_prime in 1/mm of red, green, blue; corrected: by sweeps of the
-        transport equation; tell: is called after each solve. Raises InputError, SolverError.
+        coefficients: (2, 3), sigma_a and sigma_s_prime in 1/mm of red, green, blue, or the file of a volume; corrected:
+        by sweeps of the transport equation; tell: is called after each solve. Raises InputError, SolverError.
         """
         found: dict[tuple[tuple[str, ...], str], Predicted] = {}
         self.notes = []
@@ -82,6 +92,7 @@ class Predictor:
                 stage.show(self._scene(coefficients, corrected, lights, camera))
                 if report is None:
                     report = stage.solve()
+                    self._lit[number % len(self._stages)] = lights
                     self._note(report)
                 found[lights, camera] = _predicted(stage.render(), report)
             if messages := stage.engine.validation_messages:
@@ -89,13 +100,36 @@ class Predictor:
             tell()
         return [found[each.lights, each.camera] for each in self._capture.photographs]
 
-    def _scene(self, coefficients: np.ndarray, corrected: bool, lights: tuple[str, ...], camera: str) -> core.Scene:
+    def rays(self, camera: str, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Where the rays through (n, 2) places of a camera's picture, pixels right and down, come from, mm, and their
+        unit directions, (n, 3) each.
+        """
+        stage = self._stages[0]
+        lights = self._capture.photographs[0].lights
+        stage.show(self._scene(_ANY, False, lights, camera))
+        return stage.view_rays(places)
+
+    def model(
+        self, lights: tuple[str, ...], level: int, coefficients: tuple[np.ndarray, np.ndarray], views: Views
+    ) -> ForwardModel:
+        """What leaves a level under lights as a function of coefficients: sigma_a and sigma_s_prime of its tets."""
+        number = list(self._solves).index(lights) % len(self._stages)
+        stage = self._stages[number]
+        if self._lit[number] != lights:
+            stage.show(self._scene(_ANY, False, lights, self._solves[lights][0]))
+            stage.solve()
+            self._lit[number] = lights
+        absorption, scattering = coefficients
+        return forward_model(stage.engine, level, (scattering, absorption), views, "sp3", None, _TOLERANCE)
+
+    def _scene(
+        self, coefficients: np.ndarray | Path, corrected: bool, lights: tuple[str, ...], camera: str
+    ) -> core.Scene:
         capture = self._capture
-        absorption, scattering = coefficients.tolist()
         width, height = capture.sizes[camera]
         document = {
             "body": str(self._body.absolute()),
-            "material": {"sigma_s_prime": scattering, "sigma_a": absorption, "eta": capture.eta},
+            "material": _material(coefficients, capture.eta),
             "lights": [capture.lights[name] for name in lights],
             "deformation": capture.deformation,
             "camera": capture.cameras[camera],
@@ -108,6 +142,13 @@ class Predictor:
         for name in ("stopped", "mesh_warning", "model_warning", "light_warning"):
             if report[name] and report[name] not in self.notes:
                 self.notes.append(report[name])
+
+
+def _material(coefficients: np.ndarray | Path, eta: float) -> str | dict[str, Any]:
+    if isinstance(coefficients, Path):
+        return str(coefficients.absolute())
+    absorption, scattering = coefficients.tolist()
+    return {"sigma_s_prime": scattering, "sigma_a": absorption, "eta": eta}
 
 
 def _predicted(picture: core.Picture, report: dict[str, Any]) -> Predicted:

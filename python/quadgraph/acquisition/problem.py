@@ -18,7 +18,7 @@ _GLOSS = 0.01  # over scattered light, from which on a pixel is left out
 _DARK = 1e-4  # of the brightest pixel, below which a prediction is not held to anything
 _LIT = 0.02  # of the brightest value: dimmer ones are too noisy for logarithms
 _HUBER = 3.0  # standard deviations, beyond which a residual counts linearly
-_BANDS = 3  # of brightness: in each, the engine's own error is taken to be the same wherever the lights are
+BANDS = 3  # of brightness: in each, the engine's own error is taken to be the same wherever the lights are
 LEAST_PIXELS = 16  # of a channel
 
 
@@ -56,9 +56,9 @@ class Problem:
         self.pixels = [self._pixels(channel) for channel in range(3)]
         known = [each.stated.gain for each in measured]
         self.groups = [name for name in dict.fromkeys(known) if isinstance(name, str)]
-        self._factor = np.array([1.0 if isinstance(gain, str) else gain for gain in known])
-        self._group = np.array([self.groups.index(gain) if isinstance(gain, str) else -1 for gain in known])
-        self._exposure = np.array([each.stated.exposure for each in measured])
+        self.factor = np.array([1.0 if isinstance(gain, str) else gain for gain in known])
+        self.group = np.array([self.groups.index(gain) if isinstance(gain, str) else -1 for gain in known])
+        self.exposure = np.array([each.stated.exposure for each in measured])
 
     def _pixels(self, channel: int) -> Pixels:
         data, photograph, at = [], [], []
@@ -81,7 +81,7 @@ class Problem:
         lights = [each.stated.lights for each in self.measured]
         number = np.array([lights.index(each) for each in lights])
         pixels = self.pixels[channel]
-        return pixels.take([each.band for each in pictures], channel) + _BANDS * number[pixels.photograph]
+        return pixels.take([each.band for each in pictures], channel) + BANDS * number[pixels.photograph]
 
     def spread(self, pictures: Sequence[Predicted], power: float) -> float:
         """Variance of logarithms of data less `power` times those of predictions, apart from a factor a photograph."""
@@ -100,14 +100,14 @@ class Problem:
     def values(self, pictures: Sequence[np.ndarray], channel: int) -> np.ndarray:
         """(n,) what pixels would be with all unknown gains at 1, from radiances (h, w, 3) a photograph."""
         photograph = self.pixels[channel].photograph
-        return self.pixels[channel].take(pictures, channel) * (self._exposure * self._factor)[photograph]
+        return self.pixels[channel].take(pictures, channel) * (self.exposure * self.factor)[photograph]
 
     def variances(self, pictures: Sequence[Predicted], channel: int, floor: float) -> tuple[np.ndarray, np.ndarray]:
         """(n,) variance of a pixel's noise, and of that with the engine's error; floor: least relative error."""
         radiances = [each.radiance for each in pictures]
         value = self.values(radiances, channel)
         gain = self.gains(value, self.pixels[channel].data, np.maximum(value, value.max() * _DARK) ** 2, channel)
-        scale = (self._exposure * self._factor)[:, None, None, None] * gain[:, None, None, None]
+        scale = (self.exposure * self.factor)[:, None, None, None] * gain[:, None, None, None]
         expected = [factor * radiance for factor, radiance in zip(scale, radiances, strict=True)]
         noise = self.pixels[channel].take(
             [one.variance_of(value) for one, value in zip(self.measured, expected, strict=True)], channel
@@ -118,17 +118,26 @@ class Problem:
     def gains(self, value: np.ndarray, data: np.ndarray, variance: np.ndarray, channel: int) -> np.ndarray:
         """(photographs,) best unknown gains, 1 where a gain is known."""
         photograph = self.pixels[channel].photograph
-        group = self._group[photograph]
+        group = self.group[photograph]
         unknown = group >= 0
         count = len(self.groups)
         above = np.bincount(group[unknown], (value * data / variance)[unknown], count)
         below = np.bincount(group[unknown], (value * value / variance)[unknown], count)
         found = np.where(below > 0, above / np.maximum(below, 1e-300), 1.0)
-        return np.where(self._group >= 0, found[self._group] if count else 1.0, 1.0)
+        return np.where(self.group >= 0, found[self.group] if count else 1.0, 1.0)
+
+    def best_gains(self, pictures: Sequence[Predicted], floor: float) -> np.ndarray:
+        """(photographs, 3) the gains that fit predictions best, with variances as `variances` has them."""
+        result = np.empty((len(self.measured), 3))
+        for channel in range(3):
+            value = self.values([each.radiance for each in pictures], channel)
+            _, variance = self.variances(pictures, channel, floor)
+            result[:, channel] = self.gains(value, self.pixels[channel].data, variance, channel)
+        return result
 
     def without_gains(self, columns: np.ndarray, value: np.ndarray, weight: np.ndarray, channel: int) -> np.ndarray:
         """Columns (n, k) less what unknown gains could do: orthogonal to `value` within each group, by weights."""
-        group = self._group[self.pixels[channel].photograph]
+        group = self.group[self.pixels[channel].photograph]
         result = np.array(columns)
         for number in range(len(self.groups)):
             mine = group == number

@@ -1,64 +1,70 @@
-"""Homogeneous coefficients of a body from a capture, from its photographs to what is to be said of the result."""
+"""Coefficients of a body from a capture, from its photographs to what is to be said of the result."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from quadgraph.acquisition import diagnosis, photographs, prediction, start
+from quadgraph.acquisition import diagnosis, photographs, prediction, start, volume_report
 from quadgraph.acquisition.capture import Capture
 from quadgraph.acquisition.fitting import OUTER, Fit, fit
 from quadgraph.acquisition.photographs import Measured
-from quadgraph.acquisition.prediction import CHANNELS, Predictor
+from quadgraph.acquisition.prediction import CHANNELS, NAMES, Predictor
 from quadgraph.acquisition.problem import Problem
+from quadgraph.acquisition.volume_fit import VolumeFit, fit_volume, most_products
 from quadgraph.api.materials import VolumeMaterial
 from quadgraph.base.errors import InputError
 from quadgraph.base.progress import ProgressCallback
 
-NAMES = ("sigma_a", "sigma_s_prime")
-_UNDETERMINED = 0.35  # standard deviation of a logarithm, from which on a coefficient is said not to be determined
 _ANYTHING = 5.0  # the same, from which on nothing is known of it
+_LIGHTS = 4  # sets of lights, by whose photographs a volume begins
+_STEPS = 2  # the same, at most
 _TIED = 0.98  # correlation of a channel's two coefficients, from which on that is said
 
 
 @dataclass(frozen=True, eq=False)
 class Recovered:
-    """A fit with what is to be said of it. undetermined: what the photographs leave open; findings: what is most
-    probably wrong with them; notes: what the engine says against its own predictions.
+    """A fit with what is to be said of it. volume: a fit of coefficients that differ from place to place, if one was
+    asked for, which began with `fit`; undetermined: what the photographs leave open; findings: what is most probably
+    wrong with them; notes: what the engine says against its own predictions.
     """
 
     capture: Capture
     measured: list[Measured]
     problem: Problem
     fit: Fit
+    volume: VolumeFit | None
     undetermined: list[str]
     findings: list[str]
     notes: list[str]
 
     @property
+    def best(self) -> Fit | VolumeFit:
+        """The fit that counts."""
+        return self.fit if self.volume is None else self.volume
+
+    @property
     def material(self) -> VolumeMaterial:
-        """The coefficients as --material takes them: a grid of one cell."""
+        """The coefficients as --material takes them, on the volume's grid or a grid of one cell, with deviations."""
+        if self.volume is not None:
+            return self.volume.grid.material(self.volume.coefficients, self.capture.eta, self.volume.deviations)
         absorption, scattering = (row.reshape(1, 1, 1, 3) for row in self.fit.coefficients)
-        return VolumeMaterial(scattering, absorption, 1.0, (0.0, 0.0, 0.0), self.capture.eta)
+        spread = (row.reshape(1, 1, 1, 3) for row in self.fit.deviations[::-1])
+        return VolumeMaterial(scattering, absorption, 1.0, (0.0, 0.0, 0.0), self.capture.eta, *spread)
 
     def report(self) -> dict[str, Any]:
         """All numbers, ready for JSON; coefficients and their deviations in 1/mm, by channel."""
-        found = self.fit
-        spread = found.coefficients * found.deviations
+        numbers = _numbers(self.fit) if self.volume is None else {"volume": volume_report.numbers(self.volume)}
+        photographs = zip(self.measured, self.best.by_photograph, self.best.gains, self.problem.counted, strict=True)
         return {
             "capture": str(self.capture.path),
             "eta": self.capture.eta,
-            "converged": found.converged,
-            "coefficients": dict(zip(NAMES, found.coefficients.tolist(), strict=True)),
-            "standard_deviations": dict(zip(NAMES, spread.tolist(), strict=True)),
-            "deviations_of_logarithms": dict(zip(NAMES, found.deviations.tolist(), strict=True)),
-            "correlation": found.correlations.tolist(),
-            "chi_squared_per_degree": found.chi_squared.tolist(),
+            **numbers,
             "photographs": [
                 {
                     "file": str(one.stated.file),
@@ -66,16 +72,7 @@ class Recovered:
                     "gain": gain.tolist(),
                     "pixels": int(counted.sum()),
                 }
-                for one, chi, gain, counted in zip(
-                    self.measured, found.by_photograph, found.gains, self.problem.counted, strict=True
-                )
-            ],
-            "steps": [
-                {
-                    "coefficients": dict(zip(NAMES, step.coefficients.tolist(), strict=True)),
-                    "chi_squared_per_degree": step.chi_squared.tolist(),
-                }
-                for step in found.steps
+                for one, chi, gain, counted in photographs
             ],
             "undetermined": self.undetermined,
             "findings": self.findings,
@@ -83,34 +80,120 @@ class Recovered:
         }
 
 
+def _numbers(found: Fit) -> dict[str, Any]:
+    """What is known of coefficients that are the same throughout."""
+    spread = found.coefficients * found.deviations
+    return {
+        "converged": found.converged,
+        "coefficients": dict(zip(NAMES, found.coefficients.tolist(), strict=True)),
+        "standard_deviations": dict(zip(NAMES, spread.tolist(), strict=True)),
+        "deviations_of_logarithms": dict(zip(NAMES, found.deviations.tolist(), strict=True)),
+        "correlation": found.correlations.tolist(),
+        "chi_squared_per_degree": found.chi_squared.tolist(),
+        "steps": [
+            {
+                "coefficients": dict(zip(NAMES, step.coefficients.tolist(), strict=True)),
+                "chi_squared_per_degree": step.chi_squared.tolist(),
+            }
+            for step in found.steps
+        ],
+    }
+
+
 def recover(
     capture: Capture,
     corrected: bool,
+    spacing: float | None,
     tell: ProgressCallback,
     advance: Callable[[float], None],
     device: str = "",
     validation: bool = False,
 ) -> Recovered:
-    """Recover the coefficients. corrected: predict by the engine with its correction to transport; advance: is called
-    with the share of the work done so far, 0 to 1, after each solve; device, validation: as `Stage` takes them.
+    """Recover the coefficients. corrected: predict by the engine with its correction to transport; spacing: None for
+    the same coefficients throughout; else of the points, mm, where they are unknown, 0: as the body's mesh suggests;
+    advance: is called with the share of the work done so far, 0 to 1, after each solve; device, validation: as `Stage`
+    takes them.
 
     Raises InputError, FormatError, SolverError, DeviceError.
     """
+    if spacing is not None and capture.deformation:
+        raise InputError(
+            f"{capture.path}: deformation: found, allowed with --volume is a body that lies as in its file; leave it "
+            "out, and move cameras and lights instead"
+        )
     measured = photographs.read_all(capture)
     with _body(capture, tell) as body:
-        predictor = Predictor(capture, body, device, validation)
-        grid = start.candidates(predictor.size_mm)
-        work = _ShareDone(advance, predictor.solves * (len(grid) + 1), predictor.solves)
-        first = predictor.predict(start.middle(predictor.size_mm), False, work.step)
-        prediction.check_seen(capture, first)
-        problem = Problem(capture, measured, first)
-        ranking = start.ranked(problem, predictor, grid, work.step)
-        tell(f"start: {_text(np.exp(ranking.starts[0]))}")
-        found = fit(problem, predictor, ranking.starts, corrected, tell, work.step)
-        notes = list(predictor.notes)
-        findings = diagnosis.findings(problem, found, ranking)
+        if spacing is None:
+            found = _throughout(
+                capture, measured, Predictor(capture, body, device, validation), corrected, tell, advance
+            )
+        else:
+            found = _by_place(capture, measured, (body, device, validation), corrected, spacing, tell, advance)
     advance(1.0)
-    return Recovered(capture, measured, problem, found, undetermined(found), findings, notes)
+    return found
+
+
+def _throughout(
+    capture: Capture,
+    measured: list[Measured],
+    predictor: Predictor,
+    corrected: bool,
+    tell: ProgressCallback,
+    advance: Callable[[float], None],
+    outer: int = OUTER,
+) -> Recovered:
+    """The same coefficients throughout, in so many steps at most."""
+    grid = start.candidates(predictor.size_mm)
+    work = _ShareDone(advance, predictor.solves * (len(grid) + 1), predictor.solves)
+    first = predictor.predict(start.middle(predictor.size_mm), False, work.step)
+    prediction.check_seen(capture, first)
+    problem = Problem(capture, measured, first)
+    ranking = start.ranked(problem, predictor, grid, work.step)
+    tell(f"start: {_text(np.exp(ranking.starts[0]))}")
+    found = fit(problem, predictor, ranking.starts, corrected, tell, work.step, outer)
+    findings = diagnosis.findings(problem, found, ranking)
+    return Recovered(capture, measured, problem, found, None, undetermined(found), findings, list(predictor.notes))
+
+
+def _by_place(
+    capture: Capture,
+    measured: list[Measured],
+    engine: tuple[Path, str, bool],
+    corrected: bool,
+    spacing: float,
+    tell: ProgressCallback,
+    advance: Callable[[float], None],
+) -> Recovered:
+    """Coefficients that differ from place to place, from homogeneous ones of some of the photographs on.
+
+    engine: body, device and validation.
+    """
+    few = _some_lights(capture)
+    some = [one for one in measured if one.stated in few.photographs]
+    tell(f"the same coefficients throughout, from {len(some)} of {len(measured)} photographs")
+    same = _throughout(few, some, Predictor(few, *engine), False, tell, lambda share: advance(0.2 * share), _STEPS)
+    predictor = Predictor(capture, *engine)
+    first = predictor.predict(same.fit.coefficients, False)
+    prediction.check_seen(capture, first)
+    problem = Problem(capture, measured, first)
+    begin = same.fit.coefficients, problem.best_gains(first, prediction.LEAST_ERROR)
+    done = 0
+
+    def step() -> None:
+        nonlocal done
+        done += 1
+        advance(0.2 + 0.79 * min(1.0, done / most_products(predictor.solves)))
+
+    volume = fit_volume(problem, predictor, begin, corrected, spacing or None, tell, step)
+    findings, left_open = diagnosis.of_volume(volume), volume_report.undetermined(volume)
+    return Recovered(capture, measured, problem, same.fit, volume, left_open, findings, list(predictor.notes))
+
+
+def _some_lights(capture: Capture) -> Capture:
+    """A capture of all photographs under a few of its sets of lights."""
+    sets = list(dict.fromkeys(each.lights for each in capture.photographs))
+    chosen = {sets[k] for k in np.unique(np.linspace(0, len(sets) - 1, _LIGHTS).round().astype(int))}
+    return replace(capture, photographs=tuple(each for each in capture.photographs if each.lights in chosen))
 
 
 def undetermined(found: Fit) -> list[str]:
@@ -119,7 +202,7 @@ def undetermined(found: Fit) -> list[str]:
     for row, name in enumerate(NAMES):
         for channel, colour in enumerate(CHANNELS):
             deviation = found.deviations[row, channel]
-            if deviation > _UNDETERMINED:
+            if deviation > volume_report.UNDETERMINED:
                 said.append(f"{name} of {colour} is not determined: {_open(found, row, channel)}")
     for channel, colour in enumerate(CHANNELS):
         if abs(found.correlations[channel]) > _TIED:

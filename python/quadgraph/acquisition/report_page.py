@@ -11,13 +11,15 @@ from typing import Any
 
 import numpy as np
 
-from quadgraph.acquisition.prediction import CHANNELS
-from quadgraph.acquisition.recovery import NAMES, Recovered
+from quadgraph.acquisition.prediction import CHANNELS, NAMES
+from quadgraph.acquisition.recovery import Recovered
+from quadgraph.acquisition.volume_fit import VolumeFit
 from quadgraph.base.atomic_file import replacing
 
 _WHITE = 0.995  # quantile of a photograph that is shown as white
 _MOST = 4.0  # standard deviations, at which residuals have their full colour
 _LEFT_OUT = (128, 128, 128)
+_SLICES = 4
 _SIZE, _EDGE = (480, 200), 40  # of the drawing of the convergence
 _COLOURS = ("#c0392b", "#1e8449", "#2471a3")
 _STYLE = """
@@ -44,7 +46,7 @@ def page(found: Recovered) -> str:
     """The whole document; the same result makes the same page."""
     name = html.escape(found.capture.path.name)
     body = [f"<h1>What {name} says of {html.escape(found.capture.body.name)}</h1>"]
-    body += [_coefficients(found), _said(found)]
+    body += [_coefficients(found) if found.volume is None else _volume(found, found.volume), _said(found)]
     body += [f"<h2>Photographs</h2>{_scale()}", *_photographs(found)]
     body += ["<h2>Convergence</h2>", _convergence(found)]
     head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{name}</title>'
@@ -63,6 +65,31 @@ def _coefficients(found: Recovered) -> str:
     rows.append(["χ² per degree of freedom", *(f"{value:.3g}" for value in fit.chi_squared)])
     rows.append(["index of refraction", f"{found.capture.eta:g} (stated)", "", ""])
     return _table(rows)
+
+
+def _volume(found: Recovered, volume: VolumeFit) -> str:
+    """Coefficients and their deviations in slices of the body, from one end of its shortest side to the other."""
+    grid = volume.grid
+    axis = int(np.argmin(grid.size))
+    places = np.unique(np.linspace(0, grid.size[axis] - 1, _SLICES + 2).round().astype(int)[1:-1])
+    parts = []
+    for row, name in enumerate(NAMES):
+        most = float(np.quantile(volume.coefficients[row][volume.inside], 0.99))
+        deviation = volume.deviations[row]
+        for what, values, note in (
+            (name, volume.coefficients[row] / most, f"black 0, white {most:.3g} 1/mm and more in all three channels"),
+            (f"Deviation of {name}", deviation, "relative; black 0, white 100% and more: not known"),
+        ):
+            cells = np.where(volume.inside[:, None], _srgb(values), np.uint8(_LEFT_OUT[0])).astype(np.uint8)
+            cells = cells.reshape(*grid.size[::-1], 3)
+            parts.append(f"<h3>{html.escape(what)}</h3><p>{note}; grey is outside.</p>")
+            for place in places:
+                at = grid.low[axis] + grid.spacing * place
+                pixels = np.take(cells, place, axis=2 - axis)[::-1]
+                parts.append(_figure(np.ascontiguousarray(pixels), f"{'xyz'[axis]} = {at:.3g} mm", what))
+    rows = [["", *CHANNELS], ["χ² per square", *(f"{value:.3g}" for value in volume.chi_squared)]]
+    rows.append(["index of refraction", f"{found.capture.eta:g} (stated)", "", ""])
+    return _table(rows) + "".join(parts)
 
 
 def _table(rows: list[list[str]]) -> str:
@@ -91,21 +118,21 @@ def _scale() -> str:
 
 def _photographs(found: Recovered) -> Iterable[str]:
     """A row of three pictures for each photograph."""
-    for number, (one, picture) in enumerate(zip(found.measured, found.fit.pictures, strict=True)):
+    for number, (one, picture) in enumerate(zip(found.measured, found.best.pictures, strict=True)):
         stated = one.stated
         gain = stated.gain if isinstance(stated.gain, float) else 1.0
-        expected = stated.exposure * gain * found.fit.gains[number] * picture.radiance
+        expected = stated.exposure * gain * found.best.gains[number] * picture.radiance
         deviation = np.sqrt(one.variance_of(expected) + (picture.error * expected) ** 2)
         white = float(np.quantile(one.values, _WHITE)) or 1.0
-        counted = np.asarray(found.problem.counted[number]).any(axis=2)
-        left = np.where(found.problem.counted[number], (one.values - expected) / deviation, 0).sum(axis=2)
-        left /= np.maximum(found.problem.counted[number].sum(axis=2), 1)
-        chi = ", ".join(f"{value:.2f}" for value in found.fit.by_photograph[number])
+        counts = np.asarray(found.problem.counted[number])
+        left = np.where(counts, (one.values - expected) / deviation, 0)
+        chi = ", ".join(f"{each:.2f}" for each in (left**2).sum(axis=(0, 1)) / np.maximum(counts.sum(axis=(0, 1)), 1))
+        mean = left.sum(axis=2) / np.maximum(counts.sum(axis=2), 1)
         lights = html.escape(" + ".join(stated.lights))
         yield f"<h3>{html.escape(stated.file.name)}: {html.escape(stated.camera)}, {lights}</h3>"
         yield _figure(_srgb(one.values / white), "photograph", stated.file.name)
         yield _figure(_srgb(expected / white), "prediction", stated.file.name)
-        yield _figure(_signed(left, counted), f"residual; χ² a pixel {chi}", stated.file.name)
+        yield _figure(_signed(mean, counts.any(axis=2)), f"residual; χ² a pixel {chi}", stated.file.name)
 
 
 def _figure(pixels: np.ndarray, what: str, name: str) -> str:
@@ -136,8 +163,8 @@ def _signed(value: np.ndarray, counted: Any) -> np.ndarray:
 
 
 def _convergence(found: Recovered) -> str:
-    """Chi^2 per degree of freedom of each outer step, by channel, on a logarithmic scale."""
-    steps = np.array([each.chi_squared for each in found.fit.steps])
+    """Chi^2 of each step, by channel, on a logarithmic scale."""
+    steps = np.array([each.chi_squared for each in found.best.steps])
     logs = np.log10(np.maximum(steps, 1e-6))
     low, high = min(float(logs.min()), 0.0) - 0.1, max(float(logs.max()), 0.0) + 0.1
     width, height = _SIZE
@@ -152,9 +179,12 @@ def _convergence(found: Recovered) -> str:
         points = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, np.asarray(y(logs[:, channel])), strict=True))
         parts.append(f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="2"/>')
     drawing = f'<svg viewBox="0 0 {width} {height}" width="{width}" role="img">{"".join(parts)}</svg>'
+    caption = f"<figcaption>χ² {'per degree of freedom' if found.volume is None else 'per square'}, by step and channel"
+    drawing = f"<figure>{drawing}{caption}</figcaption></figure>"
+    if found.volume is not None:
+        return drawing
     rows = [["step", *(f"χ², {name}" for name in CHANNELS), *(f"{name}, 1/mm" for name in NAMES)]]
     for number, step in enumerate(found.fit.steps, 1):
         coefficients = (" / ".join(f"{value:.4g}" for value in row) for row in step.coefficients)
         rows.append([str(number), *(f"{value:.3g}" for value in step.chi_squared), *coefficients])
-    caption = "<figcaption>χ² per degree of freedom, by step and channel</figcaption>"
-    return f"<figure>{drawing}{caption}</figure>{_table(rows)}"
+    return drawing + _table(rows)

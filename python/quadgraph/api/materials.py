@@ -87,7 +87,8 @@ class VolumeMaterial:
 
     sigma_s_prime, sigma_a: (nz, ny, nx) or (nz, ny, nx, 3), 1/mm, >= 0; spacing: of cells along x, y, z, mm, or one
     number; origin: of the first cell's middle, mm, None centres the grid on the body; eta: 1 to 3. Beside the grid the
-    nearest cell counts. Raises InputError.
+    nearest cell counts. sigma_s_prime_deviation, sigma_a_deviation: standard deviations of the coefficients'
+    logarithms, of their shapes, which `quadgraph acquire` writes and nothing is made of. Raises InputError.
     """
 
     sigma_s_prime: npt.NDArray[np.floating]
@@ -95,6 +96,8 @@ class VolumeMaterial:
     spacing: float | Vector
     origin: Vector | None = None
     eta: float = DEFAULT_ETA
+    sigma_s_prime_deviation: npt.NDArray[np.floating] | None = None
+    sigma_a_deviation: npt.NDArray[np.floating] | None = None
 
     def __post_init__(self) -> None:
         """Check shapes and numbers. Raises InputError."""
@@ -105,6 +108,13 @@ class VolumeMaterial:
             cells = self._cells(name)
             if not (np.isfinite(cells).all() and (cells >= 0).all()):
                 raise InputError(f"{name}: negative or not finite somewhere, numbers >= 0 (1/mm) allowed")
+        for name in ("sigma_s_prime", "sigma_a"):
+            deviation = getattr(self, f"{name}_deviation")
+            if deviation is not None and np.shape(deviation) != np.shape(getattr(self, name)):
+                wanted = np.shape(getattr(self, name))
+                raise InputError(
+                    f"{name}_deviation: shape {np.shape(deviation)} found, that of {name}, {wanted}, wanted"
+                )
         if not (np.asarray(self.spacing) > 0).all() or np.shape(self.spacing) not in ((), (3,)):
             raise InputError(f"spacing: {self.spacing} found, one number or three above 0 (mm) allowed")
         if not 1 <= self.eta <= 3:
@@ -146,7 +156,7 @@ class VolumeMaterial:
 
     def save(self, path: str | Path) -> None:
         """Write the .npz file that --material and scene files take. Raises InputError if it cannot be written."""
-        members = {name: getattr(self, name) for name in ("eta", "sigma_s_prime", "sigma_a", "spacing", "origin")}
+        members = {each.name: getattr(self, each.name) for each in fields(self)}
         arrays: dict[str, Any] = {name: np.asarray(value) for name, value in members.items() if value is not None}
         with replacing(Path(path)) as stream:
             np.savez(stream, **arrays)

@@ -1,7 +1,7 @@
-"""`quadgraph acquire`: what a homogeneous body is made of, from photographs of it (docs/acquisition.md).
+"""`quadgraph acquire`: what a body is made of, from photographs of it (docs/acquisition.md).
 
 Finds absorption and reduced scattering of red, green and blue, with their standard deviations, and writes them as
---material takes them. Bodies that differ from place to place are not recovered.
+--material takes them: the same throughout, or with --volume from place to place.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from quadgraph.base.arguments import add_device_arguments
+from quadgraph.base.arguments import add_device_arguments, up_to
 from quadgraph.base.errors import InputError
 
 if TYPE_CHECKING:
@@ -25,6 +25,15 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument("file", metavar="CAPTURE", type=Path, help="capture.json (docs/acquisition.md)")
     parser.add_argument(
         "-o", "--output", metavar="OUT", type=Path, required=True, help="the .npz to write, as --material takes it"
+    )
+    parser.add_argument(
+        "--volume",
+        metavar="MM",
+        nargs="?",
+        type=up_to(1000),
+        const=0.0,
+        help="find coefficients that differ from place to place, at points so far apart (default: as far as the edges "
+        "of the body's tets); takes minutes",
     )
     parser.add_argument(
         "--json",
@@ -73,7 +82,7 @@ def run(args: argparse.Namespace) -> int:
         def advance(share: float) -> None:
             bar.update(task, completed=share)
 
-        found = recover(stated, args.correction, tell, advance, args.device, args.validation)
+        found = recover(stated, args.correction, args.volume, tell, advance, args.device, args.validation)
     found.material.save(args.output)
     if args.json:
         atomic_file.write_json(args.json, found.report())
@@ -82,7 +91,8 @@ def run(args: argparse.Namespace) -> int:
 
         report_page.write(args.report, found)
     _summarise(found, args.output)
-    return DISAGREES if found.findings or not found.fit.converged else 0
+    settled = found.volume is not None or found.fit.converged
+    return 0 if settled and not found.findings else DISAGREES
 
 
 def _summarise(found: Recovered, output: Path) -> None:
@@ -96,9 +106,11 @@ def _summarise(found: Recovered, output: Path) -> None:
 
 def lines(found: Recovered) -> list[str]:
     """What was found, a line a coefficient, and what is to be said of it."""
-    from quadgraph.acquisition.prediction import CHANNELS
-    from quadgraph.acquisition.recovery import NAMES
+    from quadgraph.acquisition import volume_report
+    from quadgraph.acquisition.prediction import CHANNELS, NAMES
 
+    if found.volume is not None:
+        return [*volume_report.lines(found.volume), *found.undetermined, *found.findings, *found.notes]
     fit = found.fit
     said = []
     for row, name in enumerate(NAMES):

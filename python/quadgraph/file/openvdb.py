@@ -24,7 +24,8 @@ from quadgraph.file import npz
 
 _CHILD = Path(__file__).with_name("openvdb_child.py")
 _TIME_LIMIT_S, _MEMORY_LIMIT_BYTES = 300.0, 4 << 30
-_MEMBERS = ("sigma_s_prime", "sigma_a", "spacing", "origin", "eta")
+# Deviations of coefficients that were acquired are read, and not written.
+_MEMBERS = ("sigma_s_prime", "sigma_a", "spacing", "origin", "eta", "sigma_s_prime_deviation", "sigma_a_deviation")
 _REFUSED = 2  # its exit status where a file does not serve
 
 

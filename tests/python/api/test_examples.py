@@ -13,6 +13,7 @@ EXPECTED = {
     "fluence.py": pytest.approx(0, abs=1e-5),
     "inverse.py": pytest.approx(0, abs=0.1),
     "lights_and_materials.py": pytest.approx(2, rel=1e-5),
+    "spotted.py": pytest.approx(4, rel=1e-5),
 }
 
 

@@ -1,0 +1,83 @@
+"""How certain a volume's coefficients are: Laplace's approximation, of low rank in what the photographs tell.
+
+Around the fit the inverse covariance of the logarithms is H + L: H is the matrix of Gauss and Newton, L the smoothing.
+Its covariance is that of L alone less what the leading pairs of H v = k L v take away [Bui-Thanh et al. 2013, eq. 25],
+which random vectors find [Halko et al. 2011]. Pairs that are not found leave deviations too large, not too small.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from scipy import linalg, sparse
+
+RANK = 40  # random vectors
+_LEAST = 1e-6  # of the smoothing's diagonal, what every point has of a prior: constants cost the smoothing nothing
+
+
+def deviations(
+    told: Callable[[np.ndarray], np.ndarray], smoothing: Sequence[sparse.csr_array], shape: tuple[int, ...]
+) -> np.ndarray:
+    """(2, n, 3) standard deviations of logarithms.
+
+    told: H times a direction of that shape; channels do not mix; smoothing: L of each coefficient, of all channels.
+    Takes RANK products with H and a dense inverse of n x n.
+    """
+    count = shape[1]
+    factors = []
+    for matrix in smoothing:
+        dense = matrix.toarray()
+        factors.append(np.linalg.cholesky(dense + _LEAST * dense.diagonal().max() * np.eye(count)))
+    variance = np.stack([_diagonal_of_inverse(factor) for factor in factors])
+    random = np.random.default_rng(0)
+    directions = random.normal(size=(RANK, *shape))
+    # Of C^-1 H C^-T, which is symmetric, where L = C C^T.
+    images = _whitened(told, factors, directions)
+    result = np.empty(shape)
+    for channel in range(3):
+        first = directions[..., channel].reshape(RANK, -1).T
+        second = images[..., channel].reshape(RANK, -1).T
+        values, vectors = _nystrom(first, second)
+        unwhitened = np.concatenate(
+            [
+                linalg.solve_triangular(factor.T, part)
+                for factor, part in zip(factors, np.split(vectors, 2), strict=True)
+            ]
+        )
+        taken = (unwhitened**2 @ (values / (1 + values))).reshape(2, count)
+        result[..., channel] = np.sqrt(np.maximum(variance - taken, 0))
+    return result
+
+
+def _diagonal_of_inverse(factor: np.ndarray) -> np.ndarray:
+    """(n,) of the inverse of C C^T."""
+    inverse = linalg.solve_triangular(factor, np.eye(len(factor)), lower=True)
+    return (inverse**2).sum(axis=0)
+
+
+def _whitened(
+    told: Callable[[np.ndarray], np.ndarray], factors: Sequence[np.ndarray], directions: np.ndarray
+) -> np.ndarray:
+    images = np.empty_like(directions)
+    for number, direction in enumerate(directions):
+        inner = np.stack([linalg.solve_triangular(f.T, part) for f, part in zip(factors, direction, strict=True)])
+        outer = told(inner)
+        images[number] = np.stack(
+            [linalg.solve_triangular(f, part, lower=True) for f, part in zip(factors, outer, strict=True)]
+        )
+    return images
+
+
+def _nystrom(directions: np.ndarray, images: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Eigenvalues and orthonormal vectors of a positive matrix from its products with random directions (m, k).
+
+    The approximation is below the matrix [Tropp et al. 2017, algorithm 3].
+    """
+    shift = 1e-12 * np.linalg.norm(images)
+    shifted = images + shift * directions
+    middle = directions.T @ shifted
+    factor = np.linalg.cholesky((middle + middle.T) / 2)
+    half = linalg.solve_triangular(factor, shifted.T, lower=True).T
+    vectors, sizes, _ = np.linalg.svd(half, full_matrices=False)
+    return np.maximum(sizes**2 - shift, 0), vectors

@@ -1,0 +1,233 @@
+"""Coefficients that differ from place to place, by Gauss and Newton's method with conjugate gradients inside.
+
+Unknown are the logarithms of sigma_a and sigma_s_prime at the points of a grid, in each channel. Predictions are the
+engine's pictures; their correction to transport, and what the finest level and the device add, are renewed in each
+outer step as a factor of every square of pixels. Within one, the model is that of linearised.py on a coarser level,
+whose derivative is exact (defect correction). Smoothing is lessened until the photographs are explained as well as
+their noise and the engine's own error allow (discrepancy).
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeAlias
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse import linalg
+
+from quadgraph.acquisition import posterior
+from quadgraph.acquisition.prediction import Predicted, Predictor
+from quadgraph.acquisition.problem import Problem
+from quadgraph.acquisition.smoothing import Smoothing
+from quadgraph.acquisition.volume_grid import VolumeGrid
+from quadgraph.acquisition.volume_model import Around, VolumeSetting
+from quadgraph.base.progress import ProgressCallback
+
+OUTER, INNER = 4, 3  # steps at most
+_SMALL, _LONGEST = 0.01, 1.0  # of a logarithm: a step this small is the last at its smoothing; the most at once
+_CG_STEPS, _CG_GAIN = 12, 1e-4  # at most; of the residual, squared, at which there are enough
+_PROBES = 8  # for how much the photographs tell of each point
+_FLOOR = 0.02  # of the best seen point, what the smoothing of others counts at least
+_THRESHOLD = 0.05  # of a logarithm over the grid's spacing: smaller slopes are no steps
+_FIRST, _LESS = 30.0, 0.4  # smoothing over what is told at first; from step to step, while too little is explained
+_GAINED, _FEWEST = 0.1, 3  # of chi^2, that another step has to gain, after so many
+_LEAST_GAIN = 0.1  # a gain's factor in one step, at least
+_BOUNDS = np.log([1e-7, 1e4])  # of coefficients, 1/mm
+
+Map: TypeAlias = Callable[[np.ndarray], np.ndarray]
+
+
+@dataclass(frozen=True, eq=False)
+class VolumeStep:
+    """One step: strength of the smoothing, and chi^2 per square (3,) after it, by channel."""
+
+    smoothing: float
+    chi_squared: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class VolumeFit:
+    """What was found. grid: its points; coefficients (2, n, 3): sigma_a and sigma_s_prime at them, 1/mm; deviations
+    (2, n, 3): standard deviations of their logarithms; inside (n,): whether a tet depends on the point; chi_squared
+    (3,): per square; by_photograph (p, 3): the same of each, without what squares share; pictures: the last
+    predictions; gains (p, 3).
+    """
+
+    grid: VolumeGrid
+    coefficients: np.ndarray
+    deviations: np.ndarray
+    inside: np.ndarray
+    chi_squared: np.ndarray
+    by_photograph: np.ndarray
+    pictures: list[Predicted]
+    gains: np.ndarray
+    steps: list[VolumeStep]
+
+
+def most_products(solves: int) -> int:
+    """How often `fit_volume` calls `advance` at most, where a prediction of all photographs takes so many solves."""
+    steps = OUTER * INNER
+    return (OUTER + 1) * 2 * solves + steps * (solves + _CG_STEPS) + _PROBES + posterior.RANK
+
+
+def fit_volume(
+    problem: Problem,
+    predictor: Predictor,
+    start: tuple[np.ndarray, np.ndarray],
+    corrected: bool,
+    spacing: float | None,
+    tell: ProgressCallback,
+    advance: Callable[[], None],
+) -> VolumeFit:
+    """Fit from homogeneous coefficients (2, 3), 1/mm, and gains (p, 3). spacing: of the grid, mm, None: as long as
+    the edges of the level that is differentiated; advance: is called after each solve and product. Raises SolverError,
+    InputError.
+    """
+    with tempfile.TemporaryDirectory(prefix="quadgraph-acquire-") as folder:
+        setting = VolumeSetting(problem, predictor, spacing, Path(folder), advance)
+        grid, side = setting.grid, setting.samples.side
+        tell(
+            f"volume: {' x '.join(map(str, grid.size))} points, {grid.spacing:.3g} mm apart, from "
+            f"{len(setting.data)} squares of {side} x {side} pixels on level {setting.level}"
+        )
+        logs = np.log(np.repeat(start[0][:, None, :], grid.count, axis=1))
+        found = setting.predicted(logs, np.array(start[1]), corrected)
+        tell(f"start: chi^2 per square {_text(found.chi_squared())}")
+        fit = _Fit(found, tell)
+        for _ in range(OUTER):
+            following = fit.descended(found)
+            following = setting.predicted(following.logs, following.gains, corrected)
+            before, after = found.chi_squared().max(), following.chi_squared().max()
+            tell(f"predicted anew: chi^2 per square {_text(following.chi_squared())}")
+            if after < before:
+                found = following
+            if fit.enough and after > (1 - _GAINED) * before:
+                break
+        tell("standard deviations")
+        return VolumeFit(
+            grid,
+            np.exp(found.logs),
+            posterior.deviations(found.told, fit.matrices(found.logs), found.logs.shape),
+            setting.inside > 0,
+            found.chi_squared(),
+            found.by_photograph(),
+            found.pictures,
+            found.gains,
+            fit.steps,
+        )
+
+
+def _text(values: np.ndarray) -> str:
+    return ", ".join(f"{each:.3g}" for each in values)
+
+
+class _Fit:
+    """How volumes are smoothed, and steps towards better ones."""
+
+    def __init__(self, first: Around, tell: ProgressCallback) -> None:
+        """Find by random weights how much the photographs tell of each point, and from that the first smoothing."""
+        self._tell = tell
+        self.steps: list[VolumeStep] = []
+        self.enough = False  # whether less smoothing would explain little more
+        random, root = np.random.default_rng(0), np.sqrt(first.weighing.each)
+        self._diagonal = np.zeros(first.logs.shape)
+        for _ in range(_PROBES):
+            signs = random.choice([-1.0, 1.0], size=root.shape)
+            self._diagonal += first.transposed(root * signs) ** 2 / _PROBES
+            first.setting.advance()
+        inside, grid = first.setting.inside, first.setting.grid
+        density = np.sqrt(self._diagonal.sum(axis=2) / np.maximum(inside, 1e-3 * inside.max()))
+        most = np.quantile(density[:, inside > 0], 0.99, axis=1, keepdims=True)
+        told = np.clip(density / np.maximum(most, 1e-300), _FLOOR, 1)
+        self._smoothing = Smoothing(grid, inside, told, _THRESHOLD / grid.spacing)
+        self.strength = 1.0
+        pairs = zip(self._diagonal, self.matrices(first.logs), strict=True)
+        self.strength = _FIRST * max(float(each.sum() / 3 / matrix.diagonal().sum()) for each, matrix in pairs)
+
+    def matrices(self, logs: np.ndarray) -> Sequence[sparse.csr_array]:
+        """The smoothing of each coefficient around logarithms, (n, n)."""
+        return [self.strength * each for each in self._smoothing.matrices(logs)]
+
+    def descended(self, around: Around) -> Around:
+        """A few steps with the same factors, each with less smoothing as long as that explains more."""
+        before = float(around.chi_squared().max())
+        for _ in range(INNER):
+            step, gains = self._step(around)
+            around = around.moved(np.clip(around.logs + step, *_BOUNDS), around.gains * gains)
+            chi = around.chi_squared()
+            self.steps.append(VolumeStep(self.strength, chi))
+            self._tell(f"step {len(self.steps)}: chi^2 per square {_text(chi)}")
+            after = float(chi.max())
+            little = len(self.steps) >= _FEWEST and after > (1 - _GAINED) * before
+            if self.enough and (little or np.abs(step).max() < _SMALL):
+                break
+            if not self.enough and little and len(self.steps) > 1:
+                self.strength = self.steps[-2].smoothing
+            self.enough = self.enough or little or after <= 1
+            if not self.enough:
+                self.strength *= _LESS
+            before = after
+        return around
+
+    def _step(self, around: Around) -> tuple[np.ndarray, np.ndarray]:
+        """Of logarithms, (2, n, 3), no longer than is sane; and factors of gains, (p, 3)."""
+        matrices = self.matrices(around.logs)
+
+        def smoothed(logs: np.ndarray) -> np.ndarray:
+            return np.stack([matrix @ part for matrix, part in zip(matrices, logs, strict=True)])
+
+        residual, weighing = around.residual(), around.weighing
+        slope = around.transposed(weighing.apply(residual)) - smoothed(around.logs)
+        step = _conjugate_gradients(
+            lambda direction: around.told(direction) + smoothed(direction), slope, self._preconditioner(matrices)
+        )
+        step = np.clip(step, -_LONGEST, _LONGEST)
+        group = around.setting.problem.group
+        factors = np.ones((len(group), 3))
+        factors[group >= 0] += weighing.gains(residual - around.along(step))[group[group >= 0]]
+        return step, np.maximum(factors, _LEAST_GAIN)
+
+    def _preconditioner(self, matrices: Sequence[sparse.csr_array]) -> Map:
+        """Solves with the smoothing, and the diagonal of what the photographs tell."""
+        solvers = [
+            [_factorised(matrix, diagonal[:, channel]) for channel in range(3)]
+            for matrix, diagonal in zip(matrices, self._diagonal, strict=True)
+        ]
+
+        def solve(right: np.ndarray) -> np.ndarray:
+            parts = [
+                [solver.solve(np.ascontiguousarray(part[:, channel])) for channel, solver in enumerate(each)]
+                for each, part in zip(solvers, right, strict=True)
+            ]
+            return np.moveaxis(np.array(parts), 1, 2)
+
+        return solve
+
+
+def _factorised(matrix: sparse.csr_array, diagonal: np.ndarray) -> linalg.SuperLU:
+    least = 1e-9 * diagonal.max()
+    return linalg.splu(sparse.csc_array(matrix + sparse.diags_array(diagonal + least)))
+
+
+def _conjugate_gradients(matrix: Map, right: np.ndarray, inverse: Map) -> np.ndarray:
+    """Solve roughly; arrays of any shape."""
+    found = np.zeros_like(right)
+    left = right.copy()
+    corrected = inverse(left)
+    direction, size = corrected, float((left * corrected).sum())
+    enough = _CG_GAIN * size
+    for _ in range(_CG_STEPS):
+        if size <= enough:
+            break
+        image = matrix(direction)
+        length = size / float((direction * image).sum())
+        found += length * direction
+        left -= length * image
+        corrected = inverse(left)
+        size, before = float((left * corrected).sum()), size
+        direction = corrected + size / before * direction
+    return found

@@ -1,0 +1,155 @@
+"""`quadgraph acquire --volume` finds where in a body coefficients differ, from pictures on another mesh."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import twin_capture
+from quadgraph import VolumeMaterial
+from quadgraph.acquisition import capture, photographs
+from quadgraph.acquisition.prediction import Predictor
+from quadgraph.acquisition.problem import Problem
+from quadgraph.acquisition.volume_model import VolumeSetting
+from quadgraph.acquisition.volume_weights import LOCAL
+from quadgraph.cli import main
+from quadgraph.file import npz
+
+pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
+
+VOLUME = ("sigma_a", "sigma_s_prime", "spacing", "origin", "eta", "sigma_a_deviation", "sigma_s_prime_deviation")
+SEED = 31
+SCATTERING, ABSORPTION = 0.7, 0.02
+SPOT, RADIUS = np.array([9.0, 3.0, 7.0]), 7.0  # mm: where it absorbs four times as much, near the front
+
+
+def truth(points: np.ndarray) -> tuple[float, np.ndarray]:
+    """sigma_s_prime and sigma_a."""
+    return SCATTERING, np.where(np.linalg.norm(points - SPOT, axis=1) < RADIUS, 4 * ABSORPTION, ABSORPTION)
+
+
+@pytest.fixture(scope="module")
+def twin(tmp_path_factory) -> Path:
+    """The folder of a capture of a body with a spot in it."""
+    folder = tmp_path_factory.mktemp("volume")
+    twin_capture.bodies(folder, vertices=500)
+    box = [[-24, -24, -24], [24, 24, 24]]
+    VolumeMaterial.from_function(truth, box, 0.6, twin_capture.ETA).save(folder / "truth.npz")
+    twin_capture.write(folder, folder / "truth.npz", SEED)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def found(twin) -> dict[str, Any]:
+    """The report of a recovery."""
+    paths = [str(twin / name) for name in ("capture.json", "wax.npz", "wax.json", "wax.html")]
+    options = ["--json", paths[2], "--report", paths[3], "--device", "cpu", "--volume", "5"]
+    assert main(["acquire", paths[0], "-o", paths[1], *options]) == 0
+    return json.loads(Path(paths[2]).read_text())
+
+
+def places(volume: dict[str, np.ndarray]) -> np.ndarray:
+    """(nz, ny, nx, 3) mm of the points of a file."""
+    z, y, x = np.indices(volume["sigma_a"].shape[:3])
+    return volume["origin"] + float(volume["spacing"]) * np.stack([x, y, z], axis=-1)
+
+
+def test_a_spot_is_found_where_it_is(twin, found):
+    assert found["findings"] == []
+    assert max(found["volume"]["chi_squared_per_square"]) < 1.5
+    volume = npz.read(twin / "wax.npz", VOLUME)
+    points = places(volume)
+    inside = np.linalg.norm(points / [1, 0.8, 0.9], axis=-1) < 15
+    spot = np.linalg.norm(points - SPOT, axis=-1) < RADIUS - 2
+    beside = inside & (np.linalg.norm(points - SPOT, axis=-1) > RADIUS + 4)
+    for name, most in (("sigma_a", ABSORPTION), ("sigma_s_prime", SCATTERING)):
+        assert np.median(volume[name][beside]) == pytest.approx(most, rel=0.15)
+    contrast = np.median(volume["sigma_a"][spot]) / np.median(volume["sigma_a"][beside])
+    assert 1.6 < contrast < 5
+    assert np.median(volume["sigma_s_prime"][spot]) == pytest.approx(SCATTERING, rel=0.25)
+
+
+def test_the_truth_lies_within_what_is_said_of_it(twin, found):
+    """Beside the spot's edge, where no grid of this spacing holds the truth."""
+    volume = npz.read(twin / "wax.npz", VOLUME)
+    points = places(volume)
+    inside = np.linalg.norm(points / [1, 0.8, 0.9], axis=-1) < 18
+    chosen = inside & (np.linalg.norm(points - SPOT, axis=-1) > RADIUS + 2)
+    for name, true in (("sigma_a", ABSORPTION), ("sigma_s_prime", SCATTERING)):
+        deviation = volume[f"{name}_deviation"][chosen]
+        within = np.abs(np.log(volume[name][chosen] / true)) < 2 * deviation
+        assert within.mean() > 0.8, name
+        assert 0.02 < np.median(deviation) < 0.3, name
+
+
+def test_a_volume_is_rendered_with_its_deviations_in_the_file(twin, found):
+    command = [
+        "render",
+        str(twin / "potato.qgraph"),
+        "--material",
+        str(twin / "wax.npz"),
+        "--size",
+        "32x32",
+        "--device",
+        "cpu",
+    ]
+    assert main([*command, "-o", str(twin / "wax.png")]) == 0
+
+
+def test_the_page_shows_slices(twin, found, browser):
+    browser.get((twin / "wax.html").as_uri())
+    texts = "return Array.from(document.querySelectorAll('h3')).map(each => each.textContent)"
+    titles = browser.execute_script(texts)
+    assert titles[:4] == ["sigma_a", "Deviation of sigma_a", "sigma_s_prime", "Deviation of sigma_s_prime"]
+    assert not browser.get_log("browser")
+
+
+@pytest.fixture(scope="module")
+def setting(twin, tmp_path_factory) -> VolumeSetting:
+    """Photographs and grid of the twin."""
+    stated = capture.read(twin / "capture.json")
+    predictor = Predictor(stated, twin / "potato.qgraph", "cpu")
+    first = predictor.predict(np.array([[0.03] * 3, [0.8] * 3]), False)
+    problem = Problem(stated, photographs.read_all(stated), first)
+    return VolumeSetting(problem, predictor, 6.0, tmp_path_factory.mktemp("volumes"), lambda: None)
+
+
+def test_the_derivative_of_a_volume_is_that_of_its_predictions(setting):
+    random = np.random.default_rng(6)
+    logs = np.log([[[0.03]], [[0.8]]]) + 0.2 * random.normal(size=(2, setting.grid.count, 3))
+    around = setting.predicted(logs, np.ones((4, 3)), False)
+    along, step = random.normal(size=logs.shape), 1e-3
+    above, below = (around.moved(logs + sign * step * along, around.gains).residual() for sign in (1, -1))
+    counts = around.weights.counts
+    change = ((below - above) / (2 * step))[counts]
+    expected = around.along(along)[counts]
+    assert np.abs(change - expected).max() < 1e-4 * np.abs(expected).max()
+    weights = np.where(counts, random.normal(size=counts.shape), 0)
+    moved = np.where(counts, around.along(along), 0)
+    left, right = (moved * weights).sum(), (along * around.transposed(weights)).sum()
+    assert abs(left - right) < 1e-6 * np.linalg.norm(moved) * np.linalg.norm(weights)
+
+
+def test_what_squares_share_is_taken_out_as_by_the_whole_covariance(setting):
+    """The engine's error is alike within lights and brightness, and half of it apart in each square."""
+    logs = np.log(np.broadcast_to([[[0.03]], [[0.8]]], (2, setting.grid.count, 3)))
+    around = setting.predicted(logs, np.ones((4, 3)), False)
+    weights, residual = around.weights, around.residual()
+    pairs = list(zip(setting.samples.squares, around.pictures, strict=True))
+    error = np.concatenate([squares.of(picture.error) for squares, picture in pairs])[:, 1]
+    band = np.concatenate([np.rint(squares.of(picture.band)) for squares, picture in pairs])[:, 1]
+    value = (setting.data - residual)[:, 1]
+    lights = np.repeat([0, 0, 1, 1], [len(squares.rays) for squares, _ in pairs])
+    counts = weights.counts[:, 1]
+    alike = (lights[:, None] == lights) & (band[:, None] == band)
+    covariance = np.diag(1 / around.weighing.each[counts, 1])
+    assert (np.diag(covariance) > (LOCAL * error * value)[counts] ** 2).all()
+    covariance += (alike * np.outer(error * value, error * value))[np.ix_(counts, counts)]
+    expected = np.linalg.solve(covariance, residual[counts, 1])
+    np.testing.assert_allclose(
+        around.weighing.apply(residual)[counts, 1], expected, rtol=1e-6, atol=1e-9 * abs(expected).max()
+    )
