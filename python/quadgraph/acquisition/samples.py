@@ -13,17 +13,20 @@ from quadgraph.acquisition.prediction import Predictor
 from quadgraph.acquisition.problem import Problem
 from quadgraph.api.derivatives import Views
 
+TILES = 4  # of a picture's side
 _SLANTED = 0.1  # cosine between ray and normal, below which a square is left out
 _FILLED = 0.5  # share of a square's pixels that has to count
 
 
 @dataclass(frozen=True, eq=False)
 class Squares:
-    """The squares of one photograph. rays: which of its camera's views each has, (n,); mean (3 of (n, pixels)): what
-    makes of a channel's pixels the mean of those that count, 0 where too few do.
+    """The squares of one photograph. rays: which of its camera's views each has, (n,); tile: in which part of the
+    picture, 0 to TILES^2 - 1, each lies; mean (3 of (n, pixels)): what makes of a channel's pixels the mean of those
+    that count, 0 where too few do.
     """
 
     rays: np.ndarray
+    tile: np.ndarray
     mean: tuple[sparse.csr_array, ...]
 
     def of(self, picture: np.ndarray) -> np.ndarray:
@@ -108,4 +111,10 @@ def _squares(counted: np.ndarray, side: int, places: np.ndarray) -> Squares:
         means.append(sparse.csr_array(entries, shape=(len(size), height * width))[places])
     whole = [np.asarray(mean.sum(axis=1)).ravel() > 0 for mean in means]
     used = np.flatnonzero(np.any(whole, axis=0))
-    return Squares(used, tuple(mean[used] for mean in means))
+    across, down = number_of_tile(places % columns, columns), number_of_tile(places // columns, -(-height // side))
+    return Squares(used, (TILES * down + across)[used], tuple(mean[used] for mean in means))
+
+
+def number_of_tile(place: np.ndarray, count: int) -> np.ndarray:
+    """In which of TILES parts of a side each of its `count` places lies."""
+    return place * TILES // count

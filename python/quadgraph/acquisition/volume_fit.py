@@ -3,8 +3,8 @@
 Unknown are the logarithms of sigma_a and sigma_s_prime at the points of a grid, in each channel. Predictions are the
 engine's pictures; their correction to transport, and what the finest level and the device add, are renewed in each
 outer step as a factor of every square of pixels. Within one, the model is that of linearised.py on a coarser level,
-whose derivative is exact (defect correction). Smoothing is lessened until the photographs are explained as well as
-their noise and the engine's own error allow (discrepancy).
+whose derivative is exact (defect correction). Smoothing is lessened until that explains little more: the engine's error
+is estimated rather too large, so that chi^2 may fall below 1 while there is still much to be told.
 """
 
 from __future__ import annotations
@@ -167,7 +167,7 @@ class _Fit:
                 break
             if not self.enough and little and len(self.steps) > 1:
                 self.strength = self.steps[-2].smoothing
-            self.enough = self.enough or little or after <= 1
+            self.enough = self.enough or little
             if not self.enough:
                 self.strength *= _LESS
             before = after

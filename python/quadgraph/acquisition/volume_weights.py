@@ -1,8 +1,9 @@
 """How much each square of the photographs says of a volume: noise, the engine's own error, and gains.
 
 What photographs share is unknown and taken out in closed form, by channel: a gain without a stated value may be
-anything, and the engine's error is partly alike in all squares that are about as bright under the same lights, there
-with its stated size as its deviation [Tarvainen et al. 2010 on why the model's own error has to be in the weights].
+anything, and the engine's error is alike in all squares that are about as bright under the same lights, there with its
+stated size as its deviation; some of it is alike in each part of a picture, and some another in each square [Tarvainen
+et al. 2010 on why the model's own error has to be in the weights].
 """
 
 from __future__ import annotations
@@ -14,9 +15,9 @@ from scipy import sparse
 
 from quadgraph.acquisition.prediction import Predicted
 from quadgraph.acquisition.problem import BANDS, Problem
-from quadgraph.acquisition.samples import Samples
+from quadgraph.acquisition.samples import TILES, Samples
 
-LOCAL = 0.5  # of the engine's error, that is taken to differ from square to square
+IN_TILES, LOCAL = 0.25, 1.0  # of the error, that differ from part to part of a picture, and from square to square
 _ANYTHING = 1e-12  # inverse variance of a gain that may be anything
 _BEYOND = 5.0  # standard deviations, from which on a square's weight falls
 
@@ -44,8 +45,9 @@ class Weights:
         self._weight = np.where(self.counts, 1 / np.maximum(variance, 1e-300), 0)
         photograph = np.repeat(np.arange(len(expected)), [len(each) for each in expected])
         bands = np.concatenate(band)
+        tile = np.concatenate([each.tile for each in samples.squares])
         self._shared = [
-            _Shared(problem, photograph, bands[:, channel], (size * value)[:, channel], value[:, channel])
+            _Shared(problem, (photograph, tile, bands[:, channel]), (size * value)[:, channel], value[:, channel])
             for channel in range(3)
         ]
 
@@ -81,20 +83,28 @@ class Weighing:
 
 
 class _Shared:
-    """What the squares of a channel share: the engine's error by lights and brightness, then gains."""
+    """What the squares of a channel share: the engine's error by lights and brightness and by parts of pictures, then
+    gains.
+    """
 
     def __init__(
-        self, problem: Problem, photograph: np.ndarray, band: np.ndarray, error: np.ndarray, value: np.ndarray
+        self, problem: Problem, places: tuple[np.ndarray, np.ndarray, np.ndarray], error: np.ndarray, value: np.ndarray
     ) -> None:
+        """places: photograph, part of the picture, and band of brightness of each square; error: in units of value."""
+        photograph, tile, band = places
         lights = [one.stated.lights for one in problem.measured]
         first = np.array([lights.index(each) for each in lights])
-        self.first_gain = BANDS * len(lights)
+        bands, tiles = BANDS * len(lights), TILES**2 * len(lights)
+        self.first_gain = bands + tiles
         group = problem.group[photograph]
         unknown = np.flatnonzero(group >= 0)
-        rows = np.concatenate([np.arange(len(value)), unknown])
-        columns = np.concatenate([BANDS * first[photograph] + band, self.first_gain + group[unknown]])
+        every = np.arange(len(value))
+        rows = np.concatenate([every, every, unknown])
+        by_tile = bands + TILES**2 * photograph + tile
+        columns = np.concatenate([BANDS * first[photograph] + band, by_tile, self.first_gain + group[unknown]])
+        entries = np.concatenate([error, IN_TILES * error, value[unknown]])
         shape = len(value), self.first_gain + len(problem.groups)
-        self.columns = sparse.csr_array((np.concatenate([error, value[unknown]]), (rows, columns)), shape=shape)
+        self.columns = sparse.csr_array((entries, (rows, columns)), shape=shape)
         self._prior = np.append(np.ones(self.first_gain), np.full(len(problem.groups), _ANYTHING))
 
     def inverse(self, weight: np.ndarray) -> np.ndarray:

@@ -15,7 +15,7 @@ from quadgraph.acquisition import capture, photographs
 from quadgraph.acquisition.prediction import Predictor
 from quadgraph.acquisition.problem import Problem
 from quadgraph.acquisition.volume_model import VolumeSetting
-from quadgraph.acquisition.volume_weights import LOCAL
+from quadgraph.acquisition.volume_weights import IN_TILES, LOCAL
 from quadgraph.cli import main
 from quadgraph.file import npz
 
@@ -67,9 +67,9 @@ def test_a_spot_is_found_where_it_is(twin, found):
     spot = np.linalg.norm(points - SPOT, axis=-1) < RADIUS - 2
     beside = inside & (np.linalg.norm(points - SPOT, axis=-1) > RADIUS + 4)
     for name, most in (("sigma_a", ABSORPTION), ("sigma_s_prime", SCATTERING)):
-        assert np.median(volume[name][beside]) == pytest.approx(most, rel=0.15)
+        assert np.median(volume[name][beside]) == pytest.approx(most, rel=0.2)
     contrast = np.median(volume["sigma_a"][spot]) / np.median(volume["sigma_a"][beside])
-    assert 1.6 < contrast < 5
+    assert 2.4 < contrast < 5
     assert np.median(volume["sigma_s_prime"][spot]) == pytest.approx(SCATTERING, rel=0.25)
 
 
@@ -135,7 +135,7 @@ def test_the_derivative_of_a_volume_is_that_of_its_predictions(setting):
 
 
 def test_what_squares_share_is_taken_out_as_by_the_whole_covariance(setting):
-    """The engine's error is alike within lights and brightness, and half of it apart in each square."""
+    """The engine's error: alike within lights and brightness, in parts of pictures, and apart in each square."""
     logs = np.log(np.broadcast_to([[[0.03]], [[0.8]]], (2, setting.grid.count, 3)))
     around = setting.predicted(logs, np.ones((4, 3)), False)
     weights, residual = around.weights, around.residual()
@@ -146,9 +146,11 @@ def test_what_squares_share_is_taken_out_as_by_the_whole_covariance(setting):
     lights = np.repeat([0, 0, 1, 1], [len(squares.rays) for squares, _ in pairs])
     counts = weights.counts[:, 1]
     alike = (lights[:, None] == lights) & (band[:, None] == band)
+    tile = np.concatenate([16 * number + squares.tile for number, (squares, _) in enumerate(pairs)])
+    beside = IN_TILES**2 * (tile[:, None] == tile)
     covariance = np.diag(1 / around.weighing.each[counts, 1])
     assert (np.diag(covariance) > (LOCAL * error * value)[counts] ** 2).all()
-    covariance += (alike * np.outer(error * value, error * value))[np.ix_(counts, counts)]
+    covariance += ((alike + beside) * np.outer(error * value, error * value))[np.ix_(counts, counts)]
     expected = np.linalg.solve(covariance, residual[counts, 1])
     np.testing.assert_allclose(
         around.weighing.apply(residual)[counts, 1], expected, rtol=1e-6, atol=1e-9 * abs(expected).max()
