@@ -14,6 +14,8 @@ from scipy import sparse
 
 from quadgraph.acquisition.volume_grid import VolumeGrid
 
+LEAST_SHARE = 0.1  # of the largest volume that a point stands for, what others count at least
+
 
 class Smoothing:
     """Huber's total variation of logarithms (2, n, 3) on a grid."""
@@ -23,7 +25,7 @@ class Smoothing:
         threshold: of a slope, 1/mm, below which it counts as its square.
         """
         self._differences = grid.differences()
-        self._volume = np.maximum(inside, 1e-3 * inside.max())
+        self._volume = np.maximum(inside, LEAST_SHARE * inside.max())
         self._weight, self._threshold = weight, threshold
 
     def _slopes(self, logs: np.ndarray, coefficient: int) -> np.ndarray:

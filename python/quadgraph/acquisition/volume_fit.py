@@ -22,7 +22,7 @@ from scipy.sparse import linalg
 from quadgraph.acquisition import posterior
 from quadgraph.acquisition.prediction import Predicted, Predictor
 from quadgraph.acquisition.problem import Problem
-from quadgraph.acquisition.smoothing import Smoothing
+from quadgraph.acquisition.smoothing import LEAST_SHARE, Smoothing
 from quadgraph.acquisition.volume_grid import VolumeGrid
 from quadgraph.acquisition.volume_model import Around, VolumeSetting
 from quadgraph.base.progress import ProgressCallback
@@ -140,7 +140,7 @@ class _Fit:
             self._diagonal += first.transposed(root * signs) ** 2 / _PROBES
             first.setting.advance()
         inside, grid = first.setting.inside, first.setting.grid
-        density = np.sqrt(self._diagonal.sum(axis=2) / np.maximum(inside, 1e-3 * inside.max()))
+        density = np.sqrt(self._diagonal.sum(axis=2) / np.maximum(inside, LEAST_SHARE * inside.max()))
         most = np.quantile(density[:, inside > 0], 0.99, axis=1, keepdims=True)
         told = np.clip(density / np.maximum(most, 1e-300), _FLOOR, 1)
         self._smoothing = Smoothing(grid, inside, told, _THRESHOLD / grid.spacing)
