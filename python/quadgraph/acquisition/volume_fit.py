@@ -108,6 +108,7 @@ def fit_volume(
             if fit.enough and after > (1 - _GAINED) * before:
                 break
         tell("standard deviations")
+        fit.strength = fit.steps[-1].smoothing  # which may have been lessened for a step that did not come
         return VolumeFit(
             grid,
             np.exp(found.logs),
@@ -141,8 +142,9 @@ class _Fit:
             first.setting.advance()
         inside, grid = first.setting.inside, first.setting.grid
         density = np.sqrt(self._diagonal.sum(axis=2) / np.maximum(inside, LEAST_SHARE * inside.max()))
-        most = np.quantile(density[:, inside > 0], 0.99, axis=1, keepdims=True)
-        told = np.clip(density / np.maximum(most, 1e-300), _FLOOR, 1)
+        # Of both together: what is told less of varies more freely, or the other would take its part.
+        most = max(float(np.quantile(each[inside > 0], 0.99)) for each in density)
+        told = np.clip(density / max(most, 1e-300), _FLOOR, 1)
         self._smoothing = Smoothing(grid, inside, told, _THRESHOLD / grid.spacing)
         self.strength = 1.0
         pairs = zip(self._diagonal, self.matrices(first.logs), strict=True)

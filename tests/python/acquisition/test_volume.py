@@ -108,6 +108,18 @@ def test_the_page_shows_slices(twin, found, browser):
     assert not browser.get_log("browser")
 
 
+def test_a_posed_body_is_refused(twin, tmp_path, capsys):
+    document = json.loads((twin / "capture.json").read_text())
+    path = twin / "posed.json"
+    path.write_text(json.dumps(document | {"deformation": [{"type": "transform", "translate": [0, 1, 0]}]}))
+    assert main(["acquire", str(path), "-o", str(tmp_path / "wax.npz"), "--volume"]) == 1
+    assert (
+        f"{path}: deformation: found, allowed with --volume is a body that lies as in its file"
+        in capsys.readouterr().err
+    )
+    assert not (tmp_path / "wax.npz").exists()
+
+
 @pytest.fixture(scope="module")
 def setting(twin, tmp_path_factory) -> VolumeSetting:
     """Photographs and grid of the twin."""
