@@ -1,7 +1,7 @@
 """How certain a volume's coefficients are: Laplace's approximation, of low rank in what the photographs tell.
 
 Around the fit the inverse covariance of the logarithms is H + L: H is the matrix of Gauss and Newton, L the smoothing.
-Its covariance is that of L alone less what the leading pairs of H v = k L v take away [Bui-Thanh et al. 2013, eq. 25],
+Its covariance is that of L alone less what the leading pairs of H v = k L v take away [Flath et al. 2011],
 which random vectors find [Halko et al. 2011]. Pairs that are not found leave deviations too large, not too small.
 """
 
@@ -72,7 +72,7 @@ def _whitened(
 def _nystrom(directions: np.ndarray, images: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Eigenvalues and orthonormal vectors of a positive matrix from its products with random directions (m, k).
 
-    The approximation is below the matrix [Tropp et al. 2017, algorithm 3].
+    The approximation is below the matrix [Tropp et al. 2017].
     """
     shift = 1e-12 * np.linalg.norm(images)
     shifted = images + shift * directions
