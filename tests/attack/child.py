@@ -86,6 +86,11 @@ def resident(pids: list[int]) -> int:
     return total
 
 
+def most_held() -> int:
+    """Bytes that this process held at most, or since PEAK. No more is no news of a child: it began as this one's copy."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+
+
 def processor_time(pid: int) -> float:
     """Seconds that a process and those it waited for have computed; 0 where it is gone."""
     try:
@@ -188,7 +193,8 @@ class Watch:
             time.sleep(POLL)
             orphans = marked(self.mark)
         end(orphans)
-        peak = max(self.peak, usage.ru_maxrss * 1024)
+        held = usage.ru_maxrss * 1024
+        peak = max(self.peak, held if held > most_held() else 0)
         limit = "memory" if peak > self.memory else self.limit
         computed = usage.ru_utime + usage.ru_stime
         after = None if self.first is None else (now - self.first[0], computed - self.first[1])
