@@ -87,7 +87,7 @@ def resident(pids: list[int]) -> int:
 
 
 def most_held() -> int:
-    """Bytes that this process held at most, or since PEAK. No more is no news of a child: it began as this one's copy."""
+    """Bytes that this process held at most, or since PEAK. No more is no news of a child, which began as its copy."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
 
 
