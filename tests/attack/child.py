@@ -86,9 +86,13 @@ def resident(pids: list[int]) -> int:
     return total
 
 
-def most_held() -> int:
-    """Bytes that this process held at most, or since PEAK. No more is no news of a child, which began as its copy."""
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+def held(pid: int) -> int:
+    """Bytes of memory that a process held at most since it runs its program; 0 where it is gone."""
+    try:
+        lines = Path(f"/proc/{pid}/status").read_text().splitlines()
+    except OSError:
+        return 0
+    return next((int(line.split()[1]) * 1024 for line in lines if line.startswith("VmHWM:")), 0)
 
 
 def processor_time(pid: int) -> float:
@@ -166,7 +170,7 @@ class Watch:
     def step(self) -> None:
         """Measure, send signals that are due, and end what is beyond its limits."""
         pids, now = descendants(self.process.pid), time.monotonic()
-        self.peak = max(self.peak, resident(pids))
+        self.peak = max(self.peak, resident(pids), *map(held, pids))
         computed = processor_time(self.process.pid)
         if self.peak > self.memory:
             self.limit = "memory"
@@ -193,8 +197,9 @@ class Watch:
             time.sleep(POLL)
             orphans = marked(self.mark)
         end(orphans)
-        held = usage.ru_maxrss * 1024
-        peak = max(self.peak, held if held > most_held() else 0)
+        # The system begins to count where a child is a copy of this process: no more than that is no news of it.
+        counted = usage.ru_maxrss * 1024
+        peak = max(self.peak, counted if counted > held(os.getpid()) else 0)
         limit = "memory" if peak > self.memory else self.limit
         computed = usage.ru_utime + usage.ru_stime
         after = None if self.first is None else (now - self.first[0], computed - self.first[1])

@@ -1,4 +1,4 @@
-"""libFuzzer (atheris) on a reader of meshes: `fuzz_meshes.py SUFFIX [ARGUMENTS OF LIBFUZZER]`, as .ply or .gltf."""
+"""libFuzzer (atheris) on a reader of meshes: `fuzz_meshes.py SUFFIX [ARGUMENTS OF LIBFUZZER]`, .ply, .gltf or .glb."""
 
 from __future__ import annotations
 

@@ -70,7 +70,7 @@ def fit(
     corrected: bool,
     tell: ProgressCallback,
     advance: Advance,
-    outer: int = OUTER,
+    outer: int,
 ) -> Fit:
     """Fit from the best of several starts, logarithms (2, 3) each.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,31 +17,45 @@ from quadgraph.api.derivatives import Views
 Channels = list[np.ndarray]  # (n, 3) of each photograph's squares
 
 
+class UnderLights(NamedTuple):
+    """Photographs under the same lights: their numbers, the rays of all their squares, and where each's end but for
+    the last.
+    """
+
+    lights: tuple[str, ...]
+    photographs: list[int]
+    views: Views
+    ends: np.ndarray
+
+
+def by_lights(problem: Problem, samples: Samples) -> list[UnderLights]:
+    """All photographs, by the lights that were on."""
+    result = []
+    for first in dict.fromkeys(problem.alike.tolist()):
+        group = np.flatnonzero(problem.alike == first).tolist()
+        chosen = [(samples.views[problem.measured[each].stated.camera], samples.squares[each].rays) for each in group]
+        views = Views(*(np.concatenate([np.asarray(of[k])[rays] for of, rays in chosen]) for k in range(3)))
+        ends = np.cumsum([len(rays) for _, rays in chosen])[:-1]
+        result.append(UnderLights(problem.measured[first].stated.lights, group, views, ends))
+    return result
+
+
 class Linearised:
     """Radiances of the squares of all photographs around some coefficients of a level's tets, W/(mm^2 sr)."""
 
     def __init__(
         self,
-        problem: Problem,
         predictor: Predictor,
-        samples: Samples,
+        groups: Sequence[UnderLights],
         level: int,
         coefficients: tuple[np.ndarray, np.ndarray],
         advance: Callable[[], None],
     ) -> None:
         """coefficients: sigma_a and sigma_s_prime of the tets, (n_t, 3) 1/mm each. Raises InputError, SolverError."""
-        sets: dict[tuple[str, ...], list[int]] = {}
-        for number, one in enumerate(problem.measured):
-            sets.setdefault(one.stated.lights, []).append(number)
-        self._groups = list(sets.values())
-        self._ends = [np.cumsum([len(samples.squares[each].rays) for each in group])[:-1] for group in self._groups]
+        self._groups = groups
         self._models = []
-        for lights, group in sets.items():
-            chosen = [
-                (samples.views[problem.measured[each].stated.camera], samples.squares[each].rays) for each in group
-            ]
-            views = Views(*(np.concatenate([np.asarray(of[k])[rays] for of, rays in chosen]) for k in range(3)))
-            self._models.append(predictor.model(lights, level, coefficients, views))
+        for each in groups:
+            self._models.append(predictor.model(each.lights, level, coefficients, each.views))
             advance()
         self.radiances = self._split([model.outgoing.radiance for model in self._models])
 
@@ -56,7 +71,7 @@ class Linearised:
         """Derivatives of the sum of radiances times weights by sigma_a and sigma_s_prime of the tets, (n_t, 3) each."""
 
         def one(number: int) -> tuple[np.ndarray, np.ndarray]:
-            mine = np.concatenate([weights[each] for each in self._groups[number]])
+            mine = np.concatenate([weights[each] for each in self._groups[number].photographs])
             found = self._models[number].vjp(radiance=mine)
             return found.sigma_a, found.sigma_s_prime
 
@@ -69,8 +84,8 @@ class Linearised:
             return list(pool.map(one, range(len(self._models))))
 
     def _split(self, radiances: Sequence[np.ndarray]) -> Channels:
-        result: Channels = [np.empty((0, 3))] * sum(map(len, self._groups))
-        for group, ends, whole in zip(self._groups, self._ends, radiances, strict=True):
-            for number, part in zip(group, np.split(whole, ends), strict=True):
+        result: Channels = [np.empty((0, 3))] * sum(len(each.photographs) for each in self._groups)
+        for each, whole in zip(self._groups, radiances, strict=True):
+            for number, part in zip(each.photographs, np.split(whole, each.ends), strict=True):
                 result[number] = part
         return result

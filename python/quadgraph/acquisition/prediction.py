@@ -107,6 +107,7 @@ class Predictor:
         stage = self._stages[0]
         lights = self._capture.photographs[0].lights
         stage.show(self._scene(_ANY, False, lights, camera))
+        self._lit[0] = None
         return stage.view_rays(places)
 
     def model(

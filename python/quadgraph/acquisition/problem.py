@@ -59,6 +59,8 @@ class Problem:
         self.factor = np.array([1.0 if isinstance(gain, str) else gain for gain in known])
         self.group = np.array([self.groups.index(gain) if isinstance(gain, str) else -1 for gain in known])
         self.exposure = np.array([each.stated.exposure for each in measured])
+        lights = [each.stated.lights for each in measured]
+        self.alike = np.array([lights.index(each) for each in lights])  # of each, the first under the same lights
 
     def _pixels(self, channel: int) -> Pixels:
         data, photograph, at = [], [], []
@@ -78,10 +80,8 @@ class Problem:
 
     def blocks(self, pictures: Sequence[Predicted], channel: int) -> np.ndarray:
         """(n,) numbers of parts within which the engine's own error is alike: of the same lights and brightness."""
-        lights = [each.stated.lights for each in self.measured]
-        number = np.array([lights.index(each) for each in lights])
         pixels = self.pixels[channel]
-        return pixels.take([each.band for each in pictures], channel) + BANDS * number[pixels.photograph]
+        return pixels.take([each.band for each in pictures], channel) + BANDS * self.alike[pixels.photograph]
 
     def spread(self, pictures: Sequence[Predicted], power: float) -> float:
         """Variance of logarithms of data less `power` times those of predictions, apart from a factor a photograph."""
@@ -156,9 +156,9 @@ def _counted(one: Measured, picture: Predicted, polarised: bool) -> np.ndarray:
     return inside[..., None] & bright & matt & one.usable
 
 
-def huber_weights(residual: np.ndarray) -> np.ndarray:
-    """Weights of residuals, in standard deviations, that make least squares robust (Huber)."""
-    return np.minimum(1.0, _HUBER / np.maximum(np.abs(residual), 1e-300))
+def huber_weights(residual: np.ndarray, beyond: float = _HUBER) -> np.ndarray:
+    """Weights of residuals, in standard deviations, that make least squares robust `beyond` some of them (Huber)."""
+    return np.minimum(1.0, beyond / np.maximum(np.abs(residual), 1e-300))
 
 
 def huber_cost(residual: np.ndarray) -> float:

@@ -140,9 +140,23 @@ def _throughout(
     corrected: bool,
     tell: ProgressCallback,
     advance: Callable[[float], None],
-    outer: int = OUTER,
 ) -> Recovered:
-    """The same coefficients throughout, in so many steps at most."""
+    """The same coefficients throughout."""
+    problem, ranking, found = _fitted(capture, measured, predictor, corrected, OUTER, tell, advance)
+    findings = diagnosis.findings(problem, found, ranking)
+    return Recovered(capture, measured, problem, found, None, undetermined(found), findings, list(predictor.notes))
+
+
+def _fitted(
+    capture: Capture,
+    measured: list[Measured],
+    predictor: Predictor,
+    corrected: bool,
+    outer: int,
+    tell: ProgressCallback,
+    advance: Callable[[float], None],
+) -> tuple[Problem, start.Ranking, Fit]:
+    """The best of a grid of coefficients that are the same throughout, and what a fit in so many steps makes of it."""
     grid = start.candidates(predictor.size_mm)
     work = _ShareDone(advance, predictor.solves * (len(grid) + 1), predictor.solves)
     first = predictor.predict(start.middle(predictor.size_mm), False, work.step)
@@ -150,9 +164,7 @@ def _throughout(
     problem = Problem(capture, measured, first)
     ranking = start.ranked(problem, predictor, grid, work.step)
     tell(f"start: {_text(np.exp(ranking.starts[0]))}")
-    found = fit(problem, predictor, ranking.starts, corrected, tell, work.step, outer)
-    findings = diagnosis.findings(problem, found, ranking)
-    return Recovered(capture, measured, problem, found, None, undetermined(found), findings, list(predictor.notes))
+    return problem, ranking, fit(problem, predictor, ranking.starts, corrected, tell, work.step, outer)
 
 
 def _by_place(
@@ -171,12 +183,12 @@ def _by_place(
     few = _some_lights(capture)
     some = [one for one in measured if one.stated in few.photographs]
     tell(f"the same coefficients throughout, from {len(some)} of {len(measured)} photographs")
-    same = _throughout(few, some, Predictor(few, *engine), False, tell, lambda share: advance(0.2 * share), _STEPS)
+    _, _, same = _fitted(few, some, Predictor(few, *engine), False, _STEPS, tell, lambda share: advance(0.2 * share))
     predictor = Predictor(capture, *engine)
-    first = predictor.predict(same.fit.coefficients, False)
+    first = predictor.predict(same.coefficients, False)
     prediction.check_seen(capture, first)
     problem = Problem(capture, measured, first)
-    begin = same.fit.coefficients, problem.best_gains(first, prediction.LEAST_ERROR)
+    begin = same.coefficients, problem.best_gains(first, prediction.LEAST_ERROR)
     done = 0
 
     def step() -> None:
@@ -186,7 +198,7 @@ def _by_place(
 
     volume = fit_volume(problem, predictor, begin, corrected, spacing or None, tell, step)
     findings, left_open = diagnosis.of_volume(volume), volume_report.undetermined(volume)
-    return Recovered(capture, measured, problem, same.fit, volume, left_open, findings, list(predictor.notes))
+    return Recovered(capture, measured, problem, same, volume, left_open, findings, list(predictor.notes))
 
 
 def _some_lights(capture: Capture) -> Capture:

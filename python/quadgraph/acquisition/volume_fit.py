@@ -71,7 +71,7 @@ class VolumeFit:
 def most_products(solves: int) -> int:
     """How often `fit_volume` calls `advance` at most, where a prediction of all photographs takes so many solves."""
     steps = OUTER * INNER
-    return (OUTER + 1) * 2 * solves + steps * (solves + _CG_STEPS) + _PROBES + posterior.RANK
+    return (OUTER + 2) * solves + steps * (solves + _CG_STEPS) + _PROBES + posterior.RANK
 
 
 def fit_volume(
@@ -96,13 +96,12 @@ def fit_volume(
         )
         logs = np.log(np.repeat(start[0][:, None, :], grid.count, axis=1))
         found = setting.predicted(logs, np.array(start[1]), corrected)
-        tell(f"start: chi^2 per square {_text(found.chi_squared())}")
+        tell(f"start: chi^2 per square {_text(found.chi_squared)}")
         fit = _Fit(found, tell)
         for _ in range(OUTER):
-            following = fit.descended(found)
-            following = setting.predicted(following.logs, following.gains, corrected)
-            before, after = found.chi_squared().max(), following.chi_squared().max()
-            tell(f"predicted anew: chi^2 per square {_text(following.chi_squared())}")
+            following = fit.descended(found).renewed(corrected)
+            before, after = found.chi_squared.max(), following.chi_squared.max()
+            tell(f"predicted anew: chi^2 per square {_text(following.chi_squared)}")
             if after < before:
                 found = following
             if fit.enough and after > (1 - _GAINED) * before:
@@ -114,7 +113,7 @@ def fit_volume(
             np.exp(found.logs),
             posterior.deviations(found.told, fit.matrices(found.logs), found.logs.shape),
             setting.inside > 0,
-            found.chi_squared(),
+            found.chi_squared,
             found.by_photograph(),
             found.pictures,
             found.gains,
@@ -156,11 +155,11 @@ class _Fit:
 
     def descended(self, around: Around) -> Around:
         """A few steps with the same factors, each with less smoothing as long as that explains more."""
-        before = float(around.chi_squared().max())
+        before = float(around.chi_squared.max())
         for _ in range(INNER):
             step, gains = self._step(around)
             around = around.moved(np.clip(around.logs + step, *_BOUNDS), around.gains * gains)
-            chi = around.chi_squared()
+            chi = around.chi_squared
             self.steps.append(VolumeStep(self.strength, chi))
             self._tell(f"step {len(self.steps)}: chi^2 per square {_text(chi)}")
             after = float(chi.max())
@@ -182,7 +181,7 @@ class _Fit:
         def smoothed(logs: np.ndarray) -> np.ndarray:
             return np.stack([matrix @ part for matrix, part in zip(matrices, logs, strict=True)])
 
-        residual, weighing = around.residual(), around.weighing
+        residual, weighing = around.residual, around.weighing
         slope = around.transposed(weighing.apply(residual)) - smoothed(around.logs)
         step = _conjugate_gradients(
             lambda direction: around.told(direction) + smoothed(direction), slope, self._preconditioner(matrices)

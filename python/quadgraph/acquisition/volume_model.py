@@ -12,7 +12,7 @@ import numpy as np
 
 from quadgraph import core
 from quadgraph.acquisition import samples
-from quadgraph.acquisition.linearised import Channels, Linearised
+from quadgraph.acquisition.linearised import Channels, Linearised, by_lights
 from quadgraph.acquisition.prediction import Predicted, Predictor
 from quadgraph.acquisition.problem import Problem
 from quadgraph.acquisition.volume_grid import VolumeGrid
@@ -53,17 +53,20 @@ class VolumeSetting:
         self.at_tets = self.grid.weights(corners.mean(axis=1))
         self.inside = np.asarray(self.at_tets.T @ (np.abs(np.linalg.det(edges)) / 6))
         self.samples = samples.gather(problem, predictor, level, MOST_SQUARES)
+        self.groups = by_lights(problem, self.samples)
         pairs = zip(self.samples.squares, problem.measured, strict=True)
         self.data = np.concatenate([squares.of(one.values) for squares, one in pairs])
 
-    def predicted(self, logs: np.ndarray, gains: np.ndarray, corrected: bool) -> Around:
+    def predicted(
+        self, logs: np.ndarray, gains: np.ndarray, corrected: bool, model: Linearised | None = None
+    ) -> Around:
         """Predictions by the engine's own pictures around logarithms (2, n, 3) of sigma_a and sigma_s_prime, and gains
-        (p, 3). Raises SolverError, InputError.
+        (p, 3). model: the one around the same, if there is one. Raises SolverError, InputError.
         """
         path = next(self._paths)
         self.grid.material(np.exp(logs), self.problem.capture.eta).save(path)
         pictures = self.predictor.predict(path, corrected, self.advance)
-        model = self.linearised(logs)
+        model = model or self.linearised(logs)
         factors = [
             np.divide(squares.of(picture.radiance), other, out=np.zeros_like(other), where=other > 0)
             for squares, picture, other in zip(self.samples.squares, pictures, model.radiances, strict=True)
@@ -78,12 +81,16 @@ class VolumeSetting:
         """The model of the level around logarithms."""
         absorption, scattering = (np.asarray(self.at_tets @ each) for each in np.exp(logs))
         tets = absorption, scattering
-        return Linearised(self.problem, self.predictor, self.samples, self.level, tets, self.advance)
+        return Linearised(self.predictor, self.groups, self.level, tets, self.advance)
 
     def scales(self, factors: Channels, gains: np.ndarray) -> Channels:
         """What a square's value is over the model's radiance."""
         known = self.problem.exposure * self.problem.factor
         return [factor * gain * of for factor, gain, of in zip(factors, gains, known, strict=True)]
+
+    def split(self, values: np.ndarray) -> Channels:
+        """Values of all squares, (m, 3), by photograph."""
+        return np.split(values, np.cumsum([len(each.rays) for each in self.samples.squares])[:-1])
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,6 +117,11 @@ class Around:
         scales = self.setting.scales(self.factors, self.gains)
         return np.concatenate([scale * radiance for scale, radiance in zip(scales, radiances, strict=True)])
 
+    def renewed(self, corrected: bool) -> Around:
+        """The same volume with factors and weights of the engine's own pictures of it. Raises SolverError."""
+        return self.setting.predicted(self.logs, self.gains, corrected, self.model)
+
+    @cached_property
     def residual(self) -> np.ndarray:
         """(m, 3) data less predictions, 0 where a square does not count."""
         return np.where(self.weights.counts, self.setting.data - self._values(self.model.radiances), 0)
@@ -117,18 +129,17 @@ class Around:
     @cached_property
     def weighing(self) -> Weighing:
         """Weights at the residuals."""
-        return self.weights.at(self.residual())
+        return self.weights.at(self.residual)
 
+    @cached_property
     def chi_squared(self) -> np.ndarray:
         """(3,) per square, by channel."""
-        residual = self.residual()
-        return (residual * self.weighing.apply(residual)).sum(axis=0) / self.weights.counts.sum(axis=0)
+        return (self.residual * self.weighing.apply(self.residual)).sum(axis=0) / self.weights.counts.sum(axis=0)
 
     def by_photograph(self) -> np.ndarray:
         """(p, 3) mean squares of residuals in standard deviations, NaN where nothing counts."""
-        square = np.where(self.weights.counts, self.weighing.each * self.residual() ** 2, np.nan)
-        ends = np.cumsum([len(each.rays) for each in self.setting.samples.squares])[:-1]
-        return np.stack([_means(part) for part in np.split(square, ends)])
+        square = np.where(self.weights.counts, self.weighing.each * self.residual**2, np.nan)
+        return np.stack([_means(part) for part in self.setting.split(square)])
 
     def along(self, direction: np.ndarray) -> np.ndarray:
         """J v: how the squares' values, (m, 3), change along a direction of the logarithms, (2, n, 3)."""
@@ -137,9 +148,8 @@ class Around:
 
     def transposed(self, values: np.ndarray) -> np.ndarray:
         """J^T w, (2, n, 3), of weights of the squares (m, 3)."""
-        ends = np.cumsum([len(each.rays) for each in self.setting.samples.squares])[:-1]
         scales = self.setting.scales(self.factors, self.gains)
-        found = self.model.back([scale * part for scale, part in zip(scales, np.split(values, ends), strict=True)])
+        found = self.model.back([scale * part for scale, part in zip(scales, self.setting.split(values), strict=True)])
         return np.exp(self.logs) * np.stack([np.asarray(self.setting.at_tets.T @ each) for each in found])
 
     def told(self, direction: np.ndarray) -> np.ndarray:
@@ -160,7 +170,7 @@ def _grid(points: np.ndarray, spacing: float | None, mean_edge: float) -> Volume
     found = VolumeGrid.around(points, spacing or max(mean_edge, least))
     if found.count > MOST_POINTS:
         raise InputError(
-            f"--volume: {found.count} points {found.spacing:.3g} mm apart found, allowed are {MOST_POINTS}; state a "
+            f"--spacing: {found.count} points {found.spacing:.3g} mm apart found, allowed are {MOST_POINTS}; state a "
             f"wider spacing, such as {1.5 * max(least, found.spacing):.2g}"
         )
     return found

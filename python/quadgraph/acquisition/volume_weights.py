@@ -14,7 +14,7 @@ import numpy as np
 from scipy import sparse
 
 from quadgraph.acquisition.prediction import Predicted
-from quadgraph.acquisition.problem import BANDS, Problem
+from quadgraph.acquisition.problem import BANDS, Problem, huber_weights
 from quadgraph.acquisition.samples import TILES, Samples
 
 IN_TILES, LOCAL = 0.25, 1.0  # of the error, that differ from part to part of a picture, and from square to square
@@ -53,8 +53,7 @@ class Weights:
 
     def at(self, residual: np.ndarray) -> Weighing:
         """The weights at residuals (m, 3): less where these are beyond belief."""
-        apart = np.abs(residual) * np.sqrt(self._weight)
-        return Weighing(self._weight * np.minimum(1, _BEYOND / np.maximum(apart, 1e-300)), self._shared)
+        return Weighing(self._weight * huber_weights(residual * np.sqrt(self._weight), _BEYOND), self._shared)
 
 
 class Weighing:
@@ -92,16 +91,14 @@ class _Shared:
     ) -> None:
         """places: photograph, part of the picture, and band of brightness of each square; error: in units of value."""
         photograph, tile, band = places
-        lights = [one.stated.lights for one in problem.measured]
-        first = np.array([lights.index(each) for each in lights])
-        bands, tiles = BANDS * len(lights), TILES**2 * len(lights)
+        bands, tiles = BANDS * len(problem.measured), TILES**2 * len(problem.measured)
         self.first_gain = bands + tiles
         group = problem.group[photograph]
         unknown = np.flatnonzero(group >= 0)
         every = np.arange(len(value))
         rows = np.concatenate([every, every, unknown])
         by_tile = bands + TILES**2 * photograph + tile
-        columns = np.concatenate([BANDS * first[photograph] + band, by_tile, self.first_gain + group[unknown]])
+        columns = np.concatenate([BANDS * problem.alike[photograph] + band, by_tile, self.first_gain + group[unknown]])
         entries = np.concatenate([error, IN_TILES * error, value[unknown]])
         shape = len(value), self.first_gain + len(problem.groups)
         self.columns = sparse.csr_array((entries, (rows, columns)), shape=shape)

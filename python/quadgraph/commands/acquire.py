@@ -27,13 +27,13 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "-o", "--output", metavar="OUT", type=Path, required=True, help="the .npz to write, as --material takes it"
     )
     parser.add_argument(
-        "--volume",
+        "--volume", action="store_true", help="find coefficients that differ from place to place; takes minutes"
+    )
+    parser.add_argument(
+        "--spacing",
         metavar="MM",
-        nargs="?",
         type=up_to(1000),
-        const=0.0,
-        help="find coefficients that differ from place to place, at points so far apart (default: as far as the edges "
-        "of the body's tets); takes minutes",
+        help="of the points where --volume has its unknowns (default: as far apart as the edges of the body's tets)",
     )
     parser.add_argument(
         "--json",
@@ -70,6 +70,8 @@ def run(args: argparse.Namespace) -> int:
         raise InputError(f"{args.output}: output must end in .npz")
     if args.report and args.report.suffix.lower() != ".html":
         raise InputError(f"{args.report}: a report must end in .html")
+    if args.spacing is not None and not args.volume:
+        raise InputError("--spacing: found without --volume, which it is of; state both or neither")
     stated = capture.read(args.file)
     outputs.check_outputs([args.output, args.json, args.report], stated.files())
     errors = Console(stderr=True, highlight=False, soft_wrap=True)
@@ -82,7 +84,8 @@ def run(args: argparse.Namespace) -> int:
         def advance(share: float) -> None:
             bar.update(task, completed=share)
 
-        found = recover(stated, args.correction, args.volume, tell, advance, args.device, args.validation)
+        spacing = (args.spacing or 0.0) if args.volume else None
+        found = recover(stated, args.correction, spacing, tell, advance, args.device, args.validation)
     found.material.save(args.output)
     if args.json:
         atomic_file.write_json(args.json, found.report())

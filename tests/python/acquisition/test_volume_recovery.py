@@ -13,7 +13,7 @@ import pytest
 
 import twin_capture
 from quadgraph import VolumeMaterial
-from quadgraph.acquisition import capture, photographs
+from quadgraph.acquisition import capture, photographs, prediction
 from quadgraph.acquisition.prediction import Predictor
 from quadgraph.acquisition.problem import Problem
 from quadgraph.acquisition.volume_model import VolumeSetting
@@ -49,7 +49,7 @@ def twin(tmp_path_factory) -> Path:
 def found(twin) -> dict[str, Any]:
     """The report of a recovery."""
     paths = [str(twin / name) for name in ("capture.json", "wax.npz", "wax.json", "wax.html")]
-    options = ["--json", paths[2], "--report", paths[3], "--device", "cpu", "--volume", "5"]
+    options = ["--json", paths[2], "--report", paths[3], "--device", "cpu", "--volume", "--spacing", "5"]
     # A process of its own, whose memory is none of this one's: others are measured by what started them.
     command = [sys.executable, "-m", "quadgraph.cli", "acquire", paths[0], "-o", paths[1], *options]
     subprocess.run(command, check=True)
@@ -139,7 +139,7 @@ def test_the_derivative_of_a_volume_is_that_of_its_predictions(setting):
     logs = np.log([[[0.03]], [[0.8]]]) + 0.2 * random.normal(size=(2, setting.grid.count, 3))
     around = setting.predicted(logs, np.ones((4, 3)), False)
     along, step = random.normal(size=logs.shape), 1e-3
-    above, below = (around.moved(logs + sign * step * along, around.gains).residual() for sign in (1, -1))
+    above, below = (around.moved(logs + sign * step * along, around.gains).residual for sign in (1, -1))
     counts = around.weights.counts
     change = ((below - above) / (2 * step))[counts]
     expected = around.along(along)[counts]
@@ -150,11 +150,27 @@ def test_the_derivative_of_a_volume_is_that_of_its_predictions(setting):
     assert abs(left - right) < 1e-6 * np.linalg.norm(moved) * np.linalg.norm(weights)
 
 
+def test_sets_of_lights_may_share_an_engine(setting, twin, tmp_path, monkeypatch):
+    """There are at most so many engines, however many sets of lights."""
+    monkeypatch.setattr(prediction, "_STAGES", 1)
+    predictor = Predictor(setting.problem.capture, twin / "potato.qgraph", "cpu")
+    shared = VolumeSetting(setting.problem, predictor, 6.0, tmp_path, lambda: None)
+    logs = np.log(np.broadcast_to([[[0.03]], [[0.8]]], (2, shared.grid.count, 3)))
+    for found, expected in zip(shared.linearised(logs).radiances, setting.linearised(logs).radiances, strict=True):
+        np.testing.assert_allclose(found, expected, rtol=1e-5, atol=1e-7 * expected.max())
+
+
+def test_spacing_is_of_volumes(twin, tmp_path, capsys):
+    assert main(["acquire", str(twin / "capture.json"), "-o", str(tmp_path / "wax.npz"), "--spacing", "4"]) == 1
+    assert "--spacing: found without --volume" in capsys.readouterr().err
+    assert not (tmp_path / "wax.npz").exists()
+
+
 def test_what_squares_share_is_taken_out_as_by_the_whole_covariance(setting):
     """The engine's error: alike within lights and brightness, in parts of pictures, and apart in each square."""
     logs = np.log(np.broadcast_to([[[0.03]], [[0.8]]], (2, setting.grid.count, 3)))
     around = setting.predicted(logs, np.ones((4, 3)), False)
-    weights, residual = around.weights, around.residual()
+    weights, residual = around.weights, around.residual
     pairs = list(zip(setting.samples.squares, around.pictures, strict=True))
     error = np.concatenate([squares.of(picture.error) for squares, picture in pairs])[:, 1]
     band = np.concatenate([np.rint(squares.of(picture.band)) for squares, picture in pairs])[:, 1]
