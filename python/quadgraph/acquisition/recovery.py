@@ -12,6 +12,7 @@ import numpy as np
 
 from quadgraph.acquisition import diagnosis, photographs, prediction, start, volume_report
 from quadgraph.acquisition.capture import Capture
+from quadgraph.acquisition.fit_state import StateFolder
 from quadgraph.acquisition.fitting import OUTER, Fit, fit
 from quadgraph.acquisition.photographs import Measured
 from quadgraph.acquisition.prediction import CHANNELS, NAMES, Predictor
@@ -29,38 +30,32 @@ _TIED = 0.98  # correlation of a channel's two coefficients, from which on that 
 
 @dataclass(frozen=True, eq=False)
 class Recovered:
-    """A fit with what is to be said of it. volume: a fit of coefficients that differ from place to place, if one was
-    asked for, which began with `fit`; undetermined: what the photographs leave open; findings: what is most probably
-    wrong with them; notes: what the engine says against its own predictions.
+    """A fit with what is to be said of it. undetermined: what the photographs leave open; findings: what is most
+    probably wrong with them; notes: what the engine says against its own predictions.
     """
 
     capture: Capture
     measured: list[Measured]
     problem: Problem
-    fit: Fit
-    volume: VolumeFit | None
+    fit: Fit | VolumeFit
     undetermined: list[str]
     findings: list[str]
     notes: list[str]
 
     @property
-    def best(self) -> Fit | VolumeFit:
-        """The fit that counts."""
-        return self.fit if self.volume is None else self.volume
-
-    @property
     def material(self) -> VolumeMaterial:
         """The coefficients as --material takes them, on the volume's grid or a grid of one cell, with deviations."""
-        if self.volume is not None:
-            return self.volume.grid.material(self.volume.coefficients, self.capture.eta, self.volume.deviations)
+        if isinstance(self.fit, VolumeFit):
+            return self.fit.grid.material(self.fit.coefficients, self.capture.eta, self.fit.deviations)
         absorption, scattering = (row.reshape(1, 1, 1, 3) for row in self.fit.coefficients)
         spread = (row.reshape(1, 1, 1, 3) for row in self.fit.deviations[::-1])
         return VolumeMaterial(scattering, absorption, 1.0, (0.0, 0.0, 0.0), self.capture.eta, *spread)
 
     def report(self) -> dict[str, Any]:
         """All numbers, ready for JSON; coefficients and their deviations in 1/mm, by channel."""
-        numbers = _numbers(self.fit) if self.volume is None else {"volume": volume_report.numbers(self.volume)}
-        photographs = zip(self.measured, self.best.by_photograph, self.best.gains, self.problem.counted, strict=True)
+        found = self.fit
+        numbers = {"volume": volume_report.numbers(found)} if isinstance(found, VolumeFit) else _numbers(found)
+        photographs = zip(self.measured, found.by_photograph, found.gains, self.problem.counted, strict=True)
         return {
             "capture": str(self.capture.path),
             "eta": self.capture.eta,
@@ -108,11 +103,13 @@ def recover(
     advance: Callable[[float], None],
     device: str = "",
     validation: bool = False,
+    resume: Path | None = None,
 ) -> Recovered:
     """Recover the coefficients. corrected: predict by the engine with its correction to transport; spacing: None for
     the same coefficients throughout; else of the points, mm, where they are unknown, 0: as the body's mesh suggests;
     advance: is called with the share of the work done so far, 0 to 1, after each solve; device, validation: as `Stage`
-    takes them.
+    takes them; resume: a folder in which the state of a fit with `spacing` is kept after each outer step, and from
+    which it goes on.
 
     Raises InputError, FormatError, SolverError, DeviceError.
     """
@@ -128,7 +125,9 @@ def recover(
                 capture, measured, Predictor(capture, body, device, validation), corrected, tell, advance
             )
         else:
-            found = _by_place(capture, measured, (body, device, validation), corrected, spacing, tell, advance)
+            states = StateFolder(resume, capture, f"{corrected} {spacing}") if resume else None
+            engine = body, device, validation
+            found = _by_place(capture, measured, engine, corrected, spacing, states, tell, advance)
     advance(1.0)
     return found
 
@@ -144,7 +143,7 @@ def _throughout(
     """The same coefficients throughout."""
     problem, ranking, found = _fitted(capture, measured, predictor, corrected, OUTER, tell, advance)
     findings = diagnosis.findings(problem, found, ranking)
-    return Recovered(capture, measured, problem, found, None, undetermined(found), findings, list(predictor.notes))
+    return Recovered(capture, measured, problem, found, undetermined(found), findings, list(predictor.notes))
 
 
 def _fitted(
@@ -173,6 +172,7 @@ def _by_place(
     engine: tuple[Path, str, bool],
     corrected: bool,
     spacing: float,
+    states: StateFolder | None,
     tell: ProgressCallback,
     advance: Callable[[float], None],
 ) -> Recovered:
@@ -180,15 +180,20 @@ def _by_place(
 
     engine: body, device and validation.
     """
-    few = _some_lights(capture)
-    some = [one for one in measured if one.stated in few.photographs]
-    tell(f"the same coefficients throughout, from {len(some)} of {len(measured)} photographs")
-    _, _, same = _fitted(few, some, Predictor(few, *engine), False, _STEPS, tell, lambda share: advance(0.2 * share))
+    kept = states.read() if states else None
+    if kept:
+        same = kept.start
+    else:
+        few = _some_lights(capture)
+        some = [one for one in measured if one.stated in few.photographs]
+        tell(f"the same coefficients throughout, from {len(some)} of {len(measured)} photographs")
+        some_predictor = Predictor(few, *engine)
+        _, _, found = _fitted(few, some, some_predictor, False, _STEPS, tell, lambda share: advance(0.2 * share))
+        same = found.coefficients
     predictor = Predictor(capture, *engine)
-    first = predictor.predict(same.coefficients, False)
+    first = predictor.predict(same, False)
     prediction.check_seen(capture, first)
     problem = Problem(capture, measured, first)
-    begin = same.coefficients, problem.best_gains(first, prediction.LEAST_ERROR)
     done = 0
 
     def step() -> None:
@@ -196,9 +201,11 @@ def _by_place(
         done += 1
         advance(0.2 + 0.79 * min(1.0, done / most_products(predictor.solves)))
 
-    volume = fit_volume(problem, predictor, begin, corrected, spacing or None, tell, step)
+    begin = kept or (same, problem.best_gains(first, prediction.LEAST_ERROR))
+    keep = states.write if states else lambda state: None
+    volume = fit_volume(problem, predictor, begin, corrected, spacing or None, tell, step, keep)
     findings, left_open = diagnosis.of_volume(volume), volume_report.undetermined(volume)
-    return Recovered(capture, measured, problem, same, volume, left_open, findings, list(predictor.notes))
+    return Recovered(capture, measured, problem, volume, left_open, findings, list(predictor.notes))
 
 
 def _some_lights(capture: Capture) -> Capture:

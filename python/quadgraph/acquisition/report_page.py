@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from quadgraph.acquisition.fitting import Fit
 from quadgraph.acquisition.prediction import CHANNELS, NAMES
 from quadgraph.acquisition.recovery import Recovered
 from quadgraph.acquisition.volume_fit import VolumeFit
@@ -46,7 +47,8 @@ def page(found: Recovered) -> str:
     """The whole document; the same result makes the same page."""
     name = html.escape(found.capture.path.name)
     body = [f"<h1>What {name} says of {html.escape(found.capture.body.name)}</h1>"]
-    body += [_coefficients(found) if found.volume is None else _volume(found, found.volume), _said(found)]
+    fit = found.fit
+    body += [_volume(found, fit) if isinstance(fit, VolumeFit) else _coefficients(found, fit), _said(found)]
     body += [f"<h2>Photographs</h2>{_scale()}", *_photographs(found)]
     body += ["<h2>Convergence</h2>", _convergence(found)]
     head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{name}</title>'
@@ -54,9 +56,8 @@ def page(found: Recovered) -> str:
     return f'<!doctype html>\n<html lang="en">{head}\n<body>{"".join(body)}</body></html>\n'
 
 
-def _coefficients(found: Recovered) -> str:
+def _coefficients(found: Recovered, fit: Fit) -> str:
     """Coefficients and their standard deviations, a row a coefficient."""
-    fit = found.fit
     rows = [["", *CHANNELS]]
     for row, name in enumerate(NAMES):
         values = zip(fit.coefficients[row], fit.deviations[row], strict=True)
@@ -118,10 +119,10 @@ def _scale() -> str:
 
 def _photographs(found: Recovered) -> Iterable[str]:
     """A row of three pictures for each photograph."""
-    for number, (one, picture) in enumerate(zip(found.measured, found.best.pictures, strict=True)):
+    for number, (one, picture) in enumerate(zip(found.measured, found.fit.pictures, strict=True)):
         stated = one.stated
         gain = stated.gain if isinstance(stated.gain, float) else 1.0
-        expected = stated.exposure * gain * found.best.gains[number] * picture.radiance
+        expected = stated.exposure * gain * found.fit.gains[number] * picture.radiance
         deviation = np.sqrt(one.variance_of(expected) + (picture.error * expected) ** 2)
         white = float(np.quantile(one.values, _WHITE)) or 1.0
         counts = np.asarray(found.problem.counted[number])
@@ -164,7 +165,7 @@ def _signed(value: np.ndarray, counted: Any) -> np.ndarray:
 
 def _convergence(found: Recovered) -> str:
     """Chi^2 of each step, by channel, on a logarithmic scale."""
-    steps = np.array([each.chi_squared for each in found.best.steps])
+    steps = np.array([each.chi_squared for each in found.fit.steps])
     logs = np.log10(np.maximum(steps, 1e-6))
     low, high = min(float(logs.min()), 0.0) - 0.1, max(float(logs.max()), 0.0) + 0.1
     width, height = _SIZE
@@ -179,9 +180,9 @@ def _convergence(found: Recovered) -> str:
         points = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, np.asarray(y(logs[:, channel])), strict=True))
         parts.append(f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="2"/>')
     drawing = f'<svg viewBox="0 0 {width} {height}" width="{width}" role="img">{"".join(parts)}</svg>'
-    caption = f"<figcaption>χ² {'per degree of freedom' if found.volume is None else 'per square'}, by step and channel"
-    drawing = f"<figure>{drawing}{caption}</figcaption></figure>"
-    if found.volume is not None:
+    per = "square" if isinstance(found.fit, VolumeFit) else "degree of freedom"
+    drawing = f"<figure>{drawing}<figcaption>χ² per {per}, by step and channel</figcaption></figure>"
+    if isinstance(found.fit, VolumeFit):
         return drawing
     rows = [["step", *(f"χ², {name}" for name in CHANNELS), *(f"{name}, 1/mm" for name in NAMES)]]
     for number, step in enumerate(found.fit.steps, 1):

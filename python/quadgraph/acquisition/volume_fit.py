@@ -20,6 +20,7 @@ from scipy import sparse
 from scipy.sparse import linalg
 
 from quadgraph.acquisition import posterior
+from quadgraph.acquisition.fit_state import FitState
 from quadgraph.acquisition.prediction import Predicted, Predictor
 from quadgraph.acquisition.problem import Problem
 from quadgraph.acquisition.smoothing import LEAST_SHARE, Smoothing
@@ -77,15 +78,17 @@ def most_products(solves: int) -> int:
 def fit_volume(
     problem: Problem,
     predictor: Predictor,
-    start: tuple[np.ndarray, np.ndarray],
+    start: tuple[np.ndarray, np.ndarray] | FitState,
     corrected: bool,
     spacing: float | None,
     tell: ProgressCallback,
     advance: Callable[[], None],
+    keep: Callable[[FitState], None],
 ) -> VolumeFit:
-    """Fit from homogeneous coefficients (2, 3), 1/mm, and gains (p, 3). spacing: of the grid, mm, None: as long as
-    the edges of the level that is differentiated; advance: is called after each solve and product. Raises SolverError,
-    InputError.
+    """Fit from homogeneous coefficients (2, 3), 1/mm, and gains (p, 3), or from the state that a fit was left in.
+
+    spacing: of the grid, mm, None: as long as the edges of the level that is differentiated; advance: is called after
+    each solve and product; keep: with the state after each outer step. Raises SolverError, InputError.
     """
     with tempfile.TemporaryDirectory(prefix="quadgraph-acquire-") as folder:
         setting = VolumeSetting(problem, predictor, spacing, Path(folder), advance)
@@ -94,17 +97,21 @@ def fit_volume(
             f"volume: {' x '.join(map(str, grid.size))} points, {grid.spacing:.3g} mm apart, from "
             f"{len(setting.data)} squares of {side} x {side} pixels on level {setting.level}"
         )
-        logs = np.log(np.repeat(start[0][:, None, :], grid.count, axis=1))
-        found = setting.predicted(logs, np.array(start[1]), corrected)
-        tell(f"start: chi^2 per square {_text(found.chi_squared)}")
-        fit = _Fit(found, tell)
-        for _ in range(OUTER):
+        kept = start if isinstance(start, FitState) else None
+        first, gains = (start.start, start.gains) if isinstance(start, FitState) else start
+        logs = kept.logs if kept else np.log(np.repeat(first[:, None, :], grid.count, axis=1))
+        found = setting.predicted(logs, np.array(gains), corrected)
+        tell(f"{'resumed' if kept else 'start'}: chi^2 per square {_text(found.chi_squared)}")
+        fit = _Fit(found, tell, kept)
+        for outer in range(int(kept.outer) if kept else 0, OUTER):
             following = fit.descended(found).renewed(corrected)
             before, after = found.chi_squared.max(), following.chi_squared.max()
             tell(f"predicted anew: chi^2 per square {_text(following.chi_squared)}")
             if after < before:
                 found = following
-            if fit.enough and after > (1 - _GAINED) * before:
+            last = fit.enough and after > (1 - _GAINED) * before
+            keep(fit.state(first, found, OUTER if last else outer + 1))
+            if last:
                 break
         tell("standard deviations")
         fit.strength = fit.steps[-1].smoothing  # which may have been lessened for a step that did not come
@@ -128,17 +135,14 @@ def _text(values: np.ndarray) -> str:
 class _Fit:
     """How volumes are smoothed, and steps towards better ones."""
 
-    def __init__(self, first: Around, tell: ProgressCallback) -> None:
-        """Find by random weights how much the photographs tell of each point, and from that the first smoothing."""
+    def __init__(self, first: Around, tell: ProgressCallback, kept: FitState | None) -> None:
+        """Find by random weights how much the photographs tell of each point, and from that the first smoothing; or
+        take both from a state. Raises InputError for a state of another grid.
+        """
         self._tell = tell
         self.steps: list[VolumeStep] = []
         self.enough = False  # whether less smoothing would explain little more
-        random, root = np.random.default_rng(0), np.sqrt(first.weighing.each)
-        self._diagonal = np.zeros(first.logs.shape)
-        for _ in range(_PROBES):
-            signs = random.choice([-1.0, 1.0], size=root.shape)
-            self._diagonal += first.transposed(root * signs) ** 2 / _PROBES
-            first.setting.advance()
+        self._diagonal = _told_of_points(first) if kept is None else kept.told
         inside, grid = first.setting.inside, first.setting.grid
         density = np.sqrt(self._diagonal.sum(axis=2) / np.maximum(inside, LEAST_SHARE * inside.max()))
         # Of both together: what is told less of varies more freely, or the other would take its part.
@@ -146,8 +150,27 @@ class _Fit:
         told = np.clip(density / max(most, 1e-300), _FLOOR, 1)
         self._smoothing = Smoothing(grid, inside, told, _THRESHOLD / grid.spacing)
         self.strength = 1.0
-        pairs = zip(self._diagonal, self.matrices(first.logs), strict=True)
-        self.strength = _FIRST * max(float(each.sum() / 3 / matrix.diagonal().sum()) for each, matrix in pairs)
+        if kept is None:
+            pairs = zip(self._diagonal, self.matrices(first.logs), strict=True)
+            self.strength = _FIRST * max(float(each.sum() / 3 / matrix.diagonal().sum()) for each, matrix in pairs)
+        else:
+            pairs_kept = zip(kept.smoothings.tolist(), kept.chi_squared, strict=True)
+            self.steps = [VolumeStep(smoothing, chi) for smoothing, chi in pairs_kept]
+            self.strength, self.enough = float(kept.smoothing), bool(kept.enough)
+
+    def state(self, start: np.ndarray, found: Around, outer: int) -> FitState:
+        """What another run goes on from after so many outer steps."""
+        return FitState(
+            start,
+            found.gains,
+            found.logs,
+            self._diagonal,
+            np.array(self.strength),
+            np.array(self.enough),
+            np.array(outer),
+            np.array([step.smoothing for step in self.steps]),
+            np.array([step.chi_squared for step in self.steps]),
+        )
 
     def matrices(self, logs: np.ndarray) -> Sequence[sparse.csr_array]:
         """The smoothing of each coefficient around logarithms, (n, n)."""
@@ -207,6 +230,17 @@ class _Fit:
             return np.moveaxis(np.array(parts), 1, 2)
 
         return solve
+
+
+def _told_of_points(around: Around) -> np.ndarray:
+    """(2, n, 3) how much the photographs tell of the logarithm of each point, by random weights."""
+    random, root = np.random.default_rng(0), np.sqrt(around.weighing.each)
+    diagonal = np.zeros(around.logs.shape)
+    for _ in range(_PROBES):
+        signs = random.choice([-1.0, 1.0], size=root.shape)
+        diagonal += around.transposed(root * signs) ** 2 / _PROBES
+        around.setting.advance()
+    return diagonal
 
 
 def _factorised(matrix: sparse.csr_array, diagonal: np.ndarray) -> linalg.SuperLU:

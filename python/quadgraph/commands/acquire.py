@@ -54,6 +54,12 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         help="predict by the engine corrected by sweeps of the transport equation; without, the coefficients are those "
         "of its moment equations (default: --correction)",
     )
+    parser.add_argument(
+        "--resume",
+        metavar="FOLDER",
+        type=Path,
+        help="of --volume: keep there after each outer step how far the fit is, and go on from what is there",
+    )
     add_device_arguments(parser)
 
 
@@ -63,6 +69,7 @@ def run(args: argparse.Namespace) -> int:
 
     from quadgraph.acquisition import capture
     from quadgraph.acquisition.recovery import recover
+    from quadgraph.acquisition.volume_fit import VolumeFit
     from quadgraph.base import atomic_file, outputs
     from quadgraph.commands.progress_bar import progress_bar
 
@@ -72,6 +79,8 @@ def run(args: argparse.Namespace) -> int:
         raise InputError(f"{args.report}: a report must end in .html")
     if args.spacing is not None and not args.volume:
         raise InputError("--spacing: found without --volume, which it is of; state both or neither")
+    if args.resume and not args.volume:
+        raise InputError("--resume: found without --volume, whose steps it keeps; leave it out, for the rest is quick")
     stated = capture.read(args.file)
     outputs.check_outputs([args.output, args.json, args.report], stated.files())
     errors = Console(stderr=True, highlight=False, soft_wrap=True)
@@ -85,7 +94,8 @@ def run(args: argparse.Namespace) -> int:
             bar.update(task, completed=share)
 
         spacing = (args.spacing or 0.0) if args.volume else None
-        found = recover(stated, args.correction, spacing, tell, advance, args.device, args.validation)
+        device = args.device, args.validation
+        found = recover(stated, args.correction, spacing, tell, advance, *device, args.resume)
     found.material.save(args.output)
     if args.json:
         atomic_file.write_json(args.json, found.report())
@@ -94,7 +104,7 @@ def run(args: argparse.Namespace) -> int:
 
         report_page.write(args.report, found)
     _summarise(found, args.output)
-    settled = found.volume is not None or found.fit.converged
+    settled = isinstance(found.fit, VolumeFit) or found.fit.converged
     return 0 if settled and not found.findings else DISAGREES
 
 
@@ -111,10 +121,11 @@ def lines(found: Recovered) -> list[str]:
     """What was found, a line a coefficient, and what is to be said of it."""
     from quadgraph.acquisition import volume_report
     from quadgraph.acquisition.prediction import CHANNELS, NAMES
+    from quadgraph.acquisition.volume_fit import VolumeFit
 
-    if found.volume is not None:
-        return [*volume_report.lines(found.volume), *found.undetermined, *found.findings, *found.notes]
     fit = found.fit
+    if isinstance(fit, VolumeFit):
+        return [*volume_report.lines(fit), *found.undetermined, *found.findings, *found.notes]
     said = []
     for row, name in enumerate(NAMES):
         values = (
