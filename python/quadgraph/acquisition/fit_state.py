@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
-from quadgraph import __version__
 from quadgraph.acquisition.capture import Capture
 from quadgraph.base import atomic_file, regular_file
 from quadgraph.base.errors import InputError
+from quadgraph.base.version import __version__
 from quadgraph.file import npz
 
 _FILE = "acquire-state.npz"
