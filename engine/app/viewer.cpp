@@ -92,7 +92,7 @@ CommandContext Viewer::command_context() const {
   const Part now = part();
   const auto height = static_cast<float>(std::max(now.height, 1u));
   return {engine().bounds(), std::max(static_cast<float>(now.width), 1.0f) / height,
-          static_cast<std::uint32_t>(engine().graph().levels().size())};
+          static_cast<std::uint32_t>(engine().graph().levels().size()), engine().has_deviations()};
 }
 
 void Viewer::handle(const std::vector<Event>& events) {

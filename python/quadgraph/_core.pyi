@@ -362,6 +362,8 @@ def set_volume(
     spacing: Sequence[float],
     origin: Sequence[float] | None,
     eta: float,
+    sigma_s_prime_deviation: _Array | None = ...,
+    sigma_a_deviation: _Array | None = ...,
 ) -> None: ...
 def shortest_paths(
     cost: _Array,
