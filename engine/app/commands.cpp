@@ -82,8 +82,9 @@ void next_error(S s, W) {
   next(s.scene.solve.error, std::array{0.0, 0.1, 0.05, 0.02, 0.01});
 }
 
-void next_quantity(S s, int by) {
-  const std::vector<Quantity> all = all_values<Quantity>();
+void next_quantity(S s, W w, int by) {
+  std::vector<Quantity> all = all_values<Quantity>();
+  if (!w.deviations) std::erase_if(all, is_deviation);
   const auto count = static_cast<int>(all.size());
   Quantity& quantity = s.scene.render.show.quantity;
   const auto at = static_cast<int>(std::find(all.begin(), all.end(), quantity) - all.begin());
@@ -150,8 +151,8 @@ constexpr auto table = std::to_array<Command>({
     {"E", GLFW_KEY_E, 0, 0, "next error target: none, 10, 5, 2, 1%", next_error},
     {"P", GLFW_KEY_P, 0, 0, "brush on or off", take_brush},
     {"K", GLFW_KEY_K, 0, 0, "knife on or off (switches to method shortest-path)", take_knife},
-    {"V", GLFW_KEY_V, 0, 0, "next view of the inside", [](S s, W) { next_quantity(s, 1); }},
-    {"Shift+V", GLFW_KEY_V, 0, shift, "previous view of the inside", [](S s, W) { next_quantity(s, -1); }},
+    {"V", GLFW_KEY_V, 0, 0, "next view of the inside", [](S s, W w) { next_quantity(s, w, 1); }},
+    {"Shift+V", GLFW_KEY_V, 0, shift, "previous view of the inside", [](S s, W w) { next_quantity(s, w, -1); }},
     {"X", GLFW_KEY_X, 0, 0, "axis of the cutting plane: x, y, z", next_axis},
     {".", GLFW_KEY_PERIOD, 0, 0, "move the cutting plane forward", [](S s, W w) { move_plane(s, w, 1); }},
     {",", GLFW_KEY_COMMA, 0, 0, "move the cutting plane back", [](S s, W w) { move_plane(s, w, -1); }},

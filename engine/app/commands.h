@@ -13,6 +13,7 @@ struct CommandContext {
   Sphere bounds;
   float aspect = 1;          // of the picture, width / height
   std::uint32_t levels = 1;  // of the body
+  bool deviations = false;   // of the material are known
 };
 
 struct Command {

@@ -11,11 +11,11 @@
 namespace quadgraph {
 namespace {
 
-// Words in the picture's upper or lower left corner.
-void draw_note(const char* name, const std::string& text, const ImVec4& colour, bool below, float left, float unit) {
+// Words in the picture's upper or lower left corner; their upper or lower edge is at `height`.
+void draw_note(const char* name, const std::string& text, const ImVec4& colour, bool below, float left, float height,
+               float unit) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  const float end = below ? 1 : 0;
-  ImGui::SetNextWindowPos({left + 12 * unit, below ? size.y - 12 * unit : 12 * unit}, ImGuiCond_Always, {0, end});
+  ImGui::SetNextWindowPos({left + 12 * unit, height}, ImGuiCond_Always, {0, below ? 1.0f : 0.0f});
   ImGui::SetNextWindowSizeConstraints({0, 0}, {size.x - left - 24 * unit, size.y});
   ImGui::SetNextWindowBgAlpha(0.85f);
   ImGui::Begin(name, nullptr,
@@ -62,11 +62,11 @@ void draw_help(State& state, float unit) {
   ImGui::End();
 }
 
-void draw_colour_bar(const Legend& legend, float left, float unit) {
+float draw_colour_bar(const Legend& legend, float left, float unit) {
   constexpr int strips = 96;
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const float width = std::min(360 * unit, size.x - left - 60 * unit);
-  if (width < 100 * unit) return;
+  if (width < 100 * unit) return 0;
   ImGui::SetNextWindowPos({size.x - 12 * unit, size.y - 12 * unit}, ImGuiCond_Always, {1, 1});
   ImGui::SetNextWindowBgAlpha(0.75f);
   ImGui::Begin("colours", nullptr,
@@ -89,18 +89,20 @@ void draw_colour_bar(const Legend& legend, float left, float unit) {
     draw->AddText({std::clamp(x - half, at.x, at.x + width - 2 * half), at.y + 19 * unit}, text, tick.text.c_str());
   }
   ImGui::Dummy({width, 22 * unit + ImGui::GetTextLineHeight()});
+  const float height = ImGui::GetWindowHeight();
   ImGui::End();
+  return height + 12 * unit;
 }
 
 void draw_preview(const std::string& text, float left, float unit) {
   if (text.empty()) return;
-  draw_note("preview", text, {0.95f, 0.65f, 0.32f, 1}, false, left, unit);
+  draw_note("preview", text, {0.95f, 0.65f, 0.32f, 1}, false, left, 12 * unit, unit);
 }
 
-void draw_message(const State& state, float left, float unit) {
+void draw_message(const State& state, float left, float unit, float above) {
   if (state.message.empty()) return;
   const ImVec4 colour = state.refused ? ImVec4(1, 0.55f, 0.45f, 1) : ImVec4(0.9f, 0.9f, 0.89f, 1);
-  draw_note("message", state.message, colour, true, left, unit);
+  draw_note("message", state.message, colour, true, left, ImGui::GetIO().DisplaySize.y - 12 * unit - above, unit);
 }
 
 void draw_knife(const Knife& knife, float left, float unit) {

@@ -9,14 +9,15 @@ namespace quadgraph {
 // The keys, over the picture.
 void draw_help(State& state, float unit);
 
-// What the colours mean, over the picture's lower edge. `left`: where the picture begins, window coordinates.
-void draw_colour_bar(const Legend& legend, float left, float unit);
+// What the colours mean, over the picture's lower edge. `left`: where the picture begins, window coordinates. Returns
+// how far up it reaches.
+float draw_colour_bar(const Legend& legend, float left, float unit);
 
 // What the picture shows in the place of the body, over it; nothing if that is empty.
 void draw_preview(const std::string& text, float left, float unit);
 
-// The last thing to tell the user, in the picture's lower left corner.
-void draw_message(const State& state, float left, float unit);
+// The last thing to tell the user, in the picture's lower left corner, `above` what lies there.
+void draw_message(const State& state, float left, float unit, float above);
 
 // The way of the knife over the picture, which begins at `left`.
 void draw_knife(const Knife& knife, float left, float unit);

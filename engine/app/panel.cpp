@@ -207,7 +207,10 @@ void tell_errors(const SolveReport& report) {
   tell_error("  all", report.error);
   tell_error("  mesh", report.mesh_error);
   tell_error("  solver", report.algebraic);
-  if (!report.correction) return tell("  model, light", "not known without correction");
+  if (!report.correction) {
+    tell("  model", "not known without correction");
+    return tell("  light", "not known without correction");
+  }
   tell_error("  model", report.model_error);
   tell_error("  light", report.light_error);
 }

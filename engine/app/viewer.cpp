@@ -92,7 +92,7 @@ CommandContext Viewer::command_context() const {
   const Part now = part();
   const auto height = static_cast<float>(std::max(now.height, 1u));
   return {engine().bounds(), std::max(static_cast<float>(now.width), 1.0f) / height,
-          static_cast<std::uint32_t>(engine().graph().levels().size())};
+          static_cast<std::uint32_t>(engine().graph().levels().size()), engine().has_deviations()};
 }
 
 void Viewer::handle(const std::vector<Event>& events) {
@@ -196,8 +196,9 @@ void Viewer::build_widgets(const std::vector<Event>& events) {
   if (state_.panel) draw_panel(state_, {engine(), measured_, interface_.unit()});
   if (state_.help) draw_help(state_, interface_.unit());
   const float left = static_cast<float>(part().left) / window_.pixels_per_unit();
-  if (const auto& legend = engine().legend()) draw_colour_bar(*legend, left, interface_.unit());
-  draw_message(state_, left, interface_.unit());
+  const auto& legend = engine().legend();
+  const float taken = legend ? draw_colour_bar(*legend, left, interface_.unit()) : 0;
+  draw_message(state_, left, interface_.unit(), taken);
   draw_preview(state_.preview, left, interface_.unit());
   draw_knife(state_.knife, left, interface_.unit());
   if (!dragging_ && !ImGui::IsAnyItemActive()) history_.note(state_.scene);

@@ -79,8 +79,8 @@ struct ForwardModel::State {
 
   void check() const {
     check_sizes(at);
-    check_values("scattering", at.scattering, gpu::COEFFICIENT_MAX);
-    check_values("absorption", at.absorption, gpu::COEFFICIENT_MAX);
+    check_values("sigma_s_prime", at.scattering, gpu::COEFFICIENT_MAX);
+    check_values("sigma_a", at.absorption, gpu::COEFFICIENT_MAX);
     check_values("power", at.power, most_power);
     check_eta(options.eta);
     if (options.model == Model::automatic) throw InputError("model 'auto': name one");
@@ -110,8 +110,8 @@ struct ForwardModel::State {
   }
 
   void check_sizes(const Parameters& parameters) const {
-    check_size("scattering", parameters.scattering.size(), level.tets.size());
-    check_size("absorption", parameters.absorption.size(), level.tets.size());
+    check_size("sigma_s_prime", parameters.scattering.size(), level.tets.size());
+    check_size("sigma_a", parameters.absorption.size(), level.tets.size());
     check_size("power", parameters.power.size(), lights.size());
   }
 

@@ -46,6 +46,7 @@ void Engine::set_material(const gpu::Material& material) {
   if (self.simulation) self.simulation->set_material(material);
   self.paths.set(material);
   self.material = material_text(material);
+  self.deviations = {};
   self.eta = material.eta;
   self.stale();
 }
@@ -56,6 +57,7 @@ void Engine::set_optical(std::uint32_t level, std::span<const gpu::Optical> opti
   self.levels().set_optical(level, optical, eta);
   self.paths.clear();
   self.material = "coefficients per node, eta=" + number_text(eta);
+  self.deviations = {};
   self.eta = eta;
   self.stale();
 }
@@ -67,8 +69,26 @@ void Engine::set_optical(const OpticalGrid& grid) {
   check_eta(static_cast<double>(grid.eta));
   self.paths.set(grid);
   self.material = "coefficients on a grid, eta=" + number_text(grid.eta);
+  self.deviations = {};
   self.eta = grid.eta;
   self.stale();
+}
+
+void Engine::set_deviations(Deviations deviations) {
+  const auto turn = implementation_->in_use.take();
+  const std::size_t vertices =
+      implementation_->graph.levels().empty() ? 0 : implementation_->graph.levels()[0].vertex_count();
+  for (const std::size_t count : {deviations.sigma_s_prime.size(), deviations.sigma_a.size()}) {
+    if (count == 0 || count == vertices) continue;
+    throw InputError("deviations: " + std::to_string(count) + " found, one for each of " + std::to_string(vertices) +
+                     " vertices wanted");
+  }
+  implementation_->deviations = std::move(deviations);
+}
+
+bool Engine::has_deviations() const {
+  const Deviations& known = implementation_->deviations;
+  return !known.sigma_s_prime.empty() || !known.sigma_a.empty();
 }
 
 void Engine::set_edits(std::span<const Edit> edits) {

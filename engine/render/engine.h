@@ -19,6 +19,7 @@
 #include "engine/deform/deformer.h"
 #include "engine/device/device.h"
 #include "engine/file/graph.h"
+#include "engine/optics/deviations.h"
 #include "engine/optics/optical_grid.h"
 #include "engine/render/display/camera.h"
 #include "engine/render/display/pick.h"
@@ -102,6 +103,13 @@ class Engine {
   // Coefficients on a grid instead of a material; shortest-path takes them, other methods those of nodes. Throws
   // InputError.
   void set_optical(const OpticalGrid& grid);
+
+  // How certain the present coefficients are at the vertices of level 0, for views of it; another material drops them.
+  // Throws InputError unless there is one number for each vertex, or none.
+  void set_deviations(Deviations deviations);
+
+  // Whether any are known.
+  bool has_deviations() const;
 
   // Edits of the material, see Simulation::set_edits.
   void set_edits(std::span<const Edit> edits);

@@ -63,7 +63,6 @@ class Fields {
 
  private:
   static constexpr std::size_t shown = 8;  // numbers that an error repeats
-  // Deviations are for those who acquired the coefficients.
   static constexpr std::array<std::string_view, 7> known = {
       "sigma_s_prime", "sigma_a", "spacing", "origin", "eta", "sigma_s_prime_deviation", "sigma_a_deviation"};
 
@@ -85,10 +84,35 @@ const NpzArray& coefficient(const Fields& fields, const std::string& name) {
   return array;
 }
 
+// Of the cells; empty where the file has none.
+std::vector<float> deviations_in(const Fields& fields, const std::string& coefficient_name) {
+  const std::string name = coefficient_name + "_deviation";
+  if (!fields.has(name)) return {};
+  const NpzArray &array = fields.numbers(name), &of = fields.numbers(coefficient_name);
+  if (array.shape != of.shape) {
+    fields.refuse(name, "shape " + Fields::shape_text(array.shape) + " found, that of " + coefficient_name + ", " +
+                            Fields::shape_text(of.shape) + ", wanted");
+  }
+  const std::size_t channels = of.shape.size() == 4 ? 3 : 1;
+  std::vector<float> values;
+  for (std::size_t i = 0; i < array.values.size(); i += channels) {
+    const auto channel = [&](std::size_t c) { return array.values[i + c % channels]; };
+    const std::optional<float> value = deviation_of({channel(0), channel(1), channel(2)});
+    if (!value)
+      fields.refuse(name, "negative or no number in cell " + std::to_string(values.size()) + ", 0 or more allowed");
+    values.push_back(*value);
+  }
+  return values;
+}
+
 glm::vec3 cell_of(const NpzArray& array, std::size_t cell) {
   if (array.shape.size() == 3) return glm::vec3(static_cast<float>(array.values[cell]));
   const double* v = &array.values[3 * cell];
   return glm::vec3(glm::dvec3(v[0], v[1], v[2]));
+}
+
+float mixed(float a, float b, float t) {
+  return glm::mix(a, b, t);
 }
 
 gpu::Optical mixed(const gpu::Optical& a, const gpu::Optical& b, float t) {
@@ -100,7 +124,44 @@ glm::dvec3 last_cell(const Volume& volume) {
           static_cast<double>(volume.cells[2] - 1)};
 }
 
+// Of values at the middles of the cells, as Volume::at.
+template <class Value>
+std::vector<Value> sampled(const Volume& volume, const std::vector<Value>& values, std::span<const glm::vec3> points,
+                           const glm::dvec3& centre) {
+  const auto& cells = volume.cells;
+  const glm::dvec3 last = last_cell(volume), first = volume.first(centre);
+  const auto cell = [&](std::size_t x, std::size_t y, std::size_t z) -> const Value& {
+    return values[x + cells[0] * (y + cells[1] * z)];
+  };
+  std::vector<Value> found;
+  found.reserve(points.size());
+  for (const glm::vec3& point : points) {
+    const glm::dvec3 place = glm::clamp((glm::dvec3(point) - first) / volume.spacing, glm::dvec3(0), last);
+    std::array<std::size_t, 3> low{}, high{};
+    glm::vec3 t;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto k = static_cast<std::size_t>(axis);
+      low[k] = static_cast<std::size_t>(place[axis]);
+      high[k] = std::min(low[k] + 1, cells[k] - 1);
+      t[axis] = static_cast<float>(place[axis] - static_cast<double>(low[k]));
+    }
+    const auto row = [&](std::size_t y, std::size_t z) { return mixed(cell(low[0], y, z), cell(high[0], y, z), t.x); };
+    found.push_back(mixed(mixed(row(low[1], low[2]), row(high[1], low[2]), t.y),
+                          mixed(row(low[1], high[2]), row(high[1], high[2]), t.y), t.z));
+  }
+  return found;
+}
+
 }  // namespace
+
+std::optional<float> deviation_of(const glm::dvec3& channels) {
+  float sum = 0;
+  for (int c = 0; c < 3; ++c) {
+    if (!(channels[c] >= 0)) return std::nullopt;
+    sum += static_cast<float>(std::min(channels[c], static_cast<double>(most_deviation)));
+  }
+  return sum / 3;
+}
 
 bool is_volume(std::string_view material) {
   constexpr std::string_view suffix = ".npz";
@@ -151,6 +212,7 @@ Volume read_volume(const std::filesystem::path& path) {
     if (!(eta >= min_eta && eta <= max_eta)) fields.refuse("eta", number_text(eta) + " found, 1 to 3 allowed");
     volume.eta = static_cast<float>(eta);
   }
+  volume.deviations = {deviations_in(fields, "sigma_s_prime"), deviations_in(fields, "sigma_a")};
   return volume;
 }
 
@@ -159,27 +221,14 @@ glm::dvec3 Volume::first(const glm::dvec3& centre) const {
 }
 
 std::vector<gpu::Optical> Volume::at(std::span<const glm::vec3> points, const glm::dvec3& centre) const {
-  const glm::dvec3 last = last_cell(*this), first = this->first(centre);
-  const auto cell = [&](std::size_t x, std::size_t y, std::size_t z) -> const gpu::Optical& {
-    return optical[x + cells[0] * (y + cells[1] * z)];
+  return sampled(*this, optical, points, centre);
+}
+
+Deviations Volume::deviations_at(std::span<const glm::vec3> points, const glm::dvec3& centre) const {
+  const auto at = [&](const std::vector<float>& of_cells) {
+    return of_cells.empty() ? std::vector<float>() : sampled(*this, of_cells, points, centre);
   };
-  std::vector<gpu::Optical> found;
-  found.reserve(points.size());
-  for (const glm::vec3& point : points) {
-    const glm::dvec3 place = glm::clamp((glm::dvec3(point) - first) / spacing, glm::dvec3(0), last);
-    std::array<std::size_t, 3> low{}, high{};
-    glm::vec3 t;
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto k = static_cast<std::size_t>(axis);
-      low[k] = static_cast<std::size_t>(place[axis]);
-      high[k] = std::min(low[k] + 1, cells[k] - 1);
-      t[axis] = static_cast<float>(place[axis] - static_cast<double>(low[k]));
-    }
-    const auto row = [&](std::size_t y, std::size_t z) { return mixed(cell(low[0], y, z), cell(high[0], y, z), t.x); };
-    found.push_back(mixed(mixed(row(low[1], low[2]), row(high[1], low[2]), t.y),
-                          mixed(row(low[1], high[2]), row(high[1], high[2]), t.y), t.z));
-  }
-  return found;
+  return {at(deviations.sigma_s_prime), at(deviations.sigma_a)};
 }
 
 }  // namespace quadgraph

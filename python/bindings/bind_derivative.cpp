@@ -16,7 +16,8 @@ namespace {
 class BoundModel {
  public:
   BoundModel(Engine& engine, std::uint32_t number, const std::optional<DoubleArray>& scattering,
-             const std::optional<DoubleArray>& absorption, std::vector<ViewSample> samples, ForwardOptions options)
+             const std::optional<DoubleArray>& absorption, const std::optional<DoubleArray>& power,
+             std::vector<ViewSample> samples, ForwardOptions options)
       : level_(level_of(engine.graph(), number)) {
     Simulation& simulation = engine.simulation();
     if (!simulation.at_rest()) throw InputError("derivatives: the body is deformed, allowed is one at rest");
@@ -30,6 +31,7 @@ class BoundModel {
     if (scattering) at.scattering = vectors(*scattering, level_.tets.size(), "sigma_s_prime");
     if (absorption) at.absorption = vectors(*absorption, level_.tets.size(), "sigma_a");
     at.power.assign(beams_.size(), glm::dvec3(1));
+    if (power) at.power = vectors(*power, beams_.size(), "power");
     std::vector<BeamLight> lights;
     for (const LevelBeam& beam : beams_) lights.push_back({beam.way, beam.quarters});
     options.eta = static_cast<double>(simulation.eta());
@@ -97,18 +99,19 @@ void bind_derivative(py::module_& module) {
                          "What a body answers as a function of what it is made of (engine/derivative/forward_model.h), "
                          "for the light of an engine's last solve. Arrays are float64, channels last.")
       .def(py::init([](Engine& engine, std::uint32_t level, const std::optional<DoubleArray>& scattering,
-                       const std::optional<DoubleArray>& absorption, const std::vector<std::uint32_t>& faces,
-                       const DoubleArray& barycentric, const DoubleArray& direction, const std::string& model,
-                       bool bounces, double tolerance) {
+                       const std::optional<DoubleArray>& absorption, const std::optional<DoubleArray>& power,
+                       const std::vector<std::uint32_t>& faces, const DoubleArray& barycentric,
+                       const DoubleArray& direction, const std::string& model, bool bounces, double tolerance) {
              const ForwardOptions options{.model = from_name<Model>(model), .bounces = bounces, .tolerance = tolerance};
-             return std::make_unique<BoundModel>(engine, level, scattering, absorption,
+             return std::make_unique<BoundModel>(engine, level, scattering, absorption, power,
                                                  samples_of(faces, barycentric, direction), options);
            }),
-           py::arg("engine"), py::arg("level"), py::arg("sigma_s_prime"), py::arg("sigma_a"), py::arg("faces"),
-           py::arg("barycentric"), py::arg("direction"), py::arg("model"), py::arg("bounces"), py::arg("tolerance"),
-           py::keep_alive<1, 2>(),
-           "sigma_s_prime, sigma_a: (n_t, 3) 1/mm, or None for those of the last solve; faces (n,), barycentric (n, 3) "
-           "and direction (n, 3), unit, out of the body: view samples. Raises InputError, SolverError.")
+           py::arg("engine"), py::arg("level"), py::arg("sigma_s_prime"), py::arg("sigma_a"), py::arg("power"),
+           py::arg("faces"), py::arg("barycentric"), py::arg("direction"), py::arg("model"), py::arg("bounces"),
+           py::arg("tolerance"), py::keep_alive<1, 2>(),
+           "sigma_s_prime, sigma_a: (n_t, 3) 1/mm, or None for those of the last solve; power: (beams, 3), factors "
+           "of its light, or None for 1; faces (n,), barycentric (n, 3) and direction (n, 3), unit, out of the body: "
+           "view samples. Raises InputError, SolverError.")
       .def_property_readonly("outgoing", &BoundModel::outgoing,
                              "exitance (n_f, 3) and unscattered (n_f, 3), W/mm^2, radiance (n, 3), W/(mm^2 sr)")
       .def_property_readonly("parameters", &BoundModel::parameters,

@@ -50,6 +50,7 @@ if TYPE_CHECKING:
         Solution,
     )
     from quadgraph.api.stage import Stage
+    from quadgraph.api.tensors import OutgoingTensors, outgoing_tensors
     from quadgraph.baking.pipeline import BakeOptions, BakeReport, bake
     from quadgraph.base.errors import (
         DeviceError,
@@ -88,6 +89,7 @@ __all__ = [
     "Material",
     "MotionOptions",
     "Outgoing",
+    "OutgoingTensors",
     "PathOptions",
     "PathReport",
     "Picture",
@@ -116,6 +118,7 @@ __all__ = [
     "bake",
     "default_lights",
     "material_names",
+    "outgoing_tensors",
 ]
 
 # Where the public names live: found when they are first asked for, so that the command line starts without them.
@@ -132,6 +135,7 @@ _PLACES = {
     "quadgraph.api.scene": "Scene SceneFile",
     "quadgraph.api.solution": "CorrectedSweep Correction Energy ErrorEstimate LevelReport PathReport Solution",
     "quadgraph.api.stage": "Stage",
+    "quadgraph.api.tensors": "OutgoingTensors outgoing_tensors",
     "quadgraph.baking.pipeline": "BakeOptions BakeReport bake",
     "quadgraph.base.errors": "FormatError InputError QuadGraphError SolverError ToolError DeviceError",
 }

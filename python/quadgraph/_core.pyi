@@ -185,12 +185,7 @@ class Engine:
     def set_cuts(self, json: str) -> None: ...
     def set_deformation(self, list: str | Sequence[Mapping[str, Any]]) -> None: ...
     def set_grid(
-        self,
-        sigma_s_prime: _Array,
-        sigma_a: _Array,
-        spacing: Sequence[float],
-        first: Sequence[float],
-        eta: float,
+        self, sigma_s_prime: _Array, sigma_a: _Array, spacing: Sequence[float], first: Sequence[float], eta: float
     ) -> None: ...
     def set_irradiance(self, level: int, q: _Array, direction: Sequence[float] | None = ...) -> None: ...
     def set_lights(self, lights: Sequence[str]) -> None: ...
@@ -231,6 +226,7 @@ class ForwardModel:
         level: int,
         sigma_s_prime: _Array | None,
         sigma_a: _Array | None,
+        power: _Array | None,
         faces: _Array,
         barycentric: _Array,
         direction: _Array,
@@ -366,6 +362,8 @@ def set_volume(
     spacing: Sequence[float],
     origin: Sequence[float] | None,
     eta: float,
+    sigma_s_prime_deviation: _Array | None = ...,
+    sigma_a_deviation: _Array | None = ...,
 ) -> None: ...
 def shortest_paths(
     cost: _Array,

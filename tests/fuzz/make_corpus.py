@@ -53,7 +53,8 @@ def main(folder: Path) -> None:
     for kind in ("<f4", "<f8", "|u1", "<i8"):
         grid = np.arange(24).reshape(2, 3, 4).astype(kind)
         colours = np.ones((2, 3, 4, 3), kind)
-        np.savez(folder / f"volume/{kind[1:]}.npz", sigma_s_prime=grid, sigma_a=colours, spacing=1.0, eta=1.4)
+        known = {"sigma_s_prime_deviation": grid, "sigma_a_deviation": colours}
+        np.savez(folder / f"volume/{kind[1:]}.npz", sigma_s_prime=grid, sigma_a=colours, spacing=1.0, eta=1.4, **known)
     np.savez_compressed(
         folder / "volume/packed.npz", sigma_s_prime=grid, sigma_a=grid, spacing=[1, 2, 3], origin=[0, 0, 1]
     )

@@ -9,8 +9,9 @@
 namespace quadgraph {
 namespace {
 
-constexpr double decades = 1e3;               // of a logarithmic bar
-constexpr double brightest_quantile = 0.995;  // a few elements at sharp edges are far above the rest
+constexpr double decades = 1e3;                          // of a logarithmic bar
+constexpr double brightest_quantile = 0.995;             // a few elements at sharp edges are far above the rest
+constexpr double least_percent = 1, most_percent = 100;  // of deviations, the same for all bodies
 
 const std::string power_unit = "W/mm²";
 
@@ -173,18 +174,47 @@ Inside level_surface(const InsideInput& input, const Show& show) {
   return inside;
 }
 
+// Of values at the vertices of level 0.
+Inside vertices_on_plane(const InsideInput& input, const Show& show, const Legend& legend,
+                         const std::vector<float>& values) {
+  const Level& level = input.graph.levels()[0];
+  Inside inside{.legend = legend, .plane = plane_of(input, show)};
+  const std::vector<float> places = placed(legend, values);
+  add_cuts(inside.mesh, vertices_of(input, 0), level.tets, inside.plane, false, [&](std::uint32_t t) {
+    const glm::uvec4& tet = level.tets[t];
+    return glm::vec4(places[tet.x], places[tet.y], places[tet.z], places[tet.w]);
+  });
+  add_rest(input, inside.mesh);
+  return inside;
+}
+
+Inside deviation_on_plane(const InsideInput& input, const Show& show) {
+  const bool of_absorption = show.quantity == Quantity::sigma_a_deviation;
+  std::vector<float> percent = of_absorption ? input.deviations.sigma_a : input.deviations.sigma_s_prime;
+  if (percent.empty()) {
+    throw InputError("show " + std::string(name_of(show.quantity)) +
+                     ": no deviations in this material; those that 'quadgraph acquire' writes (.npz) have them");
+  }
+  for (float& value : percent) value *= 100;
+  const Legend legend{.title = "standard deviation of " + std::string(of_absorption ? "sigma_a" : "sigma_s'"),
+                      .unit = "%",
+                      .low = least_percent,
+                      .high = most_percent,
+                      .logarithmic = true};
+  return vertices_on_plane(input, show, legend, percent);
+}
+
 // Per carrier: at the vertices for elements, else at the nodes, those inside the tets first.
 Inside phi_on_plane(const InsideInput& input, const Show& show) {
   if (input.report.finest != 0) throw InputError("show phi: with an error as target the finest level was not solved");
   const Level& level = input.graph.levels()[0];
   const std::vector<float> phi = means(input.simulation.phi());
-  Inside inside{.legend = legend_of("fluence φ", power_unit, phi, true), .plane = plane_of(input, show)};
-  const std::vector<float> places = placed(inside.legend, phi);
-  const bool at_vertices = on_vertices(input.report.method);
-  add_cuts(inside.mesh, vertices_of(input, 0), level.tets, inside.plane, false, [&](std::uint32_t t) {
-    const glm::uvec4& tet = level.tets[t];
-    return at_vertices ? glm::vec4(places[tet.x], places[tet.y], places[tet.z], places[tet.w]) : glm::vec4(places[t]);
-  });
+  const Legend legend = legend_of("fluence φ", power_unit, phi, true);
+  if (on_vertices(input.report.method)) return vertices_on_plane(input, show, legend, phi);
+  Inside inside{.legend = legend, .plane = plane_of(input, show)};
+  const std::vector<float> places = placed(legend, phi);
+  add_cuts(inside.mesh, vertices_of(input, 0), level.tets, inside.plane, false,
+           [&](std::uint32_t t) { return glm::vec4(places[t]); });
   add_rest(input, inside.mesh);
   return inside;
 }
@@ -298,6 +328,9 @@ Inside inside_of(const InsideInput& input, const Show& show) {
       return tets_on_plane(input, show);
     case Quantity::links:
       return links_at_plane(input, show);
+    case Quantity::sigma_s_prime_deviation:
+    case Quantity::sigma_a_deviation:
+      return deviation_on_plane(input, show);
     case Quantity::picture:
       break;
   }

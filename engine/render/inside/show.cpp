@@ -33,11 +33,17 @@ void parse_plane(std::string_view rest, std::string_view whole, Show& show) {
 }  // namespace
 
 const char* const show_forms =
-    "picture, q, exitance, error, difference[:METHOD], levels[:N], phi[:AXIS[,MM]], tets[:AXIS[,MM[,N]]] and "
-    "links[:AXIS[,MM[,N]]]; AXIS x, y or z, MM from the object's centre, N a level, 0 the finest";
+    "picture, q, exitance, error, difference[:METHOD], levels[:N], phi[:AXIS[,MM]], tets[:AXIS[,MM[,N]]], "
+    "links[:AXIS[,MM[,N]]], sigma_s_prime_deviation[:AXIS[,MM]] and sigma_a_deviation[:AXIS[,MM]]; AXIS x, y or z, MM "
+    "from the object's centre, N a level, 0 the finest";
 
 bool has_plane(Quantity quantity) {
-  return quantity == Quantity::phi || quantity == Quantity::tets || quantity == Quantity::links;
+  return quantity == Quantity::phi || quantity == Quantity::tets || quantity == Quantity::links ||
+         is_deviation(quantity);
+}
+
+bool is_deviation(Quantity quantity) {
+  return quantity == Quantity::sigma_s_prime_deviation || quantity == Quantity::sigma_a_deviation;
 }
 
 bool has_level(Quantity quantity) {

@@ -12,15 +12,17 @@
 namespace quadgraph {
 
 enum class Quantity {
-  picture,     // the body as it looks
-  q,           // light that enters: irradiance of the outside faces
-  exitance,    // light that leaves, scattered and not
-  error,       // estimated error of the exitance
-  difference,  // exitance by another method, less ours
-  levels,      // outside faces of a level, by the length of their edges
-  phi,         // fluence on a cutting plane
-  tets,        // the tets of a level on a cutting plane, by the length of their edges
-  links,       // nodes and links of the QuadGraph at a cutting plane
+  picture,                  // the body as it looks
+  q,                        // light that enters: irradiance of the outside faces
+  exitance,                 // light that leaves, scattered and not
+  error,                    // estimated error of the exitance
+  difference,               // exitance by another method, less ours
+  levels,                   // outside faces of a level, by the length of their edges
+  phi,                      // fluence on a cutting plane
+  tets,                     // the tets of a level on a cutting plane, by the length of their edges
+  links,                    // nodes and links of the QuadGraph at a cutting plane
+  sigma_s_prime_deviation,  // how certain sigma_s' is on a cutting plane
+  sigma_a_deviation,        // the same of sigma_a
 };
 
 template <>
@@ -35,7 +37,10 @@ struct Names<Quantity> {
        {Quantity::levels, "levels", "outside faces of a level, by their edges"},
        {Quantity::phi, "phi", "fluence on a cutting plane"},
        {Quantity::tets, "tets", "the tets of a level on a cutting plane"},
-       {Quantity::links, "links", "nodes and links of the QuadGraph at a cutting plane"}});
+       {Quantity::links, "links", "nodes and links of the QuadGraph at a cutting plane"},
+       {Quantity::sigma_s_prime_deviation, "sigma_s_prime_deviation",
+        "standard deviation of sigma_s' on a cutting plane"},
+       {Quantity::sigma_a_deviation, "sigma_a_deviation", "standard deviation of sigma_a on a cutting plane"}});
 };
 
 struct Show {
@@ -49,6 +54,7 @@ struct Show {
 };
 
 bool has_plane(Quantity quantity);
+bool is_deviation(Quantity quantity);
 bool has_level(Quantity quantity);
 
 // All that parse_show reads, for help and errors.

@@ -121,7 +121,7 @@ class Predictor:
             stage.solve()
             self._lit[number] = lights
         absorption, scattering = coefficients
-        return forward_model(stage.engine, level, (scattering, absorption), views, "sp3", None, _TOLERANCE)
+        return forward_model(stage.engine, level, (scattering, absorption, None), views, "sp3", None, _TOLERANCE)
 
     def _scene(
         self, coefficients: np.ndarray | Path, corrected: bool, lights: tuple[str, ...], camera: str

@@ -53,8 +53,9 @@ class ForwardModel:
 
     The function is the solve by linear elements with buried source and inter-reflection, and gathered radiance, without
     the transport correction and what is done for display (docs/physics.md, "Derivatives"). `Engine.forward_model` makes
-    one. Its mesh: vertices (n_v, 3) mm, tets (n_t, 4), faces (n_f, 3), counter-clockwise from outside. bounces: whether
-    light that leaves one part and enters another is in it.
+    one. Where it was solved: sigma_s_prime and sigma_a (n_t, 3) 1/mm, power (beams, 3), factors. Its mesh: vertices
+    (n_v, 3) mm, tets (n_t, 4), faces (n_f, 3), counter-clockwise from outside. bounces: whether light that leaves one
+    part and enters another is in it.
     """
 
     def __init__(self, model: core.ForwardModel, level: core.Level, bounces: bool) -> None:
@@ -64,7 +65,7 @@ class ForwardModel:
         self.vertices, self.tets, self.faces = (np.array(each) for each in (level.vertices, level.tets, level.faces))
         self.outgoing = Outgoing(*model.outgoing)
         self._parameters = Gradient(*model.parameters)
-        self.sigma_s_prime, self.sigma_a = self._parameters.sigma_s_prime, self._parameters.sigma_a
+        self.sigma_s_prime, self.sigma_a, self.power = self._parameters
 
     def __repr__(self) -> str:
         """Return the sizes in one line."""
@@ -83,7 +84,7 @@ class ForwardModel:
         Raises InputError for another shape, SolverError where a solve does not end.
         """
         own = zip(Gradient._fields, (sigma_s_prime, sigma_a, power), self._parameters, strict=True)
-        return Outgoing(*self._model.tangent(*(_as_doubles(name, at, like.shape) for name, at, like in own)))
+        return Outgoing(*self._model.tangent(*(_like(name, along, at) for name, along, at in own)))
 
     def vjp(
         self,
@@ -96,13 +97,13 @@ class ForwardModel:
         Raises InputError for another shape, SolverError where a solve does not end.
         """
         own = zip(Outgoing._fields, (exitance, unscattered, radiance), self.outgoing, strict=True)
-        return Gradient(*self._model.adjoint(*(_as_doubles(name, at, like.shape) for name, at, like in own)))
+        return Gradient(*self._model.adjoint(*(_like(name, weight, light) for name, weight, light in own)))
 
 
 def forward_model(
     engine: core.Engine,
     level: int,
-    coefficients: tuple[npt.ArrayLike | None, npt.ArrayLike | None],
+    parameters: tuple[npt.ArrayLike | None, npt.ArrayLike | None, npt.ArrayLike | None],
     views: Views | None,
     model: str,
     bounces: bool | None,
@@ -122,22 +123,26 @@ def forward_model(
     face = numbers("views: face", rays.face, "(n,) is wanted")
     if face.ndim != 1 or (face < 0).any():
         raise InputError(f"views: face: shape {face.shape} found, (n,) of numbers from 0 on is wanted")
-    scattering, absorption = (
-        None if values is None else _as_doubles(name, values, (len(levels[level].tets), 3))
-        for name, values in zip(("sigma_s_prime", "sigma_a"), coefficients, strict=True)
+    tets = len(levels[level].tets), 3
+    scattering, absorption, power = (
+        None if values is None else _as_doubles(name, values, shape)  # of beams, the engine knows how many
+        for name, values, shape in zip(Gradient._fields, parameters, (tets, tets, None), strict=True)
     )
     places = _as_doubles("views: barycentric", rays.barycentric, (len(face), 3))
     ways = _as_doubles("views: direction", rays.direction, (len(face), 3))
     rays_in = face.astype(np.uint32), places, ways
-    found = core.ForwardModel(engine, level, scattering, absorption, *rays_in, model, bounces is not False, tolerance)
+    point = scattering, absorption, power
+    found = core.ForwardModel(engine, level, *point, *rays_in, model, bounces is not False, tolerance)
     return ForwardModel(found, levels[level], bounces is not False and level in own)
 
 
-def _as_doubles(name: str, values: npt.ArrayLike | None, shape: tuple[int, ...]) -> Doubles:
-    if values is None:
-        return np.zeros(shape)
-    array = numbers(name, values, f"{shape} is wanted").astype(np.float64)
-    if array.shape != shape:
+def _like(name: str, values: npt.ArrayLike | None, other: Doubles) -> Doubles:
+    return np.zeros(other.shape) if values is None else _as_doubles(name, values, (len(other), 3))
+
+
+def _as_doubles(name: str, values: npt.ArrayLike, shape: tuple[int, int] | None) -> Doubles:
+    array = numbers(name, values, f"{shape or '(beams, 3)'} is wanted").astype(np.float64)
+    if shape is not None and array.shape != shape:
         raise InputError(f"{name}: shape {array.shape} found, {shape} is wanted")
     if not np.isfinite(array).all():
         raise InputError(f"{name}: numbers that are not finite")

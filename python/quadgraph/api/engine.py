@@ -230,6 +230,7 @@ class Engine:
         level: int = 0,
         sigma_s_prime: npt.ArrayLike | None = None,
         sigma_a: npt.ArrayLike | None = None,
+        power: npt.ArrayLike | None = None,
         views: Views | None = None,
         model: Literal["sp3", "diffusion"] = "sp3",
         bounces: bool | None = None,
@@ -238,13 +239,14 @@ class Engine:
         """Return the light that leaves as a function of coefficients and powers, with exact derivatives.
 
         Solved anew on one level of the body at rest, for the light of the last solve. sigma_s_prime, sigma_a: (n_t, 3)
-        1/mm, in place of those of the last solve; bounces: with light that leaves one part and enters another, which
-        one level of a file knows; by default on that level; tolerance: of solves and bounces. Raises InputError before
-        a solve, for a deformed body, for bounces on another level, for a ray that starts at no open face or goes into
-        the body, and for other shapes and values; SolverError where a solve does not end.
+        1/mm, in place of those of the last solve; power: (beams, 3), factors of the beams that its light is made of, in
+        the order of the lights, 1 by default; bounces: with light that leaves one part and enters another, which one
+        level of a file knows; by default on that level; tolerance: of solves and bounces. Raises InputError before a
+        solve, for a deformed body, for bounces on another level, for a ray that starts at no open face or goes into the
+        body, and for other shapes and values; SolverError where a solve does not end.
         """
-        coefficients = (sigma_s_prime, sigma_a)
-        return forward_model(self._engine, level, coefficients, views, model, bounces, tolerance)
+        parameters = (sigma_s_prime, sigma_a, power)
+        return forward_model(self._engine, level, parameters, views, model, bounces, tolerance)
 
     def _solved_inside(self) -> str:
         """The method of the last solve, if it left fluence in the tets. Raises InputError."""

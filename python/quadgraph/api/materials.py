@@ -81,6 +81,9 @@ def _numbers(value: object) -> str:
     return "/".join(map(str, value)) if isinstance(value, tuple) else str(value)
 
 
+_DEVIATIONS = ("sigma_s_prime_deviation", "sigma_a_deviation")
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class VolumeMaterial:
     """Coefficients at the middles of the cells of a grid, linear between them.
@@ -88,7 +91,8 @@ class VolumeMaterial:
     sigma_s_prime, sigma_a: (nz, ny, nx) or (nz, ny, nx, 3), 1/mm, >= 0; spacing: of cells along x, y, z, mm, or one
     number; origin: of the first cell's middle, mm, None centres the grid on the body; eta: 1 to 3. Beside the grid the
     nearest cell counts. sigma_s_prime_deviation, sigma_a_deviation: standard deviations of the coefficients'
-    logarithms, of their shapes, which `quadgraph acquire` writes and nothing is made of. Raises InputError.
+    logarithms, of their shapes, which `quadgraph acquire` writes and a picture shows on a plane (`show` of
+    `PictureOptions`). Raises InputError.
     """
 
     sigma_s_prime: npt.NDArray[np.floating]
@@ -109,12 +113,15 @@ class VolumeMaterial:
             if not (np.isfinite(cells).all() and (cells >= 0).all()):
                 raise InputError(f"{name}: negative or not finite somewhere, numbers >= 0 (1/mm) allowed")
         for name in ("sigma_s_prime", "sigma_a"):
-            deviation = getattr(self, f"{name}_deviation")
-            if deviation is not None and np.shape(deviation) != np.shape(getattr(self, name)):
-                wanted = np.shape(getattr(self, name))
+            deviation, wanted = getattr(self, f"{name}_deviation"), np.shape(getattr(self, name))
+            if deviation is None:
+                continue
+            if np.shape(deviation) != wanted:
                 raise InputError(
                     f"{name}_deviation: shape {np.shape(deviation)} found, that of {name}, {wanted}, wanted"
                 )
+            if not (np.asarray(deviation) >= 0).all():
+                raise InputError(f"{name}_deviation: negative or no number somewhere, numbers >= 0 allowed")
         if not (np.asarray(self.spacing) > 0).all() or np.shape(self.spacing) not in ((), (3,)):
             raise InputError(f"spacing: {self.spacing} found, one number or three above 0 (mm) allowed")
         if not 1 <= self.eta <= 3:
@@ -165,7 +172,9 @@ class VolumeMaterial:
         """Give it to the compiled engine. Raises InputError."""
         spacing = np.broadcast_to(np.asarray(self.spacing, float), 3).tolist()
         origin = None if self.origin is None else np.asarray(self.origin, float).tolist()
-        core.set_volume(engine, self._cells("sigma_s_prime"), self._cells("sigma_a"), spacing, origin, self.eta)
+        known = {name: self._cells(name) for name in _DEVIATIONS if getattr(self, name) is not None}
+        coefficients = self._cells("sigma_s_prime"), self._cells("sigma_a")
+        core.set_volume(engine, *coefficients, spacing, origin, self.eta, **known)
 
 
 def material_names() -> tuple[str, ...]:

@@ -1,5 +1,6 @@
 """`quadgraph volume`: an OpenVDB file as a material's .npz, or such an .npz as an OpenVDB file.
 
+Deviations of coefficients, as `quadgraph acquire` leaves them, are grids named like these with `_deviation` behind.
 Its Python module must be there: apt install python3-openvdb.
 """
 
@@ -41,18 +42,19 @@ def run(args: argparse.Namespace) -> int:
 
     suffixes = args.file.suffix.lower(), args.output.suffix.lower()
     if suffixes == (".npz", ".vdb"):
-        openvdb.write(args.file, args.output)
-        print(f"{args.output}: grids sigma_s_prime and sigma_a in mm")
+        grids = openvdb.write(args.file, args.output)
+        print(f"{args.output}: grids {', '.join(grids[:-1])} and {grids[-1]} in mm")
         return 0
     if suffixes != (".vdb", ".npz"):
         raise InputError(f"from '{args.file}' to '{args.output}': from .vdb to .npz, or back, is wanted")
     volume = openvdb.read(args.file, args.sigma_s_prime, args.sigma_a, unit_mm=UNITS_MM[args.unit], eta=args.eta)
     volume.write(args.output)
     cells, spacing = volume.sigma_s_prime.shape[2::-1], volume.spacing
+    spread = [name for name in openvdb.DEVIATIONS if name in volume.members()]
     print(
         f"{args.output}: {' x '.join(map(str, cells))} cells of {' x '.join(f'{s:.4g}' for s in spacing)} mm, "
         f"sigma_s_prime up to {volume.sigma_s_prime.max():.4g}, sigma_a up to {volume.sigma_a.max():.4g} 1/mm, "
-        f"eta {volume.eta:g}"
+        f"eta {volume.eta:g}" + "".join(f", with {name}" for name in spread)
     )
     return 0
 

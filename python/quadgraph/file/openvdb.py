@@ -24,8 +24,9 @@ from quadgraph.file import npz
 
 _CHILD = Path(__file__).with_name("openvdb_child.py")
 _TIME_LIMIT_S, _MEMORY_LIMIT_BYTES = 300.0, 4 << 30
-# Deviations of coefficients that were acquired are read, and not written.
-_MEMBERS = ("sigma_s_prime", "sigma_a", "spacing", "origin", "eta", "sigma_s_prime_deviation", "sigma_a_deviation")
+COEFFICIENTS = ("sigma_s_prime", "sigma_a")
+DEVIATIONS = ("sigma_s_prime_deviation", "sigma_a_deviation")
+_MEMBERS = (*COEFFICIENTS, "spacing", "origin", "eta", *DEVIATIONS)
 _REFUSED = 2  # its exit status where a file does not serve
 
 
@@ -64,53 +65,71 @@ class Field:
 
 @dataclass(frozen=True)
 class Volume:
-    """sigma_s_prime, sigma_a (nz, ny, nx) or (nz, ny, nx, 3), 1/mm; spacing, origin (3,), mm; as a material's .npz."""
+    """sigma_s_prime, sigma_a (nz, ny, nx) or (nz, ny, nx, 3), 1/mm; spacing, origin (3,), mm; as a material's .npz.
+
+    The deviations are those of the logarithms, of the coefficients' shapes, or None where they are not known.
+    """
 
     sigma_s_prime: np.ndarray
     sigma_a: np.ndarray
     spacing: np.ndarray
     origin: np.ndarray
     eta: float
+    sigma_s_prime_deviation: np.ndarray | None = None
+    sigma_a_deviation: np.ndarray | None = None
 
     def write(self, path: Path) -> None:
         """Write the .npz atomically. Raises InputError."""
         with replacing(path) as stream:
-            np.savez_compressed(stream, **vars(self))
+            np.savez_compressed(stream, **self.members())
+
+    def members(self) -> dict[str, Any]:
+        """The members of the .npz, without what is not known."""
+        return {name: value for name, value in vars(self).items() if value is not None}
 
 
 def read(path: Path, sigma_s_prime: Field, sigma_a: Field, *, unit_mm: float = 1.0, eta: float | None = None) -> Volume:
     """Read a .vdb, whose unit of length is `unit_mm`, on the box around what is active in the grids that are named.
 
-    `eta`: left out, what the file says, or the usual. Raises InputError naming the file, ToolError without the library.
+    A grid NAME_deviation, where there is one, has the deviations of the logarithm of what comes from the grid NAME: a
+    factor leaves them as they are. `eta`: left out, what the file says, or the usual. Raises InputError naming the
+    file, ToolError without the library.
     """
     fields = {"sigma_s_prime": sigma_s_prime, "sigma_a": sigma_a}
     names = [field.grid for field in fields.values() if field.grid is not None]
     if not names:
         raise InputError(f"{path}: a coefficient must come from one of its grids")
+    beside = [f"{name}_deviation" for name in names]
     with workspace() as directory:
         output = directory / "grids.npz"
-        _run(path, ["read", str(_readable(path)), str(output), *names], directory)
+        _run(path, ["read", str(_readable(path)), str(output), str(len(names)), *names, *beside], directory)
         with np.load(output) as stored:
-            grids = {name: stored[f"grid{number}"] for number, name in enumerate(names)}
+            numbered = {name: f"grid{number}" for number, name in enumerate(names + beside)}
+            grids = {name: stored[number] for name, number in numbered.items() if number in stored}
             spacing, origin = stored["spacing"] * unit_mm, stored["origin"] * unit_mm
             index = eta if eta is not None else float(stored["eta"]) if "eta" in stored else DEFAULT_ETA
     shape = next(iter(grids.values())).shape[:3]
     found = {name: _coefficient(path, name, field, grids, shape) for name, field in fields.items()}
+    for name, field in fields.items():
+        if (spread := grids.get(f"{field.grid}_deviation")) is not None:
+            found[f"{name}_deviation"] = _deviation(path, f"{field.grid}_deviation", spread, found[name])
     return Volume(**found, spacing=spacing, origin=origin, eta=index)
 
 
-def write(source: Path, path: Path) -> None:
-    """Write the .npz of a material as grids `sigma_s_prime` and `sigma_a`, in mm. Raises as `read`."""
+def write(source: Path, path: Path) -> list[str]:
+    """Write the .npz of a material as grids of the names that it has, in mm, and return these. Raises as `read`."""
     volume = _stored(source)
     with replacing(path) as stream, workspace() as directory:
         given, made = directory / "arrays.npz", directory / "grids.vdb"
         turned: dict[str, Any] = {
             name: np.ascontiguousarray(np.swapaxes(values, 0, 2), np.float32)
-            for name, values in (("sigma_s_prime", volume.sigma_s_prime), ("sigma_a", volume.sigma_a))
+            for name, values in volume.members().items()
+            if name in (*COEFFICIENTS, *DEVIATIONS)
         }
         np.savez(given, spacing=volume.spacing, origin=volume.origin, eta=volume.eta, **turned)
         _run(source, ["write", str(given), str(made)], directory)
         stream.write(made.read_bytes())
+    return list(turned)
 
 
 def _run(path: Path, arguments: list[str], directory: Path) -> None:
@@ -140,6 +159,18 @@ def _coefficient(path: Path, name: str, field: Field, grids: dict[str, np.ndarra
     return np.ascontiguousarray(np.swapaxes(values, 0, 2), np.float32)
 
 
+def _deviation(path: Path, name: str, values: np.ndarray, coefficient: np.ndarray) -> np.ndarray:
+    """Of an array that has x first, in the shape of its coefficient."""
+    spread = np.swapaxes(values, 0, 2)
+    if spread.ndim < coefficient.ndim:
+        spread = np.repeat(spread[..., None], 3, axis=3)
+    if spread.shape != coefficient.shape:
+        raise InputError(f"{path}: grid '{name}': vec3s found, float is wanted, as its coefficient is")
+    if not (spread >= 0).all():
+        raise InputError(f"{path}: grid '{name}' is negative or no number somewhere")
+    return np.ascontiguousarray(spread, np.float32)
+
+
 def _stored(path: Path) -> Volume:
     try:
         arrays = npz.read(path, _MEMBERS)
@@ -150,6 +181,10 @@ def _stored(path: Path) -> Volume:
             raise ValueError(f"shapes {scattering.shape} and {absorption.shape}")
         middle = -0.5 * spacing * (np.array(scattering.shape[2::-1]) - 1)
         origin = np.asarray(arrays.get("origin", middle), np.float64)
-        return Volume(scattering, absorption, spacing, origin, float(arrays.get("eta", DEFAULT_ETA)))
+        spread = [arrays.get(name) for name in DEVIATIONS]
+        for deviation, of in zip(spread, (scattering, absorption), strict=True):
+            if deviation is not None and deviation.shape != of.shape:
+                raise ValueError(f"deviations of shape {deviation.shape} and coefficients of {of.shape}")
+        return Volume(scattering, absorption, spacing, origin, float(arrays.get("eta", DEFAULT_ETA)), *spread)
     except (KeyError, ValueError, TypeError) as error:
         raise InputError(f"{path}: no volume of sigma_s_prime, sigma_a and spacing: {error}") from error

@@ -1,8 +1,9 @@
 """A program for a Python that has OpenVDB's module: grids of a .vdb as an .npz of dense arrays, and back.
 
-Runs as a file of its own, apart from QuadGraph: `read FILE.vdb OUT.npz GRID...`, `write IN.npz FILE.vdb`. Arrays have
-x first; `min` is the index of the first cell, `origin` the place of its middle and `spacing` that from cell to cell in
-the file's unit. Exits with 2 and one line that says why where a file does not serve.
+Runs as a file of its own, apart from QuadGraph: `read FILE.vdb OUT.npz COUNT GRID...`, where only the first COUNT grids
+must be there, and `write IN.npz FILE.vdb`. Arrays have x first; `origin` is the place of the first
+cell's middle and `spacing` that from cell to cell, in the file's unit. Exits with 2 and one line that says why where a
+file does not serve.
 """
 
 import sys
@@ -29,17 +30,17 @@ def why(error):
     return text or type(error).__name__
 
 
-def opened(path, names):
-    """Return the grids of those names."""
+def opened(path, names, count):
+    """Return the grids of those names by their numbers; those after the first `count` may be missing."""
     try:
         found = {grid.name: grid for grid in openvdb.readAllGridMetadata(path)}
     except Exception as error:
         refuse(f"no whole OpenVDB file: {why(error)}")
-    for name in names:
+    for name in names[:count]:
         if name not in found:
             refuse(f"grid '{name}' not found, there are {', '.join(sorted(found)) or 'none'}")
     try:
-        return [openvdb.read(path, name) for name in names]
+        return {number: openvdb.read(path, name) for number, name in enumerate(names) if name in found}
     except Exception as error:
         refuse(f"cannot be read: {why(error)}")
 
@@ -56,11 +57,11 @@ def spacing_of(grid):
     return spacing, zero
 
 
-def read(path, output, names):
+def read(path, output, count, names):
     """Dense arrays over the box around what is active in any of the grids."""
-    grids = opened(path, names)
+    grids = opened(path, names, count)
     boxes, spacings, zeros = [], [], []
-    for grid in grids:
+    for grid in grids.values():
         if grid.valueTypeName not in ("float", "vec3s"):
             refuse(f"grid '{grid.name}': values of type {grid.valueTypeName}, allowed are float and vec3s")
         if grid.gridClass == openvdb.GridClass.LEVEL_SET:
@@ -80,7 +81,7 @@ def read(path, output, names):
     if np.prod(cells, dtype=float) > MOST_CELLS:
         refuse(f"{cells[0]} x {cells[1]} x {cells[2]} cells found, {MOST_CELLS} allowed in all: resample it")
     found = {}
-    for number, grid in enumerate(grids):
+    for number, grid in grids.items():
         shape = tuple(cells.tolist()) + ((3,) if grid.valueTypeName == "vec3s" else ())
         found[f"grid{number}"] = np.zeros(shape, np.float32)
         grid.copyToArray(found[f"grid{number}"], ijk=tuple(low.tolist()))
@@ -96,8 +97,9 @@ def write(source, path):
     x, y, z = arrays["spacing"].tolist()
     matrix = [[x, 0, 0, 0], [0, y, 0, 0], [0, 0, z, 0], [*arrays["origin"].tolist(), 1]]
     grids = []
-    for name in ("sigma_s_prime", "sigma_a"):
-        values = arrays[name]
+    for name, values in arrays.items():
+        if not name.startswith("sigma"):
+            continue
         grid = openvdb.FloatGrid() if values.ndim == 3 else openvdb.Vec3SGrid()
         grid.copyFromArray(values)
         accessor = grid.getAccessor()
@@ -113,6 +115,6 @@ def write(source, path):
 
 if __name__ == "__main__":
     if sys.argv[1] == "read":
-        read(sys.argv[2], sys.argv[3], sys.argv[4:])
+        read(sys.argv[2], sys.argv[3], int(sys.argv[4]), sys.argv[5:])
     else:
         write(*sys.argv[2:])

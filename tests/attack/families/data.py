@@ -54,6 +54,7 @@ def grid(**changed: object) -> dict[str, np.ndarray]:
     """The fields of a volume around the ring."""
     fields: dict[str, object] = {"sigma_s_prime": np.full((6, 8, 8), 2.0), "sigma_a": np.full((6, 8, 8), 0.01)}
     fields |= {"spacing": 4.0, "origin": np.array([-14.0, -14.0, -10.0]), "eta": 1.4}
+    fields["sigma_a_deviation"] = np.full((6, 8, 8), 0.1)
     return {name: np.asarray(value) for name, value in (fields | changed).items() if value is not None}
 
 
@@ -137,7 +138,8 @@ def archives(rng: Rng) -> Case:
 
 def values(rng: Rng) -> Case:
     """Coefficients, spacings and places that are none, or of any size."""
-    key, value = texts.pick(rng, ["sigma_s_prime", "sigma_a", "spacing", "origin", "eta"]), texts.extreme(rng)
+    keys = ["sigma_s_prime", "sigma_a", "spacing", "origin", "eta", "sigma_a_deviation"]
+    key, value = texts.pick(rng, keys), texts.extreme(rng)
     fields = {name: np.array(array, float) for name, array in grid().items()}
     fields[key].reshape(-1)[int(rng.integers(fields[key].size)) if rng.integers(2) else slice(None)] = value
     return using(rng, f"npz, {key} {value:.3g}", "v.npz", volume(**fields))
@@ -146,7 +148,7 @@ def values(rng: Rng) -> Case:
 def shapes(rng: Rng) -> Case:
     """Fields of other shapes and kinds, missing or too many; some are good."""
     shape = tuple(int(n) for n in rng.integers(1, 7, int(rng.integers(0, 6))))
-    key = texts.pick(rng, ["sigma_s_prime", "sigma_a", "spacing", "origin", "eta", "foreign"])
+    key = texts.pick(rng, [*grid(), "foreign"])
     kind = texts.pick(rng, ["<f4", "<f8", ">f8", "<f2", "<i4", "|b1", "<c16", "<U3"])
     value = None if rng.integers(6) == 0 else np.ones(shape).astype(kind)
     return using(

@@ -336,11 +336,11 @@ TEST_CASE("wrong sizes and values are refused by name") {
   Parameters few = at, negative = at;
   few.absorption.pop_back();
   negative.scattering[3].y = -1;
-  CHECK_THROWS_WITH(ForwardModel(level, few, lights.beams, {}, {}), doctest::Contains("absorption: 47 entries"));
-  CHECK_THROWS_WITH(ForwardModel(level, negative, lights.beams, {}, {}), doctest::Contains("scattering[3]: -1"));
+  CHECK_THROWS_WITH(ForwardModel(level, few, lights.beams, {}, {}), doctest::Contains("sigma_a: 47 entries"));
+  CHECK_THROWS_WITH(ForwardModel(level, negative, lights.beams, {}, {}), doctest::Contains("sigma_s_prime[3]: -1"));
   CHECK_THROWS_WITH(ForwardModel(level, at, {}, {}, {}), doctest::Contains("power: 3 entries"));
   const ForwardModel model(level, at, lights.beams, {}, {});
-  CHECK_THROWS_WITH(model.tangent(few), doctest::Contains("absorption: 47 entries"));
+  CHECK_THROWS_WITH(model.tangent(few), doctest::Contains("sigma_a: 47 entries"));
   CHECK_THROWS_WITH(model.adjoint(Outgoing(1, 0)), doctest::Contains("exitance: 1 entries"));
   const auto refused = [&](const ViewSample& sample) { ForwardModel(level, at, lights.beams, {sample}, {}); };
   const glm::dvec3 out = frame_of(level, 0).normal, third(1.0 / 3);
@@ -349,5 +349,5 @@ TEST_CASE("wrong sizes and values are refused by name") {
   CHECK_THROWS_WITH(refused({0, third, -out}), doctest::Contains("samples[0]: a direction into the body"));
   Parameters dense = at;
   dense.absorption[2].z = 2e6;
-  CHECK_THROWS_WITH(ForwardModel(level, dense, lights.beams, {}, {}), doctest::Contains("absorption[2]: 2000000"));
+  CHECK_THROWS_WITH(ForwardModel(level, dense, lights.beams, {}, {}), doctest::Contains("sigma_a[2]: 2000000"));
 }

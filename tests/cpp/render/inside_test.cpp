@@ -34,12 +34,12 @@ double area_of(const FalseMesh& mesh) {
 
 TEST_CASE("what is to be shown reads back") {
   for (const char* text : {"picture", "q", "exitance", "error", "difference:quadgraph-fv", "levels:1", "phi:x,12.5",
-                           "tets:y,-3,1", "links:z,0,0"}) {
+                           "tets:y,-3,1", "links:z,0,0", "sigma_s_prime_deviation:x,0", "sigma_a_deviation:z,-1.5"}) {
     CHECK(to_string(parse_show(text)) == text);
   }
   CHECK(parse_show("phi").axis == 2);
-  for (const char* text :
-       {"", "fluence", "phi:w", "phi:x,1,2", "levels:x", "levels:-1", "q:x", "tets:z,0,0,0", "difference:magic"}) {
+  for (const char* text : {"", "fluence", "phi:w", "phi:x,1,2", "levels:x", "levels:-1", "q:x", "tets:z,0,0,0",
+                           "difference:magic", "sigma_a_deviation:z,0,1"}) {
     CHECK_THROWS_AS(parse_show(text), InputError);
   }
 }
@@ -82,6 +82,8 @@ TEST_CASE("a colour bar has round numbers inside it") {
 TEST_CASE("every view of the inside shows the body and names its unit; a picture comes back unchanged after them") {
   Engine engine(cube, test_device());
   engine.set_material("sigma_s_prime=2,sigma_a=0.1,eta=1.4");
+  const std::size_t vertices = engine.graph().levels()[0].vertex_count();
+  engine.set_deviations({std::vector<float>(vertices, 0.2f), std::vector<float>(vertices, 0.1f)});
   engine.set_lights({parse_light("directional:0,0,-1:1")});
   engine.solve();
   const View view{.azimuth = 25, .elevation = 20};
@@ -119,4 +121,36 @@ TEST_CASE("the lit face of a cube is yellow in q, the others are at the dark end
   };
   CHECK(glm::distance(middle(0), gpu::mapped_colour(1, 0)) < 0.03f);
   CHECK(glm::distance(middle(180), gpu::mapped_colour(0, 0)) < 0.03f);
+}
+
+TEST_CASE("deviations have the colours of their percent on the plane, and go with the material") {
+  Engine engine(cube, test_device());
+  const std::string material = "sigma_s_prime=2,sigma_a=0.1,eta=1.4";
+  engine.set_material(material);
+  engine.set_lights({parse_light("directional:0,0,-1:1")});
+  engine.solve();
+  RenderOptions options{.width = 64, .height = 64, .show = {.quantity = Quantity::sigma_a_deviation}};
+  const auto middle = [&] {
+    const Picture picture = engine.render({.azimuth = 0, .elevation = 0}, options);
+    const float* rgb = &picture.scattered[3 * (32 * 64 + 32)];
+    return glm::vec3(rgb[0], rgb[1], rgb[2]);
+  };
+  const auto no_deviations =
+      "show sigma_a_deviation: no deviations in this material; those that 'quadgraph acquire' "
+      "writes (.npz) have them";
+  CHECK_THROWS_WITH_AS(middle(), no_deviations, InputError);
+  const std::size_t vertices = engine.graph().levels()[0].vertex_count();
+  const auto all = [&](float value) { return std::vector<float>(vertices, value); };
+  engine.set_deviations({all(2), all(0.1f)});
+  CHECK(engine.has_deviations());
+  CHECK(glm::distance(middle(), gpu::mapped_colour(0.5f, 0)) < 0.01f);  // 10% between 1 and 100
+  options.show.quantity = Quantity::sigma_s_prime_deviation;
+  CHECK(glm::distance(middle(), gpu::mapped_colour(1, 0)) < 0.01f);  // beyond the bar
+  CHECK_THROWS_AS(engine.set_deviations({all(1), {1.0f}}), InputError);
+  CHECK(engine.has_deviations());
+  engine.set_material(material);
+  CHECK_FALSE(engine.has_deviations());
+  engine.solve();
+  options.show.quantity = Quantity::sigma_a_deviation;
+  CHECK_THROWS_WITH_AS(middle(), no_deviations, InputError);
 }

@@ -93,6 +93,17 @@ def test_exitance_grows_with_power_and_is_linear_in_it(engine):
     assert both.exitance == pytest.approx(model.outgoing.exitance, rel=1e-9)
 
 
+def test_light_is_solved_for_the_powers_that_are_given(engine):
+    """Both by the same factor change what leaves by it; by different ones it still grows with both."""
+    once, factor = engine.forward_model(), np.array([1.5, 0.5, 2])
+    assert (once.power == 1).all()
+    both = engine.forward_model(power=np.tile(factor, (2, 1)))
+    assert both.outgoing.exitance == pytest.approx(factor * once.outgoing.exitance, rel=1e-6)
+    apart = engine.forward_model(power=[[1.5, 0.5, 2], [0.25, 3, 1]])
+    assert apart.jvp(power=apart.power).exitance == pytest.approx(apart.outgoing.exitance, rel=1e-6)
+    assert not np.allclose(apart.outgoing.exitance, factor * once.outgoing.exitance, rtol=0.01)
+
+
 def test_bounces_are_on_the_level_that_knows_what_its_faces_see(tmp_path):
     """Two balls, one of which shines on the other; of small levels it is the finest."""
     levels = [join(ball, moved(ball, 18, 0, 0)) for ball in (icosphere(2, 8), icosphere(1, 8))]
@@ -114,6 +125,9 @@ def test_bounces_are_on_the_level_that_knows_what_its_faces_see(tmp_path):
         ({"tolerance": 0.0}, "tolerance: 0 found"),
         ({"sigma_a": np.ones((3, 3))}, r"sigma_a: shape \(3, 3\) found"),
         ({"sigma_a": "much"}, "sigma_a: text found"),
+        ({"sigma_s_prime": -1}, r"sigma_s_prime: shape \(\) found"),
+        ({"power": np.ones((3, 3))}, r"power: shape \(3, 3\), expected \(2, 3\)"),
+        ({"power": -np.ones((2, 3))}, r"power\[0\]: -1.0+, allowed is 0 to"),
         ({"model": "p9"}, "p9"),
         ({"views": quadgraph.Views([0], [[0, 0, 0]], [[1, 0, 0]])}, "samples\\[0\\]: a direction into the body"),
         ({"views": quadgraph.Views([10**6], [[0, 0, 1]], [[1, 0, 0]])}, "samples\\[0\\]: face 1000000"),

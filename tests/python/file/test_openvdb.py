@@ -68,6 +68,44 @@ def test_without_an_origin_the_grid_is_centred_on_zero(python, tmp_path):
         assert np.allclose(found["origin"], [-5, -3, -4])
 
 
+def test_deviations_go_there_and_back(python, tmp_path, capsys):
+    """Of both coefficients, or of one; where a coefficient has colours, so have its deviations."""
+    random = np.random.default_rng(2)
+    kept = {
+        "sigma_s_prime": random.uniform(0, 3, SHAPE),
+        "sigma_a": random.uniform(0, 0.1, (*SHAPE, 3)),
+        "sigma_a_deviation": random.uniform(0, 2, (*SHAPE, 3)),
+    }
+    kept["sigma_a_deviation"][0] = np.inf  # not known at all
+    kept["sigma_a_deviation"][-1] = 0
+    for more in ({}, {"sigma_s_prime_deviation": random.uniform(0, 0.2, SHAPE)}):
+        arrays = {name: values.astype(np.float32) for name, values in (kept | more).items()}
+        np.savez(tmp_path / "a.npz", **arrays, spacing=1.5)
+        assert cli.main(["volume", str(tmp_path / "a.npz"), "-o", str(tmp_path / "a.vdb")]) == 0
+        assert all(name in capsys.readouterr().out for name in more)
+        assert cli.main(["volume", str(tmp_path / "a.vdb"), "-o", str(tmp_path / "b.npz")]) == 0
+        assert "with sigma_a_deviation" in capsys.readouterr().out
+        with np.load(tmp_path / "b.npz") as found:
+            assert set(found) == {*arrays, "spacing", "origin", "eta"}
+            assert all(np.array_equal(found[name], values) for name, values in arrays.items())
+
+
+def test_a_factor_leaves_the_deviations_of_a_logarithm_as_they_are(python, tmp_path):
+    spread = DENSITY.replace('"density"', '"density_deviation"').replace("+ 1", "/ 10")
+    vdb = made(python, tmp_path / "a.vdb", DENSITY + spread)
+    options = ["--sigma-s-prime", "density*2", "--sigma-a", "density*.1/.2/.4"]
+    assert cli.main(["volume", str(vdb), *options, "-o", str(tmp_path / "a.npz")]) == 0
+    wanted = np.arange(24, dtype=np.float32).reshape(2, 3, 4).transpose(2, 1, 0) / 10
+    with np.load(tmp_path / "a.npz") as found:
+        assert np.allclose(found["sigma_s_prime_deviation"], wanted)
+        assert np.allclose(found["sigma_a_deviation"], wanted[..., None])
+        assert found["sigma_a_deviation"].shape == found["sigma_a"].shape
+    options = ["--sigma-s-prime", "density", "--sigma-a", ".03"]
+    assert cli.main(["volume", str(vdb), *options, "-o", str(tmp_path / "a.npz")]) == 0
+    with np.load(tmp_path / "a.npz") as found:
+        assert "sigma_a_deviation" not in found
+
+
 def test_a_density_times_numbers_is_what_a_body_is_made_of(python, tmp_path, capsys):
     vdb = made(python, tmp_path / "smoke.vdb", DENSITY)
     output = tmp_path / "smoke.npz"
@@ -99,6 +137,12 @@ def test_a_density_times_numbers_is_what_a_body_is_made_of(python, tmp_path, cap
         ("grids.append(vdb.createLevelSetSphere(3.0))\ngrids[0].name = 'density'", "level set"),
         ("grids.append(vdb.FloatGrid())\ngrids[0].name = 'density'", "is empty"),
         ("grids.append(vdb.BoolGrid())\ngrids[0].name = 'density'", "values of type bool"),
+        (DENSITY + "grids.append(grid.deepCopy())\ngrids[1].name = 'density_deviation'\n"
+         "grids[1].fill((0, 0, 0), (1, 1, 1), -1)",
+         "grid 'density_deviation' is negative"),
+        (DENSITY + "grids.append(vdb.Vec3SGrid())\ngrids[1].copyFromArray(np.ones((2, 3, 4, 3), 'f4'))\n"
+         "grids[1].transform = grid.transform\ngrids[1].name = 'density_deviation'",
+         "grid 'density_deviation': vec3s found, float is wanted"),
         (DENSITY + "grid.getAccessor().setValueOn((9999, 9999, 9999))", "allowed in all"),
     ],
 )  # fmt: skip
@@ -126,7 +170,7 @@ def test_damaged_files_are_refused(python, tmp_path, capsys):
     assert "none.vdb: cannot be read" in capsys.readouterr().err
     (tmp_path / "b.npz").write_bytes(b"nothing")
     assert cli.main(["volume", str(tmp_path / "b.npz"), "-o", str(tmp_path / "b.vdb")]) == 1
-    assert "b.npz: no volume of" in capsys.readouterr().err
+    assert "b.npz: cannot be read as .npz" in capsys.readouterr().err
     assert list(tmp_path.glob("*.npz")) == [tmp_path / "b.npz"]
 
 
