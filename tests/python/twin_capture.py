@@ -17,6 +17,7 @@ from quadgraph.mesh.surface import Surface
 from shapes import icosphere, write_obj
 
 ETA = 1.3
+TRUTH = {"sigma_a": [0.006, 0.02, 0.05], "sigma_s_prime": [1.1, 0.7, 0.9]}
 CAMERAS = {
     "front": {"eye": [20, 20, 110], "look_at": [0, 0, 0], "fov": 24, "width": 40, "height": 40},
     "back": {"eye": [-70, 10, -80], "look_at": [0, 0, 0], "fov": 24, "width": 40, "height": 40},

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -50,6 +50,7 @@ class Predictor:
         """
         self._capture = capture
         self._body = body
+        self._engine = (device, validation)
         wanted = [(each.lights, each.camera) for each in capture.photographs]
         self._solves: dict[tuple[str, ...], list[str]] = {}
         for lights, camera in dict.fromkeys(wanted):
@@ -58,6 +59,10 @@ class Predictor:
         self._stages = [core.Stage(device, validation) for _ in range(min(len(self._solves), _STAGES))]
         self._lit: list[tuple[str, ...] | None] = [None] * len(self._stages)  # by what each was solved last
         self.notes: list[str] = []  # what the engine says against its last answers, each once
+
+    def of(self, capture: Capture) -> Predictor:
+        """The same body and device with another capture of it."""
+        return Predictor(capture, self._body, *self._engine)
 
     @property
     def solves(self) -> int:
@@ -72,8 +77,14 @@ class Predictor:
     @property
     def size_mm(self) -> float:
         """The middle one of the three sides of the box around the body."""
+        low, high = self.box_mm
+        return float(np.median(high - low))
+
+    @property
+    def box_mm(self) -> np.ndarray:
+        """(2, 3) the box around the body as it lies in its file."""
         vertices = self.graph.display["vertices"]
-        return float(np.median(vertices.max(axis=0) - vertices.min(axis=0)))
+        return np.array([vertices.min(axis=0), vertices.max(axis=0)])
 
     def predict(
         self, coefficients: np.ndarray | Path, corrected: bool, tell: Callable[[], None] = lambda: None
@@ -183,18 +194,46 @@ def _bands(radiance: np.ndarray) -> np.ndarray:
     return bands
 
 
-def check_seen(capture: Capture, pictures: list[Predicted]) -> None:
-    """Raise InputError for a photograph whose camera does not see the body, or sees nothing of it that is lit."""
+def check_seen(capture: Capture, box_mm: np.ndarray, pictures: list[Predicted]) -> None:
+    """Raise InputError for a photograph whose camera does not see the body, or sees nothing of it that is lit.
+
+    box_mm: (2, 3), around the body as it lies in its file.
+    """
     for stated, picture in zip(capture.photographs, pictures, strict=True):
         where = f"{capture.path}: {stated.path}"
         covered = picture.alpha > 0.999
         if covered.sum() < 16:
+            eye = capture.cameras[stated.camera].get("eye")
+            inside = _inside(f"cameras.{stated.camera}.eye", eye, box_mm) if eye else ""
             raise InputError(
                 f"{where}.camera: the body covers {int(covered.sum())} pixels of '{stated.camera}', allowed are 16 or "
-                "more; check body, unit (mm), deformation, and the camera's places (mm)"
+                f"more; {inside}check body, unit (mm), deformation, and the camera's places (mm)"
             )
         if not (picture.radiance[covered] > 0).any():
+            why = "".join(_unlit(f"lights.{name}", capture.lights[name], box_mm) for name in stated.lights)
             raise InputError(
                 f"{where}.lights: none of {', '.join(stated.lights)} brings light to what '{stated.camera}' sees; "
-                "check directions and places of the lights (mm)"
+                f"{why}check directions and places of the lights (mm)"
             )
+
+
+def _unlit(path: str, light: Mapping[str, Any], box_mm: np.ndarray) -> str:
+    """Why a light reaches nothing, where its place and its direction say it."""
+    member = next((name for name in ("position", "centre") if name in light), None)
+    if member is None:
+        return ""
+    if inside := _inside(f"{path}.{member}", light[member], box_mm):
+        return inside
+    towards = np.cross(light["u"], light["v"]) if "u" in light else light.get("direction")
+    if towards is not None and np.dot(towards, box_mm.mean(axis=0) - light[member]) <= 0:
+        what = "u x v" if "u" in light else "direction"
+        return f"{path} shines away from the body, by its {what}: one of its axes may be flipped; "
+    return ""
+
+
+def _inside(path: str, place: Sequence[float], box_mm: np.ndarray) -> str:
+    """Whether a place lies within the box around the body, in words."""
+    if not ((place > box_mm[0]) & (place < box_mm[1])).all():
+        return ""
+    found, sides = (", ".join(f"{x:.4g}" for x in each) for each in (place, box_mm[1] - box_mm[0]))
+    return f"{path}, [{found}] mm, lies inside the box around the body, whose sides are [{sides}] mm: units differ; "
