@@ -23,8 +23,7 @@ from quadgraph.base.progress import ProgressCallback
 
 FAR = 4.0  # chi^2 per degree of freedom, from which on photographs and predictions disagree
 _MOST = 12  # photographs that are looked into, the worst
-_ENOUGH = 2.0  # cost per value, below which no dearer suspects are looked into
-_MUCH = 0.25  # of what the capture as it is leaves, which is enough, too
+_ENOUGH = 3.0  # cost per value, below which no dearer suspects are looked into
 _LEFT = 0.6  # of the cost, that a cause leaves at most of the photographs that it is about
 _AS_GOOD = 1.3  # times the least cost, up to which another cause is as probable
 _SAID = 3  # causes
@@ -33,6 +32,7 @@ _OUTER = ("blurred", "raised", "size", "moved")  # kinds that only outlines may 
 _STAGES: tuple[Callable[[Bank], Iterator[Suspect]], ...] = (
     suspects.suspects,
     camera_suspects.of_cameras,
+    scene_suspects.of_rooms,
     scene_suspects.of_lights,
     scene_suspects.of_places,
     scene_suspects.of_bodies,
@@ -107,9 +107,8 @@ def _worst(problem: Problem, found: Fit, predictor: Predictor) -> Bank:
 def _causes(bank: Bank, disagree: bool) -> list[str]:
     """The most probable causes, those that explain about as much as the best; none where none explains much."""
     tried = [_Tried(Suspect("", {}, 1.0, ""), bank.cost({}))]
-    enough = max(_ENOUGH, _MUCH * tried[0].cost)
     for number, stage in enumerate(_STAGES if disagree else _STAGES[:_CHEAP]):
-        if number >= _CHEAP and min(each.cost for each in tried) < enough:
+        if number >= _CHEAP and min(each.cost for each in tried) < _ENOUGH:
             break
         some = (each for each in stage(bank) if disagree or each.kind in _OUTER)
         tried += [_Tried(each, each.handicap * bank.cost(each.otherwise)) for each in some]

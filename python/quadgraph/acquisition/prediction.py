@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -48,21 +49,26 @@ class Predictor:
         """body: the baked file; device, validation: as `Stage` has them. Raises FormatError, InputError,
         DeviceError.
         """
-        self._capture = capture
         self._body = body
-        self._engine = (device, validation)
+        self._take(capture)
+        # One for each set of lights keeps what depends on lights alone, which is most of an uncorrected solve.
+        self._stages = [core.Stage(device, validation) for _ in range(min(len(self._solves), _STAGES))]
+        # By which capture and lights each was solved last.
+        self._lit: list[tuple[Capture, tuple[str, ...]] | None] = [None] * len(self._stages)
+
+    def _take(self, capture: Capture) -> None:
+        self._capture = capture
         wanted = [(each.lights, each.camera) for each in capture.photographs]
         self._solves: dict[tuple[str, ...], list[str]] = {}
         for lights, camera in dict.fromkeys(wanted):
             self._solves.setdefault(lights, []).append(camera)
-        # One for each set of lights keeps what depends on lights alone, which is most of an uncorrected solve.
-        self._stages = [core.Stage(device, validation) for _ in range(min(len(self._solves), _STAGES))]
-        self._lit: list[tuple[str, ...] | None] = [None] * len(self._stages)  # by what each was solved last
         self.notes: list[str] = []  # what the engine says against its last answers, each once
 
     def of(self, capture: Capture) -> Predictor:
-        """The same body and device with another capture of it."""
-        return Predictor(capture, self._body, *self._engine)
+        """Another capture of the same body, by the same engines."""
+        other = copy.copy(self)
+        other._take(capture)
+        return other
 
     @property
     def solves(self) -> int:
@@ -103,7 +109,7 @@ class Predictor:
                 stage.show(self._scene(coefficients, corrected, lights, camera))
                 if report is None:
                     report = stage.solve()
-                    self._lit[number % len(self._stages)] = lights
+                    self._lit[number % len(self._stages)] = self._capture, lights
                     self._note(report)
                 found[lights, camera] = _predicted(stage.render(), report)
             if messages := stage.engine.validation_messages:
@@ -127,10 +133,11 @@ class Predictor:
         """What leaves a level under lights as a function of coefficients: sigma_a and sigma_s_prime of its tets."""
         number = list(self._solves).index(lights) % len(self._stages)
         stage = self._stages[number]
-        if self._lit[number] != lights:
+        lit = self._lit[number]
+        if lit is None or lit[0] is not self._capture or lit[1] != lights:
             stage.show(self._scene(_ANY, False, lights, self._solves[lights][0]))
             stage.solve()
-            self._lit[number] = lights
+            self._lit[number] = self._capture, lights
         absorption, scattering = coefficients
         return forward_model(stage.engine, level, (scattering, absorption), views, "sp3", None, _TOLERANCE)
 

@@ -12,7 +12,7 @@ from scipy import optimize
 from quadgraph.acquisition.bank import Bank, Otherwise
 from quadgraph.acquisition.capture import Capture
 from quadgraph.acquisition.suspects import Scope, Suspect
-from quadgraph.base.errors import InputError
+from quadgraph.base.errors import InputError, SolverError
 
 _PLACES = ("position", "centre")
 _VECTORS = (*_PLACES, "direction", "u", "v")
@@ -100,7 +100,7 @@ def _under(bank: Bank, scope: Scope, lights: Mapping[str, Light]) -> dict[int, O
             nodes = bank.constant(predictor, bank.coefficients({}, scope))
         else:
             nodes = bank.predicted(predictor, few=True)
-    except InputError:
+    except (InputError, SolverError):
         return {}
     return {number: Otherwise(nodes=each) for number, each in zip(scope, nodes, strict=True)}
 
@@ -139,9 +139,8 @@ def _searched(bank: Bank, otherwise: Callable[[np.ndarray], dict[int, Otherwise]
 
 
 def of_bodies(bank: Bank) -> Iterator[Suspect]:
-    """A body that is mirrored or lies otherwise, cameras of another axis, other light, another index of refraction."""
+    """A body that is mirrored or lies otherwise, cameras of another axis, another index of refraction."""
     capture = bank.problem.capture
-    yield from _room(bank)
     for name, camera in capture.cameras.items():
         other = "z" if camera.get("up", "y") == "y" else "y"
         scope = [n for n, one in enumerate(bank.problem.measured) if one.stated.camera == name]
@@ -149,7 +148,7 @@ def of_bodies(bank: Bank) -> Iterator[Suspect]:
             changed = {**capture.cameras, name: camera | {"up": other}}
             text = f"cameras.{name}.up: its photographs fit much better with {other} upwards; correct it"
             yield from _as(bank, replace(capture, cameras=changed), "up", text)
-    for axis in (0, 2):
+    for axis in range(3):
         yield from _mirror(bank, axis)
     for axis, letter in enumerate(_AXES):
         for degrees in (90, -90, 180):
@@ -190,7 +189,7 @@ def of_poses(bank: Bank) -> Iterator[Suspect]:
             try:
                 predictor = bank.predictor.of(_posed(capture, whole[:3], size * whole[3:]))
                 nodes = bank.constant(predictor, coefficients)
-            except InputError:
+            except (InputError, SolverError):
                 return {}
             return {number: Otherwise(nodes=each) for number, each in enumerate(nodes)}
 
@@ -222,7 +221,7 @@ def _as(bank: Bank, capture: Capture, kind: str, text: str) -> Iterator[Suspect]
     """All photographs of another scene; nothing where the engine refuses it."""
     try:
         nodes = bank.predicted(bank.predictor.of(capture), few=True)
-    except InputError:
+    except (InputError, SolverError):
         return
     yield Suspect(kind, {number: Otherwise(nodes=each) for number, each in enumerate(nodes)}, 1.0, text)
 
@@ -241,7 +240,7 @@ def _mirror(bank: Bank, axis: int) -> Iterator[Suspect]:
     lights = {name: _mirrored(light, axis) for name, light in capture.lights.items()}
     try:
         nodes = bank.predicted(bank.predictor.of(replace(capture, cameras=cameras, lights=lights)), few=True)
-    except InputError:
+    except (InputError, SolverError):
         return
     otherwise = {}
     for number, (one, each) in enumerate(zip(bank.problem.measured, nodes, strict=True)):
@@ -254,7 +253,7 @@ def _mirror(bank: Bank, axis: int) -> Iterator[Suspect]:
     yield Suspect("body", otherwise, 1.0, text)
 
 
-def _room(bank: Bank) -> Iterator[Suspect]:
+def of_rooms(bank: Bank) -> Iterator[Suspect]:
     """Light from all sides in all photographs."""
     capture = bank.problem.capture
     lit = tuple(replace(one.stated, lights=(_ROOM,)) for one in bank.problem.measured)

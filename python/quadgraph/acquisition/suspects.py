@@ -101,9 +101,11 @@ def _gain(bank: Bank, scope: Scope) -> Iterator[Suspect]:
 
 
 def _of_gain(bank: Bank, scope: Scope, factors: np.ndarray) -> str:
-    """Whose factor is off, and by how much: of one photograph, or of lights."""
+    """Whose factor is off, and by how much, against photographs of the same gain: of one photograph, or of lights."""
     stated = [bank.problem.measured[number].stated for number in scope]
-    factor = factors[list(scope)]
+    group = bank.problem.group
+    others = [n for n in range(len(group)) if n not in scope and group[n] == group[scope[0]] >= 0]
+    factor = factors[list(scope)] / (np.exp(np.log(factors[others]).mean(axis=0)) if others else 1.0)
     if factor.max() < _DARK:
         return (
             f"{paths(bank, scope, 'file')}: dark, at most {factor.max():.2g} of the light that is predicted: the light "
@@ -219,7 +221,7 @@ def _swapped(bank: Bank) -> Iterator[Suspect]:
                 f"{paths(bank, (one, other), 'lights')}: fit the pictures of {names[0]}, and of {names[1]}, much "
                 "better than their own: their lights are swapped; swap their names"
             )
-            yield Suspect("swapped", otherwise, 1.0, text)
+            yield Suspect("lights", otherwise, 1.0, text)
 
 
 def _wrong_lights(bank: Bank) -> Iterator[Suspect]:
