@@ -27,6 +27,12 @@ _ENOUGH = 3.0  # cost per value, below which no dearer suspects are looked into
 _LEFT = 0.6  # of the cost, that a cause leaves at most of the photographs that it is about
 _AS_GOOD = 1.3  # times the least cost, up to which another cause is as probable
 _SAID = 3  # causes
+_DOUBTFUL = 2.0  # chi^2 per pixel of a photograph's channel, from which on a cause is looked for
+_SURE = 0.5  # of the cost, that a cause leaves at most to be said where photographs and predictions do not disagree
+_BETTER = (
+    "photographs and predictions agree, but much better if something of the capture is otherwise; the coefficients are "
+    "not to be trusted"
+)
 _OUTER = ("blurred", "raised", "size", "moved")  # kinds that only outlines may show
 
 _STAGES: tuple[Callable[[Bank], Iterator[Suspect]], ...] = (
@@ -57,12 +63,15 @@ def findings(problem: Problem, found: Fit, predictor: Predictor, tell: ProgressC
     said = list(_disagreement(found))
     outline = list(outlines.silhouettes(problem, found.pictures))
     masks = list(outlines.masks(problem, found.pictures))
-    if masks or not (said or outline):
+    doubtful = float(np.nanmax(found.by_photograph)) > _DOUBTFUL
+    if masks or not (said or outline or doubtful):
         return said + masks
-    tell("photographs and predictions disagree: looking for the cause")
-    causes = _causes(_worst(problem, found, predictor), bool(said))
-    if causes or not said:
-        return said + (causes or outline)
+    tell("looking for what may be wrong with the capture")
+    causes = _causes(_worst(problem, found, predictor), bool(said), bool(outline))
+    if causes:
+        return [*(said or [_BETTER]), *causes]
+    if not said:
+        return outline
     return [
         *said,
         *(outline or ["no single cause was found"]),
@@ -104,19 +113,28 @@ def _worst(problem: Problem, found: Fit, predictor: Predictor) -> Bank:
     return Bank(problem, predictor, problem.first)
 
 
-def _causes(bank: Bank, disagree: bool) -> list[str]:
-    """The most probable causes, those that explain about as much as the best; none where none explains much."""
+def _causes(bank: Bank, disagree: bool, outline: bool) -> list[str]:
+    """The most probable causes, those that explain about as much as the best; none where none explains much.
+
+    disagree: whether something is certainly wrong; outline: whether outlines do not match.
+    """
     tried = [_Tried(Suspect("", {}, 1.0, ""), bank.cost({}))]
+    before = tried[0].cost
     for number, stage in enumerate(_STAGES if disagree else _STAGES[:_CHEAP]):
         if number >= _CHEAP and min(each.cost for each in tried) < _ENOUGH:
             break
-        some = (each for each in stage(bank) if disagree or each.kind in _OUTER)
-        tried += [_Tried(each, each.handicap * bank.cost(each.otherwise)) for each in some]
+        tried += [_Tried(each, each.handicap * bank.cost(each.otherwise)) for each in stage(bank)]
     best: dict[str, _Tried] = {}
     for each in sorted(tried, key=lambda each: each.cost):
         best.setdefault(each.suspect.kind, each)
     most = _AS_GOOD * next(iter(best.values())).cost
-    chosen = [each.suspect for each in best.values() if each.cost < most and _left(bank, each.suspect) < _LEFT]
+    chosen = [
+        each.suspect
+        for each in best.values()
+        if each.cost < most
+        and _left(bank, each.suspect) < _LEFT
+        and (disagree or (outline and each.suspect.kind in _OUTER) or each.cost < _SURE * before)
+    ]
     sentences = [each.sentence(bank.factors(each.otherwise)) for each in chosen[:_SAID]]
     return [("or " if number else "probably ") + each for number, each in enumerate(sentences)]
 
