@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,7 @@ from quadgraph.mesh.surface import Surface
 from shapes import icosphere, write_obj
 
 ETA = 1.3
+TRUTH = {"sigma_a": [0.006, 0.02, 0.05], "sigma_s_prime": [1.1, 0.7, 0.9]}
 CAMERAS = {
     "front": {"eye": [20, 20, 110], "look_at": [0, 0, 0], "fov": 24, "width": 40, "height": 40},
     "back": {"eye": [-70, 10, -80], "look_at": [0, 0, 0], "fov": 24, "width": 40, "height": 40},
@@ -35,11 +36,19 @@ def potato(subdivisions: int) -> Surface:
     return Surface(ball.vertices * [1, 0.8, 0.9] * (1 + 0.12 * np.sin(x / 6 + 1) + 0.1 * np.cos(y / 7)), ball.triangles)
 
 
-def bodies(folder: Path, vertices: int = 800, finer: int = 4) -> tuple[Path, Path]:
+def pebble(subdivisions: int) -> Surface:
+    """A flat ellipsoid, 40 mm across."""
+    ball = icosphere(subdivisions, 20.0)
+    return Surface(ball.vertices * [1, 0.5, 0.8], ball.triangles)
+
+
+def bodies(
+    folder: Path, vertices: int = 800, finer: int = 4, shape: Callable[[int], Surface] = potato
+) -> tuple[Path, Path]:
     """The body to fit on, baked coarsely, and the same shape in a finer mesh, of so many subdivisions."""
-    mesh = write_obj(potato(4), folder / "potato.obj")
+    mesh = write_obj(shape(4), folder / "potato.obj")
     bake(mesh, folder / "potato.qgraph", BakeOptions(unit="mm", surface_vertices=vertices))
-    return folder / "potato.qgraph", write_levels(folder / "finer.qgraph", [potato(finer)])
+    return folder / "potato.qgraph", write_levels(folder / "finer.qgraph", [shape(finer)])
 
 
 def photographed(

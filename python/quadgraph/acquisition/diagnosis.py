@@ -1,40 +1,83 @@
-"""What is most probably wrong with photographs that no coefficients explain."""
+"""What is most probably wrong with photographs that no coefficients explain.
+
+Each suspect is something that the capture may say wrongly. What would be left of the disagreement if it were otherwise
+is found from interpolated predictions (bank.py), for all of them, from the cheapest to the dearest, until one explains
+it; those that explain about as much are said with it.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import ndimage
 
+from quadgraph.acquisition import camera_suspects, outlines, scene_suspects, suspects
+from quadgraph.acquisition.bank import Bank
 from quadgraph.acquisition.fitting import Fit
+from quadgraph.acquisition.prediction import Predictor
 from quadgraph.acquisition.problem import Problem
-from quadgraph.acquisition.start import ENCODED, Ranking
+from quadgraph.acquisition.suspects import Suspect
 from quadgraph.acquisition.volume_fit import VolumeFit
+from quadgraph.base.progress import ProgressCallback
 
 FAR = 4.0  # chi^2 per degree of freedom, from which on photographs and predictions disagree
-_LESS = 0.75  # of the spread that linear values leave, which encoded ones have to leave at most
-_BETTER = 0.15  # of correlation, by which another assumption has to win
-_FREE = 0.15  # of correlation, that centring gains by itself
-_LIT = 0.05  # of the brightest, from which on a pixel is part of a silhouette
-_BESIDE = 0.03  # of what is lit, that has to lie beside the body to say that it is elsewhere
-_FLIPS = {"left to right": np.s_[:, ::-1], "upside down": np.s_[::-1, :], "by half a turn": np.s_[::-1, ::-1]}
+_MOST = 12  # photographs that are looked into, the worst
+_ENOUGH = 3.0  # cost per value, below which no dearer suspects are looked into
+_LEFT = 0.6  # of the cost, that a cause leaves at most of the photographs that it is about
+_AS_GOOD = 1.3  # times the least cost, up to which another cause is as probable
+_SAID = 3  # causes
+_DOUBTFUL = 2.0  # chi^2 per pixel of a photograph's channel, from which on a cause is looked for
+_SURE = 0.5  # of the cost, that a cause leaves at most to be said where photographs and predictions do not disagree
+_BETTER = (
+    "photographs and predictions agree, but much better if something of the capture is otherwise; the coefficients are "
+    "not to be trusted"
+)
+_OUTER = ("blurred", "raised", "size", "moved")  # kinds that only outlines may show
+
+_STAGES: tuple[Callable[[Bank], Iterator[Suspect]], ...] = (
+    suspects.suspects,
+    camera_suspects.of_cameras,
+    scene_suspects.of_rooms,
+    scene_suspects.of_lights,
+    scene_suspects.of_places,
+    scene_suspects.of_bodies,
+    scene_suspects.of_poses,
+)
+_CHEAP = 2  # stages that are always gone through
 
 
-def findings(problem: Problem, found: Fit, ranking: Ranking) -> list[str]:
-    """Sentences, each with the path of what is probably wrong; none where photographs and predictions agree."""
+@dataclass(frozen=True, eq=False)
+class _Tried:
+    """A suspect and its cost."""
+
+    suspect: Suspect
+    cost: float
+
+
+def findings(problem: Problem, found: Fit, predictor: Predictor, tell: ProgressCallback) -> list[str]:
+    """Sentences, each with the path of what is probably wrong; none where photographs and predictions agree.
+
+    tell: is told when a cause is looked for, which takes as long as the fit and longer. Raises InputError, SolverError.
+    """
     said = list(_disagreement(found))
+    outline = list(outlines.silhouettes(problem, found.pictures))
+    masks = list(outlines.masks(problem, found.pictures))
+    doubtful = float(np.nanmax(found.by_photograph)) > _DOUBTFUL
+    if masks or not (said or outline or doubtful):
+        return said + masks
+    tell("looking for what may be wrong with the capture")
+    causes = _causes(_worst(problem, found, predictor), bool(said), bool(outline))
+    if causes:
+        return [*(said or [_BETTER]), *causes]
     if not said:
-        return list(_silhouettes(problem, found))
-    said += _encoding(ranking)
-    for number in range(len(problem.measured)) if len(said) == 1 else ():
-        said += _of_photograph(problem, found, number)
-    if len(said) == 1:
-        said.append(
-            "no single cause was found: check pose, units (mm), places of lights and cameras, eta, and whether the "
-            "body is the same throughout, or else state --volume"
-        )
-    return said
+        return outline
+    return [
+        *said,
+        *(outline or ["no single cause was found"]),
+        "check pose, units (mm), places of lights and cameras, eta, and whether the body is the same throughout, or "
+        "else state --volume",
+    ]
 
 
 def of_volume(found: VolumeFit) -> list[str]:
@@ -58,92 +101,47 @@ def _disagreement(found: Fit) -> Iterator[str]:
         )
 
 
-def _of_photograph(problem: Problem, found: Fit, number: int) -> list[str]:
-    """What explains one photograph much better than what the capture says of it: its place, its axes or its lights."""
-    if not np.nanmax(found.by_photograph[number]) > FAR:
-        return []
-    one = problem.measured[number]
-    # By the first predictions: a fit to what is wrong may have left every shape behind.
-    values, expected = _grey(one.values), _grey(problem.first[number].radiance)
-    outline = _outline(problem, found, number)
-    path = one.stated.path
-    scores = {
-        f"{path}.file: fits much better turned {name}: an axis of the picture or of the camera is flipped": _alike(
-            values[turn], expected
-        )
-        for name, turn in _FLIPS.items()
-    }
-    for other, picture in zip(problem.measured, problem.first, strict=True):
-        if other.stated.camera == one.stated.camera and other.stated.lights != one.stated.lights:
-            names = " + ".join(other.stated.lights)
-            sentence = f"{path}.lights: fits the picture of {names} much better than its own: lights are swapped"
-            scores[sentence] = _alike(values, _grey(picture.radiance))
-    if outline:
-        scores[outline] = _alike(_centred(values), _centred(expected)) - _FREE
-    best = max(scores, key=lambda sentence: scores[sentence])
-    if scores[best] > _alike(values, expected) + _BETTER:
-        return [best]
-    return [outline] if outline else []
+def _worst(problem: Problem, found: Fit, predictor: Predictor) -> Bank:
+    """Predictions of those photographs that fit worst, for any coefficients."""
+    chi = np.nan_to_num(found.by_photograph, nan=np.inf).max(axis=1)
+    chosen = np.sort(np.argsort(-chi, kind="stable")[:_MOST])
+    if len(chosen) < len(chi):
+        photographs = tuple(problem.measured[number].stated for number in chosen)
+        capture = replace(problem.capture, photographs=photographs)
+        measured, first = ([each[number] for number in chosen] for each in (problem.measured, problem.first))
+        problem, predictor = Problem(capture, measured, first), predictor.of(capture)
+    return Bank(problem, predictor, problem.first)
 
 
-def _centred(picture: np.ndarray) -> np.ndarray:
-    """A grey picture with the middle of what is lit in the middle."""
-    lit = picture > _LIT * np.quantile(picture, 0.99)
-    shift = np.array(picture.shape) / 2 - _middle(lit)
-    return np.roll(picture, np.round(shift).astype(int), axis=(0, 1))
+def _causes(bank: Bank, disagree: bool, outline: bool) -> list[str]:
+    """The most probable causes, those that explain about as much as the best; none where none explains much.
 
-
-def _silhouettes(problem: Problem, found: Fit) -> Iterator[str]:
-    """Outlines that do not match although the pixels within do."""
-    for number in range(len(problem.measured)):
-        outline = _outline(problem, found, number)
-        if outline:
-            yield outline
-
-
-def _outline(problem: Problem, found: Fit, number: int) -> str:
-    """What the lit part of a photograph says of body, pose and camera; nothing where it matches."""
-    one, picture = problem.measured[number], found.pictures[number]
-    seen = _grey(one.values)
-    expected = _grey(picture.radiance)
-    unmasked = one.usable.any(axis=2)
-    photographed = (seen > _LIT * np.quantile(seen, 0.99)) & unmasked
-    predicted = (expected > _LIT * np.quantile(expected, 0.99)) & unmasked
-    body = ndimage.binary_dilation(picture.alpha > 0, np.ones((3, 3)))
-    beside = (photographed & ~body).sum() / max(photographed.sum(), 1)
-    if beside < _BESIDE:
-        return ""
-    shift = _middle(photographed) - _middle(predicted)
-    size = np.sqrt(photographed.sum() / max(predicted.sum(), 1))
-    return (
-        f"{one.stated.path}.camera: {beside:.0%} of what is lit lies beside the body; what is lit is {shift[1]:+.0f} "
-        f"pixels to the right of its prediction, {shift[0]:+.0f} down and {size:.2f} times as large: pose, camera, "
-        "unit or mask is wrong"
-    )
-
-
-def _middle(part: np.ndarray) -> np.ndarray:
-    return np.argwhere(part).mean(axis=0) if part.any() else np.zeros(2)
-
-
-def _encoding(ranking: Ranking) -> list[str]:
-    """Whether values go with a power of the predictions, as those do that are encoded for displays."""
-    linear, encoded = ranking.spreads
-    if encoded > _LESS * linear:
-        return []
-    return [
-        f"photographs: values go with the power {ENCODED:.2f} of what is predicted: they are probably encoded for "
-        "displays (sRGB); develop them linearly"
+    disagree: whether something is certainly wrong; outline: whether outlines do not match.
+    """
+    tried = [_Tried(Suspect("", {}, 1.0, ""), bank.cost({}))]
+    before = tried[0].cost
+    for number, stage in enumerate(_STAGES if disagree else _STAGES[:_CHEAP]):
+        if number >= _CHEAP and min(each.cost for each in tried) < _ENOUGH:
+            break
+        tried += [_Tried(each, each.handicap * bank.cost(each.otherwise)) for each in stage(bank)]
+    best: dict[str, _Tried] = {}
+    for each in sorted(tried, key=lambda each: each.cost):
+        best.setdefault(each.suspect.kind, each)
+    most = _AS_GOOD * next(iter(best.values())).cost
+    chosen = [
+        each.suspect
+        for each in best.values()
+        if each.cost < most
+        and _left(bank, each.suspect) < _LEFT
+        and (disagree or (outline and each.suspect.kind in _OUTER) or each.cost < _SURE * before)
     ]
+    sentences = [each.sentence(bank.factors(each.otherwise)) for each in chosen[:_SAID]]
+    return [("or " if number else "probably ") + each for number, each in enumerate(sentences)]
 
 
-def _alike(one: np.ndarray, other: np.ndarray) -> float:
-    """Correlation of two grey pictures in the square root, which weighs dim parts up."""
-    x, y = np.sqrt(np.maximum(one, 0)).ravel(), np.sqrt(np.maximum(other, 0)).ravel()
-    if x.std() == 0 or y.std() == 0:
-        return 0.0
-    return float(np.corrcoef(x, y)[0, 1])
-
-
-def _grey(picture: np.ndarray) -> np.ndarray:
-    return picture.mean(axis=2)
+def _left(bank: Bank, suspect: Suspect) -> float:
+    """Which share of the cost a suspect leaves of the photographs that it is about."""
+    about = sorted(suspect.otherwise)
+    if not about:
+        return 1.0
+    return bank.cost(suspect.otherwise, about) / max(bank.cost({}, about), 1e-300)

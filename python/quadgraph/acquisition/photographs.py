@@ -16,18 +16,20 @@ _SUFFIXES = (".exr", ".hdr", ".npz", ".png")
 _PNG_BITS = 24  # the byte of a PNG that says its bits per sample
 _MASK_LIMIT = 0.5
 _CLIPPED, _CLIPPED_SHARE = 1e-6, 0.005  # how near the largest value, and of how many lit pixels, is clipping
+_SPIKE, _STEPS = 5.0, 8  # how many times as many pixels as steps below it the largest value has, and how many steps
 
 
 @dataclass(frozen=True, eq=False)
 class Measured:
     """One photograph. values, variances: (h, w, 3) float64, variances without a noise model's part of the value; usable
-    (h, w, 3): neither masked nor saturated.
+    (h, w, 3): neither masked nor saturated; kept: (h, w), what a mask keeps, if there is one.
     """
 
     stated: Photograph
     values: np.ndarray
     variances: np.ndarray
     usable: np.ndarray
+    kept: np.ndarray | None = None
 
     def variance_of(self, value: np.ndarray) -> np.ndarray:
         """Variance of pixels whose true value is `value`, (h, w, 3)."""
@@ -55,25 +57,37 @@ def _measured(capture: Capture, stated: Photograph) -> Measured:
     usable = np.ones(values.shape, bool)
     if stated.saturation is not None:
         usable &= values < stated.saturation
-    else:
-        _check_clipped(where, stated, values)
+    _check_clipped(where, stated, values)
+    kept = None
     if stated.mask is not None:
-        usable &= _image(f"{where}.mask", stated.mask, "mask", size) > _MASK_LIMIT
+        kept = _image(f"{where}.mask", stated.mask, "mask", size).min(axis=2) > _MASK_LIMIT
+        usable &= kept[..., None]
     if not usable.any():
         raise InputError(f"{where}: found no pixel that is neither saturated nor masked, allowed is at least one")
-    return Measured(stated, values, variances, usable)
+    return Measured(stated, values, variances, usable, kept)
 
 
 def _check_clipped(where: str, stated: Photograph, values: np.ndarray) -> None:
-    """Raise InputError where many pixels have the largest value of all and no saturation is stated."""
+    """Raise InputError where many pixels have the largest value of all and no saturation is stated, or a higher one."""
     for channel, name in enumerate(("red", "green", "blue")):
         value = values[..., channel]
         most = value.max()
-        clipped = int((value >= most * (1 - _CLIPPED)).sum()) if most > 0 else 0
-        if clipped > max(3, _CLIPPED_SHARE * (value > 0.05 * most).sum()):
+        if most <= 0 or (stated.saturation is not None and most >= stated.saturation):
+            continue
+        clipped = int((value >= most * (1 - _CLIPPED)).sum())
+        if clipped <= max(3, _CLIPPED_SHARE * (value > 0.05 * most).sum()):
+            continue
+        if stated.saturation is None:
             raise InputError(
                 f"{where}.saturation: not stated, and {clipped} pixels of {stated.file.name} have the same largest "
                 f"value {most:.6g} in {name}; state the value from which on pixels are saturated, or expose for less"
+            )
+        # Steps of few bits have many pixels, too: those below have as many.
+        _, below = np.unique(value[value < most * (1 - _CLIPPED)], return_counts=True)
+        if clipped > _SPIKE * below[-_STEPS:].mean():
+            raise InputError(
+                f"{where}.saturation: found {stated.saturation:g}, but {clipped} pixels of {stated.file.name} have "
+                f"the same largest value {most:.6g} in {name}; state the value from which on pixels are saturated"
             )
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -48,16 +49,26 @@ class Predictor:
         """body: the baked file; device, validation: as `Stage` has them. Raises FormatError, InputError,
         DeviceError.
         """
-        self._capture = capture
         self._body = body
+        self._take(capture)
+        # One for each set of lights keeps what depends on lights alone, which is most of an uncorrected solve.
+        self._stages = [core.Stage(device, validation) for _ in range(min(len(self._solves), _STAGES))]
+        # By which capture and lights each was solved last.
+        self._lit: list[tuple[Capture, tuple[str, ...]] | None] = [None] * len(self._stages)
+
+    def _take(self, capture: Capture) -> None:
+        self._capture = capture
         wanted = [(each.lights, each.camera) for each in capture.photographs]
         self._solves: dict[tuple[str, ...], list[str]] = {}
         for lights, camera in dict.fromkeys(wanted):
             self._solves.setdefault(lights, []).append(camera)
-        # One for each set of lights keeps what depends on lights alone, which is most of an uncorrected solve.
-        self._stages = [core.Stage(device, validation) for _ in range(min(len(self._solves), _STAGES))]
-        self._lit: list[tuple[str, ...] | None] = [None] * len(self._stages)  # by what each was solved last
         self.notes: list[str] = []  # what the engine says against its last answers, each once
+
+    def of(self, capture: Capture) -> Predictor:
+        """Another capture of the same body, by the same engines."""
+        other = copy.copy(self)
+        other._take(capture)
+        return other
 
     @property
     def solves(self) -> int:
@@ -72,8 +83,14 @@ class Predictor:
     @property
     def size_mm(self) -> float:
         """The middle one of the three sides of the box around the body."""
+        low, high = self.box_mm
+        return float(np.median(high - low))
+
+    @property
+    def box_mm(self) -> np.ndarray:
+        """(2, 3) the box around the body as it lies in its file."""
         vertices = self.graph.display["vertices"]
-        return float(np.median(vertices.max(axis=0) - vertices.min(axis=0)))
+        return np.array([vertices.min(axis=0), vertices.max(axis=0)])
 
     def predict(
         self, coefficients: np.ndarray | Path, corrected: bool, tell: Callable[[], None] = lambda: None
@@ -92,7 +109,7 @@ class Predictor:
                 stage.show(self._scene(coefficients, corrected, lights, camera))
                 if report is None:
                     report = stage.solve()
-                    self._lit[number % len(self._stages)] = lights
+                    self._lit[number % len(self._stages)] = self._capture, lights
                     self._note(report)
                 found[lights, camera] = _predicted(stage.render(), report)
             if messages := stage.engine.validation_messages:
@@ -116,10 +133,11 @@ class Predictor:
         """What leaves a level under lights as a function of coefficients: sigma_a and sigma_s_prime of its tets."""
         number = list(self._solves).index(lights) % len(self._stages)
         stage = self._stages[number]
-        if self._lit[number] != lights:
+        lit = self._lit[number]
+        if lit is None or lit[0] is not self._capture or lit[1] != lights:
             stage.show(self._scene(_ANY, False, lights, self._solves[lights][0]))
             stage.solve()
-            self._lit[number] = lights
+            self._lit[number] = self._capture, lights
         absorption, scattering = coefficients
         return forward_model(stage.engine, level, (scattering, absorption, None), views, "sp3", None, _TOLERANCE)
 
@@ -183,18 +201,46 @@ def _bands(radiance: np.ndarray) -> np.ndarray:
     return bands
 
 
-def check_seen(capture: Capture, pictures: list[Predicted]) -> None:
-    """Raise InputError for a photograph whose camera does not see the body, or sees nothing of it that is lit."""
+def check_seen(capture: Capture, box_mm: np.ndarray, pictures: list[Predicted]) -> None:
+    """Raise InputError for a photograph whose camera does not see the body, or sees nothing of it that is lit.
+
+    box_mm: (2, 3), around the body as it lies in its file.
+    """
     for stated, picture in zip(capture.photographs, pictures, strict=True):
         where = f"{capture.path}: {stated.path}"
         covered = picture.alpha > 0.999
         if covered.sum() < 16:
+            eye = capture.cameras[stated.camera].get("eye")
+            inside = _inside(f"cameras.{stated.camera}.eye", eye, box_mm) if eye else ""
             raise InputError(
                 f"{where}.camera: the body covers {int(covered.sum())} pixels of '{stated.camera}', allowed are 16 or "
-                "more; check body, unit (mm), deformation, and the camera's places (mm)"
+                f"more; {inside}check body, unit (mm), deformation, and the camera's places (mm)"
             )
         if not (picture.radiance[covered] > 0).any():
+            why = "".join(_unlit(f"lights.{name}", capture.lights[name], box_mm) for name in stated.lights)
             raise InputError(
                 f"{where}.lights: none of {', '.join(stated.lights)} brings light to what '{stated.camera}' sees; "
-                "check directions and places of the lights (mm)"
+                f"{why}check directions and places of the lights (mm)"
             )
+
+
+def _unlit(path: str, light: Mapping[str, Any], box_mm: np.ndarray) -> str:
+    """Why a light reaches nothing, where its place and its direction say it."""
+    member = next((name for name in ("position", "centre") if name in light), None)
+    if member is None:
+        return ""
+    if inside := _inside(f"{path}.{member}", light[member], box_mm):
+        return inside
+    towards = np.cross(light["u"], light["v"]) if "u" in light else light.get("direction")
+    if towards is not None and np.dot(towards, box_mm.mean(axis=0) - light[member]) <= 0:
+        what = "u x v" if "u" in light else "direction"
+        return f"{path} shines away from the body, by its {what}: one of its axes may be flipped; "
+    return ""
+
+
+def _inside(path: str, place: Sequence[float], box_mm: np.ndarray) -> str:
+    """Whether a place lies within the box around the body, in words."""
+    if not ((place > box_mm[0]) & (place < box_mm[1])).all():
+        return ""
+    found, sides = (", ".join(f"{x:.4g}" for x in each) for each in (place, box_mm[1] - box_mm[0]))
+    return f"{path}, [{found}] mm, lies inside the box around the body, whose sides are [{sides}] mm: units differ; "

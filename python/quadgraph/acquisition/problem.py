@@ -16,7 +16,6 @@ from quadgraph.base.errors import InputError
 _COVERED = 0.999  # share of a pixel that the body has to cover
 _GLOSS = 0.01  # over scattered light, from which on a pixel is left out
 _DARK = 1e-4  # of the brightest pixel, below which a prediction is not held to anything
-_LIT = 0.02  # of the brightest value: dimmer ones are too noisy for logarithms
 _HUBER = 3.0  # standard deviations, beyond which a residual counts linearly
 BANDS = 3  # of brightness: in each, the engine's own error is taken to be the same wherever the lights are
 LEAST_PIXELS = 16  # of a channel
@@ -83,20 +82,6 @@ class Problem:
         pixels = self.pixels[channel]
         return pixels.take([each.band for each in pictures], channel) + BANDS * self.alike[pixels.photograph]
 
-    def spread(self, pictures: Sequence[Predicted], power: float) -> float:
-        """Variance of logarithms of data less `power` times those of predictions, apart from a factor a photograph."""
-        total, count = 0.0, 0
-        for channel, pixels in enumerate(self.pixels):
-            value = self.values([each.radiance for each in pictures], channel)
-            lit = (value > 0) & (pixels.data > _LIT * pixels.data.max())
-            left = np.log(pixels.data[lit]) - power * np.log(value[lit])
-            photograph = pixels.photograph[lit]
-            number = np.maximum(np.bincount(photograph, minlength=len(self.measured)), 1)
-            mean = np.bincount(photograph, left, len(self.measured)) / number
-            total += float(((left - mean[photograph]) ** 2).sum())
-            count += len(left)
-        return total / max(count, 1)
-
     def values(self, pictures: Sequence[np.ndarray], channel: int) -> np.ndarray:
         """(n,) what pixels would be with all unknown gains at 1, from radiances (h, w, 3) a photograph."""
         photograph = self.pixels[channel].photograph
@@ -150,18 +135,28 @@ class Problem:
 
 def _counted(one: Measured, picture: Predicted, polarised: bool) -> np.ndarray:
     """(h, w, 3) which pixels count: well within the body, lit, without gloss, neither masked nor saturated."""
-    inside = ndimage.binary_erosion(picture.alpha > _COVERED, np.ones((3, 3)), border_value=1)
     bright = picture.radiance > _DARK * picture.radiance.max(axis=(0, 1))
-    matt = np.ones(bright.shape, bool) if polarised else picture.gloss <= _GLOSS * picture.radiance
-    return inside[..., None] & bright & matt & one.usable
+    return within(picture, polarised) & bright & one.usable
+
+
+def within(picture: Predicted, polarised: bool) -> np.ndarray:
+    """(h, w, 3) which pixels of a photograph are well within the body and without gloss."""
+    inside = ndimage.binary_erosion(picture.alpha > _COVERED, np.ones((3, 3)), border_value=1)
+    matt = np.ones(picture.radiance.shape, bool) if polarised else picture.gloss <= _GLOSS * picture.radiance
+    return inside[..., None] & matt
 
 
 def huber_weights(residual: np.ndarray, beyond: float = _HUBER) -> np.ndarray:
     """Weights of residuals, in standard deviations, that make least squares robust `beyond` some of them (Huber)."""
-    return np.minimum(1.0, beyond / np.maximum(np.abs(residual), 1e-300))
+    return beyond / np.maximum(np.abs(residual), beyond)
 
 
 def huber_cost(residual: np.ndarray) -> float:
     """Sum of squares, beyond the threshold linear."""
+    return float(huber_costs(residual).sum())
+
+
+def huber_costs(residual: np.ndarray) -> np.ndarray:
+    """Squares of residuals, beyond the threshold linear."""
     size = np.abs(residual)
-    return float(np.where(size <= _HUBER, size**2, _HUBER * (2 * size - _HUBER)).sum())
+    return np.where(size <= _HUBER, size**2, _HUBER * (2 * size - _HUBER))

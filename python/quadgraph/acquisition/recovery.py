@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from quadgraph.acquisition import diagnosis, photographs, prediction, start, volume_report
+from quadgraph.acquisition import diagnosis, outlines, photographs, prediction, start, volume_report
 from quadgraph.acquisition.capture import Capture
 from quadgraph.acquisition.fit_state import StateFolder
 from quadgraph.acquisition.fitting import OUTER, Fit, fit
@@ -141,8 +141,8 @@ def _throughout(
     advance: Callable[[float], None],
 ) -> Recovered:
     """The same coefficients throughout."""
-    problem, ranking, found = _fitted(capture, measured, predictor, corrected, OUTER, tell, advance)
-    findings = diagnosis.findings(problem, found, ranking)
+    problem, found = _fitted(capture, measured, predictor, corrected, OUTER, tell, advance)
+    findings = diagnosis.findings(problem, found, predictor, tell)
     return Recovered(capture, measured, problem, found, undetermined(found), findings, list(predictor.notes))
 
 
@@ -154,16 +154,17 @@ def _fitted(
     outer: int,
     tell: ProgressCallback,
     advance: Callable[[float], None],
-) -> tuple[Problem, start.Ranking, Fit]:
+) -> tuple[Problem, Fit]:
     """The best of a grid of coefficients that are the same throughout, and what a fit in so many steps makes of it."""
     grid = start.candidates(predictor.size_mm)
     work = _ShareDone(advance, predictor.solves * (len(grid) + 1), predictor.solves)
     first = predictor.predict(start.middle(predictor.size_mm), False, work.step)
-    prediction.check_seen(capture, first)
+    prediction.check_seen(capture, predictor.box_mm, first)
+    outlines.check_masks(capture, measured, first)
     problem = Problem(capture, measured, first)
-    ranking = start.ranked(problem, predictor, grid, work.step)
-    tell(f"start: {_text(np.exp(ranking.starts[0]))}")
-    return problem, ranking, fit(problem, predictor, ranking.starts, corrected, tell, work.step, outer)
+    starts = start.ranked(problem, predictor, grid, work.step)
+    tell(f"start: {_text(np.exp(starts[0]))}")
+    return problem, fit(problem, predictor, starts, corrected, tell, work.step, outer)
 
 
 def _by_place(
@@ -188,11 +189,12 @@ def _by_place(
         some = [one for one in measured if one.stated in few.photographs]
         tell(f"the same coefficients throughout, from {len(some)} of {len(measured)} photographs")
         some_predictor = Predictor(few, *engine)
-        _, _, found = _fitted(few, some, some_predictor, False, _STEPS, tell, lambda share: advance(0.2 * share))
+        _, found = _fitted(few, some, some_predictor, False, _STEPS, tell, lambda share: advance(0.2 * share))
         same = found.coefficients
     predictor = Predictor(capture, *engine)
     first = predictor.predict(same, False)
-    prediction.check_seen(capture, first)
+    prediction.check_seen(capture, predictor.box_mm, first)
+    outlines.check_masks(capture, measured, first)
     problem = Problem(capture, measured, first)
     done = 0
 

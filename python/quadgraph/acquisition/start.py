@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,7 +12,6 @@ from quadgraph.acquisition.problem import Problem, huber_cost
 
 ALBEDOS = (0.5, 0.9, 0.98, 0.996, 0.9992)  # reduced: sigma_s_prime / (sigma_s_prime + sigma_a)
 DEPTHS = (3.0, 10.0, 30.0, 100.0)  # mean free paths across the body
-ENCODED = 1 / 2.2  # power by which displays' values go with light
 _FLOOR = 0.15  # least relative error of a prediction: all candidates are wrong
 _LEAST = 1e-3  # of the brightest prediction, and of data over prediction, below which all is the same
 _CLOSE = 2.0  # of the best cost, up to which another start is worth a try
@@ -31,25 +29,16 @@ def middle(size_mm: float) -> np.ndarray:
     return np.repeat((np.array([0.02, 0.98]) * 20 / size_mm)[:, None], 3, axis=1)
 
 
-@dataclass(frozen=True, eq=False)
-class Ranking:
-    """Starts, logarithms (2, 3) each; spreads: the least that a candidate leaves of values that go with its prediction,
-    and of values that go with the power ENCODED of it.
-    """
-
-    starts: tuple[np.ndarray, ...]
-    spreads: tuple[float, float]
-
-
-def ranked(problem: Problem, predictor: Predictor, grid: list[np.ndarray], advance: Callable[[], None]) -> Ranking:
-    """The candidate that is best for each channel, and the best that is far from it.
+def ranked(
+    problem: Problem, predictor: Predictor, grid: list[np.ndarray], advance: Callable[[], None]
+) -> tuple[np.ndarray, ...]:
+    """Starts, logarithms (2, 3) each: the candidate that is best for each channel, and the best that is far from it.
 
     The second is left out where it is much worse in every channel.
     """
-    costs, spreads = np.empty((len(grid), 3)), np.empty((len(grid), 2))
+    costs = np.empty((len(grid), 3))
     for number, candidate in enumerate(grid):
         pictures = predictor.predict(np.repeat(candidate[:, None], 3, axis=1), False, advance)
-        spreads[number] = [problem.spread(pictures, power) for power in (1.0, ENCODED)]
         costs[number] = [_cost(problem, pictures, channel) for channel in range(3)]
     logs = np.log(np.array(grid))
     best, second, close = np.empty((2, 3)), np.empty((2, 3)), False
@@ -59,8 +48,7 @@ def ranked(problem: Problem, predictor: Predictor, grid: list[np.ndarray], advan
         far = [index for index in order if np.abs(logs[index] - logs[order[0]]).max() > _APART]
         second[:, channel] = logs[far[0]]
         close = close or costs[far[0], channel] < _CLOSE * costs[order[0], channel]
-    least = spreads.min(axis=0)
-    return Ranking((best, second) if close else (best,), (float(least[0]), float(least[1])))
+    return (best, second) if close else (best,)
 
 
 def _cost(problem: Problem, pictures: list[Predicted], channel: int) -> float:

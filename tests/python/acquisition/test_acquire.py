@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +16,6 @@ from quadgraph.file import npz
 
 pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 
-TRUTH = {"sigma_a": [0.006, 0.02, 0.05], "sigma_s_prime": [1.1, 0.7, 0.9]}
 SEED = 20
 
 
@@ -26,7 +24,7 @@ def twin(tmp_path_factory) -> Path:
     """The folder of a capture."""
     folder = tmp_path_factory.mktemp("twin")
     twin_capture.bodies(folder)
-    twin_capture.write(folder, TRUTH, SEED)
+    twin_capture.write(folder, twin_capture.TRUTH, SEED)
     return folder
 
 
@@ -47,7 +45,7 @@ def acquire(folder: Path, *more: str) -> tuple[int, dict[str, Any]]:
 
 def off(report: dict[str, Any], name: str) -> tuple[np.ndarray, np.ndarray]:
     """By how much a coefficient is off, (3,), relative and in standard deviations."""
-    found, true = np.array(report["coefficients"][name]), np.array(TRUTH[name])
+    found, true = np.array(report["coefficients"][name]), np.array(twin_capture.TRUTH[name])
     return found / true - 1, np.log(found / true) / report["deviations_of_logarithms"][name]
 
 
@@ -65,7 +63,7 @@ def test_coefficients_are_recovered_within_what_is_said_of_them(twin, known, cap
     assert "sigma_a, 1/mm: red" in said
     assert "±" in said
     material = npz.read(twin / "wax.npz", ("sigma_a", "sigma_s_prime", "eta"))
-    for name in TRUTH:
+    for name in twin_capture.TRUTH:
         np.testing.assert_allclose(material[name].ravel(), report["coefficients"][name], rtol=1e-6)
     assert float(material["eta"]) == twin_capture.ETA
 
@@ -74,10 +72,10 @@ def test_coefficients_are_recovered_within_what_is_said_of_them(twin, known, cap
 def test_unknown_gains_leave_coefficients_within_what_is_said_of_them(twin, tmp_path):
     for name in ("potato.qgraph", "finer.qgraph"):
         shutil.copy(twin / name, tmp_path)
-    twin_capture.write(tmp_path, TRUTH, SEED + 1, gains=True)
+    twin_capture.write(tmp_path, twin_capture.TRUTH, SEED + 1, gains=True)
     status, report = acquire(tmp_path)
     assert status == 0
-    for name in TRUTH:
+    for name in twin_capture.TRUTH:
         assert (np.abs(off(report, name)[1]) < 3).all()
     gains = np.array([each["gain"] for each in report["photographs"]])
     assert gains.std() > 0.02
@@ -86,70 +84,10 @@ def test_unknown_gains_leave_coefficients_within_what_is_said_of_them(twin, tmp_
 def test_the_page_shows_everything_and_needs_nothing_else(twin, known, browser):
     text = (twin / "wax.html").read_text()
     assert "://" not in text
-    for name in TRUTH:
+    for name in twin_capture.TRUTH:
         for value in known["coefficients"][name]:
             assert f"{value:.4g} ±" in text
     browser.get((twin / "wax.html").as_uri())
     sizes = "return Array.from(document.images).map(each => [each.naturalWidth, each.naturalHeight])"
     assert browser.execute_script(sizes) == [[40, 40]] * 3 * len(known["photographs"])
     assert not browser.get_log("browser")
-
-
-def flipped(folder: Path, photographs: list[dict[str, Any]]) -> None:
-    change(folder, photographs[0], lambda value: value[:, ::-1])
-
-
-def encoded(folder: Path, photographs: list[dict[str, Any]]) -> None:
-    for each in photographs:
-        change(folder, each, lambda value: np.maximum(value, 0) ** (1 / 2.2))
-
-
-def swapped(_folder: Path, photographs: list[dict[str, Any]]) -> None:
-    photographs[1]["lights"], photographs[3]["lights"] = photographs[3]["lights"], photographs[1]["lights"]
-
-
-def moved(folder: Path, photographs: list[dict[str, Any]]) -> None:
-    change(folder, photographs[2], lambda value: np.roll(value, 9, axis=1))
-
-
-def change(folder: Path, photograph: dict[str, Any], how: Callable[[np.ndarray], np.ndarray]) -> None:
-    """Spoil a photograph's values."""
-    value = npz.read(folder / photograph["file"], ("photograph",))["photograph"]
-    np.savez(folder / photograph["file"], photograph=how(value))
-
-
-@pytest.mark.parametrize(
-    ("spoil", "said"),
-    [
-        (flipped, "photographs[0].file: fits much better turned left to right"),
-        pytest.param(encoded, "encoded for displays", marks=pytest.mark.long),
-        pytest.param(swapped, "lights are swapped", marks=pytest.mark.long),
-        pytest.param(moved, "of what is lit lies beside the body", marks=pytest.mark.long),
-    ],
-)
-def test_spoilt_photographs_are_named(twin, tmp_path, spoil, said, capsys):
-    folder = tmp_path / "spoilt"
-    shutil.copytree(twin, folder)
-    document = json.loads((folder / "capture.json").read_text())
-    spoil(folder, document["photographs"])
-    (folder / "capture.json").write_text(json.dumps(document))
-    status, report = acquire(folder, "--no-correction")  # which is quicker
-    assert status == 3
-    assert any(said in finding for finding in report["findings"]), report["findings"]
-    assert said in capsys.readouterr().out
-
-
-def test_a_capture_in_metres_is_refused(twin, tmp_path, capsys):
-    """Of cameras: the body is then far away, or around the camera."""
-    folder = tmp_path / "metres"
-    shutil.copytree(twin, folder)
-    document = json.loads((folder / "capture.json").read_text())
-    document["deformation"] = [{"type": "transform", "scale": 0.001}]
-    (folder / "capture.json").write_text(json.dumps(document))
-    (folder / "wax.json").unlink(missing_ok=True)
-    (folder / "wax.npz").unlink(missing_ok=True)
-    status, report = acquire(folder)
-    assert (status, report) == (1, {})
-    error = capsys.readouterr().err
-    assert "photographs[0].camera: the body covers 0 pixels of 'front'" in error
-    assert not (folder / "wax.npz").exists()

@@ -177,6 +177,19 @@ def test_a_photograph_that_cannot_be_used_is_named(folder, name, said):
     assert "photographs[0]" in str(caught.value)
 
 
+@pytest.mark.parametrize(("most", "refused"), [(0.5, True), (1.0, False)])
+def test_values_that_end_below_the_stated_saturation_are_told_from_steps_of_few_bits(folder, most, refused):
+    steps = np.random.default_rng(3).uniform(0.1, 0.9, (40, 40, 3)) * 64 // 1 / 64
+    np.savez(folder / "a.npz", photograph=np.minimum(steps, most))
+    document = stated()
+    put(document, "photographs.0.saturation", 0.95)
+    if not refused:
+        assert photographs.read_all(read(folder, document))[0].usable.all()
+        return
+    with pytest.raises(InputError, match=r"photographs\[0\]\.saturation: found 0\.95, but .* same largest value 0\.5 "):
+        photographs.read_all(read(folder, document))
+
+
 def test_pictures_for_displays_are_refused(folder):
     Image.fromarray(np.full((40, 40, 3), 99, np.uint8)).save(folder / "a.png")
     document = stated()
