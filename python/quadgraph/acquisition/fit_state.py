@@ -21,8 +21,9 @@ _FILE = "acquire-state.npz"
 class FitState:
     """What a fit goes on from. start (2, 3): homogeneous coefficients, 1/mm; gains (p, 3) of the photographs; logs and
     told (2, n, 3): logarithms of the coefficients at the grid's points, and how much the photographs tell of each;
-    smoothing: the next step's; enough (): 1 where less would explain little more; outer (): how many outer steps were
-    made; smoothings (k,) and chi_squared (k, 3): of the steps so far.
+    smoothing: the last step's; enough (): 1 where less would explain little more; outer (): how many outer steps were
+    made; smoothings (k,) and chi_squared (k, 3): of the steps so far; in_tiles and local (3,): sizes of the engine's
+    error, as the weights have them.
     """
 
     start: np.ndarray
@@ -34,6 +35,8 @@ class FitState:
     outer: np.ndarray
     smoothings: np.ndarray
     chi_squared: np.ndarray
+    in_tiles: np.ndarray
+    local: np.ndarray
 
 
 class StateFolder:

@@ -26,6 +26,7 @@ from quadgraph.acquisition.problem import Problem
 from quadgraph.acquisition.smoothing import LEAST_SHARE, Smoothing
 from quadgraph.acquisition.volume_grid import VolumeGrid
 from quadgraph.acquisition.volume_model import Around, VolumeSetting
+from quadgraph.acquisition.volume_weights import Sizes
 from quadgraph.base.progress import ProgressCallback
 
 OUTER, INNER = 4, 3  # steps at most
@@ -36,6 +37,7 @@ _FLOOR = 0.02  # of the best seen point, what the smoothing of others counts at 
 _THRESHOLD = 0.05  # of a logarithm over the grid's spacing: smaller slopes are no steps
 _FIRST, _LESS = 30.0, 0.4  # smoothing over what is told at first; from step to step, while too little is explained
 _GAINED, _FEWEST = 0.1, 3  # of chi^2, that another step has to gain, after so many
+_MORE = 1.25  # weights over those before, from which on less smoothing is tried again
 _LEAST_GAIN = 0.1  # a gain's factor in one step, at least
 _BOUNDS = np.log([1e-7, 1e4])  # of coefficients, 1/mm
 
@@ -101,20 +103,24 @@ def fit_volume(
         first, gains = (start.start, start.gains) if isinstance(start, FitState) else start
         logs = kept.logs if kept else np.log(np.repeat(first[:, None, :], grid.count, axis=1))
         found = setting.predicted(logs, np.array(gains), corrected)
+        if kept:
+            found = found.sized(Sizes(kept.in_tiles, kept.local))
         tell(f"{'resumed' if kept else 'start'}: chi^2 per square {_text(found.chi_squared)}")
         fit = _Fit(found, tell, kept)
         for outer in range(int(kept.outer) if kept else 0, OUTER):
             following = fit.descended(found).renewed(corrected)
-            before, after = found.chi_squared.max(), following.chi_squared.max()
-            tell(f"predicted anew: chi^2 per square {_text(following.chi_squared)}")
+            # Of both by the same weights, which are new.
+            before, after = found.judged_by(following.weights).max(), following.chi_squared.max()
+            tell(f"predicted anew: chi^2 per square {_text(following.chi_squared)}{_sizes(following)}")
+            little = after > (1 - _GAINED) * before
             if after < before:
+                fit.reweigh(following.weights.over(found.weights))
                 found = following
-            last = fit.enough and after > (1 - _GAINED) * before
+            last = little and fit.enough
             keep(fit.state(first, found, OUTER if last else outer + 1))
             if last:
                 break
         tell("standard deviations")
-        fit.strength = fit.steps[-1].smoothing  # which may have been lessened for a step that did not come
         return VolumeFit(
             grid,
             np.exp(found.logs),
@@ -126,6 +132,12 @@ def fit_volume(
             found.gains,
             fit.steps,
         )
+
+
+def _sizes(around: Around) -> str:
+    """What the engine's error is taken to be, in words."""
+    in_tiles, local = (float(each.max()) for each in around.weights.sizes)
+    return f"; of the engine's error {in_tiles:.0%} from part to part of pictures, {local:.0%} from square to square"
 
 
 def _text(values: np.ndarray) -> str:
@@ -170,7 +182,14 @@ class _Fit:
             np.array(outer),
             np.array([step.smoothing for step in self.steps]),
             np.array([step.chi_squared for step in self.steps]),
+            *found.weights.sizes,
         )
+
+    def reweigh(self, factor: float) -> None:
+        """Go on as smooth as before with squares that count so much more."""
+        self._diagonal *= factor
+        self.strength *= factor
+        self.enough = self.enough and factor < _MORE
 
     def matrices(self, logs: np.ndarray) -> Sequence[sparse.csr_array]:
         """The smoothing of each coefficient around logarithms, (n, n)."""
@@ -180,6 +199,8 @@ class _Fit:
         """A few steps with the same factors, each with less smoothing as long as that explains more."""
         before = float(around.chi_squared.max())
         for _ in range(INNER):
+            if self.steps and not self.enough:
+                self.strength *= _LESS
             step, gains = self._step(around)
             around = around.moved(np.clip(around.logs + step, *_BOUNDS), around.gains * gains)
             chi = around.chi_squared
@@ -189,11 +210,9 @@ class _Fit:
             little = len(self.steps) >= _FEWEST and after > (1 - _GAINED) * before
             if self.enough and (little or np.abs(step).max() < _SMALL):
                 break
-            if not self.enough and little and len(self.steps) > 1:
-                self.strength = self.steps[-2].smoothing
-            self.enough = self.enough or little
-            if not self.enough:
-                self.strength *= _LESS
+            if little and not self.enough:
+                self.strength /= _LESS  # what it was one step before
+                self.enough = True
             before = after
         return around
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -16,7 +16,7 @@ from quadgraph.acquisition.linearised import Channels, Linearised, by_lights
 from quadgraph.acquisition.prediction import Predicted, Predictor
 from quadgraph.acquisition.problem import Problem
 from quadgraph.acquisition.volume_grid import VolumeGrid
-from quadgraph.acquisition.volume_weights import Weighing, Weights
+from quadgraph.acquisition.volume_weights import Sizes, Weighing, Weights
 from quadgraph.base.errors import InputError
 
 LARGEST_LEVEL = 10_000  # tets of the level that derivatives are taken on, if there is one of so few
@@ -118,8 +118,20 @@ class Around:
         return np.concatenate([scale * radiance for scale, radiance in zip(scales, radiances, strict=True)])
 
     def renewed(self, corrected: bool) -> Around:
-        """The same volume with factors and weights of the engine's own pictures of it. Raises SolverError."""
-        return self.setting.predicted(self.logs, self.gains, corrected, self.model)
+        """The same volume with factors and weights of the engine's own pictures of it, whose error is taken to be of
+        the size that the residuals speak for. Raises SolverError.
+        """
+        found = self.setting.predicted(self.logs, self.gains, corrected, self.model)
+        return found.sized(found.weights.resized(self.weights.sizes).estimated(found.residual))
+
+    def sized(self, sizes: Sizes) -> Around:
+        """The same with the engine's error of these sizes."""
+        return replace(self, weights=self.weights.resized(sizes))
+
+    def judged_by(self, weights: Weights) -> np.ndarray:
+        """(3,) chi^2 per square by any weights, by channel."""
+        left = weights.at(self.residual).apply(self.residual)
+        return (self.residual * left).sum(axis=0) / weights.counts.sum(axis=0)
 
     @cached_property
     def residual(self) -> np.ndarray:
@@ -134,7 +146,7 @@ class Around:
     @cached_property
     def chi_squared(self) -> np.ndarray:
         """(3,) per square, by channel."""
-        return (self.residual * self.weighing.apply(self.residual)).sum(axis=0) / self.weights.counts.sum(axis=0)
+        return self.judged_by(self.weights)
 
     def by_photograph(self) -> np.ndarray:
         """(p, 3) mean squares of residuals in standard deviations, NaN where nothing counts."""

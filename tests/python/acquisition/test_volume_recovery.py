@@ -17,7 +17,7 @@ from quadgraph.acquisition import capture, photographs, prediction
 from quadgraph.acquisition.prediction import Predictor
 from quadgraph.acquisition.problem import Problem
 from quadgraph.acquisition.volume_model import VolumeSetting
-from quadgraph.acquisition.volume_weights import IN_TILES, LOCAL
+from quadgraph.acquisition.volume_weights import AT_FIRST, Sizes
 from quadgraph.cli import main
 from quadgraph.file import npz
 
@@ -179,11 +179,34 @@ def test_what_squares_share_is_taken_out_as_by_the_whole_covariance(setting):
     counts = weights.counts[:, 1]
     alike = (lights[:, None] == lights) & (band[:, None] == band)
     tile = np.concatenate([16 * number + squares.tile for number, (squares, _) in enumerate(pairs)])
-    beside = IN_TILES**2 * (tile[:, None] == tile)
+    beside = AT_FIRST.in_tiles[1] ** 2 * (tile[:, None] == tile)
     covariance = np.diag(1 / around.weighing.each[counts, 1])
-    assert (np.diag(covariance) > (LOCAL * error * value)[counts] ** 2).all()
+    assert (np.diag(covariance) > (AT_FIRST.local[1] * error * value)[counts] ** 2).all()
     covariance += ((alike + beside) * np.outer(error * value, error * value))[np.ix_(counts, counts)]
     expected = np.linalg.solve(covariance, residual[counts, 1])
     np.testing.assert_allclose(
         around.weighing.apply(residual)[counts, 1], expected, rtol=1e-6, atol=1e-9 * abs(expected).max()
     )
+
+
+def test_the_size_of_the_error_is_what_residuals_speak_for(setting):
+    logs = np.log(np.broadcast_to([[[0.03]], [[0.8]]], (2, setting.grid.count, 3)))
+    around = setting.predicted(logs, np.ones((4, 3)), False)
+    weights, pairs = around.weights, list(zip(setting.samples.squares, around.pictures, strict=True))
+    error = np.concatenate([squares.of(picture.error) for squares, picture in pairs]) * (setting.data - around.residual)
+    number = np.concatenate([16 * k + squares.tile for k, (squares, _) in enumerate(pairs)])
+    variance = 1 / weights.resized(Sizes(np.ones(3), np.full(3, 1e-9))).at(np.zeros(error.shape)).each
+    noise = np.where(weights.counts, np.sqrt(variance), 0)
+    random = np.random.default_rng(8)
+    at = weights.resized(Sizes(np.full(3, 0.25), np.full(3, 0.5)))
+    for in_tiles, local in ((0.3, 0.5), (0.6, 0.2)):
+        found = []
+        for _ in range(20):
+            shared = random.normal(size=(number.max() + 1, 3))[number]
+            own, read = random.normal(size=(2, *error.shape))
+            found.append(at.estimated(in_tiles * error * shared + local * error * own + noise * read))
+        squares = np.square(found).mean(axis=0)
+        np.testing.assert_allclose(squares[0], in_tiles**2, rtol=0.25)
+        np.testing.assert_allclose(squares[1], local**2, rtol=0.1, atol=0.015)
+    least = weights.estimated(noise * random.normal(size=error.shape))
+    assert (np.concatenate(least) < 0.25).all()
