@@ -32,9 +32,10 @@ STUDIES = {
     "budget": "budget",
     "unseen": "unseen",
     "light": "light",
+    "acquire": "acquire",
 }
 
-_WIDE = ("dense", "unseen")  # studies whose tables cannot be read narrower than this, characters
+_WIDE = ("dense", "unseen", "acquire")  # studies whose tables cannot be read narrower than this, characters
 _TABLE_WIDTH = 190
 
 # Studies of real bodies, which the CPU reference cannot stand in for, because only the engine does what they judge.
@@ -46,7 +47,10 @@ ON_ENGINE = {
     "budget": "is baked for",
     "unseen": "prints an error",
     "light": "prints an error",
+    "acquire": "is what photographs are held against",
 }
+
+_UNSEEN_WALKS, _ACQUIRE_WALKS = 2_000_000, 8192
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -62,7 +66,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     )
     _add_bodies_options(parser.add_argument_group("scenes, estimate, target, budget"))
     _add_scenes_options(parser.add_argument_group("scenes, unseen"))
-    _add_unseen_options(parser.add_argument_group("unseen; of these, light takes --seed and --count"))
+    _add_unseen_options(parser.add_argument_group("unseen; light takes --seed and --count, acquire --walks too"))
 
 
 def _add_bodies_options(group: argparse._ArgumentGroup) -> None:
@@ -103,7 +107,10 @@ def _add_unseen_options(group: argparse._ArgumentGroup) -> None:
         help="also 30 frames in which the light turns by 3 degrees each and the material is edited",
     )
     group.add_argument(
-        "--walks", type=positive_int, default=2_000_000, metavar="N", help="of each truth (default: %(default)s)"
+        "--walks",
+        type=positive_int,
+        metavar="N",
+        help=f"of each truth (default: {_UNSEEN_WALKS}), or of a pixel of acquire (default: {_ACQUIRE_WALKS})",
     )
     group.add_argument(
         "--sweeps",
@@ -143,12 +150,16 @@ def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
     if args.study == "light":
         with Console(stderr=True).status("study: light"):
             return study.run(study.LightRun(args.seed, args.count, args.device))
+    if args.study == "acquire":
+        with Console(stderr=True).status("study: acquire") as status:
+            wanted_acquire = study.AcquireRun(args.seed, args.count, args.walks or _ACQUIRE_WALKS, args.device)
+            return study.run(wanted_acquire, lambda name: status.update(f"study: acquire, {name}"))
     if args.study == "unseen":
         truths, sweeps = args.truth or cache_folder(), args.sweeps or (None,)
         wanted = study.UnseenRun(
             args.seed,
             args.count,
-            args.walks,
+            args.walks or _UNSEEN_WALKS,
             truths,
             sweeps,
             args.device,
