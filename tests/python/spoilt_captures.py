@@ -170,12 +170,12 @@ QUICK: dict[str, tuple[Spoil, tuple[str, ...]]] = {
         one(0, lambda x: x[:, ::-1]),
         ("probably photographs[0].file: fits much better turned left to right",),
     ),
+}
+SLOW: dict[str, tuple[Spoil, tuple[str, ...]]] = {
     "exposure": (
         member("photographs.2.exposure", lambda x: x / 2),
         ("probably photographs[2].exposure (or gain): values are 2.", "times what is predicted"),
     ),
-}
-SLOW: dict[str, tuple[Spoil, tuple[str, ...]]] = {
     "mask of another": (
         masked(0, 1, lambda body: np.roll(body, 12, axis=1)),
         ("photographs[0].mask: ", "of another photograph"),
