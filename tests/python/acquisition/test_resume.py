@@ -104,6 +104,8 @@ def test_what_was_interrupted_ends_as_if_it_had_not_been(twin, tmp_path, monkeyp
     assert said[0].startswith("volume: ")  # without a homogeneous fit
     assert said[1].startswith("resumed: ")
     assert said[-2:] == told[-2:]
-    assert [step.smoothing for step in resumed.steps] == [step.smoothing for step in whole.steps]
+    # Sums of several threads differ in their last digit.
+    smoothings = [step.smoothing for step in whole.steps]
+    assert [step.smoothing for step in resumed.steps] == pytest.approx(smoothings, rel=1e-9)
     np.testing.assert_allclose(resumed.coefficients, whole.coefficients, rtol=1e-6)
     np.testing.assert_allclose(resumed.deviations, whole.deviations, rtol=1e-6)
