@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from quadgraph.api.materials import Material
+from quadgraph.baking.pipeline import check_options
 from quadgraph_validation.accuracy import acquire_study
 from quadgraph_validation.accuracy.acquire_study import AcquireRun
 
@@ -49,6 +51,12 @@ def test_what_absorbs_nothing_is_judged_by_what_is_found_beside_scattering():
     relative, deviations = acquire_study.off(row([[0.0] * 3, [2.0] * 3], [[0.001] * 3, [2.0] * 3], 0.1), "known")
     np.testing.assert_allclose(relative[0], 0.0005)
     assert np.isfinite(deviations).all()
+
+
+@pytest.mark.parametrize("name", acquire_study.MEASURED)
+def test_a_bake_for_each_measured_material_is_allowed(name, tmp_path):
+    """Also for one that absorbs nothing."""
+    check_options(tmp_path / "body.qgraph", acquire_study.bake_options(Material.parse(name)))
 
 
 @pytest.mark.long

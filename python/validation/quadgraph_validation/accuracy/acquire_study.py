@@ -98,8 +98,7 @@ def body(seed: int) -> Surface:
 
 def _row(seed: int, material: Material, wanted: AcquireRun, folder: Path) -> dict[str, Any]:
     unseen_bodies.write(folder / "body.ply", body(seed))
-    text = f"sigma_s_prime={_slashed(material.sigma_s_prime)},sigma_a={_slashed(material.sigma_a)},eta={material.eta:g}"
-    bake(folder / "body.ply", folder / "body.qgraph", BakeOptions(unit="mm", for_materials=(text,)))
+    bake(folder / "body.ply", folder / "body.qgraph", bake_options(material))
     (folder / "scene.json").write_text(json.dumps(_scene(material)))
     found = photographed.subject(folder / "scene.json")
     options = photographed.PhotographOptions(walks=wanted.walks, seed=seed + 1)
@@ -112,6 +111,12 @@ def _row(seed: int, material: Material, wanted: AcquireRun, folder: Path) -> dic
         read = capture.read(folder / f"{kind}.json")
         row[kind] = _found(recover(read, True, None, lambda text: None, lambda share: None, wanted.device))
     return row
+
+
+def bake_options(material: Material) -> BakeOptions:
+    """Tets sized for the material, or by the shape where it absorbs nothing."""
+    text = f"sigma_s_prime={_slashed(material.sigma_s_prime)},sigma_a={_slashed(material.sigma_a)},eta={material.eta:g}"
+    return BakeOptions(unit="mm", for_materials=(text,) if max(_three(material.sigma_a)) > 0 else ())
 
 
 def _scene(material: Material) -> dict[str, Any]:
