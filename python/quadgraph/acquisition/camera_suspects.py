@@ -9,7 +9,7 @@ import numpy as np
 from scipy import ndimage
 
 from quadgraph.acquisition.bank import Bank, Gathered, Otherwise
-from quadgraph.acquisition.outlines import grey, lit, middle
+from quadgraph.acquisition.outlines import displaced, grey, lit
 from quadgraph.acquisition.suspects import Scope, Suspect, scopes
 
 _LEAST = 0.03  # of a size, or pixels over the size, from which on a difference is worth a word
@@ -51,8 +51,8 @@ def _measure(bank: Bank, number: int) -> tuple[float, np.ndarray]:
     seen = bank.seen[number]
     usable = seen.usable.all(axis=2)
     photographed, predicted = lit(grey(seen.values)) & usable, lit(grey(bank.picture(number))) & usable
-    size = np.sqrt(photographed.sum() / max(predicted.sum(), 1))
-    return float(size) or np.nan, middle(photographed) - middle(predicted)
+    size, shift = displaced(photographed, predicted)
+    return size or np.nan, shift
 
 
 def _resampled(seen: Gathered, scale: float, shift: np.ndarray) -> Gathered:

@@ -77,7 +77,7 @@ class Capture:
         for photograph in self.photographs:
             found += [photograph.file, *([photograph.mask] if photograph.mask else [])]
             found += [photograph.noise] if isinstance(photograph.noise, Path) else []
-        return found
+        return found + [Path(light["file"]) for light in self.lights.values() if "file" in light]
 
 
 def read(path: Path) -> Capture:

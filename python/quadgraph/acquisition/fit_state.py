@@ -15,6 +15,19 @@ from quadgraph.base.version import __version__
 from quadgraph.file import npz
 
 _FILE = "acquire-state.npz"
+_SHAPES: dict[str, tuple[int | str, ...]] = {
+    "start": (2, 3),
+    "gains": ("photographs", 3),
+    "logs": (2, "points", 3),
+    "told": (2, "points", 3),
+    "smoothing": (),
+    "enough": (),
+    "outer": (),
+    "smoothings": ("steps",),
+    "chi_squared": ("steps", 3),
+    "in_tiles": (3,),
+    "local": (3,),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,29 +64,42 @@ class StateFolder:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise InputError(f"{folder}: --resume: cannot be made a folder ({error.strerror}); name another") from error
+        self._photographs = len(capture.photographs)
         digest = hashlib.sha256(f"{__version__} {options}".encode())
         for path in capture.files():
             digest.update(hashlib.sha256(regular_file.read_bytes(path)).digest())
         self._key = np.frombuffer(digest.digest(), np.uint8)
 
     def read(self) -> FitState | None:
-        """The state that was kept last, None where there is none. Raises InputError for one of another fit."""
+        """The state that was kept last, None where there is none. Raises InputError for one of another fit, and for a
+        file that is damaged.
+        """
         if not self._path.exists():
             return None
-        names = FitState.__annotations__
-        found = npz.read(self._path, ("key", *names))
+        found = npz.read(self._path, ("key", *_SHAPES))
         if not np.array_equal(found.get("key", ()), self._key):
             raise InputError(
                 f"{self._path}: key: found that of another capture, other photographs, options or version; remove the "
                 "file, or give --resume another folder"
             )
-        missing = [name for name in names if name not in found]
-        if missing:
-            raise InputError(f"{self._path}: {missing[0]}: is missing; remove the file to begin anew")
-        return FitState(**{name: found[name] for name in names})
+        sizes: dict[int | str, int] = {"photographs": self._photographs}
+        for name, shape in _SHAPES.items():
+            if name not in found:
+                raise InputError(f"{self._path}: {name}: is missing; remove the file to begin anew")
+            values = found[name]
+            if values.ndim == len(shape):
+                for count, size in zip(shape, values.shape, strict=True):
+                    sizes.setdefault(count, count if isinstance(count, int) else size)
+            wanted = tuple(sizes.get(count, 0) for count in shape)
+            if values.shape != wanted or values.dtype.kind not in "biuf" or not np.isfinite(values).all():
+                raise InputError(
+                    f"{self._path}: {name}: {values.dtype} of shape {values.shape} found, finite numbers of shape "
+                    f"{wanted} wanted; remove the file to begin anew"
+                )
+        return FitState(**{name: found[name] for name in _SHAPES})
 
     def write(self, state: FitState) -> None:
         """Keep a state in the place of the last. Raises InputError if it cannot be written."""
-        arrays = {name: getattr(state, name) for name in FitState.__annotations__}
+        arrays = {name: getattr(state, name) for name in _SHAPES}
         with atomic_file.replacing(self._path) as stream:
             np.savez(stream, allow_pickle=False, key=self._key, **arrays)

@@ -30,8 +30,14 @@ def lit(picture: np.ndarray) -> np.ndarray:
     return picture > _LIT * np.quantile(picture, 0.99)
 
 
-def middle(part: np.ndarray) -> np.ndarray:
-    """(2,) the mean row and column of a part of a picture."""
+def displaced(seen: np.ndarray, predicted: np.ndarray) -> tuple[float, np.ndarray]:
+    """How many times as large as predicted a part of a picture is, and by how much, (2,) down and right, it lies
+    elsewhere.
+    """
+    return float(np.sqrt(seen.sum() / max(predicted.sum(), 1))), _middle(seen) - _middle(predicted)
+
+
+def _middle(part: np.ndarray) -> np.ndarray:
     return np.argwhere(part).mean(axis=0) if part.any() else np.zeros(2)
 
 
@@ -45,8 +51,7 @@ def silhouettes(problem: Problem, pictures: list[Predicted]) -> Iterator[str]:
         beside = (photographed & ~body).sum() / max(photographed.sum(), 1)
         if beside < _BESIDE:
             continue
-        shift = middle(photographed) - middle(predicted)
-        size = np.sqrt(photographed.sum() / max(predicted.sum(), 1))
+        size, shift = displaced(photographed, predicted)
         yield (
             f"{one.stated.path}.camera: {beside:.0%} of what is lit lies beside the body; what is lit is "
             f"{shift[1]:+.0f} pixels to the right of its prediction, {shift[0]:+.0f} down and {size:.2f} times as "

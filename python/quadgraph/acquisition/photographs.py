@@ -22,7 +22,7 @@ _SPIKE, _STEPS = 5.0, 8  # how many times as many pixels as steps below it the l
 @dataclass(frozen=True, eq=False)
 class Measured:
     """One photograph. values, variances: (h, w, 3) float64, variances without a noise model's part of the value; usable
-    (h, w, 3): neither masked nor saturated; kept: (h, w), what a mask keeps, if there is one.
+    (h, w, 3): neither masked nor saturated; kept: (h, w), what a mask keeps in all channels, if there is one.
     """
 
     stated: Photograph
@@ -60,8 +60,9 @@ def _measured(capture: Capture, stated: Photograph) -> Measured:
     _check_clipped(where, stated, values)
     kept = None
     if stated.mask is not None:
-        kept = _image(f"{where}.mask", stated.mask, "mask", size).min(axis=2) > _MASK_LIMIT
-        usable &= kept[..., None]
+        mask = _image(f"{where}.mask", stated.mask, "mask", size) > _MASK_LIMIT
+        usable &= mask
+        kept = np.asarray(mask.all(axis=2))
     if not usable.any():
         raise InputError(f"{where}: found no pixel that is neither saturated nor masked, allowed is at least one")
     return Measured(stated, values, variances, usable, kept)

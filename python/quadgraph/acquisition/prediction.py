@@ -22,6 +22,7 @@ _DIM = 0.2  # of the 95th percentile of what is seen: below, the estimate of the
 _STAGES = 16  # engines at most
 # What a capture leaves open: one model for all coefficients, and solves whose differences are derivatives.
 _SOLVER = {"model": "sp3", "tolerance": 1e-4}
+PLACES = ("position", "centre")  # of lights
 _ANY = np.ones((2, 3))  # coefficients where lights alone matter, 1/mm
 _TOLERANCE = 1e-7  # of the solves of derivatives
 NAMES = ("sigma_a", "sigma_s_prime")
@@ -226,7 +227,7 @@ def check_seen(capture: Capture, box_mm: np.ndarray, pictures: list[Predicted]) 
 
 def _unlit(path: str, light: Mapping[str, Any], box_mm: np.ndarray) -> str:
     """Why a light reaches nothing, where its place and its direction say it."""
-    member = next((name for name in ("position", "centre") if name in light), None)
+    member = next((name for name in PLACES if name in light), None)
     if member is None:
         return ""
     if inside := _inside(f"{path}.{member}", light[member], box_mm):

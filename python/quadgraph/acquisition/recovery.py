@@ -182,15 +182,7 @@ def _by_place(
     engine: body, device and validation.
     """
     kept = states.read() if states else None
-    if kept:
-        same = kept.start
-    else:
-        few = _some_lights(capture)
-        some = [one for one in measured if one.stated in few.photographs]
-        tell(f"the same coefficients throughout, from {len(some)} of {len(measured)} photographs")
-        some_predictor = Predictor(few, *engine)
-        _, found = _fitted(few, some, some_predictor, False, _STEPS, tell, lambda share: advance(0.2 * share))
-        same = found.coefficients
+    same = kept.start if kept else _of_some(capture, measured, engine, tell, lambda share: advance(0.2 * share))
     predictor = Predictor(capture, *engine)
     first = predictor.predict(same, False)
     prediction.check_seen(capture, predictor.box_mm, first)
@@ -208,6 +200,21 @@ def _by_place(
     volume = fit_volume(problem, predictor, begin, corrected, spacing or None, tell, step, keep)
     findings, left_open = diagnosis.of_volume(volume), volume_report.undetermined(volume)
     return Recovered(capture, measured, problem, volume, left_open, findings, list(predictor.notes))
+
+
+def _of_some(
+    capture: Capture,
+    measured: list[Measured],
+    engine: tuple[Path, str, bool],
+    tell: ProgressCallback,
+    advance: Callable[[float], None],
+) -> np.ndarray:
+    """Roughly, the same coefficients throughout, (2, 3); the engines that found them are gone then."""
+    few = _some_lights(capture)
+    some = [one for one in measured if one.stated in few.photographs]
+    tell(f"the same coefficients throughout, from {len(some)} of {len(measured)} photographs")
+    _, found = _fitted(few, some, Predictor(few, *engine), False, _STEPS, tell, advance)
+    return found.coefficients
 
 
 def _some_lights(capture: Capture) -> Capture:

@@ -11,11 +11,11 @@ from scipy import optimize
 
 from quadgraph.acquisition.bank import Bank, Otherwise
 from quadgraph.acquisition.capture import Capture
+from quadgraph.acquisition.prediction import PLACES
 from quadgraph.acquisition.suspects import Scope, Suspect
 from quadgraph.base.errors import InputError, SolverError
 
-_PLACES = ("position", "centre")
-_VECTORS = (*_PLACES, "direction", "u", "v")
+_VECTORS = (*PLACES, "direction", "u", "v")
 _LENGTHS = (10.0, 0.1, 1000.0, 0.001)
 _INDICES = (1.0, 1.2, 1.35, 1.5, 1.7)
 _STEPS = 8  # of a search
@@ -45,7 +45,7 @@ def of_lights(bank: Bank) -> Iterator[Suspect]:
 def of_places(bank: Bank) -> Iterator[Suspect]:
     """One light whose place is searched for, where other photographs know what the body is made of."""
     for name, scope in _lit(bank).items():
-        place = next((member for member in _PLACES if member in bank.problem.capture.lights[name]), None)
+        place = next((member for member in PLACES if member in bank.problem.capture.lights[name]), None)
         if place and len(scope) < len(bank.seen):
             yield from _moved(bank, scope, name, place)
 
@@ -62,7 +62,7 @@ def _lit(bank: Bank) -> dict[str, Scope]:
 def _variants(light: Light) -> Iterator[tuple[str, Light]]:
     """What is often wrong with a light, in words, and the light without it."""
     vectors = [name for name in _VECTORS if name in light]
-    places = [name for name in (*_PLACES, "u", "v") if name in light]
+    places = [name for name in (*PLACES, "u", "v") if name in light]
     for axis, letter in enumerate(_AXES) if vectors else ():
         yield f"with its {letter} reversed", _mirrored(light, axis)
     if vectors:

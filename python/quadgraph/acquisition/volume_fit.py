@@ -3,8 +3,8 @@
 Unknown are the logarithms of sigma_a and sigma_s_prime at the points of a grid, in each channel. Predictions are the
 engine's pictures; their correction to transport, and what the finest level and the device add, are renewed in each
 outer step as a factor of every square of pixels. Within one, the model is that of linearised.py on a coarser level,
-whose derivative is exact (defect correction). Smoothing is lessened until that explains little more: the engine's error
-is estimated rather too large, so that chi^2 may fall below 1 while there is still much to be told.
+whose derivative is exact (defect correction). Smoothing is lessened until that explains little more: how large the
+engine's error is, is estimated on the way, so that chi^2 alone does not say when to stop.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ from quadgraph.acquisition.smoothing import LEAST_SHARE, Smoothing
 from quadgraph.acquisition.volume_grid import VolumeGrid
 from quadgraph.acquisition.volume_model import Around, VolumeSetting
 from quadgraph.acquisition.volume_weights import Sizes
+from quadgraph.base.errors import InputError
 from quadgraph.base.progress import ProgressCallback
 
 OUTER, INNER = 4, 3  # steps at most
@@ -100,6 +101,11 @@ def fit_volume(
             f"{len(setting.data)} squares of {side} x {side} pixels on level {setting.level}"
         )
         kept = start if isinstance(start, FitState) else None
+        if kept and kept.logs.shape[1] != grid.count:
+            raise InputError(
+                f"--resume: a state of {kept.logs.shape[1]} points found, {grid.count} are wanted; remove it to begin "
+                "anew, or name another folder"
+            )
         first, gains = (start.start, start.gains) if isinstance(start, FitState) else start
         logs = kept.logs if kept else np.log(np.repeat(first[:, None, :], grid.count, axis=1))
         found = setting.predicted(logs, np.array(gains), corrected)
@@ -149,7 +155,7 @@ class _Fit:
 
     def __init__(self, first: Around, tell: ProgressCallback, kept: FitState | None) -> None:
         """Find by random weights how much the photographs tell of each point, and from that the first smoothing; or
-        take both from a state. Raises InputError for a state of another grid.
+        take both from a state.
         """
         self._tell = tell
         self.steps: list[VolumeStep] = []
@@ -187,7 +193,7 @@ class _Fit:
 
     def reweigh(self, factor: float) -> None:
         """Go on as smooth as before with squares that count so much more."""
-        self._diagonal *= factor
+        self._diagonal = factor * self._diagonal
         self.strength *= factor
         self.enough = self.enough and factor < _MORE
 

@@ -122,7 +122,7 @@ class Around:
         the size that the residuals speak for. Raises SolverError.
         """
         found = self.setting.predicted(self.logs, self.gains, corrected, self.model)
-        return found.sized(found.weights.resized(self.weights.sizes).estimated(found.residual))
+        return found.sized(found.weights.estimated(found.residual, self.weights.sizes))
 
     def sized(self, sizes: Sizes) -> Around:
         """The same with the engine's error of these sizes."""

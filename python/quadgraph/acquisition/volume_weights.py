@@ -68,8 +68,7 @@ class Weights:
 
     def _resize(self, sizes: Sizes) -> None:
         self.sizes = sizes
-        variance = self._noise + (sizes.local * self._error) ** 2
-        self._weight = np.where(self.counts, 1 / np.maximum(variance, 1e-300), 0)
+        self._weight = np.where(self.counts, 1 / np.maximum(self._variance(sizes), 1e-300), 0)
         self._shared = [
             _Shared(
                 self._problem,
@@ -81,27 +80,30 @@ class Weights:
             for channel in range(3)
         ]
 
-    def estimated(self, residual: np.ndarray) -> Sizes:
+    def _variance(self, sizes: Sizes) -> np.ndarray:
+        """(m, 3) of what differs from square to square."""
+        return self._noise + (sizes.local * self._error) ** 2
+
+    def estimated(self, residual: np.ndarray, guess: Sizes) -> Sizes:
         """The sizes that residuals (m, 3) speak for, by moments: of what differs within tiles, and of tiles' means.
 
-        Neither is more than all of what the engine states: what is beyond that is no error of the engine's.
+        guess: about what they are, by which residuals are weighed and cut off. Neither is more than all of what the
+        engine states: what is beyond that is no error of the engine's.
         """
-        limit = _BEYOND / np.sqrt(np.maximum(self._weight, 1e-300))
-        found = [
-            self._of_channel(np.clip(residual[:, channel], -limit[:, channel], limit[:, channel]), channel)
-            for channel in range(3)
-        ]
+        limit = _BEYOND * np.sqrt(self._variance(guess))
+        believed = np.clip(residual, -limit, limit)
+        found = [self._of_channel(believed[:, channel], channel, guess) for channel in range(3)]
         in_tiles, local = np.clip(np.sqrt(np.maximum(np.array(found).T, 0)), _LEAST, 1)
         return Sizes(in_tiles, local)
 
-    def _of_channel(self, residual: np.ndarray, channel: int) -> tuple[float, float]:
+    def _of_channel(self, residual: np.ndarray, channel: int, guess: Sizes) -> tuple[float, float]:
         """Squares of both sizes, or less than 0."""
         error = self._error[:, channel]
         use = self.counts[:, channel] & (error > 0)
         if not use.any():
             return 0.0, 0.0
         value, noise = residual[use] / error[use], self._noise[use, channel] / error[use] ** 2
-        in_tiles, local = (float(size[channel] ** 2) for size in self.sizes)
+        in_tiles, local = (float(size[channel] ** 2) for size in guess)
         photograph = self._photograph[use]
         return _sizes(value, noise, photograph, TILES**2 * photograph + self._tile[use], (in_tiles, local))
 

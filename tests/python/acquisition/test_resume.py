@@ -71,6 +71,14 @@ def test_a_state_of_anything_else_is_refused(twin, tmp_path):
     np.savez(tmp_path / "acquire-state.npz", **arrays)
     with pytest.raises(InputError, match="told: is missing; remove the file to begin anew"):
         StateFolder(tmp_path, stated, "options").read()
+    arrays["told"] = np.zeros((2, 3, 3))  # of three points, where logs are of four
+    np.savez(tmp_path / "acquire-state.npz", **arrays)
+    with pytest.raises(InputError, match=r"told: float64 of shape \(2, 3, 3\) found.*\(2, 4, 3\) wanted; remove"):
+        StateFolder(tmp_path, stated, "options").read()
+    arrays["told"] = np.full((2, 4, 3), np.nan)
+    np.savez(tmp_path / "acquire-state.npz", **arrays)
+    with pytest.raises(InputError, match=r"told: .* finite numbers"):
+        StateFolder(tmp_path, stated, "options").read()
     (tmp_path / "file").touch()
     with pytest.raises(InputError, match="--resume: cannot be made a folder"):
         StateFolder(tmp_path / "file", stated, "options")

@@ -198,15 +198,15 @@ def test_the_size_of_the_error_is_what_residuals_speak_for(setting):
     variance = 1 / weights.resized(Sizes(np.ones(3), np.full(3, 1e-9))).at(np.zeros(error.shape)).each
     noise = np.where(weights.counts, np.sqrt(variance), 0)
     random = np.random.default_rng(8)
-    at = weights.resized(Sizes(np.full(3, 0.25), np.full(3, 0.5)))
+    guess = Sizes(np.full(3, 0.25), np.full(3, 0.5))
     for in_tiles, local in ((0.3, 0.5), (0.6, 0.2)):
         found = []
         for _ in range(20):
             shared = random.normal(size=(number.max() + 1, 3))[number]
             own, read = random.normal(size=(2, *error.shape))
-            found.append(at.estimated(in_tiles * error * shared + local * error * own + noise * read))
+            found.append(weights.estimated(in_tiles * error * shared + local * error * own + noise * read, guess))
         squares = np.square(found).mean(axis=0)
         np.testing.assert_allclose(squares[0], in_tiles**2, rtol=0.25)
         np.testing.assert_allclose(squares[1], local**2, rtol=0.1, atol=0.015)
-    least = weights.estimated(noise * random.normal(size=error.shape))
+    least = weights.estimated(noise * random.normal(size=error.shape), AT_FIRST)
     assert (np.concatenate(least) < 0.25).all()

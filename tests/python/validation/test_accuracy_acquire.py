@@ -53,7 +53,7 @@ def test_what_absorbs_nothing_is_judged_by_what_is_found_beside_scattering():
     assert np.isfinite(deviations).all()
 
 
-@pytest.mark.parametrize("name", acquire_study.MEASURED)
+@pytest.mark.parametrize("name", acquire_study.measured())
 def test_a_bake_for_each_measured_material_is_allowed(name, tmp_path):
     """Also for one that absorbs nothing."""
     check_options(tmp_path / "body.qgraph", acquire_study.bake_options(Material.parse(name)))
@@ -61,7 +61,7 @@ def test_a_bake_for_each_measured_material_is_allowed(name, tmp_path):
 
 @pytest.mark.long
 def test_a_body_is_recovered_from_walks(monkeypatch):
-    monkeypatch.setattr(acquire_study, "MEASURED", ())
+    monkeypatch.setattr(acquire_study, "measured", list)
     record = acquire_study.run(AcquireRun(seed=1, count=1, walks=2048, device="cpu"))
     relative, deviations = acquire_study.off(record["rows"][0], "known")
     assert (np.abs(relative) < 0.2).all()

@@ -18,7 +18,9 @@ import numpy as np
 import trimesh
 from rich.table import Table
 
+from quadgraph import core
 from quadgraph.acquisition import capture
+from quadgraph.acquisition.prediction import NAMES
 from quadgraph.acquisition.recovery import Recovered, recover
 from quadgraph.api.materials import Material
 from quadgraph.baking.pipeline import BakeOptions, bake
@@ -26,15 +28,10 @@ from quadgraph.mesh.surface import Surface
 from quadgraph_validation.bodies import unseen_bodies
 from quadgraph_validation.truth import photographed
 
-MEASURED = (
-    *("apple", "chicken1", "chicken2", "cream", "ketchup", "marble"),
-    *("potato", "skimmilk", "skin1", "skin2", "spectralon", "wholemilk"),
-)
 LENGTH = 40.0  # mm, longest side
 SIDE = 32  # pixels
 GAINS = 0.2  # by how much unknown gains are off
 PALE = 0.999  # albedo, above which an absorption need only lie within its own deviations
-NAMES = ("sigma_a", "sigma_s_prime")
 _PATHS = (5.0, 60.0)  # mean free paths across the longest side, of random materials
 _ABSORBED = (3e-4, 0.3)  # share of extinction of the same
 _ETA = (1.3, 1.5)
@@ -58,7 +55,7 @@ class AcquireRun:
 def run(wanted: AcquireRun, tell: Callable[[str], None] = lambda text: None) -> dict[str, Any]:
     """Recover all. Raises what bakes, walks and recoveries raise."""
     rows = []
-    cases = [(name, number, Material.parse(name)) for number, name in enumerate(MEASURED)]
+    cases = [(name, number, Material.parse(name)) for number, name in enumerate(measured())]
     seeds = range(wanted.seed, wanted.seed + wanted.count)
     cases += [(f"seed {seed}", 1000 + seed, drawn(seed)) for seed in seeds]
     for name, number, material in cases:
@@ -66,6 +63,11 @@ def run(wanted: AcquireRun, tell: Callable[[str], None] = lambda text: None) -> 
         with tempfile.TemporaryDirectory(prefix="quadgraph-acquire-") as folder:
             rows.append({"name": name} | _row(number, material, wanted, Path(folder)))
     return {"seed": wanted.seed, "walks": wanted.walks, "rows": rows, "summary": summary(rows)}
+
+
+def measured() -> list[str]:
+    """The names of the measured materials."""
+    return [name for name in core.material_names() if core.material_source(name).startswith("measured")]
 
 
 def drawn(seed: int) -> Material:
@@ -115,8 +117,7 @@ def _row(seed: int, material: Material, wanted: AcquireRun, folder: Path) -> dic
 
 def bake_options(material: Material) -> BakeOptions:
     """Tets sized for the material, or by the shape where it absorbs nothing."""
-    text = f"sigma_s_prime={_slashed(material.sigma_s_prime)},sigma_a={_slashed(material.sigma_a)},eta={material.eta:g}"
-    return BakeOptions(unit="mm", for_materials=(text,) if max(_three(material.sigma_a)) > 0 else ())
+    return BakeOptions(unit="mm", for_materials=(material.text,) if max(_three(material.sigma_a)) > 0 else ())
 
 
 def _scene(material: Material) -> dict[str, Any]:
@@ -124,11 +125,7 @@ def _scene(material: Material) -> dict[str, Any]:
     return {
         "quadgraph_scene": 1,
         "body": "body.qgraph",
-        "material": {
-            "sigma_s_prime": _three(material.sigma_s_prime),
-            "sigma_a": _three(material.sigma_a),
-            "eta": material.eta,
-        },
+        "material": json.loads(core.material_json(material.text)),
         "lights": [
             {"type": "rectangle", "centre": [-96, 124, 124], "u": [144, 0, 80], "v": [32, -112, 96], "power": 120},
             {"type": "rectangle", "centre": [160, 14, -80], "u": [-72, 0, -120], "v": [0, -144, 0], "power": 100},
@@ -140,10 +137,6 @@ def _scene(material: Material) -> dict[str, Any]:
 
 def _three(value: Any) -> list[float]:
     return [float(each) for each in np.broadcast_to(value, 3)]
-
-
-def _slashed(value: Any) -> str:
-    return "/".join(f"{each:g}" for each in _three(value))
 
 
 def _found(recovered: Recovered) -> dict[str, Any]:
