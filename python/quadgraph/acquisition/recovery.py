@@ -10,14 +10,18 @@ from typing import Any
 
 import numpy as np
 
-from quadgraph.acquisition import diagnosis, outlines, photographs, prediction, start, volume_report
-from quadgraph.acquisition.capture import Capture
-from quadgraph.acquisition.fit_state import StateFolder
-from quadgraph.acquisition.fitting import OUTER, Fit, fit
-from quadgraph.acquisition.photographs import Measured
-from quadgraph.acquisition.prediction import CHANNELS, NAMES, Predictor
-from quadgraph.acquisition.problem import Problem
-from quadgraph.acquisition.volume_fit import VolumeFit, fit_volume, most_products
+from quadgraph.acquisition.capture import photographs
+from quadgraph.acquisition.capture.capture import Capture
+from quadgraph.acquisition.capture.photographs import Measured
+from quadgraph.acquisition.causes import diagnosis, outlines
+from quadgraph.acquisition.homogeneous import start
+from quadgraph.acquisition.homogeneous.fitting import OUTER, Fit, fit
+from quadgraph.acquisition.model import prediction
+from quadgraph.acquisition.model.prediction import CHANNELS, NAMES, Predictor
+from quadgraph.acquisition.model.problem import Problem
+from quadgraph.acquisition.volume import volume_report
+from quadgraph.acquisition.volume.fit_state import StateFolder
+from quadgraph.acquisition.volume.volume_fit import VolumeFit, fit_volume, most_products
 from quadgraph.api.materials import VolumeMaterial
 from quadgraph.base.errors import InputError
 from quadgraph.base.progress import ProgressCallback

@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from quadgraph.acquisition.fitting import Fit
-from quadgraph.acquisition.prediction import CHANNELS, NAMES
+from quadgraph.acquisition.homogeneous.fitting import Fit
+from quadgraph.acquisition.model.prediction import CHANNELS, NAMES
 from quadgraph.acquisition.recovery import Recovered
-from quadgraph.acquisition.volume_fit import VolumeFit
+from quadgraph.acquisition.volume.volume_fit import VolumeFit
 from quadgraph.base.atomic_file import replacing
 
 _WHITE = 0.995  # quantile of a photograph that is shown as white

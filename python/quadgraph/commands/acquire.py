@@ -67,9 +67,9 @@ def run(args: argparse.Namespace) -> int:
     """Recover and write; 3 where photographs contradict what the capture says, or the fit did not settle."""
     from rich.console import Console
 
-    from quadgraph.acquisition import capture
+    from quadgraph.acquisition.capture import capture
     from quadgraph.acquisition.recovery import recover
-    from quadgraph.acquisition.volume_fit import VolumeFit
+    from quadgraph.acquisition.volume.volume_fit import VolumeFit
     from quadgraph.base import atomic_file, outputs
     from quadgraph.commands.progress_bar import progress_bar
 
@@ -119,9 +119,9 @@ def _summarise(found: Recovered, output: Path) -> None:
 
 def lines(found: Recovered) -> list[str]:
     """What was found, a line a coefficient, and what is to be said of it."""
-    from quadgraph.acquisition import volume_report
-    from quadgraph.acquisition.prediction import CHANNELS, NAMES
-    from quadgraph.acquisition.volume_fit import VolumeFit
+    from quadgraph.acquisition.model.prediction import CHANNELS, NAMES
+    from quadgraph.acquisition.volume import volume_report
+    from quadgraph.acquisition.volume.volume_fit import VolumeFit
 
     fit = found.fit
     if isinstance(fit, VolumeFit):

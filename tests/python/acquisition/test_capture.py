@@ -14,7 +14,7 @@ from referencing import Registry, Resource
 
 import tiny
 import twin_capture
-from quadgraph.acquisition import capture, photographs
+from quadgraph.acquisition.capture import capture, photographs
 from quadgraph.base.errors import InputError
 
 pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from quadgraph.acquisition.capture import Capture, NoiseModel, Photograph
-from quadgraph.acquisition.photographs import Measured
-from quadgraph.acquisition.prediction import Predicted
-from quadgraph.acquisition.problem import Problem, huber_cost, huber_weights
+from quadgraph.acquisition.capture.capture import Capture, NoiseModel, Photograph
+from quadgraph.acquisition.capture.photographs import Measured
+from quadgraph.acquisition.model.prediction import Predicted
+from quadgraph.acquisition.model.problem import Problem, huber_cost, huber_weights
 from quadgraph.base.errors import InputError
 
 SIZE = 24

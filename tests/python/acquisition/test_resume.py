@@ -10,9 +10,10 @@ import pytest
 
 import twin_capture
 from quadgraph import VolumeMaterial
-from quadgraph.acquisition import capture, volume_fit
-from quadgraph.acquisition.fit_state import FitState, StateFolder
+from quadgraph.acquisition.capture import capture
 from quadgraph.acquisition.recovery import recover
+from quadgraph.acquisition.volume import volume_fit
+from quadgraph.acquisition.volume.fit_state import FitState, StateFolder
 from quadgraph.base.errors import InputError
 from quadgraph.cli import main
 

@@ -7,9 +7,9 @@ import pytest
 from scipy import sparse
 
 from quadgraph import core
-from quadgraph.acquisition import posterior
-from quadgraph.acquisition.smoothing import Smoothing
-from quadgraph.acquisition.volume_grid import VolumeGrid
+from quadgraph.acquisition.volume import posterior
+from quadgraph.acquisition.volume.smoothing import Smoothing
+from quadgraph.acquisition.volume.volume_grid import VolumeGrid
 
 GRID = VolumeGrid((-3.0, 1.0, 0.5), 0.75, (5, 4, 6))
 

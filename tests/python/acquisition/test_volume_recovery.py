@@ -13,11 +13,12 @@ import pytest
 
 import twin_capture
 from quadgraph import VolumeMaterial
-from quadgraph.acquisition import capture, photographs, prediction
-from quadgraph.acquisition.prediction import Predictor
-from quadgraph.acquisition.problem import Problem
-from quadgraph.acquisition.volume_model import VolumeSetting
-from quadgraph.acquisition.volume_weights import AT_FIRST, Sizes
+from quadgraph.acquisition.capture import capture, photographs
+from quadgraph.acquisition.model import prediction
+from quadgraph.acquisition.model.prediction import Predictor
+from quadgraph.acquisition.model.problem import Problem
+from quadgraph.acquisition.volume.volume_model import VolumeSetting
+from quadgraph.acquisition.volume.volume_weights import AT_FIRST, Sizes
 from quadgraph.cli import main
 from quadgraph.file import npz
 

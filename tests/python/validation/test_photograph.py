@@ -10,7 +10,7 @@ import pytest
 
 from baked import write_levels
 from quadgraph import VolumeMaterial, core
-from quadgraph.acquisition import capture, photographs
+from quadgraph.acquisition.capture import capture, photographs
 from quadgraph.base.errors import InputError
 from quadgraph.cli import main
 from shapes import icosphere

@@ -19,8 +19,8 @@ import trimesh
 from rich.table import Table
 
 from quadgraph import core
-from quadgraph.acquisition import capture
-from quadgraph.acquisition.prediction import NAMES
+from quadgraph.acquisition.capture import capture
+from quadgraph.acquisition.model.prediction import NAMES
 from quadgraph.acquisition.recovery import Recovered, recover
 from quadgraph.api.materials import Material
 from quadgraph.baking.pipeline import BakeOptions, bake

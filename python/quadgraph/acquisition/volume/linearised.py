@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from quadgraph.acquisition.prediction import Predictor
-from quadgraph.acquisition.problem import Problem
-from quadgraph.acquisition.samples import Samples
+from quadgraph.acquisition.model.prediction import Predictor
+from quadgraph.acquisition.model.problem import Problem
+from quadgraph.acquisition.volume.samples import Samples
 from quadgraph.api.derivatives import Views
 
 Channels = list[np.ndarray]  # (n, 3) of each photograph's squares

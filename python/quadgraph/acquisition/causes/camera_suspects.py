@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 from scipy import ndimage
 
-from quadgraph.acquisition.bank import Bank, Gathered, Otherwise
-from quadgraph.acquisition.outlines import displaced, grey, lit
-from quadgraph.acquisition.suspects import Scope, Suspect, scopes
+from quadgraph.acquisition.causes.bank import Bank, Gathered, Otherwise
+from quadgraph.acquisition.causes.outlines import displaced, grey, lit
+from quadgraph.acquisition.causes.suspects import Scope, Suspect, scopes
 
 _LEAST = 0.03  # of a size, or pixels over the size, from which on a difference is worth a word
 

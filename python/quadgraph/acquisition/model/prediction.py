@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from quadgraph import core
-from quadgraph.acquisition.capture import Capture
+from quadgraph.acquisition.capture.capture import Capture
 from quadgraph.api.derivatives import ForwardModel, Views, forward_model
 from quadgraph.base.errors import InputError
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from scipy import ndimage
 
-from quadgraph.acquisition.bank import Bank, Gathered, Otherwise, logarithms
+from quadgraph.acquisition.causes.bank import Bank, Gathered, Otherwise, logarithms
 
 FLIPS = {"left to right": np.s_[:, ::-1], "upside down": np.s_[::-1, :], "by half a turn": np.s_[::-1, ::-1]}
 _ENCODED = 2.2  # power of light to which values for displays are raised again

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import interpolate, ndimage
 
-from quadgraph.acquisition.prediction import Predicted, Predictor
-from quadgraph.acquisition.problem import Problem, huber_costs, huber_weights, within
+from quadgraph.acquisition.model.prediction import Predicted, Predictor
+from quadgraph.acquisition.model.problem import Problem, huber_costs, huber_weights, within
 
 _DEPTHS = np.log((2.0, 6.0, 18.0, 54.0, 160.0))  # mean free paths across the body
 _ABSORBED = np.log((0.0006, 0.003, 0.012, 0.04, 0.1, 0.25, 0.6))  # 1 - albedo

@@ -11,12 +11,12 @@ from pathlib import Path
 import numpy as np
 
 from quadgraph import core
-from quadgraph.acquisition import samples
-from quadgraph.acquisition.linearised import Channels, Linearised, by_lights
-from quadgraph.acquisition.prediction import Predicted, Predictor
-from quadgraph.acquisition.problem import Problem
-from quadgraph.acquisition.volume_grid import VolumeGrid
-from quadgraph.acquisition.volume_weights import Sizes, Weighing, Weights
+from quadgraph.acquisition.model.prediction import Predicted, Predictor
+from quadgraph.acquisition.model.problem import Problem
+from quadgraph.acquisition.volume import samples
+from quadgraph.acquisition.volume.linearised import Channels, Linearised, by_lights
+from quadgraph.acquisition.volume.volume_grid import VolumeGrid
+from quadgraph.acquisition.volume.volume_weights import Sizes, Weighing, Weights
 from quadgraph.base.errors import InputError
 
 LARGEST_LEVEL = 10_000  # tets of the level that derivatives are taken on, if there is one of so few

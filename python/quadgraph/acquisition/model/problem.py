@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from quadgraph.acquisition.capture import Capture
-from quadgraph.acquisition.photographs import Measured
-from quadgraph.acquisition.prediction import CHANNELS, Predicted
+from quadgraph.acquisition.capture.capture import Capture
+from quadgraph.acquisition.capture.photographs import Measured
+from quadgraph.acquisition.model.prediction import CHANNELS, Predicted
 from quadgraph.base.errors import InputError
 
 _COVERED = 0.999  # share of a pixel that the body has to cover

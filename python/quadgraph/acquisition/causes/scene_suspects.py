@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from scipy import optimize
 
-from quadgraph.acquisition.bank import Bank, Otherwise
-from quadgraph.acquisition.capture import Capture
-from quadgraph.acquisition.prediction import PLACES
-from quadgraph.acquisition.suspects import Scope, Suspect
+from quadgraph.acquisition.capture.capture import Capture
+from quadgraph.acquisition.causes.bank import Bank, Otherwise
+from quadgraph.acquisition.causes.suspects import Scope, Suspect
+from quadgraph.acquisition.model.prediction import PLACES
 from quadgraph.base.errors import InputError, SolverError
 
 _VECTORS = (*PLACES, "direction", "u", "v")

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from quadgraph import core
-from quadgraph.acquisition.strict_json import Member
+from quadgraph.acquisition.capture.strict_json import Member
 from quadgraph.base import json_text
 from quadgraph.base.errors import InputError
 from quadgraph.base.regular_file import read_bytes

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quadgraph.acquisition.prediction import LEAST_ERROR, Predicted, Predictor
-from quadgraph.acquisition.problem import Problem, huber_cost, huber_weights
+from quadgraph.acquisition.model.prediction import LEAST_ERROR, Predicted, Predictor
+from quadgraph.acquisition.model.problem import Problem, huber_cost, huber_weights
 from quadgraph.base.progress import ProgressCallback
 
 OUTER, INNER, TRIES = 10, 15, 6  # at most

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy import sparse
 
-from quadgraph.acquisition.volume_grid import VolumeGrid
+from quadgraph.acquisition.volume.volume_grid import VolumeGrid
 
 LEAST_SHARE = 0.1  # of the largest volume that a point stands for, what others count at least
 

@@ -7,8 +7,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from quadgraph.acquisition.prediction import Predicted, Predictor
-from quadgraph.acquisition.problem import Problem, huber_cost
+from quadgraph.acquisition.model.prediction import Predicted, Predictor
+from quadgraph.acquisition.model.problem import Problem, huber_cost
 
 ALBEDOS = (0.5, 0.9, 0.98, 0.996, 0.9992)  # reduced: sigma_s_prime / (sigma_s_prime + sigma_a)
 DEPTHS = (3.0, 10.0, 30.0, 100.0)  # mean free paths across the body

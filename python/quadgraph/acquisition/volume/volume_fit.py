@@ -19,14 +19,14 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse import linalg
 
-from quadgraph.acquisition import posterior
-from quadgraph.acquisition.fit_state import FitState
-from quadgraph.acquisition.prediction import Predicted, Predictor
-from quadgraph.acquisition.problem import Problem
-from quadgraph.acquisition.smoothing import LEAST_SHARE, Smoothing
-from quadgraph.acquisition.volume_grid import VolumeGrid
-from quadgraph.acquisition.volume_model import Around, VolumeSetting
-from quadgraph.acquisition.volume_weights import Sizes
+from quadgraph.acquisition.model.prediction import Predicted, Predictor
+from quadgraph.acquisition.model.problem import Problem
+from quadgraph.acquisition.volume import posterior
+from quadgraph.acquisition.volume.fit_state import FitState
+from quadgraph.acquisition.volume.smoothing import LEAST_SHARE, Smoothing
+from quadgraph.acquisition.volume.volume_grid import VolumeGrid
+from quadgraph.acquisition.volume.volume_model import Around, VolumeSetting
+from quadgraph.acquisition.volume.volume_weights import Sizes
 from quadgraph.base.errors import InputError
 from quadgraph.base.progress import ProgressCallback
 

@@ -7,10 +7,10 @@ from collections.abc import Iterator
 import numpy as np
 from scipy import ndimage
 
-from quadgraph.acquisition.capture import Capture
-from quadgraph.acquisition.photographs import Measured
-from quadgraph.acquisition.prediction import Predicted
-from quadgraph.acquisition.problem import Problem
+from quadgraph.acquisition.capture.capture import Capture
+from quadgraph.acquisition.capture.photographs import Measured
+from quadgraph.acquisition.model.prediction import Predicted
+from quadgraph.acquisition.model.problem import Problem
 from quadgraph.base.errors import InputError
 
 _LIT = 0.05  # of the brightest, from which on a pixel is part of a silhouette

@@ -9,8 +9,8 @@ import trimesh
 from scipy import sparse
 
 from quadgraph import core
-from quadgraph.acquisition.prediction import Predictor
-from quadgraph.acquisition.problem import Problem
+from quadgraph.acquisition.model.prediction import Predictor
+from quadgraph.acquisition.model.problem import Problem
 from quadgraph.api.derivatives import Views
 
 TILES = 4  # of a picture's side

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from quadgraph import core
-from quadgraph.acquisition.capture import Capture, NoiseModel, Photograph
+from quadgraph.acquisition.capture.capture import Capture, NoiseModel, Photograph
 from quadgraph.base.errors import InputError
 from quadgraph.file import npz
 

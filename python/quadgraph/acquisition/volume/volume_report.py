@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from quadgraph.acquisition.prediction import CHANNELS, NAMES
-from quadgraph.acquisition.volume_fit import VolumeFit
+from quadgraph.acquisition.model.prediction import CHANNELS, NAMES
+from quadgraph.acquisition.volume.volume_fit import VolumeFit
 
 UNDETERMINED = 0.35  # standard deviation of a logarithm, from which on a coefficient is said not to be determined
 _QUANTILES = (0.05, 0.5, 0.95)

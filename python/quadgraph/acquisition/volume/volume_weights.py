@@ -16,9 +16,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy import sparse
 
-from quadgraph.acquisition.prediction import Predicted
-from quadgraph.acquisition.problem import BANDS, Problem, huber_weights
-from quadgraph.acquisition.samples import TILES, Samples
+from quadgraph.acquisition.model.prediction import Predicted
+from quadgraph.acquisition.model.problem import BANDS, Problem, huber_weights
+from quadgraph.acquisition.volume.samples import TILES, Samples
 
 _ANYTHING = 1e-12  # inverse variance of a gain that may be anything
 _BEYOND = 5.0  # standard deviations, from which on a square's weight falls

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from quadgraph.acquisition.capture import Capture
+from quadgraph.acquisition.capture.capture import Capture
 from quadgraph.base import atomic_file, regular_file
 from quadgraph.base.errors import InputError
 from quadgraph.base.version import __version__

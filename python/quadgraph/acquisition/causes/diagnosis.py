@@ -12,13 +12,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from quadgraph.acquisition import camera_suspects, outlines, scene_suspects, suspects
-from quadgraph.acquisition.bank import Bank
-from quadgraph.acquisition.fitting import Fit
-from quadgraph.acquisition.prediction import Predictor
-from quadgraph.acquisition.problem import Problem
-from quadgraph.acquisition.suspects import Suspect
-from quadgraph.acquisition.volume_fit import VolumeFit
+from quadgraph.acquisition.causes import camera_suspects, outlines, scene_suspects, suspects
+from quadgraph.acquisition.causes.bank import Bank
+from quadgraph.acquisition.causes.suspects import Suspect
+from quadgraph.acquisition.homogeneous.fitting import Fit
+from quadgraph.acquisition.model.prediction import Predictor
+from quadgraph.acquisition.model.problem import Problem
+from quadgraph.acquisition.volume.volume_fit import VolumeFit
 from quadgraph.base.progress import ProgressCallback
 
 FAR = 4.0  # chi^2 per degree of freedom, from which on photographs and predictions disagree

@@ -1,0 +1,1 @@
+"""What is most probably wrong with a capture."""

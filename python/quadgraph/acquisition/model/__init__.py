@@ -1,0 +1,1 @@
+"""What the engine predicts for the photographs of a capture, and which pixels count by how much."""

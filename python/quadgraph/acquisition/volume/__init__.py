@@ -1,0 +1,1 @@
+"""Coefficients that differ from place to place."""
