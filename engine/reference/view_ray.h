@@ -88,6 +88,20 @@ class ViewRay {
     return {sum(&Values::phi), sum(&Values::entry), sum(&Values::depth)};
   }
 
+  // Fluence of light that has not scattered, were it linear between the corners, at shares of them; `take` turns a
+  // corner's numbers into those of the result.
+  template <class Take>
+  auto linear_light(std::size_t c, const std::array<double, 4>& share, const Take& take) const {
+    using std::exp;
+    const auto at = [&](std::size_t k) {
+      return take(corners_[c][k].entry) * exp(-take(corners_[c][k].depth)) * share[k];
+    };
+    return at(0) + at(1) + at(2) + at(3);
+  }
+
+  static double plain(const Real& number) { return value_of(number); }
+  static Real whole(const Real& number) { return number; }
+
   std::array<double, 4> at_point() const {
     return {ray_.corner(0).lambda, ray_.corner(1).lambda, ray_.corner(2).lambda, ray_.corner(3).lambda};
   }
@@ -97,8 +111,14 @@ class ViewRay {
     const Values from = mean(corners_[c], at_point()), to = mean(corners_[c], exit.lambda);
     const Real tau = here_[c].extinction() * exit.length;
     const Real x = tau + to.depth - from.depth;  // along the ray the light may become brighter
-    const Real uncollided = value_of(x) >= 0 ? exp(-from.depth) * weighted(from.entry, to.entry, x)
-                                             : exp(-to.depth - tau) * weighted(to.entry, from.entry, -x);
+    Real uncollided = value_of(x) >= 0 ? exp(-from.depth) * weighted(from.entry, to.entry, x)
+                                       : exp(-to.depth - tau) * weighted(to.entry, from.entry, -x);
+    // At most what is linear between the corners, of which one may be reached by faint light on a short way and another
+    // by bright light on a long one.
+    const auto most = [&](const auto& take) {
+      return weighted(linear_light(c, at_point(), take), linear_light(c, exit.lambda, take), take(tau));
+    };
+    if (value_of(uncollided) > most(plain)) uncollided = most(whole);
     const Real fluence = weighted(from.phi, to.phi, tau) + uncollided;
     const Real scattering = here_[c].scattering * (exit.length / (4 * glm::pi<double>()));
     radiance_[c] = radiance_[c] + left_[c] * scattering * fluence;
@@ -155,7 +175,9 @@ class ViewRay {
     using std::exp;
     if (value_of(here_[c].extinction()) == 0) return Real(0);
     const Values point = mean(corners_[c], at_point());
-    return here_[c].albedo() * (1 / (4 * glm::pi<double>())) * (point.phi + point.entry * exp(-point.depth));
+    Real uncollided = point.entry * exp(-point.depth);
+    if (value_of(uncollided) > linear_light(c, at_point(), plain)) uncollided = linear_light(c, at_point(), whole);
+    return here_[c].albedo() * (1 / (4 * glm::pi<double>())) * (point.phi + uncollided);
   }
 
   double even_value(std::size_t c) const {
@@ -168,7 +190,8 @@ class ViewRay {
       depth += ray_.corner(k).lambda * value_of(at.depth);
     }
     const double albedo = sigma_t > 0 ? value_of(here_[c].scattering) / sigma_t : 0;
-    return albedo / (4 * glm::pi<double>()) * (phi + entry * std::exp(-depth));
+    const double uncollided = std::min(entry * std::exp(-depth), linear_light(c, at_point(), plain));
+    return albedo / (4 * glm::pi<double>()) * (phi + uncollided);
   }
 
   const Level& level_;

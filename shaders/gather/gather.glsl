@@ -87,12 +87,12 @@ vec3 keep(inout Escape most, inout Escape second, Escape other) {
 Gathered gather(uint tet, vec3 direction) {
   Gathered sum = Gathered(vec3(0), vec3(0), NO_ESCAPE, NO_ESCAPE);
   vec3 left = vec3(1);
-  GatherPoint here = fields_here();
+  Payload here = fields_here();
   for (uint step = 0u; step < GATHER_STEPS; ++step) {
     Exit exit = find_exit(direction);
     if (!exit.found) break;
     vec4 l = exit_point(exit);
-    GatherPoint there = fields_at(l);
+    Payload there = fields_at(l);
     vec3 lost, fluence = fluence_along(here, there, extinction() * exit.path, lost);
     vec3 last = left * optical.sigma_s_prime * (exit.path / FOUR_PI) * fluence;
     sum.radiance += last;

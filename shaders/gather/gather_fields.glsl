@@ -12,10 +12,12 @@
 
 struct Payload {
   GatherPoint point;
+  vec3 uncollided;  // W/mm^2, fluence
 };
 
 Payload payload(uint id) {
-  return Payload(POINTS.at[id]);
+  GatherPoint point = POINTS.at[id];
+  return Payload(point, point.entry * exp(-point.depth));
 }
 
 #include "source/tet_ray.glsl"
@@ -23,26 +25,32 @@ Payload payload(uint id) {
 const float FOUR_PI = 12.566371;
 
 // The fields at barycentric coordinates `l` of the present tet.
-GatherPoint fields_at(vec4 l) {
-  GatherPoint a = corner_0.payload.point, b = corner_1.payload.point, c = corner_2.payload.point,
-              d = corner_3.payload.point;
-  return GatherPoint(l.x * a.phi + l.y * b.phi + l.z * c.phi + l.w * d.phi,
-                     l.x * a.entry + l.y * b.entry + l.z * c.entry + l.w * d.entry,
-                     l.x * a.depth + l.y * b.depth + l.z * c.depth + l.w * d.depth);
+Payload fields_at(vec4 l) {
+  Payload p = corner_0.payload, q = corner_1.payload, r = corner_2.payload, s = corner_3.payload;
+  GatherPoint a = p.point, b = q.point, c = r.point, d = s.point;
+  return Payload(GatherPoint(l.x * a.phi + l.y * b.phi + l.z * c.phi + l.w * d.phi,
+                             l.x * a.entry + l.y * b.entry + l.z * c.entry + l.w * d.entry,
+                             l.x * a.depth + l.y * b.depth + l.z * c.depth + l.w * d.depth),
+                 l.x * p.uncollided + l.y * q.uncollided + l.z * r.uncollided + l.w * s.uncollided);
 }
 
-GatherPoint fields_here() {
+Payload fields_here() {
   return fields_at(vec4(corner_0.l, corner_1.l, corner_2.l, corner_3.l));
 }
 
 // Fluence of both kinds between two points of a tet, weighed with exp(-tau s): the mean over s from 0 to 1.
-vec3 fluence_along(GatherPoint from, GatherPoint to, vec3 tau, out vec3 lost) {
+// What has not scattered is at most linear between the corners: a corner that faint light reaches by a short way and
+// one that bright light reaches by a long way would else make bright light of a short way between them.
+vec3 fluence_along(Payload from_here, Payload to_there, vec3 tau, out vec3 lost) {
+  GatherPoint from = from_here.point, to = to_there.point;
   vec3 growth = tau + to.depth - from.depth, unused;
   // Where light from behind outgrows the loss, integrate from the far end.
   bvec3 back = lessThan(growth, vec3(0));
   vec3 uncollided =
       attenuated_mean(mix(from.entry, to.entry, back), mix(to.entry, from.entry, back), abs(growth), unused);
-  return attenuated_mean(from.phi, to.phi, tau, lost) + uncollided * exp(max(-growth, vec3(0)) - from.depth);
+  uncollided *= exp(max(-growth, vec3(0)) - from.depth);
+  vec3 most = attenuated_mean(from_here.uncollided, to_there.uncollided, tau, lost);
+  return attenuated_mean(from.phi, to.phi, tau, lost) + min(uncollided, most);
 }
 
 // Whether a ray may end that keeps `left` and has gathered `radiance`, of it `last` where it lost the share `lost`.
@@ -53,9 +61,10 @@ bool ends(vec3 left, vec3 radiance, vec3 last, vec3 lost) {
 }
 
 // Radiance of a body that is everywhere as at a point.
-vec3 even_radiance(GatherPoint here) {
+vec3 even_radiance(Payload here) {
   vec3 albedo = min(optical.sigma_s_prime / max(extinction(), vec3(1e-30)), vec3(1));
-  return albedo / FOUR_PI * (here.phi + here.entry * exp(-here.depth));
+  GatherPoint point = here.point;
+  return albedo / FOUR_PI * (point.phi + min(point.entry * exp(-point.depth), here.uncollided));
 }
 
 #endif

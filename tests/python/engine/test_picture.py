@@ -108,3 +108,19 @@ def test_radiance_at_points_is_that_of_the_picture(engine):
         engine.leaving(seen[:1].astype(np.uint32), -towards[:1].astype(np.float32))
     with pytest.raises(QuadGraphError, match="there are"):
         engine.leaving(np.array([len(level.faces)], np.uint32), np.array([[0.0, 0.0, 1.0]], np.float32))
+
+
+@pytest.mark.parametrize("eta", [1.0, 1.4])
+def test_the_unlit_side_of_a_thick_body_is_as_bright_as_its_exitance(engine, eta):
+    """Through 21 mean free paths: uncollided light that ends before must not reappear between two vertices."""
+    engine.set_material(f"sigma_s_prime=1.5,sigma_a=0.6,eta={eta}")
+    along = np.array([0.3, -0.2, -1.0])
+    engine.set_lights(["directional:0.3,-0.2,-1:1"])
+    engine.solve(model="sp3", tolerance=1e-5)
+    surface = engine.surface_field()
+    unlit = np.flatnonzero(surface["normal"] @ along > 0)
+    light = engine.leaving(unlit.astype(np.uint32), surface["normal"][unlit].astype(np.float32))
+    ratio = np.pi * light["radiance"] / surface["exitance"][unlit]
+    assert surface["exitance"][unlit].min() < 1e-5 * surface["exitance"].max()
+    assert ratio.max() < 2.5
+    assert ratio.min() > 0.3

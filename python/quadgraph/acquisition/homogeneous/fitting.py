@@ -16,7 +16,7 @@ from quadgraph.acquisition.model.problem import Problem, huber_cost, huber_weigh
 from quadgraph.base.progress import ProgressCallback
 
 OUTER, INNER, TRIES = 10, 15, 6  # at most
-_DIFFERENCE = 0.02  # of a logarithm, by which derivatives are taken
+_DIFFERENCE = 0.1  # of a logarithm, by which derivatives are taken: dim pixels of predictions are noisy
 _SMALL, _SHARE = 1e-3, 0.1  # a step this small, or of a standard deviation, is the last
 _KEPT = 8  # predictions
 _SAME = 0.005  # relative change of chi^2, below which a step changes nothing
