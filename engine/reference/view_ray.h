@@ -102,6 +102,15 @@ class ViewRay {
   static double plain(const Real& number) { return value_of(number); }
   static Real whole(const Real& number) { return number; }
 
+  // Of light that has not scattered, what is made of mean factors held to what is `linear` between the corners, as in
+  // gather_fields.glsl.
+  template <class Linear>
+  static Real held(const Real& uncollided, const Linear& linear) {
+    if (value_of(uncollided) <= linear(plain)) return uncollided;
+    const Real most = linear(whole);
+    return most * (2.0 - most / uncollided);
+  }
+
   std::array<double, 4> at_point() const {
     return {ray_.corner(0).lambda, ray_.corner(1).lambda, ray_.corner(2).lambda, ray_.corner(3).lambda};
   }
@@ -113,12 +122,9 @@ class ViewRay {
     const Real x = tau + to.depth - from.depth;  // along the ray the light may become brighter
     Real uncollided = value_of(x) >= 0 ? exp(-from.depth) * weighted(from.entry, to.entry, x)
                                        : exp(-to.depth - tau) * weighted(to.entry, from.entry, -x);
-    // At most what is linear between the corners, of which one may be reached by faint light on a short way and another
-    // by bright light on a long one.
-    const auto most = [&](const auto& take) {
+    uncollided = held(uncollided, [&](const auto& take) {
       return weighted(linear_light(c, at_point(), take), linear_light(c, exit.lambda, take), take(tau));
-    };
-    if (value_of(uncollided) > most(plain)) uncollided = most(whole);
+    });
     const Real fluence = weighted(from.phi, to.phi, tau) + uncollided;
     const Real scattering = here_[c].scattering * (exit.length / (4 * glm::pi<double>()));
     radiance_[c] = radiance_[c] + left_[c] * scattering * fluence;
@@ -176,7 +182,7 @@ class ViewRay {
     if (value_of(here_[c].extinction()) == 0) return Real(0);
     const Values point = mean(corners_[c], at_point());
     Real uncollided = point.entry * exp(-point.depth);
-    if (value_of(uncollided) > linear_light(c, at_point(), plain)) uncollided = linear_light(c, at_point(), whole);
+    uncollided = held(uncollided, [&](const auto& take) { return linear_light(c, at_point(), take); });
     return here_[c].albedo() * (1 / (4 * glm::pi<double>())) * (point.phi + uncollided);
   }
 
@@ -190,7 +196,9 @@ class ViewRay {
       depth += ray_.corner(k).lambda * value_of(at.depth);
     }
     const double albedo = sigma_t > 0 ? value_of(here_[c].scattering) / sigma_t : 0;
-    const double uncollided = std::min(entry * std::exp(-depth), linear_light(c, at_point(), plain));
+    double uncollided = entry * std::exp(-depth);
+    const double linear = linear_light(c, at_point(), plain);
+    if (uncollided > linear) uncollided = linear * (2 - linear / uncollided);
     return albedo / (4 * glm::pi<double>()) * (phi + uncollided);
   }
 

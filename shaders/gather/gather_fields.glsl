@@ -38,9 +38,14 @@ Payload fields_here() {
   return fields_at(vec4(corner_0.l, corner_1.l, corner_2.l, corner_3.l));
 }
 
+// Of light that has not scattered, what is made of mean factors held to what is linear between the corners: as it is
+// where that is more, and smoothly at most twice that. A corner that faint light reaches by a short way and one that
+// bright light reaches by a long way would else make bright light of a short way between them.
+vec3 held(vec3 uncollided, vec3 linear) {
+  return mix(linear * (2.0 - linear / max(uncollided, vec3(1e-37))), uncollided, lessThanEqual(uncollided, linear));
+}
+
 // Fluence of both kinds between two points of a tet, weighed with exp(-tau s): the mean over s from 0 to 1.
-// What has not scattered is at most linear between the corners: a corner that faint light reaches by a short way and
-// one that bright light reaches by a long way would else make bright light of a short way between them.
 vec3 fluence_along(Payload from_here, Payload to_there, vec3 tau, out vec3 lost) {
   GatherPoint from = from_here.point, to = to_there.point;
   vec3 growth = tau + to.depth - from.depth, unused;
@@ -49,8 +54,8 @@ vec3 fluence_along(Payload from_here, Payload to_there, vec3 tau, out vec3 lost)
   vec3 uncollided =
       attenuated_mean(mix(from.entry, to.entry, back), mix(to.entry, from.entry, back), abs(growth), unused);
   uncollided *= exp(max(-growth, vec3(0)) - from.depth);
-  vec3 most = attenuated_mean(from_here.uncollided, to_there.uncollided, tau, lost);
-  return attenuated_mean(from.phi, to.phi, tau, lost) + min(uncollided, most);
+  vec3 linear = attenuated_mean(from_here.uncollided, to_there.uncollided, tau, lost);
+  return attenuated_mean(from.phi, to.phi, tau, lost) + held(uncollided, linear);
 }
 
 // Whether a ray may end that keeps `left` and has gathered `radiance`, of it `last` where it lost the share `lost`.
@@ -64,7 +69,7 @@ bool ends(vec3 left, vec3 radiance, vec3 last, vec3 lost) {
 vec3 even_radiance(Payload here) {
   vec3 albedo = min(optical.sigma_s_prime / max(extinction(), vec3(1e-30)), vec3(1));
   GatherPoint point = here.point;
-  return albedo / FOUR_PI * (point.phi + min(point.entry * exp(-point.depth), here.uncollided));
+  return albedo / FOUR_PI * (point.phi + held(point.entry * exp(-point.depth), here.uncollided));
 }
 
 #endif

@@ -10,7 +10,7 @@ namespace quadgraph::gpu {
 #endif
 
 // Light at a vertex. All three are linear between vertices; uncollided fluence is entry exp(-depth), which is exact for
-// a beam behind a flat face, but at most what is linear between vertices (gather_fields.glsl).
+// a beam behind a flat face, but held to what is linear between vertices (gather_fields.glsl).
 struct GatherPoint {
   vec3 phi;    // W/mm^2, fluence of light that has scattered
   vec3 entry;  // W/mm^2, fluence of light that has not, as if nothing had been lost on its way
