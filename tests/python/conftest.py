@@ -8,6 +8,11 @@ import os
 # these tests take a hundred times as long, and its version 0.3.30 can hang (OpenBLAS issue 5520).
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+# So do those of the engine on the processor: the first worker has all of them, the others one each. What is found has
+# the same bits with any number (tests/cpp/cpu/threads_test.cpp).
+if os.environ.get("PYTEST_XDIST_WORKER", "gw0") != "gw0":
+    os.environ.setdefault("QUADGRAPH_THREADS", "1")
+
 # Nor does a test depend on who runs it: no file of defaults is there.
 os.environ["XDG_CONFIG_HOME"] = os.devnull
 
@@ -23,21 +28,37 @@ from shapes import pymeshlab_samples, read_ply
 
 ROOT = Path(__file__).resolve().parents[2]
 
-# Files that take longest, in this order: begun first, so that no worker is left with one of them at the end.
+# Files that take longest, in about this order: begun first, so that no worker is left with one of them at the end, and
+# those that wait for windows beside others.
 LONGEST = (
     "test_budget.py",
-    "test_real_meshes.py",
+    "test_window_preview.py",
+    "test_volume_recovery.py",
+    "test_accuracy_unseen.py",
     "test_window_panel.py",
-    "test_measured_error.py",
+    "test_attack.py",
+    "test_acquire.py",
     "test_window.py",
-    "test_accuracy_estimate.py",
-    "test_stability.py",
+    "test_transport_correction.py",
+    "test_wrap.py",
+    "test_bake.py",
     "test_bench_command.py",
-    "test_repair.py",
-    "test_tables.py",
-    "test_window_methods.py",
+    "test_spoilt_captures.py",
+    "test_long_run.py",
     "test_commands_run.py",
+    "test_mesh_walk.py",
+    "test_real_meshes.py",
+    "test_accuracy_estimate.py",
+    "test_measured_error.py",
+    "test_repair.py",
+    "test_correction.py",
+    "test_stability.py",
+    "test_accuracy_radiance.py",
+    "test_window_methods.py",
+    "test_doctor.py",
+    "test_commands.py",
     "test_engine.py",
+    "test_tables.py",
 )
 
 

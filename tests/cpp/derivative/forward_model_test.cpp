@@ -166,15 +166,15 @@ TEST_CASE("what is left of a Taylor step falls with its square, each term on and
       for (const bool bounces : {false, true}) {
         const ForwardOptions options = {.model = model, .eta = 1.3, .bounces = bounces, .tolerance = 1e-14};
         const Parameters at = jumping(level, 3, 1);
+        const ForwardModel here(level, at, lights.beams, views(level), options);
         for (const std::string term : {"all", "scattering", "absorption", "power"}) {
           Parameters along = direction(at, 2);
           if (term == "absorption" || term == "power") along.scattering.assign(along.scattering.size(), glm::dvec3(0));
           if (term == "scattering" || term == "power") along.absorption.assign(along.absorption.size(), glm::dvec3(0));
           if (term != "all" && term != "power") along.power.assign(3, glm::dvec3(0));
-          const ForwardModel here(level, at, lights.beams, views(level), options);
           const Outgoing slope = here.tangent(along);
           std::vector<double> rests;
-          for (const double h : {0.004, 0.002, 0.001, 0.0005, 0.00025}) {
+          for (const double h : {0.004, 0.001, 0.00025}) {
             const ForwardModel there(level, moved(at, along, h), lights.beams, views(level), options);
             rests.push_back(rest(there.outgoing(), here.outgoing(), slope, h));
           }
@@ -186,7 +186,7 @@ TEST_CASE("what is left of a Taylor step falls with its square, each term on and
                   1e-24 * product(here.outgoing().exitance, here.outgoing().exitance));
           }
           for (std::size_t i = 1; i < rests.size(); ++i) {
-            CHECK(std::abs(rests[i - 1] / rests[i] - 4) <= 0.02);
+            CHECK(std::abs(rests[i - 1] / rests[i] - 16) <= 0.08);
           }
         }
       }

@@ -100,12 +100,13 @@ struct Way {
 
 std::vector<Way> ways() {
   const SolverKind solver = SolverKind::dpcg;
-  return {{{.method = Method::fem, .solver = solver, .correction = true}},
-          {{.method = Method::fem, .solver = solver, .correction = true}, true},
+  const SolveOptions corrected{.solver = solver, .correction = true, .sweeps = 1, .sweep_points = 300};
+  return {{corrected},
+          {corrected, true},
           {{.method = Method::fem, .solver = SolverKind::fmg_pcg, .model = Model::sp3}},
           {{.method = Method::quadgraph_fv, .solver = solver}, true},
           {{.method = Method::quadgraph_fv, .solver = solver}, false, "polygrid.qgraph"},  // of several workgroups
-          {{.method = Method::shortest_path}}};
+          {{.method = Method::shortest_path, .path = {.cells = 16}}}};
 }
 
 void bend(Engine& engine) {

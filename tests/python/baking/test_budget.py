@@ -221,7 +221,7 @@ def test_an_error_out_of_reach_is_said_to_be(tmp_path, capsys, monkeypatch):
     """All of so coarse a mesh is baked, with a warning, and with --strict the exit status tells."""
     monkeypatch.setattr(displayed, "_MOST_SEEDS", 1)  # the truth need not be known as well as that
     source, out, reports = tmp_path / "lobes.ply", tmp_path / "out.qgraph", []
-    level_chains.SHAPES["lobes"](3).export(source)
+    level_chains.SHAPES["lobes"](2).export(source)
     bake_for = plan.bake_for
     monkeypatch.setattr(plan, "bake_for", lambda *given, **more: reports.append(bake_for(*given, **more)) or reports[0])
     options = ["--height", "20mm", "--material", "marble", "--light", SUN, "--error", "0.2%"]
@@ -238,7 +238,7 @@ def test_an_error_out_of_reach_is_said_to_be(tmp_path, capsys, monkeypatch):
 def test_a_file_without_coarser_levels_is_measured_too(tmp_path):
     """Its steps of conjugate gradients bring in less than a cycle: enough of them are tried."""
     source, path = tmp_path / "lobes.ply", tmp_path / "one.qgraph"
-    level_chains.SHAPES["lobes"](3).export(source)
+    level_chains.SHAPES["lobes"](2).export(source)
     pipeline.bake(source, path, BakeOptions(height_mm=5, levels=1, visibility_rays=0))
     reference = Reference(path, 1, tmp_path)
     truth = reference.truth("ketchup", [SUN], 1)

@@ -30,7 +30,8 @@ def run(arguments: list[str | Path], room: int | None = None, **streams) -> subp
 
 def scene(folder: Path) -> Path:
     path = folder / "scene.json"
-    path.write_text(json.dumps({"body": str(tiny.PATH), "frames": 30, "picture": {"width": 64, "height": 64}}))
+    picture, solver = {"width": 64, "height": 64}, {"correction": False}
+    path.write_text(json.dumps({"body": str(tiny.PATH), "frames": 30, "picture": picture, "solver": solver}))
     return path
 
 

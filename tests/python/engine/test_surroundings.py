@@ -112,6 +112,7 @@ def pictures_of(folder: Path, **picture) -> np.ndarray:
             {"type": "environment", "file": "quarters.hdr", "radiance": 0.1},
         ],
         "deformation": deformation,
+        "solver": {"correction": False},
         "camera": {"elevation": 0},
         "picture": {"width": 96, "height": 96, **picture},
     }

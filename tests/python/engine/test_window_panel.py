@@ -46,7 +46,7 @@ def width_at(picture: np.ndarray, share: float) -> int:
 
 def test_a_body_twists_where_it_should_and_comes_back(open_window, tmp_path: Path):
     """An ellipsoid of 20 x 20 x 10 mm, twisted by 90 degrees from its foot to its head."""
-    ball = [icosphere(n, 10) for n in (4, 3)]
+    ball = [icosphere(n, 10) for n in (3, 2)]
     body = write_levels(tmp_path / "egg.qgraph", [Surface(s.vertices * [1, 1, 0.5], s.triangles) for s in ball])
     look = ["--view", "0,0,300", "--fov", "8", "--exposure", "1", "--no-ground", "--background", "black"]
     light = ["--light", "directional:0,0,-1:1", "--light", "ambient:1", "--radiance", "lambertian"]
@@ -76,7 +76,7 @@ def test_a_body_twists_where_it_should_and_comes_back(open_window, tmp_path: Pat
 
 def test_a_projector_takes_the_image_that_is_typed(open_window, tmp_path: Path):
     """White at first, then dark on the left; a name that is none changes nothing."""
-    write_levels(tmp_path / "ball.qgraph", [icosphere(4, 10), icosphere(3, 10)])
+    write_levels(tmp_path / "ball.qgraph", [icosphere(3, 10), icosphere(2, 10)])
     texels = np.full((16, 16), 255, np.uint8)
     Image.fromarray(texels).save(tmp_path / "white.png")
     texels[:, :8] = 0

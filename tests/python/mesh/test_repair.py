@@ -18,9 +18,9 @@ from quadgraph.mesh.surface import Repair, Surface
 from quadgraph.tets.tetrahedralise import tetrahedralise
 from shapes import cube, icosphere, join, moved, torus
 
-GOOD = (
-    "armadillo buddha bunny dragon fandisk fertility gargoyle heptoroid igea lucy spot twirl".split()  # noqa: SIM905
-)
+# shared/meshes/README.md: sharp edges, a high genus, and the most vertices of those that are quick
+GOOD = ["bunny", "fandisk", "heptoroid"]
+OTHER_GOOD = ["armadillo", "buddha", "dragon", "fertility", "gargoyle", "igea", "lucy", "spot", "twirl"]
 
 
 def counts(repairs: list[Repair]) -> dict[str, int]:
@@ -147,7 +147,7 @@ def test_one_sided_surface_is_refused() -> None:
         repair(Surface(vertices, np.array([[int(c) for c in face] for face in faces])), "plane")
 
 
-@pytest.mark.parametrize("name", GOOD)
+@pytest.mark.parametrize("name", [*GOOD, *(pytest.param(name, marks=pytest.mark.long) for name in OTHER_GOOD)])
 def test_good_meshes_need_no_repair(shared: Path, name: str) -> None:
     source = read_surface(shared / "meshes" / f"{name}.ply", height_mm=100)
     repaired, repairs = repair(source.surface, name)

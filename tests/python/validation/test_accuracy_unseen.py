@@ -114,9 +114,15 @@ def test_parts_and_errors_are_those_of_known_patches():
     assert set(unseen_study.parts_of(unknown, dark)) == {"whole", "lit", "unlit"}
 
 
-def test_a_case_is_judged_printed_recorded_and_drawn(tmp_path, capsys):
+@pytest.fixture(scope="module")
+def truths(tmp_path_factory):
+    """A folder of walks, for the tests that judge the same case."""
+    return tmp_path_factory.mktemp("truths")
+
+
+def test_a_case_is_judged_printed_recorded_and_drawn(truths, tmp_path, capsys):
     path = tmp_path / "unseen.json"
-    asked = f"accuracy unseen --seed {SEED} --count 1 --walks 200000 --sweeps 0 --sweeps 1 --truth {tmp_path}"
+    asked = f"accuracy unseen --seed {SEED} --count 1 --walks 200000 --sweeps 0 --sweeps 1 --truth {truths}"
     assert cli.main([*asked.split(), "--json", str(path), "--images", str(tmp_path)]) == 0
     assert "mean free paths" in capsys.readouterr().out
     (row,) = json.loads(path.read_text())["rows"]
@@ -159,11 +165,11 @@ def test_the_last_frame_of_the_motion_is_the_case_itself(body):
         unseen_motion.at_frame(unseen_cases.drawn(SEED, body, "sky"), 0)
 
 
-def test_a_case_is_judged_in_motion(tmp_path, capsys, monkeypatch):
+def test_a_case_is_judged_in_motion(truths, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(unseen_motion, "FRAMES", 6)
-    monkeypatch.setattr(unseen_motion, "STILL", 10)
+    monkeypatch.setattr(unseen_motion, "STILL", 5)
     path = tmp_path / "unseen.json"
-    asked = f"accuracy unseen --seed {SEED} --count 1 --walks 200000 --motion --truth {tmp_path}"
+    asked = f"accuracy unseen --seed {SEED} --count 1 --walks 200000 --motion --truth {truths}"
     assert cli.main([*asked.split(), "--json", str(path)]) == 0
     assert "summary in motion" in capsys.readouterr().out
     record = json.loads(path.read_text())
