@@ -225,7 +225,7 @@ void add_motion(OptionTable& table) {
                                                          .keyword = "mean_rays",
                                                          .on_command_line = false,
                                                          .help = "isotropic light by one ray from an origin instead of "
-                                                                 "eight"});
+                                                                 "eight, and rays that end with 1% of their light"});
 }
 
 void add_size(OptionTable& table) {

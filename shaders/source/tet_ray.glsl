@@ -172,6 +172,9 @@ void start_in_tet(uint tet, vec4 l, vec3 direction) {
 
 // Enters the tet across, whose new corner replaces that in slot 3.
 void enter(uvec2 crossing) {
+#ifdef QG_PROCESSOR
+  fetch_ahead(BODY.crossings, int(4u * crossing.x));
+#endif
   if ((BODY.flags & BODY_EVEN) == 0u) optical = BODY.optical.at[crossing.x];
   corner_0.place = crossing.y >> 2u * corner_0.place & 3u;
   corner_1.place = crossing.y >> 2u * corner_1.place & 3u;

@@ -35,7 +35,7 @@ vec3 albedo() {
 
 // `scattered` at the mean place of each channel between the ray's point and `l`.
 void scatter(uint tet, vec3 scattered, vec4 l, vec3 place) {
-  if (push.deposits == WALK_TETS) {
+  if ((push.deposits & WALK_DEPOSITS) == WALK_TETS) {
     add_power(push.deposit, tet, scattered);
     return;
   }
@@ -43,7 +43,7 @@ void scatter(uint tet, vec3 scattered, vec4 l, vec3 place) {
   vec3 at_1 = scattered * mix(vec3(corner_1.l), vec3(l.y), place);
   vec3 at_2 = scattered * mix(vec3(corner_2.l), vec3(l.z), place);
   vec3 at_3 = scattered * mix(vec3(corner_3.l), vec3(l.w), place);
-  if (push.deposits == WALK_VERTICES) {
+  if ((push.deposits & WALK_DEPOSITS) == WALK_VERTICES) {
     corner_0.payload.scattered += at_0;
     corner_1.payload.scattered += at_1;
     corner_2.payload.scattered += at_2;
@@ -83,7 +83,12 @@ void end_here(Ray ray) {
 }
 
 void flush(Corner corner) {
-  if (push.deposits == WALK_VERTICES) add_power(push.deposit, corner.id, corner.payload.scattered);
+  if ((push.deposits & WALK_DEPOSITS) == WALK_VERTICES) add_power(push.deposit, corner.id, corner.payload.scattered);
+}
+
+// Of its power, with which a ray ends.
+float end_share() {
+  return (push.deposits & WALK_TO_MEAN) != 0u ? WALK_END_MEAN : WALK_END;
 }
 
 // At an outside face from inside, whose outward normal has any length.
@@ -91,7 +96,7 @@ void meet_surface(inout Ray ray, uint face, vec3 outward);
 
 // Follows a ray from the point that the corners hold, until its light is spent.
 void walk(Ray ray) {
-  vec3 end = WALK_END * ray.power;
+  vec3 end = end_share() * ray.power;
   for (uint step = 0u; step < MAX_WALK_STEPS; ++step) {
     Exit exit = find_exit(ray.direction);
     if (!exit.found) break;
