@@ -152,6 +152,7 @@ void Engine::set_deformation(std::span<const Deformer> list) {
   self.moved = !list.empty();
   self.bounds = list.empty() ? bounding_sphere(self.graph.display().vertices) : self.motion.bounds();
   self.stale();
+  self.shadows.forget();
   self.deformed = true;
   self.deformation = summary_of(list);
   self.paths.set_moved();

@@ -109,6 +109,7 @@ struct Engine::Implementation {
     probe.reset();
     ground.reset();
     report.reset();
+    shadows.forget();
     stale();
   }
 
