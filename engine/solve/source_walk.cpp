@@ -173,6 +173,7 @@ void SourceWalk::record_again(Workspace& work, const LevelBuffers& level, const 
   gpu::WalkSourcePush push = this->push(work, level, beams, task);
   push.beam += (beams.beams.size() - 1) * sizeof(gpu::Beam);
   push.sums = sums_again_.sums.address();
+  if (task.mean_rays) push.deposits ^= gpu::WALK_TO_MEAN | gpu::WALK_TO_AGAIN;
   work.recorder.dispatch(work.passes.of(shader::walk_source), push, level.face_count, "source walk",
                          walk_bytes(level, 1));
   sums_again_.read_back(work);

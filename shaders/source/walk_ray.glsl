@@ -88,6 +88,7 @@ void flush(Corner corner) {
 
 // Of its power, with which a ray ends.
 float end_share() {
+  if ((push.deposits & WALK_TO_AGAIN) != 0u) return WALK_END_AGAIN;
   return (push.deposits & WALK_TO_MEAN) != 0u ? WALK_END_MEAN : WALK_END;
 }
 

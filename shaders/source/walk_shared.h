@@ -26,6 +26,10 @@ const uint WALK_VERTICES = 1u;
 const uint WALK_CORNERS = 2u;   // of each tet, four (transport_walk.comp)
 const uint WALK_DEPOSITS = 3u;  // bits that say so; another may say that rays do not go on to WALK_END:
 const uint WALK_TO_MEAN = 4u;   // to WALK_END_MEAN
+const uint WALK_TO_AGAIN = 8u;  // to WALK_END_AGAIN
+
+// With mean rays, light that enters again ends sooner than all other: it is a small part.
+const float WALK_END_AGAIN = 0.1f;
 
 // walk_source.comp: follows the rays of one beam. One invocation per face; of a Lambertian beam, one per face and ray
 // of the bundle.

@@ -189,6 +189,26 @@ TEST_CASE("a shadow map is drawn again only where its view or the mesh has chang
   check({lamp, sun(0.5f), inner}, moved, 8);
 }
 
+TEST_CASE("in motion coarser levels are sampled as the finest is, and many faces by a sample a quarter") {
+  CheckedContext checked;
+  device::Device& context = checked.context;
+  const std::vector<Light> sun = {Light{.direction = glm::normalize(glm::vec3(1, 2, 3)), .power = glm::vec3(1)}};
+  const auto q_of = [&](const Shape& shape, std::uint32_t number, bool rough) {
+    const LevelBuffers level = upload_as_level(context, shape, 1);
+    ShadowMaps shadows(context);
+    shadows.update(upload_as_display(context, shape), {sun, bounding_sphere(shape.vertices)});
+    IrradiancePass(context).run(level, number, shadows, 1.3f, 0, rough);
+    return device::download<glm::vec3>(context, level.q);
+  };
+  Shape few = sphere({0, 0, 0}, 10, 3), many = sphere({0, 0, 0}, 10, 6);
+  for (Shape* shape : {&few, &many}) shape->append(sphere({-5, -10, -15}, 3, 3));  // in the way of some light
+  CHECK(q_of(few, 1, true) == q_of(few, 0, false));
+  CHECK(q_of(few, 1, true) != q_of(few, 1, false));
+  const auto rough = q_of(many, 0, true), fine = q_of(many, 0, false);
+  CHECK(rough != fine);
+  CHECK(entered(many, rough).x == doctest::Approx(entered(many, fine).x).epsilon(1e-3));
+}
+
 TEST_CASE("more lights than a scene may have are refused") {
   CHECK_NOTHROW(check_light_count(most_lights));
   CHECK_THROWS_WITH_AS(check_light_count(3000),
