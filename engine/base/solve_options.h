@@ -168,8 +168,9 @@ struct SolveOptions {
   // turn; 0: for all.
   std::uint32_t exchange_rows = 0;
   // Uniform light (ambient, of environments) goes in along one ray from an origin, straight down with the optical depth
-  // of the mean inside cosine, instead of eight: an eighth of that work. What that does to the exitance:
-  // docs/window.md.
+  // of the mean inside cosine, instead of eight: an eighth of that work. And every ray of the buried source ends, and
+  // leaves the rest there, with a hundredth of its power instead of a ten-thousandth, and shadows are sampled at fewer
+  // places. What that does to the exitance: docs/window.md.
   bool mean_rays = false;
   // Sweeps of the transport equation correct the solution, with Method::fem and Source::buried: so many, or with 0
   // until another one would change little. Scenes have it by default.

@@ -1,98 +1,17 @@
 #include "engine/cpu/tile.h"
 
 #include <algorithm>
-#include <type_traits>
 
 namespace quadgraph::cpu {
 namespace {
 
-// Pixels of a row side by side.
-constexpr std::uint32_t lanes = 4;
-using Floats = float __attribute__((vector_size(16)));
-using Ints = std::int32_t __attribute__((vector_size(16)));
 using Words = std::uint32_t __attribute__((vector_size(16)));
 using Longs = std::int64_t __attribute__((vector_size(16)));
-using Doubles = double __attribute__((vector_size(32)));
-using Pair = double __attribute__((vector_size(16)));
 using StoredFloats = float __attribute__((vector_size(16), aligned(4)));
-
-// A triangle's edge function at pixels side by side. Ints hold it where its numbers stay below 2^31; Doubles, which are
-// exact for whole numbers as well, hold all others.
-template <typename Lanes>
-struct Edge {
-  using Number = std::remove_cvref_t<decltype(Lanes{}[0])>;
-  Lanes row;   // at the first pixels of the row, less what is in: 0 of top and left edges, else 1
-  Lanes step;  // from pixels to those beside them
-  Number step_y;
-
-  Edge(const Drawn& drawn, std::size_t k, std::uint32_t x, std::uint32_t y) {
-    const bool top_left = drawn.step_x[k] > 0 || (drawn.step_x[k] == 0 && drawn.step_y[k] > 0);
-    const std::int64_t first = drawn.at[k] + x * drawn.step_x[k] + y * drawn.step_y[k] - (top_left ? 0 : 1);
-    row = static_cast<Number>(first) + static_cast<Number>(drawn.step_x[k]) * Lanes{0, 1, 2, 3};
-    step = static_cast<Number>(lanes * drawn.step_x[k]) + Lanes{};
-    step_y = static_cast<Number>(drawn.step_y[k]);
-  }
-};
-
-Ints inside(Ints a, Ints b, Ints c) {
-  return (a | b | c) >= 0;
-}
-Ints inside(const Doubles& a, const Doubles& b, const Doubles& c) {
-  return __builtin_convertvector((a >= 0) & (b >= 0) & (c >= 0), Ints);
-}
 
 bool any(Ints mask) {
   const auto halves = Longs(mask);
   return (halves[0] | halves[1]) != 0;
-}
-
-// Pixels of a tile, end excluded.
-struct Box {
-  std::uint32_t x0, y0, x1, y1;
-};
-
-// Depth of a triangle in its plane, at pixels side by side: of the first two and of the others.
-struct Plane {
-  Pair left, right;  // at the first pixels of the row
-  Pair step;         // from pixels to those beside them
-  double step_y;
-
-  Plane(const Drawn& drawn, std::uint32_t x, std::uint32_t y) {
-    double at = 0, step_x = 0;
-    step_y = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double depth = drawn.inverse * double{drawn.triangle->z[k]};
-      at += static_cast<double>(drawn.at[k] + x * drawn.step_x[k] + y * drawn.step_y[k]) * depth;
-      step_x += static_cast<double>(drawn.step_x[k]) * depth;
-      step_y += static_cast<double>(drawn.step_y[k]) * depth;
-    }
-    left = Pair{at, at + step_x};
-    right = left + 2 * step_x;
-    step = lanes * step_x + Pair{};
-  }
-};
-
-// Calls take(pixel of the tile, mask, depth) for pixels side by side, of which the mask says which are in the triangle:
-// maybe none, as asking would take longer than taking.
-template <typename Lanes, typename Take>
-void walk(const Drawn& drawn, const Box& box, const Take& take) {
-  const std::uint32_t x0 = box.x0 / lanes * lanes;
-  Edge<Lanes> a(drawn, 0, x0, box.y0), b(drawn, 1, x0, box.y0), c(drawn, 2, x0, box.y0);
-  Plane plane(drawn, x0, box.y0);
-  for (std::uint32_t y = box.y0; y < box.y1; ++y) {
-    Lanes at_a = a.row, at_b = b.row, at_c = c.row;
-    Pair left = plane.left, right = plane.right;
-    for (std::uint32_t x = x0; x < box.x1; x += lanes) {
-      const Ints mask = inside(at_a, at_b, at_c);
-      const Floats depth{static_cast<float>(left[0]), static_cast<float>(left[1]), static_cast<float>(right[0]),
-                         static_cast<float>(right[1])};
-      take(y * tile_side + x, mask, depth);
-      at_a += a.step, at_b += b.step, at_c += c.step;
-      left += plane.step, right += plane.step;
-    }
-    a.row += a.step_y, b.row += b.step_y, c.row += c.step_y;
-    plane.left += plane.step_y, plane.right += plane.step_y;
-  }
 }
 
 std::int32_t first_pixel(std::int32_t at) {
@@ -225,10 +144,11 @@ void Tile::for_each(const DrawMemory& memory, const Each& each) const {
                     clamped(last_pixel(most_x) + 1, left_, width_), clamped(last_pixel(most_y) + 1, top_, height_)};
       if (box.x0 >= box.x1 || box.y0 >= box.y1) continue;
       const Drawn one = drawn(t);
-      // Within this, edges are below 2^31 at all pixels that are walked over.
-      constexpr std::int32_t narrow = 30000;
-      const bool small = most_x - least_x <= narrow && most_y - least_y <= narrow;
-      each(one, [&](const auto& take) { small ? walk<Ints>(one, box, take) : walk<Doubles>(one, box, take); });
+      // All pixels around a small triangle are looked at sooner than the ends of its rows are found. Its edges are
+      // below 2^31 there.
+      constexpr std::int32_t narrow = 32 * pixel, low = 30000;
+      const bool small = most_x - least_x <= narrow && most_y - least_y <= low;
+      each(one, [&](const auto& take) { small ? walk_box(one, box, take) : walk_rows(one, box, take); });
     }
   }
 }

@@ -5,18 +5,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/cpu/coverage.h"
 #include "engine/cpu/triangles.h"
 
 namespace quadgraph::cpu {
-
-// A triangle as a tile draws it: edge k lies across from corner k. Its function is above 0 inside and 0 on it, and
-// changes by the steps from pixel to pixel.
-struct Drawn {
-  const Triangle* triangle;
-  std::array<std::int64_t, 3> at;              // at the centre of the tile's first pixel
-  std::array<std::int64_t, 3> step_x, step_y;  // per pixel
-  double inverse;                              // of the sum of the three
-};
 
 // Fragments of a tile to be shaded together.
 class Batch {

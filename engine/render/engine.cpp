@@ -152,6 +152,7 @@ void Engine::set_deformation(std::span<const Deformer> list) {
   self.moved = !list.empty();
   self.bounds = list.empty() ? bounding_sphere(self.graph.display().vertices) : self.motion.bounds();
   self.stale();
+  self.shadows.forget();
   self.deformed = true;
   self.deformation = summary_of(list);
   self.paths.set_moved();
@@ -168,22 +169,19 @@ void Engine::set_irradiance(std::uint32_t level, std::span<const glm::vec3> q,
   self.lights.clear();
   self.in_body.reset();
   self.irradiance_given = true;
-  self.irradiance_stale = false;
+  self.irradiance_stale = self.irradiance_rough = false;
 }
 
 void Engine::update_irradiance() {
   const auto turn = implementation_->in_use.take();
-  auto& self = *implementation_;
-  if (self.material.empty()) throw InputError("irradiance: set a material first; the light that enters depends on eta");
-  self.levels();
-  self.interruptible([&] { self.update_irradiance(); });
+  implementation_->update_irradiance(false);
 }
 
 void Engine::make_room(const SolveOptions& options) {
   const auto turn = implementation_->in_use.take();
   auto& self = *implementation_;
   if (options.method == Method::shortest_path) return static_cast<void>(solve(options));
-  if (self.irradiance_stale) update_irradiance();
+  if (self.irradiance_behind(options)) self.update_irradiance(options.mean_rays);
   const bool gathered = gathers(options.method, options.source);
   self.interruptible([&] {
     self.levels().make_room(options, gathered);
@@ -199,7 +197,7 @@ SolveReport Engine::solve(const SolveOptions& options, const std::function<void(
   self.gather_passes.clear();
   self.deformation_passes.clear();
   self.light_passes.clear();
-  if (!by_path && self.irradiance_stale) update_irradiance();
+  if (!by_path && self.irradiance_behind(options)) self.update_irradiance(options.mean_rays);
   if (self.deformed && self.simulation) self.deformation_passes = self.simulation->deformation_passes();
   self.deformed = false;
   self.report.reset();

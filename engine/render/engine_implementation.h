@@ -60,6 +60,7 @@ struct Engine::Implementation {
   float eta = 1;                  // of the material
   bool shadows_stale = false;     // they are not those of the present lights and shape
   bool irradiance_stale = false;  // nor is q on the levels
+  bool irradiance_rough = false;  // q is that of a frame in motion
   bool irradiance_given = false;  // q is not that of lights
   SolveOptions options;
   std::optional<SolveReport> report;
@@ -109,6 +110,7 @@ struct Engine::Implementation {
     probe.reset();
     ground.reset();
     report.reset();
+    shadows.forget();
     stale();
   }
 
@@ -127,7 +129,17 @@ struct Engine::Implementation {
     return set;
   }
 
-  void update_irradiance() {
+  bool irradiance_behind(const SolveOptions& wanted) const {
+    return irradiance_stale || (irradiance_rough && !wanted.mean_rays);
+  }
+
+  void update_irradiance(bool rough) {
+    if (material.empty()) throw InputError("irradiance: set a material first; the light that enters depends on eta");
+    levels();
+    interruptible([&] { run_irradiance(rough); });
+  }
+
+  void run_irradiance(bool rough) {
     const LightSet set = cast_shadows();
     simulation->set_beams(set.beams);
     if (set.environments > 0) {
@@ -136,10 +148,11 @@ struct Engine::Implementation {
     }
     for (std::uint32_t level = 0; level < simulation->level_count(); ++level) {
       add(irradiance_passes,
-          irradiance.run(simulation->level(level), level, shadows, eta, hidden ? hidden->hidden(level) : 0));
+          irradiance.run(simulation->level(level), level, shadows, eta, hidden ? hidden->hidden(level) : 0, rough));
     }
     simulation->irradiance_changed();
     irradiance_stale = false;
+    irradiance_rough = rough;
   }
 
   // Of the report, which is of a correction at rest.

@@ -225,7 +225,8 @@ void add_motion(OptionTable& table) {
                                                          .keyword = "mean_rays",
                                                          .on_command_line = false,
                                                          .help = "isotropic light by one ray from an origin instead of "
-                                                                 "eight"});
+                                                                 "eight, rays that end with 1% of their light, and "
+                                                                 "fewer samples of shadows"});
 }
 
 void add_size(OptionTable& table) {

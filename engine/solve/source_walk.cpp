@@ -10,6 +10,7 @@ namespace quadgraph {
 namespace {
 
 constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
+
 constexpr std::uint64_t power_bytes = FIXED_WORDS * sizeof(std::uint32_t);
 
 std::uint32_t carriers(const LevelBuffers& level, Method method) {
@@ -134,7 +135,8 @@ gpu::WalkSourcePush SourceWalk::push(const Workspace& work, const LevelBuffers& 
           .unscattered = unscattered().address(),
           .sums = sums_.sums.address(),
           .rays = 1,
-          .deposits = on_vertices(task.method) ? gpu::WALK_VERTICES : gpu::WALK_TETS};
+          .deposits = (on_vertices(task.method) ? gpu::WALK_VERTICES : gpu::WALK_TETS) |
+                      (task.mean_rays ? gpu::WALK_TO_MEAN : 0u)};
 }
 
 void SourceWalk::record(Workspace& work, const LevelBuffers& level, const BeamBuffers& beams, const WalkTask& task) {
@@ -171,6 +173,7 @@ void SourceWalk::record_again(Workspace& work, const LevelBuffers& level, const 
   gpu::WalkSourcePush push = this->push(work, level, beams, task);
   push.beam += (beams.beams.size() - 1) * sizeof(gpu::Beam);
   push.sums = sums_again_.sums.address();
+  if (task.mean_rays) push.deposits ^= gpu::WALK_TO_MEAN | gpu::WALK_TO_AGAIN;
   work.recorder.dispatch(work.passes.of(shader::walk_source), push, level.face_count, "source walk",
                          walk_bytes(level, 1));
   sums_again_.read_back(work);

@@ -170,8 +170,23 @@ void start_in_tet(uint tet, vec4 l, vec3 direction) {
   face_towards(direction);
 }
 
+#ifdef QG_PROCESSOR
+// Asks memory for the tets across the faces of one, before the ray leaves it for one of them.
+void fetch_around(uint tet) {
+  for (uint k = 0u; k < 4u; ++k) {
+    int across = int(BODY.crossings.at[4u * tet + k] >> CROSSING_BITS);
+    fetch_ahead(BODY.tets, across);
+    fetch_ahead(BODY.crossings, 4 * across);
+    fetch_ahead(BODY.optical, across);
+  }
+}
+#endif
+
 // Enters the tet across, whose new corner replaces that in slot 3.
 void enter(uvec2 crossing) {
+#ifdef QG_PROCESSOR
+  fetch_around(crossing.x);
+#endif
   if ((BODY.flags & BODY_EVEN) == 0u) optical = BODY.optical.at[crossing.x];
   corner_0.place = crossing.y >> 2u * corner_0.place & 3u;
   corner_1.place = crossing.y >> 2u * corner_1.place & 3u;

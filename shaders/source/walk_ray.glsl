@@ -35,7 +35,7 @@ vec3 albedo() {
 
 // `scattered` at the mean place of each channel between the ray's point and `l`.
 void scatter(uint tet, vec3 scattered, vec4 l, vec3 place) {
-  if (push.deposits == WALK_TETS) {
+  if ((push.deposits & WALK_DEPOSITS) == WALK_TETS) {
     add_power(push.deposit, tet, scattered);
     return;
   }
@@ -43,7 +43,7 @@ void scatter(uint tet, vec3 scattered, vec4 l, vec3 place) {
   vec3 at_1 = scattered * mix(vec3(corner_1.l), vec3(l.y), place);
   vec3 at_2 = scattered * mix(vec3(corner_2.l), vec3(l.z), place);
   vec3 at_3 = scattered * mix(vec3(corner_3.l), vec3(l.w), place);
-  if (push.deposits == WALK_VERTICES) {
+  if ((push.deposits & WALK_DEPOSITS) == WALK_VERTICES) {
     corner_0.payload.scattered += at_0;
     corner_1.payload.scattered += at_1;
     corner_2.payload.scattered += at_2;
@@ -83,7 +83,15 @@ void end_here(Ray ray) {
 }
 
 void flush(Corner corner) {
-  if (push.deposits == WALK_VERTICES) add_power(push.deposit, corner.id, corner.payload.scattered);
+  if ((push.deposits & WALK_DEPOSITS) == WALK_VERTICES) add_power(push.deposit, corner.id, corner.payload.scattered);
+}
+
+// Of its power, with which a ray that begins here ends. Where much is absorbed, what has not scattered reaches as deep as
+// what has, so that it is followed in motion as at rest.
+vec3 end_share() {
+  if ((push.deposits & (WALK_TO_MEAN | WALK_TO_AGAIN)) == 0u) return vec3(WALK_END);
+  float sooner = (push.deposits & WALK_TO_AGAIN) != 0u ? WALK_END_AGAIN : WALK_END_MEAN;
+  return mix(vec3(WALK_END), vec3(sooner), greaterThan(albedo(), vec3(WALK_PALE)));
 }
 
 // At an outside face from inside, whose outward normal has any length.
@@ -91,7 +99,7 @@ void meet_surface(inout Ray ray, uint face, vec3 outward);
 
 // Follows a ray from the point that the corners hold, until its light is spent.
 void walk(Ray ray) {
-  vec3 end = WALK_END * ray.power;
+  vec3 end = end_share() * ray.power;
   for (uint step = 0u; step < MAX_WALK_STEPS; ++step) {
     Exit exit = find_exit(ray.direction);
     if (!exit.found) break;

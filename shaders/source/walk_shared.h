@@ -23,7 +23,14 @@ const uint WALK_SUMS = 256u;
 // What adds up the light that is scattered for the first time.
 const uint WALK_TETS = 0u;
 const uint WALK_VERTICES = 1u;
-const uint WALK_CORNERS = 2u;  // of each tet, four (transport_walk.comp)
+const uint WALK_CORNERS = 2u;   // of each tet, four (transport_walk.comp)
+const uint WALK_DEPOSITS = 3u;  // bits that say so; another may say that rays do not go on to WALK_END:
+const uint WALK_TO_MEAN = 4u;   // to WALK_END_MEAN
+const uint WALK_TO_AGAIN = 8u;  // to WALK_END_AGAIN
+
+// With mean rays, light that enters again ends sooner than all other: it is a small part.
+const float WALK_END_AGAIN = 0.1f;
+const float WALK_PALE = 0.9f;  // rays end sooner where the albedo is above
 
 // walk_source.comp: follows the rays of one beam. One invocation per face; of a Lambertian beam, one per face and ray
 // of the bundle.
@@ -36,7 +43,7 @@ struct WalkSourcePush {
   QG_REF(Uints) unscattered;  // fixed point, per face: power that leaves
   QG_REF(Uints) sums;         // fixed point, WALK_SUMS times two: absorbed; left, or still under way at the end
   uint rays;                  // per origin: 1, or LAMBERTIAN_RAYS; a Lambertian beam may have either
-  uint deposits;              // WALK_TETS or WALK_VERTICES
+  uint deposits;              // WALK_TETS or WALK_VERTICES, and maybe where rays end
 };
 
 #ifdef __cplusplus

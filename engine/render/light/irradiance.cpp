@@ -13,6 +13,14 @@ constexpr std::uint32_t finest_subdivision = 4;
 constexpr std::uint32_t more_per_level = 2;
 static_assert(finest_subdivision % 2 == 0 && more_per_level % 2 == 0, "a sample lies in one quarter of its face");
 
+// In motion 16 samples on every level, and a sample a quarter where faces are as small as on bodies that take long.
+constexpr std::uint32_t many_faces = 32768;
+
+std::uint32_t subdivision_of(std::uint32_t level, std::uint32_t faces, bool rough) {
+  if (rough) return faces < many_faces ? finest_subdivision : 2;
+  return finest_subdivision + more_per_level * level;
+}
+
 }  // namespace
 
 IrradiancePass::IrradiancePass(device::Device& device) : device_(device), pass_(device, shader::irradiance) {}
@@ -24,8 +32,8 @@ const device::ComputePass& IrradiancePass::pass(bool shaped) {
 }
 
 PassStats IrradiancePass::run(const LevelBuffers& buffers, std::uint32_t level, const ShadowMaps& shadows, float eta,
-                              std::uint64_t hidden) {
-  const std::uint32_t subdivision = finest_subdivision + more_per_level * level;
+                              std::uint64_t hidden, bool rough) {
+  const std::uint32_t subdivision = subdivision_of(level, buffers.face_count, rough);
   const gpu::IrradiancePush push{.vertices = buffers.vertices.address(),
                                  .faces = buffers.faces.address(),
                                  .q = buffers.q.address(),

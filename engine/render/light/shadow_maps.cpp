@@ -1,6 +1,7 @@
 #include "engine/render/light/shadow_maps.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "engine/device/commands.h"
 #include "interface/light/shadow.vert.h"
@@ -51,9 +52,17 @@ void ShadowMaps::make_places(const std::vector<gpu::ShadowView>& views) {
   }
   depths_.resize(sizes.size());
   for (std::size_t k = 0; k < sizes.size(); ++k) {
-    if (depths_[k].size() != sizes[k]) depths_[k] = {device_, sizes[k], device::Place::device, "shadows/map"};
+    if (depths_[k].size() == sizes[k]) continue;
+    depths_[k] = {device_, sizes[k], device::Place::device, "shadows/map"};
+    for (std::size_t view = 0; view < drawn_.size(); ++view) {
+      if (places_[view].buffer == k) drawn_[view].size = 0;
+    }
   }
   if (!shared) whole_.clear();
+}
+
+std::uint64_t ShadowMaps::address_of(const Place& place) const {
+  return depths_[place.buffer].address() + place.offset;
 }
 
 // The address of the copy. An image fills the beginning of a buffer, so that it reaches a shared one by way of another.
@@ -70,7 +79,17 @@ std::uint64_t ShadowMaps::copy_to_place(device::Commands& commands, const device
     commands.copy(image, whole);
     commands.copy(whole, target, bytes, place.offset);
   }
-  return target.address() + place.offset;
+  return address_of(place);
+}
+
+// The address of the map that shows what is wanted; 0 where it is to be drawn.
+std::uint64_t ShadowMaps::take_drawn(std::size_t view, gpu::ShadowView wanted) {
+  if (view >= drawn_.size()) return 0;
+  wanted.depth = view < maps_.size() ? maps_[view].address() : address_of(places_[view]);
+  gpu::ShadowView& shown = drawn_[view];
+  if (std::memcmp(&shown, &wanted, sizeof(wanted)) == 0) return shown.depth;
+  shown.size = 0;
+  return 0;
 }
 
 PassStats ShadowMaps::draw(const DisplayBuffers& mesh, std::span<gpu::ShadowView> views, std::size_t first) {
@@ -79,6 +98,8 @@ PassStats ShadowMaps::draw(const DisplayBuffers& mesh, std::span<gpu::ShadowView
   commands.begin_pass(stats.name);
   for (std::size_t k = 0; k < views.size(); ++k) {
     gpu::ShadowView& view = views[k];
+    view.depth = take_drawn(first + k, view);
+    if (view.depth != 0) continue;
     const std::uint64_t map_bytes = bytes_of(view);
     const device::Image& image = image_for(first + k, view.size);
     const auto size = static_cast<float>(view.size);
@@ -101,6 +122,7 @@ PassStats ShadowMaps::draw(const DisplayBuffers& mesh, std::span<gpu::ShadowView
 PassStats ShadowMaps::update(const DisplayBuffers& mesh, const LightSet& lights) {
   std::vector<gpu::ShadowView> views = lights.views;
   if (maps_.size() > views.size()) maps_.resize(views.size());
+  if (drawn_.size() > views.size()) drawn_.resize(views.size());
   if (views.empty() || image_for(0, views[0].size).address() == 0) make_places(views);
   PassStats stats{.name = "shadow maps"};
   for (std::size_t first = 0; first < views.size(); first += views_at_once) {
@@ -110,6 +132,7 @@ PassStats ShadowMaps::update(const DisplayBuffers& mesh, const LightSet& lights)
     stats.bytes += part.bytes;
     stats.count += part.count;
   }
+  drawn_ = views;
 
   light_count_ = static_cast<std::uint32_t>(lights.records.size());
   shaped_ = lights.shaped;

@@ -115,7 +115,83 @@ Difference difference(const std::vector<float>& a, const std::vector<float>& b) 
   return result;
 }
 
+// The rules in plain words, of one triangle that nothing clips: a sample is in it, or on a left edge or a top one.
+std::vector<float> plainly_drawn(const std::vector<glm::vec3>& corners) {
+  struct Place {
+    std::int64_t x, y;  // 1/256 of a pixel, y down
+  };
+  std::array<Place, 3> at;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const glm::dvec3 corner(corners[k]);
+    at[k] = {std::lrint(256 * (0.5 * (1 + corner.x) * side)), std::lrint(256 * (0.5 * (1 - corner.y) * side))};
+  }
+  const auto turn = [](Place a, Place b, Place c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); };
+  const std::int64_t area = turn(at[0], at[1], at[2]), sign = area < 0 ? -1 : 1;
+  std::vector<float> depths(side * side, 1);
+  for (std::uint32_t pixel = 0; area != 0 && pixel < side * side; ++pixel) {
+    const Place sample{256 * std::int64_t{pixel % side} + 128, 256 * std::int64_t{pixel / side} + 128};
+    bool in = true;
+    double depth = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Place a = at[(k + 1) % 3], b = at[(k + 2) % 3];
+      const std::int64_t inside = sign * turn(a, b, sample), to_right = sign * (a.y - b.y), down = sign * (b.x - a.x);
+      in = in && (inside > 0 || (inside == 0 && (to_right > 0 || (to_right == 0 && down > 0))));
+      depth += static_cast<double>(turn(a, b, sample)) / static_cast<double>(area) * double{corners[k].z};
+    }
+    if (in) depths[pixel] = static_cast<float>(depth);
+  }
+  return depths;
+}
+
+// Triangles of one kind: corners `apart` from each other, rounded to multiples of `grid`, both in pixels, around places
+// up to `out` halves of the window from its middle; `flat` times as wide as high.
+struct Kind {
+  const char* name;
+  float apart, grid, out, flat;
+};
+
+std::vector<glm::vec3> one_of(const Kind& kind, std::mt19937& random) {
+  std::uniform_real_distribution<float> place(-1, 1), depth(0.05f, 0.95f);
+  const glm::vec2 middle = kind.out * glm::vec2(place(random), place(random));
+  std::vector<glm::vec3> corners;
+  for (int k = 0; k < 3; ++k) {
+    glm::vec2 pixels = 0.5f * side * middle + kind.apart * glm::vec2(place(random), place(random) / kind.flat);
+    pixels = kind.grid * glm::round(pixels / kind.grid) + glm::vec2(0.5f);
+    corners.emplace_back(pixels / (0.5f * side), depth(random));
+  }
+  return corners;
+}
+
 }  // namespace
+
+TEST_CASE("a triangle of any size covers what a plain loop over all samples finds, as deep") {
+  cpu::Processor processor;
+  std::mt19937 random(5);
+  constexpr float fine = 1.0f / 256;
+  for (const Kind& kind :
+       {Kind{"small", 4, fine, 1, 1}, Kind{"as wide as a tile", 60, fine, 1, 1}, Kind{"large", 200, fine, 1, 1},
+        Kind{"corners at samples", 10, 1, 1, 1}, Kind{"large, corners at samples", 150, 1, 1, 1},
+        Kind{"slivers", 150, fine, 1, 100}, Kind{"upright slivers", 1.5f, fine, 1, 0.01f},
+        Kind{"slivers at samples", 150, 1, 1, 100}, Kind{"huge", 10000, fine, 20, 1},
+        Kind{"huge, corners at samples", 10000, 1, 20, 1}, Kind{"huge slivers", 10000, fine, 1, 1000},
+        Kind{"across the border and outside", 60, fine, 2.5f, 1}}) {
+    CAPTURE(kind.name);
+    std::size_t samples = 0, wrong = 0;
+    double deep = 0;
+    for (int round = 0; round < 60; ++round) {
+      const std::vector<glm::vec3> corners = one_of(kind, random);
+      const std::vector<float> found = drawn(processor, {.vertices = corners}), wanted = plainly_drawn(corners);
+      for (std::size_t k = 0; k < found.size(); ++k) {
+        samples += wanted[k] < 1 ? 1 : 0;
+        wrong += (found[k] < 1) != (wanted[k] < 1) ? 1 : 0;
+        if (found[k] < 1 && wanted[k] < 1) deep = std::max(deep, std::abs(double{found[k]} - double{wanted[k]}));
+      }
+    }
+    CHECK(samples > 20);
+    CHECK(wrong == 0);
+    CHECK(deep < 1e-6);
+  }
+}
 
 TEST_CASE("the samples of a triangle are those within it, the top-left rule on its borders") {
   // Half of a square of 100 pixels, its right angle lower left: rows of 1 to 100 pixels, less those on the diagonal.

@@ -158,6 +158,57 @@ TEST_CASE("many lights bring what one brings, within the memory of their maps") 
   CHECK(with(150) == doctest::Approx(with(1)).epsilon(1e-3));
 }
 
+TEST_CASE("a shadow map is drawn again only where its view or the mesh has changed, and all are as if drawn anew") {
+  CheckedContext checked;
+  device::Device& context = checked.context;
+  Shape shape = sphere({0, 0, 0}, 5, 2), moved = shape;
+  shape.append(sphere({0, 0, 9}, 3, 2));
+  moved.append(sphere({4, 0, 9}, 3, 2));
+  DisplayBuffers mesh = upload_as_display(context, shape);
+  const auto sun = [](float x) {
+    return Light{.direction = glm::normalize(glm::vec3(x, 0, -1)), .power = glm::vec3(1)};
+  };
+  const Light lamp = parse_light("point:0,0,30:1000"), inner = parse_light("point:0,0,7:1000");  // six views
+  ShadowMaps shadows(context);
+  const auto check = [&](const std::vector<Light>& lights, const Shape& present, std::uint32_t drawn) {
+    const LightSet set(lights, bounding_sphere(present.vertices));
+    CHECK(shadows.update(mesh, set).count == drawn);
+    const LevelBuffers level = upload_as_level(context, present, lights.size());
+    IrradiancePass(context).run(level, 0, shadows, 1.0f);
+    CHECK(device::download<glm::vec3>(context, level.q) == irradiance(context, present, lights, 1.0f));
+  };
+  check({sun(0), lamp}, shape, 2);
+  check({sun(0), lamp}, shape, 0);
+  check({sun(0.5f), lamp}, shape, 1);
+  check({lamp, sun(0.5f)}, shape, 2);
+  check({lamp, inner}, shape, 6);
+  check({lamp}, shape, 0);
+  check({lamp, sun(0.5f), inner}, shape, 7);
+  mesh = upload_as_display(context, moved);
+  shadows.forget();
+  check({lamp, sun(0.5f), inner}, moved, 8);
+}
+
+TEST_CASE("in motion coarser levels are sampled as the finest is, and many faces by a sample a quarter") {
+  CheckedContext checked;
+  device::Device& context = checked.context;
+  const std::vector<Light> sun = {Light{.direction = glm::normalize(glm::vec3(1, 2, 3)), .power = glm::vec3(1)}};
+  const auto q_of = [&](const Shape& shape, std::uint32_t number, bool rough) {
+    const LevelBuffers level = upload_as_level(context, shape, 1);
+    ShadowMaps shadows(context);
+    shadows.update(upload_as_display(context, shape), {sun, bounding_sphere(shape.vertices)});
+    IrradiancePass(context).run(level, number, shadows, 1.3f, 0, rough);
+    return device::download<glm::vec3>(context, level.q);
+  };
+  Shape few = sphere({0, 0, 0}, 10, 3), many = sphere({0, 0, 0}, 10, 6);
+  for (Shape* shape : {&few, &many}) shape->append(sphere({-5, -10, -15}, 3, 3));  // in the way of some light
+  CHECK(q_of(few, 1, true) == q_of(few, 0, false));
+  CHECK(q_of(few, 1, true) != q_of(few, 1, false));
+  const auto rough = q_of(many, 0, true), fine = q_of(many, 0, false);
+  CHECK(rough != fine);
+  CHECK(entered(many, rough).x == doctest::Approx(entered(many, fine).x).epsilon(1e-3));
+}
+
 TEST_CASE("more lights than a scene may have are refused") {
   CHECK_NOTHROW(check_light_count(most_lights));
   CHECK_THROWS_WITH_AS(check_light_count(3000),

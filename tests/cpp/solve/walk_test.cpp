@@ -144,6 +144,28 @@ TEST_CASE("Lambertian light falls off with depth as the average over all angles,
   }
 }
 
+TEST_CASE("with mean rays a ray ends where a hundredth of its light is left, and leaves that there") {
+  CheckedContext device;
+  constexpr int n = 8;
+  const OwnedLevel level = slab_level(n, n);
+  for (const bool mean_rays : {false, true}) {
+    CAPTURE(mean_rays);
+    const GpuWalk result = walk(device.context, {.level = level,
+                                                 .optical = uniform(glm::vec3(1.5f), glm::vec3(0)),
+                                                 .quarter_q = lit_side({-1, 0, 0}),
+                                                 .mean_rays = mean_rays});
+    check_balance(result, 1e-6);
+    const auto planes = by_plane(level, result.deposit, 1, n);
+    // e^(-1.5 * 3.07) is a hundredth: in the tets before the fourth plane.
+    for (std::size_t i = 0; i < 3; ++i) {
+      CHECK(planes[i].x / result.entered.x ==
+            doctest::Approx(hat_integral(1.5, 1, static_cast<int>(i), n)).epsilon(1e-3).scale(0.01));
+    }
+    CHECK(planes[4].x > 0);
+    CHECK((planes[5].x == 0) == mean_rays);
+  }
+}
+
 TEST_CASE("a face that is lit in part sends its light from the lit quarters") {
   CheckedContext device;
   const OwnedLevel level = box_level(1, 1.0f);
