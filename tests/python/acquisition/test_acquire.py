@@ -11,6 +11,8 @@ import numpy as np
 import pytest
 
 import twin_capture
+from quadgraph.acquisition.capture import capture
+from quadgraph.acquisition.model.prediction import Predictor
 from quadgraph.cli import main
 from quadgraph.file import npz
 
@@ -47,6 +49,21 @@ def off(report: dict[str, Any], name: str) -> tuple[np.ndarray, np.ndarray]:
     """By how much a coefficient is off, (3,), relative and in standard deviations."""
     found, true = np.array(report["coefficients"][name]), np.array(twin_capture.TRUTH[name])
     return found / true - 1, np.log(found / true) / report["deviations_of_logarithms"][name]
+
+
+def test_predictions_of_what_absorbs_much_change_smoothly(twin):
+    """In all pixels that count: one that jumps makes the derivatives of a fit large, and its deviations small."""
+    stated = capture.read(twin / "capture.json")
+    predictor = Predictor(stated, twin / "potato.qgraph", "cpu")
+    steps = [
+        predictor.predict(np.array([[0.14], [0.4]]) * np.exp([[0.0], [0.02 * number]]) * np.ones(3), False)
+        for number in range(3)
+    ]
+    for pictures in zip(*steps, strict=True):
+        first, middle, last = (picture.radiance for picture in pictures)
+        counts = first > 1e-4 * first.max(axis=(0, 1))
+        bend = np.log(last[counts]) - 2 * np.log(middle[counts]) + np.log(first[counts])
+        assert np.abs(bend).max() < 0.05
 
 
 def test_coefficients_are_recovered_within_what_is_said_of_them(twin, known, capsys):
