@@ -124,7 +124,8 @@ struct Engine::Implementation {
   LightSet cast_shadows() {
     images.set_eta(eta);
     LightSet set(lights, bounds, &images);
-    irradiance_passes = {shadows.update(mesh, set)};
+    irradiance_passes.clear();
+    if (const PassStats drawn = shadows.update(mesh, set); drawn.count > 0) irradiance_passes.push_back(drawn);
     shadows_stale = false;
     return set;
   }
