@@ -106,9 +106,12 @@ class ViewRay {
   // gather_fields.glsl.
   template <class Linear>
   static Real held(const Real& uncollided, const Linear& linear) {
-    if (value_of(uncollided) <= linear(plain)) return uncollided;
-    const Real most = linear(whole);
-    return most * (2.0 - most / uncollided);
+    return value_of(uncollided) <= linear(plain) ? uncollided : beyond(uncollided, linear(whole));
+  }
+
+  template <class Number>
+  static Number beyond(const Number& uncollided, const Number& linear) {
+    return linear * (2.0 - linear / uncollided);
   }
 
   std::array<double, 4> at_point() const {
@@ -198,7 +201,7 @@ class ViewRay {
     const double albedo = sigma_t > 0 ? value_of(here_[c].scattering) / sigma_t : 0;
     double uncollided = entry * std::exp(-depth);
     const double linear = linear_light(c, at_point(), plain);
-    if (uncollided > linear) uncollided = linear * (2 - linear / uncollided);
+    if (uncollided > linear) uncollided = beyond(uncollided, linear);
     return albedo / (4 * glm::pi<double>()) * (phi + uncollided);
   }
 

@@ -10,7 +10,6 @@ namespace quadgraph {
 namespace {
 
 constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
-
 constexpr std::uint64_t power_bytes = FIXED_WORDS * sizeof(std::uint32_t);
 
 std::uint32_t carriers(const LevelBuffers& level, Method method) {

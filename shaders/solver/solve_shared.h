@@ -75,8 +75,6 @@ struct LeastTet {
 
 // A ray ends where each channel has kept less than this share of its power, and what is left stays there.
 const float WALK_END = 1e-4f;
-const float WALK_END_MEAN = 1e-2f;  // where mean rays do (SolveOptions)
-
 // Tets that a ray crosses at most: light trapped by total reflection in a clear body ends here. Four such rays of one
 // invocation stay below the 65535 turns after which lavapipe leaves all loops.
 const uint MAX_WALK_STEPS = 4096u;

@@ -86,8 +86,8 @@ void flush(Corner corner) {
   if ((push.deposits & WALK_DEPOSITS) == WALK_VERTICES) add_power(push.deposit, corner.id, corner.payload.scattered);
 }
 
-// Of its power, with which a ray that begins here ends. Where much is absorbed, what has not scattered reaches as deep as
-// what has, so that it is followed in motion as at rest.
+// Of its power, with which a ray that begins here ends. Where much is absorbed, what has not scattered reaches as deep
+// as what has, so that it is followed in motion as at rest.
 vec3 end_share() {
   if ((push.deposits & (WALK_TO_MEAN | WALK_TO_AGAIN)) == 0u) return vec3(WALK_END);
   float sooner = (push.deposits & WALK_TO_AGAIN) != 0u ? WALK_END_AGAIN : WALK_END_MEAN;

@@ -28,9 +28,11 @@ const uint WALK_DEPOSITS = 3u;  // bits that say so; another may say that rays d
 const uint WALK_TO_MEAN = 4u;   // to WALK_END_MEAN
 const uint WALK_TO_AGAIN = 8u;  // to WALK_END_AGAIN
 
-// With mean rays, light that enters again ends sooner than all other: it is a small part.
+// In place of WALK_END with mean rays (SolveOptions), where the albedo is above WALK_PALE. Light that enters again ends
+// sooner than all other, as it is a small part.
+const float WALK_END_MEAN = 0.01f;
 const float WALK_END_AGAIN = 0.1f;
-const float WALK_PALE = 0.9f;  // rays end sooner where the albedo is above
+const float WALK_PALE = 0.9f;
 
 // walk_source.comp: follows the rays of one beam. One invocation per face; of a Lambertian beam, one per face and ray
 // of the bundle.
