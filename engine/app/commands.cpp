@@ -84,7 +84,10 @@ void next_error(S s, W) {
 
 void next_quantity(S s, W w, int by) {
   std::vector<Quantity> all = all_values<Quantity>();
-  if (!w.deviations) std::erase_if(all, is_deviation);
+  std::erase_if(all, [&](Quantity each) {
+    const std::optional<Knowledge> knowledge = knowledge_of(each);
+    return knowledge && !w.known[static_cast<std::size_t>(*knowledge)];
+  });
   const auto count = static_cast<int>(all.size());
   Quantity& quantity = s.scene.render.show.quantity;
   const auto at = static_cast<int>(std::find(all.begin(), all.end(), quantity) - all.begin());

@@ -11,9 +11,9 @@ namespace quadgraph {
 // What the commands need to know of the body and the picture.
 struct CommandContext {
   Sphere bounds;
-  float aspect = 1;          // of the picture, width / height
-  std::uint32_t levels = 1;  // of the body
-  bool deviations = false;   // of the material are known
+  float aspect = 1;                                  // of the picture, width / height
+  std::uint32_t levels = 1;                          // of the body
+  std::array<bool, knowledge_names.size()> known{};  // what of the material's certainty is stated
 };
 
 struct Command {

@@ -91,8 +91,10 @@ Viewer::Part Viewer::part() const {
 CommandContext Viewer::command_context() const {
   const Part now = part();
   const auto height = static_cast<float>(std::max(now.height, 1u));
+  decltype(CommandContext::known) known;
+  for (std::size_t i = 0; i < known.size(); ++i) known[i] = engine().certainty().states(static_cast<Knowledge>(i));
   return {engine().bounds(), std::max(static_cast<float>(now.width), 1.0f) / height,
-          static_cast<std::uint32_t>(engine().graph().levels().size()), engine().has_deviations()};
+          static_cast<std::uint32_t>(engine().graph().levels().size()), known};
 }
 
 void Viewer::handle(const std::vector<Event>& events) {

@@ -251,7 +251,7 @@ Outgoing ForwardModel::tangent(const Parameters& along) const {
   return result;
 }
 
-Parameters ForwardModel::adjoint(const Outgoing& weights) const {
+Parameters ForwardModel::adjoint(const Outgoing& weights, Dependence dependence) const {
   const State& s = *state_;
   check_size("exitance", weights.exitance.size(), s.level.faces.size());
   check_size("unscattered", weights.unscattered.size(), s.level.faces.size());
@@ -261,7 +261,11 @@ Parameters ForwardModel::adjoint(const Outgoing& weights) const {
   Vectors by_again(s.again_q.size(), glm::dvec3(0));
   if (!s.samples.empty()) {
     s.inside().gathered_adjoint(s.fields, weights.radiance, s.samples, gradient, by_fields);
-    s.inside().uncollided_adjoint(by_fields, s.entering_light(), gradient, by_again);
+    if (dependence == Dependence::all) {
+      s.inside().uncollided_adjoint(by_fields, s.entering_light(), gradient, by_again);
+    } else {
+      gradient = Parameters(s.level.tets.size(), s.lights.size());
+    }
   }
   Walked by_walked(s.level);
   by_walked.unscattered = s.per_area(weights.unscattered);
@@ -289,7 +293,9 @@ Parameters ForwardModel::adjoint(const Outgoing& weights) const {
     s.settle(by_received, back);
   }
   back(by_received);
-  walk_adjoint(s.level, s.problem, s.at, by_walked, s.entering_light(), gradient);
+  if (dependence == Dependence::all) {
+    walk_adjoint(s.level, s.problem, s.at, by_walked, s.entering_light(), gradient);
+  }
   add_by_elements(s.at, element_products(s.level, by_load, s.x, s.options.model), -1.0, gradient);
   return gradient;
 }

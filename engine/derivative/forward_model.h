@@ -23,6 +23,10 @@
 
 namespace quadgraph {
 
+// By what weights are differentiated: by all, or by the operator alone, while the light that enters and what view rays
+// meet on their way are held fixed, as the continuous adjoint equation of inverse diffusion does [PG Eq. 5 to 7].
+enum class Dependence { all, only_operator };
+
 struct ForwardOptions {
   Model model = Model::sp3;  // not `automatic`
   double eta = 1;
@@ -51,7 +55,7 @@ class ForwardModel {
 
   // J^T w: the derivative of the sum of all that leaves, times its weight, by every parameter. Throws InputError on a
   // wrong size.
-  Parameters adjoint(const Outgoing& weights) const;
+  Parameters adjoint(const Outgoing& weights, Dependence dependence = Dependence::all) const;
 
  private:
   struct State;

@@ -46,7 +46,7 @@ void Engine::set_material(const gpu::Material& material) {
   if (self.simulation) self.simulation->set_material(material);
   self.paths.set(material);
   self.material = material_text(material);
-  self.deviations = {};
+  self.certainty = {};
   self.eta = material.eta;
   self.stale();
 }
@@ -57,7 +57,7 @@ void Engine::set_optical(std::uint32_t level, std::span<const gpu::Optical> opti
   self.levels().set_optical(level, optical, eta);
   self.paths.clear();
   self.material = "coefficients per node, eta=" + number_text(eta);
-  self.deviations = {};
+  self.certainty = {};
   self.eta = eta;
   self.stale();
 }
@@ -69,26 +69,26 @@ void Engine::set_optical(const OpticalGrid& grid) {
   check_eta(static_cast<double>(grid.eta));
   self.paths.set(grid);
   self.material = "coefficients on a grid, eta=" + number_text(grid.eta);
-  self.deviations = {};
+  self.certainty = {};
   self.eta = grid.eta;
   self.stale();
 }
 
-void Engine::set_deviations(Deviations deviations) {
+void Engine::set_certainty(Certainty certainty) {
   const auto turn = implementation_->in_use.take();
   const std::size_t vertices =
       implementation_->graph.levels().empty() ? 0 : implementation_->graph.levels()[0].vertex_count();
-  for (const std::size_t count : {deviations.sigma_s_prime.size(), deviations.sigma_a.size()}) {
+  for (std::size_t i = 0; i < knowledge_names.size(); ++i) {
+    const std::size_t count = certainty.stated[i].size();
     if (count == 0 || count == vertices) continue;
-    throw InputError("deviations: " + std::to_string(count) + " found, one for each of " + std::to_string(vertices) +
-                     " vertices wanted");
+    throw InputError(std::string(knowledge_names[i]) + ": " + std::to_string(count) + " found, one for each of " +
+                     std::to_string(vertices) + " vertices wanted");
   }
-  implementation_->deviations = std::move(deviations);
+  implementation_->certainty = std::move(certainty);
 }
 
-bool Engine::has_deviations() const {
-  const Deviations& known = implementation_->deviations;
-  return !known.sigma_s_prime.empty() || !known.sigma_a.empty();
+const Certainty& Engine::certainty() const {
+  return implementation_->certainty;
 }
 
 void Engine::set_edits(std::span<const Edit> edits) {

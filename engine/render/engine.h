@@ -19,7 +19,7 @@
 #include "engine/deform/deformer.h"
 #include "engine/device/device.h"
 #include "engine/file/graph.h"
-#include "engine/optics/deviations.h"
+#include "engine/optics/certainty.h"
 #include "engine/optics/optical_grid.h"
 #include "engine/render/display/camera.h"
 #include "engine/render/display/pick.h"
@@ -104,12 +104,11 @@ class Engine {
   // InputError.
   void set_optical(const OpticalGrid& grid);
 
-  // How certain the present coefficients are at the vertices of level 0, for views of it; another material drops them.
+  // How well the present coefficients are known at the vertices of level 0, for views of it; another material drops it.
   // Throws InputError unless there is one number for each vertex, or none.
-  void set_deviations(Deviations deviations);
+  void set_certainty(Certainty certainty);
 
-  // Whether any are known.
-  bool has_deviations() const;
+  const Certainty& certainty() const;
 
   // Edits of the material, see Simulation::set_edits.
   void set_edits(std::span<const Edit> edits);

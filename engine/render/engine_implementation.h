@@ -55,7 +55,7 @@ struct Engine::Implementation {
   Rasteriser rasteriser;
 
   std::string material;
-  Deviations deviations;  // of it, at the vertices of level 0
+  Certainty certainty;  // of it, at the vertices of level 0
   std::vector<Light> lights;
   float eta = 1;                  // of the material
   bool shadows_stale = false;     // they are not those of the present lights and shape
@@ -189,7 +189,7 @@ struct Engine::Implementation {
     if (report->path)
       throw InputError("show: with shortest-path only 'picture', found '" + to_string(render.show) + "'");
     const Inside inside =
-        inside_of({device, levels(), graph, *report, options, deviations, bounds, camera.seen_from()}, render.show);
+        inside_of({device, levels(), graph, *report, options, certainty, bounds, camera.seen_from()}, render.show);
     false_colours = {};  // two need not fit beside each other
     false_colours = upload_false_colours(device, inside.mesh, inside.plane, inside.legend.diverging);
     legend = inside.legend;

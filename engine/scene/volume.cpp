@@ -63,8 +63,12 @@ class Fields {
 
  private:
   static constexpr std::size_t shown = 8;  // numbers that an error repeats
-  static constexpr std::array<std::string_view, 7> known = {
-      "sigma_s_prime", "sigma_a", "spacing", "origin", "eta", "sigma_s_prime_deviation", "sigma_a_deviation"};
+  static constexpr auto known = [] {
+    std::array<std::string_view, 5 + knowledge_names.size()> names = {"sigma_s_prime", "sigma_a", "spacing", "origin",
+                                                                      "eta"};
+    std::copy(knowledge_names.begin(), knowledge_names.end(), names.begin() + 5);
+    return names;
+  }();
 
   std::filesystem::path path_;
   std::map<std::string, NpzArray> arrays_;
@@ -85,9 +89,9 @@ const NpzArray& coefficient(const Fields& fields, const std::string& name) {
 }
 
 // Of the cells; empty where the file has none.
-std::vector<float> deviations_in(const Fields& fields, const std::string& coefficient_name) {
-  const std::string name = coefficient_name + "_deviation";
+std::vector<float> stated_in(const Fields& fields, const std::string& name) {
   if (!fields.has(name)) return {};
+  const std::string coefficient_name = name.substr(0, name.rfind('_'));
   const NpzArray &array = fields.numbers(name), &of = fields.numbers(coefficient_name);
   if (array.shape != of.shape) {
     fields.refuse(name, "shape " + Fields::shape_text(array.shape) + " found, that of " + coefficient_name + ", " +
@@ -97,7 +101,7 @@ std::vector<float> deviations_in(const Fields& fields, const std::string& coeffi
   std::vector<float> values;
   for (std::size_t i = 0; i < array.values.size(); i += channels) {
     const auto channel = [&](std::size_t c) { return array.values[i + c % channels]; };
-    const std::optional<float> value = deviation_of({channel(0), channel(1), channel(2)});
+    const std::optional<float> value = stated_of({channel(0), channel(1), channel(2)});
     if (!value)
       fields.refuse(name, "negative or no number in cell " + std::to_string(values.size()) + ", 0 or more allowed");
     values.push_back(*value);
@@ -154,11 +158,11 @@ std::vector<Value> sampled(const Volume& volume, const std::vector<Value>& value
 
 }  // namespace
 
-std::optional<float> deviation_of(const glm::dvec3& channels) {
+std::optional<float> stated_of(const glm::dvec3& channels) {
   float sum = 0;
   for (int c = 0; c < 3; ++c) {
     if (!(channels[c] >= 0)) return std::nullopt;
-    sum += static_cast<float>(std::min(channels[c], static_cast<double>(most_deviation)));
+    sum += static_cast<float>(std::min(channels[c], static_cast<double>(most_stated)));
   }
   return sum / 3;
 }
@@ -212,7 +216,9 @@ Volume read_volume(const std::filesystem::path& path) {
     if (!(eta >= min_eta && eta <= max_eta)) fields.refuse("eta", number_text(eta) + " found, 1 to 3 allowed");
     volume.eta = static_cast<float>(eta);
   }
-  volume.deviations = {deviations_in(fields, "sigma_s_prime"), deviations_in(fields, "sigma_a")};
+  for (std::size_t i = 0; i < knowledge_names.size(); ++i) {
+    volume.certainty.stated[i] = stated_in(fields, std::string(knowledge_names[i]));
+  }
   return volume;
 }
 
@@ -224,11 +230,12 @@ std::vector<gpu::Optical> Volume::at(std::span<const glm::vec3> points, const gl
   return sampled(*this, optical, points, centre);
 }
 
-Deviations Volume::deviations_at(std::span<const glm::vec3> points, const glm::dvec3& centre) const {
-  const auto at = [&](const std::vector<float>& of_cells) {
-    return of_cells.empty() ? std::vector<float>() : sampled(*this, of_cells, points, centre);
-  };
-  return {at(deviations.sigma_s_prime), at(deviations.sigma_a)};
+Certainty Volume::certainty_at(std::span<const glm::vec3> points, const glm::dvec3& centre) const {
+  Certainty found;
+  for (std::size_t i = 0; i < certainty.stated.size(); ++i) {
+    if (!certainty.stated[i].empty()) found.stated[i] = sampled(*this, certainty.stated[i], points, centre);
+  }
+  return found;
 }
 
 }  // namespace quadgraph

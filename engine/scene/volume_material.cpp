@@ -20,7 +20,7 @@ void set_material(Engine& engine, const Volume& volume) {
                                  .spacing = glm::vec3(volume.spacing),
                                  .first = glm::vec3(volume.first(centre)),
                                  .eta = volume.eta});
-  if (!levels.empty()) engine.set_deviations(volume.deviations_at(levels[0].vertices, centre));
+  if (!levels.empty()) engine.set_certainty(volume.certainty_at(levels[0].vertices, centre));
 }
 
 }  // namespace quadgraph

@@ -44,6 +44,19 @@ class BoundModel {
 
   py::tuple parameters() const { return as_tuple(Parameters(model_->at())); }
 
+  // Of all beams together, the mean over each face.
+  py::array entering() const {
+    std::vector<glm::dvec3> sum(level_.faces.size(), glm::dvec3(0));
+    for (std::size_t i = 0; i < beams_.size(); ++i) {
+      for (std::size_t f = 0; f < sum.size(); ++f) {
+        for (const glm::vec3& quarter : beams_[i].quarters[f]) {
+          sum[f] += model_->at().power[i] * glm::dvec3(quarter) / 4.0;
+        }
+      }
+    }
+    return own(std::move(sum));
+  }
+
   py::tuple tangent(const DoubleArray& scattering, const DoubleArray& absorption, const DoubleArray& power) const {
     Parameters along(level_.tets.size(), beams_.size());
     along.scattering = vectors(scattering, level_.tets.size(), "sigma_s_prime");
@@ -55,14 +68,15 @@ class BoundModel {
     }());
   }
 
-  py::tuple adjoint(const DoubleArray& exitance, const DoubleArray& unscattered, const DoubleArray& radiance) const {
+  py::tuple adjoint(const DoubleArray& exitance, const DoubleArray& unscattered, const DoubleArray& radiance,
+                    bool only_operator) const {
     Outgoing weights(level_.faces.size(), 0);
     weights.exitance = vectors(exitance, level_.faces.size(), "exitance");
     weights.unscattered = vectors(unscattered, level_.faces.size(), "unscattered");
     weights.radiance = vectors(radiance, model_->outgoing().radiance.size(), "radiance");
     Parameters gradient = [&] {
       const py::gil_scoped_release release;
-      return model_->adjoint(weights);
+      return model_->adjoint(weights, only_operator ? Dependence::only_operator : Dependence::all);
     }();
     return as_tuple(std::move(gradient));
   }
@@ -116,11 +130,13 @@ void bind_derivative(py::module_& module) {
                              "exitance (n_f, 3) and unscattered (n_f, 3), W/mm^2, radiance (n, 3), W/(mm^2 sr)")
       .def_property_readonly("parameters", &BoundModel::parameters,
                              "sigma_s_prime and sigma_a, (n_t, 3) 1/mm, power (beams, 3)")
+      .def_property_readonly("entering", &BoundModel::entering, "(n_f, 3) W/mm^2 that lights send into each face")
       .def("tangent", &BoundModel::tangent, py::arg("sigma_s_prime"), py::arg("sigma_a"), py::arg("power"),
            "The derivative of `outgoing` along (n_t, 3), (n_t, 3) and (lights, 3). Raises InputError.")
       .def("adjoint", &BoundModel::adjoint, py::arg("exitance"), py::arg("unscattered"), py::arg("radiance"),
-           "The derivatives of the sum of `outgoing` times these weights by sigma_s_prime, sigma_a and power. Raises "
-           "InputError.");
+           py::arg("only_operator"),
+           "The derivatives of the sum of `outgoing` times these weights by sigma_s_prime, sigma_a and power. "
+           "only_operator: with the light that enters and what view rays meet held fixed. Raises InputError.");
 }
 
 }  // namespace quadgraph::python

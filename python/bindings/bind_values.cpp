@@ -3,6 +3,8 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <map>
+
 #include "engine/base/error.h"
 #include "engine/base/json_text.h"
 #include "engine/optics/material.h"
@@ -59,15 +61,14 @@ Picture render(Engine& engine, const std::string& json, const std::string& text)
 using Triple = std::array<double, 3>;
 
 // Of `count` cells, three numbers each.
-std::vector<float> deviations_of(const std::string& name, const std::optional<FloatArray>& array, std::size_t count) {
-  std::vector<float> values;
-  if (!array) return values;
-  if (array->ndim() != 4 || static_cast<std::size_t>(array->size()) != 3 * count) {
+std::vector<float> stated_of_cells(const std::string& name, const FloatArray& array, std::size_t count) {
+  if (array.ndim() != 4 || static_cast<std::size_t>(array.size()) != 3 * count) {
     throw InputError(name + ": an array of the shape of sigma_s_prime is wanted");
   }
-  const auto* channels = reinterpret_cast<const glm::vec3*>(array->data());
+  const auto* channels = reinterpret_cast<const glm::vec3*>(array.data());
+  std::vector<float> values;
   for (std::size_t cell = 0; cell < count; ++cell) {
-    const std::optional<float> value = deviation_of(glm::dvec3(channels[cell]));
+    const std::optional<float> value = stated_of(glm::dvec3(channels[cell]));
     if (!value)
       throw InputError(name + ": negative or no number in cell " + std::to_string(cell) + ", 0 or more allowed");
     values.push_back(*value);
@@ -76,9 +77,7 @@ std::vector<float> deviations_of(const std::string& name, const std::optional<Fl
 }
 
 void set_volume(Engine& engine, const FloatArray& sigma_s_prime, const FloatArray& sigma_a, const Triple& spacing,
-                const std::optional<Triple>& origin, float eta,
-                const std::optional<FloatArray>& sigma_s_prime_deviation,
-                const std::optional<FloatArray>& sigma_a_deviation) {
+                const std::optional<Triple>& origin, float eta, const std::map<std::string, FloatArray>& certainty) {
   if (sigma_s_prime.ndim() != 4 || sigma_s_prime.shape(3) != 3) {
     throw InputError("sigma_s_prime: an array (nz, ny, nx, 3) is wanted");
   }
@@ -95,8 +94,10 @@ void set_volume(Engine& engine, const FloatArray& sigma_s_prime, const FloatArra
   const auto* scattering = reinterpret_cast<const glm::vec3*>(sigma_s_prime.data());
   const auto* absorption = reinterpret_cast<const glm::vec3*>(sigma_a.data());
   for (std::size_t cell = 0; cell < count; ++cell) volume.optical.push_back({scattering[cell], absorption[cell]});
-  volume.deviations = {deviations_of("sigma_s_prime_deviation", sigma_s_prime_deviation, count),
-                       deviations_of("sigma_a_deviation", sigma_a_deviation, count)};
+  for (std::size_t i = 0; i < knowledge_names.size(); ++i) {
+    const auto found = certainty.find(std::string(knowledge_names[i]));
+    if (found != certainty.end()) volume.certainty.stated[i] = stated_of_cells(found->first, found->second, count);
+  }
   set_material(engine, volume);
 }
 
@@ -137,10 +138,10 @@ void bind_values(py::module_& module) {
   module.def("material_json", &material_json, py::arg("text"),
              "A material's members, in the shortest numbers, from the text that --material takes. Raises InputError.");
   module.def("set_volume", &set_volume, py::arg("engine"), py::arg("sigma_s_prime"), py::arg("sigma_a"),
-             py::arg("spacing"), py::arg("origin"), py::arg("eta"), py::arg("sigma_s_prime_deviation") = py::none(),
-             py::arg("sigma_a_deviation") = py::none(),
+             py::arg("spacing"), py::arg("origin"), py::arg("eta"), py::arg("certainty") = py::dict(),
              "As Engine.set_material of a .npz (docs/scene.md): (nz, ny, nx, 3) each, 1/mm; spacing and origin (3,), "
-             "mm; deviations of the logarithms, (nz, ny, nx, 3) each. Raises InputError.");
+             "mm; certainty: what that file may say of it, by name, (nz, ny, nx, 3) each. Raises InputError.");
+  module.attr("knowledge_names") = std::vector<std::string>(knowledge_names.begin(), knowledge_names.end());
   module.def(
       "set_edits", [](Engine& engine, const std::string& json) { engine.set_edits(members(json).edits); },
       py::arg("engine"), py::arg("json"), "The member `edits` of a scene. Raises InputError.");

@@ -18,6 +18,7 @@ _Metadata = Sequence[tuple[str, str]]
 _Transfer = tuple[_Whole, _Floats] | None
 _Range = tuple[float | None, float | None, bool, bool]
 _RGB = tuple[float, float, float]
+knowledge_names: list[str]
 # What a keyword of a solve or a picture takes; scene_options() has their names.
 _Option = bool | float | str | Sequence[str]
 
@@ -234,7 +235,9 @@ class ForwardModel:
         bounces: bool,
         tolerance: float,
     ) -> None: ...
-    def adjoint(self, exitance: _Array, unscattered: _Array, radiance: _Array) -> _Three: ...
+    def adjoint(self, exitance: _Array, unscattered: _Array, radiance: _Array, only_operator: bool) -> _Three: ...
+    @property
+    def entering(self) -> _Doubles: ...
     @property
     def outgoing(self) -> _Three: ...
     @property
@@ -362,8 +365,7 @@ def set_volume(
     spacing: Sequence[float],
     origin: Sequence[float] | None,
     eta: float,
-    sigma_s_prime_deviation: _Array | None = ...,
-    sigma_a_deviation: _Array | None = ...,
+    certainty: Mapping[str, _Array] = ...,
 ) -> None: ...
 def shortest_paths(
     cost: _Array,

@@ -188,20 +188,34 @@ Inside vertices_on_plane(const InsideInput& input, const Show& show, const Legen
   return inside;
 }
 
-Inside deviation_on_plane(const InsideInput& input, const Show& show) {
-  const bool of_absorption = show.quantity == Quantity::sigma_a_deviation;
-  std::vector<float> percent = of_absorption ? input.deviations.sigma_a : input.deviations.sigma_s_prime;
-  if (percent.empty()) {
-    throw InputError("show " + std::string(name_of(show.quantity)) +
-                     ": no deviations in this material; those that 'quadgraph acquire' writes (.npz) have them");
+Inside knowledge_on_plane(const InsideInput& input, const Show& show) {
+  const std::string_view name = name_of(show.quantity);
+  const Knowledge knowledge = *knowledge_of(show.quantity);
+  std::vector<float> values = input.certainty.of(knowledge);
+  const bool length = is_length(knowledge);
+  if (values.empty()) {
+    throw InputError("show " + std::string(name) + ": no " + (length ? "resolution lengths" : "deviations") +
+                     " in this material; those that 'quadgraph acquire" + (length ? " --volume'" : "'") +
+                     " writes (.npz) have them");
   }
-  for (float& value : percent) value *= 100;
-  const Legend legend{.title = "standard deviation of " + std::string(of_absorption ? "sigma_a" : "sigma_s'"),
+  const std::string of(name.starts_with("sigma_a") ? "sigma_a" : "sigma_s'");
+  if (length) {
+    // From the best resolved places on to what is no better known than the body as a whole.
+    const double whole = 2 * static_cast<double>(input.bounds.radius);
+    const Legend legend{.title = "resolution length of " + of,
+                        .unit = "mm",
+                        .low = std::clamp(quantile(values, 1 - brightest_quantile), 1e-3 * whole, 0.9 * whole),
+                        .high = whole,
+                        .logarithmic = true};
+    return vertices_on_plane(input, show, legend, values);
+  }
+  for (float& value : values) value *= 100;
+  const Legend legend{.title = "standard deviation of " + of,
                       .unit = "%",
                       .low = least_percent,
                       .high = most_percent,
                       .logarithmic = true};
-  return vertices_on_plane(input, show, legend, percent);
+  return vertices_on_plane(input, show, legend, values);
 }
 
 // Per carrier: at the vertices for elements, else at the nodes, those inside the tets first.
@@ -330,7 +344,9 @@ Inside inside_of(const InsideInput& input, const Show& show) {
       return links_at_plane(input, show);
     case Quantity::sigma_s_prime_deviation:
     case Quantity::sigma_a_deviation:
-      return deviation_on_plane(input, show);
+    case Quantity::sigma_s_prime_resolution:
+    case Quantity::sigma_a_resolution:
+      return knowledge_on_plane(input, show);
     case Quantity::picture:
       break;
   }

@@ -1,7 +1,7 @@
 // Views of the inside: the triangles that show a quantity of the last solve, and what their colours mean.
 #pragma once
 
-#include "engine/optics/deviations.h"
+#include "engine/optics/certainty.h"
 #include "engine/render/display/camera.h"
 #include "engine/render/inside/false_mesh.h"
 #include "engine/render/inside/show.h"
@@ -19,9 +19,9 @@ struct InsideInput {
   device::Device& device;
   Simulation& simulation;
   const QuadGraph& graph;
-  const SolveReport& report;     // of the last solve
-  const SolveOptions& options;   // of the same
-  const Deviations& deviations;  // of the coefficients, at the vertices of level 0
+  const SolveReport& report;    // of the last solve
+  const SolveOptions& options;  // of the same
+  const Certainty& certainty;   // of the coefficients, at the vertices of level 0
   const Sphere& bounds;
   glm::vec4 eye{0};  // shaders/shared/eye.h; cuts are open towards it
 };

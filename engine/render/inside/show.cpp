@@ -34,16 +34,19 @@ void parse_plane(std::string_view rest, std::string_view whole, Show& show) {
 
 const char* const show_forms =
     "picture, q, exitance, error, difference[:METHOD], levels[:N], phi[:AXIS[,MM]], tets[:AXIS[,MM[,N]]], "
-    "links[:AXIS[,MM[,N]]], sigma_s_prime_deviation[:AXIS[,MM]] and sigma_a_deviation[:AXIS[,MM]]; AXIS x, y or z, MM "
-    "from the object's centre, N a level, 0 the finest";
+    "links[:AXIS[,MM[,N]]], sigma_s_prime_deviation[:AXIS[,MM]], sigma_a_deviation[:AXIS[,MM]], "
+    "sigma_s_prime_resolution[:AXIS[,MM]] and sigma_a_resolution[:AXIS[,MM]]; AXIS x, y or z, MM from the object's "
+    "centre, N a level, 0 the finest";
 
 bool has_plane(Quantity quantity) {
   return quantity == Quantity::phi || quantity == Quantity::tets || quantity == Quantity::links ||
-         is_deviation(quantity);
+         knowledge_of(quantity).has_value();
 }
 
-bool is_deviation(Quantity quantity) {
-  return quantity == Quantity::sigma_s_prime_deviation || quantity == Quantity::sigma_a_deviation;
+std::optional<Knowledge> knowledge_of(Quantity quantity) {
+  const auto found = std::find(knowledge_names.begin(), knowledge_names.end(), name_of(quantity));
+  if (found == knowledge_names.end()) return std::nullopt;
+  return static_cast<Knowledge>(found - knowledge_names.begin());
 }
 
 bool has_level(Quantity quantity) {

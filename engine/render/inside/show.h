@@ -3,26 +3,30 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "engine/base/names.h"
 #include "engine/base/solve_options.h"
+#include "engine/optics/certainty.h"
 
 namespace quadgraph {
 
 enum class Quantity {
-  picture,                  // the body as it looks
-  q,                        // light that enters: irradiance of the outside faces
-  exitance,                 // light that leaves, scattered and not
-  error,                    // estimated error of the exitance
-  difference,               // exitance by another method, less ours
-  levels,                   // outside faces of a level, by the length of their edges
-  phi,                      // fluence on a cutting plane
-  tets,                     // the tets of a level on a cutting plane, by the length of their edges
-  links,                    // nodes and links of the QuadGraph at a cutting plane
-  sigma_s_prime_deviation,  // how certain sigma_s' is on a cutting plane
-  sigma_a_deviation,        // the same of sigma_a
+  picture,                   // the body as it looks
+  q,                         // light that enters: irradiance of the outside faces
+  exitance,                  // light that leaves, scattered and not
+  error,                     // estimated error of the exitance
+  difference,                // exitance by another method, less ours
+  levels,                    // outside faces of a level, by the length of their edges
+  phi,                       // fluence on a cutting plane
+  tets,                      // the tets of a level on a cutting plane, by the length of their edges
+  links,                     // nodes and links of the QuadGraph at a cutting plane
+  sigma_s_prime_deviation,   // how certain sigma_s' is on a cutting plane
+  sigma_a_deviation,         // the same of sigma_a
+  sigma_s_prime_resolution,  // over which length sigma_s' is one number, on a cutting plane
+  sigma_a_resolution,        // the same of sigma_a
 };
 
 template <>
@@ -40,7 +44,10 @@ struct Names<Quantity> {
        {Quantity::links, "links", "nodes and links of the QuadGraph at a cutting plane"},
        {Quantity::sigma_s_prime_deviation, "sigma_s_prime_deviation",
         "standard deviation of sigma_s' on a cutting plane"},
-       {Quantity::sigma_a_deviation, "sigma_a_deviation", "standard deviation of sigma_a on a cutting plane"}});
+       {Quantity::sigma_a_deviation, "sigma_a_deviation", "standard deviation of sigma_a on a cutting plane"},
+       {Quantity::sigma_s_prime_resolution, "sigma_s_prime_resolution",
+        "resolution length of sigma_s' on a cutting plane"},
+       {Quantity::sigma_a_resolution, "sigma_a_resolution", "resolution length of sigma_a on a cutting plane"}});
 };
 
 struct Show {
@@ -54,7 +61,8 @@ struct Show {
 };
 
 bool has_plane(Quantity quantity);
-bool is_deviation(Quantity quantity);
+// What of the coefficients' certainty it shows, if it does.
+std::optional<Knowledge> knowledge_of(Quantity quantity);
 bool has_level(Quantity quantity);
 
 // All that parse_show reads, for help and errors.

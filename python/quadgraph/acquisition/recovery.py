@@ -22,6 +22,7 @@ from quadgraph.acquisition.model.problem import Problem
 from quadgraph.acquisition.volume import volume_report
 from quadgraph.acquisition.volume.fit_state import StateFolder
 from quadgraph.acquisition.volume.volume_fit import VolumeFit, fit_volume, most_products
+from quadgraph.acquisition.volume.volume_options import VolumeOptions
 from quadgraph.api.materials import VolumeMaterial
 from quadgraph.base.errors import InputError
 from quadgraph.base.progress import ProgressCallback
@@ -50,7 +51,8 @@ class Recovered:
     def material(self) -> VolumeMaterial:
         """The coefficients as --material takes them, on the volume's grid or a grid of one cell, with deviations."""
         if isinstance(self.fit, VolumeFit):
-            return self.fit.grid.material(self.fit.coefficients, self.capture.eta, self.fit.deviations)
+            found = self.fit
+            return found.grid.material(found.coefficients, self.capture.eta, found.deviations, found.resolution)
         absorption, scattering = (row.reshape(1, 1, 1, 3) for row in self.fit.coefficients)
         spread = (row.reshape(1, 1, 1, 3) for row in self.fit.deviations[::-1])
         return VolumeMaterial(scattering, absorption, 1.0, (0.0, 0.0, 0.0), self.capture.eta, *spread)
@@ -102,36 +104,35 @@ def _numbers(found: Fit) -> dict[str, Any]:
 def recover(
     capture: Capture,
     corrected: bool,
-    spacing: float | None,
+    volume: VolumeOptions | None,
     tell: ProgressCallback,
     advance: Callable[[float], None],
     device: str = "",
     validation: bool = False,
     resume: Path | None = None,
 ) -> Recovered:
-    """Recover the coefficients. corrected: predict by the engine with its correction to transport; spacing: None for
-    the same coefficients throughout; else of the points, mm, where they are unknown, 0: as the body's mesh suggests;
-    advance: is called with the share of the work done so far, 0 to 1, after each solve; device, validation: as `Stage`
-    takes them; resume: a folder in which the state of a fit with `spacing` is kept after each outer step, and from
-    which it goes on.
+    """Recover the coefficients. corrected: predict by the engine with its correction to transport; volume: how those
+    that differ from place to place are looked for, None for the same throughout; advance: is called with the share of
+    the work done so far, 0 to 1, after each solve; device, validation: as `Stage` takes them; resume: a folder in which
+    the state of a fit of a volume is kept after each outer step, and from which it goes on.
 
     Raises InputError, FormatError, SolverError, DeviceError.
     """
-    if spacing is not None and capture.deformation:
+    if volume is not None and capture.deformation:
         raise InputError(
             f"{capture.path}: deformation: found, allowed with --volume is a body that lies as in its file; leave it "
             "out, and move cameras and lights instead"
         )
     measured = photographs.read_all(capture)
     with _body(capture, tell) as body:
-        if spacing is None:
+        if volume is None:
             found = _throughout(
                 capture, measured, Predictor(capture, body, device, validation), corrected, tell, advance
             )
         else:
-            states = StateFolder(resume, capture, f"{corrected} {spacing}") if resume else None
+            states = StateFolder(resume, capture, f"{corrected} {volume}") if resume else None
             engine = body, device, validation
-            found = _by_place(capture, measured, engine, corrected, spacing, states, tell, advance)
+            found = _by_place(capture, measured, engine, corrected, volume, states, tell, advance)
     advance(1.0)
     return found
 
@@ -176,7 +177,7 @@ def _by_place(
     measured: list[Measured],
     engine: tuple[Path, str, bool],
     corrected: bool,
-    spacing: float,
+    options: VolumeOptions,
     states: StateFolder | None,
     tell: ProgressCallback,
     advance: Callable[[float], None],
@@ -197,11 +198,11 @@ def _by_place(
     def step() -> None:
         nonlocal done
         done += 1
-        advance(0.2 + 0.79 * min(1.0, done / most_products(predictor.solves)))
+        advance(0.2 + 0.79 * min(1.0, done / most_products(predictor.solves, options)))
 
     begin = kept or (same, problem.best_gains(first, prediction.LEAST_ERROR))
     keep = states.write if states else lambda state: None
-    volume = fit_volume(problem, predictor, begin, corrected, spacing or None, tell, step, keep)
+    volume = fit_volume(problem, predictor, begin, corrected, options, tell, step, keep)
     findings, left_open = diagnosis.of_volume(volume), volume_report.undetermined(volume)
     return Recovered(capture, measured, problem, volume, left_open, findings, list(predictor.notes))
 

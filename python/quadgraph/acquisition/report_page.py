@@ -76,11 +76,17 @@ def _volume(found: Recovered, volume: VolumeFit) -> str:
     parts = []
     for row, name in enumerate(NAMES):
         most = float(np.quantile(volume.coefficients[row][volume.inside], 0.99))
-        deviation = volume.deviations[row]
-        for what, values, note in (
-            (name, volume.coefficients[row] / most, f"black 0, white {most:.3g} 1/mm and more in all three channels"),
-            (f"Deviation of {name}", deviation, "relative; black 0, white 100% and more: not known"),
-        ):
+        shown = [
+            (name, volume.coefficients[row] / most, f"black 0, white {most:.3g} 1/mm and more in all three channels")
+        ]
+        if volume.deviations is not None and volume.resolution is not None:
+            widest = float(np.max(grid.size)) * grid.spacing / 2
+            length = f"over which it is one number; black 0, white {widest:.2g} mm and more"
+            shown += [
+                (f"Deviation of {name}", volume.deviations[row], "relative; black 0, white 100% and more: not known"),
+                (f"Resolution length of {name}", volume.resolution[row] / widest, length),
+            ]
+        for what, values, note in shown:
             cells = np.where(volume.inside[:, None], _srgb(values), np.uint8(_LEFT_OUT[0])).astype(np.uint8)
             cells = cells.reshape(*grid.size[::-1], 3)
             parts.append(f"<h3>{html.escape(what)}</h3><p>{note}; grey is outside.</p>")

@@ -54,8 +54,8 @@ class ForwardModel:
     The function is the solve by linear elements with buried source and inter-reflection, and gathered radiance, without
     the transport correction and what is done for display (docs/physics.md, "Derivatives"). `Engine.forward_model` makes
     one. Where it was solved: sigma_s_prime and sigma_a (n_t, 3) 1/mm, power (beams, 3), factors. Its mesh: vertices
-    (n_v, 3) mm, tets (n_t, 4), faces (n_f, 3), counter-clockwise from outside. bounces: whether light that leaves one
-    part and enters another is in it.
+    (n_v, 3) mm, tets (n_t, 4), faces (n_f, 3), counter-clockwise from outside. entering: (n_f, 3) W/mm^2 that lights
+    send into each face. bounces: whether light that leaves one part and enters another is in it.
     """
 
     def __init__(self, model: core.ForwardModel, level: core.Level, bounces: bool) -> None:
@@ -64,6 +64,7 @@ class ForwardModel:
         self.bounces = bounces
         self.vertices, self.tets, self.faces = (np.array(each) for each in (level.vertices, level.tets, level.faces))
         self.outgoing = Outgoing(*model.outgoing)
+        self.entering = model.entering
         self._parameters = Gradient(*model.parameters)
         self.sigma_s_prime, self.sigma_a, self.power = self._parameters
 
@@ -91,13 +92,17 @@ class ForwardModel:
         exitance: npt.ArrayLike | None = None,
         unscattered: npt.ArrayLike | None = None,
         radiance: npt.ArrayLike | None = None,
+        only_operator: bool = False,
     ) -> Gradient:
         """Return J^T w: the derivatives of the sum of `outgoing` times weights of its shapes; what is left out is 0.
 
-        Raises InputError for another shape, SolverError where a solve does not end.
+        only_operator: hold the light that enters and what view rays meet on their way fixed, as the continuous adjoint
+        equation of inverse diffusion does [PG Eq. 5 to 7]; that is not the gradient of what is computed. Raises
+        InputError for another shape, SolverError where a solve does not end.
         """
         own = zip(Outgoing._fields, (exitance, unscattered, radiance), self.outgoing, strict=True)
-        return Gradient(*self._model.adjoint(*(_like(name, weight, light) for name, weight, light in own)))
+        out, straight, seen = (_like(name, weight, light) for name, weight, light in own)
+        return Gradient(*self._model.adjoint(out, straight, seen, only_operator))
 
 
 def forward_model(

@@ -81,7 +81,7 @@ def _numbers(value: object) -> str:
     return "/".join(map(str, value)) if isinstance(value, tuple) else str(value)
 
 
-_DEVIATIONS = ("sigma_s_prime_deviation", "sigma_a_deviation")
+CERTAINTY = ("sigma_s_prime_deviation", "sigma_a_deviation", "sigma_s_prime_resolution", "sigma_a_resolution")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -91,8 +91,9 @@ class VolumeMaterial:
     sigma_s_prime, sigma_a: (nz, ny, nx) or (nz, ny, nx, 3), 1/mm, >= 0; spacing: of cells along x, y, z, mm, or one
     number; origin: of the first cell's middle, mm, None centres the grid on the body; eta: 1 to 3. Beside the grid the
     nearest cell counts. sigma_s_prime_deviation, sigma_a_deviation: standard deviations of the coefficients'
-    logarithms, of their shapes, which `quadgraph acquire` writes and a picture shows on a plane (`show` of
-    `PictureOptions`). Raises InputError.
+    logarithms, and sigma_s_prime_resolution, sigma_a_resolution: over which lengths they are one number, mm; of their
+    shapes; `quadgraph acquire` writes them, and a picture shows them on a plane (`show` of `PictureOptions`). Raises
+    InputError.
     """
 
     sigma_s_prime: npt.NDArray[np.floating]
@@ -102,6 +103,8 @@ class VolumeMaterial:
     eta: float = DEFAULT_ETA
     sigma_s_prime_deviation: npt.NDArray[np.floating] | None = None
     sigma_a_deviation: npt.NDArray[np.floating] | None = None
+    sigma_s_prime_resolution: npt.NDArray[np.floating] | None = None
+    sigma_a_resolution: npt.NDArray[np.floating] | None = None
 
     def __post_init__(self) -> None:
         """Check shapes and numbers. Raises InputError."""
@@ -112,16 +115,15 @@ class VolumeMaterial:
             cells = self._cells(name)
             if not (np.isfinite(cells).all() and (cells >= 0).all()):
                 raise InputError(f"{name}: negative or not finite somewhere, numbers >= 0 (1/mm) allowed")
-        for name in ("sigma_s_prime", "sigma_a"):
-            deviation, wanted = getattr(self, f"{name}_deviation"), np.shape(getattr(self, name))
-            if deviation is None:
+        for name in CERTAINTY:
+            coefficient, stated = name.rpartition("_")[0], getattr(self, name)
+            if stated is None:
                 continue
-            if np.shape(deviation) != wanted:
-                raise InputError(
-                    f"{name}_deviation: shape {np.shape(deviation)} found, that of {name}, {wanted}, wanted"
-                )
-            if not (np.asarray(deviation) >= 0).all():
-                raise InputError(f"{name}_deviation: negative or no number somewhere, numbers >= 0 allowed")
+            wanted = np.shape(getattr(self, coefficient))
+            if np.shape(stated) != wanted:
+                raise InputError(f"{name}: shape {np.shape(stated)} found, that of {coefficient}, {wanted}, wanted")
+            if not (np.asarray(stated) >= 0).all():
+                raise InputError(f"{name}: negative or no number somewhere, numbers >= 0 allowed")
         if not (np.asarray(self.spacing) > 0).all() or np.shape(self.spacing) not in ((), (3,)):
             raise InputError(f"spacing: {self.spacing} found, one number or three above 0 (mm) allowed")
         if not 1 <= self.eta <= 3:
@@ -172,9 +174,9 @@ class VolumeMaterial:
         """Give it to the compiled engine. Raises InputError."""
         spacing = np.broadcast_to(np.asarray(self.spacing, float), 3).tolist()
         origin = None if self.origin is None else np.asarray(self.origin, float).tolist()
-        known = {name: self._cells(name) for name in _DEVIATIONS if getattr(self, name) is not None}
+        certainty = {name: self._cells(name) for name in CERTAINTY if getattr(self, name) is not None}
         coefficients = self._cells("sigma_s_prime"), self._cells("sigma_a")
-        core.set_volume(engine, *coefficients, spacing, origin, self.eta, **known)
+        core.set_volume(engine, *coefficients, spacing, origin, self.eta, certainty)
 
 
 def material_names() -> tuple[str, ...]:

@@ -10,6 +10,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from quadgraph.acquisition.volume.volume_options import PUBLISHED, SCHEMES, TOTAL_VARIATION, VolumeOptions
 from quadgraph.base.arguments import add_device_arguments, up_to
 from quadgraph.base.errors import InputError
 
@@ -34,6 +35,13 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         metavar="MM",
         type=up_to(1000),
         help="of the points where --volume has its unknowns (default: as far apart as the edges of the body's tets)",
+    )
+    parser.add_argument(
+        "--scheme",
+        choices=SCHEMES,
+        help="of --volume: what is taken where the photographs leave coefficients open, as few and small edges as can "
+        "be, or (h1) as small slopes; or the published inverse diffusion, for comparison (default: "
+        f"{TOTAL_VARIATION})",
     )
     parser.add_argument(
         "--json",
@@ -79,6 +87,10 @@ def run(args: argparse.Namespace) -> int:
         raise InputError(f"{args.report}: a report must end in .html")
     if args.spacing is not None and not args.volume:
         raise InputError("--spacing: found without --volume, which it is of; state both or neither")
+    if args.scheme is not None and not args.volume:
+        raise InputError("--scheme: found without --volume, which it is of; state both or neither")
+    if args.resume and args.scheme == PUBLISHED:
+        raise InputError(f"--resume: found with --scheme {PUBLISHED}, which keeps no steps; leave one of them out")
     if args.resume and not args.volume:
         raise InputError("--resume: found without --volume, whose steps it keeps; leave it out, for the rest is quick")
     stated = capture.read(args.file)
@@ -93,9 +105,9 @@ def run(args: argparse.Namespace) -> int:
         def advance(share: float) -> None:
             bar.update(task, completed=share)
 
-        spacing = (args.spacing or 0.0) if args.volume else None
+        volume = VolumeOptions(args.spacing, args.scheme or TOTAL_VARIATION) if args.volume else None
         device = args.device, args.validation
-        found = recover(stated, args.correction, spacing, tell, advance, *device, args.resume)
+        found = recover(stated, args.correction, volume, tell, advance, *device, args.resume)
     found.material.save(args.output)
     if args.json:
         atomic_file.write_json(args.json, found.report())

@@ -1,6 +1,7 @@
 """`quadgraph volume`: an OpenVDB file as a material's .npz, or such an .npz as an OpenVDB file.
 
-Deviations of coefficients, as `quadgraph acquire` leaves them, are grids named like these with `_deviation` behind.
+Deviations and resolution lengths, as `quadgraph acquire` leaves them, are grids named like these with `_deviation` or
+`_resolution` behind.
 Its Python module must be there: apt install python3-openvdb.
 """
 
@@ -50,7 +51,7 @@ def run(args: argparse.Namespace) -> int:
     volume = openvdb.read(args.file, args.sigma_s_prime, args.sigma_a, unit_mm=UNITS_MM[args.unit], eta=args.eta)
     volume.write(args.output)
     cells, spacing = volume.sigma_s_prime.shape[2::-1], volume.spacing
-    spread = [name for name in openvdb.DEVIATIONS if name in volume.members()]
+    spread = [name for name in openvdb.CERTAINTY if name in volume.members()]
     print(
         f"{args.output}: {' x '.join(map(str, cells))} cells of {' x '.join(f'{s:.4g}' for s in spacing)} mm, "
         f"sigma_s_prime up to {volume.sigma_s_prime.max():.4g}, sigma_a up to {volume.sigma_a.max():.4g} 1/mm, "

@@ -25,8 +25,9 @@ from quadgraph.file import npz
 _CHILD = Path(__file__).with_name("openvdb_child.py")
 _TIME_LIMIT_S, _MEMORY_LIMIT_BYTES = 300.0, 4 << 30
 COEFFICIENTS = ("sigma_s_prime", "sigma_a")
-DEVIATIONS = ("sigma_s_prime_deviation", "sigma_a_deviation")
-_MEMBERS = (*COEFFICIENTS, "spacing", "origin", "eta", *DEVIATIONS)
+CERTAINTY = ("sigma_s_prime_deviation", "sigma_a_deviation", "sigma_s_prime_resolution", "sigma_a_resolution")
+_STATED = ("deviation", "resolution")  # after the name of a grid
+_MEMBERS = (*COEFFICIENTS, "spacing", "origin", "eta", *CERTAINTY)
 _REFUSED = 2  # its exit status where a file does not serve
 
 
@@ -67,7 +68,8 @@ class Field:
 class Volume:
     """sigma_s_prime, sigma_a (nz, ny, nx) or (nz, ny, nx, 3), 1/mm; spacing, origin (3,), mm; as a material's .npz.
 
-    The deviations are those of the logarithms, of the coefficients' shapes, or None where they are not known.
+    Deviations are those of the logarithms, resolutions are lengths in mm, of the coefficients' shapes, or None where
+    they are not known.
     """
 
     sigma_s_prime: np.ndarray
@@ -77,6 +79,8 @@ class Volume:
     eta: float
     sigma_s_prime_deviation: np.ndarray | None = None
     sigma_a_deviation: np.ndarray | None = None
+    sigma_s_prime_resolution: np.ndarray | None = None
+    sigma_a_resolution: np.ndarray | None = None
 
     def write(self, path: Path) -> None:
         """Write the .npz atomically. Raises InputError."""
@@ -91,15 +95,15 @@ class Volume:
 def read(path: Path, sigma_s_prime: Field, sigma_a: Field, *, unit_mm: float = 1.0, eta: float | None = None) -> Volume:
     """Read a .vdb, whose unit of length is `unit_mm`, on the box around what is active in the grids that are named.
 
-    A grid NAME_deviation, where there is one, has the deviations of the logarithm of what comes from the grid NAME: a
-    factor leaves them as they are. `eta`: left out, what the file says, or the usual. Raises InputError naming the
-    file, ToolError without the library.
+    A grid NAME_deviation, where there is one, has the deviations of the logarithm of what comes from the grid NAME, and
+    NAME_resolution its resolution lengths, in the file's unit: a factor leaves both as they are. `eta`: left out, what
+    the file says, or the usual. Raises InputError naming the file, ToolError without the library.
     """
     fields = {"sigma_s_prime": sigma_s_prime, "sigma_a": sigma_a}
     names = [field.grid for field in fields.values() if field.grid is not None]
     if not names:
         raise InputError(f"{path}: a coefficient must come from one of its grids")
-    beside = [f"{name}_deviation" for name in names]
+    beside = [f"{name}_{stated}" for name in names for stated in _STATED]
     with workspace() as directory:
         output = directory / "grids.npz"
         _run(path, ["read", str(_readable(path)), str(output), str(len(names)), *names, *beside], directory)
@@ -111,8 +115,9 @@ def read(path: Path, sigma_s_prime: Field, sigma_a: Field, *, unit_mm: float = 1
     shape = next(iter(grids.values())).shape[:3]
     found = {name: _coefficient(path, name, field, grids, shape) for name, field in fields.items()}
     for name, field in fields.items():
-        if (spread := grids.get(f"{field.grid}_deviation")) is not None:
-            found[f"{name}_deviation"] = _deviation(path, f"{field.grid}_deviation", spread, found[name])
+        for stated, factor in zip(_STATED, (1.0, unit_mm), strict=True):
+            if (values := grids.get(f"{field.grid}_{stated}")) is not None:
+                found[f"{name}_{stated}"] = factor * _certainty(path, f"{field.grid}_{stated}", values, found[name])
     return Volume(**found, spacing=spacing, origin=origin, eta=index)
 
 
@@ -124,7 +129,7 @@ def write(source: Path, path: Path) -> list[str]:
         turned: dict[str, Any] = {
             name: np.ascontiguousarray(np.swapaxes(values, 0, 2), np.float32)
             for name, values in volume.members().items()
-            if name in (*COEFFICIENTS, *DEVIATIONS)
+            if name in (*COEFFICIENTS, *CERTAINTY)
         }
         np.savez(given, spacing=volume.spacing, origin=volume.origin, eta=volume.eta, **turned)
         _run(source, ["write", str(given), str(made)], directory)
@@ -159,7 +164,7 @@ def _coefficient(path: Path, name: str, field: Field, grids: dict[str, np.ndarra
     return np.ascontiguousarray(np.swapaxes(values, 0, 2), np.float32)
 
 
-def _deviation(path: Path, name: str, values: np.ndarray, coefficient: np.ndarray) -> np.ndarray:
+def _certainty(path: Path, name: str, values: np.ndarray, coefficient: np.ndarray) -> np.ndarray:
     """Of an array that has x first, in the shape of its coefficient."""
     spread = np.swapaxes(values, 0, 2)
     if spread.ndim < coefficient.ndim:
@@ -181,10 +186,10 @@ def _stored(path: Path) -> Volume:
             raise ValueError(f"shapes {scattering.shape} and {absorption.shape}")
         middle = -0.5 * spacing * (np.array(scattering.shape[2::-1]) - 1)
         origin = np.asarray(arrays.get("origin", middle), np.float64)
-        spread = [arrays.get(name) for name in DEVIATIONS]
-        for deviation, of in zip(spread, (scattering, absorption), strict=True):
-            if deviation is not None and deviation.shape != of.shape:
-                raise ValueError(f"deviations of shape {deviation.shape} and coefficients of {of.shape}")
+        spread = [arrays.get(name) for name in CERTAINTY]
+        for stated, of in zip(spread, (scattering, absorption) * 2, strict=True):
+            if stated is not None and stated.shape != of.shape:
+                raise ValueError(f"deviations or lengths of shape {stated.shape} and coefficients of {of.shape}")
         return Volume(scattering, absorption, spacing, origin, float(arrays.get("eta", DEFAULT_ETA)), *spread)
     except (KeyError, ValueError, TypeError) as error:
         raise InputError(f"{path}: no volume of sigma_s_prime, sigma_a and spacing: {error}") from error

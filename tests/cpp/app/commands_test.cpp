@@ -23,15 +23,15 @@ std::set<Quantity> round_trip(int mods, const CommandContext& context) {
 
 }  // namespace
 
-TEST_CASE("a key goes through all views of the inside, and past those of deviations where none are known") {
+TEST_CASE("a key goes through all views of the inside, and past those of a certainty that is not stated") {
   CommandContext context;
   for (const int mods : {0, GLFW_MOD_SHIFT}) {
-    context.deviations = true;
+    context.known.fill(true);
     CHECK(round_trip(mods, context).size() == all_values<Quantity>().size());
-    context.deviations = false;
+    context.known = {true, false, false, true};
     const std::set<Quantity> seen = round_trip(mods, context);
     CHECK(seen.size() == all_values<Quantity>().size() - 2);
     CHECK(!seen.contains(Quantity::sigma_a_deviation));
-    CHECK(!seen.contains(Quantity::sigma_s_prime_deviation));
+    CHECK(!seen.contains(Quantity::sigma_s_prime_resolution));
   }
 }

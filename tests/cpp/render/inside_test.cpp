@@ -33,8 +33,9 @@ double area_of(const FalseMesh& mesh) {
 }  // namespace
 
 TEST_CASE("what is to be shown reads back") {
-  for (const char* text : {"picture", "q", "exitance", "error", "difference:quadgraph-fv", "levels:1", "phi:x,12.5",
-                           "tets:y,-3,1", "links:z,0,0", "sigma_s_prime_deviation:x,0", "sigma_a_deviation:z,-1.5"}) {
+  for (const char* text :
+       {"picture", "q", "exitance", "error", "difference:quadgraph-fv", "levels:1", "phi:x,12.5", "tets:y,-3,1",
+        "links:z,0,0", "sigma_s_prime_deviation:x,0", "sigma_a_deviation:z,-1.5", "sigma_a_resolution:y,2"}) {
     CHECK(to_string(parse_show(text)) == text);
   }
   CHECK(parse_show("phi").axis == 2);
@@ -83,7 +84,8 @@ TEST_CASE("every view of the inside shows the body and names its unit; a picture
   Engine engine(cube, test_device());
   engine.set_material("sigma_s_prime=2,sigma_a=0.1,eta=1.4");
   const std::size_t vertices = engine.graph().levels()[0].vertex_count();
-  engine.set_deviations({std::vector<float>(vertices, 0.2f), std::vector<float>(vertices, 0.1f)});
+  const std::vector<float> even(vertices, 0.2f);
+  engine.set_certainty({{even, even, even, even}});
   engine.set_lights({parse_light("directional:0,0,-1:1")});
   engine.solve();
   const View view{.azimuth = 25, .elevation = 20};
@@ -140,16 +142,27 @@ TEST_CASE("deviations have the colours of their percent on the plane, and go wit
       "writes (.npz) have them";
   CHECK_THROWS_WITH_AS(middle(), no_deviations, InputError);
   const std::size_t vertices = engine.graph().levels()[0].vertex_count();
+  const std::vector<float> none;
   const auto all = [&](float value) { return std::vector<float>(vertices, value); };
-  engine.set_deviations({all(2), all(0.1f)});
-  CHECK(engine.has_deviations());
+  engine.set_certainty({{all(2), all(0.1f), none, all(3)}});
+  CHECK(engine.certainty().states(Knowledge::sigma_a_deviation));
   CHECK(glm::distance(middle(), gpu::mapped_colour(0.5f, 0)) < 0.01f);  // 10% between 1 and 100
   options.show.quantity = Quantity::sigma_s_prime_deviation;
   CHECK(glm::distance(middle(), gpu::mapped_colour(1, 0)) < 0.01f);  // beyond the bar
-  CHECK_THROWS_AS(engine.set_deviations({all(1), {1.0f}}), InputError);
-  CHECK(engine.has_deviations());
+  options.show.quantity = Quantity::sigma_a_resolution;
+  CHECK(glm::distance(middle(), gpu::mapped_colour(0, 0)) < 0.01f);  // the best that is known of this body
+  engine.set_certainty({{none, none, none, all(1e3f)}});
+  CHECK(glm::distance(middle(), gpu::mapped_colour(1, 0)) < 0.01f);
+  engine.set_certainty({{all(2), all(0.1f), none, all(3)}});
+  options.show.quantity = Quantity::sigma_s_prime_resolution;
+  CHECK_THROWS_WITH_AS(middle(),
+                       "show sigma_s_prime_resolution: no resolution lengths in this material; those that 'quadgraph "
+                       "acquire --volume' writes (.npz) have them",
+                       InputError);
+  CHECK_THROWS_AS(engine.set_certainty({{all(1), {1.0f}, none, none}}), InputError);
+  CHECK(engine.certainty().states(Knowledge::sigma_a_deviation));
   engine.set_material(material);
-  CHECK_FALSE(engine.has_deviations());
+  CHECK_FALSE(engine.certainty().states(Knowledge::sigma_a_deviation));
   engine.solve();
   options.show.quantity = Quantity::sigma_a_deviation;
   CHECK_THROWS_WITH_AS(middle(), no_deviations, InputError);

@@ -14,6 +14,7 @@ from quadgraph.acquisition.capture import capture
 from quadgraph.acquisition.recovery import recover
 from quadgraph.acquisition.volume import volume_fit
 from quadgraph.acquisition.volume.fit_state import FitState, StateFolder
+from quadgraph.acquisition.volume.volume_options import VolumeOptions
 from quadgraph.base.errors import InputError
 from quadgraph.cli import main
 
@@ -99,7 +100,7 @@ def test_what_was_interrupted_ends_as_if_it_had_not_been(twin, tmp_path, monkeyp
 
     def recovered(folder: Path | None):
         said.clear()
-        return recover(stated, False, 8.0, said.append, lambda share: None, "cpu", resume=folder)
+        return recover(stated, False, VolumeOptions(8.0), said.append, lambda share: None, "cpu", resume=folder)
 
     whole = recovered(None).fit
     told = said.copy()

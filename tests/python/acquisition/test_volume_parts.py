@@ -41,22 +41,30 @@ def test_a_grid_holds_its_points_and_knows_slopes():
         assert not np.take(along, -1, axis=2 - axis).any()
 
 
-def smoothing(weight: float = 1.0) -> Smoothing:
+def smoothing(edges: bool = True) -> Smoothing:
     random = np.random.default_rng(3)
-    return Smoothing(GRID, random.uniform(0.2, 1, GRID.count), np.full((2, GRID.count), weight), 0.05)
+    return Smoothing(GRID, random.uniform(0.2, 1, GRID.count), np.ones((2, GRID.count)), 0.05, edges)
 
 
-def test_the_matrices_are_the_slope_of_the_smoothing():
+@pytest.mark.parametrize("edges", [True, False])
+def test_the_matrices_are_the_slope_of_the_smoothing(edges):
     random = np.random.default_rng(4)
     logs = random.normal(size=(2, GRID.count, 3)) * np.geomspace(1e-3, 1, GRID.count)[:, None]
     along = random.normal(size=logs.shape)
     step = 1e-6
-    smooth = smoothing()
+    smooth = smoothing(edges)
     change = (smooth.cost(logs + step * along) - smooth.cost(logs - step * along)) / (2 * step)
     matrices = smooth.matrices(logs)
     expected = 2 * sum(float((along[k] * (matrices[k] @ logs[k])).sum()) for k in range(2))
     assert change == pytest.approx(expected, rel=1e-6)
     assert smooth.cost(np.ones_like(logs)) == 0
+
+
+def test_slopes_of_twice_the_size_cost_four_times_as_much_without_edges():
+    logs = np.random.default_rng(4).normal(size=(2, GRID.count, 3))
+    slopes = smoothing(edges=False)
+    assert slopes.cost(2 * logs) == pytest.approx(4 * slopes.cost(logs))
+    assert smoothing().cost(2 * logs) < 2.1 * smoothing().cost(logs)
 
 
 def test_one_edge_costs_the_same_in_one_channel_as_its_norm_in_three():
@@ -72,6 +80,7 @@ def test_one_edge_costs_the_same_in_one_channel_as_its_norm_in_three():
 
 @pytest.mark.parametrize("rank", [30, 80])
 def test_deviations_are_those_of_the_dense_matrix_or_more_where_the_rank_falls_short(rank):
+    """And what is resolved is the diagonal of 1 - C L, or less."""
     random = np.random.default_rng(5)
     smooth = smoothing().matrices(np.zeros((2, GRID.count, 3)))
     told = [np.square(9 * random.normal(size=(1, 1))) * (g.T @ g) for g in random.normal(size=(3, rank, 240))]
@@ -79,12 +88,18 @@ def test_deviations_are_those_of_the_dense_matrix_or_more_where_the_rank_falls_s
     def along(direction: np.ndarray) -> np.ndarray:
         return np.stack([told[k] @ direction[..., k].ravel() for k in range(3)], axis=1).reshape(direction.shape)
 
-    found = posterior.deviations(along, smooth, (2, GRID.count, 3))
+    found = posterior.known(along, smooth, (2, GRID.count, 3))
     least = [matrix + 1e-6 * matrix.diagonal().max() * sparse.eye_array(GRID.count) for matrix in smooth]
     for channel in range(3):
         whole = told[channel] + sparse.block_diag(least).toarray()
-        true = np.sqrt(np.diag(np.linalg.inv(whole))).reshape(2, -1)
-        ratio = found[..., channel] / true
+        covariance = np.linalg.inv(whole)
+        ratio = found.deviations[..., channel] / np.sqrt(np.diag(covariance)).reshape(2, -1)
+        resolved = np.diag(np.eye(len(whole)) - covariance @ sparse.block_diag(least).toarray()).reshape(2, -1)
         assert (ratio > 1 - 1e-4).all()
+        assert found.resolved[..., channel].sum() < resolved.sum() * (1 + 1e-4)
         if rank <= posterior.RANK:
             assert (ratio < 1 + 1e-4).all()
+            np.testing.assert_allclose(found.resolved[..., channel], resolved, atol=1e-4)
+    lengths = found.lengths(GRID.spacing)
+    assert (lengths >= GRID.spacing).all()
+    np.testing.assert_allclose((GRID.spacing / lengths) ** 3, found.resolved, atol=1e-12)

@@ -157,3 +157,30 @@ def test_a_body_that_is_deformed_or_not_solved_is_refused(engine, tmp_path):
         other.solve(correction=False)
         with pytest.raises(InputError, match="the body is deformed"):
             other.forward_model()
+
+
+def test_the_operator_alone_answers_for_what_lies_deep_and_not_for_what_lights_and_views_meet(engine):
+    """Through 30 mean free paths neither light nor a view comes; where they enter and leave, they are much of it."""
+    surface = views(engine)
+    model = engine.forward_model(views=surface, tolerance=1e-12)
+    dense = [np.full_like(model.sigma_a, value) for value in (10.0, 0.01)]
+    model = engine.forward_model(sigma_s_prime=dense[0], sigma_a=dense[1], views=surface, tolerance=1e-12)
+    weights = np.ones_like(model.outgoing.radiance)
+    whole, operator = model.vjp(radiance=weights), model.vjp(radiance=weights, only_operator=True)
+    corners = np.linalg.norm(model.vertices[model.tets], axis=2)
+    deep = corners.max(axis=1) < 5  # mm from the middle of 8
+    assert deep.sum() > 10
+    for name in ("sigma_a", "sigma_s_prime"):
+        own, part = getattr(whole, name), getattr(operator, name)
+        off = np.abs(own - part)
+        assert off[deep].max() < 1e-5 * np.abs(own[deep]).max(), name
+        assert off[~deep].max() > 0.05 * np.abs(own[~deep]).max(), name
+    assert not operator.power.any()
+
+
+def test_what_enters_is_what_the_solve_says(engine):
+    model = engine.forward_model()
+    solution = engine.solve(tolerance=1e-6, correction=False, model="sp3", method="fem")
+    assert (engine.surface().area[:, None] * model.entering).sum(axis=0) == pytest.approx(solution.energy.entered, 1e-4)
+    lit = (model.entering > 0).any(axis=1)
+    assert 0.3 < lit.mean() < 0.9

@@ -1,4 +1,4 @@
-"""Views of how certain a volume's coefficients are: where they are, what they show, and what is refused."""
+"""Views of how well a volume's coefficients are known: where they are, what they show, and what is refused."""
 
 from __future__ import annotations
 
@@ -7,8 +7,10 @@ import pytest
 
 import quadgraph
 from baked import write_levels
-from quadgraph import cli
+from quadgraph import cli, core
+from quadgraph.api import materials
 from quadgraph.base.errors import InputError
+from quadgraph.file import openvdb
 from quadgraph.mesh.subdivide import subdivide
 from quadgraph.mesh.surface import Surface
 from shapes import cube
@@ -62,6 +64,20 @@ def test_each_half_has_the_colour_of_its_deviation(engine):
     engine.material = volume(sigma_a_deviation=halves(), sigma_s_prime_deviation=halves()[..., ::-1])
     assert colours(engine, "sigma_a_deviation") == pytest.approx(np.array([sure, unsure]), abs=1e-3)
     assert colours(engine, "sigma_s_prime_deviation") == pytest.approx(np.array([unsure, sure]), abs=1e-3)
+
+
+def test_each_half_has_the_colour_of_its_resolution_length(engine):
+    lengths = np.broadcast_to(np.where(np.arange(9) < 4, 1.5, 6.0), SHAPE)
+    engine.material = volume(sigma_a_resolution=lengths, sigma_s_prime_resolution=lengths[..., ::-1])
+    own, other = (colours(engine, f"{name}_resolution") for name in ("sigma_a", "sigma_s_prime"))
+    assert np.linalg.norm(own[0] - own[1]) > 0.2
+    assert other == pytest.approx(own[::-1], abs=1e-3)
+    with pytest.raises(InputError, match=r"show sigma_a_deviation: no deviations in this material; .*acquire"):
+        colours(engine, "sigma_a_deviation")
+
+
+def test_what_may_be_said_of_coefficients_has_the_same_names_everywhere():
+    assert core.knowledge_names == list(materials.CERTAINTY) == list(openvdb.CERTAINTY)
 
 
 def test_the_mean_of_the_channels_is_shown(engine):

@@ -68,13 +68,14 @@ def test_without_an_origin_the_grid_is_centred_on_zero(python, tmp_path):
         assert np.allclose(found["origin"], [-5, -3, -4])
 
 
-def test_deviations_go_there_and_back(python, tmp_path, capsys):
-    """Of both coefficients, or of one; where a coefficient has colours, so have its deviations."""
+def test_what_is_known_goes_there_and_back(python, tmp_path, capsys):
+    """Deviations and lengths of both coefficients, or of one; where a coefficient has colours, so have these."""
     random = np.random.default_rng(2)
     kept = {
         "sigma_s_prime": random.uniform(0, 3, SHAPE),
         "sigma_a": random.uniform(0, 0.1, (*SHAPE, 3)),
         "sigma_a_deviation": random.uniform(0, 2, (*SHAPE, 3)),
+        "sigma_a_resolution": random.uniform(1, 9, (*SHAPE, 3)),
     }
     kept["sigma_a_deviation"][0] = np.inf  # not known at all
     kept["sigma_a_deviation"][-1] = 0

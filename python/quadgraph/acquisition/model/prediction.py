@@ -129,9 +129,17 @@ class Predictor:
         return stage.view_rays(places)
 
     def model(
-        self, lights: tuple[str, ...], level: int, coefficients: tuple[np.ndarray, np.ndarray], views: Views
+        self,
+        lights: tuple[str, ...],
+        level: int,
+        coefficients: tuple[np.ndarray, np.ndarray],
+        views: Views,
+        model: str = "sp3",
     ) -> ForwardModel:
-        """What leaves a level under lights as a function of coefficients: sigma_a and sigma_s_prime of its tets."""
+        """What leaves a level under lights as a function of coefficients: sigma_a and sigma_s_prime of its tets.
+
+        model: of the fluence, "sp3" or "diffusion".
+        """
         number = list(self._solves).index(lights) % len(self._stages)
         stage = self._stages[number]
         lit = self._lit[number]
@@ -140,7 +148,7 @@ class Predictor:
             stage.solve()
             self._lit[number] = self._capture, lights
         absorption, scattering = coefficients
-        return forward_model(stage.engine, level, (scattering, absorption, None), views, "sp3", None, _TOLERANCE)
+        return forward_model(stage.engine, level, (scattering, absorption, None), views, model, None, _TOLERANCE)
 
     def _scene(
         self, coefficients: np.ndarray | Path, corrected: bool, lights: tuple[str, ...], camera: str

@@ -50,12 +50,15 @@ class Linearised:
         level: int,
         coefficients: tuple[np.ndarray, np.ndarray],
         advance: Callable[[], None],
+        model: str = "sp3",
     ) -> None:
-        """coefficients: sigma_a and sigma_s_prime of the tets, (n_t, 3) 1/mm each. Raises InputError, SolverError."""
+        """coefficients: sigma_a and sigma_s_prime of the tets, (n_t, 3) 1/mm each; model: of the fluence. Raises
+        InputError, SolverError.
+        """
         self._groups = groups
         self._models = []
         for each in groups:
-            self._models.append(predictor.model(each.lights, level, coefficients, each.views))
+            self._models.append(predictor.model(each.lights, level, coefficients, each.views, model))
             advance()
         self.radiances = self._split([model.outgoing.radiance for model in self._models])
 
@@ -67,12 +70,23 @@ class Linearised:
 
         return self._split(self._each(one))
 
-    def back(self, weights: Channels) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives of the sum of radiances times weights by sigma_a and sigma_s_prime of the tets, (n_t, 3) each."""
+    def lit(self) -> list[np.ndarray]:
+        """(n, 1) of each photograph's squares: whether a light shines on the face where its ray leaves."""
+        shone = [
+            np.any(model.entering > 0, axis=1, keepdims=True)[np.asarray(each.views.face)]
+            for model, each in zip(self._models, self._groups, strict=True)
+        ]
+        return self._split(shone)
+
+    def back(self, weights: Channels, only_operator: bool = False) -> tuple[np.ndarray, np.ndarray]:
+        """Derivatives of the sum of radiances times weights by sigma_a and sigma_s_prime of the tets, (n_t, 3) each.
+
+        only_operator: as `ForwardModel.vjp` has it.
+        """
 
         def one(number: int) -> tuple[np.ndarray, np.ndarray]:
             mine = np.concatenate([weights[each] for each in self._groups[number].photographs])
-            found = self._models[number].vjp(radiance=mine)
+            found = self._models[number].vjp(radiance=mine, only_operator=only_operator)
             return found.sigma_a, found.sigma_s_prime
 
         found = self._each(one)

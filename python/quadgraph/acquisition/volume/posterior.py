@@ -3,11 +3,16 @@
 Around the fit the inverse covariance of the logarithms is H + L: H is the matrix of Gauss and Newton, L the smoothing.
 Its covariance is that of L alone less what the leading pairs of H v = k L v take away [Flath et al. 2011],
 which random vectors find [Halko et al. 2011]. Pairs that are not found leave deviations too large, not too small.
+
+What is found of a true difference beside the fit is that difference times the matrix 1 - C L, with C the covariance
+[Backus and Gilbert 1968]. Its diagonal is the share of a point's own that reaches it, and one over it is how many
+points have one number together: the edge of a cube of these is the resolution length.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from scipy import linalg, sparse
@@ -16,10 +21,24 @@ RANK = 40  # random vectors
 _LEAST = 1e-6  # of the smoothing's diagonal, what every point has of a prior: constants cost the smoothing nothing
 
 
-def deviations(
+class Known(NamedTuple):
+    """What is known of logarithms, (2, n, 3) each. deviations: standard ones; resolved: the diagonal of 1 - C L, from
+    0, all of it from the smoothing, to 1, all of it from the photographs.
+    """
+
+    deviations: np.ndarray
+    resolved: np.ndarray
+
+    def lengths(self, spacing: float) -> np.ndarray:
+        """(2, n, 3) resolution lengths on a grid of that spacing, in its unit; infinite where nothing is told."""
+        with np.errstate(divide="ignore"):
+            return spacing / np.cbrt(self.resolved)
+
+
+def known(
     told: Callable[[np.ndarray], np.ndarray], smoothing: Sequence[sparse.csr_array], shape: tuple[int, ...]
-) -> np.ndarray:
-    """(2, n, 3) standard deviations of logarithms.
+) -> Known:
+    """What is known of logarithms of that shape, (2, n, 3).
 
     told: H times a direction of that shape; channels do not mix; smoothing: L of each coefficient, of all channels.
     Takes RANK products with H and a dense inverse of n x n.
@@ -34,20 +53,19 @@ def deviations(
     directions = random.normal(size=(RANK, *shape))
     # Of C^-1 H C^-T, which is symmetric, where L = C C^T.
     images = _whitened(told, factors, directions)
-    result = np.empty(shape)
+    spread, resolved = np.empty((2, *shape))
     for channel in range(3):
         first = directions[..., channel].reshape(RANK, -1).T
         second = images[..., channel].reshape(RANK, -1).T
         values, vectors = _nystrom(first, second)
-        unwhitened = np.concatenate(
-            [
-                linalg.solve_triangular(factor.T, part)
-                for factor, part in zip(factors, np.split(vectors, 2), strict=True)
-            ]
-        )
-        taken = (unwhitened**2 @ (values / (1 + values))).reshape(2, count)
-        result[..., channel] = np.sqrt(np.maximum(variance - taken, 0))
-    return result
+        parts = list(zip(factors, np.split(vectors, 2), strict=True))
+        unwhitened = np.concatenate([linalg.solve_triangular(factor.T, part) for factor, part in parts])
+        smoothed = np.concatenate([factor @ part for factor, part in parts])  # L times the unwhitened
+        share = values / (1 + values)
+        taken = (unwhitened**2 @ share).reshape(2, count)
+        spread[..., channel] = np.sqrt(np.maximum(variance - taken, 0))
+        resolved[..., channel] = ((unwhitened * smoothed) @ share).reshape(2, count)
+    return Known(spread, np.clip(resolved, 0, 1))
 
 
 def _diagonal_of_inverse(factor: np.ndarray) -> np.ndarray:

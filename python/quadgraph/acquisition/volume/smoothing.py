@@ -1,4 +1,4 @@
-"""What is taken of a volume where the photographs leave it open: as little total variation as can be.
+"""What is taken of a volume where the photographs leave it open: as little total variation as can be, or slopes.
 
 Total variation of the logarithms of each coefficient, over red, green and blue together (vectorial), with Huber's
 threshold. It is weighed by how much the photographs tell of a place, or what lies deep would be smoothed away while
@@ -18,15 +18,17 @@ LEAST_SHARE = 0.1  # of the largest volume that a point stands for, what others 
 
 
 class Smoothing:
-    """Huber's total variation of logarithms (2, n, 3) on a grid."""
+    """Huber's total variation of logarithms (2, n, 3) on a grid, or the square of their H1 seminorm."""
 
-    def __init__(self, grid: VolumeGrid, inside: np.ndarray, weight: np.ndarray, threshold: float) -> None:
+    def __init__(
+        self, grid: VolumeGrid, inside: np.ndarray, weight: np.ndarray, threshold: float, edges: bool = True
+    ) -> None:
         """inside (n,): volume of the body that each point stands for, mm^3; weight (2, n), of each coefficient;
-        threshold: of a slope, 1/mm, below which it counts as its square.
+        threshold: of a slope, 1/mm, below which it counts as its square; edges: False: every slope does (H1).
         """
         self._differences = grid.differences()
         self._volume = np.maximum(inside, LEAST_SHARE * inside.max())
-        self._weight, self._threshold = weight, threshold
+        self._weight, self._threshold, self._edges = weight, threshold, edges
 
     def _slopes(self, logs: np.ndarray, coefficient: int) -> np.ndarray:
         """(n,) of all axes and channels together, 1/mm."""
@@ -38,7 +40,7 @@ class Smoothing:
         total = 0.0
         for coefficient in range(2):
             slope = self._slopes(logs, coefficient)
-            small = slope <= self._threshold
+            small = (slope <= self._threshold) | (not self._edges)
             value = np.where(small, slope**2 / self._threshold, 2 * slope - self._threshold)
             total += float((self._volume * self._weight[coefficient] * value).sum())
         return total
@@ -47,7 +49,8 @@ class Smoothing:
         """Two matrices (n, n), of each coefficient's channels: the quadratic that touches the cost at `logs`."""
         result = []
         for coefficient in range(2):
-            slope = np.maximum(self._slopes(logs, coefficient), self._threshold)
-            scale = sparse.diags_array(self._volume * self._weight[coefficient] / slope)
+            slope = self._slopes(logs, coefficient) if self._edges else 0.0
+            held = np.maximum(slope, self._threshold)
+            scale = sparse.diags_array(self._volume * self._weight[coefficient] / held)
             result.append(sparse.csr_array(sum(each.T @ scale @ each for each in self._differences)))
         return result

@@ -21,11 +21,12 @@ from scipy.sparse import linalg
 
 from quadgraph.acquisition.model.prediction import Predicted, Predictor
 from quadgraph.acquisition.model.problem import Problem
-from quadgraph.acquisition.volume import posterior
+from quadgraph.acquisition.volume import posterior, published_fit
 from quadgraph.acquisition.volume.fit_state import FitState
 from quadgraph.acquisition.volume.smoothing import LEAST_SHARE, Smoothing
 from quadgraph.acquisition.volume.volume_grid import VolumeGrid
 from quadgraph.acquisition.volume.volume_model import Around, VolumeSetting
+from quadgraph.acquisition.volume.volume_options import H1, PUBLISHED, VolumeOptions
 from quadgraph.acquisition.volume.volume_weights import Sizes
 from quadgraph.base.errors import InputError
 from quadgraph.base.progress import ProgressCallback
@@ -56,14 +57,16 @@ class VolumeStep:
 @dataclass(frozen=True, eq=False)
 class VolumeFit:
     """What was found. grid: its points; coefficients (2, n, 3): sigma_a and sigma_s_prime at them, 1/mm; deviations
-    (2, n, 3): standard deviations of their logarithms; inside (n,): whether a tet depends on the point; chi_squared
-    (3,): per square; by_photograph (p, 3): the same of each, without what squares share; pictures: the last
-    predictions; gains (p, 3).
+    (2, n, 3): standard deviations of their logarithms, and resolution (2, n, 3): over which length they are one number,
+    mm; both None where the scheme states none; inside (n,): whether a tet depends on the point; chi_squared (3,): per
+    square; by_photograph (p, 3): the same of each, without what squares share; pictures: the last predictions; gains
+    (p, 3).
     """
 
     grid: VolumeGrid
     coefficients: np.ndarray
-    deviations: np.ndarray
+    deviations: np.ndarray | None
+    resolution: np.ndarray | None
     inside: np.ndarray
     chi_squared: np.ndarray
     by_photograph: np.ndarray
@@ -72,8 +75,10 @@ class VolumeFit:
     steps: list[VolumeStep]
 
 
-def most_products(solves: int) -> int:
+def most_products(solves: int, options: VolumeOptions) -> int:
     """How often `fit_volume` calls `advance` at most, where a prediction of all photographs takes so many solves."""
+    if options.scheme == PUBLISHED:
+        return (published_fit.MOST_STEPS * (published_fit.SECTIONS + 1) + 3) * solves
     steps = OUTER * INNER
     return (OUTER + 2) * solves + steps * (solves + _CG_STEPS) + _PROBES + posterior.RANK
 
@@ -83,18 +88,18 @@ def fit_volume(
     predictor: Predictor,
     start: tuple[np.ndarray, np.ndarray] | FitState,
     corrected: bool,
-    spacing: float | None,
+    options: VolumeOptions,
     tell: ProgressCallback,
     advance: Callable[[], None],
     keep: Callable[[FitState], None],
 ) -> VolumeFit:
     """Fit from homogeneous coefficients (2, 3), 1/mm, and gains (p, 3), or from the state that a fit was left in.
 
-    spacing: of the grid, mm, None: as long as the edges of the level that is differentiated; advance: is called after
-    each solve and product; keep: with the state after each outer step. Raises SolverError, InputError.
+    advance: is called after each solve and product; keep: with the state after each outer step, where the scheme has
+    some. Raises SolverError, InputError.
     """
     with tempfile.TemporaryDirectory(prefix="quadgraph-acquire-") as folder:
-        setting = VolumeSetting(problem, predictor, spacing, Path(folder), advance)
+        setting = VolumeSetting(problem, predictor, options.spacing, Path(folder), advance)
         grid, side = setting.grid, setting.samples.side
         tell(
             f"volume: {' x '.join(map(str, grid.size))} points, {grid.spacing:.3g} mm apart, from "
@@ -107,12 +112,14 @@ def fit_volume(
                 "anew, or name another folder"
             )
         first, gains = (start.start, start.gains) if isinstance(start, FitState) else start
+        if options.scheme == PUBLISHED:
+            return _published(setting, first, tell)
         logs = kept.logs if kept else np.log(np.repeat(first[:, None, :], grid.count, axis=1))
         found = setting.predicted(logs, np.array(gains), corrected)
         if kept:
             found = found.sized(Sizes(kept.in_tiles, kept.local))
         tell(f"{'resumed' if kept else 'start'}: chi^2 per square {_text(found.chi_squared)}")
-        fit = _Fit(found, tell, kept)
+        fit = _Fit(found, tell, kept, options.scheme != H1)
         for outer in range(int(kept.outer) if kept else 0, OUTER):
             following = fit.descended(found).renewed(corrected)
             # Of both by the same weights, which are new.
@@ -127,17 +134,37 @@ def fit_volume(
             if last:
                 break
         tell("standard deviations")
-        return VolumeFit(
-            grid,
-            np.exp(found.logs),
-            posterior.deviations(found.told, fit.matrices(found.logs), found.logs.shape),
-            setting.inside > 0,
-            found.chi_squared,
-            found.by_photograph(),
-            found.pictures,
-            found.gains,
-            fit.steps,
-        )
+        known = posterior.known(found.told, fit.matrices(found.logs), found.logs.shape)
+        return _result(found, fit.steps, known)
+
+
+def _published(setting: VolumeSetting, start: np.ndarray, tell: ProgressCallback) -> VolumeFit:
+    """What the published scheme makes of homogeneous coefficients (2, 3), judged by the engine's uncorrected pictures;
+    its steps state the misfit of unlit squares, of 1, in place of chi^2.
+    """
+    first = published_fit.PublishedFit(setting).begin(start)
+    last, misfits = published_fit.descend(first, tell)
+    kappa, absorption = last.unknowns
+    scattering = np.maximum(1 / (3 * kappa) - absorption, published_fit.SIGMA[0])
+    gains = np.ones((len(setting.problem.measured), 3))
+    found = setting.predicted(np.log(np.stack([absorption, scattering])), gains, False)
+    return _result(found, [VolumeStep(published_fit.LAMBDA, misfit) for misfit in misfits], None)
+
+
+def _result(found: Around, steps: list[VolumeStep], known: posterior.Known | None) -> VolumeFit:
+    setting = found.setting
+    return VolumeFit(
+        setting.grid,
+        np.exp(found.logs),
+        known.deviations if known else None,
+        known.lengths(setting.grid.spacing) if known else None,
+        setting.inside > 0,
+        found.chi_squared,
+        found.by_photograph(),
+        found.pictures,
+        found.gains,
+        steps,
+    )
 
 
 def _sizes(around: Around) -> str:
@@ -153,9 +180,9 @@ def _text(values: np.ndarray) -> str:
 class _Fit:
     """How volumes are smoothed, and steps towards better ones."""
 
-    def __init__(self, first: Around, tell: ProgressCallback, kept: FitState | None) -> None:
+    def __init__(self, first: Around, tell: ProgressCallback, kept: FitState | None, edges: bool) -> None:
         """Find by random weights how much the photographs tell of each point, and from that the first smoothing; or
-        take both from a state.
+        take both from a state. edges: as `Smoothing` has it.
         """
         self._tell = tell
         self.steps: list[VolumeStep] = []
@@ -166,7 +193,7 @@ class _Fit:
         # Of both together: what is told less of varies more freely, or the other would take its part.
         most = max(float(np.quantile(each[inside > 0], 0.99)) for each in density)
         told = np.clip(density / max(most, 1e-300), _FLOOR, 1)
-        self._smoothing = Smoothing(grid, inside, told, _THRESHOLD / grid.spacing)
+        self._smoothing = Smoothing(grid, inside, told, _THRESHOLD / grid.spacing, edges)
         self.strength = 1.0
         if kept is None:
             pairs = zip(self._diagonal, self.matrices(first.logs), strict=True)

@@ -66,9 +66,19 @@ class VolumeGrid:
             result.append(sparse.csr_array(product) / self.spacing)
         return result
 
-    def material(self, coefficients: np.ndarray, eta: float, deviations: np.ndarray | None = None) -> VolumeMaterial:
-        """The volume of sigma_a and sigma_s_prime, (2, n, 3) 1/mm, and of the deviations of their logarithms."""
+    def material(
+        self,
+        coefficients: np.ndarray,
+        eta: float,
+        deviations: np.ndarray | None = None,
+        resolution: np.ndarray | None = None,
+    ) -> VolumeMaterial:
+        """The volume of sigma_a and sigma_s_prime, (2, n, 3) 1/mm, of the deviations of their logarithms, and of their
+        resolution lengths, mm.
+        """
         shape = (*self.size[::-1], 3)
         absorption, scattering = (each.reshape(shape) for each in coefficients)
-        spread = () if deviations is None else tuple(each.reshape(shape) for each in deviations[::-1])
-        return VolumeMaterial(scattering, absorption, self.spacing, self.low, eta, *spread)
+        stated = []
+        for known in (deviations, resolution):
+            stated += [None, None] if known is None else [each.reshape(shape) for each in known[::-1]]
+        return VolumeMaterial(scattering, absorption, self.spacing, self.low, eta, *stated)

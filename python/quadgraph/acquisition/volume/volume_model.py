@@ -80,8 +80,12 @@ class VolumeSetting:
     def linearised(self, logs: np.ndarray) -> Linearised:
         """The model of the level around logarithms."""
         absorption, scattering = (np.asarray(self.at_tets @ each) for each in np.exp(logs))
+        return self.linearised_at(absorption, scattering)
+
+    def linearised_at(self, absorption: np.ndarray, scattering: np.ndarray, model: str = "sp3") -> Linearised:
+        """The same around sigma_a and sigma_s_prime of the tets, (n_t, 3) 1/mm each."""
         tets = absorption, scattering
-        return Linearised(self.predictor, self.groups, self.level, tets, self.advance)
+        return Linearised(self.predictor, self.groups, self.level, tets, self.advance, model)
 
     def scales(self, factors: Channels, gains: np.ndarray) -> Channels:
         """What a square's value is over the model's radiance."""

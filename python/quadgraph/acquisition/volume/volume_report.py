@@ -21,11 +21,21 @@ def numbers(found: VolumeFit) -> dict[str, Any]:
         "chi_squared_per_square": found.chi_squared.tolist(),
         "quantiles": list(_QUANTILES),
         "coefficients": {name: _quantiles(found, found.coefficients[row]) for row, name in enumerate(NAMES)},
-        "deviations_of_logarithms": {name: _quantiles(found, found.deviations[row]) for row, name in enumerate(NAMES)},
-        "undetermined_share": {name: _undetermined(found, row).tolist() for row, name in enumerate(NAMES)},
+        **_known(found),
         "steps": [
             {"smoothing": step.smoothing, "chi_squared_per_square": step.chi_squared.tolist()} for step in found.steps
         ],
+    }
+
+
+def _known(found: VolumeFit) -> dict[str, Any]:
+    """How well the coefficients are known, where the scheme states it; lengths in mm."""
+    if found.deviations is None or found.resolution is None:
+        return {}
+    return {
+        "deviations_of_logarithms": {name: _quantiles(found, found.deviations[row]) for row, name in enumerate(NAMES)},
+        "resolution": {name: _quantiles(found, found.resolution[row]) for row, name in enumerate(NAMES)},
+        "undetermined_share": {name: _undetermined(found, row).tolist() for row, name in enumerate(NAMES)},
     }
 
 
@@ -34,11 +44,18 @@ def lines(found: VolumeFit) -> list[str]:
     said = []
     for row, name in enumerate(NAMES):
         values = np.array(_quantiles(found, found.coefficients[row]))
-        spread = np.array(_quantiles(found, found.deviations[row]))[1]
-        parts = (
-            f"{colour} {low:.3g} to {high:.3g}, middle {middle:.3g} ± {100 * deviation:.0f}%"
-            for colour, (low, middle, high), deviation in zip(CHANNELS, values.T, spread, strict=True)
-        )
+        parts = [
+            f"{colour} {low:.3g} to {high:.3g}, middle {middle:.3g}"
+            for colour, (low, middle, high) in zip(CHANNELS, values.T, strict=True)
+        ]
+        if found.deviations is not None and found.resolution is not None:
+            spread, length = (
+                np.array(_quantiles(found, each[row]))[1] for each in (found.deviations, found.resolution)
+            )
+            parts = [
+                f"{part} ± {100 * deviation:.0f}% over {mm:.2g} mm"
+                for part, deviation, mm in zip(parts, spread, length, strict=True)
+            ]
         said.append(f"{name}, 1/mm: {'; '.join(parts)}")
     chi = ", ".join(f"{each:.3g}" for each in found.chi_squared)
     return [*said, f"chi^2 per square: {chi}"]
@@ -46,6 +63,8 @@ def lines(found: VolumeFit) -> list[str]:
 
 def undetermined(found: VolumeFit) -> list[str]:
     """What the photographs leave open, in words."""
+    if found.deviations is None:
+        return [f"the scheme that was asked for does not say how well {NAMES[0]} and {NAMES[1]} are known"]
     said = []
     for row, name in enumerate(NAMES):
         share = float(_undetermined(found, row).max())
@@ -64,4 +83,5 @@ def _quantiles(found: VolumeFit, values: np.ndarray) -> list[list[float]]:
 
 def _undetermined(found: VolumeFit, row: int) -> np.ndarray:
     """(3,) shares of the points inside."""
+    assert found.deviations is not None
     return (found.deviations[row][found.inside] > UNDETERMINED).mean(axis=0)

@@ -20,6 +20,7 @@ from rich.table import Table
 
 from quadgraph import core
 from quadgraph.acquisition.capture import capture
+from quadgraph.acquisition.homogeneous.fitting import Fit
 from quadgraph.acquisition.model.prediction import NAMES
 from quadgraph.acquisition.recovery import Recovered, recover
 from quadgraph.api.materials import Material
@@ -141,6 +142,7 @@ def _three(value: Any) -> list[float]:
 
 def _found(recovered: Recovered) -> dict[str, Any]:
     fit = recovered.fit
+    assert isinstance(fit, Fit)  # homogeneous
     return {
         "coefficients": fit.coefficients.tolist(),
         "deviations": fit.deviations.tolist(),
