@@ -28,6 +28,8 @@ class Columns {
 
   void scattered(std::uint32_t vertex, int c, double watt) { add(scattered_, first_scattered_, vertex, c, watt); }
   void unscattered(std::uint32_t f, int c, double watt) { add(unscattered_, first_unscattered_, f, c, watt); }
+  void begins(const std::array<double, 3>&) {}
+  void steps(std::uint32_t, const std::array<double, 3>&) {}
   void entered(int, double) {}
   void absorbed(int, double) {}
   void trapped(int, double) {}

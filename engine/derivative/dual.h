@@ -1,71 +1,93 @@
-// A number with its derivative along one direction (forward mode; Griewank and Walther 2008, chapter 3).
+// A number with its derivatives along one direction, or by a few inputs (forward mode; Griewank and Walther 2008,
+// chapter 3).
 #pragma once
 
 #include <cmath>
 
 namespace quadgraph {
 
-struct Dual {
-  double value = 0, slope = 0;
+// `Slope`: double, or a vector of derivatives.
+template <class Slope>
+struct DualOf {
+  double value = 0;
+  Slope slope = Slope(0);
 
-  Dual() = default;
-  explicit Dual(double constant) : value(constant) {}
-  Dual(double at, double derivative) : value(at), slope(derivative) {}
+  DualOf() = default;
+  explicit DualOf(double constant) : value(constant) {}
+  DualOf(double at, const Slope& derivative) : value(at), slope(derivative) {}
 };
 
-inline double value_of(const Dual& a) {
+using Dual = DualOf<double>;
+
+template <class Slope>
+double value_of(const DualOf<Slope>& a) {
   return a.value;
 }
 
-inline Dual operator-(const Dual& a) {
+template <class Slope>
+DualOf<Slope> operator-(const DualOf<Slope>& a) {
   return {-a.value, -a.slope};
 }
-inline Dual operator+(const Dual& a, const Dual& b) {
+template <class Slope>
+DualOf<Slope> operator+(const DualOf<Slope>& a, const DualOf<Slope>& b) {
   return {a.value + b.value, a.slope + b.slope};
 }
-inline Dual operator+(const Dual& a, double b) {
+template <class Slope>
+DualOf<Slope> operator+(const DualOf<Slope>& a, double b) {
   return {a.value + b, a.slope};
 }
-inline Dual operator-(const Dual& a, const Dual& b) {
+template <class Slope>
+DualOf<Slope> operator-(const DualOf<Slope>& a, const DualOf<Slope>& b) {
   return {a.value - b.value, a.slope - b.slope};
 }
-inline Dual operator-(double a, const Dual& b) {
+template <class Slope>
+DualOf<Slope> operator-(double a, const DualOf<Slope>& b) {
   return {a - b.value, -b.slope};
 }
-inline Dual operator*(const Dual& a, const Dual& b) {
-  return {a.value * b.value, a.slope * b.value + a.value * b.slope};
+template <class Slope>
+DualOf<Slope> operator*(const DualOf<Slope>& a, const DualOf<Slope>& b) {
+  return {a.value * b.value, a.slope * b.value + b.slope * a.value};
 }
-inline Dual operator*(const Dual& a, double b) {
+template <class Slope>
+DualOf<Slope> operator*(const DualOf<Slope>& a, double b) {
   return {a.value * b, a.slope * b};
 }
-inline Dual operator*(double a, const Dual& b) {
+template <class Slope>
+DualOf<Slope> operator*(double a, const DualOf<Slope>& b) {
   return b * a;
 }
-inline Dual operator/(const Dual& a, const Dual& b) {
+template <class Slope>
+DualOf<Slope> operator/(const DualOf<Slope>& a, const DualOf<Slope>& b) {
   const double value = a.value / b.value;
-  return {value, (a.slope - value * b.slope) / b.value};
+  return {value, (a.slope - b.slope * value) / b.value};
 }
-inline Dual operator/(const Dual& a, double b) {
+template <class Slope>
+DualOf<Slope> operator/(const DualOf<Slope>& a, double b) {
   return {a.value / b, a.slope / b};
 }
 
-inline Dual exp(const Dual& a) {
+template <class Slope>
+DualOf<Slope> exp(const DualOf<Slope>& a) {
   const double value = std::exp(a.value);
   return {value, a.slope * value};
 }
-inline Dual expm1(const Dual& a) {
+template <class Slope>
+DualOf<Slope> expm1(const DualOf<Slope>& a) {
   return {std::expm1(a.value), a.slope * std::exp(a.value)};
 }
-inline Dual log(const Dual& a) {
+template <class Slope>
+DualOf<Slope> log(const DualOf<Slope>& a) {
   return {std::log(a.value), a.slope / a.value};
 }
 
 // As of engine/reference/exitance.h and block.h.
-inline Dual positive(const Dual& a) {
-  return a.value > 0 ? a : Dual();
+template <class Slope>
+DualOf<Slope> positive(const DualOf<Slope>& a) {
+  return a.value > 0 ? a : DualOf<Slope>();
 }
-inline Dual safe_ratio(const Dual& a, const Dual& b) {
-  return b.value > 0 ? a / b : Dual();
+template <class Slope>
+DualOf<Slope> safe_ratio(const DualOf<Slope>& a, const DualOf<Slope>& b) {
+  return b.value > 0 ? a / b : DualOf<Slope>();
 }
 
 }  // namespace quadgraph

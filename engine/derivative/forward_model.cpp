@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -189,6 +191,66 @@ struct ForwardModel::State {
 
   Inside inside() const { return {level, problem, at, *shape}; }
 
+  // What view rays gather, and the light that they meet, by what both depend on: made for the first derivative.
+  struct Seen {
+    InsideInputs inputs;
+    SparseRows uncollided, gathered;
+  };
+
+  const Seen& seen() {
+    std::call_once(seen_once, [&] {
+      seen_rows.emplace(Seen{InsideInputs(at, again_q.size()), inside().uncollided_rows(entering_light()),
+                             inside().gathered_rows(fields, samples)});
+    });
+    return *seen_rows;
+  }
+
+  const WalkedRays& walked_rays() {
+    std::call_once(walked_once, [&] { rays.emplace(level, problem, at, entering_light()); });
+    return *rays;
+  }
+
+  // How radiances change with the parameters, what enters again, and the fluence.
+  Vectors seen_tangent(const Parameters& along, const Vectors& again_change, const std::vector<Field>& fluence) {
+    const Seen& kept = seen();
+    const std::size_t vertices = fluence.size(), tets = kept.inputs.tets;
+    const Vectors outer = kept.inputs.joined(along, again_change);
+    Vectors inner(outer.begin(), outer.begin() + static_cast<std::ptrdiff_t>(2 * tets));
+    inner.resize(2 * tets + 3 * vertices);
+    for (std::size_t v = 0; v < vertices; ++v) {
+      inner[2 * tets + v] = fluence[v].phi;
+      inner[2 * tets + vertices + v] = kept.uncollided.times(2 * v, outer);
+      inner[2 * tets + 2 * vertices + v] = kept.uncollided.times(2 * v + 1, outer);
+    }
+    Vectors change(samples.size());
+    for (std::size_t i = 0; i < change.size(); ++i) change[i] = kept.gathered.times(i, inner);
+    return change;
+  }
+
+  // Of weighted radiances: adds to the gradient, unless it is to be that of the operator alone, and to what belongs to
+  // light that enters again; returns the derivatives by the fluence at the vertices.
+  Vectors seen_adjoint(const Vectors& weights, Dependence dependence, Parameters& gradient, Vectors& by_again) {
+    const Seen& kept = seen();
+    const std::size_t vertices = level.vertices.size(), tets = kept.inputs.tets;
+    Vectors inner(2 * tets + 3 * vertices, glm::dvec3(0));
+    for (std::size_t i = 0; i < weights.size(); ++i) kept.gathered.add_transposed(i, weights[i], inner);
+    const auto of_field = [&](std::size_t number) {
+      const auto first = inner.begin() + static_cast<std::ptrdiff_t>(2 * tets + number * vertices);
+      return Vectors(first, first + static_cast<std::ptrdiff_t>(vertices));
+    };
+    if (dependence == Dependence::all) {
+      const Vectors entry = of_field(1), depth = of_field(2);
+      Vectors outer(inner.begin(), inner.begin() + static_cast<std::ptrdiff_t>(2 * tets));
+      outer.resize(kept.inputs.count());
+      for (std::size_t v = 0; v < vertices; ++v) {
+        kept.uncollided.add_transposed(2 * v, entry[v], outer);
+        kept.uncollided.add_transposed(2 * v + 1, depth[v], outer);
+      }
+      kept.inputs.add(outer, gradient, by_again);
+    }
+    return of_field(0);
+  }
+
   const Level& level;
   Parameters at;
   std::vector<BeamLight> lights;
@@ -203,6 +265,9 @@ struct ForwardModel::State {
   std::optional<FollowedShape> shape;  // where there are samples
   InsideFields fields{0};
   Outgoing outgoing;
+  std::once_flag seen_once, walked_once;
+  std::optional<Seen> seen_rows;
+  std::optional<WalkedRays> rays;
 };
 
 ForwardModel::ForwardModel(const Level& level, Parameters at, std::vector<BeamLight> lights,
@@ -220,9 +285,9 @@ const Outgoing& ForwardModel::outgoing() const {
 }
 
 Outgoing ForwardModel::tangent(const Parameters& along) const {
-  const State& s = *state_;
+  State& s = *state_;
   s.check_sizes(along);
-  Walked own = walk_tangent(s.level, s.problem, s.at, along, s.entering_light());
+  const Walked own = s.walked_rays().tangent(s.level, along);
   const Rows change = assemble_elements(s.level, elements_along(s.at, along), s.options.model, Boundary{});
   const std::vector<Field> moved = quadgraph::apply(change, s.x);
   Walked all = own;
@@ -244,29 +309,18 @@ Outgoing ForwardModel::tangent(const Parameters& along) const {
   result.exitance = answer(received).exitance;
   result.unscattered = s.per_area(all.unscattered);
   if (s.samples.empty()) return result;
-  InsideFields fields(change_of_x.size());
-  for (std::size_t v = 0; v < change_of_x.size(); ++v) fields.phi[v] = change_of_x[v].phi;
-  s.inside().uncollided_tangent(along, s.entering_light(), scaled(received, s.entering()), fields);
-  result.radiance = s.inside().gathered_tangent(s.fields, along, fields, s.samples);
+  result.radiance = s.seen_tangent(along, scaled(received, s.entering()), change_of_x);
   return result;
 }
 
 Parameters ForwardModel::adjoint(const Outgoing& weights, Dependence dependence) const {
-  const State& s = *state_;
+  State& s = *state_;
   check_size("exitance", weights.exitance.size(), s.level.faces.size());
   check_size("unscattered", weights.unscattered.size(), s.level.faces.size());
   check_size("radiance", weights.radiance.size(), s.samples.size());
   Parameters gradient(s.level.tets.size(), s.lights.size());
-  InsideFields by_fields(s.level.vertices.size());
-  Vectors by_again(s.again_q.size(), glm::dvec3(0));
-  if (!s.samples.empty()) {
-    s.inside().gathered_adjoint(s.fields, weights.radiance, s.samples, gradient, by_fields);
-    if (dependence == Dependence::all) {
-      s.inside().uncollided_adjoint(by_fields, s.entering_light(), gradient, by_again);
-    } else {
-      gradient = Parameters(s.level.tets.size(), s.lights.size());
-    }
-  }
+  Vectors by_phi(s.level.vertices.size(), glm::dvec3(0)), by_again(s.again_q.size(), glm::dvec3(0));
+  if (!s.samples.empty()) by_phi = s.seen_adjoint(weights.radiance, dependence, gradient, by_again);
   Walked by_walked(s.level);
   by_walked.unscattered = s.per_area(weights.unscattered);
   std::vector<Field> by_load;
@@ -276,7 +330,7 @@ Parameters ForwardModel::adjoint(const Outgoing& weights, Dependence dependence)
     const Surface::Inputs by = s.surface->adjoint({weights.exitance, by_received});
     std::vector<Field> by_fluence(by.flux.size());
     for (std::size_t i = 0; i < by.flux.size(); ++i) {
-      by_fluence[i] = {k.k11 * by.flux[i] + by_fields.phi[i], k.k12 * by.flux[i]};
+      by_fluence[i] = {k.k11 * by.flux[i] + by_phi[i], k.k12 * by.flux[i]};
     }
     by_load = s.solved(by_fluence);
     for (std::size_t i = 0; i < by_load.size(); ++i) by_walked.scattered[i] = by_load[i].phi;
@@ -293,9 +347,7 @@ Parameters ForwardModel::adjoint(const Outgoing& weights, Dependence dependence)
     s.settle(by_received, back);
   }
   back(by_received);
-  if (dependence == Dependence::all) {
-    walk_adjoint(s.level, s.problem, s.at, by_walked, s.entering_light(), gradient);
-  }
+  if (dependence == Dependence::all) s.walked_rays().adjoint(by_walked, gradient);
   add_by_elements(s.at, element_products(s.level, by_load, s.x, s.options.model), -1.0, gradient);
   return gradient;
 }

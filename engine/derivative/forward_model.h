@@ -8,7 +8,8 @@
 //   q = T_d E,   L = gathered(phi, rays back from the vertices to the lights and to q)
 //
 // Tangent and adjoint solve the same symmetric A with other right-hand sides, once for every bounce; all that lies
-// between is differentiated by the numbers that the reference's own kernels run on (dual.h, traced.h).
+// between is differentiated by the numbers that the reference's own kernels run on (dual.h, traced.h), once, and kept
+// for all products (sparse_rows.h, source.h).
 #pragma once
 
 #include <functional>

@@ -27,26 +27,25 @@ struct PlainFields {
   }
 };
 
-struct DualFields {
-  const InsideFields &fields, &change;
-
-  InsideValues<Dual> at(std::uint32_t v, int c) const {
-    return {{fields.phi[v][c], change.phi[v][c]},
-            {fields.entry[v][c], change.entry[v][c]},
-            {fields.depth[v][c], change.depth[v][c]}};
-  }
-};
-
+// As inputs of the active tape.
 struct TracedFields {
   const InsideFields& fields;
-  InsideFields& by;
+  RecordedInputs phi, entry, depth;
 
   InsideValues<Traced> at(std::uint32_t v, int c) const {
     Tape& tape = Tape::active();
-    return {tape.input(fields.phi[v][c], by.phi[v][c]), tape.input(fields.entry[v][c], by.entry[v][c]),
-            tape.input(fields.depth[v][c], by.depth[v][c])};
+    return {tape.input(fields.phi[v][c], phi[v][c]), tape.input(fields.entry[v][c], entry[v][c]),
+            tape.input(fields.depth[v][c], depth[v][c])};
   }
 };
+
+// Of three channels of a result, one row.
+template <class Values>
+void record(Tape& tape, const Values& values, RowRecorder& recorder, SparseRows& rows) {
+  for (const Traced& channel : values) tape.weigh(channel, 1);
+  tape.back();
+  recorder.end_row(rows);
+}
 
 // Calls take(sample, radiance) for each.
 template <class Numbers, class Fields, class Take>
@@ -73,33 +72,24 @@ void Inside::uncollided(const Entering& light, InsideFields& fields) const {
   }
 }
 
-void Inside::uncollided_tangent(const Parameters& along, const Entering& light, std::span<const glm::dvec3> again,
-                                InsideFields& fields) const {
-  const DualNumbers numbers(at, along);
-  const Follower follower(level, problem, numbers, shape);
-  for (std::uint32_t v = 0; v < level.vertex_count(); ++v) {
-    const auto here = light_at(follower, numbers, v, light, DualAgainLight{light.again, again});
-    fields.entry[v] = {here.entry[0].slope, here.entry[1].slope, here.entry[2].slope};
-    fields.depth[v] = {here.depth[0].slope, here.depth[1].slope, here.depth[2].slope};
-  }
-}
-
-void Inside::uncollided_adjoint(const InsideFields& weights, const Entering& light, Parameters& gradient,
-                                std::span<glm::dvec3> by_again) const {
+SparseRows Inside::uncollided_rows(const Entering& light) const {
+  const InsideInputs inputs(at, light.again.size());
+  RowRecorder recorder(inputs.count());
+  const RecordedParameters by{{recorder, 0}, {recorder, inputs.tets}, {recorder, 2 * inputs.tets}};
+  const RecordedInputs by_again{recorder, 2 * inputs.tets + inputs.lights};
   Tape tape;
   const Tape::Recording recording(tape);
-  const TracedNumbers numbers(at, gradient);
+  const TracedNumbers numbers(at, by);
   const Follower follower(level, problem, numbers, shape);
+  SparseRows rows;
   for (std::uint32_t v = 0; v < level.vertex_count(); ++v) {
-    if (weights.entry[v] == glm::dvec3(0) && weights.depth[v] == glm::dvec3(0)) continue;
     const auto here = light_at(follower, numbers, v, light, TracedAgainLight{light.again, by_again});
-    for (std::size_t c = 0; c < 3; ++c) {
-      tape.weigh(here.entry[c], weights.entry[v][static_cast<int>(c)]);
-      tape.weigh(here.depth[c], weights.depth[v][static_cast<int>(c)]);
-    }
-    tape.back();
+    record(tape, here.entry, recorder, rows);
+    record(tape, here.depth, recorder, rows);
+    recorder.forget();
     tape.clear();
   }
+  return rows;
 }
 
 std::vector<glm::dvec3> Inside::gathered(const InsideFields& fields, std::span<const ViewSample> samples) const {
@@ -109,28 +99,40 @@ std::vector<glm::dvec3> Inside::gathered(const InsideFields& fields, std::span<c
   return result;
 }
 
-std::vector<glm::dvec3> Inside::gathered_tangent(const InsideFields& fields, const Parameters& along,
-                                                 const InsideFields& change,
-                                                 std::span<const ViewSample> samples) const {
-  std::vector<glm::dvec3> result(samples.size());
-  gather_all(*this, DualNumbers(at, along), DualFields{fields, change}, samples,
-             [&](std::size_t i, const auto& radiance) {
-               result[i] = {radiance[0].slope, radiance[1].slope, radiance[2].slope};
-             });
-  return result;
-}
-
-void Inside::gathered_adjoint(const InsideFields& fields, std::span<const glm::dvec3> weights,
-                              std::span<const ViewSample> samples, Parameters& gradient,
-                              InsideFields& by_fields) const {
+SparseRows Inside::gathered_rows(const InsideFields& fields, std::span<const ViewSample> samples) const {
+  const std::size_t tets = at.scattering.size(), vertices = fields.phi.size();
+  RowRecorder recorder(2 * tets + 3 * vertices);
+  const RecordedParameters by{{recorder, 0}, {recorder, tets}, {recorder, 0}};  // a ray reads no power
+  const auto field = [&](std::size_t number) { return RecordedInputs{recorder, 2 * tets + number * vertices}; };
   Tape tape;
   const Tape::Recording recording(tape);
-  gather_all(*this, TracedNumbers(at, gradient), TracedFields{fields, by_fields}, samples,
-             [&](std::size_t i, const auto& radiance) {
-               for (std::size_t c = 0; c < 3; ++c) tape.weigh(radiance[c], weights[i][static_cast<int>(c)]);
-               tape.back();
+  SparseRows rows;
+  gather_all(*this, TracedNumbers(at, by), TracedFields{fields, field(0), field(1), field(2)}, samples,
+             [&](std::size_t, const auto& radiance) {
+               record(tape, radiance, recorder, rows);
+               recorder.forget();
                tape.clear();
              });
+  return rows;
+}
+
+std::vector<glm::dvec3> InsideInputs::joined(const Parameters& parameters, std::span<const glm::dvec3> q) const {
+  std::vector<glm::dvec3> all;
+  all.reserve(count());
+  for (const auto* part : {&parameters.scattering, &parameters.absorption, &parameters.power}) {
+    all.insert(all.end(), part->begin(), part->end());
+  }
+  all.insert(all.end(), q.begin(), q.end());
+  return all;
+}
+
+void InsideInputs::add(std::span<const glm::dvec3> inputs, Parameters& parameters, std::span<glm::dvec3> q) const {
+  for (std::size_t t = 0; t < tets; ++t) {
+    parameters.scattering[t] += inputs[t];
+    parameters.absorption[t] += inputs[tets + t];
+  }
+  for (std::size_t i = 0; i < lights; ++i) parameters.power[i] += inputs[2 * tets + i];
+  for (std::size_t f = 0; f < again; ++f) q[f] += inputs[2 * tets + lights + f];
 }
 
 }  // namespace quadgraph

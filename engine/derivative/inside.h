@@ -1,6 +1,7 @@
 // Light inside a body and what view rays gather of it (engine/reference/radiance.h), with derivatives.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <span>
@@ -8,6 +9,7 @@
 
 #include "engine/derivative/parameters.h"
 #include "engine/derivative/source.h"
+#include "engine/derivative/sparse_rows.h"
 #include "engine/file/graph.h"
 #include "engine/reference/follower.h"
 
@@ -30,6 +32,19 @@ struct InsideFields {
       : phi(vertices, glm::dvec3(0)), entry(vertices, glm::dvec3(0)), depth(vertices, glm::dvec3(0)) {}
 };
 
+// What light inside depends on, one after the other, as inputs of the rows below: parameters, and what enters again.
+struct InsideInputs {
+  std::size_t tets = 0, lights = 0, again = 0;
+
+  InsideInputs(const Parameters& at, std::size_t faces)
+      : tets(at.scattering.size()), lights(at.power.size()), again(faces) {}
+
+  std::size_t count() const { return 2 * tets + lights + again; }
+  // `again`: per outside face, or empty where nothing enters again.
+  std::vector<glm::dvec3> joined(const Parameters& parameters, std::span<const glm::dvec3> q) const;
+  void add(std::span<const glm::dvec3> inputs, Parameters& parameters, std::span<glm::dvec3> q) const;
+};
+
 // A level, its parameters, and what rays need of its shape.
 struct Inside {
   const Level& level;
@@ -39,21 +54,13 @@ struct Inside {
 
   // Sets entry and depth.
   void uncollided(const Entering& light, InsideFields& fields) const;
-  // The same for their derivatives along a direction, and of what enters again.
-  void uncollided_tangent(const Parameters& along, const Entering& light, std::span<const glm::dvec3> again,
-                          InsideFields& fields) const;
-  // Adds the derivatives of weighted entries and depths to a gradient, and by what enters again.
-  void uncollided_adjoint(const InsideFields& weights, const Entering& light, Parameters& gradient,
-                          std::span<glm::dvec3> by_again) const;
+  // Their derivatives by InsideInputs: of each vertex a row for the entry and one for the depth.
+  SparseRows uncollided_rows(const Entering& light) const;
 
   // W/(mm^2 sr) per sample: gathered_radiance.
   std::vector<glm::dvec3> gathered(const InsideFields& fields, std::span<const ViewSample> samples) const;
-  // Its derivatives along a direction.
-  std::vector<glm::dvec3> gathered_tangent(const InsideFields& fields, const Parameters& along,
-                                           const InsideFields& change, std::span<const ViewSample> samples) const;
-  // Adds the derivatives of weighted samples to a gradient, and by the fields.
-  void gathered_adjoint(const InsideFields& fields, std::span<const glm::dvec3> weights,
-                        std::span<const ViewSample> samples, Parameters& gradient, InsideFields& by_fields) const;
+  // Its derivatives, a row a sample: by sigma_s' and sigma_a of the tets, then phi, entry and depth of the vertices.
+  SparseRows gathered_rows(const InsideFields& fields, std::span<const ViewSample> samples) const;
 };
 
 }  // namespace quadgraph

@@ -42,19 +42,10 @@ struct AgainLight {
   std::array<Real, 3> at(std::uint32_t f, std::uint32_t) const { return {Real(q[f][0]), Real(q[f][1]), Real(q[f][2])}; }
 };
 
-// The same with derivatives.
-struct DualAgainLight {
-  std::span<const glm::dvec3> q, slope;
-
-  std::array<Dual, 3> at(std::uint32_t f, std::uint32_t) const {
-    return {Dual(q[f][0], slope[f][0]), Dual(q[f][1], slope[f][1]), Dual(q[f][2], slope[f][2])};
-  }
-};
-
-// The same as inputs of the active tape.
+// The same as inputs of the active tape, whose rows are recorded.
 struct TracedAgainLight {
   std::span<const glm::dvec3> q;
-  std::span<glm::dvec3> by;
+  RecordedInputs by;
 
   std::array<Traced, 3> at(std::uint32_t f, std::uint32_t) const {
     Tape& tape = Tape::active();

@@ -18,6 +18,7 @@ namespace quadgraph {
 // `Medium` is one of medium.h. What the ray leaves goes to `Sink`, by channel, in W:
 //   scattered(carrier, channel, power), absorbed(channel, power), unscattered(face, channel, power) and
 //   trapped(channel, power), of light that stays in a clear region.
+// Before that it is told begins(power) of a ray and steps(tet, power), by channel, of each tet that it comes to.
 // A ray ends where each channel has kept less than `end` of its power.
 template <class Medium, class Sink>
 class Ray {
@@ -34,7 +35,9 @@ class Ray {
     direction_ = direction;
     power_ = power;
     for (std::size_t c = 0; c < 3; ++c) start_[c] = value_of(power[c]);
+    sink_.begins(power_);
     for (std::uint32_t step = 0; step < gpu::MAX_WALK_STEPS; ++step) {
+      sink_.steps(way_.tet(), power_);
       const TetRay::Exit exit = way_.find_exit(direction_);
       if (!exit.found) return stop();
       const bool clear = scatter(exit);
@@ -47,6 +50,7 @@ class Ray {
         if (kept_less_than(0)) return;
       }
     }
+    sink_.steps(way_.tet(), power_);
     stop();
   }
 

@@ -12,6 +12,8 @@ class Collect {
  public:
   explicit Collect(WalkResult& result) : result_(result) {}
 
+  void begins(const std::array<double, 3>&) {}
+  void steps(std::uint32_t, const std::array<double, 3>&) {}
   void entered(int c, double watt) { result_.entered[c] += watt; }
   void scattered(std::uint32_t carrier, int c, double watt) { result_.scattered[carrier][c] += watt; }
   void absorbed(int c, double watt) { result_.absorbed[c] += watt; }

@@ -36,6 +36,7 @@ SUBCOMMANDS = {
     "cache": "cache",
     "completion": "completion",
     "acquire": "acquire",
+    "devices": "device_list",
     "doctor": "doctor",
 }
 # The subcommands that quadgraph-validation brings along; their modules come through its entry points.

@@ -8,9 +8,13 @@ from __future__ import annotations
 import argparse
 import json
 from dataclasses import asdict
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.markup import escape
+
+if TYPE_CHECKING:
+    from quadgraph.commands.doctor_checks import Check
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -32,11 +36,16 @@ def run(args: argparse.Namespace) -> int:
         return 1 if wanting else 0
     console = Console(highlight=False, soft_wrap=True)
     for check in found:
-        state = "[green]ok[/]      " if check.ok else "[red]missing[/] " if check.needed else "[yellow]missing[/] "
-        optional = "" if check.ok or check.needed else " (optional)"
-        console.print(f"{state} {check.name:<16} {escape(check.found)}{optional}")
-        if check.cure:
-            console.print(f"{'':<26}cure: {escape(check.cure)}")
+        show(console, check)
     names = ", ".join(dict.fromkeys(check.name for check in wanting))
     console.print(f"baking and rendering do not work: {names}" if wanting else "baking and rendering work")
     return 1 if wanting else 0
+
+
+def show(console: Console, check: Check) -> None:
+    """Print a line, and one more if there is a cure."""
+    state = "[green]ok[/]      " if check.ok else "[red]missing[/] " if check.needed else "[yellow]missing[/] "
+    optional = "" if check.ok or check.needed else " (optional)"
+    console.print(f"{state} {check.name:<16} {escape(check.found)}{optional}")
+    if check.cure:
+        console.print(f"{'':<26}cure: {escape(check.cure)}")

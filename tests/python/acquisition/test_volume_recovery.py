@@ -24,7 +24,9 @@ from quadgraph.file import npz
 
 pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 
-VOLUME = ("sigma_a", "sigma_s_prime", "spacing", "origin", "eta", "sigma_a_deviation", "sigma_s_prime_deviation")
+COEFFICIENTS = ("sigma_a", "sigma_s_prime")
+STATED = [f"{name}_{what}" for name in COEFFICIENTS for what in ("deviation", "resolution")]
+VOLUME = (*COEFFICIENTS, "spacing", "origin", "eta", *STATED)
 SEED = 31
 SCATTERING, ABSORPTION = 0.7, 0.02
 SPOT, RADIUS = np.array([9.0, 3.0, 7.0]), 7.0  # mm: where it absorbs four times as much, near the front
@@ -91,6 +93,17 @@ def test_the_truth_lies_within_what_is_said_of_it(twin, found):
         assert 0.02 < np.median(deviation) < 0.3, name
 
 
+def test_resolution_lengths_are_finest_where_light_comes_near(twin, found):
+    """Below the surface, and not in the middle; nowhere below the grid's spacing."""
+    volume = npz.read(twin / "wax.npz", VOLUME)
+    radius = np.linalg.norm(places(volume) / [1, 0.8, 0.9], axis=-1)
+    for name in COEFFICIENTS:
+        length = volume[f"{name}_resolution"]
+        assert length.min() >= float(volume["spacing"])
+        near, middle = (np.median(length[chosen]) for chosen in ((radius > 12) & (radius < 17), radius < 7))
+        assert near < 0.8 * middle, name
+
+
 def test_a_volume_is_rendered_with_its_deviations_in_the_file(twin, found):
     command = [
         "render",
@@ -109,7 +122,8 @@ def test_the_page_shows_slices(twin, found, browser):
     browser.get((twin / "wax.html").as_uri())
     texts = "return Array.from(document.querySelectorAll('h3')).map(each => each.textContent)"
     titles = browser.execute_script(texts)
-    assert titles[:4] == ["sigma_a", "Deviation of sigma_a", "sigma_s_prime", "Deviation of sigma_s_prime"]
+    kinds = ("", "Deviation of ", "Resolution length of ")
+    assert titles[:6] == [f"{kind}{name}" for name in COEFFICIENTS for kind in kinds]
     assert not browser.get_log("browser")
 
 

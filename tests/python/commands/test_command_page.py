@@ -24,7 +24,7 @@ def parser():
 
 def test_new_commands_have_sections():
     sections = set(re.findall(r"^## `quadgraph (\w+)`$", PAGE, re.MULTILINE))
-    assert sections == {"turntable", "sheet", "compare", "materials", "doctor", "completion"}
+    assert sections == {"turntable", "sheet", "compare", "materials", "devices", "doctor", "completion"}
     assert sections <= set(cli.SUBCOMMANDS)
     assert {line.split()[1] for line in LINES} >= sections - {"completion"}
 
