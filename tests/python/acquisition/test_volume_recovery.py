@@ -225,3 +225,32 @@ def test_the_size_of_the_error_is_what_residuals_speak_for(setting):
         np.testing.assert_allclose(squares[1], local**2, rtol=0.1, atol=0.015)
     least = weights.estimated(noise * random.normal(size=error.shape), AT_FIRST)
     assert (np.concatenate(least) < 0.25).all()
+
+
+def test_schemes_are_those_of_volumes(twin, tmp_path, capsys):
+    command = ["acquire", str(twin / "capture.json"), "-o", str(tmp_path / "wax.npz")]
+    assert main([*command, "--scheme", "h1"]) == 1
+    assert "--scheme: found without --volume" in capsys.readouterr().err
+    assert main([*command, "--volume", "--scheme", "published", "--resume", str(tmp_path)]) == 1
+    assert "--resume: found with --scheme published, which keeps no steps" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("scheme", ["h1", "published"])
+def test_other_schemes_recover_too(twin, tmp_path, scheme):
+    """About: they are there to compare with."""
+    output, report = tmp_path / "wax.npz", tmp_path / "wax.json"
+    command = ["acquire", str(twin / "capture.json"), "-o", str(output), "--json", str(report), "--device", "cpu"]
+    main([*command, "--volume", "--spacing", "5", "--scheme", scheme])
+    said = json.loads(report.read_text())
+    assert (scheme == "published") == ("resolution" not in said["volume"])
+    assert (scheme == "published") == any("does not say how well" in line for line in said["undetermined"])
+    volume = npz.read(output, VOLUME)
+    points = places(volume)
+    spot = np.linalg.norm(points - SPOT, axis=-1) < RADIUS - 2
+    beside = (np.linalg.norm(points / [1, 0.8, 0.9], axis=-1) < 15) & (
+        np.linalg.norm(points - SPOT, axis=-1) > RADIUS + 4
+    )
+    assert np.median(volume["sigma_a"][spot]) > 1.2 * np.median(volume["sigma_a"][beside])
+    assert np.median(volume["sigma_s_prime"][beside]) == pytest.approx(SCATTERING, rel=0.3)
