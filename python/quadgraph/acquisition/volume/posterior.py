@@ -30,9 +30,8 @@ class Known(NamedTuple):
     resolved: np.ndarray
 
     def lengths(self, spacing: float) -> np.ndarray:
-        """(2, n, 3) resolution lengths on a grid of that spacing, in its unit; infinite where nothing is told."""
-        with np.errstate(divide="ignore"):
-            return spacing / np.cbrt(self.resolved)
+        """(2, n, 3) resolution lengths on a grid of that spacing, in its unit; at most of all n points together."""
+        return spacing / np.cbrt(np.maximum(self.resolved, 1 / self.resolved.shape[1]))
 
 
 def known(

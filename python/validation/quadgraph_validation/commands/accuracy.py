@@ -33,9 +33,10 @@ STUDIES = {
     "unseen": "unseen",
     "light": "light",
     "acquire": "acquire",
+    "volume": "volume",
 }
 
-_WIDE = ("dense", "unseen", "acquire")  # studies whose tables cannot be read narrower than this, characters
+_WIDE = ("dense", "unseen", "acquire", "volume")  # studies whose tables cannot be read narrower than this, characters
 _TABLE_WIDTH = 190
 
 # Studies of real bodies, which the CPU reference cannot stand in for, because only the engine does what they judge.
@@ -48,6 +49,7 @@ ON_ENGINE = {
     "unseen": "prints an error",
     "light": "prints an error",
     "acquire": "is what photographs are held against",
+    "volume": "is what photographs are held against",
 }
 
 _UNSEEN_WALKS, _ACQUIRE_WALKS = 2_000_000, 8192
@@ -66,7 +68,9 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     )
     _add_bodies_options(parser.add_argument_group("scenes, estimate, target, budget"))
     _add_scenes_options(parser.add_argument_group("scenes, unseen"))
-    _add_unseen_options(parser.add_argument_group("unseen; light takes --seed and --count, acquire --walks too"))
+    _add_unseen_options(
+        parser.add_argument_group("unseen; light and volume take --seed and --count, acquire --walks too")
+    )
 
 
 def _add_bodies_options(group: argparse._ArgumentGroup) -> None:
@@ -154,6 +158,10 @@ def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
         with Console(stderr=True).status("study: acquire") as status:
             wanted_acquire = study.AcquireRun(args.seed, args.count, args.walks or _ACQUIRE_WALKS, args.device)
             return study.run(wanted_acquire, lambda name: status.update(f"study: acquire, {name}"))
+    if args.study == "volume":
+        with Console(stderr=True).status("study: volume") as status:
+            wanted_volume = study.VolumeRun(args.seed, args.count, device=args.device)
+            return study.run(wanted_volume, lambda name: status.update(f"study: volume, {name}"))
     if args.study == "unseen":
         truths, sweeps = args.truth or cache_folder(), args.sweeps or (None,)
         wanted = study.UnseenRun(
