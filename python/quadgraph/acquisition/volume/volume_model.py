@@ -19,7 +19,7 @@ from quadgraph.acquisition.volume.volume_grid import VolumeGrid
 from quadgraph.acquisition.volume.volume_weights import Sizes, Weighing, Weights
 from quadgraph.base.errors import InputError
 
-LARGEST_LEVEL = 10_000  # tets of the level that derivatives are taken on, if there is one of so few
+LARGEST_LEVEL = 40_000  # tets of the level that derivatives are taken on, if there is one of so few
 MOST_SQUARES = 40_000
 MOST_POINTS = 6000  # of the grid: deviations are found with dense matrices
 
