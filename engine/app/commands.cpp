@@ -14,7 +14,8 @@ namespace {
 using S = State&;
 using W = const CommandContext&;
 
-constexpr float degrees = 7.5f, share = 0.04f;  // per key press: an angle, and a share of the body or the picture
+constexpr float key_degrees = 7.5f,
+                key_share = 0.04f;  // per key press: an angle, and a share of the body or the picture
 constexpr float brighter = 1.25f;
 constexpr int control = GLFW_MOD_CONTROL, shift = GLFW_MOD_SHIFT;
 
@@ -100,7 +101,7 @@ void next_axis(S s, W) {
 
 void move_plane(S s, W w, float steps) {
   float& offset = s.scene.render.show.offset;
-  offset = std::clamp(offset + steps * share * w.bounds.radius, -w.bounds.radius, w.bounds.radius);
+  offset = std::clamp(offset + steps * key_share * w.bounds.radius, -w.bounds.radius, w.bounds.radius);
 }
 
 void next_level(S s, W w) {
@@ -127,22 +128,22 @@ void reset_view(S s, W) {
 }
 
 constexpr auto table = std::to_array<Command>({
-    {"Left", GLFW_KEY_LEFT, 0, 0, "rotate the object left", [](S s, W w) { orbit(s, w, -degrees, 0); }},
-    {"Right", GLFW_KEY_RIGHT, 0, 0, "rotate the object right", [](S s, W w) { orbit(s, w, degrees, 0); }},
-    {"Up", GLFW_KEY_UP, 0, 0, "rotate the object up", [](S s, W w) { orbit(s, w, 0, degrees); }},
-    {"Down", GLFW_KEY_DOWN, 0, 0, "rotate the object down", [](S s, W w) { orbit(s, w, 0, -degrees); }},
-    {"Shift+Left", GLFW_KEY_LEFT, 0, shift, "pan left", [](S s, W w) { pan(s, w, -share, 0); }},
-    {"Shift+Right", GLFW_KEY_RIGHT, 0, shift, "pan right", [](S s, W w) { pan(s, w, share, 0); }},
-    {"Shift+Up", GLFW_KEY_UP, 0, shift, "pan up", [](S s, W w) { pan(s, w, 0, share); }},
-    {"Shift+Down", GLFW_KEY_DOWN, 0, shift, "pan down", [](S s, W w) { pan(s, w, 0, -share); }},
+    {"Left", GLFW_KEY_LEFT, 0, 0, "rotate the object left", [](S s, W w) { orbit(s, w, -key_degrees, 0); }},
+    {"Right", GLFW_KEY_RIGHT, 0, 0, "rotate the object right", [](S s, W w) { orbit(s, w, key_degrees, 0); }},
+    {"Up", GLFW_KEY_UP, 0, 0, "rotate the object up", [](S s, W w) { orbit(s, w, 0, key_degrees); }},
+    {"Down", GLFW_KEY_DOWN, 0, 0, "rotate the object down", [](S s, W w) { orbit(s, w, 0, -key_degrees); }},
+    {"Shift+Left", GLFW_KEY_LEFT, 0, shift, "pan left", [](S s, W w) { pan(s, w, -key_share, 0); }},
+    {"Shift+Right", GLFW_KEY_RIGHT, 0, shift, "pan right", [](S s, W w) { pan(s, w, key_share, 0); }},
+    {"Shift+Up", GLFW_KEY_UP, 0, shift, "pan up", [](S s, W w) { pan(s, w, 0, key_share); }},
+    {"Shift+Down", GLFW_KEY_DOWN, 0, shift, "pan down", [](S s, W w) { pan(s, w, 0, -key_share); }},
     {"Page Up, =", GLFW_KEY_PAGE_UP, GLFW_KEY_EQUAL, 0, "zoom in", [](S s, W w) { zoom(s, w, 1); }},
     {"Page Down, -", GLFW_KEY_PAGE_DOWN, GLFW_KEY_MINUS, 0, "zoom out", [](S s, W w) { zoom(s, w, -1); }},
     {"Home", GLFW_KEY_HOME, 0, 0, "reset the view: the whole object from its front", reset_view},
     {"L", GLFW_KEY_L, 0, 0, "next light", next_light},
-    {"Ctrl+Left", GLFW_KEY_LEFT, 0, control, "rotate the light left", [](S s, W w) { turn(s, w, -degrees, 0); }},
-    {"Ctrl+Right", GLFW_KEY_RIGHT, 0, control, "rotate the light right", [](S s, W w) { turn(s, w, degrees, 0); }},
-    {"Ctrl+Up", GLFW_KEY_UP, 0, control, "rotate the light up", [](S s, W w) { turn(s, w, 0, degrees); }},
-    {"Ctrl+Down", GLFW_KEY_DOWN, 0, control, "rotate the light down", [](S s, W w) { turn(s, w, 0, -degrees); }},
+    {"Ctrl+Left", GLFW_KEY_LEFT, 0, control, "rotate the light left", [](S s, W w) { turn(s, w, -key_degrees, 0); }},
+    {"Ctrl+Right", GLFW_KEY_RIGHT, 0, control, "rotate the light right", [](S s, W w) { turn(s, w, key_degrees, 0); }},
+    {"Ctrl+Up", GLFW_KEY_UP, 0, control, "rotate the light up", [](S s, W w) { turn(s, w, 0, key_degrees); }},
+    {"Ctrl+Down", GLFW_KEY_DOWN, 0, control, "rotate the light down", [](S s, W w) { turn(s, w, 0, -key_degrees); }},
     {"]", GLFW_KEY_RIGHT_BRACKET, 0, 0, "light brighter by a quarter", [](S s, W) { brighten(s, brighter); }},
     {"[", GLFW_KEY_LEFT_BRACKET, 0, 0, "light dimmer by a fifth", [](S s, W) { brighten(s, 1 / brighter); }},
     {"M", GLFW_KEY_M, 0, 0, "next material", [](S s, W) { next_material(s, 1); }},

@@ -10,7 +10,7 @@
 namespace quadgraph {
 namespace {
 
-constexpr float step = 0.875f;                      // of the distance, or of what is seen
+constexpr float closer = 0.875f;                    // of the distance, or of what is seen
 constexpr float nearest = 0.05f, farthest = 40.0f;  // radii
 
 }  // namespace
@@ -36,7 +36,7 @@ View zoomed(const View& view, const Sphere& bounds, float aspect, float steps) {
   const Camera camera = place_camera(view, bounds, aspect);
   const double size = camera.parallel ? 2 * camera.half_height : camera.distance;
   const float wanted =
-      std::clamp(static_cast<float>(size) * std::pow(step, steps), nearest * bounds.radius, farthest * bounds.radius);
+      std::clamp(static_cast<float>(size) * std::pow(closer, steps), nearest * bounds.radius, farthest * bounds.radius);
   View moved = by_angles(view, bounds);
   (camera.parallel ? moved.orthographic : moved.distance) = wanted;
   return moved;

@@ -3,7 +3,7 @@
 namespace quadgraph {
 namespace {
 
-constexpr std::size_t most = 1000;
+constexpr std::size_t most_kept = 1000;
 
 Scene seen_as(Scene scene, const Scene& other) {
   scene.view = other.view;
@@ -24,7 +24,7 @@ Scene step(const Scene& scene, Scene& now, std::vector<Scene>& from, std::vector
 void History::note(const Scene& scene) {
   if (seen_as(now_, scene) == scene) return;
   past_.push_back(std::move(now_));
-  if (past_.size() > most) past_.erase(past_.begin());
+  if (past_.size() > most_kept) past_.erase(past_.begin());
   future_.clear();
   now_ = scene;
 }

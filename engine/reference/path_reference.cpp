@@ -14,7 +14,7 @@ namespace quadgraph {
 namespace {
 
 // Lengths of the cells around one, by their places in a cube of 27.
-using Neighbours = std::array<double, 27>;
+using CellNeighbours = std::array<double, 27>;
 
 class Grid {
  public:
@@ -37,8 +37,8 @@ class Grid {
   // Cost of a path along a cell's side.
   double cost(std::size_t cell) const { return cells_.cell * static_cast<double>(cells_.cost[cell]); }
 
-  Neighbours around(std::size_t cell) const {
-    Neighbours found;
+  CellNeighbours around(std::size_t cell) const {
+    CellNeighbours found;
     found.fill(static_cast<double>(gpu::PATH_FAR));
     for (int k = 0; k < 27; ++k) {
       const std::int64_t other = neighbour(cell, k);
@@ -61,7 +61,7 @@ double distance_to(int k) {
 }
 
 // The least through the triangles of neighbours at distances 1, sqrt(2) and sqrt(3), and their edges.
-double through_triangles(const Neighbours& n, double cost) {
+double through_triangles(const CellNeighbours& n, double cost) {
   double best = static_cast<double>(gpu::PATH_FAR);
   for (int k = 0; k < 48; ++k) {
     const int first = k % 3, second = (first + 1 + k / 3 % 2) % 3, third = 3 - first - second;
@@ -78,7 +78,7 @@ double through_triangles(const Neighbours& n, double cost) {
   return best;
 }
 
-double through_neighbours(const Neighbours& n, double cost) {
+double through_neighbours(const CellNeighbours& n, double cost) {
   double best = static_cast<double>(gpu::PATH_FAR);
   for (int k = 0; k < 27; ++k) {
     if (k != 13) best = std::min(best, n[k] + cost * distance_to(k));
@@ -130,7 +130,7 @@ void relax(const Grid& grid, std::vector<double>& length) {
     const std::size_t cell = open.front();
     open.pop_front();
     waiting[cell] = false;
-    const Neighbours n = grid.around(cell);
+    const CellNeighbours n = grid.around(cell);
     const double cost = std::max(grid.cost(cell), 1e-30);
     const double found = std::min(through_neighbours(n, cost), through_triangles(n, cost));
     if (found >= length[cell]) continue;

@@ -47,7 +47,7 @@ py::array paths(const FloatArray& cost, const FloatArray& entering, float cell, 
   return in_cells(found, size, 3);
 }
 
-py::array reference(const FloatArray& cost, const FloatArray& start, float cell, const std::string& solver) {
+py::array reference_paths(const FloatArray& cost, const FloatArray& start, float cell, const std::string& solver) {
   const glm::uvec3 size = cells_of(cost, "cost");
   if (start.size() != cost.size()) throw InputError("start: as many values as cost has are wanted");
   const std::size_t count = static_cast<std::size_t>(cost.size()) / 3;
@@ -100,7 +100,7 @@ void bind_path(py::module_& module) {
              "large: 1/mm, below 0 where a cell is not solid (in all channels alike); entering: W/mm^2, of which the "
              "negative logarithm is the length at the start, 0: none; cell: mm; solver: eikonal or lattice. Sides are "
              "multiples of 8. Raises InputError, DeviceError.");
-  module.def("shortest_paths_reference", &reference, py::arg("cost"), py::arg("start"), py::arg("cell"),
+  module.def("shortest_paths_reference", &reference_paths, py::arg("cost"), py::arg("start"), py::arg("cell"),
              py::arg("solver") = solver,
              "The same in double precision on the CPU, from lengths at the start, PATH_FAR: none.");
   module.def("voxels", &voxels, py::arg("vertices"), py::arg("triangles"), py::arg("cells"), py::arg("device") = "",

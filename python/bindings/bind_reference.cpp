@@ -95,11 +95,11 @@ py::dict solution_dict(ReferenceSolution&& solution) {
   return d;
 }
 
-py::dict reference(const QuadGraph& graph, std::uint32_t index, const FloatArray& sigma_s_prime,
-                   const FloatArray& sigma_a, double eta, const FloatArray& q,
-                   const std::optional<std::array<float, 3>>& direction, const std::string& method,
-                   const std::string& solver, const std::string& source, const std::string& model, double tolerance,
-                   std::uint32_t max_iterations, bool stored) {
+py::dict reference_solution(const QuadGraph& graph, std::uint32_t index, const FloatArray& sigma_s_prime,
+                            const FloatArray& sigma_a, double eta, const FloatArray& q,
+                            const std::optional<std::array<float, 3>>& direction, const std::string& method,
+                            const std::string& solver, const std::string& source, const std::string& model,
+                            double tolerance, std::uint32_t max_iterations, bool stored) {
   const Level& level = level_of(graph, index);
   const SolveOptions options = options_from(method, solver, source, model, tolerance, max_iterations);
   const auto optical = optical_from(sigma_s_prime, sigma_a, level.node_count());
@@ -182,7 +182,7 @@ void bind_reference(py::module_& module) {
       py::arg("direction") = py::none(),
       "b of the buried source for irradiance q (n_f, 3) in W/mm^2 that travels along direction (3,) outside, None: "
       "Lambertian: (n, 3), or (n, 2, 3) with sp3.");
-  module.def("solve_reference", &reference, py::arg("graph"), py::arg("level"), py::arg("sigma_s_prime"),
+  module.def("solve_reference", &reference_solution, py::arg("graph"), py::arg("level"), py::arg("sigma_s_prime"),
              py::arg("sigma_a"), py::arg("eta"), py::arg("q"), py::arg("direction") = py::none(),
              py::arg("method") = name_of(usual.method), py::arg("solver") = name_of(usual.solver),
              py::arg("source") = name_of(usual.source), py::arg("model") = name_of(usual.model),

@@ -51,7 +51,7 @@ View view_of(const Engine& engine, const std::string& json, const std::string& t
   return text.empty() ? view : parse_view(text, view);
 }
 
-Picture render(Engine& engine, const std::string& json, const std::string& text) {
+Picture render_members(Engine& engine, const std::string& json, const std::string& text) {
   const View view = view_of(engine, json, text);
   const RenderOptions options = members(json).render;
   const py::gil_scoped_release release;
@@ -102,7 +102,7 @@ void set_volume(Engine& engine, const FloatArray& sigma_s_prime, const FloatArra
 }
 
 void bind_pictures(py::module_& module) {
-  module.def("render", &render, py::arg("engine"), py::arg("json"), py::arg("view") = "",
+  module.def("render", &render_members, py::arg("engine"), py::arg("json"), py::arg("view") = "",
              "As Engine.render, with the members `camera` and `picture` of a scene; view: a text in place of azimuth, "
              "elevation and distance. Raises InputError.");
   module.def(

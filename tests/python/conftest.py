@@ -16,6 +16,7 @@ if os.environ.get("PYTEST_XDIST_WORKER", "gw0") != "gw0":
 # Nor does a test depend on who runs it: no file of defaults is there.
 os.environ["XDG_CONFIG_HOME"] = os.devnull
 
+import fcntl
 import shutil
 from pathlib import Path
 
@@ -92,9 +93,14 @@ def bunny(bunny_path: Path) -> Surface:
 
 @pytest.fixture(scope="session")
 def bunny_qgraph(bunny_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The bundled bunny baked at 100 mm with 6000 vertices on its finest surface."""
-    path = tmp_path_factory.mktemp("bunny") / "bunny.qgraph"
-    bake(bunny_path, path, BakeOptions(height_mm=100.0, surface_vertices=6000))
+    """The bundled bunny baked at 100 mm with 6000 vertices on its finest surface, once for all workers."""
+    alone = "PYTEST_XDIST_WORKER" not in os.environ
+    folder = tmp_path_factory.getbasetemp() if alone else tmp_path_factory.getbasetemp().parent
+    path = folder / "bunny.qgraph"
+    with (folder / "bunny.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not path.exists():
+            bake(bunny_path, path, BakeOptions(height_mm=100.0, surface_vertices=6000))
     return path
 
 

@@ -11,7 +11,7 @@
 namespace quadgraph {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr std::uint32_t series_width = 512, series_height = 256;
 constexpr double sun_contrast = 16, sun_share = 0.01;
 const double sun_cone = std::cos(6 * pi / 180);

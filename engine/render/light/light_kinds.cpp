@@ -13,23 +13,22 @@ namespace {
 
 using Fields = std::vector<LightField>;
 
-constexpr float pi = std::numbers::pi_v<float>;
 constexpr Range positive{.low = 0, .high = largest_power};
 // Single precision cannot tell a narrower cone from its axis.
 constexpr double least_angle = 0.1;
 
-const LightField position{.name = "position",
-                          .text = "X,Y,Z",
-                          .form = FieldForm::point,
-                          .member = &Light::position,
-                          .unit = "mm",
-                          .help = "position of the light"};
-const LightField direction{.name = "direction",
-                           .text = "DX,DY,DZ",
-                           .form = FieldForm::direction,
-                           .member = &Light::direction,
-                           .unit = "",
-                           .help = "in which the light travels"};
+const LightField position_field{.name = "position",
+                                .text = "X,Y,Z",
+                                .form = FieldForm::point,
+                                .member = &Light::position,
+                                .unit = "mm",
+                                .help = "position of the light"};
+const LightField direction_field{.name = "direction",
+                                 .text = "DX,DY,DZ",
+                                 .form = FieldForm::direction,
+                                 .member = &Light::direction,
+                                 .unit = "",
+                                 .help = "in which the light travels"};
 
 LightField power(std::string_view name, std::string_view text, std::string_view unit, std::string_view help) {
   return {.name = name,
@@ -59,28 +58,28 @@ float itself(const Light&, float) {
 }
 
 float sphere(float distance) {
-  return 4 * pi * distance * distance;
+  return 4 * std::numbers::pi_v<float> * distance * distance;
 }
 
 LightForm directional() {
   return {.kind = LightKind::directional,
           .name = "directional",
           .help = "parallel light, like the sun's",
-          .fields = {direction, power("irradiance", "IRRADIANCE", "W/mm^2", "on a plane that faces the light")},
+          .fields = {direction_field, power("irradiance", "IRRADIANCE", "W/mm^2", "on a plane that faces the light")},
           .image = LightImage::none,
           .power_over_irradiance = itself,
           .check = nullptr};
 }
 
 LightForm point() {
-  return {
-      .kind = LightKind::point,
-      .name = "point",
-      .help = "isotropic light from a point",
-      .fields = {position, watts("sent out in all directions: at the distance d the irradiance is power / (4 pi d^2)")},
-      .image = LightImage::none,
-      .power_over_irradiance = [](const Light&, float distance) { return sphere(distance); },
-      .check = nullptr};
+  return {.kind = LightKind::point,
+          .name = "point",
+          .help = "isotropic light from a point",
+          .fields = {position_field,
+                     watts("sent out in all directions: at the distance d the irradiance is power / (4 pi d^2)")},
+          .image = LightImage::none,
+          .power_over_irradiance = [](const Light&, float distance) { return sphere(distance); },
+          .check = nullptr};
 }
 
 LightForm ambient() {
@@ -97,8 +96,8 @@ LightForm spot() {
   return {.kind = LightKind::spot,
           .name = "spot",
           .help = "a cone of light",
-          .fields = {position,
-                     along(direction, "axis of the cone"),
+          .fields = {position_field,
+                     along(direction_field, "axis of the cone"),
                      {.name = "angle",
                       .text = "ANGLE",
                       .form = FieldForm::number,
@@ -166,8 +165,8 @@ LightForm projector() {
   return {.kind = LightKind::projector,
           .name = "projector",
           .help = "an image projected onto planes perpendicular to the axis",
-          .fields = {position,
-                     along(direction, "to the middle of the image"),
+          .fields = {position_field,
+                     along(direction_field, "to the middle of the image"),
                      {.name = "angle",
                       .text = "ANGLE",
                       .form = FieldForm::number,
@@ -218,7 +217,7 @@ LightForm environment() {
                       .joined = true},
                      power("radiance", "RADIANCE", "W/(mm^2 sr)", "radiance of the value 1 in the image")},
           .image = LightImage::around,
-          .power_over_irradiance = [](const Light&, float) { return 1 / pi; },
+          .power_over_irradiance = [](const Light&, float) { return 1 / std::numbers::pi_v<float>; },
           .check = nullptr};
 }
 

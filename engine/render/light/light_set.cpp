@@ -10,7 +10,7 @@
 namespace quadgraph {
 namespace {
 
-constexpr float pi = std::numbers::pi_v<float>;
+using std::numbers::pi_v;
 
 // Gauss-Legendre nodes on [-1, 1] and weights that sum to 1: light from the four on either edge is exact where nothing
 // hides it, up to degree 7, and they divide the rectangle into patches as large as their weights.
@@ -99,13 +99,13 @@ gpu::LightRecord light_record(const Light& light) {
     case LightKind::spot:
       return {gpu::LIGHT_SPOT, light.position, axis_intensity(light), 0, 0};
     case LightKind::rectangle:
-      return {gpu::LIGHT_PATCH, light.position, light.power / pi, 0, 0};
+      return {gpu::LIGHT_PATCH, light.position, light.power / pi_v<float>, 0, 0};
     case LightKind::projector:
       return {gpu::LIGHT_PROJECTOR, light.position, light.power, 0, 0};
     case LightKind::point:
       break;
   }
-  return {gpu::LIGHT_POINT, light.position, light.power / (4 * pi), 0, 0};
+  return {gpu::LIGHT_POINT, light.position, light.power / (4 * pi_v<float>), 0, 0};
 }
 
 LightSet::LightSet(std::span<const Light> lights, const Sphere& bounds, const LightImages* images) : bounds_(bounds) {

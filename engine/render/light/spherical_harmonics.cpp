@@ -8,7 +8,7 @@
 namespace quadgraph {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 std::size_t triangle(int l, int m) {
   return static_cast<std::size_t>(l * (l + 1) / 2 + m);

@@ -12,8 +12,8 @@
 namespace quadgraph {
 namespace {
 
-constexpr float margin = 1.4f;  // of the map over the bounding sphere: where the shadow fades
-constexpr float reach = 0.15f;  // radii
+constexpr float shadow_margin = 1.4f;  // of the map over the bounding sphere: where the shadow fades
+constexpr float reach = 0.15f;         // radii
 
 constexpr std::uint64_t texels = std::uint64_t{gpu::GROUND_SIZE} * gpu::GROUND_SIZE;
 
@@ -55,7 +55,7 @@ void Ground::make_map(const DisplayBuffers& mesh, const Sphere& bounds, UpAxis u
   const int axis = axis_of(up);
   middle_ = bounds.centre;
   middle_[axis] = lowest(device_, mesh, axis);
-  half_width_ = margin * bounds.radius;
+  half_width_ = shadow_margin * bounds.radius;
   const float far = 2.02f * bounds.radius, size = gpu::GROUND_SIZE;
   device::Commands commands(device_);
   commands.draw({{}, &image_}, {0, 0, size, size}, below_,

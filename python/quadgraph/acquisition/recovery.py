@@ -26,6 +26,7 @@ from quadgraph.acquisition.volume.volume_options import VolumeOptions
 from quadgraph.api.materials import VolumeMaterial
 from quadgraph.base.errors import InputError
 from quadgraph.base.progress import ProgressCallback
+from quadgraph.mesh import mesh_names
 
 _ANYTHING = 5.0  # the same, from which on nothing is known of it
 _LIGHTS = 4  # sets of lights, by whose photographs a volume begins
@@ -274,11 +275,11 @@ class _ShareDone:
 @contextmanager
 def _body(capture: Capture, tell: ProgressCallback) -> Iterator[Path]:
     """The capture's body as a baked file: a mesh is baked, and kept for the next time."""
-    from quadgraph.baking import bare, kept
+    from quadgraph.baking import kept
     from quadgraph.baking.pipeline import BakeOptions
 
     stated = capture.unit is not None or capture.height_mm is not None
-    if not bare.is_mesh(capture.body):
+    if not mesh_names.is_mesh(capture.body):
         if stated:
             raise InputError(f"{capture.path}: unit: found for {capture.body.name}, allowed for meshes; leave it out")
         yield capture.body

@@ -13,13 +13,6 @@ from quadgraph.file import qgraph_file, sections
 from quadgraph.mesh import display_map, front, mesh_io
 from quadgraph.mesh.surface import SourceMesh
 
-SUFFIXES = mesh_io.SUFFIXES
-
-
-def is_mesh(path: Path) -> bool:
-    """Whether a file is a mesh, by its name."""
-    return path.suffix.lower() in SUFFIXES
-
 
 def write(
     mesh: Path,

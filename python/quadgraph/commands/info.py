@@ -15,7 +15,6 @@ from quadgraph.baking.budget import record
 from quadgraph.base.errors import FormatError
 from quadgraph.commands import device_memory
 from quadgraph.commands.bake import exchange_line, level_table
-from quadgraph.file import sections
 
 _LINE = 2000  # characters of a line that come from a file
 
@@ -50,7 +49,7 @@ def describe(file) -> dict[str, Any]:
 
     Angles in degrees, lengths in mm; node counts and dihedral angles per level; `exchange.summary` or None.
     """
-    from quadgraph.file import level_quality
+    from quadgraph.file import level_quality, sections
     from quadgraph.tets import exchange
 
     seen = sections.read_exchange(file)

@@ -14,6 +14,7 @@ from rich.console import Console
 from quadgraph.base.arguments import length_mm
 from quadgraph.base.errors import InputError
 from quadgraph.base.units import UNITS_MM
+from quadgraph.mesh import mesh_names
 
 _MEMBERS = {"unit": "unit", "height": "height_mm", "longest": "longest_mm", "wrap": "wrap"}  # of BakeOptions
 
@@ -59,9 +60,7 @@ def body(file: Path, args: argparse.Namespace, surface_only: bool) -> Iterator[P
     surface_only: without levels, which takes no time and any mesh; else baked, and kept for the next time. Progress is
     told on standard error. Raises InputError, ToolError.
     """
-    from quadgraph.baking import bare
-
-    if not bare.is_mesh(file):
+    if not mesh_names.is_mesh(file):
         if sizes(args):
             raise InputError(
                 f"{file}: --unit, --height, --longest and --wrap are for meshes; a baked file knows its size"
@@ -84,6 +83,8 @@ def body(file: Path, args: argparse.Namespace, surface_only: bool) -> Iterator[P
         return
     if getattr(args, "wrap", None) is not None:
         raise InputError("--wrap: found with --method shortest-path, which takes any mesh as it is")
+    from quadgraph.baking import bare
+
     with tempfile.TemporaryDirectory(prefix="quadgraph-") as folder:
         path = Path(folder) / f"{file.stem}.qgraph"
         note = bare.write(file, path, **sizes(args)).size_note

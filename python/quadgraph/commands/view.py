@@ -12,6 +12,7 @@ from pathlib import Path
 
 from quadgraph.base.errors import InputError
 from quadgraph.commands import own_mesh
+from quadgraph.mesh import mesh_names
 
 PROGRAM = "quadgraph-engine"
 
@@ -68,9 +69,7 @@ def _take_sizes(args: argparse.Namespace) -> None:
 
 def _bakes(file: Path, options: list[str]) -> bool:
     """Whether a window is asked for, of a mesh and by a method that solves in a baked body."""
-    from quadgraph.baking import bare
-
-    return bare.is_mesh(file) and not _by_shortest_path(options) and "--headless" not in options
+    return mesh_names.is_mesh(file) and not _by_shortest_path(options) and "--headless" not in options
 
 
 def _by_shortest_path(options: list[str]) -> bool:

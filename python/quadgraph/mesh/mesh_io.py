@@ -65,7 +65,6 @@ _READERS: dict[str, Callable[[Path], Arrays]] = {
     ".gltf": _read_gltf,
     ".glb": _read_gltf,
 }
-SUFFIXES = tuple(_READERS)
 
 
 def read_surface(

@@ -12,6 +12,7 @@ import trimesh
 
 from quadgraph.base.errors import InputError
 from quadgraph.mesh.mesh_io import read_surface, stood_up
+from quadgraph.mesh.mesh_names import SUFFIXES
 from quadgraph.mesh.surface import Surface
 from shapes import cube, icosphere
 
@@ -35,10 +36,10 @@ def write(surface: Surface, path: Path) -> Path:
     return path
 
 
-@pytest.mark.parametrize("extension", ["obj", "ply", "stl", "off", "glb", "gltf"])
+@pytest.mark.parametrize("extension", SUFFIXES)
 def test_formats_agree(tmp_path: Path, extension: str) -> None:
     sphere = icosphere(2, 3)
-    path = write(sphere, tmp_path / f"ball.{extension}")
+    path = write(sphere, tmp_path / f"ball{extension}")
     source = read_surface(path, unit="cm")
     assert (source.vertices, source.triangles, source.unit_mm) == (162, 320, 10.0)
     assert source.surface.volume == pytest.approx(1000 * sphere.volume, rel=1e-6)
