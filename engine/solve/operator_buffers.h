@@ -24,8 +24,9 @@ struct Load {
 struct OperatorBuffers {
   Model model = Model::diffusion;
   EntryFormat format = EntryFormat::packed;
-  std::uint32_t count = 0;    // rows: carriers, each with one unknown or, in SP3, two
-  std::uint32_t entries = 0;  // off the diagonal, padding included
+  EntryFormat stored = EntryFormat::packed;  // how entries lie: plain where they are packed for accuracy's sake alone
+  std::uint32_t count = 0;                   // rows: carriers, each with one unknown or, in SP3, two
+  std::uint32_t entries = 0;                 // off the diagonal, padding included
   std::uint32_t slice_rows = 0, slices = 0;
   device::Buffer slice_offset, entry, row_sum, diagonal;  // RowsRef; no diagonal with compact_rows
   device::Buffer to_phi;                                  // vec3 per row; none with fem: 1
@@ -82,7 +83,7 @@ struct OperatorBuffers {
   // Read for the diagonal of a row, and of a row's sum and diagonal together.
   std::uint64_t block_bytes() const;
   std::uint64_t row_bytes() const { return (compact_rows() ? 1 : 2) * block_bytes(); }
-  std::uint64_t entry_bytes() const { return stored_words(model, format) * sizeof(std::uint32_t); }
+  std::uint64_t entry_bytes() const { return stored_words(model, stored) * sizeof(std::uint32_t); }
 
   gpu::RowsRef rows() const;
   gpu::RightHandSideRef right_hand_side(const device::Buffer& reduction) const;
