@@ -62,6 +62,7 @@ OperatorBuffers::OperatorBuffers(device::Device& device, const Level& level, std
   p = field("p");
   product = field("product");
   if (fem) z = field("z");
+  if (fem) majorant = buffer(count * majorant_bytes(), rows, "majorant");
   if (index > 0) before = field("x before");
   unit = buffer(sizeof(glm::vec3), vectors, "unit of x");
   surface_first = on_vertices(method) ? 0 : level.tet_count();
