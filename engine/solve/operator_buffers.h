@@ -24,7 +24,7 @@ struct Load {
 struct OperatorBuffers {
   Model model = Model::diffusion;
   EntryFormat format = EntryFormat::packed;
-  EntryFormat stored = EntryFormat::packed;  // how entries lie: plain where they are packed for accuracy's sake alone
+  EntryFormat stored = EntryFormat::packed;  // how entries lie: UNPACKED_ENTRIES of packing.h as plain ones
   std::uint32_t count = 0;                   // rows: carriers, each with one unknown or, in SP3, two
   std::uint32_t entries = 0;                 // off the diagonal, padding included
   std::uint32_t slice_rows = 0, slices = 0;
