@@ -95,8 +95,6 @@ QG_BUILTIN(roundEven, rintf);
 QG_BUILTIN(abs, fabsf);
 #endif
 QG_BUILTIN(round, roundf);
-QG_BUILTIN(log, logf);
-QG_BUILTIN(log2, log2f);
 QG_BUILTIN(sin, sinf);
 QG_BUILTIN(cos, cosf);
 QG_BUILTIN(tan, tanf);

@@ -33,8 +33,8 @@ void wait_while(const std::atomic<T>& variable, T value) {
 
 }  // namespace
 
-ThreadPool::ThreadPool(unsigned threads) {
-  for (unsigned k = 1; k < (threads == 0 ? usable_cores() : threads); ++k) others_.emplace_back([this] { serve(); });
+ThreadPool::ThreadPool(unsigned threads) : shares_(threads == 0 ? usable_cores() : threads) {
+  for (std::size_t k = 1; k < shares_.size(); ++k) others_.emplace_back([this, k] { serve(k); });
 }
 
 ThreadPool::~ThreadPool() {
@@ -48,22 +48,36 @@ ThreadPool::~ThreadPool() {
   round_.notify_all();
 }
 
-void ThreadPool::take_parts() {
-  for (;;) {
-    const std::uint64_t begin = next_.fetch_add(part_, std::memory_order_relaxed);
-    if (begin >= count_) return;
-    const std::uint64_t end = std::min<std::uint64_t>(begin + part_, count_);
-    (*work_)(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end));
+// Whole parts, as many to each as to the others, but for the last.
+void ThreadPool::hand_out() {
+  const std::uint64_t parts = (std::uint64_t{count_} + part_ - 1) / part_, threads = shares_.size();
+  std::uint64_t begin = 0;
+  for (Share& share : shares_) {
+    share.next.store(begin, std::memory_order_relaxed);
+    begin = std::min<std::uint64_t>(begin + (parts + threads - 1) / threads * part_, count_);
+    share.end = begin;
   }
 }
 
-void ThreadPool::serve() {
+void ThreadPool::take_parts(std::size_t thread) {
+  for (std::size_t k = 0; k < shares_.size(); ++k) {
+    Share& share = shares_[(thread + k) % shares_.size()];
+    while (share.next.load(std::memory_order_relaxed) < share.end) {
+      const std::uint64_t begin = share.next.fetch_add(part_, std::memory_order_relaxed);
+      if (begin >= share.end) break;
+      const std::uint64_t end = std::min<std::uint64_t>(begin + part_, share.end);
+      (*work_)(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end));
+    }
+  }
+}
+
+void ThreadPool::serve(std::size_t thread) {
   const DenormalsAreZero denormals;
   for (std::uint32_t seen = 0;;) {
     wait_while(round_, seen);
     seen = round_.load(std::memory_order_acquire);
     if (ends_) return;
-    take_parts();
+    take_parts(thread);
     if (busy_.fetch_sub(1, std::memory_order_acq_rel) == 1) busy_.notify_all();
   }
 }
@@ -80,11 +94,11 @@ void ThreadPool::run(std::uint32_t count, std::uint32_t part,
   work_ = &work;
   count_ = count;
   part_ = part;
-  next_.store(0, std::memory_order_relaxed);
+  hand_out();
   busy_.store(static_cast<std::uint32_t>(others_.size()), std::memory_order_relaxed);
   round_.fetch_add(1, std::memory_order_release);
   round_.notify_all();
-  take_parts();
+  take_parts(0);
   for (std::uint32_t left = busy_.load(std::memory_order_acquire); left != 0;) {
     wait_while(busy_, left);
     left = busy_.load(std::memory_order_acquire);

@@ -21,19 +21,27 @@ class ThreadPool {
 
   unsigned threads() const { return static_cast<unsigned>(others_.size()) + 1; }
 
-  // Calls work(begin, end) for parts of [0, count), of at most `part` and each once, on all threads; waits for them.
+  // Calls work(begin, end) for parts of [0, count), of at most `part` and each once, on all threads; waits for them. A
+  // thread works on the same stretch in every call with the same numbers, which its cache holds then, and after it on
+  // what others have left of theirs.
   // One call at a time, and not from within `work`. What throws ends the program. Denormals are zero in `work`.
   void run(std::uint32_t count, std::uint32_t part, const std::function<void(std::uint32_t, std::uint32_t)>& work);
 
  private:
-  void take_parts();
-  void serve();
+  struct alignas(64) Share {  // of a thread: its own cache line
+    std::atomic<std::uint64_t> next{0};
+    std::uint64_t end = 0;
+  };
+
+  void hand_out();
+  void take_parts(std::size_t thread);
+  void serve(std::size_t thread);
 
   pid_t process_ = getpid();
+  std::vector<Share> shares_;  // the caller's first
   std::vector<std::jthread> others_;
   const std::function<void(std::uint32_t, std::uint32_t)>* work_ = nullptr;
   std::uint32_t count_ = 0, part_ = 1;
-  std::atomic<std::uint64_t> next_{0};
   std::atomic<std::uint32_t> round_{0};  // grows by one with every run
   std::atomic<std::uint32_t> busy_{0};   // others that have not finished it
   std::atomic<bool> ends_{false};

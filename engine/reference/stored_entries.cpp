@@ -10,10 +10,16 @@
 namespace quadgraph {
 namespace {
 
-constexpr int diffusion_bits = 12;
-
 // See format_of.
 constexpr double largest_entry = 1000, largest_conduction = 4000, most_vertices = 0.01, mean_conduction = 25;
+
+// The word of a plain entry that holds its column, and those of its blocks.
+std::size_t plain_column(bool sp3) {
+  return sp3 ? 0 : 3;
+}
+std::size_t plain_blocks(bool sp3) {
+  return sp3 ? 1 : 0;
+}
 
 void store_plain(std::uint32_t* words, const glm::dvec3& block) {
   for (int c = 0; c < 3; ++c) words[c] = glm::floatBitsToUint(static_cast<float>(block[c]));
@@ -74,10 +80,11 @@ EntryFormat format_of(const Level& level, Method method) {
 
 std::vector<std::uint32_t> stored_columns(std::span<const std::uint32_t> columns, Model model, EntryFormat format) {
   const bool split = format == EntryFormat::packed && model != Model::sp3;
+  const std::size_t place = format == EntryFormat::plain ? plain_column(model == Model::sp3) : 0;
   const std::uint32_t words = stored_words(model, format);
   std::vector<std::uint32_t> stored(words * columns.size(), 0);
   for (std::size_t e = 0; e < columns.size(); ++e) {
-    stored[words * e] = split ? columns[e] & 0xfffffu : columns[e];
+    stored[words * e + place] = split ? columns[e] & 0xfffffu : columns[e];
     if (split) stored[words * e + 1] = columns[e] >> 20u;
   }
   return stored;
@@ -87,7 +94,7 @@ void store_weight(std::span<std::uint32_t> words, std::size_t e, const Block& we
   std::uint32_t* w = &words[stored_words(model, format) * e];
   const bool sp3 = model == Model::sp3;
   if (format == EntryFormat::plain) {
-    store_plain(w + 1, weight.a11);
+    store_plain(w + plain_blocks(sp3), weight.a11);
     if (sp3) store_plain(w + 4, weight.a12);
     if (sp3) store_plain(w + 7, weight.a22);
   } else if (sp3) {
@@ -97,7 +104,7 @@ void store_weight(std::span<std::uint32_t> words, std::size_t e, const Block& we
     const glm::uvec4 packed = gpu::pack_sp3(w[0] & 0x3fffffu, block);
     for (int k = 0; k < 4; ++k) w[k] = packed[k];
   } else {
-    const gpu::PackedBlock block = gpu::pack(glm::vec3(weight.a11), diffusion_bits);
+    const gpu::PackedBlock block = gpu::pack(glm::vec3(weight.a11), gpu::DIFFUSION_BITS);
     const glm::uvec3 n = glm::uvec3(block.number) & 0xfffu;
     w[0] = (w[0] & 0xfffffu) | n.x << 20u;
     w[1] = (w[1] & 3u) | block.exponent << 2u | n.y << 8u | n.z << 20u;
@@ -107,7 +114,7 @@ void store_weight(std::span<std::uint32_t> words, std::size_t e, const Block& we
 StoredEntry stored_entry(std::span<const std::uint32_t> words, std::size_t e, Model model, EntryFormat format) {
   const std::uint32_t* w = &words[stored_words(model, format) * e];
   if (format == EntryFormat::plain) {
-    if (model != Model::sp3) return {w[0], {plain_block(w + 1), {}, {}}};
+    if (model != Model::sp3) return {w[plain_column(false)], {plain_block(w + plain_blocks(false)), {}, {}}};
     return {w[0], {plain_block(w + 1), plain_block(w + 4), plain_block(w + 7)}};
   }
   if (model != Model::sp3) {

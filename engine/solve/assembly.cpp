@@ -13,6 +13,7 @@
 #include "interface/assemble/eigenvalue_bound.comp.h"
 #include "interface/assemble/grid_material.comp.h"
 #include "interface/assemble/irradiance_scale.comp.h"
+#include "interface/assemble/majorant.comp.h"
 #include "interface/assemble/right_hand_side_fdm.comp.h"
 #include "interface/assemble/right_hand_side_fem.comp.h"
 #include "interface/assemble/right_hand_side_fv.comp.h"
@@ -273,17 +274,21 @@ void record_assembly(Workspace& work, const LevelBuffers& level, Method method, 
 }
 
 void record_rows(Workspace& work, const LevelBuffers& level, Method method, const Boundary& boundary, bool even,
-                 bool damped, OperatorBuffers& op) {
+                 StepBound bound, OperatorBuffers& op) {
   if (!op.assembled || !same(*op.assembled, boundary)) {
     record_assembly(work, level, method, boundary, even, op);
     op.assembled = boundary;
-    op.damped = false;
+    op.damped = op.majorised = false;
     op.weighed = false;
     op.loaded.reset();
   }
-  if (!op.damped && damped) {
+  if (!op.damped && bound == StepBound::damping) {
     record_damping(work, method, op);
     op.damped = true;
+  }
+  if (!op.majorised && bound == StepBound::majorant) {
+    record_majorant(work, op);
+    op.majorised = true;
   }
 }
 
@@ -338,6 +343,12 @@ void record_damping(Workspace& work, Method method, OperatorBuffers& op) {
                            op.product_bytes() + op.count * (op.block_bytes() + 2 * op.field_bytes()));
     std::swap(y, z);
   }
+}
+
+void record_majorant(Workspace& work, OperatorBuffers& op) {
+  const gpu::MajorantPush push{.rows = op.rows(), .majorant = op.majorant.address(), .count = op.count};
+  work.recorder.dispatch(work.passes.of(shader::majorant, op.model, op.format), push, op.count, "eigenvalue bound",
+                         op.entries * op.entry_bytes() + op.count * (op.block_bytes() + op.majorant_bytes()));
 }
 
 }  // namespace quadgraph

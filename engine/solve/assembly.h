@@ -28,10 +28,12 @@ void record_edits(Workspace& work, const LevelBuffers& level, const device::Buff
 void record_assembly(Workspace& work, const LevelBuffers& level, Method method, const Boundary& boundary, bool even,
                      OperatorBuffers& op);
 
-// record_assembly, unless op has rows of these coefficients and this boundary; with `damped` what record_damping finds,
-// too.
+// What keeps the steps of a solver from growing: record_damping or record_majorant.
+enum class StepBound { none, damping, majorant };
+
+// record_assembly, unless op has rows of these coefficients and this boundary, and what `bound` asks for.
 void record_rows(Workspace& work, const LevelBuffers& level, Method method, const Boundary& boundary, bool even,
-                 bool damped, OperatorBuffers& op);
+                 StepBound bound, OperatorBuffers& op);
 
 // The scale of the whole solve, from q of the finest level.
 void record_scale(Workspace& work, const LevelBuffers& finest);
@@ -45,6 +47,9 @@ void record_surface_load(Workspace& work, const LevelBuffers& level, std::uint64
 
 // The step of the relaxation: 1 for the graph methods, as published; for fem the largest that cannot diverge.
 void record_damping(Workspace& work, Method method, OperatorBuffers& op);
+
+// The blocks that the smoother of cycles divides by (MajorantPush); fem only.
+void record_majorant(Workspace& work, OperatorBuffers& op);
 
 gpu::Boundary on_device(const Boundary& boundary);
 

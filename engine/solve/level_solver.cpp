@@ -4,7 +4,6 @@
 #include <cstddef>
 
 #include "engine/base/error.h"
-#include "engine/solve/assembly.h"
 #include "interface/solver/cg_direction.comp.h"
 #include "interface/solver/cg_multiply.comp.h"
 #include "interface/solver/cg_start.comp.h"
@@ -42,15 +41,30 @@ SolverRules rules_of(SolverKind solver) {
     case SolverKind::automatic:
       break;
     case SolverKind::vcycle:
-      return {.step = cycle, .cycles = true, .smoothing = 2, .window = 1, .batch = 8, .looks = {1, 0.1f, 2, 0.9f}};
+      return {.step = cycle,
+              .cycles = true,
+              .bound = StepBound::majorant,
+              .smoothing = 2,
+              .window = 1,
+              .batch = 8,
+              .looks = {1, 0.1f, 2, 0.9f}};
     case SolverKind::dpcg:
-      return {.step = conjugate_gradients, .damped = false, .window = 8, .batch = 32, .looks = {2, 0.25f, 0, 1.0f}};
+      return {.step = conjugate_gradients,
+              .bound = StepBound::none,
+              .window = 8,
+              .batch = 32,
+              .looks = {2, 0.25f, 0, 1.0f}};
     case SolverKind::cascade:
       return {.step = sweep, .any_matrix = true, .window = 8, .batch = 64, .looks = {3, 0.1f, 0, 1.0f}};
     case SolverKind::jacobi:
       return {.step = sweep, .any_matrix = true, .alone = true, .window = 8, .batch = 64, .looks = {3, 0.1f, 0, 1.0f}};
   }
-  return {.step = conjugate_gradients, .cycles = true, .window = 1, .batch = 8, .looks = {1, 0.1f, 3, 0.7f}};
+  return {.step = conjugate_gradients,
+          .cycles = true,
+          .bound = StepBound::majorant,
+          .window = 1,
+          .batch = 8,
+          .looks = {1, 0.1f, 3, 0.7f}};
 }
 
 LevelSolver::LevelSolver(Workspace& work, Operators& operators, const OperatorKey& key, std::uint32_t level,
@@ -128,6 +142,11 @@ void LevelSolver::record_surface(const device::Buffer& x, const device::Buffer& 
 
 void LevelSolver::record_origin(const device::Buffer& x) {
   record_surface(x, op().surface_start, gpu::SURFACE_STORE);
+}
+
+void LevelSolver::record_relaxation() {
+  multigrid_->record_relaxation(level_);
+  entries_ += op().entries;
 }
 
 void LevelSolver::record_start() {

@@ -6,6 +6,7 @@
 
 #include "engine/optics/boundary.h"
 #include "engine/reference/solution.h"
+#include "engine/solve/assembly.h"
 #include "engine/solve/multigrid.h"
 #include "engine/solve/operators.h"
 #include "engine/solve/workspace.h"
@@ -35,10 +36,10 @@ struct SolverLooks {
 // What makes a kind of solver: all that the rest of the engine asks of it.
 struct SolverRules {
   enum class Step { conjugate_gradients, cycle, sweep } step;
-  bool cycles = false;          // it needs coarser levels and a symmetric matrix
-  bool any_matrix = false;      // it takes one that is not symmetric
-  bool alone = false;           // it starts from nothing on the finest level, else from the coarsest level on
-  bool damped = true;           // it needs a bound of the eigenvalues
+  bool cycles = false;      // it needs coarser levels and a symmetric matrix
+  bool any_matrix = false;  // it takes one that is not symmetric
+  bool alone = false;       // it starts from nothing on the finest level, else from the coarsest level on
+  StepBound bound = StepBound::damping;
   std::uint32_t smoothing = 1;  // steps that are cheapest for it
   std::uint32_t window;  // iterations between two looks at the surface; of sweeps an even number, as x is then last
   std::uint32_t batch;   // iterations in one submission where the host decides whether to go on
@@ -56,6 +57,9 @@ class LevelSolver {
 
   // Notes the exitance of `x` as that of the start, for record_difference.
   void record_origin(const device::Buffer& x);
+
+  // One step of the smoother on an x that was interpolated; of solvers with cycles.
+  void record_relaxation();
 
   // The residual of x, and the gates.
   void record_start();

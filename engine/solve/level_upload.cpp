@@ -7,9 +7,10 @@
 namespace quadgraph {
 namespace {
 
-// A transfer by columns: the places of the weights of column r, from offset[r] to offset[r + 1].
+// A transfer by columns: the entries of column r, from offset[r] to offset[r + 1].
 struct Transposed {
-  std::vector<std::uint32_t> offset, place;
+  std::vector<std::uint32_t> offset;
+  std::vector<gpu::TransposedEntry> entry;
 };
 
 Transposed transposed(const Transfer& transfer, std::uint32_t columns) {
@@ -19,10 +20,12 @@ Transposed transposed(const Transfer& transfer, std::uint32_t columns) {
     if (transfer.weight[k] > 0) ++back.offset[transfer.index[k] + 1];
   }
   for (std::uint32_t i = 0; i < columns; ++i) back.offset[i + 1] += back.offset[i];
-  back.place.resize(back.offset.back());
+  back.entry.resize(back.offset.back());
   std::vector<std::uint32_t> next(back.offset.begin(), back.offset.end() - 1);
   for (std::size_t k = 0; k < transfer.index.size(); ++k) {
-    if (transfer.weight[k] > 0) back.place[next[transfer.index[k]]++] = static_cast<std::uint32_t>(k);
+    if (transfer.weight[k] == 0) continue;
+    const auto row = static_cast<std::uint32_t>(k / transfer.width);
+    back.entry[next[transfer.index[k]]++] = {row, transfer.weight[k]};
   }
   return back;
 }
@@ -84,7 +87,7 @@ TransferBuffers::TransferBuffers(device::Device& device, const Level& level, con
     add(level.barycentric, "barycentric", 0, 0);
     const Transposed back = transposed(level.barycentric, coarse.vertex_count());
     back_offset = device::upload<std::uint32_t>(device, back.offset, prefix + "barycentric_back_offset");
-    back_place = device::upload<std::uint32_t>(device, back.place, prefix + "barycentric_back_place");
+    back_entry = device::upload<gpu::TransposedEntry>(device, back.entry, prefix + "barycentric_back_entry");
   } else {
     add(level.inner, "inner", 0, 0);
     add(level.surface, "surface", level.tet_count(), coarse.tet_count());

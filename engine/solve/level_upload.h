@@ -26,7 +26,7 @@ struct TransferBuffers {
     std::uint32_t width = 0, first = 0, coarse_first = 0, count = 0;
   };
   std::vector<Part> parts;
-  device::Buffer back_offset, back_place;  // the transpose (RestrictPush); fem only
+  device::Buffer back_offset, back_entry;  // the transpose (RestrictPush); fem only
 
   TransferBuffers(device::Device& device, const Level& level, const Level& coarse, std::uint32_t number, Method method);
 };

@@ -138,7 +138,7 @@ void LevelsSolver::record_load_again(std::uint32_t level) {
 
 void LevelsSolver::record_setup(std::uint32_t level) {
   record_rows(parts_.work, parts_.levels[level], key_.method, boundary_, parts_.coefficients.even(),
-              rules_of(report_.solver).damped, op(level));
+              rules_of(report_.solver).bound, op(level));
 }
 
 void LevelsSolver::record_light(std::uint32_t level) {
@@ -161,6 +161,7 @@ void LevelsSolver::record_first(std::uint32_t level) {
     const OperatorBuffers& rows = op(level);
     record_surface_dimmest(parts_.work, rows.surface_start, rows.surface_share, rows.surface_count);
   }
+  if (cycles() && !alone && !warm_ && level == finest_) solvers_[level]->record_relaxation();
   if (warm_) {
     parts_.operators.record_follow(parts_.work, key_, level, !alone);
   } else if (alone) {

@@ -1,5 +1,5 @@
 // One V-cycle on the device: z ~ A^-1 r, linear in r, symmetric and positive, so that conjugate gradients take it as a
-// preconditioner. Smoothing is Chebyshev's iteration preconditioned by the diagonal blocks; coarse operators are
+// preconditioner. Smoothing is Chebyshev's iteration preconditioned by diagonal blocks; coarse operators are
 // assembled anew on every level; the transfer is clamped barycentric, the restriction its transpose.
 #pragma once
 
@@ -28,12 +28,17 @@ class Multigrid {
 
   void did(std::uint32_t top, std::uint32_t cycles) const;
 
+  // One step of the smoother on the level's x, for its b, which an x that was interpolated needs most: it leaves less
+  // of what changes from vertex to vertex.
+  void record_relaxation(std::uint32_t level);
+
   // Entries multiplied in one cycle.
   double entries(std::uint32_t top) const;
 
  private:
   OperatorBuffers& op(std::uint32_t level) const { return operators_.at(key_, level); }
   std::uint32_t coarsest() const { return operators_.count(key_) - 1; }
+  double coarse_across() const;  // vertices across the body on the coarsest level
   std::uint32_t coarse_steps() const;
   std::uint64_t smoothing_bytes(const OperatorBuffers& op) const;
 

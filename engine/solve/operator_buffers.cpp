@@ -42,6 +42,8 @@ OperatorBuffers::OperatorBuffers(device::Device& device, const Level& level, std
   const auto field = [&](const char* name) { return buffer(count * field_bytes(), "solver/", name); };
   const std::string rows = "operator/", vectors = "solver/";
   const bool fem = method == Method::fem;
+  const bool unpacked = device.one_by_one() && model != Model::sp3;  // UNPACKED_ENTRIES of packing.h
+  stored = unpacked ? EntryFormat::plain : format;
   slice_rows = device.one_by_one() ? 1 : SLICE_ROWS;
   const SlicedColumns columns = fem               ? slice(vertex_neighbours(level), slice_rows)
                                 : on_grid(method) ? grid_columns(level, slice_rows)
@@ -51,7 +53,7 @@ OperatorBuffers::OperatorBuffers(device::Device& device, const Level& level, std
   entries = static_cast<std::uint32_t>(columns.column.size());
   slices = static_cast<std::uint32_t>(columns.slice_offset.size() - 1);
   slice_offset = upload(device, columns.slice_offset, rows + prefix_ + "slice_offset");
-  entry = upload(device, stored_columns(columns.column, model, format), rows + prefix_ + "entry");
+  entry = upload(device, stored_columns(columns.column, model, stored), rows + prefix_ + "entry");
   row_sum = block("row_sum");
   if (!compact_rows()) diagonal = block("diagonal");
   b = field("b");
@@ -60,6 +62,7 @@ OperatorBuffers::OperatorBuffers(device::Device& device, const Level& level, std
   p = field("p");
   product = field("product");
   if (fem) z = field("z");
+  if (fem) majorant = buffer(count * majorant_bytes(), rows, "majorant");
   if (index > 0) before = field("x before");
   unit = buffer(sizeof(glm::vec3), vectors, "unit of x");
   surface_first = on_vertices(method) ? 0 : level.tet_count();

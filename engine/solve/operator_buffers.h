@@ -24,10 +24,12 @@ struct Load {
 struct OperatorBuffers {
   Model model = Model::diffusion;
   EntryFormat format = EntryFormat::packed;
-  std::uint32_t count = 0;    // rows: carriers, each with one unknown or, in SP3, two
-  std::uint32_t entries = 0;  // off the diagonal, padding included
+  EntryFormat stored = EntryFormat::packed;  // how entries lie: UNPACKED_ENTRIES of packing.h as plain ones
+  std::uint32_t count = 0;                   // rows: carriers, each with one unknown or, in SP3, two
+  std::uint32_t entries = 0;                 // off the diagonal, padding included
   std::uint32_t slice_rows = 0, slices = 0;
   device::Buffer slice_offset, entry, row_sum, diagonal;  // RowsRef; no diagonal with compact_rows
+  device::Buffer majorant;                                // Entry per row (MajorantPush); fem only
   device::Buffer to_phi;                                  // vec3 per row; none with fem: 1
   device::Buffer b, x;                                    // scaled (gpu::Scale)
   device::Buffer r, p;                                    // residual, direction
@@ -36,7 +38,7 @@ struct OperatorBuffers {
   device::Buffer before;    // x of the last solve, on levels that have a finer one
   device::Buffer unit;      // vec3: the scale that x has
   device::Buffer state, state_on_host;  // SolveState, and the same, mapped
-  device::Buffer damping;               // vec3
+  device::Buffer damping;               // vec3; of a relaxation
 
   std::uint32_t surface_first = 0, surface_count = 0;  // carriers on the surface
   device::Buffer surface_share;                        // SurfaceShare of each
@@ -59,6 +61,7 @@ struct OperatorBuffers {
 
   std::optional<Boundary> assembled;  // for the present material, with this boundary
   bool damped = false;                // `damping` belongs to these rows
+  bool majorised = false;             // `majorant` does
   std::optional<Load> loaded;         // b is that of the present light and rows, by this way in
   bool weighed = false;               // surface_share belongs to the present light and vertices
   bool solved = false;                // x has been solved for, if for other light or coefficients
@@ -82,7 +85,8 @@ struct OperatorBuffers {
   // Read for the diagonal of a row, and of a row's sum and diagonal together.
   std::uint64_t block_bytes() const;
   std::uint64_t row_bytes() const { return (compact_rows() ? 1 : 2) * block_bytes(); }
-  std::uint64_t entry_bytes() const { return stored_words(model, format) * sizeof(std::uint32_t); }
+  std::uint64_t majorant_bytes() const { return (model == Model::sp3 ? 3 : 1) * sizeof(glm::vec3); }
+  std::uint64_t entry_bytes() const { return stored_words(model, stored) * sizeof(std::uint32_t); }
 
   gpu::RowsRef rows() const;
   gpu::RightHandSideRef right_hand_side(const device::Buffer& reduction) const;

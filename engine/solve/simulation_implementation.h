@@ -221,7 +221,7 @@ struct Simulation::Implementation {
   void prepare_correction(const Boundary& boundary) {
     for (std::uint32_t i = 0; i < operators.count(correction_key); ++i) {
       OperatorBuffers& op = operators.at(correction_key, i);
-      record_rows(work, levels[i], Method::fem, boundary, coefficients.even(), true, op);
+      record_rows(work, levels[i], Method::fem, boundary, coefficients.even(), StepBound::majorant, op);
       if (!op.weighed) record_surface_share(work, levels[i], Method::fem, boundary, op);
       op.weighed = true;
     }

@@ -81,6 +81,8 @@ SurfaceResults::SurfaceResults(device::Device& device, const LevelBuffers& level
   vertex_unscattered_ = vector(level.surface_vertex_count, "results/unscattered light at vertices");
   even_ =
       device::Buffer(device, level.face_count * sizeof(gpu::EvenFace), device::Place::device, "results/even exitance");
+  face_area_ =
+      device::Buffer(device, level.face_count * sizeof(float), device::Place::device, "results/areas of faces");
   display_factor_ = vector(1, "results/display factor");
   clip_ = device::Buffer(device, sizeof(gpu::Clip), device::Place::device, "results/clip");
   clip_on_host_ = device::Buffer(device, sizeof(gpu::Clip), device::Place::host, "results/clip, read back");
@@ -93,15 +95,14 @@ SurfaceResults::SurfaceResults(device::Device& device, const LevelBuffers& level
 
 void SurfaceResults::record_vertex_exitance(Workspace& work, const LevelBuffers& level, const device::Buffer& faces,
                                             bool geometric) {
-  const gpu::VertexExitancePush push{.vertices = level.vertices.address(),
-                                     .faces = level.faces.address(),
+  const gpu::VertexExitancePush push{.face_area = face_area_.address(),
                                      .face_offset = level.face_offset.address(),
                                      .face_incidence = level.face_incidence.address(),
                                      .face_exitance = faces.address(),
                                      .exitance = vertex_exitance_.address(),
                                      .count = level.surface_vertex_count,
                                      .geometric = geometric ? 1u : 0u};
-  const std::uint64_t face_bytes = sizeof(std::uint32_t) + sizeof(glm::uvec3) + 4 * vec3_bytes;
+  constexpr std::uint64_t face_bytes = sizeof(std::uint32_t) + sizeof(float) + vec3_bytes;
   work.recorder.dispatch(work.passes.of(shader::vertex_exitance), push, level.surface_vertex_count, "exitance",
                          3 * level.face_count * face_bytes + vec3_bytes * level.surface_vertex_count);
 }
@@ -136,7 +137,7 @@ void SurfaceResults::record_even(Workspace& work, const Solved& solved) {
 }
 
 void SurfaceResults::record_display_scale(Workspace& work, const LevelBuffers& level) {
-  const gpu::DisplayScalePush push{.vertices = level.vertices.address(),
+  const gpu::DisplayScalePush push{.face_area = face_area_.address(),
                                    .faces = level.faces.address(),
                                    .face_kinds = level.face_kind.address(),
                                    .exitance = exitance_.address(),
@@ -145,8 +146,9 @@ void SurfaceResults::record_display_scale(Workspace& work, const LevelBuffers& l
                                    .factor = display_factor_.address(),
                                    .reduction = work.reduction.address(),
                                    .count = level.face_count};
-  work.recorder.dispatch(work.passes.of(shader::display_scale), push, level.face_count, "exitance",
-                         level.face_count * (sizeof(glm::uvec3) + sizeof(std::uint32_t) + 7 * vec3_bytes));
+  work.recorder.dispatch(
+      work.passes.of(shader::display_scale), push, level.face_count, "exitance",
+      level.face_count * (sizeof(glm::uvec3) + sizeof(std::uint32_t) + sizeof(float) + 4 * vec3_bytes));
 }
 
 // For the picture: local means of a Galerkin solution are far better than its values, which on irregular tets two mean
@@ -165,8 +167,7 @@ void SurfaceResults::record_display(Workspace& work, const Solved& solved) {
 
 void SurfaceResults::record_vertex_unscattered(Workspace& work, const Solved& solved) {
   const LevelBuffers& level = solved.level;
-  const gpu::VertexUnscatteredPush push{.vertices = level.vertices.address(),
-                                        .faces = level.faces.address(),
+  const gpu::VertexUnscatteredPush push{.face_area = face_area_.address(),
                                         .face_offset = level.face_offset.address(),
                                         .face_incidence = level.face_incidence.address(),
                                         .unscattered = solved.walk->unscattered().address(),
@@ -175,7 +176,7 @@ void SurfaceResults::record_vertex_unscattered(Workspace& work, const Solved& so
                                         .exitance = vertex_exitance_.address(),
                                         .vertex_unscattered = vertex_unscattered_.address(),
                                         .count = level.surface_vertex_count};
-  const std::uint64_t face_bytes = sizeof(std::uint32_t) * (1 + FIXED_WORDS) + sizeof(glm::uvec3) + 3 * vec3_bytes;
+  constexpr std::uint64_t face_bytes = sizeof(std::uint32_t) * (1 + FIXED_WORDS) + sizeof(float);
   work.recorder.dispatch(work.passes.of(shader::vertex_unscattered), push, level.surface_vertex_count, "exitance",
                          3 * level.face_count * face_bytes + 3 * vec3_bytes * level.surface_vertex_count);
 }
@@ -193,6 +194,7 @@ void SurfaceResults::record_energy(Workspace& work, const Solved& solved, const 
                              .exitance = exitance_.address(),
                              .scale = work.scale.address(),
                              .clip = clip_.address(),
+                             .face_area = face_area_.address(),
                              .sums = sums_.address(),
                              .tet_count = level.tet_count,
                              .face_count = level.face_count,
@@ -200,7 +202,7 @@ void SurfaceResults::record_energy(Workspace& work, const Solved& solved, const 
                              .even = level.even ? 1u : 0u,
                              .least = level.least};
   const std::uint64_t bytes = level.tet_count * (sizeof(glm::uvec4) + 5 * vec3_bytes + 4 * solved.op.field_bytes()) +
-                              level.face_count * (sizeof(glm::uvec3) + 6 * vec3_bytes) + sums_.size();
+                              level.face_count * (sizeof(glm::uvec3) + sizeof(float) + 6 * vec3_bytes) + sums_.size();
   work.recorder.dispatch(work.passes.of(shader::energy, fluence.model), push, energy_elements(level), "energy", bytes);
   const std::uint32_t groups = energy_groups(level);
   const gpu::EnergyTotalPush total{sums_.address(), totals_.address(), groups};

@@ -69,6 +69,7 @@ class SurfaceResults {
   void record_energy(Workspace& work, const Solved& solved, const FirstMoment& fluence);
 
   device::Buffer phi_, exitance_, vertex_exitance_, vertex_unscattered_;
+  device::Buffer face_area_;       // mm^2, of the present vertices once the energy has been taken
   device::Buffer even_;            // EvenFace per face
   device::Buffer display_factor_;  // vec3
   device::Buffer clip_;            // Clip

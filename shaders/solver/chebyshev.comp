@@ -7,8 +7,8 @@
 #include "shared/reduce.glsl"
 #include "solver/convergence.glsl"
 
-// One step of Chebyshev's iteration for A x = f, preconditioned by D:
-//   d <- keep d + add damping/2 D^-1 (f - A from),  to = from + d.
+// One step of Chebyshev's iteration for A x = f, preconditioned by a majorant M of A (majorant.comp):
+//   d <- keep d + add M^-1 (f - A from),  to = from + d.
 // `first`: d is not read. `zero`: from is 0 and not read. `last`: d is not written. With `zero` and without `last`, to
 // is not written either: it would be d. `reduce`: also f^T to, for the direction.
 struct ChebyshevPush {
@@ -17,7 +17,7 @@ struct ChebyshevPush {
   Fields from;
   Fields to;
   Fields d;
-  Vec3s damping;
+  Entries majorant;
   SolveStates state;
   Reduction reduction;
   uint count;
@@ -28,14 +28,13 @@ struct ChebyshevPush {
 layout(push_constant, scalar) uniform Block { ChebyshevPush push; };
 
 Field step_at(uint i) {
-  Row row = load_row(push.rows, i);
   Field r;
   if (push.zero == 1u) {
     r = push.f.at[i];
   } else {
-    r = residual(push.rows, row.sum, push.f, push.from, i);
+    r = residual(push.rows, load_row(push.rows, i).sum, push.f, push.from, i);
   }
-  Field d = scaled(0.5 * push.add * push.damping.at[0], solved(row.diagonal, r));
+  Field d = scaled(vec3(push.add), times(push.majorant.at[i], r));
   if (push.first == 0u) d = add_scaled(d, vec3(push.keep), push.d.at[i]);
   if (push.last == 0u) push.d.at[i] = d;
   Field x = d;

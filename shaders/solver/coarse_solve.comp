@@ -9,15 +9,15 @@
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 
-// `steps` of Chebyshev's iteration for A z = f from 0 on [ratio lambda, lambda], lambda = 2/damping,
-// by one workgroup. Even `steps`: z ends in z. `reduce` as above.
+// `steps` of Chebyshev's iteration for A z = f from 0, preconditioned by a majorant M of A (majorant.comp), for the
+// eigenvalues from `ratio` to 1, by one workgroup. Even `steps`: z ends in z. `reduce` as above.
 struct CoarseSolvePush {
   RowsRef rows;
   Fields f;
   CoherentFields z;
   CoherentFields other;
   CoherentFields d;
-  Vec3s damping;
+  Entries majorant;
   SolveStates state;
   uint count;
   uint steps;
@@ -39,16 +39,15 @@ Field residual_at(CoherentFields x, Entry row_sum, uint i) {
 }
 
 // One step on all rows; the writes are seen by all before the next.
-void iterate(CoherentFields from, CoherentFields to, bool zero, float keep, vec3 add_share) {
+void iterate(CoherentFields from, CoherentFields to, bool zero, float keep, float add_share) {
   for (uint i = gl_LocalInvocationID.x; i < push.count; i += WORKGROUP_SIZE) {
-    Row row = load_row(push.rows, i);
     Field r;
     if (zero) {
       r = push.f.at[i];
     } else {
-      r = residual_at(from, row.sum, i);
+      r = residual_at(from, load_row(push.rows, i).sum, i);
     }
-    Field d = scaled(add_share, solved(row.diagonal, r));
+    Field d = scaled(vec3(add_share), times(push.majorant.at[i], r));
     if (!zero) d = add_scaled(d, vec3(keep), push.d.at[i]);
     push.d.at[i] = d;
     if (zero) {
@@ -62,10 +61,9 @@ void iterate(CoherentFields from, CoherentFields to, bool zero, float keep, vec3
 }
 
 void main() {
-  vec3 inverse = 0.5 * push.damping.at[0];  // 1/lambda
   float middle = 0.5 * (1.0 + push.ratio), radius = 0.5 * (1.0 - push.ratio);
   float rho = radius / middle;
-  iterate(push.z, push.other, true, 0.0, inverse / middle);
+  iterate(push.z, push.other, true, 0.0, 1.0 / middle);
   for (uint k = 1u; k < push.steps; ++k) {
     float next = 1.0 / (2.0 * middle / radius - rho);
     bool odd = k % 2u == 1u;
@@ -74,7 +72,7 @@ void main() {
       from = push.other;
       to = push.z;
     }
-    iterate(from, to, false, next * rho, 2.0 * next / radius * inverse);
+    iterate(from, to, false, next * rho, 2.0 * next / radius);
     rho = next;
   }
   if (push.reduce == 0u) return;

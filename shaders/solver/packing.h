@@ -19,9 +19,18 @@
 
 #include "shared/shared.h"
 
-// Formats of entries: as above, or the column and then three or nine numbers in single precision.
+// Formats of entries: as above, or plain: the column and three or nine numbers in single precision
+// (stored_entries.glsl).
 #define ENTRIES_PACKED 0
 #define ENTRIES_PLAIN 1
+
+// On a processor packed entries of diffusion lie there as plain ones, rounded as packed ones are: it takes much longer
+// to unpack them than to read them, twice as many bytes or not.
+#if defined(QG_PROCESSOR) && MOMENTS == 1
+#define UNPACKED_ENTRIES 1
+#else
+#define UNPACKED_ENTRIES 0
+#endif
 
 #ifdef __cplusplus
 namespace quadgraph::gpu {
@@ -44,6 +53,7 @@ struct PackedBlock {
 
 // From 2^-33 on every number has all its bits, up to 2^31 it is not clamped.
 const int PACKED_BIAS = 43;
+const int DIFFUSION_BITS = 12;
 // Rows that packed entries can name; with SP3 it could be more.
 const uint PACKED_COLUMNS = 1u << 22u;
 

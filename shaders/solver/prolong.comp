@@ -10,7 +10,6 @@ struct ProlongPush {
   Floats weight;
   Fields coarse_x;
   Fields x;
-  uint width;
   uint count;
 };
 layout(push_constant, scalar) uniform Block { ProlongPush push; };
@@ -18,7 +17,7 @@ layout(push_constant, scalar) uniform Block { ProlongPush push; };
 void main() {
   EACH(i, push.count) {
     Field x = push.x.at[i];
-    for (uint k = push.width * i; k < push.width * (i + 1u); ++k) {
+    for (uint k = BARYCENTRIC_WIDTH * i; k < BARYCENTRIC_WIDTH * (i + 1u); ++k) {
       x = add_scaled(x, vec3(push.weight.at[k]), push.coarse_x.at[push.index.at[k]]);
     }
     push.x.at[i] = x;

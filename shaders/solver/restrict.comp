@@ -4,12 +4,10 @@
 #include "solver/fields.glsl"
 #include "shared/stride.glsl"
 
-// f_i = sum of weight_p r_(p / BARYCENTRIC_WIDTH), p = place_k, k from offset[i] to offset[i + 1]: the
-// transpose of the transfer whose weights these are.
+// f_i = sum of weight_k r_(row_k), k from offset[i] to offset[i + 1]: the transpose of a transfer.
 struct RestrictPush {
   Uints offset;
-  Uints place;
-  Floats weight;
+  TransposedEntries entry;
   Fields r;
   Fields f;
   uint count;
@@ -21,8 +19,8 @@ void main() {
     Field sum = no_field();
     uint end = push.offset.at[i + 1u];
     for (uint k = push.offset.at[i]; k < end; ++k) {
-      uint place = push.place.at[k];
-      sum = add_scaled(sum, vec3(push.weight.at[place]), push.r.at[place / BARYCENTRIC_WIDTH]);
+      TransposedEntry entry = push.entry.at[k];
+      sum = add_scaled(sum, vec3(entry.weight), push.r.at[entry.row]);
     }
     push.f.at[i] = sum;
   }

@@ -147,9 +147,17 @@ const uint START_AGAIN = 3u;     // the same within a solve: iterations done so 
 const uint START_CHECK = 1u;     // after the surface has met the tolerance: does the residual agree?
 const uint START_RESIDUAL = 2u;  // no decision
 
-// Rows of barycentric transfers, which cycles use, have so many entries (engine/file/graph.h). A constant, as
-// processors divide slowly by what a compiler does not know.
+// Rows of barycentric transfers, which cycles use, have so many entries (engine/file/graph.h).
 const uint BARYCENTRIC_WIDTH = 4u;
+
+// An entry of a column of a transfer.
+struct TransposedEntry {
+  uint row;
+  float weight;
+};
+#ifndef __cplusplus
+QG_ARRAY(TransposedEntries, TransposedEntry);
+#endif
 
 #ifdef __cplusplus
 }  // namespace quadgraph::gpu

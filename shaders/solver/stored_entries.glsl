@@ -7,7 +7,8 @@
 
 layout(constant_id = 1) const uint ENTRIES = ENTRIES_PACKED;
 
-// Words of an entry; of packed ones the rest is unused.
+// Words of an entry; of packed ones the rest is unused. Of plain ones of diffusion the column is the last word, of SP3
+// the first.
 #if MOMENTS == 1
 #define PACKED_WORDS 2u
 #define PLAIN_WORDS 4u
@@ -15,6 +16,35 @@ layout(constant_id = 1) const uint ENTRIES = ENTRIES_PACKED;
 #define PACKED_WORDS 4u
 #define PLAIN_WORDS 10u
 #endif
+#if UNPACKED_ENTRIES
+struct StoredEntry {
+  uint column;
+  vec3 a11;
+};
+
+StoredEntry stored_entry(RowsRef rows, uint e) {
+  uvec2 entries = uvec2(rows.entry);
+  return StoredEntry(Uvec4s(entries).at[e].w, Vec4s(entries).at[e].xyz);
+}
+
+uint column_of(StoredEntry stored) {
+  return stored.column;
+}
+
+Entry entry_in(StoredEntry stored) {
+  return Entry(stored.a11);
+}
+
+// Leaves the column as it is; returns what is stored.
+Entry store_entry(RowsRef rows, uint e, Entry entry) {
+  if (ENTRIES == ENTRIES_PACKED) {
+    PackedBlock block = pack(entry.a11, DIFFUSION_BITS);
+    entry.a11 = unpack(block.number, block.exponent);
+  }
+  for (uint k = 0u; k < 3u; ++k) rows.entry.at[PLAIN_WORDS * e + k] = floatBitsToUint(entry.a11[k]);
+  return entry;
+}
+#else
 struct StoredEntry {
   uint word[PLAIN_WORDS];
 };
@@ -47,12 +77,12 @@ void store_plain(RowsRef rows, uint first, vec3 block) {
 
 #if MOMENTS == 1
 uint column_of(StoredEntry stored) {
-  if (ENTRIES == ENTRIES_PLAIN) return stored.word[0];
+  if (ENTRIES == ENTRIES_PLAIN) return stored.word[3];
   return (stored.word[0] & 0xfffffu) | (stored.word[1] & 3u) << 20u;
 }
 
 Entry entry_in(StoredEntry stored) {
-  if (ENTRIES == ENTRIES_PLAIN) return Entry(plain_block(stored, 1u));
+  if (ENTRIES == ENTRIES_PLAIN) return Entry(plain_block(stored, 0u));
   uint first = stored.word[0], second = stored.word[1];
   ivec3 number = ivec3(uvec3(first, second << 12u, second)) >> 20;  // the upper twelve bits, with their sign
   return Entry(unpack(number, (second >> 2u) & 63u));
@@ -61,10 +91,10 @@ Entry entry_in(StoredEntry stored) {
 // Leaves the column as it is; returns what is stored.
 Entry store_entry(RowsRef rows, uint e, Entry entry) {
   if (ENTRIES == ENTRIES_PLAIN) {
-    store_plain(rows, 4u * e + 1u, entry.a11);
+    store_plain(rows, PLAIN_WORDS * e, entry.a11);
     return entry;
   }
-  PackedBlock block = pack(entry.a11, 12);
+  PackedBlock block = pack(entry.a11, DIFFUSION_BITS);
   uvec3 number = uvec3(block.number) & 0xfffu;
   uint first = 2u * e, second = first + 1u;
   rows.entry.at[first] = (rows.entry.at[first] & 0xfffffu) | number.x << 20u;
@@ -106,6 +136,7 @@ Entry store_entry(RowsRef rows, uint e, Entry entry) {
   return store_sp3(rows, e, Sp3Block(entry.a11, entry.a12 - SP3_SHARE12 * entry.a11,
                                      entry.a22 - SP3_SHARE22 * entry.a11));
 }
+#endif
 #endif
 
 Entry load_entry(RowsRef rows, uint e) {

@@ -8,8 +8,7 @@ layout(local_size_x = WORKGROUP_SIZE) in;
 // Multiplies the exitance at surface vertices by a factor, and gives that of unscattered
 // light.
 struct VertexUnscatteredPush {
-  Vec3s vertices;
-  Uvec3s faces;
+  Floats face_area;
   Uints face_offset;
   Uints face_incidence;
   Uints unscattered;
@@ -29,9 +28,7 @@ void main() {
   vec3 power = vec3(0);
   for (uint k = push.face_offset.at[v]; k < push.face_offset.at[v + 1u]; ++k) {
     uint face = push.face_incidence.at[k];
-    uvec3 corners = push.faces.at[face];
-    vec3 p = push.vertices.at[corners.x];
-    area += 0.5 * length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));
+    area += push.face_area.at[face];
     power += power_at(push.unscattered, face);
   }
   push.vertex_unscattered.at[v] = area > 0.0 ? power / area * push.scale.at[0].scale : vec3(0);

@@ -6,7 +6,7 @@
 
 // The factor that gives the exitance at vertices, linear over the faces, the power of the faces.
 struct DisplayScalePush {
-  Vec3s vertices;
+  Floats face_area;
   Uvec3s faces;
   Uints face_kinds;
   Vec3s exitance;
@@ -23,9 +23,7 @@ void main() {
   EACH(f, push.count) {
     if (push.face_kinds.at[f] != FACE_OPEN) continue;
     uvec3 corners = push.faces.at[f];
-    vec3 p = push.vertices.at[corners.x];
-    float area = 0.5 * length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));
-    vec3 weight = area * push.scale.at[0].inverse;
+    vec3 weight = push.face_area.at[f] * push.scale.at[0].inverse;
     solved += weight * push.exitance.at[f];
     for (int k = 0; k < 3; ++k) shown += weight / 3.0 * push.vertex_exitance.at[corners[k]];
   }

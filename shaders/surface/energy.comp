@@ -19,6 +19,7 @@ struct EnergyPush {
   Vec3s exitance;
   Scales scale;
   Clips clip;
+  Floats face_area;  // mm^2, written
   EnergySumsArray sums;
   uint tet_count;
   uint face_count;
@@ -57,6 +58,7 @@ void main() {
     vec3 q = push.face_kinds.at[i] == FACE_OPEN ? push.q.at[i] : vec3(0);
     vec3 exitance = push.exitance.at[i] * push.clip.at[0].factor;
     push.exitance.at[i] = exitance;
+    push.face_area.at[i] = area;
     sums.entered += area * q;
     sums.exitance += area * exitance;
   }

@@ -14,8 +14,8 @@ struct SurfaceDimmestPush {
 };
 layout(push_constant, scalar) uniform Block { SurfaceDimmestPush push; };
 
-const uint BINS = 256u;
-const float BINS_PER_STOP = 8.0;
+const uint BINS = 512u;
+const uint BIN_SHIFT = 19u;  // of the bits of a number, of which it leaves 16 bins for each stop
 const float WHOLE = 16777216.0;  // the surface, in units of a bin
 const float THIRD = 1.0 / 3.0;
 
@@ -28,10 +28,11 @@ float brightness(uint carrier) {
   return max(m.x + m.y + m.z, 0.0);
 }
 
-// What is too dark for the others is in the first.
+// Of numbers above 0 the bits grow about as the logarithm. What is too dark for the others is in the first.
 uint bin_of(float bright) {
-  float below = BINS_PER_STOP * (log2(brightest) - log2(bright));
-  return bright > 0.0 && below < float(BINS) ? BINS - 1u - uint(max(below, 0.0)) : 0u;
+  if (!(bright > 0.0)) return 0u;
+  uint below = (floatBitsToUint(brightest) - floatBitsToUint(bright)) >> BIN_SHIFT;
+  return below < BINS ? BINS - 1u - below : 0u;
 }
 
 void find_extent() {

@@ -6,8 +6,7 @@ layout(local_size_x = WORKGROUP_SIZE) in;
 
 // The area-weighted mean over the open faces around every surface vertex, 0 without any.
 struct VertexExitancePush {
-  Vec3s vertices;
-  Uvec3s faces;
+  Floats face_area;
   Uints face_offset;
   Uints face_incidence;
   Vec3s face_exitance;
@@ -16,12 +15,6 @@ struct VertexExitancePush {
   uint geometric;  // 1: geometric mean, 0: arithmetic
 };
 layout(push_constant, scalar) uniform Block { VertexExitancePush push; };
-
-float twice_area_of(uint face) {
-  uvec3 corners = push.faces.at[face];
-  vec3 p = push.vertices.at[corners.x];
-  return length(cross(push.vertices.at[corners.y] - p, push.vertices.at[corners.z] - p));
-}
 
 // A value far below the arithmetic mean, or none at all, counts as this share of it: one clipped vertex must not darken
 // all around it.
@@ -33,7 +26,7 @@ vec3 geometric_mean(uint begin, uint end, float area, vec3 mean) {
   for (uint k = begin; k < end; ++k) {
     uint face = push.face_incidence.at[k];
     vec3 value = max(max(push.face_exitance.at[face], LEAST_SHARE * mean), vec3(1e-37));
-    logarithm += twice_area_of(face) / area * log(value);
+    logarithm += push.face_area.at[face] / area * log(value);
   }
   return mix(vec3(0), exp(logarithm), greaterThan(mean, vec3(0)));
 }
@@ -46,7 +39,7 @@ void main() {
   vec3 mean = vec3(0);
   for (uint k = begin; k < end; ++k) {
     uint face = push.face_incidence.at[k];
-    float size = twice_area_of(face);
+    float size = push.face_area.at[face];
     area += size;
     mean += size * push.face_exitance.at[face];
   }

@@ -63,7 +63,7 @@ struct Assembled {
   std::vector<StoredEntry> entries() {
     const auto words = get<std::uint32_t>(op.entry);
     std::vector<StoredEntry> result;
-    for (std::size_t e = 0; e < op.entries; ++e) result.push_back(stored_entry(words, e, op.model, op.format));
+    for (std::size_t e = 0; e < op.entries; ++e) result.push_back(stored_entry(words, e, op.model, op.stored));
     return result;
   }
 

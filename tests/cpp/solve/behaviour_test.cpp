@@ -167,7 +167,7 @@ TEST_CASE("a matrix that is not positive definite breaks down by name") {
   Workspace work(context, op.count);
   const std::vector<glm::vec3> one(op.entries, glm::vec3(1)), minus(op.entries, glm::vec3(-1));
   std::vector<std::uint32_t> entries = device::download<std::uint32_t>(context, op.entry);
-  for (std::size_t e = 0; e < op.entries; ++e) store_weight(entries, e, {glm::dvec3(-1), {}, {}}, op.model, op.format);
+  for (std::size_t e = 0; e < op.entries; ++e) store_weight(entries, e, {glm::dvec3(-1), {}, {}}, op.model, op.stored);
   const auto write = [&](const device::Buffer& buffer, const std::vector<glm::vec3>& values) {
     device::write_bytes(context, buffer, std::as_bytes(std::span(values)).first(buffer.size()));
   };
