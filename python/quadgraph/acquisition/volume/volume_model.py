@@ -22,6 +22,7 @@ from quadgraph.base.errors import InputError
 LARGEST_LEVEL = 40_000  # tets of the level that derivatives are taken on, if there is one of so few
 MOST_SQUARES = 40_000
 MOST_POINTS = 6000  # of the grid: deviations are found with dense matrices
+_USUAL_POINTS = 2000  # at most, where no spacing is stated: with more the photographs of a body part less well
 
 
 def derivative_level(graph: core.QuadGraph) -> int:
@@ -182,8 +183,9 @@ def _means(values: np.ndarray) -> np.ndarray:
 
 def _grid(points: np.ndarray, spacing: float | None, mean_edge: float) -> VolumeGrid:
     """The grid around points. Raises InputError where a stated spacing makes too many."""
-    least = 1.2 * float(np.cbrt(np.prod(np.ptp(points, axis=0)) / MOST_POINTS))
-    found = VolumeGrid.around(points, spacing or max(mean_edge, least))
+    room = float(np.prod(np.ptp(points, axis=0)))
+    usual, least = (1.2 * float(np.cbrt(room / most)) for most in (_USUAL_POINTS, MOST_POINTS))
+    found = VolumeGrid.around(points, spacing or max(mean_edge, usual))
     if found.count > MOST_POINTS:
         raise InputError(
             f"--spacing: {found.count} points {found.spacing:.3g} mm apart found, allowed are {MOST_POINTS}; state a "
