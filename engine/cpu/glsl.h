@@ -9,6 +9,7 @@
 #endif
 
 #include "engine/cpu/functions.h"
+#include "engine/cpu/lane_order.h"
 #include "engine/cpu/matrices.h"
 
 namespace quadgraph::cpu::QG_LEVEL {

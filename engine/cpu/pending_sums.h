@@ -3,14 +3,15 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 
 #include "engine/cpu/glsl.h"
 
 namespace quadgraph::cpu::QG_LEVEL {
 
-// What one thread adds to sums of three numbers (shaders/source/fixed_point.glsl), each of them of two words: three low
-// words, then three high ones. The last so many sums are kept here; all are in memory when this object is gone.
+// What one thread adds to sums of three numbers (shaders/source/fixed_point.glsl), each of them of two words, the low
+// one first. The last so many sums are kept here; all are in memory when this object is gone.
 class PendingSums {
  public:
   PendingSums() = default;
@@ -22,7 +23,7 @@ class PendingSums {
 
   // Adds whole numbers from 0 to 2^63.
   void add(uint* target, vec3 value) {
-    Sum& sum = sums_[reinterpret_cast<std::uintptr_t>(target) / (words * sizeof(uint)) % sums_.size()];
+    Sum& sum = sums_[reinterpret_cast<std::uintptr_t>(target) / (words_of_sum * sizeof(uint)) % sums_.size()];
     if (sum.target != target) {
       write(sum);
       sum = {target, {}};
@@ -32,7 +33,8 @@ class PendingSums {
   }
 
  private:
-  static constexpr std::size_t channels = 3, words = 2 * channels;
+  static constexpr std::size_t channels = 3, words_of_sum = 2 * channels;
+  static_assert(std::endian::native == std::endian::little);
   struct Sum {
     uint* target = nullptr;
     std::array<std::uint64_t, channels> value{};
@@ -40,12 +42,9 @@ class PendingSums {
 
   static void write(const Sum& sum) {
     if (sum.target == nullptr) return;
+    auto* words = reinterpret_cast<std::uint64_t*>(sum.target);  // buffers are aligned, and so are sums
     for (std::size_t c = 0; c < channels; ++c) {
-      if (sum.value[c] == 0) continue;
-      const auto low = static_cast<uint>(sum.value[c]);
-      const uint carried =
-          static_cast<uint>(sum.value[c] >> 32) + (atomicAdd(sum.target[c], low) + low < low ? 1u : 0u);
-      if (carried != 0) atomicAdd(sum.target[channels + c], carried);
+      if (sum.value[c] != 0) __atomic_fetch_add(words + c, sum.value[c], __ATOMIC_RELAXED);
     }
   }
 

@@ -72,6 +72,7 @@ struct SolveReport {
   std::vector<LevelReport> levels;  // coarsest first, in the order solved
   std::uint32_t finest = 0;         // the level that was solved last; what leaves level 0 is carried there
   double work = 0;                  // products of all levels, in products of level 0
+  double walk_segments = 0;         // tets that rays of the buried source crossed, on all levels
   Energy energy;                    // on the finest level
   // Share of the exitance, per channel, that linear elements put below zero and that was taken from the rest instead;
   // 0 with Source::diffuse, whose exitance stays as it is.

@@ -19,7 +19,7 @@ constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
 
 // Tets that a ray crosses on the way to its end, about as many as in marble at the finest level; for the bytes.
 constexpr std::uint64_t tets_per_ray = 8;
-constexpr std::uint64_t tet_bytes = 2 * sizeof(std::uint32_t) + vec3_bytes + sizeof(gpu::Optical);
+constexpr std::uint64_t tet_bytes = sizeof(gpu::TetCell) + sizeof(gpu::Optical);
 
 // Nodes that the means of a vertex look at and take, about as many as where edges are half a mean free path long.
 constexpr std::uint64_t boxes_per_mean = 150, nodes_per_mean = 60;

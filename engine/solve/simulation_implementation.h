@@ -116,6 +116,7 @@ struct Simulation::Implementation {
   void forget_place() {
     if (tree) tree->moved();
     if (gather) gather->moved();
+    for (SourceWalk& walk : walks) walk.moved();
     solved.reset();
     unload();
   }
@@ -278,7 +279,7 @@ struct Simulation::Implementation {
     const std::optional<std::uint32_t> bounced = bounces_wanted(options) ? exchange.level() : std::nullopt;
     if (bounced) exchange.make_room(work, levels);
     for (std::uint32_t i = 0; i < levels.size() && options.source == Source::buried; ++i) {
-      walks[i].make_room(device, levels[i], beams, key.method, bounced && i <= *bounced);
+      walks[i].make_room(device, levels[i], key.method, bounced && i <= *bounced);
     }
     if (!corrects(options)) return;
     correction_room(options.sweep_points);
@@ -339,6 +340,7 @@ struct Simulation::Implementation {
     gather_passes.clear();
     if (gather_room(); gathers_now == what) return *gather;
     work.recorder.clear();
+    walks[0].record_cells(work, levels[0]);
     const auto body = walks[0].body(levels[0], coefficients.eta(), coefficients.even());
     const GatherInput input{levels[0], fluence(), beams, results.vertex_exitance(), body, *tree};
     what == Gather::single ? gather->record_single(work, input) : gather->record(work, input);

@@ -20,7 +20,8 @@ namespace quadgraph {
 struct WalkPower {
   glm::dvec3 absorbed{0};
   glm::dvec3 unscattered{
-      0};  // left through the surface, or trapped in a clear region for longer than any ray is followed
+      0};               // left through the surface, or trapped in a clear region for longer than any ray is followed
+  double segments = 0;  // tets that the rays crossed
 };
 
 // Sums in fixed point (walk_shared.h) as numbers, W.
@@ -37,8 +38,8 @@ struct WalkTask {
 // Rays from one origin on a face, of a beam of this kind.
 std::uint32_t rays_of(std::uint32_t beam_kind, bool mean_rays);
 
-// Bytes that the walk of one beam moves: every invocation looks at its face; half the faces are lit, uniformly, and a
-// ray crosses ten tets, about as many as in marble at the finest level.
+// Bytes that the walk of so many rays a face moves: every invocation looks at its face; half the faces are lit,
+// uniformly, and a ray crosses ten tets, about as many as in marble at the finest level.
 std::uint64_t walk_bytes(const LevelBuffers& level, std::uint32_t ray_count);
 
 class SourceWalk {
@@ -46,17 +47,23 @@ class SourceWalk {
   // Throws InputError if the level has too many tets and faces.
   SourceWalk(device::Device& device, const Level& level, std::uint32_t number);
 
-  // What rays need of the level. `even`: level.optical is the same everywhere, which saves its reading.
+  // The shape has changed.
+  void moved() { moved_ = true; }
+
+  // The tets as rays see them, if they are behind the shape.
+  void record_cells(Workspace& work, const LevelBuffers& level);
+
+  // What rays need of the level, once its cells are recorded. `even`: level.optical is the same everywhere, which saves
+  // its reading.
   gpu::BodyRef body(const LevelBuffers& level, double eta, bool even) const;
 
   // Light, material or shape have changed.
   void invalidate() { walked_ = {false, false}; }
 
-  // Room for what `record` and, with `again`, `record_again` write, as far as the beams go, unless it is there.
-  void make_room(device::Device& device, const LevelBuffers& level, const BeamBuffers& beams, Method method,
-                 bool again);
+  // Room for what `record` and, with `again`, `record_again` write, unless it is there.
+  void make_room(device::Device& device, const LevelBuffers& level, Method method, bool again);
 
-  const device::Buffer& crossings() const { return crossings_; }  // uint, four per tet (body_shared.h)
+  const device::Buffer& cells() const { return cells_; }  // TetCell per tet
 
   // Walks, unless that has been done for the present light by the same rays: level.beam_q of every beam of the scene,
   // scaled by work.scale. The graph methods share their deposits.
@@ -83,11 +90,11 @@ class SourceWalk {
   WalkPower power() const;
 
  private:
-  // Fixed point, per beam and workgroup absorbed and unscattered.
+  // Fixed point, by workgroup absorbed and unscattered; and the tets crossed.
   struct Sums {
     device::Buffer sums, sums_on_host, scale_on_host;
 
-    void make_room(device::Device& device, std::uint64_t bytes, const std::string& prefix);
+    void make_room(device::Device& device, const std::string& prefix);
     void read_back(Workspace& work) const;
     WalkPower power() const;
   };
@@ -101,7 +108,8 @@ class SourceWalk {
   std::array<bool, 2> walked_ = {false, false};  // by carrier
   bool mean_rays_ = false;                       // in what was walked
   bool again_ = false;                           // light that entered again is in the results
-  device::Buffer crossings_;                     // walk_shared.h
+  device::Buffer cells_;
+  bool moved_ = true;  // cells_ has another shape
   // Results for the scene's light; by carrier, made at first use.
   std::array<device::Buffer, 2> deposits_;
   device::Buffer unscattered_;

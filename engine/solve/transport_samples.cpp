@@ -5,7 +5,6 @@
 #include "engine/solve/row_structure.h"
 #include "interface/transport/transport_books.comp.h"
 #include "interface/transport/transport_carry.comp.h"
-#include "interface/transport/transport_cells.comp.h"
 #include "interface/transport/transport_exitance.comp.h"
 #include "interface/transport/transport_fluence.comp.h"
 #include "interface/transport/transport_leaving.comp.h"
@@ -29,7 +28,7 @@ constexpr std::uint32_t halves = gpu::TRANSPORT_HALVES;
 
 // Tets that a ray crosses, and what it reads in one; for the bytes.
 constexpr std::uint64_t tets_per_ray = 10;
-constexpr std::uint64_t segment_bytes = sizeof(gpu::TransportCell) + sizeof(gpu::Optical);
+constexpr std::uint64_t segment_bytes = sizeof(gpu::TetCell) + sizeof(gpu::TetSource) + sizeof(gpu::Optical);
 
 // Rays a face of light whose directions are known. Fewer are an error that no sweep mends, in dark bodies the largest.
 constexpr std::uint32_t rays_at_rest = 16, rays_in_motion = 4;
@@ -57,7 +56,7 @@ TransportSamples::TransportSamples(device::Device& device, const Level& level) {
   field_ = room(sizeof(gpu::TransportFieldRef), "field");
   deposit_ = room(4 * level.tet_count() * sum_bytes, "deposit at corners");
   source_before_ = room(corners, "source, before");
-  cells_ = room(level.tet_count() * sizeof(gpu::TransportCell), "tets");
+  sources_ = room(level.tet_count() * sizeof(gpu::TetSource), "sources");
   fluence_ = room(vertices, "fluence");
   fluence_before_ = room(vertices, "fluence, before");
   fluence_seen_ = room(vertices, "fluence, seen");
@@ -102,7 +101,7 @@ void TransportSamples::make_room_apart(const TransportParts& parts) {
 void TransportSamples::write_field(const TransportParts& parts, const WalkTask& task, bool apart) {
   const gpu::TransportFieldRef field{.body = parts.walk.body(parts.level, task.eta, task.even),
                                      .tree = parts.tree.ref(),
-                                     .cells = cells_.address(),
+                                     .sources = sources_.address(),
                                      .sky = parts.level.sky.address(),
                                      .segments = segments_.address(),
                                      .source_before = apart ? source_apart_.address() : 0,
@@ -120,7 +119,6 @@ void TransportSamples::record_start(const TransportParts& parts, const WalkTask&
   parts.tree.record(work, parts.level);
   work.recorder.fill(segments_, 0);
   record_walk(parts, task);
-  record_cells(parts);
   record_mass(parts);
   const gpu::TransportFluencePush fluence{.x = op.x.address(),
                                           .to_phi = op.to_phi.address(),
@@ -180,18 +178,6 @@ void TransportSamples::record_walk(const TransportParts& parts, const WalkTask& 
   }
 }
 
-void TransportSamples::record_cells(const TransportParts& parts) {
-  Workspace& work = parts.work;
-  const LevelBuffers& level = parts.level;
-  const gpu::TransportCellsPush push{.vertices = level.vertices.address(),
-                                     .tets = level.tets.address(),
-                                     .crossings = parts.walk.crossings().address(),
-                                     .cells = cells_.address(),
-                                     .count = level.tet_count};
-  work.recorder.dispatch(work.passes.of(shader::transport_cells), push, level.tet_count, "transport start",
-                         cells_.size() + level.tet_count * (2 * sizeof(glm::uvec4) + 4 * vec3_bytes));
-}
-
 void TransportSamples::record_weights(const TransportParts& parts) {
   Workspace& work = parts.work;
   const LevelBuffers& level = parts.level;
@@ -239,7 +225,7 @@ void TransportSamples::record_source(const TransportParts& parts, const Transpor
                                       .fluence_seen = fluence_seen_.address(),
                                       .fluence_apart = shares.apart ? fluence_apart_.address() : 0,
                                       .source_apart = shares.apart ? source_apart_.address() : 0,
-                                      .cells = cells_.address(),
+                                      .sources = sources_.address(),
                                       .vertex_count = level.vertex_count,
                                       .tet_count = level.tet_count,
                                       .even = level.even ? 1u : 0u,

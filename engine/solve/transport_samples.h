@@ -102,7 +102,6 @@ class TransportSamples {
   void write_field(const TransportParts& parts, const WalkTask& task, bool apart);
   void make_room_apart(const TransportParts& parts);
   void record_walk(const TransportParts& parts, const WalkTask& task);
-  void record_cells(const TransportParts& parts);
   void record_weights(const TransportParts& parts);
   void record_mass(const TransportParts& parts);
   void record_smooth(const TransportParts& parts, const device::Buffer* mass, const device::Buffer& from,
@@ -115,7 +114,7 @@ class TransportSamples {
   std::uint32_t seed_ = 0;  // of what was recorded last
   std::uint32_t draw_ = 0;  // number of the next draw of points
   device::Buffer field_;    // TransportFieldRef
-  device::Buffer cells_;    // TransportCell per tet
+  device::Buffer sources_;  // TetSource per tet
   device::Buffer deposit_;  // fixed point, four per tet: power scattered for the first time
   device::Buffer fluence_, fluence_before_, fluence_seen_;  // vec3 per vertex, scaled
   device::Buffer added_;                                    // the same, by sweeps so far

@@ -136,6 +136,7 @@ py::dict as_dict(const SolveReport& report) {
   py::list levels;
   for (const LevelReport& level : report.levels) levels.append(as_dict(level));
   d["levels"] = levels;
+  d["walk_segments"] = report.walk_segments;
   d["energy"] = as_dict(report.energy);
   d["clipped"] = as_tuple(report.clipped);
   d["inter_reflection"] = report.inter_reflection;

@@ -43,26 +43,28 @@ vec3 smooth_normal(uint face, vec3 l) {
                    l.z * NORMALS.at[3u * face + 2u]);
 }
 
-float coordinate_of(uint id) {
-  return id == corner_0.id ? corner_0.l : id == corner_1.id ? corner_1.l : corner_2.l;
-}
-
 // A surface that a ray meets from inside.
 struct Met {
   vec3 normal;   // unit, of the smooth surface
   float cosine;  // of the ray with it, at least 0
 };
 
-// At the ray's point, on outside face `face` opposite slot 3.
-Met met_from_inside(uint face, vec3 direction) {
-  uvec3 ids = BODY.faces.at[face];
-  vec3 n = smooth_normal(face, vec3(coordinate_of(ids.x), coordinate_of(ids.y), coordinate_of(ids.z)));
+// Barycentric coordinates of a face's corners at a point of the face.
+vec3 coordinates_on(uvec3 ids, TetPoint at) {
+  uvec4 all = BODY.tets.at[at.tet];
+  return vec3(at.l[place_of(ids.x, all)], at.l[place_of(ids.y, all)], at.l[place_of(ids.z, all)]);
+}
+
+// At a point of outside face `face`.
+Met met_from_inside(uint face, TetPoint at, vec3 direction) {
+  vec3 n = smooth_normal(face, coordinates_on(BODY.faces.at[face], at));
   return Met(n, max(dot(direction, n), 0.0));
 }
 
-// At the ray's point, on a face of unit normal `flat_normal` opposite slot 3.
-Escape escape_here(vec3 share, uint face, vec3 direction, Met met, vec3 flat_normal) {
-  vec3 point = corner_0.l * corner_0.position + corner_1.l * corner_1.position + corner_2.l * corner_2.position;
+// At a point of a face of unit normal `flat_normal`.
+Escape escape_here(vec3 share, uint face, TetPoint at, vec3 direction, Met met, vec3 flat_normal) {
+  uvec3 ids = BODY.faces.at[face];
+  vec3 point = corners_of(ids) * coordinates_on(ids, at);
   float cos_o = sqrt(max(1.0 - BODY.eta * BODY.eta * (1.0 - met.cosine * met.cosine), 0.0));
   vec3 outside = normalize(BODY.eta * (direction - met.cosine * met.normal) + cos_o * met.normal);
   return Escape(share, face, point, outward_of(flat_normal, outside));
@@ -84,37 +86,37 @@ vec3 keep(inout Escape most, inout Escape second, Escape other) {
 }
 
 // One step of transport: collided and uncollided fluence scattered into a ray that goes from its point into the body.
-Gathered gather(uint tet, vec3 direction) {
+Gathered gather(TetPoint at, vec3 direction) {
   Gathered sum = Gathered(vec3(0), vec3(0), NO_ESCAPE, NO_ESCAPE);
   vec3 left = vec3(1);
-  Payload here = fields_here();
+  LocalLight here = fields_at(at.tet, at.l);
   for (uint step = 0u; step < GATHER_STEPS; ++step) {
-    Exit exit = find_exit(direction);
+    Exit exit = find_exit(at, direction);
     if (!exit.found) break;
-    vec4 l = exit_point(exit);
-    Payload there = fields_at(l);
-    vec3 lost, fluence = fluence_along(here, there, extinction() * exit.path, lost);
+    Optical optical = optical_in(at.tet);
+    at.l = exit_point(at, exit);
+    LocalLight there = fields_at(at.tet, at.l);
+    vec3 lost, fluence = fluence_along(here, there, extinction(optical) * exit.path, lost);
     vec3 last = left * optical.sigma_s_prime * (exit.path / FOUR_PI) * fluence;
     sum.radiance += last;
     left -= left * lost;
     here = there;
-    move_to(l);
     if (ends(left, sum.radiance, last, lost)) break;
-    uvec2 crossing = turn(tet, exit.slot);
-    if (crossing.x < BODY.tet_count) {
-      tet = crossing.x;
-      enter(crossing);
+    uint crossing = crossing_at(at.tet, exit.place), across = crossing >> CROSSING_BITS;
+    if (across < BODY.tet_count) {
+      enter(at, exit.place, crossing);
       continue;
     }
-    uint face = crossing.x - BODY.tet_count;
-    vec3 n = exit.outward / length(exit.outward);
+    bar(at, exit.place);
+    uint face = across - BODY.tet_count;
+    vec3 n = outward_normal(face);
     if (BODY.face_kinds.at[face] == FACE_OPEN) {
-      Met met = met_from_inside(face, direction);
+      Met met = met_from_inside(face, at, direction);
       float reflected = internal_reflectance(met.cosine, BODY.eta);
       vec3 through = left * (1.0 - reflected);
       sum.seen += through;
       if (largest(through) > largest(sum.second.share)) {
-        keep(sum.most, sum.second, escape_here(through, face, direction, met, n));
+        keep(sum.most, sum.second, escape_here(through, face, at, direction, met, n));
       }
       left *= reflected;
       if (reflected == 0.0) break;
@@ -123,7 +125,7 @@ Gathered gather(uint tet, vec3 direction) {
       direction = normalize(direction - 2.0 * dot(direction, n) * n);
     }
   }
-  sum.radiance += left * even_radiance(here);
+  sum.radiance += left * even_radiance(at.tet, here);
   return sum;
 }
 

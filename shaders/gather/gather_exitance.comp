@@ -35,12 +35,11 @@ void main() {
   if (doubled == vec3(0)) return;
   vec3 normal = normalize(doubled);
   vec3 tangent = face_tangent(face, normal, corners[1] - corners[0]);
-  uint tet = BODY.face_tets.at[face];
+  TetPoint centre = start_on_face(BODY.face_tets.at[face], ids, vec3(1.0 / 3.0));
   vec3 exitance = vec3(0);
   for (uint node = 0u; node < LAMBERTIAN_NODES; ++node) {
-    start_on_face(tet, ids, corners, vec3(1.0 / 3.0));
     vec3 incoming = lambertian_incoming(2u * node + (node >> 1u), normal, tangent);
-    vec3 radiance = gather(tet, refracted(incoming, normal, BODY.eta)).radiance;
+    vec3 radiance = gather(centre, refracted(incoming, normal, BODY.eta)).radiance;
     exitance += LAMBERTIAN_W[node] * fresnel_transmittance(sqrt(LAMBERTIAN_U[node]), BODY.eta) * radiance;
   }
   push.exitance.at[face] = PI / (BODY.eta * BODY.eta) * exitance;

@@ -18,5 +18,5 @@ layout(push_constant, scalar) uniform Block { GatherPhiPush push; };
 void main() {
   uint v = gl_GlobalInvocationID.x;
   if (v >= push.count) return;
-  push.points.at[v].phi = element_or_one(push.to_phi, v) * push.x.at[v].phi * push.scale.at[0].scale;
+  push.points.at[v].phi = vec4(element_or_one(push.to_phi, v) * push.x.at[v].phi * push.scale.at[0].scale, 0.0);
 }

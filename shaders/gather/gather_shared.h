@@ -9,12 +9,14 @@
 namespace quadgraph::gpu {
 #endif
 
-// Light at a vertex. All three are linear between vertices; uncollided fluence is entry exp(-depth), which is exact for
-// a beam behind a flat face, but held to what is linear between vertices (gather_fields.glsl).
+// Light at a vertex, in one line of a cache: the last number of each is not used. All are linear between vertices;
+// uncollided fluence is entry exp(-depth), which is exact for a beam behind a flat face, but held to what is linear
+// between vertices (gather_fields.glsl).
 struct GatherPoint {
-  vec3 phi;    // W/mm^2, fluence of light that has scattered
-  vec3 entry;  // W/mm^2, fluence of light that has not, as if nothing had been lost on its way
-  vec3 depth;  // optical depth of that way
+  vec4 phi;         // W/mm^2, fluence of light that has scattered
+  vec4 entry;       // W/mm^2, fluence of light that has not, as if nothing had been lost on its way
+  vec4 depth;       // optical depth of that way
+  vec4 uncollided;  // W/mm^2, entry exp(-depth)
 };
 
 // At a surface vertex: radiance is `factor` times what is gathered, and a Lambertian exitance `rest`, but at least that

@@ -42,9 +42,8 @@ Leaving leaving(uint face, vec3 l, vec3 outward, vec3 n, GatherScales scale, flo
     vec3 face_normal = doubled / max(length(doubled), 1e-30);
     if (part > 0u) n = smooth_normal(face, l);
     share *= fresnel_transmittance(clamp(dot(outward, n), 0.0, 1.0), BODY.eta);
-    uint tet = BODY.face_tets.at[face];
-    start_on_face(tet, ids, corners, l);
-    Gathered inside = gather(tet, view_ray(outward, n, face_normal));
+    TetPoint at = start_on_face(BODY.face_tets.at[face], ids, l);
+    Gathered inside = gather(at, view_ray(outward, n, face_normal));
     GatherScale a = scale.at[ids.x], b = scale.at[ids.y],
                 c = scale.at[ids.z];
     vec3 factor = l.x * a.factor + l.y * b.factor + l.z * c.factor;

@@ -27,14 +27,6 @@ layout(push_constant, scalar) uniform Block { UncollidedPush push; };
 BodyRef body;
 #define BODY body
 
-struct Payload {
-  uint unused;
-};
-
-Payload payload(uint id) {
-  return Payload(0u);
-}
-
 #include "source/tet_ray.glsl"
 
 // Light that has not scattered: what it would be without loss, and the optical depth of its way.
@@ -52,34 +44,35 @@ struct Met {
   vec3 tau;
 };
 
-// The quarter of a face that the ray's point lies in, once the corner opposite is in slot 3.
-uint quarter_here(uint face) {
-  uvec3 ids = BODY.faces.at[face];
-  if (max(corner_0.l, max(corner_1.l, corner_2.l)) <= 0.5) return FACE_CENTRE;
-  uint near = corner_0.l > 0.5 ? corner_0.id : corner_1.l > 0.5 ? corner_1.id : corner_2.id;
-  return near == ids.x ? 0u : near == ids.y ? 1u : 2u;
+// The quarter of a face that a point of the face is in.
+uint quarter_here(uint face, TetPoint at) {
+  uvec4 all = BODY.tets.at[at.tet];
+  for (uint k = 0u; k < 3u; ++k) {
+    if (at.l[place_of(BODY.faces.at[face][k], all)] > 0.5) return k;
+  }
+  return FACE_CENTRE;
 }
 
 Met back_to_surface(uint v, vec3 direction) {
   uint tet = push.start.at[v];
   uvec4 ids = BODY.tets.at[tet];
-  start_in_tet(tet, vec4(ids.x == v, ids.y == v, ids.z == v, ids.w == v), direction);
+  TetPoint at = TetPoint(tet, vec4(ids.x == v, ids.y == v, ids.z == v, ids.w == v), vec4(0));
   vec3 tau = vec3(0);
   for (uint step = 0u; step < UNCOLLIDED_STEPS; ++step) {
-    Exit exit = find_exit(direction);
+    Exit exit = find_exit(at, direction);
     if (!exit.found) break;
-    tau += extinction() * exit.path;
+    tau += extinction(optical_in(at.tet)) * exit.path;
     if (all(greaterThan(tau, vec3(UNCOLLIDED_DEPTH)))) break;
-    move_to(exit_point(exit));
-    uvec2 crossing = turn(tet, exit.slot);
-    if (crossing.x < BODY.tet_count) {
-      tet = crossing.x;
-      enter(crossing);
+    at.l = exit_point(at, exit);
+    uint crossing = crossing_at(at.tet, exit.place), across = crossing >> CROSSING_BITS;
+    if (across < BODY.tet_count) {
+      enter(at, exit.place, crossing);
       continue;
     }
-    uint face = crossing.x - BODY.tet_count;
-    if (BODY.face_kinds.at[face] == FACE_OPEN) return Met(true, face, quarter_here(face), tau);
-    vec3 n = exit.outward / length(exit.outward);
+    uint face = across - BODY.tet_count;
+    if (BODY.face_kinds.at[face] == FACE_OPEN) return Met(true, face, quarter_here(face, at), tau);
+    bar(at, exit.place);
+    vec3 n = outward_normal(face);
     direction = normalize(direction - 2.0 * dot(direction, n) * n);
   }
   return Met(false, 0u, 0u, vec3(0));
@@ -192,6 +185,8 @@ void main() {
     left += light.entry * exp(-light.depth);
     least = min(least, light.depth);
   }
-  push.points.at[v].entry = entry;
-  push.points.at[v].depth = mix(least, -log(max(left, vec3(1e-37)) / entry), greaterThan(left, vec3(0)));
+  vec3 depth = mix(least, -log(max(left, vec3(1e-37)) / entry), greaterThan(left, vec3(0)));
+  push.points.at[v].entry = vec4(entry, 0.0);
+  push.points.at[v].depth = vec4(depth, 0.0);
+  push.points.at[v].uncollided = vec4(entry * exp(-depth), 0.0);
 }

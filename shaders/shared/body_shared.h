@@ -13,13 +13,24 @@ namespace quadgraph::gpu {
 // corner 3 is the one that is left.
 #define CROSSING_BITS 6
 
-const uint BODY_EVEN = 1u;      // the coefficients are the same everywhere
-const uint BODY_INVERTED = 2u;  // some tets are turned inside out: rays end there
+const uint BODY_EVEN = 1u;  // the coefficients are the same everywhere
+
+// A tet as rays see it, in one line of a cache: how the barycentric coordinates grow along x, y and z, 1/mm, by corner,
+// and what lies across the face opposite each. Where rays are to end it grows along nothing.
+struct TetCell {
+  vec4 along_x, along_y, along_z;
+  uvec4 crossings;
+};
+
+#ifndef __cplusplus
+QG_ARRAY(TetCells, TetCell);
+
+#endif
 
 struct BodyRef {
   QG_REF(Vec3s) vertices;  // mm
   QG_REF(Uvec4s) tets;
-  QG_REF(Uints) crossings;  // four per tet
+  QG_REF(TetCells) cells;  // per tet
   QG_REF(Uvec3s) faces;
   QG_REF(Uints) face_tets;
   QG_REF(Uints) face_kinds;

@@ -20,9 +20,9 @@ void add_power(Uints sums, uint i, vec3 value) {
   uvec3 high_word = uvec3(high);
   for (uint c = 0u; c < 3u; ++c) {
     if (low_word[c] == 0u && high_word[c] == 0u) continue;
-    uint before = atomicAdd(sums.at[FIXED_WORDS * i + c], low_word[c]);
+    uint at = FIXED_WORDS * i + 2u * c, before = atomicAdd(sums.at[at], low_word[c]);
     uint carried = high_word[c] + (before + low_word[c] < before ? 1u : 0u);
-    if (carried != 0u) atomicAdd(sums.at[FIXED_WORDS * i + 3u + c], carried);
+    if (carried != 0u) atomicAdd(sums.at[at + 1u], carried);
   }
 }
 #endif
@@ -36,7 +36,7 @@ void add_signed(Uints sums, uint i, uint step, vec3 value) {
 vec3 power_at(Uints sums, uint i) {
   vec3 value;
   for (uint c = 0u; c < 3u; ++c) {
-    uint low = sums.at[FIXED_WORDS * i + c], high = sums.at[FIXED_WORDS * i + 3u + c];
+    uint low = sums.at[FIXED_WORDS * i + 2u * c], high = sums.at[FIXED_WORDS * i + 2u * c + 1u];
     value[c] = (float(high) * exp2(32.0) + float(low)) * POWER_UNIT;
   }
   return value;

@@ -6,123 +6,131 @@
 #include "source/fixed_point.glsl"
 #include "source/walk_shared.h"
 
-// Scattered towards a vertex, not yet added to its deposit.
-struct Payload {
-  vec3 scattered;
-};
-
-Payload payload(uint id) {
-  return Payload(vec3(0));
-}
-
 #include "source/tet_ray.glsl"
 
 struct Ray {
-  uint tet;
+  TetPoint at;
   vec3 direction;
   vec3 power;
   vec3 carry;    // of power, that rounding kept back
   float slope;   // length of the way that it stands for, over its own
 };
 
+// Scattered towards the corners of a tet, by channel.
+struct Scattered {
+  vec4 red, green, blue;
+};
+
 vec3 absorbed;     // by this invocation's rays
 vec3 unscattered;  // of them: left through the surface, or still under way at the end
 
 // Share of the loss that is scattered: never above 1, even where division rounds up.
-vec3 albedo() {
-  return min(optical.sigma_s_prime / max(extinction(), vec3(1e-30)), vec3(1));
+vec3 albedo(Optical optical) {
+  return min(optical.sigma_s_prime / max(extinction(optical), vec3(1e-30)), vec3(1));
 }
 
-// `scattered` at the mean place of each channel between the ray's point and `l`.
-void scatter(uint tet, vec3 scattered, vec4 l, vec3 place) {
-  if ((push.deposits & WALK_DEPOSITS) == WALK_TETS) {
-    add_power(push.deposit, tet, scattered);
+vec3 at_corner(Scattered scattered, uint place) {
+  return vec3(scattered.red[place], scattered.green[place], scattered.blue[place]);
+}
+
+// `power` at the mean place of each channel between the ray's point and `l`, on its way to the vertices in `pending`.
+void scatter(TetPoint at, vec3 power, vec4 l, vec3 place, inout Scattered pending) {
+  uint deposits = push.deposits & WALK_DEPOSITS;
+  if (deposits == WALK_TETS) {
+    add_power(push.deposit, at.tet, power);
     return;
   }
-  vec3 at_0 = scattered * mix(vec3(corner_0.l), vec3(l.x), place);
-  vec3 at_1 = scattered * mix(vec3(corner_1.l), vec3(l.y), place);
-  vec3 at_2 = scattered * mix(vec3(corner_2.l), vec3(l.z), place);
-  vec3 at_3 = scattered * mix(vec3(corner_3.l), vec3(l.w), place);
-  if ((push.deposits & WALK_DEPOSITS) == WALK_VERTICES) {
-    corner_0.payload.scattered += at_0;
-    corner_1.payload.scattered += at_1;
-    corner_2.payload.scattered += at_2;
-    corner_3.payload.scattered += at_3;
+  Scattered here = Scattered(power.x * mix(at.l, l, place.x), power.y * mix(at.l, l, place.y),
+                             power.z * mix(at.l, l, place.z));
+  if (deposits == WALK_VERTICES) {
+    pending.red += here.red;
+    pending.green += here.green;
+    pending.blue += here.blue;
   } else {
-    add_power(push.deposit, 4u * tet + corner_0.place, at_0);
-    add_power(push.deposit, 4u * tet + corner_1.place, at_1);
-    add_power(push.deposit, 4u * tet + corner_2.place, at_2);
-    add_power(push.deposit, 4u * tet + corner_3.place, at_3);
+    for (uint k = 0u; k < 4u; ++k) add_power(push.deposit, 4u * at.tet + k, at_corner(here, k));
   }
 }
 
 // What the present tet takes from the ray: the exact integral of sigma_s' e^-tau against the basis functions along the
 // way to `l`, the rest absorbed.
-void cross_tet(inout Ray ray, float length, vec4 l) {
+void cross_tet(inout Ray ray, Optical optical, float length, vec4 l, inout Scattered pending) {
   vec3 lost, place;
-  attenuate(extinction() * length, lost, place);
+  attenuate(extinction(optical) * length, lost, place);
   // The power that is taken is what its float loses, and the difference is carried: the sum over many tets is then exact.
   precise vec3 wanted = ray.power * lost + ray.carry;
   precise vec3 remaining = ray.power - clamp(wanted, vec3(0), ray.power);
   precise vec3 taken = ray.power - remaining;
   ray.carry = wanted - taken;
   ray.power = remaining;
-  vec3 scattered = taken * albedo();
+  vec3 scattered = taken * albedo(optical);
   absorbed += taken - scattered;
-  scatter(ray.tet, scattered, l, place);
+  scatter(ray.at, scattered, l, place, pending);
 }
 
 // Leaves all power at the ray's point; in a clear channel it counts as unscattered.
-void end_here(Ray ray) {
-  bvec3 clear = equal(extinction(), vec3(0));
+void end_here(Ray ray, inout Scattered pending) {
+  Optical optical = optical_in(ray.at.tet);
+  bvec3 clear = equal(extinction(optical), vec3(0));
   vec3 kept = mix(ray.power, vec3(0), clear);
-  vec3 scattered = kept * albedo();
+  vec3 scattered = kept * albedo(optical);
   absorbed += kept - scattered;
   unscattered += ray.power - kept;
-  scatter(ray.tet, scattered, vec4(corner_0.l, corner_1.l, corner_2.l, corner_3.l), vec3(0));
+  scatter(ray.at, scattered, ray.at.l, vec3(0), pending);
 }
 
-void flush(Corner corner) {
-  if ((push.deposits & WALK_DEPOSITS) == WALK_VERTICES) add_power(push.deposit, corner.id, corner.payload.scattered);
+// Adds what is pending for a vertex to its deposit.
+void flush(uint tet, uint place, Scattered pending) {
+  if ((push.deposits & WALK_DEPOSITS) != WALK_VERTICES) return;
+  add_power(push.deposit, BODY.tets.at[tet][place], at_corner(pending, place));
+}
+
+// What is still pending behind a crossing, but for the corner at `place`, which is left.
+void carry_on(inout Scattered pending, uint place, uint crossing) {
+  pending.red = onward(without(pending.red, place), crossing);
+  pending.green = onward(without(pending.green, place), crossing);
+  pending.blue = onward(without(pending.blue, place), crossing);
 }
 
 // Of its power, with which a ray that begins here ends. Where much is absorbed, what has not scattered reaches as deep
 // as what has, so that it is followed in motion as at rest.
-vec3 end_share() {
+vec3 end_share(Optical optical) {
   if ((push.deposits & (WALK_TO_MEAN | WALK_TO_AGAIN)) == 0u) return vec3(WALK_END);
   float sooner = (push.deposits & WALK_TO_AGAIN) != 0u ? WALK_END_AGAIN : WALK_END_MEAN;
-  return mix(vec3(WALK_END), vec3(sooner), greaterThan(albedo(), vec3(WALK_PALE)));
+  return mix(vec3(WALK_END), vec3(sooner), greaterThan(albedo(optical), vec3(WALK_PALE)));
 }
 
-// At an outside face from inside, whose outward normal has any length.
-void meet_surface(inout Ray ray, uint face, vec3 outward);
+// At an outside face from inside.
+void meet_surface(inout Ray ray, uint face);
 
-// Follows a ray from the point that the corners hold, until its light is spent.
-void walk(Ray ray) {
-  vec3 end = end_share() * ray.power;
-  for (uint step = 0u; step < MAX_WALK_STEPS; ++step) {
-    Exit exit = find_exit(ray.direction);
+// Follows a ray until its light is spent; returns how many tets it crossed.
+uint walk(Ray ray) {
+  vec3 end = end_share(optical_in(ray.at.tet)) * ray.power;
+  Scattered pending = Scattered(vec4(0), vec4(0), vec4(0));
+  uint crossed = 0u;
+  while (crossed < MAX_WALK_STEPS) {
+    Exit exit = find_exit(ray.at, ray.direction);
     if (!exit.found) break;
-    vec4 l = exit_point(exit);
-    cross_tet(ray, ray.slope * exit.path, l);
-    move_to(l);
+    ++crossed;
+    Optical optical = optical_in(ray.at.tet);
+    vec4 l = exit_point(ray.at, exit);
+    cross_tet(ray, optical, ray.slope * exit.path, l, pending);
+    ray.at.l = l;
     bool spent = all(lessThanEqual(ray.power, end));
-    if (spent && extinction() != vec3(0)) break;
-    uvec2 crossing = turn(ray.tet, exit.slot);
-    if (crossing.x < BODY.tet_count) {
-      flush(corner_3);
-      ray.tet = crossing.x;
-      enter(crossing);
+    if (spent && extinction(optical) != vec3(0)) break;
+    uint crossing = crossing_at(ray.at.tet, exit.place), across = crossing >> CROSSING_BITS;
+    if (across < BODY.tet_count) {
+      flush(ray.at.tet, exit.place, pending);
+      carry_on(pending, exit.place, crossing);
+      enter(ray.at, exit.place, crossing);
     } else {
-      meet_surface(ray, crossing.x - BODY.tet_count, exit.outward);
+      bar(ray.at, exit.place);
+      meet_surface(ray, across - BODY.tet_count);
       if (ray.power == vec3(0)) break;
     }
   }
-  end_here(ray);
-  flush(corner_0);
-  flush(corner_1);
-  flush(corner_2);
-  flush(corner_3);
+  end_here(ray, pending);
+  for (uint k = 0u; k < 4u; ++k) flush(ray.at.tet, k, pending);
+  return crossed;
 }
 
 #endif

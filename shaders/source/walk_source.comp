@@ -10,9 +10,11 @@ layout(push_constant, scalar) uniform Block { WalkSourcePush push; };
 #include "source/walk_ray.glsl"
 #include "source/walk_start.glsl"
 
+uint segments;  // tets, by this invocation's rays
+
 // At an outside face from inside: part leaves, the rest goes on mirrored.
-void meet_surface(inout Ray ray, uint face, vec3 outward) {
-  vec3 n = outward / length(outward);
+void meet_surface(inout Ray ray, uint face) {
+  vec3 n = outward_normal(face);
   float cosine = dot(ray.direction, n);
   if (BODY.face_kinds.at[face] == FACE_OPEN) {
     vec3 reflected = ray.power * internal_reflectance(cosine, BODY.eta);
@@ -24,18 +26,35 @@ void meet_surface(inout Ray ray, uint face, vec3 outward) {
   ray.direction = normalize(ray.direction - 2.0 * cosine * n);
 }
 
-void follow(BeamRecord way, uint ray, uint face, Frame at, vec3 power) {
-  walk(start(way, ray, BODY.face_tets.at[face], at, power));
+void follow(BeamRecord way, uint ray, uint face, TetPoint point, Frame at, vec3 power) {
+  segments += walk(start(way, ray, point, at, power));
+}
+
+uint rays_of(uint beam) {
+  bool bundle = push.beams.at[beam].way.kind == BEAM_LAMBERTIAN && (push.deposits & WALK_ONE_RAY) == 0u;
+  return bundle ? LAMBERTIAN_RAYS : 1u;
 }
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
   absorbed = vec3(0);
   unscattered = vec3(0);
-  if (i >= BODY.face_count * push.rays) return;
-  walk_from(i % BODY.face_count, i / BODY.face_count);
+  segments = 0u;
+  uint per_face = 0u;
+  for (uint b = 0u; b < push.beam_count; ++b) per_face += rays_of(b);
+  if (i >= BODY.face_count * per_face) return;
+#ifdef QG_PROCESSOR
+  uint face = i / per_face, ray = i % per_face;  // rays near each other, so that what they cross stays in a cache
+#else
+  uint face = i % BODY.face_count, ray = i / BODY.face_count;  // rays alike, so that none waits for others
+#endif
+  uint beam = 0u;
+  while (ray >= rays_of(beam)) ray -= rays_of(beam++);
+  rays = rays_of(beam);
+  walk_from(push.beams.at[beam], face, ray);
   // In turn, so that invocations seldom wait for each other.
-  uint at = 2u * (gl_WorkGroupID.x % WALK_SUMS);
-  add_power(push.sums, at, absorbed);
-  add_power(push.sums, at + 1u, unscattered);
+  uint at = gl_WorkGroupID.x % WALK_SUMS;
+  add_power(push.sums, 2u * at, absorbed);
+  add_power(push.sums, 2u * at + 1u, unscattered);
+  atomicAdd(push.sums.at[2u * FIXED_WORDS * WALK_SUMS + at], segments);
 }

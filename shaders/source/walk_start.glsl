@@ -1,5 +1,5 @@
-// Where the rays of a beam start. The shader that includes it, behind walk_ray.glsl, has push constants `push` with beam,
-// beam_q, scale and rays as WalkSourcePush does, and defines follow behind it.
+// Where the rays of a beam start. The shader that includes it, behind walk_ray.glsl, has push constants `push` with
+// beam_q and scale as WalkSourcePush does, sets `rays`, and defines follow behind it.
 #ifndef QUADGRAPH_WALK_START_GLSL
 #define QUADGRAPH_WALK_START_GLSL
 
@@ -10,6 +10,8 @@
 #include "source/walk_ray.glsl"
 
 const uint FACE_CENTRE = 3u;  // the quarter in the middle
+
+uint rays;  // of the beam, per origin
 
 // Barycentric coordinates of the centroid of a quarter.
 vec3 quarter_centre(uint quarter) {
@@ -61,13 +63,23 @@ vec3 incoming(BeamRecord beam, uint ray, Frame at) {
 }
 
 // Share of the power of a face that one ray takes, by its number.
-float share_of(uint ray, uint rays) {
+float share_of(uint ray) {
   return rays == 1u ? 1.0 : 0.5 * lambertian(BODY.eta).share[ray / 2u];
 }
 
+float known_mean_cosine = 0.0;  // 0: not known yet
+
 float mean_cosine() {
-  Lambertian light = lambertian(BODY.eta);
-  return dot(light.share, light.cosine);
+  if (known_mean_cosine == 0.0) {
+    Lambertian light = lambertian(BODY.eta);
+    known_mean_cosine = dot(light.share, light.cosine);
+  }
+  return known_mean_cosine;
+}
+
+// Whether rays of a beam have their directions from the tangent of a face.
+bool turned_by_face(BeamRecord way) {
+  return way.kind == BEAM_MEAN || (way.kind == BEAM_LAMBERTIAN && rays > 1u);
 }
 
 // Inside direction of BEAM_MEAN.
@@ -78,21 +90,20 @@ vec3 mean_direction(vec3 normal, vec3 tangent) {
 
 // The ray inside, of power that has entered at a point of a face. A Lambertian beam by one ray goes straight down, as
 // deep as the mean of its directions: askew it would take light aside, each face to its own side.
-Ray start(BeamRecord way, uint ray, uint tet, Frame at, vec3 power) {
-  if (way.kind == BEAM_LAMBERTIAN && push.rays == 1u) {
-    return Ray(tet, -at.normal, power, vec3(0), 1.0 / mean_cosine());
+Ray start(BeamRecord way, uint ray, TetPoint point, Frame at, vec3 power) {
+  if (way.kind == BEAM_LAMBERTIAN && rays == 1u) {
+    return Ray(point, -at.normal, power, vec3(0), 1.0 / mean_cosine());
   }
   vec3 inside = way.kind == BEAM_MEAN ? mean_direction(at.normal, at.tangent)
                                       : refracted(incoming(way, ray, at), at.normal, BODY.eta);
-  return Ray(tet, inside, power, vec3(0), 1.0);
+  return Ray(point, inside, power, vec3(0), 1.0);
 }
 
-// Walks a ray from the point that the corners hold.
-void follow(BeamRecord way, uint ray, uint face, Frame at, vec3 power);
+// Walks a ray from a point of a face.
+void follow(BeamRecord way, uint ray, uint face, TetPoint point, Frame at, vec3 power);
 
 // Ray `ray` of every origin on a face.
-void walk_from(uint face, uint ray) {
-  Beam beam = push.beam.at[0u];
+void walk_from(Beam beam, uint face, uint ray) {
   vec3 q[FACE_QUARTERS];
   vec3 inverse = push.scale.at[0].inverse;
   vec3 least = vec3(NEVER), largest = vec3(0), sum = vec3(0);
@@ -104,15 +115,16 @@ void walk_from(uint face, uint ray) {
   }
   OpenFace open;
   if (largest == vec3(0) || !opens(face, open)) return;
-  vec3 tangent = face_tangent(face, open.normal, open.corners[1] - open.corners[0]);
+  vec3 tangent = vec3(0);
+  if (turned_by_face(beam.way)) tangent = face_tangent(face, open.normal, open.corners[1] - open.corners[0]);
   bool one = one_ray_does(least, largest, open.corners, open.area);
-  float share = 0.25 * open.area * share_of(ray, push.rays);
+  float share = 0.25 * open.area * share_of(ray);
   for (uint k = one ? FACE_CENTRE : 0u; k < FACE_QUARTERS; ++k) {
     vec3 power = share * (one ? sum : q[k]);
     if (power == vec3(0)) continue;
     vec3 l = quarter_centre(k);
-    start_on_face(open.tet, open.ids, open.corners, l);
-    follow(beam.way, ray, face, Frame(open.corners * l, open.normal, tangent, FACE_QUARTERS * face + k), power);
+    Frame at = Frame(open.corners * l, open.normal, tangent, FACE_QUARTERS * face + k);
+    follow(beam.way, ray, face, start_on_face(open.tet, open.ids, l), at, power);
   }
 }
 

@@ -14,16 +14,12 @@
 
 const float GOLDEN_ANGLE = 2.3999632;
 const float TWO_PI = 6.2831853;
-const float NEVER = 1e37;
-const uint NO_SLOT = 4u;
 
 uint crossed;  // tets, by this invocation's rays
 
-// A ray at its point in a tet.
 struct Ray {
-  uint tet;
-  uint behind;  // corner opposite the face that it came in through, or NO_SLOT
-  vec3 point, direction;
+  TetPoint at;
+  vec3 direction;
   vec3 left;         // of 1, on the way so far
   vec3 left_before;  // the same in the body before
 };
@@ -36,16 +32,8 @@ float largest(vec3 v) {
   return max(v.x, max(v.y, v.z));
 }
 
-Optical optical_in(uint tet) {
-  return BODY.optical.at[(BODY.flags & BODY_EVEN) != 0u ? 0u : tet];
-}
-
 Optical optical_before(uint tet) {
   return FIELD.optical_before.at[FIELD.even_before != 0u ? 0u : tet];
-}
-
-vec3 extinction(Optical optical) {
-  return optical.sigma_s_prime + optical.sigma_a;
 }
 
 vec3 source_before_at(uint tet, vec4 l) {
@@ -54,8 +42,10 @@ vec3 source_before_at(uint tet, vec4 l) {
   return source;
 }
 
-vec3 source_at(TransportCell cell, vec4 l) {
-  return l.x * cell.source_0 + l.y * cell.source_1 + l.z * cell.source_2 + l.w * cell.source_3;
+vec3 source_at(uint tet, vec4 l) {
+  vec4 source = l.x * FIELD.sources.at[tet].source_0 + l.y * FIELD.sources.at[tet].source_1 +
+                l.z * FIELD.sources.at[tet].source_2 + l.w * FIELD.sources.at[tet].source_3;
+  return source.xyz;
 }
 
 // Adds the source between two places of a tet `path` apart, attenuated on the way to the ray's start: exact where the
@@ -84,9 +74,10 @@ bool goes_past(uint face, inout Ray ray, inout uint state) {
       ray.left_before *= reflected;
       if (reflected == 0.0) return false;
     } else if (uniform_number(state) >= reflected) {
-      Entrance entry = through_air(face, ray.point, leaving_direction(ray.direction, n, cosine), state);
+      Entrance entry = through_air(face, in_space(ray.at), leaving_direction(ray.direction, n, cosine), state);
       if (entry.face == NO_FACE) return false;
-      ray = Ray(BODY.face_tets.at[entry.face], NO_SLOT, entry.point, entry.direction, ray.left, ray.left_before);
+      ray.at = entrance_point(entry);
+      ray.direction = entry.direction;
       return true;
     }
   }
@@ -109,34 +100,23 @@ bool goes_on(inout Ray ray, inout uint state) {
 vec3 arriving(Ray ray, inout uint state, out vec3 before) {
   vec3 sum = vec3(0);
   before = vec3(0);
-  vec3 sigma_t = extinction(optical_in(ray.tet));
   for (uint step = 0u; step < MAX_WALK_STEPS; ++step) {
-    TransportCell cell = FIELD.cells.at[ray.tet];
-    vec3 x = ray.point, d = ray.direction;
-    vec4 l = max(cell.at_x * x.x + cell.at_y * x.y + cell.at_z * x.z + cell.at_0, vec4(0));
-    vec4 rate = cell.at_x * d.x + cell.at_y * d.y + cell.at_z * d.z;
-    vec4 times = mix(vec4(NEVER), l / -rate, lessThan(rate, vec4(0)));
-    times = mix(times, vec4(NEVER), equal(vec4(0.0, 1.0, 2.0, 3.0), vec4(float(ray.behind))));
-    float path = min(min(times.x, times.y), min(times.z, times.w));
-    if (path >= NEVER) break;
+    Exit exit = find_exit(ray.at, ray.direction);
+    if (!exit.found) break;
     ++crossed;
-    uint slot = times.x == path ? 0u : times.y == path ? 1u : times.z == path ? 2u : 3u;
-    if ((BODY.flags & BODY_EVEN) == 0u) sigma_t = extinction(optical_in(ray.tet));
-    vec4 end = l + path * rate;
-    add_source(source_at(cell, l), source_at(cell, end), sigma_t, path, sum, ray.left);
+    uint tet = ray.at.tet;
+    vec4 start = ray.at.l, end = exit_point(ray.at, exit);
+    add_source(source_at(tet, start), source_at(tet, end), extinction(optical_in(tet)), exit.path, sum, ray.left);
     if (sees_before()) {
-      add_source(source_before_at(ray.tet, l), source_before_at(ray.tet, end), extinction(optical_before(ray.tet)), path,
+      add_source(source_before_at(tet, start), source_before_at(tet, end), extinction(optical_before(tet)), exit.path,
                  before, ray.left_before);
     }
-    ray.point += path * d;
-    uint crossing = cell.crossings[slot];
-    uint across = crossing >> CROSSING_BITS;
+    ray.at.l = end;
+    uint crossing = crossing_at(tet, exit.place), across = crossing >> CROSSING_BITS;
     if (across < BODY.tet_count) {
-      uint last = (crossing ^ crossing >> 2u ^ crossing >> 4u) & 3u;
-      ray.tet = across;
-      ray.behind = slot == 3u ? last : crossing >> 2u * slot & 3u;
+      enter(ray.at, exit.place, crossing);
     } else {
-      ray.behind = slot;
+      bar(ray.at, exit.place);
       if (!goes_past(across - BODY.tet_count, ray, state)) break;
     }
     if (!goes_on(ray, state)) break;

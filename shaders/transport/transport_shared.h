@@ -26,13 +26,9 @@ const uint TRANSPORT_WALK_SUMS = 4u;
 // Parts of the body that a ray can meet in the air, one after the other, before it is given up.
 const uint TRANSPORT_MEETINGS = 8u;
 
-// A tet as rays see it, in two lines of a cache. Barycentric coordinates at x: x.x * at_x + x.y * at_y + x.z * at_z +
-// at_0; all zero where a tet is flat, or turned inside out: rays end there.
-struct TransportCell {
-  vec4 at_x, at_y, at_z;  // 1/mm
-  vec4 at_0;
-  vec3 source_0, source_1, source_2, source_3;  // light that is scattered, at the corners, W/mm^3
-  uvec4 crossings;                              // out of the face opposite each corner (body_shared.h)
+// Light that a tet scatters, at its corners, W/mm^3, in one line of a cache: the last number of each is not used.
+struct TetSource {
+  vec4 source_0, source_1, source_2, source_3;
 };
 
 // Where the transport equation is evaluated inside the body.
@@ -44,7 +40,7 @@ struct TransportPoint {
 };
 
 #ifndef __cplusplus
-QG_ARRAY(TransportCells, TransportCell);
+QG_ARRAY(TetSources, TetSource);
 
 #endif
 
@@ -53,10 +49,10 @@ QG_ARRAY(TransportCells, TransportCell);
 struct TransportFieldRef {
   BodyRef body;
   TreeRef tree;
-  QG_REF(TransportCells) cells;  // per tet
-  QG_REF(Floats) sky;            // per face: share of all directions outside in which no other part of the body is
-  QG_REF(Uints) segments;        // tets crossed by all rays so far, one
-  QG_REF(Vec3s) source_before;   // light that the field before scatters, four per tet, W/mm^3; or null
+  QG_REF(TetSources) sources;   // per tet
+  QG_REF(Floats) sky;           // per face: share of all directions outside in which no other part of the body is
+  QG_REF(Uints) segments;       // tets crossed by all rays so far, one
+  QG_REF(Vec3s) source_before;  // light that the field before scatters, four per tet, W/mm^3; or null
   QG_REF(Opticals) optical_before;
   uint even_before;  // 1: optical_before is the same everywhere
   uint outside;      // 1: light that leaves may enter again elsewhere

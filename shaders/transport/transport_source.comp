@@ -21,7 +21,7 @@ struct TransportSourcePush {
   Vec3s fluence_seen;   // written
   Vec3s fluence_apart;  // written: what of the field before is seen by itself; or null, where it is taken away
   Vec3s source_apart;   // the same, four per tet
-  TransportCells cells;
+  TetSources sources;
   uint vertex_count;
   uint tet_count;
   uint even;    // 1: optical is the same everywhere
@@ -67,8 +67,8 @@ void main() {
   float volume = volume_of(corners), per_volume = volume > 0.0 ? 20.0 / volume : 0.0;
   vec3 sum = vec3(0);
   for (uint k = 0u; k < 4u; ++k) sum += power_at(push.deposit, 4u * i + k);
-  push.cells.at[i].source_0 = source_at(i, 0u, corners.x, sum, per_volume);
-  push.cells.at[i].source_1 = source_at(i, 1u, corners.y, sum, per_volume);
-  push.cells.at[i].source_2 = source_at(i, 2u, corners.z, sum, per_volume);
-  push.cells.at[i].source_3 = source_at(i, 3u, corners.w, sum, per_volume);
+  push.sources.at[i].source_0 = vec4(source_at(i, 0u, corners.x, sum, per_volume), 0.0);
+  push.sources.at[i].source_1 = vec4(source_at(i, 1u, corners.y, sum, per_volume), 0.0);
+  push.sources.at[i].source_2 = vec4(source_at(i, 2u, corners.z, sum, per_volume), 0.0);
+  push.sources.at[i].source_3 = vec4(source_at(i, 3u, corners.w, sum, per_volume), 0.0);
 }

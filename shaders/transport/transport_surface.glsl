@@ -8,6 +8,7 @@
 
 #include "material/fresnel.glsl"
 #include "source/lambertian.glsl"
+#include "source/tet_ray.glsl"
 #include "transport/random.glsl"
 #include "transport/transport_shared.h"
 
@@ -23,12 +24,6 @@ bool sees_body(uint face) {
   return FIELD.outside != 0u && FIELD.sky.at[face] < 1.0;
 }
 
-vec3 outward_normal(uint face) {
-  uvec3 ids = BODY.faces.at[face];
-  vec3 p = BODY.vertices.at[ids.x];
-  return normalize(cross(BODY.vertices.at[ids.y] - p, BODY.vertices.at[ids.z] - p));
-}
-
 // Outside, for a direction that leaves at inside cosine `cosine`.
 vec3 leaving_direction(vec3 direction, vec3 n, float cosine) {
   float outside = sqrt(max(1.0 - BODY.eta * BODY.eta * (1.0 - cosine * cosine), 0.0));
@@ -39,8 +34,20 @@ vec3 leaving_direction(vec3 direction, vec3 n, float cosine) {
 struct Entrance {
   uint face;  // or NO_FACE: nowhere
   vec2 place;  // barycentric coordinates of its second and third corner
-  vec3 point, direction;  // inside
+  vec3 direction;  // inside
 };
+
+TetPoint entrance_point(Entrance entry) {
+  vec3 l = vec3(max(1.0 - entry.place.x - entry.place.y, 0.0), entry.place);
+  return start_on_face(BODY.face_tets.at[entry.face], BODY.faces.at[entry.face], l);
+}
+
+// mm
+vec3 in_space(TetPoint at) {
+  uvec4 ids = BODY.tets.at[at.tet];
+  return at.l.x * BODY.vertices.at[ids.x] + at.l.y * BODY.vertices.at[ids.y] + at.l.z * BODY.vertices.at[ids.z] +
+         at.l.w * BODY.vertices.at[ids.w];
+}
 
 // From a point of `face` along `direction` through the air, past what only reflects it, until the ray enters the body
 // again.
@@ -53,11 +60,11 @@ Entrance through_air(uint face, vec3 point, vec3 direction, inout uint state) {
     vec3 n = outward_normal(face);
     float cosine = clamp(-dot(direction, n), 0.0, 1.0);
     if (BODY.face_kinds.at[face] == FACE_OPEN && uniform_number(state) < fresnel_transmittance(cosine, BODY.eta)) {
-      return Entrance(face, clamp(hit.place, vec2(0), vec2(1)), point, refracted(direction, n, BODY.eta));
+      return Entrance(face, clamp(hit.place, vec2(0), vec2(1)), refracted(direction, n, BODY.eta));
     }
     direction = normalize(direction + 2.0 * cosine * n);
   }
-  return Entrance(NO_FACE, vec2(0), point, direction);
+  return Entrance(NO_FACE, vec2(0), direction);
 }
 
 #endif

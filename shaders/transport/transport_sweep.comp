@@ -57,7 +57,7 @@ void frame_about(vec3 n, out vec3 a, out vec3 b) {
 }
 
 // Mean over directions that are spread evenly and turned by three numbers in [0, 1). `before` as in arriving.
-vec3 transported(uint tet, vec3 point, vec3 turn, inout uint state, out vec3 before) {
+vec3 transported(TetPoint at, vec3 turn, inout uint state, out vec3 before) {
   vec3 axis = on_sphere(2.0 * turn.x - 1.0, TWO_PI * turn.y), a, b;
   frame_about(axis, a, b);
   float turned = TWO_PI * turn.z;
@@ -66,7 +66,7 @@ vec3 transported(uint tet, vec3 point, vec3 turn, inout uint state, out vec3 bef
     vec3 d = on_sphere(1.0 - (2.0 * float(k) + 1.0) / float(push.directions), turned + GOLDEN_ANGLE * float(k));
     vec3 direction = normalize(d.x * a + d.y * b + d.z * axis);
     vec3 then;
-    sum += arriving(Ray(tet, NO_SLOT, point, direction, vec3(1), left_before), state, then);
+    sum += arriving(Ray(at, direction, vec3(1), left_before), state, then);
     sum_before += then;
   }
   before = sum_before / float(push.directions);
@@ -84,14 +84,13 @@ void main() {
   for (uint k = 0u; k < 6u; ++k) u[k] = spread_number(start, point.number, k);
   vec4 l = in_tet(u[0], u[1], u[2]);
   uvec4 ids = BODY.tets.at[point.tet];
-  vec3 solved = vec3(0), solved_before = vec3(0), place = vec3(0);
+  vec3 solved = vec3(0), solved_before = vec3(0);
   for (uint k = 0u; k < 4u; ++k) {
     solved += l[k] * push.fluence.at[ids[k]];
     if (sees_before()) solved_before += l[k] * push.fluence_before.at[ids[k]];
-    place += l[k] * BODY.vertices.at[ids[k]];
   }
   uint state = hash(start + point.number);
-  vec3 before, now = transported(point.tet, place, vec3(u[3], u[4], u[5]), state, before);
+  vec3 before, now = transported(TetPoint(point.tet, l, vec4(0)), vec3(u[3], u[4], u[5]), state, before);
   Optical optical = optical_in(point.tet);
   vec3 found = point.volume * (now - solved), load = optical.sigma_s_prime * found;
   vec3 sum = load + optical.sigma_a * found;

@@ -35,15 +35,13 @@ vec3 entered, entered_again;
 // Puts the ray where it enters. Returns 0 if it enters nowhere, else 1.
 float enter_again(Entrance entry, inout Ray ray) {
   if (entry.face == NO_FACE) return 0.0;
-  uvec3 ids = BODY.faces.at[entry.face];
-  ray.tet = BODY.face_tets.at[entry.face];
+  ray.at = entrance_point(entry);
   ray.direction = entry.direction;
-  start_on_face(ray.tet, ids, corners_of(ids), vec3(max(1.0 - entry.place.x - entry.place.y, 0.0), entry.place));
   return 1.0;
 }
 
-void meet_surface(inout Ray ray, uint face, vec3 outward) {
-  vec3 n = outward / length(outward);
+void meet_surface(inout Ray ray, uint face) {
+  vec3 n = outward_normal(face);
   float cosine = dot(ray.direction, n);
   if (BODY.face_kinds.at[face] == FACE_OPEN) {
     float reflected = internal_reflectance(cosine, BODY.eta);
@@ -52,8 +50,8 @@ void meet_surface(inout Ray ray, uint face, vec3 outward) {
       unscattered += ray.power - kept;
       ray.power = kept;
     } else if (uniform_number(state) >= reflected) {
-      vec3 point = corner_0.l * corner_0.position + corner_1.l * corner_1.position + corner_2.l * corner_2.position;
       unscattered += ray.power;
+      vec3 point = in_space(ray.at);
       ray.power *= enter_again(through_air(face, point, leaving_direction(ray.direction, n, cosine), state), ray);
       entered_again += ray.power;
       return;
@@ -70,17 +68,18 @@ void follow_reflected(vec3 direction, uint face, vec3 point, vec3 normal, vec3 w
   float transmitted = fresnel_transmittance(cosine, BODY.eta);
   direction = normalize(direction + 2.0 * cosine * normal);
   if (transmitted < 1e-3) return;
-  Ray reflected = Ray(0u, direction, (1.0 / transmitted - 1.0) * went_in, vec3(0), 1.0);
-  if (enter_again(through_air(face, point, direction, state), reflected) == 0.0) return;
+  Entrance entry = through_air(face, point, direction, state);
+  if (entry.face == NO_FACE) return;
+  Ray reflected = Ray(entrance_point(entry), entry.direction, (1.0 / transmitted - 1.0) * went_in, vec3(0), 1.0);
   entered_again += reflected.power;
   walk(reflected);
 }
 
 // Of a beam whose light comes evenly from everywhere.
-void follow(BeamRecord way, uint ray, uint face, Frame at, vec3 power) {
+void follow(BeamRecord way, uint ray, uint face, TetPoint point, Frame at, vec3 power) {
   state = hash(face ^ hash(ray));
   entered += power;
-  walk(start(way, ray, BODY.face_tets.at[face], at, power));
+  walk(start(way, ray, point, at, power));
   // Of a bundle that one ray stands for no reflection is known.
   if (push.rays == 1u) return;
   follow_reflected(incoming(way, ray, at), face, at.position, at.normal, power);
@@ -89,8 +88,7 @@ void follow(BeamRecord way, uint ray, uint face, Frame at, vec3 power) {
 // From where it entered, and on from there what the surface reflects. direction: outside, the way the light travels.
 void enter(OpenFace open, uint face, vec3 l, vec3 direction, vec3 power) {
   entered += power;
-  start_on_face(open.tet, open.ids, open.corners, l);
-  walk(Ray(open.tet, refracted(direction, open.normal, BODY.eta), power, vec3(0), 1.0));
+  walk(Ray(start_on_face(open.tet, open.ids, l), refracted(direction, open.normal, BODY.eta), power, vec3(0), 1.0));
   follow_reflected(direction, face, open.corners * l, open.normal, power);
 }
 
@@ -130,10 +128,11 @@ void main() {
   if (i >= BODY.face_count * push.rays) return;
   uint face = i % BODY.face_count, ray = i / BODY.face_count;
   Beam beam = push.beam.at[0];
+  rays = push.rays;
   if (push.sky == 1u) {
     walk_from_sky(beam, face, ray);
   } else if (beam.way.kind == BEAM_LAMBERTIAN) {
-    walk_from(face, ray);
+    walk_from(beam, face, ray);
   } else {
     walk_from_quarter(beam, face, ray);
   }

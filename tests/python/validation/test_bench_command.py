@@ -88,9 +88,11 @@ def test_live_frames_do_more_the_more_changes(sphere, tmp_path, capsys):
     for kind in live["kinds"]:
         assert 0 < kind["off"]["median"] <= kind["off"]["most"] < 0.1
         assert kind["off"]["rms"] < 0.03
+        assert kind["walk_segments_per_s"] > 1e4
     printed = " ".join(capsys.readouterr().out.split())
     assert "light, material and shape changing" in printed
     assert "off by" in printed
+    assert "million tets a second" in printed
 
 
 def test_a_frame_has_the_pixels_that_are_asked_for(sphere, tmp_path, capsys):
