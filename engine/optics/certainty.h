@@ -22,12 +22,16 @@ constexpr bool is_length(Knowledge knowledge) {
   return knowledge == Knowledge::sigma_s_prime_resolution || knowledge == Knowledge::sigma_a_resolution;
 }
 
+// Larger ones, and infinite ones, which say as little, are taken for it.
+constexpr float most_stated(Knowledge knowledge) {
+  return is_length(knowledge) ? 1e9f : 1e3f;
+}
+
 // Of each place the mean of the channels; empty where it is not stated.
 struct Certainty {
   std::array<std::vector<float>, knowledge_names.size()> stated;
 
   const std::vector<float>& of(Knowledge knowledge) const { return stated[static_cast<std::size_t>(knowledge)]; }
-  std::vector<float>& of(Knowledge knowledge) { return stated[static_cast<std::size_t>(knowledge)]; }
   bool states(Knowledge knowledge) const { return !of(knowledge).empty(); }
 };
 

@@ -89,7 +89,8 @@ const NpzArray& coefficient(const Fields& fields, const std::string& name) {
 }
 
 // Of the cells; empty where the file has none.
-std::vector<float> stated_in(const Fields& fields, const std::string& name) {
+std::vector<float> stated_in(const Fields& fields, Knowledge knowledge) {
+  const std::string name(knowledge_names[static_cast<std::size_t>(knowledge)]);
   if (!fields.has(name)) return {};
   const std::string coefficient_name = name.substr(0, name.rfind('_'));
   const NpzArray &array = fields.numbers(name), &of = fields.numbers(coefficient_name);
@@ -101,7 +102,7 @@ std::vector<float> stated_in(const Fields& fields, const std::string& name) {
   std::vector<float> values;
   for (std::size_t i = 0; i < array.values.size(); i += channels) {
     const auto channel = [&](std::size_t c) { return array.values[i + c % channels]; };
-    const std::optional<float> value = stated_of({channel(0), channel(1), channel(2)});
+    const std::optional<float> value = stated_of(knowledge, {channel(0), channel(1), channel(2)});
     if (!value)
       fields.refuse(name, "negative or no number in cell " + std::to_string(values.size()) + ", 0 or more allowed");
     values.push_back(*value);
@@ -158,11 +159,12 @@ std::vector<Value> sampled(const Volume& volume, const std::vector<Value>& value
 
 }  // namespace
 
-std::optional<float> stated_of(const glm::dvec3& channels) {
+std::optional<float> stated_of(Knowledge knowledge, const glm::dvec3& channels) {
+  const double most{most_stated(knowledge)};
   float sum = 0;
   for (int c = 0; c < 3; ++c) {
     if (!(channels[c] >= 0)) return std::nullopt;
-    sum += static_cast<float>(std::min(channels[c], static_cast<double>(most_stated)));
+    sum += static_cast<float>(std::min(channels[c], most));
   }
   return sum / 3;
 }
@@ -217,7 +219,7 @@ Volume read_volume(const std::filesystem::path& path) {
     volume.eta = static_cast<float>(eta);
   }
   for (std::size_t i = 0; i < knowledge_names.size(); ++i) {
-    volume.certainty.stated[i] = stated_in(fields, std::string(knowledge_names[i]));
+    volume.certainty.stated[i] = stated_in(fields, static_cast<Knowledge>(i));
   }
   return volume;
 }

@@ -20,7 +20,7 @@ struct Volume {
   glm::dvec3 spacing{1};               // mm
   std::optional<glm::dvec3> origin;    // mm, the middle of the first cell; without one the grid is centred on the body
   float eta = default_eta;
-  Certainty certainty{};  // of the cells, each 0 to most_stated
+  Certainty certainty{};  // of the cells, each 0 to most_stated()
 
   // Where the middle of the first cell lies in a body around `centre`, mm.
   glm::dvec3 first(const glm::dvec3& centre) const;
@@ -32,11 +32,8 @@ struct Volume {
   Certainty certainty_at(std::span<const glm::vec3> points, const glm::dvec3& centre) const;
 };
 
-// Of a deviation or a length; larger ones, and infinite ones, which say as little, are taken for it.
-inline constexpr float most_stated = 1e3f;
-
 // The mean of the channels of one place; nothing where one is negative or no number.
-std::optional<float> stated_of(const glm::dvec3& channels);
+std::optional<float> stated_of(Knowledge knowledge, const glm::dvec3& channels);
 
 // Whether a material's text names such a file: it ends in .npz, in any case.
 bool is_volume(std::string_view material);
@@ -47,8 +44,7 @@ void check_material_text(std::string_view text);
 
 // Reads a .npz of `sigma_s_prime` and `sigma_a`, (nz, ny, nx) or (nz, ny, nx, 3) in 1/mm, and `spacing`, one number or
 // three in mm along x, y, z; `origin`, `eta`, and what certainty.h names, of their coefficients' shapes, if
-// they are there. Throws InputError naming file, field, what was found
-// and what is allowed.
+// they are there. Throws InputError naming file, field, what was found and what is allowed.
 Volume read_volume(const std::filesystem::path& path);
 
 // A volume's coefficients on all levels and, for shortest-path, on its own grid; their certainty on the finest level.

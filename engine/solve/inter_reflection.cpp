@@ -104,9 +104,15 @@ void InterReflection::record_enter(Workspace& work, const LevelBuffers& level, c
                          level.face_count * (face_bytes + 5 * vec3_bytes));
 }
 
+void InterReflection::start_over() {
+  any_ = !irradiance_.empty();
+  count_ = 0;
+}
+
 void InterReflection::record_none(Workspace& work, const std::vector<LevelBuffers>& levels) {
   if (!any_) return;
   any_ = false;
+  work.recorder.fill(factor_, std::bit_cast<std::uint32_t>(1.0f));  // of what may never have been written
   for (std::uint32_t i = 0; i <= *level_; ++i) {
     work.recorder.fill(irradiance_[i], 0);
     record_enter(work, levels[i], irradiance_[i], 1);

@@ -48,6 +48,10 @@ class InterReflection {
   // How far the exchange is behind the shape, as ExchangeMatrix::age; 0 without one.
   std::uint32_t age() const { return matrix_ ? matrix_->age() : 0; }
 
+  // Work was given up half-way: what entered again is not known until record_none, which may have been recorded and not
+  // done.
+  void start_over();
+
   // No light has entered again, on any level.
   void record_none(Workspace& work, const std::vector<LevelBuffers>& levels);
 

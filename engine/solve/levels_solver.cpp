@@ -346,7 +346,7 @@ void LevelsSolver::finish() {
     if (!solvers_[i]) continue;
     report_.levels.push_back(solvers_[i]->report());
     entries += solvers_[i]->entries();
-    if (options_.source == Source::buried) report_.walk_segments += parts_.walks[i].power().segments;
+    if (options_.source == Source::buried) report_.walk_segments += parts_.walks[i].segments();
   }
   report_.finest = finest_;
   report_.cycles = options_.cycles;

@@ -127,6 +127,7 @@ struct Simulation::Implementation {
     passes.clear();
     operators.forget();
     coefficients.forget();
+    exchange.start_over();
     exchange.put_back(device, levels);
     for (std::uint32_t i = 0; i < levels.size(); ++i) {
       levels[i].links = {};

@@ -120,8 +120,14 @@ WalkPower SourceWalk::Sums::power() const {
     power.absorbed += shares[i];
     power.unscattered += shares[i + 1];
   }
-  for (const std::uint32_t crossed : words.subspan(sums_words)) power.segments += crossed;
   return power;
+}
+
+double SourceWalk::Sums::segments() const {
+  if (sums.size() == 0) return 0;
+  double sum = 0;
+  for (const std::uint32_t crossed : sums_on_host.mapped_as<std::uint32_t>().subspan(sums_words)) sum += crossed;
+  return sum;
 }
 
 void SourceWalk::make_room(device::Device& device, const LevelBuffers& level, Method method, bool again) {
@@ -214,7 +220,11 @@ WalkPower SourceWalk::power() const {
   WalkPower power = sums_.power();
   if (!again_) return power;
   const WalkPower more = sums_again_.power();
-  return {power.absorbed + more.absorbed, power.unscattered + more.unscattered, power.segments + more.segments};
+  return {power.absorbed + more.absorbed, power.unscattered + more.unscattered};
+}
+
+double SourceWalk::segments() const {
+  return sums_.segments() + (again_ ? sums_again_.segments() : 0);
 }
 
 std::vector<glm::dvec3> powers(std::span<const std::uint32_t> words, const glm::dvec3& scale) {

@@ -20,8 +20,7 @@ namespace quadgraph {
 struct WalkPower {
   glm::dvec3 absorbed{0};
   glm::dvec3 unscattered{
-      0};               // left through the surface, or trapped in a clear region for longer than any ray is followed
-  double segments = 0;  // tets that the rays crossed
+      0};  // left through the surface, or trapped in a clear region for longer than any ray is followed
 };
 
 // Sums in fixed point (walk_shared.h) as numbers, W.
@@ -88,6 +87,8 @@ class SourceWalk {
 
   // Power of the last walk that has run.
   WalkPower power() const;
+  // Tets that its rays crossed.
+  double segments() const;
 
  private:
   // Fixed point, by workgroup absorbed and unscattered; and the tets crossed.
@@ -97,6 +98,7 @@ class SourceWalk {
     void make_room(device::Device& device, const std::string& prefix);
     void read_back(Workspace& work) const;
     WalkPower power() const;
+    double segments() const;
   };
 
   static std::size_t carrier(Method method) { return on_vertices(method) ? 0 : 1; }

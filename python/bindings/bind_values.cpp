@@ -61,14 +61,15 @@ Picture render_members(Engine& engine, const std::string& json, const std::strin
 using Triple = std::array<double, 3>;
 
 // Of `count` cells, three numbers each.
-std::vector<float> stated_of_cells(const std::string& name, const FloatArray& array, std::size_t count) {
+std::vector<float> stated_of_cells(Knowledge knowledge, const FloatArray& array, std::size_t count) {
+  const std::string name(knowledge_names[static_cast<std::size_t>(knowledge)]);
   if (array.ndim() != 4 || static_cast<std::size_t>(array.size()) != 3 * count) {
     throw InputError(name + ": an array of the shape of sigma_s_prime is wanted");
   }
   const auto* channels = reinterpret_cast<const glm::vec3*>(array.data());
   std::vector<float> values;
   for (std::size_t cell = 0; cell < count; ++cell) {
-    const std::optional<float> value = stated_of(glm::dvec3(channels[cell]));
+    const std::optional<float> value = stated_of(knowledge, glm::dvec3(channels[cell]));
     if (!value)
       throw InputError(name + ": negative or no number in cell " + std::to_string(cell) + ", 0 or more allowed");
     values.push_back(*value);
@@ -96,7 +97,8 @@ void set_volume(Engine& engine, const FloatArray& sigma_s_prime, const FloatArra
   for (std::size_t cell = 0; cell < count; ++cell) volume.optical.push_back({scattering[cell], absorption[cell]});
   for (std::size_t i = 0; i < knowledge_names.size(); ++i) {
     const auto found = certainty.find(std::string(knowledge_names[i]));
-    if (found != certainty.end()) volume.certainty.stated[i] = stated_of_cells(found->first, found->second, count);
+    if (found == certainty.end()) continue;
+    volume.certainty.stated[i] = stated_of_cells(static_cast<Knowledge>(i), found->second, count);
   }
   set_material(engine, volume);
 }

@@ -18,6 +18,7 @@ from quadgraph.api.coefficients import Box, Coefficients, grid_of
 from quadgraph.api.reprs import members_text, text, with_unit
 from quadgraph.api.values import RGB, Floats, Vector, plain
 from quadgraph.base.atomic_file import replacing
+from quadgraph.base.certainty import CERTAINTY
 from quadgraph.base.errors import InputError
 from quadgraph.base.units import DEFAULT_ETA
 
@@ -79,9 +80,6 @@ class Material:
 def _numbers(value: object) -> str:
     value = plain(value)
     return "/".join(map(str, value)) if isinstance(value, tuple) else str(value)
-
-
-CERTAINTY = ("sigma_s_prime_deviation", "sigma_a_deviation", "sigma_s_prime_resolution", "sigma_a_resolution")
 
 
 @dataclass(frozen=True, eq=False, repr=False)

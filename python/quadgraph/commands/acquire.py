@@ -34,7 +34,8 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--spacing",
         metavar="MM",
         type=up_to(1000),
-        help="of the points where --volume has its unknowns (default: as far apart as the edges of the body's tets)",
+        help="of the points where --volume has its unknowns (default: as far apart as the edges of the "
+        "body's tets, and at most 2,000)",
     )
     parser.add_argument(
         "--scheme",

@@ -11,6 +11,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from quadgraph.base.certainty import CERTAINTY
 from quadgraph.base.errors import InputError
 from quadgraph.base.units import DEFAULT_ETA, UNITS_MM
 
@@ -51,7 +52,7 @@ def run(args: argparse.Namespace) -> int:
     volume = openvdb.read(args.file, args.sigma_s_prime, args.sigma_a, unit_mm=UNITS_MM[args.unit], eta=args.eta)
     volume.write(args.output)
     cells, spacing = volume.sigma_s_prime.shape[2::-1], volume.spacing
-    spread = [name for name in openvdb.CERTAINTY if name in volume.members()]
+    spread = [name for name in CERTAINTY if name in volume.members()]
     print(
         f"{args.output}: {' x '.join(map(str, cells))} cells of {' x '.join(f'{s:.4g}' for s in spacing)} mm, "
         f"sigma_s_prime up to {volume.sigma_s_prime.max():.4g}, sigma_a up to {volume.sigma_a.max():.4g} 1/mm, "

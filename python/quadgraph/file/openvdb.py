@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from quadgraph.base.atomic_file import replacing
+from quadgraph.base.certainty import CERTAINTY
 from quadgraph.base.child_process import Program, run, workspace
 from quadgraph.base.errors import InputError, ToolError
 from quadgraph.base.units import DEFAULT_ETA
@@ -25,7 +26,6 @@ from quadgraph.file import npz
 _CHILD = Path(__file__).with_name("openvdb_child.py")
 _TIME_LIMIT_S, _MEMORY_LIMIT_BYTES = 300.0, 4 << 30
 COEFFICIENTS = ("sigma_s_prime", "sigma_a")
-CERTAINTY = ("sigma_s_prime_deviation", "sigma_a_deviation", "sigma_s_prime_resolution", "sigma_a_resolution")
 _STATED = ("deviation", "resolution")  # after the name of a grid
 _MEMBERS = (*COEFFICIENTS, "spacing", "origin", "eta", *CERTAINTY)
 _REFUSED = 2  # its exit status where a file does not serve

@@ -181,7 +181,7 @@ TEST_CASE("a face that is lit in part sends its light from the lit quarters") {
                                std::uint32_t quarter) { return face.face == 0 && quarter == lit ? 1.0f : 0.0f; },
               .beam = {gpu::BEAM_DIRECTIONAL, -lit_face(level, 0).normal, {}, {}}});
     CHECK(result.entered.x == doctest::Approx(0.5 / FACE_QUARTERS));
-    CHECK(result.power.segments == 1);
+    CHECK(result.segments == 1);
     for (std::uint32_t k = 0; k < 3; ++k) {
       const double expected = lit == 3 ? 1.0 / 3 : k == lit ? 2.0 / 3 : 1.0 / 6;
       CHECK(result.deposit[level.faces[0][static_cast<int>(k)]].x / result.entered.x ==

@@ -64,9 +64,7 @@ def test_a_block_is_recovered(tmp_path, monkeypatch):
     monkeypatch.setattr(volume_study, "_FINE", 1.5)
     monkeypatch.setattr(volume_study, "_PATCHES", 2)
     monkeypatch.setattr(volume_study, "_SPOT", {"angle": 10.0, "edge": 1.0, "power": 100.0})
-    monkeypatch.setattr(volume_study, "DEPTHS", (3.0,))
     large = Block("draw", Ball((4, 0, 0.5), 3.0, 4.0), Ball((-4, 0, 0.5), 3.0, 2.0))
-    monkeypatch.setattr(volume_study, "at_depth", lambda depth: large)
     monkeypatch.setattr(volume_study, "_cases", lambda wanted: iter([(large, wanted.schemes[0])]))
     record = volume_study.run(VolumeRun(1, 1, ("total-variation",), "cpu"))
     (row,) = record["rows"]

@@ -10,7 +10,7 @@ SCHEMES = (TOTAL_VARIATION, H1, PUBLISHED)
 
 @dataclass(frozen=True)
 class VolumeOptions:
-    """spacing: of the points where they are unknown, mm, None: as long as the tets' edges; scheme: of `SCHEMES`, the
+    """spacing: of the points where they are unknown, mm, None: as `volume_model` sees fit; scheme: of `SCHEMES`, the
     default or one of the baselines that it is held against.
     """
 

@@ -19,7 +19,6 @@ from typing import Any
 
 import numpy as np
 from rich.table import Table
-from scipy.interpolate import RegularGridInterpolator
 
 from quadgraph import core
 from quadgraph.acquisition.capture import capture
@@ -206,9 +205,10 @@ def judged(case: Block, fit: VolumeFit) -> dict[str, Any]:
     dark, cloudy = (_distance(ball, points) for ball in (case.dark, case.cloudy))
     beside = np.minimum(dark, cloudy) > _BESIDE
     result = {}
+    between = fit.grid.weights(points)
     balls = ((dark, cloudy, case.dark), (cloudy, dark, case.cloudy))
     for row, (name, true, (own, other, ball)) in enumerate(zip(NAMES, (absorption, scattering), balls, strict=True)):
-        values = between(fit, fit.coefficients[row], points)
+        values = between @ fit.coefficients[row]
         off = np.log(values / true)
         block_mean = values[beside].mean(axis=0)
         contrast = values[own < _CORE].mean(axis=0) / block_mean - 1
@@ -219,18 +219,11 @@ def judged(case: Block, fit: VolumeFit) -> dict[str, Any]:
             "other_ball": (values[other < _CORE].mean(axis=0) / block_mean - 1).tolist(),
         }
         if fit.deviations is not None:
-            within = np.abs(off) < 2 * between(fit, fit.deviations[row], points)
+            within = np.abs(off) < 2 * (between @ fit.deviations[row])
             numbers["within_two_deviations"] = float(within.mean())
             numbers["within_two_deviations_beside"] = float(within[beside].mean())
         result[name] = numbers
     return result
-
-
-def between(fit: VolumeFit, values: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Values (n, 3) of a fit's grid at (m, 3) points."""
-    grid = fit.grid
-    axes = [grid.low[k] + grid.spacing * np.arange(grid.size[k]) for k in (2, 1, 0)]
-    return RegularGridInterpolator(axes, values.reshape(*grid.size[::-1], 3))(points[:, ::-1])
 
 
 def _relit(folder: Path, device: str) -> float:
