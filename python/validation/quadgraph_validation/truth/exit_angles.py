@@ -17,6 +17,7 @@ from quadgraph_validation.truth.monte_carlo import Estimate
 BINS = 10
 BIN_AREA = np.diff(np.linspace(0, 1, BINS + 1) ** 2)  # share of a hemisphere's cosine-weighted directions, per bin
 _BATCHES = 25  # independent ones: their scatter is the standard error
+_TOGETHER = 40_000  # walks that are followed at a time: the last few take as many steps as all of them
 
 
 @dataclass(frozen=True)
@@ -32,18 +33,21 @@ class ExitAngles:
 
 @dataclass
 class _Walks:
-    """Walks under way: layer, depth in it in mean free paths, inside cosine to the unlit side, scattered yet.
+    """Walks under way: batch, layer, depth in it in mean free paths, inside cosine to the unlit side, scattered yet.
 
     A walk in layer n has weight 2^-n.
     """
 
+    batch: np.ndarray
     layer: np.ndarray
     depth: np.ndarray
     cosine: np.ndarray
     scattered: np.ndarray
 
     def taken(self, which: np.ndarray) -> _Walks:
-        return _Walks(*(array[which] for array in vars(self).values()))
+        """Those of a mask or of indices."""
+        indices = np.flatnonzero(which) if which.dtype == bool else which
+        return _Walks(*(array.take(indices) for array in vars(self).values()))
 
     def joined(self, other: _Walks) -> _Walks:
         pairs = zip(vars(self).values(), vars(other).values(), strict=True)
@@ -55,21 +59,24 @@ def slab(medium: Medium, thickness: float, eta: float, cosine: float, walks: int
     generator = np.random.default_rng(seed)
     size = -(-walks // _BATCHES)
     depth = medium.sigma_t * thickness
-    tallies = np.array([_batch(medium, depth, eta, cosine, size, generator) for _ in range(_BATCHES)])
+    together = min(max(_TOGETHER // size, 1), _BATCHES)
+    counts = [min(together, _BATCHES - first) for first in range(0, _BATCHES, together)]
+    tallies = np.concatenate([_batches(medium, depth, eta, cosine, size, count, generator) for count in counts])
     radiance = tallies / (size * np.pi * BIN_AREA)
     mean, error = radiance.mean(axis=0), radiance.std(axis=0, ddof=1) / np.sqrt(_BATCHES)
     return ExitAngles(Estimate(mean[0], error[0]), Estimate(mean[1], error[1]))
 
 
-def _batch(
-    medium: Medium, depth: float, eta: float, cosine: float, size: int, generator: np.random.Generator
+def _batches(
+    medium: Medium, depth: float, eta: float, cosine: float, size: int, count: int, generator: np.random.Generator
 ) -> np.ndarray:
-    """Walks (2, BINS) that left scattered, by side and bin."""
+    """Walks (count, 2, BINS) that left scattered, by batch, side and bin; `size` enter in each batch."""
     layers = _layers(medium.albedo, depth)
     height = depth / layers
-    tally = np.zeros(2 * BINS)
+    tally = np.zeros(count * 2 * BINS)
     inside = float(refracted(cosine, 1 / eta))
-    walks = _Walks(np.zeros(size, np.int64), np.zeros(size), np.full(size, inside), np.zeros(size, bool))
+    batch, layer = np.repeat(np.arange(count), size), np.zeros(count * size, np.int64)
+    walks = _Walks(batch, layer, np.zeros(len(batch)), np.full(len(batch), inside), np.zeros(len(batch), bool))
     while len(walks.depth):
         walks.depth = walks.depth + walks.cosine * generator.exponential(size=len(walks.depth))
         within = (walks.depth > 0) & (walks.depth < height)
@@ -86,7 +93,7 @@ def _batch(
             _surface(crossing.taken(outside), layers, eta, tally, generator)
         )
         walks = scattering.joined(crossing)
-    return tally.reshape(2, BINS)
+    return tally.reshape(count, 2, BINS)
 
 
 def _layers(albedo: float, depth: float) -> int:
@@ -108,8 +115,8 @@ def _surface(walks: _Walks, layers: int, eta: float, tally: np.ndarray, generato
     stays = generator.random(len(cosine)) < reflectance_from_inside(cosine, eta)
     counted = ~stays & walks.scattered
     bins = np.minimum((BINS * refracted(cosine[counted], eta)).astype(np.int64), BINS - 1)
-    side = BINS * (walks.cosine[counted] > 0)
-    tally += np.bincount(bins + side, 0.5 ** walks.layer[counted], 2 * BINS)
+    side = 2 * walks.batch[counted] + (walks.cosine[counted] > 0)
+    tally += np.bincount(bins + BINS * side, 0.5 ** walks.layer[counted], len(tally))
     staying = walks.taken(stays)
     staying.cosine = -staying.cosine
     return staying
