@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import json
+import shutil
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from quadgraph import cli
+from quadgraph.baking.pipeline import bake
 from quadgraph.base.errors import InputError
 from quadgraph.mesh.patches import PATCHES, patches_of
-from quadgraph_validation.accuracy import unseen_motion, unseen_study, unseen_tables
+from quadgraph_validation.accuracy import unseen_engine, unseen_motion, unseen_study, unseen_tables
 from quadgraph_validation.bodies import unseen_bodies, unseen_cases
 from quadgraph_validation.truth.unseen_truth import UnseenTruth
+from shapes import icosphere
 
 pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 pytest.importorskip("numba", reason="the extra `walks` is not installed: run tools/setup")
@@ -77,9 +82,9 @@ def test_patches_are_of_about_the_same_area_and_keep_the_sides_of_walls_apart(bo
     assert np.linalg.norm(mean, axis=1).min() > 0.3  # 0 where both sides of a wall are one patch
 
 
-def test_walks_are_gone_on_with_and_others_are_not_taken_for_them(tmp_path, body, monkeypatch):
+def test_walks_are_gone_on_with_and_others_are_not_taken_for_them(tmp_path, monkeypatch):
     monkeypatch.setattr(unseen_truth, "BATCH", 2000)
-    case = unseen_cases.drawn(SEED, body)
+    case = unseen_cases.drawn(SEED, icosphere(3, 20.0))
     heard: list[int] = []
     first = unseen_truth.make(case, 4000, tmp_path, heard.append)
     longer = unseen_truth.make(case, 8000, tmp_path, heard.append)
@@ -115,32 +120,63 @@ def test_parts_and_errors_are_those_of_known_patches():
 
 
 @pytest.fixture(scope="module")
-def truths(tmp_path_factory):
-    """A folder of walks, for the tests that judge the same case."""
-    return tmp_path_factory.mktemp("truths")
+def baked(body, tmp_path_factory):
+    """A bake of the body: of the default options whenever it is asked for, and done once."""
+    kept, reports = tmp_path_factory.mktemp("baked") / "body.qgraph", []
+
+    def once(mesh, path, options):
+        if not reports:
+            reports.append(bake(mesh, kept, options))
+        shutil.copyfile(kept, path)
+        return reports[0]
+
+    return once
 
 
-def test_a_case_is_judged_printed_recorded_and_drawn(truths, tmp_path, capsys):
-    path = tmp_path / "unseen.json"
-    asked = f"accuracy unseen --seed {SEED} --count 1 --walks 200000 --sweeps 0 --sweeps 1 --truth {truths}"
-    assert cli.main([*asked.split(), "--json", str(path), "--images", str(tmp_path)]) == 0
-    assert "mean free paths" in capsys.readouterr().out
-    (row,) = json.loads(path.read_text())["rows"]
+@contextlib.contextmanager
+def made_once(body, baked):
+    """The body of SEED is neither made nor baked again."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(unseen_bodies, "surface_of", {SEED: body}.__getitem__)
+        patch.setattr(unseen_engine, "bake", baked)
+        yield patch
+
+
+@pytest.fixture(scope="module")
+def judged(body, baked, tmp_path_factory):
+    """A folder with the record and the pictures of one case, at rest and in motion, and what was printed."""
+    folder = tmp_path_factory.mktemp("judged")
+    asked = f"accuracy unseen --seed {SEED} --count 1 --walks 200000 --sweeps 0 --sweeps 1 --motion --truth {folder}"
+    printed = io.StringIO()
+    with made_once(body, baked) as patch, contextlib.redirect_stdout(printed):
+        patch.setattr(unseen_motion, "FRAMES", 6)
+        patch.setattr(unseen_motion, "STILL", 5)
+        patch.setattr(unseen_motion, "_TIMED", 2)
+        status = cli.main([*asked.split(), "--json", str(folder / "unseen.json"), "--images", str(folder)])
+    assert status == 0
+    return folder, printed.getvalue()
+
+
+def test_a_case_is_judged_printed_recorded_and_drawn(judged):
+    folder, printed = judged
+    assert "mean free paths" in printed
+    (row,) = json.loads((folder / "unseen.json").read_text())["rows"]
     assert row["apart"] < 1e-3 * row["length"]
     assert row["noise"]["whole"] < 0.03
     plain, swept = row["solves"]
     assert swept["true"]["whole"] < 0.06
     assert swept["ratio"] == pytest.approx(1, abs=0.02)
     assert swept["true"]["whole"] < plain["true"]["whole"]
-    assert (tmp_path / "unseen.png").stat().st_size > 10_000
+    assert (folder / "unseen.png").stat().st_size > 10_000
     summary = unseen_tables.summary([row])
     assert [found["sweeps"] for found in summary] == [0, 1]
 
 
-def test_a_sky_comes_from_where_it_is(tmp_path):
+def test_a_sky_comes_from_where_it_is(body, baked, tmp_path):
     path = tmp_path / "sky.json"
     asked = f"accuracy unseen --seed {SEED} --count 1 --lights sky --walks 400000 --sweeps 0 --sweeps 2"
-    assert cli.main([*asked.split(), "--truth", str(tmp_path), "--json", str(path)]) == 0
+    with made_once(body, baked):
+        assert cli.main([*asked.split(), "--truth", str(tmp_path), "--json", str(path)]) == 0
     (row,) = json.loads(path.read_text())["rows"]
     plain, swept = row["solves"]
     assert swept["ratio"] == pytest.approx(1, abs=0.01)
@@ -165,14 +201,10 @@ def test_the_last_frame_of_the_motion_is_the_case_itself(body):
         unseen_motion.at_frame(unseen_cases.drawn(SEED, body, "sky"), 0)
 
 
-def test_a_case_is_judged_in_motion(truths, tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(unseen_motion, "FRAMES", 6)
-    monkeypatch.setattr(unseen_motion, "STILL", 5)
-    path = tmp_path / "unseen.json"
-    asked = f"accuracy unseen --seed {SEED} --count 1 --walks 200000 --motion --truth {truths}"
-    assert cli.main([*asked.split(), "--json", str(path)]) == 0
-    assert "summary in motion" in capsys.readouterr().out
-    record = json.loads(path.read_text())
+def test_a_case_is_judged_in_motion(judged):
+    folder, printed = judged
+    assert "summary in motion" in printed
+    record = json.loads((folder / "unseen.json").read_text())
     (row,) = record["rows"]
     found = row["motion"]
     assert found["true"]["whole"] < 0.06
