@@ -13,7 +13,8 @@ from quadgraph_validation.truth.schemes import DIFFUSION, SP3, Scheme
 
 pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 
-WALKS = 300_000
+DEFAULT = Scheme("fem", "buried", "auto")
+WALKS = 150_000
 
 
 @lru_cache(maxsize=64)
@@ -21,6 +22,13 @@ def response(eta: float, albedo: float, wavelength: float, scheme: Scheme) -> tu
     """M/q and the least exitance on a mesh."""
     medium = half_space_study.medium_of(albedo)
     return half_space_study.response(block(albedo, wavelength), medium, eta, wavelength, scheme)
+
+
+@lru_cache
+def walked(eta: float, albedo: float, wavelengths: tuple[float, ...]) -> monte_carlo.Estimate:
+    truth = monte_carlo.half_space(half_space_study.medium_of(albedo), eta, np.array(wavelengths), WALKS, seed=4)
+    assert (truth.error < 0.01 * truth.mean).all()
+    return truth
 
 
 @lru_cache(maxsize=64)
@@ -40,12 +48,29 @@ def block(albedo: float, wavelength: float) -> schemes.StudyBody:
 )
 def test_the_answer_follows_transport(eta, albedo, wavelengths, scheme):
     """The rows of docs/truth.md, "Reference values", in the models of `auto`; truth is a longer random walk."""
-    truth = monte_carlo.half_space(half_space_study.medium_of(albedo), eta, np.array(wavelengths), WALKS, seed=4)
-    assert (truth.error < 0.01 * truth.mean).all()
-    for wavelength, expected in zip(wavelengths, truth.mean, strict=True):
+    for wavelength, expected in zip(wavelengths, walked(eta, albedo, wavelengths).mean, strict=True):
         found = response(eta, albedo, wavelength, scheme)[0]
         print(f"eta {eta}, albedo {albedo}, wavelength {wavelength}: {found:.4f} against {expected:.4f}")
         assert found == pytest.approx(expected, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("eta", "albedo", "wavelengths"),
+    [
+        (1.3, 0.999, (np.inf, 30.0, 10.0)),
+        (1.3, 0.9, (np.inf, 30.0)),
+        (1.0, 0.9, (np.inf, 30.0, 10.0)),
+    ],
+)
+def test_light_patterns_are_followed_down_to_ten_mean_free_paths(eta, albedo, wavelengths):
+    """By the engine as it answers by default."""
+    medium = half_space_study.medium_of(albedo)
+    for wavelength, expected in zip(wavelengths, walked(eta, albedo, wavelengths).mean, strict=True):
+        body = half_space_study.block(schemes.on_engine(), medium, wavelength)
+        found, least = half_space_study.response(body, medium, eta, wavelength, DEFAULT)
+        print(f"eta {eta}, albedo {albedo}, wavelength {wavelength}: {found:.4f} against {expected:.4f}")
+        assert found == pytest.approx(expected, rel=0.05)
+        assert least >= 0
 
 
 @pytest.mark.parametrize("scheme", [DIFFUSION, SP3], ids=lambda scheme: scheme.model)

@@ -16,9 +16,9 @@ from quadgraph_validation.truth.fresnel import reflectance_from_inside, refracte
 
 _BATCH = 100_000  # walks at a time: arrays that stay in the cache
 
-# Distance (n,) mm to the surface from (n, 3) positions along (n, 3) directions.
+# Distance (n,) mm to the surface from (3, n) positions along (3, n) directions.
 DistanceOut = Callable[[np.ndarray, np.ndarray], np.ndarray]
-# Outward unit normals (n, 3) at surface positions (n, 3).
+# Outward unit normals (3, n) at surface positions (3, n).
 NormalAt = Callable[[np.ndarray], np.ndarray]
 
 
@@ -53,47 +53,57 @@ def walk(
     generator: np.random.Generator,
 ) -> Exits:
     """Follow every walk from (n, 3) inside until it is absorbed or leaves."""
-    scattered = np.zeros(len(position), bool)
+    position, direction = (np.array(each.T, order="C") for each in (position, direction))  # (3, n): rows are quick
+    scattered = np.zeros(len(position[0]), bool)
     ends: list[np.ndarray] = []
     ways: list[np.ndarray] = []
     flags: list[np.ndarray] = []
     absorbed = 0
-    while len(position):
+    while count := len(scattered):
         out = distance_out(position, direction)
-        flight = generator.exponential(1 / medium.sigma_t, len(position))
+        flight = generator.exponential(1 / medium.sigma_t, count)
         leaves = flight >= out
-        position = position + np.minimum(flight, out)[:, None] * direction
-        dies = ~leaves & (generator.random(len(position)) >= medium.albedo)
-        absorbed += int(dies.sum())
-        inside = ~leaves & ~dies
-        direction[inside] = isotropic(int(inside.sum()), generator)
-        scattered |= inside
-        gone = np.zeros(len(position), bool)
-        at = np.flatnonzero(leaves)
-        normal = normal_at(position[at])
-        cosine = np.einsum("ij,ij->i", direction[at], normal)
+        position += np.minimum(flight, out) * direction
+        keep = ~leaves & (generator.random(count) < medium.albedo)
+        inside, at = np.flatnonzero(keep), np.flatnonzero(leaves)
+        absorbed += count - len(inside) - len(at)
+        direction[:, inside] = isotropic(len(inside), generator)
+        scattered[inside] = True
+        place, way = position.take(at, axis=1), direction.take(at, axis=1)
+        normal = normal_at(place)
+        cosine = _dot(way, normal)
         stays = generator.random(len(at)) < reflectance_from_inside(np.minimum(cosine, 1), eta)
-        direction[at[stays]] -= 2 * cosine[stays, None] * normal[stays]
-        gone[at[~stays]] = True
-        ends.append(position[gone])
-        ways.append(_outside(direction[gone], normal[~stays], cosine[~stays], eta))
-        flags.append(scattered[gone])
-        keep = ~(gone | dies)
-        position, direction, scattered = position[keep], direction[keep], scattered[keep]
-    return Exits(np.concatenate(ends), np.concatenate(ways), np.concatenate(flags), absorbed)
+        direction[:, at[stays]] = (way - 2 * cosine * normal)[:, stays]
+        keep[at[stays]] = True
+        gone = np.flatnonzero(~stays)
+        ends.append(place.take(gone, axis=1))
+        ways.append(_outside(way.take(gone, axis=1), normal.take(gone, axis=1), cosine[gone], eta))
+        flags.append(scattered[at[gone]])
+        kept = np.flatnonzero(keep)
+        position, direction, scattered = position.take(kept, axis=1), direction.take(kept, axis=1), scattered[kept]
+    position, direction = (np.concatenate(parts, axis=1).T for parts in (ends, ways))
+    return Exits(position, direction, np.concatenate(flags), absorbed)
 
 
 def _outside(direction: np.ndarray, normal: np.ndarray, cosine: np.ndarray, eta: float) -> np.ndarray:
-    """Directions (n, 3) that leave, refracted at the surface that they meet at `cosine` (n,)."""
-    return eta * direction + (refracted(cosine, eta) - eta * cosine)[:, None] * normal
+    """Directions (3, n) that leave, refracted at the surface that they meet at `cosine` (n,)."""
+    return eta * direction + (refracted(cosine, eta) - eta * cosine) * normal
+
+
+def _dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Of columns of (3, n), (n,)."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def isotropic(count: int, generator: np.random.Generator) -> np.ndarray:
-    """Directions (count, 3), uniform over the sphere."""
-    z = generator.uniform(-1, 1, count)
+    """Directions (3, count), uniform over the sphere."""
+    found = np.empty((3, count))
+    found[2] = generator.uniform(-1, 1, count)
     azimuth = generator.uniform(0, 2 * np.pi, count)
-    radius = np.sqrt(1 - z**2)
-    return np.column_stack([radius * np.cos(azimuth), radius * np.sin(azimuth), z])
+    radius = np.sqrt(1 - found[2] ** 2)
+    np.multiply(radius, np.cos(azimuth), out=found[0])
+    np.multiply(radius, np.sin(azimuth), out=found[1])
+    return found
 
 
 def slab(medium: Medium, thickness: float, eta: float, lambertian: bool, walks: int, seed: int) -> Estimate:
@@ -155,7 +165,7 @@ def through_sphere(medium: Medium, radius: float, eta: float, walks: int, genera
     sine = np.sqrt(1 - outside**2)
     normal = np.column_stack([sine, np.zeros(walks), outside])
     travelling = np.array([0.0, 0.0, -1.0]) / eta + (outside / eta - inside)[:, None] * normal
-    geometry = _sphere_out(radius), lambda at: at / np.linalg.norm(at, axis=1)[:, None]
+    geometry = _sphere_out(radius), lambda at: at / np.sqrt(_dot(at, at))
     return walk(radius * normal, travelling, medium, eta, *geometry, generator)
 
 
@@ -177,9 +187,9 @@ def _shares(counts: np.ndarray, walks: int) -> Estimate:
 
 def _planes(thickness: float) -> DistanceOut:
     def distance(position: np.ndarray, direction: np.ndarray) -> np.ndarray:
-        z, cosine = position[:, 2], direction[:, 2]
+        z, cosine = position[2], direction[2]
         with np.errstate(divide="ignore", invalid="ignore"):
-            return np.where(cosine > 0, (thickness - z) / cosine, -z / cosine)
+            return (np.where(cosine > 0, thickness, 0.0) - z) / cosine
 
     return distance
 
@@ -187,15 +197,14 @@ def _planes(thickness: float) -> DistanceOut:
 def _plane_normals(position: np.ndarray) -> np.ndarray:
     # Rounding leaves an exit within an ulp of its plane; of the two planes the lit one is at 0.
     normal = np.zeros_like(position)
-    normal[:, 2] = np.where(position[:, 2] < 1e-9, -1.0, 1.0)
+    normal[2] = np.where(position[2] < 1e-9, -1.0, 1.0)
     return normal
 
 
 def _sphere_out(radius: float) -> DistanceOut:
     def distance(position: np.ndarray, direction: np.ndarray) -> np.ndarray:
-        along = np.einsum("ij,ij->i", position, direction)
-        missing = radius**2 - np.einsum("ij,ij->i", position, position)
-        return np.sqrt(np.maximum(along**2 + missing, 0)) - along
+        along = _dot(position, direction)
+        return np.sqrt(np.maximum(along**2 + (radius**2 - _dot(position, position)), 0)) - along
 
     return distance
 
