@@ -24,6 +24,15 @@ def record_path(tmp_path):
     return path
 
 
+@pytest.fixture(scope="module")
+def drawn(tmp_path_factory):
+    """The folder of the record's charts and page."""
+    folder = tmp_path_factory.mktemp("drawn")
+    static_chart.write(folder, record())
+    chart_page.write(folder / "chart.html", record())
+    return folder
+
+
 def test_the_front_holds_exactly_what_nothing_beats():
     generator = np.random.default_rng(1)
     for _ in range(50):
@@ -34,21 +43,19 @@ def test_the_front_holds_exactly_what_nothing_beats():
         assert len(front(points)) == len(found)
 
 
-def test_a_record_is_drawn_again_the_same_to_the_byte_without_a_device(record_path, tmp_path, monkeypatch):
-    folders = [tmp_path / "first", tmp_path / "again"]
-    static_chart.write(folders[0], record())
-    chart_page.write(folders[0] / "chart.html", record())
+def test_a_record_is_drawn_again_the_same_to_the_byte_without_a_device(drawn, record_path, tmp_path, monkeypatch):
+    again = tmp_path / "again"
     monkeypatch.setitem(sys.modules, "quadgraph._core", None)
-    assert cli.main(["chart", "--from", str(record_path), "--output", str(folders[1])]) == 0
-    names = [[path.name for path in sorted(folder.iterdir())] for folder in folders]
+    assert cli.main(["chart", "--from", str(record_path), "--output", str(again)]) == 0
+    names = [[path.name for path in sorted(folder.iterdir())] for folder in (drawn, again)]
     forms = [f"chart-{scene}.{form}" for scene in ("bunny", "sphere") for form in ("png", "svg")]
     assert names[0] == names[1] == sorted([*forms, "chart.html"])
     for name in names[0]:
-        assert (folders[0] / name).read_bytes() == (folders[1] / name).read_bytes(), name
-    changed = record()
+        assert (drawn / name).read_bytes() == (again / name).read_bytes(), name
+    changed = record(("bunny",))
     changed["scenes"][0]["points"][0]["ms"] *= 2
     static_chart.write(tmp_path / "changed", changed)
-    assert (tmp_path / "changed" / "chart-bunny.png").read_bytes() != (folders[0] / "chart-bunny.png").read_bytes()
+    assert (tmp_path / "changed" / "chart-bunny.png").read_bytes() != (drawn / "chart-bunny.png").read_bytes()
 
 
 def test_the_committed_record_can_be_drawn_and_says_what_the_readme_does(request):
@@ -115,13 +122,12 @@ def test_the_page_on_the_chart_says_what_the_record_does(request):
         assert told == [" / ".join(f"{100 * error:.3g}%" for error in errors if error) for errors in found]
 
 
-def test_the_picture_has_four_panels_at_the_width_of_the_readme(record_path, tmp_path):
+def test_the_picture_has_four_panels_at_the_width_of_the_readme(drawn):
     assert [panel.part for panel in records.panels(record()["scenes"][0])] == ["whole", "unlit"] * 2
-    static_chart.write(tmp_path, record(("bunny",)))
-    width, height = Image.open(tmp_path / "chart-bunny.png").size
+    width, height = Image.open(drawn / "chart-bunny.png").size
     assert 1200 <= width <= 1800
     assert 700 <= height <= 1400
-    assert (tmp_path / "chart-bunny.png").stat().st_size < 300_000
+    assert (drawn / "chart-bunny.png").stat().st_size < 300_000
 
 
 def test_labels_cover_neither_each_other_nor_points():

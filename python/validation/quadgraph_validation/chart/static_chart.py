@@ -57,6 +57,7 @@ def _figure(pyplot: Any, record: dict[str, Any], scene: dict[str, Any]) -> Any:
         axis.set_axis_off()
     _legend(figure, scene, colours)
     figure.canvas.draw()
+    figure.set_layout_engine(None)  # labels are placed for this layout, and it takes most of the time of a drawing
     for axis, panel in zip(axes, shown, strict=False):
         place(axis, [_label(panel, index, colours) for index in _named(panel)])
     return figure
