@@ -12,10 +12,10 @@ import numpy as np
 
 from quadgraph.base.errors import InputError
 from quadgraph.mesh.surface import Surface
-from quadgraph_validation.truth import camera_walk_kernel, triangle_tree, walk_kernel
+from quadgraph_validation.truth import camera_walk_kernel, walk_kernel
 from quadgraph_validation.truth.interruptible import interruptible
+from quadgraph_validation.truth.walk_surface import walk_surface
 
-_CELLS = 64  # of the clearance, along the longest side
 _ROWS = 4  # of pixels, in one piece of work
 KINDS = ("rectangle", "ambient")  # of lights that walks meet
 
@@ -67,11 +67,7 @@ class CameraWalker:
                     "they can meet; or take --by engine"
                 )
         self._lights = lights
-        self._tree = triangle_tree.build(surface.vertices, surface.triangles)
-        low, high = surface.vertices.min(axis=0), surface.vertices.max(axis=0)
-        cell = float((high - low).max() / _CELLS)
-        counts = np.ceil((high - low) / cell).astype(int)
-        self._near = walk_kernel.Clearance(walk_kernel.clearance(self._tree, low, cell, *counts), low, cell)
+        self._tree, self._near = walk_surface(surface)
 
     def see(
         self,

@@ -15,9 +15,9 @@ from quadgraph.api.lights import Light
 from quadgraph.mesh.surface import Surface
 from quadgraph_validation.bodies.smooth_sky import SmoothSky
 from quadgraph_validation.bodies.unseen_cases import UnseenMedium
-from quadgraph_validation.truth import light_rays, triangle_tree, walk_kernel
+from quadgraph_validation.truth import light_rays, walk_kernel
+from quadgraph_validation.truth.walk_surface import walk_surface
 
-_CELLS = 64  # of the clearance, along the longest side
 _PILOT = 20_000  # rays, which tell how many of a light's meet the body
 
 
@@ -52,10 +52,7 @@ class MeshWalker:
         low, high = surface.vertices.min(axis=0), surface.vertices.max(axis=0)
         self._middle = (low + high) / 2
         self._radius = float(np.linalg.norm(surface.vertices - self._middle, axis=1).max())
-        self._tree = triangle_tree.build(surface.vertices, surface.triangles)
-        cell = float((high - low).max() / _CELLS)
-        counts = np.ceil((high - low) / cell).astype(int)
-        self._near = walk_kernel.Clearance(walk_kernel.clearance(self._tree, low, cell, *counts), low, cell)
+        self._tree, self._near = walk_surface(surface)
         self._volume = _volume(medium)
 
     @cached_property
