@@ -130,15 +130,21 @@ def test_an_error_that_is_asked_for_is_the_true_one_or_said_to_be_out_of_reach(c
     assert not fine["reached"]
 
 
+@pytest.fixture(scope="module")
+def small_lobes(tmp_path_factory) -> Path:
+    """A body of four levels whose parts see each other."""
+    folder = tmp_path_factory.mktemp("lobes")
+    level_chains.SHAPES["lobes"](4).export(folder / "lobes.ply")
+    bake(folder / "lobes.ply", folder / "lobes.qgraph", BakeOptions(height_mm=10, levels=4))
+    return folder / "lobes.qgraph"
+
+
 @pytest.mark.parametrize("inter_reflection", [False, True])
-def test_an_error_is_asked_for_where_light_goes_from_part_to_part(tmp_path, inter_reflection):
+def test_an_error_is_asked_for_where_light_goes_from_part_to_part(small_lobes, inter_reflection):
     """The bounces are on the finest level of so small a body: none that is coarser can be the answer."""
-    source, output = tmp_path / "lobes.ply", tmp_path / "lobes.qgraph"
-    level_chains.SHAPES["lobes"](4).export(source)
-    bake(source, output, BakeOptions(height_mm=10, levels=4))
-    engine = core.Engine(output)
+    engine = core.Engine(small_lobes)
     engine.set_material("skin1")
-    engine.set_lights(lights("sun", np.asarray(core.load(output).levels[0].vertices)))
+    engine.set_lights(lights("sun", np.asarray(core.load(small_lobes).levels[0].vertices)))
     report, usual = (engine.solve(error=error, inter_reflection=inter_reflection) for error in (0.5, 0))
     assert report["missed"] == ""
     assert (report["finest"] == 0) == inter_reflection
