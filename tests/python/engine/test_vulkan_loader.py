@@ -83,8 +83,8 @@ def test_without_a_loader_a_gpu_is_refused_and_the_loader_named(no_loader, tmp_p
 
 @pytest.mark.skipif("Xvfb" in MISSING, reason="not installed: Xvfb (tools/packages.txt)")
 @pytest.mark.parametrize(("absent", "said"), [("no_loader", "libvulkan1"), ("no_driver", "mesa-vulkan-drivers")])
-def test_without_vulkan_the_window_says_what_is_missing(absent, said, request):
+def test_without_vulkan_the_window_says_what_is_missing(absent, said, request, tmp_path):
     environment = request.getfixturevalue(absent)
-    with display() as server:
+    with display(tmp_path) as server:
         done = run(environment | {"DISPLAY": server}, ENGINE, tiny.PATH, "--device", "cpu")
     assert_refused(done, "Vulkan", said, "--headless")

@@ -1,4 +1,4 @@
-"""The real window on a display in memory, under a hand (xdotool) and an eye (ImageMagick)."""
+"""The real window on a display in memory, under a hand (xdotool) and an eye on that memory."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import subprocess
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -21,7 +22,7 @@ from baked import write_levels
 from engine_program import ENGINE
 from shapes import icosphere
 
-PROGRAMS = ("Xvfb", "xdotool", "import")
+PROGRAMS = ("Xvfb", "xdotool")
 MISSING = [name for name in PROGRAMS if shutil.which(name) is None]
 pytestmark = [
     pytest.mark.skipif(ENGINE is None, reason="quadgraph-engine is not built: run tools/setup"),
@@ -36,11 +37,12 @@ LIGHTS = ["--light", "directional:-0.94,-0.1,0.34:1"]  # from azimuth 110
 
 
 @contextlib.contextmanager
-def display() -> Iterator[str]:
-    """An X server that draws into memory; its name."""
+def display(folder: Path) -> Iterator[str]:
+    """An X server that draws into a file in the folder, without a pointer in the picture; its name."""
     read, write = os.pipe()
+    screen = ("-screen", "0", "1280x900x24", "-nocursor", "-fbdir", str(folder))
     server = subprocess.Popen(
-        ["Xvfb", "-displayfd", str(write), "-screen", "0", "1280x900x24", "-nolisten", "tcp"],
+        ["Xvfb", "-displayfd", str(write), *screen, "-nolisten", "tcp"],
         pass_fds=[write],
         stderr=subprocess.DEVNULL,
     )
@@ -53,15 +55,30 @@ def display() -> Iterator[str]:
         server.wait(timeout=10)
 
 
+class Server(NamedTuple):
+    """A display: its name, and the file of what is on its screen."""
+
+    name: str
+    memory: Path
+
+
+def screen_of(memory: Path) -> np.ndarray:
+    """What is in such a file, (height, width, 3): an X window dump, whose pixels are blue, green, red and a rest."""
+    header = np.fromfile(memory, ">u4", 25)
+    size, width, height, line, colours = header[[0, 4, 5, 12, 19]].tolist()
+    rows = np.fromfile(memory, np.uint8, height * line, offset=size + 12 * colours).reshape(height, line)
+    return rows[:, : 4 * width].reshape(height, width, 4)[..., 2::-1].astype(int)
+
+
 class Hand:
     """A running window and what can be done to it."""
 
     def __init__(
-        self, server: str, folder: Path, *arguments: str, body: Path = tiny.PATH, program: tuple[str, ...] = ()
+        self, server: Server, folder: Path, *arguments: str, body: Path = tiny.PATH, program: tuple[str, ...] = ()
     ):
-        self.environment = os.environ | {"DISPLAY": server}
+        self.environment = os.environ | {"DISPLAY": server.name}
         self.environment.pop("WAYLAND_DISPLAY", None)
-        self.folder = folder
+        self.memory = server.memory
         self.process = subprocess.Popen(
             [*(program or (str(ENGINE),)), str(body), "--validation", *arguments],
             env=self.environment,
@@ -97,11 +114,8 @@ class Hand:
         )  # fmt: skip
 
     def look(self) -> np.ndarray:
-        """What is on the screen, (height, width, 3), of the window's size."""
-        path = self.folder / "screen.png"
-        subprocess.run(["import", "-window", "root", str(path)], env=self.environment, check=True, timeout=30)
-        with Image.open(path) as image:
-            return np.asarray(image.convert("RGB")).astype(int)
+        """What is on the screen, (height, width, 3)."""
+        return screen_of(self.memory)
 
     def busy(self) -> bool:
         """Whether it says in its title that the picture is not the converged one."""
@@ -130,6 +144,7 @@ class Hand:
         deadline = time.monotonic() + 20
         before = self.look()
         while True:
+            time.sleep(0.2)
             now = self.look()
             seen = now[: SIZE[1], PANEL : SIZE[0]]
             if seen.any() and np.array_equal(seen, before[: SIZE[1], PANEL : SIZE[0]]):
@@ -149,14 +164,15 @@ class Hand:
 
 
 @pytest.fixture(scope="module")
-def server() -> Iterator[str]:
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     """A display for all tests."""
-    with display() as name:
-        yield name
+    folder = tmp_path_factory.mktemp("display")
+    with display(folder) as name:
+        yield Server(name, folder / "Xvfb_screen0")
 
 
 @pytest.fixture
-def open_window(server: str, tmp_path: Path) -> Iterator:
+def open_window(server: Server, tmp_path: Path) -> Iterator:
     """Opens windows, and closes what a failed test has left open."""
     hands: list[Hand] = []
 
