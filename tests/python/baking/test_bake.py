@@ -56,21 +56,21 @@ def test_metadata_tells_where_it_comes_from(baked, sphere):
     assert metadata["tools"]["numpy"] == np.__version__
 
 
-def test_metadata_tells_what_the_interior_is_for(baked, sphere, folder):
+def test_metadata_tells_what_the_interior_is_for(baked, folder):
     interior = baked[1].metadata["interior"]
     assert (interior["rule"], interior["materials"]) == ("auto", [])
     assert interior["edge_mm"][0] > 4 / 3  # a tenth of the mean chord, or more where that would be too many tets
     np.testing.assert_allclose(np.divide(interior["edge_mm"], interior["edge_mm"][0]), [1, 2, 4])
     assert baked[0].interior == interior
+    coarse = write_obj(icosphere(3, 1), folder / "inside.obj")
     for wanted, rule, edges in (("surface", "surface", [None, None]), (1.2, "size", [1.2, 2.4])):
         options = pipeline.BakeOptions(unit="cm", levels=2, interior=wanted)
-        pipeline.bake(sphere, folder / "inside.qgraph", options)
+        pipeline.bake(coarse, folder / "inside.qgraph", options)
         told = qgraph_file.read(folder / "inside.qgraph").metadata["interior"]
         assert (told["rule"], told["edge_mm"]) == (rule, edges)
     material = "sigma_s_prime=2,sigma_a=0.01"
-    pipeline.bake(
-        sphere, folder / "inside.qgraph", pipeline.BakeOptions(unit="cm", levels=1, for_materials=(material,))
-    )
+    options = pipeline.BakeOptions(unit="cm", levels=1, for_materials=(material,))
+    pipeline.bake(coarse, folder / "inside.qgraph", options)
     told = qgraph_file.read(folder / "inside.qgraph").metadata
     assert (told["interior"]["rule"], told["interior"]["materials"]) == ("materials", [material])
     assert told["options"]["for_materials"] == [material]

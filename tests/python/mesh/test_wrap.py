@@ -66,7 +66,7 @@ def fins() -> Surface:
     """A cube with sheets that stand on its edges: edges of three triangles and more, everywhere."""
     sheets = []
     for axis in range(3):
-        sheet = trimesh.creation.box((12, 12, 12)).subdivide()
+        sheet = trimesh.creation.box((10, 10, 10)).subdivide()
         flat = sheet.vertices.copy()
         flat[:, axis] = 0
         sheets.append(Surface(flat + 4, sheet.faces.astype(np.int64)))
@@ -81,7 +81,7 @@ DEFECTS = {
     "soup": soup,
     "sheets": fins,
     "a plate": lambda: Surface(
-        np.array([[0, 0, 0], [20, 0, 0], [20, 0, 20], [0, 0, 20.0]]), np.array([[0, 1, 2], [0, 2, 3]])
+        np.array([[0, 0, 0], [20, 0, 0], [20, 0, 5], [0, 0, 5.0]]), np.array([[0, 1, 2], [0, 2, 3]])
     ),
     "inside out in parts": lambda: torn(
         Surface(
@@ -123,7 +123,7 @@ def test_auto_does_not_go_in_through_a_hole():
     assert shell.surface.volume < 0.2 * whole
     punched = without(icosphere(4, 10), icosphere(4, 10).corners.mean(axis=1)[:, 1] > 9.8)  # a hole of 4 mm
     assert 0.6 < wrap.wrap(punched, wrap.AUTO, "ball", *LIMITS).surface.volume / (2 * whole) < 1.4
-    assert wrap.wrap(punched, 0.6, "ball", *LIMITS).surface.volume < 0.2 * whole
+    assert wrap.wrap(punched, 1.0, "ball", *LIMITS).surface.volume < 0.2 * whole
 
 
 def test_the_distance_is_that_of_all_points_of_the_wrap():
