@@ -61,10 +61,11 @@ class DisplayedFile:
         self.vertices = len(graph.levels[0].vertices)
         self.surface_vertices = graph.levels[0].surface_vertex_count
         self.levels = len(graph.levels)
-        self._faces = np.asarray(graph.levels[0].faces)
+        faces = np.asarray(graph.levels[0].faces)
+        self._values = finer_levels.CornerValues(faces)
         display = graph.display
         self._corners = np.asarray(display["triangles"])
-        self._place = self._faces[np.asarray(display["face"])], np.asarray(display["barycentric"])
+        self._place = faces[np.asarray(display["face"])], np.asarray(display["barycentric"])
 
     def solve(self, lights: Sequence[str], sweeps: int = 0, **options: Any) -> Solved:
         """Solve from nothing under light that is taken for new, and with sweeps once more without."""
@@ -82,7 +83,7 @@ class DisplayedFile:
     def _shown(self) -> np.ndarray:
         """Values at the corners of the file's own triangles, interpolated where the displayed ones have theirs."""
         found = np.asarray(self._engine.surface_field()["exitance"], np.float64)
-        corners = finer_levels.at_corners(self._faces, found)
+        corners = self._values.of(found)
         index, weight = self._place
         return np.einsum("ij,ijc->ic", weight, corners[index])[self._corners].mean(axis=1)
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from scipy.sparse import csr_matrix
-from scipy.sparse.linalg import lsqr
+from scipy.sparse import csr_matrix, identity
+from scipy.sparse.linalg import splu
 
 from quadgraph.file import graph_file, qgraph_file
 from quadgraph.mesh.surface import TetMesh
 from quadgraph.tets import graph, ordering, refine
 
-_ACCURACY = 1e-8  # of the least squares; fields are in single precision
+_SHIFT = 1e-10  # of the least squares, so that there is one answer; fields are in single precision
 
 
 def refined(path: Path, count: int, output: Path, rays: int = 0) -> Path:
@@ -32,16 +32,28 @@ def refined(path: Path, count: int, output: Path, rays: int = 0) -> Path:
     return graph_file.write(output, graphs, rays)
 
 
-def at_corners(faces: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Values (n, 3) at the surface's vertices whose means over the corners of faces (n_f, 3) are `values` (n_f, 3).
+class CornerValues:
+    """Values at the vertices of a closed surface from means over its triangles, again and again."""
 
-    M of linear elements is such a mean. A closed surface has twice as many faces as vertices, so it says what was
-    averaged: by least squares, from the mean over the faces around a vertex, whose share it keeps where an even pattern
-    of triangles leaves one undetermined.
-    """
-    rows = np.repeat(np.arange(len(faces)), 3)
-    mean = csr_matrix((np.full(faces.size, 1 / 3), (rows, faces.ravel())))
-    start = (mean.T @ values) / np.asarray(mean.sum(axis=0)).T
-    rest = values - mean @ start
-    steps = [lsqr(mean, rest[:, c], atol=_ACCURACY, btol=_ACCURACY, iter_lim=2000)[0] for c in range(values.shape[1])]
-    return start + np.column_stack(steps)
+    def __init__(self, faces: np.ndarray) -> None:
+        """faces: (n_f, 3), in which every vertex is."""
+        rows = np.repeat(np.arange(len(faces)), 3)
+        self._mean = csr_matrix((np.full(faces.size, 1 / 3), (rows, faces.ravel())))
+        self._around = np.asarray(self._mean.sum(axis=0)).T
+        normal = self._mean.T @ self._mean + _SHIFT * identity(self._mean.shape[1])
+        self._inverse = splu(normal.tocsc(), "MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+
+    def of(self, values: np.ndarray) -> np.ndarray:
+        """Values (n, 3) at the vertices whose means over the corners of the faces are `values` (n_f, 3).
+
+        M of linear elements is such a mean. A closed surface has twice as many faces as vertices, so it says what was
+        averaged: by least squares, from the mean over the faces around a vertex, whose share it keeps where an even
+        pattern of triangles leaves one undetermined.
+        """
+        start = (self._mean.T @ values) / self._around
+        return start + self._inverse.solve(self._mean.T @ (values - self._mean @ start))
+
+
+def at_corners(faces: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """CornerValues of one field."""
+    return CornerValues(faces).of(values)
