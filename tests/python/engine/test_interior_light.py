@@ -33,14 +33,19 @@ def far_side(folder: Path, subdivisions: int, wanted: str | float | None, materi
     return float(field["area"][far].astype(float) @ field["exitance"][far, 0].astype(float))
 
 
-@pytest.mark.parametrize("subdivisions", [4, pytest.param(5, marks=pytest.mark.long)])
-def test_the_far_side_is_as_bright_as_on_a_much_finer_mesh(tmp_path: Path, subdivisions: int) -> None:
-    truth = far_side(tmp_path, subdivisions, 0.6)
+@pytest.mark.parametrize(
+    ("subdivisions", "edge", "most"), [(4, 0.8, 0.016), pytest.param(5, 0.6, 0.02, marks=pytest.mark.long)]
+)
+def test_the_far_side_is_as_bright_as_on_a_much_finer_mesh(
+    tmp_path: Path, subdivisions: int, edge: float, most: float
+) -> None:
+    """Errors fall with the square of the edge, 1.33 mm usually: 1.6 % of a truth of .8 mm are 2 % of one of .6."""
+    truth = far_side(tmp_path, subdivisions, edge)
     usual, of_surface = (far_side(tmp_path, subdivisions, wanted) / truth - 1 for wanted in (None, "surface"))
     for_medium = far_side(tmp_path, subdivisions, None, (MEDIUM,)) / truth - 1
     print(f"auto {usual:+.2%}, surface {of_surface:+.2%}, for the medium {for_medium:+.2%}")
-    assert abs(usual) < 0.02
-    assert abs(for_medium) < 0.02
+    assert abs(usual) < most
+    assert abs(for_medium) < most
     assert of_surface < -0.1
 
 
