@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "engine/render/engine.h"
+#include "tests/cpp/fixtures/device_work.h"
 #include "tests/cpp/fixtures/test_data.h"
 #include "tests/cpp/fixtures/test_device.h"
 
@@ -15,19 +16,19 @@ namespace {
 
 const std::filesystem::path cube = test_data("tiny.qgraph");
 
-struct Lit {
+struct LitEngine {
   Engine engine;
 
-  explicit Lit(const device::DeviceOptions& device) : engine(cube, device) {
+  explicit LitEngine(const device::DeviceOptions& device) : engine(cube, device) {
     engine.set_material("sigma_s_prime=2/1/0.5,sigma_a=0.1,eta=1.3");
     // Off the planes of the cube's tets: which of two a ray is in that runs along their face, a last bit decides.
     engine.set_lights({parse_light("directional:-0.3,-0.4,-0.86602540:1/2/3"), parse_light("point:4.1,2.3,1.2:20/10/5"),
                        parse_light("ambient:0.2")});
     engine.solve({.tolerance = 1e-5});
   }
-  Lit(const Lit&) = delete;
-  Lit& operator=(const Lit&) = delete;
-  ~Lit() {
+  LitEngine(const LitEngine&) = delete;
+  LitEngine& operator=(const LitEngine&) = delete;
+  ~LitEngine() {
     for (const auto& message : engine.device().validation_messages()) FAIL_CHECK(message);
   }
 };
@@ -56,18 +57,12 @@ void check_alike(const std::vector<float>& values, const std::vector<float>& exp
   CHECK(apart < values.size() / 1000);
 }
 
-std::vector<float> flat(const std::vector<glm::vec3>& values) {
-  std::vector<float> result;
-  for (const glm::vec3& value : values) result.insert(result.end(), {value.x, value.y, value.z});
-  return result;
-}
-
 }  // namespace
 
 TEST_CASE("light, pictures and leaving radiance are the same on both") {
-  Lit here({.device = "cpu"}), there(test_vulkan_device());
+  LitEngine here({.device = "cpu"}), there(test_vulkan_device());
   for (std::uint32_t level = 0; level < there.engine.graph().levels().size(); ++level) {
-    const auto q = [&](Lit& lit) {
+    const auto q = [&](LitEngine& lit) {
       return device::download<float>(lit.engine.device(), lit.engine.simulation().level(level).q);
     };
     CHECK(difference(q(here), q(there)) < 1e-6);

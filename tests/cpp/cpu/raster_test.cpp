@@ -102,7 +102,7 @@ struct Difference {
   double depth = 0;         // largest of the others
 };
 
-Difference difference(const std::vector<float>& a, const std::vector<float>& b) {
+Difference samples_apart(const std::vector<float>& a, const std::vector<float>& b) {
   Difference result;
   for (std::size_t k = 0; k < a.size(); ++k) {
     const double apart = std::abs(double{a[k]} - double{b[k]});
@@ -353,7 +353,7 @@ TEST_CASE("what is nearest is seen, whether depth rises or falls") {
   Drawing what{.vertices = scattered(500)};
   const std::vector<float> rises = drawn(what);
   what.depth = device::Depth::falls;
-  const Difference apart = difference(rises, drawn(what));
+  const Difference apart = samples_apart(rises, drawn(what));
   CHECK(apart.samples == 0);
   CHECK(apart.depth < 1e-6);
 }
@@ -366,7 +366,7 @@ TEST_CASE("the processor and a Vulkan device cover the same samples at the same 
   const auto compare = [&](const Drawing& what) {
     const std::vector<float> here = drawn(what);
     CHECK(covered(here) > side * side / 20);
-    const Difference apart = difference(here, drawn(vulkan.context, what));
+    const Difference apart = samples_apart(here, drawn(vulkan.context, what));
     CHECK(apart.samples <= 4);
     CHECK(apart.depth < 2e-4);  // the plane through the corners, in float there, of slivers at its worst
   };

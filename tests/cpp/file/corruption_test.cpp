@@ -1,8 +1,6 @@
 // Damage at large: whatever happens to a file, the reader refuses it or what it accepts is safe to use.
 #include <doctest/doctest.h>
 
-#include <filesystem>
-#include <fstream>
 #include <random>
 
 #include "engine/base/error.h"
@@ -15,15 +13,6 @@ using namespace quadgraph;
 namespace {
 
 using Bytes = std::vector<std::byte>;
-
-Bytes tiny() {
-  const auto path = test_data("tiny.qgraph");
-  std::ifstream stream(path, std::ios::binary);
-  Bytes bytes(std::filesystem::file_size(path));
-  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  REQUIRE(stream.good());
-  return bytes;
-}
 
 // Walks every index of an accepted file. Degenerate geometry may defeat the solver, but must be said.
 void use(const QuadGraph& graph) {
@@ -79,7 +68,7 @@ void damage(Bytes& bytes, std::size_t begin, std::size_t end, std::mt19937& rand
 }  // namespace
 
 TEST_CASE("every truncated prefix is refused, also with its size and checksums put right") {
-  const Bytes whole = tiny();
+  const Bytes whole = tiny_bytes();
   REQUIRE(accepted(whole));
   for (std::size_t size = 0; size < whole.size(); ++size) {
     Bytes prefix(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
@@ -90,7 +79,7 @@ TEST_CASE("every truncated prefix is refused, also with its size and checksums p
 }
 
 TEST_CASE("every flipped bit is refused") {
-  Bytes bytes = tiny();
+  Bytes bytes = tiny_bytes();
   for (std::size_t at = 0; at < bytes.size(); ++at) {
     for (int bit = 0; bit < 8; ++bit) {
       bytes[at] ^= std::byte{1} << bit;
@@ -101,7 +90,7 @@ TEST_CASE("every flipped bit is refused") {
 }
 
 TEST_CASE("10,000 random corruptions are refused") {
-  const Bytes whole = tiny();
+  const Bytes whole = tiny_bytes();
   std::mt19937 random(2010);
   for (int i = 0; i < 10000; ++i) {
     Bytes bytes = whole;
@@ -112,7 +101,7 @@ TEST_CASE("10,000 random corruptions are refused") {
 }
 
 TEST_CASE("10,000 corruptions behind valid checksums are refused or harmless") {
-  const Bytes whole = tiny();
+  const Bytes whole = tiny_bytes();
   const std::size_t table_end = entry_offset(entries_present(whole));
   std::mt19937 random(2011);
   int taken = 0;

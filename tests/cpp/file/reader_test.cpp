@@ -24,14 +24,6 @@ using Bytes = std::vector<std::byte>;
 
 const std::filesystem::path tiny_path = test_data("tiny.qgraph");
 
-Bytes tiny() {
-  std::ifstream stream(tiny_path, std::ios::binary);
-  Bytes bytes(std::filesystem::file_size(tiny_path));
-  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  REQUIRE(stream.good());
-  return bytes;
-}
-
 // The message of the refusal; empty if the file is accepted.
 std::string refusal(std::span<const std::byte> bytes) {
   try {
@@ -64,7 +56,7 @@ Found find(const Bytes& bytes, const std::string& name) {
 // The refusal after `change` was made to the data of a section that otherwise is whole.
 template <typename T>
 std::string refusal_of_data(const std::string& name, const std::function<void(std::vector<T>&)>& change) {
-  Bytes bytes = tiny();
+  Bytes bytes = tiny_bytes();
   const Found found = find(bytes, name);
   std::vector<T> values(found.section.size / sizeof(T));
   std::memcpy(values.data(), bytes.data() + found.section.offset, found.section.size);
@@ -74,7 +66,7 @@ std::string refusal_of_data(const std::string& name, const std::function<void(st
 }
 
 std::string refusal_of_entry(const std::string& name, const std::function<void(QgraphSection&)>& change) {
-  Bytes bytes = tiny();
+  Bytes bytes = tiny_bytes();
   Found found = find(bytes, name);
   change(found.section);
   write_at(bytes, found.entry, found.section);
@@ -83,7 +75,7 @@ std::string refusal_of_entry(const std::string& name, const std::function<void(Q
 
 template <typename Field>
 std::string refusal_of_header(Field QgraphHeader::* field, Field value) {
-  Bytes bytes = tiny();
+  Bytes bytes = tiny_bytes();
   auto header = read_at<QgraphHeader>(bytes, 0);
   header.*field = value;
   write_at(bytes, 0, header);
@@ -115,7 +107,7 @@ TEST_CASE("the golden file loads, from disk as from memory") {
     CHECK(volume == doctest::Approx(8.0).epsilon(1e-6));  // a cube of 2 mm
   }
   CHECK(reinterpret_cast<std::uintptr_t>(graph.levels()[0].vertices.data()) % qgraph_alignment == 0);
-  const Bytes bytes = tiny();
+  const Bytes bytes = tiny_bytes();
   const QuadGraph parsed = QuadGraph::parse(bytes, "memory");
   CHECK(parsed.byte_size() == bytes.size());
   CHECK(parsed.metadata() == graph.metadata());
@@ -170,14 +162,14 @@ TEST_CASE("table entries are checked before their sizes are believed") {
 }
 
 TEST_CASE("nothing may follow, precede or fill the sections") {
-  Bytes longer = tiny();
+  Bytes longer = tiny_bytes();
   longer.push_back(std::byte{0});
   check_says(refusal_sealed(longer), {"trailing"});
   longer.pop_back();
   longer.resize(longer.size() + qgraph_alignment);
   check_says(refusal(longer), {"file_size"});
   check_says(refusal_sealed(longer), {"trailing"});
-  Bytes padded = tiny();
+  Bytes padded = tiny_bytes();
   const QgraphSection metadata = find(padded, "metadata").section;
   REQUIRE((metadata.offset + metadata.size) % qgraph_alignment != 0);
   padded[metadata.offset + metadata.size] = std::byte{1};
@@ -185,7 +177,7 @@ TEST_CASE("nothing may follow, precede or fill the sections") {
 }
 
 TEST_CASE("an index out of range is refused in every section that holds indices") {
-  const Bytes bytes = tiny();
+  const Bytes bytes = tiny_bytes();
   int tested = 0;
   for (std::size_t i = 0; i < entries_present(bytes); ++i) {
     const auto section = read_at<QgraphSection>(bytes, entry_offset(i));
@@ -201,7 +193,7 @@ TEST_CASE("an index out of range is refused in every section that holds indices"
 }
 
 TEST_CASE("a number that is not finite is refused in every section that holds numbers") {
-  const Bytes bytes = tiny();
+  const Bytes bytes = tiny_bytes();
   int tested = 0;
   for (std::size_t i = 0; i < entries_present(bytes); ++i) {
     const auto section = read_at<QgraphSection>(bytes, entry_offset(i));
@@ -304,7 +296,7 @@ TEST_CASE("metadata tells what the document asks for") {
 }
 
 TEST_CASE("sections stand in the order of the document") {
-  Bytes bytes = tiny();
+  Bytes bytes = tiny_bytes();
   const Found a = find(bytes, "level0/tets"), b = find(bytes, "level0/links");
   QgraphSection renamed = a.section;
   renamed.name = b.section.name;

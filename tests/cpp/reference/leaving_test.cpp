@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <numbers>
+
 #include "engine/optics/fresnel.h"
 #include "tests/cpp/fixtures/exchange_fixtures.h"
 
@@ -10,7 +12,7 @@ using namespace quadgraph;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // Two slabs of 2 mm across a gap of 3 mm, uniformly lit inside, the lower one `ratio` times as bright.
 struct Slabs {

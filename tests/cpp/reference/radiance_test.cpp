@@ -4,7 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <glm/geometric.hpp>
-#include <glm/gtc/constants.hpp>
+#include <numbers>
 
 #include "engine/optics/fresnel.h"
 #include "engine/reference/entering.h"
@@ -15,7 +15,7 @@ using namespace quadgraph;
 
 namespace {
 
-constexpr double pi = glm::pi<double>();
+using std::numbers::pi;
 
 // A slab along x between walls that reflect; inner vertices out of line.
 OwnedLevel slab_level(std::uint32_t n, float size) {
@@ -41,11 +41,11 @@ Uncollided dark(const Level& level) {
 }
 
 // Light of 1 W/mm^2 that enters at x = 0.
-struct Lit {
+struct LitSlab {
   std::vector<Quarters> quarters;
   BeamLight light;
 
-  Lit(const Level& level, const gpu::BeamRecord& beam) {
+  LitSlab(const Level& level, const gpu::BeamRecord& beam) {
     for (std::uint32_t f = 0; f < level.face_count(); ++f) {
       const glm::vec3 q(level.nodes[level.tet_count() + f].x < 1e-4f ? 1 : 0);
       quarters.push_back({q, q, q, q});
@@ -142,7 +142,7 @@ TEST_CASE("a beam behind a flat face is entry exp(-depth) at every vertex, slant
     const Problem problem = problem_of(optical, eta);
     for (const double c : {1.0, 0.7, 0.3}) {
       const double mu = refracted_cosine(c, eta);
-      const Uncollided found = Lit(level, along(glm::vec3(outward(c, 1)))).in(level, problem);
+      const Uncollided found = LitSlab(level, along(glm::vec3(outward(c, 1)))).in(level, problem);
       for (std::uint32_t v = 0; v < level.vertex_count(); ++v) {
         for (int k = 0; k < 3; ++k) {
           const double sigma_t = static_cast<double>(optical[0].sigma_s_prime[k]) + optical[0].sigma_a[k];
@@ -162,7 +162,7 @@ TEST_CASE("single scattering of a beam leaves a slab as the closed form says, on
   const std::vector<glm::dvec3> no_phi(level.vertices.size(), glm::dvec3(0));
   const Problem problem = problem_of(optical, 1.0);
   for (const double c : {1.0, 0.5}) {
-    const Uncollided beam = Lit(level, along(glm::vec3(outward(c, 1)))).in(level, problem);
+    const Uncollided beam = LitSlab(level, along(glm::vec3(outward(c, 1)))).in(level, problem);
     for (const double mu : {1.0, 0.8, 0.55}) {
       for (int k = 0; k < 3; ++k) {
         const double s = optical[0].sigma_s_prime[k], sigma_t = s + static_cast<double>(optical[0].sigma_a[k]);
@@ -189,8 +189,8 @@ TEST_CASE("uniform light that enters falls off as its bundle; one ray stands for
   for (const double eta : {1.0, 1.3}) {
     const Problem problem = problem_of(optical, eta);
     const LambertianBundle bundle = lambertian_bundle(eta);
-    const Uncollided even = Lit(level, {gpu::BEAM_LAMBERTIAN, {}, {}, {}}).in(level, problem);
-    const Uncollided mean = Lit(level, {gpu::BEAM_MEAN, {}, {}, {}}).in(level, problem);
+    const Uncollided even = LitSlab(level, {gpu::BEAM_LAMBERTIAN, {}, {}, {}}).in(level, problem);
+    const Uncollided mean = LitSlab(level, {gpu::BEAM_MEAN, {}, {}, {}}).in(level, problem);
     for (std::uint32_t v = 0; v < level.vertex_count(); ++v) {
       if (level.vertices[v].x > 0.9f) continue;  // the way out there is the far side, where nothing enters
       const double tau = 1.2 * level.vertices[v].x, mu = bundle.mean_cosine();
@@ -209,7 +209,7 @@ TEST_CASE("beams add up, and where none arrives it is dark") {
   const Level level = owned.view();
   const Opticals optical = everywhere_of(level, glm::vec3(1), glm::vec3(0.2f));
   const Problem problem = problem_of(optical, 1.3);
-  const Lit one(level, along({1, 0, 0})), two(level, along({1, 1, 0.5f})), behind(level, along({-1, 0, 0}));
+  const LitSlab one(level, along({1, 0, 0})), two(level, along({1, 1, 0.5f})), behind(level, along({-1, 0, 0}));
   const std::array lights = {one.light, two.light};
   const VertexStarts starts = vertex_starts(level);
   const Uncollided both = uncollided(level, problem, lights, starts);
@@ -233,7 +233,7 @@ TEST_CASE("the gathered exitance is the integral of the gathered radiance over t
     const Problem problem = problem_of(optical, eta);
     const auto solution =
         solve_reference(level, optical, eta, along_x(q), solving(Method::fem, Source::buried, Model::sp3));
-    const Uncollided beam = Lit(level, along({1, 0, 0})).in(level, problem);
+    const Uncollided beam = LitSlab(level, along({1, 0, 0})).in(level, problem);
     const InsideLight light{solution.phi, beam};
     const auto exitance = gathered_exitance(level, problem, light);
     for (const bool side : {true, false}) {

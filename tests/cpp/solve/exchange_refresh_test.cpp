@@ -11,13 +11,6 @@ using namespace quadgraph;
 
 namespace {
 
-constexpr std::uint32_t rays = 100;  // not a multiple of a workgroup
-
-OwnedLevel baked(OwnedLevel level) {
-  bake_seen(level, rays);
-  return level;
-}
-
 // A matrix on the device.
 struct Cast {
   CheckedContext device;
@@ -88,10 +81,10 @@ void check_same(Cast& cast, const OwnedLevel& expected) {
   const auto rows = rows_of(expected);
   std::size_t entries = 0;
   for (const auto& row : rows) entries += row.size();
-  CHECK(entries > expected.faces.size() * rays / 20);
+  CHECK(entries > expected.faces.size() * baked_rays / 20);
   const std::size_t apart = differences(cast.rows(), rows);
   MESSAGE("entries: ", entries, ", different: ", apart);
-  CHECK(static_cast<double>(apart) <= grazing * static_cast<double>(expected.faces.size() * rays));
+  CHECK(static_cast<double>(apart) <= grazing * static_cast<double>(expected.faces.size() * baked_rays));
 }
 
 std::vector<OwnedLevel> shapes() {

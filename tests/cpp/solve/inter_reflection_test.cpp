@@ -9,8 +9,6 @@ using namespace quadgraph;
 
 namespace {
 
-constexpr std::uint32_t rays = 64;
-
 struct Body {
   CheckedContext device;
   QuadGraph graph;
@@ -29,19 +27,10 @@ struct Body {
   }
 };
 
-OwnedLevel baked(OwnedLevel level) {
-  bake_seen(level, rays);
-  return level;
-}
-
 gpu::Material material(float eta, float sigma_a = 0.02f) {
   gpu::Material made = homogeneous(sigma_a);
   made.eta = eta;
   return made;
-}
-
-SolveOptions accurate(Method method = Method::fem, double tolerance = 1e-6) {
-  return {.method = method, .model = Model::diffusion, .tolerance = tolerance};
 }
 
 void check_energy(const SolveReport& report, double tolerance) {

@@ -7,20 +7,13 @@ using namespace quadgraph;
 
 namespace {
 
-constexpr std::uint32_t rays = 100;
-
-OwnedLevel baked(OwnedLevel level) {
-  bake_seen(level, rays);
-  return level;
-}
-
-struct Body {
+struct MovedBody {
   CheckedContext device;
   QuadGraph graph;
   Simulation simulation;
   glm::vec3 down{0, -1, 0};
 
-  explicit Body(const std::vector<OwnedLevel>& levels)
+  explicit MovedBody(const std::vector<OwnedLevel>& levels)
       : graph(QuadGraph::parse(graph_of(levels), "body")), simulation(device.context, graph) {
     simulation.set_material(veined());
   }
@@ -62,17 +55,13 @@ const std::vector<OwnedLevel>& two_levels() {
   return levels;
 }
 
-SolveOptions accurate(Method method) {
-  return {.method = method, .model = Model::diffusion, .tolerance = 1e-6};
-}
-
 }  // namespace
 
 TEST_CASE("a body whose vertices have moved answers as one baked in that shape") {
   const OwnedLevel shape = two_levels()[1];  // alone: transfers stay those of the rest
   for (const Method method : {Method::fem, Method::quadgraph_fv}) {
     CAPTURE(name_of(method));
-    Body body({shape});
+    MovedBody body({shape});
     const SurfaceField rest = body.solve(accurate(method));
     body.move([](const glm::vec3& p) { return p; });
     CHECK(relative_difference(body.solve(accurate(method)).exitance, rest.exitance) < 1e-4);
@@ -85,7 +74,7 @@ TEST_CASE("a body whose vertices have moved answers as one baked in that shape")
     CHECK(relative_difference(found.exitance, rest.exitance) > 1e-2);
 
     // A file of the moved shape. The material must stay with the body, so it gets that of the nodes at rest.
-    Body fresh({baked(moved(shape, bent))});
+    MovedBody fresh({baked(moved(shape, bent))});
     fresh.simulation.set_optical(0, evaluate_material(body.graph.levels()[0], veined()), veined().eta);
     fresh.simulation.set_irradiance(0, device::download<glm::vec3>(body.device.context, body.simulation.level(0).q),
                                     body.down);
@@ -97,7 +86,7 @@ TEST_CASE("a body whose vertices have moved answers as one baked in that shape")
 }
 
 TEST_CASE("in motion the matrix is refreshed in parts, and comes to rest with the body") {
-  Body body(two_levels());
+  MovedBody body(two_levels());
   body.move(bent);
   SolveOptions options = accurate(Method::fem);
   const SurfaceField expected = body.solve(options);
@@ -117,7 +106,7 @@ TEST_CASE("in motion the matrix is refreshed in parts, and comes to rest with th
 }
 
 TEST_CASE("positions that make no body are refused, and nothing moves") {
-  Body body(two_levels());
+  MovedBody body(two_levels());
   const Level& level = body.graph.levels()[0];
   const std::vector<glm::vec3> good(level.vertices.begin(), level.vertices.end());
   const auto refused = [&](std::uint32_t number, const std::vector<glm::vec3>& positions, const char* word) {
