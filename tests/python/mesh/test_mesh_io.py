@@ -13,6 +13,7 @@ import trimesh
 from quadgraph.base.errors import InputError
 from quadgraph.mesh.mesh_io import read_surface, stood_up
 from quadgraph.mesh.mesh_names import SUFFIXES
+from quadgraph.mesh.mesh_text import read_obj
 from quadgraph.mesh.surface import Surface
 from shapes import cube, icosphere
 
@@ -83,6 +84,37 @@ def test_negative_indices_of_obj(tmp_path: Path) -> None:
     path = tmp_path / "cube.obj"
     path.write_text(QUAD_CUBE + "".join("f " + " ".join(str(i - 9) for i in quad) + "\n" for quad in QUADS))
     assert read_surface(path, unit="mm").surface.volume == pytest.approx(1)
+
+
+@pytest.mark.parametrize(
+    "unusual",
+    [
+        "v\t9 9 9\n",
+        " v 9 9 9\n",
+        "v 9 9 9 1 0 0 # with a colour\n",
+        "f\t1 2 4 3\n",
+        "f 1 2 4\n",
+        "f 1 2 4 3 7 # a corner more\n",
+        "f 1 \\\n2 4 3\n",
+        "f -8 -7 -5 -6\n",
+    ],
+)
+def test_a_line_of_obj_is_read_alike_among_plain_and_unusual_ones(tmp_path: Path, unusual: str) -> None:
+    """Files all of whose lines are alike are read all at once, others line by line."""
+    path = tmp_path / "cube.obj"
+    faces = "".join("f " + " ".join(f"{i}//{i}" for i in quad) + "\n" for quad in QUADS)
+    path.write_text(QUAD_CUBE + faces)
+    vertices, triangles = read_obj(path)
+    assert triangles.shape == (12, 3)
+    assert np.abs(vertices - 0.5).max() == 0.5
+    path.write_text(QUAD_CUBE + faces + unusual)
+    more_vertices, more_triangles = read_obj(path)
+    assert np.array_equal(more_vertices[:8], vertices)
+    assert np.array_equal(more_triangles[:12], triangles)
+    if "v" in unusual:
+        assert np.array_equal(more_vertices[8:], [[9, 9, 9]])
+    else:
+        assert more_triangles[12].tolist() == [0, 1, 3]
 
 
 def test_gltf_nodes_are_placed(tmp_path: Path) -> None:
