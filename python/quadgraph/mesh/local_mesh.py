@@ -55,18 +55,13 @@ def replaced(face: Face, old: int, new: int) -> Face:
     return a, b, c
 
 
-def normal(p: Point, q: Point, r: Point) -> Point:
-    """Twice the area of the triangle, along its normal."""
-    return cross(subtract(q, p), subtract(r, p))
-
-
-def min_angle(p: Point, q: Point, r: Point) -> float:
-    """Smallest angle of the triangle, degrees."""
-    n = normal(p, q, r)
-    doubled = math.sqrt(dot(n, n))
+def normal_and_angle(p: Point, q: Point, r: Point) -> tuple[Point, float]:
+    """Twice the area of the triangle, along its normal, and its smallest angle, degrees."""
     a, b, c = subtract(q, p), subtract(r, q), subtract(p, r)
+    n = cross(a, (-c[0], -c[1], -c[2]))
+    doubled = math.sqrt(dot(n, n))
     # The smallest angle lies opposite to the shortest edge, between the other two.
-    return math.degrees(math.atan2(doubled, max(-dot(a, b), -dot(b, c), -dot(c, a))))
+    return n, math.degrees(math.atan2(doubled, max(-dot(a, b), -dot(b, c), -dot(c, a))))
 
 
 @dataclass
@@ -90,14 +85,27 @@ class LocalMesh:
             for vertex in face:
                 self.star[vertex].add(i)
         self._next = len(self.faces)
+        # A face keeps its places as long as it has its number.
+        self._own_shapes: dict[int, tuple[Point, float]] = {}
 
     def surface(self) -> Surface:
         """The mesh as it is now, without unreferenced vertices."""
         return Surface(np.array(self.points), np.array(list(self.faces.values()), np.int64)).compacted()
 
+    def made_since(self, number: int) -> range:
+        """Numbers of faces from `number` on: those made by changes are the highest."""
+        return range(number, self._next)
+
+    def _shape_of(self, face: int) -> tuple[Point, float]:
+        found = self._own_shapes.get(face)
+        if found is None:
+            a, b, c = self.faces[face]
+            found = self._own_shapes[face] = normal_and_angle(self.points[a], self.points[b], self.points[c])
+        return found
+
     def angle(self, face: int) -> float:
         """Smallest angle of a face, degrees."""
-        return min_angle(*(self.points[v] for v in self.faces[face]))
+        return self._shape_of(face)[1]
 
     def neighbours(self, vertex: int) -> set[int]:
         """Vertices joined to `vertex` by an edge."""
@@ -105,8 +113,7 @@ class LocalMesh:
 
     def vertex_normal(self, vertex: int) -> Point:
         """Area-weighted unit normal."""
-        normals = [normal(*(self.points[v] for v in self.faces[f])) for f in self.star[vertex]]
-        return mean_direction(normals)
+        return mean_direction([self._shape_of(f)[0] for f in self.star[vertex]])
 
     def flip(self, face: int, corner: int) -> MeshChange | None:
         """Swap the diagonal of the two faces at the edge from `corner` on; None if the new edge exists already."""
@@ -138,25 +145,26 @@ class LocalMesh:
         """Smallest angle of the faces that the change drops, degrees."""
         return min(self.angle(f) for f in change.dropped)
 
-    def assess(self, change: MeshChange, max_turn_cosine: float) -> bool:
-        """Fill in `change.after`; False if a new face leans too far from the surface it replaces.
+    def assess(self, change: MeshChange, max_turn_cosine: float, bound: float) -> bool:
+        """Fill in `change.after`; False if it is not above `bound` or a new face leans too far from the old surface.
 
         The surface replaced is the area-weighted normal of all dropped faces for a flip and a collapse, so that a
         sliver's own meaningless normal does not count.
         """
-        old = [normal(*(self.points[v] for v in self.faces[f])) for f in change.dropped]
-        mean = mean_direction(old)
+        mean = mean_direction([self._shape_of(f)[0] for f in change.dropped])
         change.after = 180.0
         for face in change.added:
-            corners = tuple(change.places.get(v, self.points[v]) for v in face)
-            change.after = min(change.after, min_angle(*corners))
-            if dot(unit(normal(*corners)), mean) < max_turn_cosine:
+            p, q, r = (change.places.get(v, self.points[v]) for v in face)
+            up, angle = normal_and_angle(p, q, r)
+            change.after = min(change.after, angle)
+            if not change.after > bound or dot(unit(up), mean) < max_turn_cosine:
                 return False
         return True
 
     def apply(self, change: MeshChange) -> None:
         """Carry the change out."""
         for f in change.dropped:
+            self._own_shapes.pop(f, None)
             for vertex in self.faces.pop(f):
                 self.star[vertex].discard(f)
         for face in change.added:
