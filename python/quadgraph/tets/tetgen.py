@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -68,10 +69,11 @@ def fill(
             "tetgen: vertices of the surface were left out or moved, as where two nearly meet; merge or move such "
             "ones, or try --mesher cgal"
         )
-    return vertices, tets, MesherInfo("tetgen", _version(), options)
+    return vertices, tets, MesherInfo("tetgen", _version(TETGEN.path()), options)
 
 
-def _version() -> str:
+@cache
+def _version(program: Path) -> str:
     """TetGen's own version as its help tells it."""
     with workspace() as directory:
         # `tetgen -h` ends by throwing its exit status: SIGABRT is its normal end.

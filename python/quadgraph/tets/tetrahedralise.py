@@ -52,7 +52,7 @@ def _with_tetgen(
     surface = surface.rounded()
     vertices, tets, info = tetgen.fill(surface, time_limit_s, memory_limit_bytes, limits)
     mesh = _positive(vertices, tets, len(surface.vertices), info)
-    if _canonical(mesh.boundary().triangles) != _canonical(surface.triangles):
+    if not np.array_equal(_canonical(mesh.boundary().triangles), _canonical(surface.triangles)):
         raise ToolError("tetgen: the boundary of the tetrahedra is not the given surface")
     return mesh
 
@@ -75,8 +75,8 @@ def _positive(vertices: np.ndarray, tets: np.ndarray, fixed: int, info) -> TetMe
     return TetMesh(round_to_float32(vertices, tets, fixed), tets, info)
 
 
-def _canonical(triangles: np.ndarray) -> set[tuple[int, int, int]]:
-    """Oriented triangles, each starting at its smallest index."""
+def _canonical(triangles: np.ndarray) -> np.ndarray:
+    """Oriented triangles, each starting at its smallest index, in order."""
     start = triangles.argmin(axis=1)[:, None]
     turned = np.take_along_axis(triangles, (start + np.arange(3)) % 3, axis=1)
-    return set(map(tuple, turned.tolist()))
+    return turned[np.lexsort(turned.T)]
