@@ -17,7 +17,9 @@ if os.environ.get("PYTEST_XDIST_WORKER", "gw0") != "gw0":
 os.environ["XDG_CONFIG_HOME"] = os.devnull
 
 import fcntl
+import json
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -92,15 +94,42 @@ def bunny(bunny_path: Path) -> Surface:
 
 
 @pytest.fixture(scope="session")
-def bunny_qgraph(bunny_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The bundled bunny baked at 100 mm with 6000 vertices on its finest surface, once for all workers."""
+def all_workers(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder that all workers of a run have together."""
     alone = "PYTEST_XDIST_WORKER" not in os.environ
-    folder = tmp_path_factory.getbasetemp() if alone else tmp_path_factory.getbasetemp().parent
-    path = folder / "bunny.qgraph"
-    with (folder / "bunny.lock").open("w") as lock:
+    return tmp_path_factory.getbasetemp() if alone else tmp_path_factory.getbasetemp().parent
+
+
+@pytest.fixture(scope="session")
+def bunny_qgraph(bunny_path: Path, all_workers: Path) -> Path:
+    """The bundled bunny baked at 100 mm with 6000 vertices on its finest surface, once for all workers."""
+    return baked_once(bunny_path, all_workers / "bunny.qgraph", BakeOptions(height_mm=100.0, surface_vertices=6000))
+
+
+@pytest.fixture(scope="session")
+def small_bunny(bunny_path: Path, all_workers: Path) -> Path:
+    """The bundled bunny baked at 60 mm with 3000 vertices on its finest surface, once for all workers."""
+    return baked_once(bunny_path, all_workers / "small.qgraph", BakeOptions(height_mm=60.0, surface_vertices=3000))
+
+
+@pytest.fixture(scope="session")
+def small_body(shared: Path, all_workers: Path) -> Callable[[str], Path]:
+    """Of a name of the shared meshes: baked at 60 mm with 3000 vertices on the finest surface, once for all workers."""
+
+    def of(name: str) -> Path:
+        options = BakeOptions(height_mm=60.0, surface_vertices=3000)
+        return baked_once(shared / "meshes" / f"{name}.ply", all_workers / f"small-{name}.qgraph", options)
+
+    return of
+
+
+def baked_once(mesh: Path, path: Path, options: BakeOptions) -> Path:
+    """Bake to `path` unless another worker has, with the report beside it as JSON."""
+    with path.with_suffix(".lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         if not path.exists():
-            bake(bunny_path, path, BakeOptions(height_mm=100.0, surface_vertices=6000))
+            report = bake(mesh, path, options)
+            path.with_suffix(".json").write_text(json.dumps(report.as_dict()))
     return path
 
 

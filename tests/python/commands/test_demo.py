@@ -5,17 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from quadgraph.baking.pipeline import BakeOptions, bake
-
 _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 
 
 @pytest.fixture(scope="module")
-def bunny_engine(bunny_path, tmp_path_factory):
+def bunny_engine(small_bunny):
     """The demo's bunny, 60 mm high, in marble, on fewer vertices; validation messages fail."""
-    path = tmp_path_factory.mktemp("demo") / "bunny.qgraph"
-    bake(bunny_path, path, BakeOptions(height_mm=60.0, surface_vertices=4000))
-    engine = _core.Engine(path, validation=True)
+    engine = _core.Engine(small_bunny, validation=True)
     engine.set_material("marble")
     yield engine
     assert engine.validation_messages == []

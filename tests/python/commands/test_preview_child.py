@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -41,23 +42,26 @@ def read_until(child: subprocess.Popen[str], text: str) -> None:
 
 
 def start_two(mesh: Path) -> tuple[subprocess.Popen[str], subprocess.Popen[str]]:
-    """One that bakes, and another that waits for it."""
+    """One that bakes, and was stopped (SIGCONT lets it go on), and another that waits for it."""
     first = start(mesh)
     read_until(first, f"read {mesh.name}")
+    first.send_signal(signal.SIGSTOP)
     second = start(mesh)
     read_until(second, f"another program is baking {mesh.name}")
     return first, second
 
 
 def test_who_waits_for_a_body_gets_the_one_that_another_bakes(tmp_path: Path, cache: Path):
-    first, second = start_two(write_obj(icosphere(4, 10), tmp_path / "ball.obj"))
+    first, second = start_two(write_obj(icosphere(2, 10), tmp_path / "ball.obj"))
+    first.send_signal(signal.SIGCONT)
     bodies = [json.loads(child.communicate(timeout=120)[0])["body"] for child in (first, second)]
     assert bodies == [str(path) for path in cache.glob("*/ball.qgraph")] * 2
 
 
 def test_who_waits_for_a_bake_that_is_ended_bakes(tmp_path: Path, cache: Path):
-    first, second = start_two(write_obj(icosphere(5, 10), tmp_path / "ball.obj"))
+    first, second = start_two(write_obj(icosphere(2, 10), tmp_path / "ball.obj"))
     first.terminate()
+    first.send_signal(signal.SIGCONT)
     first.communicate(timeout=20)
     read_until(second, "kept for the next time")
     body = json.loads(second.communicate(timeout=20)[0])["body"]

@@ -64,6 +64,7 @@ def test_a_record_is_drawn_again_the_same_to_the_byte_without_a_device(record_pa
     assert "Left out: lucy: lucy.ply: no such file" in printed
     assert "to the power published: 1.00, ours, diffusion: 1.00" in printed
     changed = record()
+    changed["tables"] = {"12": changed["tables"]["12"]}
     changed["tables"]["12"]["rows"]["bunny-25000"]["ways"]["published"]["least"]["ms"] *= 3
     record_path.write_text(json.dumps(changed))
     assert cli.main(["tables", "--from", str(record_path), "--output", str(tmp_path / "changed")]) == 0
