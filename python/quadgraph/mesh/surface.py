@@ -145,10 +145,10 @@ class Surface:
     @cached_property
     def non_manifold_vertices(self) -> np.ndarray:
         """Indices of vertices whose faces form more than one fan (counted through shared edges)."""
-        fan = self.fans(np.zeros(len(self.topology.edges), bool))
-        pairs = np.unique(np.stack([self.triangles.ravel(), fan.ravel()], axis=1), axis=0)
-        vertices, fans = np.unique(pairs[:, 0], return_counts=True)
-        return vertices[fans > 1]
+        fan = self.fans(np.zeros(len(self.topology.edges), bool)).ravel()
+        vertex_of = np.empty(fan.max(initial=-1) + 1, np.int64)
+        vertex_of[fan] = self.triangles.ravel()  # all corners of a fan are at one vertex
+        return np.flatnonzero(np.bincount(vertex_of) > 1)
 
     @property
     def is_closed_manifold(self) -> bool:
