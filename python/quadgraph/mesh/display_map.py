@@ -9,6 +9,7 @@ from quadgraph.mesh.surface import Surface
 
 _NEAR_FACES = 12  # nearest face centroids tried per point
 _NEAR_VERTICES = 3  # nearest vertices, all of whose faces are tried
+_POINTS_AT_ONCE = 100_000  # points that are searched together: some 2 kB each
 _ASIDE = 0.5  # cosine of a face's normal to a point's, below which another face at the same corner is tried
 
 
@@ -33,8 +34,10 @@ def nearest_faces(points: np.ndarray, surface: Surface) -> tuple[np.ndarray, np.
     incident_face, corner = _a_face_of_each_vertex(surface)
     face[same] = incident_face[vertex[same]]
     coordinates[same, corner[vertex[same]]] = 1
-    if not same.all():
-        face[~same], coordinates[~same] = _search(points[~same], surface)
+    rest = np.flatnonzero(~same)
+    for begin in range(0, len(rest), _POINTS_AT_ONCE):
+        rows = rest[begin : begin + _POINTS_AT_ONCE]
+        face[rows], coordinates[rows] = _search(points[rows], surface)
     return face, coordinates
 
 
@@ -83,24 +86,36 @@ def _a_face_of_each_vertex(surface: Surface) -> tuple[np.ndarray, np.ndarray]:
 def _search(points: np.ndarray, surface: Surface) -> tuple[np.ndarray, np.ndarray]:
     best = np.full(len(points), np.inf)
     face, coordinates = np.zeros(len(points), np.int64), np.zeros((len(points), 3))
-    for candidates in _candidates(points, surface):
-        found = closest_point_coordinates(points, surface.corners[candidates])
-        reached = np.einsum("ij,ijk->ik", found, surface.corners[candidates])
-        distance = ((points - reached) ** 2).sum(axis=1)
-        better = distance < best
-        best[better], face[better], coordinates[better] = distance[better], candidates[better], found[better]
+    candidates = _candidates(points, surface)
+    for tried, new in zip(candidates.T, _first_of_each(candidates).T, strict=True):
+        rows = np.flatnonzero(new)
+        corners = surface.corners[tried[rows]]
+        found = closest_point_coordinates(points[rows], corners)
+        distance = _squared_distance(points[rows], corners, found)
+        better = distance < best[rows]
+        chosen = rows[better]
+        best[chosen], face[chosen], coordinates[chosen] = distance[better], tried[chosen], found[better]
     return face, coordinates
 
 
-def _candidates(points: np.ndarray, surface: Surface) -> list[np.ndarray]:
-    """One face index per point in each array of the list."""
+def _first_of_each(rows: np.ndarray) -> np.ndarray:
+    """Of each number (n, m) whether it is not further left in its row."""
+    order = np.argsort(rows, axis=1, kind="stable")
+    ranked = np.take_along_axis(rows, order, axis=1)
+    first = np.ones(rows.shape, bool)
+    np.put_along_axis(first, order[:, 1:], ranked[:, 1:] != ranked[:, :-1], axis=1)
+    return first
+
+
+def _candidates(points: np.ndarray, surface: Surface) -> np.ndarray:
+    """Faces (n, m) to try for each point, some more than once."""
     count = min(_NEAR_FACES, len(surface.triangles))
     faces = cKDTree(surface.corners.mean(axis=1)).query(points, k=count)[1].reshape(-1, count)
     used = np.unique(surface.triangles)
     near = min(_NEAR_VERTICES, len(used))
     vertices = used[cKDTree(surface.vertices[used]).query(points, k=near)[1].reshape(-1, near)]
     around = [places // 3 for k in range(near) for places in _places_around(vertices[:, k], surface).T]
-    return [*faces.T, *around]
+    return np.stack([*faces.T, *around], axis=1)
 
 
 def closest_point_coordinates(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
