@@ -1,5 +1,7 @@
 #include "engine/vk/features.h"
 
+#include "engine/device/device.h"
+
 namespace quadgraph::vk {
 
 Features::Features() {
@@ -21,6 +23,33 @@ std::vector<std::pair<const char*, VkBool32*>> Features::required() {
       {"synchronization2", &v13.synchronization2},
       {"hostQueryReset", &v12.hostQueryReset},
   };
+}
+
+// Workgroups of 256 invocations, which reductions and the walks' queues are written for; 128 are guaranteed.
+constexpr std::uint32_t group = device::ComputeOptions{}.workgroup_size;
+
+const std::array<RequiredLimit, 2> required_limits = {
+    {{"maxComputeWorkGroupInvocations", group,
+      [](const auto& limits) { return limits.maxComputeWorkGroupInvocations; }},
+     {"maxComputeWorkGroupSize[0]", group, [](const auto& limits) { return limits.maxComputeWorkGroupSize[0]; }}}};
+
+// Samples of a picture and what shadow maps hold. Of depths in 32 and in 24 bits Vulkan guarantees one.
+const std::array<RequiredFormat, 2> required_formats = {
+    {{"R32G32B32A32_SFLOAT", VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT},
+     {"D32_SFLOAT", VK_FORMAT_D32_SFLOAT, VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT}}};
+
+std::string lacking(Features& features, const VkPhysicalDeviceLimits& limits) {
+  for (const auto& [name, value] : features.required()) {
+    if (*value == VK_FALSE) return name;
+  }
+  for (const RequiredLimit& limit : required_limits) {
+    const std::uint32_t has = limit.of(limits);
+    if (has < limit.least) {
+      return std::string(limit.name) + " of " + std::to_string(limit.least) + " (it allows " + std::to_string(has) +
+             ")";
+    }
+  }
+  return {};
 }
 
 }  // namespace quadgraph::vk

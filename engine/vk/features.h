@@ -4,6 +4,9 @@
 
 #include <vulkan/vulkan.h>
 
+#include <array>
+#include <cstdint>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -22,5 +25,26 @@ struct Features {
   // By the names that Vulkan gives them.
   std::vector<std::pair<const char*, VkBool32*>> required();
 };
+
+// A limit that must be above what Vulkan 1.3 guarantees.
+struct RequiredLimit {
+  const char* name;
+  std::uint32_t least;
+  std::uint32_t (*of)(const VkPhysicalDeviceLimits&);
+};
+
+extern const std::array<RequiredLimit, 2> required_limits;
+
+// An image that is drawn into.
+struct RequiredFormat {
+  const char* name;
+  VkFormat format;
+  VkFormatFeatureFlags use;
+};
+
+extern const std::array<RequiredFormat, 2> required_formats;
+
+// The first of what is required that a device does not have; empty where it has all. features: as queried.
+std::string lacking(Features& features, const VkPhysicalDeviceLimits& limits);
 
 }  // namespace quadgraph::vk

@@ -77,8 +77,14 @@ std::string what_is_missing(VkPhysicalDevice device, VkSurfaceKHR surface) {
   if (properties.apiVersion < VK_API_VERSION_1_3) return "Vulkan 1.3";
   Features features;
   vkGetPhysicalDeviceFeatures2(device, &features.base);
-  for (const auto& [name, value] : features.required()) {
-    if (*value == VK_FALSE) return name;
+  const std::string lacks = lacking(features, properties.limits);
+  if (!lacks.empty()) return lacks;
+  for (const RequiredFormat& required : required_formats) {
+    VkFormatProperties format;
+    vkGetPhysicalDeviceFormatProperties(device, required.format, &format);
+    if ((format.optimalTilingFeatures & required.use) != required.use) {
+      return std::string("images of ") + required.name + " to draw into";
+    }
   }
   if (surface != VK_NULL_HANDLE && !can_swap(device)) return VK_KHR_SWAPCHAIN_EXTENSION_NAME;
   if (!find_family(device, VK_NULL_HANDLE)) return "a queue that both draws and computes";
