@@ -16,6 +16,7 @@ from quadgraph.commands import doctor_checks
 
 _core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 
+SWIFTSHADER = Path("/usr/lib/chromium/vk_swiftshader_icd.json")
 NEEDED = {"quadgraph", "Python", "NumPy", "engine", "picture", "mesh libraries", "TetGen", "temporary files"}
 
 
@@ -94,6 +95,15 @@ def test_a_software_device_that_is_named_is_said_aloud():
     assert found["device"] == software[0]
     assert "QUADGRAPH_DEVICE" in named(found, "picture")["found"]
     assert "no GPU" in named(found, "picture")["found"]
+
+
+def test_a_driver_that_crashes_on_shaders_is_refused_before_it_does():
+    if not SWIFTSHADER.exists():
+        pytest.skip(f"{SWIFTSHADER} is not there: apt install chromium")
+    status, found = report(VK_DRIVER_FILES=str(SWIFTSHADER), VK_ICD_FILENAMES=str(SWIFTSHADER), QUADGRAPH_DEVICE="swift")
+    assert (status, found["works"]) == (1, False)
+    assert "SwiftShader" in named(found, "picture")["found"]
+    assert "crash" in named(found, "picture")["found"]
 
 
 def test_a_device_that_is_not_there_is_what_is_missing():
