@@ -185,3 +185,5 @@ def engine_methods(chain: MethodChain) -> Iterator[ChartMethod]:
             continue
         frame = EngineMethod(inter_reflection=True, cycles=1, choice=choice)
         yield from (frame, replace(frame, cycles=0), replace(frame, model="diffusion"), replace(fdm, choice=choice))
+        if choice.grading is None:
+            yield from (replace(frame, cycles=0, sweeps=1), replace(frame, sweeps=1, motion=True))
