@@ -205,17 +205,10 @@ void Context::read_properties() {
   VkPhysicalDeviceMaintenance3Properties maintenance3{};
   maintenance3.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES;
   maintenance3.pNext = &maintenance4;
-  VkPhysicalDeviceDriverProperties driver{};
-  driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
-  driver.pNext = &maintenance3;
-  VkPhysicalDeviceProperties2 properties{};
-  properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
-  properties.pNext = &driver;
-  vkGetPhysicalDeviceProperties2(physical_device_, &properties);
-  limits_ = properties.properties.limits;
+  const Identity identity(physical_device_, &maintenance3);
+  limits_ = identity.device().limits;
   max_buffer_bytes_ = std::min(maintenance3.maxMemoryAllocationSize, maintenance4.maxBufferSize);
-  info_ = {properties.properties.deviceName, std::string(driver.driverName) + " " + driver.driverInfo,
-           properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU};
+  info_ = {identity.device().deviceName, identity.driver_text(), identity.software()};
   max_image_side_ = limits_.maxImageDimension2D;
   max_workgroups_ = limits_.maxComputeWorkGroupCount[0];
   vkGetPhysicalDeviceMemoryProperties(physical_device_, &memory_properties_);

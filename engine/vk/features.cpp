@@ -3,6 +3,22 @@
 #include "engine/device/device.h"
 
 namespace quadgraph::vk {
+namespace {
+
+// A limit that must be above what Vulkan 1.3 guarantees.
+struct RequiredLimit {
+  const char* name;
+  std::uint32_t least;
+  std::uint32_t (*of)(const VkPhysicalDeviceLimits&);
+};
+
+// Sums over a workgroup are written for 256 invocations; 128 are guaranteed.
+constexpr std::uint32_t group = device::ComputeOptions{}.workgroup_size;
+constexpr RequiredLimit required_limits[] = {
+    {"maxComputeWorkGroupInvocations", group, [](const auto& limits) { return limits.maxComputeWorkGroupInvocations; }},
+    {"maxComputeWorkGroupSize[0]", group, [](const auto& limits) { return limits.maxComputeWorkGroupSize[0]; }}};
+
+}  // namespace
 
 Features::Features() {
   v13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
@@ -24,14 +40,6 @@ std::vector<std::pair<const char*, VkBool32*>> Features::required() {
       {"hostQueryReset", &v12.hostQueryReset},
   };
 }
-
-// Workgroups of 256 invocations, which reductions and the walks' queues are written for; 128 are guaranteed.
-constexpr std::uint32_t group = device::ComputeOptions{}.workgroup_size;
-
-const std::array<RequiredLimit, 2> required_limits = {
-    {{"maxComputeWorkGroupInvocations", group,
-      [](const auto& limits) { return limits.maxComputeWorkGroupInvocations; }},
-     {"maxComputeWorkGroupSize[0]", group, [](const auto& limits) { return limits.maxComputeWorkGroupSize[0]; }}}};
 
 // Samples of a picture and what shadow maps hold. Of depths in 32 and in 24 bits Vulkan guarantees one.
 const std::array<RequiredFormat, 2> required_formats = {

@@ -5,7 +5,6 @@
 #include <vulkan/vulkan.h>
 
 #include <array>
-#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,15 +24,6 @@ struct Features {
   // By the names that Vulkan gives them.
   std::vector<std::pair<const char*, VkBool32*>> required();
 };
-
-// A limit that must be above what Vulkan 1.3 guarantees.
-struct RequiredLimit {
-  const char* name;
-  std::uint32_t least;
-  std::uint32_t (*of)(const VkPhysicalDeviceLimits&);
-};
-
-extern const std::array<RequiredLimit, 2> required_limits;
 
 // An image that is drawn into.
 struct RequiredFormat {

@@ -58,6 +58,18 @@ std::optional<std::uint32_t> find_family(VkPhysicalDevice device, VkSurfaceKHR s
   return std::nullopt;
 }
 
+Identity::Identity(VkPhysicalDevice device, void* more) {
+  driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
+  driver.pNext = more;
+  all.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+  all.pNext = &driver;
+  vkGetPhysicalDeviceProperties2(device, &all);
+}
+
+std::string Identity::driver_text() const {
+  return std::string(driver.driverName) + " " + driver.driverInfo;
+}
+
 int preference(VkPhysicalDeviceType type) {
   switch (type) {
     case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
@@ -72,19 +84,14 @@ int preference(VkPhysicalDeviceType type) {
 }
 
 std::string what_is_missing(VkPhysicalDevice device, VkSurfaceKHR surface) {
-  VkPhysicalDeviceDriverProperties driver{};
-  driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
-  VkPhysicalDeviceProperties2 all{};
-  all.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
-  all.pNext = &driver;
-  vkGetPhysicalDeviceProperties2(device, &all);
-  const VkPhysicalDeviceProperties& properties = all.properties;
-  if (properties.apiVersion < VK_API_VERSION_1_3) return "Vulkan 1.3";
-  // Chromium 156's, in vkCreateComputePipelines of three in five shaders: the least of them assemble_even.comp.
-  if (driver.driverID == VK_DRIVER_ID_GOOGLE_SWIFTSHADER) return "a compiler of shaders that does not crash on them";
+  const Identity identity(device);
+  if (identity.device().apiVersion < VK_API_VERSION_1_3) return "Vulkan 1.3";
+  // Chromium 156's crashes in vkCreateComputePipelines of 30 of the first 50 shaders, assemble_even among them.
+  if (identity.driver.driverID == VK_DRIVER_ID_GOOGLE_SWIFTSHADER)
+    return "a compiler of shaders that does not crash on them";
   Features features;
   vkGetPhysicalDeviceFeatures2(device, &features.base);
-  const std::string lacks = lacking(features, properties.limits);
+  const std::string lacks = lacking(features, identity.device().limits);
   if (!lacks.empty()) return lacks;
   for (const RequiredFormat& required : required_formats) {
     VkFormatProperties format;

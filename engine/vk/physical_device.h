@@ -24,6 +24,20 @@ std::optional<std::uint32_t> find_family(VkPhysicalDevice device, VkSurfaceKHR s
 // Empty if the device can run the engine and, where there is a surface, show a window; else what it lacks.
 std::string what_is_missing(VkPhysicalDevice device, VkSurfaceKHR surface);
 
+// What a device and its driver call themselves. `more`: structures to fill with it.
+struct Identity {
+  VkPhysicalDeviceDriverProperties driver{};
+  VkPhysicalDeviceProperties2 all{};
+
+  explicit Identity(VkPhysicalDevice device, void* more = nullptr);
+  Identity(const Identity&) = delete;
+  Identity& operator=(const Identity&) = delete;
+
+  const VkPhysicalDeviceProperties& device() const { return all.properties; }
+  std::string driver_text() const;  // name and version
+  bool software() const { return device().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
+};
+
 // Of several devices that with the least is taken: discrete GPUs first, software last.
 int preference(VkPhysicalDeviceType type);
 

@@ -122,12 +122,6 @@ Pipeline::Pipeline(Context& context, const device::Shader& shader, const device:
     : stages(VK_SHADER_STAGE_COMPUTE_BIT),
       push_size(shader.push_size),
       layout(push_layout(context, push_size, stages, name)) {
-  const VkPhysicalDeviceLimits& limits = context.limits();
-  const std::uint32_t largest = std::min(limits.maxComputeWorkGroupInvocations, limits.maxComputeWorkGroupSize[0]);
-  if (options.workgroup_size > largest) {
-    throw DeviceError(name + " needs workgroups of " + std::to_string(options.workgroup_size) + " invocations, " +
-                      context.info().name + " allows " + std::to_string(largest));
-  }
   const UniqueShaderModule module = shader_module(context, options.sp3 ? shader.sp3 : shader.code, name);
   const Constants constants(options.variant);
   VkComputePipelineCreateInfo info{};

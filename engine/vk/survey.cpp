@@ -12,20 +12,13 @@ namespace quadgraph::vk {
 namespace {
 
 VkPhysicalDeviceType type_of(VkPhysicalDevice device) {
-  VkPhysicalDeviceProperties properties;
-  vkGetPhysicalDeviceProperties(device, &properties);
-  return properties.deviceType;
+  return Identity(device).device().deviceType;
 }
 
 Surveyed surveyed(VkPhysicalDevice device) {
-  VkPhysicalDeviceDriverProperties driver{};
-  driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
-  VkPhysicalDeviceProperties2 properties{};
-  properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
-  properties.pNext = &driver;
-  vkGetPhysicalDeviceProperties2(device, &properties);
-  return {properties.properties.deviceName, std::string(driver.driverName) + " " + driver.driverInfo,
-          properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU, what_is_missing(device, VK_NULL_HANDLE)};
+  const Identity identity(device);
+  return {identity.device().deviceName, identity.driver_text(), identity.software(),
+          what_is_missing(device, VK_NULL_HANDLE)};
 }
 
 }  // namespace

@@ -35,9 +35,11 @@ def nearest_faces(points: np.ndarray, surface: Surface) -> tuple[np.ndarray, np.
     face[same] = incident_face[vertex[same]]
     coordinates[same, corner[vertex[same]]] = 1
     rest = np.flatnonzero(~same)
+    if len(rest):
+        nearby = _Nearby(surface)
     for begin in range(0, len(rest), _POINTS_AT_ONCE):
         rows = rest[begin : begin + _POINTS_AT_ONCE]
-        face[rows], coordinates[rows] = _search(points[rows], surface)
+        face[rows], coordinates[rows] = _search(points[rows], nearby)
     return face, coordinates
 
 
@@ -83,13 +85,32 @@ def _a_face_of_each_vertex(surface: Surface) -> tuple[np.ndarray, np.ndarray]:
     return where // 3, where % 3
 
 
-def _search(points: np.ndarray, surface: Surface) -> tuple[np.ndarray, np.ndarray]:
+class _Nearby:
+    """Which faces of a surface may be the nearest to a point."""
+
+    def __init__(self, surface: Surface) -> None:
+        self.surface = surface
+        self._used = np.unique(surface.triangles)
+        self._centroids = cKDTree(surface.corners.mean(axis=1))
+        self._vertices = cKDTree(surface.vertices[self._used])
+
+    def candidates(self, points: np.ndarray) -> np.ndarray:
+        """Faces (n, m) to try for each point, some more than once."""
+        count = min(_NEAR_FACES, len(self.surface.triangles))
+        faces = self._centroids.query(points, k=count)[1].reshape(-1, count)
+        near = min(_NEAR_VERTICES, len(self._used))
+        vertices = self._used[self._vertices.query(points, k=near)[1].reshape(-1, near)]
+        around = [places // 3 for k in range(near) for places in _places_around(vertices[:, k], self.surface).T]
+        return np.stack([*faces.T, *around], axis=1)
+
+
+def _search(points: np.ndarray, nearby: _Nearby) -> tuple[np.ndarray, np.ndarray]:
     best = np.full(len(points), np.inf)
     face, coordinates = np.zeros(len(points), np.int64), np.zeros((len(points), 3))
-    candidates = _candidates(points, surface)
+    candidates = nearby.candidates(points)
     for tried, new in zip(candidates.T, _first_of_each(candidates).T, strict=True):
         rows = np.flatnonzero(new)
-        corners = surface.corners[tried[rows]]
+        corners = nearby.surface.corners[tried[rows]]
         found = closest_point_coordinates(points[rows], corners)
         distance = _squared_distance(points[rows], corners, found)
         better = distance < best[rows]
@@ -105,17 +126,6 @@ def _first_of_each(rows: np.ndarray) -> np.ndarray:
     first = np.ones(rows.shape, bool)
     np.put_along_axis(first, order[:, 1:], ranked[:, 1:] != ranked[:, :-1], axis=1)
     return first
-
-
-def _candidates(points: np.ndarray, surface: Surface) -> np.ndarray:
-    """Faces (n, m) to try for each point, some more than once."""
-    count = min(_NEAR_FACES, len(surface.triangles))
-    faces = cKDTree(surface.corners.mean(axis=1)).query(points, k=count)[1].reshape(-1, count)
-    used = np.unique(surface.triangles)
-    near = min(_NEAR_VERTICES, len(used))
-    vertices = used[cKDTree(surface.vertices[used]).query(points, k=near)[1].reshape(-1, near)]
-    around = [places // 3 for k in range(near) for places in _places_around(vertices[:, k], surface).T]
-    return np.stack([*faces.T, *around], axis=1)
 
 
 def closest_point_coordinates(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
