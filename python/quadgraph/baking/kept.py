@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import fcntl
 import hashlib
 import os
@@ -20,6 +21,7 @@ from quadgraph.base.version import __version__
 from quadgraph.mesh import gltf_file
 
 MOST_BYTES = 4_000_000_000  # of all bodies; the longest unused go first
+_TRIES = 100  # to lock a folder that others remove
 _ROOMS = ("base", "mesh", "tets", "file", "baking")  # what a bake is made by
 
 
@@ -46,7 +48,6 @@ def body(mesh: Path, options: BakeOptions, tell: ProgressCallback) -> Iterator[P
     """
     place = _place(mesh, options)
     try:
-        place.mkdir(parents=True, exist_ok=True)
         with _turn(place, mesh.name, tell):
             path = _kept(mesh, place / f"{mesh.stem}.qgraph", options, tell)
     except OSError as error:
@@ -132,22 +133,32 @@ def _turn(place: Path, name: str, tell: ProgressCallback) -> Iterator[None]:
         except BlockingIOError:
             tell(f"another program is baking {name}; waiting for it")
             stack.enter_context(_locked(place))
-        place.mkdir(exist_ok=True)  # who had it may have failed there, and cleaned up
         yield
 
 
 @contextmanager
 def _locked(place: Path, how: int = 0) -> Iterator[None]:
-    """Hold the lock of a folder, which is removed if it is empty then. The lock ends with the process in any case."""
-    handle = os.open(place, os.O_RDONLY | os.O_DIRECTORY)
+    """Hold the lock of a folder, which is made, and removed if it is empty then. The lock ends with the process."""
+    handle = _lock(place, how)
     try:
-        fcntl.flock(handle, fcntl.LOCK_EX | how)
-        try:
-            yield
-        finally:
-            _remove_empty(place)
+        yield
     finally:
+        _remove_empty(place)
         os.close(handle)
+
+
+def _lock(place: Path, how: int) -> int:
+    """Open a folder and lock it: the one of that name, as who has the lock may remove it while others wait for it."""
+    for _ in range(_TRIES):
+        with suppress(FileNotFoundError), ExitStack() as opened:
+            place.mkdir(parents=True, exist_ok=True)
+            handle = os.open(place, os.O_RDONLY | os.O_DIRECTORY)
+            opened.callback(os.close, handle)
+            fcntl.flock(handle, fcntl.LOCK_EX | how)
+            if os.path.samestat(os.fstat(handle), place.stat()):
+                opened.pop_all()
+                return handle
+    raise OSError(errno.EBUSY, "cannot be made, or is removed again and again", str(place))
 
 
 def _key(mesh: Path, options: BakeOptions) -> str:

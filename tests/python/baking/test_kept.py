@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
@@ -106,6 +107,25 @@ def test_programs_that_ask_at_once_bake_once(mesh, cache):
     assert [program.returncode for program in programs] == [0, 0, 0]
     assert sum("baked ball.obj" in text for text in said) == 1
     assert len({text.splitlines()[-1] for text in said}) == 1
+
+
+def test_a_body_is_kept_where_the_folder_goes_as_it_is_waited_for(mesh, cache):
+    """Another program that was stopped removes the folder of its bake, after this one has said that it waits."""
+    place = kept._place(mesh, BakeOptions(**QUICK))
+    with ExitStack() as other:
+        other.enter_context(kept._locked(place))
+        told: list[str] = []
+
+        def tell(text: str) -> None:
+            told.append(text)
+            if text.startswith("another program is baking"):
+                other.close()
+                assert not place.exists()
+
+        with kept.body(mesh, BakeOptions(**QUICK), tell) as path:
+            assert path.parent == place
+        assert told[0].startswith("another program is baking")
+    assert path.exists()
 
 
 def test_what_is_being_baked_is_neither_cleared_nor_trimmed(mesh, monkeypatch):
