@@ -37,10 +37,15 @@ def twin(tmp_path_factory) -> Path:
 def state(points: int = 4) -> FitState:
     random = np.random.default_rng(1)
     shapes = {"start": (2, 3), "gains": (4, 3), "logs": (2, points, 3), "told": (2, points, 3), "chi_squared": (2, 3)}
-    shapes |= {"in_tiles": (3,), "local": (3,)}
+    shapes |= {"in_tiles": (3,), "local": (3,), "factors": (5, 3)}
     arrays = {name: random.uniform(size=shape) for name, shape in shapes.items()}
     return FitState(
-        **arrays, smoothing=np.array(2.0), enough=np.array(False), outer=np.array(1), smoothings=np.array([3.0, 2.0])
+        **arrays,
+        smoothing=np.array(2.0),
+        enough=np.array(False),
+        outer=np.array(1),
+        smoothings=np.array([3.0, 2.0]),
+        draw=np.array(1),
     )
 
 

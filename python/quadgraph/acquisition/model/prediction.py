@@ -22,6 +22,7 @@ _DIM = 0.2  # of the 95th percentile of what is seen: below, the estimate of the
 _STAGES = 16  # engines at most
 # What a capture leaves open: one model for all coefficients, and solves whose differences are derivatives.
 _SOLVER = {"model": "sp3", "tolerance": 1e-4}
+_AS_USUAL: Mapping[str, Any] = {}
 PLACES = ("position", "centre")  # of lights
 _ANY = np.ones((2, 3))  # coefficients where lights alone matter, 1/mm
 _TOLERANCE = 1e-7  # of the solves of derivatives
@@ -94,12 +95,17 @@ class Predictor:
         return np.array([vertices.min(axis=0), vertices.max(axis=0)])
 
     def predict(
-        self, coefficients: np.ndarray | Path, corrected: bool, tell: Callable[[], None] = lambda: None
+        self,
+        coefficients: np.ndarray | Path,
+        corrected: bool,
+        tell: Callable[[], None] = lambda: None,
+        solver: Mapping[str, Any] = _AS_USUAL,
     ) -> list[Predicted]:
         """One picture a photograph.
 
         coefficients: (2, 3), sigma_a and sigma_s_prime in 1/mm of red, green, blue, or the file of a volume; corrected:
-        by sweeps of the transport equation; tell: is called after each solve. Raises InputError, SolverError.
+        by sweeps of the transport equation; tell: is called after each solve; solver: further options of it, as scenes
+        have them. Raises InputError, SolverError.
         """
         found: dict[tuple[tuple[str, ...], str], Predicted] = {}
         self.notes = []
@@ -107,7 +113,7 @@ class Predictor:
             stage = self._stages[number % len(self._stages)]
             report: dict[str, Any] | None = None
             for camera in cameras:
-                stage.show(self._scene(coefficients, corrected, lights, camera))
+                stage.show(self._scene(coefficients, corrected, lights, camera, solver))
                 if report is None:
                     report = stage.solve()
                     self._lit[number % len(self._stages)] = self._capture, lights
@@ -151,7 +157,12 @@ class Predictor:
         return forward_model(stage.engine, level, (scattering, absorption, None), views, model, None, _TOLERANCE)
 
     def _scene(
-        self, coefficients: np.ndarray | Path, corrected: bool, lights: tuple[str, ...], camera: str
+        self,
+        coefficients: np.ndarray | Path,
+        corrected: bool,
+        lights: tuple[str, ...],
+        camera: str,
+        solver: Mapping[str, Any] = _AS_USUAL,
     ) -> core.Scene:
         capture = self._capture
         width, height = capture.sizes[camera]
@@ -161,7 +172,7 @@ class Predictor:
             "lights": [capture.lights[name] for name in lights],
             "deformation": capture.deformation,
             "camera": capture.cameras[camera],
-            "solver": _SOLVER | capture.solver | {"correction": corrected},
+            "solver": {**_SOLVER, **solver, **capture.solver, "correction": corrected},
             "picture": {"width": width, "height": height},
         }
         return core.scene_file(json.dumps(document)).at(0)

@@ -27,6 +27,8 @@ _SHAPES: dict[str, tuple[int | str, ...]] = {
     "chi_squared": ("steps", 3),
     "in_tiles": (3,),
     "local": (3,),
+    "factors": ("squares", 3),
+    "draw": (),
 }
 
 
@@ -36,7 +38,8 @@ class FitState:
     told (2, n, 3): logarithms of the coefficients at the grid's points, and how much the photographs tell of each;
     smoothing: the last step's; enough (): 1 where less would explain little more; outer (): how many outer steps were
     made; smoothings (k,) and chi_squared (k, 3): of the steps so far; in_tiles and local (3,): sizes of the engine's
-    error, as the weights have them.
+    error, as the weights have them; factors (m, 3) and draw (): what the engine's pictures are over the model, by
+    square, and the last draw that is in them.
     """
 
     start: np.ndarray
@@ -50,6 +53,8 @@ class FitState:
     chi_squared: np.ndarray
     in_tiles: np.ndarray
     local: np.ndarray
+    factors: np.ndarray
+    draw: np.ndarray
 
 
 class StateFolder:

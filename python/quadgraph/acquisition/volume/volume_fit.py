@@ -106,18 +106,15 @@ def fit_volume(
             f"{len(setting.data)} squares of {side} x {side} pixels on level {setting.level}"
         )
         kept = start if isinstance(start, FitState) else None
-        if kept and kept.logs.shape[1] != grid.count:
-            raise InputError(
-                f"--resume: a state of {kept.logs.shape[1]} points found, {grid.count} are wanted; remove it to begin "
-                "anew, or name another folder"
-            )
+        if kept:
+            _check(kept, setting)
         first, gains = (start.start, start.gains) if isinstance(start, FitState) else start
         if options.scheme == PUBLISHED:
             return _published(setting, first, tell)
         logs = kept.logs if kept else np.log(np.repeat(first[:, None, :], grid.count, axis=1))
-        found = setting.predicted(logs, np.array(gains), corrected)
+        found = setting.predicted(logs, np.array(gains), corrected, int(kept.draw) if kept else 0)
         if kept:
-            found = found.sized(Sizes(kept.in_tiles, kept.local))
+            found = found.of_factors(setting.split(kept.factors)).sized(Sizes(kept.in_tiles, kept.local))
         tell(f"{'resumed' if kept else 'start'}: chi^2 per square {_text(found.chi_squared)}")
         fit = _Fit(found, tell, kept, options.scheme != H1)
         for outer in range(int(kept.outer) if kept else 0, OUTER):
@@ -136,6 +133,16 @@ def fit_volume(
         tell("standard deviations")
         known = posterior.known(found.told, fit.matrices(found.logs), found.logs.shape)
         return _result(found, fit.steps, known)
+
+
+def _check(kept: FitState, setting: VolumeSetting) -> None:
+    """Raise InputError for a state of other points or squares."""
+    found, wanted = (kept.logs.shape[1], len(kept.factors)), (setting.grid.count, len(setting.data))
+    if found != wanted:
+        raise InputError(
+            "--resume: a state of {} points and {} squares found, {} and {} are wanted; remove it to begin anew, or "
+            "name another folder".format(*found, *wanted)
+        )
 
 
 def _published(setting: VolumeSetting, start: np.ndarray, tell: ProgressCallback) -> VolumeFit:
@@ -216,6 +223,8 @@ class _Fit:
             np.array([step.smoothing for step in self.steps]),
             np.array([step.chi_squared for step in self.steps]),
             *found.weights.sizes,
+            np.concatenate(found.factors),
+            np.array(found.draw),
         )
 
     def reweigh(self, factor: float) -> None:

@@ -22,6 +22,7 @@ from quadgraph.base.errors import InputError
 LARGEST_LEVEL = 40_000  # tets of the level that derivatives are taken on, if there is one of so few
 MOST_SQUARES = 40_000
 MOST_POINTS = 6000  # of the grid: deviations are found with dense matrices
+SWEEP_POINTS = 80_000  # of the correction: with fewer its noise is what limits the contrasts that are found
 _USUAL_POINTS = 2000  # at most, where no spacing is stated: with more the photographs of a body part less well
 
 
@@ -59,14 +60,17 @@ class VolumeSetting:
         self.data = np.concatenate([squares.of(one.values) for squares, one in pairs])
 
     def predicted(
-        self, logs: np.ndarray, gains: np.ndarray, corrected: bool, model: Linearised | None = None
+        self, logs: np.ndarray, gains: np.ndarray, corrected: bool, draw: int = 0, model: Linearised | None = None
     ) -> Around:
         """Predictions by the engine's own pictures around logarithms (2, n, 3) of sigma_a and sigma_s_prime, and gains
-        (p, 3). model: the one around the same, if there is one. Raises SolverError, InputError.
+        (p, 3). draw: of what their correction draws by chance; model: the one around the same, if there is one. Raises
+        SolverError, InputError.
         """
         path = next(self._paths)
         self.grid.material(np.exp(logs), self.problem.capture.eta).save(path)
-        pictures = self.predictor.predict(path, corrected, self.advance)
+        pictures = self.predictor.predict(
+            path, corrected, self.advance, {"sweep_points": SWEEP_POINTS, "sweep_seed": draw}
+        )
         model = model or self.linearised(logs)
         factors = [
             np.divide(squares.of(picture.radiance), other, out=np.zeros_like(other), where=other > 0)
@@ -76,7 +80,7 @@ class VolumeSetting:
             scale * radiance for scale, radiance in zip(self.scales(factors, gains), model.radiances, strict=True)
         ]
         weights = Weights(self.problem, self.samples, pictures, expected)
-        return Around(self, logs, gains, pictures, factors, weights, model)
+        return Around(self, logs, gains, pictures, factors, draw, weights, model)
 
     def linearised(self, logs: np.ndarray) -> Linearised:
         """The model of the level around logarithms."""
@@ -101,7 +105,7 @@ class VolumeSetting:
 @dataclass(frozen=True, eq=False)
 class Around:
     """Predictions around a volume. factors: what the engine's pictures were over the model when they were made, by
-    square; weights: what residuals count.
+    square; draw: of their correction, the last if they are means; weights: what residuals count.
     """
 
     setting: VolumeSetting
@@ -109,13 +113,14 @@ class Around:
     gains: np.ndarray
     pictures: list[Predicted]
     factors: Channels
+    draw: int
     weights: Weights
     model: Linearised
 
     def moved(self, logs: np.ndarray, gains: np.ndarray) -> Around:
         """The same factors and weights around another volume. Raises SolverError."""
         model = self.setting.linearised(logs)
-        return Around(self.setting, logs, gains, self.pictures, self.factors, self.weights, model)
+        return Around(self.setting, logs, gains, self.pictures, self.factors, self.draw, self.weights, model)
 
     def _values(self, radiances: Channels) -> np.ndarray:
         """(m, 3) of all squares."""
@@ -125,9 +130,20 @@ class Around:
     def renewed(self, corrected: bool) -> Around:
         """The same volume with factors and weights of the engine's own pictures of it, whose error is taken to be of
         the size that the residuals speak for. Raises SolverError.
+
+        Factors of corrections are means over all draws but the first, which is of coefficients that are the same
+        throughout: they change little with the volume, and by chance.
         """
-        found = self.setting.predicted(self.logs, self.gains, corrected, self.model)
+        found = self.setting.predicted(self.logs, self.gains, corrected, self.draw + 1, self.model)
+        if corrected and self.draw:
+            found = found.of_factors(
+                [old + (new - old) / found.draw for old, new in zip(self.factors, found.factors, strict=True)]
+            )
         return found.sized(found.weights.estimated(found.residual, self.weights.sizes))
+
+    def of_factors(self, factors: Channels) -> Around:
+        """The same with other factors."""
+        return replace(self, factors=factors)
 
     def sized(self, sizes: Sizes) -> Around:
         """The same with the engine's error of these sizes."""

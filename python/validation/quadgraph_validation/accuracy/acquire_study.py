@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import json
 import tempfile
-from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +26,7 @@ from quadgraph.acquisition.recovery import Recovered, recover
 from quadgraph.api.materials import Material
 from quadgraph.baking.pipeline import BakeOptions, bake
 from quadgraph.mesh.surface import Surface
+from quadgraph_validation.accuracy.kept_rows import KeptRows, Row
 from quadgraph_validation.bodies import unseen_bodies
 from quadgraph_validation.truth import photographed
 
@@ -53,16 +54,17 @@ class AcquireRun:
     device: str = ""
 
 
-def run(wanted: AcquireRun, tell: Callable[[str], None] = lambda text: None) -> dict[str, Any]:
-    """Recover all. Raises what bakes, walks and recoveries raise."""
-    rows = []
-    cases = [(name, number, Material.parse(name)) for number, name in enumerate(measured())]
+def run(wanted: AcquireRun, kept: KeptRows | None = None) -> dict[str, Any]:
+    """Recover all, or what is not kept. Raises what bakes, walks and recoveries raise."""
+    bodies = [(name, number, Material.parse(name)) for number, name in enumerate(measured())]
     seeds = range(wanted.seed, wanted.seed + wanted.count)
-    cases += [(f"seed {seed}", 1000 + seed, drawn(seed)) for seed in seeds]
-    for name, number, material in cases:
-        tell(name)
-        with tempfile.TemporaryDirectory(prefix="quadgraph-acquire-") as folder:
-            rows.append({"name": name} | _row(number, material, wanted, Path(folder)))
+    bodies += [(f"seed {seed}", 1000 + seed, drawn(seed)) for seed in seeds]
+    cases = ((name, partial(_row, number, material, wanted)) for name, number, material in bodies)
+    return record_of(wanted, (kept or KeptRows()).complete(cases))
+
+
+def record_of(wanted: AcquireRun, rows: list[Row]) -> dict[str, Any]:
+    """What a run found."""
     return {"seed": wanted.seed, "walks": wanted.walks, "rows": rows, "summary": summary(rows)}
 
 
@@ -99,7 +101,12 @@ def body(seed: int) -> Surface:
     return Surface(vertices * LENGTH / np.ptp(vertices, axis=0).max(), np.asarray(ball.faces)).rounded()
 
 
-def _row(seed: int, material: Material, wanted: AcquireRun, folder: Path) -> dict[str, Any]:
+def _row(seed: int, material: Material, wanted: AcquireRun) -> Row:
+    with tempfile.TemporaryDirectory(prefix="quadgraph-acquire-") as folder:
+        return _recovered(seed, material, wanted, Path(folder))
+
+
+def _recovered(seed: int, material: Material, wanted: AcquireRun, folder: Path) -> Row:
     unseen_bodies.write(folder / "body.ply", body(seed))
     bake(folder / "body.ply", folder / "body.qgraph", bake_options(material))
     (folder / "scene.json").write_text(json.dumps(_scene(material)))
@@ -107,7 +114,7 @@ def _row(seed: int, material: Material, wanted: AcquireRun, folder: Path) -> dic
     options = photographed.PhotographOptions(walks=wanted.walks, seed=seed + 1)
     cameras = photographed.views(found, options)
     radiances = photographed.by_walks(found, cameras, options, lambda share: None)
-    row: dict[str, Any] = {"true": [_three(material.sigma_a), _three(material.sigma_s_prime)], "eta": material.eta}
+    row: Row = {"true": [_three(material.sigma_a), _three(material.sigma_s_prime)], "eta": material.eta}
     for kind, gains in (("known", 0.0), ("unknown", GAINS)):
         options = photographed.PhotographOptions(walks=wanted.walks, seed=seed + 1, gains=gains)
         photographed.write(folder / f"{kind}.json", found, cameras, photographed.taken(radiances, options), {})
@@ -153,7 +160,7 @@ def _found(recovered: Recovered) -> dict[str, Any]:
     }
 
 
-def off(row: dict[str, Any], kind: str) -> tuple[np.ndarray, np.ndarray]:
+def off(row: Row, kind: str) -> tuple[np.ndarray, np.ndarray]:
     """(2, 3) by how much sigma_a and sigma_s_prime are off, relative and in standard deviations of their logarithms;
     where the true one is 0, relative to sigma_s_prime and 0.
     """
@@ -165,7 +172,7 @@ def off(row: dict[str, Any], kind: str) -> tuple[np.ndarray, np.ndarray]:
     return relative, logs / np.maximum(row[kind]["deviations"], 1e-300)
 
 
-def summary(rows: list[dict[str, Any]]) -> dict[str, Any]:
+def summary(rows: list[Row]) -> dict[str, Any]:
     """Of all channels of all rows, by kind of gains: the share within the goals, and within two deviations."""
     result: dict[str, Any] = {}
     for kind in ("known", "unknown"):

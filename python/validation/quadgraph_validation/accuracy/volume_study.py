@@ -12,8 +12,9 @@ from __future__ import annotations
 import json
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -26,9 +27,10 @@ from quadgraph.acquisition.model.prediction import NAMES
 from quadgraph.acquisition.recovery import recover
 from quadgraph.acquisition.volume.volume_fit import VolumeFit
 from quadgraph.acquisition.volume.volume_options import SCHEMES, VolumeOptions
-from quadgraph.api.materials import VolumeMaterial
+from quadgraph.api.materials import Material, VolumeMaterial
 from quadgraph.baking.pipeline import BakeOptions, bake
 from quadgraph.mesh.surface import Surface
+from quadgraph_validation.accuracy.kept_rows import KeptRows, Row
 from quadgraph_validation.bodies import unseen_bodies
 from quadgraph_validation.truth import photographed
 
@@ -38,7 +40,7 @@ ETA = 1.4
 DEPTHS = (2.5, 3.0, 3.5, 4.0)  # mm, of the balls' middles below the front
 NOISE = 0.003  # of a white pixel
 GAINS = 0.2  # by how much unknown gains are off
-_COARSE, _FINE = 1.5, 2.0  # faces a mm along an edge: of the mesh that is fitted on, and of the photographed one
+_COARSE, _FINE = 2.0, 3.0  # faces a mm along an edge: of the mesh that is fitted on, and of the photographed one
 _PATCHES = 4  # a side, each lit by a spot of its own
 _SPOT = {"angle": 5.0, "edge": 1.0, "power": 100.0}
 _SPOT_DISTANCE, _CAMERA_DISTANCE = 40.0, 60.0  # mm, from the front; from the middle
@@ -95,18 +97,32 @@ def drawn(seed: int) -> Block:
     return Block(f"draw {seed}", balls[0], balls[1], seed=1000 + seed)
 
 
-def run(wanted: VolumeRun, tell: Callable[[str], None] = lambda text: None) -> dict[str, Any]:
-    """Recover all. Raises what bakes, photographs and recoveries raise."""
+def run(wanted: VolumeRun, kept: KeptRows | None = None) -> dict[str, Any]:
+    """Recover all, or what is not kept. Raises what bakes, photographs and recoveries raise."""
     with tempfile.TemporaryDirectory(prefix="quadgraph-volume-") as name:
         folder = Path(name)
         for mesh, per_mm in (("body", _COARSE), ("finer", _FINE)):
             unseen_bodies.write(folder / f"{mesh}.ply", block(per_mm))
-            bake(folder / f"{mesh}.ply", folder / f"{mesh}.qgraph", BakeOptions(unit="mm"))
-        rows = []
-        for case, scheme in _cases(wanted):
-            tell(f"{case.name}, {scheme}")
-            rows.append({"name": case.name, "scheme": scheme} | _row(case, scheme, folder, wanted.device))
+            bake(folder / f"{mesh}.ply", folder / f"{mesh}.qgraph", bake_options())
+        cases = (
+            (_name(case, scheme), partial(_row, case, scheme, folder, wanted.device)) for case, scheme in _cases(wanted)
+        )
+        return record_of(wanted, (kept or KeptRows()).complete(cases))
+
+
+def record_of(wanted: VolumeRun, rows: list[Row]) -> dict[str, Any]:
+    """What a run found."""
     return {"seed": wanted.seed, "rows": rows, "within_two_deviations": _within(rows)}
+
+
+def bake_options() -> BakeOptions:
+    """Tets sized for the block's material."""
+    material = Material(tuple(SCATTERING.tolist()), tuple(ABSORPTION.tolist()), ETA)
+    return BakeOptions(unit="mm", for_materials=(material.text,))
+
+
+def _name(case: Block, scheme: str) -> str:
+    return case.name if scheme == SCHEMES[0] else f"{case.name}, {scheme}"
 
 
 def _cases(wanted: VolumeRun) -> Iterator[tuple[Block, str]]:
@@ -162,7 +178,7 @@ def scene() -> dict[str, Any]:
         for y in places
         for x in places
     ]
-    return {"quadgraph_scene": 1, "body": "body.qgraph", "material": "truth.npz", "lights": spots}
+    return {"quadgraph_scene": 1, "body": "../body.qgraph", "material": "truth.npz", "lights": spots}
 
 
 def cameras() -> dict[str, dict[str, Any]]:
@@ -172,31 +188,40 @@ def cameras() -> dict[str, dict[str, Any]]:
     return {name: {"eye": [0, 0, side * _CAMERA_DISTANCE]} | common for name, side in (("front", 1), ("back", -1))}
 
 
-def _row(case: Block, scheme: str, folder: Path, device: str) -> dict[str, Any]:
-    box = np.stack([-SIDES, SIDES]) * 0.55
-    material = VolumeMaterial.from_function(lambda points: truth(case, points), box, 0.25, ETA)
-    material.save(folder / "truth.npz")
-    (folder / "scene.json").write_text(json.dumps(scene()))
-    found = photographed.subject(folder / "scene.json")
-    options = photographed.PhotographOptions(noise=NOISE, seed=case.seed, gains=case.gains)
-    radiances = photographed.by_engine(found, cameras(), folder / "finer.qgraph", device, lambda share: None)
-    photographed.write(folder / "capture.json", found, cameras(), photographed.taken(radiances, options), {})
+def _row(case: Block, scheme: str, folder: Path, device: str) -> Row:
+    taken = folder / case.name
+    if not taken.exists():
+        taken.mkdir()
+        _photograph(case, folder, taken, device)
     begun = time.process_time()
     quiet = (lambda text: None), (lambda share: None)
-    recovered = recover(capture.read(folder / "capture.json"), True, VolumeOptions(scheme=scheme), *quiet, device)
+    recovered = recover(capture.read(taken / "capture.json"), True, VolumeOptions(scheme=scheme), *quiet, device)
     seconds = time.process_time() - begun
-    recovered.material.save(folder / "found.npz")
+    recovered.material.save(taken / "found.npz")
     assert isinstance(recovered.fit, VolumeFit)
     return {
+        "scheme": scheme,
         **judged(case, recovered.fit),
-        "relighting": _relit(folder, device),
+        "relighting": _relit(folder / "body.qgraph", taken, device),
         "chi_squared": recovered.fit.chi_squared.tolist(),
         "points": recovered.fit.grid.count,
         "seconds": seconds,
     }
 
 
-def judged(case: Block, fit: VolumeFit) -> dict[str, Any]:
+def _photograph(case: Block, folder: Path, taken: Path, device: str) -> None:
+    """Write a capture of a block, and what is in it."""
+    box = np.stack([-SIDES, SIDES]) * 0.55
+    material = VolumeMaterial.from_function(lambda points: truth(case, points), box, 0.25, ETA)
+    material.save(taken / "truth.npz")
+    (taken / "scene.json").write_text(json.dumps(scene()))
+    found = photographed.subject(taken / "scene.json")
+    options = photographed.PhotographOptions(noise=NOISE, seed=case.seed, gains=case.gains)
+    radiances = photographed.by_engine(found, cameras(), folder / "finer.qgraph", device, lambda share: None)
+    photographed.write(taken / "capture.json", found, cameras(), photographed.taken(radiances, options), {})
+
+
+def judged(case: Block, fit: VolumeFit) -> Row:
     """Of sigma_a and sigma_s_prime, by channel: bias and RMS beside the balls, relative; contrast of the own ball,
     found over true; what is seen in the other ball, over the block; and the share within two deviations, if stated.
     """
@@ -226,12 +251,12 @@ def judged(case: Block, fit: VolumeFit) -> dict[str, Any]:
     return result
 
 
-def _relit(folder: Path, device: str) -> float:
+def _relit(body: Path, taken: Path, device: str) -> float:
     """RMS between pictures of the found and of the true material under a light of no photograph, relative."""
     pictures = []
     for name in ("truth.npz", "found.npz"):
         stage = core.Stage(device)
-        document: dict[str, Any] = {"body": str(folder / "body.qgraph"), "material": str(folder / name)}
+        document: dict[str, Any] = {"body": str(body), "material": str(taken / name)}
         document |= {"lights": [_OTHER_LIGHT], "camera": _OTHER_CAMERA, "picture": {"width": 96, "height": 96}}
         stage.show(core.scene_file(json.dumps(document)).at(0))
         stage.solve()
@@ -239,7 +264,7 @@ def _relit(folder: Path, device: str) -> float:
     return float(np.sqrt(((pictures[1] - pictures[0]) ** 2).mean() / (pictures[0] ** 2).mean()))
 
 
-def _within(rows: Sequence[dict[str, Any]]) -> dict[str, float]:
+def _within(rows: Sequence[Row]) -> dict[str, float]:
     """Of all draws, the share of places within two deviations."""
     draws = [row for row in rows if row["name"].startswith("draw")]
     if not draws:
@@ -250,7 +275,7 @@ def _within(rows: Sequence[dict[str, Any]]) -> dict[str, float]:
 def tables(record: dict[str, Any]) -> list[Table]:
     """A row a block and scheme, red/green/blue."""
     table = Table(title="a block with two balls: sigma_a | sigma_s', red/green/blue")
-    heads = ("block", "scheme", "bias, %", "RMS, %", "contrast, of 1", "other ball, %", "within 2 deviations, %")
+    heads = ("block", "bias, %", "RMS, %", "contrast, of 1", "other ball, %", "within 2 deviations, %")
     for head in (*heads, "relighting, %", "CPU s"):
         table.add_column(head)
     for row in record["rows"]:
@@ -261,7 +286,6 @@ def tables(record: dict[str, Any]) -> list[Table]:
         ]
         table.add_row(
             row["name"],
-            row["scheme"],
             *cells,
             " | ".join(shares),
             f"{100 * row['relighting']:.2f}",

@@ -6,6 +6,7 @@ import argparse
 import importlib
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 from rich.console import Console
 
@@ -14,6 +15,7 @@ from quadgraph.base.arguments import positive_int
 from quadgraph.base.cache_folder import cache_folder
 from quadgraph.base.errors import InputError
 from quadgraph.core import load_core
+from quadgraph_validation.accuracy import kept_rows
 from quadgraph_validation.base.machine import commit
 from quadgraph_validation.base.study_folders import COMMITTED_TRUTH, add_meshes_argument
 
@@ -61,12 +63,15 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument("study", choices=STUDIES, metavar="STUDY", help=", ".join(STUDIES))
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the record here")
     parser.add_argument(
+        "--resume", action="store_true", help="acquire, volume: go on with the record of --json, body by body"
+    )
+    parser.add_argument(
         "--reference", action="store_true", help="solve with the CPU reference in double precision instead of the GPU"
     )
     parser.add_argument(
         "--device", default="", metavar="NAME", help="cpu, or part of a Vulkan device's name; default: a GPU, else cpu"
     )
-    _add_bodies_options(parser.add_argument_group("scenes, estimate, target, budget"))
+    _add_bodies_options(parser.add_argument_group("scenes, estimate, target, budget; acquire and volume take --scene"))
     _add_scenes_options(parser.add_argument_group("scenes, unseen"))
     _add_unseen_options(
         parser.add_argument_group("unseen; light and volume take --seed and --count, acquire --walks too")
@@ -144,8 +149,12 @@ def run(args: argparse.Namespace) -> int:
     for table in study.tables(record):
         console.print(table)
     if args.json:
-        atomic_file.write_json(args.json, {"study": args.study, "commit": commit()} | record)
+        _write(args, record)
     return 0
+
+
+def _write(args: argparse.Namespace, record: dict) -> None:
+    atomic_file.write_json(args.json, {"study": args.study, "commit": commit()} | record)
 
 
 def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
@@ -155,13 +164,10 @@ def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
         with Console(stderr=True).status("study: light"):
             return study.run(study.LightRun(args.seed, args.count, args.device))
     if args.study == "acquire":
-        with Console(stderr=True).status("study: acquire") as status:
-            wanted_acquire = study.AcquireRun(args.seed, args.count, args.walks or _ACQUIRE_WALKS, args.device)
-            return study.run(wanted_acquire, lambda name: status.update(f"study: acquire, {name}"))
+        walks = args.walks or _ACQUIRE_WALKS
+        return _run_by_rows(study, args, study.AcquireRun(args.seed, args.count, walks, args.device), walks=walks)
     if args.study == "volume":
-        with Console(stderr=True).status("study: volume") as status:
-            wanted_volume = study.VolumeRun(args.seed, args.count, device=args.device)
-            return study.run(wanted_volume, lambda name: status.update(f"study: volume, {name}"))
+        return _run_by_rows(study, args, study.VolumeRun(args.seed, args.count, device=args.device))
     if args.study == "unseen":
         truths, sweeps = args.truth or cache_folder(), args.sweeps or (None,)
         wanted = study.UnseenRun(
@@ -183,3 +189,18 @@ def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
         return record
     with Console(stderr=True).status(f"study: {args.study}"):
         return study.run(args.device, args.meshes, args.scene)
+
+
+def _run_by_rows(study: ModuleType, args: argparse.Namespace, wanted: Any, **same: Any) -> dict:
+    """Run a study whose record is written row by row. same: what a record has to have to be gone on with."""
+    if args.resume and not args.json:
+        raise InputError("--resume: found without --json, which names the record that is gone on with")
+
+    def write(rows: list[kept_rows.Row]) -> None:
+        if args.json:
+            _write(args, study.record_of(wanted, rows))
+
+    with Console(stderr=True).status(f"study: {args.study}") as status:
+        rows = kept_rows.read(args.json, args.study, seed=args.seed, **same) if args.resume else []
+        kept = kept_rows.KeptRows(args.scene, rows, write, lambda name: status.update(f"study: {args.study}, {name}"))
+        return study.run(wanted, kept)

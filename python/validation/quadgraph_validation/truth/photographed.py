@@ -22,6 +22,7 @@ from quadgraph_validation.truth.known_material import KnownMaterial
 WHITE = 0.8  # value of the brightest pixel of a photograph: its exposure sees to that
 SATURATION = 1.0
 _MARGIN = 1.08  # of a view's distance over that from which the body fits
+SWEEP_POINTS = 160_000  # of the engine's correction, whose noise would be another of the camera's
 _READ_OUT = 0.2  # of the noise of a white pixel
 
 
@@ -149,6 +150,7 @@ def by_engine(
             around = {each: camera[each] for each in ("eye", "look_at", "up", "fov")}
             size = {each: camera[each] for each in ("width", "height")}
             scene |= {"body": str(body.absolute()), "lights": [stated], "camera": around, "picture": size}
+            scene["solver"] = {"sweep_points": SWEEP_POINTS}
             stage.show(core.scene_file(json.dumps(scene)).at(0))
             if not solved:
                 stage.solve()
