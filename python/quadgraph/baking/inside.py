@@ -73,8 +73,8 @@ class LevelSizes:
     ) -> tuple[TetMesh, float | None, list[str]]:
         """Make the tets of a level; with them the largest edge inside, mm, None for any, and notes for the report.
 
-        Coarser levels wait for the finest to settle. Raises ToolError where sizes that were asked for cannot be had;
-        where nobody did, the tets are those that the surface makes.
+        Coarser levels wait for the finest to settle. Raises ToolError where the finest cannot have the sizes that were
+        asked for; where nobody did, and on coarser levels, the tets are those that the surface makes then.
         """
         if self._finest is None:
             return make(None), None, []
@@ -83,7 +83,7 @@ class LevelSizes:
             mesh = make(limits)
             return mesh, limits.interior.edge, self._missed(number, limits, mesh)
         except ToolError as error:
-            if self.rule != AUTO:
+            if number == 0 and self.rule != AUTO:
                 self._give_up(number, error)
                 raise
             return self._without(number, make, str(error))

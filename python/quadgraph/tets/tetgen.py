@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +22,8 @@ from quadgraph.mesh.tet_files import read_tets, write_smesh, write_volumes
 
 OPTIONS = "-pYq1.4/0"  # piecewise linear complex, surface kept, radius-edge ratio 1.4, no dihedral bound
 REFINE = "-rYq1.4/0a"  # the same on tets that are there, with the volumes of a .vol file
-_LEAST_REFINING_S, _MOST_REFINING = 20, 30  # s, and times what filling took: where it goes on for longer it has no end
+REFINE_LOOSELY = "-rYq2/0a"  # where that has no end, as between flat parts of a surface that stays
+_LEAST_REFINING_S, _MOST_REFINING = 10, 30  # s, and times what filling took: where it goes on for longer it has no end
 _PASSES = 3  # a limit holds for what becomes of a tet, so that large ones are asked for again
 
 
@@ -57,10 +58,14 @@ def fill(
             if volumes is None:
                 break
             write_volumes(volumes, directory / f"surface.{number}.vol")
-            vertices, tets = made(
-                directory, [REFINE, f"surface.{number}"], f"surface.{number + 1}", min(time_limit_s, refining)
-            )
-            options = f"{OPTIONS}, {REFINE}"
+            refine = partial(made, directory, stem=f"surface.{number + 1}", seconds=min(time_limit_s, refining))
+            switches = REFINE
+            try:
+                vertices, tets = refine([switches, f"surface.{number}"])
+            except ToolError:
+                switches = REFINE_LOOSELY
+                vertices, tets = refine([switches, f"surface.{number}"])
+            options = f"{OPTIONS}, {switches}"
     if not len(tets):
         raise ToolError("tetgen: made no tetrahedra; the surface is not closed")
     n = len(surface.vertices)

@@ -10,7 +10,7 @@ from quadgraph.baking.light_decay import decay_rates
 from quadgraph.base.errors import InputError, ToolError
 from quadgraph.mesh.subdivide import subdivide
 from quadgraph.mesh.surface import Surface, TetMesh
-from quadgraph.tets import interior
+from quadgraph.tets import interior, tetgen
 from quadgraph.tets.interior import Decay, Depths, Interior, Limits
 from quadgraph.tets.tetrahedralise import tetrahedralise
 from shapes import cube, icosphere, join, moved, torus
@@ -190,5 +190,28 @@ def test_a_level_that_cannot_be_refined_stays_as_it_was_unless_a_size_was_asked_
     mesh, edge, notes = LevelSizes(interior.automatic(BALL)).fill(0, BALL, made)
     assert (len(mesh.tets), edge) == (len(tetrahedralise(BALL).tets), None)
     assert "as the surface makes them: tetgen: no" in notes[0]
+    asked = LevelSizes(Interior("size", (Decay(1.0, 0.0),)))
     with pytest.raises(ToolError, match="no"):
-        LevelSizes(Interior("size", (Decay(1.0, 0.0),))).fill(0, BALL, made)
+        asked.fill(0, BALL, made)
+
+
+def test_a_coarser_level_that_cannot_be_refined_does_not_end_the_chain() -> None:
+    def made(limits: Limits | None) -> TetMesh:
+        if limits is not None and limits.interior.edge > 1.5:
+            raise ToolError("tetgen: no")
+        return tetrahedralise(BALL, limits=limits)
+
+    asked = LevelSizes(Interior("size", (Decay(1.0, 0.0),)))
+    assert asked.fill(0, BALL, made)[1] == 1.0
+    _, edge, notes = asked.fill(1, BALL, made)
+    assert edge is None
+    assert "level 1: tets inside are as the surface makes them" in notes[0]
+
+
+def test_tets_are_refined_less_well_where_that_has_no_end_otherwise(monkeypatch) -> None:
+    monkeypatch.setattr(tetgen, "REFINE", "-rYq.3/0a")
+    monkeypatch.setattr(tetgen, "_LEAST_REFINING_S", 0.1)
+    monkeypatch.setattr(tetgen, "_MOST_REFINING", 0)
+    mesh = filled(subdivide(cube(8), 2), 2.0)
+    assert mesh.mesher.options == f"{tetgen.OPTIONS}, {tetgen.REFINE_LOOSELY}"
+    assert edges_of(mesh).max() < 2 * SLACK
