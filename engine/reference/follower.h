@@ -180,12 +180,13 @@ class Follower {
     if (!arrival) return {};
     Light light;
     light.entry = scaled(lit.at(arrival->face, arrival->quarter), whole);
+    const double steepest = 1 / *std::max_element(mu.begin(), mu.end());
     for (std::size_t c = 0; c < 3; ++c) {
-      Real left(0);
+      Real left(0);  // of what comes by the steepest way, as that of all may be too little for a number
       for (std::size_t k = 0; k < mu.size(); ++k) {
-        left = left + share[k] / mu[k] * exp(-arrival->depth[c] * (1 / mu[k]));
+        left = left + share[k] / mu[k] * exp(-arrival->depth[c] * (1 / mu[k] - steepest));
       }
-      light.depth[c] = -log(left * (1 / whole));
+      light.depth[c] = arrival->depth[c] * steepest - log(left * (1 / whole));
     }
     return light;
   }
@@ -195,6 +196,9 @@ class Follower {
   const Medium& medium_;
   const FollowedShape& shape_;
 };
+
+// Up to where e to the power of it is a number whose square is one, too.
+constexpr double most_ahead = 300;
 
 // The light of both: entries add up, and so do fluences.
 template <class Real>
@@ -208,9 +212,14 @@ void add(UncollidedLight<Real>& sum, const UncollidedLight<Real>& other) {
       if (value_of(other.depth[c]) < value_of(depth)) depth = other.depth[c];
       continue;
     }
-    const Real fluence = entry * exp(-depth) + other.entry[c] * exp(-other.depth[c]);
+    // Relative to the brighter one, as both may be too little for a number.
+    const double ahead = value_of(other.depth[c]) - value_of(depth);
+    const bool first = value_of(entry) == 0;
+    if (first && ahead > most_ahead) depth = other.depth[c];
+    const Real least = ahead > 0 && !first ? depth : other.depth[c];
+    const Real fluence = entry * exp(-(depth - least)) + other.entry[c] * exp(-(other.depth[c] - least));
     entry = entry + other.entry[c];
-    depth = -log(fluence / entry);
+    depth = least - log(fluence / entry);
   }
 }
 

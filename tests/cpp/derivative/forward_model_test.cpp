@@ -313,6 +313,27 @@ TEST_CASE("a clear tet that begins to scatter or to absorb") {
   CHECK(product(here.adjoint(weights), along) == doctest::Approx(product(weights, slope)).epsilon(1e-10));
 }
 
+TEST_CASE("where less light arrives than a number can be, derivatives are numbers and each other's transpose") {
+  const OwnedLevel owned = box_level(3, 3.0f, 0.2f);
+  const Level level = owned.view();
+  const Lights lights(level);
+  for (const double dense : {800.0, 3000.0}) {
+    Parameters at = jumping(level, 3, 8);
+    for (std::size_t t = 0; t < level.tets.size(); ++t) at.scattering[t] = glm::dvec3(dense, t % 2 == 0 ? dense : 1, 1);
+    const ForwardModel here(level, at, lights.beams, views(level), {.eta = 1.3, .tolerance = 1e-14});
+    Outgoing weights(level.faces.size(), level.faces.size());
+    for (Vectors* values : {&weights.exitance, &weights.unscattered, &weights.radiance}) {
+      values->assign(values->size(), glm::dvec3(1));
+    }
+    const Parameters along = direction(at, 5), gradient = here.adjoint(weights);
+    const Outgoing change = here.tangent(along);
+    const double forward = product(change, weights), back = product(gradient, along);
+    CAPTURE(dense);
+    CHECK(std::isfinite(forward));
+    CHECK(back == doctest::Approx(forward).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("threads that ask one model at a time get what one gets alone") {
   const OwnedLevel owned = seeing();
   const Level level = owned.view();

@@ -10,6 +10,7 @@
 #include "engine/optics/fresnel.h"
 #include "tests/cpp/fixtures/graph_cases.h"
 #include "tests/cpp/fixtures/seeing_levels.h"
+#include "tests/cpp/fixtures/test_data.h"
 
 using namespace quadgraph;
 

@@ -5,6 +5,7 @@
 
 #include "engine/reference/exchange.h"
 #include "tests/cpp/fixtures/exchange_fixtures.h"
+#include "tests/cpp/fixtures/test_data.h"
 
 using namespace quadgraph;
 

@@ -38,6 +38,7 @@ _PROBES = 8  # for how much the photographs tell of each point
 _FLOOR = 0.02  # of the best seen point, what the smoothing of others counts at least
 _THRESHOLD = 0.05  # of a logarithm over the grid's spacing: smaller slopes are no steps
 _FIRST, _LESS = 30.0, 0.4  # smoothing over what is told at first; from step to step, while too little is explained
+_EXPLAINED = 0.6  # chi^2 per square, below which noise is explained, and less smoothing would explain more of it
 _GAINED, _FEWEST = 0.1, 3  # of chi^2, that another step has to gain, after so many
 _MORE = 1.25  # weights over those before, from which on less smoothing is tried again
 _LEAST_GAIN = 0.1  # a gain's factor in one step, at least
@@ -255,6 +256,7 @@ class _Fit:
             if little and not self.enough:
                 self.strength /= _LESS  # what it was one step before
                 self.enough = True
+            self.enough = self.enough or after < _EXPLAINED
             before = after
         return around
 

@@ -36,10 +36,11 @@ STUDIES = {
     "light": "light",
     "acquire": "acquire",
     "volume": "volume",
+    "veined": "veined",
 }
 
-_WIDE = ("dense", "unseen", "acquire", "volume")  # studies whose tables cannot be read narrower than this, characters
-_TABLE_WIDTH = 190
+_WIDE = ("dense", "unseen", "acquire", "volume", "veined")
+_TABLE_WIDTH = 190  # characters, than which the tables of these cannot be read narrower
 
 # Studies of real bodies, which the CPU reference cannot stand in for, because only the engine does what they judge.
 ON_ENGINE = {
@@ -52,9 +53,10 @@ ON_ENGINE = {
     "light": "prints an error",
     "acquire": "is what photographs are held against",
     "volume": "is what photographs are held against",
+    "veined": "is what photographs are held against",
 }
 
-_UNSEEN_WALKS, _ACQUIRE_WALKS = 2_000_000, 8192
+_UNSEEN_WALKS, _ACQUIRE_WALKS, _VEINED_WALKS = 2_000_000, 8192, 20_000
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -63,7 +65,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument("study", choices=STUDIES, metavar="STUDY", help=", ".join(STUDIES))
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the record here")
     parser.add_argument(
-        "--resume", action="store_true", help="acquire, volume: go on with the record of --json, body by body"
+        "--resume", action="store_true", help="acquire, volume, veined: go on with the record of --json, body by body"
     )
     parser.add_argument(
         "--reference", action="store_true", help="solve with the CPU reference in double precision instead of the GPU"
@@ -71,10 +73,10 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--device", default="", metavar="NAME", help="cpu, or part of a Vulkan device's name; default: a GPU, else cpu"
     )
-    _add_bodies_options(parser.add_argument_group("scenes, estimate, target, budget; acquire and volume take --scene"))
+    _add_bodies_options(parser.add_argument_group("scenes, estimate, target, budget, acquire, volume, veined"))
     _add_scenes_options(parser.add_argument_group("scenes, unseen"))
     _add_unseen_options(
-        parser.add_argument_group("unseen; light and volume take --seed and --count, acquire --walks too")
+        parser.add_argument_group("unseen; light, volume, acquire and veined take --seed, --count, some --walks")
     )
 
 
@@ -119,7 +121,8 @@ def _add_unseen_options(group: argparse._ArgumentGroup) -> None:
         "--walks",
         type=positive_int,
         metavar="N",
-        help=f"of each truth (default: {_UNSEEN_WALKS}), or of a pixel of acquire (default: {_ACQUIRE_WALKS})",
+        help=f"of each truth (default: {_UNSEEN_WALKS}), or of a pixel of acquire (default: {_ACQUIRE_WALKS}) and "
+        f"veined (default: {_VEINED_WALKS})",
     )
     group.add_argument(
         "--sweeps",
@@ -166,6 +169,9 @@ def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
     if args.study == "acquire":
         walks = args.walks or _ACQUIRE_WALKS
         return _run_by_rows(study, args, study.AcquireRun(args.seed, args.count, walks, args.device), walks=walks)
+    if args.study == "veined":
+        walks = args.walks or _VEINED_WALKS
+        return _run_by_rows(study, args, study.VeinedRun(args.seed, args.count, walks, args.device), walks=walks)
     if args.study == "volume":
         return _run_by_rows(study, args, study.VolumeRun(args.seed, args.count, device=args.device))
     if args.study == "unseen":
