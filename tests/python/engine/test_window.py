@@ -156,6 +156,13 @@ class Hand:
         """The part without the panel, once it has settled."""
         return self.screen()[: SIZE[1], PANEL : SIZE[0]]
 
+    def other_picture(self, before: np.ndarray) -> np.ndarray:
+        """The same once it is another one, for which it waits twenty seconds: a busy machine sees keys late."""
+        deadline = time.monotonic() + 20
+        while np.array_equal(now := self.picture(), before) and time.monotonic() < deadline:
+            time.sleep(0.1)
+        return now
+
     def close(self, key: str = "q") -> None:
         """Quit by key; the program must end well."""
         self.keys(key)

