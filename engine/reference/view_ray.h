@@ -106,10 +106,8 @@ class ViewRay {
   // gather_fields.glsl.
   template <class Linear>
   static Real held(const Real& uncollided, const Linear& linear) {
-    return value_of(uncollided) <= std::max(linear(plain), nothing) ? uncollided : beyond(uncollided, linear(whole));
+    return value_of(uncollided) <= linear(plain) ? uncollided : beyond(uncollided, linear(whole));
   }
-
-  static constexpr double nothing = 1e-250;  // with less, ratios and their derivatives are no numbers
 
   template <class Number>
   static Number beyond(const Number& uncollided, const Number& linear) {

@@ -53,16 +53,18 @@ def fill(
             directory, [OPTIONS + ("" if limits else "F"), "surface.smesh"], "surface.1", time_limit_s
         )
         refining = max(_LEAST_REFINING_S, _MOST_REFINING * (time.perf_counter() - start))
+        switches = REFINE
         for number in range(1, 1 + _PASSES):
             volumes = limits(vertices, tets) if limits and len(tets) else None
             if volumes is None:
                 break
             write_volumes(volumes, directory / f"surface.{number}.vol")
             refine = partial(made, directory, stem=f"surface.{number + 1}", seconds=min(time_limit_s, refining))
-            switches = REFINE
             try:
                 vertices, tets = refine([switches, f"surface.{number}"])
             except ToolError:
+                if switches == REFINE_LOOSELY:
+                    raise
                 switches = REFINE_LOOSELY
                 vertices, tets = refine([switches, f"surface.{number}"])
             options = f"{OPTIONS}, {switches}"

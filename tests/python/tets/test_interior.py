@@ -210,7 +210,7 @@ def test_a_coarser_level_that_cannot_be_refined_does_not_end_the_chain() -> None
 
 def test_tets_are_refined_less_well_where_that_has_no_end_otherwise(monkeypatch) -> None:
     monkeypatch.setattr(tetgen, "REFINE", "-rYq.3/0a")
-    monkeypatch.setattr(tetgen, "_LEAST_REFINING_S", 0.1)
+    monkeypatch.setattr(tetgen, "_LEAST_REFINING_S", 2)
     monkeypatch.setattr(tetgen, "_MOST_REFINING", 0)
     mesh = filled(subdivide(cube(8), 2), 2.0)
     assert mesh.mesher.options == f"{tetgen.OPTIONS}, {tetgen.REFINE_LOOSELY}"

@@ -33,6 +33,7 @@ def test_rows_that_are_there_are_not_made_again_and_each_new_one_is_written():
 def test_only_what_is_wanted_is_made_and_what_is_there_stays():
     kept = KeptRows(("a",), [{"name": "ccc", "length": 3}])
     assert [row["name"] for row in kept.complete(MADE)] == ["a", "ccc"]
+    assert [row["name"] for row in KeptRows((), [{"name": "d"}]).complete(MADE[:1])] == ["a", "d"]
     with pytest.raises(InputError, match="--scene: d found, allowed are a, bb, ccc"):
         KeptRows(("d",)).complete(MADE)
 
@@ -46,7 +47,8 @@ def test_a_record_of_something_else_is_refused(tmp_path: Path):
         kept_rows.read(path, "acquire", walks=4)
     with pytest.raises(InputError, match="not a record"):
         kept_rows.read(path, "acquire", walks=3, light="sky")
-    for text in ("{", "[]", '{"study": "acquire", "walks": 3}', '{"study": "acquire", "walks": 3, "rows": 1}'):
+    member = '{"study": "acquire", "walks": 3'
+    for text in ("{", "[]", f"{member}}}", f'{member}, "rows": 1}}', f'{member}, "rows": [{{}}]}}'):
         path.write_text(text)
         with pytest.raises(InputError, match="not a record"):
             kept_rows.read(path, "acquire", walks=3)

@@ -15,8 +15,8 @@ Row = dict[str, Any]
 
 @dataclass
 class KeptRows:
-    """only: names of the cases that are wanted, none: all; rows: that there are already; write: is given all rows, in
-    the order of the cases, after each new one; tell: is given the name of a case before.
+    """only: names of the cases that are wanted, none: all; rows: that there are already, of these cases and others;
+    write: is given all rows, in the order of the cases, after each new one; tell: is given the name of a case before.
     """
 
     only: Sequence[str] = ()
@@ -25,8 +25,8 @@ class KeptRows:
     tell: Callable[[str], None] = lambda name: None
 
     def complete(self, cases: Iterable[tuple[str, Callable[[], Row]]]) -> list[Row]:
-        """The rows of all wanted cases, each by its name; those that are there are not made again. Raises InputError
-        for a wanted name that no case has.
+        """The rows of all wanted cases, each by its name, and after them those that are there of others; none that is
+        there is made again or lost. Raises InputError for a wanted name that no case has.
         """
         every = list(cases)
         names = [name for name, _ in every]
@@ -42,7 +42,7 @@ class KeptRows:
 
     @staticmethod
     def _in_order(found: dict[str, Row], names: Sequence[str]) -> list[Row]:
-        return [found[name] for name in names if name in found]
+        return [found[name] for name in dict.fromkeys([*names, *found]) if name in found]
 
 
 def read(path: Path, study: str, **same: Any) -> list[Row]:
@@ -56,6 +56,8 @@ def read(path: Path, study: str, **same: Any) -> list[Row]:
         record = json.loads(path.read_text())
         found = {name: record[name] for name in ("study", *same)}
         rows = list(record["rows"])
+        if not all(isinstance(row["name"], str) for row in rows):
+            raise ValueError("rows without names")
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise InputError(f"{path}: not a record of `accuracy {study}` ({error}); name another file") from error
     wanted = {"study": study} | same

@@ -108,9 +108,8 @@ def cameras(middle: np.ndarray, radius: float) -> dict[str, dict[str, Any]]:
     distance = 1.05 * radius / np.sin(np.radians(fov / 2))
     result = {}
     for k in range(VIEWS):
-        azimuth, elevation = 2 * np.pi * k / VIEWS, np.radians(25.0 if k % 2 == 0 else -15.0)
-        way = [np.sin(azimuth) * np.cos(elevation), np.sin(elevation), np.cos(azimuth) * np.cos(elevation)]
-        places = {"eye": (middle + distance * np.array(way)).round(4).tolist(), "look_at": middle.round(4).tolist()}
+        way = photographed.backward(360 * k / VIEWS, 25.0 if k % 2 == 0 else -15.0, "y")
+        places = {"eye": (middle + distance * way).round(4).tolist(), "look_at": middle.round(4).tolist()}
         result[f"view{k + 1}"] = places | {"up": "y", "fov": fov, "width": SIDE, "height": SIDE}
     return result
 

@@ -89,13 +89,13 @@ def views(found: Subject, options: PhotographOptions) -> dict[str, dict[str, Any
     azimuths = options.azimuths or (camera["azimuth"], camera["azimuth"] + 180)
     result = {}
     for number, azimuth in enumerate(azimuths, 1):
-        eye = look_at + distance * _backward(azimuth, camera["elevation"], camera["up"])
+        eye = look_at + distance * backward(azimuth, camera["elevation"], camera["up"])
         places = {"eye": [round(float(x), 4) for x in eye], "look_at": [round(float(x), 4) for x in look_at]}
         result[f"view{number}"] = places | common
     return result
 
 
-def _backward(azimuth: float, elevation: float, up: str) -> np.ndarray:
+def backward(azimuth: float, elevation: float, up: str) -> np.ndarray:
     """From what is looked at to the eye, as engine/render/display/camera.h has it."""
     a, e = np.radians([azimuth, elevation])
     if up == "y":
