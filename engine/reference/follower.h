@@ -40,9 +40,11 @@ struct FollowedShape {
 template <class Real>
 struct UncollidedLight {
   std::array<Real, 3> entry, depth;
+  std::array<Real, 3> counts;  // of the beams, that of the one that counts most in `entry` (SHARED_DEPTH)
 
   UncollidedLight() {
     entry.fill(Real(0));
+    counts.fill(Real(0));
     depth.fill(Real(static_cast<double>(gpu::UNCOLLIDED_DEPTH)));
   }
 };
@@ -200,7 +202,16 @@ class Follower {
 // Up to where e to the power of it is a number whose square is one, too.
 constexpr double most_ahead = 300;
 
-// The light of both: entries add up, and so do fluences.
+// How much a beam counts in the entry of all.
+template <class Real>
+Real counts_at(const Real& depth) {
+  using std::exp;
+  const double shared{gpu::SHARED_DEPTH}, none = std::exp(-double{gpu::UNCOLLIDED_DEPTH} / shared);
+  return value_of(depth) < double{gpu::UNCOLLIDED_DEPTH} ? exp(-depth / shared) - Real(none) : Real(0);
+}
+
+// The light of both: fluences add up.
+
 template <class Real>
 void add(UncollidedLight<Real>& sum, const UncollidedLight<Real>& other) {
   using std::exp, std::log;
@@ -218,7 +229,10 @@ void add(UncollidedLight<Real>& sum, const UncollidedLight<Real>& other) {
     if (first && ahead > most_ahead) depth = other.depth[c];
     const Real least = ahead > 0 && !first ? depth : other.depth[c];
     const Real fluence = entry * exp(-(depth - least)) + other.entry[c] * exp(-(other.depth[c] - least));
-    entry = entry + other.entry[c];
+    const Real counts = counts_at(other.depth[c]);
+    const Real most = value_of(counts) > value_of(sum.counts[c]) ? counts : sum.counts[c];
+    entry = value_of(most) > 0 ? (sum.counts[c] * entry + counts * other.entry[c]) / most : entry + other.entry[c];
+    sum.counts[c] = most;
     depth = least - log(fluence / entry);
   }
 }

@@ -174,17 +174,26 @@ Light light_of(uint beam, uint v) {
   return lambertian_light(beam, record.kind, v);
 }
 
+// How much a beam counts in the entry of all.
+vec3 counts_at(vec3 depth) {
+  return max(exp(-depth / SHARED_DEPTH) - exp(-UNCOLLIDED_DEPTH / SHARED_DEPTH), vec3(0));
+}
+
 void main() {
   uint v = gl_GlobalInvocationID.x;
   if (v >= push.vertex_count) return;
   body = push.body.at[0];
-  vec3 entry = vec3(0), left = vec3(0), least = vec3(UNCOLLIDED_DEPTH);
+  vec3 entry = vec3(0), left = vec3(0), least = vec3(UNCOLLIDED_DEPTH), counted = vec3(0), most = vec3(0);
   for (uint beam = 0u; beam < push.beam_count; ++beam) {
     Light light = light_of(beam, v);
+    vec3 counts = mix(vec3(0), counts_at(light.depth), greaterThan(light.entry, vec3(0)));
     entry += light.entry;
+    counted += counts * light.entry;
+    most = max(most, counts);
     left += light.entry * exp(-light.depth);
     least = min(least, light.depth);
   }
+  entry = mix(entry, counted / max(most, vec3(1e-37)), greaterThan(most, vec3(0)));
   vec3 depth = mix(least, -log(max(left, vec3(1e-37)) / entry), greaterThan(left, vec3(0)));
   push.points.at[v].entry = vec4(entry, 0.0);
   push.points.at[v].depth = vec4(depth, 0.0);

@@ -182,6 +182,27 @@ TEST_CASE("single scattering of a beam leaves a slab as the closed form says, on
   }
 }
 
+TEST_CASE("a body that light shines through from behind changes smoothly with the view, wherever rays end") {
+  const OwnedLevel owned = slab_level(6, 14.0f);
+  const Level level = owned.view();
+  const Opticals optical = everywhere_of(level, {0.9f, 0.7f, 0.5f}, {0.1f, 0.1f, 0.1f});
+  const std::vector<glm::dvec3> no_phi(level.vertices.size(), glm::dvec3(0));
+  const Problem problem = problem_of(optical, 1.0);
+  const Uncollided beam = LitSlab(level, along(glm::vec3(1, 0, 0))).in(level, problem);
+  const std::uint32_t face = open_face(level, false);
+  std::vector<glm::dvec3> seen;
+  for (double mu = 0.4; mu < 0.95; mu += 0.0005) {
+    seen.push_back(
+        glm::log(gathered_radiance(level, problem, {no_phi, beam}, face, glm::dvec3(1.0 / 3), outward(mu, 1))));
+  }
+  double most = 0;
+  for (std::size_t i = 2; i < seen.size(); ++i) {
+    const glm::dvec3 bend = glm::abs(seen[i] - 2.0 * seen[i - 1] + seen[i - 2]);
+    most = std::max({most, bend.x, bend.y, bend.z});
+  }
+  CHECK(most < 0.002);
+}
+
 TEST_CASE("uniform light that enters falls off as its bundle; one ray stands for it") {
   const OwnedLevel owned = slab_level(5, 2.0f);
   const Level level = owned.view();
@@ -204,6 +225,29 @@ TEST_CASE("uniform light that enters falls off as its bundle; one ray stands for
   }
 }
 
+TEST_CASE("where a bright beam from behind comes to its end, what stands for all beams does not change at once") {
+  const float size = 15;
+  const OwnedLevel owned = slab_level(15, size);
+  const Level level = owned.view();
+  const Opticals optical = everywhere_of(level, glm::vec3(1), glm::vec3(0.2f));
+  const LitSlab front(level, along({1, 0, 0}));
+  std::vector<Quarters> quarters;
+  for (std::uint32_t f = 0; f < level.face_count(); ++f) {
+    const glm::vec3 q(level.nodes[level.tet_count() + f].x > 0.9999f * size ? 50 : 0);
+    quarters.push_back({q, q, q, q});
+  }
+  const std::array lights = {front.light, BeamLight{along({-1, 0, 0}), quarters}};
+  const Uncollided both = uncollided(level, problem_of(optical, 1.0), lights, vertex_starts(level));
+  double most = 1;
+  for (const glm::uvec4& tet : level.tets) {
+    for (int k = 1; k < 4; ++k) {
+      const double step = both.entry[tet[k]].x / both.entry[tet[0]].x;
+      most = std::max({most, step, 1 / step});
+    }
+  }
+  CHECK(most < 4);  // 51 where it is the sum of what arrives
+}
+
 TEST_CASE("beams add up, and where none arrives it is dark") {
   const OwnedLevel owned = slab_level(4, 2.0f);
   const Level level = owned.view();
@@ -218,7 +262,6 @@ TEST_CASE("beams add up, and where none arrives it is dark") {
   const auto fluence = [](const Uncollided& u, std::uint32_t v) { return u.entry[v].x * std::exp(-u.depth[v].x); };
   for (std::uint32_t v = 0; v < level.vertex_count(); ++v) {
     CHECK(fluence(both, v) == doctest::Approx(fluence(first, v) + fluence(second, v)));
-    CHECK(both.entry[v].x == doctest::Approx(first.entry[v].x + second.entry[v].x));
     CHECK(away.entry[v] == glm::dvec3(0));
     CHECK(none.entry[v] == glm::dvec3(0));
   }
