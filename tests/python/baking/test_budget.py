@@ -118,15 +118,17 @@ def mesh(tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="module")
 def judged(mesh) -> dict:
-    """A row of the study, whose file stays behind; its times, which nothing here asks for, are of two frames."""
+    """A row of the study; its times, which nothing here asks for, are of two frames."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(study, "ALTERNATIONS", 1)
         return study.judge(mesh, 8, study.BudgetCase("lobes", MATERIAL, "sun", ERROR), mesh.parent, "")
 
 
 @pytest.fixture(scope="module")
-def baked(judged, mesh) -> Path:
-    return mesh.with_name("chosen.qgraph")
+def baked(mesh) -> Path:
+    path = mesh.with_name("baked.qgraph")
+    plan.bake_for(mesh, path, BakeOptions(height_mm=8), ERROR, MATERIAL, [SUN], "")
+    return path
 
 
 @pytest.fixture(scope="module")
@@ -134,6 +136,7 @@ def record(baked) -> dict:
     return qgraph_file.read(baked).metadata["budget"]
 
 
+@pytest.mark.long
 def test_the_true_error_is_kept(judged):
     """The study's truth is the mesh cut twice, of which the bake knows nothing unless that settled a doubt."""
     assert judged["reached"]
@@ -143,6 +146,7 @@ def test_the_true_error_is_kept(judged):
     assert true == pytest.approx(judged["measured"], rel=0.1)
 
 
+@pytest.mark.long
 def test_hardly_anything_is_cheaper(judged):
     assert judged["searched"] >= 8
     assert max(judged["cheapest"]["errors"].values()) <= ERROR
