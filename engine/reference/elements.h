@@ -15,6 +15,13 @@ struct ElementCoefficients {
   glm::dvec3 relaxation{0};  // 5/9 sigma_t, 1/mm
 };
 
+// What the operator takes of a tet.
+ElementCoefficients element_of(const gpu::Optical& optical);
+
+// Adds to `sum`, per vertex, the product of one tet's rows of diffusion with a field at the vertices.
+void add_element_product(const Level& level, const glm::uvec4& tet, const ElementCoefficients& element,
+                         std::span<const glm::vec3> field, std::span<glm::dvec3> sum);
+
 // Rows of `fem` (operator.h), of one entry per tet.
 Rows assemble_elements(const Level& level, std::span<const ElementCoefficients> elements, Model model,
                        const Boundary& boundary);

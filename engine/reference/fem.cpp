@@ -57,10 +57,6 @@ Block& entry(Rows& rows, std::uint32_t row, std::uint32_t column) {
   return rows.weight[static_cast<std::size_t>(std::lower_bound(begin, end, column) - rows.column.begin())];
 }
 
-ElementCoefficients element_of(const gpu::Optical& optical) {
-  return {glm::dvec3(gpu::kappa(optical)), glm::dvec3(optical.sigma_a), relaxation_of(optical)};
-}
-
 // Stiffness and consistent masses of one tet. The diagonal stiffness is minus the sum of the off-diagonals, so that
 // constants are reproduced to rounding.
 void add_tet(const TetGeometry& g, const glm::uvec4& tet, const ElementCoefficients& element, Model model, Rows& rows) {
@@ -108,6 +104,22 @@ Rows assemble_elements(const Level& level, std::span<const ElementCoefficients> 
     if (!level.reflecting(f)) add_face(level, level.faces[f], model, boundary, rows);
   }
   return rows;
+}
+
+ElementCoefficients element_of(const gpu::Optical& optical) {
+  return {glm::dvec3(gpu::kappa(optical)), glm::dvec3(optical.sigma_a), relaxation_of(optical)};
+}
+
+void add_element_product(const Level& level, const glm::uvec4& tet, const ElementCoefficients& element,
+                         std::span<const glm::vec3> field, std::span<glm::dvec3> sum) {
+  const TetGeometry g = tet_geometry(level, tet);
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < 4; ++j) {
+      const double slope = glm::dot(g.gradient[i], g.gradient[j]) * g.volume,
+                   mass = (i == j ? 2.0 : 1.0) * g.volume / 20.0;
+      sum[tet[i]] += (slope * element.kappa + mass * element.absorption) * glm::dvec3(field[tet[j]]);
+    }
+  }
 }
 
 Rows assemble_fem(const Level& level, const Problem& problem) {

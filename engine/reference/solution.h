@@ -84,7 +84,8 @@ struct SolveReport {
   std::optional<ErrorEstimate> model_error;
   // That of the mesh: the difference between the exitance of the two finest levels, times the
   // share of it that is the finer one's own, and no less than what elements as deep as those at the surface leave
-  // (engine/reference/resolution.h). Empty with a single level. After a correction what that leaves of it.
+  // (engine/reference/resolution.h). Empty with a single level. After a correction what that leaves of it; of one at
+  // rest with what a material that changes within tets costs (engine/solve/medium_error.h).
   std::optional<ErrorEstimate> mesh_error;
   // What the exitance is off by because the irradiance is (engine/solve/light_error.h); of what is corrected at rest,
   // under lights. Else empty.

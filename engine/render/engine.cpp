@@ -51,10 +51,11 @@ void Engine::set_material(const gpu::Material& material) {
   self.stale();
 }
 
-void Engine::set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta) {
+void Engine::set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta,
+                         std::span<const gpu::Optical> elsewhere) {
   const auto turn = implementation_->in_use.take();
   auto& self = *implementation_;
-  self.levels().set_optical(level, optical, eta);
+  self.levels().set_optical(level, optical, eta, elsewhere);
   self.paths.clear();
   self.material = "coefficients per node, eta=" + number_text(eta);
   self.certainty = {};

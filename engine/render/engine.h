@@ -98,7 +98,8 @@ class Engine {
   void set_material(const gpu::Material& material);
 
   // Coefficients instead of a material, as Simulation::set_optical.
-  void set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta);
+  void set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta,
+                   std::span<const gpu::Optical> elsewhere = {});
 
   // Coefficients on a grid instead of a material; shortest-path takes them, other methods those of nodes. Throws
   // InputError.

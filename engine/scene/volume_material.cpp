@@ -1,3 +1,4 @@
+#include "engine/reference/tet_points.h"
 #include "engine/scene/volume.h"
 
 namespace quadgraph {
@@ -12,7 +13,9 @@ void set_material(Engine& engine, const Volume& volume) {
   const RestBox box = rest_box(levels.empty() ? engine.graph().display().vertices : levels[0].vertices);
   const glm::dvec3 centre = 0.5 * (box.low + box.high);
   for (std::uint32_t i = 0; i < levels.size(); ++i) {
-    engine.set_optical(i, volume.at(levels[i].nodes, centre), volume.eta);
+    const std::vector<gpu::Optical> elsewhere =
+        i == 0 ? volume.at(points_in_tets(levels[i]), centre) : std::vector<gpu::Optical>{};
+    engine.set_optical(i, volume.at(levels[i].nodes, centre), volume.eta, elsewhere);
   }
   const glm::uvec3 size(volume.cells[0], volume.cells[1], volume.cells[2]);
   engine.set_optical(OpticalGrid{.size = size,

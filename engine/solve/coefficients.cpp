@@ -12,6 +12,7 @@
 #include "engine/optics/material.h"
 #include "engine/optics/model.h"
 #include "engine/reference/operator.h"
+#include "engine/reference/tet_points.h"
 #include "engine/solve/assembly.h"
 #include "interface/material/optical_range.comp.h"
 #include "shaders/material/material.h"
@@ -40,11 +41,13 @@ Coefficients::Coefficients(device::Device& device, std::span<const Level> rest)
 void Coefficients::changed() {
   evaluated_.reset();
   edited_.reset();
+  elsewhere_.reset();
 }
 
 void Coefficients::set(const gpu::Material& material) {
   check_material(material);
   material_ = material;
+  given_elsewhere_.clear();
   for (device::Buffer& given : given_) given = {};
   changed();
   eta_ = material.eta;
@@ -53,8 +56,9 @@ void Coefficients::set(const gpu::Material& material) {
 }
 
 void Coefficients::set(std::uint32_t number, std::span<const gpu::Optical> optical, float eta,
-                       std::span<const SurfaceSample> samples) {
+                       std::span<const SurfaceSample> samples, std::span<const gpu::Optical> elsewhere) {
   check_optical(optical, rest_[number].node_count());
+  if (!elsewhere.empty()) check_optical(elsewhere, rest_[number].tet_count());
   check_eta(static_cast<double>(eta));
   if (material_) std::fill(albedo_.begin(), albedo_.end(), std::nullopt);
   material_.reset();
@@ -62,6 +66,7 @@ void Coefficients::set(std::uint32_t number, std::span<const gpu::Optical> optic
   changed();
   eta_ = eta;
   albedo_[number] = least_albedo(optical);
+  if (number == 0) given_elsewhere_.assign(elsewhere.begin(), elsewhere.end());
   if (number == 0) rounding_ = quadgraph::packed_rounding(optical, spacing(0));
   sampled_[number].clear();
   for (const SurfaceSample& sample : samples) sampled_[number].push_back(optical[sample.tet]);
@@ -102,6 +107,22 @@ std::vector<gpu::Optical> Coefficients::at(std::uint32_t number, std::span<const
     const float below = deep ? depth(number)[tet] : 0;
     const gpu::Optical base = material_ ? gpu::material_at(*material_, place, below) : sampled_[number][i];
     optical.push_back(edits_.apply(base, place, below, spacing(number)));
+  }
+  return optical;
+}
+
+const std::vector<gpu::Optical>& Coefficients::elsewhere() {
+  if (elsewhere_) return *elsewhere_;
+  std::vector<gpu::Optical>& optical = elsewhere_.emplace(given_elsewhere_);
+  if (even() || (!material_ && optical.empty())) return optical;
+  const std::vector<glm::vec3> places = points_in_tets(rest_[0]);
+  const bool deep = wants_depth();
+  if (deep && depth_elsewhere_.empty()) depth_elsewhere_ = depth_below_surface(rest_[0], places);
+  optical.resize(places.size());
+  for (std::size_t t = 0; t < places.size(); ++t) {
+    const float below = deep ? depth_elsewhere_[t] : 0;
+    const gpu::Optical base = material_ ? gpu::material_at(*material_, places[t], below) : optical[t];
+    optical[t] = edits_.apply(base, places[t], below, spacing(0));
   }
   return optical;
 }

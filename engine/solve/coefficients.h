@@ -22,9 +22,10 @@ class Coefficients {
   // Throws InputError as check_material does.
   void set(const gpu::Material& material);
 
-  // Takes the coefficients of level `number`, and notes those at `samples`. Throws InputError on a wrong size or value.
+  // Takes the coefficients of level `number`, and notes those at `samples`. `elsewhere`: those of the finest level at
+  // points_in_tets; none where they are not known. Throws InputError on a wrong size or value.
   void set(std::uint32_t number, std::span<const gpu::Optical> optical, float eta,
-           std::span<const SurfaceSample> samples);
+           std::span<const SurfaceSample> samples, std::span<const gpu::Optical> elsewhere);
 
   // Edits of the material or the arrays, also of those that are set later. Throws InputError naming the edit and as
   // check_edit.
@@ -40,6 +41,9 @@ class Coefficients {
 
   // One entry per sample of level `number`.
   std::vector<gpu::Optical> at(std::uint32_t number, std::span<const SurfaceSample> samples);
+
+  // One entry per tet of the finest level, at points_in_tets; none where they are even, or not known there.
+  const std::vector<gpu::Optical>& elsewhere();
 
   // Buffers may hold anything: they are evaluated again.
   void forget() { changed(); }
@@ -88,10 +92,13 @@ class Coefficients {
   Extent extent_ = Extent::one;
   std::optional<Extent> evaluated_;  // the present coefficients, there
   float eta_ = 1;
-  std::vector<std::optional<double>> albedo_;       // the least one of every level, before edits
-  glm::vec2 rounding_{1};                           // gpu::packed_rounding of the finest one, before edits
-  device::Buffer measured_, measured_on_host_;      // of edited coefficients
-  std::optional<Range> edited_;                     // after edits
+  std::vector<std::optional<double>> albedo_;   // the least one of every level, before edits
+  glm::vec2 rounding_{1};                       // gpu::packed_rounding of the finest one, before edits
+  device::Buffer measured_, measured_on_host_;  // of edited coefficients
+  std::optional<Range> edited_;                 // after edits
+  std::vector<gpu::Optical> given_elsewhere_;   // of the finest level, with `given_`
+  std::optional<std::vector<gpu::Optical>> elsewhere_;
+  std::vector<float> depth_elsewhere_;              // mm, computed at first use
   std::vector<std::vector<gpu::Optical>> sampled_;  // of every level whose coefficients were given
 };
 

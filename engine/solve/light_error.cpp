@@ -1,63 +1,8 @@
 #include "engine/solve/light_error.h"
 
-#include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <utility>
-
-#include "engine/file/face_tree.h"
-#include "engine/solve/solver_choice.h"
-#include "engine/solve/surface_results.h"
-#include "shaders/surface/surface_shared.h"
 
 namespace quadgraph {
-namespace {
-
-constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
-
-// The error is that of means over patches, about so many on the whole surface, as of a correction.
-constexpr std::uint32_t patches = 256;
-
-// What is left of what a solve is to find, as a share of it, and its iterations at most, with cycles and without.
-constexpr double share_left = 0.05;
-constexpr std::uint32_t most_cycles = 6, most_steps = 500;
-
-// The node of the tree over the faces that each lies in, of those that number as many as there are patches.
-std::vector<std::uint32_t> patches_of(const Level& level) {
-  const FaceTree tree = face_tree(level);
-  const std::uint32_t leaves = tree.leaves(), together = std::max(1u, leaves / patches);
-  std::vector<std::uint32_t> patch(level.face_count());
-  for (std::uint32_t leaf = 0; leaf < leaves; ++leaf) {
-    for (std::uint32_t k = tree.leaf_begin[leaf]; k < tree.leaf_begin[leaf + 1]; ++k) {
-      patch[tree.order[k]] = leaf / together;
-    }
-  }
-  return patch;
-}
-
-float sum(const glm::vec3& v) {
-  return v.x + v.y + v.z;
-}
-
-// The third of the surface with the least exitance; none where all is dark.
-std::vector<bool> dimmest(const SurfaceField& field) {
-  std::vector<bool> in(field.area.size());
-  std::vector<std::uint32_t> order(in.size());
-  std::iota(order.begin(), order.end(), 0u);
-  const auto dimmer = [&](std::uint32_t a, std::uint32_t b) { return sum(field.exitance[a]) < sum(field.exitance[b]); };
-  std::sort(order.begin(), order.end(), dimmer);
-  if (order.empty() || !(sum(field.exitance[order.back()]) > 0)) return in;
-  double left = std::accumulate(field.area.begin(), field.area.end(), 0.0) / 3;
-  for (const std::uint32_t face : order) {
-    left -= static_cast<double>(field.area[face]);
-    in[face] = true;
-    if (left <= 0) break;
-  }
-  return in;
-}
-
-}  // namespace
-
 glm::dvec3 share_of_surface_light(const Energy& energy, const Boundary& boundary,
                                   std::span<const gpu::Optical> optical) {
   glm::dvec3 sigma_a{0}, sigma_t{0};  // sums
@@ -80,81 +25,19 @@ void add_light_error(SolveReport& report, const ErrorEstimate& light) {
   report.error = by_parts([](double all, double part) { return std::hypot(all, part); }, *report.error, light);
 }
 
-LightError::LightError(device::Device& device, const Level& level) : patch_(patches_of(level)) {
-  const auto room = [&](std::uint64_t bytes, const char* name) {
-    return device::Buffer(device, bytes, device::Place::device, "light error/" + std::string(name));
-  };
-  difference_ = room(samples * level.face_count() * vec3_bytes, "difference");
-  load_ = room(level.vertex_count() * vec3_bytes, "b");
-  change_ = room(level.vertex_count() * vec3_bytes, "change of fluence");
-  phi_ = room(level.face_count() * vec3_bytes, "change of phi");
-  exitance_ = room(level.face_count() * vec3_bytes, "change of the exitance");
-  clip_ = room(sizeof(gpu::Clip), "clip");
-}
+LightError::LightError(device::Device& device, const Level& level)
+    : difference_(device, samples * level.face_count() * sizeof(glm::vec3), device::Place::device,
+                  "light error/difference") {}
 
-// The operator lends its rows and vectors; b and x of its own solution stay what they are.
-std::vector<glm::vec3> LightError::change(const LitSolution& solution, std::uint32_t sample) {
-  Workspace& work = solution.work;
-  OperatorBuffers& op = solution.operators.at(solution.key, 0);
-  std::swap(op.b, load_);
-  std::swap(op.x, change_);
-  const std::uint64_t q = difference_.address() + sample * solution.level.face_count * vec3_bytes;
-  record_surface_load(work, solution.level, q, op);
-  work.recorder.fill(op.x, 0);
-  const SolverKind kind = possible_solver(solution.operators, solution.key, SolverKind::fmg_pcg).solver;
-  const LevelTask task{.solver = kind,
-                       .boundary = solution.boundary,
-                       .tolerance = share_left,
-                       .max_iterations = rules_of(kind).cycles ? most_cycles : most_steps,
-                       .smoothing = rules_of(kind).smoothing};
-  LevelSolver solver(work, solution.operators, solution.key, 0, task);
-  solver.run();
-  record_exitance(work, {solution.level, op, Method::fem, solution.boundary, 1, nullptr}, phi_, exitance_, clip_);
-  work.recorder.submit();
-  std::swap(op.b, load_);
-  std::swap(op.x, change_);
-  return device::download<glm::vec3>(work.recorder.device(), exitance_);
-}
-
-ErrorEstimate LightError::relative(const LitSolution& solution, std::span<const glm::vec3> a,
-                                   std::span<const glm::vec3> b) const {
-  struct Patch {
-    double area = 0;
-    glm::dvec3 exitance{0}, a{0}, b{0};
+ErrorEstimate LightError::estimate(Perturbation& perturbation, const PerturbedSolution& solution,
+                                   const glm::dvec3& share) const {
+  const auto change = [&](std::uint32_t sample) {
+    const std::uint64_t q = difference_.address() + sample * solution.level.face_count * sizeof(glm::vec3);
+    return perturbation.exitance(
+        solution, [&](OperatorBuffers& op) { record_surface_load(solution.work, solution.level, q, op); });
   };
-  const SurfaceField& field = solution.field;
-  const auto error_of = [&](const auto& counts) {
-    std::vector<Patch> sums(patches);
-    for (std::size_t f = 0; f < field.area.size(); ++f) {
-      if (!counts(f)) continue;
-      const double area = field.area[f];
-      Patch& patch = sums[patch_[f]];
-      patch.area += area;
-      patch.exitance += area * glm::dvec3(field.exitance[f]);
-      patch.a += area * solution.share * glm::dvec3(a[f]);
-      patch.b += area * solution.share * glm::dvec3(b[f]);
-    }
-    double product = 0, square_a = 0, square_b = 0, size = 0, count = 0;
-    for (const Patch& patch : sums) {
-      if (patch.area == 0) continue;
-      product += glm::dot(patch.a, patch.b) / patch.area;
-      square_a += glm::dot(patch.a, patch.a) / patch.area;
-      square_b += glm::dot(patch.b, patch.b) / patch.area;
-      size += glm::dot(patch.exitance, patch.exitance) / patch.area;
-      ++count;
-    }
-    if (!(size > 0)) return 0.0;
-    return std::sqrt(std::max(product, std::sqrt(square_a * square_b / count)) / size);
-  };
-  const std::vector<bool> dim = dimmest(field);
-  return {error_of([](std::size_t) { return true; }),
-          error_of([&](std::size_t f) { return sum(field.q[f]) < solution.unlit; }),
-          error_of([&](std::size_t f) { return dim[f]; })};
-}
-
-ErrorEstimate LightError::estimate(const LitSolution& solution) {
-  const std::vector<glm::vec3> a = change(solution, 0), b = change(solution, 1);
-  return relative(solution, a, b);
+  const std::vector<glm::vec3> a = change(0), b = change(1);
+  return perturbation.relative(solution, a, b, share);
 }
 
 }  // namespace quadgraph

@@ -3,6 +3,14 @@
 #include "engine/solve/simulation_implementation.h"
 
 namespace quadgraph {
+namespace {
+
+// Of the correction's operator.
+Boundary diffusion_boundary(float eta) {
+  return boundary_of(Method::fem, Source::buried, Model::diffusion, double{eta});
+}
+
+}  // namespace
 
 Simulation::Simulation(device::Device& device, const QuadGraph& graph)
     : implementation_(std::make_unique<Implementation>(device, graph)) {}
@@ -26,11 +34,12 @@ void Simulation::set_material(const gpu::Material& material) {
   implementation_->disassemble();
 }
 
-void Simulation::set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta) {
+void Simulation::set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta,
+                             std::span<const gpu::Optical> elsewhere) {
   if (level >= level_count()) {
     throw InputError("level " + std::to_string(level) + " of optical: there are " + std::to_string(level_count()));
   }
-  implementation_->coefficients.set(level, optical, eta, implementation_->shape.samples(level));
+  implementation_->coefficients.set(level, optical, eta, implementation_->shape.samples(level), elsewhere);
   implementation_->disassemble();
 }
 
@@ -92,7 +101,9 @@ void Simulation::make_room(const SolveOptions& options, bool gather) {
 }
 
 SolveReport Simulation::solve(const SolveOptions& options, const std::function<void()>& check) {
-  return implementation_->solve(options, check);
+  SolveReport report = implementation_->solve(options, check);
+  if (!options.warm && report.correction) state_medium_error(options, report);
+  return report;
 }
 
 LightRoom Simulation::light_room(const SolveOptions& options) {
@@ -102,19 +113,38 @@ LightRoom Simulation::light_room(const SolveOptions& options) {
 
 void Simulation::state_light_error(const SolveOptions& options, SolveReport& report) {
   Implementation& self = *implementation_;
-  const Boundary boundary = boundary_of(Method::fem, Source::buried, Model::diffusion, double{eta()});
+  const glm::dvec3 share = share_of_surface_light(report.energy, diffusion_boundary(eta()), self.optical_at(0));
+  perturb(options, report, [&](const PerturbedSolution& solution) {
+    add_light_error(report, self.light_error->estimate(*self.perturbation, solution, share));
+  });
+}
+
+void Simulation::state_medium_error(const SolveOptions& options, SolveReport& report) {
+  Implementation& self = *implementation_;
+  const std::vector<gpu::Optical>& there = self.coefficients.elsewhere();
+  if (there.empty()) return;
+  const auto here = device::download<gpu::Optical>(self.device, self.levels[0].optical);
+  const auto fluence = device::download<glm::vec3>(self.device, self.correction->fluence());
+  const std::vector<glm::vec3> load = medium_load(present_level(), here, there, fluence);
+  perturb(options, report, [&](const PerturbedSolution& solution) {
+    add_medium_error(report, medium_error(*self.perturbation, solution, load));
+  });
+}
+
+void Simulation::perturb(const SolveOptions& options, SolveReport& report,
+                         const std::function<void(const PerturbedSolution&)>& state) {
+  Implementation& self = *implementation_;
+  const Boundary boundary = diffusion_boundary(eta());
   SurfaceField field = surface_of(present_level());
   field.q = device::download<glm::vec3>(self.device, self.levels[0].q);
   field.exitance = device::download<glm::vec3>(self.device, self.results.exitance());
-  const LitSolution solution{.work = self.work,
-                             .level = self.levels[0],
-                             .operators = self.operators,
-                             .key = correction_key,
-                             .boundary = boundary,
-                             .field = field,
-                             .unlit = device::download<gpu::Scale>(self.device, self.work.scale)[0].unlit,
-                             .share = share_of_surface_light(report.energy, boundary, self.optical_at(0))};
-  add_light_error(report, self.light_error->estimate(solution));
+  state({.work = self.work,
+         .level = self.levels[0],
+         .operators = self.operators,
+         .key = correction_key,
+         .boundary = boundary,
+         .field = field,
+         .unlit = device::download<gpu::Scale>(self.device, self.work.scale)[0].unlit});
   state_missed(report, options.error);
   report.advice = advice(report);
   self.passes = self.work.recorder.passes();

@@ -29,6 +29,7 @@
 namespace quadgraph {
 
 class GatherField;
+struct PerturbedSolution;
 struct Workspace;
 
 // What view rays gather.
@@ -64,8 +65,10 @@ class Simulation {
   void set_material(const gpu::Material& material);
 
   // Coefficients instead of a material, one per node of `level` (inner, then surface); wanted for every level, and kept
-  // until set_material. Throws InputError on a wrong size or value.
-  void set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta);
+  // until set_material. `elsewhere`: of the finest level, one per tet at points_in_tets, by which the error of having
+  // one value in each tet is told; none where they are not known. Throws InputError on a wrong size or value.
+  void set_optical(std::uint32_t level, std::span<const gpu::Optical> optical, float eta,
+                   std::span<const gpu::Optical> elsewhere = {});
 
   // Edits of the material or the coefficients, one after the other, in place of those before; kept for what is set
   // later. Throws InputError naming the edit and as check_edit.
@@ -154,6 +157,10 @@ class Simulation {
   const GatherField& gather(Gather what, std::vector<PassStats>& passes);
 
  private:
+  void state_medium_error(const SolveOptions& options, SolveReport& report);
+  void perturb(const SolveOptions& options, SolveReport& report,
+               const std::function<void(const PerturbedSolution&)>& state);
+
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
 };

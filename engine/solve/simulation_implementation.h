@@ -21,6 +21,7 @@
 #include "engine/solve/level_upload.h"
 #include "engine/solve/levels_solver.h"
 #include "engine/solve/light_error.h"
+#include "engine/solve/medium_error.h"
 #include "engine/solve/simulation.h"
 #include "engine/solve/solver_choice.h"
 #include "engine/solve/surface_results.h"
@@ -45,6 +46,7 @@ struct Simulation::Implementation {
   std::optional<GatherField> gather;              // the same
   std::optional<Gather> gathers_now;              // of the last solution
   std::optional<TransportCorrection> correction;  // made at first use
+  std::optional<Perturbation> perturbation;       // the same
   std::optional<LightError> light_error;          // the same
   bool corrected = false;                         // the last solution is
   std::vector<gpu::Optical> corrected_optical;    // at the surface, of the last correction
@@ -77,7 +79,7 @@ struct Simulation::Implementation {
     return largest;
   }
 
-  // Changed light: right-hand sides are stale.
+  // Changed light.
   void unload() {
     scaled = false;
     for (SourceWalk& walk : walks) walk.invalidate();
@@ -137,6 +139,7 @@ struct Simulation::Implementation {
     walks.clear();
     for (std::uint32_t i = 0; i < levels.size(); ++i) walks.emplace_back(device, shape.levels()[i], i);
     correction.reset();
+    perturbation.reset();
     light_error.reset();
     gather.reset();
     tree.reset();
@@ -284,7 +287,9 @@ struct Simulation::Implementation {
     }
     if (!corrects(options)) return;
     correction_room(options.sweep_points);
-    if (!options.warm && !light_error) light_error.emplace(device, shape.levels()[0]);
+    if (options.warm || light_error) return;
+    perturbation.emplace(device, shape.levels()[0]);
+    light_error.emplace(device, shape.levels()[0]);
   }
 
   void correction_room(std::uint32_t points) {
@@ -322,13 +327,9 @@ struct Simulation::Implementation {
   }
 
   SolveReport run(const OperatorKey& key, const SolveOptions& options, SolverKind solver) {
-    const bool known = key.method == Method::fem && options.source == Source::buried;
-    const SolveParts parts{
-        work,         levels,
-        beams,        walks,
-        operators,    results,
-        coefficients, exchange,
-        scaled,       known ? std::span<const Resolution>(resolution_with(key.model)) : std::span<const Resolution>{}};
+    std::span<const Resolution> known;
+    if (key.method == Method::fem && options.source == Source::buried) known = resolution_with(key.model);
+    const SolveParts parts{work, levels, beams, walks, operators, results, coefficients, exchange, scaled, known};
     return LevelsSolver(parts, key, options, solver).run();
   }
 

@@ -233,13 +233,17 @@ void bind_level_setters(py::class_<Engine>& bound) {
           "direction (3,): the way it travels outside; None: Lambertian.")
       .def(
           "set_optical",
-          [](Engine& engine, std::uint32_t level, const FloatArray& sigma_s_prime, const FloatArray& sigma_a,
-             float eta) {
+          [](Engine& engine, std::uint32_t level, const FloatArray& sigma_s_prime, const FloatArray& sigma_a, float eta,
+             const std::optional<std::pair<FloatArray, FloatArray>>& elsewhere) {
             const Level& of = level_of(engine.graph(), level);
-            engine.set_optical(level, optical_from(sigma_s_prime, sigma_a, of.node_count()), eta);
+            std::vector<gpu::Optical> there;
+            if (elsewhere) there = optical_from(elsewhere->first, elsewhere->second, of.tet_count());
+            engine.set_optical(level, optical_from(sigma_s_prime, sigma_a, of.node_count()), eta, there);
           },
           py::arg("level"), py::arg("sigma_s_prime"), py::arg("sigma_a"), py::arg("eta"),
-          "Coefficients per node, (n, 3) in 1/mm, instead of a material; wanted for every level.")
+          py::arg("elsewhere") = py::none(),
+          "Coefficients per node, (n, 3) in 1/mm, instead of a material; wanted for every level. elsewhere: both at "
+          "points_in_tets, by which the error of having one value in each tet is told; looked at of the finest level.")
       .def(
           "set_vertices",
           [](Engine& engine, std::uint32_t level, const FloatArray& positions) {

@@ -20,13 +20,8 @@ py::array fluence_in(Engine& engine, const std::string& method, const FloatArray
 
 py::tuple solved_tets(Engine& engine) {
   const Level& level = engine.simulation().present_level();
-  std::vector<glm::vec3> scattering, absorption;
-  for (const gpu::Optical& optical : tet_coefficients(engine.device(), engine.simulation())) {
-    scattering.push_back(optical.sigma_s_prime);
-    absorption.push_back(optical.sigma_a);
-  }
-  return py::make_tuple(own(std::vector<glm::vec3>(level.vertices.begin(), level.vertices.end())),
-                        own(std::move(scattering)), own(std::move(absorption)));
+  const py::tuple found = coefficient_arrays(tet_coefficients(engine.device(), engine.simulation()));
+  return py::make_tuple(own(std::vector<glm::vec3>(level.vertices.begin(), level.vertices.end())), found[0], found[1]);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "engine/optics/fresnel.h"
 #include "engine/optics/material.h"
 #include "python/bindings/bindings.h"
+#include "shaders/material/material.h"
 #include "shaders/material/optics.h"
 
 namespace py = pybind11;
@@ -24,6 +25,18 @@ void bind_materials(py::module_& module) {
   module.def("material_names", &material_names, "Materials that have a name, in the order in which they are offered.");
   module.def("material_source", &material_source, py::arg("name"),
              "Where the coefficients of a material of that name are from, in words. Raises InputError.");
+  module.def(
+      "material_at",
+      [](const gpu::Material& material, const FloatArray& points, const FloatArray& depths) {
+        const auto count = static_cast<std::size_t>(depths.size());
+        const std::span<const glm::vec3> places = vectors(points, count, "points");
+        std::vector<gpu::Optical> optical;
+        for (std::size_t i = 0; i < count; ++i)
+          optical.push_back(gpu::material_at(material, places[i], depths.data()[i]));
+        return coefficient_arrays(optical);
+      },
+      py::arg("material"), py::arg("points"), py::arg("depths"),
+      "sigma_s_prime and sigma_a, (n, 3) in 1/mm, at (n, 3) mm, (n,) mm below the surface.");
   module.def("fresnel_transmittance", &fresnel_transmittance, py::arg("cos_i"), py::arg("eta"),
              "Unpolarised transmittance from outside at incidence cosine cos_i.");
   module.def("internal_diffuse_reflectance", &internal_diffuse_reflectance, py::arg("eta"), "The published F_dr.");

@@ -7,6 +7,7 @@
 #include "engine/reference/reference.h"
 #include "engine/reference/source_walk.h"
 #include "engine/reference/stored_entries.h"
+#include "engine/reference/tet_points.h"
 #include "engine/solve/beams.h"
 #include "python/bindings/bindings.h"
 
@@ -155,19 +156,17 @@ py::dict boundary_dict(const std::string& method, const std::string& source, con
 }
 
 py::tuple coefficients_at_nodes(const QuadGraph& graph, std::uint32_t level, const gpu::Material& material) {
-  const auto optical = evaluate_material(level_of(graph, level), material);
-  std::vector<glm::vec3> sigma_s_prime, sigma_a;
-  for (const gpu::Optical& o : optical) {
-    sigma_s_prime.push_back(o.sigma_s_prime);
-    sigma_a.push_back(o.sigma_a);
-  }
-  return py::make_tuple(own(std::move(sigma_s_prime)), own(std::move(sigma_a)));
+  return coefficient_arrays(evaluate_material(level_of(graph, level), material));
 }
 
 }  // namespace
 
 void bind_reference(py::module_& module) {
   const SolveOptions usual = reference_options();
+  module.def(
+      "points_in_tets",
+      [](const QuadGraph& graph, std::uint32_t level) { return own(points_in_tets(level_of(graph, level))); },
+      py::arg("graph"), py::arg("level"), "(n_t, 3) mm, a point in each tet (engine/reference/tet_points.h).");
   module.def("evaluate_material", &coefficients_at_nodes, py::arg("graph"), py::arg("level"), py::arg("material"),
              "sigma_s_prime and sigma_a, (n, 3) in 1/mm, at the nodes.");
   module.def("assemble", &assemble_dict, py::arg("graph"), py::arg("level"), py::arg("method"),

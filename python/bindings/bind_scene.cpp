@@ -114,17 +114,13 @@ void bind_volume(py::module_& module) {
   py::class_<Volume>(module, "Volume", "Coefficients at the middles of the cells of a grid (engine/scene/volume.h).")
       .def(py::init(&read_volume), py::arg("path"), "Raises InputError naming file, field, found, allowed.")
       .def_readonly("eta", &Volume::eta)
+      .def_property_readonly("cells", [](const Volume& volume) { return coefficient_arrays(volume.optical); })
       .def(
           "at",
           [](const Volume& volume, const FloatArray& points, const std::array<double, 3>& centre) {
             const auto count = static_cast<std::size_t>(points.ndim() == 2 ? points.shape(0) : 0);
-            std::vector<glm::vec3> scattering, absorption;
-            for (const gpu::Optical& optical :
-                 volume.at(vectors(points, count, "points"), glm::dvec3(centre[0], centre[1], centre[2]))) {
-              scattering.push_back(optical.sigma_s_prime);
-              absorption.push_back(optical.sigma_a);
-            }
-            return py::make_tuple(own(std::move(scattering)), own(std::move(absorption)));
+            return coefficient_arrays(
+                volume.at(vectors(points, count, "points"), glm::dvec3(centre[0], centre[1], centre[2])));
           },
           py::arg("points"), py::arg("centre"),
           "sigma_s_prime and sigma_a, (n, 3) each, at (n, 3) mm of a body around `centre`.");

@@ -73,6 +73,9 @@ std::vector<glm::dvec3> vectors(const DoubleArray& array, std::size_t count, con
 // Zips sigma_s_prime and sigma_a, (n, 3) in 1/mm, into one entry per node.
 std::vector<gpu::Optical> optical_from(const FloatArray& sigma_s_prime, const FloatArray& sigma_a, std::size_t count);
 
+// The way back: sigma_s_prime and sigma_a, (n, 3) each.
+pybind11::tuple coefficient_arrays(std::span<const gpu::Optical> optical);
+
 // Level `index`; IndexError if the file has fewer.
 const Level& level_of(const QuadGraph& graph, std::uint32_t index);
 

@@ -38,6 +38,15 @@ std::vector<gpu::Optical> optical_from(const FloatArray& sigma_s_prime, const Fl
   return optical;
 }
 
+py::tuple coefficient_arrays(std::span<const gpu::Optical> optical) {
+  std::vector<glm::vec3> scattering, absorption;
+  for (const gpu::Optical& at : optical) {
+    scattering.push_back(at.sigma_s_prime);
+    absorption.push_back(at.sigma_a);
+  }
+  return py::make_tuple(own(std::move(scattering)), own(std::move(absorption)));
+}
+
 const Level& level_of(const QuadGraph& graph, std::uint32_t index) {
   if (index >= graph.levels().size()) {
     throw py::index_error("level " + std::to_string(index) + ": the file has " + std::to_string(graph.levels().size()));

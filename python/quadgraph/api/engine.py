@@ -108,14 +108,17 @@ class Engine:
 
         function: given points of the body at rest, (n, 3) float32 mm, returns sigma_s_prime and sigma_a, 1/mm, each one
         number, (n,), (n, 3), or (3,) for all points; it is called once for every level, at the middles of tets and
-        outside faces. `VolumeMaterial.from_function` makes a grid of it. Raises InputError, and sets nothing, for other
+        outside faces, and once at other points of the finest tets, by which the error of one value in each is told.
+        `VolumeMaterial.from_function` makes a grid of it. Raises InputError, and sets nothing, for other
         shapes and for numbers that are negative or not finite.
         """
         if np.ndim(eta) or np.asarray(eta).dtype.kind not in "fiub":
             raise InputError(f"eta: {type(eta).__name__} found, a number is wanted")
-        found = [coefficients_at(function, np.array(level.nodes)) for level in self._engine.graph.levels]
-        for number, (scattering, absorption) in enumerate(found):
-            self._engine.set_optical(number, scattering, absorption, float(eta))
+        graph = self._engine.graph
+        found = [coefficients_at(function, np.array(level.nodes)) for level in graph.levels]
+        elsewhere = coefficients_at(function, core.points_in_tets(graph, 0)) if found else None
+        for number, coefficients in enumerate(found):
+            self._engine.set_optical(number, *coefficients, float(eta), elsewhere if number == 0 else None)
         self._material = None
 
     @property

@@ -120,15 +120,15 @@ class Solution:
     cycles: that were asked for, 0 if none; levels: in the order solved, coarsest first; finest: the level solved last;
     work: products of all levels, in products of level 0; clipped: (3,) share of the exitance that was below zero and
     taken from the rest; error: estimate of the whole error, with algebraic, the solver's part, mesh_error, the mesh's,
-    and model_error, the model's, of each what a correction leaves, light_error, that of shadows and of the sampling of
-    lights and skies, after a correction at rest, and None where it cannot be told;
-    advice: of an error above 5%, where it comes from and what to do; inter_reflection: whether it was followed;
-    bounces: (n, 3) W that each brought in; unmet: what was asked for and is not met, in words; missed: of that, the
-    error; stopped: of that, how the solve did not converge; budget: what the bake of the file has to say of the error
-    that was asked for; mesh_warning, model_warning, light_warning, deformed: what else is to be said against the
-    answer; exchange_age: solves by which what some face sees is behind the shape; correction: what sweeps did, None
-    without; path: of the method shortest-path, which has no levels, energy balance and estimates. Texts are empty where
-    there is nothing to say.
+    after a correction at rest with what a material costs that changes within tets, and model_error, the model's, of
+    each what a correction leaves, light_error, that of shadows and of the sampling of lights and skies, after a
+    correction at rest, and None where it cannot be told; advice: of an error above 5%, where it comes from and what to
+    do; inter_reflection: whether it was followed; bounces: (n, 3) W that each brought in; unmet: what was asked for and
+    is not met, in words; missed: of that, the error; stopped: of that, how the solve did not converge; budget: what the
+    bake of the file has to say of the error that was asked for; mesh_warning, model_warning, light_warning, deformed:
+    what else is to be said against the answer; exchange_age: solves by which what some face sees is behind the shape;
+    correction: what sweeps did, None without; path: of the method shortest-path, which has no levels, energy balance
+    and estimates. Texts are empty where there is nothing to say.
     """
 
     method: str

@@ -8,7 +8,7 @@ from concurrent.futures import Future
 from dataclasses import replace
 from typing import Any
 
-from quadgraph.baking.light_decay import decay_rates
+from quadgraph.baking.light_decay import change_length, decay_rates
 from quadgraph.base.errors import InputError, ToolError
 from quadgraph.mesh.surface import Surface, TetMesh
 from quadgraph.tets import interior
@@ -45,7 +45,8 @@ def sizes_of(surface: Surface, wanted: str | float | None, materials: Sequence[s
     """Sizes of a bake whose finest simulation surface is this one, as `check_interior` allows."""
     if materials:
         rates = {rate for material in materials for rate in decay_rates(material)}
-        return LevelSizes(interior.for_rates(surface, sorted(rates)))
+        change = min(change_length(material, surface) for material in materials)
+        return LevelSizes(interior.for_rates(surface, sorted(rates), change))
     if wanted == SURFACE or (wanted is None and mesher != "tetgen"):
         return LevelSizes(None)
     if wanted is None or isinstance(wanted, str):

@@ -1,27 +1,91 @@
-"""How fast light falls inside materials that a bake is told of."""
+"""How fast light falls inside materials that a bake is told of, and over which lengths they change."""
 
 from __future__ import annotations
 
 import json
 import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
 
 from quadgraph import core
+from quadgraph.mesh.surface import Surface
+from quadgraph.tets.interior import Depths, mean_chord
+
+_Array = npt.NDArray[np.floating[Any]]
+
+_SHARES = (0.01, 0.25, 0.5, 0.75, 0.99)  # of a volume's cells, whose rates are asked for
+_WAYS, _STEPS = 400, 200  # straight into the body, on which a material is looked at
+_AS_MUCH = math.e  # by which a coefficient has changed, where it does not by so much in all of the body
 
 
 def decay_rates(material: str) -> tuple[float, ...]:
     """Rates, 1/mm, at which light falls in a material, smallest first, each once; none where there is nothing.
 
-    material: as of --material, `skin1` or `sigma_s_prime=2.0,sigma_a=0.01/0.02/0.05`. Raises InputError.
+    material: as of --material, `skin1`, `sigma_s_prime=2.0,sigma_a=0.01/0.02/0.05` or the .npz of a volume, of whose
+    cells there are some. Raises InputError.
     """
+    if _is_volume(material):
+        of_cells = np.quantile(_rate(*core.Volume(Path(material)).cells), _SHARES, axis=0)
+        return tuple(sorted({float(rate) for rate in of_cells.ravel() if rate > 0}))
     members = json.loads(core.material_json(material))
-    rates = set()
+    rates: set[float] = set()
     for prefix in ("", "second_"):
-        scattering, absorption = (_three(members.get(prefix + name)) for name in ("sigma_s_prime", "sigma_a"))
-        for s, a in zip(scattering, absorption, strict=True):
-            # No faster than what is not scattered: diffusion alone would say more where much is absorbed.
+        two = (_three(members.get(prefix + name)) for name in ("sigma_s_prime", "sigma_a"))
+        for s, a in zip(*two, strict=True):
             if s + a > 0:
-                rates.add(min(math.sqrt(3 * a * (s + a)), s + a))
+                rates.add(float(_rate(s, a)))
     return tuple(sorted(rates))
+
+
+def change_length(material: str, surface: Surface) -> float:
+    """Mean way, mm, on which a material changes once in a body; infinite where it is the same everywhere.
+
+    Extinction and the rate at which light falls count, of the channel that changes most: once is from the least to the
+    most of the body, but by e at least, so that a slight change counts little. Raises InputError as `decay_rates`.
+    """
+    if not _is_volume(material) and json.loads(core.material_json(material)).get("pattern", "none") == "none":
+        return math.inf
+    longest = 0.75 * mean_chord(surface)
+    ways = _ways(surface, longest)
+    points = ways.reshape(-1, 3)
+    depths, _ = Depths(surface).at(points)
+    scattering, absorption = _coefficients(material, surface, points, depths)
+    spread = 2 / (1.5 * mean_chord(surface))
+    found = scattering + absorption, np.hypot(_rate(scattering, absorption), spread)
+    logarithms = np.log(np.maximum(np.concatenate(found, axis=1), 1e-6)).reshape(*ways.shape[:2], -1)
+    whole = np.maximum(np.ptp(logarithms, axis=(0, 1)), math.log(_AS_MUCH))
+    changes = np.abs(np.diff(logarithms, axis=1)).sum(axis=1).mean(axis=0) / whole
+    most = float(changes.max())
+    return longest / most if most > 0 else math.inf
+
+
+def _ways(surface: Surface, longest: float) -> _Array:
+    """(ways, steps, 3) mm: points on straight ways in, from the middles of triangles of each other place."""
+    step = max(1, len(surface.triangles) // _WAYS)
+    corners, normals = surface.corners[::step], surface.doubled_normals[::step]
+    inward = -normals / np.linalg.norm(normals, axis=1, keepdims=True)
+    along = longest * (np.arange(_STEPS) + 0.5) / _STEPS
+    return corners.mean(axis=1)[:, None] + along[:, None] * inward[:, None]
+
+
+def _coefficients(material: str, surface: Surface, points: _Array, depths: _Array) -> tuple[_Array, _Array]:
+    if _is_volume(material):
+        centre = (surface.vertices.min(axis=0) + surface.vertices.max(axis=0)) / 2
+        return core.Volume(Path(material)).at(points, centre)
+    return core.material_at(core.Material(material), points, depths)
+
+
+def _is_volume(material: str) -> bool:
+    return material.lower().endswith(".npz")
+
+
+def _rate(scattering: npt.ArrayLike, absorption: npt.ArrayLike) -> _Array:
+    """No faster than what is not scattered: diffusion alone would say more where much is absorbed."""
+    s, a = np.asarray(scattering, np.float64), np.asarray(absorption, np.float64)
+    return np.minimum(np.sqrt(3 * a * (s + a)), s + a)
 
 
 def _three(value: float | list[float] | None) -> list[float]:

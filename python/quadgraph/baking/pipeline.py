@@ -66,10 +66,10 @@ class BakeOptions:
     many the finest simulation surface has, None for all of the input's; refine: times that every triangle of the
     simulation surface is cut into four, curved where the body is smooth; interior: how large tets are deep inside,
     "auto" by the shape, "surface" as the surface makes them, or an edge length in mm (of coarser levels twice that,
-    four times, ...), None for "auto" with tetgen and "surface" with cgal; for_materials: texts of materials that they
-    are sized for instead; visibility_rays: from each face of one level, to find what sees what, 0 for none; limits hold
-    for each run of the mesher; front: azimuth in degrees from where the body is shown when nobody says so, None for
-    `quadgraph.mesh.front.azimuth`.
+    four times, ...), None for "auto" with tetgen and "surface" with cgal; for_materials: materials that they are sized
+    for instead, texts or files of volumes; visibility_rays: from each face of one level, to find what sees what, 0 for
+    none; limits hold for each run of the mesher; front: azimuth in degrees from where the body is shown when nobody
+    says so, None for `quadgraph.mesh.front.azimuth`.
     """
 
     unit: str | None = None

@@ -158,8 +158,9 @@ def _add_size_options(parser: argparse.ArgumentParser) -> None:
         "--for-material",
         action="append",
         metavar="M",
-        help="size the tets inside for the light in this material instead, several allowed: its coefficients, like "
-        "sigma_s_prime=2.0,sigma_a=0.01/0.02/0.05, or, where the engine is compiled, any text as in `render`",
+        help="size the tets inside for the light in this material instead, and for how it changes from place to place; "
+        "several allowed: coefficients, like sigma_s_prime=2.0,sigma_a=0.01/0.02/0.05, or any text or .npz as in "
+        "`render`",
     )
 
 

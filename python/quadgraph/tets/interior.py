@@ -22,6 +22,7 @@ GROWTH = 1.0  # of the edge length with depth, below the surface's own edge leng
 CHORD_SHARE = 0.1  # of the mean chord, 4 volume / area: edges deep inside where no material is known
 MOST_MORE = 1.4  # times the tets that the surface alone makes: no more for a size that nobody asked for
 DECAY_SHARE = 0.35  # of the length in which light falls by e: edges inside where the material is known
+CHANGE_SHARE = 0.35  # of the way on which a material changes: longer edges hold too much of both
 SHALLOW = 1.5  # decay lengths below the surface from which on edges grow: less light comes back from there
 DEEPER = 0.4  # of their logarithm with decay lengths: light that goes in and out falls twice, and tets cost edge^-3
 LEAST = 1.5  # times the surface's edges: sizes that nobody gave in mm are no less, for then the surface decides
@@ -170,10 +171,12 @@ def of_size(edge: float) -> Interior:
     return Interior("size", (Decay(edge, 0.0),))
 
 
-def for_rates(surface: Surface, rates: Sequence[float]) -> Interior:
-    """Sizes for light that falls at these rates, 1/mm.
+def for_rates(surface: Surface, rates: Sequence[float], change: float = np.inf) -> Interior:
+    """Sizes for light that falls at these rates, 1/mm, in a material that changes once on so many mm.
 
-    Light also falls because it spreads: over the body's thickness by about e^2 even where nothing absorbs it.
+    Light also falls because it spreads: over the body's thickness by about e^2 even where nothing absorbs it. What
+    changes is as fine in the deep as below the surface.
     """
     spread = 2 / (1.5 * mean_chord(surface))
-    return Interior("materials", tuple(Decay(DECAY_SHARE / float(np.hypot(rate, spread)), rate) for rate in rates))
+    decays = [Decay(DECAY_SHARE / float(np.hypot(rate, spread)), rate) for rate in rates]
+    return Interior("materials", (*decays, *([Decay(CHANGE_SHARE * change, 0.0)] if np.isfinite(change) else [])))

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from quadgraph import VolumeMaterial
 from quadgraph.baking.inside import LevelSizes, check_interior, sizes_of
-from quadgraph.baking.light_decay import decay_rates
+from quadgraph.baking.light_decay import change_length, decay_rates
 from quadgraph.base.errors import InputError, ToolError
 from quadgraph.mesh.subdivide import subdivide
 from quadgraph.mesh.surface import Surface, TetMesh
@@ -146,6 +149,48 @@ def test_measured_materials_are_known_to_the_engine() -> None:
     assert len(decay_rates("checker")) > len(decay_rates("skin1"))
     with pytest.raises(InputError, match="stardust"):
         decay_rates("stardust")
+
+
+def checker(cell: float, scattering: float = 2.5, absorption: float = 0.1) -> str:
+    """A material that changes on every cell of so many mm."""
+    second = f"second_sigma_s_prime={scattering},second_sigma_a={absorption},pattern=checker,period={cell}"
+    return f"sigma_s_prime=0.5,sigma_a=0.01,{second}"
+
+
+def volume(cell: float, path: Path) -> str:
+    """The same as a grid."""
+
+    def at(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        odd = np.floor(points / cell).sum(axis=1) % 2 > 0
+        return np.where(odd, 2.5, 0.5), np.where(odd, 0.1, 0.01)
+
+    VolumeMaterial.from_function(at, [[-10.2] * 3, [10.2] * 3], 0.15).save(path)
+    return str(path)
+
+
+def test_a_material_changes_on_ways_as_long_as_its_cells(tmp_path) -> None:
+    """Straight ways through cubes are 2/3 of an edge long on average."""
+    for cell in (1.5, 3.0):
+        found = [change_length(checker(cell), BALL), change_length(volume(cell, tmp_path / "cells.npz"), BALL)]
+        assert found == pytest.approx([2 / 3 * cell] * 2, rel=0.2)
+    assert change_length("skin1", BALL) == np.inf
+    slight = change_length(checker(1.5, 0.55, 0.011), BALL)  # a tenth more: a tenth of a change by e
+    assert slight == pytest.approx(1.0 / np.log(1.1), rel=0.25)
+    layered = "sigma_s_prime=1,sigma_a=.1,second_sigma_s_prime=4,second_sigma_a=.1,pattern=layers,period=2,sharpness=9"
+    assert change_length(layered, BALL) == pytest.approx(10, rel=0.05)  # once on the way to the middle
+
+
+def test_tets_are_as_small_as_what_the_material_has_cells_for(tmp_path) -> None:
+    pale = [volume(cell, tmp_path / f"{cell}.npz") for cell in (3.0, 40.0)]
+    fine, coarse = (filled(BALL, None, (each,)) for each in pale)
+    assert len(fine.tets) > len(coarse.tets)
+    sizes = interior.for_rates(BALL, [0.01], change=2.0)
+    assert sizes.edges(np.array([8.0]), np.array([0.01])) == pytest.approx(0.35 * 2.0)
+
+
+def test_a_volume_that_cannot_be_read_is_named(tmp_path) -> None:
+    with pytest.raises(InputError, match=r"nothing\.npz"):
+        check_interior(None, (str(tmp_path / "nothing.npz"),), "tetgen")
 
 
 @pytest.mark.parametrize(

@@ -48,24 +48,35 @@ class UnseenAnswers:
     motion: UnseenMotion | None
 
 
-def answers(
-    case: UnseenCase, patch: np.ndarray, sweeps: Sequence[int | None], folder: Path, device: str, motion: bool
-) -> UnseenAnswers:
-    """Bake the body into a folder, solve once for each of `sweeps`, then in motion. patch (m,): of each triangle.
+@dataclass(frozen=True)
+class UnseenSetting:
+    """sweeps: a solve for each, None for the engine's own choice; device: as Engine takes it; motion: in frames, too;
+    for_material: bake for the case's own material.
+    """
+
+    sweeps: Sequence[int | None] = (None,)
+    device: str = ""
+    motion: bool = False
+    for_material: bool = False
+
+
+def answers(case: UnseenCase, patch: np.ndarray, how: UnseenSetting, folder: Path) -> UnseenAnswers:
+    """Bake the body into a folder, solve once for each of the sweeps, then in motion. patch (m,): of each triangle.
 
     Raises what bakes and solves raise, and InputError for a sky in motion.
     """
     mesh, file = folder / "body.ply", folder / "body.qgraph"
     unseen_bodies.write(mesh, case.surface)
-    report = bake(mesh, file, BakeOptions(unit="mm"))
-    with Engine(file, device=device) as engine:
+    materials = (_text(case.medium, folder),) if how.for_material else ()
+    report = bake(mesh, file, BakeOptions(unit="mm", for_materials=materials))
+    with Engine(file, device=how.device) as engine:
         engine.material = _material(case.medium)
         engine.lights = [_light(case, folder)]
         engine.solve(**_options(0, case))  # whatever is made once is made now
         triangle, apart = _triangle_of(case, engine.surface())
         of_face = patch[triangle]
-        found = [_answer(engine, of_face, wanted, _options(wanted, case)) for wanted in sweeps]
-        frames = _moved(engine, case, of_face) if motion else None
+        found = [_answer(engine, of_face, wanted, _options(wanted, case)) for wanted in how.sweeps]
+        frames = _moved(engine, case, of_face) if how.motion else None
     return UnseenAnswers(int(report.levels[0]["tets"]), float(apart.max()), found, frames)
 
 
@@ -113,6 +124,15 @@ def _light(case: UnseenCase, folder: Path) -> Light:
         return case.light
     case.light.write(folder / "sky.hdr")
     return EnvironmentLight(folder / "sky.hdr", 1.0)
+
+
+def _text(medium: UnseenMedium, folder: Path) -> str:
+    """A medium's text, or the name of its file."""
+    material = _material(medium)
+    if isinstance(material, Material):
+        return material.text
+    material.save(folder / "medium.npz")
+    return str(folder / "medium.npz")
 
 
 def _material(medium: UnseenMedium) -> Material | VolumeMaterial:

@@ -14,7 +14,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from quadgraph.base.errors import InputError
 from quadgraph_validation.accuracy import unseen_engine
-from quadgraph_validation.accuracy.unseen_engine import UnseenAnswer
+from quadgraph_validation.accuracy.unseen_engine import UnseenAnswer, UnseenSetting
 from quadgraph_validation.accuracy.unseen_motion import UnseenMotion
 from quadgraph_validation.accuracy.unseen_tables import motion_summary, summary, tables  # noqa: F401  as every study has
 from quadgraph_validation.base import extra_module
@@ -31,7 +31,8 @@ _FEW = 5  # patches: a part with fewer is not judged
 class UnseenRun:
     """What is judged. count: of seeds from the first; walks: of the truth of each; truths: folder where these are kept;
     sweeps: what solves are asked for, None for the engine's own choice; device: as Engine takes it; lights: beams or
-    sky; inter_reflection: in the engine and in the truth; motion: also in frames whose light and material change.
+    sky; inter_reflection: in the engine and in the truth; motion: also in frames whose light and material change;
+    for_material: bake for the case's own material in place of for none.
     """
 
     seed: int
@@ -43,6 +44,7 @@ class UnseenRun:
     lights: str = "beams"
     inter_reflection: bool = True
     motion: bool = False
+    for_material: bool = False
 
 
 def run(wanted: UnseenRun) -> dict[str, Any]:
@@ -68,7 +70,7 @@ def run(wanted: UnseenRun) -> dict[str, Any]:
         except KeyboardInterrupt:
             if not rows:
                 raise
-    asked = {key: getattr(wanted, key) for key in ("seed", "lights", "inter_reflection", "walks")}
+    asked = {key: getattr(wanted, key) for key in ("seed", "lights", "inter_reflection", "walks", "for_material")}
     record = asked | {"rows": rows, "summary": summary(rows)}
     return record | {"motion": motion_summary(rows)} if wanted.motion else record
 
@@ -83,7 +85,8 @@ def judged(seed: int, wanted: UnseenRun, tell: Callable[[str, int], None]) -> di
     truth = unseen_truth.make(case, wanted.walks, wanted.truths, lambda walks: tell("random walks", walks))
     tell("engine", wanted.walks)
     with tempfile.TemporaryDirectory(prefix="quadgraph-unseen-") as folder:
-        found = unseen_engine.answers(case, truth.patch, wanted.sweeps, Path(folder), wanted.device, wanted.motion)
+        how = UnseenSetting(wanted.sweeps, wanted.device, wanted.motion, wanted.for_material)
+        found = unseen_engine.answers(case, truth.patch, how, Path(folder))
     parts = parts_of(truth, found.answers[-1].exitance)
     row = {
         "seed": seed,

@@ -117,6 +117,7 @@ def _add_unseen_options(group: argparse._ArgumentGroup) -> None:
         action="store_true",
         help="also 30 frames in which the light turns by 3 degrees each and the material is edited",
     )
+    group.add_argument("--for-material", action="store_true", help="bake each body for its own material")
     group.add_argument(
         "--walks",
         type=positive_int,
@@ -186,6 +187,7 @@ def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
             args.lights,
             args.inter_reflection,
             args.motion,
+            args.for_material,
         )
         record = study.run(wanted)
         if args.images:
