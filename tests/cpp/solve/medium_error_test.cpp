@@ -1,9 +1,10 @@
 // What it costs that every tet has one value of each coefficient: the load that tells it, and what is said of it.
+#include "engine/solve/medium_error.h"
+
 #include <cmath>
 
 #include "engine/reference/operator.h"
 #include "engine/reference/tet_points.h"
-#include "engine/solve/medium_error.h"
 #include "shaders/material/material.h"
 #include "tests/cpp/fixtures/solve_fixtures.h"
 

@@ -15,13 +15,16 @@ from quadgraph.base.errors import InputError
 from quadgraph.file import npz
 from quadgraph_validation.truth.walk_kernel import WalkVolume
 
-_ALLOWED = "allowed are one material throughout and a volume, .npz"
+_ALLOWED = "allowed are one material throughout, a pattern and a volume, .npz"
+_OF_PERIOD = 1 / 30  # of a pattern's period: cells that walks find it in
+_MOST_CELLS = 8_000_000
 
 
 @dataclass(frozen=True, eq=False)
 class KnownMaterial:
     """Coefficients (nz, ny, nx, 3), 1/mm, at points `first` + index * `spacing` (x, y, z), mm, linear between, nearest
-    beside; one cell is the same everywhere. eta: index of refraction inside over outside; file: of a volume.
+    beside; one cell is the same everywhere. eta: index of refraction inside over outside; file: of a volume; text: of
+    a pattern.
     """
 
     sigma_s_prime: np.ndarray
@@ -30,6 +33,7 @@ class KnownMaterial:
     first: np.ndarray
     spacing: np.ndarray
     file: Path | None = None
+    text: str = ""
 
     @staticmethod
     def even(sigma_s_prime: np.ndarray, sigma_a: np.ndarray, eta: float) -> KnownMaterial:
@@ -48,23 +52,45 @@ class KnownMaterial:
         """What a file in a folder says of it: coefficients, or where the volume is; and eta."""
         if self.file:
             return {"material": os.path.relpath(self.file, folder), "eta": self.eta}
+        if self.text:
+            return {"material": self.text, "eta": self.eta}
         names = ("sigma_a", "sigma_s_prime")
         return {name: getattr(self, name)[0, 0, 0].tolist() for name in names} | {"eta": self.eta}
 
 
 def of_scene(path: Path, scene: core.Scene) -> KnownMaterial:
-    """The material of a scene that was read from `path`. Raises InputError for edits, patterns and wrong volumes."""
+    """The material of a scene that was read from `path`. Raises InputError for edits, layers, patterns that are too
+    fine, and wrong volumes.
+    """
     if json.loads(scene.json()).get("edits"):
         raise InputError(f"{path}: /edits: found, {_ALLOWED}; leave the edits out")
     if scene.material.lower().endswith(".npz"):
         return _volume(Path(scene.material), Path(scene.body))
-    pattern = json.loads(core.material_json(scene.material)).get("pattern", "none")
-    if pattern != "none":
-        raise InputError(
-            f"{path}: /material: pattern '{pattern}' found, {_ALLOWED}; add pattern=none, or make it a volume"
-        )
+    members = json.loads(core.material_json(scene.material))
+    if members["pattern"] == "layers":
+        raise InputError(f"{path}: /material: pattern 'layers' found, {_ALLOWED}; make it a volume")
+    if members["pattern"] != "none":
+        return _pattern(path, scene, float(members["period"]))
     found = core.Material(scene.material)
     return KnownMaterial.even(np.array(found.sigma_s_prime), np.array(found.sigma_a), float(found.eta))
+
+
+def _pattern(path: Path, scene: core.Scene, period: float) -> KnownMaterial:
+    """A pattern at points as close as it wants, around the body. Raises InputError where these are too many."""
+    vertices = core.load(scene.body).levels[0].vertices.astype(np.float64)
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    spacing = period * _OF_PERIOD
+    counts = np.ceil((high - low) / spacing) + 1
+    if counts.prod() > _MOST_CELLS:
+        least = float(np.cbrt((high - low).prod() / _MOST_CELLS)) / _OF_PERIOD
+        raise InputError(f"{path}: /material: a period of {period:.4g} mm found, at least about {least:.3g} mm allowed "
+                         "in a body of this size; take a longer one, or a smaller body")  # fmt: skip
+    x, y, z = (first + spacing * np.arange(int(count)) for first, count in zip(low, counts, strict=True))
+    places = np.stack(np.meshgrid(z, y, x, indexing="ij")[::-1], axis=-1)
+    material, points = core.Material(scene.material), places.reshape(-1, 3).astype(np.float32)
+    found = core.material_at(material, points, np.zeros(len(points), np.float32))
+    scattering, absorption = (values.reshape(places.shape).astype(np.float64) for values in found)
+    return KnownMaterial(scattering, absorption, float(material.eta), low, np.full(3, spacing), text=scene.material)
 
 
 def _volume(file: Path, body: Path) -> KnownMaterial:

@@ -55,7 +55,7 @@ class Subject:
 
 
 def subject(path: Path) -> Subject:
-    """Read a scene. Raises InputError for edits, patterns, parallel rays and darkness."""
+    """Read a scene. Raises InputError for edits, layers, parallel rays and darkness."""
     scene = core.SceneFile(path).at(0)
     document = json.loads(scene.json())
     material = known_material.of_scene(path, scene)
