@@ -211,7 +211,6 @@ Real counts_at(const Real& depth) {
 }
 
 // The light of both: fluences add up.
-
 template <class Real>
 void add(UncollidedLight<Real>& sum, const UncollidedLight<Real>& other) {
   using std::exp, std::log;
