@@ -42,7 +42,7 @@ std::optional<Hit> first_met(const Level& level, const glm::dvec3& origin, const
 
 // What of a share of at most `most` is followed through further parts of the body.
 double followed(double most) {
-  return glm::smoothstep(double{gpu::FOLLOWED_LEAST}, double{gpu::FOLLOWED_WHOLE}, most);
+  return glm::smoothstep(double{gpu::GATHER_END}, double{gpu::FOLLOWED_WHOLE}, most);
 }
 
 struct Branch {
@@ -57,7 +57,7 @@ std::optional<Branch> brightest_that_meets(const Level& level, std::vector<Escap
   while (!waiting.empty()) {
     const auto most = std::max_element(waiting.begin(), waiting.end(), dimmer);
     const Escape escape = *most;
-    if (glm::compMax(escape.share) <= double{gpu::FOLLOWED_LEAST}) break;
+    if (glm::compMax(escape.share) <= double{gpu::GATHER_END}) break;
     waiting.erase(most);
     const auto hit = first_met(level, escape.point, escape.direction, escape.face);
     const double share = hit && hit->outside ? followed(glm::compMax(escape.share)) : 0;

@@ -16,8 +16,8 @@ struct LeavingLight {
 };
 
 // From the point `barycentric` of open face f along `outside` (unit, away from the face): gathered radiance, scaled,
-// and what the ray gathers in the parts of the body that lie behind, where more than FOLLOWED_LEAST of it comes out
-// again. `radiance_norm`: integral of F_t cos over the hemisphere, sr.
+// and what the ray gathers in the parts of the body that lie behind, where more than GATHER_END of it comes out again.
+// `radiance_norm`: integral of F_t cos over the hemisphere, sr.
 LeavingLight leaving(const Level& level, const Problem& problem, const InsideLight& light,
                      std::span<const VertexScale> scale, double radiance_norm, std::uint32_t f, glm::dvec3 barycentric,
                      glm::dvec3 outside);

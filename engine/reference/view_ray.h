@@ -22,7 +22,8 @@ struct InsideValues {
   Real phi, entry, depth;
 };
 
-// Where a ray ends, as GATHER_END and GATHER_LEAST say it.
+// Where a ray ends: each channel of it has less than `end` left, and behind lies less than `end` of its radiance unless
+// less than `least` is left.
 struct ViewEnd {
   double end{gpu::GATHER_END}, least{gpu::GATHER_LEAST};
 };
@@ -41,7 +42,6 @@ class ViewRay {
   Radiance run(std::uint32_t f, const glm::dvec3& barycentric, glm::dvec3 direction) {
     radiance_.fill(Real(0));
     left_.fill(Real(1));
-    on_ = Real(1);
     escapes_.clear();
     ray_.start_on_face(f, barycentric);
     read_tet();
@@ -51,7 +51,7 @@ class ViewRay {
       for (std::size_t c = 0; c < 3; ++c) cross(exit, c);
       const std::uint32_t next = ray_.leave(exit);
       read_corners();
-      if (!goes_on()) break;
+      if (ended()) break;
       if (next < level_.tet_count()) {
         ray_.enter(next);
         read_tet();
@@ -59,7 +59,7 @@ class ViewRay {
         direction = meet_surface(next - level_.tet_count(), direction);
       }
     }
-    for (std::size_t c = 0; c < 3; ++c) radiance_[c] = radiance_[c] + on_ * left_[c] * even_radiance(c);
+    for (std::size_t c = 0; c < 3; ++c) radiance_[c] = radiance_[c] + left_[c] * even_radiance(c);
     return radiance_;
   }
 
@@ -68,7 +68,6 @@ class ViewRay {
 
  private:
   using Values = InsideValues<Real>;
-  static inline const double fade{gpu::GATHER_FADE}, least_fade{gpu::GATHER_LEAST_FADE};
 
   void read_tet() {
     for (int c = 0; c < 3; ++c) here_[static_cast<std::size_t>(c)] = medium_.at(ray_.tet(), c);
@@ -131,38 +130,18 @@ class ViewRay {
     });
     const Real fluence = weighted(from.phi, to.phi, tau) + uncollided;
     const Real scattering = here_[c].scattering * (exit.length / (4 * glm::pi<double>()));
-    radiance_[c] = radiance_[c] + on_ * left_[c] * scattering * fluence;
+    radiance_[c] = radiance_[c] + left_[c] * scattering * fluence;
     left_[c] = left_[c] * exp(-tau);
   }
 
-  // Ends what of the ray may end at its point (gather_shared.h), and tells whether any goes on.
-  bool goes_on() {
-    const double first = std::max(fade * end_.end, least_fade * end_.least);
-    Real goes(0);
+  // Whether what lies behind the ray's point matters little.
+  bool ended() const {
     for (std::size_t c = 0; c < 3; ++c) {
-      if (value_of(left_[c]) >= first) return true;
-      goes = larger(goes, going_on(c));
+      const double left = value_of(left_[c]);
+      if (left > end_.end) return false;
+      if (left > end_.least && left * even_value(c) > end_.end * value_of(radiance_[c])) return false;
     }
-    if (value_of(goes) >= value_of(on_)) return true;
-    for (std::size_t c = 0; c < 3; ++c) radiance_[c] = radiance_[c] + (on_ - goes) * left_[c] * even_radiance(c);
-    on_ = goes;
-    return value_of(on_) > 0;
-  }
-
-  Real going_on(std::size_t c) const {
-    const Real far = above(left_[c], Real(end_.end), fade);
-    const Real bright = above(left_[c] * even_radiance(c), end_.end * radiance_[c], fade);
-    return larger(far, bright) * above(left_[c], Real(end_.least), least_fade);
-  }
-
-  static Real larger(const Real& a, const Real& b) { return value_of(a) < value_of(b) ? b : a; }
-
-  // 0 where `a` is at most `b`, 1 from `more` times that on.
-  static Real above(const Real& a, const Real& b, double more) {
-    const double over = value_of(a) - value_of(b);
-    if (over <= 0) return Real(0);
-    if (over >= (more - 1) * value_of(b)) return Real(1);
-    return (a - b) / ((more - 1) * b);
+    return true;
   }
 
   // Mirrors the ray, by the share that stays inside.
@@ -177,8 +156,7 @@ class ViewRay {
       for (std::size_t k = 0; k < 4; ++k) point += ray_.corner(k).lambda * ray_.corner(k).position;
       const double outside = std::sqrt(std::max(1 - problem_.eta * problem_.eta * (1 - cosine * cosine), 0.0));
       const glm::dvec3 way = glm::normalize(problem_.eta * (direction - cosine * normal) + outside * normal);
-      glm::dvec3 left;
-      for (std::size_t c = 0; c < 3; ++c) left[static_cast<int>(c)] = value_of(on_) * value_of(left_[c]);
+      const glm::dvec3 left(value_of(left_[0]), value_of(left_[1]), value_of(left_[2]));
       escapes_.push_back({(1 - kept) * left, f, point, outward_of(flat, way)});
     }
     for (Real& left : left_) left = left * kept;
@@ -211,6 +189,22 @@ class ViewRay {
     return here_[c].albedo() * (1 / (4 * glm::pi<double>())) * (point.phi + uncollided);
   }
 
+  double even_value(std::size_t c) const {
+    const double sigma_t = value_of(here_[c].scattering) + value_of(here_[c].absorption);
+    double phi = 0, entry = 0, depth = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Values& at = corners_[c][k];
+      phi += ray_.corner(k).lambda * value_of(at.phi);
+      entry += ray_.corner(k).lambda * value_of(at.entry);
+      depth += ray_.corner(k).lambda * value_of(at.depth);
+    }
+    const double albedo = sigma_t > 0 ? value_of(here_[c].scattering) / sigma_t : 0;
+    double uncollided = entry * std::exp(-depth);
+    const double linear = linear_light(c, at_point(), plain);
+    if (uncollided > linear) uncollided = beyond(uncollided, linear);
+    return albedo / (4 * glm::pi<double>()) * (phi + uncollided);
+  }
+
   const Level& level_;
   const Problem& problem_;
   const Medium& medium_;
@@ -221,7 +215,6 @@ class ViewRay {
   std::array<Coefficients<Real>, 3> here_{};        // by channel
   std::array<std::array<Values, 4>, 3> corners_{};  // by channel, of the ray's corners
   Radiance left_{};                                 // e^-tau, less what left through faces
-  Real on_{};                                       // what has not ended
   Radiance radiance_{};
   std::vector<Escape> escapes_;
 };

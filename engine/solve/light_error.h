@@ -30,8 +30,8 @@ class LightError {
   device::Buffer difference_;
 };
 
-// What counts of light that is scattered at the surface: what leaves of light that is scattered at the surface of a
-// deep body, and what has left of that of the lights. boundary: of the diffusion; optical: all coefficients of the
+// What counts of light that is scattered at the surface, per channel: what leaves of it in a deep body, and what has
+// left of that of the lights. boundary: of the diffusion; optical: all coefficients of the
 // body, which are taken in the mean.
 glm::dvec3 share_of_surface_light(const Energy& energy, const Boundary& boundary,
                                   std::span<const gpu::Optical> optical);

@@ -42,7 +42,8 @@ void add_medium_error(SolveReport& report, const ErrorEstimate& medium) {
   if (std::max(medium.whole, medium.unlit) <= large) return;
   report.mesh_warning += (report.mesh_warning.empty() ? "" : "; ") +
                          std::string("the material changes within tets, by which the light is off by about ") +
-                         percent_text(medium.whole) + ", on the unlit side " + percent_text(medium.unlit) +
+                         percent_text(medium.whole) +
+                         (medium.unlit > 0 ? ", on the unlit side " + percent_text(medium.unlit) : "") +
                          "; a file baked with --for-material, or with more vertices, has less of that";
 }
 

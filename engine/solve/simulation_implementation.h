@@ -79,7 +79,7 @@ struct Simulation::Implementation {
     return largest;
   }
 
-  // Changed light.
+  // Changed light: right-hand sides are stale.
   void unload() {
     scaled = false;
     for (SourceWalk& walk : walks) walk.invalidate();

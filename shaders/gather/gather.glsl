@@ -89,7 +89,6 @@ vec3 keep(inout Escape most, inout Escape second, Escape other) {
 Gathered gather(TetPoint at, vec3 direction) {
   Gathered sum = Gathered(vec3(0), vec3(0), NO_ESCAPE, NO_ESCAPE);
   vec3 left = vec3(1);
-  float on = 1.0;  // what of the ray has not ended
   LocalLight here = fields_at(at.tet, at.l);
   for (uint step = 0u; step < GATHER_STEPS; ++step) {
     Exit exit = find_exit(at, direction);
@@ -99,15 +98,10 @@ Gathered gather(TetPoint at, vec3 direction) {
     LocalLight there = fields_at(at.tet, at.l);
     vec3 lost, fluence = fluence_along(here, there, extinction(optical) * exit.path, lost);
     vec3 last = left * optical.sigma_s_prime * (exit.path / FOUR_PI) * fluence;
-    sum.radiance += on * last;
+    sum.radiance += last;
     left -= left * lost;
     here = there;
-    float goes = min(on, largest(going_on(left, sum.radiance, last, lost)));
-    if (goes != on) {
-      sum.radiance += (on - goes) * left * even_radiance(at.tet, here);
-      on = goes;
-      if (on == 0.0) break;
-    }
+    if (ends(left, sum.radiance, last, lost)) break;
     uint crossing = crossing_at(at.tet, exit.place), across = crossing >> CROSSING_BITS;
     if (across < BODY.tet_count) {
       enter(at, exit.place, crossing);
@@ -119,7 +113,7 @@ Gathered gather(TetPoint at, vec3 direction) {
     if (BODY.face_kinds.at[face] == FACE_OPEN) {
       Met met = met_from_inside(face, at, direction);
       float reflected = internal_reflectance(met.cosine, BODY.eta);
-      vec3 through = on * left * (1.0 - reflected);
+      vec3 through = left * (1.0 - reflected);
       sum.seen += through;
       if (largest(through) > largest(sum.second.share)) {
         keep(sum.most, sum.second, escape_here(through, face, at, direction, met, n));
@@ -131,7 +125,7 @@ Gathered gather(TetPoint at, vec3 direction) {
       direction = normalize(direction - 2.0 * dot(direction, n) * n);
     }
   }
-  sum.radiance += on * left * even_radiance(at.tet, here);
+  sum.radiance += left * even_radiance(at.tet, here);
   return sum;
 }
 

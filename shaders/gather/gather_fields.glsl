@@ -51,16 +51,11 @@ vec3 fluence_along(LocalLight from, LocalLight to, vec3 tau, out vec3 lost) {
   return attenuated_mean(from.phi, to.phi, tau, lost) + held(uncollided, linear);
 }
 
-// 0 where `a` is at most `b`, 1 from `fade` times that on.
-vec3 above(vec3 a, vec3 b, float fade) {
-  return clamp((a - b) / max((fade - 1.0) * b, vec3(1e-37)), 0.0, 1.0);
-}
-
-// What goes on of a ray that keeps `left` and has gathered `radiance`, of it `last` where it lost the share `lost`.
-vec3 going_on(vec3 left, vec3 radiance, vec3 last, vec3 lost) {
-  vec3 goes = max(above(left, vec3(GATHER_END), GATHER_FADE),
-                  above(last * (1.0 - lost), GATHER_END * radiance * lost, GATHER_FADE));
-  return goes * above(left, vec3(GATHER_LEAST), GATHER_LEAST_FADE);
+// Whether a ray may end that keeps `left` and has gathered `radiance`, of it `last` where it lost the share `lost`.
+bool ends(vec3 left, vec3 radiance, vec3 last, vec3 lost) {
+  vec3 behind = last * (1.0 - lost);
+  return all(lessThanEqual(
+      left, mix(vec3(GATHER_LEAST), vec3(GATHER_END), lessThanEqual(behind, GATHER_END * radiance * lost))));
 }
 
 // Radiance of a body that is everywhere as at a point.

@@ -57,28 +57,24 @@ const float GATHER_FLOOR = 0.4f;
 const float GATHER_LONG = 4.0f;
 // A view ray ends where every channel keeps at most GATHER_END, and what lies behind, if it is as bright as the last
 // tet, adds at most GATHER_END to what is gathered; or keeps at most GATHER_LEAST. What lies behind then counts as
-// even. Seen from the unlit side the fluence grows inwards almost as fast as it is attenuated: the first
-// condition alone loses 5%. It ends bit by bit, from GATHER_FADE or GATHER_LEAST_FADE times as much on, so that rays
-// side by side see nearly the same where one still meets something bright behind and the other does not.
-const float GATHER_END = 5e-3f;
-const float GATHER_FADE = 3.0f;
-const float GATHER_LEAST = 1e-8f;
-const float GATHER_LEAST_FADE = 30.0f;
+// even. Seen from the unlit side the fluence grows inwards almost as fast as it is attenuated: the first condition
+// alone loses 5%.
+const float GATHER_END = 1e-2f;
+const float GATHER_LEAST = 1e-6f;
 // Tets that a view ray crosses at most.
 const uint GATHER_STEPS = 1024u;
-// From FOLLOWED_WHOLE on all of a branch is followed through further parts of a body, below FOLLOWED_LEAST nothing.
-const float FOLLOWED_LEAST = 1e-2f;
+// From this share on all of a branch is followed through further parts of a body, below GATHER_END nothing.
 const float FOLLOWED_WHOLE = 5e-2f;
 // Parts of a body that a view ray and its branches go through at most.
 const uint VIEW_PARTS = 8u;
 // Optical depth from which on light that has not scattered counts as none, and tets on the way back to where it
 // entered.
 const float UNCOLLIDED_DEPTH = 16.0f;
+const uint UNCOLLIDED_STEPS = 512u;
 // Of the light of several beams only entry exp(-depth) is known; between vertices the entry is linear. A beam counts in
 // it by exp(-depth / SHARED_DEPTH), against the one that counts most, and not at all from UNCOLLIDED_DEPTH on: where a
 // bright one comes to its end, or is not there any more, the entry does not change at once from one vertex to the next.
 const float SHARED_DEPTH = 3.0f;
-const uint UNCOLLIDED_STEPS = 512u;
 // Least inside cosine of light at the face where it enters.
 const float LEAST_COSINE = 0.02f;
 // A refracted view ray keeps at least this cosine with the face that it enters, whose normal is not that of the

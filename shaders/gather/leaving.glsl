@@ -25,7 +25,7 @@ struct Leaving {
 // What of a share of at most `most` is followed through further parts of the body: all but little of what is much,
 // nothing of what is not, so that nothing changes at once from one view ray to the next.
 float followed(float most) {
-  return smoothstep(FOLLOWED_LEAST, FOLLOWED_WHOLE, most);
+  return smoothstep(GATHER_END, FOLLOWED_WHOLE, most);
 }
 
 // Light that leaves face `face` at barycentric coordinates `l` along `outward`, at a surface of normal `n`. Fresnel and
@@ -56,7 +56,7 @@ Leaving leaving(uint face, vec3 l, vec3 outward, vec3 n, GatherScales scale, flo
     inside.second.share *= share;
     sum.seen += keep(most, second, inside.most) + keep(most, second, inside.second);
     share = vec3(0);
-    while (share == vec3(0) && largest(most.share) > FOLLOWED_LEAST) {
+    while (share == vec3(0) && largest(most.share) > GATHER_END) {
       Escape way = most;
       most = second;
       second = NO_ESCAPE;

@@ -8,7 +8,7 @@ from concurrent.futures import Future
 from dataclasses import replace
 from typing import Any
 
-from quadgraph.baking.light_decay import change_length, decay_rates
+from quadgraph.baking.light_decay import change_length, decay_rates, opened
 from quadgraph.base.errors import InputError, ToolError
 from quadgraph.mesh.surface import Surface, TetMesh
 from quadgraph.tets import interior
@@ -44,8 +44,9 @@ def check_interior(wanted: str | float | None, materials: Sequence[str], mesher:
 def sizes_of(surface: Surface, wanted: str | float | None, materials: Sequence[str], mesher: str) -> LevelSizes:
     """Sizes of a bake whose finest simulation surface is this one, as `check_interior` allows."""
     if materials:
-        rates = {rate for material in materials for rate in decay_rates(material)}
-        change = min(change_length(material, surface) for material in materials)
+        known = [opened(material) for material in materials]
+        rates = {rate for material in known for rate in decay_rates(material)}
+        change = min(change_length(material, surface) for material in known)
         return LevelSizes(interior.for_rates(surface, sorted(rates), change))
     if wanted == SURFACE or (wanted is None and mesher != "tetgen"):
         return LevelSizes(None)

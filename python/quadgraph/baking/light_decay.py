@@ -21,14 +21,20 @@ _WAYS, _STEPS = 400, 200  # straight into the body, on which a material is looke
 _AS_MUCH = math.e  # by which a coefficient has changed, where it does not by so much in all of the body
 
 
-def decay_rates(material: str) -> tuple[float, ...]:
+def opened(material: str) -> str | core.Volume:
+    """Read the .npz of a volume, which both functions below take as well as its name. Raises InputError."""
+    return core.Volume(Path(material)) if material.lower().endswith(".npz") else material
+
+
+def decay_rates(material: str | core.Volume) -> tuple[float, ...]:
     """Rates, 1/mm, at which light falls in a material, smallest first, each once; none where there is nothing.
 
     material: as of --material, `skin1`, `sigma_s_prime=2.0,sigma_a=0.01/0.02/0.05` or the .npz of a volume, of whose
     cells there are some. Raises InputError.
     """
-    if _is_volume(material):
-        of_cells = np.quantile(_rate(*core.Volume(Path(material)).cells), _SHARES, axis=0)
+    material = opened(material) if isinstance(material, str) else material
+    if isinstance(material, core.Volume):
+        of_cells = np.quantile(_rate(*material.cells), _SHARES, axis=0)
         return tuple(sorted({float(rate) for rate in of_cells.ravel() if rate > 0}))
     members = json.loads(core.material_json(material))
     rates: set[float] = set()
@@ -40,19 +46,18 @@ def decay_rates(material: str) -> tuple[float, ...]:
     return tuple(sorted(rates))
 
 
-def change_length(material: str, surface: Surface) -> float:
+def change_length(material: str | core.Volume, surface: Surface) -> float:
     """Mean way, mm, on which a material changes once in a body; infinite where it is the same everywhere.
 
     Extinction and the rate at which light falls count, of the channel that changes most: once is from the least to the
     most of the body, but by e at least, so that a slight change counts little. Raises InputError as `decay_rates`.
     """
-    if not _is_volume(material) and json.loads(core.material_json(material)).get("pattern", "none") == "none":
+    material = opened(material) if isinstance(material, str) else material
+    if isinstance(material, str) and json.loads(core.material_json(material))["pattern"] == "none":
         return math.inf
     longest = 0.75 * mean_chord(surface)
     ways = _ways(surface, longest)
-    points = ways.reshape(-1, 3)
-    depths, _ = Depths(surface).at(points)
-    scattering, absorption = _coefficients(material, surface, points, depths)
+    scattering, absorption = _coefficients(material, surface, ways.reshape(-1, 3))
     spread = 2 / (1.5 * mean_chord(surface))
     found = scattering + absorption, np.hypot(_rate(scattering, absorption), spread)
     logarithms = np.log(np.maximum(np.concatenate(found, axis=1), 1e-6)).reshape(*ways.shape[:2], -1)
@@ -71,15 +76,11 @@ def _ways(surface: Surface, longest: float) -> _Array:
     return corners.mean(axis=1)[:, None] + along[:, None] * inward[:, None]
 
 
-def _coefficients(material: str, surface: Surface, points: _Array, depths: _Array) -> tuple[_Array, _Array]:
-    if _is_volume(material):
-        centre = (surface.vertices.min(axis=0) + surface.vertices.max(axis=0)) / 2
-        return core.Volume(Path(material)).at(points, centre)
+def _coefficients(material: str | core.Volume, surface: Surface, points: _Array) -> tuple[_Array, _Array]:
+    if isinstance(material, core.Volume):
+        return material.at(points, (surface.vertices.min(axis=0) + surface.vertices.max(axis=0)) / 2)
+    depths, _ = Depths(surface).at(points)
     return core.material_at(core.Material(material), points, depths)
-
-
-def _is_volume(material: str) -> bool:
-    return material.lower().endswith(".npz")
 
 
 def _rate(scattering: npt.ArrayLike, absorption: npt.ArrayLike) -> _Array:

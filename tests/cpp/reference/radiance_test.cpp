@@ -182,27 +182,6 @@ TEST_CASE("single scattering of a beam leaves a slab as the closed form says, on
   }
 }
 
-TEST_CASE("a body that light shines through from behind changes smoothly with the view, wherever rays end") {
-  const OwnedLevel owned = slab_level(6, 14.0f);
-  const Level level = owned.view();
-  const Opticals optical = everywhere_of(level, {0.9f, 0.7f, 0.5f}, {0.1f, 0.1f, 0.1f});
-  const std::vector<glm::dvec3> no_phi(level.vertices.size(), glm::dvec3(0));
-  const Problem problem = problem_of(optical, 1.0);
-  const Uncollided beam = LitSlab(level, along(glm::vec3(1, 0, 0))).in(level, problem);
-  const std::uint32_t face = open_face(level, false);
-  std::vector<glm::dvec3> seen;
-  for (double mu = 0.4; mu < 0.95; mu += 0.0005) {
-    seen.push_back(
-        glm::log(gathered_radiance(level, problem, {no_phi, beam}, face, glm::dvec3(1.0 / 3), outward(mu, 1))));
-  }
-  double most = 0;
-  for (std::size_t i = 2; i < seen.size(); ++i) {
-    const glm::dvec3 bend = glm::abs(seen[i] - 2.0 * seen[i - 1] + seen[i - 2]);
-    most = std::max({most, bend.x, bend.y, bend.z});
-  }
-  CHECK(most < 0.002);
-}
-
 TEST_CASE("uniform light that enters falls off as its bundle; one ray stands for it") {
   const OwnedLevel owned = slab_level(5, 2.0f);
   const Level level = owned.view();

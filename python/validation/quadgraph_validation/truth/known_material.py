@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 
 from quadgraph import core
+from quadgraph.api.coefficients import MOST_CELLS, grid_of
 from quadgraph.base.errors import InputError
 from quadgraph.file import npz
 from quadgraph_validation.truth.walk_kernel import WalkVolume
 
 _ALLOWED = "allowed are one material throughout, a pattern and a volume, .npz"
 _OF_PERIOD = 1 / 30  # of a pattern's period: cells that walks find it in
-_MOST_CELLS = 8_000_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,20 +77,14 @@ def of_scene(path: Path, scene: core.Scene) -> KnownMaterial:
 
 def _pattern(path: Path, scene: core.Scene, period: float) -> KnownMaterial:
     """A pattern at points as close as it wants, around the body. Raises InputError where these are too many."""
-    vertices = core.load(scene.body).levels[0].vertices.astype(np.float64)
-    low, high = vertices.min(axis=0), vertices.max(axis=0)
-    spacing = period * _OF_PERIOD
-    counts = np.ceil((high - low) / spacing) + 1
-    if counts.prod() > _MOST_CELLS:
-        least = float(np.cbrt((high - low).prod() / _MOST_CELLS)) / _OF_PERIOD
+    vertices, material = core.load(scene.body).levels[0].vertices, core.Material(scene.material)
+    box, spacing = np.array([vertices.min(axis=0), vertices.max(axis=0)], np.float64), period * _OF_PERIOD
+    if np.prod(np.ceil(np.ptp(box, axis=0) / spacing) + 1) > MOST_CELLS:
+        least = float(np.cbrt(np.prod(np.ptp(box, axis=0)) / MOST_CELLS)) / _OF_PERIOD
         raise InputError(f"{path}: /material: a period of {period:.4g} mm found, at least about {least:.3g} mm allowed "
                          "in a body of this size; take a longer one, or a smaller body")  # fmt: skip
-    x, y, z = (first + spacing * np.arange(int(count)) for first, count in zip(low, counts, strict=True))
-    places = np.stack(np.meshgrid(z, y, x, indexing="ij")[::-1], axis=-1)
-    material, points = core.Material(scene.material), places.reshape(-1, 3).astype(np.float32)
-    found = core.material_at(material, points, np.zeros(len(points), np.float32))
-    scattering, absorption = (values.reshape(places.shape).astype(np.float64) for values in found)
-    return KnownMaterial(scattering, absorption, float(material.eta), low, np.full(3, spacing), text=scene.material)
+    found = grid_of(lambda points: core.material_at(material, points, np.zeros(len(points))), box, spacing)
+    return KnownMaterial(*found, float(material.eta), box[0], np.full(3, spacing), text=scene.material)
 
 
 def _volume(file: Path, body: Path) -> KnownMaterial:
