@@ -5,6 +5,8 @@
 
 #include "engine/reference/vertex_starts.h"
 #include "interface/gather/gather_exitance.comp.h"
+#include "interface/gather/gather_first.comp.h"
+#include "interface/gather/gather_lacking.comp.h"
 #include "interface/gather/gather_nodes.comp.h"
 #include "interface/gather/gather_phi.comp.h"
 #include "interface/gather/gather_scale.comp.h"
@@ -30,7 +32,8 @@ constexpr std::uint64_t face_bytes = 2 * sizeof(std::uint32_t) + sizeof(glm::uve
 
 }  // namespace
 
-GatherField::GatherField(device::Device& device, const Level& level, const BodyTree& tree) {
+GatherField::GatherField(device::Device& device, const Level& level, const BodyTree& tree)
+    : corners_(4 * level.tet_count()) {
   const VertexStarts starts = vertex_starts(level);
   start_ = device::upload<std::uint32_t>(device, starts.start, "gather/a tet at each vertex");
   nearest_ = device::upload<std::uint32_t>(device, starts.nearest, "gather/nearest surface vertex");
@@ -45,10 +48,16 @@ GatherField::GatherField(device::Device& device, const Level& level, const BodyT
   scale_ = room(level.surface_vertex_count * sizeof(gpu::GatherScale), "gather/scale");
 }
 
+void GatherField::make_room_corrected(device::Device& device) {
+  if (lacking_.size() > 0) return;
+  lacking_ = {device, corners_ * vec3_bytes, device::Place::device, "gather/lacking first-scattered light"};
+}
+
 void GatherField::record(Workspace& work, const GatherInput& input) {
   record_body(work, input);
   record_points(work, input);
   record_uncollided(work, input);
+  if (input.first) record_first(work, input);
   record_scale(work, input);
 }
 
@@ -113,10 +122,37 @@ void GatherField::record_uncollided(Workspace& work, const GatherInput& input) {
                          level.vertex_count * input.beams.beams.size() * (tets_per_ray * tet_bytes + 2 * vec3_bytes));
 }
 
+void GatherField::record_first(Workspace& work, const GatherInput& input) {
+  const LevelBuffers& level = input.level;
+  const gpu::GatherFirstPush first{.solid = solid_on_device_.address(),
+                                   .points = points_.address(),
+                                   .deposit = input.first->deposit.address(),
+                                   .scale = work.scale.address(),
+                                   .lacking = lacking_.address(),
+                                   .count = level.tet_count};
+  work.recorder.dispatch(
+      work.passes.of(shader::gather_first), first, level.tet_count, "gather first",
+      level.tet_count * (sizeof(glm::uvec4) + 4 * (sizeof(gpu::GatherPoint) + 2 * vec3_bytes) + sizeof(gpu::Optical)) +
+          input.first->deposit.size());
+  const gpu::GatherLackingPush lacking{.tets = level.tets.address(),
+                                       .tet_offset = input.first->tet_offset.address(),
+                                       .tet_incidence = input.first->tet_incidence.address(),
+                                       .lacking = lacking_.address(),
+                                       .mass = input.first->mass.address(),
+                                       .points = points_.address(),
+                                       .count = level.vertex_count};
+  work.recorder.dispatch(
+      work.passes.of(shader::gather_lacking), lacking, level.vertex_count, "gather first",
+      lacking_.size() + 4 * level.tet_count * sizeof(glm::uvec4) + level.vertex_count * 3 * vec3_bytes);
+}
+
 void GatherField::record_scale(Workspace& work, const GatherInput& input) {
   const LevelBuffers& level = input.level;
-  const gpu::GatherExitancePush exitance{
-      .solid = solid_on_device_.address(), .points = points_.address(), .exitance = gathered_.address()};
+  const gpu::GatherExitancePush exitance{.solid = solid_on_device_.address(),
+                                         .points = points_.address(),
+                                         .exitance = gathered_.address(),
+                                         .scale = 0,
+                                         .through = input.first ? 1u : 0u};
   work.recorder.dispatch(work.passes.of(shader::gather_exitance), exitance, level.face_count, "gathered exitance",
                          level.face_count * (tets_per_ray * (tet_bytes + sizeof(gpu::GatherPoint)) + vec3_bytes));
   record_nodes(work, input);

@@ -2,6 +2,7 @@
 // integrate to the exitance.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "engine/solve/body_tree.h"
 #include "engine/solve/level_buffers.h"
 #include "engine/solve/surface_results.h"
+#include "engine/solve/transport_samples.h"
 #include "engine/solve/workspace.h"
 #include "shaders/gather/gather_shared.h"
 
@@ -22,13 +24,17 @@ struct GatherInput {
   const BeamBuffers& beams;
   const device::Buffer& vertex_exitance;  // vec3 per surface vertex, W/mm^2
   gpu::BodyRef body;
-  BodyTree& tree;  // of the level
+  BodyTree& tree;                         // of the level
+  std::optional<FirstScattered> first{};  // of a correction, whose exitance and fluence these are
 };
 
 class GatherField {
  public:
   // `tree`: of the level.
   GatherField(device::Device& device, const Level& level, const BodyTree& tree);
+
+  // Room for a field of a correction.
+  void make_room_corrected(device::Device& device);
 
   // The vertices of the level have moved.
   void moved() { normals_behind_ = true; }
@@ -54,11 +60,14 @@ class GatherField {
   void record_normals(Workspace& work, const GatherInput& input);
   void record_points(Workspace& work, const GatherInput& input);
   void record_uncollided(Workspace& work, const GatherInput& input);
+  void record_first(Workspace& work, const GatherInput& input);
   void record_scale(Workspace& work, const GatherInput& input);
   void record_nodes(Workspace& work, const GatherInput& input);
 
   device::Buffer start_, nearest_;  // engine/reference/vertex_starts.h
   device::Buffer solid_on_device_, normals_, points_, gathered_, nodes_, scale_;
+  device::Buffer lacking_;  // vec3, at the corners of the tets, four each, W; of a correction alone
+  std::uint64_t corners_ = 0;
   gpu::SolidRef solid_{};
   bool normals_behind_ = true;
 };

@@ -297,7 +297,7 @@ struct Simulation::Implementation {
     operators.create(device, shape.levels(), correction_key, coefficients.even(), false);
     if (!correction) correction.emplace(device, shape.levels()[0]);
     correction->make_room(device, points);
-    gather_room();
+    gather_room().make_room_corrected(device);
   }
 
   GatherField& gather_room() {
@@ -344,7 +344,13 @@ struct Simulation::Implementation {
     work.recorder.clear();
     walks[0].record_cells(work, levels[0]);
     const auto body = walks[0].body(levels[0], coefficients.eta(), coefficients.even());
-    const GatherInput input{levels[0], fluence(), beams, results.vertex_exitance(), body, *tree};
+    const GatherInput input{levels[0],
+                            fluence(),
+                            beams,
+                            results.vertex_exitance(),
+                            body,
+                            *tree,
+                            corrected ? std::optional(correction->first()) : std::nullopt};
     what == Gather::single ? gather->record_single(work, input) : gather->record(work, input);
     work.recorder.submit();
     gather_passes = work.recorder.passes();

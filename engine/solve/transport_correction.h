@@ -61,8 +61,10 @@ class TransportCorrection {
   // What the last call knows is of no use to the next.
   void forget() { frames_ = 0; }
 
-  // Of the last run: fluence at the vertices (vec3, scaled) and exitance of the faces, W/mm^2.
+  // Of the last run: fluence at the vertices (vec3, scaled), what scatters for the first time, and exitance of the
+  // faces, W/mm^2.
   const device::Buffer& fluence() const { return samples_.fluence(); }
+  FirstScattered first() const { return samples_.first(); }
   const device::Buffer& exitance() const { return exitance_; }
 
   // Power of the light's own rays, W; `entered_again` with the scattered light of which `scattered_out` W leave.

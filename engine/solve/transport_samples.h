@@ -34,6 +34,13 @@ struct TransportShares {
   bool adds = true;    // what this one changes counts among that
 };
 
+// What its rays found of light that scatters for the first time.
+struct FirstScattered {
+  const device::Buffer& deposit;  // fixed point, at the corners of the tets, four each: power, scaled
+  const device::Buffer& mass;     // vec3 per vertex, mm^2: integral of sigma_s' times its basis
+  const device::Buffer &tet_offset, &tet_incidence;  // tets around each vertex
+};
+
 // Power that the light's own rays brought, W, and of what is gathered the share that enters again.
 struct TransportPower {
   glm::dvec3 entered{0}, absorbed{0}, unscattered{0}, entered_again{0}, share_again{0};
@@ -92,6 +99,8 @@ class TransportSamples {
   void record_books(const TransportParts& parts, float share, float known);
   const device::Buffer& books() const { return books_; }  // TransportBook
   const device::Buffer& mass() const { return mass_; }    // vec3 per vertex, mm^2: integral of sigma_s' times its basis
+
+  FirstScattered first() const { return {deposit_, mass_, tet_offset_, tet_incidence_}; }
 
   const device::Buffer& fluence() const { return fluence_; }    // vec3 per vertex, scaled; to be corrected
   const device::Buffer& load() const { return load_; }          // fixed point, per vertex two per half

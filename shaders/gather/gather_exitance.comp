@@ -12,14 +12,18 @@ struct GatherExitancePush {
   SolidRefs solid;  // one
   GatherPoints points;
   Vec3s exitance;  // W/mm^2, written
+  GatherScales scale;  // null: what is gathered counts as it is
+  uint through;        // 1: with what other parts of the body send through this one, as the exitance of a correction has it
 };
 layout(push_constant, scalar) uniform Block { GatherExitancePush push; };
 
 SolidRef solid;
 #define BODY solid.body
+#define TREE_BODY solid.body
+#define TREE solid.tree
 #define NORMALS solid.normals
 #define POINTS push.points
-#include "gather/gather.glsl"
+#include "gather/leaving.glsl"
 
 const float PI = 3.14159265;
 
@@ -39,8 +43,12 @@ void main() {
   vec3 exitance = vec3(0);
   for (uint node = 0u; node < LAMBERTIAN_NODES; ++node) {
     vec3 incoming = lambertian_incoming(2u * node + (node >> 1u), normal, tangent);
-    vec3 radiance = gather(centre, refracted(incoming, normal, BODY.eta)).radiance;
+    if (push.through == 1u) {
+      exitance += LAMBERTIAN_W[node] * leaving(face, vec3(1.0 / 3.0), -incoming, normal, push.scale, 1.0).radiance;
+      continue;
+    }
+    vec3 radiance = gather(centre, refracted(incoming, normal, BODY.eta)).radiance / (BODY.eta * BODY.eta);
     exitance += LAMBERTIAN_W[node] * fresnel_transmittance(sqrt(LAMBERTIAN_U[node]), BODY.eta) * radiance;
   }
-  push.exitance.at[face] = PI / (BODY.eta * BODY.eta) * exitance;
+  push.exitance.at[face] = PI * exitance;
 }

@@ -28,9 +28,18 @@ float followed(float most) {
   return smoothstep(GATHER_END, FOLLOWED_WHOLE, most);
 }
 
+// Radiance that was gathered at a point of a face, by the scale of its corners.
+vec3 scaled(vec3 radiance, uvec3 ids, vec3 l, GatherScales scale, float radiance_norm) {
+  GatherScale a = scale.at[ids.x], b = scale.at[ids.y], c = scale.at[ids.z];
+  vec3 factor = l.x * a.factor + l.y * b.factor + l.z * c.factor;
+  vec3 rest = l.x * a.rest + l.y * b.rest + l.z * c.rest;
+  vec3 least = l.x * a.least + l.y * b.least + l.z * c.least;
+  return max(factor * radiance + rest / radiance_norm, least / radiance_norm);
+}
+
 // Light that leaves face `face` at barycentric coordinates `l` along `outward`, at a surface of normal `n`. Fresnel and
 // refraction included: radiance over eta^2 is kept. Where enough of a ray comes out behind, it goes on to the next
-// part of the body, the brightest branch first.
+// part of the body, the brightest branch first. scale: null: what is gathered counts as it is.
 Leaving leaving(uint face, vec3 l, vec3 outward, vec3 n, GatherScales scale, float radiance_norm) {
   Leaving sum = Leaving(vec3(0), vec3(0));
   vec3 share = vec3(1);  // of the light at `face`
@@ -44,13 +53,8 @@ Leaving leaving(uint face, vec3 l, vec3 outward, vec3 n, GatherScales scale, flo
     share *= fresnel_transmittance(clamp(dot(outward, n), 0.0, 1.0), BODY.eta);
     TetPoint at = start_on_face(BODY.face_tets.at[face], ids, l);
     Gathered inside = gather(at, view_ray(outward, n, face_normal));
-    GatherScale a = scale.at[ids.x], b = scale.at[ids.y],
-                c = scale.at[ids.z];
-    vec3 factor = l.x * a.factor + l.y * b.factor + l.z * c.factor;
-    vec3 rest = l.x * a.rest + l.y * b.rest + l.z * c.rest;
-    vec3 least = l.x * a.least + l.y * b.least + l.z * c.least;
-    vec3 radiance = factor * inside.radiance / (BODY.eta * BODY.eta) + rest / radiance_norm;
-    sum.radiance += share * max(radiance, least / radiance_norm);
+    vec3 radiance = inside.radiance / (BODY.eta * BODY.eta);
+    sum.radiance += share * (uvec2(scale) == uvec2(0) ? radiance : scaled(radiance, ids, l, scale, radiance_norm));
     sum.seen += share * (inside.seen - inside.most.share - inside.second.share);
     inside.most.share *= share;
     inside.second.share *= share;

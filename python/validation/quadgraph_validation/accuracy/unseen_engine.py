@@ -70,7 +70,7 @@ def answers(case: UnseenCase, patch: np.ndarray, how: UnseenSetting, folder: Pat
     materials = (_text(case.medium, folder),) if how.for_material else ()
     report = bake(mesh, file, BakeOptions(unit="mm", for_materials=materials))
     with Engine(file, device=how.device) as engine:
-        engine.material = _material(case.medium)
+        engine.material = material_of(case.medium)
         engine.lights = [_light(case, folder)]
         engine.solve(**_options(0, case))  # whatever is made once is made now
         triangle, apart = _triangle_of(case, engine.surface())
@@ -99,7 +99,7 @@ def _moved(engine: Engine, case: UnseenCase, of_face: np.ndarray) -> UnseenMotio
 
     def show(medium: UnseenMedium, light: Light) -> None:
         if not shown or shown[-1] is not medium:  # a volume is read again each time that it is set
-            engine.material = _material(medium)
+            engine.material = material_of(medium)
             shown[:] = [medium]
         engine.lights = [light]
 
@@ -128,14 +128,15 @@ def _light(case: UnseenCase, folder: Path) -> Light:
 
 def _text(medium: UnseenMedium, folder: Path) -> str:
     """A medium's text, or the name of its file."""
-    material = _material(medium)
+    material = material_of(medium)
     if isinstance(material, Material):
         return material.text
     material.save(folder / "medium.npz")
     return str(folder / "medium.npz")
 
 
-def _material(medium: UnseenMedium) -> Material | VolumeMaterial:
+def material_of(medium: UnseenMedium) -> Material | VolumeMaterial:
+    """A medium as engines take it."""
     if medium.even:
         return Material(float(medium.sigma_s_prime[0, 0, 0]), float(medium.sigma_a[0, 0, 0]), medium.eta)
     return VolumeMaterial(medium.sigma_s_prime, medium.sigma_a, medium.spacing, medium.first, medium.eta)

@@ -34,12 +34,13 @@ STUDIES = {
     "budget": "budget",
     "unseen": "unseen",
     "light": "light",
+    "pictures": "pictures",
     "acquire": "acquire",
     "volume": "volume",
     "veined": "veined",
 }
 
-_WIDE = ("dense", "unseen", "acquire", "volume", "veined")
+_WIDE = ("dense", "unseen", "pictures", "acquire", "volume", "veined")
 _TABLE_WIDTH = 190  # characters, than which the tables of these cannot be read narrower
 
 # Studies of real bodies, which the CPU reference cannot stand in for, because only the engine does what they judge.
@@ -51,12 +52,13 @@ ON_ENGINE = {
     "budget": "is baked for",
     "unseen": "prints an error",
     "light": "prints an error",
+    "pictures": "makes pictures",
     "acquire": "is what photographs are held against",
     "volume": "is what photographs are held against",
     "veined": "is what photographs are held against",
 }
 
-_UNSEEN_WALKS, _ACQUIRE_WALKS, _VEINED_WALKS = 2_000_000, 8192, 20_000
+_UNSEEN_WALKS, _ACQUIRE_WALKS, _VEINED_WALKS, _PICTURE_WALKS = 2_000_000, 8192, 20_000, 2000
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -76,7 +78,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     _add_bodies_options(parser.add_argument_group("scenes, estimate, target, budget, acquire, volume, veined"))
     _add_scenes_options(parser.add_argument_group("scenes, unseen"))
     _add_unseen_options(
-        parser.add_argument_group("unseen; light, volume, acquire and veined take --seed, --count, some --walks")
+        parser.add_argument_group("unseen; light, pictures, volume, acquire, veined take --seed, --count, some --walks")
     )
 
 
@@ -122,8 +124,8 @@ def _add_unseen_options(group: argparse._ArgumentGroup) -> None:
         "--walks",
         type=positive_int,
         metavar="N",
-        help=f"of each truth (default: {_UNSEEN_WALKS}), or of a pixel of acquire (default: {_ACQUIRE_WALKS}) and "
-        f"veined (default: {_VEINED_WALKS})",
+        help=f"of each truth (default: {_UNSEEN_WALKS}), or of a pixel of acquire (default: {_ACQUIRE_WALKS}), "
+        f"veined (default: {_VEINED_WALKS}) and pictures (default: {_PICTURE_WALKS})",
     )
     group.add_argument(
         "--sweeps",
@@ -167,6 +169,10 @@ def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
     if args.study == "light":
         with Console(stderr=True).status("study: light"):
             return study.run(study.LightRun(args.seed, args.count, args.device))
+    if args.study == "pictures":
+        with Console(stderr=True).status("study: pictures"):
+            walks = args.walks or _PICTURE_WALKS
+            return study.run(study.PicturesRun(args.seed, args.count, walks, args.device))
     if args.study == "acquire":
         walks = args.walks or _ACQUIRE_WALKS
         return _run_by_rows(study, args, study.AcquireRun(args.seed, args.count, walks, args.device), walks=walks)

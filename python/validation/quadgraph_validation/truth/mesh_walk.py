@@ -53,7 +53,7 @@ class MeshWalker:
         self._middle = (low + high) / 2
         self._radius = float(np.linalg.norm(surface.vertices - self._middle, axis=1).max())
         self._tree, self._near = walk_surface(surface)
-        self._volume = _volume(medium)
+        self._volume = volume_of(medium)
 
     @cached_property
     def hit_rate(self) -> float:
@@ -82,7 +82,8 @@ class MeshWalker:
         return tally, drawn.power
 
 
-def _volume(medium: UnseenMedium) -> walk_kernel.WalkVolume:
+def volume_of(medium: UnseenMedium) -> walk_kernel.WalkVolume:
+    """A medium as walks take it."""
     scattering, absorption = (np.asarray(c, np.float64) for c in (medium.sigma_s_prime, medium.sigma_a))
     majorant = float((scattering + absorption).max())
     first, spacing = np.array(medium.first), np.full(3, medium.spacing)
