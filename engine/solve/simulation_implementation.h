@@ -344,13 +344,8 @@ struct Simulation::Implementation {
     work.recorder.clear();
     walks[0].record_cells(work, levels[0]);
     const auto body = walks[0].body(levels[0], coefficients.eta(), coefficients.even());
-    const GatherInput input{levels[0],
-                            fluence(),
-                            beams,
-                            results.vertex_exitance(),
-                            body,
-                            *tree,
-                            corrected ? std::optional(correction->first()) : std::nullopt};
+    GatherInput input{levels[0], fluence(), beams, results.vertex_exitance(), body, *tree};
+    if (corrected) input.first.emplace(correction->first());
     what == Gather::single ? gather->record_single(work, input) : gather->record(work, input);
     work.recorder.submit();
     gather_passes = work.recorder.passes();
