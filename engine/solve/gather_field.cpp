@@ -32,8 +32,7 @@ constexpr std::uint64_t face_bytes = 2 * sizeof(std::uint32_t) + sizeof(glm::uve
 
 }  // namespace
 
-GatherField::GatherField(device::Device& device, const Level& level, const BodyTree& tree)
-    : corners_(4 * level.tet_count()) {
+GatherField::GatherField(device::Device& device, const Level& level, const BodyTree& tree) {
   const VertexStarts starts = vertex_starts(level);
   start_ = device::upload<std::uint32_t>(device, starts.start, "gather/a tet at each vertex");
   nearest_ = device::upload<std::uint32_t>(device, starts.nearest, "gather/nearest surface vertex");
@@ -48,9 +47,10 @@ GatherField::GatherField(device::Device& device, const Level& level, const BodyT
   scale_ = room(level.surface_vertex_count * sizeof(gpu::GatherScale), "gather/scale");
 }
 
-void GatherField::make_room_corrected(device::Device& device) {
+void GatherField::make_room_corrected(device::Device& device, const Level& level) {
   if (lacking_.size() > 0) return;
-  lacking_ = {device, corners_ * vec3_bytes, device::Place::device, "gather/lacking first-scattered light"};
+  const std::uint64_t corners = 4 * level.tet_count();
+  lacking_ = {device, corners * vec3_bytes, device::Place::device, "gather/lacking first-scattered light"};
 }
 
 void GatherField::record(Workspace& work, const GatherInput& input) {

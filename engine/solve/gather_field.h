@@ -33,8 +33,8 @@ class GatherField {
   // `tree`: of the level.
   GatherField(device::Device& device, const Level& level, const BodyTree& tree);
 
-  // Room for a field of a correction.
-  void make_room_corrected(device::Device& device);
+  // Room for a field of a correction. `level`: as above.
+  void make_room_corrected(device::Device& device, const Level& level);
 
   // The vertices of the level have moved.
   void moved() { normals_behind_ = true; }
@@ -67,7 +67,6 @@ class GatherField {
   device::Buffer start_, nearest_;  // engine/reference/vertex_starts.h
   device::Buffer solid_on_device_, normals_, points_, gathered_, nodes_, scale_;
   device::Buffer lacking_;  // vec3, at the corners of the tets, four each, W; of a correction alone
-  std::uint64_t corners_ = 0;
   gpu::SolidRef solid_{};
   bool normals_behind_ = true;
 };

@@ -297,7 +297,7 @@ struct Simulation::Implementation {
     operators.create(device, shape.levels(), correction_key, coefficients.even(), false);
     if (!correction) correction.emplace(device, shape.levels()[0]);
     correction->make_room(device, points);
-    gather_room().make_room_corrected(device);
+    gather_room().make_room_corrected(device, shape.levels()[0]);
   }
 
   GatherField& gather_room() {
