@@ -55,7 +55,7 @@ def test_lights_are_where_walks_from_the_body_meet_them(seed):
 
 @pytest.mark.long
 def test_pictures_of_unseen_bodies_are_close_to_walks():
-    record = pictures_study.run(pictures_study.PicturesRun(101, 8, 4000, "cpu"))
+    record = pictures_study.run(pictures_study.PicturesRun(303, 4, 2500, "cpu"))
     assert all(row["noise"]["whole"] < 0.05 for row in record["rows"])
     median, _, worst = record["summary"]["rest"]["whole"]["errors"]
     assert median < 0.02
