@@ -1,11 +1,18 @@
 // Commands of the processor, which are done when they are recorded.
 #pragma once
 
+#include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <cstring>
+#include <exception>
 #include <string>
+#include <thread>
 #include <vector>
 
+#include "engine/cpu/objects.h"
 #include "engine/cpu/processor.h"
+#include "engine/cpu/raster.h"
 #include "engine/device/device.h"
 
 namespace quadgraph::cpu {
@@ -15,21 +22,107 @@ class Recording : public device::Recording {
   explicit Recording(Processor& processor) : processor_(processor) {}
 
   void copy(const device::Memory& source, const device::Memory& target, std::uint64_t bytes,
-            std::uint64_t target_offset, std::uint64_t source_offset) override;
+            std::uint64_t target_offset, std::uint64_t source_offset) override {
+    share_out(processor_.threads(), bytes, [&](std::uint64_t begin, std::uint64_t end) {
+      std::memcpy(bytes_of(target) + target_offset + begin, bytes_of(source) + source_offset + begin, end - begin);
+    });
+  }
+
   void copy(const device::ImageMemory& source, const device::Memory& target, std::uint32_t width,
-            std::uint32_t height) override;
-  void fill(const device::Memory& target, std::uint64_t bytes, std::uint32_t value) override;
-  void update(const device::Memory& target, std::span<const std::byte> data) override;
-  void dispatch(const device::Pipeline& pass, const void* push, std::uint32_t groups) override;
+            std::uint32_t height) override {
+    const auto& image = static_cast<const ImageMemory&>(source);
+    const std::uint64_t row = std::uint64_t{image.texel_bytes()} * width;
+    const auto* from = static_cast<const std::byte*>(image.memory.get());
+    std::byte* to = bytes_of(target);
+    const std::uint32_t rows_at_once = std::max(static_cast<std::uint32_t>(copied_at_once / row), 1u);
+    processor_.threads().run(image.options.layers * height, rows_at_once, [&](std::uint32_t begin, std::uint32_t end) {
+      for (std::uint32_t k = begin; k < end; ++k) {
+        const std::uint64_t y = std::uint64_t{k / height} * image.options.height + k % height;
+        std::memcpy(to + k * row, from + y * image.options.width * image.texel_bytes(), row);
+      }
+    });
+  }
+
+  void fill(const device::Memory& target, std::uint64_t bytes, std::uint32_t value) override {
+    auto* words = reinterpret_cast<std::uint32_t*>(bytes_of(target));
+    share_out(processor_.threads(), bytes, [&](std::uint64_t begin, std::uint64_t end) {
+      std::fill(words + begin / 4, words + (end + 3) / 4, value);
+    });
+  }
+
+  void update(const device::Memory& target, std::span<const std::byte> data) override {
+    std::memcpy(bytes_of(target), data.data(), data.size());
+  }
+
+  void dispatch(const device::Pipeline& pass, const void* push, std::uint32_t groups) override {
+    const auto& pipeline = static_cast<const ComputePipeline&>(pass);
+    const std::uint32_t part = std::max(groups / (parts_of_thread * processor_.threads().threads()), 1u);
+    const auto caller = std::this_thread::get_id();
+    std::atomic<bool> given_up = false;
+    std::exception_ptr why;
+    processor_.threads().run(groups, part, [&](std::uint32_t begin, std::uint32_t end) {
+      if (given_up.load(std::memory_order_relaxed)) return;
+      pipeline.kernel(push, groups, begin, end, pipeline.variant);
+      if (std::this_thread::get_id() != caller) return;
+      try {
+        processor_.heed();
+      } catch (...) {
+        why = std::current_exception();
+        given_up.store(true, std::memory_order_relaxed);
+      }
+    });
+    if (why) std::rethrow_exception(why);
+  }
+
   void dispatch_indirect(const device::Pipeline& pass, const void* push, const device::Memory& arguments,
-                         std::uint64_t offset) override;
+                         std::uint64_t offset) override {
+    std::uint32_t groups[3];
+    std::memcpy(groups, bytes_of(arguments) + offset, sizeof(groups));
+    if (groups[0] > 0 && groups[1] > 0 && groups[2] > 0) dispatch(pass, push, groups[0]);
+  }
+
   void draw(const device::DrawImages& target, const device::Viewport& viewport, const device::Pipeline& pass,
-            const void* push, const device::Memory* indices, std::uint32_t vertices) override;
-  void begin_pass(const std::string& name) override;
-  void end_pass() override;
-  std::vector<device::PassTime> submit_and_wait() override;
+            const void* push, const device::Memory* indices, std::uint32_t vertices) override {
+    const auto& pipeline = static_cast<const GraphicsPipeline&>(pass);
+    const auto* numbers = indices == nullptr ? nullptr : reinterpret_cast<const std::uint32_t*>(bytes_of(*indices));
+    rasterise(processor_.threads(), target, viewport, pipeline, push, numbers, vertices, processor_.draw_memory());
+    processor_.heed();
+  }
+
+  std::vector<device::PassTime> submit_and_wait() override {
+    processor_.heed();
+    return passes_;
+  }
+
+  void begin_pass(const std::string& name) override {
+    passes_.push_back({name, 0});
+    pass_start_ = std::chrono::steady_clock::now();
+  }
+
+  void end_pass() override {
+    const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - pass_start_;
+    passes_.back().time_ms = elapsed.count();
+  }
 
  private:
+  // Parts that a dispatch is shared out in, for each thread: what one part takes longer, others make up for, and
+  // between two the device's check is heeded.
+  static constexpr std::uint32_t parts_of_thread = 64;
+
+  // Bytes of a copy that a thread takes at once.
+  static constexpr std::uint64_t copied_at_once = 1 << 20;
+
+  static std::byte* bytes_of(const device::Memory& memory) { return static_cast<std::byte*>(memory.mapped); }
+
+  // Calls part(begin, end) for all of `bytes`.
+  template <typename Part>
+  static void share_out(ThreadPool& threads, std::uint64_t bytes, const Part& part) {
+    const auto parts = static_cast<std::uint32_t>((bytes + copied_at_once - 1) / copied_at_once);
+    threads.run(parts, 1, [&](std::uint32_t begin, std::uint32_t end) {
+      part(begin * copied_at_once, std::min(end * copied_at_once, bytes));
+    });
+  }
+
   Processor& processor_;
   std::chrono::steady_clock::time_point pass_start_;
   std::vector<device::PassTime> passes_;
