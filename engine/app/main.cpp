@@ -56,7 +56,7 @@ int write_one(const AppOptions& options) {
   stages.end("write");
   refuse_messages(engine.device());
   const Metadata metadata = with_exposure(engine.metadata(), picture, options.scene.tone);
-  const RunReport report{engine, solve, metadata, options.output.string(), stages.wall_ms};
+  const RunReport report{engine, solve, metadata, picture.error, options.output.string(), stages.wall_ms};
   std::cout << (options.json ? json_report(report) : text_report(report)) << "\n";
   return fails(solve, options.strict) ? exit_unmet : EXIT_SUCCESS;
 }

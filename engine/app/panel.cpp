@@ -201,7 +201,7 @@ void tell_error(const char* name, const std::optional<ErrorEstimate>& error) {
   tell_row(name, {percent(error->whole), part(error->unlit), part(error->dimmest)});
 }
 
-void tell_errors(const SolveReport& report) {
+void tell_errors(const SolveReport& report, const std::optional<ErrorEstimate>& picture) {
   if (report.path) return tell("Error", "not estimated");
   tell_row("Error", {"whole", "unlit", "dimmest third"});
   tell_error("  all", report.error);
@@ -213,6 +213,7 @@ void tell_errors(const SolveReport& report) {
   }
   tell_error("  model", report.model_error);
   tell_error("  light", report.light_error);
+  tell_error("Picture", picture);
 }
 
 void draw_frame(const Measured& measured) {
@@ -224,7 +225,7 @@ void draw_frame(const Measured& measured) {
   tell("Time", formatted("%.0f ms, %.1f fps", measured.frame_ms, measured.frames_per_second));
   tell("State",
        measured.settled ? "converged" : formatted("preview, %.0f%% resolution", 100.0 * double(measured.share)));
-  tell_errors(report);
+  tell_errors(report, measured.picture_error);
   tell("Energy", report.path ? "not conserved" : "balanced to " + percent(worst));
   tell("Memory", bytes_text(measured.device_bytes) + ", peak " + bytes_text(measured.peak_device_bytes));
   if (!report.levels.empty()) {

@@ -113,6 +113,7 @@ std::string json_report(const RunReport& report) {
   json["output"] = report.output;
   for (const auto& [key, value] : report.metadata) json["metadata"][key] = value;
   json["solve"] = as_json(report.solve);
+  json["picture_error"] = as_json(report.picture_error);
   for (const PassStats& pass : report.engine.passes()) {
     json["passes"].push_back(
         {{"name", pass.name}, {"time_ms", pass.time_ms}, {"bytes", pass.bytes}, {"count", pass.count}});
@@ -135,9 +136,10 @@ void tell_paths(std::ostream& out, const RunReport& report) {
       << "error    not estimated, and energy is not conserved\n";
 }
 
-void tell_part(std::ostream& out, const char* name, const std::optional<ErrorEstimate>& part) {
+void tell_part(std::ostream& out, const char* name, const std::optional<ErrorEstimate>& part,
+               const char* whole = "surface") {
   if (!part) return;
-  out << name << decimals(100 * part->whole, 2) << "% over the surface, "
+  out << name << decimals(100 * part->whole, 2) << "% over the " << whole << ", "
       << (part->unlit > 0 ? decimals(100 * part->unlit, 2) + "% over the unlit part" : "nothing unlit");
   if (part->dimmest > 0) out << ", " << decimals(100 * part->dimmest, 2) << "% over the dimmest third";
   out << "\n";
@@ -166,6 +168,7 @@ void tell_levels(std::ostream& out, const RunReport& report) {
   tell_part(out, "  solver ", report.solve.algebraic);
   tell_part(out, "  model  ", report.solve.model_error);
   tell_part(out, "  light  ", report.solve.light_error);
+  tell_part(out, "shown    ", report.picture_error, "picture");
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // What a run did, for people and for programs.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@ struct RunReport {
   const Engine& engine;
   const SolveReport& solve;
   const Metadata& metadata;
+  const std::optional<ErrorEstimate>& picture_error;
   std::string output;
   std::vector<std::pair<std::string, double>> wall_ms;  // stages in order
 };

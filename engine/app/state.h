@@ -22,6 +22,7 @@ struct Measured {
   float share = 1;                // of the window's pixels along a side that the last picture has
   bool settled = false;           // the picture is the converged one
   SolveReport solve;
+  std::optional<ErrorEstimate> picture_error;  // of a converged one, where it is known
   float exposure_stops = 0;
   std::uint64_t device_bytes = 0, peak_device_bytes = 0;
 };

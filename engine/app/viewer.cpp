@@ -228,8 +228,8 @@ void Viewer::keep_up() {
   window_.show_busy(changed || !measured_.settled);  // what is converged has been presented
   if (!changed && (measured_.settled || milliseconds(Clock::now() - changed_) < 1000 * settle_after || dragging_))
     return;
-  const Scene before = shown_.value_or(state_.scene);
   const bool first = !shown_;
+  const Scene before = first ? state_.scene : *shown_;
   try {
     remake(!changed);
   } catch (const Interrupted&) {
@@ -249,9 +249,8 @@ void Viewer::keep_up() {
 }
 
 SolveOptions Viewer::options_of_solve(bool settle) const {
-  const SolveOptions& options = state_.scene.solve;
-  if (settle) return options;
-  SolveOptions quick = in_motion(options, engine().graph().levels());
+  if (settle) return state_.scene.solve;
+  SolveOptions quick = in_motion(state_.scene.solve, engine().graph().levels());
   quick.correction = quick.correction && pace_.corrects();
   return quick;
 }
@@ -304,6 +303,7 @@ void Viewer::make_picture(bool settle, bool gather) {
   options.height = settle ? now.height : side(now.height);
   if (!gather) options.radiance = Radiance::lambertian;
   const PictureBuffers& picture = engine().draw(state_.scene.view, options);
+  measured_.picture_error = settle ? engine().picture_error() : std::nullopt;
   measured_.exposure_stops = tone_mapper_.exposure(picture, state_.scene.tone);
   show(tone_mapper_.run(picture, state_.scene.tone, measured_.exposure_stops,
                         {now.width, now.height, swapchain_.blue_first()}));

@@ -5,6 +5,7 @@
 #include "engine/render/engine_implementation.h"
 #include "engine/render/picture/legend.h"
 #include "engine/render/picture/metadata.h"
+#include "engine/render/picture/picture_error.h"
 #include "engine/render/verdict.h"
 
 namespace quadgraph {
@@ -236,6 +237,7 @@ const PictureBuffers& Engine::draw(const View& view, const RenderOptions& option
   const Camera camera =
       place_camera(view, self.bounds, static_cast<float>(options.width) / static_cast<float>(options.height));
   self.view = view;
+  self.shown_error.reset();
   self.interruptible([&] {
     options.show.quantity == Quantity::picture ? self.draw_picture(view, camera, options)
                                                : self.draw_inside(camera, options);
@@ -246,8 +248,18 @@ const PictureBuffers& Engine::draw(const View& view, const RenderOptions& option
 Picture Engine::render(const View& view, const RenderOptions& options) {
   const auto turn = implementation_->in_use.take();
   Picture picture = read_picture(implementation_->device, draw(view, options));
+  picture.error = picture_error();
   if (const auto& shown = legend()) draw_legend(picture, *shown);
   return picture;
+}
+
+std::optional<ErrorEstimate> Engine::picture_error() {
+  const auto turn = implementation_->in_use.take();
+  auto& self = *implementation_;
+  if (!self.shown_error && self.report && self.report->error) {
+    self.shown_error = quadgraph::picture_error(self.device, self.rasteriser.picture(), *self.report->error);
+  }
+  return self.shown_error;
 }
 
 const std::optional<Legend>& Engine::legend() const {
@@ -307,7 +319,7 @@ Metadata Engine::metadata() const {
   const auto& self = *implementation_;
   if (!self.report) return {};
   return describe({self.source, self.material, self.lights, self.deformation, self.options, *self.report, self.view,
-                   name_of(self.radiance), self.device.info()});
+                   name_of(self.radiance), self.shown_error, self.device.info()});
 }
 
 }  // namespace quadgraph

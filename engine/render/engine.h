@@ -155,10 +155,14 @@ class Engine {
   // option out of range, or if radiance is to be gathered and cannot be.
   const PictureBuffers& draw(const View& view, const RenderOptions& options = {});
 
+  // What the scattered light of the last one is off by (engine/render/picture/picture_error.h), read back from the
+  // device; empty where it was not gathered of a corrected solve.
+  std::optional<ErrorEstimate> picture_error();
+
   // What the colours of the last one mean; nothing if it shows the body as it looks.
   const std::optional<Legend>& legend() const;
 
-  // Draws as `draw` does and reads the picture back, with the legend in it.
+  // Draws as `draw` does and reads the picture back, with the legend in it and its error.
   Picture render(const View& view, const RenderOptions& options = {});
 
   // What a picture of this view and shape (width / height) shows at `at` (engine/render/display/pick.h).

@@ -65,9 +65,10 @@ struct Engine::Implementation {
   SolveOptions options;
   std::optional<SolveReport> report;
   std::optional<View> view;
-  Radiance radiance = Radiance::automatic;  // of the last picture
-  std::optional<RadianceProbe> probe;       // made at first use
-  device::Buffer triangle_face;             // display_faces.h, made at first use
+  Radiance radiance = Radiance::automatic;   // of the last picture
+  std::optional<ErrorEstimate> shown_error;  // the same, where it was asked for
+  std::optional<RadianceProbe> probe;        // made at first use
+  device::Buffer triangle_face;              // display_faces.h, made at first use
   std::vector<PassStats> deformation_passes, irradiance_passes, light_passes, gather_passes, render_passes;
   bool deformed = false;                                // since the last solve
   std::string deformation;                              // in words
@@ -245,7 +246,7 @@ struct Engine::Implementation {
     }
     if (leaves != Radiance::lambertian) {
       const GatherField& field = gather(leaves == Radiance::single ? Gather::single : Gather::scaled);
-      view_rays.emplace(field, triangle_face);
+      view_rays.emplace(field, triangle_face, leaves == Radiance::gathered ? simulation->surface_share() : nullptr);
     }
     render_passes = rasteriser.run(RasterInput{.mesh = mesh,
                                                .finest = simulation->level(0),

@@ -190,6 +190,11 @@ const device::Buffer& Simulation::vertex_unscattered() const {
   return implementation_->results.vertex_unscattered();
 }
 
+const device::Buffer* Simulation::surface_share() const {
+  Implementation& self = *implementation_;
+  return self.corrected ? &self.operators.at(correction_key, 0).surface_share : nullptr;
+}
+
 bool Simulation::can_gather() const {
   return gathers(implementation_->solved_key().method, implementation_->solved_source);
 }

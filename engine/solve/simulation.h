@@ -149,6 +149,9 @@ class Simulation {
   const device::Buffer& vertex_exitance() const;
   const device::Buffer& vertex_unscattered() const;
 
+  // SurfaceShare per surface vertex of level 0, of a last solve that was corrected; null otherwise.
+  const device::Buffer* surface_share() const;
+
   // Whether all of the last solve's radiance can be gathered along view rays (see gathers).
   bool can_gather() const;
 

@@ -80,6 +80,9 @@ void bind_picture(py::module_& module) {
       .def(py::init(&picture_of), py::arg("radiance"),
            "From radiance alone, (h, w, 3): all of it scattered, covered where there is any. Raises InputError.")
       .def_property_readonly("auto_exposure", &auto_exposure, "Stops that the exposure 'auto' takes.")
+      .def_property_readonly(
+          "error", [](const Picture& picture) { return error_dict(picture.error); },
+          "Of scattered light, relative RMS over pixels: {whole, unlit, dimmest}; None where it is not known.")
       .def_property_readonly("scattered", &rgb_layer<&Picture::scattered>,
                              "(h, w, 3): light that was scattered in the body.")
       .def_property_readonly("specular", &rgb_layer<&Picture::specular>, "(h, w, 3): light reflected by the surface.")

@@ -86,6 +86,7 @@ SolveOptions options_from(const std::string& method, const std::string& solver, 
 std::optional<glm::vec3> as_vector(const std::optional<std::array<float, 3>>& components);
 
 // Tone mapped, (height, width, 3) sRGB.
+pybind11::object error_dict(const std::optional<ErrorEstimate>& estimate);  // None: not known
 pybind11::array_t<std::uint8_t> srgb_array(const Picture& picture, const ToneOptions& options);
 
 // A list of dicts (docs/deformation.md), or its JSON text. Throws InputError.

@@ -94,8 +94,6 @@ py::dict as_dict(const LevelReport& report) {
   return d;
 }
 
-namespace {
-
 py::object error_dict(const std::optional<ErrorEstimate>& estimate) {
   if (!estimate) return py::none();
   py::dict d;
@@ -104,6 +102,8 @@ py::object error_dict(const std::optional<ErrorEstimate>& estimate) {
   d["dimmest"] = estimate->dimmest;
   return d;
 }
+
+namespace {
 
 py::dict correction_dict(const CorrectionReport& correction) {
   py::list sweeps;

@@ -58,10 +58,21 @@ vec3 radiance_behind(vec3 ray) {
   return sum;
 }
 
-// Along `v`, unit, towards the eye.
-Leaving leaving_along(vec3 v, uint face, vec3 position, vec3 normal) {
-  return leaving(face, coordinates_in(face, position), v, normalize(normal), scene.scale,
-                 scene.radiance_norm);
+float summed(vec3 radiance) {
+  return radiance.x + radiance.y + radiance.z;
+}
+
+// Of the point of a face at barycentric coordinates `l`, where `radiance` leaves along `v` at a surface of normal `n`.
+PixelDoubt doubt_at(uint face, vec3 l, vec3 v, vec3 n, vec3 radiance) {
+  vec3 exitance = vec3(0), area = vec3(0);
+  for (uint k = 0u; k < 3u; ++k) {
+    uint vertex = BODY.faces.at[face][k];
+    SurfaceShare share = scene.share.at[vertex];
+    exitance += l[k] * scene.exitance.at[vertex];
+    area += l[k] / max(share.area.x, 1e-30) * share.area;
+  }
+  float through = fresnel_transmittance(clamp(dot(v, n), 0.0, 1.0), scene.eta);
+  return PixelDoubt(area.y, area.z, summed(radiance - through / scene.radiance_norm * exitance));
 }
 
 // One view ray for all samples that lie together: where faces are larger than pixels, one per pixel. Samples are read
@@ -72,7 +83,9 @@ void main() {
   scene = push.scene.at[0];
   uint waiting = 0u;
   for (uint k = 0u; k < 4u; ++k) waiting |= push.samples[0].at[sample_of(pixel, k)].w > 0.0 ? 1u << k : 0u;
+  bool doubted = uvec2(push.doubt) != uvec2(0);
   vec3 scattered = vec3(0), specular = vec3(0), seen = vec3(0), unscattered = vec3(0);
+  PixelDoubt doubt = PixelDoubt(0.0, 0.0, 0.0);
   float alpha = 0.0;
   while (waiting != 0u) {
     Sample first = sample_at(sample_of(pixel, findLSB(waiting)));
@@ -90,11 +103,18 @@ void main() {
     }
     position *= 0.25 / share;
     vec3 v = towards_eye(scene.eye, position);
-    Leaving light = leaving_along(v, first.face, position, normal);
+    normal = normalize(normal);
+    vec3 l = coordinates_in(first.face, position);
+    Leaving light = leaving(first.face, l, v, normal, scene.scale, scene.radiance_norm);
     scattered += share * light.radiance;
     seen += share * light.seen;
     unscattered += share * light.seen * radiance_behind(-v);
     alpha += share;
+    if (!doubted) continue;
+    PixelDoubt here = doubt_at(first.face, l, v, normal, light.radiance);
+    doubt.unlit += share * here.unlit;
+    doubt.dimmest += share * here.dimmest;
+    doubt.angle += share * here.angle;
   }
   vec3 layers[PICTURE_LAYERS];
   layers[0] = scattered;
@@ -102,4 +122,5 @@ void main() {
   layers[2] = unscattered;
   layers[3] = seen;
   write_pixel(pixel, layers, alpha);
+  if (doubted) push.doubt.at[pixel.index] = doubt;
 }

@@ -7,6 +7,7 @@
 #include "shared/environment_picture.h"
 #include "shared/eye.h"
 #include "shared/image_levels.h"
+#include "surface/surface_shared.h"
 
 #ifdef __cplusplus
 namespace quadgraph::gpu {
@@ -74,6 +75,7 @@ struct SurfaceScene {
   QG_REF(Uints) triangle_face;  // per display triangle: outside face of level 0
   QG_REF(GatherPoints) points;
   QG_REF(GatherScales) scale;
+  QG_REF(SurfaceShares) share;  // per surface vertex of level 0; null: errors are not told by part
   SolidRef solid;
 };
 
@@ -94,6 +96,16 @@ struct SurfacePush {
   float roughness;  // GGX alpha where the image is white
 };
 
+// What a pixel's scattered radiance is off by, as far as gather.comp can tell (engine/render/picture/picture_error.h).
+struct PixelDoubt {
+  float unlit, dimmest;  // shares of the pixel that are of these parts of the surface
+  float angle;           // W/(mm^2 sr), channels together: what the radiance is more than that of a diffuser
+};
+#ifndef __cplusplus
+QG_ARRAY(PixelDoubts, PixelDoubt);
+
+#endif
+
 // Layers of a picture: scattered, specular and unscattered radiance, and transmittance.
 #define PICTURE_LAYERS 4
 // Images of samples. surface.frag: scattered radiance and coverage, specular, unscattered. surface_gathered.frag:
@@ -107,6 +119,7 @@ struct ResolvePush {
   QG_REF(Vec4s) samples[SAMPLE_LAYERS];
   QG_REF(Floats) layers[PICTURE_LAYERS];  // RGB per pixel, written
   QG_REF(Floats) alpha;                   // per pixel, written
+  QG_REF(PixelDoubts) doubt;              // the same, by gather.comp; null: not wanted
   uint tile_x;                            // first pixel of the tile in the picture
   uint tile_y;
   uint tile_width;  // pixels of the tile inside the picture

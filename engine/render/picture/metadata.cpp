@@ -24,11 +24,15 @@ std::string camera_text(const View& view) {
   return place + ", " + seen + ", " + (view.up == UpAxis::y ? "y" : "z") + " up";
 }
 
+// whole: what the whole is.
+std::string parts_text(const char* whole, const ErrorEstimate& error) {
+  return std::string(whole) + " " + number_text(static_cast<float>(error.whole)) + ", unlit part " +
+         number_text(static_cast<float>(error.unlit)) + ", dimmest third " +
+         number_text(static_cast<float>(error.dimmest));
+}
+
 std::string error_text(const std::optional<ErrorEstimate>& error) {
-  if (!error) return "unknown (single level)";
-  return "whole surface " + number_text(static_cast<float>(error->whole)) + ", unlit part " +
-         number_text(static_cast<float>(error->unlit)) + ", dimmest third " +
-         number_text(static_cast<float>(error->dimmest));
+  return error ? parts_text("whole surface", *error) : "unknown (single level)";
 }
 
 std::string inter_reflection_text(const SolveOptions& options, const SolveReport& report) {
@@ -62,6 +66,7 @@ void describe_view(const PictureFacts& facts, Metadata& metadata) {
   if (!facts.view) return;
   metadata.emplace_back("camera", camera_text(*facts.view));
   metadata.emplace_back("radiance", std::string(facts.radiance));
+  if (facts.error) metadata.emplace_back("picture error", parts_text("whole picture", *facts.error));
 }
 
 std::string path_text(const PathReport& path) {

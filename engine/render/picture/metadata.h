@@ -25,7 +25,8 @@ struct PictureFacts {
   const SolveOptions& options;
   const SolveReport& report;
   std::optional<View> view;
-  std::string_view radiance;  // of the picture
+  std::string_view radiance;           // of the picture
+  std::optional<ErrorEstimate> error;  // the same
   const device::DeviceInfo& device;
 };
 

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "engine/reference/error_estimate.h"
 #include "engine/render/picture/tone_map.h"
 
 namespace quadgraph {
@@ -22,7 +24,9 @@ struct Picture {
   std::vector<float> transmittance;   // RGB per pixel: share of what is behind the body that is seen through it
   std::vector<float> alpha;           // per pixel, share of the pixel that the object covers
   std::vector<float> surroundings{};  // RGB per pixel, W/(mm^2 sr): what is behind; empty: only a backdrop
-  bool false_colour = false;          // the layer `scattered` is not radiance but linear display colour, shown as it is
+  std::optional<ErrorEstimate>
+      error{};                // of scattered light, where it is known (engine/render/picture/picture_error.h)
+  bool false_colour = false;  // the layer `scattered` is not radiance but linear display colour, shown as it is
 
   // The sum of the three layers at a value (pixel and channel), what is negative counting as none.
   float radiance(std::size_t value) const {

@@ -29,6 +29,10 @@ void PictureBuffers::make_room_around(device::Device& device) {
   grow(device, sizeof(glm::vec3) * pixels(), "picture/surroundings", around);
 }
 
+void PictureBuffers::make_room_doubt(device::Device& device) {
+  grow(device, sizeof(gpu::PixelDoubt) * pixels(), "picture/doubt", doubt);
+}
+
 Picture read_picture(device::Device& device, const PictureBuffers& buffers) {
   const auto rgb = [&](std::size_t k) { return floats(device, buffers.layers[k], 3 * buffers.pixels()); };
   return {.width = buffers.width,

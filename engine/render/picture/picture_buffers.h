@@ -16,7 +16,9 @@ struct PictureBuffers {
   std::array<device::Buffer, PICTURE_LAYERS> layers;  // vec3 per pixel: scattered, specular, unscattered, transmittance
   device::Buffer alpha;                               // float per pixel
   device::Buffer around;                              // vec3 per pixel: surroundings, if has_surroundings
+  device::Buffer doubt;                               // PixelDoubt per pixel, if has_doubt
   bool has_surroundings = false;
+  bool has_doubt = false;
   bool false_colour = false;  // as in Picture
 
   std::uint64_t pixels() const { return std::uint64_t{width} * height; }
@@ -24,6 +26,7 @@ struct PictureBuffers {
   // Takes the size, and memory for it where there is too little.
   void resize(device::Device& device, std::uint32_t new_width, std::uint32_t new_height);
   void make_room_around(device::Device& device);
+  void make_room_doubt(device::Device& device);
 };
 
 Picture read_picture(device::Device& device, const PictureBuffers& buffers);

@@ -48,12 +48,14 @@ gpu::SurfaceScene scene(const RasterInput& input, const Camera& camera) {
                           .triangle_face = 0,
                           .points = 0,
                           .scale = 0,
+                          .share = 0,
                           .solid = {}};
   if (input.gather != nullptr) {
     scene.triangle_face = input.gather->triangle_face.address();
     scene.points = input.gather->field.points().address();
     scene.scale = input.gather->field.scale().address();
     scene.solid = input.gather->field.solid();
+    if (input.gather->share != nullptr) scene.share = input.gather->share->address();
   }
   return scene;
 }
@@ -176,6 +178,7 @@ Rasteriser::~Rasteriser() = default;
 
 void Rasteriser::make_room(std::uint32_t width, std::uint32_t height) {
   picture_.resize(device_, width, height);
+  if (picture_.has_doubt) picture_.make_room_doubt(device_);
   std::uint32_t tile_width = std::min(width, tile_pixels), tile_height = std::min(height, tile_pixels);
   if (targets_ && targets_->width >= tile_width && targets_->height >= tile_height) return;
   if (targets_) {
@@ -202,6 +205,7 @@ gpu::ResolvePush Rasteriser::resolve_push(std::uint64_t scene, const Tile& tile)
                            .samples = {},
                            .layers = {},
                            .alpha = picture_.alpha.address(),
+                           .doubt = picture_.has_doubt ? picture_.doubt.address() : 0,
                            .tile_x = tile.x,
                            .tile_y = tile.y,
                            .tile_width = tile.width,
@@ -275,7 +279,8 @@ std::vector<PassStats> Rasteriser::run_tiles(std::uint32_t width, std::uint32_t 
       passes[1].bytes += (targets_->in_place() ? 1 : 3) * SAMPLE_LAYERS * tile.sample_bytes();  // read; copied before
     }
   }
-  passes[1].bytes += (12 * PICTURE_LAYERS + 4) * picture_.pixels();
+  const std::uint64_t doubt = picture_.has_doubt ? sizeof(gpu::PixelDoubt) : 0;
+  passes[1].bytes += (12 * PICTURE_LAYERS + 4 + doubt) * picture_.pixels();
   return passes;
 }
 
@@ -287,6 +292,7 @@ void Rasteriser::write_scene(const gpu::SurfaceScene& scene) {
 std::vector<PassStats> Rasteriser::run(const PathInput& input, const Camera& camera, std::uint32_t width,
                                        std::uint32_t height) {
   write_scene(scene(input, camera));
+  picture_.has_doubt = false;
   auto passes =
       run_tiles(width, height, [&](device::Commands& commands, const Tile& tile) { record(commands, input, tile); });
   picture_.false_colour = false;
@@ -297,6 +303,7 @@ std::vector<PassStats> Rasteriser::run(const PathInput& input, const Camera& cam
 std::vector<PassStats> Rasteriser::run(const RasterInput& input, const Camera& camera, std::uint32_t width,
                                        std::uint32_t height) {
   write_scene(scene(input, camera));
+  picture_.has_doubt = input.gather != nullptr && input.gather->share != nullptr;
   auto passes =
       run_tiles(width, height, [&](device::Commands& commands, const Tile& tile) { record(commands, input, tile); });
   picture_.false_colour = false;
@@ -314,6 +321,7 @@ std::vector<PassStats> Rasteriser::run(const FalseColours& input, const Camera& 
     options.cull = device::Cull::none;
     false_colour_.emplace(device_, options, "false colour");
   }
+  picture_.has_doubt = false;
   auto passes = run_tiles(width, height,
                           [&](device::Commands& commands, const Tile& tile) { record(commands, input, camera, tile); });
   picture_.false_colour = true;

@@ -28,6 +28,7 @@ double radiance_norm(double eta);
 struct GatherView {
   const GatherField& field;
   const device::Buffer& triangle_face;  // display_faces.h
+  const device::Buffer* share;          // SurfaceShare per surface vertex of the finest level; null: unknown
 };
 
 // A RoughnessMap on the device.

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from quadgraph import core
 from quadgraph.api.reprs import share
+from quadgraph.api.solution import ErrorEstimate
 from quadgraph.api.values import Floats, plain
 from quadgraph.base import image_file
 from quadgraph.base.errors import InputError
@@ -64,6 +65,16 @@ class Picture:
     def surroundings(self) -> Floats | None:
         """(h, w, 3): what is behind the body where environment lights are seen, else None."""
         return self._layers.surroundings
+
+    @property
+    def error(self) -> ErrorEstimate | None:
+        """Relative RMS error of scattered light over pixels, channels together: of the whole picture, of what shows the
+        unlit part of the surface, and of the third that is dimmest. None without a correction, and where radiance is
+        not gathered along view rays. Estimated of the error of the solve, by the surface that each pixel shows, and of
+        how much the radiance depends on the angle (docs/accuracy.md, "Pictures of unseen bodies").
+        """
+        error = self._layers.error
+        return ErrorEstimate(**error) if error else None
 
     @property
     def metadata(self) -> dict[str, str]:

@@ -46,6 +46,7 @@ def run(args: argparse.Namespace) -> int:
     for path in args.output:
         picture_output.write(picture, path, shown)
     report |= {"passes": engine.passes, "device": engine.device_name, "driver": engine.driver}
+    report["picture_error"] = picture.error
     report["seconds"] = time.perf_counter() - start
     if args.json:
         atomic_file.write_json(args.json, report)

@@ -122,7 +122,7 @@ def render(stage, file, frames: Iterable[float], outputs: list[Path]) -> list[di
             scene_options.check_validation(stage.engine)
             written.add(picture, frame, shown)
             report |= {"frame": frame, "seconds": time.perf_counter() - start}
-            reports.append(report | {"passes": stage.engine.passes})
+            reports.append(report | {"picture_error": picture.error, "passes": stage.engine.passes})
         written.finish()
     return reports
 

@@ -109,10 +109,12 @@ def path_text(path: dict) -> str:
 
 
 def solver_texts(report: dict) -> list[str]:
-    """Say what the bake knows of the error, which solver took another one's place, what warns of the answer, whether it
-    did not converge, and where it stopped if not on the finest level.
+    """Say what a picture is off by, what the bake knows of the error, which solver took another one's place, what warns
+    of the answer, whether it did not converge, and where it stopped if not on the finest level.
     """
-    texts = [report["budget"]] if report["budget"] else []
+    picture = report.get("picture_error")
+    texts = [f"error of the picture: {parts_text(picture)} (estimate)"] if picture else []
+    texts += [report["budget"]] if report["budget"] else []
     texts += [path_text(report["path"])] if report.get("path") else []
     if report["replaced"]:
         texts.append(f"solver: {report['replaced']}")

@@ -90,7 +90,7 @@ def render(args: argparse.Namespace, written: frame_output.Frames) -> list[dict]
         for frame in progress.track(range(args.frames), description="frames"):
             picture = turn.at(360 * frame / args.frames)
             written.add(picture, frame, turn.shown())
-            reports.append(turn.report | {"frame": frame, "passes": engine.passes})
+            reports.append(turn.report | {"frame": frame, "picture_error": picture.error, "passes": engine.passes})
         written.finish()
     console = Console(highlight=False, soft_wrap=True)
     console.print(text.size_text(engine))

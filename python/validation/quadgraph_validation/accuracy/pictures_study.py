@@ -14,7 +14,7 @@ from quadgraph.api.engine import Engine
 from quadgraph.api.lights import AmbientLight, RectangleLight
 from quadgraph.api.options import Camera
 from quadgraph.baking.pipeline import BakeOptions, bake
-from quadgraph_validation.accuracy import unseen_engine, unseen_motion
+from quadgraph_validation.accuracy import unseen_engine
 from quadgraph_validation.base import extra_module
 from quadgraph_validation.bodies import unseen_bodies, unseen_cases
 from quadgraph_validation.bodies.smooth_sky import SmoothSky
@@ -91,7 +91,7 @@ def _row(sight: Sight, wanted: PicturesRun) -> dict[str, Any]:
     eye = camera_walks.Eye(sight.eye.copy(), sight.look_at.copy(), sight.fov, "y", PIXELS, PIXELS)
     volume = mesh_walk.volume_of(case.medium)
     truth = walker.see(eye, 0, volume, case.medium.eta, wanted.walks, case.seed, lambda _share: None)
-    found, covered, printed = _pictures(sight, wanted.device)
+    found, covered, stated = _pictures(sight, wanted.device)
     inside = blocks(covered) > 0.999
     noise = np.sqrt(blocks(truth.noise[0] ** 2)[inside]) / BLOCK
     wanted_blocks = blocks(truth.radiance[0])[inside]
@@ -107,7 +107,7 @@ def _row(sight: Sight, wanted: PicturesRun) -> dict[str, Any]:
         "noise": errors(wanted_blocks + noise, wanted_blocks, np.zeros_like(noise)),
         "true": true,
         "ratio": {way: float(blocks(found[way])[inside].sum() / wanted_blocks.sum()) for way in WAYS},
-        "printed": printed,
+        "stated": stated,
     }
 
 
@@ -120,11 +120,11 @@ def _document(case: UnseenCase) -> dict[str, Any]:
     return {"type": "rectangle", "centre": light.centre, "u": light.u, "v": light.v, "power": light.power}
 
 
-def _pictures(sight: Sight, device: str) -> tuple[dict[str, np.ndarray], np.ndarray, dict[str, float]]:
-    """Radiance (h, w) of scattered light in each way, coverage, and the error stated of the exitance at rest."""
+def _pictures(sight: Sight, device: str) -> tuple[dict[str, np.ndarray], np.ndarray, dict[str, dict[str, float]]]:
+    """Radiance (h, w) of scattered light in each way, coverage, and the error stated of it, where one is, by way."""
     case, light = sight.case, sight.case.light
     found: dict[str, np.ndarray] = {}
-    printed: dict[str, float] = {}
+    stated: dict[str, dict[str, float]] = {}
     assert not isinstance(light, SmoothSky)
     with tempfile.TemporaryDirectory(prefix="quadgraph-pictures-") as name:
         mesh, file = Path(name) / "body.ply", Path(name) / "body.qgraph"
@@ -138,11 +138,12 @@ def _pictures(sight: Sight, device: str) -> tuple[dict[str, np.ndarray], np.ndar
                     for _ in range(FRAMES):
                         engine.solve(motion=True)
                 else:
-                    solution = engine.solve(correction=way == "rest")
-                    printed = printed or unseen_motion.stated(solution)
+                    engine.solve(correction=way == "rest")
                 picture = engine.render(_camera(sight), width=PIXELS, height=PIXELS)
                 found[way] = picture.scattered[..., 0].astype(float)
-    return found, picture.alpha.astype(float), printed
+                if picture.error is not None:
+                    stated[way] = {part: getattr(picture.error, part) for part in PARTS}
+    return found, picture.alpha.astype(float), stated
 
 
 def _camera(sight: Sight) -> Camera:
@@ -174,33 +175,50 @@ def _error(found: np.ndarray, truth: np.ndarray, noise: np.ndarray) -> float:
 
 
 def summary(rows: list[dict[str, Any]]) -> dict[str, Any]:
-    """By way and part, of parts that the walks can tell: how many, and median, 90% and worst of the true errors."""
+    """By way and part, of parts that the walks can tell: how many, and median, 90% and worst of the true errors.
+
+    ratios: least, median and most of the stated error over the true one, of those whose true one is above half of the
+    walks' noise.
+    """
     found: dict[str, Any] = {}
     for way in WAYS:
         found[way] = {}
         for part in PARTS:
-            true = [row["true"][way][part] for row in rows if row["noise"][part] < TOLD]
-            errors = np.quantile(true, (0.5, 0.9, 1)).tolist() if true else []
-            found[way][part] = {"cases": len(true), "errors": errors}
+            told = [row for row in rows if row["noise"][part] < TOLD]
+            true = [row["true"][way][part] for row in told]
+            ratios = [
+                row["stated"][way][part] / row["true"][way][part]
+                for row in told
+                if way in row["stated"] and row["true"][way][part] > row["noise"][part] / 2
+            ]
+            found[way][part] = {"cases": len(true), "errors": _at(true, 0.5, 0.9, 1), "ratios": _at(ratios, 0, 0.5, 1)}
     return found
+
+
+def _at(values: list[float], *shares: float) -> list[float]:
+    return np.quantile(values, shares).tolist() if values else []
 
 
 def tables(record: dict[str, Any]) -> list[Table]:
     """Each body's errors, and all together."""
-    columns = ("seed", "light", "material", "rest", "motion", "uncorrected", "noise", "printed, exitance")
+    columns = ("seed", "light", "material", "rest", "motion", "uncorrected", "noise", "stated")
     cases = Table(*columns, title="radiance, RMS of blocks: whole / dimmest third, %")
     for row in record["rows"]:
         material = f"{row['kind']}, eta {row['eta']:.2f}, {row['size']:.0f} mfp, {row['albedo']:.3f}"
-        shown = [row["true"][way] for way in WAYS] + [row["noise"], row["printed"]]
+        shown = [row["true"][way] for way in WAYS] + [row["noise"], row["stated"]["rest"]]
         cases.add_row(str(row["seed"]), row["light"], material, *map(_text, shown))
     together = Table("", "whole", "dimmest third", title="median / 90% / worst, %, where the walks can tell")
+    ratios = Table("", "whole", "dimmest third", title="stated over true: least / median / most")
     for way, found in record["summary"].items():
-        together.add_row(way, *map(_together, (found[part] for part in PARTS)))
-    return [cases, together]
+        parts = [found[part] for part in PARTS]
+        together.add_row(way, *(f"{_row_of(of['errors'], 100)} of {of['cases']}" for of in parts))
+        if parts[0]["ratios"]:
+            ratios.add_row(way, *(_row_of(of["ratios"]) for of in parts))
+    return [cases, together, ratios]
 
 
-def _together(of: dict[str, Any]) -> str:
-    return " / ".join(f"{100 * error:.1f}" for error in of["errors"]) + f" of {of['cases']}"
+def _row_of(values: list[float], times: float = 1) -> str:
+    return " / ".join(f"{times * value:.1f}" for value in values)
 
 
 def _text(of: dict[str, float]) -> str:
