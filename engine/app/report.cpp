@@ -20,6 +20,19 @@ Json as_json(const std::optional<ErrorEstimate>& error) {
   return error ? Json{{"whole", error->whole}, {"unlit", error->unlit}, {"dimmest", error->dimmest}} : Json(nullptr);
 }
 
+Json as_json(const CertifiedPart& part) {
+  return {{"power", part.power},
+          {"power_noise", part.power_noise},
+          {"error", part.error},
+          {"error_noise", part.error_noise}};
+}
+
+Json as_json(const Certificate& found) {
+  return {{"whole", as_json(found.whole)}, {"unlit", as_json(found.unlit)},     {"dimmest", as_json(found.dimmest)},
+          {"walks", found.walks},          {"segments", found.segments},        {"given_up", found.given_up},
+          {"seconds", found.seconds},      {"disagreement", found.disagreement}};
+}
+
 Json as_json(const CorrectionReport& correction) {
   Json json{{"segments", correction.segments}, {"sweeps", Json::array()}};
   for (const CorrectedSweep& sweep : correction.sweeps) {
@@ -66,6 +79,7 @@ Json as_json(const SolveReport& report) {
                     {"rounds", path.rounds}};
   }
   json["correction"] = report.correction ? as_json(*report.correction) : Json(nullptr);
+  json["certificate"] = report.certificate ? as_json(*report.certificate) : Json(nullptr);
   json["finest"] = report.finest;
   json["work"] = report.work;
   json["algebraic"] = as_json(report.algebraic);
@@ -145,6 +159,19 @@ void tell_part(std::ostream& out, const char* name, const std::optional<ErrorEst
   out << "\n";
 }
 
+std::string certified_text(const CertifiedPart& part) {
+  const std::string sign = part.power < 0 ? "-" : "+";
+  return decimals(100 * part.error, 2) + " ± " + decimals(100 * part.error_noise, 2) + "% (power " + sign +
+         decimals(100 * std::abs(part.power), 2) + " ± " + decimals(100 * part.power_noise, 2) + "%)";
+}
+
+void tell_certificate(std::ostream& out, const Certificate& found) {
+  out << "measured " << certified_text(found.whole) << " over the surface, ";
+  if (found.unlit.power_noise > 0) out << certified_text(found.unlit) << " over the unlit part, ";
+  if (found.dimmest.power_noise > 0) out << certified_text(found.dimmest) << " over the dimmest third, ";
+  out << "by " << decimals(found.walks / 1e6, 2) << " million random walks in " << decimals(found.seconds, 1) << " s\n";
+}
+
 void tell_levels(std::ostream& out, const RunReport& report) {
   const Level& finest = report.engine.graph().levels().front();
   const LevelReport& solved = report.solve.levels.back();
@@ -168,6 +195,7 @@ void tell_levels(std::ostream& out, const RunReport& report) {
   tell_part(out, "  solver ", report.solve.algebraic);
   tell_part(out, "  model  ", report.solve.model_error);
   tell_part(out, "  light  ", report.solve.light_error);
+  if (report.solve.certificate) tell_certificate(out, *report.solve.certificate);
   tell_part(out, "shown    ", report.picture_error, "picture");
 }
 
@@ -180,6 +208,9 @@ std::string text_report(const RunReport& report) {
     tell_paths(out, report);
   } else {
     tell_levels(out, report);
+  }
+  if (report.solve.certificate && !report.solve.certificate->disagreement.empty()) {
+    out << "warning  " << report.solve.certificate->disagreement << "\n";
   }
   if (!report.solve.replaced.empty()) out << "solver   " << report.solve.replaced << "\n";
   if (!report.solve.budget.empty()) out << "budget   " << report.solve.budget << "\n";

@@ -33,6 +33,13 @@ void check_options(const SolveOptions& options) {
     throw InputError("sweep_points: " + std::to_string(options.sweep_points) + ", allowed are " +
                      sweep_points_range.text());
   }
+  if (!certify_range.contains(options.certify)) {
+    throw InputError("certify: " + std::to_string(options.certify) + " s, allowed are " + certify_range.text());
+  }
+  if (options.certify > 0 && !corrects(options)) {
+    throw InputError(
+        "certify: what is certified is a corrected solve, of method fem with source buried; else allowed is 0");
+  }
   check_options(options.path);
 }
 

@@ -52,6 +52,23 @@ struct CorrectionReport {
   double segments = 0;   // tets that rays back from its points and faces crossed
 };
 
+// What random walks measured of a part of the surface, with standard errors.
+struct CertifiedPart {
+  double power = 0, power_noise = 0;  // of the exitance: more than that of the walks, relative
+  double error = 0, error_noise = 0;  // as ErrorEstimate: relative RMS, without the noise of the walks
+};
+
+// What random walks through the tets, which share nothing with the solution but these and their coefficients, say of it
+// (docs/physics.md, "Certificate").
+struct Certificate {
+  // The parts of ErrorEstimate, the dimmest third by patches; zero where there are none, or too few walks came there.
+  CertifiedPart whole, unlit, dimmest;
+  double walks = 0, segments = 0;  // of one channel each; tets that they crossed
+  double given_up = 0;             // share of the light in walks that were not followed to their end
+  double seconds = 0;
+  std::string disagreement{};  // where the error that is stated is less than what was measured; empty if nowhere
+};
+
 // What Method::shortest_path did.
 struct PathReport {
   PathOptions options;
@@ -107,6 +124,7 @@ struct SolveReport {
   std::string deformed;                        // tets of level 0 that a deformation has spoilt; empty if none is
   std::vector<glm::dvec3> bounces;             // W per channel that each bounce brought in
   std::optional<CorrectionReport> correction;  // of SolveOptions::sweeps
+  std::optional<Certificate> certificate;      // of SolveOptions::certify
   std::optional<PathReport> path;  // of Method::shortest_path; it has no levels, no energy balance and no estimates
   std::uint32_t exchange_age = 0;  // solves that what some face sees has been behind the shape; 0: nothing is
 };

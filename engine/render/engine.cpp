@@ -208,6 +208,9 @@ SolveReport Engine::solve(const SolveOptions& options, const std::function<void(
   if (self.report->correction && !options.warm && !self.lights.empty()) {
     self.interruptible([&] { self.state_light_error(options); });
   }
+  if (self.report->correction && !options.warm && options.certify > 0) {
+    self.interruptible([&] { self.simulation->certify(options, *self.report, check); });
+  }
   judge(*self.report, self.lights, self.lights_inside());
   self.options = options;
   return *self.report;

@@ -176,6 +176,14 @@ void add_light_paths(OptionTable& table) {
        .keyword = "sweep_seed",
        .range = up_to_a_million,
        .help = "what the points and rays of sweeps are drawn by: what two seeds differ by is noise"});
+  table.member<&Scene::solve, &SolveOptions::certify>(
+      {.name = "certify",
+       .member = "/solver/certify",
+       .keyword = "certify",
+       .range = certify_range,
+       .help =
+           "seconds in which random walks through the tets, which share nothing with the solver, measure how far the "
+           "exitance is off; 0: none"});
   table.member<&Scene::solve, &SolveOptions::active_layers>(
       {.name = "active-layers",
        .member = "/solver/active_layers",

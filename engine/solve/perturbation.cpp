@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "engine/device/memory.h"
-#include "engine/file/face_tree.h"
 #include "engine/solve/solver_choice.h"
+#include "engine/solve/surface_parts.h"
 #include "engine/solve/surface_results.h"
 #include "interface/assemble/right_hand_side_given.comp.h"
 #include "shaders/surface/surface_shared.h"
@@ -17,50 +16,13 @@ namespace {
 
 constexpr std::uint64_t vec3_bytes = sizeof(glm::vec3);
 
-// The error is that of means over patches, about so many on the whole surface, as of a correction.
-constexpr std::uint32_t patches = 256;
-
 // What is left of what a solve is to find, as a share of it, and its iterations at most, with cycles and without.
 constexpr double share_left = 0.05;
 constexpr std::uint32_t most_cycles = 6, most_steps = 500;
 
-// The node of the tree over the faces that each lies in, of those that number as many as there are patches.
-std::vector<std::uint32_t> patches_of(const Level& level) {
-  const FaceTree tree = face_tree(level);
-  const std::uint32_t leaves = tree.leaves(), together = std::max(1u, leaves / patches);
-  std::vector<std::uint32_t> patch(level.face_count());
-  for (std::uint32_t leaf = 0; leaf < leaves; ++leaf) {
-    for (std::uint32_t k = tree.leaf_begin[leaf]; k < tree.leaf_begin[leaf + 1]; ++k) {
-      patch[tree.order[k]] = leaf / together;
-    }
-  }
-  return patch;
-}
-
-float sum(const glm::vec3& v) {
-  return v.x + v.y + v.z;
-}
-
-// The third of the surface with the least exitance; none where all is dark.
-std::vector<bool> dimmest(const SurfaceField& field) {
-  std::vector<bool> in(field.area.size());
-  std::vector<std::uint32_t> order(in.size());
-  std::iota(order.begin(), order.end(), 0u);
-  const auto dimmer = [&](std::uint32_t a, std::uint32_t b) { return sum(field.exitance[a]) < sum(field.exitance[b]); };
-  std::sort(order.begin(), order.end(), dimmer);
-  if (order.empty() || !(sum(field.exitance[order.back()]) > 0)) return in;
-  double left = std::accumulate(field.area.begin(), field.area.end(), 0.0) / 3;
-  for (const std::uint32_t face : order) {
-    left -= static_cast<double>(field.area[face]);
-    in[face] = true;
-    if (left <= 0) break;
-  }
-  return in;
-}
-
 }  // namespace
 
-Perturbation::Perturbation(device::Device& device, const Level& level) : patch_(patches_of(level)) {
+Perturbation::Perturbation(device::Device& device, const Level& level) : patch_(surface_patches(level)) {
   const auto room = [&](std::uint64_t count, std::uint64_t bytes, const char* name) {
     return device::Buffer(device, count * bytes, device::Place::device, "perturbation/" + std::string(name));
   };
@@ -115,7 +77,7 @@ ErrorEstimate Perturbation::relative(const PerturbedSolution& solution, std::spa
   };
   const SurfaceField& field = solution.field;
   const auto error_of = [&](const auto& taken) {
-    std::vector<Patch> sums(patches);
+    std::vector<Patch> sums(most_patches);
     for (std::size_t f = 0; f < field.area.size(); ++f) {
       if (!taken(f)) continue;
       const double area = field.area[f];
@@ -137,10 +99,9 @@ ErrorEstimate Perturbation::relative(const PerturbedSolution& solution, std::spa
     if (!(size > 0)) return 0.0;
     return std::sqrt(std::max(product, std::sqrt(square_a * square_b / count)) / size);
   };
-  const std::vector<bool> dim = dimmest(field);
-  return {error_of([](std::size_t) { return true; }),
-          error_of([&](std::size_t f) { return sum(field.q[f]) < solution.unlit; }),
-          error_of([&](std::size_t f) { return dim[f]; })};
+  const SurfaceParts parts = surface_parts(field, solution.unlit);
+  return {error_of([](std::size_t) { return true; }), error_of([&](std::size_t f) { return parts.unlit[f]; }),
+          error_of([&](std::size_t f) { return parts.dimmest[f]; })};
 }
 
 }  // namespace quadgraph

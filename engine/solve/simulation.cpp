@@ -131,6 +131,21 @@ void Simulation::state_medium_error(const SolveOptions& options, SolveReport& re
   });
 }
 
+void Simulation::certify(const SolveOptions& options, SolveReport& report, const std::function<void()>& check) {
+  Implementation& self = *implementation_;
+  if (!self.certifier) self.certifier.emplace(self.device, self.shape.levels()[0]);
+  report.certificate = self.certifier->run({.work = self.work,
+                                            .level = self.levels[0],
+                                            .beams = self.beams,
+                                            .field = self.correction->field(),
+                                            .surface = surface_field(),
+                                            .scale = device::download<gpu::Scale>(self.device, self.work.scale)[0],
+                                            .entered = report.energy.entered},
+                                           options.certify, options.sweep_seed, check);
+  state_disagreement(report);
+  self.passes = self.work.recorder.passes();
+}
+
 void Simulation::perturb(const SolveOptions& options, SolveReport& report,
                          const std::function<void(const PerturbedSolution&)>& state) {
   Implementation& self = *implementation_;

@@ -14,6 +14,7 @@
 #include "engine/solve/asked_error.h"
 #include "engine/solve/beams.h"
 #include "engine/solve/body_shape.h"
+#include "engine/solve/certificate.h"
 #include "engine/solve/coefficients.h"
 #include "engine/solve/gather_field.h"
 #include "engine/solve/inter_reflection.h"
@@ -46,6 +47,7 @@ struct Simulation::Implementation {
   std::optional<GatherField> gather;              // the same
   std::optional<Gather> gathers_now;              // of the last solution
   std::optional<TransportCorrection> correction;  // made at first use
+  std::optional<Certifier> certifier;             // the same
   std::optional<Perturbation> perturbation;       // the same
   std::optional<LightError> light_error;          // the same
   bool corrected = false;                         // the last solution is

@@ -65,6 +65,7 @@ class TransportCorrection {
   // faces, W/mm^2.
   const device::Buffer& fluence() const { return samples_.fluence(); }
   FirstScattered first() const { return samples_.first(); }
+  const device::Buffer& field() const { return samples_.field(); }  // TransportFieldRef, the body that rays see
   const device::Buffer& exitance() const { return exitance_; }
 
   // Power of the light's own rays, W; `entered_again` with the scattered light of which `scattered_out` W leave.

@@ -165,6 +165,7 @@ void TransportSamples::record_walk(const TransportParts& parts, const WalkTask& 
                               .sums = walk_sums_.address(),
                               .rays = 1,
                               .sky = 0,
+                              .first = 0,
                               .deposits = gpu::WALK_CORNERS};
   for (const gpu::Beam& beam : parts.beams.beams) {
     const std::uint32_t kind = beam.way.kind;

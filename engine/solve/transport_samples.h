@@ -100,6 +100,8 @@ class TransportSamples {
   const device::Buffer& books() const { return books_; }  // TransportBook
   const device::Buffer& mass() const { return mass_; }    // vec3 per vertex, mm^2: integral of sigma_s' times its basis
 
+  const device::Buffer& field() const { return field_; }  // TransportFieldRef, of the last start
+
   FirstScattered first() const { return {deposit_, mass_, tet_offset_, tet_incidence_}; }
 
   const device::Buffer& fluence() const { return fluence_; }    // vec3 per vertex, scaled; to be corrected

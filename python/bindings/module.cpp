@@ -120,6 +120,28 @@ py::dict correction_dict(const CorrectionReport& correction) {
   return d;
 }
 
+py::dict part_dict(const CertifiedPart& part) {
+  py::dict d;
+  d["power"] = part.power;
+  d["power_noise"] = part.power_noise;
+  d["error"] = part.error;
+  d["error_noise"] = part.error_noise;
+  return d;
+}
+
+py::dict certificate_dict(const Certificate& found) {
+  py::dict d;
+  d["whole"] = part_dict(found.whole);
+  d["unlit"] = part_dict(found.unlit);
+  d["dimmest"] = part_dict(found.dimmest);
+  d["walks"] = found.walks;
+  d["segments"] = found.segments;
+  d["given_up"] = found.given_up;
+  d["seconds"] = found.seconds;
+  d["disagreement"] = found.disagreement;
+  return d;
+}
+
 py::dict path_dict(const PathReport& path) {
   py::dict d;
   d["cost"] = std::string(name_of(path.options.cost));
@@ -164,6 +186,7 @@ py::dict as_dict(const SolveReport& report) {
   d["exchange_age"] = report.exchange_age;
   d["path"] = report.path ? py::object(path_dict(*report.path)) : py::object(py::none());
   d["correction"] = report.correction ? py::object(correction_dict(*report.correction)) : py::object(py::none());
+  d["certificate"] = report.certificate ? py::object(certificate_dict(*report.certificate)) : py::object(py::none());
   d["finest"] = report.finest;
   d["work"] = report.work;
   d["algebraic"] = error_dict(report.algebraic);

@@ -41,6 +41,8 @@ if TYPE_CHECKING:
     from quadgraph.api.picture import Picture
     from quadgraph.api.scene import Scene, SceneFile
     from quadgraph.api.solution import (
+        Certificate,
+        CertifiedPart,
         CorrectedSweep,
         Correction,
         Energy,
@@ -68,6 +70,8 @@ __all__ = [
     "Bend",
     "Cage",
     "Camera",
+    "Certificate",
+    "CertifiedPart",
     "CorrectedSweep",
     "Correction",
     "Deformer",
@@ -133,7 +137,7 @@ _PLACES = {
     "quadgraph.api.options": "Camera MotionOptions PathOptions PictureOptions SolveOptions",
     "quadgraph.api.picture": "Picture",
     "quadgraph.api.scene": "Scene SceneFile",
-    "quadgraph.api.solution": "CorrectedSweep Correction Energy ErrorEstimate LevelReport PathReport Solution",
+    "quadgraph.api.solution": "Certificate CertifiedPart CorrectedSweep Correction Energy ErrorEstimate LevelReport PathReport Solution",
     "quadgraph.api.stage": "Stage",
     "quadgraph.api.tensors": "OutgoingTensors outgoing_tensors",
     "quadgraph.baking.pipeline": "BakeOptions BakeReport bake",

@@ -23,6 +23,11 @@ const float TRANSPORT_ROULETTE = 0.05f;
 // Sums of the walk of the light (transport_walk.comp).
 const uint TRANSPORT_WALK_SUMS = 4u;
 
+// Sums of the walks that certify a solution (certify.comp), and steps, through a tet or to a collision, after which one
+// is given up.
+const uint CERTIFY_SUMS = 3u;
+const uint CERTIFY_STEPS = 1048576u;
+
 // Parts of the body that a ray can meet in the air, one after the other, before it is given up.
 const uint TRANSPORT_MEETINGS = 8u;
 

@@ -6,8 +6,7 @@
 layout(local_size_x = WORKGROUP_SIZE) in;
 
 // The walk of one beam (walk_source.comp) to the corners of tets, with what meets the body again after it was reflected
-// outside or has left unscattered. Light from all around comes as it is, each ray from a direction of its own that no
-// part of the body hides.
+// outside or has left unscattered.
 struct TransportWalkPush {
   TransportFieldRefs field;  // one
   Beams beam;                // one
@@ -17,6 +16,7 @@ struct TransportWalkPush {
   Uints sums;     // fixed point, WALK_SUMS times TRANSPORT_WALK_SUMS: absorbed; left, or under way at the end; entered again; entered
   uint rays;      // a face; a multiple of FACE_QUARTERS where the beam has directions
   uint sky;       // 1: the beam is ambient light or an environment
+  uint first;     // number of the first ray of the first face
   uint deposits;  // WALK_CORNERS
 };
 layout(push_constant, scalar) uniform Block { TransportWalkPush push; };
@@ -25,20 +25,7 @@ TransportFieldRef field;
 #define FIELD field
 #define BODY field.body
 #include "source/walk_ray.glsl"
-#include "source/walk_start.glsl"
-#include "transport/entering_rays.glsl"
-#include "transport/transport_surface.glsl"
-
-uint state;
-vec3 entered, entered_again;
-
-// Puts the ray where it enters. Returns 0 if it enters nowhere, else 1.
-float enter_again(Entrance entry, inout Ray ray) {
-  if (entry.face == NO_FACE) return 0.0;
-  ray.at = entrance_point(entry);
-  ray.direction = entry.direction;
-  return 1.0;
-}
+#include "transport/entering_light.glsl"
 
 void meet_surface(inout Ray ray, uint face) {
   vec3 n = outward_normal(face);
@@ -60,62 +47,8 @@ void meet_surface(inout Ray ray, uint face) {
   ray.direction = normalize(ray.direction - 2.0 * cosine * n);
 }
 
-// What the surface reflects of light that travels along `direction` and whose power `went_in`, where that enters
-// elsewhere.
-void follow_reflected(vec3 direction, uint face, vec3 point, vec3 normal, vec3 went_in) {
-  if (BODY.eta == 1.0 || !sees_body(face)) return;
-  float cosine = clamp(-dot(direction, normal), 0.0, 1.0);
-  float transmitted = fresnel_transmittance(cosine, BODY.eta);
-  direction = normalize(direction + 2.0 * cosine * normal);
-  if (transmitted < 1e-3) return;
-  Entrance entry = through_air(face, point, direction, state);
-  if (entry.face == NO_FACE) return;
-  Ray reflected = Ray(entrance_point(entry), entry.direction, (1.0 / transmitted - 1.0) * went_in, vec3(0), 1.0);
-  entered_again += reflected.power;
-  walk(reflected);
-}
-
-// Of a beam whose light comes evenly from everywhere.
-void follow(BeamRecord way, uint ray, uint face, TetPoint point, Frame at, vec3 power) {
-  state = hash(face ^ hash(ray));
-  entered += power;
-  walk(start(way, ray, point, at, power));
-  // Of a bundle that one ray stands for no reflection is known.
-  if (push.rays == 1u) return;
-  follow_reflected(incoming(way, ray, at), face, at.position, at.normal, power);
-}
-
-// From where it entered, and on from there what the surface reflects. direction: outside, the way the light travels.
-void enter(OpenFace open, uint face, vec3 l, vec3 direction, vec3 power) {
-  entered += power;
-  walk(Ray(start_on_face(open.tet, open.ids, l), refracted(direction, open.normal, BODY.eta), power, vec3(0), 1.0));
-  follow_reflected(direction, face, open.corners * l, open.normal, power);
-}
-
-void walk_from_sky(Beam beam, uint face, uint ray) {
-  OpenFace open;
-  if (!opens(face, open)) return;
-  uint number = push.rays * face + ray;
-  state = hash(face ^ hash(ray));
-  SkyRay drawn = drawn_from_sky(beam, number, open.normal, open.corners[1] - open.corners[0], BODY.eta, state);
-  vec3 power = open.area / float(push.rays) * drawn.let_in * push.scale.at[0].inverse;
-  if (power == vec3(0)) return;
-  vec3 l = spread_over_face(number), point = open.corners * l;
-  if (field.sky.at[face] < 1.0 && first_met(line_along(point, drawn.towards), face, FAR).face != NO_FACE) return;
-  enter(open, face, l, -drawn.towards, power);
-}
-
-// One of as many rays from each quarter of a face, from anywhere in it.
-void walk_from_quarter(Beam beam, uint face, uint ray) {
-  OpenFace open;
-  if (!opens(face, open)) return;
-  uint number = push.rays * face + ray, quarter = ray % FACE_QUARTERS;
-  vec3 q = beam_light(beam, push.beam_q, BODY.face_count, face, quarter) * push.scale.at[0].inverse;
-  if (q == vec3(0)) return;
-  vec3 l = spread_over_quarter(number, quarter);
-  state = hash(face ^ hash(ray));
-  Frame at = Frame(open.corners * l, open.normal, vec3(0), number);  // it has a direction without a tangent
-  enter(open, face, l, incoming(beam.way, ray, at), open.area / float(push.rays) * q);
+void go_in(Ray ray) {
+  walk(ray);
 }
 
 void main() {
@@ -123,19 +56,8 @@ void main() {
   field = push.field.at[0];
   absorbed = vec3(0);
   unscattered = vec3(0);
-  entered = vec3(0);
-  entered_again = vec3(0);
   if (i >= BODY.face_count * push.rays) return;
-  uint face = i % BODY.face_count, ray = i / BODY.face_count;
-  Beam beam = push.beam.at[0];
-  rays = push.rays;
-  if (push.sky == 1u) {
-    walk_from_sky(beam, face, ray);
-  } else if (beam.way.kind == BEAM_LAMBERTIAN) {
-    walk_from(beam, face, ray);
-  } else {
-    walk_from_quarter(beam, face, ray);
-  }
+  let_in_by(i % BODY.face_count, i / BODY.face_count);
   uint at = TRANSPORT_WALK_SUMS * (gl_WorkGroupID.x % WALK_SUMS);
   add_power(push.sums, at, absorbed);
   add_power(push.sums, at + 1u, unscattered);

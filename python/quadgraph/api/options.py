@@ -31,8 +31,9 @@ class SolveOptions(TypedDict, total=False):
     the mesh's together are below it, 0 for no target; cycles: exactly so many iterations on the finest level, 0 for as
     many as it takes; max_iterations: per level; inter_reflection: whether it is computed; bounces: of that, 0 until
     nothing changes; correction: by sweeps of the transport equation; sweeps: how many, 0 until another one would change
-    little; sweep_points: where one evaluates it at a time; sweep_seed: what these are drawn by; active_layers: of a
-    polygrid, 0 for all; path: of the method shortest-path.
+    little; sweep_points: where one evaluates it at a time; sweep_seed: what these are drawn by; certify: seconds in
+    which random walks measure the error, 0 for none; active_layers: of a polygrid, 0 for all; path: of the method
+    shortest-path.
     """
 
     method: Method
@@ -49,6 +50,7 @@ class SolveOptions(TypedDict, total=False):
     sweeps: int
     sweep_points: int
     sweep_seed: int
+    certify: float
     active_layers: int
     path: PathOptions
 

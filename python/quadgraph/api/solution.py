@@ -97,6 +97,43 @@ class Correction:
 
 
 @dataclass(frozen=True)
+class CertifiedPart:
+    """What random walks measured of a part of the surface. power: of the exitance, how much more it is than that of the
+    walks, relative; error: relative RMS over patches as of `ErrorEstimate`, without the noise of the walks; each with
+    its standard error, power_noise and error_noise. All 0 where there is no such part, or too few walks came there.
+    """
+
+    power: float
+    power_noise: float
+    error: float
+    error_noise: float
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """What random walks through the tets, which share nothing with the solver but these and their coefficients, measured
+    of the exitance (docs/physics.md, "Certificate"). whole, unlit, dimmest: parts of the surface; walks: of one channel
+    each; segments: tets that they crossed; given_up: share of the light in walks that were not followed to their end;
+    seconds: that it took; disagreement: where the stated error is less than what was measured, in words, or "".
+    """
+
+    whole: CertifiedPart
+    unlit: CertifiedPart
+    dimmest: CertifiedPart
+    walks: float
+    segments: float
+    given_up: float
+    seconds: float
+    disagreement: str
+
+    @classmethod
+    def from_report(cls, report: Mapping[str, Any]) -> Self:
+        """Return it from the compiled engine's report."""
+        parts = {part: CertifiedPart(**report[part]) for part in ("whole", "unlit", "dimmest")}
+        return cls(**(dict(report) | parts))
+
+
+@dataclass(frozen=True)
 class PathReport:
     """What shortest-path did. size: voxels along x, y, z; cell: mm, side of one; solid: voxels in the body; lit: of
     them, those that light enters; rounds: until no path had anything to gain.
@@ -127,7 +164,7 @@ class Solution:
     is not met, in words; missed: of that, the error; stopped: of that, how the solve did not converge; budget: what the
     bake of the file has to say of the error that was asked for; mesh_warning, model_warning, light_warning, deformed:
     what else is to be said against the answer; exchange_age: solves by which what some face sees is behind the shape;
-    correction: what sweeps did, None without; path: of the method shortest-path, which has no levels, energy balance
+    correction: what sweeps did, None without; certificate: what random walks measured, None without `certify`; path: of the method shortest-path, which has no levels, energy balance
     and estimates. Texts are empty where there is nothing to say.
     """
 
@@ -160,6 +197,7 @@ class Solution:
     deformed: str
     exchange_age: int
     correction: Correction | None
+    certificate: Certificate | None
     path: PathReport | None
 
     @classmethod
@@ -177,6 +215,7 @@ class Solution:
             "bounces": np.array(report["bounces"]).reshape(-1, 3),
             "unmet": tuple(report["unmet"]),
             "correction": report["correction"] and Correction.from_report(report["correction"]),
+            "certificate": report["certificate"] and Certificate.from_report(report["certificate"]),
             "path": report["path"] and PathReport(**report["path"]),
         }
         return cls(**{each.name: typed.get(each.name, report[each.name]) for each in fields(cls)})

@@ -90,6 +90,20 @@ def correction_text(correction: dict) -> str:
     )
 
 
+def certificate_texts(found: dict) -> list[str]:
+    """Say what random walks measured, and where that contradicts the estimate."""
+
+    def of(part: dict) -> str:
+        error, noise, power, power_noise = (100 * part[name] for name in ("error", "error_noise", "power", "power_noise"))
+        return f"{error:.2g} ± {noise:.2g}% (power {power:+.2g} ± {power_noise:.2g}%)"
+
+    names = {"whole": "whole", "unlit": "unlit", "dimmest": "dimmest third"}
+    parts = ", ".join(f"{name} {of(found[part])}" for part, name in names.items() if found[part]["power_noise"] > 0)
+    against = [f"warning: {found['disagreement']}"] if found["disagreement"] else []
+    walks = f"{found['walks'] / 1e6:.2g} million random walks in {found['seconds']:.1f} s"
+    return [*against, f"error measured by {walks}: {parts}"]
+
+
 def parts_text(error: dict | None) -> str:
     """Return the error over the whole surface, its unlit part and its dimmest third in words."""
     if error is None:
@@ -114,6 +128,7 @@ def solver_texts(report: dict) -> list[str]:
     """
     picture = report.get("picture_error")
     texts = [f"error of the picture: {parts_text(picture)} (estimate)"] if picture else []
+    texts += certificate_texts(report["certificate"]) if report.get("certificate") else []
     texts += [report["budget"]] if report["budget"] else []
     texts += [path_text(report["path"])] if report.get("path") else []
     if report["replaced"]:

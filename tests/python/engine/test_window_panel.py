@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -35,6 +36,16 @@ def put(hand: Hand, y: int, text: str, *held: str) -> None:
     hand.keys("ctrl+a")
     hand.do("type", "--delay", "20", text)
     hand.keys("Return", "Escape")
+
+
+def put_until(hand: Hand, y: int, text: str, seen: Callable[[np.ndarray], bool]) -> np.ndarray:
+    """The picture of what is typed there, which a hand types again where a busy window has lost a key of it."""
+    before = hand.picture()
+    for _ in range(4):
+        put(hand, y, text)
+        if seen(now := hand.other_picture(before)):
+            break
+    return now
 
 
 def width_at(picture: np.ndarray, share: float) -> int:
@@ -94,11 +105,14 @@ def test_a_projector_takes_the_image_that_is_typed(open_window, tmp_path: Path):
     press(hand, FRAME)
     whole = hand.picture()
 
-    put(hand, IMAGE, "half.png")
-    half = hand.other_picture(whole)
     middle = whole.shape[1] // 2
     left, right = np.s_[200:400, middle - 100 : middle - 40], np.s_[200:400, middle + 40 : middle + 100]
-    assert half[left].mean() < 0.4 * whole[left].mean()
+
+    def dark(picture: np.ndarray) -> bool:
+        return picture[left].mean() < 0.4 * whole[left].mean()
+
+    half = put_until(hand, IMAGE, "half.png", dark)
+    assert dark(half)
     assert half[right].mean() > 0.8 * whole[right].mean()
     told = np.s_[-60:, :400]
     put(hand, IMAGE, "none.png")

@@ -1,0 +1,61 @@
+// Random walks of the light through the tets: what a corrected exitance is off by, measured by what shares nothing with
+// the solution but the tets, their coefficients and the light on the faces.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "engine/reference/solution.h"
+#include "engine/solve/beams.h"
+#include "engine/solve/level_buffers.h"
+#include "engine/solve/workspace.h"
+#include "shaders/solver/solve_shared.h"
+
+namespace quadgraph {
+
+// The solution, on the finest level.
+struct CertifiedSolution {
+  Workspace& work;
+  const LevelBuffers& level;
+  const BeamBuffers& beams;
+  const device::Buffer& field;  // TransportFieldRef
+  const SurfaceField& surface;  // position and normal are not looked at
+  gpu::Scale scale;             // of the light
+  glm::dvec3 entered;           // W
+};
+
+class Certifier {
+ public:
+  // Groups of walks that share nothing: what these differ by is the noise.
+  static constexpr std::uint32_t batches = 16;
+
+  // `level`: the finest, whose faces stay what they are.
+  Certifier(device::Device& device, const Level& level);
+
+  // Walks for about so long. `check` is called every half a second at the latest; what it throws ends it.
+  Certificate run(const CertifiedSolution& solution, double seconds, std::uint32_t seed,
+                  const std::function<void()>& check);
+
+ private:
+  // Walks that were made: what the sums of `batch` are of, in walks that each stand for the unit.
+  struct Made {
+    std::array<double, batches> weight{};
+    double walks = 0, segments = 0;
+    glm::dvec3 given_up{0};  // W, of all of them
+  };
+
+  void round(const CertifiedSolution& solution, double walks, std::uint32_t batch, std::uint32_t seed, Made& made);
+  void forget(Workspace& work);
+  Certificate judge(const CertifiedSolution& solution, const Made& made);
+
+  std::vector<std::uint32_t> patch_;  // per face
+  device::Buffer leaving_;            // fixed point, per batch and face
+  device::Buffer sums_, sums_on_host_;
+};
+
+// Says where what is stated of a report's error is less than what its certificate measured, by more than three standard
+// errors and what the estimate leaves open (mesh_error.h).
+void state_disagreement(SolveReport& report);
+
+}  // namespace quadgraph

@@ -1,0 +1,150 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "source/walk_shared.h"
+#include "transport/transport_shared.h"
+
+layout(local_size_x = WORKGROUP_SIZE) in;
+
+// Random walks of the light of one beam, one channel each, until they leave the body or are absorbed: transport itself,
+// of the tets and their coefficients, without bias. What leaves is added up by face, before chance decides whether it
+// does (next-event estimation at the surface).
+struct CertifyPush {
+  TransportFieldRefs field;  // one
+  Beams beam;                // one
+  Floats beam_q;             // of all
+  Scales scale;
+  Uints deposit;  // fixed point, per face: power that leaves there and has scattered
+  // Fixed point, WALK_SUMS times CERTIFY_SUMS: absorbed; left unscattered; given up. Behind them WALK_SUMS times two plain
+  // numbers: walks, and tets that they crossed.
+  Uints sums;
+  vec3 walk;      // power that a walk stands for, scaled; 0 in a channel without light
+  vec3 unit;      // power that it counts with, scaled
+  uint rays;      // a face, as of TransportWalkPush
+  uint sky;       // the same
+  uint first;     // the same
+  uint deposits;  // not looked at
+};
+layout(push_constant, scalar) uniform Block { CertifyPush push; };
+
+TransportFieldRef field;
+#define FIELD field
+#define BODY field.body
+#include "source/walk_ray.glsl"
+#include "transport/entering_light.glsl"
+
+vec3 given_up;
+bool scattered;  // the present walk has
+uint walks, crossed;
+
+// Optical depth to the next collision.
+float free_depth() {
+  return -log(1.0 - uniform_number(state));
+}
+
+vec3 any_direction() {
+  float z = 2.0 * uniform_number(state) - 1.0, azimuth = 6.2831853 * uniform_number(state);
+  return vec3(sqrt(1.0 - z * z) * vec2(cos(azimuth), sin(azimuth)), z);
+}
+
+// Ends a ray of little power by chance, without bias.
+void thin_out(inout Ray ray, uint channel) {
+  float share = ray.power[channel] / (TRANSPORT_ROULETTE * push.unit[channel]);
+  if (share >= 1.0) return;
+  ray.power[channel] = uniform_number(state) < share ? TRANSPORT_ROULETTE * push.unit[channel] : 0.0;
+}
+
+void meet_surface(inout Ray ray, uint face) {
+  vec3 n = outward_normal(face);
+  float cosine = clamp(dot(ray.direction, n), 0.0, 1.0);
+  if (BODY.face_kinds.at[face] == FACE_OPEN) {
+    float reflected = internal_reflectance(cosine, BODY.eta);
+    vec3 leaving = (1.0 - reflected) * ray.power;
+    if (scattered) {
+      add_power(push.deposit, face, leaving);
+    } else {
+      unscattered += leaving;
+    }
+    if (!sees_body(face)) {
+      ray.power -= leaving;
+    } else if (uniform_number(state) >= reflected) {
+      vec3 point = in_space(ray.at);
+      ray.power *= enter_again(through_air(face, point, leaving_direction(ray.direction, n, cosine), state), ray);
+      return;
+    }
+  }
+  ray.direction = normalize(ray.direction - 2.0 * cosine * n);
+}
+
+// At an optical depth `depth` of the way through the present tet.
+void collide(inout Ray ray, uint channel, Optical optical, Exit exit, float depth) {
+  vec4 l = max(ray.at.l + depth / extinction(optical)[channel] * exit.rate, vec4(0));
+  ray.at.l = l / (l.x + l.y + l.z + l.w);
+  ray.at.barred = vec4(0);
+  vec3 kept = ray.power * albedo(optical);
+  absorbed += ray.power - kept;
+  ray.power = kept;
+  ray.direction = any_direction();
+  scattered = true;
+}
+
+void wander(Ray ray, uint channel) {
+  scattered = false;
+  float depth = free_depth();
+  for (uint step = 0u; step < CERTIFY_STEPS; ++step) {
+    Exit exit = find_exit(ray.at, ray.direction);
+    if (!exit.found) break;
+    ++crossed;
+    Optical optical = optical_in(ray.at.tet);
+    float tau = extinction(optical)[channel] * exit.path;
+    if (tau > depth) {
+      collide(ray, channel, optical, exit, depth);
+      depth = free_depth();
+      thin_out(ray, channel);
+    } else {
+      depth -= tau;
+      ray.at.l = exit_point(ray.at, exit);
+      uint crossing = crossing_at(ray.at.tet, exit.place), across = crossing >> CROSSING_BITS;
+      if (across < BODY.tet_count) {
+        enter(ray.at, exit.place, crossing);
+        continue;
+      }
+      bar(ray.at, exit.place);
+      meet_surface(ray, across - BODY.tet_count);
+      thin_out(ray, channel);
+    }
+    if (ray.power[channel] == 0.0) return;
+  }
+  given_up += ray.power;
+}
+
+// As many walks as its power stands for, on average.
+void go_in(Ray ray) {
+  for (uint c = 0u; c < 3u; ++c) {
+    if (push.walk[c] == 0.0) continue;
+    uint count = uint(ray.power[c] / push.walk[c] + uniform_number(state));
+    Ray one = ray;
+    one.power = vec3(0);
+    one.power[c] = push.unit[c];
+    for (uint k = 0u; k < count; ++k) wander(one, c);
+    walks += count;
+  }
+}
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  field = push.field.at[0];
+  absorbed = vec3(0);
+  unscattered = vec3(0);
+  given_up = vec3(0);
+  walks = 0u;
+  crossed = 0u;
+  if (i >= BODY.face_count * push.rays) return;
+  let_in_by(i % BODY.face_count, i / BODY.face_count);
+  uint group = gl_WorkGroupID.x % WALK_SUMS, at = CERTIFY_SUMS * group;
+  add_power(push.sums, at, absorbed);
+  add_power(push.sums, at + 1u, unscattered);
+  add_power(push.sums, at + 2u, given_up);
+  uint counts = CERTIFY_SUMS * FIXED_WORDS * WALK_SUMS + 2u * group;
+  atomicAdd(push.sums.at[counts], walks);
+  atomicAdd(push.sums.at[counts + 1u], crossed);
+}

@@ -1,0 +1,86 @@
+// The certificate: walks find all power where none is lost, what a solution is off by, and what contradicts it.
+#include <cmath>
+
+#include "engine/base/error.h"
+#include "engine/devices/open_device.h"
+#include "engine/solve/certificate.h"
+#include "tests/cpp/fixtures/exchange_fixtures.h"
+#include "tests/cpp/fixtures/solved_body.h"
+#include "tests/cpp/fixtures/test_device.h"
+
+using namespace quadgraph;
+
+namespace {
+
+// A certificate, after a correction of few samples.
+Certificate certified(Scene& scene, double seconds = 0.3) {
+  const SolveOptions options{.correction = true, .sweeps = 1, .sweep_points = 2000, .certify = seconds};
+  SolveReport report = scene.simulation.solve(options);
+  scene.simulation.certify(options, report, {});
+  return *report.certificate;
+}
+
+SolveReport stating(double error, const CertifiedPart& unlit) {
+  SolveReport report;
+  report.error = ErrorEstimate{.whole = error, .unlit = error, .dimmest = error};
+  report.certificate.emplace().unlit = unlit;
+  state_disagreement(report);
+  return report;
+}
+
+}  // namespace
+
+TEST_CASE("where nothing is absorbed, walks bring out all of the light, whatever the index") {
+  for (const float eta : {1.0f, 1.4f}) {
+    CAPTURE(eta);
+    Scene scene({8, 4});
+    gpu::Material material{};
+    material.sigma_s_prime = {0.3f, 1.0f, 3.0f};
+    material.sigma_a = glm::vec3(0);
+    material.eta = eta;
+    scene.simulation.set_material(material);
+    scene.light([](const glm::vec3&) { return glm::vec3(1.0f, 0.8f, 0.6f); });
+    const Certificate found = certified(scene);
+    // The solution loses no power, to rounding, but its few rays leave more or less of it unscattered than all would.
+    CHECK(std::abs(found.whole.power) < 0.004 + 6 * found.whole.power_noise);
+    CHECK(found.whole.power_noise < 0.01);
+    CHECK(found.given_up == 0);
+    CHECK(found.walks > 1e4);
+  }
+}
+
+TEST_CASE("channels are walked by themselves, and one without light has no walks") {
+  Scene scene({8, 4});
+  gpu::Material material{};
+  material.sigma_s_prime = {0.5f, 1.0f, 2.0f};
+  material.sigma_a = {0.5f, 0.1f, 0.0f};
+  material.eta = 1.3f;
+  scene.simulation.set_material(material);
+  scene.light([](const glm::vec3& normal) { return normal.z > 0.5f ? glm::vec3(1, 0, 2) : glm::vec3(0); });
+  const Certificate found = certified(scene);
+  CHECK(found.whole.power_noise > 0);
+  CHECK(std::abs(found.whole.power) < 0.02 + 6 * found.whole.power_noise);
+  CHECK(found.unlit.power_noise > 0);
+}
+
+TEST_CASE("an error that is stated is contradicted by one that is larger beyond its noise, and by no other") {
+  const CertifiedPart large{.power = 0.01, .power_noise = 0.002, .error = 0.05, .error_noise = 0.005};
+  CHECK(stating(0.01, large).certificate->disagreement ==
+        "random walks contradict the stated error: the unlit part by 5% where 1% is stated");
+  CHECK(stating(0.04, large).certificate->disagreement.empty());
+  const CertifiedPart noisy{.power = 0.01, .power_noise = 0.002, .error = 0.05, .error_noise = 0.02};
+  CHECK(stating(0.01, noisy).certificate->disagreement.empty());
+  const CertifiedPart shifted{.power = -0.03, .power_noise = 0.002, .error = 0.0, .error_noise = 0.02};
+  CHECK(stating(0.01, shifted).certificate->disagreement ==
+        "random walks contradict the stated error: the unlit part by 3% where 1% is stated");
+  CHECK(stating(0.01, {}).certificate->disagreement.empty());
+}
+
+TEST_CASE("only what is corrected can be certified") {
+  Scene scene({4});
+  scene.simulation.set_material(veined());
+  scene.light(one_side);
+  CHECK_THROWS_AS(check_options({.certify = 1}), InputError);
+  CHECK_THROWS_AS(check_options({.correction = true, .certify = -1}), InputError);
+  CHECK_THROWS_AS(check_options({.method = Method::quadgraph_fv, .correction = true, .certify = 1}), InputError);
+}
