@@ -137,7 +137,8 @@ _PLACES = {
     "quadgraph.api.options": "Camera MotionOptions PathOptions PictureOptions SolveOptions",
     "quadgraph.api.picture": "Picture",
     "quadgraph.api.scene": "Scene SceneFile",
-    "quadgraph.api.solution": "Certificate CertifiedPart CorrectedSweep Correction Energy ErrorEstimate LevelReport PathReport Solution",
+    "quadgraph.api.solution": "Certificate CertifiedPart CorrectedSweep Correction Energy ErrorEstimate LevelReport "
+    "PathReport Solution",
     "quadgraph.api.stage": "Stage",
     "quadgraph.api.tensors": "OutgoingTensors outgoing_tensors",
     "quadgraph.baking.pipeline": "BakeOptions BakeReport bake",

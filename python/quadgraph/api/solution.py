@@ -111,10 +111,11 @@ class CertifiedPart:
 
 @dataclass(frozen=True)
 class Certificate:
-    """What random walks through the tets, which share nothing with the solver but these and their coefficients, measured
-    of the exitance (docs/physics.md, "Certificate"). whole, unlit, dimmest: parts of the surface; walks: of one channel
-    each; segments: tets that they crossed; given_up: share of the light in walks that were not followed to their end;
-    seconds: that it took; disagreement: where the stated error is less than what was measured, in words, or "".
+    """What random walks through the tets, which share nothing with the solver but these and their coefficients,
+    measured of the exitance (docs/physics.md, "Certificate"). whole, unlit, dimmest: parts of the surface; walks: of
+    one channel each; segments: tets that they crossed; given_up: share of the light in walks that were not followed to
+    their end; seconds: that it took; disagreement: where the stated error is less than what was measured, in words, or
+    "".
     """
 
     whole: CertifiedPart
@@ -164,8 +165,9 @@ class Solution:
     is not met, in words; missed: of that, the error; stopped: of that, how the solve did not converge; budget: what the
     bake of the file has to say of the error that was asked for; mesh_warning, model_warning, light_warning, deformed:
     what else is to be said against the answer; exchange_age: solves by which what some face sees is behind the shape;
-    correction: what sweeps did, None without; certificate: what random walks measured, None without `certify`; path: of the method shortest-path, which has no levels, energy balance
-    and estimates. Texts are empty where there is nothing to say.
+    correction: what sweeps did, None without; certificate: what random walks measured, None without `certify`; path: of
+    the method shortest-path, which has no levels, energy balance and estimates. Texts are empty where there is nothing
+    to say.
     """
 
     method: str

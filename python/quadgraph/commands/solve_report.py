@@ -94,8 +94,9 @@ def certificate_texts(found: dict) -> list[str]:
     """Say what random walks measured, and where that contradicts the estimate."""
 
     def of(part: dict) -> str:
-        error, noise, power, power_noise = (100 * part[name] for name in ("error", "error_noise", "power", "power_noise"))
-        return f"{error:.2g} ± {noise:.2g}% (power {power:+.2g} ± {power_noise:.2g}%)"
+        percent = {name: 100 * share for name, share in part.items()}
+        power = f"power {percent['power']:+.2g} ± {percent['power_noise']:.2g}%"
+        return f"{percent['error']:.2g} ± {percent['error_noise']:.2g}% ({power})"
 
     names = {"whole": "whole", "unlit": "unlit", "dimmest": "dimmest third"}
     parts = ", ".join(f"{name} {of(found[part])}" for part, name in names.items() if found[part]["power_noise"] > 0)

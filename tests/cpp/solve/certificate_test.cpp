@@ -1,9 +1,10 @@
 // The certificate: walks find all power where none is lost, what a solution is off by, and what contradicts it.
+#include "engine/solve/certificate.h"
+
 #include <cmath>
 
 #include "engine/base/error.h"
 #include "engine/devices/open_device.h"
-#include "engine/solve/certificate.h"
 #include "tests/cpp/fixtures/exchange_fixtures.h"
 #include "tests/cpp/fixtures/solved_body.h"
 #include "tests/cpp/fixtures/test_device.h"

@@ -25,14 +25,21 @@ def test_errors_are_relative_and_without_the_noise_of_the_truth():
 
 def test_parts_that_walks_cannot_tell_are_left_out_of_the_summary():
     rows = [
-        {"noise": {"whole": noise, "dimmest": 0.2}, "true": {way: {"whole": error, "dimmest": 9.0} for way in ways}}
+        {
+            "noise": {"whole": noise, "dimmest": 0.2},
+            "true": {way: {"whole": error, "dimmest": 9.0} for way in ways},
+            "stated": {"rest": {"whole": 0.03, "dimmest": 0.03}},
+        }
         for ways in [pictures_study.WAYS]
-        for noise, error in ((0.01, 0.02), (0.01, 0.04), (0.3, 5.0))
+        for noise, error in ((0.01, 0.02), (0.01, 0.04), (0.03, 0.01), (0.3, 5.0))
     ]
-    found = pictures_study.summary(rows)["rest"]
-    assert found["whole"]["cases"] == 2
-    assert found["whole"]["errors"] == pytest.approx([0.03, 0.038, 0.04])
-    assert found["dimmest"] == {"cases": 0, "errors": []}
+    found = pictures_study.summary(rows)
+    assert found["rest"]["whole"]["cases"] == 3
+    assert found["rest"]["whole"]["errors"] == pytest.approx([0.02, 0.036, 0.04])
+    assert found["rest"]["whole"]["ratios"] == pytest.approx([0.75, 1.125, 1.5])  # the third may be all noise
+    assert found["rest"]["dimmest"] == {"cases": 0, "errors": [], "ratios": []}
+    assert found["uncorrected"]["whole"]["ratios"] == []
+    assert len(pictures_study.tables({"rows": [], "summary": found})) == 3
 
 
 @pytest.mark.parametrize("seed", range(101, 109))
@@ -60,4 +67,6 @@ def test_pictures_of_unseen_bodies_are_close_to_walks():
     median, _, worst = record["summary"]["rest"]["whole"]["errors"]
     assert median < 0.02
     assert worst < 0.05
+    for row in record["rows"]:
+        assert row["stated"]["rest"]["whole"] > 0.4 * row["true"]["rest"]["whole"]
     assert median < 0.5 * record["summary"]["uncorrected"]["whole"]["errors"][0]

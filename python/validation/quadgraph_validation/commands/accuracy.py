@@ -11,7 +11,7 @@ from typing import Any
 from rich.console import Console
 
 from quadgraph.base import atomic_file
-from quadgraph.base.arguments import positive_int
+from quadgraph.base.arguments import positive_float, positive_int
 from quadgraph.base.cache_folder import cache_folder
 from quadgraph.base.errors import InputError
 from quadgraph.core import load_core
@@ -35,12 +35,13 @@ STUDIES = {
     "unseen": "unseen",
     "light": "light",
     "pictures": "pictures",
+    "certificate": "certificate",
     "acquire": "acquire",
     "volume": "volume",
     "veined": "veined",
 }
 
-_WIDE = ("dense", "unseen", "pictures", "acquire", "volume", "veined")
+_WIDE = ("dense", "unseen", "pictures", "certificate", "acquire", "volume", "veined")
 _TABLE_WIDTH = 190  # characters, than which the tables of these cannot be read narrower
 
 # Studies of real bodies, which the CPU reference cannot stand in for, because only the engine does what they judge.
@@ -53,6 +54,7 @@ ON_ENGINE = {
     "unseen": "prints an error",
     "light": "prints an error",
     "pictures": "makes pictures",
+    "certificate": "is certified",
     "acquire": "is what photographs are held against",
     "volume": "is what photographs are held against",
     "veined": "is what photographs are held against",
@@ -78,7 +80,9 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     _add_bodies_options(parser.add_argument_group("scenes, estimate, target, budget, acquire, volume, veined"))
     _add_scenes_options(parser.add_argument_group("scenes, unseen"))
     _add_unseen_options(
-        parser.add_argument_group("unseen; light, pictures, volume, acquire, veined take --seed, --count, some --walks")
+        parser.add_argument_group(
+            "unseen; light, pictures, certificate, volume, acquire, veined take --seed, --count, some --walks"
+        )
     )
 
 
@@ -118,6 +122,9 @@ def _add_unseen_options(group: argparse._ArgumentGroup) -> None:
         "--motion",
         action="store_true",
         help="also 30 frames in which the light turns by 3 degrees each and the material is edited",
+    )
+    group.add_argument(
+        "--seconds", type=positive_float, default=15.0, metavar="S", help="of a certificate (default: %(default)s)"
     )
     group.add_argument("--for-material", action="store_true", help="bake each body for its own material")
     group.add_argument(
@@ -173,6 +180,10 @@ def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
         with Console(stderr=True).status("study: pictures"):
             walks = args.walks or _PICTURE_WALKS
             return study.run(study.PicturesRun(args.seed, args.count, walks, args.device))
+    if args.study == "certificate":
+        with Console(stderr=True).status("study: certificate"):
+            walks = args.walks or _UNSEEN_WALKS
+            return study.run(study.CertificateRun(args.seed, args.count, args.seconds, walks, args.device))
     if args.study == "acquire":
         walks = args.walks or _ACQUIRE_WALKS
         return _run_by_rows(study, args, study.AcquireRun(args.seed, args.count, walks, args.device), walks=walks)
