@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import base64
 import html
-import io
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -13,6 +11,7 @@ import numpy as np
 
 from quadgraph.acquisition.homogeneous.fitting import Fit
 from quadgraph.acquisition.model.prediction import CHANNELS, NAMES
+from quadgraph.acquisition.page_parts import figure, srgb, table
 from quadgraph.acquisition.recovery import Recovered
 from quadgraph.acquisition.volume.volume_fit import VolumeFit
 from quadgraph.base.atomic_file import replacing
@@ -65,7 +64,7 @@ def _coefficients(found: Recovered, fit: Fit) -> str:
     rows.append(["correlation of the two", *(f"{value:+.2f}" for value in fit.correlations)])
     rows.append(["χ² per degree of freedom", *(f"{value:.3g}" for value in fit.chi_squared)])
     rows.append(["index of refraction", f"{found.capture.eta:g} (stated)", "", ""])
-    return _table(rows)
+    return table(rows)
 
 
 def _volume(found: Recovered, volume: VolumeFit) -> str:
@@ -87,24 +86,16 @@ def _volume(found: Recovered, volume: VolumeFit) -> str:
                 (f"Resolution length of {name}", volume.resolution[row] / widest, length),
             ]
         for what, values, note in shown:
-            cells = np.where(volume.inside[:, None], _srgb(values), np.uint8(_LEFT_OUT[0])).astype(np.uint8)
+            cells = np.where(volume.inside[:, None], srgb(values), np.uint8(_LEFT_OUT[0])).astype(np.uint8)
             cells = cells.reshape(*grid.size[::-1], 3)
             parts.append(f"<h3>{html.escape(what)}</h3><p>{note}; grey is outside.</p>")
             for place in places:
                 at = grid.low[axis] + grid.spacing * place
                 pixels = np.take(cells, place, axis=2 - axis)[::-1]
-                parts.append(_figure(np.ascontiguousarray(pixels), f"{'xyz'[axis]} = {at:.3g} mm", what))
+                parts.append(figure(np.ascontiguousarray(pixels), f"{'xyz'[axis]} = {at:.3g} mm", what))
     rows = [["", *CHANNELS], ["χ² per square", *(f"{value:.3g}" for value in volume.chi_squared)]]
     rows.append(["index of refraction", f"{found.capture.eta:g} (stated)", "", ""])
-    return _table(rows) + "".join(parts)
-
-
-def _table(rows: list[list[str]]) -> str:
-    head, *rest = ([html.escape(cell) for cell in row] for row in rows)
-    lines = ["".join(f"<th>{cell}</th>" for cell in head)]
-    for name, *cells in rest:
-        lines.append(f"<th>{name}</th>" + "".join(f'<td class="number">{cell}</td>' for cell in cells))
-    return "<table>" + "".join(f"<tr>{line}</tr>" for line in lines) + "</table>"
+    return table(rows) + "".join(parts)
 
 
 def _said(found: Recovered) -> str:
@@ -137,28 +128,9 @@ def _photographs(found: Recovered) -> Iterable[str]:
         mean = left.sum(axis=2) / np.maximum(counts.sum(axis=2), 1)
         lights = html.escape(" + ".join(stated.lights))
         yield f"<h3>{html.escape(stated.file.name)}: {html.escape(stated.camera)}, {lights}</h3>"
-        yield _figure(_srgb(one.values / white), "photograph", stated.file.name)
-        yield _figure(_srgb(expected / white), "prediction", stated.file.name)
-        yield _figure(_signed(mean, counts.any(axis=2)), f"residual; χ² a pixel {chi}", stated.file.name)
-
-
-def _figure(pixels: np.ndarray, what: str, name: str) -> str:
-    """An embedded picture, (h, w, 3) uint8, with its caption."""
-    from PIL import Image
-
-    encoded = io.BytesIO()
-    Image.fromarray(pixels).save(encoded, "PNG")
-    data = base64.b64encode(encoded.getvalue()).decode()
-    alt = html.escape(f"{what} of {name}", quote=True)
-    caption = f"<figcaption>{html.escape(what)}</figcaption>"
-    return f'<figure><img src="data:image/png;base64,{data}" alt="{alt}">{caption}</figure>'
-
-
-def _srgb(value: np.ndarray) -> np.ndarray:
-    """Linear values as bytes for a display (IEC 61966-2-1)."""
-    value = np.clip(value, 0, 1)
-    encoded = np.where(value <= 0.0031308, 12.92 * value, 1.055 * value ** (1 / 2.4) - 0.055)
-    return np.round(255 * encoded).astype(np.uint8)
+        yield figure(srgb(one.values / white), "photograph", stated.file.name)
+        yield figure(srgb(expected / white), "prediction", stated.file.name)
+        yield figure(_signed(mean, counts.any(axis=2)), f"residual; χ² a pixel {chi}", stated.file.name)
 
 
 def _signed(value: np.ndarray, counted: Any) -> np.ndarray:
@@ -194,4 +166,4 @@ def _convergence(found: Recovered) -> str:
     for number, step in enumerate(found.fit.steps, 1):
         coefficients = (" / ".join(f"{value:.4g}" for value in row) for row in step.coefficients)
         rows.append([str(number), *(f"{value:.3g}" for value in step.chi_squared), *coefficients])
-    return drawing + _table(rows)
+    return drawing + table(rows)

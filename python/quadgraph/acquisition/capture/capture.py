@@ -102,7 +102,7 @@ def _capture(path: Path, document: Member) -> Capture:
     members["quadgraph_capture"].whole(VERSION, VERSION, "the version of this format")
     folder = path.parent
     cameras = {name: _camera(each) for name, each in members["cameras"].named().items()}
-    lights = {name: _light(each, folder) for name, each in members["lights"].named().items()}
+    lights = {name: light(each, folder) for name, each in members["lights"].named().items()}
     photographs = tuple(
         _photograph(each, folder, cameras, lights) for each in members["photographs"].items(MOST_PHOTOGRAPHS)
     )
@@ -120,7 +120,7 @@ def _capture(path: Path, document: Member) -> Capture:
         height.wrong("allowed is it or unit, not both")
     return Capture(
         path,
-        _file(members["body"], folder, "a baked .qgraph or a mesh"),
+        file_of(members["body"], folder, "a baked .qgraph or a mesh"),
         unit.one_of(tuple(UNITS_MM), "say the unit of the mesh's coordinates") if unit else None,
         height.number(0, 1e6, "mm, extent of the mesh upwards", above=True) if height else None,
         members["eta"].number(1, 3, "index of refraction inside over outside"),
@@ -148,7 +148,7 @@ def _camera(field: Member) -> tuple[dict[str, Any], tuple[int, int]]:
     return camera, (size[0], size[1])
 
 
-def _light(field: Member, folder: Path) -> dict[str, Any]:
+def light(field: Member, folder: Path) -> dict[str, Any]:
     """A scene's light, whose file is looked for beside the capture."""
     _checked(Member(field.file, field.path, [field.value]), "lights", "/lights/0")
     light = dict(field.value)
@@ -177,7 +177,8 @@ def _checked(field: Member, member: str, pointer: str = "") -> Any:
     return field.value
 
 
-def _file(field: Member, folder: Path, what: str) -> Path:
+def file_of(field: Member, folder: Path, what: str) -> Path:
+    """A file that is there, beside the document. Raises InputError."""
     found = folder / field.text(what)
     if not found.is_file():
         field.wrong(f"allowed is the name of a file that is there ({what}), looked for beside the capture: {found}")
@@ -201,18 +202,18 @@ def _photograph(field: Member, folder: Path, cameras: Mapping[str, Any], lights:
     exposure, saturation = members.get("exposure"), members.get("saturation")
     return Photograph(
         field.path,
-        _file(members["file"], folder, "a linear .exr, .hdr, .npz or 16-bit .png"),
+        file_of(members["file"], folder, "a linear .exr, .hdr, .npz or 16-bit .png"),
         members["camera"].one_of(tuple(cameras), "name one of `cameras`, or add it there"),
         tuple(lit),
         exposure.number(0, _LARGEST, "value over radiance", above=True) if exposure else 1.0,
-        _gain(members.get("gain"), field.path),
+        gain_of(members.get("gain"), field.path),
         saturation.number(0, _LARGEST, "a value of the photograph", above=True) if saturation else None,
-        _noise(members["noise"]) if "noise" in members else _file(members["variance"], folder, "variances, an image"),
-        _file(members["mask"], folder, "a mask, an image") if "mask" in members else None,
+        noise_of(members["noise"]) if "noise" in members else file_of(members["variance"], folder, "an image"),
+        file_of(members["mask"], folder, "a mask, an image") if "mask" in members else None,
     )
 
 
-def _gain(field: Member | None, own: str) -> float | str:
+def gain_of(field: Member | None, own: str) -> float | str:
     """A known factor, or the name of an unknown one; without a word a photograph has one of its own."""
     if field is None:
         return own
@@ -221,7 +222,8 @@ def _gain(field: Member | None, own: str) -> float | str:
     return field.number(0, _LARGEST, "a known gain; or a text, the name of an unknown one", above=True)
 
 
-def _noise(field: Member) -> NoiseModel:
+def noise_of(field: Member) -> NoiseModel:
+    """A noise model. Raises InputError."""
     members = field.members(("read_out", "shot"), ())
     read_out = members["read_out"].number(0, _LARGEST, "standard deviation of a black pixel's value")
     shot = members["shot"].number(0, _LARGEST, "variance over value")
