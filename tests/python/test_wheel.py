@@ -78,7 +78,7 @@ def test_the_product_imports_what_it_declares_and_no_more():
     package = project(ROOT / "pyproject.toml")["project"]
     needed = names(package["dependencies"])
     extras = package["optional-dependencies"]
-    of_extras = (names(extras[name]) for name in ("film", "meshio", "pyvista", "torch"))
+    of_extras = (names(extras[name]) for name in ("capture", "film", "meshio", "pyvista", "torch"))
     optional = {"openvdb", "pyopenvdb"}.union(*of_extras)
     others = imported(ROOT / "python" / "quadgraph") - set(sys.stdlib_module_names) - {"quadgraph"}
     assert others <= needed | optional

@@ -1,0 +1,1 @@
+"""Lenses and poses of cameras, and the files of other programs that hold them."""
