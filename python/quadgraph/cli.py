@@ -35,6 +35,7 @@ SUBCOMMANDS = {
     "materials": "material_list",
     "cache": "cache",
     "completion": "completion",
+    "capture": "capture_command",
     "acquire": "acquire",
     "devices": "device_list",
     "doctor": "doctor",

@@ -24,6 +24,9 @@ def commands(_root: Path) -> str:
             command.declare, declare = None, command.declare
             declare(command)
         lines += ["", f"## quadgraph {name}", *_command(command)]
+        for steps in (action for action in command._actions if isinstance(action, argparse._SubParsersAction)):
+            for step, parser_of_step in steps.choices.items():
+                lines += ["", f"### quadgraph {name} {step}", *_command(parser_of_step)]
     return "\n".join(lines) + "\n"
 
 

@@ -1,0 +1,55 @@
+"""From a session to a capture: exposures merged, cameras found, pictures without distortion, and what was done."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from quadgraph.acquisition.cameras.placed_body import PlacedBody, surface
+from quadgraph.acquisition.capture import capture
+from quadgraph.acquisition.session import capture_writing, locating
+from quadgraph.acquisition.session.exposures import Exposures
+from quadgraph.acquisition.session.session_file import Session
+from quadgraph.base import atomic_file
+
+
+def import_session(
+    session: Session, output: Path, tell: Callable[[str], None], advance: Callable[[float], None]
+) -> dict[str, Any]:
+    """Write a capture, its pictures beside it, and the record of what was found, which is returned.
+
+    Photographs are read twice, so that no more than one is in memory. Raises InputError; then no capture is written,
+    though pictures may be.
+    """
+    body = body_of(session)
+    exposures = Exposures(session)
+    noise = exposures.noise
+    tell(f"noise of a value v, where 1 is full scale: variance {noise.read_out:.3g}^2 + {noise.shot:.3g} v")
+    found = {}
+    for number, shot in enumerate(session.shots):
+        found[shot.path] = exposures.content(shot)
+        advance(0.6 * (number + 1) / len(session.shots))
+    seen = {path: each.corners for path, each in found.items()}
+    cameras = locating.locate(session, {path: each.size for path, each in found.items()}, seen)
+    views, entries = {}, []
+    for number, shot in enumerate(session.shots):
+        name = capture_writing.name_of(number)
+        camera = cameras[shot.path]
+        views[name] = capture_writing.view_of(session, shot, camera, body)
+        radiance = exposures.merged(shot)
+        kept = capture_writing.kept_of(session, shot, radiance)
+        picture = capture_writing.picture_of(session, shot, radiance, kept, camera, views[name], body)
+        entries.append(capture_writing.write_photograph(shot, picture, output, name))
+        advance(0.6 + 0.4 * (number + 1) / len(session.shots))
+    atomic_file.write_json(output, capture_writing.document(session, output, views, entries))
+    capture.read(output)
+    record = capture_writing.record(session, noise, found, cameras, views)
+    atomic_file.write_json(capture_writing.record_of(output), record)
+    return record
+
+
+def body_of(session: Session) -> PlacedBody:
+    """The body where it lies on the board. Raises InputError."""
+    vertices, triangles = surface(session.path, session.body, session.unit, None)
+    return PlacedBody(vertices @ session.placement.rotation.T + session.placement.translation, triangles)

@@ -1,0 +1,92 @@
+"""The whole way: photographs of a known body on the printed board, to the coefficients that acquire finds by them."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.ndimage import map_coordinates
+
+import board_photographs
+import board_session
+import foreign_files
+import twin_capture
+from quadgraph.acquisition.cameras.lens import Pose, view_towards
+from quadgraph.cli import main
+
+pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
+pytest.importorskip("cv2", reason="OpenCV is not installed: pip install 'quadgraph[capture]'")
+
+PLACE = np.array([87.5, 112.5, 20.0])
+LAMP: dict[str, Any] = {
+    "type": "rectangle",
+    "centre": [190, 200, 130],
+    "u": [60, -60, 0],
+    "v": [-30, -30, 80],
+    "power": [1000, 900, 800],
+}
+RADIUS, DETAIL = 24.0, 360  # mm around the body, and pixels of the engine's pictures that are photographed
+NOISE = (0.003, 1e-3)  # read-out and shot noise of a value: 3% of white, as of a small sensor
+WHITE = 0.7  # of full scale, that the brightest of the body has at an exposure of 1
+
+
+def body_of(folder: Path, gain: list[float]) -> Any:
+    """What the engine sees of the finer body from each pose; `gain` gets what makes of its radiance a value."""
+    lamp = LAMP | {"centre": (np.array(LAMP["centre"]) - PLACE).tolist()}
+
+    def at(pose: Pose) -> board_photographs.Body:
+        view = view_towards(pose.eye - PLACE, np.zeros(3), RADIUS, DETAIL)
+        radiance = twin_capture.photographed(folder / "finer.qgraph", twin_capture.TRUTH, lamp, view.members())
+        if not gain:
+            gain.append(WHITE / float(np.quantile(radiance, 0.999)))
+        shown = radiance * gain[0]
+
+        def of(origins: np.ndarray, ways: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            along = ways @ view.axes().T
+            places = view.lens.places(along[:, :2] / along[:, 2:])
+            inside = (places > 1).all(axis=1) & (places < DETAIL - 1).all(axis=1)
+            found = np.zeros((len(ways), 3))
+            for channel in range(3):
+                rows = [places[inside, 1] - 0.5, places[inside, 0] - 0.5]
+                found[inside, channel] = map_coordinates(shown[..., channel], rows, order=1)
+            return inside & (found.max(axis=1) > 0.002), found
+
+        return of
+
+    return at
+
+
+def recovered(folder: Path, name: str) -> np.ndarray:
+    """(2, 3) relative errors of sigma_a and sigma_s_prime by a session."""
+    made = [str(folder / f"{name}-{end}") for end in ("capture.json", "wax.npz", "wax.json")]
+    assert main(["capture", "import", str(folder / f"{name}.json"), "-o", made[0]]) == 0
+    assert main(["capture", "check", made[0]]) == 0
+    assert main(["acquire", made[0], "-o", made[1], "--json", made[2], "--device", "cpu"]) == 0
+    said = json.loads(Path(made[2]).read_text())
+    assert not said["findings"]
+    return np.array([np.array(said["coefficients"][key]) / twin_capture.TRUTH[key] - 1 for key in twin_capture.TRUTH])
+
+
+@pytest.mark.long
+def test_poses_from_the_board_are_as_good_as_exact_ones(tmp_path):
+    twin_capture.bodies(tmp_path)
+    gain: list[float] = []
+    poses = board_session.cameras()[::2]
+    more = {"body": "potato.qgraph", "eta": twin_capture.ETA, "lights": {"lamp": LAMP}, "size": 64}
+    pose = {"pose": {"translate": PLACE.tolist()}}
+    path = board_session.write(tmp_path, poses, shows=body_of(tmp_path, gain), noise=NOISE, **more, **pose)
+    document = json.loads(path.read_text())
+    del document["unit"]
+    for shot in document["photographs"]:
+        shot["gain"] = gain[0]
+    (tmp_path / "board.json").write_text(json.dumps(document))
+    known = {f"{number}-0.png": (board_photographs.LENS, pose) for number, pose in enumerate(poses)}
+    foreign_files.nerf(tmp_path / "transforms.json", known)
+    exact = document | {"cameras": "transforms.json", "world": {}}
+    (tmp_path / "exact.json").write_text(json.dumps(exact))
+    by_board, by_exact = (recovered(tmp_path, name) for name in ("board", "exact"))
+    assert np.abs(by_exact).max() < 0.05
+    assert np.sqrt((by_board**2).mean()) < 1.5 * np.sqrt((by_exact**2).mean())
