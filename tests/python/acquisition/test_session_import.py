@@ -160,6 +160,18 @@ def test_the_same_session_makes_the_same_capture(session, tmp_path):
     assert {path.name: path.read_bytes() for path in (tmp_path / "again").glob("capture*")} == before
 
 
+def test_a_view_beyond_the_photograph_s_edge_is_left_out_there():
+    pose = board_photographs.pose_from([250, 20, 260], board_session.MIDDLE, 12)
+    whole = np.ones((LENS.height, LENS.width, 3), np.float32)
+    flat = Radiance(whole, whole, np.ones(whole.shape, bool))
+    for aside, least, most in ((0.0, 1.0, 1.0), (105.0, 0.05, 0.95), (900.0, 0.0, 0.0)):
+        view = view_towards(pose.eye, board_session.MIDDLE + aside * np.array([1.0, 1, 0]), 30.0, 40)
+        shown = resampling.resampled(flat, None, LENS, pose, view)
+        assert least <= shown.usable.mean() <= most
+        np.testing.assert_allclose(shown.values[shown.usable], 1, rtol=1e-5)  # weights are shares
+        assert (shown.values[~shown.usable] == 0).all()
+
+
 def test_variances_of_the_resampled_are_those_of_its_noise():
     """Noise alone, of which each resampled pixel has the variance that it states."""
     generator = np.random.default_rng(5)

@@ -7,7 +7,7 @@ is the mean weighed by the inverse variances, saturated exposures left out.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -84,7 +84,7 @@ def _mean(values: Sequence[np.ndarray], weights: Sequence[np.ndarray], exposures
 
 
 def estimate_noise(
-    brackets: Sequence[tuple[Sequence[Frame], Sequence[float]]], black: np.ndarray | None
+    brackets: Iterable[tuple[Sequence[Frame], Sequence[float]]], black: np.ndarray | None
 ) -> NoiseModel | None:
     """The noise model by which pairs of exposures differ as they do; None where there is no pair to tell it.
 

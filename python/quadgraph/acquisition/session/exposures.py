@@ -100,7 +100,7 @@ def _frames(session: Session, shot: Shot, black: np.ndarray | None) -> tuple[lis
 def _noise(session: Session, black: np.ndarray | None) -> NoiseModel:
     """Noise as the brackets tell it. Raises InputError where there is none."""
     shots = [shot for shot in session.shots if len(shot.frames) > 1]
-    found = brackets.estimate_noise([_frames(session, shot, black) for shot in shots[:_BRACKETS]], black)
+    found = brackets.estimate_noise((_frames(session, shot, black) for shot in shots[:_BRACKETS]), black)
     if found is None:
         raise InputError(
             f"{session.path}: noise: is missing, and no photograph has two exposures that tell it; state it: "

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from scipy import sparse
@@ -12,6 +13,7 @@ from quadgraph.acquisition.session.brackets import Radiance
 
 _MOST_SAMPLES = 32  # along a side of a pixel
 _AT_ONCE = 1 << 20  # rays
+_STEPS, _AROUND = 64, 4.0  # of the search for the part that a view shows, and pixels around it
 
 
 def resampled(radiance: Radiance, kept: np.ndarray | None, lens: Lens, pose: Pose, view: PinholeView) -> Radiance:
@@ -21,19 +23,40 @@ def resampled(radiance: Radiance, kept: np.ndarray | None, lens: Lens, pose: Pos
     of pixels of the photograph that are independent; those of neighbours in the picture are not.
     """
     samples = samples_of(lens, view)
-    usable = radiance.usable if kept is None else radiance.usable & kept[..., None]
-    values, variances = (each.reshape(-1, 3) for each in (radiance.values, radiance.variances))
-    rows = max(_AT_ONCE // (view.width * samples**2), 1)
+    rows, columns = _part(lens, pose, view)
+    usable = radiance.usable[rows, columns]
+    if kept is not None:
+        usable = usable & kept[rows, columns, None]
+    unusable = (~usable).reshape(-1, 3).astype(np.float32)
+    values, variances = (each[rows, columns].reshape(-1, 3) for each in (radiance.values, radiance.variances))
+    height, width, _ = usable.shape
+    lens = replace(lens, width=width, height=height, cx=lens.cx - columns.start, cy=lens.cy - rows.start)
+    at_once = max(_AT_ONCE // (view.width * samples**2), 1)
     parts = []
-    for first in range(0, view.height, rows):
-        last = min(first + rows, view.height)
+    for first in range(0, view.height, at_once):
+        last = min(first + at_once, view.height)
         weights, inside = _weights(lens, pose, view, (first, last), samples)
-        spoilt = (weights @ (~usable).reshape(-1, 3).astype(np.float32)) > 0
+        spoilt = (weights @ unusable) > 0
         squared = weights.multiply(weights).tocsr()
         parts.append((weights @ values, squared @ variances, ~spoilt & inside[:, None]))
     shape = (view.height, view.width, 3)
     found, spread, fine = (np.concatenate(each).reshape(shape) for each in zip(*parts, strict=True))
     return Radiance(np.where(fine, found, 0).astype(np.float32), np.where(fine, spread, 1).astype(np.float32), fine)
+
+
+def _part(lens: Lens, pose: Pose, view: PinholeView) -> tuple[slice, slice]:
+    """Rows and columns of the photograph that the view shows a part of, of which there is at least a pixel."""
+    steps = [np.linspace(0, side, min(side, _STEPS) + 1) for side in (view.width, view.height)]
+    at, seen = shown_at(lens, pose, view, np.stack(np.meshgrid(*steps), axis=-1).reshape(-1, 2))
+    if not seen.any():
+        return slice(0, 1), slice(0, 1)
+    low, high = at[seen].min(axis=0), at[seen].max(axis=0)
+    between = (high - low) / _STEPS + _AROUND
+    sides = []
+    for axis, side in ((1, lens.height), (0, lens.width)):
+        first = int(np.clip(low[axis] - between[axis], 0, side - 1))
+        sides.append(slice(first, int(np.clip(high[axis] + between[axis], first + 1, side))))
+    return sides[0], sides[1]
 
 
 def samples_of(lens: Lens, view: PinholeView) -> int:
