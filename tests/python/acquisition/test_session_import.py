@@ -14,7 +14,9 @@ from PIL import Image
 import board_photographs
 import board_session
 import foreign_files
+from dng_file import BLACK, WHITE, write_dng
 from quadgraph import core
+from quadgraph.acquisition.board.board import Board
 from quadgraph.acquisition.cameras.lens import PinholeView, Pose, view_towards
 from quadgraph.acquisition.capture import capture, photographs
 from quadgraph.acquisition.session import exposures, locating, resampling, session_file
@@ -260,6 +262,39 @@ def test_what_cannot_be_used_is_named(session, tmp_path, capsys, change, said):
     assert status == 1
     assert said in capsys.readouterr().err
     assert not (folder / "capture.json").exists()
+
+
+def test_raw_files_say_their_exposures_themselves(tmp_path):
+    """Two photographs of two exposures each as a sensor's mosaic, one twice as wide as what comes of it."""
+    pytest.importorskip("rawpy", reason="rawpy is not installed: pip install 'quadgraph[capture]'")
+    generator = np.random.default_rng(9)
+    board_session.write(tmp_path, [])
+    foreign_files.opencv(tmp_path / "lens.yml", LENS)
+    shots = []
+    for number, pose in enumerate(POSES[:2]):
+        ball = board_photographs.ball(board_session.MIDDLE, board_session.RADIUS)
+        radiance = board_photographs.photograph(Board(), LENS, pose, ball)
+        frames = []
+        for shutter in (1, 4):  # fiftieths of a second, of which two make white
+            value = np.repeat(np.repeat(radiance * shutter / 2, 2, axis=0), 2, axis=1)
+            mosaic = value[..., 1].copy()
+            mosaic[::2, ::2], mosaic[1::2, 1::2] = value[::2, ::2, 0], value[1::2, 1::2, 2]
+            mosaic += generator.normal(size=mosaic.shape) * np.sqrt(1e-6 + 1.5e-4 * mosaic)
+            levels = np.clip(BLACK + mosaic * (WHITE - BLACK), 0, WHITE).astype(np.uint16)
+            write_dng(tmp_path / f"{number}-{shutter}.dng", levels, (shutter, 50))
+            frames.append(f"{number}-{shutter}.dng")
+        shots.append({"frames": frames, "lights": ["lamp"]})
+    document = json.loads((tmp_path / "session.json").read_text())
+    del document["black"]
+    (tmp_path / "session.json").write_text(json.dumps(document | {"cameras": "lens.yml", "photographs": shots}))
+    assert main(["capture", "import", str(tmp_path), "-o", str(tmp_path / "capture.json")]) == 0
+    said = record(tmp_path)
+    assert said["noise"]["shot"] == pytest.approx(1.5e-4, rel=0.05)
+    for each, pose in zip(said["photographs"], POSES, strict=False):
+        np.testing.assert_allclose(each["exposures"], [2 / 16 / 50, 8 / 16 / 50])
+        np.testing.assert_allclose(each["exposure_ratios"], 1, atol=0.005)
+        assert np.linalg.norm(np.array(each["eye"]) - pose.eye) < MM["stated"]
+    assert main(["capture", "check", str(tmp_path / "capture.json")]) == 0
 
 
 def test_masks_and_the_body_s_pose_are_carried_over(session, tmp_path):
