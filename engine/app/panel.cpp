@@ -124,6 +124,8 @@ void draw_picture(State& state, const Measured& measured) {
   ImGui::SameLine();
   ImGui::Checkbox("Show environment", &state.scene.render.surroundings);
   slide("Roughness", state.scene.render.roughness, roughness_range, "%.2f");
+  choose("Tone", state.scene.tone.curve);
+  slide("White balance", state.scene.tone.white_balance, 2000, 12000, "%.0f K");
   auto& stops = state.scene.tone.exposure_stops;
   bool automatic = !stops;
   if (ImGui::Checkbox("Auto exposure", &automatic)) {

@@ -294,6 +294,14 @@ void add_picture(OptionTable& table) {
 }
 
 void add_tone(OptionTable& table) {
+  table.member<&Scene::tone, &ToneOptions::curve>(
+      {.name = "tone", .member = "/picture/tone", .help = "how radiance becomes what a screen shows"});
+  table.member<&Scene::tone, &ToneOptions::white_balance>(
+      {.name = "white-balance",
+       .member = "/picture/white_balance",
+       .metavar = "K",
+       .range = kelvin_range,
+       .help = "colour temperature of the light that is shown white, kelvin; 6504: none is changed"});
   table.text(OptionKind::number_or_text,
              {.name = "exposure",
               .member = "/picture/exposure",

@@ -170,7 +170,10 @@ void picture_from(const JsonField& field, Scene& scene) {
   read_members(field, "/picture", {"roughness_map", "background"}, scene);
   if (const auto map = field.find("roughness_map")) scene.render.roughness_map = roughness_map_from(*map);
   if (const auto background = field.find("background")) background_from(*background, scene.tone);
-  field.within([&] { check_options(scene.render); });
+  field.within([&] {
+    check_options(scene.render);
+    check_options(scene.tone);
+  });
 }
 
 Json picture_json(const Scene& scene) {

@@ -5,20 +5,12 @@
 #include "engine/base/error.h"
 #include "engine/render/engine.h"
 #include "engine/render/light/image_file.h"
-#include "engine/scene/options.h"
 #include "python/bindings/bindings.h"
 
 namespace py = pybind11;
 
 namespace quadgraph::python {
 namespace {
-
-ToneOptions tone_options(const std::string& exposure, const std::string& background) {
-  ToneOptions options;
-  options.exposure_stops = parse_exposure(exposure);
-  parse_background(background, options);
-  return options;
-}
 
 py::array pixels(const Picture& picture, const std::vector<float>& values, py::ssize_t channels, py::handle owner) {
   std::vector<py::ssize_t> shape = {picture.height, picture.width};
@@ -74,12 +66,13 @@ py::array_t<std::uint8_t> srgb_array(const Picture& picture, const ToneOptions& 
 
 void bind_picture(py::module_& module) {
   bind_image(module);
-  const std::string usual_exposure = value_text(option_named("exposure").get(Scene{}));
-  const std::string usual_background = value_text(option_named("background").get(Scene{}));
   py::class_<Picture>(module, "Picture", "Linear radiance in W/(mm^2 sr), premultiplied by alpha; top row first.")
       .def(py::init(&picture_of), py::arg("radiance"),
            "From radiance alone, (h, w, 3): all of it scattered, covered where there is any. Raises InputError.")
-      .def_property_readonly("auto_exposure", &auto_exposure, "Stops that the exposure 'auto' takes.")
+      .def(
+          "auto_exposure",
+          [](const Picture& picture, const std::string& json) { return auto_exposure(picture, members(json).tone); },
+          py::arg("json") = "{}", "Stops that the exposure 'auto' takes. Raises InputError.")
       .def_property_readonly(
           "error", [](const Picture& picture) { return error_dict(picture.error); },
           "Of scattered light, relative RMS over pixels: {whole, unlit, dimmest}; None where it is not known.")
@@ -107,26 +100,20 @@ void bind_picture(py::module_& module) {
           "(h, w, 3), W/(mm^2 sr): what is behind the body where environment lights are seen, else None.")
       .def(
           "srgb",
-          [](const Picture& picture, const std::string& exposure, const std::string& background) {
-            return srgb_array(picture, tone_options(exposure, background));
-          },
-          py::arg("exposure") = usual_exposure, py::arg("background") = usual_background,
-          "Tone mapped, (h, w, 3) uint8 sRGB.")
+          [](const Picture& picture, const std::string& json) { return srgb_array(picture, members(json).tone); },
+          py::arg("json") = "{}",
+          "Tone mapped, (h, w, 3) uint8 sRGB, with the member `picture` of a scene. Raises InputError.")
       .def(
           "write_png",
           [](const Picture& picture, const std::filesystem::path& path, const Metadata& metadata,
-             const std::string& exposure,
-             const std::string& background) { write_png(path, picture, tone_options(exposure, background), metadata); },
-          py::arg("path"), py::arg("metadata") = Metadata{}, py::arg("exposure") = usual_exposure,
-          py::arg("background") = usual_background)
+             const std::string& json) { write_png(path, picture, members(json).tone, metadata); },
+          py::arg("path"), py::arg("metadata") = Metadata{}, py::arg("json") = "{}")
       .def(
           "write_exr",
           [](const Picture& picture, const std::filesystem::path& path, const Metadata& metadata,
-             const std::string& exposure) {
-            write_exr(path, picture, {.exposure_stops = parse_exposure(exposure)}, metadata);
-          },
-          py::arg("path"), py::arg("metadata") = Metadata{}, py::arg("exposure") = usual_exposure,
-          "Linear and not exposed; `exposure` is only noted in its attributes.");
+             const std::string& json) { write_exr(path, picture, members(json).tone, metadata); },
+          py::arg("path"), py::arg("metadata") = Metadata{}, py::arg("json") = "{}",
+          "Linear and not exposed; what it would be shown with is only noted in its attributes.");
 }
 
 }  // namespace quadgraph::python

@@ -17,15 +17,14 @@
 namespace py = pybind11;
 
 namespace quadgraph::python {
-namespace {
-
-// A scene of no body with these members.
 Scene members(const std::string& text) {
   Json json = parse_json(text);
   if (!json.is_object()) throw InputError("a JSON object is wanted");
   if (!json.contains("body")) json["body"] = "";
   return scene_from(JsonField(json, ""));
 }
+
+namespace {
 
 std::string material_json(const std::string& text) {
   const gpu::Material material = parse_material(text);
@@ -107,21 +106,6 @@ void bind_pictures(py::module_& module) {
   module.def("render", &render_members, py::arg("engine"), py::arg("json"), py::arg("view") = "",
              "As Engine.render, with the members `camera` and `picture` of a scene; view: a text in place of azimuth, "
              "elevation and distance. Raises InputError.");
-  module.def(
-      "srgb", [](const Picture& picture, const std::string& json) { return srgb_array(picture, members(json).tone); },
-      py::arg("picture"), py::arg("json"), "(h, w, 3) uint8, with the member `picture` of a scene. Raises InputError.");
-  module.def(
-      "write_png",
-      [](const Picture& picture, const std::filesystem::path& path, const Metadata& metadata, const std::string& json) {
-        write_png(path, picture, members(json).tone, metadata);
-      },
-      py::arg("picture"), py::arg("path"), py::arg("metadata"), py::arg("json"));
-  module.def(
-      "write_exr",
-      [](const Picture& picture, const std::filesystem::path& path, const Metadata& metadata, const std::string& json) {
-        write_exr(path, picture, members(json).tone, metadata);
-      },
-      py::arg("picture"), py::arg("path"), py::arg("metadata"), py::arg("json"));
 }
 
 }  // namespace

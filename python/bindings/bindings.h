@@ -15,6 +15,7 @@
 #include "engine/file/graph.h"
 #include "engine/reference/solution.h"
 #include "engine/render/picture/picture.h"
+#include "engine/scene/scene.h"
 #include "shaders/shared/shared.h"
 
 namespace quadgraph::python {
@@ -84,6 +85,9 @@ SolveOptions options_from(const std::string& method, const std::string& solver, 
                           const std::string& model, double tolerance, std::uint32_t max_iterations);
 
 std::optional<glm::vec3> as_vector(const std::optional<std::array<float, 3>>& components);
+
+// The scene of no body that has the members of this JSON text. Throws InputError.
+Scene members(const std::string& json);
 
 // Tone mapped, (height, width, 3) sRGB.
 pybind11::object error_dict(const std::optional<ErrorEstimate>& estimate);  // None: not known

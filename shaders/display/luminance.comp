@@ -9,6 +9,9 @@ struct LuminancePush {
   Floats layers[PICTURE_LAYERS];  // RGB per pixel
   Floats alpha;                   // per pixel
   Uints bins;  // LUMINANCE_BINS twice, added to; what is below the first or black is in the first
+  vec3 red;            // rows of the balance of white
+  vec3 green;
+  vec3 blue;
   uint count;          // pixels
 };
 layout(push_constant, scalar) uniform Block { LuminancePush push; };
@@ -27,7 +30,8 @@ void count(uint first, float value) {
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= push.count || push.alpha.at[i] != 1.0) return;
-  vec3 seen = vec3(radiance(3u * i), radiance(3u * i + 1u), radiance(3u * i + 2u));
+  vec3 sum = vec3(radiance(3u * i), radiance(3u * i + 1u), radiance(3u * i + 2u));
+  vec3 seen = vec3(dot(push.red, sum), dot(push.green, sum), dot(push.blue, sum));
   count(0u, luminance(seen));
   count(LUMINANCE_BINS, max(max(seen.x, seen.y), seen.z));
 }

@@ -10,9 +10,7 @@ struct ToneMapPush {
   Floats alpha;                   // per pixel
   Floats surroundings;            // RGB per pixel
   Uints target;                   // per pixel of the screen's part, 8 bits each, the first lowest; written
-  vec3 background_top;                    // linear display colour
-  vec3 background_bottom;
-  float exposure;  // radiance is multiplied by it
+  ShownWiths with;                // one
   uint picture_width;
   uint picture_height;
   uint width;  // pixels of the screen's part
@@ -22,12 +20,6 @@ struct ToneMapPush {
   uint surrounded;    // 1: surroundings are seen instead of a background
 };
 layout(push_constant, scalar) uniform Block { ToneMapPush push; };
-
-// engine/render/picture/tone_map.h.
-vec3 filmic(vec3 radiance) {
-  vec3 x = clamp(radiance, vec3(0), vec3(1e3));
-  return min(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), vec3(1));
-}
 
 vec3 srgb_encode(vec3 linear) {
   return mix(1.055 * pow(max(linear, vec3(0.0031308)), vec3(1.0 / 2.4)) - 0.055, 12.92 * linear,
@@ -77,10 +69,11 @@ void main() {
   if (i >= push.width * push.height) return;
   uint x = i % push.width, y = i / push.width;
   Seen seen = seen_at(x, y);
-  vec3 object = seen.alpha > 0.0 ? seen.alpha * filmic(push.exposure * seen.radiance / seen.alpha) : vec3(0);
+  ShownWith with = push.with.at[0];
+  vec3 object = seen.alpha > 0.0 ? seen.alpha * tone_mapped(with.tone, seen.radiance / seen.alpha) : vec3(0);
   if (push.false_colour != 0u) object = seen.radiance;
-  vec3 background = mix(push.background_top, push.background_bottom, (y + 0.5) / push.height);
-  if (push.surrounded != 0u) background = filmic(push.exposure * seen.surroundings);
+  vec3 background = mix(with.background_top, with.background_bottom, (y + 0.5) / push.height);
+  if (push.surrounded != 0u) background = tone_mapped(with.tone, seen.surroundings);
   vec3 shown = clamp(object + (1.0 - seen.alpha + seen.transmittance) * background, vec3(0), vec3(1));
   uvec3 code = uvec3(min(floor(255.0 * srgb_encode(shown) + dither(x, y)), vec3(255)));
   if (push.blue_first != 0u) code = code.zyx;

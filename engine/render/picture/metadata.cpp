@@ -123,6 +123,8 @@ Metadata describe(const PictureFacts& facts) {
 
 Metadata with_exposure(Metadata metadata, const Picture& picture, const ToneOptions& options) {
   metadata.emplace_back("exposure", number_text(exposure_of(picture, options)) + " stops");
+  metadata.emplace_back("tone", std::string(name_of(options.curve)));
+  metadata.emplace_back("white balance", number_text(options.white_balance) + " K");
   return metadata;
 }
 

@@ -32,7 +32,7 @@ struct PictureFacts {
 
 Metadata describe(const PictureFacts& facts);
 
-// The metadata and, last, the exposure.
+// The metadata and, last, the exposure, the curve and the balance of white.
 Metadata with_exposure(Metadata metadata, const Picture& picture, const ToneOptions& options);
 
 }  // namespace quadgraph

@@ -43,8 +43,8 @@ std::vector<std::uint8_t> to_srgb8(const Picture& picture, const ToneOptions& op
 // The same of the object alone, as RGBA rows with straight alpha: what is seen through it is transparent too.
 std::vector<std::uint8_t> to_srgba8(const Picture& picture, const ToneOptions& options);
 
-// Both write a temporary file beside `path` and rename it, and add to the metadata "exposure": the stops that
-// to_srgb8 applies. Throw InputError naming the file.
+// Both write a temporary file beside `path` and rename it, and add to the metadata "exposure", the stops that to_srgb8
+// applies, "tone" and "white balance". Throw InputError naming the file.
 // PNG: to_srgb8, or to_srgba8 where the background is transparent; metadata as tEXt.
 void write_png(const std::filesystem::path& path, const Picture& picture, const ToneOptions& options,
                const Metadata& metadata);

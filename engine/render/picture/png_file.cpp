@@ -79,17 +79,22 @@ float dither(std::size_t x, std::size_t y) {
   return outer - std::floor(outer);
 }
 
-// Linear display colour of the object in a channel of a pixel, premultiplied by alpha.
-float object_colour(const Picture& picture, float scale, std::size_t pixel, std::size_t channel) {
-  const float radiance = picture.radiance(3 * pixel + channel);
+glm::vec3 at(const std::vector<float>& layer, std::size_t pixel) {
+  return {layer[3 * pixel], layer[3 * pixel + 1], layer[3 * pixel + 2]};
+}
+
+// Linear display colour of the object in a pixel, premultiplied by alpha.
+glm::vec3 object_colour(const Picture& picture, const gpu::ToneTransform& tone, std::size_t pixel) {
+  const glm::vec3 radiance(picture.radiance(3 * pixel), picture.radiance(3 * pixel + 1),
+                           picture.radiance(3 * pixel + 2));
   if (picture.false_colour) return radiance;
   const float alpha = picture.alpha[pixel];
-  return alpha > 0 ? alpha * filmic(scale * radiance / alpha) : 0.0f;
+  return alpha > 0 ? alpha * gpu::tone_mapped(tone, radiance / alpha) : glm::vec3(0);
 }
 
 // The share of what is behind that a pixel shows.
-float seen_behind(const Picture& picture, std::size_t pixel, std::size_t channel) {
-  return 1.0f - picture.alpha[pixel] + picture.transmittance[3 * pixel + channel];
+glm::vec3 seen_behind(const Picture& picture, std::size_t pixel) {
+  return 1.0f - picture.alpha[pixel] + at(picture.transmittance, pixel);
 }
 
 std::uint8_t code_of(float shown, float threshold) {
@@ -100,36 +105,33 @@ std::uint8_t code_of(float shown, float threshold) {
 }  // namespace
 
 std::vector<std::uint8_t> to_srgb8(const Picture& picture, const ToneOptions& options) {
-  const float scale = std::exp2(exposure_of(picture, options));
+  const gpu::ToneTransform tone = tone_transform(options, exposure_of(picture, options));
+  const bool surrounded = !picture.surroundings.empty() && !options.transparent;
   std::vector<std::uint8_t> bytes(std::size_t{3} * picture.width * picture.height);
   for (std::size_t y = 0; y < picture.height; ++y) {
     const float down = (static_cast<float>(y) + 0.5f) / static_cast<float>(picture.height);
     const glm::vec3 background = options.background_top * (1.0f - down) + options.background_bottom * down;
     for (std::size_t x = 0; x < picture.width; ++x) {
       const std::size_t i = y * picture.width + x;
+      const glm::vec3 backdrop = surrounded ? gpu::tone_mapped(tone, at(picture.surroundings, i)) : background;
+      const glm::vec3 shown = object_colour(picture, tone, i) + seen_behind(picture, i) * backdrop;
       const float threshold = dither(x, y);
-      for (std::size_t c = 0; c < 3; ++c) {
-        const float backdrop = picture.surroundings.empty() || options.transparent
-                                   ? background[static_cast<int>(c)]
-                                   : filmic(scale * picture.surroundings[3 * i + c]);
-        const float shown = object_colour(picture, scale, i, c) + seen_behind(picture, i, c) * backdrop;
-        bytes[3 * i + c] = code_of(shown, threshold);
-      }
+      for (std::size_t c = 0; c < 3; ++c) bytes[3 * i + c] = code_of(shown[static_cast<int>(c)], threshold);
     }
   }
   return bytes;
 }
 
 std::vector<std::uint8_t> to_srgba8(const Picture& picture, const ToneOptions& options) {
-  const float scale = std::exp2(exposure_of(picture, options));
+  const gpu::ToneTransform tone = tone_transform(options, exposure_of(picture, options));
   std::vector<std::uint8_t> bytes(std::size_t{4} * picture.width * picture.height);
   for (std::size_t i = 0; i < picture.alpha.size(); ++i) {
-    float behind = 0;
-    for (std::size_t c = 0; c < 3; ++c) behind += seen_behind(picture, i, c) / 3;
-    const float opacity = std::clamp(1.0f - behind, 0.0f, 1.0f);
+    const glm::vec3 behind = seen_behind(picture, i);
+    const float opacity = std::clamp(1.0f - (behind.x + behind.y + behind.z) / 3, 0.0f, 1.0f);
     const float threshold = dither(i % picture.width, i / picture.width);
+    const glm::vec3 object = object_colour(picture, tone, i);
     for (std::size_t c = 0; c < 3 && opacity > 0; ++c) {
-      bytes[4 * i + c] = code_of(object_colour(picture, scale, i, c) / opacity, threshold);
+      bytes[4 * i + c] = code_of(object[static_cast<int>(c)] / opacity, threshold);
     }
     bytes[4 * i + 3] = static_cast<std::uint8_t>(std::lround(255.0f * opacity));
   }

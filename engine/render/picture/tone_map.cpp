@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/matrix.hpp>
 #include <glm/vector_relational.hpp>
 #include <string>
 #include <vector>
@@ -13,41 +14,56 @@
 namespace quadgraph {
 namespace {
 
-double luminance(const Picture& picture, std::size_t pixel) {
-  constexpr double weight[3] = {0.2126, 0.7152, 0.0722};  // ITU-R BT.709
-  double sum = 0;
-  for (std::size_t c = 0; c < 3; ++c) {
-    sum += weight[c] * static_cast<double>(picture.radiance(3 * pixel + c));
-  }
-  return sum;
+double luminance(const glm::vec3& colour) {
+  return 0.2126 * double{colour.x} + 0.7152 * double{colour.y} + 0.0722 * double{colour.z};  // ITU-R BT.709
 }
 
 }  // namespace
 
-float filmic(float radiance) {
-  const float x = std::max(radiance, 0.0f);
-  // The curve is 1 from x = 7.4 on; the bound keeps the quotient finite for any x.
-  if (!(x < 1e3f)) return 1.0f;
-  return std::min(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f), 1.0f);
+void check_options(const ToneOptions& options) {
+  if (kelvin_range.contains(double{options.white_balance})) return;
+  throw InputError("white balance: found " + number_text(options.white_balance) + ", expected " + kelvin_range.text() +
+                   " K");
+}
+
+gpu::ToneTransform tone_transform(const ToneOptions& options, float exposure_stops) {
+  // Finite, so that no radiance times it is none of all numbers.
+  const float scale = std::exp2(std::clamp(exposure_stops, -100.0f, 100.0f));
+  const glm::mat3 rows = scale * glm::transpose(white_balance(options.white_balance));
+  return {rows[0], rows[1], rows[2], static_cast<std::uint32_t>(options.curve)};
 }
 
 float srgb_encode(float linear) {
   return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
 }
 
-float exposure_for(const Brightness& seen) {
-  if (!(seen.luminance > 0)) return 0;
-  return static_cast<float>(
-      std::min(std::log2(exposure_bright / seen.luminance), std::log2(exposure_most / seen.brightest)));
+Brightness exposure_target(ToneCurve curve) {
+  switch (curve) {
+    case ToneCurve::agx:
+      return {0.8415, 0.9};
+    case ToneCurve::linear:
+      return {0.5408, 0.7805};
+    default:
+      return {0.4, 0.9};
+  }
 }
 
-float auto_exposure(const Picture& picture) {
+float exposure_for(const Brightness& seen, ToneCurve curve) {
+  if (!(seen.luminance > 0)) return 0;
+  const Brightness target = exposure_target(curve);
+  return static_cast<float>(
+      std::min(std::log2(target.luminance / seen.luminance), std::log2(target.brightest / seen.brightest)));
+}
+
+float auto_exposure(const Picture& picture, const ToneOptions& options) {
+  const glm::mat3 balance = white_balance(options.white_balance);
   std::vector<double> luminances, brightest;
   for (std::size_t i = 0; i < picture.alpha.size(); ++i) {
     if (picture.alpha[i] != 1.0f) continue;
-    luminances.push_back(luminance(picture, i));
-    brightest.push_back(static_cast<double>(
-        std::max({picture.radiance(3 * i), picture.radiance(3 * i + 1), picture.radiance(3 * i + 2)})));
+    const glm::vec3 seen =
+        balance * glm::vec3(picture.radiance(3 * i), picture.radiance(3 * i + 1), picture.radiance(3 * i + 2));
+    luminances.push_back(luminance(seen));
+    brightest.push_back(static_cast<double>(std::max({seen.x, seen.y, seen.z})));
   }
   if (luminances.empty()) return 0;
   const auto quantile = [](std::vector<double>& values) {
@@ -56,12 +72,12 @@ float auto_exposure(const Picture& picture) {
     std::nth_element(values.begin(), at, values.end());
     return *at;
   };
-  return exposure_for({quantile(luminances), quantile(brightest)});
+  return exposure_for({quantile(luminances), quantile(brightest)}, options.curve);
 }
 
 float exposure_of(const Picture& picture, const ToneOptions& options) {
   if (picture.false_colour) return options.exposure_stops.value_or(0.0f);
-  return options.exposure_stops ? *options.exposure_stops : auto_exposure(picture);
+  return options.exposure_stops ? *options.exposure_stops : auto_exposure(picture, options);
 }
 
 std::optional<float> parse_exposure(std::string_view text) {

@@ -1,13 +1,32 @@
 // From linear radiance to what a screen shows.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string_view>
 
+#include "engine/base/names.h"
+#include "engine/render/picture/white_balance.h"
+#include "shaders/display/tone_curve.h"
+
 namespace quadgraph {
 
 struct Picture;
+
+// By the numbers that shaders/display/tone_curve.h has.
+enum class ToneCurve : std::uint32_t { aces = TONE_ACES, agx = TONE_AGX, linear = TONE_LINEAR };
+
+template <>
+struct Names<ToneCurve> {
+  static constexpr std::string_view what = "tone";
+  static constexpr auto values = std::to_array<Named<ToneCurve>>(
+      {{ToneCurve::aces, "aces", "filmic, each channel by itself (Narkowicz 2015)"},
+       {ToneCurve::agx, "agx", "filmic, what is bright loses its colour (AgX, Sobotka 2022)"},
+       {ToneCurve::linear, "linear", "as it is, clipped where it is brighter than the screen"}});
+};
 
 struct ToneOptions {
   // Radiance is multiplied by 2^stops before the curve; empty: auto_exposure of the picture.
@@ -15,37 +34,42 @@ struct ToneOptions {
   // Linear display colour in [0, 1] behind the object at the top and at the bottom of the picture.
   glm::vec3 background_top{0.008f, 0.0085f, 0.01f};
   glm::vec3 background_bottom{0.05f, 0.052f, 0.057f};
-  bool transparent = false;  // in PNG nothing is behind the object, neither that nor the surroundings
+  ToneCurve curve = ToneCurve::aces;
+  float white_balance = daylight_kelvin;  // colour temperature of what is shown white, in kelvin_range
+  bool transparent = false;               // in PNG nothing is behind the object, neither that nor the surroundings
 
   bool operator==(const ToneOptions&) const = default;
 };
 
-// Filmic curve per channel: "ACES Filmic Tone Mapping Curve" (Narkowicz 2015), a rational fit to the ACES reference
-// transform. 0 at 0, monotone, clamped to [0, 1].
-float filmic(float radiance);
-
 // sRGB transfer function (IEC 61966-2-1) of a linear value in [0, 1].
 float srgb_encode(float linear);
 
-// The quantile of the covered pixels' luminance that auto_exposure brings to `exposure_bright`, which the curve shows
-// at three quarters of full sRGB: thin parts that glow then keep their shape above it.
-inline constexpr double exposure_quantile = 0.95;
-inline constexpr double exposure_bright = 0.4;
+// Throws InputError for a colour temperature out of range.
+void check_options(const ToneOptions& options);
 
-// The exposure_quantile of the brightest channel is brought to no more than this, so that surfaces of a saturated
-// colour, whose luminance is low, keep their shape too.
-inline constexpr double exposure_most = 0.9;
+// What radiance becomes on a screen: tone_mapped of shaders/display/tone_curve.h with this.
+gpu::ToneTransform tone_transform(const ToneOptions& options, float exposure_stops);
+
+// The quantile of the covered pixels' luminance that auto_exposure brings to where the curve shows three quarters of
+// full sRGB: thin parts that glow then keep their shape above it.
+inline constexpr double exposure_quantile = 0.95;
 
 // The exposure_quantile of the luminance and of the brightest channel of covered pixels.
 struct Brightness {
   double luminance = 0, brightest = 0;
 };
 
-// Stops that auto_exposure takes for a picture of that brightness.
-float exposure_for(const Brightness& brightness);
+// Where automatic exposure brings them, at most. Every curve shows a grey of the first as the others do. The second is
+// so that surfaces of a saturated colour, whose luminance is low, keep their shape by curves that clip, and their
+// colour by AgX, which takes it from what is brighter.
+Brightness exposure_target(ToneCurve curve);
 
-// Stops that bring the quantiles to their places. Depends on nothing but the picture; 0 for a black one.
-float auto_exposure(const Picture& picture);
+// Stops that auto_exposure takes for a picture of that brightness, in the balance of white that it is shown with.
+float exposure_for(const Brightness& brightness, ToneCurve curve);
+
+// Stops that bring the quantiles to their places. Depends on the picture, the curve and the balance of white; 0 for a
+// black one.
+float auto_exposure(const Picture& picture, const ToneOptions& options);
 
 // The stops of `options`, or else those of auto_exposure.
 float exposure_of(const Picture& picture, const ToneOptions& options);

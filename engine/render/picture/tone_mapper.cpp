@@ -1,6 +1,8 @@
 #include "engine/render/picture/tone_mapper.h"
 
 #include <cmath>
+#include <glm/matrix.hpp>
+#include <span>
 
 #include "engine/device/commands.h"
 #include "interface/display/luminance.comp.h"
@@ -26,8 +28,9 @@ double quantile_of(std::span<const std::uint32_t> bins) {
   return 0;
 }
 
-float exposure_from(std::span<const std::uint32_t> bins) {
-  return exposure_for({quantile_of(bins.first(gpu::LUMINANCE_BINS)), quantile_of(bins.last(gpu::LUMINANCE_BINS))});
+float exposure_from(std::span<const std::uint32_t> bins, ToneCurve curve) {
+  return exposure_for({quantile_of(bins.first(gpu::LUMINANCE_BINS)), quantile_of(bins.last(gpu::LUMINANCE_BINS))},
+                      curve);
 }
 
 }  // namespace
@@ -37,14 +40,19 @@ ToneMapper::ToneMapper(device::Device& device)
       luminance_(device, shader::luminance),
       tone_map_(device, shader::tone_map),
       bins_(device, bin_bytes, device::Place::device, "screen/luminance"),
+      with_(device, sizeof(gpu::ShownWith), device::Place::device, "screen/tone"),
       bins_on_host_(device, bin_bytes, device::Place::host, "screen/luminance, read back") {}
 
 float ToneMapper::exposure(const PictureBuffers& picture, const ToneOptions& options) {
   if (options.exposure_stops) return *options.exposure_stops;
   if (picture.false_colour) return 0;
+  const glm::mat3 balance = glm::transpose(white_balance(options.white_balance));
   gpu::LuminancePush push{.layers = {},
                           .alpha = picture.alpha.address(),
                           .bins = bins_.address(),
+                          .red = balance[0],
+                          .green = balance[1],
+                          .blue = balance[2],
                           .count = static_cast<std::uint32_t>(picture.pixels())};
   for (std::size_t k = 0; k < PICTURE_LAYERS; ++k) push.layers[k] = picture.layers[k].address();
   device::Commands commands(device_);
@@ -52,20 +60,20 @@ float ToneMapper::exposure(const PictureBuffers& picture, const ToneOptions& opt
   commands.dispatch(luminance_, push, picture.pixels());
   commands.copy(bins_, bins_on_host_, bin_bytes);
   commands.submit_and_wait();
-  return exposure_from(bins_on_host_.mapped_as<std::uint32_t>());
+  return exposure_from(bins_on_host_.mapped_as<std::uint32_t>(), options.curve);
 }
 
 const device::Buffer& ToneMapper::run(const PictureBuffers& picture, const ToneOptions& options, float exposure_stops,
                                       const ScreenPart& part) {
   const std::uint64_t count = std::uint64_t{part.width} * part.height;
   if (pixels_.size() < 4 * count) pixels_ = device::Buffer(device_, 4 * count, device::Place::device, "screen/pixels");
+  const gpu::ShownWith with{tone_transform(options, exposure_stops), options.background_top, options.background_bottom};
+  device::write_bytes(device_, with_, std::as_bytes(std::span(&with, 1)));
   gpu::ToneMapPush push{.layers = {},
                         .alpha = picture.alpha.address(),
                         .surroundings = picture.around.address(),
                         .target = pixels_.address(),
-                        .background_top = options.background_top,
-                        .background_bottom = options.background_bottom,
-                        .exposure = std::exp2(exposure_stops),
+                        .with = with_.address(),
                         .picture_width = picture.width,
                         .picture_height = picture.height,
                         .width = part.width,

@@ -29,7 +29,7 @@ class ToneMapper {
  private:
   device::Device& device_;
   device::ComputePass luminance_, tone_map_;
-  device::Buffer bins_, bins_on_host_, pixels_;
+  device::Buffer bins_, with_, bins_on_host_, pixels_;
 };
 
 }  // namespace quadgraph

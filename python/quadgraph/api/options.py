@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal, TypedDict
 
-from quadgraph.api.choices import Method, Model, PathCost, PathSolver, Radiance, Solver, Source
+from quadgraph.api.choices import Method, Model, PathCost, PathSolver, Radiance, Solver, Source, Tone
 from quadgraph.api.values import RGB, Vector
 
 
@@ -96,11 +96,12 @@ class Camera(TypedDict, total=False):
 class PictureOptions(TypedDict, total=False):
     """What a picture shows, and how.
 
-    width, height: pixels, 1 to 16384; roughness: of the surface, GGX alpha; radiance: how it leaves the surface; show:
-    "picture", or what is inside (docs/window.md, "Views of the inside"); ground: a shadow where the body stands;
-    surroundings: what environment lights show, behind it; roughness_map: as in scene files; exposure: "auto" or stops;
-    background: "studio", "black", "white", "transparent" (PNG only), a grey, three numbers, or {"top": ...,
-    "bottom": ...}, linear.
+    width, height: pixels, 1 to 16384;
+    roughness: of the surface, GGX alpha; radiance: how it leaves the surface; show: "picture", or what is inside
+    (docs/window.md, "Views of the inside"); ground: a shadow where the body stands; surroundings: what environment
+    lights show, behind it; roughness_map: as in scene files; exposure: "auto" or stops; tone: the curve from radiance
+    to a screen; white_balance: kelvin of the light that is shown white, 6504 for none changed; background: "studio",
+    "black", "white", "transparent" (PNG only), a grey, three numbers, or {"top": ..., "bottom": ...}, linear.
     """
 
     width: int
@@ -112,4 +113,6 @@ class PictureOptions(TypedDict, total=False):
     surroundings: bool
     roughness_map: Mapping[str, Any]
     exposure: float | Literal["auto"]
+    tone: Tone
+    white_balance: float
     background: str | RGB | Mapping[str, RGB] | Sequence[float]

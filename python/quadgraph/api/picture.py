@@ -18,6 +18,8 @@ from quadgraph.api.values import Floats, plain
 from quadgraph.base import image_file
 from quadgraph.base.errors import InputError
 
+_TONE = {"background", "exposure", "tone", "white_balance"}
+
 
 class Picture:
     """Linear radiance in W/(mm^2 sr), premultiplied by alpha, top row first; made by `Engine.render`.
@@ -82,11 +84,13 @@ class Picture:
         return dict(self._metadata)
 
     def srgb(self, **tone: Any) -> npt.NDArray[np.uint8]:
-        """(h, w, 3) uint8 sRGB, tone mapped; `exposure` and `background` as in `PictureOptions`. Raises InputError.
+        """(h, w, 3) uint8 sRGB, tone mapped. Raises InputError.
+
+        `exposure`, `background`, `tone` and `white_balance` are as in `PictureOptions`.
 
         With the background "transparent" it is black where there is nothing.
         """
-        return core.srgb(self._layers, self._tone(tone))
+        return self._layers.srgb(self._tone(tone))
 
     def save(self, path: str | Path, **tone: Any) -> None:
         """Write .png or .jpg (8-bit sRGB, as `srgb`) or .exr (float32, linear and not exposed, with layers) at once.
@@ -100,15 +104,15 @@ class Picture:
                 image_file.check_transparent(Path(path))
             image_file.write(Path(path), self.srgb(**tone), self._metadata)
             return
-        writers = {".png": core.write_png, ".exr": core.write_exr}
+        writers = {".png": self._layers.write_png, ".exr": self._layers.write_exr}
         write = writers.get(Path(path).suffix.lower())
         if write is None:
             raise InputError(f"{path}: a picture must end in {', '.join(image_file.SUFFIXES)} or .exr")
-        write(self._layers, Path(path), self._metadata, self._tone(tone))
+        write(Path(path), self._metadata, self._tone(tone))
 
     def _tone(self, changes: Mapping[str, Any]) -> str:
-        for name in changes.keys() - {"exposure", "background"}:
-            raise InputError(f"{name}: not known; exposure and background are")
+        for name in changes.keys() - _TONE:
+            raise InputError(f"{name}: not known; {', '.join(sorted(_TONE))} are")
         return json.dumps({"picture": self._options | {name: plain(value) for name, value in changes.items()}})
 
     def _repr_png_(self) -> bytes:

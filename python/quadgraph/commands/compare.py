@@ -17,11 +17,12 @@ from rich.console import Console
 from quadgraph.base import image_file, outputs
 from quadgraph.base.arguments import positive_float
 from quadgraph.base.errors import InputError
-from quadgraph.commands import contact_sheet, difference, render_scene, scene_options, scene_overrides
+from quadgraph.commands import contact_sheet, difference, picture_output, render_scene, scene_options, scene_overrides
 from quadgraph.core import load_core
 
 _LINEAR, _DISPLAYED = (".exr", ".hdr"), (".png",)
-_OF_PICTURES = {"output", "scale", "json", "device", "validation", "exposure", "background", "no_config"}
+_SHOWN = {"exposure", "background", "tone", "white_balance"}
+_OF_PICTURES = {"output", "scale", "json", "device", "validation", "no_config"} | _SHOWN
 _LEAST_WIDTH = 240  # pixels of a picture on the sheet: smaller ones are shown larger
 
 
@@ -148,9 +149,11 @@ def displayed(args: argparse.Namespace, a: Side, b: Side) -> list[np.ndarray]:
     if not a.radiance:
         return [encoded(side.linear) for side in (a, b)]
     pictures = [core.Picture(side.linear) for side in (a, b)]
-    stops = str(pictures[0].auto_exposure if args.exposure == "auto" else args.exposure)
     background = "black" if args.background == "transparent" else args.background
-    return [picture.srgb(stops, background) for picture in pictures]
+    usual = picture_output.tone(args, background=background)
+    stops = str(pictures[0].auto_exposure(usual) if args.exposure == "auto" else args.exposure)
+    how = picture_output.tone(args, background=background, exposure=stops)
+    return [picture.srgb(how) for picture in pictures]
 
 
 def encoded(linear: np.ndarray) -> np.ndarray:

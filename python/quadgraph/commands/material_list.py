@@ -17,7 +17,7 @@ from rich.table import Table
 
 from quadgraph.base import image_file, outputs
 from quadgraph.base.errors import InputError
-from quadgraph.commands import contact_sheet, own_mesh, reference_body, scene_options
+from quadgraph.commands import contact_sheet, own_mesh, picture_output, reference_body, scene_options
 from quadgraph.commands.progress_bar import progress_bar
 from quadgraph.core import load_core
 
@@ -120,7 +120,7 @@ def draw(args: argparse.Namespace, listed: Sequence[dict[str, Any]]) -> int:
             engine.set_material(each["name"])
             picture, report = scene_options.picture(engine, args)
             words = [each["name"], f"{numbers(each['mean_free_path'])} mm"]
-            tiles.append(contact_sheet.tile(picture.srgb(args.exposure, args.background), words))
+            tiles.append(contact_sheet.tile(picture.srgb(picture_output.tone(args)), words))
             reports.append(report)
     image_file.write(args.output, contact_sheet.grid(tiles, contact_sheet.columns_of(len(tiles))), engine.metadata)
     return scene_options.exit_status(reports, args.strict)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,7 +22,7 @@ SUFFIXES = (*image_file.SUFFIXES, ".exr")
 
 @dataclass(frozen=True)
 class Shown:
-    """What becomes of a picture, with one exposure and background: rows of sRGB, files, and what made it."""
+    """What becomes of a picture, shown in one way: rows of sRGB, files, and what made it."""
 
     srgb: Callable[[Picture], np.ndarray]
     write_png: Callable[[Picture, Path], None]
@@ -29,12 +30,18 @@ class Shown:
     metadata: Callable[[], Sequence[tuple[str, str]]]
 
 
-def shown(engine: Engine, exposure: str, background: str) -> Shown:
-    """What becomes of an engine's pictures."""
+def tone(args: argparse.Namespace, **instead: str) -> str:
+    """What the arguments say of how radiance is shown, as JSON; with other values in place of some."""
+    names = ("exposure", "background", "tone", "white_balance")
+    return json.dumps({"picture": {name: getattr(args, name) for name in names} | instead})
+
+
+def shown(engine: Engine, how: str) -> Shown:
+    """What becomes of an engine's pictures that are shown so, as `tone` says it."""
     return Shown(
-        lambda picture: picture.srgb(exposure, background),
-        lambda picture, path: picture.write_png(path, engine.metadata, exposure, background),
-        lambda picture, path: picture.write_exr(path, engine.metadata, exposure),
+        lambda picture: picture.srgb(how),
+        lambda picture, path: picture.write_png(path, engine.metadata, how),
+        lambda picture, path: picture.write_exr(path, engine.metadata, how),
         lambda: engine.metadata,
     )
 

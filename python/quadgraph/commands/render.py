@@ -42,7 +42,7 @@ def run(args: argparse.Namespace) -> int:
     report = scene_options.solve(engine, args)
     picture = engine.render(**scene_options.keywords(args, scene_options.PICTURE_GROUPS))
     scene_options.check_validation(engine)
-    shown = picture_output.shown(engine, args.exposure, args.background)
+    shown = picture_output.shown(engine, picture_output.tone(args))
     for path in args.output:
         picture_output.write(picture, path, shown)
     report |= {"passes": engine.passes, "device": engine.device_name, "driver": engine.driver}

@@ -13,7 +13,7 @@ from rich.console import Console
 
 from quadgraph.base import atomic_file, image_file, outputs
 from quadgraph.base.errors import InputError
-from quadgraph.commands import contact_sheet, material_list, render_scene, scene_options
+from quadgraph.commands import contact_sheet, material_list, picture_output, render_scene, scene_options
 from quadgraph.commands.progress_bar import progress_bar
 from quadgraph.core import load_core
 
@@ -95,7 +95,7 @@ def render(args: argparse.Namespace, materials: list[str]) -> tuple[list[np.ndar
                 engine.set_material(material)
                 picture, report = scene_options.picture(engine, args)
                 words = [body.stem, material]
-                tiles.append(contact_sheet.tile(picture.srgb(args.exposure, args.background), words))
+                tiles.append(contact_sheet.tile(picture.srgb(picture_output.tone(args)), words))
                 reports.append(report | {"body": str(body), "material": material})
                 progress.advance(task)
     return tiles, reports

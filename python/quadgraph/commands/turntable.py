@@ -83,7 +83,7 @@ def render(args: argparse.Namespace, written: frame_output.Frames) -> list[dict]
         if args.exposure == "auto":
             count = min(_SEEN, args.frames)
             seen = [
-                turn.at(360 * k / count, 0.25).auto_exposure
+                turn.at(360 * k / count, 0.25).auto_exposure(picture_output.tone(args))
                 for k in progress.track(range(count), description="exposure")
             ]
             turn.exposure = str(statistics.fmean(seen))
@@ -130,4 +130,4 @@ class Turn:
 
     def shown(self) -> picture_output.Shown:
         """How its pictures become files."""
-        return picture_output.shown(self._engine, self.exposure, self._args.background)
+        return picture_output.shown(self._engine, picture_output.tone(self._args, exposure=self.exposure))

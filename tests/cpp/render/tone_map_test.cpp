@@ -61,7 +61,9 @@ TEST_CASE("the screen shows what a PNG holds, within one code") {
   Picture picture = sample_picture(61, 37);
   ToneMapper mapper(checked.context);
   for (const ToneOptions& options :
-       {ToneOptions{}, ToneOptions{.exposure_stops = 3.5f},
+       {ToneOptions{}, ToneOptions{.exposure_stops = 3.5f}, ToneOptions{.curve = ToneCurve::agx},
+        ToneOptions{.curve = ToneCurve::linear, .white_balance = 3000},
+        ToneOptions{.exposure_stops = 2.0f, .curve = ToneCurve::agx, .white_balance = 9000},
         ToneOptions{.background_top = glm::vec3(1), .background_bottom = glm::vec3(0.2f)}, ToneOptions{}}) {
     // In the last two the body is seen before its surroundings.
     if (options.background_top.x == 1) {
@@ -103,7 +105,7 @@ TEST_CASE("a picture in motion is stretched over the screen: what is even stays 
   const ToneOptions black{.exposure_stops = 0.0f, .background_top = glm::vec3(0), .background_bottom = glm::vec3(0)};
   const auto shown = device::download<std::uint32_t>(
       checked.context, mapper.run(on_device(checked.context, picture), black, 0, {32, 16}));
-  const float lit = 255 * srgb_encode(filmic(0.4f));
+  const float lit = 255 * srgb_encode(gpu::aces_curve(0.4f));
   for (std::size_t y = 0; y < 16; ++y) {
     for (std::size_t x = 0; x < 32; ++x) {
       const auto green = static_cast<float>(shown[32 * y + x] >> 8 & 255u);

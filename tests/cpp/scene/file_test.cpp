@@ -110,6 +110,8 @@ Scene with_everything(const Folder& folder) {
                   .show = parse_show("tets:y,-3,1"),
                   .ground = true};
   scene.tone = {.exposure_stops = 1.5f, .background_top = {1, 0.5f, 0}, .background_bottom = glm::vec3(0.1f)};
+  scene.tone.curve = ToneCurve::agx;
+  scene.tone.white_balance = 4100;
   return scene;
 }
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 
@@ -60,7 +62,7 @@ def test_a_clear_tinted_ball_shows_what_is_behind_by_beer_s_law(engine):
     assert np.abs((path - chord).mean()) < 0.02
     assert np.allclose(picture.unscattered[inside], picture.transmittance[inside], rtol=1e-5)
     assert np.abs(picture.scattered[inside]).max() == 0
-    black, white = picture.srgb(background="black")[inside], picture.srgb(background="white")[inside]
+    black, white = (picture.srgb(json.dumps({"picture": {"background": name}}))[inside] for name in ("black", "white"))
     assert (white > black).all()
 
 
