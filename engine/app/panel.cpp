@@ -124,6 +124,10 @@ void draw_picture(State& state, const Measured& measured) {
   ImGui::SameLine();
   ImGui::Checkbox("Show environment", &state.scene.render.surroundings);
   slide("Roughness", state.scene.render.roughness, roughness_range, "%.2f");
+  auto samples = static_cast<int>(state.scene.render.samples);
+  if (ImGui::SliderInt("Samples", &samples, 0, 256, samples > 0 ? "%d per pixel" : "as needed")) {
+    state.scene.render.samples = static_cast<std::uint32_t>(std::max(samples, 0));
+  }
   choose("Tone", state.scene.tone.curve);
   slide("White balance", state.scene.tone.white_balance, 2000, 12000, "%.0f K");
   auto& stops = state.scene.tone.exposure_stops;
@@ -146,6 +150,12 @@ void draw_perspective(View& view, const Sphere& bounds) {
   if (slide("Distance", distance, 0, 20 * bounds.radius, format)) {
     view.distance = distance > 0.05f * bounds.radius ? std::optional(distance) : std::nullopt;
   }
+  slide("Aperture", view.aperture, 0, bounds.radius, view.aperture > 0 ? "%.1f mm" : "all is sharp");
+  if (view.aperture <= 0) return;
+  float focus = view.focus.value_or(0);
+  if (slide("Focus", focus, 0, 20 * bounds.radius, view.focus ? "%.0f mm" : "nearest")) {
+    view.focus = focus > 0.05f * bounds.radius ? std::optional(focus) : std::nullopt;
+  }
 }
 
 void draw_camera(State& state, const Sphere& bounds) {
@@ -155,7 +165,10 @@ void draw_camera(State& state, const Sphere& bounds) {
   slide("Azimuth##camera", view.azimuth, -180, 180, "%.0f°");
   slide("Elevation##camera", view.elevation, elevation_range, "%.0f°");
   bool parallel = view.orthographic.has_value();
-  if (ImGui::Checkbox("Orthographic", &parallel)) view.orthographic = parallel ? std::optional(0.0f) : std::nullopt;
+  if (ImGui::Checkbox("Orthographic", &parallel)) {
+    view.orthographic = parallel ? std::optional(0.0f) : std::nullopt;
+    view.aperture = 0;
+  }
   if (view.orthographic) {
     const char* format = *view.orthographic > 0 ? "%.0f mm" : "fit object";
     slide("Height##camera", *view.orthographic, 0, 10 * bounds.radius, format);
@@ -225,8 +238,9 @@ void draw_frame(const Measured& measured) {
   const glm::dvec3 balance = report.energy.balance();
   const double worst = std::max({std::abs(balance.x), std::abs(balance.y), std::abs(balance.z)});
   tell("Time", formatted("%.0f ms, %.1f fps", measured.frame_ms, measured.frames_per_second));
-  tell("State",
-       measured.settled ? "converged" : formatted("preview, %.0f%% resolution", 100.0 * double(measured.share)));
+  tell("State", measured.settled      ? "converged"
+                : measured.frames > 0 ? formatted("%u of %u samples", 4 * measured.frames, 4 * measured.frames_wanted)
+                                      : formatted("preview, %.0f%% resolution", 100.0 * double(measured.share)));
   tell_errors(report, measured.picture_error);
   tell("Energy", report.path ? "not conserved" : "balanced to " + percent(worst));
   tell("Memory", bytes_text(measured.device_bytes) + ", peak " + bytes_text(measured.peak_device_bytes));

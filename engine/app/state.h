@@ -21,6 +21,8 @@ struct Measured {
   double frames_per_second = 0;   // of the last second in which something changed
   float share = 1;                // of the window's pixels along a side that the last picture has
   bool settled = false;           // the picture is the converged one
+  std::uint32_t frames = 0;       // of those that make the converged picture together, drawn so far
+  std::uint32_t frames_wanted = 0;
   SolveReport solve;
   std::optional<ErrorEstimate> picture_error;  // of a converged one, where it is known
   float exposure_stops = 0;

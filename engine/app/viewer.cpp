@@ -6,14 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/app/body_copy.h"
 #include "engine/app/gestures.h"
 #include "engine/app/overlays.h"
 #include "engine/app/panel.h"
 #include "engine/base/error.h"
 #include "engine/deform/motion.h"
-#include "engine/render/picture/metadata.h"
-#include "engine/scene/scene_file.h"
+#include "engine/render/picture/frame_offsets.h"
 
 namespace quadgraph {
 namespace {
@@ -77,6 +75,7 @@ void Viewer::run() {
 // Seconds that nothing need happen for.
 double Viewer::patience() const {
   if (frames_wanted_ > 0 || window_.events_wait() || !shown_) return 0;
+  if (measured_.frames > 0 && !measured_.settled) return 0;
   if (swapchain_.width() > 0 && part() != shown_part_) return 0;
   if (preview_ && !preview_->failed()) return news_wait;
   return measured_.settled ? idle_wait : 0.5 * settle_after;
@@ -274,10 +273,11 @@ void Viewer::remake(bool settle) {
   const Part now = part();
   const double pixels = double(now.width) * now.height;
   measured_.share = settle ? 1 : pace_.share(pixels, solving);
+  if (!settle || now != shown_part_ || solving) measured_.frames = 0;
   make_picture(settle, settle || pace_.gathers(solving));
   shown_ = scene;
   shown_part_ = now;
-  measured_.settled = settle;
+  measured_.settled = settle && measured_.frames == measured_.frames_wanted;
   measure(start, milliseconds(Clock::now() - solved), settle || pace_.gathers(solving));
 }
 
@@ -293,6 +293,7 @@ void Viewer::solve(bool settle) {
   solved_exactly_ = settle;
 }
 
+// Where it settles, one more frame of the picture, so that the user is heard between them.
 void Viewer::make_picture(bool settle, bool gather) {
   const Part now = part();
   const auto side = [&](std::uint32_t pixels) {
@@ -302,8 +303,13 @@ void Viewer::make_picture(bool settle, bool gather) {
   options.width = settle ? now.width : side(now.width);
   options.height = settle ? now.height : side(now.height);
   if (!gather) options.radiance = Radiance::lambertian;
-  const PictureBuffers& picture = engine().draw(state_.scene.view, options);
-  measured_.picture_error = settle ? engine().picture_error() : std::nullopt;
+  if (!settle) options.samples = samples_per_frame;
+  const View& view = state_.scene.view;
+  const PictureBuffers& picture = engine().draw_frame(view, options, measured_.frames);
+  measured_.frames_wanted = settle ? frame_count(view, options) : 0;
+  if (settle) ++measured_.frames;
+  const bool whole = settle && measured_.frames == measured_.frames_wanted;
+  measured_.picture_error = whole ? engine().picture_error() : std::nullopt;
   measured_.exposure_stops = tone_mapper_.exposure(picture, state_.scene.tone);
   show(tone_mapper_.run(picture, state_.scene.tone, measured_.exposure_stops,
                         {now.width, now.height, swapchain_.blue_first()}));
@@ -351,50 +357,6 @@ void Viewer::present() {
                  VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
   interface_.draw(*frame);
   swapchain_.present(*frame);
-}
-
-void Viewer::save_scene() {
-  try {
-    if (preview_) throw InputError("the scene can be saved once the body is baked: this is a preview");
-    std::filesystem::path path;
-    do {
-      path = saving_.stem.string() + "-" + std::to_string(++scenes_written_) + ".json";
-    } while (std::filesystem::exists(path));
-    Scene scene = state_.scene;
-    if (saving_.copy_body) scene.body = copied_into(path.parent_path(), scene.body);
-    const std::filesystem::path from_here = std::filesystem::proximate(scene.body);
-    if (*from_here.begin() != "..") scene.body = from_here;  // so that the file names it by its own place
-    SceneFile(scene).save(path);
-    state_.say("saved: " + path.string());
-  } catch (const std::exception& error) {
-    state_.say(error.what(), true);
-  }
-  frames_wanted_ = 3;
-}
-
-// The converged picture, whatever is on the screen now.
-void Viewer::write_picture() {
-  try {
-    remake(true);
-    RenderOptions options = state_.scene.render;
-    options.width = shown_part_.width;
-    options.height = shown_part_.height;
-    const Picture picture = engine().render(state_.scene.view, options);
-    std::filesystem::path png, exr;
-    do {
-      png = saving_.stem.string() + "-" + std::to_string(++pictures_written_) + ".png";
-      exr = png;
-      exr.replace_extension(".exr");
-    } while (std::filesystem::exists(png) || std::filesystem::exists(exr));
-    write_png(png, picture, state_.scene.tone, engine().metadata());
-    write_exr(exr, picture, state_.scene.tone, engine().metadata());
-    state_.say("saved: " + png.string() + ", " + exr.string());
-  } catch (const DeviceError&) {
-    throw;
-  } catch (const std::exception& error) {
-    state_.say(error.what(), true);
-  }
-  frames_wanted_ = 3;
 }
 
 }  // namespace quadgraph

@@ -234,18 +234,18 @@ std::vector<glm::vec3> Engine::exitance_at(std::span<const glm::vec3> points) co
 
 const PictureBuffers& Engine::draw(const View& view, const RenderOptions& options) {
   const auto turn = implementation_->in_use.take();
-  auto& self = *implementation_;
   check_options(options);
-  if (!self.report) throw InputError("render: solve first; there is no exitance to show");
-  const Camera camera =
-      place_camera(view, self.bounds, static_cast<float>(options.width) / static_cast<float>(options.height));
-  self.view = view;
-  self.shown_error.reset();
-  self.interruptible([&] {
-    options.show.quantity == Quantity::picture ? self.draw_picture(view, camera, options)
-                                               : self.draw_inside(camera, options);
-  });
-  return self.rasteriser.picture();
+  check_view(view);
+  const std::uint32_t count = frame_count(view, options);
+  for (std::uint32_t index = 0; index < count; ++index) implementation_->add_frame(view, options, index);
+  return implementation_->shown();
+}
+
+const PictureBuffers& Engine::draw_frame(const View& view, const RenderOptions& options, std::uint32_t index) {
+  const auto turn = implementation_->in_use.take();
+  check_options(options);
+  implementation_->add_frame(view, options, index);
+  return implementation_->shown();
 }
 
 Picture Engine::render(const View& view, const RenderOptions& options) {
@@ -260,7 +260,7 @@ std::optional<ErrorEstimate> Engine::picture_error() {
   const auto turn = implementation_->in_use.take();
   auto& self = *implementation_;
   if (!self.shown_error && self.report && self.report->error) {
-    self.shown_error = quadgraph::picture_error(self.device, self.rasteriser.picture(), *self.report->error);
+    self.shown_error = quadgraph::picture_error(self.device, self.shown(), *self.report->error);
   }
   return self.shown_error;
 }

@@ -54,10 +54,14 @@ struct Names<Radiance> {
 
 inline constexpr Range side_range{.low = 1, .high = 16384};  // of a picture, pixels
 inline constexpr Range roughness_range{.low = 0.02, .high = 1};
+inline constexpr Range samples_range{.low = 0, .high = 65536};
 
 struct RenderOptions {
-  std::uint32_t width = 1024, height = 1024;  // pixels, in side_range; every one is the mean of 2 x 2 samples
-  float roughness = 0.3f;                     // alpha of the GGX distribution of the surface, in roughness_range
+  std::uint32_t width = 1024, height = 1024;  // pixels, in side_range
+  // Of a pixel, which is their mean, in samples_range, by whole frames of four; 0: as many as its edges need, or the
+  // blur of the lens.
+  std::uint32_t samples = 0;
+  float roughness = 0.3f;  // alpha of the GGX distribution of the surface, in roughness_range
   Radiance radiance = Radiance::automatic;
   Show show{};                // what is to be seen
   bool ground = false;        // with a shadow where the body stands, which counts as coverage without light
@@ -69,6 +73,9 @@ struct RenderOptions {
 
 // Throws InputError naming what is out of range.
 void check_options(const RenderOptions& options);
+
+// How many frames of 2 x 2 samples a pixel a picture is made of.
+std::uint32_t frame_count(const View& view, const RenderOptions& options);
 
 // What has been set on an engine, as far as a bake can have measured it.
 struct PresentScene {
@@ -154,6 +161,10 @@ class Engine {
   // The last solve seen from `view`, left on the device until the next one. Throws InputError before a solve, on an
   // option out of range, or if radiance is to be gathered and cannot be.
   const PictureBuffers& draw(const View& view, const RenderOptions& options = {});
+
+  // The same frame by frame, `index` from 0 to below frame_count in this order, between which nothing may change: the
+  // mean of those so far.
+  const PictureBuffers& draw_frame(const View& view, const RenderOptions& options, std::uint32_t index);
 
   // What the scattered light of the last one is off by (engine/render/picture/picture_error.h), read back from the
   // device; empty where it was not gathered of a corrected solve.

@@ -12,7 +12,9 @@
 #include "engine/render/light/irradiance.h"
 #include "engine/render/light/light_samples.h"
 #include "engine/render/path_method.h"
+#include "engine/render/picture/frame_offsets.h"
 #include "engine/render/picture/ground.h"
+#include "engine/render/picture/picture_mean.h"
 #include "engine/render/picture/rasteriser.h"
 #include "engine/render/picture/surroundings.h"
 #include "engine/render/verdict.h"
@@ -67,6 +69,9 @@ struct Engine::Implementation {
   std::optional<View> view;
   Radiance radiance = Radiance::automatic;   // of the last picture
   std::optional<ErrorEstimate> shown_error;  // the same, where it was asked for
+  double focus = 1;                          // of the last picture, mm
+  bool averaged = false;                     // it is one of several frames
+  std::optional<PictureMean> mean;           // made at first use
   std::optional<RadianceProbe> probe;        // made at first use
   device::Buffer triangle_face;              // display_faces.h, made at first use
   std::vector<PassStats> deformation_passes, irradiance_passes, light_passes, gather_passes, render_passes;
@@ -186,15 +191,61 @@ struct Engine::Implementation {
     return found;
   }
 
-  void draw_inside(const Camera& camera, const RenderOptions& render) {
+  // The last picture.
+  const PictureBuffers& shown() const { return averaged ? mean->picture() : rasteriser.picture(); }
+
+  // mm before the eye: what is sharp.
+  double focus_of(const View& from, const Camera& camera) const {
+    if (from.focus) return double{*from.focus};
+    const auto vertices = device::download<glm::vec3>(device, mesh.vertices);
+    const auto nearest = quadgraph::pick(graph.display(), vertices, camera, glm::vec2(0), cut_tools);
+    if (!nearest) return camera.distance;
+    return glm::dot(camera.eye - glm::dvec3(nearest->position), glm::dvec3(camera.backward));
+  }
+
+  void draw_frame(const View& from, const Camera& camera, const RenderOptions& render, std::uint32_t index) {
+    const std::uint32_t count = frame_count(from, render);
+    averaged = count > 1;
+    const FrameOffset offset = frame_offset(index, count);
+    const glm::dvec2 lens = 0.5 * double{from.aperture} * offset.lens;
+    const Camera there =
+        quadgraph::moved(camera, 2.0 * offset.pixel / glm::dvec2(render.width, render.height), lens, focus);
+    render.show.quantity == Quantity::picture ? draw_picture(from, there, render)
+                                              : draw_inside(there, render, index == 0);
+    if (!averaged) return;
+    if (!mean) mean.emplace(device);
+    add(render_passes, mean->add(rasteriser.picture(), index));
+  }
+
+  void add_frame(const View& from, const RenderOptions& render, std::uint32_t index) {
+    if (!report) throw InputError("render: solve first; there is no exitance to show");
+    const Camera camera =
+        place_camera(from, bounds, static_cast<float>(render.width) / static_cast<float>(render.height));
+    view = from;
+    shown_error.reset();
+    if (index == 0) {
+      render_passes.clear();
+      focus = from.aperture > 0 ? focus_of(from, camera) : 1;
+    }
+    interruptible([&] { draw_frame(from, camera, render, index); });
+  }
+
+  // fresh: another view than that of the last picture.
+  void draw_inside(const Camera& camera, const RenderOptions& render, bool fresh) {
     if (report->path)
       throw InputError("show: with shortest-path only 'picture', found '" + to_string(render.show) + "'");
-    const Inside inside =
-        inside_of({device, levels(), graph, *report, options, certainty, bounds, camera.seen_from()}, render.show);
-    false_colours = {};  // two need not fit beside each other
-    false_colours = upload_false_colours(device, inside.mesh, inside.plane, inside.legend.diverging);
-    legend = inside.legend;
-    render_passes = rasteriser.run(false_colours, camera, render.width, render.height);
+    if (fresh) {
+      const Inside inside =
+          inside_of({device, levels(), graph, *report, options, certainty, bounds, camera.seen_from()}, render.show);
+      false_colours = {};  // two need not fit beside each other
+      false_colours = upload_false_colours(device, inside.mesh, inside.plane, inside.legend.diverging);
+      legend = inside.legend;
+    }
+    add_all(rasteriser.run(false_colours, camera, render.width, render.height));
+  }
+
+  void add_all(const std::vector<PassStats>& passes) {
+    for (const PassStats& pass : passes) add(render_passes, pass);
   }
 
   PlacedRoughness placed_roughness(const RoughnessMap& map) {
@@ -230,13 +281,13 @@ struct Engine::Implementation {
         throw InputError("radiance: with shortest-path nothing is gathered, allowed are lambertian, auto");
       }
       if (shadows_stale) cast_shadows();
-      render_passes = rasteriser.run(PathInput{.mesh = mesh,
-                                               .field = paths.field(),
-                                               .shadows = shadows,
-                                               .eta = eta,
-                                               .roughness = render.roughness,
-                                               .placed_roughness = there},
-                                     camera, render.width, render.height);
+      add_all(rasteriser.run(PathInput{.mesh = mesh,
+                                       .field = paths.field(),
+                                       .shadows = shadows,
+                                       .eta = eta,
+                                       .roughness = render.roughness,
+                                       .placed_roughness = there},
+                             camera, render.width, render.height));
       return Radiance::lambertian;
     }
     std::optional<GatherView> view_rays;
@@ -248,16 +299,16 @@ struct Engine::Implementation {
       const GatherField& field = gather(leaves == Radiance::single ? Gather::single : Gather::scaled);
       view_rays.emplace(field, triangle_face, leaves == Radiance::gathered ? simulation->surface_share() : nullptr);
     }
-    render_passes = rasteriser.run(RasterInput{.mesh = mesh,
-                                               .finest = simulation->level(0),
-                                               .vertex_exitance = simulation->vertex_exitance(),
-                                               .vertex_unscattered = simulation->vertex_unscattered(),
-                                               .shadows = shadows,
-                                               .eta = eta,
-                                               .roughness = render.roughness,
-                                               .placed_roughness = there,
-                                               .gather = view_rays ? &*view_rays : nullptr},
-                                   camera, render.width, render.height);
+    add_all(rasteriser.run(RasterInput{.mesh = mesh,
+                                       .finest = simulation->level(0),
+                                       .vertex_exitance = simulation->vertex_exitance(),
+                                       .vertex_unscattered = simulation->vertex_unscattered(),
+                                       .shadows = shadows,
+                                       .eta = eta,
+                                       .roughness = render.roughness,
+                                       .placed_roughness = there,
+                                       .gather = view_rays ? &*view_rays : nullptr},
+                           camera, render.width, render.height));
     return leaves;
   }
 
@@ -268,14 +319,14 @@ struct Engine::Implementation {
     radiance = draw_surface(camera, render);
     if (render.ground) {
       if (!ground) ground.emplace(device);
-      render_passes.push_back(ground->run(mesh, bounds, from, camera, rasteriser.picture()));
+      add(render_passes, ground->run(mesh, bounds, from, camera, rasteriser.picture()));
     }
     if (render.surroundings) {
       if (!surroundings) surroundings.emplace(device);
       PictureBuffers& picture = rasteriser.picture();
       PassStats pass;
       picture.has_surroundings = surroundings->run(lights, camera, picture, pass);
-      if (picture.has_surroundings) render_passes.push_back(pass);
+      if (picture.has_surroundings) add(render_passes, pass);
     }
   }
 

@@ -1,9 +1,12 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/render/engine.h"
+#include "engine/render/picture/frame_offsets.h"
 
 namespace quadgraph {
 namespace {
+
+constexpr std::uint32_t samples_of_edges = 16, samples_of_blur = 256;
 
 void check_roughness(float roughness) {
   if (roughness_range.contains(roughness)) return;
@@ -12,12 +15,21 @@ void check_roughness(float roughness) {
 
 }  // namespace
 
+std::uint32_t frame_count(const View& view, const RenderOptions& options) {
+  const std::uint32_t needed = view.aperture > 0 ? samples_of_blur : samples_of_edges;
+  const std::uint32_t samples = options.samples > 0 ? options.samples : needed;
+  return (samples + samples_per_frame - 1) / samples_per_frame;
+}
+
 void check_options(const RenderOptions& options) {
   for (std::uint32_t side : {options.width, options.height}) {
     if (!side_range.contains(side)) {
       throw InputError("size: found " + std::to_string(options.width) + "x" + std::to_string(options.height) +
                        ", expected " + side_range.text() + " pixels a side");
     }
+  }
+  if (!samples_range.contains(options.samples)) {
+    throw InputError("samples: found " + std::to_string(options.samples) + ", expected " + samples_range.text());
   }
   check_roughness(options.roughness);
   if (!options.roughness_map) return;

@@ -95,6 +95,24 @@ void add_projection(OptionTable& table) {
                "fits the picture; left out: perspective"});
 }
 
+void add_lens(OptionTable& table) {
+  table.member<&Scene::view, &View::aperture>(
+      {.name = "aperture",
+       .member = "/camera/aperture",
+       .keyword = "aperture",
+       .metavar = "MM",
+       .range = aperture_range,
+       .help = "diameter of the lens, mm: what is not at the distance of --focus is blurred; 0: all is sharp"});
+  table.member<&Scene::view, &View::focus>(
+      {.name = "focus",
+       .member = "/camera/focus",
+       .keyword = "focus",
+       .metavar = "MM",
+       .range = distance_range,
+       .help = "distance from the eye to the plane that is sharp, mm along the view; left out: that of the nearest of "
+               "the object in the middle of the picture"});
+}
+
 void add_solver(OptionTable& table) {
   table.group(solver_group);
   table.member<&Scene::solve, &SolveOptions::method>(
@@ -259,6 +277,12 @@ void add_size(OptionTable& table) {
                                                         .on_command_line = false,
                                                         .range = side_range,
                                                         .help = "pixels"});
+  table.member<&Scene::render, &RenderOptions::samples>(
+      {.name = "samples",
+       .member = "/picture/samples",
+       .keyword = "samples",
+       .range = samples_range,
+       .help = "samples of a pixel, of which it is the mean, four at a time; 0: 16, and 256 with an aperture"});
 }
 
 void add_picture(OptionTable& table) {
@@ -323,6 +347,7 @@ std::vector<SceneOption> made() {
   add_camera(table);
   add_camera_places(table);
   add_projection(table);
+  add_lens(table);
   add_solver(table);
   add_accuracy(table);
   add_light_paths(table);

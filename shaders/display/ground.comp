@@ -13,7 +13,7 @@ struct GroundPush {
   vec3 corner;           // from there to the upper left corner of the picture
   vec3 right;            // from its left to its right
   vec3 down;             // from its top to its bottom
-  vec3 ahead;            // unit, along the view
+  vec3 ahead;            // from the eye to its middle, 1 long along the view
   float spread;          // 1/mm: over the distance of the eye; 0 of parallel rays
   float half_width;      // mm, of the map
   uint z_up;             // 1: the ground lies across z; 0: across y

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <glm/trigonometric.hpp>
 
 #include "engine/base/error.h"
@@ -100,6 +101,12 @@ void check_view(const View& view) {
   for (int axis = 0; axis < 3; ++axis) check("target", view.target[axis], {}, "mm");
   if (view.distance) check("distance", *view.distance, distance_range, "mm");
   if (view.orthographic) check("orthographic", *view.orthographic, height_range, "mm");
+  check("aperture", view.aperture, aperture_range, "mm");
+  if (view.focus) check("focus", *view.focus, distance_range, "mm");
+  if (view.aperture > 0 && view.orthographic) {
+    throw InputError("view, aperture: found " + number_text(view.aperture) +
+                     " with orthographic, whose rays are parallel and leave nothing to a lens");
+  }
   if (view.eye.has_value() != view.look_at.has_value()) {
     throw InputError(std::string("view: ") + (view.eye ? "look_at" : "eye") +
                      " is missing, eye and look_at go together");
@@ -185,6 +192,26 @@ ViewRay view_ray(const Camera& camera, const glm::vec2& at) {
   return {camera.eye, through, glm::normalize(through - camera.eye)};
 }
 
+Camera moved(const Camera& camera, const glm::dvec2& shift, const glm::dvec2& lens, double focus) {
+  const glm::dvec2 half(camera.half_width, camera.half_height);
+  const glm::dvec2 sheared = camera.parallel ? glm::dvec2(0) : lens * camera.distance / half;
+  const glm::dmat4 rows = glm::transpose(glm::dmat4(camera.clip_from_offset));
+  glm::dmat4 after = rows;
+  for (int k = 0; k < 2; ++k) {
+    after[k] += (shift[k] + sheared[k] / focus) * rows[3];
+    after[k].w -= sheared[k];
+  }
+  Camera there = camera;
+  there.clip_from_offset = glm::mat4(glm::transpose(after));
+  const auto across = [&](const glm::dvec2& by) {
+    return by.x * glm::dvec3(camera.right) + by.y * glm::dvec3(camera.up);
+  };
+  there.eye += across(lens);
+  there.target += across(lens * (1 - camera.distance / focus) - shift * half);
+  if (!camera.parallel) there.ahead = glm::vec3((there.target - there.eye) / camera.distance);
+  return there;
+}
+
 Camera place_camera(const View& view, const Sphere& bounds, float aspect) {
   check_view(view);
   const Pose pose = pose_of(view, bounds);
@@ -206,6 +233,7 @@ Camera place_camera(const View& view, const Sphere& bounds, float aspect) {
   }
   camera.half_width = double{aspect} * camera.half_height;
   camera.eye = pose.target + camera.distance * axes.backward;
+  camera.ahead = -axes.backward;
   set_clip(camera, axes, bounds);
   return camera;
 }

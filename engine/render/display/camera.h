@@ -37,6 +37,7 @@ struct Names<UpAxis> {
 inline constexpr Range elevation_range{.low = -90, .high = 90},
     fov_range{.low = 0, .high = 150, .above = true};                                     // degrees
 inline constexpr Range distance_range{.low = 0, .above = true}, height_range{.low = 0};  // mm
+inline constexpr Range aperture_range{.low = 0};                                         // mm
 
 // A view of the object's centre, or of a point beside it. With y up, azimuth 0 looks along -z (from +z), azimuth 90
 // looks along -x (from +x). With z up, azimuth 0 looks along +y (from -y), azimuth 90 along -x. Positive elevation
@@ -53,6 +54,11 @@ struct View {
   // in front of the whole object however far the eye is; without it, perspective.
   std::optional<float> orthographic{};
   std::optional<glm::vec3> eye{}, look_at{};  // mm, as positions of lights are
+  // mm, diameter of a thin lens; 0: a pinhole, with which all is sharp. Not of an orthographic camera.
+  float aperture = 0;
+  // mm from the eye along the view to the plane that is sharp; without it, that of the nearest of the object in the
+  // middle of the picture, or of the target where nothing is.
+  std::optional<float> focus{};
 
   bool operator==(const View&) const = default;
 };
@@ -86,6 +92,7 @@ struct Camera {
   glm::vec3 up{0, 1, 0};
   glm::vec3 backward{0, 0, 1};
   double half_width = 1, half_height = 1;  // mm, of the picture on the plane through the target
+  glm::vec3 ahead{0, 0, -1};               // from the eye to the target, 1 long along the view
   float reach = 1;                         // mm, more than the object is wide
   // From places to clip space, y up, depth 1 before the object and 0 behind it. In single precision, so that a picture
   // stays put however far the eye is, it applies to the difference from `origin` (mm), which is near what is seen.
@@ -105,6 +112,11 @@ struct ViewRay {
   glm::dvec3 along;    // unit
 };
 ViewRay view_ray(const Camera& camera, const glm::vec2& at);
+
+// The camera with the picture moved by `shift`, right and up, 1 being its half width and height, and with the eye moved
+// by `lens`, mm right and up, while the plane that is `focus` mm before it stays where it is in the picture. Not `lens`
+// of parallel rays.
+Camera moved(const Camera& camera, const glm::dvec2& shift, const glm::dvec2& lens, double focus);
 
 // Throws InputError as check_view. `aspect` is width / height.
 Camera place_camera(const View& view, const Sphere& bounds, float aspect);

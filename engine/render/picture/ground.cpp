@@ -82,7 +82,7 @@ PassStats Ground::run(const DisplayBuffers& mesh, const Sphere& bounds, const Vi
                              .corner = up - right,
                              .right = 2.0f * right,
                              .down = -2.0f * up,
-                             .ahead = -camera.backward,
+                             .ahead = camera.ahead,
                              .spread = camera.parallel ? 0.0f : static_cast<float>(1 / camera.distance),
                              .half_width = half_width_,
                              .z_up = view.up == UpAxis::z ? 1u : 0u,

@@ -16,12 +16,18 @@ std::string orthographic_text(float height) {
   return height > 0 ? "orthographic, " + number_text(height) + " mm high" : "orthographic, all of the object";
 }
 
+std::string lens_text(const View& view) {
+  if (view.aperture == 0) return "";
+  const std::string place = view.focus ? number_text(*view.focus) + " mm ahead" : "the nearest of the object";
+  return ", aperture " + number_text(view.aperture) + " mm, in focus " + place;
+}
+
 std::string camera_text(const View& view) {
   const std::string place =
       view.eye ? "eye " + place_text(*view.eye) + " looks at " + place_text(*view.look_at) : "view " + to_string(view);
   const std::string seen = view.orthographic ? orthographic_text(*view.orthographic)
                                              : "vertical field of view " + number_text(view.vertical_fov) + " degrees";
-  return place + ", " + seen + ", " + (view.up == UpAxis::y ? "y" : "z") + " up";
+  return place + ", " + seen + ", " + (view.up == UpAxis::y ? "y" : "z") + " up" + lens_text(view);
 }
 
 // whole: what the whole is.

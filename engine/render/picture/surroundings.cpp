@@ -38,7 +38,7 @@ bool Surroundings::run(std::span<const Light> lights, const Camera& camera, Pict
     const gpu::SurroundingsPush push{.texels = image.texels.address(),
                                      .surroundings = picture.around.address(),
                                      .image = {0, image.image->columns, image.image->rows, image.image->levels},
-                                     .corner = into * (up - right - camera.backward),
+                                     .corner = into * (up - right + camera.ahead),
                                      .right = into * (2.0f * right),
                                      .down = into * (-2.0f * up),
                                      .power = light.power,

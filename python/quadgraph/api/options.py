@@ -79,7 +79,9 @@ class Camera(TypedDict, total=False):
     azimuth: left out, the body's front; elevation: above the ground; distance: left out, the body fits; up: "y" or "z";
     fov: vertical; target: from the object's centre, what the middle of the picture shows; eye, look_at: places in the
     body's coordinates, together and in place of azimuth, elevation, distance and target; orthographic: parallel rays,
-    with which the picture's height shows so many mm, 0 for the whole body.
+    with which the picture's height shows so many mm, 0 for the whole body; aperture: diameter of the lens, mm, 0 for a
+    picture that is sharp everywhere; focus: how far before the eye it is sharp, mm along the view, left out for what is
+    nearest in the middle of the picture.
     """
 
     azimuth: float
@@ -91,12 +93,14 @@ class Camera(TypedDict, total=False):
     eye: Vector
     look_at: Vector
     orthographic: float
+    aperture: float
+    focus: float
 
 
 class PictureOptions(TypedDict, total=False):
     """What a picture shows, and how.
 
-    width, height: pixels, 1 to 16384;
+    width, height: pixels, 1 to 16384; samples: of a pixel, four at a time, 0 for 16, or 256 with an aperture;
     roughness: of the surface, GGX alpha; radiance: how it leaves the surface; show: "picture", or what is inside
     (docs/window.md, "Views of the inside"); ground: a shadow where the body stands; surroundings: what environment
     lights show, behind it; roughness_map: as in scene files; exposure: "auto" or stops; tone: the curve from radiance
@@ -106,6 +110,7 @@ class PictureOptions(TypedDict, total=False):
 
     width: int
     height: int
+    samples: int
     roughness: float
     radiance: Radiance
     show: str

@@ -23,7 +23,7 @@ NUMBERS = {
     ),
     "render": (
         "--view", "--eye", "--look-at", "--fov", "--orthographic", "--size", "--roughness", "--exposure",
-        "--background", "--frame", "--frames", "--show", "--tone", "--white-balance",
+        "--background", "--frame", "--frames", "--show", "--tone", "--white-balance", "--aperture", "--focus",
     ),
     "turntable": ("--view", "--eye", "--size", "--exposure", "--background", "--frames", "--seconds"),
 }  # fmt: skip

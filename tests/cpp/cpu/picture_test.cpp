@@ -70,7 +70,7 @@ TEST_CASE("light, pictures and leaving radiance are the same on both") {
   for (const Radiance radiance : {Radiance::gathered, Radiance::lambertian}) {
     CAPTURE(name_of(radiance));
     const View view{.azimuth = 30, .elevation = 20};
-    const RenderOptions options{.width = 384, .height = 256, .radiance = radiance};
+    const RenderOptions options{.width = 384, .height = 256, .samples = 4, .radiance = radiance};
     const Picture a = here.engine.render(view, options), b = there.engine.render(view, options);
     check_alike(a.scattered, b.scattered);
     check_alike(a.specular, b.specular);

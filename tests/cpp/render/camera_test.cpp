@@ -113,6 +113,33 @@ TEST_CASE("an orthographic picture shows as many mm as it says, at any distance,
   }
 }
 
+TEST_CASE("a camera that is moved sees along its rays, and what is in focus where it was") {
+  View places[] = {view(33, 20), view(-70, -40, UpAxis::z), view(33, 20)};
+  places[2].orthographic = 8;
+  for (const View& from : places) {
+    const Camera camera = place_camera(from, bounds, 1.5f);
+    const double focus = camera.parallel ? 1 : 44;
+    const glm::dvec2 shift(0.02, -0.03), lens = camera.parallel ? glm::dvec2(0) : glm::dvec2(1.2, -0.7);
+    const Camera there = moved(camera, shift, lens, focus);
+    const glm::vec3 sharp =
+        glm::vec3(camera.eye - focus * glm::dvec3(camera.backward)) + 2.0f * camera.right + camera.up;
+    const glm::vec3 before = projected(camera, sharp), after = projected(there, sharp);
+    CHECK(after.x - before.x == doctest::Approx(shift.x).epsilon(1e-3));
+    CHECK(after.y - before.y == doctest::Approx(shift.y).epsilon(1e-3));
+    for (const glm::vec2& at : {glm::vec2(0), glm::vec2(0.7f, -0.4f), glm::vec2(-1, 1)}) {
+      const glm::vec3 across = at.x * static_cast<float>(camera.half_width) * camera.right +
+                               at.y * static_cast<float>(camera.half_height) * camera.up;
+      const glm::vec3 ray =
+          there.ahead + (camera.parallel ? glm::vec3(0) : across / static_cast<float>(camera.distance));
+      for (const float further : {-5.0f, 0.0f, 30.0f}) {
+        const glm::vec3 seen = projected(there, glm::vec3(there.target) + across + further * ray);
+        CHECK(seen.x == doctest::Approx(at.x).epsilon(1e-4).scale(1));
+        CHECK(seen.y == doctest::Approx(at.y).epsilon(1e-4).scale(1));
+      }
+    }
+  }
+}
+
 TEST_CASE("a view by places is one by angles") {
   for (const UpAxis up : {UpAxis::y, UpAxis::z}) {
     const View places{.up = up, .eye = glm::vec3(20, -5, 31), .look_at = glm::vec3(2, 4, -1)};

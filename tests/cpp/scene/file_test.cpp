@@ -101,10 +101,13 @@ Scene with_everything(const Folder& folder) {
                 .distance = 12.5f,
                 .up = UpAxis::z,
                 .vertical_fov = 40,
-                .target = {1, -2, 0.5f}};
+                .target = {1, -2, 0.5f},
+                .aperture = 2.5f,
+                .focus = 9.25f};
   scene.solve = {.method = Method::quadgraph_fv, .solver = SolverKind::dpcg, .tolerance = 0.002, .cycles = 3};
   scene.render = {.width = 64,
                   .height = 48,
+                  .samples = 36,
                   .roughness = 0.2f,
                   .radiance = Radiance::lambertian,
                   .show = parse_show("tets:y,-3,1"),

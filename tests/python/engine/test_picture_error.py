@@ -62,6 +62,14 @@ def test_the_more_radiance_depends_on_the_angle_the_less_certain_it_is(engine):
     assert stated[1] > 2 * stated[0]
 
 
+def test_more_samples_of_a_pixel_leave_the_error_as_it_is(engine):
+    engine.solve(**QUICK)
+    for elevation in (LIT, UNLIT, 0.0):
+        few, many = (shown(engine, elevation, samples=samples).error for samples in (4, 64))
+        for part in ("whole", "unlit", "dimmest"):
+            assert getattr(many, part) == pytest.approx(getattr(few, part), rel=0.03)
+
+
 def test_nothing_is_said_where_nothing_is_known(engine):
     engine.solve(**QUICK)
     assert shown(engine, LIT).error is not None

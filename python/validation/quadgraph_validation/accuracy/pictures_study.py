@@ -139,7 +139,7 @@ def _pictures(sight: Sight, device: str) -> tuple[dict[str, np.ndarray], np.ndar
                         engine.solve(motion=True)
                 else:
                     engine.solve(correction=way == "rest")
-                picture = engine.render(_camera(sight), width=PIXELS, height=PIXELS)
+                picture = engine.render(_camera(sight), width=PIXELS, height=PIXELS, samples=4)
                 found[way] = picture.scattered[..., 0].astype(float)
                 if picture.error is not None:
                     stated[way] = {part: getattr(picture.error, part) for part in PARTS}

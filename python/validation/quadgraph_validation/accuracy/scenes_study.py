@@ -135,7 +135,12 @@ def picture(engine: Engine, scene: StudyScene, image: str, setting: PictureSetti
     """
     chosen = scene.images[image]
     found = engine.render(
-        view=scene.views[chosen.view].text, vertical_fov=FOV, width=PIXELS, height=PIXELS, radiance=setting.radiance
+        view=scene.views[chosen.view].text,
+        vertical_fov=FOV,
+        width=PIXELS,
+        height=PIXELS,
+        samples=4,
+        radiance=setting.radiance,
     )
     shown = np.asarray(found.scattered, np.float64)[..., chosen.channel]
     if scene.direction is None:

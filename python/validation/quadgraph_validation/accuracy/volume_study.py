@@ -257,7 +257,8 @@ def _relit(body: Path, taken: Path, device: str) -> float:
     for name in ("truth.npz", "found.npz"):
         stage = core.Stage(device)
         document: dict[str, Any] = {"body": str(body), "material": str(taken / name)}
-        document |= {"lights": [_OTHER_LIGHT], "camera": _OTHER_CAMERA, "picture": {"width": 96, "height": 96}}
+        size = {"width": 96, "height": 96, "samples": 4}
+        document |= {"lights": [_OTHER_LIGHT], "camera": _OTHER_CAMERA, "picture": size}
         stage.show(core.scene_file(json.dumps(document)).at(0))
         stage.solve()
         pictures.append(np.array(stage.render().scattered, np.float64))

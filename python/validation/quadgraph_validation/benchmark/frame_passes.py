@@ -63,7 +63,7 @@ def measure(
             # In another order each time: shadow maps of lights that have not changed would not be drawn.
             engine.set_lights(lights[:: 1 if number % 2 else -1])
             reports[name] = engine.solve(**way, tolerance=1e-3)
-            engine.render()
+            engine.render(samples=4)
             if number > 0:
                 frames[name].append(engine.passes)
     levels = reports["blocks"]["levels"]

@@ -65,7 +65,7 @@ def _measure(file: Any, stage: Any, name: str, repeats: int, copy_gb_per_s: floa
         start = time.perf_counter()
         stage.show(file.at(0))
         segments = stage.engine.solve(motion=True)["walk_segments"]
-        stage.engine.draw(width=side, height=side, radiance="lambertian")
+        stage.engine.draw(width=side, height=side, samples=4, radiance="lambertian")
         taken.append((1e3 * (time.perf_counter() - start), stage.engine.passes, segments))
     wall_ms, passes, segments_of = zip(*taken[1:], strict=True)
     return {

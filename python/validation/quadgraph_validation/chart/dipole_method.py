@@ -82,7 +82,7 @@ class DipoleMethod(PreparedMethod):
         product = 1e3 * (time.perf_counter() - start) * len(self._matrices) / 3
         self._exitance = np.column_stack(found).astype(np.float64)
         view, pixels = next(iter(scene.views.values())).text, self._body.pixels
-        engine.render(view=view, width=pixels, height=pixels, radiance="lambertian")
+        engine.render(view=view, width=pixels, height=pixels, samples=4, radiance="lambertian")
         passes = {p["name"]: p["time_ms"] for p in engine.passes if p["name"] in (*_LIGHT, *_PICTURE)}
         return passes | {"dipole": product}
 

@@ -145,7 +145,8 @@ class EngineMethod(PreparedMethod):
 
     def _show(self, view: str, pixels: int) -> Any:
         radiance = self.radiance if self._can_gather or self.radiance == "single" else "lambertian"
-        return self._engine.render(view=view, vertical_fov=FOV, width=pixels, height=pixels, radiance=radiance)
+        size = {"width": pixels, "height": pixels, "samples": 4}
+        return self._engine.render(view=view, vertical_fov=FOV, **size, radiance=radiance)
 
 
 def _counted(number: int, what: str) -> str:

@@ -87,7 +87,8 @@ class PathMethod(PreparedMethod):
         return self._body.engine(0, ("shortest-path",))
 
     def _show(self, view: str, pixels: int) -> Any:
-        return self._engine.render(view=view, vertical_fov=FOV, width=pixels, height=pixels, radiance="lambertian")
+        size = {"width": pixels, "height": pixels, "samples": 4}
+        return self._engine.render(view=view, vertical_fov=FOV, **size, radiance="lambertian")
 
 
 @register

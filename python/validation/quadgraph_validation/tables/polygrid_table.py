@@ -92,7 +92,7 @@ def _frames(engine: Engine, warm: bool) -> dict[str, Any]:
     for frame in range(_FRAMES + 1):
         engine.set_lights([_turned(frame)])
         report = engine.solve(**_way(tolerance=TOLERANCE, active_layers=ACTIVE_LAYERS, warm=warm))
-        engine.render(width=_PIXELS, height=_PIXELS, radiance="lambertian")
+        engine.render(width=_PIXELS, height=_PIXELS, samples=4, radiance="lambertian")
         if frame == 0:
             continue  # compiles, assembles and makes room
         passes = {entry["name"]: entry["time_ms"] for entry in engine.passes}

@@ -120,7 +120,7 @@ class TableRunner:
     def _frame(self, step: int) -> dict[str, float]:
         self.engine.set_lights([light(step)])
         self.report = self.engine.solve(**self.way.frame)
-        self.engine.render(width=self.pixels, height=self.pixels, radiance=self.way.radiance)
+        self.engine.render(width=self.pixels, height=self.pixels, samples=4, radiance=self.way.radiance)
         return ms_by_pass(self.engine.passes)
 
     def error(self, judged: AlgebraicJudge) -> dict[str, float]:

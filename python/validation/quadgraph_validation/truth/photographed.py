@@ -148,7 +148,7 @@ def by_engine(
                 each: found.document[each] for each in ("material", "deformation") if each in found.document
             }
             around = {each: camera[each] for each in ("eye", "look_at", "up", "fov")}
-            size = {each: camera[each] for each in ("width", "height")}
+            size = {each: camera[each] for each in ("width", "height")} | {"samples": 4}
             scene |= {"body": str(body.absolute()), "lights": [stated], "camera": around, "picture": size}
             scene["solver"] = {"sweep_points": SWEEP_POINTS}
             stage.show(core.scene_file(json.dumps(scene)).at(0))

@@ -1,0 +1,57 @@
+// What the viewer writes: scenes and pictures.
+#include "engine/app/body_copy.h"
+#include "engine/app/viewer.h"
+#include "engine/base/error.h"
+#include "engine/render/picture/metadata.h"
+#include "engine/scene/scene_file.h"
+
+namespace quadgraph {
+
+void Viewer::save_scene() {
+  try {
+    if (preview_) throw InputError("the scene can be saved once the body is baked: this is a preview");
+    std::filesystem::path path;
+    do {
+      path = saving_.stem.string() + "-" + std::to_string(++scenes_written_) + ".json";
+    } while (std::filesystem::exists(path));
+    Scene scene = state_.scene;
+    if (saving_.copy_body) scene.body = copied_into(path.parent_path(), scene.body);
+    const std::filesystem::path from_here = std::filesystem::proximate(scene.body);
+    if (*from_here.begin() != "..") scene.body = from_here;  // so that the file names it by its own place
+    SceneFile(scene).save(path);
+    state_.say("saved: " + path.string());
+  } catch (const std::exception& error) {
+    state_.say(error.what(), true);
+  }
+  frames_wanted_ = 3;
+}
+
+// The converged picture, whatever is on the screen now.
+void Viewer::write_picture() {
+  try {
+    measured_.frames = 0;
+    remake(true);
+    RenderOptions options = state_.scene.render;
+    options.width = shown_part_.width;
+    options.height = shown_part_.height;
+    const Picture picture = engine().render(state_.scene.view, options);
+    measured_.frames = 0;  // the mean of those on the screen is lost
+    measured_.settled = false;
+    std::filesystem::path png, exr;
+    do {
+      png = saving_.stem.string() + "-" + std::to_string(++pictures_written_) + ".png";
+      exr = png;
+      exr.replace_extension(".exr");
+    } while (std::filesystem::exists(png) || std::filesystem::exists(exr));
+    write_png(png, picture, state_.scene.tone, engine().metadata());
+    write_exr(exr, picture, state_.scene.tone, engine().metadata());
+    state_.say("saved: " + png.string() + ", " + exr.string());
+  } catch (const DeviceError&) {
+    throw;
+  } catch (const std::exception& error) {
+    state_.say(error.what(), true);
+  }
+  frames_wanted_ = 3;
+}
+
+}  // namespace quadgraph
