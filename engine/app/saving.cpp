@@ -28,6 +28,7 @@ void Viewer::save_scene() {
 
 // The converged picture, whatever is on the screen now.
 void Viewer::write_picture() {
+  writing_ = true;
   try {
     measured_.frames = 0;
     remake(true);
@@ -51,6 +52,7 @@ void Viewer::write_picture() {
   } catch (const std::exception& error) {
     state_.say(error.what(), true);
   }
+  writing_ = false;
   frames_wanted_ = 3;
 }
 

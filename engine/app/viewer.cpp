@@ -285,7 +285,7 @@ void Viewer::remake(bool settle) {
 void Viewer::solve(bool settle) {
   const auto check = [this] {
     window_.poll(0);
-    if (window_.wanted()) throw Interrupted();
+    if (window_.wanted() && !writing_) throw Interrupted();
   };
   solved_ = false;
   measured_.solve = stage_.solve(options_of_solve(settle), settle ? check : std::function<void()>());

@@ -98,6 +98,7 @@ class Viewer {
   bool solved_exactly_ = false;              // it was solved to the tolerance
   Clock::time_point changed_;                // when something changed last
   std::vector<Clock::time_point> pictures_;  // of the last second
+  bool writing_ = false;                     // a picture, for which what the user does has to wait
   int frames_wanted_ = 3;                    // widgets settle over several frames
 };
 

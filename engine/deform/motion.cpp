@@ -26,6 +26,8 @@ SolveOptions in_motion(SolveOptions options, std::span<const Level> levels) {
   options.bounces = 1;
   options.warm = true;
   options.error = 0;
+  options.sweeps = 0;  // one a frame, where it corrects
+  options.certify = 0;
   options.mean_rays = true;
   options.exchange_rows = (exchange_faces(levels) + exchange_parts - 1) / exchange_parts;
   return options;

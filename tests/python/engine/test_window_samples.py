@@ -47,3 +47,19 @@ def test_it_is_heard_long_before_all_samples_are_there(open_window):
         time.sleep(0.05)
     assert hand.busy()
     hand.close()
+
+
+def test_a_picture_is_saved_whatever_the_user_does_meanwhile(open_window, tmp_path: Path):
+    """Its solve takes a while, and other solves end where a key is pressed."""
+    hand = open_window(*LOOK, "--correction", "--sweeps", "1", "--sweep-points", "600000")
+    hand.picture()
+    hand.keys("m", "F12")
+    written = tmp_path / "tiny-1.exr"
+    deadline = time.monotonic() + 60
+    while not written.exists():
+        hand.keys("m")
+        assert hand.process.poll() is None, hand.process.communicate()
+        assert time.monotonic() < deadline, "the picture is not saved"
+        time.sleep(0.1)
+    hand.picture()
+    hand.close()
