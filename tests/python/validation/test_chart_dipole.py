@@ -81,7 +81,8 @@ def test_a_picture_without_the_engine_is_the_engines(eta, bunny_qgraph):
     engine.set_lights(["directional:-0.5,-0.5,-0.7:1"])
     engine.solve(model="diffusion", tolerance=1e-2, inter_reflection=False)
     view = View(20, 15, 230, ())
-    theirs = engine.render(view=view.text, vertical_fov=FOV, width=PIXELS, height=PIXELS, radiance="lambertian", samples=4)
+    size = {"width": PIXELS, "height": PIXELS, "samples": 4}
+    theirs = engine.render(view=view.text, vertical_fov=FOV, radiance="lambertian", **size)
     from quadgraph.file import qgraph_file
     from quadgraph.mesh.surface import Surface
 
