@@ -148,14 +148,13 @@ void Certifier::round(const CertifiedSolution& solution, double walks, std::uint
                         .beam = solution.beams.on_device.address(),
                         .beam_q = level.beam_q.address(),
                         .scale = work.scale.address(),
-                        .deposit = leaving_.address() + batch * level.face_count * sum_bytes,
+                        .leaving = leaving_.address() + batch * level.face_count * sum_bytes,
                         .sums = sums_.address(),
                         .walk = glm::vec3(3.0 / walks * entered),
                         .unit = glm::vec3(entered / unit_parts),
                         .rays = 1,
                         .sky = 0,
-                        .first = gpu::hash(seed),
-                        .deposits = 0};
+                        .first = gpu::hash(seed)};
   work.recorder.fill(sums_, 0);
   for (const gpu::Beam& beam : solution.beams.beams) {
     const std::uint32_t kind = beam.way.kind;

@@ -5,6 +5,10 @@
 namespace quadgraph {
 namespace {
 
+Certifier& made(std::optional<Certifier>& certifier, device::Device& device, const BodyShape& shape) {
+  return certifier ? *certifier : certifier.emplace(device, shape.levels()[0]);
+}
+
 // Of the correction's operator.
 Boundary diffusion_boundary(float eta) {
   return boundary_of(Method::fem, Source::buried, Model::diffusion, double{eta});
@@ -96,6 +100,7 @@ const Level& Simulation::present_level() const {
 
 void Simulation::make_room(const SolveOptions& options, bool gather) {
   implementation_->make_room(implementation_->key_of(options), options);
+  if (options.certify > 0) made(implementation_->certifier, implementation_->device, implementation_->shape);
   implementation_->work.recorder.submit();
   if (gather) implementation_->gather_room();
 }
@@ -133,15 +138,15 @@ void Simulation::state_medium_error(const SolveOptions& options, SolveReport& re
 
 void Simulation::certify(const SolveOptions& options, SolveReport& report, const std::function<void()>& check) {
   Implementation& self = *implementation_;
-  if (!self.certifier) self.certifier.emplace(self.device, self.shape.levels()[0]);
-  report.certificate = self.certifier->run({.work = self.work,
-                                            .level = self.levels[0],
-                                            .beams = self.beams,
-                                            .field = self.correction->field(),
-                                            .surface = surface_field(),
-                                            .scale = device::download<gpu::Scale>(self.device, self.work.scale)[0],
-                                            .entered = report.energy.entered},
-                                           options.certify, options.sweep_seed, check);
+  report.certificate = made(self.certifier, self.device, self.shape)
+                           .run({.work = self.work,
+                                 .level = self.levels[0],
+                                 .beams = self.beams,
+                                 .field = self.correction->field(),
+                                 .surface = surface_field(),
+                                 .scale = device::download<gpu::Scale>(self.device, self.work.scale)[0],
+                                 .entered = report.energy.entered},
+                                options.certify, options.sweep_seed, check);
   state_disagreement(report);
   self.passes = self.work.recorder.passes();
 }

@@ -4,30 +4,13 @@
 #define QUADGRAPH_WALK_RAY_GLSL
 
 #include "source/fixed_point.glsl"
+#include "source/light_ray.glsl"
 #include "source/walk_shared.h"
-
-#include "source/tet_ray.glsl"
-
-struct Ray {
-  TetPoint at;
-  vec3 direction;
-  vec3 power;
-  vec3 carry;    // of power, that rounding kept back
-  float slope;   // length of the way that it stands for, over its own
-};
 
 // Scattered towards the corners of a tet, by channel.
 struct Scattered {
   vec4 red, green, blue;
 };
-
-vec3 absorbed;     // by this invocation's rays
-vec3 unscattered;  // of them: left through the surface, or still under way at the end
-
-// Share of the loss that is scattered: never above 1, even where division rounds up.
-vec3 albedo(Optical optical) {
-  return min(optical.sigma_s_prime / max(extinction(optical), vec3(1e-30)), vec3(1));
-}
 
 vec3 at_corner(Scattered scattered, uint place) {
   return vec3(scattered.red[place], scattered.green[place], scattered.blue[place]);

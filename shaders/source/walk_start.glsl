@@ -1,4 +1,4 @@
-// Where the rays of a beam start. The shader that includes it, behind walk_ray.glsl, has push constants `push` with
+// Where the rays of a beam start. The shader that includes it has push constants `push` with
 // beam_q and scale as WalkSourcePush does, sets `rays`, and defines follow behind it.
 #ifndef QUADGRAPH_WALK_START_GLSL
 #define QUADGRAPH_WALK_START_GLSL
@@ -6,8 +6,8 @@
 #include "source/beam_light.glsl"
 #include "source/face_azimuth.glsl"
 #include "source/lambertian.glsl"
+#include "source/light_ray.glsl"
 #include "source/rectangle_light.glsl"
-#include "source/walk_ray.glsl"
 
 const uint FACE_CENTRE = 3u;  // the quarter in the middle
 

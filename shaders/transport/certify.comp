@@ -13,7 +13,7 @@ struct CertifyPush {
   Beams beam;                // one
   Floats beam_q;             // of all
   Scales scale;
-  Uints deposit;  // fixed point, per face: power that leaves there and has scattered
+  Uints leaving;  // fixed point, per face: power that leaves there and has scattered
   // Fixed point, WALK_SUMS times CERTIFY_SUMS: absorbed; left unscattered; given up. Behind them WALK_SUMS times two plain
   // numbers: walks, and tets that they crossed.
   Uints sums;
@@ -22,14 +22,13 @@ struct CertifyPush {
   uint rays;      // a face, as of TransportWalkPush
   uint sky;       // the same
   uint first;     // the same
-  uint deposits;  // not looked at
 };
 layout(push_constant, scalar) uniform Block { CertifyPush push; };
 
 TransportFieldRef field;
 #define FIELD field
 #define BODY field.body
-#include "source/walk_ray.glsl"
+#include "source/fixed_point.glsl"
 #include "transport/entering_light.glsl"
 
 vec3 given_up;
@@ -60,7 +59,7 @@ void meet_surface(inout Ray ray, uint face) {
     float reflected = internal_reflectance(cosine, BODY.eta);
     vec3 leaving = (1.0 - reflected) * ray.power;
     if (scattered) {
-      add_power(push.deposit, face, leaving);
+      add_power(push.leaving, face, leaving);
     } else {
       unscattered += leaving;
     }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -90,12 +91,11 @@ WRONG = [
 
 
 @pytest.mark.parametrize(("path", "value", "said"), WRONG)
-def test_what_is_wrong_is_named_by_its_path(folder, path, value, said):
-    document = stated()
-    put(document, path, value)
-    with pytest.raises(InputError) as caught:
-        read(folder, document)
-    assert str(caught.value).startswith(f"{folder / 'session.json'}: {said}")
+def test_what_is_wrong_in_a_session_is_named_by_its_path(folder, path, value, said):
+    session = stated()
+    put(session, path, value)
+    with pytest.raises(InputError, match="^" + re.escape(f"{folder / 'session.json'}: {said}")):
+        read(folder, session)
 
 
 def test_the_example_of_the_page_is_taken(tmp_path):
