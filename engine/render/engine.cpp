@@ -199,12 +199,16 @@ SolveReport Engine::solve(const SolveOptions& options, const std::function<void(
   self.gather_passes.clear();
   self.deformation_passes.clear();
   self.light_passes.clear();
-  if (!by_path && self.irradiance_behind(options)) self.update_irradiance(options.mean_rays);
+  if (!by_path && self.irradiance_behind(options)) self.check_irradiance();
   if (self.deformed && self.simulation) self.deformation_passes = self.simulation->deformation_passes();
   self.deformed = false;
   self.report.reset();
-  self.report =
-      self.interruptible([&] { return by_path ? self.solve_paths(options) : self.levels().solve(options, check); });
+  // What is seen of the sky is brought up to date by the solve.
+  const auto light = [&](bool seen_anew) {
+    if (self.irradiance_behind(options) || (seen_anew && self.sky_shines())) self.run_irradiance(options.mean_rays);
+  };
+  self.report = self.interruptible(
+      [&] { return by_path ? self.solve_paths(options) : self.levels().solve(options, check, light); });
   if (self.report->correction && !options.warm && !self.lights.empty()) {
     self.interruptible([&] { self.state_light_error(options); });
   }

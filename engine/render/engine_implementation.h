@@ -140,9 +140,20 @@ struct Engine::Implementation {
     return irradiance_stale || (irradiance_rough && !wanted.mean_rays);
   }
 
-  void update_irradiance(bool rough) {
+  // Light whose way to the surface depends on what faces see of each other.
+  bool sky_shines() const {
+    return std::ranges::any_of(lights, [](const Light& light) {
+      return light.kind == LightKind::ambient || light.kind == LightKind::environment;
+    });
+  }
+
+  void check_irradiance() const {
     if (material.empty()) throw InputError("irradiance: set a material first; the light that enters depends on eta");
     levels();
+  }
+
+  void update_irradiance(bool rough) {
+    check_irradiance();
     interruptible([&] { run_irradiance(rough); });
   }
 

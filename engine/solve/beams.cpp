@@ -41,6 +41,18 @@ bool alike(std::span<const gpu::Beam> a, std::span<const gpu::Beam> b) {
                     [](const gpu::Beam& x, const gpu::Beam& y) { return x.floats == y.floats; });
 }
 
+// Room for so many numbers per face on every level, without light.
+void make_room(device::Device& device, std::uint32_t floats, std::vector<LevelBuffers>& levels) {
+  device::Commands commands(device);
+  for (LevelBuffers& level : levels) {
+    const std::uint64_t bytes = std::uint64_t{floats} * level.face_count * sizeof(float);
+    if (level.beam_q.size() != bytes) level.beam_q = {device, bytes, device::Place::device, "light/beams on faces"};
+    commands.fill(level.beam_q, 0);
+    commands.fill(level.q, 0);
+  }
+  commands.submit_and_wait();
+}
+
 }  // namespace
 
 gpu::Beam beam_along(const std::optional<glm::vec3>& direction) {
@@ -63,18 +75,15 @@ void replace_beams(device::Device& device, std::span<const gpu::Beam> beams, Bea
     floats += beam.floats;
   }
   const bool fits = alike(all, buffers.beams);
-  buffers.beams = std::move(all);
-  const std::span<const gpu::Beam> records(buffers.beams);
-  if (fits) return device::write_bytes(device, buffers.on_device, std::as_bytes(records));
-  buffers.on_device = device::upload(device, records, "light/beams");
-  device::Commands commands(device);
-  for (LevelBuffers& level : levels) {
-    const std::uint64_t bytes = std::uint64_t{floats} * level.face_count * sizeof(float);
-    if (level.beam_q.size() != bytes) level.beam_q = {device, bytes, device::Place::device, "light/beams on faces"};
-    commands.fill(level.beam_q, 0);
-    commands.fill(level.q, 0);
+  buffers.beams.clear();  // none are known until all is done, as it may be given up half-way
+  const std::span<const gpu::Beam> records(all);
+  if (fits) {
+    device::write_bytes(device, buffers.on_device, std::as_bytes(records));
+  } else {
+    buffers.on_device = device::upload(device, records, "light/beams");
+    make_room(device, floats, levels);
   }
-  commands.submit_and_wait();
+  buffers.beams = std::move(all);
 }
 
 void write_irradiance(device::Device& device, std::span<const glm::vec3> q, std::uint32_t number, LevelBuffers& level) {

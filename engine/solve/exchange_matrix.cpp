@@ -42,16 +42,18 @@ void ExchangeMatrix::make_room(device::Device& device) {
   if (rows_.size() > 0) return;
   std::vector<glm::uvec2> rows;
   for (std::size_t f = 0; f < level_.faces.size(); ++f) rows.emplace_back(level_.seen[f], level_.seen[f + 1]);
-  rows_ = device::upload<glm::uvec2>(device, rows, "exchange/rows");
   entries_ = device::upload(device, level_.seen, "exchange/entries");
+  rows_ = device::upload<glm::uvec2>(device, rows, "exchange/rows");
 }
 
 void ExchangeMatrix::make_room_for_rays(device::Device& device) {
   if (cast_) return;
-  cast_ = true;
-  rows_ = device::upload<glm::uvec2>(device, wide_rows(level_), "exchange/rows");
-  entries_ = device::upload<std::uint32_t>(device, wide_entries(level_), "exchange/entries");
+  auto rows = device::upload<glm::uvec2>(device, wide_rows(level_), "exchange/rows");
+  auto entries = device::upload<std::uint32_t>(device, wide_entries(level_), "exchange/entries");
   tree_.emplace(device, level_, "exchange");
+  rows_ = std::move(rows);
+  entries_ = std::move(entries);
+  cast_ = true;
 }
 
 void ExchangeMatrix::moved() {

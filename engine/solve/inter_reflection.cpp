@@ -50,15 +50,16 @@ void InterReflection::put_back(device::Device& device, std::vector<LevelBuffers>
   }
 }
 
-void InterReflection::refresh(Workspace& work, std::span<const Level> shape, std::vector<LevelBuffers>& levels,
+bool InterReflection::refresh(Workspace& work, std::span<const Level> shape, std::vector<LevelBuffers>& levels,
                               std::uint32_t rows) {
-  if (!matrix_ || matrix_->record_refresh(work, levels[*level_], rows) == 0) return;
+  if (!matrix_ || matrix_->record_refresh(work, levels[*level_], rows) == 0) return false;
   work.recorder.submit();
   device::Device& device = work.recorder.device();
   const auto sky = sky_of_levels(shape, *level_, matrix_->sky(device));
   for (std::size_t i = 0; i < levels.size(); ++i) {
     device::write_bytes(device, levels[i].sky, std::as_bytes(std::span(sky[i])));
   }
+  return true;
 }
 
 void InterReflection::make_room(Workspace& work, const std::vector<LevelBuffers>& levels) {
@@ -78,14 +79,18 @@ void InterReflection::make_room(Workspace& work, const std::vector<LevelBuffers>
   states_on_host_ = {device, (max_bounces + 1) * sizeof(gpu::ExchangeState), device::Place::host,
                      "exchange/states, read back"};
   work.recorder.fill(state_, 0);
-  for (std::uint32_t i = 0; i <= *level_; ++i) {
-    irradiance_.push_back(room(levels[i].face_count * vec3_bytes, "exchange/irradiance from other parts"));
-    work.recorder.fill(irradiance_.back(), 0);
-    if (i == *level_) break;
+  finer_.clear();
+  for (std::uint32_t i = 0; i < *level_; ++i) {
     const Transfer& surface = graph_.levels()[i].surface;
     finer_.push_back({device::upload(device, surface.index, "exchange/surface_index"),
                       device::upload(device, surface.weight, "exchange/surface_weight"), surface.width});
   }
+  std::vector<device::Buffer> irradiance;
+  for (std::uint32_t i = 0; i <= *level_; ++i) {
+    irradiance.push_back(room(levels[i].face_count * vec3_bytes, "exchange/irradiance from other parts"));
+    work.recorder.fill(irradiance.back(), 0);
+  }
+  irradiance_ = std::move(irradiance);
 }
 
 void InterReflection::record_enter(Workspace& work, const LevelBuffers& level, const device::Buffer& irradiance,

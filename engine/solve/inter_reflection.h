@@ -42,8 +42,8 @@ class InterReflection {
   void put_back(device::Device& device, std::vector<LevelBuffers>& levels);
 
   // Brings up to `rows` rows that are behind the shape up to date, all with 0; then the view of the sky on every level.
-  // To be called once in a solve.
-  void refresh(Workspace& work, std::span<const Level> shape, std::vector<LevelBuffers>& levels, std::uint32_t rows);
+  // To be called once in a solve. Whether there were any.
+  bool refresh(Workspace& work, std::span<const Level> shape, std::vector<LevelBuffers>& levels, std::uint32_t rows);
 
   // How far the exchange is behind the shape, as ExchangeMatrix::age; 0 without one.
   std::uint32_t age() const { return matrix_ ? matrix_->age() : 0; }

@@ -105,8 +105,9 @@ void Simulation::make_room(const SolveOptions& options, bool gather) {
   if (gather) implementation_->gather_room();
 }
 
-SolveReport Simulation::solve(const SolveOptions& options, const std::function<void()>& check) {
-  SolveReport report = implementation_->solve(options, check);
+SolveReport Simulation::solve(const SolveOptions& options, const std::function<void()>& check,
+                              const std::function<void(bool)>& light) {
+  SolveReport report = implementation_->solve(options, check, light);
   if (!options.warm && report.correction) state_medium_error(options, report);
   return report;
 }

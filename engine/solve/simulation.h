@@ -117,8 +117,11 @@ class Simulation {
   // Solves for the present coefficients and light, all levels. Throws InputError before they are set, SolverError when
   // conjugate gradients break down or a value is not finite. `check` is called between two draws of points of a
   // correction at rest; what it throws ends the solve, and there is no solution. Later solves go on from what it did,
-  // unlike where the device's own check gives its work up.
-  SolveReport solve(const SolveOptions& options, const std::function<void()>& check = {});
+  // unlike where the device's own check gives its work up. `light` is called before light is looked at, with whether
+  // what faces see of each other and of the sky has changed, and may set it.
+  SolveReport solve(
+      const SolveOptions& options, const std::function<void()>& check = {},
+      const std::function<void(bool)>& light = [](bool) {});
 
   // Where to say how far q is off, after a solve with these options that was corrected and is not warm.
   LightRoom light_room(const SolveOptions& options);

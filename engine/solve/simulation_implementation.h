@@ -185,13 +185,14 @@ struct Simulation::Implementation {
     forget_shape();
   }
 
-  SolveReport solve(const SolveOptions& options, const std::function<void()>& check) {
+  using Check = std::function<void()>;
+  SolveReport solve(const SolveOptions& options, const Check& check, const std::function<void(bool)>& relight) {
     check_options(options);
     solved.reset();
     work.recorder.clear();
     const OperatorKey key = key_of(options);
+    relight(exchange.refresh(work, shape.levels(), levels, options.exchange_rows));
     make_room(key, options);
-    exchange.refresh(work, shape.levels(), levels, options.exchange_rows);
     const auto with = [&](SolverKind solver) { return run(key, options, solver); };
     SolveReport report = options.solver == SolverKind::automatic
                              ? quicker.solve(key, options, Multigrid::possible(operators, key), with,
@@ -234,8 +235,7 @@ struct Simulation::Implementation {
     }
   }
 
-  void correct(const OperatorKey& key, const SolveOptions& options, const std::function<void()>& check,
-               SolveReport& report) {
+  void correct(const OperatorKey& key, const SolveOptions& options, const Check& check, SolveReport& report) {
     const double eta = coefficients.eta();
     const auto boundary_with = [&](Model model) { return boundary_of(Method::fem, Source::buried, model, eta); };
     const Boundary boundary = boundary_with(Model::diffusion);

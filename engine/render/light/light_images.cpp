@@ -38,6 +38,17 @@ EnvironmentImage upload_environment(device::Device& device, Image&& picture) {
   return image;
 }
 
+// Brings picture `number` up to date: `known` is what it was made for, nothing while it is written, as that may be
+// given up half-way.
+template <typename Degrees>
+void renew_picture(device::Device& device, EnvironmentImage& image, std::uint32_t number, float& known, float wanted,
+                   const Degrees& degrees) {
+  if (known == wanted) return;
+  known = 0;
+  write_picture(device, image, number, degrees(wanted));
+  known = wanted;
+}
+
 }  // namespace
 
 template <typename T, typename Upload>
@@ -70,16 +81,16 @@ void LightImages::load(std::span<const Light> lights) {
 }
 
 void LightImages::set_eta(float eta) {
+  const auto entering = [](float index) { return irradiance_degrees(index, irradiance_degree); };
   for (auto& [file, loaded] : environments_) {
-    if (std::exchange(loaded.image.eta, eta) == eta) continue;
-    write_picture(device_, loaded.image, gpu::ENVIRONMENT_ENTERING, irradiance_degrees(eta, irradiance_degree));
+    renew_picture(device_, loaded.image, gpu::ENVIRONMENT_ENTERING, loaded.image.eta, eta, entering);
   }
 }
 
 void LightImages::set_roughness(float roughness, float placed) {
   const auto write = [&](EnvironmentImage& image, std::uint32_t number, float& known, float wanted) {
-    if (wanted == 0 || std::exchange(known, wanted) == wanted) return;
-    write_picture(device_, image, number, reflection_degrees(wanted, environment_degree));
+    const auto reflected = [](float of) { return reflection_degrees(of, environment_degree); };
+    if (wanted != 0) renew_picture(device_, image, number, known, wanted, reflected);
   };
   for (auto& [file, loaded] : environments_) {
     write(loaded.image, gpu::ENVIRONMENT_REFLECTED, loaded.image.roughness, roughness);

@@ -12,6 +12,7 @@
 #include "engine/render/engine.h"
 #include "tests/cpp/fixtures/checked_context.h"
 #include "tests/cpp/fixtures/checked_engine.h"
+#include "tests/cpp/fixtures/engine_work.h"
 #include "tests/cpp/fixtures/render_shapes.h"
 
 using namespace quadgraph;
@@ -175,4 +176,34 @@ TEST_CASE("shapes displace display and levels alike, and those of another body a
   shapes.levels[1][1].pop_back();
   displaced.shapes = std::make_shared<Shapes>(shapes);
   CHECK_THROWS_WITH_AS(engine.set_deformation(std::span(&displaced, 1)), doctest::Contains("another body"), InputError);
+}
+
+TEST_CASE("below a sky a body that is bent gets the light of its present shape, in motion when its last row is there") {
+  const WorkFolder folder;
+  Engine engine(folder.slabs(), test_device());
+  engine.set_material("marble");
+  const std::vector lights{parse_light("ambient:1"), parse_light("environment:" + folder.sky() + ":0:1")};
+  const auto light = [&](const SolveOptions& options) {
+    engine.solve(options);
+    return device::download<glm::vec3>(engine.device(), engine.simulation().level(0).q);
+  };
+  const auto light_anew = [&] {
+    engine.set_lights(lights);
+    return light({.inter_reflection = false});
+  };
+  engine.set_lights(lights);
+  light({.inter_reflection = false});
+  const std::vector<Deformer> bent{{.kind = DeformerKind::bend, .degrees = 120}};
+  engine.set_deformation(bent);
+  const auto at_once = light({.inter_reflection = false});
+  CHECK((at_once == light_anew()));
+  engine.set_deformation({});
+  light({.inter_reflection = false});
+  engine.set_deformation(bent);
+  SolveOptions few{.inter_reflection = false, .exchange_rows = 5};
+  const auto lagging = light(few);
+  CHECK((lagging != at_once));
+  std::vector<glm::vec3> last = lagging;
+  for (int frame = 0; frame < 100 && last != at_once; ++frame) last = light(few);
+  CHECK((last == at_once));
 }

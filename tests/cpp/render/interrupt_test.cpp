@@ -82,9 +82,9 @@ struct Answer {
 
 const RenderOptions small{.width = 12, .height = 9, .ground = true};
 
-Answer answer(Engine& engine, const SolveOptions& options) {
+Answer answer(Engine& engine, const SolveOptions& options, const RenderOptions& render = small) {
   const SolveReport report = engine.solve(options);
-  const Picture picture = engine.render(View{}, small);
+  const Picture picture = engine.render(View{}, render);
   Answer found{.scattered = picture.scattered, .specular = picture.specular, .alpha = picture.alpha};
   if (report.path) return found;
   found.exitance = engine.surface_field().exitance;
@@ -145,6 +145,36 @@ TEST_CASE("a solve or picture that is given up at any piece of its work leaves a
     }
     const bool gpu = !tried.engine.device().info().cpu;  // asks less often: not between the parts of a pass
     CHECK(given_up >= (gpu ? 2 : 3));
+  }
+}
+
+TEST_CASE("an engine whose light or first work is given up at any piece of it answers as a new one, below a sky, too") {
+  const WorkFolder folder;
+  const std::string file = folder.slabs();
+  const std::vector lights{parse_light("ambient:0.3"), parse_light("environment:" + folder.sky() + ":20:2")};
+  const SolveOptions options{.solver = SolverKind::dpcg};
+  const RenderOptions on_no_ground{.width = 12, .height = 9};
+  const auto look = [&](Engine& engine) { return answer(engine, options, on_no_ground); };
+  const auto prepare = [&](Engine& engine) {
+    engine.set_material("sigma_s_prime=2/1.5/1,sigma_a=0.1/.02/.01,eta=1.4");
+    engine.set_lights(lights);
+    bend(engine);
+  };
+  Impatient fresh(file), changed(file);
+  prepare(fresh.engine);
+  const Answer expected = look(fresh.engine);
+  for (std::uint64_t number = 1; number <= 100; number += 3) {
+    CAPTURE(number);
+    Impatient tried(file);
+    prepare(tried.engine);
+    CHECK(tried.gives_up([&] { look(tried.engine); }, number));
+    CHECK((look(tried.engine) == expected));
+    changed.engine.set_material("sigma_s_prime=1,sigma_a=0.2,eta=1.3");
+    changed.engine.set_lights({parse_light("point:4,2,1:20")});
+    look(changed.engine);
+    prepare(changed.engine);
+    CHECK(changed.gives_up([&] { look(changed.engine); }, number));
+    CHECK((look(changed.engine) == expected));
   }
 }
 
