@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -45,6 +46,15 @@ def around(middle: Any, distance: float, count: int, elevation: float, start: fl
     return poses
 
 
+@cache
+def middles(lens: Lens) -> np.ndarray:
+    """(h, w, 3) ways of the rays through the middles of the pixels, of length 1 along the axis."""
+    across, down = np.meshgrid(np.arange(lens.width) + 0.5, np.arange(lens.height) + 0.5)
+    slopes = lens.slopes(np.stack([across.ravel(), down.ravel()], axis=1)).reshape(lens.height, lens.width, 2)
+    return np.concatenate([slopes, np.ones((lens.height, lens.width, 1))], axis=2)
+
+
+@cache
 def bitmap(board: Board) -> np.ndarray:
     """(h, w) reflectance of the board, its upper left corner first, with white paper of a square around it."""
     edge = board.square
@@ -61,9 +71,7 @@ def photograph(board: Board, lens: Lens, pose: Pose, body: Body | None = None, s
     """(h, w, 3) radiance, the mean of samples x samples rays in each pixel."""
     import cv2
 
-    across, down = np.meshgrid(np.arange(lens.width) + 0.5, np.arange(lens.height) + 0.5)
-    slopes = lens.slopes(np.stack([across.ravel(), down.ravel()], axis=1)).reshape(lens.height, lens.width, 2)
-    ways = np.concatenate([slopes, np.ones((lens.height, lens.width, 1))], axis=2) @ pose.rotation
+    ways = middles(lens) @ pose.rotation
     reach = np.where(ways[..., 2] < -1e-3, -pose.eye[2] / np.minimum(ways[..., 2], -1e-3), 1e4)
     dots = (pose.eye[:2] + reach[..., None] * ways[..., :2] + board.square) * _DOTS
     dots[..., 1] = (board.size[1] + 2 * board.square) * _DOTS - dots[..., 1]

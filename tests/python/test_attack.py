@@ -1,4 +1,4 @@
-"""Hostile inputs by seed (tests/attack/): sixty in every run, five hundred in long ones, and the judge itself."""
+"""Hostile inputs by seed (tests/attack/): forty in every run, five hundred in long ones, and the judge itself."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from attack.case import CLASSES, GIGABYTE, Case, Place, Verdict
 from attack.families import FAMILIES
 
 SEED = 26
-COUNT, LONG = 60, 500
+COUNT, LONG = 40, 500
 PART = 20  # cases of one test, so that workers share them
 
 

@@ -125,7 +125,13 @@ def scene_file(folder: Path, body: Path, error: float, material: str, **more: ob
         (0.05, "skin1", (0, "diffusion", 2), "error 5%: kept, the bake measured 4% in this light with diffusion and 2"),
         (0.02, "skin1", (0, "sp3", 3), "error 2%: kept, the bake measured 1% in this light with sp3 and 3 cycles"),
         (0.005, "skin1", (0, "sp3", 0), "error 0.5%: the bake measured no less than 1% on this file"),
-        (0.0002, "wholemilk", (0, "diffusion", 0), "error 0.02%: the bake measured skin1, not wholemilk"),
+        pytest.param(
+            0.0002,
+            "wholemilk",
+            (0, "diffusion", 0),
+            "error 0.02%: the bake measured skin1, not wholemilk",
+            marks=pytest.mark.long,
+        ),
     ],
 )
 def test_every_way_to_solve_a_file_takes_what_its_bake_measured(baked, tmp_path, error, material, expected, words):

@@ -95,7 +95,14 @@ def test_a_preview_changes_over_to_its_body_and_keeps_what_the_user_did(open_win
     again.close()
 
 
-@pytest.mark.parametrize("said", [{"failed": "the surface is open"}, {"body": "nowhere.qgraph"}, {"told": "?"}])
+@pytest.mark.parametrize(
+    "said",
+    [
+        {"failed": "the surface is open"},
+        pytest.param({"body": "nowhere.qgraph"}, marks=pytest.mark.long),
+        pytest.param({"told": "?"}, marks=pytest.mark.long),
+    ],
+)
 def test_a_preview_stays_and_says_why_there_is_no_body(open_window, preview: Path, tmp_path: Path, said):
     """Whatever went wrong, the body itself or the news of it, the window goes on."""
     news = tmp_path / "news.json"
@@ -158,7 +165,7 @@ def test_a_mesh_is_seen_at_once_and_then_baked(open_window, places, tmp_path: Pa
     again.close()
 
 
-@pytest.mark.parametrize("options", [[], ["--method", "shortest-path"]])
+@pytest.mark.parametrize("options", [[], pytest.param(["--method", "shortest-path"], marks=pytest.mark.long)])
 def test_a_saved_scene_of_a_mesh_outlives_the_cache(open_window, places, tmp_path: Path, options):
     """Seen as a preview that is baked, and by shortest paths, of which nothing is kept."""
     cache, temporary = places

@@ -96,7 +96,9 @@ DEFECTS = {
 }
 
 
-@pytest.mark.parametrize("defect", DEFECTS)
+@pytest.mark.parametrize(
+    "defect", [pytest.param(name, marks=pytest.mark.long) if name == "sheets" else name for name in DEFECTS]
+)
 def test_what_cannot_be_repaired_is_refused_with_the_way_out_and_baked_with_it(tmp_path: Path, defect: str):
     surface = DEFECTS[defect]()
     mesh = write_obj(surface, tmp_path / "mesh.obj")

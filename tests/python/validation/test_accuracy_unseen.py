@@ -172,6 +172,7 @@ def test_a_case_is_judged_printed_recorded_and_drawn(judged):
     assert [found["sweeps"] for found in summary] == [0, 1]
 
 
+@pytest.mark.long
 def test_a_sky_comes_from_where_it_is(body, baked, tmp_path):
     path = tmp_path / "sky.json"
     asked = f"accuracy unseen --seed {SEED} --count 1 --lights sky --walks 400000 --sweeps 0 --sweeps 2"

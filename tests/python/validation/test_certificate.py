@@ -45,7 +45,9 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize(
+    "case", [pytest.param(name, marks=pytest.mark.long) if name == "two balls, sun" else name for name in CASES]
+)
 def test_its_powers_are_those_of_other_walks(tmp_path, case):
     coefficients, body, light = CASES[case]
     path = write_levels(tmp_path / "body.qgraph", [body(3), body(2)], rays=64)
