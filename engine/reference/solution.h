@@ -45,6 +45,7 @@ struct CorrectedSweep {
 // What the transport correction did (docs/physics.md, "Transport correction").
 struct CorrectionReport {
   std::vector<CorrectedSweep> sweeps;
+  ErrorEstimate changed;  // against the solve that they started from, by all of them, in motion by those before as well
   ErrorEstimate taken{.whole = 1, .unlit = 1, .dimmest = 1};  // of what the sweeps changed the share that counts: less
                                                               // than 1 where that is little against the noise
   double returns = 0;    // share of the scattered light that leaves which enters again, the largest of any channel

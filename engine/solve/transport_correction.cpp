@@ -41,30 +41,15 @@ constexpr double most_draws = 16, segments_per_tet = 400;
 constexpr float least_share = 0.15f;
 constexpr std::uint32_t frames_of_rest = 9;
 
+// Noise of a frame beyond which nothing of it is known to the next: its samples would find more of that noise than of
+// the body, and make it grow.
+constexpr double most_noise_known = 0.3;
+
 ErrorEstimate relative(const glm::vec3& square, const glm::vec3& size) {
   const auto root = [](float part, float whole) {
     return whole > 0 ? std::sqrt(std::max(0.0, double{part}) / double{whole}) : 0;
   };
   return {root(square.x, size.x), root(square.y, size.y), root(square.z, size.z)};
-}
-
-// Of what a sweep has changed, the share that all further ones would: the first leaves a smaller one than the others,
-// but of light that meets the body again it knows little more than the solve.
-constexpr double left_by_first = 0.13, left_by_next = 0.3;
-
-// Of the solver's error the same. Of the mesh's the share that is left, and what no two levels tell apart: the light
-// and the medium as faces and tets have them.
-constexpr double solver_left = left_by_first, mesh_left = 0.15, unseen = 0.004;
-
-// So many times the mesh's error more is left where it is large, because tets cannot hold what the sweeps find. Of the
-// whole surface, and of the dimmest third, whose levels differ by as much as it has, there is no sign of that.
-constexpr ErrorEstimate mesh_left_more{.whole = 0, .unlit = 1.2, .dimmest = 0};
-
-// The halves share what their points see of the body; so much more than they differ by is the noise.
-constexpr double noise_over_difference = 1.2;
-
-double share_left_by(const CorrectionReport& done) {
-  return done.goes_on || done.sweeps.size() > 1 ? left_by_next : left_by_first + done.returns;
 }
 
 // The error is that of means over patches, so many on the whole surface; about so many faces are around a vertex. What
@@ -96,16 +81,8 @@ ErrorEstimate change_of_all(const CorrectionReport& done) {
   return all;
 }
 
-// The share of a change that leaves the smallest error where the change is known but for so much noise. Nothing is
-// known of where the dimmest third begins: what is unlit takes the larger share of both.
-ErrorEstimate share_taken(const CorrectionReport& done) {
-  const auto share = [](double change, double noise) {
-    return noise > 0 ? change * change / (change * change + noise * noise) : 1;
-  };
-  ErrorEstimate taken = by_parts(share, change_of_all(done), done.sweeps.back().noise);
-  taken.unlit = taken.dimmest = std::max(taken.unlit, taken.dimmest);
-  return taken;
-}
+// Of the fluence, of which as much is taken as of the exitance of the whole surface.
+constexpr double least_taken = 1e-6;
 
 // Whether another sweep would change less than is wanted, or than the noise.
 bool last_of_all(const CorrectionReport& done, const ErrorEstimate& wanted) {
@@ -116,29 +93,6 @@ bool last_of_all(const CorrectionReport& done, const ErrorEstimate& wanted) {
 }
 
 }  // namespace
-
-void state_corrected_error(SolveReport& report, double unresolved) {
-  const CorrectedSweep& last = report.correction->sweeps.back();
-  const double share = share_left_by(*report.correction);
-  const auto of_model = [&](double change, double noise, double all, double taken) {
-    return noise_over_difference * std::hypot(share * change, taken * noise, (1 - taken) * all);
-  };
-  report.model_error =
-      by_parts(of_model, last.change, last.noise, change_of_all(*report.correction), report.correction->taken);
-  if (report.algebraic) {
-    report.algebraic = by_parts([](double part) { return solver_left * part; }, *report.algebraic);
-  }
-  report.error.reset();
-  if (!report.mesh_error) return;
-  const auto of_mesh = [&](double part, double noise, double more) {
-    const double left = std::min(1.0, std::hypot(mesh_left, more * part));
-    return noise > 0 ? std::hypot(left * part, unseen, unresolved) : 0;
-  };
-  report.mesh_error = by_parts(of_mesh, *report.mesh_error, last.noise, mesh_left_more);
-  const auto all = [](double a, double b, double c) { return std::sqrt(a * a + b * b + c * c); };
-  const ErrorEstimate solver = report.algebraic.value_or(ErrorEstimate{});
-  report.error = by_parts(all, *report.model_error, *report.mesh_error, solver);
-}
 
 double extinction_change(std::span<const gpu::Optical> before, std::span<const gpu::Optical> now) {
   if (before.size() != now.size()) return 1;
@@ -217,7 +171,7 @@ void TransportCorrection::solve(const CorrectionParts& parts, std::uint32_t half
   std::swap(op.x, change_[half]);
 }
 
-// Statistics with all noise, then with that of the solves alone.
+// Statistics with all noise, then with that of the solves alone and of all that differs from the present solve.
 void TransportCorrection::record_change(const CorrectionParts& parts, bool ahead) {
   Workspace& work = parts.transport.work;
   const LevelBuffers& level = parts.transport.level;
@@ -239,7 +193,7 @@ void TransportCorrection::record_change(const CorrectionParts& parts, bool ahead
                                 .k11 = static_cast<float>(parts.boundary.k11),
                                 .ahead = ahead ? 1u : 0u,
                                 .solves = 0};
-  for (; push.solves < 2; ++push.solves) {
+  for (; push.solves < 2; ++push.solves, push.ahead = 0) {
     work.recorder.dispatch(work.passes.of(shader::transport_change), push, level.surface_vertex_count,
                            "transport change", 3 * level.face_count * (sizeof(glm::uvec3) + 12 * vec3_bytes));
     push.change += sizeof(gpu::TransportChange);
@@ -300,6 +254,7 @@ CorrectedSweep TransportCorrection::sweep(const CorrectionParts& parts, const Sa
     draw(parts, sampling, static_cast<std::uint32_t>(std::ceil(std::min(all, most))) - draws_, shares);
   }
   solves_noise_ = relative(found[1].noise, found[1].size);
+  changed_ = relative(found[1].change, found[1].size);
   record_faces(parts);
   samples_.record_step(parts.transport, right_side_, change_, shares);
   samples_.record_state(parts.transport);
@@ -355,7 +310,14 @@ void TransportCorrection::sweep_at_rest(const CorrectionParts& parts, const Solv
     parts.transport.work.recorder.submit();
     report.returns = samples_.returns();
   } while (report.sweeps.size() < most && (options.sweeps > 0 || !last_of_all(report, enough)));
-  if (options.sweeps == 0) report.taken = share_taken(report);
+  report.changed = change_of_all(report);
+  if (options.sweeps == 0) take(parts, report);
+}
+
+void TransportCorrection::take(const CorrectionParts& parts, CorrectionReport& report) {
+  report.taken = share_taken(report);
+  const double share = std::max(report.taken.whole, least_taken);
+  if (share < 1) samples_.record_taken(parts.transport, parts.solved.op, share);
 }
 
 CorrectionReport TransportCorrection::run(const CorrectionParts& parts, const SolveOptions& options,
@@ -366,9 +328,11 @@ CorrectionReport TransportCorrection::run(const CorrectionParts& parts, const So
     const TransportShares shares = shares_in_motion(frames);
     report.sweeps.push_back(sweep_in_motion(parts, task, shares));
     report.goes_on = shares.ahead && shares.adds;
+    report.changed = changed_;
+    take(parts, report);
     parts.transport.work.recorder.submit();
     report.returns = samples_.returns();
-    frames_ = frames + 1;
+    frames_ = report.sweeps.back().noise.whole <= most_noise_known ? frames + 1 : 0;
   } else {
     start(parts, task, {});
     sweep_at_rest(parts, options, report);

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/solve/correction_error.h"
 #include "engine/solve/operators.h"
 #include "engine/solve/transport_samples.h"
 
@@ -26,12 +27,6 @@ struct CorrectionParts {
 
 // The operator of the correction.
 inline constexpr OperatorKey correction_key{Method::fem, Model::diffusion};
-
-// What the exitance is off by after all sweeps, by part: of the model, the noise and what another sweep would change;
-// of the mesh and of the solver what the sweeps leave, which sample where the solve is off, whatever the reason; and
-// all of it together. Calibrated on bodies that nobody tuned for (docs/accuracy.md). unresolved: what sweeps lose in
-// elements as deep as those at the surface, a relative error.
-void state_corrected_error(SolveReport& report, double unresolved);
 
 // Of the extinction sigma_s' + sigma_a at the same places, summed over these and the channels: what changes, as a share
 // of it before. 1 where there are other places.
@@ -90,10 +85,13 @@ class TransportCorrection {
   TransportShares shares_in_motion(std::uint32_t frames) const;
   CorrectedSweep sweep_in_motion(const CorrectionParts& parts, const WalkTask& task, const TransportShares& shares);
   void sweep_at_rest(const CorrectionParts& parts, const SolveOptions& options, CorrectionReport& report);
+  // Of what was changed, as much as stands out of the noise.
+  void take(const CorrectionParts& parts, CorrectionReport& report);
 
   TransportSamples samples_;
   std::uint32_t draws_ = 0;     // of points, in the load
   std::uint32_t frames_ = 0;    // that what is known is made of; 0: nothing is known
+  ErrorEstimate changed_;       // of the last sweep: all that differs from the solve
   ErrorEstimate solves_noise_;  // of the last sweep, without that of the gathered exitance
   bool moved_ = false, edited_ = false;
   // vec3 per vertex: b and x of the solve of each half, and b of the sweep before.

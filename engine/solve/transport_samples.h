@@ -94,6 +94,11 @@ class TransportSamples {
   void record_step(const TransportParts& parts, const std::array<device::Buffer, 2>& load,
                    const std::array<device::Buffer, 2>& change, const TransportShares& shares);
 
+  // Takes so much of what all steps have changed of the fluence of `op`, above 0.
+  void record_taken(const TransportParts& parts, const OperatorBuffers& op, double share) {
+    record_fluence(parts, op, 0, static_cast<float>(share));
+  }
+
   // What the points of either half are missing, after draws of which so much counts; `known` is the share of what they
   // found before.
   void record_books(const TransportParts& parts, float share, float known);
@@ -114,6 +119,7 @@ class TransportSamples {
   void make_room_apart(const TransportParts& parts);
   void record_walk(const TransportParts& parts, const WalkTask& task);
   void record_weights(const TransportParts& parts);
+  void record_fluence(const TransportParts& parts, const OperatorBuffers& op, float keep, float taken);
   void record_mass(const TransportParts& parts);
   void record_smooth(const TransportParts& parts, const device::Buffer* mass, const device::Buffer& from,
                      const device::Buffer& to);

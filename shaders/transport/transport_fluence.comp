@@ -7,7 +7,8 @@
 layout(local_size_x = WORKGROUP_SIZE) in;
 
 // Fluence at the vertices, of a solution, and of light that enters again and has not scattered since: for the transport
-// equation that is the fluence of what scatters elsewhere. To it comes what sweeps added to the solution before.
+// equation that is the fluence of what scatters elsewhere. To it comes what sweeps added to the solution before; after
+// sweeps, a share of what they changed.
 struct TransportFluencePush {
   Fields x;
   Vec3s to_phi;  // null: 1
@@ -19,7 +20,8 @@ struct TransportFluencePush {
   Uints first;  // fixed point: power scattered for the first time, of the scene's light
   Uints all;    // and with that of light that enters again; the same where there is none
   uint count;
-  float keep;  // 1: of `added` all, 0: nothing
+  float keep;   // 1: of `added` all, 0: nothing
+  float taken;  // that share, after sweeps; 0: before them
 };
 layout(push_constant, scalar) uniform Block { TransportFluencePush push; };
 
@@ -30,7 +32,12 @@ void main() {
   if (v >= push.count) return;
   vec3 again = max(power_at(push.all, v) - power_at(push.first, v), vec3(0)), mass = push.mass.at[v];
   vec3 unscattered = mix(again / mass, vec3(0), equal(mass, vec3(0)));
+  vec3 solved = element_or_one(push.to_phi, v) * push.x.at[v].phi + unscattered;
+  if (push.taken > 0.0) {
+    push.fluence.at[v] = mix(solved, push.fluence.at[v], push.taken);
+    return;
+  }
   vec3 added = kept(push.added.at[v]);
   push.added.at[v] = added;
-  push.fluence.at[v] = element_or_one(push.to_phi, v) * push.x.at[v].phi + unscattered + added;
+  push.fluence.at[v] = solved + added;
 }

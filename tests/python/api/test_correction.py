@@ -180,3 +180,21 @@ def test_a_solve_ends_where_ctrl_c_is_pressed_and_the_next_one_is_whole(engine):
         engine.surface()
     engine.solve()
     assert np.array_equal(engine.surface().exitance, before)
+
+
+def test_a_dense_body_is_as_even_as_without_correction_at_rest_and_in_motion(tmp_path):
+    """Samples find nothing but noise in elements of 60 mean free paths: none of it may be seen, or grow."""
+    path = write_levels(tmp_path / "ball.qgraph", [icosphere(3, 40), icosphere(2, 40)])
+    with quadgraph.Engine(path, device="cpu") as engine:
+        engine.material, engine.lights = "spectralon", ["ambient:1"]
+
+        def seen(**how: bool) -> tuple[np.ndarray, np.ndarray]:
+            engine.solve(**how)
+            picture = engine.render(width=40, height=40, samples=4)
+            return engine.surface().exitance, picture.scattered.reshape(-1, 3)[picture.alpha.ravel() == 1]
+
+        expected = seen(correction=False)
+        found = [seen(), *(seen(motion=True) for _ in range(6))]
+    for frame in found:
+        for values, even in zip(frame, expected, strict=True):
+            assert np.sqrt(((values - even) ** 2).mean()) < 0.05 * even.mean()

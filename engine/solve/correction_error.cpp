@@ -1,0 +1,70 @@
+#include "engine/solve/correction_error.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace quadgraph {
+namespace {
+
+// Of what a sweep has changed, the share that all further ones would: the first leaves a smaller one than the others,
+// but of light that meets the body again it knows little more than the solve.
+constexpr double left_by_first = 0.13, left_by_next = 0.3;
+
+// Of the solver's error the same. Of the mesh's the share that is left, and what no two levels tell apart: the light
+// and the medium as faces and tets have them.
+constexpr double solver_left = left_by_first, mesh_left = 0.15, unseen = 0.004;
+
+// So many times the mesh's error more is left where it is large, because tets cannot hold what the sweeps find. Of the
+// whole surface, and of the dimmest third, whose levels differ by as much as it has, there is no sign of that.
+constexpr ErrorEstimate mesh_left_more{.whole = 0, .unlit = 1.2, .dimmest = 0};
+
+// The halves share what their points see of the body; so much more than they differ by is the noise.
+constexpr double noise_over_difference = 1.2;
+
+// Of the square of the noise, what the product of two halves without any change can come to on a body with few
+// independent parts.
+constexpr double by_chance = 0.25;
+
+}  // namespace
+
+double share_left_by(const CorrectionReport& done) {
+  return done.goes_on || done.sweeps.size() > 1 ? left_by_next : left_by_first + done.returns;
+}
+
+ErrorEstimate share_taken(const CorrectionReport& done) {
+  const auto share = [](double change, double noise) {
+    const double all = noise * noise, known = std::max(0.0, change * change - by_chance * all);
+    return noise > 0 ? known / (known + all) : 1;
+  };
+  ErrorEstimate taken = by_parts(share, done.changed, done.sweeps.back().noise);
+  taken.unlit = taken.dimmest = std::max(taken.unlit, taken.dimmest);
+  return taken;
+}
+
+void state_corrected_error(SolveReport& report, double unresolved) {
+  const CorrectedSweep& last = report.correction->sweeps.back();
+  const double share = share_left_by(*report.correction);
+  const auto of_model = [&](double change, double noise, double all, double taken) {
+    return noise_over_difference * std::hypot(share * change, taken * noise, (1 - taken) * all);
+  };
+  report.model_error =
+      by_parts(of_model, last.change, last.noise, report.correction->changed, report.correction->taken);
+  const auto left_of = [](double left, double taken) { return 1 - taken * (1 - left); };
+  if (report.algebraic) {
+    const auto of_solver = [&](double part, double taken) { return left_of(solver_left, taken) * part; };
+    report.algebraic = by_parts(of_solver, *report.algebraic, report.correction->taken);
+  }
+  report.error.reset();
+  if (!report.mesh_error) return;
+  const auto of_mesh = [&](double part, double noise, double more, double taken) {
+    const double left = left_of(std::min(1.0, std::hypot(mesh_left, more * part)), taken);
+    return noise > 0 ? std::hypot(left * part, unseen, unresolved) : 0;
+  };
+  report.mesh_error =
+      by_parts(of_mesh, *report.mesh_error, last.noise, mesh_left_more, report.correction->taken);
+  const auto all = [](double a, double b, double c) { return std::sqrt(a * a + b * b + c * c); };
+  const ErrorEstimate solver = report.algebraic.value_or(ErrorEstimate{});
+  report.error = by_parts(all, *report.model_error, *report.mesh_error, solver);
+}
+
+}  // namespace quadgraph

@@ -1,0 +1,21 @@
+// What is said of a corrected solve.
+#pragma once
+
+#include "engine/reference/solution.h"
+
+namespace quadgraph {
+
+// Of what the last sweep has changed the share that all further ones would.
+double share_left_by(const CorrectionReport& done);
+
+// The share of a change that leaves the smallest error where the change is known but for so much noise. Nothing is
+// known of where the dimmest third begins: what is unlit takes the larger share of both.
+ErrorEstimate share_taken(const CorrectionReport& done);
+
+// What the exitance is off by after all sweeps, by part: of the model, the noise and what another sweep would change;
+// of the mesh and of the solver what the sweeps leave, which sample where the solve is off, whatever the reason; and
+// all of it together. Calibrated on bodies that nobody tuned for (docs/accuracy.md). unresolved: what sweeps lose in
+// elements as deep as those at the surface, a relative error.
+void state_corrected_error(SolveReport& report, double unresolved);
+
+}  // namespace quadgraph
