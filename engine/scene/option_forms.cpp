@@ -5,6 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/optics/material.h"
+#include "engine/scene/material_map.h"
 #include "engine/scene/option_members.h"
 
 namespace quadgraph {
@@ -21,6 +22,26 @@ std::string material_help() {
          "the colour that a thick body shows, below 1, and a length in mm; or NAME,key=value; "
          "pattern=P,period=D,sharpness=K mixes in a second set, second_sigma_a and so on; or a file .npz of "
          "coefficients on a grid (docs/scene.md)";
+}
+
+std::string map_help() {
+  std::string help = "how a volume (.npz) that was found elsewhere is carried into the body";
+  for (const auto& kind : Names<MapKind>::values) {
+    help += (kind.value == MapKind::box ? ". " : "; ") + std::string(kind.name) + ": " + std::string(kind.help);
+  }
+  return help +
+         ". Then, joined by commas: scale=S (box: of the body's box; shell: mm of the body for one of the source), "
+         "repeat=mirror or clamp, depth=MM of the shell, from=BODY.qgraph that the volume was found in (default: the "
+         "volume's own box). Default: it lies in the body as it is";
+}
+
+OptionValue map_of(const Scene& scene) {
+  const std::optional<VolumeName> name = volume_name(scene.material);
+  return name && name->map ? OptionValue(to_string(*name->map)) : OptionValue();
+}
+
+void set_map(Scene& scene, const OptionValue& value) {
+  scene.material = with_map(scene.material, text_in(value));
 }
 
 OptionValue lights_of(const Scene& scene) {

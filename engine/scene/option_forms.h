@@ -10,6 +10,11 @@ const std::string& text_in(const OptionValue& value);
 // What --material takes, with all names.
 std::string material_help();
 
+// How the volume that is the material is carried into the body.
+std::string map_help();
+OptionValue map_of(const Scene& scene);
+void set_map(Scene& scene, const OptionValue& value);
+
 // One text per light.
 OptionValue lights_of(const Scene& scene);
 void set_lights(Scene& scene, const OptionValue& value);

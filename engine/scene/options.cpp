@@ -15,6 +15,8 @@ void add_scene(OptionTable& table) {
       {.name = "material", .member = "/material", .own_form = true, .metavar = "M", .help = material_help()},
       [](const Scene& scene) { return scene.material; },
       [](Scene& scene, const OptionValue& value) { scene.material = text_in(value); });
+  table.text(OptionKind::text, {.name = "map", .own_form = true, .metavar = "KIND[,NAME=VALUE]", .help = map_help()},
+             map_of, set_map);
   table.text(OptionKind::texts,
              {.name = "light",
               .member = "/lights",

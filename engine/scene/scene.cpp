@@ -9,6 +9,7 @@
 #include "engine/scene/deformer_json.h"
 #include "engine/scene/edit_json.h"
 #include "engine/scene/light_json.h"
+#include "engine/scene/material_map.h"
 #include "engine/scene/options.h"
 #include "engine/scene/placement_json.h"
 #include "engine/scene/volume.h"
@@ -25,10 +26,29 @@ std::string numbers(const JsonField& field) {
   return text;
 }
 
-// A text as parse_material reads it, or an object of the same fields with "name".
+// The text of a volume, of an object with its file and how it is carried into the body.
+std::string volume_from(const JsonField& field) {
+  field.allow({"volume", "map", "scale", "repeat", "depth", "from"});
+  std::string text = field.at("volume").text();
+  if (field.value().size() > 1) text += ",map=" + field.at("map").text();
+  for (const char* name : {"scale", "depth"}) {
+    if (const auto number = field.find(name)) text += "," + std::string(name) + "=" + number_text(number->number());
+  }
+  for (const char* name : {"repeat", "from"}) {
+    if (const auto value = field.find(name)) text += "," + std::string(name) + "=" + value->text();
+  }
+  field.within([&] {
+    if (!volume_name(text)) throw InputError("volume: found '" + text + "', allowed is the name of a file .npz");
+  });
+  return text;
+}
+
+// A text as parse_material reads it, or an object of the same fields with "name"; or a volume.
 std::string material_from(const JsonField& field) {
   std::string text;
-  if (field.value().is_object()) {
+  if (field.value().is_object() && field.value().contains("volume")) {
+    text = volume_from(field);
+  } else if (field.value().is_object()) {
     if (const auto name = field.find("name")) text = name->text();
     for (const auto& [key, value] : field.value().items()) {
       if (key != "name") text += (text.empty() ? "" : ",") + key + "=" + numbers(field.at(key));

@@ -11,8 +11,8 @@
 #include "engine/base/text.h"
 #include "engine/file/front.h"
 #include "engine/render/light/default_lights.h"
+#include "engine/scene/material_map.h"
 #include "engine/scene/track_parts.h"
-#include "engine/scene/volume.h"
 
 namespace quadgraph {
 namespace {
@@ -43,13 +43,30 @@ std::vector<Json*> text_of(Json& object, const char* name) {
   return {&object[name]};
 }
 
-// Replaces the files that a scene names: its body, a volume, images of lights, edits and the surface, and shapes of
-// deformers.
+// The files in a material's text; one that is not understood stays as it is, for a complaint that says where it stands.
+template <typename Function>
+void rename_volume(Json& material, const Function& renamed) {
+  try {
+    std::optional<VolumeName> name = volume_name(material.get<std::string>());
+    if (!name) return;
+    name->file = renamed(name->file);
+    if (name->map && !name->map->from.empty()) name->map->from = renamed(name->map->from);
+    material = to_string(*name);
+  } catch (const InputError&) {
+    return;
+  }
+}
+
+// Replaces the files that a scene names: its body, a volume and the body that it is from, images of lights, edits and
+// the surface, and shapes of deformers.
 template <typename Function>
 void each_file(Json& document, const Function& renamed) {
   std::vector<Json*> files = text_of(document, "body");
-  for (Json* material : text_of(document, "material")) {
-    if (is_volume(material->get<std::string>())) files.push_back(material);
+  for (Json* material : text_of(document, "material")) rename_volume(*material, renamed);
+  if (document.contains("material")) {
+    for (const char* name : {"volume", "from"}) {
+      for (Json* file : text_of(document["material"], name)) files.push_back(file);
+    }
   }
   for (const auto& [list, name] :
        {std::pair{"lights", "file"}, {"edits", "image"}, {"edits", "mask"}, {"deformation", "shapes"}}) {

@@ -17,7 +17,7 @@ void Stage::show(const Scene& scene) {
     scene_.body = scene.body;
   }
   if (fresh || scene.material != scene_.material) {
-    set_material(*engine_, scene.material);
+    map_report_ = set_material(*engine_, scene.material);
     scene_.material = scene.material;
   }
   if (scene.edits != scene_.edits) {

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 
 #include "engine/render/in_use.h"
 #include "engine/scene/scene.h"
@@ -27,12 +28,16 @@ class Stage {
   Engine& engine();
   const Scene& scene() const { return scene_; }
 
+  // What is to be said of the map that carried the material into the body; empty without one.
+  const std::string& map_report() const { return map_report_; }
+
  private:
   InUse in_use_{"stage"};
   device::DeviceOptions options_;
   std::shared_ptr<device::Device> device_;  // null: by the options
   std::unique_ptr<Engine> engine_;
   Scene scene_;
+  std::string map_report_;
 };
 
 }  // namespace quadgraph

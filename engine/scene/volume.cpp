@@ -1,7 +1,6 @@
 #include "engine/scene/volume.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <glm/common.hpp>
 #include <map>
@@ -11,6 +10,7 @@
 #include "engine/optics/fresnel.h"
 #include "engine/optics/material.h"
 #include "engine/render/light/lights.h"
+#include "engine/scene/material_map.h"
 #include "engine/scene/npz.h"
 #include "shaders/material/optics.h"
 
@@ -169,15 +169,8 @@ std::optional<float> stated_of(Knowledge knowledge, const glm::dvec3& channels) 
   return sum / 3;
 }
 
-bool is_volume(std::string_view material) {
-  constexpr std::string_view suffix = ".npz";
-  const auto same = [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; };
-  return material.size() >= suffix.size() &&
-         std::equal(material.end() - suffix.size(), material.end(), suffix.begin(), same);
-}
-
 void check_material_text(std::string_view text) {
-  if (!is_volume(text)) parse_material(text);
+  if (!volume_name(text)) parse_material(text);
 }
 
 Volume read_volume(const std::filesystem::path& path) {

@@ -6,6 +6,7 @@
 #include <glm/vec3.hpp>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "engine/optics/certainty.h"
@@ -35,9 +36,6 @@ struct Volume {
 // The mean of the channels of one place; nothing where one is negative or no number.
 std::optional<float> stated_of(Knowledge knowledge, const glm::dvec3& channels);
 
-// Whether a material's text names such a file: it ends in .npz, in any case.
-bool is_volume(std::string_view material);
-
 // A material's text, or the name of such a file, as far as that can be told without reading it. Throws InputError as
 // parse_material.
 void check_material_text(std::string_view text);
@@ -51,7 +49,9 @@ Volume read_volume(const std::filesystem::path& path);
 // Throws InputError.
 void set_material(Engine& engine, const Volume& volume);
 
-// A material, or coefficients on all levels from such a file. Throws InputError as parse_material or read_volume.
-void set_material(Engine& engine, std::string_view text);
+// A material, or coefficients on all levels from such a file, carried into the body as its name says
+// (engine/scene/material_map.h); returns what is to be said of that, nothing where none is carried. Throws InputError
+// as parse_material, read_volume or mapped.
+std::string set_material(Engine& engine, std::string_view text);
 
 }  // namespace quadgraph

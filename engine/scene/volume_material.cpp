@@ -1,11 +1,24 @@
 #include "engine/reference/tet_points.h"
+#include "engine/scene/mapped_volume.h"
+#include "engine/scene/material_map.h"
 #include "engine/scene/volume.h"
 
 namespace quadgraph {
 
-void set_material(Engine& engine, std::string_view text) {
-  if (!is_volume(text)) return engine.set_material(text);
-  set_material(engine, read_volume(text));
+std::string set_material(Engine& engine, std::string_view text) {
+  const std::optional<VolumeName> name = volume_name(text);
+  if (!name) {
+    engine.set_material(text);
+    return {};
+  }
+  const Volume volume = read_volume(name->file);
+  if (!name->map) {
+    set_material(engine, volume);
+    return {};
+  }
+  const MappedVolume made = mapped(volume, *name->map, engine.graph());
+  set_material(engine, made.volume);
+  return report_text(*name->map, made.report);
 }
 
 void set_material(Engine& engine, const Volume& volume) {

@@ -198,8 +198,10 @@ std::string render_help() {
 void bind_scene_setters(py::class_<Engine>& bound) {
   bound
       .def(
-          "set_material", [](Engine& engine, std::string_view text) { set_material(engine, text); }, py::arg("text"),
-          "As --material reads it: names and numbers, or a .npz of coefficients (docs/scene.md). Raises InputError.")
+          "set_material", [](Engine& engine, std::string_view text) { return set_material(engine, text); },
+          py::arg("text"),
+          "As --material reads it (docs/scene.md); returns what is to be said of the map that carried a volume into "
+          "the body, '' without one. Raises InputError, FormatError.")
       .def("set_material", py::overload_cast<const gpu::Material&>(&Engine::set_material), py::arg("material"))
       .def("set_lights", &set_lights, py::arg("lights"),
            "Texts as --light takes them (engine/render/light/lights.h); replaces all lights.")
@@ -382,8 +384,7 @@ void bind_engine(py::module_& module) {
   bound
       .def(py::init(&make_engine), py::arg("path"), py::arg("device") = "", py::arg("validation") = false,
            "device: cpu, or part of a Vulkan device's name; empty: a GPU, else cpu. validation: of Vulkan devices, by "
-           "its layer. Raises FormatError, InputError, "
-           "DeviceError.")
+           "its layer. Raises FormatError, InputError, DeviceError.")
       .def_property_readonly("graph", &Engine::graph, py::return_value_policy::reference_internal)
       .def("update_irradiance", &Engine::update_irradiance, py::call_guard<py::gil_scoped_release>())
       .def("solve", &solve, py::kw_only(), py::arg("motion") = false, solve_help().c_str());

@@ -6,7 +6,6 @@
 #include "engine/base/error.h"
 #include "engine/scene/scene_file.h"
 #include "engine/scene/stage.h"
-#include "engine/scene/volume.h"
 #include "python/bindings/bindings.h"
 
 namespace py = pybind11;
@@ -106,24 +105,10 @@ void bind_stage(py::module_& module) {
       .def("view_rays", &view_rays, py::arg("pixels"),
            "Rays through (n, 2) places of the scene's picture, counted in pixels right and down from its corner: where "
            "they come from, mm, and their unit directions, (n, 3) each. Raises InputError.")
+      .def_property_readonly("map_report", &Stage::map_report,
+                             "What is to be said of the map that carried the material into the body; '' without one.")
       .def_property_readonly("scene", &Stage::scene)
       .def_property_readonly("engine", &Stage::engine, py::return_value_policy::reference_internal);
-}
-
-void bind_volume(py::module_& module) {
-  py::class_<Volume>(module, "Volume", "Coefficients at the middles of the cells of a grid (engine/scene/volume.h).")
-      .def(py::init(&read_volume), py::arg("path"), "Raises InputError naming file, field, found, allowed.")
-      .def_readonly("eta", &Volume::eta)
-      .def_property_readonly("cells", [](const Volume& volume) { return coefficient_arrays(volume.optical); })
-      .def(
-          "at",
-          [](const Volume& volume, const FloatArray& points, const std::array<double, 3>& centre) {
-            const auto count = static_cast<std::size_t>(points.ndim() == 2 ? points.shape(0) : 0);
-            return coefficient_arrays(
-                volume.at(vectors(points, count, "points"), glm::dvec3(centre[0], centre[1], centre[2])));
-          },
-          py::arg("points"), py::arg("centre"),
-          "sigma_s_prime and sigma_a, (n, 3) each, at (n, 3) mm of a body around `centre`.");
 }
 
 }  // namespace
@@ -132,7 +117,6 @@ void bind_scene(py::module_& module) {
   bind_scene_type(module);
   bind_scene_file(module);
   bind_stage(module);
-  bind_volume(module);
 }
 
 }  // namespace quadgraph::python

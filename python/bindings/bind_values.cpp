@@ -11,7 +11,6 @@
 #include "engine/scene/light_json.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/scene_file.h"
-#include "engine/scene/volume.h"
 #include "python/bindings/bindings.h"
 
 namespace py = pybind11;
@@ -57,51 +56,6 @@ Picture render_members(Engine& engine, const std::string& json, const std::strin
   return engine.render(view, options);
 }
 
-using Triple = std::array<double, 3>;
-
-// Of `count` cells, three numbers each.
-std::vector<float> stated_of_cells(Knowledge knowledge, const FloatArray& array, std::size_t count) {
-  const std::string name(knowledge_names[static_cast<std::size_t>(knowledge)]);
-  if (array.ndim() != 4 || static_cast<std::size_t>(array.size()) != 3 * count) {
-    throw InputError(name + ": an array of the shape of sigma_s_prime is wanted");
-  }
-  const auto* channels = reinterpret_cast<const glm::vec3*>(array.data());
-  std::vector<float> values;
-  for (std::size_t cell = 0; cell < count; ++cell) {
-    const std::optional<float> value = stated_of(knowledge, glm::dvec3(channels[cell]));
-    if (!value)
-      throw InputError(name + ": negative or no number in cell " + std::to_string(cell) + ", 0 or more allowed");
-    values.push_back(*value);
-  }
-  return values;
-}
-
-void set_volume(Engine& engine, const FloatArray& sigma_s_prime, const FloatArray& sigma_a, const Triple& spacing,
-                const std::optional<Triple>& origin, float eta, const std::map<std::string, FloatArray>& certainty) {
-  if (sigma_s_prime.ndim() != 4 || sigma_s_prime.shape(3) != 3) {
-    throw InputError("sigma_s_prime: an array (nz, ny, nx, 3) is wanted");
-  }
-  const auto side = [&](int axis) { return static_cast<std::size_t>(sigma_s_prime.shape(axis)); };
-  const std::size_t count = side(0) * side(1) * side(2);
-  if (sigma_a.ndim() != 4 || static_cast<std::size_t>(sigma_a.size()) != 3 * count) {
-    throw InputError("sigma_a: an array of the shape of sigma_s_prime is wanted");
-  }
-  Volume volume;
-  volume.cells = {side(2), side(1), side(0)};
-  volume.spacing = {spacing[0], spacing[1], spacing[2]};
-  volume.eta = eta;
-  if (origin) volume.origin = glm::dvec3((*origin)[0], (*origin)[1], (*origin)[2]);
-  const auto* scattering = reinterpret_cast<const glm::vec3*>(sigma_s_prime.data());
-  const auto* absorption = reinterpret_cast<const glm::vec3*>(sigma_a.data());
-  for (std::size_t cell = 0; cell < count; ++cell) volume.optical.push_back({scattering[cell], absorption[cell]});
-  for (std::size_t i = 0; i < knowledge_names.size(); ++i) {
-    const auto found = certainty.find(std::string(knowledge_names[i]));
-    if (found == certainty.end()) continue;
-    volume.certainty.stated[i] = stated_of_cells(static_cast<Knowledge>(i), found->second, count);
-  }
-  set_material(engine, volume);
-}
-
 void bind_pictures(py::module_& module) {
   module.def("render", &render_members, py::arg("engine"), py::arg("json"), py::arg("view") = "",
              "As Engine.render, with the members `camera` and `picture` of a scene; view: a text in place of azimuth, "
@@ -123,11 +77,6 @@ void bind_values(py::module_& module) {
       py::arg("json"), "The text of a light, from its members. Raises InputError.");
   module.def("material_json", &material_json, py::arg("text"),
              "A material's members, in the shortest numbers, from the text that --material takes. Raises InputError.");
-  module.def("set_volume", &set_volume, py::arg("engine"), py::arg("sigma_s_prime"), py::arg("sigma_a"),
-             py::arg("spacing"), py::arg("origin"), py::arg("eta"), py::arg("certainty") = py::dict(),
-             "As Engine.set_material of a .npz (docs/scene.md): (nz, ny, nx, 3) each, 1/mm; spacing and origin (3,), "
-             "mm; certainty: what that file may say of it, by name, (nz, ny, nx, 3) each. Raises InputError.");
-  module.attr("knowledge_names") = std::vector<std::string>(knowledge_names.begin(), knowledge_names.end());
   module.def(
       "set_edits", [](Engine& engine, const std::string& json) { engine.set_edits(members(json).edits); },
       py::arg("engine"), py::arg("json"), "The member `edits` of a scene. Raises InputError.");

@@ -32,6 +32,7 @@ void bind_deformation(pybind11::module_& module);
 void bind_options(pybind11::module_& module);
 void bind_fluence(pybind11::module_& module);
 void bind_values(pybind11::module_& module);
+void bind_volume(pybind11::module_& module);
 void bind_derivative(pybind11::module_& module);
 void bind_devices(pybind11::module_& module);
 

@@ -243,5 +243,6 @@ PYBIND11_MODULE(_core, module) {
   quadgraph::python::bind_derivative(module);
   quadgraph::python::bind_scene(module);
   quadgraph::python::bind_values(module);
+  quadgraph::python::bind_volume(module);
   quadgraph::python::bind_devices(module);
 }

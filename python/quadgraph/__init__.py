@@ -53,6 +53,7 @@ if TYPE_CHECKING:
     )
     from quadgraph.api.stage import Stage
     from quadgraph.api.tensors import OutgoingTensors, outgoing_tensors
+    from quadgraph.api.volume_map import MapReport, VolumeMap
     from quadgraph.baking.pipeline import BakeOptions, BakeReport, bake
     from quadgraph.base.errors import (
         DeviceError,
@@ -90,6 +91,7 @@ __all__ = [
     "Lattice",
     "LevelReport",
     "Light",
+    "MapReport",
     "Material",
     "MotionOptions",
     "Outgoing",
@@ -117,6 +119,7 @@ __all__ = [
     "Transform",
     "Twist",
     "Views",
+    "VolumeMap",
     "VolumeMaterial",
     "__version__",
     "bake",
@@ -141,6 +144,7 @@ _PLACES = {
     "PathReport Solution",
     "quadgraph.api.stage": "Stage",
     "quadgraph.api.tensors": "OutgoingTensors outgoing_tensors",
+    "quadgraph.api.volume_map": "MapReport VolumeMap",
     "quadgraph.baking.pipeline": "BakeOptions BakeReport bake",
     "quadgraph.base.errors": "FormatError InputError QuadGraphError SolverError ToolError DeviceError",
 }

@@ -37,6 +37,7 @@ POWER, LENGTH = (constant("render/light/lights.h", name) for name in ("largest_p
 COEFFICIENT = constant("../shaders/material/optics.h", "COEFFICIENT_MAX")
 IRRADIANCE = constant("solve/beams.cpp", "irradiance_range{.low = 0, .high")
 SMALL, LARGE = map(brief, units.SIZES_MM)
+MAP_CELLS = constant("scene/source_domain.cpp", "most_cells")
 FRAMES = constant("scene/scene_file.h", "most_frames")
 ALLOWED = {
     "power, irradiance or radiance of a light, texels of images": f"0 to {brief(POWER)}",
@@ -50,6 +51,7 @@ ALLOWED = {
     "values that keys of tracks change": f"{brief(constant('scene/scene_file.h', 'most_key_values'))}: of each part",
     "spacing and origin of a volume": f"at most {brief(LENGTH)} mm, as places of lights",
     "cells that `VolumeMaterial.from_function` samples": f"at most {coefficients.MOST_CELLS:,}",
+    "cells of a volume that is carried onto another shape": f"at most {MAP_CELLS:,.0f}",
     "`--time-limit`, `--memory-limit`": f"at most {brief(child_process.MOST_TIME_S)} s, "
     f"{brief(child_process.MOST_MEMORY_BYTES / 1e9)} GB",
     "number in the name of a frame": "one, `%0Nd`, N at most 9",

@@ -17,6 +17,7 @@ from quadgraph import core
 from quadgraph.api.coefficients import Box, Coefficients, grid_of
 from quadgraph.api.reprs import members_text, text, with_unit
 from quadgraph.api.values import RGB, Floats, Vector, plain
+from quadgraph.api.volume_map import MapReport, VolumeMap
 from quadgraph.base.atomic_file import replacing
 from quadgraph.base.certainty import CERTAINTY
 from quadgraph.base.errors import InputError
@@ -152,6 +153,27 @@ class VolumeMaterial:
         low = tuple(float(each) for each in np.asarray(box, float)[0])
         return cls(scattering, absorption, spacing, low, eta)
 
+    @classmethod
+    def load(cls, path: str | Path) -> VolumeMaterial:
+        """Read the .npz that `save` and `quadgraph acquire` write. Raises InputError naming file, field and allowed."""
+        return cls(**core.Volume(Path(path)).members)
+
+    def mapped(self, body: str | Path, how: VolumeMap | str) -> tuple[VolumeMaterial, MapReport]:
+        """Carry it into another body, and say how well that went.
+
+        body: a baked .qgraph; how: a `VolumeMap`, or its text as --map takes it. Raises InputError where the map does
+        not fit, FormatError.
+        """
+        text = how.text if isinstance(how, VolumeMap) else how
+        made, report = self._compiled().mapped(core.load(Path(body)), text)
+        return VolumeMaterial(**made.members), MapReport(**report)
+
+    def _compiled(self) -> core.Volume:
+        spacing = np.broadcast_to(np.asarray(self.spacing, float), 3).tolist()
+        origin = None if self.origin is None else np.asarray(self.origin, float).tolist()
+        certainty = {name: self._cells(name) for name in CERTAINTY if getattr(self, name) is not None}
+        return core.Volume(self._cells("sigma_s_prime"), self._cells("sigma_a"), spacing, origin, self.eta, certainty)
+
     def _cells(self, name: str) -> Floats:
         """One of the coefficients as (nz, ny, nx, 3). Raises InputError."""
         array = np.asarray(getattr(self, name), np.float32)
@@ -170,11 +192,7 @@ class VolumeMaterial:
 
     def set_on(self, engine: core.Engine) -> None:
         """Give it to the compiled engine. Raises InputError."""
-        spacing = np.broadcast_to(np.asarray(self.spacing, float), 3).tolist()
-        origin = None if self.origin is None else np.asarray(self.origin, float).tolist()
-        certainty = {name: self._cells(name) for name in CERTAINTY if getattr(self, name) is not None}
-        coefficients = self._cells("sigma_s_prime"), self._cells("sigma_a")
-        core.set_volume(engine, *coefficients, spacing, origin, self.eta, certainty)
+        core.set_volume(engine, self._compiled())
 
 
 def material_names() -> tuple[str, ...]:

@@ -22,8 +22,12 @@ _AS_MUCH = math.e  # by which a coefficient has changed, where it does not by so
 
 
 def opened(material: str) -> str | core.Volume:
-    """Read the .npz of a volume, which both functions below take as well as its name. Raises InputError."""
-    return core.Volume(Path(material)) if material.lower().endswith(".npz") else material
+    """Read the .npz of a volume, which both functions below take as well as its name. Raises InputError.
+
+    A map behind the name, which wants a baked body, is left out: the coefficients are the same elsewhere.
+    """
+    file = core.volume_name(material)
+    return material if file is None else core.Volume(Path(file))
 
 
 def decay_rates(material: str | core.Volume) -> tuple[float, ...]:

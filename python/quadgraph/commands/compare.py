@@ -106,7 +106,7 @@ def read(path: Path, args: argparse.Namespace) -> Side:
     if not (args.view or args.eye):
         front = engine.graph.front if args.up == "y" else 0
         args.view = f"{front:.9g},10"  # the second is seen from where the first is
-    engine.set_material(args.material)
+    scene_options.set_material(engine, args)
     engine.set_lights(scene_options.lights(engine, args))
     picture, report = scene_options.picture(engine, args)
     return Side(path.name, radiance(picture), True, [report])

@@ -41,7 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="a mesh or a baked .qgraph that swatches show (default: a ball with seven ribs, of 20 mm)",
     )
     parser.add_argument("--json", action="store_true", help="print the materials as JSON on standard output")
-    scene_options.add_run_arguments(parser, scene_options.RENDER_GROUPS, without=("material",))
+    scene_options.add_run_arguments(parser, scene_options.RENDER_GROUPS, without=("material", "map"))
     parser.set_defaults(size=f"{_SIDE}x{_SIDE}")
 
 

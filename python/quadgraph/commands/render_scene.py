@@ -109,7 +109,7 @@ def named_files(path: Path) -> list[Path]:
 def render(stage, file, frames: Iterable[float], outputs: list[Path]) -> list[dict]:
     """Render frames and write each to all outputs; one report per frame."""
     shown = picture_output.Shown(stage.srgb, stage.write_png, stage.write_exr, lambda: stage.engine.metadata)
-    reports = []
+    reports: list[dict] = []
     with (
         frame_output.Frames(outputs, file.at(0).size, file.frames_per_second) as written,
         progress_bar() as progress,
@@ -117,6 +117,8 @@ def render(stage, file, frames: Iterable[float], outputs: list[Path]) -> list[di
         for frame in progress.track(list(frames), description="frames"):
             start = time.perf_counter()
             stage.show(file.at(frame))
+            if not reports:
+                scene_options.tell_map(stage.map_report)
             report = stage.solve()
             picture = stage.render()
             scene_options.check_validation(stage.engine)

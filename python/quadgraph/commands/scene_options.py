@@ -9,6 +9,8 @@ from collections.abc import Callable, Collection, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from rich.console import Console
+
 from quadgraph.base.arguments import add_device_arguments, add_strict_argument
 from quadgraph.base.errors import InputError
 from quadgraph.commands import own_mesh
@@ -123,9 +125,25 @@ def numbers_of(name: str, text: str, counts: Collection[int]) -> list[float]:
 def make_engine(args: argparse.Namespace) -> Engine:
     """Load `args.file` and set material and lights. Raises FormatError, InputError, DeviceError."""
     engine = load_engine(args.file, args)
-    engine.set_material(args.material)
+    set_material(engine, args)
     engine.set_lights(lights(engine, args))
     return engine
+
+
+def set_material(engine: Engine, args: argparse.Namespace) -> None:
+    """Set the material that the arguments say, and tell of the map that carried it there. Raises InputError."""
+    tell_map(engine.set_material(material(args)))
+
+
+def material(args: argparse.Namespace) -> str:
+    """The material's text, with the map that goes with it. Raises InputError."""
+    return load_core().with_map(args.material, args.map) if args.map is not None else args.material
+
+
+def tell_map(report: str) -> None:
+    """Say on standard error what a map did, if there was one."""
+    if report:
+        Console(stderr=True, highlight=False, soft_wrap=True).print(report, markup=False)
 
 
 def load_engine(file: Path, args: argparse.Namespace) -> Engine:
@@ -146,7 +164,8 @@ def lights(engine: Engine, args: argparse.Namespace) -> list[str]:
 def inputs(args: argparse.Namespace) -> list[Path | str | None]:
     """The files, and the texts that may name some, that a run reads."""
     texts = [getattr(args, name, None) for name in ("file", "material")]
-    return [*texts, *(args.light or [])]
+    named = load_core().volume_name(texts[1]) if texts[1] else None
+    return [*texts, named, *(args.light or [])]
 
 
 def solve(engine: Engine, args: argparse.Namespace) -> dict:

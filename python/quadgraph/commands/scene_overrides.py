@@ -19,6 +19,7 @@ from quadgraph.core import load_core
 
 _ANGLES = ("azimuth", "elevation", "distance")
 _PLACES = ("eye", "look_at")
+_MAP = "/map"
 _OF_MESHES = ("unit", "height", "longest", "wrap")
 
 
@@ -31,6 +32,8 @@ def apply(file: Any, path: Path, args: argparse.Namespace) -> None:
     if not wanted:
         return
     document = json_text.loads(path.read_bytes())
+    if _MAP in wanted:
+        wanted |= _mapped(wanted.get("/material", document.get("material")), wanted.pop(_MAP))
     kept = [track for track in document.get("tracks", []) if not _replaced(track["path"], wanted)]
     if len(kept) < len(document.get("tracks", [])):
         file.set("/tracks", json.dumps(kept))
@@ -43,7 +46,10 @@ def apply(file: Any, path: Path, args: argparse.Namespace) -> None:
 
 
 def changes(args: argparse.Namespace) -> dict[str, Any]:
-    """JSON values that options say by their pointers into a scene; None takes a member away. Raises InputError."""
+    """JSON values that options say by their pointers into a scene; None takes a member away. Raises InputError.
+
+    A map stands at a pointer of its own: what it comes to depends on the material.
+    """
     found: dict[str, Any] = {}
     for option in scene_options.options(scene_options.RENDER_GROUPS):
         name = scene_options.destination(option)
@@ -56,7 +62,30 @@ def changes(args: argparse.Namespace) -> dict[str, Any]:
 
 def _material(text: str) -> dict[str, Any]:
     """A file of a volume is looked for in the working directory, not beside the scene."""
-    return {"/material": str(Path(text).absolute()) if text.lower().endswith(".npz") else text}
+    file = load_core().volume_name(text)
+    if file is None:
+        return {"/material": text}
+    absolute, how = str(Path(file).absolute()), text[len(file) :].removeprefix(",map=")
+    return {"/material": load_core().with_map(absolute, _from_here(how)) if how else absolute}
+
+
+def _map(text: str) -> dict[str, Any]:
+    return {_MAP: text}
+
+
+def _mapped(material: Any, how: str) -> dict[str, Any]:
+    """The material of a scene, or the one that was typed, carried into the body in another way."""
+    if isinstance(material, dict) and "volume" in material:
+        material = material["volume"]
+    if not isinstance(material, str):
+        raise InputError("--map: found with a material that is no volume, allowed is one of a file .npz; leave it out")
+    return {"/material": load_core().with_map(material, _from_here(how))}
+
+
+def _from_here(how: str) -> str:
+    """A map whose `from`, if there is one, is looked for in the working directory."""
+    parts = how.split(",")
+    return ",".join(f"from={Path(p[5:]).absolute()}" if p.startswith("from=") else p for p in parts)
 
 
 def _lights(texts: list[str]) -> dict[str, Any]:
@@ -95,6 +124,7 @@ def _background(text: str) -> dict[str, Any]:
 # Options that a scene file says in another form: from what was typed to JSON values by their pointers.
 OWN_FORMS: dict[str, Callable[[Any], dict[str, Any]]] = {
     "material": _material,
+    "map": _map,
     "light": _lights,
     "view": _view,
     "eye": _place("eye"),

@@ -38,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="OUT", help="the sheet, .png or .jpg")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write a report of each picture here")
-    scene_options.add_run_arguments(parser, scene_options.RENDER_GROUPS, without=("material",))
+    scene_options.add_run_arguments(parser, scene_options.RENDER_GROUPS, without=("material", "map"))
     parser.set_defaults(size=f"{_SIDE}x{_SIDE}")
 
 
@@ -52,7 +52,7 @@ def run(args: argparse.Namespace) -> int:
         if render_scene.is_scene(body):
             raise InputError(f"{body}: a scene names its own material; meshes and baked .qgraph files are wanted")
     for text in materials:
-        if not text.lower().endswith(".npz"):
+        if load_core().volume_name(text) is None:
             load_core().material_json(text)
     tiles, reports = render(args, materials)
     columns = contact_sheet.columns_of(len(tiles)) if len(args.bodies) == 1 else len(materials)

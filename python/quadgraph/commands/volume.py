@@ -1,8 +1,7 @@
-"""`quadgraph volume`: an OpenVDB file as a material's .npz, or such an .npz as an OpenVDB file.
+"""`quadgraph volume`: an OpenVDB file as a material's .npz, or such an .npz as an OpenVDB file, or carried into a body.
 
 Deviations and resolution lengths, as `quadgraph acquire` leaves them, are grids named like these with `_deviation` or
-`_resolution` behind.
-Its Python module must be there: apt install python3-openvdb.
+`_resolution` behind. For .vdb its Python module must be there: apt install python3-openvdb.
 """
 
 from __future__ import annotations
@@ -21,7 +20,8 @@ if TYPE_CHECKING:
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Register the subcommand."""
-    parser = subparsers.add_parser("volume", help="coefficients from an OpenVDB file", description=__doc__)
+    help_line = "coefficients from OpenVDB, or onto another shape"
+    parser = subparsers.add_parser("volume", help=help_line, description=__doc__)
     parser.add_argument("file", metavar="FILE", type=Path, help="a .vdb, or an .npz as --material takes it")
     for option, grid in (("--sigma-s-prime", "sigma_s_prime"), ("--sigma-a", "sigma_a")):
         parser.add_argument(
@@ -35,6 +35,13 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--unit", choices=tuple(UNITS_MM), default="mm", help="unit of lengths in the .vdb (default: %(default)s)"
     )
     parser.add_argument("--eta", type=_eta, help=f"refractive index (default: that in the file, or {DEFAULT_ETA})")
+    group = parser.add_argument_group("from .npz to .npz: carried into another body")
+    group.add_argument(
+        "--map",
+        metavar="KIND[,NAME=VALUE]",
+        help="shell, box or volume, and what goes with it, as `render` takes it (docs/acquisition.md)",
+    )
+    group.add_argument("--body", metavar="BODY", type=Path, help="the baked .qgraph that it is carried into")
     parser.add_argument("-o", "--output", metavar="FILE", type=Path, required=True, help="the .npz, or .vdb, to write")
 
 
@@ -43,12 +50,17 @@ def run(args: argparse.Namespace) -> int:
     from quadgraph.file import openvdb
 
     suffixes = args.file.suffix.lower(), args.output.suffix.lower()
+    if args.map is not None or args.body is not None:
+        return _carry(args, suffixes)
     if suffixes == (".npz", ".vdb"):
         grids = openvdb.write(args.file, args.output)
         print(f"{args.output}: grids {', '.join(grids[:-1])} and {grids[-1]} in mm")
         return 0
     if suffixes != (".vdb", ".npz"):
-        raise InputError(f"from '{args.file}' to '{args.output}': from .vdb to .npz, or back, is wanted")
+        raise InputError(
+            f"from '{args.file}' to '{args.output}': from .vdb to .npz, or back, is wanted; from .npz to .npz with "
+            "--map and --body"
+        )
     volume = openvdb.read(args.file, args.sigma_s_prime, args.sigma_a, unit_mm=UNITS_MM[args.unit], eta=args.eta)
     volume.write(args.output)
     cells, spacing = volume.sigma_s_prime.shape[2::-1], volume.spacing
@@ -58,6 +70,23 @@ def run(args: argparse.Namespace) -> int:
         f"sigma_s_prime up to {volume.sigma_s_prime.max():.4g}, sigma_a up to {volume.sigma_a.max():.4g} 1/mm, "
         f"eta {volume.eta:g}" + "".join(f", with {name}" for name in spread)
     )
+    return 0
+
+
+def _carry(args: argparse.Namespace, suffixes: tuple[str, str]) -> int:
+    """Write what a volume is in another body; 0 on success."""
+    from quadgraph.api.materials import VolumeMaterial
+    from quadgraph.base import outputs
+
+    if args.map is None or args.body is None:
+        raise InputError("--map and --body: one found without the other, both are wanted")
+    if suffixes != (".npz", ".npz"):
+        raise InputError(f"from '{args.file}' to '{args.output}': with --map, from .npz to .npz is wanted")
+    outputs.check_outputs([args.output], [args.file, args.body])
+    made, report = VolumeMaterial.load(args.file).mapped(args.body, args.map)
+    made.save(args.output)
+    print(f"{args.output}: {made!r}")
+    print(report.text)
     return 0
 
 

@@ -64,8 +64,11 @@ def of_scene(path: Path, scene: core.Scene) -> KnownMaterial:
     """
     if json.loads(scene.json()).get("edits"):
         raise InputError(f"{path}: /edits: found, {_ALLOWED}; leave the edits out")
-    if scene.material.lower().endswith(".npz"):
-        return _volume(Path(scene.material), Path(scene.body))
+    file = core.volume_name(scene.material)
+    if file is not None and file != scene.material:
+        return _mapped(Path(file), scene.material[len(file) :].removeprefix(",map="), Path(scene.body))
+    if file is not None:
+        return _volume(Path(file), Path(scene.body))
     members = json.loads(core.material_json(scene.material))
     if members["pattern"] == "layers":
         raise InputError(f"{path}: /material: pattern 'layers' found, {_ALLOWED}; make it a volume")
@@ -100,6 +103,15 @@ def _volume(file: Path, body: Path) -> KnownMaterial:
         last = np.array(scattering.shape[2::-1]) - 1
         first = (vertices.min(axis=0) + vertices.max(axis=0) - spacing * last) / 2
     return KnownMaterial(scattering, absorption, eta, first, spacing, file)
+
+
+def _mapped(file: Path, how: str, body: Path) -> KnownMaterial:
+    """A volume as a map carries it into a body. Raises InputError, FormatError."""
+    made, _ = core.Volume(file).mapped(core.load(body), how)
+    members = made.members
+    scattering, absorption = (np.asarray(members[name], np.float64) for name in ("sigma_s_prime", "sigma_a"))
+    first, spacing = (np.array(each, np.float64) for each in (members["origin"] or (0, 0, 0), members["spacing"]))
+    return KnownMaterial(scattering, absorption, float(made.eta), first, spacing, text=f"{file},map={how}")
 
 
 def _in_channels(values: np.ndarray) -> np.ndarray:
