@@ -23,7 +23,7 @@ using Places = std::vector<glm::dvec3>;
 
 // Where the vertices of the body lie once its box is the source's.
 Places fitted(const SourceDomain& source, const BodySurface& body) {
-  const glm::dvec3 fit = source.size() / (body.high() - body.low());
+  const glm::dvec3 fit = source.fit(body);
   Places places;
   for (const glm::vec3& vertex : body.level().vertices) {
     places.push_back(source.middle() + (glm::dvec3(vertex) - body.middle()) * fit);
@@ -206,7 +206,7 @@ MappedVolume harmonically_mapped(const SourceDomain& source, const BodySurface& 
   MappedVolume made;
   measure(level, places, source.axes(), made.report);
   const TetMap tets(body, places);
-  const glm::dvec3 fit = (body.high() - body.low()) / source.size();
+  const glm::dvec3 fit = 1.0 / source.fit(body);
   const CellGrid grid =
       grid_around(body.low(), body.high(), body.middle() + fit * (source.cells().low() - source.middle()),
                   fit * source.cells().grid().spacing, made.report.coarser);

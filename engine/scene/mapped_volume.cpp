@@ -35,8 +35,8 @@ MappedVolume box_mapped(const SourceDomain& source, const MaterialMap& map, cons
   StretchCount count(std::max(source.axes(), 1));
   glm::dmat3 back(0);
   for (int axis = 0; axis < 3; ++axis) {
-    if (!cells.varies_along(axis) || !(source.size()[axis] > 0)) continue;
-    longer[axis] = double{map.scale} * (body.high()[axis] - body.low()[axis]) / source.size()[axis];
+    if (!cells.varies_along(axis)) continue;
+    longer[axis] = double{map.scale} / source.fit(body)[axis];
     product *= longer[axis];
     back[axis][axis] = 1 / longer[axis];
   }

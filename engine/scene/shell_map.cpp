@@ -110,8 +110,8 @@ class ShellMap {
 
   Carried from_body(const glm::dvec3& place, const SurfacePlace& below) const {
     const BodySurface& source = *source_.surface();
-    const glm::dvec3 fit = source_.size() / (body_.high() - body_.low());
-    const SurfacePlace there = source.find(source_.middle() + (below.point - body_.middle()) * fit);
+    const glm::dvec3 laid = (below.point - body_.middle()) * source_.fit(body_);
+    const SurfacePlace there = source.find(source_.middle() + laid);
     const glm::dvec3 in = turned(place - below.point, body_.smooth_normal(below), source.smooth_normal(there));
     Carried carried;
     carried.draws[0] = {.weight = 1, .place = there.point + in, .side = 0};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <limits>
 
 namespace quadgraph {
@@ -36,6 +37,15 @@ SourceDomain::SourceDomain(const Volume& volume, const MaterialMap& map) {
   }
 }
 
+glm::dvec3 SourceDomain::fit(const BodySurface& body) const {
+  const glm::dvec3 wide = body.high() - body.low();
+  glm::dvec3 factors(1);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (wide[axis] > 0) factors[axis] = size()[axis] / wide[axis];
+  }
+  return factors;
+}
+
 int SourceDomain::axes() const {
   int count = 0;
   for (int axis = 0; axis < 3; ++axis) count += cells_->varies_along(axis) ? 1 : 0;
@@ -62,6 +72,7 @@ CellGrid grid_around(const glm::dvec3& low, const glm::dvec3& high, const glm::d
                      double& coarser) {
   constexpr double rounding = 1e-6;  // of a cell, by which a box may lie beyond the last one
   coarser = 1;
+  spacing = glm::max(spacing, (high - low) / most_cells);
   while (true) {
     CellGrid grid{.spacing = spacing};
     double count = 1;

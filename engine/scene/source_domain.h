@@ -23,6 +23,9 @@ class SourceDomain {
   glm::dvec3 middle() const { return 0.5 * (low_ + high_); }
   glm::dvec3 size() const { return high_ - low_; }
 
+  // What lengths of a body become where its box is laid over this one, axis by axis; 1 along one in which it is flat.
+  glm::dvec3 fit(const BodySurface& body) const;
+
   // None of a block: of a domain that fills its box.
   const BodySurface* surface() const { return surface_.get(); }
 

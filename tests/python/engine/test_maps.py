@@ -12,6 +12,7 @@ import trimesh
 from baked import write_levels
 from engine_program import ENGINE
 from quadgraph import cli
+from quadgraph.baking import bare
 from quadgraph.base.errors import FormatError, InputError
 from shapes import from_trimesh, icosphere, torus
 
@@ -275,3 +276,26 @@ def test_volumes_and_bodies_that_do_not_serve(tmp_path, ball):
         core.check_scene(json.dumps({"body": str(ball), "material": {"volume": "wax.vdb"}}))
     with pytest.raises(InputError, match="found with the material 'marble'"):
         core.with_map("marble", "shell")
+
+
+def test_a_sheet_without_an_inside_takes_what_wants_none(tmp_path):
+    """For shortest paths any surface is a body, a flat one too, which has no levels."""
+    mesh = tmp_path / "sheet.obj"
+    mesh.write_text("v 0 0 0\nv 20 0 0\nv 20 15 0\nv 0 15 0\nf 1 2 3\nf 1 3 4\n")
+    bare.write(mesh, tmp_path / "sheet.qgraph", unit="mm")
+    material = block_material()
+    for how in ("box", "shell", "box,scale=0.3"):
+        carried, _ = material.mapped(tmp_path / "sheet.qgraph", how)
+        assert np.isfinite(carried.sigma_a).all()
+        assert carried.sigma_a.max() > carried.sigma_a.min() >= 0
+    with pytest.raises(InputError, match="found a body without tets"):
+        material.mapped(tmp_path / "sheet.qgraph", "volume")
+
+
+def test_cells_are_never_too_many(ball):
+    """However small those of the source are, or however large the body beside them."""
+    tiny = VolumeMaterial(np.ones((2, 2, 2)), np.arange(8.0).reshape(2, 2, 2), 1e-30)
+    for how in ("shell", "box,scale=0.01"):
+        carried, _ = tiny.mapped(ball, how)
+        assert carried.sigma_a[..., 0].size <= 1e6
+        assert np.isfinite(carried.sigma_a).all()
