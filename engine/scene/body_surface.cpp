@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
-#include <glm/geometric.hpp>
 #include <limits>
 #include <numeric>
 
@@ -14,11 +13,6 @@ namespace quadgraph {
 namespace {
 
 constexpr double sharp = 0.766;  // cosine of 40 degrees
-
-glm::dvec3 unit(const glm::dvec3& v) {
-  const double length = glm::length(v);
-  return length > 0 ? v / length : glm::dvec3(0, 0, 1);
-}
 
 // Of the corners of a triangle, at the place of it that is nearest to p [Ericson 2005, 5.1.5].
 glm::dvec3 nearest_weights(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {

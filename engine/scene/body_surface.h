@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
@@ -13,6 +14,12 @@
 #include "engine/optics/nearest_face.h"
 
 namespace quadgraph {
+
+// Of length 1, along z where there is no direction.
+inline glm::dvec3 unit(const glm::dvec3& v) {
+  const double length = glm::length(v);
+  return length > 0 ? v / length : glm::dvec3(0, 0, 1);
+}
 
 struct SurfacePlace {
   std::uint32_t face = 0;

@@ -16,7 +16,7 @@
 namespace quadgraph {
 namespace {
 
-constexpr double tolerance = 1e-12;
+constexpr double map_tolerance = 1e-12;
 constexpr int most_rounds = 3000;  // of a sphere
 
 using Places = std::vector<glm::dvec3>;
@@ -42,7 +42,7 @@ std::size_t turned_faces(const Level& level, const Places& on_sphere) {
 Places on_sphere(const Level& level, const Places& places, const glm::dvec3& middle) {
   const std::uint32_t count = level.surface_vertex_count;
   Places found(count);
-  for (std::uint32_t v = 0; v < count; ++v) found[v] = glm::normalize(places[v] - middle);
+  for (std::uint32_t v = 0; v < count; ++v) found[v] = unit(places[v] - middle);
   for (int round = 0; round < most_rounds && turned_faces(level, found) > 0; ++round) {
     Places sums(count, glm::dvec3(0));
     for (const glm::uvec3& f : level.faces) {
@@ -54,7 +54,7 @@ Places on_sphere(const Level& level, const Places& places, const glm::dvec3& mid
       if (length > 0) found[v] = sums[v] / length;
       mean += found[v] / static_cast<double>(count);
     }
-    for (glm::dvec3& place : found) place = glm::normalize(place - mean);  // else all would gather in one point
+    for (glm::dvec3& place : found) place = unit(place - mean);  // else all would gather in one point
   }
   return found;
 }
@@ -121,7 +121,7 @@ void fill_inside(const Level& level, Places& places) {
   on_all_cores(3, [&](std::size_t axis) {
     std::vector<double> values;
     for (const glm::dvec3& place : places) values.push_back(place[static_cast<int>(axis)]);
-    make_harmonic(graph, fixed, values, tolerance);
+    make_harmonic(graph, fixed, values, map_tolerance);
     for (std::size_t v = 0; v < values.size(); ++v) places[v][static_cast<int>(axis)] = values[v];
   });
 }
@@ -173,7 +173,7 @@ std::string handles_text(const BodySurface::Topology& found) {
   return std::to_string(found.pieces) + " piece(s) with " + std::to_string(found.handles) + " handle(s)";
 }
 
-void check(const SourceDomain& source, const BodySurface& body) {
+void check_topology(const SourceDomain& source, const BodySurface& body) {
   if (body.level().tets.empty()) {
     throw InputError("map: volume: found a body without tets, allowed is one that was baked; or take box or shell");
   }
@@ -194,7 +194,7 @@ void check(const SourceDomain& source, const BodySurface& body) {
 }  // namespace
 
 MappedVolume harmonically_mapped(const SourceDomain& source, const BodySurface& body) {
-  check(source, body);
+  check_topology(source, body);
   const Level& level = body.level();
   Places places = fitted(source, body);
   if (source.surface()) {

@@ -9,7 +9,7 @@ namespace quadgraph {
 namespace {
 
 constexpr std::string_view suffix = ".npz";
-constexpr std::array<std::string_view, 4> members = {"scale", "repeat", "depth", "from"};
+constexpr std::array<std::string_view, 4> map_members = {"scale", "repeat", "depth", "from"};
 
 std::string lower(std::string_view text) {
   std::string made(text);
@@ -29,7 +29,7 @@ void refuse_of(MapKind kind, std::string_view member, std::string_view goes_with
                    std::string(goes_with) + "; leave it out");
 }
 
-void put(MaterialMap& map, std::string_view name, std::string_view value) {
+void put_member(MaterialMap& map, std::string_view name, std::string_view value) {
   if (name == "scale") {
     if (map.kind == MapKind::volume) refuse_of(map.kind, name, "box and shell");
     map.scale = number_in(value, "scale", map_scale_range);
@@ -46,7 +46,7 @@ void put(MaterialMap& map, std::string_view name, std::string_view value) {
                        "', allowed is a baked .qgraph, the body that the volume was found in; bake it first");
     }
   } else {
-    throw InputError("map: '" + std::string(name) + "'" + meant(name, members) +
+    throw InputError("map: '" + std::string(name) + "'" + meant(name, map_members) +
                      ": allowed behind box, shell or volume are scale=NUMBER, repeat=mirror or clamp, depth=MM and "
                      "from=BODY.qgraph");
   }
@@ -65,7 +65,7 @@ MaterialMap parse_map(std::string_view text) {
       throw InputError("map: " + std::string(name) + ": found twice, allowed is once");
     }
     seen.push_back(name);
-    put(map, name, parts[i].substr(std::min(equals + 1, parts[i].size())));
+    put_member(map, name, parts[i].substr(std::min(equals + 1, parts[i].size())));
   }
   return map;
 }

@@ -14,9 +14,9 @@
 namespace quadgraph {
 namespace {
 
-constexpr double mixed_from = 0.7;  // of the largest component of a normal: from which on another one counts
-constexpr double own_depth = 0.75;  // of the depth that a place must have below the source's own surface
-constexpr double tolerance = 1e-6;  // of what is interpolated
+constexpr double mixed_from = 0.7;       // of the largest component of a normal: from which on another one counts
+constexpr double own_depth = 0.75;       // of the depth that a place must have below the source's own surface
+constexpr double core_tolerance = 1e-6;  // of what is interpolated
 
 // A place of the source, mm, before it is brought into the source, and what it counts; those of one `side` follow from
 // neighbours smoothly.
@@ -178,7 +178,7 @@ void interpolate_core(const CellGrid& grid, const std::vector<char>& core, std::
   on_all_cores(channels, [&](std::size_t channel) {
     std::vector<double> solved;
     for (std::uint32_t cell : cells) solved.push_back(double{values[cell * channels + channel]});
-    make_harmonic(graph, fixed, solved, tolerance);
+    make_harmonic(graph, fixed, solved, core_tolerance);
     for (std::size_t i = 0; i < cells.size(); ++i) {
       if (!fixed[i]) values[cells[i] * channels + channel] = std::max(static_cast<float>(solved[i]), 0.0f);
     }

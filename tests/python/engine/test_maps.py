@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import subprocess
+from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -19,7 +21,9 @@ from shapes import from_trimesh, icosphere, torus
 core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 
 from quadgraph import Engine, Scene, Stage, VolumeMap, VolumeMaterial  # noqa: E402
+from quadgraph.api.volume_map import MapKind, MapRepeat  # noqa: E402
 
+DOCS = Path(__file__).resolve().parents[3] / "docs"
 SIDES = np.array([16.0, 12.0, 8.0])  # mm, of the block
 BOX = np.array([-SIDES / 2, SIDES / 2])
 RADIUS = 10.0  # mm, of the ball
@@ -247,6 +251,15 @@ def test_programs_take_the_map_beside_a_scene_or_a_body(tmp_path, ball):
 def test_wrong_maps_are_refused_with_what_is_allowed(ball, how, said):
     with pytest.raises(InputError, match=said):
         block_material().mapped(ball, how)
+
+
+def test_the_names_of_python_and_of_the_schema_are_the_engine_s():
+    material = json.loads((DOCS / "scene.schema.json").read_text())["properties"]["material"]["anyOf"][1]["properties"]
+    for kind, text, member in ((MapKind, "none", "map"), (MapRepeat, "box,repeat=none", "repeat")):
+        with pytest.raises(InputError) as refused:
+            core.with_map("wax.npz", text)
+        names = str(refused.value).rpartition("allowed are ")[2].split(", ")
+        assert list(get_args(kind)) == names == material[member]["enum"]
 
 
 def test_a_map_that_would_tear_is_refused(ring, ball):
