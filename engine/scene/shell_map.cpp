@@ -112,10 +112,11 @@ class ShellMap {
     const BodySurface& source = *source_.surface();
     const glm::dvec3 laid = (below.point - body_.middle()) * source_.fit(body_);
     const SurfacePlace there = source.find(source_.middle() + laid);
-    const glm::dvec3 in = turned(place - below.point, body_.smooth_normal(below), source.smooth_normal(there));
+    const glm::dvec3 in = turned(place - below.point, body_.smooth_normal(below), source.smooth_normal(there)) / scale_;
     Carried carried;
     carried.draws[0] = {.weight = 1, .place = there.point + in, .side = 0};
-    if (below.depth > 0) carried.shell = source.find(carried.draws[0].place).depth >= own_depth * below.depth;
+    const double least = own_depth * below.depth / scale_;
+    if (below.depth > 0) carried.shell = source.find(carried.draws[0].place).depth >= least;
     return carried;
   }
 

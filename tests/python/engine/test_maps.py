@@ -142,6 +142,17 @@ def test_a_shell_is_as_much_larger_as_scale_says(ball):
     assert found == pytest.approx(1, abs=0.1)
 
 
+def test_depths_below_another_surface_are_scaled_too(ball):
+    def by_depth(points):
+        return 1.0, np.maximum(RADIUS - np.linalg.norm(points, axis=1), 0) / 10
+
+    material = VolumeMaterial.from_function(by_depth, np.array([[-RADIUS] * 3, [RADIUS] * 3]), 0.4)
+    for scale in (0.5, 1, 2):
+        carried, _ = material.mapped(ball, VolumeMap("shell", scale=scale, source=ball))
+        found = 10 * values_at(carried, np.array([[0, 0, RADIUS - 1.5]]))[1][0, 0]
+        assert found == pytest.approx(1.5 / scale, abs=0.15)
+
+
 def test_a_box_is_stretched_to_the_body_axis_by_axis(ball):
     material = block_material()
     carried, report = material.mapped(ball, "box")
