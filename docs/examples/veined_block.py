@@ -12,7 +12,6 @@ import numpy as np
 import quadgraph
 
 HALF = np.array([8.0, 8.0, 4.0])  # mm, of the block about its middle
-CELLS = np.array([32, 32, 16])  # faces along its edges: of half a millimetre
 DARK, RADIUS = np.array([[3.5, 0.5, 2.0], [-4.0, -3.5, -1.8]]), 1.8  # mm, middles of the balls
 
 
@@ -26,32 +25,33 @@ def coefficients(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.array([1.3, 1.2, 1.1]) + veins * [0.5, 0.5, 0.5] + 0 * balls, absorption
 
 
-def write_block(path: Path) -> None:
-    """The block's surface: on each of its six faces a grid, its corners shared."""
+def write_block(path: Path, per_mm: int) -> None:
+    """The block's surface: on each of its six faces a grid of so many squares a millimetre, its corners shared."""
+    cells = (2 * HALF * per_mm).astype(int)
     numbers: dict[tuple[int, ...], int] = {}
     triangles = []
     for axis in range(3):
         u, v = (axis + 1) % 3, (axis + 2) % 3
         for side in (0, 1):
-            for i, j in np.ndindex(CELLS[u], CELLS[v]):
+            for i, j in np.ndindex(cells[u], cells[v]):
                 corners = []
                 for a, b in ((0, 0), (1, 0), (1, 1), (0, 1)):
                     place = [0, 0, 0]
-                    place[axis], place[u], place[v] = side * int(CELLS[axis]), i + a, j + b
+                    place[axis], place[u], place[v] = side * int(cells[axis]), i + a, j + b
                     corners.append(numbers.setdefault(tuple(place), len(numbers) + 1))
                 corners = corners if side else corners[::-1]
                 triangles += [corners[:3], [corners[0], corners[2], corners[3]]]
-    places = np.array(list(numbers)) / CELLS * 2 * HALF - HALF
+    places = np.array(list(numbers)) / per_mm - HALF
     lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in places] + [f"f {a} {b} {c}" for a, b, c in triangles]
     path.write_text("\n".join(lines) + "\n")
 
 
-def main(mesh: Path | None = None, volume: Path | None = None) -> float:
+def main(mesh: Path | None = None, volume: Path | None = None, per_mm: int = 1) -> float:
     """Write the block and its volume; return how far the volume is off when it is carried into the block itself."""
     material = quadgraph.VolumeMaterial.from_function(coefficients, np.array([-HALF, HALF]), spacing=0.4, eta=1.4)
     with tempfile.TemporaryDirectory() as folder:
         mesh, body = mesh or Path(folder) / "block.obj", Path(folder) / "block.qgraph"
-        write_block(mesh)
+        write_block(mesh, per_mm)
         material.save(volume or Path(folder) / "block.npz")
         quadgraph.bake(mesh, body, quadgraph.BakeOptions(unit="mm", levels=1))
         carried, _ = material.mapped(body, "shell")
@@ -59,4 +59,4 @@ def main(mesh: Path | None = None, volume: Path | None = None) -> float:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), Path(sys.argv[2]))
+    main(Path(sys.argv[1]), Path(sys.argv[2]), per_mm=2)
