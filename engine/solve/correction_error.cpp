@@ -49,19 +49,16 @@ void state_corrected_error(SolveReport& report, double unresolved) {
   };
   report.model_error =
       by_parts(of_model, last.change, last.noise, report.correction->changed, report.correction->taken);
-  const auto left_of = [](double left, double taken) { return 1 - taken * (1 - left); };
   if (report.algebraic) {
-    const auto of_solver = [&](double part, double taken) { return left_of(solver_left, taken) * part; };
-    report.algebraic = by_parts(of_solver, *report.algebraic, report.correction->taken);
+    report.algebraic = by_parts([](double part) { return solver_left * part; }, *report.algebraic);
   }
   report.error.reset();
   if (!report.mesh_error) return;
-  const auto of_mesh = [&](double part, double noise, double more, double taken) {
-    const double left = left_of(std::min(1.0, std::hypot(mesh_left, more * part)), taken);
+  const auto of_mesh = [&](double part, double noise, double more) {
+    const double left = std::min(1.0, std::hypot(mesh_left, more * part));
     return noise > 0 ? std::hypot(left * part, unseen, unresolved) : 0;
   };
-  report.mesh_error =
-      by_parts(of_mesh, *report.mesh_error, last.noise, mesh_left_more, report.correction->taken);
+  report.mesh_error = by_parts(of_mesh, *report.mesh_error, last.noise, mesh_left_more);
   const auto all = [](double a, double b, double c) { return std::sqrt(a * a + b * b + c * c); };
   const ErrorEstimate solver = report.algebraic.value_or(ErrorEstimate{});
   report.error = by_parts(all, *report.model_error, *report.mesh_error, solver);
