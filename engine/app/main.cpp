@@ -16,7 +16,8 @@ using namespace quadgraph;
 
 namespace {
 
-// The picture has been written, but the solve did not converge or, with --strict, misses the error asked for.
+// The picture has been written, but the solve did not converge, the picture did not reach the error that it was to
+// converge to, or, with --strict, the solve misses the error asked for.
 constexpr int exit_unmet = 3;
 
 // Wall time of the stages of a run.
@@ -48,17 +49,23 @@ int write_one(const AppOptions& options) {
   stages.end("load");
   if (options.scene.solve.method != Method::shortest_path) engine.update_irradiance();
   stages.end("irradiance");
-  const SolveReport solve = stage.solve();
+  SolveReport solve = stage.solve();
   stages.end("solve");
-  const Picture picture = stage.render();
+  const Picture picture = stage.render([](const ConvergenceStep& step) { std::cerr << step_text(step) << std::endl; });
+  if (picture.convergence) {
+    const std::string budget = solve.budget;
+    solve = picture.convergence->solve;
+    solve.budget = budget;
+  }
   stages.end("render");
   write_picture(options, picture, engine.metadata());
   stages.end("write");
   refuse_messages(engine.device());
   const Metadata metadata = with_exposure(engine.metadata(), picture, options.scene.tone);
-  const RunReport report{engine, solve, metadata, picture.error, options.output.string(), stages.wall_ms};
+  const RunReport report{engine, solve, metadata, picture, options.output.string(), stages.wall_ms};
   std::cout << (options.json ? json_report(report) : text_report(report)) << "\n";
-  return fails(solve, options.strict) ? exit_unmet : EXIT_SUCCESS;
+  const bool unmet = picture.convergence && !picture.convergence->reached;
+  return unmet || fails(solve, options.strict) ? exit_unmet : EXIT_SUCCESS;
 }
 
 }  // namespace

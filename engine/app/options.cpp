@@ -14,6 +14,9 @@
 namespace quadgraph {
 namespace {
 
+// Of a body without a scene: what its picture converges to while nothing changes.
+constexpr double converge_in_window = 0.01;
+
 // What the user typed, before it is understood.
 struct Typed {
   std::string file, output, preview, device;
@@ -111,6 +114,7 @@ Scene scene_of(const Typed& typed, const CLI::App& app) {
   } else {
     scene.body = file;
     scene.render.ground = !typed.headless;
+    if (!typed.headless) scene.render.converge = converge_in_window;
   }
   apply(typed, app, scene);
   if (!from_file && !given(app, "view")) scene.view.azimuth = first_view(front_of(file), scene.view.up).azimuth;

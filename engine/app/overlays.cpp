@@ -99,6 +99,11 @@ void draw_preview(const std::string& text, float left, float unit) {
   draw_note("preview", text, {0.95f, 0.65f, 0.32f, 1}, false, left, 12 * unit, unit);
 }
 
+void draw_convergence(const std::string& text, float left, float unit) {
+  if (text.empty()) return;
+  draw_note("convergence", text, {0.9f, 0.9f, 0.89f, 1}, false, left, 12 * unit, unit);
+}
+
 void draw_message(const State& state, float left, float unit, float above) {
   if (state.message.empty()) return;
   const ImVec4 colour = state.refused ? ImVec4(1, 0.55f, 0.45f, 1) : ImVec4(0.9f, 0.9f, 0.89f, 1);

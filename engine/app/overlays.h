@@ -16,6 +16,9 @@ float draw_colour_bar(const Legend& legend, float left, float unit);
 // What the picture shows in the place of the body, over it; nothing if that is empty.
 void draw_preview(const std::string& text, float left, float unit);
 
+// How far a picture has converged, in the same place; nothing if that is empty.
+void draw_convergence(const std::string& text, float left, float unit);
+
 // The last thing to tell the user, in the picture's lower left corner, `above` what lies there.
 void draw_message(const State& state, float left, float unit, float above);
 

@@ -128,6 +128,10 @@ void draw_picture(State& state, const Measured& measured) {
   if (ImGui::SliderInt("Samples", &samples, 0, 256, samples > 0 ? "%d per pixel" : "as needed")) {
     state.scene.render.samples = static_cast<std::uint32_t>(std::max(samples, 0));
   }
+  auto converge = static_cast<float>(100 * state.scene.render.converge);
+  if (slide("Converge to", converge, 0, 10, converge > 0 ? "%.1f%%" : "no target")) {
+    state.scene.render.converge = converge < 0.1f ? 0 : static_cast<double>(converge) / 100;
+  }
   choose("Tone", state.scene.tone.curve);
   slide("White balance", state.scene.tone.white_balance, 2000, 12000, "%.0f K");
   auto& stops = state.scene.tone.exposure_stops;

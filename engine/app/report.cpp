@@ -42,6 +42,21 @@ Json as_json(const CorrectionReport& correction) {
   return json;
 }
 
+Json as_json(const Convergence& found) {
+  Json json{{"wanted", found.wanted}, {"reached", found.reached}, {"out_of_time", found.out_of_time},
+            {"least", found.least},   {"limit", found.limit},     {"steps", Json::array()}};
+  for (const ConvergenceStep& step : found.steps) {
+    json["steps"].push_back({{"solves", step.solves},
+                             {"sweeps", step.sweeps},
+                             {"points", step.points},
+                             {"samples", step.samples},
+                             {"seconds", step.seconds},
+                             {"error", as_json(step.error)},
+                             {"noise", step.noise}});
+  }
+  return json;
+}
+
 Json as_json(const SolveReport& report) {
   Json json;
   json["method"] = name_of(report.method);
@@ -122,12 +137,20 @@ constexpr double mebibyte = 1024.0 * 1024.0;
 
 }  // namespace
 
+std::string step_text(const ConvergenceStep& step) {
+  const std::string noise = step.noise > 0 ? ", of that noise " + decimals(100 * step.noise, 2) + "%" : "";
+  return std::to_string(step.solves) + (step.solves == 1 ? " solve of " : " solves of ") + std::to_string(step.sweeps) +
+         (step.sweeps == 1 ? " sweep, " : " sweeps, ") + std::to_string(step.samples) + " samples: error " +
+         decimals(100 * step.error.whole, 2) + "%" + noise + ", " + decimals(step.seconds, 1) + " s";
+}
+
 std::string json_report(const RunReport& report) {
   Json json;
   json["output"] = report.output;
   for (const auto& [key, value] : report.metadata) json["metadata"][key] = value;
   json["solve"] = as_json(report.solve);
-  json["picture_error"] = as_json(report.picture_error);
+  json["picture_error"] = as_json(report.picture.error);
+  json["convergence"] = report.picture.convergence ? as_json(*report.picture.convergence) : Json(nullptr);
   for (const PassStats& pass : report.engine.passes()) {
     json["passes"].push_back(
         {{"name", pass.name}, {"time_ms", pass.time_ms}, {"bytes", pass.bytes}, {"count", pass.count}});
@@ -172,6 +195,11 @@ void tell_certificate(std::ostream& out, const Certificate& found) {
   out << "by " << decimals(found.walks / 1e6, 2) << " million random walks in " << decimals(found.seconds, 1) << " s\n";
 }
 
+void tell_convergence(std::ostream& out, const Convergence& found) {
+  out << "mean     " << step_text(found.steps.back()) << "\n";
+  if (!found.reached) out << "warning  converge " << decimals(100 * found.wanted, 2) << "%: " << found.limit << "\n";
+}
+
 void tell_levels(std::ostream& out, const RunReport& report) {
   const Level& finest = report.engine.graph().levels().front();
   const LevelReport& solved = report.solve.levels.back();
@@ -196,7 +224,8 @@ void tell_levels(std::ostream& out, const RunReport& report) {
   tell_part(out, "  model  ", report.solve.model_error);
   tell_part(out, "  light  ", report.solve.light_error);
   if (report.solve.certificate) tell_certificate(out, *report.solve.certificate);
-  tell_part(out, "shown    ", report.picture_error, "picture");
+  tell_part(out, "shown    ", report.picture.error, "picture");
+  if (report.picture.convergence) tell_convergence(out, *report.picture.convergence);
 }
 
 }  // namespace

@@ -13,10 +13,13 @@ struct RunReport {
   const Engine& engine;
   const SolveReport& solve;
   const Metadata& metadata;
-  const std::optional<ErrorEstimate>& picture_error;
+  const Picture& picture;
   std::string output;
   std::vector<std::pair<std::string, double>> wall_ms;  // stages in order
 };
+
+// One step of a picture that converges, in one line.
+std::string step_text(const ConvergenceStep& step);
 
 std::string json_report(const RunReport& report);
 std::string text_report(const RunReport& report);

@@ -26,26 +26,35 @@ void Viewer::save_scene() {
   frames_wanted_ = 3;
 }
 
-// The converged picture, whatever is on the screen now.
+// Of the scene, whatever is on the screen now.
+Picture Viewer::settled_picture() {
+  measured_.frames = 0;
+  remake(true);
+  RenderOptions options = state_.scene.render;
+  options.width = shown_part_.width;
+  options.height = shown_part_.height;
+  options.converge = options.time_limit = 0;
+  Picture picture = engine().render(state_.scene.view, options);
+  measured_.frames = 0;  // the mean of those on the screen is lost
+  measured_.settled = false;
+  return picture;
+}
+
+// The converged picture: the mean that the screen shows at rest, or that of one solve.
 void Viewer::write_picture() {
   writing_ = true;
   try {
-    measured_.frames = 0;
-    remake(true);
-    RenderOptions options = state_.scene.render;
-    options.width = shown_part_.width;
-    options.height = shown_part_.height;
-    const Picture picture = engine().render(state_.scene.view, options);
-    measured_.frames = 0;  // the mean of those on the screen is lost
-    measured_.settled = false;
+    const bool at_rest = converging_ && converging_->found().steps.size() > 1;
+    const Picture picture = at_rest ? converging_->picture() : settled_picture();
+    const Metadata metadata = at_rest ? converging_->metadata() : engine().metadata();
     std::filesystem::path png, exr;
     do {
       png = saving_.stem.string() + "-" + std::to_string(++pictures_written_) + ".png";
       exr = png;
       exr.replace_extension(".exr");
     } while (std::filesystem::exists(png) || std::filesystem::exists(exr));
-    write_png(png, picture, state_.scene.tone, engine().metadata());
-    write_exr(exr, picture, state_.scene.tone, engine().metadata());
+    write_png(png, picture, state_.scene.tone, metadata);
+    write_exr(exr, picture, state_.scene.tone, metadata);
     state_.say("saved: " + png.string() + ", " + exr.string());
   } catch (const DeviceError&) {
     throw;

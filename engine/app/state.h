@@ -25,6 +25,7 @@ struct Measured {
   std::uint32_t frames_wanted = 0;
   SolveReport solve;
   std::optional<ErrorEstimate> picture_error;  // of a converged one, where it is known
+  std::string convergence;                     // how far it has gone on at rest, in words; empty where it does not
   float exposure_stops = 0;
   std::uint64_t device_bytes = 0, peak_device_bytes = 0;
 };

@@ -75,7 +75,7 @@ void Viewer::run() {
 // Seconds that nothing need happen for.
 double Viewer::patience() const {
   if (frames_wanted_ > 0 || window_.events_wait() || !shown_) return 0;
-  if (measured_.frames > 0 && !measured_.settled) return 0;
+  if ((measured_.frames > 0 && !measured_.settled) || converges()) return 0;
   if (swapchain_.width() > 0 && part() != shown_part_) return 0;
   if (preview_ && !preview_->failed()) return news_wait;
   return measured_.settled ? idle_wait : 0.5 * settle_after;
@@ -201,6 +201,7 @@ void Viewer::build_widgets(const std::vector<Event>& events) {
   const float taken = legend ? draw_colour_bar(*legend, left, interface_.unit()) : 0;
   draw_message(state_, left, interface_.unit(), taken);
   draw_preview(state_.preview, left, interface_.unit());
+  draw_convergence(measured_.convergence, left, interface_.unit());
   draw_knife(state_.knife, left, interface_.unit());
   if (!dragging_ && !ImGui::IsAnyItemActive()) history_.note(state_.scene);
   ImGui::Render();
@@ -225,6 +226,7 @@ void Viewer::keep_up() {
   const bool changed = !shown_ || state_.scene != *shown_ || part() != shown_part_;
   if (changed) changed_ = Clock::now();
   window_.show_busy(changed || !measured_.settled);  // what is converged has been presented
+  if (!changed && measured_.settled && !dragging_) return converge();
   if (!changed && (measured_.settled || milliseconds(Clock::now() - changed_) < 1000 * settle_after || dragging_))
     return;
   const bool first = !shown_;
@@ -256,6 +258,7 @@ SolveOptions Viewer::options_of_solve(bool settle) const {
 
 void Viewer::remake(bool settle) {
   swapchain_.wait();  // the last frame may still read the pixels
+  forget_convergence();
   const Clock::time_point start = Clock::now();
   const Scene& scene = state_.scene;
   Scene lit = scene;  // what is shown, seen as it is now

@@ -11,6 +11,7 @@
 #include "engine/app/preview.h"
 #include "engine/app/state.h"
 #include "engine/app/window.h"
+#include "engine/render/converging.h"
 #include "engine/render/picture/tone_mapper.h"
 #include "engine/scene/stage.h"
 #include "engine/vk/swapchain.h"
@@ -67,10 +68,16 @@ class Viewer {
   void solve(bool settle);
   SolveOptions options_of_solve(bool settle) const;
   void make_picture(bool settle, bool gather);
+  bool converges() const;
+  void converge();
+  void begin_convergence();
+  void show_convergence();
+  void forget_convergence();
   void show(const device::Buffer& pixels);
   void measure(Clock::time_point start, double draw_ms, bool gathered);
   void save_scene();
   void present();
+  Picture settled_picture();
   void write_picture();
 
   Window& window_;
@@ -98,6 +105,8 @@ class Viewer {
   bool solved_exactly_ = false;              // it was solved to the tolerance
   Clock::time_point changed_;                // when something changed last
   std::vector<Clock::time_point> pictures_;  // of the last second
+  std::optional<Stage> rest_;                // on which the picture goes on converging; made at first use
+  std::optional<Converging> converging_;     // of what is shown, at rest
   bool writing_ = false;                     // a picture, for which what the user does has to wait
   int frames_wanted_ = 3;                    // widgets settle over several frames
 };

@@ -141,6 +141,8 @@ inline constexpr Range error_range{.low = 0, .high = 1, .below = true};
 inline constexpr Range sweeps_range{.low = 0, .high = 100};
 inline constexpr Range certify_range{.low = 0, .high = 86400};
 inline constexpr Range sweep_points_range{.low = 1, .high = 10000000};
+inline constexpr Range converge_range{.low = 0, .high = 1, .below = true};
+inline constexpr Range time_limit_range{.low = 0, .high = 1000000};
 
 struct SolveOptions {
   Method method = Method::fem;
@@ -178,7 +180,9 @@ struct SolveOptions {
   bool correction = false;
   std::uint32_t sweeps = 0;
   std::uint32_t sweep_points = 20000;  // where a sweep evaluates it
-  std::uint32_t sweep_seed = 0;        // of all that sweeps draw
+  std::uint32_t sweep_seed = 0;        // of all that sweeps draw, and of the light's own rays
+  // The error that a correction at rest states is that of the mean of so many solves, alike but for their seeds.
+  std::uint32_t mean_of = 1;
   double certify = 0;  // s: so long random walks measure what the corrected exitance is off by; 0: none do
   // n > 0, with the links of a polygrid: on all levels but the coarsest only the first n layers of vertices below the
   // surface are solved for, the others keep what the coarser level has [PG Section 5.3, Fig. 8]; 0: all are.

@@ -2,6 +2,7 @@
 
 #include "engine/base/text.h"
 #include "engine/optics/material.h"
+#include "engine/render/converging.h"
 #include "engine/render/engine_implementation.h"
 #include "engine/render/picture/legend.h"
 #include "engine/render/picture/metadata.h"
@@ -203,6 +204,7 @@ SolveReport Engine::solve(const SolveOptions& options, const std::function<void(
   if (self.deformed && self.simulation) self.deformation_passes = self.simulation->deformation_passes();
   self.deformed = false;
   self.report.reset();
+  self.again.reset();
   // What is seen of the sky is brought up to date by the solve.
   const auto light = [&](bool seen_anew) {
     if (self.irradiance_behind(options) || (seen_anew && self.sky_shines())) self.run_irradiance(options.mean_rays);
@@ -240,6 +242,7 @@ const PictureBuffers& Engine::draw(const View& view, const RenderOptions& option
   const auto turn = implementation_->in_use.take();
   check_options(options);
   check_view(view);
+  if (const auto again = implementation_->again) solve(*again);
   const std::uint32_t count = frame_count(view, options);
   for (std::uint32_t index = 0; index < count; ++index) implementation_->add_frame(view, options, index);
   return implementation_->shown();
@@ -252,12 +255,34 @@ const PictureBuffers& Engine::draw_frame(const View& view, const RenderOptions& 
   return implementation_->shown();
 }
 
-Picture Engine::render(const View& view, const RenderOptions& options) {
+Picture Engine::render(const View& view, const RenderOptions& options,
+                       const std::function<void(const ConvergenceStep&)>& told) {
   const auto turn = implementation_->in_use.take();
   Picture picture = read_picture(implementation_->device, draw(view, options));
   picture.error = picture_error();
   if (const auto& shown = legend()) draw_legend(picture, *shown);
+  if (options.converge == 0) return picture;
+  if (!picture.error || implementation_->options.warm) {
+    throw InputError(
+        "converge: the error of this picture is not known; it is of a body with several levels, corrected at rest, "
+        "with gathered radiance");
+  }
+  if (implementation_->options.certify > 0) throw InputError("converge: found with certify, which measures one solve");
+  const ConvergingStart start{view, options, implementation_->options, *implementation_->report, *picture.error};
+  const bool fits = picture.error->whole <= options.converge;
+  try {
+    picture = converged(*this, start, std::move(picture), told);
+  } catch (...) {
+    implementation_->again = start.solve;
+    throw;
+  }
+  if (!fits) implementation_->again = start.solve;
   return picture;
+}
+
+std::optional<ErrorEstimate> Engine::picture_error(const ErrorEstimate& exitance) const {
+  const auto turn = implementation_->in_use.take();
+  return quadgraph::picture_error(implementation_->device, implementation_->shown(), exitance);
 }
 
 std::optional<ErrorEstimate> Engine::picture_error() {

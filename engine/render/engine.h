@@ -66,6 +66,10 @@ struct RenderOptions {
   Show show{};                // what is to be seen
   bool ground = false;        // with a shadow where the body stands, which counts as coverage without light
   bool surroundings = false;  // environment lights are seen behind the body
+  // Of Engine::render: the error of the picture, in converge_range, down to which corrections and samples run on
+  // (engine/render/converging.h), and seconds that they may take, in time_limit_range; 0: no error is asked for, and
+  // no limit.
+  double converge = 0, time_limit = 0;
   std::optional<RoughnessMap> roughness_map{};
 
   bool operator==(const RenderOptions&) const = default;
@@ -170,11 +174,17 @@ class Engine {
   // device; empty where it was not gathered of a corrected solve.
   std::optional<ErrorEstimate> picture_error();
 
+  // What it would be off by with another error of the exitance.
+  std::optional<ErrorEstimate> picture_error(const ErrorEstimate& exitance) const;
+
   // What the colours of the last one mean; nothing if it shows the body as it looks.
   const std::optional<Legend>& legend() const;
 
-  // Draws as `draw` does and reads the picture back, with the legend in it and its error.
-  Picture render(const View& view, const RenderOptions& options = {});
+  // Draws as `draw` does and reads the picture back, with the legend in it and its error. Where an error is asked for,
+  // goes on from the last solve until it is reached or cannot be, and says so (Picture::convergence); told: after each
+  // step. Then it throws InputError where the error of the picture is not known.
+  Picture render(const View& view, const RenderOptions& options = {},
+                 const std::function<void(const ConvergenceStep&)>& told = {});
 
   // What a picture of this view and shape (width / height) shows at `at` (engine/render/display/pick.h).
   std::optional<Picked> pick(const View& view, float aspect, const glm::vec2& at) const;

@@ -65,6 +65,7 @@ struct Engine::Implementation {
   bool irradiance_rough = false;  // q is that of a frame in motion
   bool irradiance_given = false;  // q is not that of lights
   SolveOptions options;
+  std::optional<SolveOptions> again;  // what was asked for, where the last solve is one of those of a mean
   std::optional<SolveReport> report;
   std::optional<View> view;
   Radiance radiance = Radiance::automatic;   // of the last picture

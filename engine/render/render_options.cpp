@@ -13,6 +13,19 @@ void check_roughness(float roughness) {
   throw InputError("roughness: found " + number_text(roughness) + ", expected " + roughness_range.text());
 }
 
+void check_convergence(const RenderOptions& options) {
+  if (!converge_range.contains(options.converge)) {
+    throw InputError("converge: found " + number_text(options.converge) + ", expected " + converge_range.text());
+  }
+  if (!time_limit_range.contains(options.time_limit)) {
+    throw InputError("time_limit: found " + number_text(options.time_limit) + " s, expected " +
+                     time_limit_range.text());
+  }
+  if (options.time_limit > 0 && options.converge == 0) {
+    throw InputError("time_limit: found without converge, which it limits");
+  }
+}
+
 }  // namespace
 
 std::uint32_t frame_count(const View& view, const RenderOptions& options) {
@@ -32,6 +45,7 @@ void check_options(const RenderOptions& options) {
     throw InputError("samples: found " + std::to_string(options.samples) + ", expected " + samples_range.text());
   }
   check_roughness(options.roughness);
+  check_convergence(options);
   if (!options.roughness_map) return;
   if (!options.roughness_map->image) throw InputError("roughness_map, image: found none");
   check_roughness(options.roughness_map->roughness);

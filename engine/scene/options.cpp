@@ -287,6 +287,26 @@ void add_size(OptionTable& table) {
        .help = "samples of a pixel, of which it is the mean, four at a time; 0: 16, and 256 with an aperture"});
 }
 
+void add_convergence(OptionTable& table) {
+  table
+      .member<&Scene::render, &RenderOptions::converge>(
+          {.name = "converge",
+           .member = "/picture/converge",
+           .keyword = "converge",
+           .metavar = "E",
+           .range = converge_range,
+           .help = "corrections and samples run on, and the picture is the mean of all, until its stated error, model "
+                   "and noise included, is at most E, e.g. 1%, or until they win nothing more; in a window while "
+                   "nothing changes; 0: no target"})
+      .kind = OptionKind::share;
+  table.member<&Scene::render, &RenderOptions::time_limit>({.name = "time-limit",
+                                                            .member = "/picture/time_limit",
+                                                            .keyword = "time_limit",
+                                                            .metavar = "SECONDS",
+                                                            .range = time_limit_range,
+                                                            .help = "seconds for --converge; 0: as long as it takes"});
+}
+
 void add_picture(OptionTable& table) {
   table.member<&Scene::render, &RenderOptions::roughness>(
       {.name = "roughness",
@@ -356,6 +376,7 @@ std::vector<SceneOption> made() {
   add_path(table);
   add_motion(table);
   add_size(table);
+  add_convergence(table);
   add_picture(table);
   add_tone(table);
   return table.take();

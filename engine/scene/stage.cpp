@@ -48,11 +48,11 @@ SolveReport Stage::solve(const SolveOptions& options, const std::function<void()
   return solve_measured(engine(), options, check);
 }
 
-Picture Stage::render() {
+Picture Stage::render(const std::function<void(const ConvergenceStep&)>& told) {
   const auto turn = in_use_.take();
   Engine& shown = engine();
   try {
-    return shown.render(scene_.view, scene_.render);
+    return shown.render(scene_.view, scene_.render, told);
   } catch (const InputError& error) {  // what the body does not have, such as a level that is to be shown
     throw InputError(scene_.body.string() + ": " + error.what());
   }

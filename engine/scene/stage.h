@@ -24,12 +24,15 @@ class Stage {
   // Throw InputError before a scene was shown.
   SolveReport solve(const std::function<void()>& check = {});
   SolveReport solve(const SolveOptions& options, const std::function<void()>& check = {});
-  Picture render();
+  Picture render(const std::function<void(const ConvergenceStep&)>& told = {});
   Engine& engine();
   const Scene& scene() const { return scene_; }
 
   // What is to be said of the map that carried the material into the body; empty without one.
   const std::string& map_report() const { return map_report_; }
+
+  // That all bodies are on; null where each has opened its own.
+  const std::shared_ptr<device::Device>& shared_device() const { return device_; }
 
  private:
   InUse in_use_{"stage"};

@@ -41,14 +41,25 @@ ErrorEstimate share_taken(const CorrectionReport& done) {
   return taken;
 }
 
-void state_corrected_error(SolveReport& report, double unresolved) {
-  const CorrectedSweep& last = report.correction->sweeps.back();
-  const double share = share_left_by(*report.correction);
-  const auto of_model = [&](double change, double noise, double all, double taken) {
-    return noise_over_difference * std::hypot(share * change, taken * noise, (1 - taken) * all);
+ErrorEstimate left_by_sweeps(const CorrectionReport& done) {
+  const double share = noise_over_difference * share_left_by(done);
+  return by_parts([&](double change) { return share * change; }, done.sweeps.back().change);
+}
+
+ErrorEstimate noise_of(const CorrectionReport& done, std::uint32_t mean_of) {
+  const double share = noise_over_difference / std::sqrt(static_cast<double>(mean_of));
+  return by_parts([&](double noise, double taken) { return share * taken * noise; }, done.sweeps.back().noise,
+                  done.taken);
+}
+
+void state_corrected_error(SolveReport& report, double unresolved, std::uint32_t mean_of) {
+  const CorrectionReport& done = *report.correction;
+  const CorrectedSweep& last = done.sweeps.back();
+  const auto of_model = [](double left, double noise, double all, double taken) {
+    return std::hypot(left, noise, noise_over_difference * (1 - taken) * all);
   };
   report.model_error =
-      by_parts(of_model, last.change, last.noise, report.correction->changed, report.correction->taken);
+      by_parts(of_model, left_by_sweeps(done), noise_of(done, mean_of), done.changed, done.taken);
   if (report.algebraic) {
     report.algebraic = by_parts([](double part) { return solver_left * part; }, *report.algebraic);
   }

@@ -1,6 +1,8 @@
 // What is said of a corrected solve.
 #pragma once
 
+#include <cstdint>
+
 #include "engine/reference/solution.h"
 
 namespace quadgraph {
@@ -15,7 +17,11 @@ ErrorEstimate share_taken(const CorrectionReport& done);
 // What the exitance is off by after all sweeps, by part: of the model, the noise and what another sweep would change;
 // of the mesh and of the solver what the sweeps leave, which sample where the solve is off, whatever the reason; and
 // all of it together. Calibrated on bodies that nobody tuned for (docs/accuracy.md). unresolved: what sweeps lose in
-// elements as deep as those at the surface, a relative error.
-void state_corrected_error(SolveReport& report, double unresolved);
+// elements as deep as those at the surface, a relative error; mean_of: as SolveOptions has it.
+void state_corrected_error(SolveReport& report, double unresolved, std::uint32_t mean_of = 1);
+
+// Of the model's error what more sweeps would take away, and the noise of a mean of so many solves.
+ErrorEstimate left_by_sweeps(const CorrectionReport& done);
+ErrorEstimate noise_of(const CorrectionReport& done, std::uint32_t mean_of);
 
 }  // namespace quadgraph

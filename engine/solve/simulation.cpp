@@ -1,5 +1,7 @@
 #include "engine/solve/simulation.h"
 
+#include <cmath>
+
 #include "engine/solve/simulation_implementation.h"
 
 namespace quadgraph {
@@ -114,7 +116,8 @@ SolveReport Simulation::solve(const SolveOptions& options, const std::function<v
 
 LightRoom Simulation::light_room(const SolveOptions& options) {
   Implementation& self = *implementation_;
-  return {self.beams.on_device, self.light_error->difference(), self.tree->ref(), entering_rays(options.mean_rays)};
+  return {self.beams.on_device, self.light_error->difference(), self.tree->ref(), entering_rays(options.mean_rays),
+          1 / std::sqrt(static_cast<float>(options.mean_of))};
 }
 
 void Simulation::state_light_error(const SolveOptions& options, SolveReport& report) {

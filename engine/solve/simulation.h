@@ -44,6 +44,7 @@ struct LightRoom {
   const device::Buffer& difference;  // to be written (engine/solve/light_error.h)
   gpu::TreeRef tree;
   std::uint32_t rays;  // a face, of light from all around
+  float sky_share;     // of the noise of these, what a mean of solves has
 };
 
 class Simulation {

@@ -254,7 +254,7 @@ struct Simulation::Implementation {
     report.energy.unscattered_out = power.unscattered;
     report.energy.re_entered = power.entered_again;
     report.clipped = results.clipped();
-    state_corrected_error(report, resolution_with(key.model).front().corrected);
+    state_corrected_error(report, resolution_with(key.model).front().corrected, options.mean_of);
     state_missed(report, options.error);
     report.model_warning.clear();
   }

@@ -32,6 +32,7 @@ struct WalkTask {
   double eta = 1;
   bool even = false;       // the coefficients are the same everywhere
   bool mean_rays = false;  // SolveOptions
+  std::uint32_t seed = 0;  // of the rays of a correction
 };
 
 // Rays from one origin on a face, of a beam of this kind.

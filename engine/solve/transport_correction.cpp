@@ -334,7 +334,7 @@ CorrectionReport TransportCorrection::run(const CorrectionParts& parts, const So
     report.returns = samples_.returns();
     frames_ = report.sweeps.back().noise.whole <= most_noise_known ? frames + 1 : 0;
   } else {
-    start(parts, task, {});
+    start(parts, {task.method, task.eta, task.even, task.mean_rays, options.sweep_seed}, {});
     sweep_at_rest(parts, options, report);
     frames_ = frames_of_rest;
   }

@@ -179,6 +179,7 @@ void TransportSamples::record_walk(const TransportParts& parts, const WalkTask& 
     push.sky = beam.floats == gpu::BEAM_FACE || beam.picture != 0 ? 1 : 0;
     const bool directed = push.sky == 1 || kind != gpu::BEAM_LAMBERTIAN;
     push.rays = directed ? entering_rays(task.mean_rays) : rays_of(kind, task.mean_rays);
+    push.first = task.seed * push.rays * level.face_count;  // where those of the seed before have come to
     work.recorder.dispatch(work.passes.of(shader::transport_walk), push, std::uint64_t{level.face_count} * push.rays,
                            "transport walk", walk_bytes(level, push.rays));
     push.beam += sizeof(gpu::Beam);

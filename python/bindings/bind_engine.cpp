@@ -133,10 +133,10 @@ Scene pictured(Engine& engine, const std::string& view, const py::kwargs& given)
   return scene;
 }
 
-Picture render(Engine& engine, const std::string& view, const py::kwargs& given) {
+Picture render(Engine& engine, const std::string& view, const py::object& told, const py::kwargs& given) {
   const Scene scene = pictured(engine, view, given);
   const py::gil_scoped_release release;
-  return engine.render(scene.view, scene.render);
+  return engine.render(scene.view, scene.render, told_by(told));
 }
 
 void draw(Engine& engine, const std::string& view, const py::kwargs& given) {
@@ -190,7 +190,9 @@ std::string solve_help() {
 }
 
 std::string render_help() {
-  return "The last solve as a picture, seen from `view`, else from the front. Raises InputError. Keywords:" +
+  return "The last solve as a picture, seen from `view`, else from the front; told: is called with a dict after each "
+         "step "
+         "of a picture that converges. Raises InputError. Keywords:" +
          keywords_help({camera_group, picture_group});
 }
 
@@ -335,7 +337,7 @@ void bind_views(py::class_<Engine>& bound) {
            "outward directions (n, 3): radiance (n, 3) of scattered light, transmittance (n, 3) of the body.")
       .def(
           "phi", [](Engine& engine) { return own(engine.simulation().phi()); }, "Per carrier of level 0, W/mm^2.")
-      .def("render", &render, py::arg("view") = "", render_help().c_str())
+      .def("render", &render, py::arg("view") = "", py::arg("told") = py::none(), render_help().c_str())
       .def("draw", &draw, py::arg("view") = "",
            "What `render` does, with the same keywords, but the picture stays on the device.");
 }

@@ -35,6 +35,41 @@ Picture picture_of(const FloatArray& radiance) {
   return picture;
 }
 
+py::dict step_dict(const ConvergenceStep& step) {
+  py::dict d;
+  d["solves"] = step.solves;
+  d["sweeps"] = step.sweeps;
+  d["points"] = step.points;
+  d["samples"] = step.samples;
+  d["seconds"] = step.seconds;
+  d["error"] = error_dict(step.error);
+  d["noise"] = step.noise;
+  return d;
+}
+
+py::object convergence_dict(const std::optional<Convergence>& convergence) {
+  if (!convergence) return py::none();
+  py::dict d;
+  d["wanted"] = convergence->wanted;
+  d["reached"] = convergence->reached;
+  d["out_of_time"] = convergence->out_of_time;
+  d["least"] = convergence->least;
+  d["limit"] = convergence->limit;
+  py::list steps;
+  for (const ConvergenceStep& step : convergence->steps) steps.append(step_dict(step));
+  d["steps"] = steps;
+  d["solve"] = as_dict(convergence->solve);
+  return d;
+}
+
+// An RGB layer that a picture need not have.
+template <std::vector<float> Picture::* layer>
+py::object layer_or_none(py::object self) {
+  const auto& picture = self.cast<const Picture&>();
+  if ((picture.*layer).empty()) return py::none();
+  return pixels(picture, picture.*layer, 3, self);
+}
+
 // One of the RGB layers of a picture.
 template <std::vector<float> Picture::* layer>
 py::array rgb_layer(py::object self) {
@@ -56,6 +91,14 @@ void bind_image(py::module_& module) {
 }
 
 }  // namespace
+
+std::function<void(const ConvergenceStep&)> told_by(const py::object& function) {
+  if (function.is_none()) return {};
+  return [&function](const ConvergenceStep& step) {
+    const py::gil_scoped_acquire held;
+    function(step_dict(step));
+  };
+}
 
 py::array_t<std::uint8_t> srgb_array(const Picture& picture, const ToneOptions& options) {
   const std::vector<std::uint8_t> rgb = to_srgb8(picture, options);
@@ -91,12 +134,15 @@ void bind_picture(py::module_& module) {
           },
           "(h, w): share of the pixel that the object covers.")
       .def_property_readonly(
-          "surroundings",
-          [](py::object self) -> py::object {
-            const auto& picture = self.cast<const Picture&>();
-            if (picture.surroundings.empty()) return py::none();
-            return pixels(picture, picture.surroundings, 3, self);
-          },
+          "convergence", [](const Picture& picture) { return convergence_dict(picture.convergence); },
+          "How it came to the error that was asked for, None where none was: {wanted, reached, out_of_time, least, "
+          "limit, "
+          "steps}.")
+      .def_property_readonly(
+          "standard_error", &layer_or_none<&Picture::standard_error>,
+          "(h, w, 3): of the sum of the layers, of a picture that is the mean of several, else None.")
+      .def_property_readonly(
+          "surroundings", &layer_or_none<&Picture::surroundings>,
           "(h, w, 3), W/(mm^2 sr): what is behind the body where environment lights are seen, else None.")
       .def(
           "srgb",

@@ -85,8 +85,14 @@ void bind_stage(py::module_& module) {
             return as_dict(report);
           },
           "As Engine.solve, with the scene's options.")
-      .def("render", &Stage::render, py::call_guard<py::gil_scoped_release>(),
-           "As Engine.render, with the scene's view and options.")
+      .def(
+          "render",
+          [](Stage& stage, const py::object& told) {
+            const auto tell = told_by(told);
+            const py::gil_scoped_release release;
+            return stage.render(tell);
+          },
+          py::arg("told") = py::none(), "As Engine.render, with the scene's view and options.")
       .def(
           "srgb", [](Stage& stage, const Picture& picture) { return srgb_array(picture, stage.scene().tone); },
           py::arg("picture"), "(h, w, 3) uint8, with the scene's exposure and background.")

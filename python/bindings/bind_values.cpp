@@ -49,15 +49,17 @@ View view_of(const Engine& engine, const std::string& json, const std::string& t
   return text.empty() ? view : parse_view(text, view);
 }
 
-Picture render_members(Engine& engine, const std::string& json, const std::string& text) {
+Picture render_members(Engine& engine, const std::string& json, const std::string& text, const py::object& told) {
   const View view = view_of(engine, json, text);
   const RenderOptions options = members(json).render;
+  const auto tell = told_by(told);
   const py::gil_scoped_release release;
-  return engine.render(view, options);
+  return engine.render(view, options, tell);
 }
 
 void bind_pictures(py::module_& module) {
   module.def("render", &render_members, py::arg("engine"), py::arg("json"), py::arg("view") = "",
+             py::arg("told") = py::none(),
              "As Engine.render, with the members `camera` and `picture` of a scene; view: a text in place of azimuth, "
              "elevation and distance. Raises InputError.");
 }

@@ -5,6 +5,7 @@
 #include <pybind11/pybind11.h>
 
 #include <array>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <span>
@@ -90,8 +91,12 @@ std::optional<glm::vec3> as_vector(const std::optional<std::array<float, 3>>& co
 // The scene of no body that has the members of this JSON text. Throws InputError.
 Scene members(const std::string& json);
 
-// Tone mapped, (height, width, 3) sRGB.
 pybind11::object error_dict(const std::optional<ErrorEstimate>& estimate);  // None: not known
+
+// Calls a function of Python, unless it is None, with a dict for each step; from where the GIL is not held.
+std::function<void(const ConvergenceStep&)> told_by(const pybind11::object& function);
+
+// Tone mapped, (height, width, 3) sRGB.
 pybind11::array_t<std::uint8_t> srgb_array(const Picture& picture, const ToneOptions& options);
 
 // A list of dicts (docs/deformation.md), or its JSON text. Throws InputError.

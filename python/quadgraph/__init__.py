@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     )
     from quadgraph.api.materials import Material, VolumeMaterial, material_names
     from quadgraph.api.options import Camera, MotionOptions, PathOptions, PictureOptions, SolveOptions
-    from quadgraph.api.picture import Picture
+    from quadgraph.api.picture import Convergence, ConvergenceStep, Picture
     from quadgraph.api.scene import Scene, SceneFile
     from quadgraph.api.solution import (
         Certificate,
@@ -73,6 +73,8 @@ __all__ = [
     "Camera",
     "Certificate",
     "CertifiedPart",
+    "Convergence",
+    "ConvergenceStep",
     "CorrectedSweep",
     "Correction",
     "Deformer",
@@ -138,7 +140,7 @@ _PLACES = {
     "RectangleLight SpotLight default_lights",
     "quadgraph.api.materials": "Material VolumeMaterial material_names",
     "quadgraph.api.options": "Camera MotionOptions PathOptions PictureOptions SolveOptions",
-    "quadgraph.api.picture": "Picture",
+    "quadgraph.api.picture": "Convergence ConvergenceStep Picture",
     "quadgraph.api.scene": "Scene SceneFile",
     "quadgraph.api.solution": "Certificate CertifiedPart CorrectedSweep Correction Energy ErrorEstimate LevelReport "
     "PathReport Solution",

@@ -26,6 +26,7 @@ struct LightErrorPush {
   uint rays;  // of light from all around, a face
   uint turn;  // below LIGHT_TURNS: of the points of a sample, one invocation per sample and face; then the rest, one per face
   float eta;
+  float sky_share;  // of the noise of light from all around, what counts
 };
 layout(push_constant, scalar) uniform Block { LightErrorPush push; };
 #define ENTERED push
@@ -185,7 +186,7 @@ vec3 rest(Face face) {
     if (SHAPED && push.shapes.at[i].more_follow == 1u) continue;
     Beam own = push.beams.at[beam++];
     if (is_sky(own)) {
-      sum += noise_of(own, face);
+      sum += push.sky_share * noise_of(own, face);
       continue;
     }
     for (uint k = 0u; k < FACE_QUARTERS; ++k) {

@@ -26,7 +26,8 @@ PassStats LightSamples::run(const LevelBuffers& level, const ShadowMaps& lights,
                            .light_count = lights.light_count(),
                            .rays = room.rays,
                            .turn = 0,
-                           .eta = eta};
+                           .eta = eta,
+                           .sky_share = room.sky_share};
   device::Commands commands(device_, 1);
   commands.begin_pass("light error");
   const device::ComputePass& samples = pass(lights.shaped());

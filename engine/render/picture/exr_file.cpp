@@ -44,6 +44,7 @@ void write_exr(const std::filesystem::path& path, const Picture& picture, const 
   add_rgb(header, frame, "unscattered.", layers.unscattered, picture.width);
   add_rgb(header, frame, "transmittance.", layers.transmittance, picture.width);
   if (!layers.surroundings.empty()) add_rgb(header, frame, "surroundings.", layers.surroundings, picture.width);
+  if (!layers.standard_error.empty()) add_rgb(header, frame, "standard_error.", layers.standard_error, picture.width);
   header.channels().insert("A", Imf::Channel(Imf::FLOAT));
   frame.insert(
       "A", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(alpha.data()), sizeof(float), sizeof(float) * picture.width));

@@ -121,7 +121,10 @@ Metadata describe(const PictureFacts& facts) {
                        {"units", "W/(mm^2 sr)"},
                        {"device", facts.device.name + ", " + facts.device.driver}};
   if (facts.report.correction) {
-    metadata.emplace_back("transport correction", std::to_string(facts.report.correction->sweeps.size()) + " sweeps");
+    const std::uint32_t solves = facts.options.mean_of;
+    metadata.emplace_back("transport correction",
+                          std::to_string(facts.report.correction->sweeps.size()) + " sweeps" +
+                              (solves > 1 ? ", mean of " + std::to_string(solves) + " solves" : ""));
   }
   describe_view(facts, metadata);
   return metadata;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/reference/error_estimate.h"
+#include "engine/render/picture/convergence.h"
 #include "engine/render/picture/tone_map.h"
 
 namespace quadgraph {
@@ -25,7 +26,10 @@ struct Picture {
   std::vector<float> alpha;           // per pixel, share of the pixel that the object covers
   std::vector<float> surroundings{};  // RGB per pixel, W/(mm^2 sr): what is behind; empty: only a backdrop
   std::optional<ErrorEstimate>
-      error{};                // of scattered light, where it is known (engine/render/picture/picture_error.h)
+      error{};  // of scattered light, where it is known (engine/render/picture/picture_error.h)
+  // RGB per pixel: of the sum of the layers; empty where it is not known (engine/render/picture/picture_noise.h).
+  std::vector<float> standard_error{};
+  std::optional<Convergence> convergence{};  // where an error was asked for
   bool false_colour = false;  // the layer `scattered` is not radiance but linear display colour, shown as it is
 
   // The sum of the three layers at a value (pixel and channel), what is negative counting as none.
@@ -50,8 +54,8 @@ void write_png(const std::filesystem::path& path, const Picture& picture, const 
                const Metadata& metadata);
 
 // EXR: float32 linear and not exposed, channels R, G, B (the sum of the layers), A, and R, G, B of the layers
-// scattered, specular, unscattered and transmittance, and of the surroundings if there are any; metadata as string
-// attributes.
+// scattered, specular, unscattered and transmittance, and of the surroundings and the standard error if there are any;
+// metadata as string attributes.
 void write_exr(const std::filesystem::path& path, const Picture& picture, const ToneOptions& options,
                const Metadata& metadata);
 

@@ -264,8 +264,10 @@ class Engine:
     def render(self, camera: Camera | str | None = None, **picture: Unpack[PictureOptions]) -> Picture:
         """Return a picture of the last solve.
 
-        camera: None for the front, or a text azimuth,elevation[,distance] in degrees and mm. Raises InputError before
-        a solve, and for an option that is not allowed.
+        camera: None for the front, or a text azimuth,elevation[,distance] in degrees and mm. With `converge` it is the
+        mean of more solves, until that error is reached or cannot be (`Picture.convergence`), and `solution` is the
+        last of them. Raises InputError before a solve, for an option that is not allowed, and for `converge` where the
+        error of the picture is not known.
         """
         return self._render({} if camera is None or isinstance(camera, str) else camera, picture, camera)
 
@@ -273,6 +275,8 @@ class Engine:
         options, around = plain_members(picture), plain_members(camera)
         members = json.dumps({"camera": around, "picture": options})
         layers = core.render(self._engine, members, text if isinstance(text, str) else "")
+        if layers.convergence:
+            self._take(layers.convergence["solve"])
         return Picture(layers, self._engine.metadata, options)
 
     @property

@@ -100,7 +100,8 @@ class Camera(TypedDict, total=False):
 class PictureOptions(TypedDict, total=False):
     """What a picture shows, and how.
 
-    width, height: pixels, 1 to 16384; samples: of a pixel, four at a time, 0 for 16, or 256 with an aperture;
+    width, height: pixels, 1 to 16384; samples: of a pixel, four at a time, 0 for 16, or 256 with an aperture; converge:
+    the error down to which corrections and samples run on, 0 for none; time_limit: seconds for that, 0 for no limit;
     roughness: of the surface, GGX alpha; radiance: how it leaves the surface; show: "picture", or what is inside
     (docs/window.md, "Views of the inside"); ground: a shadow where the body stands; surroundings: what environment
     lights show, behind it; roughness_map: as in scene files; exposure: "auto" or stops; tone: the curve from radiance
@@ -111,6 +112,8 @@ class PictureOptions(TypedDict, total=False):
     width: int
     height: int
     samples: int
+    converge: float
+    time_limit: float
     roughness: float
     radiance: Radiance
     show: str

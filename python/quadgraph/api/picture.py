@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 import tempfile
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +18,46 @@ from quadgraph.api.solution import ErrorEstimate
 from quadgraph.api.values import Floats, plain
 from quadgraph.base import image_file
 from quadgraph.base.errors import InputError
+
+
+@dataclass(frozen=True)
+class ConvergenceStep:
+    """What a picture was after one more solve. solves: whose mean it is; sweeps: of the transport equation in each;
+    points: at which the last of them evaluated it; samples: of a pixel; seconds: since the first step, which is the
+    picture without convergence; error: that is stated of it, model and noise included; noise: of it, the standard error
+    as a relative RMS over the pixels that the body covers, 0 where it is not known.
+    """
+
+    solves: int
+    sweeps: int
+    points: float
+    samples: int
+    seconds: float
+    error: ErrorEstimate
+    noise: float
+
+
+@dataclass(frozen=True)
+class Convergence:
+    """How a picture came to the error that was asked for. wanted: that; reached: whether it did; out_of_time: whether a
+    limit of time came first; least: what more solves and samples would leave of the error, 0 where it is not known;
+    limit: why it was not reached and what helps, in words, or ""; steps: in their order.
+    """
+
+    wanted: float
+    reached: bool
+    out_of_time: bool
+    least: float
+    limit: str
+    steps: tuple[ConvergenceStep, ...]
+
+    @classmethod
+    def from_report(cls, report: Mapping[str, Any]) -> Self:
+        """Return it from the compiled engine's report."""
+        steps = (ConvergenceStep(**(step | {"error": ErrorEstimate(**step["error"])})) for step in report["steps"])
+        told = {each.name: report[each.name] for each in fields(cls)}
+        return cls(**(told | {"steps": tuple(steps)}))
+
 
 _TONE = {"background", "exposure", "tone", "white_balance"}
 
@@ -77,6 +118,17 @@ class Picture:
         """
         error = self._layers.error
         return ErrorEstimate(**error) if error else None
+
+    @property
+    def standard_error(self) -> Floats | None:
+        """(h, w, 3): of the sum of the layers, where the picture is the mean of several solves, else None."""
+        return self._layers.standard_error
+
+    @property
+    def convergence(self) -> Convergence | None:
+        """How the picture came to the error that `converge` asked for; None where it did not."""
+        found = self._layers.convergence
+        return Convergence.from_report(found) if found else None
 
     @property
     def metadata(self) -> dict[str, str]:

@@ -87,5 +87,7 @@ class Stage:
 
     def render(self) -> Picture:
         """Return a picture with the scene's camera and options. Raises InputError before a solve."""
-        shown = self.engine._engine
-        return Picture(self._open.render(), shown.metadata, dict(self._scene.picture) if self._scene else {})
+        shown, layers = self.engine._engine, self._open.render()
+        if layers.convergence:
+            self.engine._take(layers.convergence["solve"])
+        return Picture(layers, shown.metadata, dict(self._scene.picture) if self._scene else {})

@@ -9,7 +9,7 @@ from pathlib import Path
 from rich.console import Console
 
 from quadgraph.base import atomic_file, outputs
-from quadgraph.commands import picture_output, render_scene, scene_options
+from quadgraph.commands import converging, picture_output, render_scene, scene_options
 from quadgraph.commands import solve_report as text
 
 
@@ -40,7 +40,9 @@ def run(args: argparse.Namespace) -> int:
     start = time.perf_counter()
     engine = scene_options.make_engine(args)
     report = scene_options.solve(engine, args)
-    picture = engine.render(**scene_options.keywords(args, scene_options.PICTURE_GROUPS))
+    options = scene_options.keywords(args, scene_options.PICTURE_GROUPS)
+    picture = engine.render(told=converging.tell, **options)
+    report = converging.report_of(picture, report)
     scene_options.check_validation(engine)
     shown = picture_output.shown(engine, picture_output.tone(args))
     for path in args.output:

@@ -13,7 +13,7 @@ from rich.console import Console
 from quadgraph.base import atomic_file, image_file, json_text, outputs
 from quadgraph.base.arguments import positive_int
 from quadgraph.base.errors import InputError
-from quadgraph.commands import frame_output, picture_output, scene_options, scene_overrides
+from quadgraph.commands import converging, frame_output, picture_output, scene_options, scene_overrides
 from quadgraph.commands import solve_report as text
 from quadgraph.commands.progress_bar import progress_bar
 from quadgraph.core import load_core
@@ -120,7 +120,8 @@ def render(stage, file, frames: Iterable[float], outputs: list[Path]) -> list[di
             if not reports:
                 scene_options.tell_map(stage.map_report)
             report = stage.solve()
-            picture = stage.render()
+            picture = stage.render(told=converging.tell)
+            report = converging.report_of(picture, report)
             scene_options.check_validation(stage.engine)
             written.add(picture, frame, shown)
             report |= {"frame": frame, "seconds": time.perf_counter() - start}

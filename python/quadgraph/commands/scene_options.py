@@ -13,7 +13,7 @@ from rich.console import Console
 
 from quadgraph.base.arguments import add_device_arguments, add_strict_argument
 from quadgraph.base.errors import InputError
-from quadgraph.commands import own_mesh
+from quadgraph.commands import converging, own_mesh
 from quadgraph.core import load_core
 
 if TYPE_CHECKING:
@@ -178,12 +178,19 @@ def picture(engine: Engine, args: argparse.Namespace) -> tuple[Picture, dict]:
     report = solve(engine, args)
     made = engine.render(**keywords(args, PICTURE_GROUPS))
     check_validation(engine)
-    return made, report
+    return made, converging.report_of(made, report)
 
 
 def exit_status(reports: Iterable[dict], strict: bool) -> int:
-    """3 if a solve did not converge or, where that is held against it, misses the error asked for, else 0."""
-    return 3 if any(report["stopped"] or (strict and report["missed"]) for report in reports) else 0
+    """3 if a solve did not converge, a picture did not reach the error that it was to converge to or, where that is
+    held against it, a solve misses the error asked for, else 0.
+    """
+    return 3 if any(_fails(report, strict) for report in reports) else 0
+
+
+def _fails(report: dict, strict: bool) -> bool:
+    found = report.get("convergence")
+    return bool(report["stopped"] or (strict and report["missed"]) or (found and not found["reached"]))
 
 
 def check_validation(engine: Engine) -> None:

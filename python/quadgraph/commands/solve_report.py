@@ -105,6 +105,21 @@ def certificate_texts(found: dict) -> list[str]:
     return [*against, f"error measured by {walks}: {parts}"]
 
 
+def step_text(step: dict) -> str:
+    """One step of a picture that converges in words."""
+    solves = "1 solve" if step["solves"] == 1 else f"{step['solves']} solves"
+    sweeps = "1 sweep" if step["sweeps"] == 1 else f"{step['sweeps']} sweeps"
+    noise = f", of that noise {100 * step['noise']:.2g}%" if step["noise"] > 0 else ""
+    error = f"error {100 * step['error']['whole']:.2g}%{noise}"
+    return f"{solves} of {sweeps}, {step['samples']} samples a pixel: {error}, {step['seconds']:.1f} s"
+
+
+def convergence_texts(found: dict) -> list[str]:
+    """Say what a picture is the mean of, and why it did not reach the error that was asked for."""
+    against = [] if found["reached"] else [f"warning: converge {100 * found['wanted']:.2g}%: {found['limit']}"]
+    return [f"mean of {step_text(found['steps'][-1])}", *against]
+
+
 def parts_text(error: dict | None) -> str:
     """Return the error over the whole surface, its unlit part and its dimmest third in words."""
     if error is None:
@@ -129,6 +144,7 @@ def solver_texts(report: dict) -> list[str]:
     """
     picture = report.get("picture_error")
     texts = [f"error of the picture: {parts_text(picture)} (estimate)"] if picture else []
+    texts += convergence_texts(report["convergence"]) if report.get("convergence") else []
     texts += certificate_texts(report["certificate"]) if report.get("certificate") else []
     texts += [report["budget"]] if report["budget"] else []
     texts += [path_text(report["path"])] if report.get("path") else []

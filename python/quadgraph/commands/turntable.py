@@ -15,7 +15,7 @@ from rich.console import Console
 from quadgraph.base import atomic_file, image_file, outputs
 from quadgraph.base.arguments import positive_float, positive_int
 from quadgraph.base.errors import InputError
-from quadgraph.commands import frame_output, picture_output, render_scene, scene_options, turning
+from quadgraph.commands import converging, frame_output, picture_output, render_scene, scene_options, turning
 from quadgraph.commands import solve_report as text
 from quadgraph.commands.progress_bar import progress_bar
 from quadgraph.core import load_core
@@ -90,7 +90,8 @@ def render(args: argparse.Namespace, written: frame_output.Frames) -> list[dict]
         for frame in progress.track(range(args.frames), description="frames"):
             picture = turn.at(360 * frame / args.frames)
             written.add(picture, frame, turn.shown())
-            reports.append(turn.report | {"frame": frame, "picture_error": picture.error, "passes": engine.passes})
+            report = converging.report_of(picture, turn.report)
+            reports.append(report | {"frame": frame, "picture_error": picture.error, "passes": engine.passes})
         written.finish()
     console = Console(highlight=False, soft_wrap=True)
     console.print(text.size_text(engine))

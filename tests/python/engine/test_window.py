@@ -76,6 +76,8 @@ class Hand:
     def __init__(
         self, server: Server, folder: Path, *arguments: str, body: Path = tiny.PATH, program: tuple[str, ...] = ()
     ):
+        if "--converge" not in arguments and body.suffix != ".json":
+            arguments = (*arguments, "--converge", "0")  # else a picture at rest goes on changing
         self.environment = os.environ | {"DISPLAY": server.name}
         self.environment.pop("WAYLAND_DISPLAY", None)
         self.memory = server.memory

@@ -84,17 +84,12 @@ def _rectangle(generator: np.random.Generator, middle: np.ndarray, radius: float
 
 
 def _row(sight: Sight, wanted: PicturesRun) -> dict[str, Any]:
-    from quadgraph_validation.truth import camera_walks, mesh_walk
-
     case = sight.case
-    walker = camera_walks.CameraWalker(case.surface, [_document(case)])
-    eye = camera_walks.Eye(sight.eye.copy(), sight.look_at.copy(), sight.fov, "y", PIXELS, PIXELS)
-    volume = mesh_walk.volume_of(case.medium)
-    truth = walker.see(eye, 0, volume, case.medium.eta, wanted.walks, case.seed, lambda _share: None)
+    truth, deviation = truth_of(sight, wanted.walks)
     found, covered, stated = _pictures(sight, wanted.device)
     inside = blocks(covered) > 0.999
-    noise = np.sqrt(blocks(truth.noise[0] ** 2)[inside]) / BLOCK
-    wanted_blocks = blocks(truth.radiance[0])[inside]
+    noise = np.sqrt(blocks(deviation**2)[inside]) / BLOCK
+    wanted_blocks = blocks(truth)[inside]
     true = {way: errors(blocks(found[way])[inside], wanted_blocks, noise) for way in WAYS}
     return {
         "seed": case.seed,
@@ -109,6 +104,18 @@ def _row(sight: Sight, wanted: PicturesRun) -> dict[str, Any]:
         "ratio": {way: float(blocks(found[way])[inside].sum() / wanted_blocks.sum()) for way in WAYS},
         "stated": stated,
     }
+
+
+def truth_of(sight: Sight, walks: int) -> tuple[np.ndarray, np.ndarray]:
+    """Radiance (h, w) of scattered light by so many walks a pixel, and its standard error."""
+    from quadgraph_validation.truth import camera_walks, mesh_walk
+
+    case = sight.case
+    walker = camera_walks.CameraWalker(case.surface, [_document(case)])
+    eye = camera_walks.Eye(sight.eye.copy(), sight.look_at.copy(), sight.fov, "y", PIXELS, PIXELS)
+    volume = mesh_walk.volume_of(case.medium)
+    truth = walker.see(eye, 0, volume, case.medium.eta, walks, case.seed, lambda _share: None)
+    return truth.radiance[0], truth.noise[0]
 
 
 def _document(case: UnseenCase) -> dict[str, Any]:
@@ -139,14 +146,15 @@ def _pictures(sight: Sight, device: str) -> tuple[dict[str, np.ndarray], np.ndar
                         engine.solve(motion=True)
                 else:
                     engine.solve(correction=way == "rest")
-                picture = engine.render(_camera(sight), width=PIXELS, height=PIXELS, samples=4)
+                picture = engine.render(camera_of(sight), width=PIXELS, height=PIXELS, samples=4)
                 found[way] = picture.scattered[..., 0].astype(float)
                 if picture.error is not None:
                     stated[way] = {part: getattr(picture.error, part) for part in PARTS}
     return found, picture.alpha.astype(float), stated
 
 
-def _camera(sight: Sight) -> Camera:
+def camera_of(sight: Sight) -> Camera:
+    """Where it is photographed from."""
     return {"eye": _vector(sight.eye), "look_at": _vector(sight.look_at), "fov": sight.fov, "up": "y"}
 
 

@@ -67,7 +67,7 @@ def answers(case: UnseenCase, patch: np.ndarray, how: UnseenSetting, folder: Pat
     """
     mesh, file = folder / "body.ply", folder / "body.qgraph"
     unseen_bodies.write(mesh, case.surface)
-    materials = (_text(case.medium, folder),) if how.for_material else ()
+    materials = (text_of(case.medium, folder),) if how.for_material else ()
     report = bake(mesh, file, BakeOptions(unit="mm", for_materials=materials))
     with Engine(file, device=how.device) as engine:
         engine.material = material_of(case.medium)
@@ -126,7 +126,7 @@ def _light(case: UnseenCase, folder: Path) -> Light:
     return EnvironmentLight(folder / "sky.hdr", 1.0)
 
 
-def _text(medium: UnseenMedium, folder: Path) -> str:
+def text_of(medium: UnseenMedium, folder: Path) -> str:
     """A medium's text, or the name of its file."""
     material = material_of(medium)
     if isinstance(material, Material):

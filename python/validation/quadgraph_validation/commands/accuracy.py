@@ -35,13 +35,14 @@ STUDIES = {
     "unseen": "unseen",
     "light": "light",
     "pictures": "pictures",
+    "converging": "converging",
     "certificate": "certificate",
     "acquire": "acquire",
     "volume": "volume",
     "veined": "veined",
 }
 
-_WIDE = ("dense", "unseen", "pictures", "certificate", "acquire", "volume", "veined")
+_WIDE = ("dense", "unseen", "pictures", "converging", "certificate", "acquire", "volume", "veined")
 _TABLE_WIDTH = 190  # characters, than which the tables of these cannot be read narrower
 
 # Studies of real bodies, which the CPU reference cannot stand in for, because only the engine does what they judge.
@@ -54,6 +55,7 @@ ON_ENGINE = {
     "unseen": "prints an error",
     "light": "prints an error",
     "pictures": "makes pictures",
+    "converging": "makes pictures",
     "certificate": "is certified",
     "acquire": "is what photographs are held against",
     "volume": "is what photographs are held against",
@@ -61,6 +63,7 @@ ON_ENGINE = {
 }
 
 _UNSEEN_WALKS, _ACQUIRE_WALKS, _VEINED_WALKS, _PICTURE_WALKS = 2_000_000, 8192, 20_000, 2000
+_CERTIFICATE_S, _CONVERGING_S = 15.0, 120.0
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -69,7 +72,9 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument("study", choices=STUDIES, metavar="STUDY", help=", ".join(STUDIES))
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the record here")
     parser.add_argument(
-        "--resume", action="store_true", help="acquire, volume, veined: go on with the record of --json, body by body"
+        "--resume",
+        action="store_true",
+        help="acquire, converging, volume, veined: go on with the record of --json, body by body",
     )
     parser.add_argument(
         "--reference", action="store_true", help="solve with the CPU reference in double precision instead of the GPU"
@@ -81,7 +86,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     _add_scenes_options(parser.add_argument_group("scenes, unseen"))
     _add_unseen_options(
         parser.add_argument_group(
-            "unseen; light, pictures, certificate, volume, acquire, veined take --seed, --count, some --walks"
+            "unseen; light, pictures, converging, certificate, volume, acquire, veined take --seed, --count, some more"
         )
     )
 
@@ -124,7 +129,14 @@ def _add_unseen_options(group: argparse._ArgumentGroup) -> None:
         help="also 30 frames in which the light turns by 3 degrees each and the material is edited",
     )
     group.add_argument(
-        "--seconds", type=positive_float, default=15.0, metavar="S", help="of a certificate (default: %(default)s)"
+        "--seconds",
+        type=positive_float,
+        metavar="S",
+        help=f"of a certificate (default: {_CERTIFICATE_S:g}), or that a picture may converge for (default: "
+        f"{_CONVERGING_S:g})",
+    )
+    group.add_argument(
+        "--converge", type=positive_float, default=0.01, metavar="E", help="of converging (default: %(default)s)"
     )
     group.add_argument("--for-material", action="store_true", help="bake each body for its own material")
     group.add_argument(
@@ -132,7 +144,7 @@ def _add_unseen_options(group: argparse._ArgumentGroup) -> None:
         type=positive_int,
         metavar="N",
         help=f"of each truth (default: {_UNSEEN_WALKS}), or of a pixel of acquire (default: {_ACQUIRE_WALKS}), "
-        f"veined (default: {_VEINED_WALKS}) and pictures (default: {_PICTURE_WALKS})",
+        f"veined (default: {_VEINED_WALKS}), converging and pictures (default: {_PICTURE_WALKS})",
     )
     group.add_argument(
         "--sweeps",
@@ -183,7 +195,10 @@ def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
     if args.study == "certificate":
         with Console(stderr=True).status("study: certificate"):
             walks = args.walks or _UNSEEN_WALKS
-            return study.run(study.CertificateRun(args.seed, args.count, args.seconds, walks, args.device))
+            seconds = args.seconds or _CERTIFICATE_S
+            return study.run(study.CertificateRun(args.seed, args.count, seconds, walks, args.device))
+    if args.study == "converging":
+        return _run_converging(study, args)
     if args.study == "acquire":
         walks = args.walks or _ACQUIRE_WALKS
         return _run_by_rows(study, args, study.AcquireRun(args.seed, args.count, walks, args.device), walks=walks)
@@ -214,6 +229,13 @@ def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
         return record
     with Console(stderr=True).status(f"study: {args.study}"):
         return study.run(args.device, args.meshes, args.scene)
+
+
+def _run_converging(study: ModuleType, args: argparse.Namespace) -> dict:
+    walks, seconds = args.walks or _PICTURE_WALKS, args.seconds or _CONVERGING_S
+    asked = (walks, args.converge, seconds, args.device, args.for_material)
+    wanted = study.ConvergingRun(args.seed, args.count, *asked)
+    return _run_by_rows(study, args, wanted, walks=walks, converge=args.converge, for_material=args.for_material)
 
 
 def _run_by_rows(study: ModuleType, args: argparse.Namespace, wanted: Any, **same: Any) -> dict:
