@@ -155,7 +155,8 @@ std::string Converging::limit(double whole) const {
   const double most = std::max({mesh, light, sweeps, noise, angle});
   if (most == mesh) {
     return said + "the mesh's part is " + percent_text(mesh) +
-           "; a finer file has less, of bake --surface-vertices, or --for-material where the material changes in space";
+           "; a finer file has less: of more vertices where the material changes within its triangles, and of bake "
+           "--for-material where it changes deeper";
   }
   if (most == light)
     return said + "the light's part is " + percent_text(light) + "; fewer lights have finer shadow maps";
