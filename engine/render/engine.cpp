@@ -258,6 +258,9 @@ const PictureBuffers& Engine::draw_frame(const View& view, const RenderOptions& 
 Picture Engine::render(const View& view, const RenderOptions& options,
                        const std::function<void(const ConvergenceStep&)>& told) {
   const auto turn = implementation_->in_use.take();
+  if (options.time_limit > 0 && options.converge == 0) {
+    throw InputError("time_limit: found without converge, which it limits");
+  }
   Picture picture = read_picture(implementation_->device, draw(view, options));
   picture.error = picture_error();
   if (const auto& shown = legend()) draw_legend(picture, *shown);

@@ -21,9 +21,6 @@ void check_convergence(const RenderOptions& options) {
     throw InputError("time_limit: found " + number_text(options.time_limit) + " s, expected " +
                      time_limit_range.text());
   }
-  if (options.time_limit > 0 && options.converge == 0) {
-    throw InputError("time_limit: found without converge, which it limits");
-  }
 }
 
 }  // namespace
