@@ -31,9 +31,9 @@ double share_left_by(const CorrectionReport& done) {
   return done.goes_on || done.sweeps.size() > 1 ? left_by_next : left_by_first + done.returns;
 }
 
-ErrorEstimate share_taken(const CorrectionReport& done) {
-  const auto share = [](double change, double noise) {
-    const double all = noise * noise, known = std::max(0.0, change * change - by_chance * all);
+ErrorEstimate share_taken(const CorrectionReport& done, std::uint32_t mean_of) {
+  const auto share = [&](double change, double noise) {
+    const double all = noise * noise / std::max(mean_of, 1u), known = std::max(0.0, change * change - by_chance * all);
     return noise > 0 ? known / (known + all) : 1;
   };
   ErrorEstimate taken = by_parts(share, done.changed, done.sweeps.back().noise);
@@ -47,7 +47,7 @@ ErrorEstimate left_by_sweeps(const CorrectionReport& done) {
 }
 
 ErrorEstimate noise_of(const CorrectionReport& done, std::uint32_t mean_of) {
-  const double share = noise_over_difference / std::sqrt(static_cast<double>(mean_of));
+  const double share = noise_over_difference / std::sqrt(static_cast<double>(std::max(mean_of, 1u)));
   return by_parts([&](double noise, double taken) { return share * taken * noise; }, done.sweeps.back().noise,
                   done.taken);
 }
@@ -58,8 +58,7 @@ void state_corrected_error(SolveReport& report, double unresolved, std::uint32_t
   const auto of_model = [](double left, double noise, double all, double taken) {
     return std::hypot(left, noise, noise_over_difference * (1 - taken) * all);
   };
-  report.model_error =
-      by_parts(of_model, left_by_sweeps(done), noise_of(done, mean_of), done.changed, done.taken);
+  report.model_error = by_parts(of_model, left_by_sweeps(done), noise_of(done, mean_of), done.changed, done.taken);
   if (report.algebraic) {
     report.algebraic = by_parts([](double part) { return solver_left * part; }, *report.algebraic);
   }

@@ -117,7 +117,7 @@ SolveReport Simulation::solve(const SolveOptions& options, const std::function<v
 LightRoom Simulation::light_room(const SolveOptions& options) {
   Implementation& self = *implementation_;
   return {self.beams.on_device, self.light_error->difference(), self.tree->ref(), entering_rays(options.mean_rays),
-          1 / std::sqrt(static_cast<float>(options.mean_of))};
+          1 / std::sqrt(static_cast<float>(std::max(options.mean_of, 1u)))};
 }
 
 void Simulation::state_light_error(const SolveOptions& options, SolveReport& report) {

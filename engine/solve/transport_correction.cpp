@@ -311,11 +311,11 @@ void TransportCorrection::sweep_at_rest(const CorrectionParts& parts, const Solv
     report.returns = samples_.returns();
   } while (report.sweeps.size() < most && (options.sweeps > 0 || !last_of_all(report, enough)));
   report.changed = change_of_all(report);
-  if (options.sweeps == 0) take(parts, report);
+  if (options.sweeps == 0 || options.mean_of > 0) take(parts, options.mean_of, report);
 }
 
-void TransportCorrection::take(const CorrectionParts& parts, CorrectionReport& report) {
-  report.taken = share_taken(report);
+void TransportCorrection::take(const CorrectionParts& parts, std::uint32_t mean_of, CorrectionReport& report) {
+  report.taken = share_taken(report, mean_of);
   const double share = std::max(report.taken.whole, least_taken);
   if (share < 1) samples_.record_taken(parts.transport, parts.solved.op, share);
 }
@@ -329,7 +329,7 @@ CorrectionReport TransportCorrection::run(const CorrectionParts& parts, const So
     report.sweeps.push_back(sweep_in_motion(parts, task, shares));
     report.goes_on = shares.ahead && shares.adds;
     report.changed = changed_;
-    take(parts, report);
+    take(parts, 0, report);
     parts.transport.work.recorder.submit();
     report.returns = samples_.returns();
     frames_ = report.sweeps.back().noise.whole <= most_noise_known ? frames + 1 : 0;

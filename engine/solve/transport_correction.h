@@ -86,7 +86,7 @@ class TransportCorrection {
   CorrectedSweep sweep_in_motion(const CorrectionParts& parts, const WalkTask& task, const TransportShares& shares);
   void sweep_at_rest(const CorrectionParts& parts, const SolveOptions& options, CorrectionReport& report);
   // Of what was changed, as much as stands out of the noise.
-  void take(const CorrectionParts& parts, CorrectionReport& report);
+  void take(const CorrectionParts& parts, std::uint32_t mean_of, CorrectionReport& report);
 
   TransportSamples samples_;
   std::uint32_t draws_ = 0;     // of points, in the load

@@ -191,8 +191,7 @@ std::string solve_help() {
 
 std::string render_help() {
   return "The last solve as a picture, seen from `view`, else from the front; told: is called with a dict after each "
-         "step "
-         "of a picture that converges. Raises InputError. Keywords:" +
+         "step of a picture that converges. Raises InputError. Keywords:" +
          keywords_help({camera_group, picture_group});
 }
 

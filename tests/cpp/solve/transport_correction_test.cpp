@@ -250,7 +250,8 @@ TEST_CASE("of a change that is lost in its noise little is taken, and the power 
   REQUIRE(report.correction->sweeps.size() == 1);
   CHECK(asked_report.correction->taken.whole == 1);
   const double change = report.correction->sweeps[0].change.whole, noise = report.correction->sweeps[0].noise.whole;
-  CHECK(report.correction->taken.whole == doctest::Approx(change * change / (change * change + noise * noise)));
+  const double known = change * change - 0.25 * noise * noise;  // the rest may have come about by chance
+  CHECK(report.correction->taken.whole == doctest::Approx(known / (known + noise * noise)));
   CHECK(report.correction->taken.whole < 0.9);
   CHECK(relative_difference(found, plain) < relative_difference(asked, plain));
   CHECK(report.model_error->whole < asked_report.model_error->whole);
