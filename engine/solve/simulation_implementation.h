@@ -215,11 +215,8 @@ struct Simulation::Implementation {
     if (!optical_changed) return;
     std::vector<gpu::Optical> now = optical_at(0);
     const double eta = static_cast<double>(coefficients.eta()), step = std::abs(eta - corrected_eta) / eta;
-    if (std::max(extinction_change(corrected_optical, now), step) > most_carried) {
-      correction->forget();
-    } else {
-      correction->edited();
-    }
+    const bool another = std::max(extinction_change(corrected_optical, now), step) > most_carried;
+    another ? correction->forget() : correction->edited();
     corrected_optical = std::move(now);
     corrected_eta = eta;
     optical_changed = false;
@@ -246,6 +243,7 @@ struct Simulation::Implementation {
     const CorrectionParts parts{transport, operators, boundary, of_solve, results, check};
     report.correction = correction->run(parts, options, {Method::fem, eta, coefficients.even(), options.mean_rays});
     results.record_corrected(work, of_solve, correction->fluence(), correction->exitance(), report.correction->taken);
+    correction->record_taken(parts, *report.correction);
     work.recorder.submit();
     report.energy = results.energy();
     const TransportPower power = correction->power(glm::dvec3(scale()), report.energy.scattered_out);

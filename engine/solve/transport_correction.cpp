@@ -311,11 +311,10 @@ void TransportCorrection::sweep_at_rest(const CorrectionParts& parts, const Solv
     report.returns = samples_.returns();
   } while (report.sweeps.size() < most && (options.sweeps > 0 || !last_of_all(report, enough)));
   report.changed = change_of_all(report);
-  if (options.sweeps == 0 || options.mean_of > 0) take(parts, options.mean_of, report);
+  if (options.sweeps == 0 || options.mean_of > 0) report.taken = share_taken(report, options.mean_of);
 }
 
-void TransportCorrection::take(const CorrectionParts& parts, std::uint32_t mean_of, CorrectionReport& report) {
-  report.taken = share_taken(report, mean_of);
+void TransportCorrection::record_taken(const CorrectionParts& parts, const CorrectionReport& report) {
   const double share = std::max(report.taken.whole, least_taken);
   if (share < 1) samples_.record_taken(parts.transport, parts.solved.op, share);
 }
@@ -329,7 +328,7 @@ CorrectionReport TransportCorrection::run(const CorrectionParts& parts, const So
     report.sweeps.push_back(sweep_in_motion(parts, task, shares));
     report.goes_on = shares.ahead && shares.adds;
     report.changed = changed_;
-    take(parts, 0, report);
+    report.taken = share_taken(report, 0);
     parts.transport.work.recorder.submit();
     report.returns = samples_.returns();
     frames_ = report.sweeps.back().noise.whole <= most_noise_known ? frames + 1 : 0;

@@ -47,6 +47,10 @@ class TransportCorrection {
   // goes on from what is known. Throws SolverError where a value is not finite, and what `check` throws.
   CorrectionReport run(const CorrectionParts& parts, const SolveOptions& options, const WalkTask& task);
 
+  // Of what was changed of the fluence, from here on, the share that `report` says. To be called once after a run, when
+  // the energy has been taken, which is that of all.
+  void record_taken(const CorrectionParts& parts, const CorrectionReport& report);
+
   // The vertices have moved since the last call.
   void moved() { moved_ = true; }
 
@@ -85,8 +89,6 @@ class TransportCorrection {
   TransportShares shares_in_motion(std::uint32_t frames) const;
   CorrectedSweep sweep_in_motion(const CorrectionParts& parts, const WalkTask& task, const TransportShares& shares);
   void sweep_at_rest(const CorrectionParts& parts, const SolveOptions& options, CorrectionReport& report);
-  // Of what was changed, as much as stands out of the noise.
-  void take(const CorrectionParts& parts, std::uint32_t mean_of, CorrectionReport& report);
 
   TransportSamples samples_;
   std::uint32_t draws_ = 0;     // of points, in the load
