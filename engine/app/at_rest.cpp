@@ -1,7 +1,5 @@
 // What the viewer does while nothing changes: the picture goes on converging, on a stage of its own, so that the
 // solution that is seen from anywhere at once stays what it is.
-#include <memory>
-
 #include "engine/app/report.h"
 #include "engine/app/viewer.h"
 #include "engine/base/error.h"
@@ -52,15 +50,10 @@ void Viewer::begin_convergence() {
   const Scene& scene = state_.scene;
   if (!rest_) rest_.emplace(stage_.shared_device());
   rest_->show(scene);
-  const auto start = std::make_unique<ConvergingStart>();
-  start->view = scene.view;
-  start->render = scene.render;
-  start->render.width = shown_part_.width;
-  start->render.height = shown_part_.height;
-  start->solve = scene.solve;
-  start->report = measured_.solve;
-  start->error = *measured_.picture_error;
-  converging_.emplace(rest_->engine(), *start);
+  ConvergingStart start{scene.view, scene.render, scene.solve, measured_.solve, *measured_.picture_error};
+  start.render.width = shown_part_.width;
+  start.render.height = shown_part_.height;
+  converging_.emplace(rest_->engine(), start);
 }
 
 void Viewer::show_convergence() {

@@ -7,8 +7,8 @@
 #include <glm/matrix.hpp>
 #include <numbers>
 #include <string>
-#include <thread>
 
+#include "engine/base/all_cores.h"
 #include "engine/base/error.h"
 #include "engine/deform/mean_value.h"
 #include "shaders/deform/deform.h"
@@ -159,15 +159,10 @@ void check_shapes(std::span<const Deformer> list, const QuadGraph& graph) {
 
 std::vector<float> cage_weights(const Deformer& cage, std::span<const glm::vec3> vertices) {
   std::vector<float> weights(cage.cage.size() * vertices.size());
-  const auto some = [&](std::size_t first, std::size_t step) {
-    for (std::size_t v = first; v < vertices.size(); v += step) {
-      const std::vector<double> weight = mean_value_weights(cage.cage, cage.triangles, glm::dvec3(vertices[v]));
-      for (std::size_t k = 0; k < weight.size(); ++k) weights[k * vertices.size() + v] = static_cast<float>(weight[k]);
-    }
-  };
-  const std::size_t count = std::max(1u, std::thread::hardware_concurrency());
-  std::vector<std::jthread> threads;
-  for (std::size_t k = 0; k < count; ++k) threads.emplace_back(some, k, count);
+  on_all_cores(vertices.size(), [&](std::size_t v) {
+    const std::vector<double> weight = mean_value_weights(cage.cage, cage.triangles, glm::dvec3(vertices[v]));
+    for (std::size_t k = 0; k < weight.size(); ++k) weights[k * vertices.size() + v] = static_cast<float>(weight[k]);
+  });
   return weights;
 }
 

@@ -36,10 +36,6 @@ ErrorEstimate or_none(const std::optional<ErrorEstimate>& part) {
   return part.value_or(ErrorEstimate{});
 }
 
-bool from_all_around(const Light& light) {
-  return light.kind == LightKind::ambient || light.kind == LightKind::environment;
-}
-
 }  // namespace
 
 Converging::Converging(Engine& engine, const ConvergingStart& start)

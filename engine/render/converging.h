@@ -63,7 +63,6 @@ class Converging {
   Metadata metadata_;
   std::chrono::steady_clock::time_point began_;
   std::uint32_t frames_;                 // of each solve
-  std::uint32_t samples_;                // of a frame
   std::uint32_t first_seed_;             // of the start
   std::uint32_t made_ = 0, solves_ = 0;  // all, and those in the mean
   std::uint32_t drawn_ = 0;              // frames of the solve that is being drawn

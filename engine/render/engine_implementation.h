@@ -142,11 +142,7 @@ struct Engine::Implementation {
   }
 
   // Light whose way to the surface depends on what faces see of each other.
-  bool sky_shines() const {
-    return std::ranges::any_of(lights, [](const Light& light) {
-      return light.kind == LightKind::ambient || light.kind == LightKind::environment;
-    });
-  }
+  bool sky_shines() const { return std::ranges::any_of(lights, from_all_around); }
 
   void check_irradiance() const {
     if (material.empty()) throw InputError("irradiance: set a material first; the light that enters depends on eta");

@@ -36,9 +36,9 @@ glm::dvec3 nearest_weights(const glm::dvec3& p, const glm::dvec3& a, const glm::
   return sum > 0 ? glm::dvec3(va, vb, vc) / sum : glm::dvec3(1, 0, 0);
 }
 
-Level surface_of(const QuadGraph& body) {
-  if (!body.levels().empty()) return body.levels().front();
+Level shown_surface(const QuadGraph& body) {
   Level shown;
+  if (!body.levels().empty()) return shown;
   shown.vertices = body.display().vertices;
   shown.faces = body.display().triangles;
   return shown;
@@ -46,7 +46,8 @@ Level surface_of(const QuadGraph& body) {
 
 }  // namespace
 
-BodySurface::BodySurface(const QuadGraph& body) : level_(surface_of(body)) {
+BodySurface::BodySurface(const QuadGraph& body)
+    : shown_(shown_surface(body)), level_(body.levels().empty() ? shown_ : body.levels().front()) {
   if (level_.faces.empty()) throw InputError("body: no surface found, one with faces is wanted");
   low_ = glm::dvec3(std::numeric_limits<double>::max());
   high_ = -low_;

@@ -61,7 +61,8 @@ class BodySurface {
   template <typename Counts>
   glm::dvec3 around(std::uint32_t vertex, const Counts& counts) const;
 
-  Level level_;  // of a body without levels: vertices and faces alone
+  Level shown_;  // of a body without levels: vertices and faces alone
+  const Level& level_;
   glm::dvec3 low_{0}, high_{0};
   std::vector<glm::dvec3> normals_;           // of the faces, unit
   std::vector<std::uint32_t> begin_, about_;  // faces about vertex v: about_[begin_[v]] ... about_[begin_[v + 1] - 1]

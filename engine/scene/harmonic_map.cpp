@@ -150,7 +150,7 @@ class TetMap {
       : body_(body), level_(body.level()), locator_(level_), places_(places) {}
 
   glm::dvec3 at(const glm::dvec3& point) const {
-    const auto found = locator_.find(point);
+    const auto found = locator_.find(point);  // whose own coordinates are held within the tet
     const glm::uvec4& tet = level_.tets[found ? found->tet : level_.face_tets[body_.find(point).face]];
     const glm::dvec3 w = glm::inverse(edges_of(tet, level_.vertices)) * (point - glm::dvec3(level_.vertices[tet[0]]));
     return mixed(tet, {1 - w.x - w.y - w.z, w.x, w.y, w.z});

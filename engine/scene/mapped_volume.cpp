@@ -10,15 +10,10 @@
 #include "engine/scene/harmonic_map.h"
 #include "engine/scene/shell_map.h"
 #include "engine/scene/source_domain.h"
+#include "engine/solve/asked_error.h"
 
 namespace quadgraph {
 namespace {
-
-std::string whole_percent(double share) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.0f%%", 100 * share);
-  return text.data();
-}
 
 std::string short_number(double value) {
   std::array<char, 32> text{};
@@ -80,7 +75,7 @@ std::string report_text(const MaterialMap& map, const MapReport& report) {
   const Stretch& s = report.stretch;
   std::string text = "map " + std::string(name_of(map.kind)) + ": a mm of the source is " + short_number(s.median) +
                      " mm of the body (" + short_number(s.low) + " to " + short_number(s.high) + " in 90%)";
-  if (map.kind == MapKind::shell) text += ", " + whole_percent(report.core) + " of the inside is interpolated";
+  if (map.kind == MapKind::shell) text += ", " + percent_text(report.core) + " of the inside is interpolated";
   if (report.tets > 0) {
     text += ", " + std::to_string(report.flipped_tets) + " of " + std::to_string(report.tets) + " tets are inside out";
   }

@@ -81,9 +81,6 @@ ErrorEstimate change_of_all(const CorrectionReport& done) {
   return all;
 }
 
-// Of the fluence, of which as much is taken as of the exitance of the whole surface.
-constexpr double least_taken = 1e-6;
-
 // Whether another sweep would change less than is wanted, or than the noise.
 bool last_of_all(const CorrectionReport& done, const ErrorEstimate& wanted) {
   const CorrectedSweep& last = done.sweeps.back();
@@ -315,8 +312,7 @@ void TransportCorrection::sweep_at_rest(const CorrectionParts& parts, const Solv
 }
 
 void TransportCorrection::record_taken(const CorrectionParts& parts, const CorrectionReport& report) {
-  const double share = std::max(report.taken.whole, least_taken);
-  if (share < 1) samples_.record_taken(parts.transport, parts.solved.op, share);
+  if (report.taken.whole < 1) samples_.record_taken(parts.transport, parts.solved.op, report.taken.whole);
 }
 
 CorrectionReport TransportCorrection::run(const CorrectionParts& parts, const SolveOptions& options,

@@ -120,11 +120,12 @@ void TransportSamples::record_start(const TransportParts& parts, const WalkTask&
   work.recorder.fill(segments_, 0);
   record_walk(parts, task);
   record_mass(parts);
-  record_fluence(parts, op, shares.ahead ? 1.0f : 0.0f, 0);
+  record_fluence(parts, op, {.keep = shares.ahead ? 1.0f : 0.0f, .taken = 0, .swept = 0});
   record_weights(parts);
 }
 
-void TransportSamples::record_fluence(const TransportParts& parts, const OperatorBuffers& op, float keep, float taken) {
+void TransportSamples::record_fluence(const TransportParts& parts, const OperatorBuffers& op,
+                                      const FluenceShares& shares) {
   Workspace& work = parts.work;
   const gpu::TransportFluencePush fluence{.x = op.x.address(),
                                           .to_phi = op.to_phi.address(),
@@ -136,8 +137,9 @@ void TransportSamples::record_fluence(const TransportParts& parts, const Operato
                                           .first = parts.walk.first_deposit().address(),
                                           .all = parts.walk.deposit(Method::fem).address(),
                                           .count = parts.level.vertex_count,
-                                          .keep = keep,
-                                          .taken = taken};
+                                          .keep = shares.keep,
+                                          .taken = shares.taken,
+                                          .swept = shares.swept};
   work.recorder.dispatch(work.passes.of(shader::transport_fluence, op.model), fluence, parts.level.vertex_count,
                          "transport start",
                          parts.level.vertex_count * (op.field_bytes() + 4 * vec3_bytes + 2 * sum_bytes));

@@ -94,9 +94,9 @@ class TransportSamples {
   void record_step(const TransportParts& parts, const std::array<device::Buffer, 2>& load,
                    const std::array<device::Buffer, 2>& change, const TransportShares& shares);
 
-  // Takes so much of what all steps have changed of the fluence of `op`, above 0.
+  // Takes so much of what all steps have changed of the fluence of `op`.
   void record_taken(const TransportParts& parts, const OperatorBuffers& op, double share) {
-    record_fluence(parts, op, 0, static_cast<float>(share));
+    record_fluence(parts, op, {.keep = 0, .taken = static_cast<float>(share), .swept = 1});
   }
 
   // What the points of either half are missing, after draws of which so much counts; `known` is the share of what they
@@ -119,7 +119,11 @@ class TransportSamples {
   void make_room_apart(const TransportParts& parts);
   void record_walk(const TransportParts& parts, const WalkTask& task);
   void record_weights(const TransportParts& parts);
-  void record_fluence(const TransportParts& parts, const OperatorBuffers& op, float keep, float taken);
+  struct FluenceShares {  // as TransportFluencePush says
+    float keep, taken;
+    std::uint32_t swept;
+  };
+  void record_fluence(const TransportParts& parts, const OperatorBuffers& op, const FluenceShares& shares);
   void record_mass(const TransportParts& parts);
   void record_smooth(const TransportParts& parts, const device::Buffer* mass, const device::Buffer& from,
                      const device::Buffer& to);

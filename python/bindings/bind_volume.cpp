@@ -126,11 +126,13 @@ void bind_volume(py::module_& module) {
       py::arg("volume"), "As Engine.set_material of a .npz (docs/scene.md). Raises InputError.");
   module.def(
       "volume_name",
-      [](const std::string& material) -> std::optional<std::string> {
+      [](const std::string& material) -> std::optional<std::pair<std::string, std::optional<std::string>>> {
         const std::optional<VolumeName> name = volume_name(material);
-        return name ? std::optional(name->file.string()) : std::nullopt;
+        if (!name) return std::nullopt;
+        return std::pair(name->file.string(), name->map ? std::optional(to_string(*name->map)) : std::nullopt);
       },
-      py::arg("material"), "The file that a material's text names, None where it is no volume. Raises InputError.");
+      py::arg("material"),
+      "The file that a material's text names, and its map or None; None where it is no volume. Raises InputError.");
   module.def("with_map", &with_map, py::arg("material"), py::arg("map"),
              "A material's text with another map. Raises InputError where it names no volume.");
   module.attr("knowledge_names") = std::vector<std::string>(knowledge_names.begin(), knowledge_names.end());

@@ -21,7 +21,8 @@ struct TransportFluencePush {
   Uints all;    // and with that of light that enters again; the same where there is none
   uint count;
   float keep;   // 1: of `added` all, 0: nothing
-  float taken;  // that share, after sweeps; 0: before them
+  float taken;  // that share
+  uint swept;   // 1: after sweeps, 0: before them
 };
 layout(push_constant, scalar) uniform Block { TransportFluencePush push; };
 
@@ -33,7 +34,7 @@ void main() {
   vec3 again = max(power_at(push.all, v) - power_at(push.first, v), vec3(0)), mass = push.mass.at[v];
   vec3 unscattered = mix(again / mass, vec3(0), equal(mass, vec3(0)));
   vec3 solved = element_or_one(push.to_phi, v) * push.x.at[v].phi + unscattered;
-  if (push.taken > 0.0) {
+  if (push.swept == 1u) {
     push.fluence.at[v] = mix(solved, push.fluence.at[v], push.taken);
     return;
   }

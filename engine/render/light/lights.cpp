@@ -79,6 +79,10 @@ bool has_position(const Light& light) {
   return form_of(light.kind).has(FieldForm::point);
 }
 
+bool from_all_around(const Light& light) {
+  return light.kind == LightKind::ambient || light.kind == LightKind::environment;
+}
+
 SpotCosines spot_cosines(const Light& spot) {
   const float outer = glm::radians(spot.angle);
   // A step over nothing would divide by zero.

@@ -126,6 +126,9 @@ void check_light_count(std::size_t count);
 // Whether it shines from a place: `position` counts.
 bool has_position(const Light& light);
 
+// Whether it comes from all around, less what the body hides: `ambient` and `environment`.
+bool from_all_around(const Light& light);
+
 // Cosines of the angles from its axis at which a spot light begins to fade and ends. In between its intensity is
 // s^2 (3 - 2 s) of that on the axis, s linear in the cosine.
 struct SpotCosines {

@@ -11,10 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 from quadgraph.api.reprs import members_text
+from quadgraph.base.array_types import Doubles as Doubles
+from quadgraph.base.array_types import Floats as Floats
 from quadgraph.base.errors import InputError
 
-Floats: TypeAlias = npt.NDArray[np.float32]
-Doubles: TypeAlias = npt.NDArray[np.float64]
 Vector: TypeAlias = Sequence[float] | npt.NDArray[np.floating[Any]]  # x, y, z
 RGB: TypeAlias = float | Vector  # one number for all channels, or red, green, blue
 

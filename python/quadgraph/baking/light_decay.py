@@ -26,8 +26,8 @@ def opened(material: str) -> str | core.Volume:
 
     A map behind the name, which wants a baked body, is left out: the coefficients are the same elsewhere.
     """
-    file = core.volume_name(material)
-    return material if file is None else core.Volume(Path(file))
+    named = core.volume_name(material)
+    return core.Volume(Path(named[0])) if named else material
 
 
 def decay_rates(material: str | core.Volume) -> tuple[float, ...]:

@@ -165,7 +165,7 @@ def inputs(args: argparse.Namespace) -> list[Path | str | None]:
     """The files, and the texts that may name some, that a run reads."""
     texts = [getattr(args, name, None) for name in ("file", "material")]
     named = load_core().volume_name(texts[1]) if texts[1] else None
-    return [*texts, named, *(args.light or [])]
+    return [*texts, named and named[0], *(args.light or [])]
 
 
 def solve(engine: Engine, args: argparse.Namespace) -> dict:

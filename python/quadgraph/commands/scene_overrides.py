@@ -62,11 +62,11 @@ def changes(args: argparse.Namespace) -> dict[str, Any]:
 
 def _material(text: str) -> dict[str, Any]:
     """A file of a volume is looked for in the working directory, not beside the scene."""
-    file = load_core().volume_name(text)
-    if file is None:
+    named = load_core().volume_name(text)
+    if named is None:
         return {"/material": text}
-    absolute, how = str(Path(file).absolute()), text[len(file) :].removeprefix(",map=")
-    return {"/material": load_core().with_map(absolute, _from_here(how)) if how else absolute}
+    file, how = str(Path(named[0]).absolute()), named[1]
+    return {"/material": load_core().with_map(file, _from_here(how)) if how else file}
 
 
 def _map(text: str) -> dict[str, Any]:

@@ -64,11 +64,9 @@ def of_scene(path: Path, scene: core.Scene) -> KnownMaterial:
     """
     if json.loads(scene.json()).get("edits"):
         raise InputError(f"{path}: /edits: found, {_ALLOWED}; leave the edits out")
-    file = core.volume_name(scene.material)
-    if file is not None and file != scene.material:
-        return _mapped(Path(file), scene.material[len(file) :].removeprefix(",map="), Path(scene.body))
-    if file is not None:
-        return _volume(Path(file), Path(scene.body))
+    if named := core.volume_name(scene.material):
+        file, how = named
+        return _mapped(Path(file), how, Path(scene.body)) if how else _volume(Path(file), Path(scene.body))
     members = json.loads(core.material_json(scene.material))
     if members["pattern"] == "layers":
         raise InputError(f"{path}: /material: pattern 'layers' found, {_ALLOWED}; make it a volume")
