@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 
 #include "engine/base/error.h"
 
@@ -57,6 +58,12 @@ std::string number_text(float value) {
 
 std::string number_text(double value) {
   return shortest(value);
+}
+
+std::string percent_text(double share) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.2g%%", 100 * share);
+  return text;
 }
 
 std::string triple_text(const glm::vec3& value, char separator) {

@@ -25,6 +25,9 @@ glm::vec3 parse_rgb(std::string_view text, const std::string& field);
 std::string number_text(float value);
 std::string number_text(double value);
 
+// A share in per cent, with two digits.
+std::string percent_text(double share);
+
 // number_text of each, joined; `rgb_text` writes equal channels once.
 std::string triple_text(const glm::vec3& value, char separator);
 std::string rgb_text(const glm::vec3& value);

@@ -9,7 +9,7 @@
 
 #include "engine/base/error.h"
 #include "engine/render/picture/frame_offsets.h"
-#include "engine/solve/asked_error.h"
+#include "engine/base/text.h"
 #include "engine/solve/transport_correction.h"
 
 namespace quadgraph {

@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "engine/solve/asked_error.h"
+#include "engine/base/text.h"
 
 namespace quadgraph {
 namespace {

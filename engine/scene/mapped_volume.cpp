@@ -10,7 +10,7 @@
 #include "engine/scene/harmonic_map.h"
 #include "engine/scene/shell_map.h"
 #include "engine/scene/source_domain.h"
-#include "engine/solve/asked_error.h"
+#include "engine/base/text.h"
 
 namespace quadgraph {
 namespace {

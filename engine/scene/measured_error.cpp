@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/base/text.h"
 #include "engine/file/section_table.h"
 #include "engine/optics/material.h"
 #include "engine/render/picture/metadata.h"

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "engine/base/text.h"
 #include "engine/solve/mesh_error.h"
 
 namespace quadgraph {
@@ -12,17 +12,7 @@ namespace {
 // Share of the light that enters which sums in single precision may lose.
 constexpr double lost_in_sums = 2e-6;
 
-std::string two_digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.2g", value);
-  return text;
-}
-
 }  // namespace
-
-std::string percent_text(double share) {
-  return two_digits(100 * share) + "%";
-}
 
 double unbalanced(const Energy& energy, const Energy& collided) {
   double squares = 0, sizes = 0;
@@ -44,7 +34,7 @@ std::string missed(const std::optional<ErrorEstimate>& estimate, double wanted) 
   const std::string asked = "error " + percent_text(wanted);
   if (!estimate) return asked + ": a file with a single level cannot tell its error";
   return asked + " is not certain: the estimate is " + percent_text(estimate->whole) + " of the surface, " +
-         percent_text(estimate->unlit) + " of its unlit part, and the error may be " + two_digits(confidence) +
+         percent_text(estimate->unlit) + " of its unlit part, and the error may be " + number_text(confidence) +
          " times that; a file with more vertices on its surface would come closer";
 }
 

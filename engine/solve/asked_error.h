@@ -20,9 +20,6 @@ double unbalanced(const Energy& energy, const Energy& collided);
 // With `confidence` (engine/solve/mesh_error.h).
 bool certain(const ErrorEstimate& estimate, double wanted);
 
-// Two digits.
-std::string percent_text(double share);
-
 // In words, of an error that is not certain; no estimate: of a file that has none.
 std::string missed(const std::optional<ErrorEstimate>& estimate, double wanted);
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "engine/device/memory.h"
-#include "engine/solve/asked_error.h"
+#include "engine/base/text.h"
 #include "engine/solve/mesh_error.h"
 #include "engine/solve/source_walk.h"
 #include "engine/solve/surface_parts.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/reference/elements.h"
-#include "engine/solve/asked_error.h"
+#include "engine/base/text.h"
 
 namespace quadgraph {
 namespace {
