@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 
-#include "engine/app/gestures.h"
 #include "engine/optics/material.h"
+#include "engine/scene/gestures.h"
 
 namespace quadgraph {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "engine/app/gestures.h"
 #include "engine/app/panel_widgets.h"
+#include "engine/scene/gestures.h"
 
 namespace quadgraph {
 namespace {

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "engine/app/gestures.h"
 #include "engine/app/panel_widgets.h"
 #include "engine/render/light/default_lights.h"
+#include "engine/scene/gestures.h"
 
 namespace quadgraph {
 namespace {

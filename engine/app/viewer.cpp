@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/app/gestures.h"
 #include "engine/app/overlays.h"
 #include "engine/app/panel.h"
 #include "engine/base/error.h"
 #include "engine/deform/motion.h"
 #include "engine/render/picture/frame_offsets.h"
+#include "engine/scene/gestures.h"
 
 namespace quadgraph {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "engine/base/error.h"
-#include "engine/render/picture/frame_offsets.h"
 #include "engine/base/text.h"
+#include "engine/render/picture/frame_offsets.h"
 #include "engine/solve/transport_correction.h"
 
 namespace quadgraph {

@@ -1,4 +1,4 @@
-#include "engine/app/gestures.h"
+#include "engine/scene/gestures.h"
 
 #include <algorithm>
 #include <cmath>

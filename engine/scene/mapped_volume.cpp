@@ -7,10 +7,10 @@
 
 #include "engine/base/all_cores.h"
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "engine/scene/harmonic_map.h"
 #include "engine/scene/shell_map.h"
 #include "engine/scene/source_domain.h"
-#include "engine/base/text.h"
 
 namespace quadgraph {
 namespace {

@@ -4,8 +4,8 @@
 #include <chrono>
 #include <cmath>
 
-#include "engine/device/memory.h"
 #include "engine/base/text.h"
+#include "engine/device/memory.h"
 #include "engine/solve/mesh_error.h"
 #include "engine/solve/source_walk.h"
 #include "engine/solve/surface_parts.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/reference/elements.h"
 #include "engine/base/text.h"
+#include "engine/reference/elements.h"
 
 namespace quadgraph {
 namespace {

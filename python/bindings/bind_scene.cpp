@@ -4,6 +4,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "engine/base/error.h"
+#include "engine/scene/gestures.h"
 #include "engine/scene/scene_file.h"
 #include "engine/scene/stage.h"
 #include "python/bindings/bindings.h"
@@ -67,6 +68,28 @@ py::tuple view_rays(Stage& stage, const DoubleArray& pixels) {
   return py::make_tuple(own(std::move(from)), own(std::move(along)));
 }
 
+// The scene that is shown after what a hand did: camera or lights moved as in the window.
+std::string after_gesture(Stage& stage, const std::string& name, float right, float up, std::size_t light) {
+  Scene scene = stage.scene();
+  const Sphere& bounds = stage.engine().bounds();
+  const float aspect = static_cast<float>(scene.render.width) / static_cast<float>(scene.render.height);
+  if (name == "orbit") {
+    scene.view = orbited(scene.view, bounds, right, up);
+  } else if (name == "pan") {
+    scene.view = panned(scene.view, bounds, aspect, right, up);
+  } else if (name == "zoom") {
+    scene.view = zoomed(scene.view, bounds, aspect, up);
+  } else if (name != "turn") {
+    throw InputError("gesture: found '" + name + "', allowed are orbit, pan, zoom, turn");
+  } else if (light >= scene.lights.size()) {
+    throw InputError("light: found " + std::to_string(light) + ", the scene has " +
+                     std::to_string(scene.lights.size()));
+  } else {
+    scene.lights[light] = turned(scene.lights[light], scene.view, bounds, right, up);
+  }
+  return to_json(scene).dump();
+}
+
 void bind_stage(py::module_& module) {
   py::class_<Stage>(module, "Stage", "An Engine that shows a Scene.")
       .def(py::init([](const std::string& device, bool validation) {
@@ -111,6 +134,9 @@ void bind_stage(py::module_& module) {
       .def("view_rays", &view_rays, py::arg("pixels"),
            "Rays through (n, 2) places of the scene's picture, counted in pixels right and down from its corner: where "
            "they come from, mm, and their unit directions, (n, 3) each. Raises InputError.")
+      .def("after_gesture", &after_gesture, py::arg("name"), py::arg("right"), py::arg("up"), py::arg("light") = 0,
+           "JSON of the scene after a hand moved its camera or a light: orbit and turn by degrees right and up, pan by "
+           "shares of the picture's height, zoom in by `up` steps, an eighth of the distance each. Raises InputError.")
       .def_property_readonly("map_report", &Stage::map_report,
                              "What is to be said of the map that carried the material into the body; '' without one.")
       .def_property_readonly("scene", &Stage::scene)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from quadgraph.base.version import __version__
 
 if TYPE_CHECKING:
+    from quadgraph.api.browser_view import BrowserView
     from quadgraph.api.deformers import (
         Bend,
         Cage,
@@ -69,6 +70,7 @@ __all__ = [
     "BakeOptions",
     "BakeReport",
     "Bend",
+    "BrowserView",
     "Cage",
     "Camera",
     "Certificate",
@@ -132,6 +134,7 @@ __all__ = [
 
 # Where the public names live: found when they are first asked for, so that the command line starts without them.
 _PLACES = {
+    "quadgraph.api.browser_view": "BrowserView",
     "quadgraph.api.deformers": "Bend Cage Deformer Displaced Lattice Shapes Stretch Taper Transform Twist",
     "quadgraph.api.derivatives": "ForwardModel Gradient Outgoing Views",
     "quadgraph.api.engine": "Engine",

@@ -27,6 +27,7 @@ SUBCOMMANDS = {
     "volume": "volume",
     "info": "info",
     "view": "view",
+    "serve": "serve",
     "render": "render",
     "solve": "solve",
     "turntable": "turntable",

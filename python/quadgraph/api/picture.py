@@ -144,6 +144,10 @@ class Picture:
         """
         return self._layers.srgb(self._tone(tone))
 
+    def auto_exposure(self, **tone: Any) -> float:
+        """Return the stops that the exposure "auto" comes to. tone: as in `srgb`. Raises InputError."""
+        return self._layers.auto_exposure(self._tone(tone))
+
     def save(self, path: str | Path, **tone: Any) -> None:
         """Write .png or .jpg (8-bit sRGB, as `srgb`) or .exr (float32, linear and not exposed, with layers) at once.
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import Literal, Self, TypeAlias
 
 from quadgraph import core
 from quadgraph.api.engine import Engine
@@ -12,6 +14,8 @@ from quadgraph.api.picture import Picture
 from quadgraph.api.scene import Scene, SceneFile
 from quadgraph.api.solution import Solution
 from quadgraph.base.errors import InputError
+
+Gesture: TypeAlias = Literal["orbit", "pan", "zoom", "turn"]
 
 
 class Stage:
@@ -80,6 +84,17 @@ class Stage:
             self._engine._solution = None
         if self._engine is None:
             self._engine = Engine._around(self._open.engine, Path(wanted.body).name)
+
+    def moved(self, gesture: Gesture, right: float, up: float, light: int = 0) -> Scene:
+        """Return the scene that is shown after a hand moved its camera, or turned one of its lights, as in the window.
+
+        right, up: degrees of orbit and turn, shares of the picture's height of pan, and `up` steps nearer, an eighth of
+        the distance each, of zoom. Show it to see it. Raises InputError for another gesture, for a light that is not
+        there, and before the first scene.
+        """
+        document = json.loads(self._open.after_gesture(gesture, right, up, light))
+        moved = Scene.from_dict(document)
+        return replace(moved, deformation=self._scene.deformation) if self._scene else moved
 
     def solve(self) -> Solution:
         """Solve with the scene's options. Raises InputError, SolverError."""

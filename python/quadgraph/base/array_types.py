@@ -12,3 +12,5 @@ Floats: TypeAlias = npt.NDArray[np.float32]
 Doubles: TypeAlias = npt.NDArray[np.float64]
 Whole: TypeAlias = npt.NDArray[np.uint32]
 Signed: TypeAlias = npt.NDArray[np.int32]
+Three: TypeAlias = tuple[Doubles, Doubles, Doubles]
+Transfer: TypeAlias = tuple[Whole, Floats] | None  # indices and weights; none on the coarsest level

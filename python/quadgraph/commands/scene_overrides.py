@@ -28,10 +28,12 @@ def apply(file: Any, path: Path, args: argparse.Namespace) -> None:
     for name in _OF_MESHES:
         if name in args.given:
             raise InputError(f"--{name}: not beside a scene file, whose /body is a baked .qgraph that knows its size")
+    put(file, json_text.loads(path.read_bytes()), args)
+
+
+def put(file: Any, document: Any, args: argparse.Namespace) -> None:
+    """Change a core.SceneFile of a JSON document as the options say that were typed. Raises InputError."""
     wanted = changes(args)
-    if not wanted:
-        return
-    document = json_text.loads(path.read_bytes())
     if _MAP in wanted:
         wanted |= _mapped(wanted.get("/material", document.get("material")), wanted.pop(_MAP))
     kept = [track for track in document.get("tracks", []) if not _replaced(track["path"], wanted)]

@@ -1,5 +1,5 @@
 // What drags and keys do to camera and lights, without a window.
-#include "engine/app/gestures.h"
+#include "engine/scene/gestures.h"
 
 #include <doctest/doctest.h>
 
