@@ -38,7 +38,8 @@ TEST_CASE("what a body sends back has the limits of two streams") {
     CHECK(now < before);
     before = now;
   }
-  CHECK(red("sigma_s_prime=1,sigma_a=0.1", 20) == doctest::Approx(red("sigma_s_prime=2,sigma_a=0.2", 10)).epsilon(1e-6));
+  CHECK(red("sigma_s_prime=1,sigma_a=0.1", 20) ==
+        doctest::Approx(red("sigma_s_prime=2,sigma_a=0.2", 10)).epsilon(1e-6));
 }
 
 TEST_CASE("on bunnies of 30, 80 and 300 mm names look as meant, but for honey of 300 mm") {
