@@ -17,8 +17,8 @@ namespace quadgraph {
 namespace {
 
 // A colour is another one where a channel is so far below or above what it should be, encoded as sRGB, the brightest
-// channel being 1. On bunnies of 30, 80 and 300 mm that look as their names say it is .14 below and .20 above at most, on
-// the one that does not, of honey and 300 mm, .21 below. A pale colour still is of the same material.
+// channel being 1. On bunnies of 30, 80 and 300 mm that look as their names say it is .14 below and .20 above at most,
+// on the one that does not, of honey and 300 mm, .21 below. A pale colour still is of the same material.
 constexpr double deeper_colour = 0.18, paler_colour = 0.3;
 
 // A body is clear that scatters less than this share of what it is meant to scatter.
