@@ -123,7 +123,9 @@ void draw_picture(State& state, const Measured& measured) {
   ImGui::Checkbox("Ground", &state.scene.render.ground);
   ImGui::SameLine();
   ImGui::Checkbox("Show environment", &state.scene.render.surroundings);
-  slide("Roughness", state.scene.render.roughness, roughness_range, "%.2f");
+  auto& asked = state.scene.render.roughness;
+  float roughness = asked.value_or(stated_roughness(state.scene.material).value_or(default_roughness));
+  if (slide("Roughness", roughness, roughness_range, "%.2f")) asked = roughness;
   auto samples = static_cast<int>(state.scene.render.samples);
   if (ImGui::SliderInt("Samples", &samples, 0, 256, samples > 0 ? "%d per pixel" : "as needed")) {
     state.scene.render.samples = static_cast<std::uint32_t>(std::max(samples, 0));
@@ -254,8 +256,9 @@ void draw_frame(const Measured& measured) {
     tell("Solver", std::string(name_of(report.model)) + ", " + std::string(name_of(report.solver)));
   }
   if (report.path) tell("Solve", formatted("%u voxels, %u rounds", report.path->solid, report.path->rounds));
-  for (const std::string& text : {report.budget, report.replaced, report.missed, report.stopped, report.advice,
-                                  report.mesh_warning, report.model_warning, report.light_warning}) {
+  for (const std::string& text :
+       {report.budget, report.replaced, report.missed, report.stopped, report.advice, report.mesh_warning,
+        report.model_warning, report.size_warning, report.light_warning}) {
     if (!text.empty()) ImGui::TextWrapped("%s", text.c_str());
   }
 }

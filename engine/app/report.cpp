@@ -110,6 +110,7 @@ Json as_json(const SolveReport& report) {
   json["budget"] = report.budget;
   json["mesh_warning"] = report.mesh_warning;
   json["model_warning"] = report.model_warning;
+  json["size_warning"] = report.size_warning;
   json["light_warning"] = report.light_warning;
   json["deformed"] = report.deformed;
   return json;
@@ -244,8 +245,9 @@ std::string text_report(const RunReport& report) {
   if (!report.solve.replaced.empty()) out << "solver   " << report.solve.replaced << "\n";
   if (!report.solve.budget.empty()) out << "budget   " << report.solve.budget << "\n";
   if (!report.solve.stopped.empty()) out << "failed   " << report.solve.stopped << "\n";
-  for (const std::string& warning : {report.solve.missed, report.solve.advice, report.solve.mesh_warning,
-                                     report.solve.model_warning, report.solve.light_warning, report.solve.deformed}) {
+  for (const std::string& warning :
+       {report.solve.missed, report.solve.advice, report.solve.mesh_warning, report.solve.model_warning,
+        report.solve.size_warning, report.solve.light_warning, report.solve.deformed}) {
     if (!warning.empty()) out << "warning  " << warning << "\n";
   }
   out << "memory   " << decimals(static_cast<double>(report.engine.peak_device_bytes()) / mebibyte, 0)

@@ -12,67 +12,19 @@
 #include "engine/base/text.h"
 #include "engine/optics/colour.h"
 #include "engine/optics/fresnel.h"
+#include "engine/optics/named_materials.h"
 #include "shaders/material/optics.h"
 
 namespace quadgraph {
 namespace {
 
-struct Measured {
-  std::string_view name;
-  glm::vec3 sigma_s_prime;  // 1/mm
-  glm::vec3 sigma_a;        // 1/mm
-  float eta;
-};
-
-// Jensen et al. 2001, "A Practical Model for Subsurface Light Transport", Figure 5.
-const std::array<Measured, 12> measured = {{
-    {"apple", {2.29f, 2.39f, 1.97f}, {0.0030f, 0.0034f, 0.046f}, 1.3f},
-    {"chicken1", {0.15f, 0.21f, 0.38f}, {0.015f, 0.077f, 0.19f}, 1.3f},
-    {"chicken2", {0.19f, 0.25f, 0.32f}, {0.018f, 0.088f, 0.20f}, 1.3f},
-    {"cream", {7.38f, 5.47f, 3.15f}, {0.0002f, 0.0028f, 0.0163f}, 1.3f},
-    {"ketchup", {0.18f, 0.07f, 0.03f}, {0.061f, 0.97f, 1.45f}, 1.3f},
-    {"marble", {2.19f, 2.62f, 3.00f}, {0.0021f, 0.0041f, 0.0071f}, 1.5f},
-    {"potato", {0.68f, 0.70f, 0.55f}, {0.0024f, 0.0090f, 0.12f}, 1.3f},
-    {"skimmilk", {0.70f, 1.22f, 1.90f}, {0.0014f, 0.0025f, 0.0142f}, 1.3f},
-    {"skin1", {0.74f, 0.88f, 1.01f}, {0.032f, 0.17f, 0.48f}, 1.3f},
-    {"skin2", {1.09f, 1.59f, 1.79f}, {0.013f, 0.070f, 0.145f}, 1.3f},
-    {"spectralon", {11.6f, 20.4f, 14.9f}, {0.0f, 0.0f, 0.0f}, 1.3f},
-    {"wholemilk", {2.55f, 3.21f, 3.77f}, {0.0011f, 0.0024f, 0.014f}, 1.3f},
-}};
-
-// In the words that a user writes. Coefficients are made up, to look like the stone, the wood and the wax.
-struct Procedural {
-  std::string_view name, text;
-};
-
-const std::array<Procedural, 7> procedural = {{
-    {"marble-veins",
-     "marble,pattern=veins,second_sigma_s_prime=1.2,second_sigma_a=0.85/0.78/0.74,period=16,sharpness=14"},
-    {"jade",
-     "reflectance=0.30/0.62/0.42,mean_free_path=0.8,eta=1.6,pattern=clouds,second_reflectance=0.04/0.22/0.11,"
-     "second_mean_free_path=0.6,period=14,sharpness=4"},
-    {"agate",
-     "reflectance=0.90/0.84/0.74,mean_free_path=0.9,eta=1.54,pattern=bands,second_reflectance=0.38/0.09/0.04,"
-     "second_mean_free_path=0.5,period=5,sharpness=4"},
-    {"wax",
-     "reflectance=0.86/0.80/0.66,mean_free_path=0.7,eta=1.44,pattern=spots,second_reflectance=0.10/0.32/0.48,"
-     "second_mean_free_path=0.5,period=7,sharpness=5"},
-    {"wood",
-     "reflectance=0.66/0.45/0.25,mean_free_path=0.3,eta=1.5,pattern=rings,second_reflectance=0.32/0.16/0.07,"
-     "second_mean_free_path=0.25,period=5,sharpness=2"},
-    {"checker",
-     "reflectance=0.8,mean_free_path=0.5,eta=1.3,pattern=checker,second_reflectance=0.15/0.2/0.4,"
-     "second_mean_free_path=0.5,period=12,sharpness=1"},
-    {"layered-skin",
-     "sigma_s_prime=1.1/1.5/1.9,sigma_a=0.05/0.22/0.5,eta=1.4,pattern=layers,second_sigma_s_prime=1.3/1.2/1.1,"
-     "second_sigma_a=0.004/0.012/0.02,period=1.5,sharpness=3"},
-}};
-
 constexpr std::array<std::string_view, gpu::PATTERNS> patterns = {"none",  "veins", "clouds",  "bands",
                                                                   "rings", "spots", "checker", "layers"};
 constexpr std::string_view allowed_keys =
-    "pattern, eta, period, sharpness, sigma_s_prime, sigma_a, or reflectance, mean_free_path, and these four after "
-    "second_";
+    "pattern, eta, roughness, period, sharpness, sigma_s_prime, sigma_a, or reflectance, mean_free_path, and these "
+    "four "
+    "after second_";
+constexpr std::string_view roughness_key = "roughness";
 
 std::string joined(std::span<const std::string_view> names) {
   std::string text;
@@ -153,7 +105,12 @@ std::uint32_t parse_pattern(std::string_view text) {
   return static_cast<std::uint32_t>(found - patterns.begin());
 }
 
-// Takes one field that is not a coefficient; false if there is none of that name.
+void check_range(std::string_view key, float value, const Range& range, const std::string& allowed) {
+  if (!range.contains(value)) bad_field(key, std::to_string(value), allowed);
+}
+
+// Takes one field that is not a coefficient; false if there is none of that name. The roughness is of the surface, and
+// not of the coefficients: stated_roughness tells it.
 bool take_field(gpu::Material& material, std::string_view key, std::string_view value) {
   if (key == "eta") {
     material.eta = parse_number(key, value);
@@ -163,6 +120,8 @@ bool take_field(gpu::Material& material, std::string_view key, std::string_view 
     material.period = parse_number(key, value);
   } else if (key == "sharpness") {
     material.sharpness = parse_number(key, value);
+  } else if (key == roughness_key) {
+    check_range(key, parse_number(key, value), roughness_range, roughness_range.text());
   } else {
     return false;
   }
@@ -176,18 +135,9 @@ void check_colour(std::string_view key, const glm::vec3& value) {
   }
 }
 
-void check_range(std::string_view key, float value, float low, float high, const std::string& allowed) {
-  if (!(value >= low && value <= high)) bad_field(key, std::to_string(value), allowed);
-}
-
 // A material by its name. Throws InputError if there is none.
 gpu::Material named(std::string_view name) {
-  const auto row = std::find_if(measured.begin(), measured.end(), [&](const auto& m) { return m.name == name; });
-  if (row != measured.end()) {
-    return {row->sigma_s_prime, row->sigma_a, row->eta, gpu::PATTERN_NONE, row->sigma_s_prime, row->sigma_a, 10, 1};
-  }
-  const auto made = std::find_if(procedural.begin(), procedural.end(), [&](const auto& p) { return p.name == name; });
-  if (made != procedural.end()) return parse_material(made->text);
+  if (const NamedMaterial* row = named_material(name)) return parse_material(row->text);
   throw InputError("material '" + std::string(name) + "'" + meant(name, all_names()) + ": allowed are " +
                    joined(all_names()) + ", or sigma_s_prime=...,sigma_a=...,eta=...");
 }
@@ -224,18 +174,27 @@ class Given {
 const std::vector<std::string>& material_names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> list;
-    for (const Measured& m : measured) list.emplace_back(m.name);
-    for (const Procedural& p : procedural) list.emplace_back(p.name);
+    for (const NamedMaterial& row : named_materials()) list.emplace_back(row.name);
     return list;
   }();
   return names;
 }
 
 std::string_view material_source(std::string_view name) {
-  const bool is_measured = std::any_of(measured.begin(), measured.end(), [&](const auto& m) { return m.name == name; });
-  if (is_measured) return "measured: Jensen et al. 2001, Figure 5";
-  named(name);
-  return "made up: chosen by eye, to look like what the name says";
+  const NamedMaterial* row = named_material(name);
+  if (!row) named(name);
+  return row->source;
+}
+
+std::optional<float> stated_roughness(std::string_view text) {
+  const auto parts = split(text, ',');
+  const NamedMaterial* row = named_material(parts[0]);
+  std::optional<float> found = row ? stated_roughness(row->text) : std::nullopt;
+  for (std::string_view part : parts) {
+    const std::size_t at = part.find('=');
+    if (part.substr(0, at) == roughness_key) found = parse_number(roughness_key, part.substr(at + 1));
+  }
+  return found;
 }
 
 std::string_view pattern_name(const gpu::Material& material) {
@@ -270,7 +229,7 @@ gpu::Material parse_material(std::string_view text) {
                                "period", "sharpness"}) {
     if (material.pattern == gpu::PATTERN_NONE && given.has(key)) bad_field(key, "a value", "one beside a pattern");
   }
-  check_range("eta", material.eta, static_cast<float>(min_eta), static_cast<float>(max_eta), "1 to 3");
+  check_range("eta", material.eta, {.low = min_eta, .high = max_eta}, "1 to 3");
   first.show(material.eta);
   second.show(material.eta);
   check_material(material);
@@ -280,15 +239,15 @@ gpu::Material parse_material(std::string_view text) {
 void check_material(const gpu::Material& material) {
   check_colour("sigma_s_prime", material.sigma_s_prime);
   check_colour("sigma_a", material.sigma_a);
-  check_range("eta", material.eta, static_cast<float>(min_eta), static_cast<float>(max_eta), "1 to 3");
+  check_range("eta", material.eta, {.low = min_eta, .high = max_eta}, "1 to 3");
   if (material.pattern == gpu::PATTERN_NONE) return;
   if (material.pattern >= gpu::PATTERNS) {
     bad_field("pattern", std::to_string(material.pattern), "0 to " + std::to_string(gpu::PATTERNS - 1));
   }
   check_colour("second_sigma_s_prime", material.second_sigma_s_prime);
   check_colour("second_sigma_a", material.second_sigma_a);
-  check_range("period", material.period, 1e-3f, 1e6f, "0.001 to 1000000 (mm)");
-  check_range("sharpness", material.sharpness, 1.0f, 1000.0f, "1 to 1000");
+  check_range("period", material.period, {.low = 1e-3, .high = 1e6}, "0.001 to 1000000 (mm)");
+  check_range("sharpness", material.sharpness, {.low = 1, .high = 1000}, "1 to 1000");
 }
 
 }  // namespace quadgraph

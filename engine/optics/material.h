@@ -1,10 +1,12 @@
-// Named materials: the measured table of Jensen et al. 2001 and the procedural ones.
+// Materials, as a user writes them: by a name, by coefficients or by a colour.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "engine/base/range.h"
 #include "shaders/shared/shared.h"
 
 namespace quadgraph {
@@ -12,11 +14,19 @@ namespace quadgraph {
 // Index of refraction, inside over outside, of a material that says none.
 inline constexpr float default_eta = 1.3f;
 
+// Of a surface, GGX alpha, and that of one that nothing is said of.
+inline constexpr Range roughness_range{.low = 0.02, .high = 1};
+inline constexpr float default_roughness = 0.3f;
+
 // Names in the order they are listed to the user.
 const std::vector<std::string>& material_names();
 
 // Where the coefficients of such a name are from, in words. Throws InputError if there is none of it.
 std::string_view material_source(std::string_view name);
+
+// How rough the surface is of a material of that text: what its roughness= says, else what its name brings along.
+// Nothing if neither says it, also where the text is not of such a material.
+std::optional<float> stated_roughness(std::string_view text);
 
 // "none", "veins", "clouds", ..., as `pattern=` takes it.
 std::string_view pattern_name(const gpu::Material& material);
@@ -25,8 +35,9 @@ std::string_view pattern_name(const gpu::Material& material);
 // out (default_eta), the other two are required. Instead of these, "reflectance=0.8/0.6/0.5,mean_free_path=0.5" takes
 // the colour that a thick body shows in white light (engine/optics/colour.h) and 1 / sigma_t, mm. "NAME,key=value"
 // overrides a named material. "pattern=veins,period=16,sharpness=14" mixes in second_sigma_s_prime and second_sigma_a,
-// or second_reflectance and second_mean_free_path. Throws InputError naming the field, what was found and what is
-// allowed (sigma_s_prime, sigma_a 0 to 1e6, eta in [1, 3], mean_free_path > 0; all finite).
+// or second_reflectance and second_mean_free_path. "roughness=0.1" is of the surface (stated_roughness). Throws
+// InputError naming the field, what was found and what is allowed (sigma_s_prime, sigma_a 0 to 1e6, eta in [1, 3],
+// mean_free_path > 0, roughness in roughness_range; all finite).
 gpu::Material parse_material(std::string_view text);
 
 // Throws InputError if a coefficient is out of range.

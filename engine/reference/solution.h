@@ -121,6 +121,7 @@ struct SolveReport {
   // What else is to be said against the answer, of elements and of the model (engine/reference/resolution.h); empty if
   // nothing.
   std::string mesh_warning, model_warning;
+  std::string size_warning;                    // of a material on a body of that size (engine/optics/body_size.h)
   std::string light_warning;                   // of lights that stand in the body; empty if none does
   std::string deformed;                        // tets of level 0 that a deformation has spoilt; empty if none is
   std::vector<glm::dvec3> bounces;             // W per channel that each bounce brought in

@@ -1,6 +1,7 @@
 #include "engine/render/engine.h"
 
 #include "engine/base/text.h"
+#include "engine/optics/body_size.h"
 #include "engine/optics/material.h"
 #include "engine/render/converging.h"
 #include "engine/render/engine_implementation.h"
@@ -217,6 +218,7 @@ SolveReport Engine::solve(const SolveOptions& options, const std::function<void(
   if (self.report->correction && !options.warm && options.certify > 0) {
     self.interruptible([&] { self.simulation->certify(options, *self.report, check); });
   }
+  if (!by_path) self.report->size_warning = size_warning(self.material, self.simulation->chord());
   judge(*self.report, self.lights, self.lights_inside());
   self.options = options;
   return *self.report;

@@ -53,7 +53,6 @@ struct Names<Radiance> {
 };
 
 inline constexpr Range side_range{.low = 1, .high = 16384};  // of a picture, pixels
-inline constexpr Range roughness_range{.low = 0.02, .high = 1};
 inline constexpr Range samples_range{.low = 0, .high = 65536};
 
 struct RenderOptions {
@@ -61,7 +60,9 @@ struct RenderOptions {
   // Of a pixel, which is their mean, in samples_range, by whole frames of four; 0: as many as its edges need, or the
   // blur of the lens.
   std::uint32_t samples = 0;
-  float roughness = 0.3f;  // alpha of the GGX distribution of the surface, in roughness_range
+  // Alpha of the GGX distribution of the surface, in roughness_range (engine/optics/material.h); empty: that of the
+  // material.
+  std::optional<float> roughness{};
   Radiance radiance = Radiance::automatic;
   Show show{};                // what is to be seen
   bool ground = false;        // with a shadow where the body stands, which counts as coverage without light

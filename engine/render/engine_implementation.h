@@ -3,6 +3,7 @@
 
 #include "engine/base/error.h"
 #include "engine/devices/open_device.h"
+#include "engine/optics/material.h"
 #include "engine/render/display/display_faces.h"
 #include "engine/render/display/display_motion.h"
 #include "engine/render/engine.h"
@@ -279,6 +280,10 @@ struct Engine::Implementation {
     return field;
   }
 
+  float roughness(const RenderOptions& render) const {
+    return render.roughness.value_or(stated_roughness(material).value_or(default_roughness));
+  }
+
   // The body as it looks; how its radiance left, never automatic.
   Radiance draw_surface(const Camera& camera, const RenderOptions& render) {
     std::optional<PlacedRoughness> placed;
@@ -293,7 +298,7 @@ struct Engine::Implementation {
                                        .field = paths.field(),
                                        .shadows = shadows,
                                        .eta = eta,
-                                       .roughness = render.roughness,
+                                       .roughness = roughness(render),
                                        .placed_roughness = there},
                              camera, render.width, render.height));
       return Radiance::lambertian;
@@ -313,7 +318,7 @@ struct Engine::Implementation {
                                        .vertex_unscattered = simulation->vertex_unscattered(),
                                        .shadows = shadows,
                                        .eta = eta,
-                                       .roughness = render.roughness,
+                                       .roughness = roughness(render),
                                        .placed_roughness = there,
                                        .gather = view_rays ? &*view_rays : nullptr},
                            camera, render.width, render.height));
@@ -323,7 +328,7 @@ struct Engine::Implementation {
   void draw_picture(const View& from, const Camera& camera, const RenderOptions& render) {
     legend.reset();
     const auto& map = render.roughness_map;
-    images.set_roughness(render.roughness, map ? map->roughness : 0);
+    images.set_roughness(roughness(render), map ? map->roughness : 0);
     radiance = draw_surface(camera, render);
     if (render.ground) {
       if (!ground) ground.emplace(device);

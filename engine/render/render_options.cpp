@@ -1,5 +1,6 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
+#include "engine/optics/material.h"
 #include "engine/render/engine.h"
 #include "engine/render/picture/frame_offsets.h"
 
@@ -41,7 +42,7 @@ void check_options(const RenderOptions& options) {
   if (!samples_range.contains(options.samples)) {
     throw InputError("samples: found " + std::to_string(options.samples) + ", expected " + samples_range.text());
   }
-  check_roughness(options.roughness);
+  if (options.roughness) check_roughness(*options.roughness);
   check_convergence(options);
   if (!options.roughness_map) return;
   if (!options.roughness_map->image) throw InputError("roughness_map, image: found none");

@@ -20,8 +20,9 @@ std::string material_help() {
   return "a name (" + names +
          "); or sigma_s_prime=S,sigma_a=A,eta=E in 1/mm, one value or R/G/B each; or reflectance=C,mean_free_path=L: "
          "the colour that a thick body shows, below 1, and a length in mm; or NAME,key=value; "
-         "pattern=P,period=D,sharpness=K mixes in a second set, second_sigma_a and so on; or a file .npz of "
-         "coefficients on a grid (docs/scene.md)";
+         "roughness=ALPHA of the surface; pattern=P,period=D,sharpness=K mixes in a second set, second_sigma_a and so "
+         "on; "
+         "or a file .npz of coefficients on a grid (docs/scene.md)";
 }
 
 std::string map_help() {

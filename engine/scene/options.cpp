@@ -1,5 +1,7 @@
 #include "engine/scene/options.h"
 
+#include "engine/base/text.h"
+#include "engine/optics/material.h"
 #include "engine/scene/option_forms.h"
 #include "engine/scene/option_members.h"
 
@@ -314,7 +316,8 @@ void add_picture(OptionTable& table) {
        .keyword = "roughness",
        .metavar = "ALPHA",
        .range = roughness_range,
-       .help = "roughness of the surface, GGX alpha, " + roughness_range.text()});
+       .help = "roughness of the surface, GGX alpha, " + roughness_range.text() + "; default: that of the material, " +
+               number_text(default_roughness) + " where it says none"});
   table.member<&Scene::render, &RenderOptions::radiance>({.name = "radiance",
                                                           .member = "/picture/radiance",
                                                           .keyword = "radiance",

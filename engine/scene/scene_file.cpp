@@ -11,6 +11,7 @@
 #include "engine/base/text.h"
 #include "engine/file/front.h"
 #include "engine/render/light/default_lights.h"
+#include "engine/render/light/studio.h"
 #include "engine/scene/material_map.h"
 #include "engine/scene/track_parts.h"
 
@@ -72,7 +73,9 @@ void each_file(Json& document, const Function& renamed) {
        {std::pair{"lights", "file"}, {"edits", "image"}, {"edits", "mask"}, {"deformation", "shapes"}}) {
     if (!document.contains(list) || !document[list].is_array()) continue;
     for (Json& item : document[list]) {
-      for (Json* file : text_of(item, name)) files.push_back(file);
+      for (Json* file : text_of(item, name)) {
+        if (*file != studio_name) files.push_back(file);
+      }
     }
   }
   if (document.contains("picture") && document["picture"].is_object() &&

@@ -31,6 +31,10 @@ const LevelBuffers& Simulation::level(std::uint32_t level) const {
   return implementation_->levels.at(level);
 }
 
+double Simulation::chord() const {
+  return implementation_->shape.chord();
+}
+
 std::optional<SeenRows> Simulation::seen() {
   return implementation_->exchange.seen(implementation_->device);
 }

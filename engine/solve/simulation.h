@@ -58,6 +58,8 @@ class Simulation {
   std::uint32_t level_count() const;
   const LevelBuffers& level(std::uint32_t level) const;
 
+  double chord() const;  // mean chord in the present shape, mm
+
   // What faces see of each other in the present shape, as far as solves have brought that up to date; none where no
   // face sees another, or where the file does not say. Made at first use.
   std::optional<SeenRows> seen();

@@ -37,6 +37,7 @@ std::string material_json(const std::string& text) {
     json["period"] = real_json(material.period);
     json["sharpness"] = real_json(material.sharpness);
   }
+  if (const auto roughness = stated_roughness(text)) json["roughness"] = real_json(*roughness);
   return json.dump();
 }
 

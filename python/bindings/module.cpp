@@ -181,6 +181,7 @@ py::dict as_dict(const SolveReport& report) {
   d["budget"] = report.budget;
   d["mesh_warning"] = report.mesh_warning;
   d["model_warning"] = report.model_warning;
+  d["size_warning"] = report.size_warning;
   d["light_warning"] = report.light_warning;
   d["deformed"] = report.deformed;
   d["exchange_age"] = report.exchange_age;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/base/error.h"
+#include "engine/render/light/studio.h"
 #include "shaders/light/render_shared.h"
 
 namespace quadgraph {
@@ -51,18 +52,18 @@ void renew_picture(device::Device& device, EnvironmentImage& image, std::uint32_
 
 }  // namespace
 
-template <typename T, typename Upload>
-void LightImages::load(const Light& light, Images<T>& old, Images<T>& images, const Upload& upload) {
+template <typename T, typename Read, typename Upload>
+void LightImages::load(const Light& light, Images<T>& old, Images<T>& images, const Read& read, const Upload& upload) {
   if (images.contains(light.file)) return;
   std::error_code missing;
   const auto changed = std::filesystem::last_write_time(light.file, missing);
   const auto found = old.find(light.file);
-  if (!missing && found != old.end() && found->second.changed == changed) {
+  if ((!missing || light.file == studio_name) && found != old.end() && found->second.changed == changed) {
     images.insert(old.extract(found));
     return;
   }
   try {
-    images.emplace(light.file, Loaded<T>{changed, upload(device_, read_image(light.file))});
+    images.emplace(light.file, Loaded<T>{changed, upload(device_, read(light.file))});
   } catch (const InputError& error) {
     throw InputError("light '" + to_string(light) + "', file: " + error.what());
   }
@@ -73,8 +74,10 @@ void LightImages::load(std::span<const Light> lights) {
   Images<EnvironmentImage> environments;
   for (const Light& light : lights) {
     const LightImage image = form_of(light.kind).image;
-    if (image == LightImage::projected) load(light, projected_, projected, upload_projected);
-    if (image == LightImage::around) load(light, environments_, environments, upload_environment);
+    if (image == LightImage::projected) load(light, projected_, projected, read_image, upload_projected);
+    if (image == LightImage::around) {
+      load(light, environments_, environments, environment_picture, upload_environment);
+    }
   }
   projected_ = std::move(projected);
   environments_ = std::move(environments);

@@ -55,8 +55,8 @@ class LightImages {
   template <typename T>
   using Images = std::map<std::string, Loaded<T>>;
 
-  template <typename T, typename Upload>
-  void load(const Light& light, Images<T>& old, Images<T>& images, const Upload& upload);
+  template <typename T, typename Read, typename Upload>
+  void load(const Light& light, Images<T>& old, Images<T>& images, const Read& read, const Upload& upload);
 
   device::Device& device_;
   Images<ProjectedImage> projected_;

@@ -199,7 +199,7 @@ LightForm environment() {
           .help =
               "an equirectangular environment map; at turn 0 its middle is behind the object as "
               "seen from azimuth 0",
-          .fields = {image("EXR or Radiance .hdr"),
+          .fields = {image("EXR or Radiance .hdr; studio: soft-boxes in a grey room, built in"),
                      {.name = "turn",
                       .text = "TURN",
                       .form = FieldForm::turn,

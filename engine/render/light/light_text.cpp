@@ -7,6 +7,7 @@
 #include "engine/base/text.h"
 #include "engine/render/display/camera.h"
 #include "engine/render/light/lights.h"
+#include "engine/render/light/studio.h"
 
 namespace quadgraph {
 namespace {
@@ -104,12 +105,13 @@ const std::string& light_forms() {
       }
       text += "), ";
     }
-    return text + "the last one number or R/G/B";
+    return text + std::string(studio_name) + " (" + std::string(studio_light) + "), the last one number or R/G/B";
   }();
   return all;
 }
 
 Light parse_light(std::string_view text) {
+  if (text == studio_name) return parse_light(studio_light);
   const Parts parts = split(text, ':');
   const std::string where = "light '" + std::string(text) + "'";
   for (const LightForm& form : light_kinds()) {

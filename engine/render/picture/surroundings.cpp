@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/device/commands.h"
-#include "engine/render/light/image_file.h"
+#include "engine/render/light/studio.h"
 #include "interface/display/surroundings.comp.h"
 
 namespace quadgraph {
@@ -12,7 +12,7 @@ namespace quadgraph {
 Surroundings::Surroundings(device::Device& device) : device_(device), pass_(device, shader::surroundings) {}
 
 const Surroundings::Seen& Surroundings::seen(const std::string& file) {
-  auto image = load_pyramid(file);
+  auto image = environment_pyramid(file);
   Seen& known = seen_[file];
   if (known.image == image) return known;
   known.texels = device::upload<glm::vec3>(device_, image->texels, "picture/surroundings image");

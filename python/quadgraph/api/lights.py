@@ -103,7 +103,7 @@ class ProjectorLight(Light):
 
 @dataclass(frozen=True, repr=False)
 class EnvironmentLight(Light):
-    """All that is around, a picture by longitude and latitude. file: .exr or .hdr.
+    """All that is around, a picture by longitude and latitude. file: .exr or .hdr, or "studio", which is built in.
 
     radiance: W/(mm^2 sr) of what is 1 in it; turn: degrees counter-clockwise about `up`. At 0 the middle of the picture
     is behind the object as seen from azimuth 0.

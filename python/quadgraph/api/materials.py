@@ -32,7 +32,8 @@ class Material:
 
     sigma_s_prime: reduced scattering; sigma_a: absorption, both >= 0; eta: index of refraction inside over outside, 1
     to 3. pattern: mixes in the second set, with `period` mm from one vein, band, ... to the next (of layers, the depth
-    of the upper one) and a sharpness from 1 to 1000. Raises InputError.
+    of the upper one) and a sharpness from 1 to 1000. roughness: of the surface, GGX alpha, where a picture says none;
+    None is 0.3. Raises InputError.
     """
 
     sigma_s_prime: RGB
@@ -43,6 +44,7 @@ class Material:
     second_sigma_a: RGB | None = None
     period: float | None = None
     sharpness: float | None = None
+    roughness: float | None = None
 
     def __post_init__(self) -> None:
         """Check, and make numbers plain. Raises InputError."""

@@ -18,7 +18,17 @@ _POWERS = {
     "absorbed": "absorbed",
     "unscattered_out": "unscattered out",
 }
-_WARNINGS = ("replaced", "advice", "mesh_warning", "model_warning", "light_warning", "deformed", "missed", "stopped")
+_WARNINGS = (
+    "replaced",
+    "advice",
+    "mesh_warning",
+    "model_warning",
+    "size_warning",
+    "light_warning",
+    "deformed",
+    "missed",
+    "stopped",
+)
 
 
 def summary(solution: Solution) -> str:

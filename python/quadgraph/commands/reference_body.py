@@ -23,8 +23,8 @@ _SOLVED = 1200  # vertices of the surface that is solved on
 
 
 @contextlib.contextmanager
-def body() -> Iterator[Path]:
-    """Give its .qgraph, there as long as the block runs. Raises InputError, ToolError."""
+def body(longest_mm: float = LONGEST_MM) -> Iterator[Path]:
+    """Give its .qgraph of a size, there as long as the block runs. Raises InputError, ToolError."""
     from quadgraph.baking import kept
     from quadgraph.baking.pipeline import BakeOptions
     from quadgraph.mesh.tet_files import write_off
@@ -37,7 +37,7 @@ def body() -> Iterator[Path]:
     with tempfile.TemporaryDirectory(prefix="quadgraph-") as folder, contextlib.ExitStack() as stack:
         mesh = Path(folder) / "ribs.off"
         write_off(surface(), mesh)
-        options = BakeOptions(longest_mm=LONGEST_MM, surface_vertices=_SOLVED)
+        options = BakeOptions(longest_mm=longest_mm, surface_vertices=_SOLVED)
         with errors.status("baking the body of swatches, once"):
             path = stack.enter_context(kept.body(mesh, options, tell))
         yield path

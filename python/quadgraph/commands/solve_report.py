@@ -150,7 +150,7 @@ def solver_texts(report: dict) -> list[str]:
     texts += [path_text(report["path"])] if report.get("path") else []
     if report["replaced"]:
         texts.append(f"solver: {report['replaced']}")
-    against = ("missed", "advice", "mesh_warning", "model_warning", "light_warning", "deformed")
+    against = ("missed", "advice", "mesh_warning", "model_warning", "size_warning", "light_warning", "deformed")
     texts += [f"warning: {report[name]}" for name in against if report.get(name)]
     if report["stopped"]:
         texts.append(f"failed: {report['stopped']}")

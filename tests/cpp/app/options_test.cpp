@@ -52,7 +52,9 @@ TEST_CASE("every option of the table is one of the command line and does what it
       const std::string usual = value_text(option.get(Scene{}));
       std::string text = option.choices.empty() ? usual : std::string(option.choices.back().name);
       if (option.name == "map") text = "box,scale=2";
-      if (text.empty()) text = option.kind == OptionKind::number ? "12" : option.name == "view" ? "10,20" : "1,2,30";
+      if (option.name == "view") text = "10,20";
+      if (text.empty())
+        text = option.kind != OptionKind::number ? "1,2,30" : option.range.contains(12.0) ? "12" : "0.5";
       std::vector<std::string> given = {name, text};
       if (option.name == "eye") given.insert(given.end(), {"--look-at", "0,0,0"});
       if (option.name == "map") given.insert(given.end(), {"--material", "wax.npz"});

@@ -35,7 +35,7 @@ void check_refused(const std::string& text, const std::string& field) {
 }  // namespace
 
 TEST_CASE("every listed name parses, and refers to its row of Jensen et al. 2001") {
-  CHECK(material_names().size() == 19);
+  CHECK(material_names().size() == 31);
   for (const std::string& name : material_names()) CHECK_NOTHROW(check_material(parse_material(name)));
   const gpu::Material marble = parse_material("marble");
   CHECK(marble.sigma_s_prime == glm::vec3(2.19f, 2.62f, 3.00f));
@@ -43,6 +43,23 @@ TEST_CASE("every listed name parses, and refers to its row of Jensen et al. 2001
   CHECK(marble.eta == 1.5f);
   CHECK(parse_material("ketchup").sigma_a == glm::vec3(0.061f, 0.97f, 1.45f));
   CHECK(parse_material("spectralon").sigma_a == glm::vec3(0));
+}
+
+TEST_CASE("what a surface is like comes with a name, or is said, and changes no coefficient") {
+  CHECK_FALSE(stated_roughness("marble"));
+  CHECK_FALSE(stated_roughness("sigma_s_prime=1,sigma_a=0"));
+  CHECK_FALSE(stated_roughness("wax.npz,map=shell"));
+  CHECK_FALSE(stated_roughness(""));
+  CHECK(stated_roughness("marble,roughness=0.1") == 0.1f);
+  CHECK(stated_roughness("porcelain").value() < default_roughness);
+  CHECK(stated_roughness("soap,eta=1.5").value() > default_roughness);
+  CHECK(stated_roughness("porcelain,roughness=0.5") == 0.5f);
+  CHECK(parse_material("marble,roughness=0.1").sigma_a == parse_material("marble").sigma_a);
+  CHECK(parse_material("milk").sigma_s_prime == parse_material("wholemilk").sigma_s_prime);
+  for (const char* text : {"marble,roughness=0.01", "marble,roughness=1.1", "marble,roughness=dull",
+                           "sigma_s_prime=1,sigma_a=0,roughness=nan"}) {
+    check_refused(text, "roughness");
+  }
 }
 
 TEST_CASE("coefficients are given for all channels or for each, and override a name") {
@@ -129,8 +146,8 @@ TEST_CASE("who slips in a name is told what it may have been, and nobody else is
     return "";
   };
   const std::vector<std::pair<std::string, std::string>> slips = {
-      {"jed", "jade"},  {"Marble", "marble"},        {"skin", "skin1"},
-      {"wodo", "wood"}, {"whole-milk", "wholemilk"}, {"marble_vein", "marble-veins"}};
+      {"jed", "jade"},    {"Marble", "marble"},       {"skin", "skin1"},           {"wodo", "wood"},
+      {"gummi", "gummy"}, {"dark_skin", "dark-skin"}, {"whole-milk", "wholemilk"}, {"marble_vein", "marble-veins"}};
   for (const auto& slip : slips) {
     CAPTURE(slip.first);
     CHECK(said(slip.first.c_str()).find("did you mean '" + slip.second + "'?") != std::string::npos);
