@@ -12,7 +12,7 @@ import pytest
 PYTHON = Path(__file__).resolve().parents[2] / "python"
 # Every room may import itself and those before it.
 FLOORS = {
-    "quadgraph": ("base", "core", "api", "mesh", "tets", "file", "baking", "acquisition", "commands", "cli"),
+    "quadgraph": ("base", "work", "core", "api", "mesh", "tets", "file", "baking", "acquisition", "commands", "cli"),
     "quadgraph_validation": (
         "base",
         "bodies",
