@@ -12,7 +12,20 @@ import pytest
 PYTHON = Path(__file__).resolve().parents[2] / "python"
 # Every room may import itself and those before it.
 FLOORS = {
-    "quadgraph": ("base", "core", "api", "mesh", "tets", "file", "baking", "acquisition", "browser", "commands", "cli"),
+    "quadgraph": (
+        "base",
+        "work",
+        "core",
+        "api",
+        "mesh",
+        "tets",
+        "file",
+        "baking",
+        "acquisition",
+        "browser",
+        "commands",
+        "cli",
+    ),
     "quadgraph_validation": (
         "base",
         "bodies",

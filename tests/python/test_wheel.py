@@ -44,7 +44,7 @@ def test_the_wheel_is_the_package_alone():
     packages = project(ROOT / "pyproject.toml")["tool"]["scikit-build"]["wheel"]["packages"]
     assert packages == ["python/quadgraph"]
     rooms = {path.name for path in (ROOT / packages[0]).iterdir() if (path / "__init__.py").is_file()}
-    assert rooms == {"api", "base", "mesh", "tets", "file", "baking", "acquisition", "commands"}
+    assert rooms == {"api", "base", "mesh", "tets", "file", "baking", "acquisition", "commands", "work"}
     assert not {path.stem for path in (ROOT / packages[0] / "commands").glob("*.py")} & set(cli.VALIDATION)
 
 
@@ -78,7 +78,7 @@ def test_the_product_imports_what_it_declares_and_no_more():
     package = project(ROOT / "pyproject.toml")["project"]
     needed = names(package["dependencies"])
     extras = package["optional-dependencies"]
-    of_extras = (names(extras[name]) for name in ("capture", "film", "meshio", "pyvista", "torch"))
+    of_extras = (names(extras[name]) for name in ("capture", "cluster", "film", "meshio", "pyvista", "torch"))
     optional = {"openvdb", "pyopenvdb"}.union(*of_extras)
     others = imported(ROOT / "python" / "quadgraph") - set(sys.stdlib_module_names) - {"quadgraph"}
     assert others <= needed | optional

@@ -164,13 +164,13 @@ def _lock(place: Path, how: int) -> int:
 def _key(mesh: Path, options: BakeOptions) -> str:
     """Of what a bake is made of: the mesh's files, options, and the code that bakes."""
     digest = hashlib.sha256(f"{__version__} {_code()} {mesh.suffix.lower()} {options!r}".encode())
-    for path in _files(mesh):
+    for path in mesh_files(mesh):
         with suppress(OSError):  # the reader says what is wrong with it
             digest.update(hashlib.sha256(regular_file.read_bytes(path)).digest())
     return digest.hexdigest()
 
 
-def _files(mesh: Path) -> list[Path]:
+def mesh_files(mesh: Path) -> list[Path]:
     """A mesh's own file, and those that a .gltf names."""
     if mesh.suffix.lower() != ".gltf":
         return [mesh]

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from quadgraph.acquisition.volume.volume_options import PUBLISHED, SCHEMES, TOTAL_VARIATION, VolumeOptions
 from quadgraph.base.arguments import add_device_arguments, up_to
 from quadgraph.base.errors import InputError
+from quadgraph.work.schedulers import add_scheduler_argument, check_several
 
 if TYPE_CHECKING:
     from quadgraph.acquisition.recovery import Recovered
@@ -23,10 +24,18 @@ DISAGREES = 3  # exit code
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Register the subcommand."""
     parser = subparsers.add_parser("acquire", help="coefficients of a body, from photographs", description=__doc__)
-    parser.add_argument("file", metavar="CAPTURE", type=Path, help="capture.json (docs/acquisition.md)")
     parser.add_argument(
-        "-o", "--output", metavar="OUT", type=Path, required=True, help="the .npz to write, as --material takes it"
+        "file", metavar="CAPTURE", nargs="+", type=Path, help="capture.json (docs/acquisition.md); several allowed"
     )
+    parser.add_argument(
+        "-o",
+        "--output",
+        metavar="OUT",
+        type=Path,
+        required=True,
+        help="the .npz to write, as --material takes it; of several captures the folder for them",
+    )
+    add_scheduler_argument(parser, "several captures")
     parser.add_argument(
         "--volume", action="store_true", help="find coefficients that differ from place to place; takes minutes"
     )
@@ -78,23 +87,16 @@ def run(args: argparse.Namespace) -> int:
 
     from quadgraph.acquisition.capture import capture
     from quadgraph.acquisition.recovery import recover
-    from quadgraph.acquisition.volume.volume_fit import VolumeFit
     from quadgraph.base import atomic_file, outputs
     from quadgraph.commands.progress_bar import progress_bar
 
-    if args.output.suffix.lower() != ".npz":
-        raise InputError(f"{args.output}: output must end in .npz")
-    if args.report and args.report.suffix.lower() != ".html":
-        raise InputError(f"{args.report}: a report must end in .html")
-    if args.spacing is not None and not args.volume:
-        raise InputError("--spacing: found without --volume, which it is of; state both or neither")
-    if args.scheme is not None and not args.volume:
-        raise InputError("--scheme: found without --volume, which it is of; state both or neither")
-    if args.resume and args.scheme == PUBLISHED:
-        raise InputError(f"--resume: found with --scheme {PUBLISHED}, which keeps no steps; leave one of them out")
-    if args.resume and not args.volume:
-        raise InputError("--resume: found without --volume, whose steps it keeps; leave it out, for the rest is quick")
-    stated = capture.read(args.file)
+    _check(args)
+    if len(args.file) > 1:
+        from quadgraph.commands import acquire_many
+
+        return acquire_many.run(args)
+    (file,) = args.file
+    stated = capture.read(file)
     outputs.check_outputs([args.output, args.json, args.report], stated.files())
     errors = Console(stderr=True, highlight=False, soft_wrap=True)
     with progress_bar() as bar:
@@ -117,8 +119,31 @@ def run(args: argparse.Namespace) -> int:
 
         report_page.write(args.report, found)
     _summarise(found, args.output)
-    settled = isinstance(found.fit, VolumeFit) or found.fit.converged
-    return 0 if settled and not found.findings else DISAGREES
+    return 0 if is_settled(found) else DISAGREES
+
+
+def _check(args: argparse.Namespace) -> None:
+    """Raise InputError for options that do not go together."""
+    check_several(args, len(args.file) > 1, "several captures are wanted")
+    if len(args.file) == 1 and args.output.suffix.lower() != ".npz":
+        raise InputError(f"{args.output}: output must end in .npz")
+    if args.report and args.report.suffix.lower() != ".html":
+        raise InputError(f"{args.report}: a report must end in .html")
+    if args.spacing is not None and not args.volume:
+        raise InputError("--spacing: found without --volume, which it is of; state both or neither")
+    if args.scheme is not None and not args.volume:
+        raise InputError("--scheme: found without --volume, which it is of; state both or neither")
+    if args.resume and args.scheme == PUBLISHED:
+        raise InputError(f"--resume: found with --scheme {PUBLISHED}, which keeps no steps; leave one of them out")
+    if args.resume and not args.volume:
+        raise InputError("--resume: found without --volume, whose steps it keeps; leave it out, for the rest is quick")
+
+
+def is_settled(found: Recovered) -> bool:
+    """Whether a fit came to its end, and photographs do not contradict what the capture says."""
+    from quadgraph.acquisition.volume.volume_fit import VolumeFit
+
+    return (isinstance(found.fit, VolumeFit) or found.fit.converged) and not found.findings
 
 
 def _summarise(found: Recovered, output: Path) -> None:

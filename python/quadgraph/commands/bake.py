@@ -1,4 +1,4 @@
-"""`quadgraph bake`: a mesh file into a .qgraph file."""
+"""`quadgraph bake`: a mesh file into a .qgraph file, or several."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ from quadgraph.base.arguments import add_strict_argument, positive_float, positi
 from quadgraph.base.child_process import MOST_MEMORY_BYTES, MOST_TIME_S
 from quadgraph.base.errors import InputError
 from quadgraph.base.units import UPS
-from quadgraph.commands import own_mesh
+from quadgraph.commands import bake_many, own_mesh
+from quadgraph.work.schedulers import add_scheduler_argument, check_several
 
 if TYPE_CHECKING:
     from quadgraph.baking.pipeline import BakeReport
@@ -25,14 +26,22 @@ if TYPE_CHECKING:
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Register the subcommand."""
     parser = subparsers.add_parser("bake", help="a mesh into a .qgraph file", description=__doc__)
-    parser.add_argument("mesh", metavar="MESH", type=Path, help="OBJ, PLY, STL, OFF, glTF or GLB")
+    parser.add_argument(
+        "mesh",
+        metavar="MESH",
+        nargs="+",
+        type=Path,
+        help="OBJ, PLY, STL, OFF, glTF or GLB, or a folder of them; several allowed",
+    )
     parser.add_argument(
         "-o",
         "--output",
         metavar="FILE",
         type=Path,
-        help="the .qgraph to write (default: the mesh's name in the present folder, where there is none of it yet)",
+        help="the .qgraph to write (default: the mesh's name in the present folder, where there is none of it yet); of "
+        "several meshes the folder for them",
     )
+    add_scheduler_argument(parser, "the bakes of several meshes")
     own_mesh.add_size_arguments(parser)
     parser.add_argument(
         "--up",
@@ -179,6 +188,11 @@ def interior(text: str) -> str | float:
 
 def run(args: argparse.Namespace) -> int:
     """Bake, telling the progress on standard error; 3 with --strict if --error is not kept, else 0."""
+    several = bake_many.is_several(args.mesh)
+    check_several(args, several, "several meshes are wanted, or a folder of them")
+    if several:
+        return _run_several(args)
+    (args.mesh,) = args.mesh
     if args.output is None:
         args.output = _own_name(args.mesh)
     if args.surface_only:
@@ -192,6 +206,13 @@ def run(args: argparse.Namespace) -> int:
     else:
         _print_report(report)
     return 3 if args.strict and report.budget and not report.budget["reached"] else 0
+
+
+def _run_several(args: argparse.Namespace) -> int:
+    if args.surface_only:
+        raise InputError("--surface-only: found with several meshes; it takes no time, one after the other")
+    _check_error_options(args)
+    return bake_many.run(args, _options(args))
 
 
 def _own_name(mesh: Path) -> Path:
@@ -208,7 +229,7 @@ def _write_surface(args: argparse.Namespace) -> int:
 
     left_alone = {
         *("mesh", "output", "unit", "height", "longest", "up", "front"),
-        *("surface_only", "mesher", "order", "device", "no_config"),
+        *("surface_only", "mesher", "order", "device", "scheduler", "no_config"),
     }
     for name in sorted(args.given - left_alone):
         if getattr(args, name):

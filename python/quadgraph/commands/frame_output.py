@@ -12,6 +12,8 @@ from quadgraph.commands import picture_output
 from quadgraph.file import film
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from quadgraph.core import Picture
 
 
@@ -61,6 +63,11 @@ class Frames:
                 self._films[path].add(shown.srgb(picture))
             else:
                 _write(picture, path.with_name(path.name % int(frame)) if "%" in path.name else path, shown)
+
+    def add_shown(self, srgb: np.ndarray) -> None:
+        """Add one frame, (h, w, 3) as it is shown, to all films. Raises InputError if it cannot be written."""
+        for each in self._films.values():
+            each.add(srgb)
 
     def finish(self) -> None:
         """End the films and give them their names. Raises InputError if one cannot be written."""

@@ -18,6 +18,7 @@ from quadgraph.commands import solve_report as text
 from quadgraph.commands.progress_bar import progress_bar
 from quadgraph.core import load_core
 from quadgraph.file import film
+from quadgraph.work.schedulers import add_scheduler_argument, check_several
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -40,6 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="render the first N, without N all of the scene, into a numbered OUT, e.g. frames/%%04d.png, .jpg or "
         ".exr, or a film, e.g. turn.mp4 or turn.gif",
     )
+    add_scheduler_argument(group, "frames")
 
 
 def is_scene(path: Path) -> bool:
@@ -49,7 +51,13 @@ def is_scene(path: Path) -> bool:
 
 def refuse(args: argparse.Namespace) -> None:
     """Raise InputError if an option is given that only a scene file takes."""
-    for name, given in (("set", args.set), ("frame", args.frame), ("frames", args.frames is not None)):
+    typed = "scheduler" in args.given
+    for name, given in (
+        ("set", args.set),
+        ("frame", args.frame),
+        ("frames", args.frames is not None),
+        ("scheduler", typed),
+    ):
         if given:
             raise InputError(f"--{name}: only with a scene file (.json), found {args.file}")
 
@@ -68,6 +76,7 @@ def run(args: argparse.Namespace) -> int:
         except InputError as error:
             raise InputError(f"--set {pointer}: {error}") from None
     check_frames(args, file.frames)
+    check_several(args, args.frames is not None, "--frames is wanted")
     frames = [args.frame] if args.frames is None else range(args.frames or file.frames)
     with_numbers = args.frames is not None
     transparent = json.loads(file.at(0).json())["picture"]["background"] == "transparent"
@@ -77,12 +86,26 @@ def run(args: argparse.Namespace) -> int:
             image_file.check_transparent(path)
     read = [*scene_options.inputs(args), *named_files(args.file), *args.set]
     outputs.check_outputs([*args.output, args.json], read)
-    stage = core.Stage(device=args.device, validation=args.validation)
-    reports = render(stage, file, frames, args.output)
+    reports = _by_tasks(args, file) if args.scheduler and with_numbers else _in_turn(args, file, frames)
     if args.json:
         atomic_file.write_json(args.json, reports if with_numbers else reports[0])
-    summarise(stage, reports, args.output)
     return scene_options.exit_status(reports, args.strict)
+
+
+def _in_turn(args: argparse.Namespace, file, frames: Iterable[float]) -> list[dict]:
+    stage = load_core().Stage(device=args.device, validation=args.validation)
+    reports = render(stage, file, frames, args.output)
+    summarise(text.size_text(stage.engine), reports, args.output)
+    return reports
+
+
+def _by_tasks(args: argparse.Namespace, file) -> list[dict]:
+    from quadgraph.commands import frame_tasks
+
+    reports = frame_tasks.render(args, file, range(args.frames or file.frames), args.output)
+    scene_options.tell_map(reports[0]["map"])
+    summarise(reports[0]["size"], reports, args.output)
+    return reports
 
 
 def check_frames(args: argparse.Namespace, most: int) -> None:
@@ -135,12 +158,12 @@ def badness(report: dict) -> tuple[bool, float]:
     return bool(report["stopped"]), (report["error"] or {"whole": 0.0})["whole"]
 
 
-def summarise(stage, reports: list[dict], outputs: list[Path]) -> None:
-    """Say what was made, of a frame that did not converge or else of the one with the largest error."""
+def summarise(size: str, reports: list[dict], outputs: list[Path]) -> None:
+    """Say what was made, of a frame that did not converge or else of the one with the largest error. size: in words."""
     console = Console(highlight=False, soft_wrap=True)
     worst = max(reports, key=badness)
     seconds = sum(report["seconds"] for report in reports)
-    console.print(text.size_text(stage.engine))
+    console.print(size)
     if len(reports) == 1:
         console.print(f"frame: {sum(p['time_ms'] for p in worst['passes']):.0f} ms on the device, {seconds:.1f} s")
     else:

@@ -16,13 +16,15 @@ Row = dict[str, Any]
 @dataclass
 class KeptRows:
     """only: names of the cases that are wanted, none: all; rows: that there are already, of these cases and others;
-    write: is given all rows, in the order of the cases, after each new one; tell: is given the name of a case before.
+    write: is given all rows, in the order of the cases, after each new one; tell: is given the name of a case before;
+    spread: makes the rows of cases by their names, in place of one case after the other.
     """
 
     only: Sequence[str] = ()
     rows: list[Row] = field(default_factory=list)
     write: Callable[[list[Row]], None] = lambda rows: None
     tell: Callable[[str], None] = lambda name: None
+    spread: Callable[[Sequence[str]], list[Row]] | None = None
 
     def complete(self, cases: Iterable[tuple[str, Callable[[], Row]]]) -> list[Row]:
         """The rows of all wanted cases, each by its name, and after them those that are there of others; none that is
@@ -33,11 +35,15 @@ class KeptRows:
         if unknown := [name for name in self.only if name not in names]:
             raise InputError(f"--scene: {', '.join(unknown)} found, allowed are {', '.join(names)}")
         found = {row["name"]: row for row in self.rows}
-        for name, make in every:
-            if name not in found and (not self.only or name in self.only):
-                self.tell(name)
-                found[name] = {"name": name} | make()
-                self.write(self._in_order(found, names))
+        missing = {name: make for name, make in every if name not in found and (not self.only or name in self.only)}
+        if self.spread is not None:
+            found |= {row["name"]: row for row in self.spread(list(missing))}
+            self.write(self._in_order(found, names))
+            return self._in_order(found, names)
+        for name, make in missing.items():
+            self.tell(name)
+            found[name] = {"name": name} | make()
+            self.write(self._in_order(found, names))
         return self._in_order(found, names)
 
     @staticmethod

@@ -52,9 +52,7 @@ def run(wanted: UnseenRun) -> dict[str, Any]:
 
     Raises InputError, what bakes and solves raise, and KeyboardInterrupt where nothing was finished.
     """
-    extra_module.load("numba", "walks")
-    if wanted.motion and wanted.lights != "beams":
-        raise InputError(f"--motion: with --lights {wanted.lights}, which does not turn; take --lights beams")
+    check(wanted)
     rows: list[dict[str, Any]] = []
     shown = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:.0f}%"), TimeRemainingColumn())
     with Progress(*shown, console=Console(stderr=True)) as progress:
@@ -70,6 +68,18 @@ def run(wanted: UnseenRun) -> dict[str, Any]:
         except KeyboardInterrupt:
             if not rows:
                 raise
+    return record_of(wanted, rows)
+
+
+def check(wanted: UnseenRun) -> None:
+    """Raise InputError for what cannot be judged here."""
+    extra_module.load("numba", "walks")
+    if wanted.motion and wanted.lights != "beams":
+        raise InputError(f"--motion: with --lights {wanted.lights}, which does not turn; take --lights beams")
+
+
+def record_of(wanted: UnseenRun, rows: list[dict[str, Any]]) -> dict[str, Any]:
+    """The record of a run with these rows."""
     asked = {key: getattr(wanted, key) for key in ("seed", "lights", "inter_reflection", "walks", "for_material")}
     record = asked | {"rows": rows, "summary": summary(rows)}
     return record | {"motion": motion_summary(rows)} if wanted.motion else record

@@ -15,6 +15,7 @@ from quadgraph.base.arguments import positive_float, positive_int
 from quadgraph.base.cache_folder import cache_folder
 from quadgraph.base.errors import InputError
 from quadgraph.core import load_core
+from quadgraph.work.schedulers import add_scheduler_argument
 from quadgraph_validation.accuracy import kept_rows
 from quadgraph_validation.base.machine import commit
 from quadgraph_validation.base.study_folders import COMMITTED_TRUTH, add_meshes_argument
@@ -62,6 +63,9 @@ ON_ENGINE = {
     "veined": "is what photographs are held against",
 }
 
+_BY_ROWS = ("acquire", "converging", "veined", "volume")  # studies whose cases have names
+_BY_CASES = ("unseen", *_BY_ROWS)  # whose cases are independent
+
 _UNSEEN_WALKS, _ACQUIRE_WALKS, _VEINED_WALKS, _PICTURE_WALKS = 2_000_000, 8192, 20_000, 2000
 _CERTIFICATE_S, _CONVERGING_S = 15.0, 120.0
 
@@ -74,7 +78,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--resume",
         action="store_true",
-        help="acquire, converging, volume, veined: go on with the record of --json, body by body",
+        help=f"{', '.join(_BY_ROWS)}: go on with the record of --json, body by body",
     )
     parser.add_argument(
         "--reference", action="store_true", help="solve with the CPU reference in double precision instead of the GPU"
@@ -82,6 +86,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--device", default="", metavar="NAME", help="cpu, or part of a Vulkan device's name; default: a GPU, else cpu"
     )
+    add_scheduler_argument(parser, f"the cases of {', '.join(_BY_CASES)}")
     _add_bodies_options(parser.add_argument_group("scenes, estimate, target, budget, acquire, volume, veined"))
     _add_scenes_options(parser.add_argument_group("scenes, unseen"))
     _add_unseen_options(
@@ -160,6 +165,10 @@ def run(args: argparse.Namespace) -> int:
     from quadgraph_validation.truth import schemes
 
     load_core()
+    if args.scheduler:
+        from quadgraph_validation.accuracy import row_tasks
+
+        row_tasks.check(args.study, _BY_CASES)
     study = importlib.import_module(f"quadgraph_validation.accuracy.{STUDIES[args.study]}_study")
     if args.study in ON_ENGINE:
         if args.reference:
@@ -208,6 +217,8 @@ def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
     if args.study == "volume":
         return _run_by_rows(study, args, study.VolumeRun(args.seed, args.count, device=args.device))
     if args.study == "unseen":
+        from quadgraph_validation.accuracy import row_tasks
+
         truths, sweeps = args.truth or cache_folder(), args.sweeps or (None,)
         wanted = study.UnseenRun(
             args.seed,
@@ -221,7 +232,7 @@ def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
             args.motion,
             args.for_material,
         )
-        record = study.run(wanted)
+        record = row_tasks.unseen(wanted, args.scheduler) if args.scheduler else study.run(wanted)
         if args.images:
             from quadgraph_validation.accuracy import unseen_figures
 
@@ -247,7 +258,12 @@ def _run_by_rows(study: ModuleType, args: argparse.Namespace, wanted: Any, **sam
         if args.json:
             _write(args, study.record_of(wanted, rows))
 
+    rows = kept_rows.read(args.json, args.study, seed=args.seed, **same) if args.resume else []
+    if args.scheduler:
+        from quadgraph_validation.accuracy import row_tasks
+
+        spread = row_tasks.named(STUDIES[args.study], wanted, args.scheduler)
+        return study.run(wanted, kept_rows.KeptRows(args.scene, rows, write, spread=spread))
     with Console(stderr=True).status(f"study: {args.study}") as status:
-        rows = kept_rows.read(args.json, args.study, seed=args.seed, **same) if args.resume else []
         kept = kept_rows.KeptRows(args.scene, rows, write, lambda name: status.update(f"study: {args.study}, {name}"))
         return study.run(wanted, kept)

@@ -4,20 +4,14 @@ from __future__ import annotations
 
 import argparse
 import json
-import tempfile
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from quadgraph.base import atomic_file
 from quadgraph.base.arguments import positive_int
 from quadgraph.base.errors import InputError
-from quadgraph.core import load_core
+from quadgraph.work.schedulers import add_scheduler_argument
 from quadgraph_validation.base.study_folders import COMMITTED_TRUTH, add_meshes_argument
-
-if TYPE_CHECKING:
-    from quadgraph_validation.chart.chart_body import ChartBody
-    from quadgraph_validation.chart.chart_judge import ChartJudge
-    from quadgraph_validation.chart.chart_method import ChartMethod
 
 TRUTHS = ("pde", "transport")
 _TABLE_WIDTH = 190  # characters; narrower, the tables cannot be read
@@ -45,6 +39,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         metavar="FILE",
         help="draw the charts of that record again, the same to the byte, instead of measuring; needs no device",
     )
+    add_scheduler_argument(parser, "scenes")
     _add_measure_options(parser.add_argument_group("what is measured"))
     _add_truth_options(parser.add_argument_group("truth"))
 
@@ -128,29 +123,22 @@ def _check(args: argparse.Namespace) -> None:
 def _measured(args: argparse.Namespace) -> dict[str, Any]:
     from rich.console import Console
 
-    from quadgraph_validation.base.machine import machine
     from quadgraph_validation.bodies import scenes
-    from quadgraph_validation.chart import chart_measure, chart_pictures, chart_truths
+    from quadgraph_validation.chart import scene_measure
     from quadgraph_validation.chart.chart_record import FORMAT
 
-    folders = chart_truths.folders(args.meshes, args.truth)
-    against = tuple(args.against or TRUTHS)
-    with (
-        tempfile.TemporaryDirectory(prefix="quadgraph-chart-") as working,
-        Console(stderr=True).status("truths") as status,
-    ):
-        subjects = [
-            chart_truths.subject(one, folders, against, args.method, Path(working), args.device, args.pixels)
-            for one in scenes.chosen(args.scene)
-        ]
-        copied = load_core().copy_bandwidth(args.device)
-
-        def measured(body: ChartBody, judge: ChartJudge, methods: list[ChartMethod]) -> dict[str, Any]:
-            run = machine(copied) | chart_measure.conditions(args.repeats, args.pixels)
-            points = chart_measure.measure(body, judge, methods, args.repeats, status.update)
-            if args.output:
-                chart_pictures.write(args.output, judge, points)
-            return {"run": run} | chart_measure.scene_record(body, judge, points)
-
-        # Popped, and measured in a function: each with its engines is let go before the next.
-        return {"format": FORMAT, "scenes": [measured(*subjects.pop(0)) for _ in range(len(subjects))]}
+    wanted = scene_measure.ChartRun(
+        str(args.meshes),
+        str(args.truth) if args.truth else None,
+        args.against or TRUTHS,
+        args.method,
+        args.device,
+        args.pixels,
+        args.repeats,
+        str(args.output) if args.output else None,
+    )
+    names = [one.name for one in scenes.chosen(args.scene)]
+    if args.scheduler:
+        return {"format": FORMAT, "scenes": scene_measure.spread(names, wanted, args.scheduler)}
+    with Console(stderr=True).status("truths") as status:
+        return {"format": FORMAT, "scenes": scene_measure.measured(names, wanted, status.update)}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.table import Table
@@ -12,7 +13,11 @@ from quadgraph.base.arguments import positive_int
 from quadgraph.base.cache_folder import cache_folder
 from quadgraph.base.errors import InputError
 from quadgraph.core import load_core
+from quadgraph.work.schedulers import add_scheduler_argument
 from quadgraph_validation.base.study_folders import COMMITTED_TRUTH, add_meshes_argument
+
+if TYPE_CHECKING:
+    from quadgraph_validation.bodies.scenes import StudyScene
 
 KINDS = ("transport", "pde", "walk")
 MODELS, SOURCES = ("sp3", "diffusion"), ("buried", "diffuse")
@@ -39,6 +44,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         metavar="FOLDER",
         help=f"where truths are kept (default: {COMMITTED_TRUTH} for transport, else ~/.cache/quadgraph)",
     )
+    add_scheduler_argument(parser, "images of transport and equations of pde")
     _add_transport_options(parser.add_argument_group("transport"))
     _add_pde_options(parser.add_argument_group("pde"))
     parser.add_argument_group("walk").add_argument(
@@ -77,7 +83,12 @@ def _transport(args: argparse.Namespace) -> Table:
     folder = args.truth or COMMITTED_TRUTH
     chosen = scenes.chosen(args.scene)
     subjects = [truth_run.subject(one, scene_meshes.file(one, args.meshes)) for one in chosen]
-    truth_run.render(subjects, folder, args.samples, Console(stderr=True))
+    if args.scheduler:
+        from quadgraph_validation.truth import truth_tasks
+
+        truth_tasks.path_traced(subjects, folder, args.samples, args.scheduler)
+    else:
+        truth_run.render(subjects, folder, args.samples, Console(stderr=True))
     table = Table("scene", "image", "samples a pixel", "lit: noise of a block", "all")
     for found in subjects:
         for name in found.scene.images:
@@ -89,24 +100,39 @@ def _transport(args: argparse.Namespace) -> Table:
 
 def _pde(args: argparse.Namespace) -> Table:
     from quadgraph_validation.bodies import scenes
-    from quadgraph_validation.truth import pde_truth
 
     load_core()
-    folder, console = args.truth or cache_folder(), Console(stderr=True)
     parts = ("whole", "unlit")
     names = ("first step", "second step", "noise")
     table = Table("scene", "model", "source", *(f"{name}: {part}" for name in names for part in parts))
-    for one in scenes.chosen(args.scene):
-        for source in args.source or SOURCES[:1]:
-            for model in args.model or MODELS:
-                found = pde_truth.make(one, model, args.meshes, folder, console, source)
-                numbers = [errors.get(part) for errors in (*found.steps, found.noise) for part in parts]
-                cells = ("" if number is None else f"{number:.2%}" for number in numbers)
-                table.add_row(one.name, model, source, *cells)
+    chosen = scenes.chosen(args.scene)
+    wanted = [
+        (one, model, source)
+        for one in chosen
+        for source in args.source or SOURCES[:1]
+        for model in args.model or MODELS
+    ]
+    for (one, model, source), found in zip(wanted, _of_equations(args, wanted), strict=True):
+        numbers = [errors.get(part) for errors in (*found["steps"], found["noise"]) for part in parts]
+        cells = ("" if number is None else f"{number:.2%}" for number in numbers)
+        table.add_row(one.name, model, source, *cells)
     return table
 
 
+def _of_equations(args: argparse.Namespace, wanted: list[tuple[StudyScene, str, str]]) -> list[dict[str, Any]]:
+    from quadgraph_validation.truth import truth_tasks
+
+    folder = args.truth or cache_folder()
+    if args.scheduler:
+        return truth_tasks.of_equations(wanted, args.meshes, folder, args.scheduler)
+    return [
+        truth_tasks.equations(one.name, model, source, str(args.meshes), str(folder)) for one, model, source in wanted
+    ]
+
+
 def _walk(args: argparse.Namespace) -> Table:
+    if "scheduler" in args.given:
+        raise InputError("--scheduler: found with --kind walk, whose walks share one machine's cores by themselves")
     from quadgraph_validation.truth import cross_checks
 
     for name in args.scene:

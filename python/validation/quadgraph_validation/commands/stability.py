@@ -11,6 +11,7 @@ from quadgraph.base.arguments import add_device_arguments, positive_int
 from quadgraph.base.cache_folder import cache_folder
 from quadgraph.base.errors import InputError
 from quadgraph.core import load_core
+from quadgraph.work.schedulers import add_scheduler_argument
 
 _TABLE_WIDTH = 120  # characters; narrower, the table cannot be read
 
@@ -45,6 +46,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         metavar="FOLDER",
         help="true solutions are kept there, a few MB (default: %(default)s)",
     )
+    add_scheduler_argument(parser, "the panels, a map and a method each,")
     add_device_arguments(parser)
 
 
@@ -98,7 +100,10 @@ def _solved(args: argparse.Namespace) -> dict[str, Any]:
         maps = [each.thinned(args.thin) for each in maps]
     if not any(stability_suite.chosen(each.methods, args.method) for each in maps):
         raise InputError(f"--method {args.method}: no map of {args.axis} has it")
+    setting = StabilitySetting(args.device, args.truth)
+    if args.scheduler:
+        from quadgraph_validation.stability import panel_tasks
+
+        return machine(copied) | panel_tasks.run(maps, args.thin, args.method, setting, args.scheduler)
     with Console(stderr=True).status("stability") as status:
-        return machine(copied) | stability_suite.run(
-            maps, args.method, StabilitySetting(args.device, args.truth), status.update
-        )
+        return machine(copied) | stability_suite.run(maps, args.method, setting, status.update)

@@ -12,7 +12,7 @@ from quadgraph.base.errors import InputError
 from quadgraph.base.progress import ProgressCallback
 from quadgraph_validation.stability import arithmetic, columns, solids
 from quadgraph_validation.stability.error_classes import CLASSES, FACTOR, SILENT, SMALL, USABLE, USELESS
-from quadgraph_validation.stability.stability_maps import Map, StabilitySetting
+from quadgraph_validation.stability.stability_maps import CaseOf, Map, StabilitySetting
 from quadgraph_validation.stability.stability_methods import DEFAULT, StabilityMethod, chosen
 
 MAPS: tuple[Map, ...] = (*columns.MAPS, *solids.MAPS, columns.TRANSPORT, *arithmetic.MAPS)
@@ -39,8 +39,12 @@ def run(
     maps: Sequence[Map], methods: Sequence[str], setting: StabilitySetting, tell: ProgressCallback = lambda text: None
 ) -> dict:
     """The record of all maps; methods: names, all if there are none."""
+    return record_of([run_map(each, chosen(each.methods, list(methods)), setting, tell) for each in maps])
+
+
+def record_of(found: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """The record of maps, those without panels left out."""
     limits = {"small": SMALL, "factor": FACTOR, "usable": USABLE, "useless": USELESS}
-    found = [run_map(each, chosen(each.methods, list(methods)), setting, tell) for each in maps]
     found = [each for each in found if each["panels"]]
     return {"limits": limits, "maps": found, "counts": counts(found)}
 
@@ -49,16 +53,26 @@ def run_map(
     each: Map, methods: Sequence[StabilityMethod], setting: StabilitySetting, tell: ProgressCallback
 ) -> dict[str, Any]:
     """The points of a map, row by row from its first y, of every method."""
-    record: dict[str, Any] = {"name": each.name, "title": each.title, "truth": each.truth}
-    for axis, name in ((each.x, "x"), (each.y, "y")):
-        texts = [axis.text(index) for index in range(len(axis.values))]
-        record[name] = {"axis": axis.name, "label": axis.label, "values": list(axis.values), "texts": texts}
     case_of = each.cases(setting, each.x.values, each.y.values)
     panels = {}
     for method in methods:
         tell(f"{each.name}: {method.name}")
-        panels[method.name] = [[each.judge(case_of(x, y), method) for x in each.x.values] for y in each.y.values]
-    return record | {"panels": panels}
+        panels[method.name] = panel(each, method, case_of)
+    return described(each) | {"panels": panels}
+
+
+def panel(each: Map, method: StabilityMethod, case_of: CaseOf) -> list[list[dict[str, Any]]]:
+    """The points of a map of one method, row by row from its first y."""
+    return [[each.judge(case_of(x, y), method) for x in each.x.values] for y in each.y.values]
+
+
+def described(each: Map) -> dict[str, Any]:
+    """A map without its points."""
+    record: dict[str, Any] = {"name": each.name, "title": each.title, "truth": each.truth}
+    for axis, name in ((each.x, "x"), (each.y, "y")):
+        texts = [axis.text(index) for index in range(len(axis.values))]
+        record[name] = {"axis": axis.name, "label": axis.label, "values": list(axis.values), "texts": texts}
+    return record
 
 
 def read(path: Path, maps: Sequence[str], methods: Sequence[str]) -> dict[str, Any]:

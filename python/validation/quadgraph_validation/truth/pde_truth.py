@@ -113,7 +113,7 @@ def chain(scene: StudyScene, meshes: Path, folder: Path) -> Path:
 
 def stored(scene: StudyScene, model: str, meshes: Path, folder: Path, source: str = "buried") -> PdeTruth:
     """The truth that `make` made. Raises InputError if it is absent, unfinished or stale, naming what differs."""
-    path, chain_path = _path(folder, scene, model, source), _baked(scene, meshes, folder).path
+    path, chain_path = path_of(folder, scene, model, source), _baked(scene, meshes, folder).path
     command = f"quadgraph reference {scene.name} --kind pde --model {model} --source {source}"
     for needed in (path, chain_path):
         if not needed.exists():
@@ -137,7 +137,7 @@ def make(
         title = f"{scene.name}, {model}, {source} source"
         bar = progress.add_task(f"{title}: chain of levels", total=None)
         chain_path = chain(scene, meshes, folder)
-        path, key = _path(folder, scene, model, source), _key(scene, model, source, chain_path)
+        path, key = path_of(folder, scene, model, source), _key(scene, model, source, chain_path)
         found = _load(path, key, chain_path) if path.exists() else None
         if found is None or not found.complete:
             progress.update(bar, description=f"{title}: rays of light")
@@ -161,7 +161,8 @@ def _load(path: Path, key: dict[str, Any], chain_path: Path) -> PdeTruth:
     return PdeTruth(key, chain_path, **store.load(path, key, _ARRAYS, "a PDE truth"))
 
 
-def _path(folder: Path, scene: StudyScene, model: str, source: str) -> Path:
+def path_of(folder: Path, scene: StudyScene, model: str, source: str) -> Path:
+    """The file of a truth. Raises InputError for models and sources that are none."""
     for name, found, allowed in (("model", model, MODELS), ("source", source, SOURCES)):
         if found not in allowed:
             raise InputError(f"{name} '{found}': allowed are {', '.join(allowed)}")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import signal
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -77,8 +77,12 @@ def noise(image: StoredTruth) -> tuple[float, float]:
     return where_bright, over_all
 
 
-def render(subjects: list[TracedSubject], folder: Path, samples: int, console: Console) -> None:
+def render(
+    subjects: list[TracedSubject], folder: Path, samples: int, console: Console, images: Sequence[str] = ()
+) -> None:
     """Bring every image to `samples` samples a pixel, those of views of more effort to as many times more.
+
+    images: names of those that are wanted, none: all.
 
     Saved after every round of an image; KeyboardInterrupt passes through with every finished batch kept. Raises
     InputError if a stored image is stale or Mitsuba is absent.
@@ -88,7 +92,8 @@ def render(subjects: list[TracedSubject], folder: Path, samples: int, console: C
     with ExitStack() as stack:
         stack.enter_context(_interruptible())
         progress = stack.enter_context(Progress(console=console))
-        jobs = [_job(stack, progress, found, folder, name, rounds) for found in subjects for name in found.scene.images]
+        wanted = [(found, name) for found in subjects for name in found.scene.images if not images or name in images]
+        jobs = [_job(stack, progress, found, folder, name, rounds) for found, name in wanted]
         for number in range(2, rounds + 1):
             for job in jobs:
                 job.advance(number)

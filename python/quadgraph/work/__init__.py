@@ -1,0 +1,1 @@
+"""Many independent runs: what one of them is, and who runs them."""
