@@ -114,10 +114,11 @@ View view_from(const std::string& text, const std::string& up, float vertical_fo
 }
 
 std::vector<std::string> default_light_texts(const std::string& text, const std::string& up, float front,
-                                             const std::string& eye, const std::string& look_at) {
+                                             const std::string& eye, const std::string& look_at, bool studio) {
   View view = view_from(text, up, View{}.vertical_fov, front);
   if (!eye.empty()) view.eye = parse_place(eye, "eye");
   if (!look_at.empty()) view.look_at = parse_place(look_at, "look-at");
+  if (studio) return {to_string(studio_of(view))};
   std::vector<std::string> texts;
   for (const Light& light : default_lights(view)) texts.push_back(to_string(light));
   return texts;
@@ -371,12 +372,10 @@ void heed_signals() {
 
 void bind_engine(py::module_& module) {
   const std::string usual_up(name_of(View{}.up));
-  module.def(
-      "default_lights", &default_light_texts, py::arg("view") = "", py::arg("up") = usual_up, py::arg("front") = 0.0f,
-      py::arg("eye") = "", py::arg("look_at") = "",
-      "The lights a picture gets when nobody asks for others: a warm key light from behind the object as `view` "
-      "sees it (without one the azimuth `front`, degrees, of QuadGraph.front), a cool one from the side, a little "
-      "ambient light.");
+  module.def("default_lights", &default_light_texts, py::arg("view") = "", py::arg("up") = usual_up,
+             py::arg("front") = 0.0f, py::arg("eye") = "", py::arg("look_at") = "", py::arg("studio") = false,
+             "The usual lights: a warm key from behind the object as `view` sees it (without one the azimuth `front`, "
+             "degrees), a cool one from the side, a little ambient light; or the studio, turned in the same way.");
   module.def(
       "copy_bandwidth", &copy_bandwidth, py::arg("device") = "",
       "GB/s, read and written, at which a device copies one buffer into another: kernel (a compute pass), transfer "

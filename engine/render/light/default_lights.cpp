@@ -2,6 +2,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "engine/render/light/studio.h"
+
 namespace quadgraph {
 namespace {
 
@@ -22,6 +24,13 @@ std::vector<Light> default_lights(const View& view) {
   return {from(camera, {-0.5f, 0.45f, -1.0f}, key_irradiance),
           from(camera, {0.85f, 0.4f, 0.45f}, side_irradiance),
           {.kind = LightKind::ambient, .power = sky_irradiance}};
+}
+
+Light studio_of(const View& view) {
+  Light light = parse_light(studio_name);
+  light.turn = by_angles(view, {{0, 0, 0}, 1}).azimuth;
+  if (view.up == UpAxis::z) light.up = {0, 0, 1};
+  return light;
 }
 
 }  // namespace quadgraph

@@ -13,4 +13,7 @@ namespace quadgraph {
 // part is black.
 std::vector<Light> default_lights(const View& view);
 
+// The studio that is built in (engine/render/light/studio.h), turned so that its warm box stands behind the object.
+Light studio_of(const View& view);
+
 }  // namespace quadgraph

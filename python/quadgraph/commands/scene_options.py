@@ -6,6 +6,7 @@ import argparse
 import math
 import re
 from collections.abc import Callable, Collection, Iterable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -154,11 +155,14 @@ def load_engine(file: Path, args: argparse.Namespace) -> Engine:
 
 
 def lights(engine: Engine, args: argparse.Namespace) -> list[str]:
-    """The lights that the arguments say, or else the usual ones about their view."""
+    """The lights that the arguments say, a studio turned to their view, or else the usual ones about it."""
     seen_from = {
         name: value for name in ("view", "up", "eye", "look_at") if (value := getattr(args, name, None)) is not None
     }
-    return args.light or load_core().default_lights(**seen_from, front=engine.graph.front)
+    usual = partial(load_core().default_lights, **seen_from, front=engine.graph.front)
+    if not args.light:
+        return usual()
+    return [light for text in args.light for light in (usual(studio=True) if text == "studio" else [text])]
 
 
 def inputs(args: argparse.Namespace) -> list[Path | str | None]:

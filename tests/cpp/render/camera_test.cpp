@@ -163,6 +163,16 @@ TEST_CASE("a view by places is one by angles") {
   CHECK_THROWS_AS(check_view({.orthographic = -1.0f}), InputError);
 }
 
+TEST_CASE("a studio turns with the view, from wherever that is said") {
+  CHECK(studio_of(view(0, 10)) == parse_light("studio"));
+  CHECK(studio_of(view(40, 10)).turn == 40);
+  const Light upright = studio_of({.azimuth = 40, .up = UpAxis::z});
+  CHECK(upright.up == glm::vec3(0, 0, 1));
+  const Camera from = place_camera(view(40, 10), bounds, 1);
+  const Light placed = studio_of({.eye = bounds.centre + 50.0f * from.backward, .look_at = bounds.centre});
+  CHECK(placed.turn == doctest::Approx(40));
+}
+
 TEST_CASE("the default key light shines from behind the object, the second from the side, a little from everywhere") {
   for (const float azimuth : {0.0f, 75.0f, 200.0f}) {
     const auto lights = default_lights(view(azimuth, 10));

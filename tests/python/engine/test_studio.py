@@ -41,6 +41,14 @@ def test_it_turns_with_the_view(shown):
     assert not np.allclose(picture("studio", "40,10").surroundings, shown.surroundings, rtol=0.01)
 
 
+def test_a_command_line_turns_it_with_the_view(tmp_path):
+    fast = ["--size", "24x24", "--samples", "4", "--device", "cpu", "--view", "40,10", "--surroundings"]
+    for name, light in (("a", "studio"), ("b", "environment:studio:40:0.0002")):
+        told = [str(tiny.PATH), "--material", "milk", "--light", light, *fast, "-o", str(tmp_path / f"{name}.png")]
+        assert cli.main(["render", *told]) == 0
+    assert np.array_equal(pixels(tmp_path / "a.png"), pixels(tmp_path / "b.png"))
+
+
 def test_a_scene_names_it_as_no_file_of_its_folder(shown, tmp_path):
     shutil.copy(tiny.PATH, tmp_path / "a.qgraph")
     scene = {
