@@ -10,7 +10,6 @@
 
 #include "engine/base/text.h"
 #include "engine/optics/fresnel.h"
-#include "engine/optics/material.h"
 #include "engine/optics/named_materials.h"
 
 namespace quadgraph {
@@ -78,14 +77,36 @@ std::optional<double> promised_chord(std::string_view text) {
   return named_material(parts[0]) && !own ? std::optional(meant_chord) : std::nullopt;
 }
 
+// Share of diffuse light that the surface reflects back into the body.
+double reflected_inside(const gpu::Material& material) {
+  const auto eta = static_cast<double>(material.eta);
+  return 1 - diffuse_transmittance(eta) / (eta * eta);
+}
+
+glm::dvec3 colour_of(const gpu::Material& material, double inside, double chord) {
+  glm::dvec3 colour;
+  for (int c = 0; c < 3; ++c) {
+    const double back = sent_back(static_cast<double>(material.sigma_s_prime[c]),
+                                  static_cast<double>(material.sigma_a[c]), std::min(chord, deepest));
+    colour[c] = (1 - inside) * back / (1 - inside * back);
+  }
+  return colour;
+}
+
 struct Look {
   glm::dvec3 colour;  // as `shown`
   double scattered;   // share of the light
 };
 
-Look look_of(const gpu::Material& material, double chord) {
-  return {shown(body_colour(material, chord)), scattered_share(material, chord)};
-}
+// Looks of a material by the mean chord.
+struct Looks {
+  const gpu::Material& material;
+  double inside = reflected_inside(material);
+
+  Look operator()(double chord) const {
+    return {shown(colour_of(material, inside, chord)), scattered_share(material, chord)};
+  }
+};
 
 bool is_clear(const Look& found, const Look& meant) {
   return found.scattered < clear_share * meant.scattered;
@@ -98,13 +119,13 @@ bool has_other_colour(const Look& found, const Look& meant) {
 }
 
 // By how much a body's size, or the coefficients, are to be multiplied so that the material looks as meant.
-double remedy(const gpu::Material& material, double chord, double promised) {
+double remedy(const Looks& looks, double chord, double promised) {
   if (promised < deepest) return promised / chord;
-  const Look meant = look_of(material, promised);
+  const Look meant = looks(promised);
   double factor = 1;
-  for (Look found = look_of(material, chord); is_clear(found, meant) || has_other_colour(found, meant);) {
+  for (Look found = looks(chord); is_clear(found, meant) || has_other_colour(found, meant);) {
     factor *= 1.1;
-    found = look_of(material, factor * chord);
+    found = looks(factor * chord);
   }
   return factor;
 }
@@ -112,27 +133,19 @@ double remedy(const gpu::Material& material, double chord, double promised) {
 }  // namespace
 
 glm::dvec3 body_colour(const gpu::Material& material, double chord) {
-  const auto eta = static_cast<double>(material.eta);
-  const double inside = 1 - diffuse_transmittance(eta) / (eta * eta);  // reflected back into the body
-  glm::dvec3 colour;
-  for (int c = 0; c < 3; ++c) {
-    const double back = sent_back(static_cast<double>(material.sigma_s_prime[c]),
-                                  static_cast<double>(material.sigma_a[c]), std::min(chord, deepest));
-    colour[c] = (1 - inside) * back / (1 - inside * back);
-  }
-  return colour;
+  return colour_of(material, reflected_inside(material), chord);
 }
 
-std::string size_warning(std::string_view text, double chord) {
+std::string size_warning(std::string_view text, const gpu::Material& material, double chord) {
   const std::optional<double> promised = promised_chord(text);
   if (!promised || !(chord > 0) || !std::isfinite(chord)) return "";
-  const gpu::Material material = parse_material(text);
-  const Look found = look_of(material, chord), meant = look_of(material, *promised);
+  const Looks looks{material};
+  const Look found = looks(chord), meant = looks(*promised);
   const bool clear = is_clear(found, meant);
   if (!clear && !has_other_colour(found, meant)) return "";
   const bool by_name = *promised < deepest;
   const std::string body = "a body that light crosses in " + digits(chord) + " mm on average";
-  const double factor = remedy(material, chord, *promised), times = factor > 1 ? factor : 1 / factor;
+  const double factor = remedy(looks, chord, *promised), times = factor > 1 ? factor : 1 / factor;
   const std::string size = digits(times) + (factor > 1 ? " times as large" : " times smaller"),
                     numbers = digits(times) + (factor > 1 ? " times as large" : " times smaller");
   std::string said = by_name ? std::string(split(text, ',')[0]) + ": " : "reflectance: ";

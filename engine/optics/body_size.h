@@ -19,7 +19,8 @@ glm::dvec3 body_colour(const gpu::Material& material, double chord);
 
 // What is to be said, in words, of a body on which a material does not look as its text promises: one that begins with
 // a name and keeps its coefficients looks as it does at meant_chord, one that says a reflectance has that colour. Empty
-// where it looks so, and for texts that promise nothing: other coefficients, or what is no material's text.
-std::string size_warning(std::string_view text, double chord);
+// where it looks so, and for texts that promise nothing: other coefficients, or what is no material's text. `material`:
+// what parse_material makes of a text that promises something; as quick as a frame wants it, which that is not.
+std::string size_warning(std::string_view text, const gpu::Material& material, double chord);
 
 }  // namespace quadgraph

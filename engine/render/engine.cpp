@@ -38,8 +38,10 @@ const Sphere& Engine::bounds() const {
 }
 
 void Engine::set_material(std::string_view text) {
-  set_material(parse_material(text));
+  const gpu::Material material = parse_material(text);
+  set_material(material);
   implementation_->material = text;
+  implementation_->of_text = material;
 }
 
 void Engine::set_material(const gpu::Material& material) {
@@ -218,7 +220,7 @@ SolveReport Engine::solve(const SolveOptions& options, const std::function<void(
   if (self.report->correction && !options.warm && options.certify > 0) {
     self.interruptible([&] { self.simulation->certify(options, *self.report, check); });
   }
-  if (!by_path) self.report->size_warning = size_warning(self.material, self.simulation->chord());
+  if (!by_path) self.report->size_warning = size_warning(self.material, self.of_text, self.simulation->chord());
   judge(*self.report, self.lights, self.lights_inside());
   self.options = options;
   return *self.report;

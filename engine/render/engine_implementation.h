@@ -58,7 +58,8 @@ struct Engine::Implementation {
   Rasteriser rasteriser;
 
   std::string material;
-  Certainty certainty;  // of it, at the vertices of level 0
+  gpu::Material of_text{};  // what `material` says, where it is the text of one
+  Certainty certainty;      // of it, at the vertices of level 0
   std::vector<Light> lights;
   float eta = 1;                  // of the material
   bool shadows_stale = false;     // they are not those of the present lights and shape

@@ -372,11 +372,10 @@ void heed_signals() {
 
 void bind_engine(py::module_& module) {
   const std::string usual_up(name_of(View{}.up));
-  module.def(
-      "default_lights", &default_light_texts, py::arg("view") = "", py::arg("up") = usual_up, py::arg("front") = 0.0f,
-      py::arg("eye") = "", py::arg("look_at") = "", py::arg("studio") = false,
-      "The usual lights: a warm key from behind the object as `view` sees it (without one the azimuth `front`, "
-      "degrees), a cool one from the side, a little ambient light; or the studio, turned in the same way.");
+  module.def("default_lights", &default_light_texts, py::arg("view") = "", py::arg("up") = usual_up,
+             py::arg("front") = 0.0f, py::arg("eye") = "", py::arg("look_at") = "", py::arg("studio") = false,
+             "The usual lights: a warm key from behind the object as `view` sees it (without one the azimuth `front`, "
+             "degrees), a cool one from the side, a little ambient light; or the studio, turned in the same way.");
   module.def(
       "copy_bandwidth", &copy_bandwidth, py::arg("device") = "",
       "GB/s, read and written, at which a device copies one buffer into another: kernel (a compute pass), transfer "

@@ -271,7 +271,7 @@ class FrameLoop:
     ) -> None:
         self._serial += 1
         told = {"serial": self._serial, "rest": at_rest, "ms": 1e3 * (time.perf_counter() - start)}
-        state = {"scene": scene.to_dict(), "undo": self._shown.can_undo}
+        state = {"scene": scene.to_dict(), "undo": self._shown.can_undo, "roughness": self._shown.roughness}
         self._show(ShownFrame(self._serial, jpeg, {**told, **said, **state}, srgb))
 
 
@@ -291,5 +291,5 @@ def _notes(solution: Solution | None) -> list[str]:
     if solution is None:
         return []
     said = [solution.stopped, solution.missed, solution.mesh_warning]
-    said += [solution.model_warning, solution.light_warning, solution.deformed, solution.advice]
+    said += [solution.model_warning, solution.size_warning, solution.light_warning, solution.deformed, solution.advice]
     return list(dict.fromkeys(text for text in said if text))

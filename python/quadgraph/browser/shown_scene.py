@@ -10,6 +10,7 @@ import numpy as np
 
 from quadgraph import core
 from quadgraph.api.lights import default_lights
+from quadgraph.api.materials import Material
 from quadgraph.api.scene import Scene, SceneFile
 from quadgraph.api.stage import Stage
 from quadgraph.base.array_types import Doubles
@@ -66,6 +67,15 @@ class ShownScene:
     def document(self) -> dict[str, Any]:
         """The content of a scene file that shows it."""
         return self.scene.to_dict()
+
+    @property
+    def roughness(self) -> float | None:
+        """That of the picture, or the one that the material states; None where neither does."""
+        stated = self.scene.picture.get("roughness")
+        named = self.document.get("material")
+        if stated is not None or not isinstance(named, str) or core.volume_name(named):
+            return stated
+        return Material.parse(named).roughness
 
     @property
     def can_undo(self) -> bool:

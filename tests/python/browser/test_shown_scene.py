@@ -135,10 +135,18 @@ def test_what_a_page_may_not_changes_nothing(shown, pointer, value, said):
 
 def test_all_that_is_allowed_is_there(shown):
     for pointer in ALLOWED:
-        found = shown.document
+        found = shown.document | {"picture": {"roughness": 0.3} | shown.document["picture"]}  # left out by itself
         for name in pointer.split("/")[1:]:
             found = found[name]
         shown.set(pointer, found)
+
+
+def test_the_roughness_is_the_pictures_or_the_materials(shown):
+    assert shown.roughness is None
+    shown.set("/material", "marble,roughness=.2")
+    assert shown.roughness == pytest.approx(0.2)
+    shown.set("/picture/roughness", 0.4)
+    assert shown.roughness == pytest.approx(0.4)
 
 
 @pytest.mark.parametrize(

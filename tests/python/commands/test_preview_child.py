@@ -58,6 +58,7 @@ def test_who_waits_for_a_body_gets_the_one_that_another_bakes(tmp_path: Path, ca
     assert bodies == [str(path) for path in cache.glob("*/ball.qgraph")] * 2
 
 
+@pytest.mark.long
 def test_who_waits_for_a_bake_that_is_ended_bakes(tmp_path: Path, cache: Path):
     first, second = start_two(write_obj(icosphere(2, 10), tmp_path / "ball.obj"))
     first.terminate()

@@ -4,6 +4,7 @@
 const $ = (id) => document.getElementById(id);
 const token = new URLSearchParams(location.search).get("token") || "";
 const STRENGTHS = ["irradiance", "power", "radiance"];
+const ROUGHNESS = 0.3;  // where neither picture nor material says one
 const PIXELS_LEAST = 64, PIXELS_MOST = 2048;
 const DEGREES_PER_PIXEL = 0.4;
 
@@ -108,7 +109,8 @@ function controls(frame) {
   const named = [...$("material").options].some((option) => option.value === material);
   put("material", named ? material : "");
   put("material-text", material);
-  put("roughness", picture.roughness, picture.roughness.toFixed(2));
+  const roughness = frame.roughness ?? ROUGHNESS;
+  put("roughness", roughness, roughness.toFixed(2));
   const twist = scene.deformation.find((step) => step.type === "twist");
   put("twist", twist ? twist.degrees : 0, `${twist ? Math.round(twist.degrees) : 0}°`);
   const auto = picture.exposure === "auto";
