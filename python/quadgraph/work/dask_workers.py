@@ -133,6 +133,10 @@ def versions() -> dict[str, str]:
     return {"Python": f"{major}.{minor}", "quadgraph": __version__, "distributed": distributed.__version__}
 
 
+class LetGoError(Exception):
+    """A task was stopped because nobody waited for it any more; somebody may have asked for it again since."""
+
+
 def work(order: str, threads: int | None) -> Outcome:
     """Work by an order on a worker, whose child the order's process is, until it is let go. threads: as `run_order`."""
     from distributed import get_worker
@@ -145,7 +149,10 @@ def work(order: str, threads: int | None) -> Outcome:
         state = worker.state.tasks.get(key)
         return state is None or state.state == "cancelled"
 
-    return run_order(order, limit // worker.state.nthreads, threads, let_go)
+    outcome = run_order(order, limit // worker.state.nthreads, threads, let_go)
+    if outcome == STOPPED:
+        raise LetGoError
+    return outcome
 
 
 class DaskWorkers:
@@ -164,15 +171,15 @@ class DaskWorkers:
         futures = self._client.map(work, list(orders.values()), threads=self._threads, key=list(names))
         running = self._distributed.as_completed(futures)
         for future in running:
-            if future.status == "error" and isinstance(future.exception(), self._distributed.KilledWorker):
+            if future.status == "error" and isinstance(future.exception(), self._distributed.KilledWorker | LetGoError):
                 future.retry()
                 running.add(future)
             elif future.status == "error":
                 yield names[future.key], {"error": _first_line(future.exception())}
-            elif future.status != "finished" or (outcome := future.result()) == STOPPED:
+            elif future.status != "finished":
                 raise ToolError(f"{self._where}: the scheduler is gone")
             else:
-                yield names[future.key], outcome
+                yield names[future.key], future.result()
 
     @staticmethod
     def _name(key: str, order: str) -> str:

@@ -29,7 +29,8 @@ def all_of(record: dict[str, Any]) -> list[Table]:
     shown += live_frames.tables(record["live"]) if "live" in record else []
     shown += [solvers(scene) for scene in record.get("solvers", [])]
     shown += [rivals(scene) for scene in record.get("rivals", [])]
-    return shown + ([scaling(record["scaling"])] if "scaling" in record else [])
+    shown += [scaling(record["scaling"])] if "scaling" in record else []
+    return shown + (growth(record["growth"]) if "growth" in record else [])
 
 
 def solvers(scene: dict[str, Any]) -> Table:
@@ -106,3 +107,28 @@ def _scaling_cells(entry: dict[str, Any]) -> list[str]:
         f"{entry['work']:.1f}",
         f"{entry['time_ms']:.0f}",
     ]
+
+
+def growth(record: dict[str, Any]) -> list[Table]:
+    """Bakes and acquisitions by size, lights and workers."""
+    powers = record["exponents"]
+    bakes = _table("bakes")
+    for column in ("surface vertices", "tets", "s of processors", "most memory, MB", "file, MB"):
+        bakes.add_column(column, justify="right")
+    for each in record["bakes"]:
+        sizes = (f"{each[name] / 1e6:.1f}" for name in ("peak_bytes", "file_bytes"))
+        bakes.add_row(f"{each['surface_vertices']:,}", f"{each['tets']:,}", f"{each['cpu_s']:.1f}", *sizes)
+    bakes.caption = f"as tets to the power {powers['bake_s']:.2f} (s), {powers['bake_bytes']:.2f} (memory)"
+    acquired = _table("acquisitions")
+    for column in ("tets", "lights", "s of processors", "steps", "s a step"):
+        acquired.add_column(column, justify="right")
+    for each in record["acquisitions"]:
+        step = f"{each['cpu_s'] / each['steps']:.1f}"
+        acquired.add_row(f"{each['tets']:,}", str(each["lights"]), f"{each['cpu_s']:.1f}", str(each["steps"]), step)
+    acquired.caption = f"a step with two lights as tets to the power {powers['acquire_step_s']:.2f}"
+    workers = _table("bakes by several workers")
+    for column in ("workers", "bodies an hour"):
+        workers.add_column(column, justify="right")
+    for each in record["workers"]:
+        workers.add_row(str(each["workers"]), f"{each['bodies_an_hour']:.0f}")
+    return [bakes, acquired, workers]

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _TABLE_WIDTH = 140  # characters; narrower, the tables cannot be read
 _SLOWER = 3  # exit status
 _MEASURING = (
-    *("file", "passes", "solvers", "live", "rivals", "scaling"),
+    *("file", "passes", "solvers", "live", "rivals", "scaling", "growth"),
     *("sizes", "side", "random_order", "bodies", "chart", "json", "device", "validation"),
 )
 _RULE = (
@@ -56,6 +56,9 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         type=_sizes,
         metavar="N,N,...",
         help="surface vertices of the bodies of --scaling (default: 500 to 330 thousand)",
+    )
+    what.add_argument(
+        "--growth", action="store_true", help="bakes and acquisitions by size, lights and workers (docs/scaling.md)"
     )
     parser.add_argument(
         "--random-order",
@@ -97,24 +100,24 @@ def run(args: argparse.Namespace) -> int:
     """Measure, print, record, or compare; 0 on success, _SLOWER if the comparison found something slower."""
     if args.compare:
         return _compare(args)
-    if not (args.passes or args.solvers or args.live or args.rivals or args.scaling):
+    if not (args.passes or args.solvers or args.live or args.rivals or args.scaling or args.growth):
         args.passes = args.solvers = True
     _check(args)
     from rich.console import Console
 
-    from quadgraph_validation.benchmark import bench_tables, figures
+    from quadgraph_validation.benchmark import bench_tables, figures, growth
 
     core, console = load_core(), Console(highlight=False)
     console.width = max(console.width, _TABLE_WIDTH)
-    with (
-        tempfile.TemporaryDirectory(prefix="quadgraph-bench-") as folder,
-        Console(stderr=True).status("copy bandwidth") as status,
-    ):
+    with tempfile.TemporaryDirectory(prefix="quadgraph-bench-") as folder:
         bodies = args.bodies or Path(folder)
         bodies.mkdir(parents=True, exist_ok=True)
-        copied = core.copy_bandwidth(args.device)
-        record = {"schema": figures.SCHEMA} | machine(copied) | {"repeats": args.repeats}
-        record |= _measure(args, bodies, copied, status.update)
+        with Console(stderr=True).status("copy bandwidth") as status:
+            copied = core.copy_bandwidth(args.device)
+            record = {"schema": figures.SCHEMA} | machine(copied) | {"repeats": args.repeats}
+            record |= _measure(args, bodies, copied, status.update)
+        if args.growth:
+            record["growth"] = growth.run(bodies)
     record["figures"] = figures.of(record)
     console.print(", ".join(f"{key}: {record[key]}" for key in ("device", "driver", "cores", "load", "commit")))
     console.print(bench_tables.copy_text(record["copy"]))
