@@ -12,6 +12,7 @@ from quadgraph_validation.accuracy import (
     half_space_study,
     orders_study,
     radiance_study,
+    similarity_study,
     slab_study,
     sphere_study,
 )
@@ -23,6 +24,7 @@ MODULES = {
     "slab": slab_study,
     "sphere": sphere_study,
     "half-space": half_space_study,
+    "similarity": similarity_study,
     "orders": orders_study,
     "coarse": coarse_study,
     "radiance": radiance_study,

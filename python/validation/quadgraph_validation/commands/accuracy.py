@@ -25,6 +25,7 @@ STUDIES = {
     "slab": "slab",
     "sphere": "sphere",
     "half-space": "half_space",
+    "similarity": "similarity",
     "orders": "orders",
     "coarse": "coarse",
     "dense": "dense",

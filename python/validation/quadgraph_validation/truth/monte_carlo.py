@@ -1,4 +1,4 @@
-"""Analogue random walks: isotropic scattering, exact Fresnel surface, the light that entered is the unit.
+"""Analogue random walks: scattering isotropic or by Henyey and Greenstein, exact Fresnel surface, light that entered: 1.
 
 Nothing here but free flights, scattering, absorption and reflection: independent of every equation of the package.
 Results are means with standard errors; the seed is explicit, the same seed gives the same numbers.
@@ -51,8 +51,11 @@ def walk(
     distance_out: DistanceOut,
     normal_at: NormalAt,
     generator: np.random.Generator,
+    g: float = 0.0,
 ) -> Exits:
-    """Follow every walk from (n, 3) inside until it is absorbed or leaves."""
+    """Follow every walk from (n, 3) inside until it is absorbed or leaves; g: mean cosine of the scattering angle, with
+    which the medium's scattering is not reduced.
+    """
     position, direction = (np.array(each.T, order="C") for each in (position, direction))  # (3, n): rows are quick
     scattered = np.zeros(len(position[0]), bool)
     ends: list[np.ndarray] = []
@@ -67,7 +70,7 @@ def walk(
         keep = ~leaves & (generator.random(count) < medium.albedo)
         inside, at = np.flatnonzero(keep), np.flatnonzero(leaves)
         absorbed += count - len(inside) - len(at)
-        direction[:, inside] = isotropic(len(inside), generator)
+        direction[:, inside] = scattered_from(direction.take(inside, axis=1), g, generator)
         scattered[inside] = True
         place, way = position.take(at, axis=1), direction.take(at, axis=1)
         normal = normal_at(place)
@@ -104,6 +107,24 @@ def isotropic(count: int, generator: np.random.Generator) -> np.ndarray:
     np.multiply(radius, np.cos(azimuth), out=found[0])
     np.multiply(radius, np.sin(azimuth), out=found[1])
     return found
+
+
+def scattered_from(direction: np.ndarray, g: float, generator: np.random.Generator) -> np.ndarray:
+    """Directions (3, n) after one scattering from those [Henyey 1941]; g in (-1, 1)."""
+    turned = isotropic(direction.shape[1], generator)
+    if g == 0:
+        return turned
+    # A uniform number, which turned[2] is but for its range, gives the cosine; the azimuth is that of turned.
+    cosine = (1 + g**2 - ((1 - g**2) / (1 + g * turned[2])) ** 2) / (2 * g)
+    sine = np.sqrt(np.maximum(1 - cosine**2, 0))
+    across = turned[:2] / np.maximum(np.hypot(*turned[:2]), 1e-300)
+    x, y, z = direction
+    side = np.where(z < 0, -1.0, 1.0)  # two unit vectors across [Duff 2017]
+    c = -1 / (side + z)
+    a = np.stack([1 + side * x * x * c, side * x * y * c, -side * x])
+    b = np.stack([x * y * c, side + y * y * c, -y])
+    found = cosine * direction + sine * (across[0] * a + across[1] * b)
+    return found / np.sqrt(_dot(found, found))
 
 
 def slab(medium: Medium, thickness: float, eta: float, lambertian: bool, walks: int, seed: int) -> Estimate:
@@ -158,7 +179,9 @@ def sphere(medium: Medium, radius: float, eta: float, bins: int, walks: int, see
     return Estimate(shares.mean * scale, shares.error * scale)
 
 
-def through_sphere(medium: Medium, radius: float, eta: float, walks: int, generator: np.random.Generator) -> Exits:
+def through_sphere(
+    medium: Medium, radius: float, eta: float, walks: int, generator: np.random.Generator, g: float = 0.0
+) -> Exits:
     """Walks of parallel light along -z that entered a sphere about the origin, all of it where y = 0 and x >= 0."""
     outside = _directional_entry(walks, eta, generator)
     inside = refracted(outside, 1 / eta)
@@ -166,7 +189,7 @@ def through_sphere(medium: Medium, radius: float, eta: float, walks: int, genera
     normal = np.column_stack([sine, np.zeros(walks), outside])
     travelling = np.array([0.0, 0.0, -1.0]) / eta + (outside / eta - inside)[:, None] * normal
     geometry = _sphere_out(radius), lambda at: at / np.sqrt(_dot(at, at))
-    return walk(radius * normal, travelling, medium, eta, *geometry, generator)
+    return walk(radius * normal, travelling, medium, eta, *geometry, generator, g)
 
 
 def entering_sphere(radius: float, eta: float) -> float:

@@ -1,0 +1,93 @@
+"""What the similarity relation costs: balls of a medium that scatters forwards, and of the reduced one, by walks."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from rich.table import Table
+
+from quadgraph.base.relative_error import relative_rms
+from quadgraph_validation.bodies.media import Medium
+from quadgraph_validation.truth import monte_carlo
+from quadgraph_validation.truth.schemes import BodyOf
+
+# Radius in reduced mean free paths, which are 1 mm here, reduced albedo, and index.
+CASES = (
+    (1.5, 0.9, 1.0),
+    (3.0, 0.6, 1.3),
+    (3.0, 0.95, 1.4),
+    (6.0, 0.95, 1.0),
+    (6.0, 0.99, 1.4),
+    (10.0, 0.8, 1.3),
+    (10.0, 0.999, 1.4),
+)
+FORWARD = (0.5, 0.8, 0.9)  # g
+ZONES = 16  # of equal area, half of them lit
+WALKS = 200_000
+SEED = 1
+
+
+def exitance(medium: Medium, radius: float, eta: float, g: float, walks: int, seed: int) -> tuple[Any, Any]:
+    """All light that leaves a ball in parallel light along -z, scattered or not, by zone: (ZONES,) of what entered, the
+    unlit ones first, and the standard error of each.
+    """
+    exits = monte_carlo.through_sphere(medium, radius, eta, walks, np.random.default_rng(seed), g)
+    edges = np.linspace(-1, 1, ZONES + 1)
+    shares = np.histogram(exits.position[:, 2] / radius, edges)[0] / walks
+    return shares, np.sqrt(shares * (1 - shares) / walks)
+
+
+def run(_body_of: BodyOf, walks: int = WALKS) -> dict[str, Any]:
+    """Every case with every g against the reduced medium, and one half-way to it with the same second moment [Joseph
+    1976], each by other random numbers.
+    """
+    rows = []
+    for radius, albedo, eta in CASES:
+        reduced, noise = exitance(Medium(albedo, 1 - albedo), radius, eta, 0.0, walks, SEED)
+        for g in FORWARD:
+            full = Medium(albedo / (1 - g), 1 - albedo)
+            truth, error = exitance(full, radius, eta, g, walks, SEED + 1)
+            less = g / (1 + g)
+            delta, delta_noise = exitance(Medium(albedo / (1 - less), 1 - albedo), radius, eta, less, walks, SEED + 2)
+            parts = {"whole": slice(None), "lit": slice(ZONES // 2, None), "unlit": slice(ZONES // 2)}
+            rows.append(
+                {
+                    "radius": radius,
+                    "albedo": albedo,
+                    "eta": eta,
+                    "g": g,
+                    "power": float(reduced.sum() / truth.sum() - 1),
+                    "delta": _apart(delta, truth, delta_noise, error),
+                    **{name: _apart(reduced[part], truth[part], noise[part], error[part])
+                       for name, part in parts.items()},
+                }
+            )
+    return {"walks": walks, "seed": SEED, "zones": ZONES, "rows": rows}
+
+
+def _apart(found: np.ndarray, truth: np.ndarray, *noises: np.ndarray) -> dict[str, float]:
+    """Relative RMS of the difference less the noise of both, in quadrature, and that noise."""
+    even, of = np.ones(len(truth)), truth[:, None]
+    noise = float(np.hypot(*(relative_rms(even, each[:, None], of) for each in noises)))
+    apart = relative_rms(even, found[:, None] - of, of)
+    return {"error": float(np.sqrt(max(apart**2 - noise**2, 0.0))), "noise": noise}
+
+
+def tables(record: dict[str, Any]) -> list[Table]:
+    """One row per ball, three columns per g."""
+    forward = sorted({row["g"] for row in record["rows"]})
+    table = Table(
+        *("radius, mean free paths", "albedo", "eta", *(f"g {g:g}: whole / lit / unlit (power), delta" for g in forward)),
+        title="reduced scattering in place of forward scattering: exitance, error in %",
+    )
+    balls = dict.fromkeys((row["radius"], row["albedo"], row["eta"]) for row in record["rows"])
+    for ball in balls:
+        rows = [row for row in record["rows"] if (row["radius"], row["albedo"], row["eta"]) == ball]
+        cells = [
+            " / ".join(f"{100 * row[part]['error']:.1f}" for part in ("whole", "lit", "unlit"))
+            + f" ({100 * row['power']:+.1f}), {100 * row['delta']['error']:.1f}"
+            for row in sorted(rows, key=lambda row: row["g"])
+        ]
+        table.add_row(*(f"{number:g}" for number in ball), *cells)
+    return [table]
