@@ -166,12 +166,12 @@ QUICK: dict[str, tuple[Spoil, tuple[str, ...]]] = {
         ("photographs[1].saturation: found 0.9, but", "the same largest value 0.4"),
     ),
     "mask inverted": (masked(1, 1, np.logical_not), ("photographs[1].mask: it leaves out", "inverted")),
+}
+SLOW: dict[str, tuple[Spoil, tuple[str, ...]]] = {
     "picture flipped": (
         one(0, lambda x: x[:, ::-1]),
         ("probably photographs[0].file: fits much better turned left to right",),
     ),
-}
-SLOW: dict[str, tuple[Spoil, tuple[str, ...]]] = {
     "exposure": (
         member("photographs.2.exposure", lambda x: x / 2),
         ("probably photographs[2].exposure (or gain): values are 2.", "times what is predicted"),

@@ -44,7 +44,7 @@ def test_the_wheel_is_the_package_alone():
     packages = project(ROOT / "pyproject.toml")["tool"]["scikit-build"]["wheel"]["packages"]
     assert packages == ["python/quadgraph"]
     rooms = {path.name for path in (ROOT / packages[0]).iterdir() if (path / "__init__.py").is_file()}
-    assert rooms == {"api", "base", "mesh", "tets", "file", "baking", "acquisition", "commands", "work"}
+    assert rooms == {"api", "base", "mesh", "tets", "file", "baking", "acquisition", "browser", "commands", "work"}
     assert not {path.stem for path in (ROOT / packages[0] / "commands").glob("*.py")} & set(cli.VALIDATION)
 
 
@@ -54,7 +54,8 @@ def test_the_wheel_has_the_types_and_the_licences(tmp_path):
     subprocess.run([*wanted, "--config-settings=wheel.cmake=false", "-w", tmp_path, ROOT], check=True)
     (wheel,) = tmp_path.glob("*.whl")
     found = set(zipfile.ZipFile(wheel).namelist())
-    assert {"quadgraph/py.typed", "quadgraph/_core.pyi"} <= found
+    page = {f"quadgraph/browser/page/page.{kind}" for kind in ("css", "html", "js")}
+    assert {"quadgraph/py.typed", "quadgraph/_core.pyi", *page} <= found
     (metadata,) = {name.partition("/")[0] for name in found if ".dist-info/" in name}
     assert {f"{metadata}/licenses/LICENSE", f"{metadata}/licenses/tools/cgal_mesh/LICENSE.md"} <= found
 
@@ -78,7 +79,7 @@ def test_the_product_imports_what_it_declares_and_no_more():
     package = project(ROOT / "pyproject.toml")["project"]
     needed = names(package["dependencies"])
     extras = package["optional-dependencies"]
-    of_extras = (names(extras[name]) for name in ("capture", "cluster", "film", "meshio", "pyvista", "torch"))
+    of_extras = (names(extras[name]) for name in ("capture", "cluster", "film", "meshio", "pyvista", "serve", "torch"))
     optional = {"openvdb", "pyopenvdb"}.union(*of_extras)
     others = imported(ROOT / "python" / "quadgraph") - set(sys.stdlib_module_names) - {"quadgraph"}
     assert others <= needed | optional

@@ -224,6 +224,7 @@ def test_a_wrong_use_is_refused_in_words(mesh, tmp_path, given, word, capsys):
     assert not out.exists()
 
 
+@pytest.mark.long
 def test_an_error_out_of_reach_is_said_to_be(tmp_path, capsys, monkeypatch):
     """All of so coarse a mesh is baked, with a warning, and with --strict the exit status tells."""
     monkeypatch.setattr(displayed, "_MOST_SEEDS", 1)  # the truth need not be known as well as that

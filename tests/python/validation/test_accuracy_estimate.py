@@ -120,6 +120,7 @@ def test_a_wrong_use_is_refused_in_words(arguments, word, capsys):
     assert word in capsys.readouterr().err
 
 
+@pytest.mark.long
 def test_an_error_that_is_asked_for_is_the_true_one_or_said_to_be_out_of_reach(chain, monkeypatch):
     monkeypatch.setattr(target_study, "ASKED", (0.1, 0.0001))
     coarse, fine = target_study.judge(target_study.Pair.of(chain, ""), CASES[2])

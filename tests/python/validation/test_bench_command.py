@@ -152,6 +152,7 @@ def smaller_bunny(tmp_path, monkeypatch):
     monkeypatch.setattr(scaling, "bunny_mesh", lambda: path)
 
 
+@pytest.mark.long
 def test_cycles_do_not_depend_on_the_size(smaller_bunny, tmp_path):
     made = bench(tmp_path, "--scaling", "--sizes", "500,1800,4800", "--bodies", str(tmp_path / "bodies"))
     assert {"scaling/sp3/4800/cycles", "scaling/diffusion/500/ms"} <= set(made["figures"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -59,8 +60,10 @@ def run(_body_of: BodyOf, walks: int = WALKS) -> dict[str, Any]:
                     "g": g,
                     "power": float(reduced.sum() / truth.sum() - 1),
                     "delta": _apart(delta, truth, delta_noise, error),
-                    **{name: _apart(reduced[part], truth[part], noise[part], error[part])
-                       for name, part in parts.items()},
+                    **{
+                        name: _apart(reduced[part], truth[part], noise[part], error[part])
+                        for name, part in parts.items()
+                    },
                 }
             )
     return {"walks": walks, "seed": SEED, "zones": ZONES, "rows": rows}
@@ -69,7 +72,7 @@ def run(_body_of: BodyOf, walks: int = WALKS) -> dict[str, Any]:
 def _apart(found: np.ndarray, truth: np.ndarray, *noises: np.ndarray) -> dict[str, float]:
     """Relative RMS of the difference less the noise of both, in quadrature, and that noise."""
     even, of = np.ones(len(truth)), truth[:, None]
-    noise = float(np.hypot(*(relative_rms(even, each[:, None], of) for each in noises)))
+    noise = math.hypot(*(relative_rms(even, each[:, None], of) for each in noises))
     apart = relative_rms(even, found[:, None] - of, of)
     return {"error": float(np.sqrt(max(apart**2 - noise**2, 0.0))), "noise": noise}
 
@@ -77,8 +80,9 @@ def _apart(found: np.ndarray, truth: np.ndarray, *noises: np.ndarray) -> dict[st
 def tables(record: dict[str, Any]) -> list[Table]:
     """One row per ball, three columns per g."""
     forward = sorted({row["g"] for row in record["rows"]})
+    of_g = (f"g {g:g}: whole / lit / unlit (power), delta" for g in forward)
     table = Table(
-        *("radius, mean free paths", "albedo", "eta", *(f"g {g:g}: whole / lit / unlit (power), delta" for g in forward)),
+        *("radius, mean free paths", "albedo", "eta", *of_g),
         title="reduced scattering in place of forward scattering: exitance, error in %",
     )
     balls = dict.fromkeys((row["radius"], row["albedo"], row["eta"]) for row in record["rows"])

@@ -44,7 +44,7 @@ STUDIES = {
     "veined": "veined",
 }
 
-_WIDE = ("dense", "unseen", "pictures", "converging", "certificate", "acquire", "volume", "veined")
+_WIDE = ("dense", "similarity", "unseen", "pictures", "converging", "certificate", "acquire", "volume", "veined")
 _TABLE_WIDTH = 190  # characters, than which the tables of these cannot be read narrower
 
 # Studies of real bodies, which the CPU reference cannot stand in for, because only the engine does what they judge.

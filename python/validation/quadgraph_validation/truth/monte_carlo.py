@@ -1,4 +1,4 @@
-"""Analogue random walks: scattering isotropic or by Henyey and Greenstein, exact Fresnel surface, light that entered: 1.
+"""Analogue random walks: isotropic or Henyey-Greenstein scattering, exact Fresnel surface; what entered is the unit.
 
 Nothing here but free flights, scattering, absorption and reflection: independent of every equation of the package.
 Results are means with standard errors; the seed is explicit, the same seed gives the same numbers.
