@@ -1,10 +1,12 @@
 #include "engine/optics/colour.h"
 
+#include <optional>
+#include <utility>
+
 #include "engine/optics/fresnel.h"
 #include "engine/optics/half_space.h"
 
 namespace quadgraph {
-
 namespace {
 
 // A boundary takes far longer to find than what a half-space behind it reflects.
@@ -23,14 +25,21 @@ class HalfSpace {
   Boundary boundary_;
 };
 
+// The one asked for last is kept: all colours of a scene that is read again and again are at one index.
+const HalfSpace& half_space_of(double eta) {
+  thread_local std::optional<std::pair<double, HalfSpace>> last;
+  if (!last || last->first != eta) last.emplace(eta, HalfSpace(eta));
+  return last->second;
+}
+
 }  // namespace
 
 double diffuse_reflectance(double albedo, double eta) {
-  return HalfSpace(eta).reflectance(albedo);
+  return half_space_of(eta).reflectance(albedo);
 }
 
 double albedo_of(double reflectance, double eta) {
-  const HalfSpace half_space(eta);
+  const HalfSpace& half_space = half_space_of(eta);
   // Reflectance rises with albedo. Where it is steep, near 1, halves of an interval in 1 - albedo lose no digits.
   double low = 0, high = 1;
   for (int i = 0; i < 60; ++i) {
