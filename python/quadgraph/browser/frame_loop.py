@@ -14,7 +14,7 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import FrameType
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -33,6 +33,9 @@ _MOST_WAITING = 256  # messages
 _QUALITY = {False: 80, True: 93}  # of JPEG, by whether the frame is the one at rest
 _SOLVED = ("material", "lights", "edits", "deformation", "cuts", "solver")  # members that a solve depends on
 _GESTURES = ("orbit", "pan", "zoom", "turn")
+
+
+_Made = TypeVar("_Made")
 
 
 class _Dropped(BaseException):
@@ -67,7 +70,6 @@ class Inbox:
         self._waiting: deque[Message] = deque()
         self._changed = threading.Condition()
         self._wake = wake
-        self.closed = False
 
     def put(self, message: Message) -> None:
         """Add one; a gesture joins the one before it where both are of a kind. Refuses where too many wait."""
@@ -84,23 +86,15 @@ class Inbox:
             self._changed.notify()
         self._wake()
 
-    def close(self) -> None:
-        """Let `take` return at once, from now on."""
-        with self._changed:
-            self.closed = True
-            self._changed.notify()
-        self._wake()
-
     @property
     def waiting(self) -> bool:
-        """Whether there is anything to do."""
-        with self._changed:
-            return bool(self._waiting) or self.closed
+        """Whether there is anything to do; asked without the lock, which an exception of a signal might leave held."""
+        return bool(self._waiting)
 
     def take(self, seconds: float | None) -> list[Message]:
         """Wait so long, or None for ever, for messages, and take all there are."""
         with self._changed:
-            self._changed.wait_for(lambda: bool(self._waiting) or self.closed, seconds)
+            self._changed.wait_for(lambda: bool(self._waiting), seconds)
             found = list(self._waiting)
             self._waiting.clear()
         return found
@@ -133,15 +127,15 @@ class FrameLoop:
         self.inbox = Inbox(self._drop)
 
     def run(self) -> None:
-        """Show frames until the inbox is closed. Raises DeviceError."""
+        """Show frames until an interrupt. Raises DeviceError."""
         before = signal.signal(signal.SIGUSR1, self._heed_drop)
         try:
             self._move()
-            while not self.inbox.closed:
+            while True:
                 messages = self.inbox.take(_SETTLED_S if self._at_rest is None else None)
                 if messages:
                     self._take(messages)
-                elif not self.inbox.closed:
+                else:
                     self._rest()
         finally:
             self._droppable = False
@@ -214,28 +208,33 @@ class FrameLoop:
         self._pace.drawn(time.perf_counter() - start, width * height, gathers)
         return picture
 
-    def _rest(self) -> None:
-        """The picture at rest, unless something is said meanwhile."""
+    def _until_dropped(self, work: Callable[[], _Made]) -> _Made:
+        """Do what may be dropped where something is said meanwhile. Raises _Dropped."""
         try:
             self._droppable = True
-            if not self.inbox.waiting:  # what was said before is not told by a signal
-                self._picture_at_rest()
+            if self.inbox.waiting:  # what was said before is not told by a signal
+                raise _Dropped
+            return work()
+        finally:
             self._droppable = False
-        except _Dropped:
-            self._solved = None
 
-    def _picture_at_rest(self) -> None:
+    def _rest(self) -> None:
+        """The picture at rest, unless something is said meanwhile."""
         scene, start = self._shown.scene, time.perf_counter()
         try:
             self._stage.show(scene)
             self._solved = None
-            self._stage.solve()
+            self._until_dropped(self._stage.solve)
             self._solved = _solved_members(scene)
             once: PictureOptions = {"converge": 0.0}
-            picture = self._stage.engine.render(scene.camera, **(scene.picture | once))
+            picture = self._until_dropped(
+                lambda: self._stage.engine.render(scene.camera, **(scene.picture | once)),
+            )
             self._show_frame(picture, scene, start, at_rest=True)
             if scene.picture["converge"] > 0:
-                self._show_frame(self._stage.render(), scene, start, at_rest=True)
+                self._show_frame(self._until_dropped(self._stage.render), scene, start, at_rest=True)
+        except _Dropped:
+            return
         except SolverError as error:
             self._tell(str(error), scene, start)
         self._at_rest = scene

@@ -231,12 +231,9 @@ class Server:
         return socket
 
     async def _hear(self, page: Page, text: str) -> None:
-        try:
-            said = json.loads(text)
-        except ValueError:
-            said = None
-        if not isinstance(said, dict):
-            await page.socket.send_json({"refused": "a JSON object is expected"})
+        said = _object_in(text)
+        if said is None:
+            await page.socket.send_json({"refused": "a JSON object is expected, of Unicode text and finite numbers"})
             return
         if "ping" in said:
             await page.socket.send_json({"pong": said["ping"]})
@@ -257,6 +254,16 @@ class Server:
             task.add_done_callback(self._telling.discard)
 
         self._loop.call_soon_threadsafe(begin)
+
+
+def _object_in(text: str) -> dict[str, Any] | None:
+    """The JSON object of a message; None of anything else, and of what no file of a scene could hold."""
+    try:
+        found = json.loads(text)
+        json.dumps(found, ensure_ascii=False, allow_nan=False).encode()
+    except (ValueError, RecursionError):  # no Unicode and no JSON are ValueErrors
+        return None
+    return found if isinstance(found, dict) else None
 
 
 def _png(srgb: npt.NDArray[np.uint8]) -> bytes:

@@ -99,7 +99,7 @@ class ShownScene:
 
     def move(self, stage: Stage, gesture: Any, right: Any, up: Any, light: Any) -> None:
         """Do what a hand did to the camera or a light, of the scene that the stage shows. Raises InputError."""
-        if gesture not in GESTURES:
+        if gesture not in list(GESTURES):  # which asks for no hash
             raise InputError(f"gesture: found {_shown(gesture)}, allowed are {', '.join(GESTURES)}")
         for name, number in (("right", right), ("up", up)):
             if isinstance(number, bool) or not isinstance(number, (int, float)) or not abs(number) <= 1e4:
@@ -120,7 +120,7 @@ class ShownScene:
             "point": _point_like(key.to_dict(), (low + high) / 2, float(np.linalg.norm(high - low))),
             "ambient": even.to_dict(),
         }
-        if kind not in made:
+        if kind not in list(made):
             raise InputError(f"add: found {_shown(kind)}, allowed are {', '.join(made)}")
         self.end_step()
         self.set("/lights", [*lights, made[kind]])
