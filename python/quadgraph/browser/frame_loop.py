@@ -26,13 +26,12 @@ from quadgraph.api.solution import ErrorEstimate, Solution
 from quadgraph.api.stage import Stage
 from quadgraph.base.errors import QuadGraphError, SolverError
 from quadgraph.browser.pace import Pace
-from quadgraph.browser.shown_scene import ShownScene
+from quadgraph.browser.shown_scene import GESTURES, ShownScene
 
 _SETTLED_S = 0.25  # after the last change, before the scene is solved at rest
 _MOST_WAITING = 256  # messages
 _QUALITY = {False: 80, True: 93}  # of JPEG, by whether the frame is the one at rest
 _SOLVED = ("material", "lights", "edits", "deformation", "cuts", "solver")  # members that a solve depends on
-_GESTURES = ("orbit", "pan", "zoom", "turn")
 
 
 _Made = TypeVar("_Made")
@@ -102,7 +101,7 @@ class Inbox:
 
 def _joined(before: Mapping[str, Any], now: Mapping[str, Any]) -> dict[str, Any] | None:
     """One message for two that follow each other: sums of a gesture, the later of two values at a place."""
-    if now.get("gesture") in _GESTURES and before.get("gesture") == now["gesture"]:
+    if now.get("gesture") in list(GESTURES) and before.get("gesture") == now["gesture"]:
         same = before.get("light") == now.get("light")
         numbers = [of.get(name, 0) for of in (before, now) for name in ("right", "up")]
         if same and all(isinstance(number, (int, float)) for number in numbers):
