@@ -10,6 +10,7 @@
 #include "engine/optics/boundary.h"
 #include "engine/optics/half_space.h"
 #include "shaders/material/optics.h"
+#include "shaders/transport/element_loss.h"
 
 namespace quadgraph {
 namespace {
@@ -24,14 +25,20 @@ constexpr double irregular = 0.7;
 // outweighs its conduction.
 const double oscillating = std::sqrt(6.0);
 
-// What sweeps of the transport equation lose of the exitance where elements are deeper than `resolved` decay lengths:
-// the fluence and the light scattered for the first time are linear in a tet, and so lie too deep. Measured on balls,
-// at 3.4 to 21 mean free paths to an edge and albedos of .2 to .997, which make no difference of their own: 6% at 3.1
-// decay lengths, 17% at 5.7, 37% at 12, 54% at 22.
-constexpr double resolved = 1.8, lost_per_decay = 0.047;
+// Of what sweeps do not see in elements that deep (shaders/transport/element_loss.h) the share that is not known.
+constexpr double unknown_loss = 0.1;
 
-double lost_by_sweeps(double decay) {
-  return -std::expm1(-lost_per_decay * std::max(0.0, decay - resolved));
+struct Local {
+  double albedo, sigma_t;  // 1/mm
+};
+
+// Sweeps settle slowly where elements are many mean free paths deep and little is absorbed: what the solve and the
+// sweep make of light within an element differs, and diffusion carries that on. Measured on three bodies, at .5 to 10
+// mean free paths and albedos of .9 to .9995 (docs/physics.md, "Transport correction").
+constexpr double slow_per_depth = 0.45, slow_power = 8;
+
+double slowness(const Local& local, double depth) {
+  return -std::expm1(-slow_per_depth * depth * local.sigma_t) * std::pow(local.albedo, slow_power);
 }
 
 // In slabs SP3 is within 4% of transport from one mean free path of thickness on, a mean chord of two; at half of that
@@ -45,10 +52,6 @@ double channel(const glm::vec3& v, int c) {
 // Ways through the thick of a body, in mean chords: the diameter of a ball is 1.5. Of light that falls by more than e^6
 // on them next to none is seen. Less than a twentieth of it is lost on most meshes.
 constexpr double crossing = 1.5, no_light = 6, lost_tolerance = 0.05;
-
-struct Local {
-  double albedo, sigma_t;  // 1/mm
-};
 
 Local local_of(const gpu::Optical& optical, int c) {
   const double scattering = channel(optical.sigma_s_prime, c), sigma_t = scattering + channel(optical.sigma_a, c);
@@ -142,20 +145,23 @@ double mean_chord(const Level& level) {
 Resolution resolution_of(std::span<const SurfaceSample> samples, std::span<const gpu::Optical> optical, double eta,
                          Model model) {
   const Boundary boundary = boundary_of(Method::fem, Source::buried, model, eta);
+  const auto index = static_cast<float>(eta);
   double squares = 0, corrected = 0, sizes = 0, area = 0;
-  glm::dvec3 decay(0);
+  glm::dvec3 decay(0), slow(0);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     area += samples[i].area;
+    const glm::vec3 seen = gpu::seen_of_element(optical[i], static_cast<float>(samples[i].depth), index);
     for (int c = 0; c < 3; ++c) {
       const Local local = local_of(optical[i], c);
       if (!(local.sigma_t > 0)) continue;
       const auto found = layered_half_space(local.albedo, boundary, samples[i].depth * local.sigma_t, model);
       const double off = irregular * (found.reflectance - found.exact);
       if (std::isfinite(off)) squares += samples[i].area * off * off;
-      const double lost = lost_by_sweeps(found.decay) * found.exact;
+      const double lost = unknown_loss * (1 - channel(seen, c)) * found.exact;
       corrected += samples[i].area * lost * lost;
       sizes += samples[i].area * found.exact * found.exact;
       decay[c] += samples[i].area * found.decay;
+      slow[c] += samples[i].area * slowness(local, samples[i].depth);
     }
   }
   Resolution result;
@@ -163,7 +169,10 @@ Resolution resolution_of(std::span<const SurfaceSample> samples, std::span<const
     result.error = std::sqrt(squares / sizes);
     result.corrected = std::sqrt(corrected / sizes);
   }
-  if (area > 0) result.decay = std::max({decay.x, decay.y, decay.z}) / area;
+  if (area > 0) {
+    result.decay = std::max({decay.x, decay.y, decay.z}) / area;
+    result.slow = std::max({slow.x, slow.y, slow.z}) / area;
+  }
   return result;
 }
 

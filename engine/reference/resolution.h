@@ -35,6 +35,7 @@ struct Resolution {
   double error = 0;      // relative RMS error of the exitance over the lit surface, all channels together
   double corrected = 0;  // the same after sweeps of the transport equation
   double decay = 0;      // largest of any channel, mean over the surface
+  double slow = 0;       // 0 to 1, the same: how slowly sweeps settle
 };
 
 // Resolution of linear elements with the buried source. `optical`: one entry per sample.

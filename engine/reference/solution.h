@@ -42,12 +42,20 @@ struct CorrectedSweep {
   double points = 0;     // at which the transport equation was evaluated
 };
 
+// Of means over patches of the surface, after the last sweep.
+struct CorrectedPatches {
+  ErrorEstimate change;  // as CorrectionReport::changed
+  ErrorEstimate noise;   // as of the last sweep
+};
+
 // What the transport correction did (docs/physics.md, "Transport correction").
 struct CorrectionReport {
   std::vector<CorrectedSweep> sweeps;
   ErrorEstimate changed;  // against the solve that they started from, by all of them, in motion by those before as well
   ErrorEstimate taken{.whole = 1, .unlit = 1, .dimmest = 1};  // of what the sweeps changed the share that counts: less
                                                               // than 1 where that is little against the noise
+  std::optional<CorrectedPatches> patches;                    // where they were measured
+  double slow = 0;                                            // as of Resolution, on the finest level
   double returns = 0;    // share of the scattered light that leaves which enters again, the largest of any channel
   bool goes_on = false;  // one sweep, that goes on from those of the frames before
   double segments = 0;   // tets that rays back from its points and faces crossed

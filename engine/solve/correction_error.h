@@ -11,9 +11,15 @@ namespace quadgraph {
 double share_left_by(const CorrectionReport& done);
 
 // The share of a change that leaves the smallest error where the change is known but for so much noise. Nothing is
-// known of where the dimmest third begins: what is unlit takes the larger share of both. mean_of: as SolveOptions has
-// it.
+// known of where the dimmest third begins: what is unlit takes the larger share of both, or of means over patches,
+// where these are known. mean_of: as SolveOptions has it.
 ErrorEstimate share_taken(const CorrectionReport& done, std::uint32_t mean_of);
+
+// Whether such a share is taken, and not all of what the sweeps change.
+bool takes_share(const SolveOptions& options);
+
+// What means over patches say goes into the report, and into the share that is taken.
+void take_patches(CorrectionReport& done, const CorrectedPatches& patches, const SolveOptions& options);
 
 // What the exitance is off by after all sweeps, by part: of the model, the noise and what another sweep would change;
 // of the mesh and of the solver what the sweeps leave, which sample where the solve is off, whatever the reason; and

@@ -118,6 +118,27 @@ SolveReport Simulation::solve(const SolveOptions& options, const std::function<v
   return report;
 }
 
+void Simulation::Implementation::correction_room(std::uint32_t points) {
+  operators.rounded(correction_key, coefficients.packed_rounding(correction_key.model));
+  operators.create(device, shape.levels(), correction_key, coefficients.even(), false);
+  if (!correction) correction.emplace(device, shape.levels()[0]);
+  correction->make_room(device, points);
+  gather_room().make_room_corrected(device, shape.levels()[0]);
+}
+
+CorrectedPatches Simulation::Implementation::measure_patches(const Boundary& boundary) {
+  const TransportCorrection::Halves halves = correction->halves_of_change(device);
+  SurfaceField field = surface_of(shape.present(device, levels[0]));
+  field.q = device::download<glm::vec3>(device, levels[0].q);
+  field.exitance = device::download<glm::vec3>(device, results.exitance());
+  const float unlit = device::download<gpu::Scale>(device, work.scale)[0].unlit;
+  const PerturbedSolution solution{work, levels[0], operators, correction_key, boundary, field, unlit};
+  const auto relative = [&](const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& b) {
+    return perturbation->relative(solution, a, b, glm::dvec3(1));
+  };
+  return {.change = relative(halves.change[0], halves.change[1]), .noise = relative(halves.noise, halves.noise)};
+}
+
 LightRoom Simulation::light_room(const SolveOptions& options) {
   Implementation& self = *implementation_;
   return {self.beams.on_device, self.light_error->difference(), self.tree->ref(), entering_rays(options.mean_rays),

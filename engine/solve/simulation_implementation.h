@@ -232,6 +232,9 @@ struct Simulation::Implementation {
     }
   }
 
+  // Before the results of the correction, at rest, are taken.
+  CorrectedPatches measure_patches(const Boundary& boundary);
+
   void correct(const OperatorKey& key, const SolveOptions& options, const Check& check, SolveReport& report) {
     const double eta = coefficients.eta();
     const auto boundary_with = [&](Model model) { return boundary_of(Method::fem, Source::buried, model, eta); };
@@ -240,8 +243,10 @@ struct Simulation::Implementation {
     forget_other_material();
     const Solved of_solve{levels[0], operators.at(key, 0), Method::fem, boundary_with(key.model), eta, &walks[0]};
     const TransportParts transport{work, levels[0], beams, walks[0], gather->nearest(), *tree, report.inter_reflection};
-    const CorrectionParts parts{transport, operators, boundary, of_solve, results, check};
+    const CorrectionParts parts{
+        transport, operators, boundary, of_solve, results, resolution_with(key.model).front().slow, check};
     report.correction = correction->run(parts, options, {Method::fem, eta, coefficients.even(), options.mean_rays});
+    if (!options.warm) take_patches(*report.correction, measure_patches(boundary), options);
     results.record_corrected(work, of_solve, correction->fluence(), correction->exitance(), report.correction->taken);
     correction->record_taken(parts, *report.correction);
     work.recorder.submit();
@@ -292,13 +297,7 @@ struct Simulation::Implementation {
     light_error.emplace(device, shape.levels()[0]);
   }
 
-  void correction_room(std::uint32_t points) {
-    operators.rounded(correction_key, coefficients.packed_rounding(correction_key.model));
-    operators.create(device, shape.levels(), correction_key, coefficients.even(), false);
-    if (!correction) correction.emplace(device, shape.levels()[0]);
-    correction->make_room(device, points);
-    gather_room().make_room_corrected(device, shape.levels()[0]);
-  }
+  void correction_room(std::uint32_t points);
 
   GatherField& gather_room() {
     if (!tree) tree.emplace(device, shape.levels()[0], "gather");

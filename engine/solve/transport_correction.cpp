@@ -114,6 +114,7 @@ TransportCorrection::TransportCorrection(device::Device& device, const Level& le
   }
   halves_ = room(halves * level.face_count() * vec3_bytes, "exitance of both halves");
   exitance_ = room(level.face_count() * vec3_bytes, "exitance");
+  of_solve_ = room(level.face_count() * vec3_bytes, "exitance of the solve");
   statistics_ = room(2 * sizeof(gpu::TransportChange), "change");
   statistics_on_host_ = room(2 * sizeof(gpu::TransportChange), "change, read back", device::Place::host);
 }
@@ -201,7 +202,11 @@ void TransportCorrection::record_change(const CorrectionParts& parts, bool ahead
 void TransportCorrection::record_faces(const CorrectionParts& parts) {
   Workspace& work = parts.transport.work;
   const LevelBuffers& level = parts.transport.level;
-  const gpu::TransportFacesPush faces{.faces = level.faces.address(),
+  const gpu::TransportFacesPush faces{.vertices = level.vertices.address(),
+                                      .tets = level.tets.address(),
+                                      .faces = level.faces.address(),
+                                      .face_tets = level.face_tets.address(),
+                                      .optical = level.optical.address(),
                                       .face_kinds = level.face_kind.address(),
                                       .scale = work.scale.address(),
                                       .gathered = samples_.gathered().address(),
@@ -211,9 +216,12 @@ void TransportCorrection::record_faces(const CorrectionParts& parts) {
                                       .halves = halves_.address(),
                                       .exitance = exitance_.address(),
                                       .count = level.face_count,
-                                      .k11 = static_cast<float>(parts.boundary.k11)};
+                                      .even = level.even ? 1u : 0u,
+                                      .k11 = static_cast<float>(parts.boundary.k11),
+                                      .eta = static_cast<float>(parts.solved.eta)};
+  const std::uint64_t of_tet = sizeof(std::uint32_t) + sizeof(glm::uvec4) + sizeof(gpu::Optical);
   work.recorder.dispatch(work.passes.of(shader::transport_faces), faces, level.face_count, "transport change",
-                         level.face_count * (sizeof(glm::uvec3) + 11 * vec3_bytes));
+                         level.face_count * (sizeof(glm::uvec3) + 15 * vec3_bytes + of_tet));
 }
 
 // So many draws of points more; then the solves, and what they say.
@@ -274,6 +282,27 @@ void TransportCorrection::start(const CorrectionParts& parts, const WalkTask& ta
   for (std::uint32_t half = 0; half < halves; ++half) {
     recorder.copy(exitance, halves_, exitance.size(), half * exitance.size());
   }
+  recorder.copy(exitance, of_solve_, exitance.size());
+}
+
+// The halves are what sweeps see, their mean over what they should is the exitance.
+TransportCorrection::Halves TransportCorrection::halves_of_change(device::Device& device) const {
+  const auto seen = device::download<glm::vec3>(device, halves_),
+             exitance = device::download<glm::vec3>(device, exitance_),
+             before = device::download<glm::vec3>(device, of_solve_);
+  const std::size_t faces = exitance.size();
+  Halves found{{std::vector<glm::vec3>(faces), std::vector<glm::vec3>(faces)}, std::vector<glm::vec3>(faces)};
+  for (std::size_t f = 0; f < faces; ++f) {
+    const glm::vec3 all = seen[f] + seen[faces + f];
+    for (int c = 0; c < 3; ++c) {
+      const float whole = all[c] > 0 ? 2 * exitance[f][c] / all[c] : 1, a = whole * seen[f][c],
+                  b = whole * seen[faces + f][c];
+      found.change[0][f][c] = a - before[f][c];
+      found.change[1][f][c] = b - before[f][c];
+      found.noise[f][c] = 0.5f * (a - b);
+    }
+  }
+  return found;
 }
 
 // What is known of the frames before is carried on: of tets that are where they were, what rays found for the field
@@ -308,7 +337,7 @@ void TransportCorrection::sweep_at_rest(const CorrectionParts& parts, const Solv
     report.returns = samples_.returns();
   } while (report.sweeps.size() < most && (options.sweeps > 0 || !last_of_all(report, enough)));
   report.changed = change_of_all(report);
-  if (options.sweeps == 0 || options.mean_of > 0) report.taken = share_taken(report, options.mean_of);
+  if (takes_share(options)) report.taken = share_taken(report, options.mean_of);
 }
 
 void TransportCorrection::record_taken(const CorrectionParts& parts, const CorrectionReport& report) {
@@ -318,6 +347,7 @@ void TransportCorrection::record_taken(const CorrectionParts& parts, const Corre
 CorrectionReport TransportCorrection::run(const CorrectionParts& parts, const SolveOptions& options,
                                           const WalkTask& task) {
   CorrectionReport report;
+  report.slow = parts.slow;
   const std::uint32_t frames = std::exchange(frames_, 0);  // nothing is known where this does not come to its end
   if (options.warm) {
     const TransportShares shares = shares_in_motion(frames);

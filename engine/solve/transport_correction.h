@@ -22,6 +22,7 @@ struct CorrectionParts {
   const Boundary& boundary;            // of that operator
   const Solved& solved;                // fem
   const SurfaceResults& results;       // of the solve
+  double slow;                         // as of Resolution
   const std::function<void()>& check;  // called before every draw of points at rest; may throw
 };
 
@@ -67,6 +68,14 @@ class TransportCorrection {
   const device::Buffer& field() const { return samples_.field(); }  // TransportFieldRef, the body that rays see
   const device::Buffer& exitance() const { return exitance_; }
 
+  // Of the last run at rest, W/mm^2 per face: what both halves of the samples, for all faces each, change of the
+  // solve's exitance, and half the difference between them.
+  struct Halves {
+    std::array<std::vector<glm::vec3>, 2> change;
+    std::vector<glm::vec3> noise;
+  };
+  Halves halves_of_change(device::Device& device) const;
+
   // Power of the light's own rays, W; `entered_again` with the scattered light of which `scattered_out` W leave.
   TransportPower power(const glm::dvec3& scale, const glm::dvec3& scattered_out) const;
 
@@ -98,7 +107,8 @@ class TransportCorrection {
   bool moved_ = false, edited_ = false;
   // vec3 per vertex: b and x of the solve of each half, and b of the sweep before.
   std::array<device::Buffer, 2> right_side_, change_, known_;
-  device::Buffer halves_, exitance_;                // vec3 per face, W/mm^2: of each half, and the mean
+  device::Buffer halves_, exitance_;                // vec3 per face, W/mm^2: of each half, and what that makes together
+  device::Buffer of_solve_;                         // vec3 per face, W/mm^2: of the solve before
   device::Buffer statistics_, statistics_on_host_;  // two TransportChange
 };
 

@@ -1,12 +1,18 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "transport/element_loss.h"
 #include "transport/transport_shared.h"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
 
-// Exitance per face after a sweep, J = G + k11 delta times its gain, of both halves and their mean.
+// Exitance per face after a sweep, J = G + k11 delta times its gain, of both halves, and their mean over the share of it
+// that elements as deep as the face's let sweeps see.
 struct TransportFacesPush {
+  Vec3s vertices;  // mm
+  Uvec4s tets;
   Uvec3s faces;
+  Uints face_tets;
+  Opticals optical;  // per tet, or one
   Uints face_kinds;
   Scales scale;
   Vec3s gathered;  // of transport_exitance.comp
@@ -16,9 +22,23 @@ struct TransportFacesPush {
   Vec3s halves;    // of the first half for all faces, then of the second, W/mm^2, written
   Vec3s exitance;  // W/mm^2, written
   uint count;
+  uint even;  // 1: optical is the same everywhere
   float k11;
+  float eta;
 };
 layout(push_constant, scalar) uniform Block { TransportFacesPush push; };
+
+// Height of the tet behind a face over it, mm.
+float depth_of(uint f, uint t) {
+  uvec3 ids = push.faces.at[f];
+  vec3 p = push.vertices.at[ids.x];
+  vec3 doubled = cross(push.vertices.at[ids.y] - p, push.vertices.at[ids.z] - p);
+  uvec4 tet = push.tets.at[t];
+  // Three of its corners lie in the face: the sum over all is that of the fourth.
+  float height = 0.0;
+  for (uint k = 0u; k < 4u; ++k) height += abs(dot(doubled, push.vertices.at[tet[k]] - p));
+  return height / max(length(doubled), 1e-30);
+}
 
 void main() {
   uint f = gl_GlobalInvocationID.x;
@@ -34,5 +54,7 @@ void main() {
   vec3 b = unit * (push.gathered.at[push.count + f] + gain * change_b);
   push.halves.at[f] = a;
   push.halves.at[push.count + f] = b;
-  push.exitance.at[f] = 0.5 * (a + b);
+  uint t = push.face_tets.at[f];
+  Optical optical = push.optical.at[push.even == 1u ? 0u : t];
+  push.exitance.at[f] = 0.5 * (a + b) / seen_of_element(optical, depth_of(f, t), push.eta);
 }

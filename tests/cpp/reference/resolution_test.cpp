@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/optics/half_space.h"
+#include "shaders/transport/element_loss.h"
 #include "tests/cpp/fixtures/graph_cases.h"
 
 using namespace quadgraph;
@@ -117,22 +118,51 @@ TEST_CASE(
   CHECK(resolution_of(samples, none, 1.3, Model::sp3).error == 0);
 }
 
-TEST_CASE("sweeps lose what elements deeper than the light reaches hide from them, by as much as was measured") {
-  // Depths that are 1.2 times the edges of the balls that were measured, and by how much less came out in channels with
-  // these albedos: nothing where they are resolved. At an albedo of .2 too much is stated.
-  struct Measured {
-    double edge_in_mean_free_paths;
-    float albedo;
-    double lost;
-  };
-  for (const Measured& m : {Measured{18.84, .99f, .062}, Measured{9.67, .93f, .167}, Measured{19.31, .93f, .374},
-                            Measured{5.34, .2f, .153}, Measured{10.81, .5f, .367}, Measured{8.9, .997f, 0}}) {
-    CAPTURE(m.albedo);
-    CAPTURE(m.edge_in_mean_free_paths);
-    const std::vector<SurfaceSample> samples = {{1.2 * m.edge_in_mean_free_paths, 1.0, 0}};
-    const std::vector<gpu::Optical> optical = {medium(m.albedo, 1 - m.albedo)};
-    const double stated = resolution_of(samples, optical, 1.3, Model::sp3).corrected;
-    CHECK(stated > m.lost - .045);
-    CHECK(stated < m.lost + .07);
+TEST_CASE("light deep inside falls at the rate that isotropic scattering has") {
+  for (const float albedo : {.2f, .5f, .8f, .95f, .999f}) {
+    CAPTURE(albedo);
+    double low = 1e-6, high = 1;
+    for (int step = 0; step < 60; ++step) {
+      const double k = (low + high) / 2;
+      (double{albedo} * std::atanh(k) < k ? low : high) = k;
+    }
+    CHECK(static_cast<double>(gpu::decay_rate(medium(2 * albedo, 2 * (1 - albedo))).x) ==
+          doctest::Approx(2 * low).epsilon(.006));
   }
+}
+
+TEST_CASE("sweeps see of a dense body what was measured, and all of one that its elements resolve") {
+  // Random walks on balls and scans: exitance of lit faces that sweeps found, over that of the walks.
+  struct Measured {
+    float albedo, depth, eta;  // depth in mean free paths
+    double seen;
+  };
+  for (const Measured& m :
+       {Measured{.9f, 15.0f, 1.5f, .684}, Measured{.85f, 14.7f, 1.2f, .653}, Measured{.98f, 5.2f, 1.33f, 1.001},
+        Measured{.6f, 16.2f, 1.33f, .527}, Measured{.6f, 5.9f, 1.5f, .869}, Measured{.9f, 11.6f, 1.2f, .796},
+        Measured{.4f, 7.7f, 1.5f, .795}, Measured{.98f, 19.4f, 1.0f, .910}}) {
+    CAPTURE(m.albedo);
+    CAPTURE(m.depth);
+    const gpu::Optical optical = medium(m.albedo, 1 - m.albedo);
+    CHECK(static_cast<double>(gpu::seen_of_element(optical, m.depth, m.eta).x) == doctest::Approx(m.seen).epsilon(.05));
+    CHECK(gpu::seen_of_element(optical, .2f, m.eta).x == 1);
+    const std::vector<SurfaceSample> samples = {{double{m.depth}, 1.0, 0}};
+    const double unknown = resolution_of(samples, {{optical}}, double{m.eta}, Model::sp3).corrected;
+    CHECK(unknown < .15 * (1 - m.seen) + .005);
+    CHECK(unknown > .05 * (1 - m.seen) - .005);
+  }
+  const gpu::Optical clear = medium(0, 0), white = medium(3, 0);
+  CHECK(gpu::seen_of_element(clear, 1e3f, 1.3f) == glm::vec3(1));
+  CHECK(gpu::seen_of_element(white, 1e3f, 1.3f) == glm::vec3(1));
+}
+
+TEST_CASE("sweeps settle slowly where elements are deep and little is absorbed") {
+  const auto slow = [](float albedo, double depth) {
+    const std::vector<gpu::Optical> optical = {medium(albedo, 1 - albedo)};
+    return resolution_of(std::vector<SurfaceSample>{{depth, 1.0, 0}}, optical, 1.3, Model::sp3).slow;
+  };
+  CHECK(slow(.999f, 6) > .9);
+  CHECK(slow(.999f, 6) <= 1);
+  CHECK(slow(.999f, .1) < .05);
+  CHECK(slow(.5f, 6) < .01);
 }
