@@ -136,6 +136,14 @@ class GltfFile:
             raise InputError(f"{self.path}: an accessor reaches beyond its buffer")
         return np.ndarray((count, width), kind, data, first, (stride, size))
 
+    def view_bytes(self, index: int) -> bytes:
+        """Bytes of a buffer view."""
+        view = self.document["bufferViews"][index]
+        data, first, count = self._buffer(view["buffer"]), view.get("byteOffset", 0), view["byteLength"]
+        if first < 0 or count < 0 or first + count > len(data):
+            raise InputError(f"{self.path}, buffer view {index}: reaches beyond its buffer")
+        return data[first : first + count]
+
     def _bytes(self) -> int:
         """Of all buffers together."""
         return sum(len(self._buffer(index)) for index in range(len(self.document.get("buffers", []))))

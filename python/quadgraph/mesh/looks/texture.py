@@ -1,0 +1,123 @@
+"""Textures: pictures in or beside a mesh file, held against limits before they are decoded, and their colours."""
+
+from __future__ import annotations
+
+import io
+import warnings
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from typing import Literal
+from urllib.parse import unquote
+
+import numpy as np
+
+from quadgraph.base import regular_file
+from quadgraph.base.errors import InputError
+
+FORMATS = ("PNG", "JPEG", "WEBP", "BMP", "TGA", "TIFF")
+MOST_PIXELS = 50_000_000  # of a picture, as of all images (docs/limits.md): 0.15 GB decoded
+MOST_BYTES = 1 << 28  # of a picture's file
+MOST_UV = 1e5  # a larger coordinate has lost the place within the texture to rounding
+Wrap = Literal["repeat", "clamp", "mirror"]
+
+
+def linear(srgb: np.ndarray) -> np.ndarray:
+    """Linear light of sRGB values, 0 to 1 (IEC 61966-2-1)."""
+    return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+
+
+_LINEAR = linear(np.arange(256) / 255)
+
+
+@dataclass(frozen=True, eq=False)
+class Texture:
+    """A picture on a surface. pixels: (h, w, 3) uint8 sRGB, the first row at v = 0; wrap: beyond 0 to 1, along u, v."""
+
+    pixels: np.ndarray
+    wrap: tuple[Wrap, Wrap] = ("repeat", "repeat")
+
+    def at(self, uv: np.ndarray) -> np.ndarray:
+        """Linear RGB at (n, 2) places, (n, 3): between pixels as their linear light."""
+        height, width = self.pixels.shape[:2]
+        place = np.asarray(uv, np.float64) * [width, height] - 0.5
+        first = np.floor(place)
+        share = place - first
+        found = np.zeros((len(place), 3))
+        for right in (0, 1):
+            column = _wrapped(first[:, 0] + right, width, self.wrap[0])
+            across = share[:, 0] if right else 1 - share[:, 0]
+            for below in (0, 1):
+                row = _wrapped(first[:, 1] + below, height, self.wrap[1])
+                weight = across * (share[:, 1] if below else 1 - share[:, 1])
+                found += weight[:, None] * _LINEAR[self.pixels[row, column]]
+        return found
+
+
+def _wrapped(index: np.ndarray, count: int, wrap: Wrap) -> np.ndarray:
+    if wrap == "clamp":
+        return np.clip(index, 0, count - 1).astype(np.int64)
+    if wrap == "repeat":
+        return np.mod(index, count).astype(np.int64)
+    twice = np.mod(index, 2 * count)
+    return np.minimum(twice, 2 * count - 1 - twice).astype(np.int64)
+
+
+def decoded(data: bytes, where: str) -> np.ndarray:
+    """Pixels (h, w, 3) uint8 of a picture's bytes; transparency is left out.
+
+    where: file and field, for errors. Raises InputError for another format, too many pixels or a damaged picture.
+    """
+    from PIL import Image, UnidentifiedImageError
+
+    if len(data) > MOST_BYTES:
+        raise InputError(f"{where}: a picture of {len(data)} bytes found, at most {MOST_BYTES} are allowed")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # our limit is lower
+            picture = Image.open(io.BytesIO(data), formats=FORMATS)
+            if not 0 < picture.width * picture.height <= MOST_PIXELS:
+                raise InputError(
+                    f"{where}: a picture of {picture.width} x {picture.height} pixels found, allowed are 1 to "
+                    f"{MOST_PIXELS}; write it smaller"
+                )
+            return _rgb(picture)
+    except InputError:
+        raise
+    except Image.DecompressionBombError as error:  # Pillow's limit, which it holds a header against
+        raise InputError(f"{where}: a picture of more than {MOST_PIXELS} pixels found; write it smaller") from error
+    except Exception as error:  # Pillow's decoders raise whatever they meet
+        foreign = isinstance(error, UnidentifiedImageError)
+        words = "another kind of file" if foreign else " ".join(str(error).split())[:200] or type(error).__name__
+        raise InputError(f"{where}: cannot be read as a picture ({words}); allowed are {', '.join(FORMATS)}") from error
+
+
+def _rgb(picture) -> np.ndarray:
+    if picture.mode.startswith("I"):  # 16 bits of grey, which Pillow would cut off
+        grey = np.clip(np.asarray(picture, np.int64) // 257, 0, 255).astype(np.uint8)
+        return np.repeat(grey[..., None], 3, axis=2)
+    return np.asarray(picture.convert("RGB"), np.uint8)
+
+
+def beside(mesh: Path, name: str, where: str) -> bytes:
+    """Bytes of a picture that a mesh file names; where: the field that does.
+
+    Raises InputError where that leads out of the mesh's folder, to no file, or to one that is too large.
+    """
+    plain = unquote(name).replace("\\", "/")
+    path = mesh.parent / plain
+    inside = not PurePosixPath(plain).is_absolute() and path.resolve().is_relative_to(mesh.parent.resolve())
+    if ":" in plain.split("/")[0] or "\0" in plain or not inside:
+        raise InputError(
+            f"{where}: {name[:200]!r} found, allowed is a picture in the mesh's folder or below it; copy it there and "
+            "name it so"
+        )
+    try:
+        if path.exists() and path.stat().st_size > MOST_BYTES:
+            raise InputError(
+                f"{where}: {name[:200]!r} has {path.stat().st_size} bytes, at most {MOST_BYTES} are allowed"
+            )
+        return regular_file.read_bytes(path)
+    except OSError as error:
+        raise InputError(
+            f"{where}: {name[:200]!r} found, which cannot be read beside the mesh ({error.strerror})"
+        ) from error
