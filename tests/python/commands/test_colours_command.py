@@ -70,6 +70,41 @@ def test_what_is_wrong_is_said_in_a_line(folder, capsys, change, words):
     assert set(folder.iterdir()) == before
 
 
+def test_a_mesh_is_shown_in_its_own_colours(folder, capsys, monkeypatch):
+    """As by hand, step by step."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(folder / "cache"))
+    shown = ["--light", "ambient:1", "--device", "cpu", "--no-correction", "--size", "48x48", "-o"]
+    own = ["--longest", "20mm", "--material", "own,mean_free_path=0.7,depth=3,cells=30000,base=wax,period=9"]
+    assert cli.main(["render", "toy.glb", *own, *shown, "own.png"]) == 0
+    assert "mean colour of the surface 0.35/0.32/0.15" in capsys.readouterr().err
+    assert cli.main(["bake", "toy.glb", "--longest", "20mm", "-o", "same.qgraph"]) == 0
+    said = ["--mean-free-path", "0.7", "--depth", "3", "--cells", "30000", "--base", "wax,period=9", "-o", "a.npz"]
+    assert cli.main(["colours", "toy.glb", "--body", "same.qgraph", *said]) == 0
+    assert cli.main(["render", "same.qgraph", "--material", "a.npz", *shown, "by-hand.png"]) == 0
+    assert Image.open("own.png").tobytes() == Image.open("by-hand.png").tobytes()
+    path = ["--method", "shortest-path", "--material", "own", "--longest", "20mm"]
+    assert cli.main(["render", "toy.glb", *path, *shown[:4], "--size", "32x32", "-o", "path.png"]) == 0
+
+
+@pytest.mark.parametrize(
+    ("file", "material", "more", "words"),
+    [
+        ("toy.qgraph", "own", [], "toy.qgraph: material 'own' found with a file that has no colours"),
+        ("toy.glb", "own,depht=3", [], "'depht=3' found, allowed are mean_free_path, depth, eta"),
+        ("toy.glb", "own,depth=x", [], "material 'own', depth: 'x' found, a number is wanted"),
+        ("toy.glb", "own,cells=1.5", [], "material 'own', cells: '1.5' found"),
+        ("toy.glb", "own,base=waxx", [], "waxx"),
+        ("toy.glb", "own", ["--map", "box"], "--map: found with --material own"),
+    ],
+)
+def test_own_colours_that_are_none(folder, capsys, monkeypatch, file, material, more, words):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(folder / "cache"))
+    command = ["render", file, "--material", material, *more, "--device", "cpu", "-o", "a.png"]
+    assert cli.main(command + (["--longest", "20mm"] if file.endswith(".glb") else [])) == 1
+    assert words in capsys.readouterr().err
+    assert not (folder / "a.png").exists()
+
+
 @pytest.mark.parametrize("path", ["1/2", "0", "a", "-1"])
 def test_a_mean_free_path_that_is_none(folder, capsys, path):
     arguments = ["colours", "toy.glb", "--body", "toy.qgraph", "-o", "a.npz", f"--mean-free-path={path}"]
