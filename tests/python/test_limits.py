@@ -74,6 +74,7 @@ SENTENCES = (
     f"at most {IMAGE['largest_side']:g} texels a side, {IMAGE['free_texels'] / 1e6:g} million texels and "
     f"{IMAGE['texels_a_byte']:g} for each byte of the file",
     f"at most {texture.MOST_PIXELS / 1e6:g} million pixels and {texture.MOST_BYTES >> 20} MiB, which",
+    f"{texture.MOST_TOGETHER / 1e6:g} million pixels in all",
     f"coordinates at most {brief(texture.MOST_UV)}; a `.mtl` at most {mtl.MOST_BYTES >> 20} MiB",
     f"a header has at most {ply_header.HEADER_BYTES >> 10} KiB",
     f"transforms with numbers above {brief(gltf_file.LARGEST)}, are refused",

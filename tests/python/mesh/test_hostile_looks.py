@@ -13,6 +13,7 @@ import pytest
 
 from coloured_files import coloured_glb, encoded, ramp_glb, ramp_obj, ramp_pixels, ramp_ply, textured
 from quadgraph.base.errors import InputError
+from quadgraph.mesh.looks import texture
 from quadgraph.mesh.looks.read_looks import read_looks
 from shapes import icosphere
 
@@ -85,6 +86,20 @@ def test_a_picture_too_large_is_not_decoded(tmp_path, side, words):
     refused(path, "image 0", words, "write it smaller")
     assert tracemalloc.get_traced_memory()[1] < 10e6
     tracemalloc.stop()
+
+
+def test_pictures_that_are_too_many_together(tmp_path, monkeypatch):
+    """Each is small enough; one that is named twice counts once."""
+    monkeypatch.setattr(texture, "MOST_TOGETHER", 3000)
+    names = [f"{k}.png" for k in range(4)]
+    for name in names:
+        (tmp_path / name).write_bytes(encoded(ramp_pixels()))
+    (tmp_path / "ramp.mtl").write_text("".join(f"newmtl {k}\nmap_Kd {name}\n" for k, name in enumerate(names)))
+    (tmp_path / "a.obj").write_text("mtllib ramp.mtl\n")
+    refused(tmp_path / "a.obj", "ramp.mtl, line 6", "256 x 4 pixels", "3000 in all pictures of a mesh")
+    same = "".join(f"newmtl {k}\nmap_Kd 0.png\n" for k in range(9))
+    (tmp_path / "ramp.mtl").write_text(same)
+    refused(tmp_path / "a.obj", "no triangles found")
 
 
 def test_a_picture_cut_short(tmp_path):

@@ -129,6 +129,14 @@ def test_parts_have_their_own_colours(tmp_path):
     assert (np.einsum("ij,ij->i", outwards, places - centre) > 0).all()
 
 
+def test_diffuse_colour_of_older_files(tmp_path):
+    said = {"diffuseTexture": {"index": 0}, "diffuseFactor": [1, 0.5, 1, 1]}
+    material = {"extensions": {"KHR_materials_pbrSpecularGlossiness": said}}
+    path = coloured_glb(tmp_path / "a.glb", BALL, material, encoded(ramp_pixels()))
+    places, found = colours_at_middles(read_looks(path))
+    assert found == pytest.approx(ramp((places[:, 0] + 10) / 20) * [1, 0.5, 1], abs=0.003)
+
+
 def test_options_of_a_map_are_read(tmp_path):
     line = "map_Kd -clamp on -s 0.5 1 1 -o 0.25 0 -bm 1 ramp.png"
     places, found = colours_at_middles(read_looks(ramp_obj(tmp_path / "a.obj", BALL, line)))

@@ -71,8 +71,8 @@ def _notes(placed: PlacedMesh, grid: ColourGrid, eta: float, cut: float, rough: 
         notes.append(f"the file has a roughness of {rough:.2g}, no volume has one: --roughness {max(rough, 0.02):.2g}")
     if cut > 0.005:
         notes.append(
-            f"{100 * cut:.0f}% of the surface are brighter than {brightest(eta):.2f}, the brightest that a body shows, "
-            "and were taken as that"
+            f"{100 * cut:.0f}% of the surface are brighter in a channel than {brightest(eta):.2f}, the brightest that "
+            "a body shows, and were taken as that"
         )
     told = max(grid.spacing, placed.edge)
     if 0 < grid.detail < 0.75 * told:

@@ -11,10 +11,9 @@ import numpy as np
 
 from quadgraph.base.errors import InputError
 from quadgraph.mesh.gltf_file import GltfFile, read
-from quadgraph.mesh.looks import texture
 from quadgraph.mesh.looks.gltf_media import eta_of, medium_of, number_of, numbers_of
 from quadgraph.mesh.looks.parts import ColouredMesh, Look, Part
-from quadgraph.mesh.looks.texture import Texture, Wrap
+from quadgraph.mesh.looks.texture import Pictures, Texture, Wrap
 
 _WRAPS: dict[int, Wrap] = {33071: "clamp", 33648: "mirror", 10497: "repeat"}
 _TRIANGLES = 4
@@ -80,7 +79,7 @@ class _Looks:
         self.file = file
         self.notes: list[str] = []
         self._known: dict[int | None, tuple[Look, tuple[np.ndarray, int]]] = {None: (Look(), (np.eye(3)[:2], 0))}
-        self._pixels: dict[int, np.ndarray] = {}
+        self._pictures = Pictures(file.path)
 
     def of(self, number: int | None) -> tuple[Look, tuple[np.ndarray, int]]:
         """A material, the transform (2, 3) of its texture's coordinates, and which set of them it goes by."""
@@ -91,7 +90,8 @@ class _Looks:
 
     def _read(self, material: dict[str, Any], name: str) -> tuple[Look, tuple[np.ndarray, int]]:
         where = f"{self.file.path}, material {name!r}"
-        extensions, plain = material.get("extensions", {}), material.get("pbrMetallicRoughness", {})
+        extensions = material.get("extensions", {})
+        plain = material.get("pbrMetallicRoughness") or _older(extensions)
         medium, note = medium_of(where, extensions)
         self.notes += [note] if note else []
         for extension, said in extensions.items():
@@ -120,18 +120,23 @@ class _Looks:
                 allowed = ", ".join(map(str, _WRAPS))
                 raise InputError(f"{where}, sampler, {name}: {sampler[name]} found, allowed are {allowed}")
             wraps.append(_WRAPS[sampler.get(name, 10497)])
-        if source not in self._pixels:
-            self._pixels[source] = self._picture(source)
-        return Texture(self._pixels[source], cast(tuple[Wrap, Wrap], tuple(wraps)))
+        return Texture(self._picture(source), cast(tuple[Wrap, Wrap], tuple(wraps)))
 
     def _picture(self, number: int) -> np.ndarray:
         image, where = _item(self.file, "images", number), f"{self.file.path}, image {number}"
         if "bufferView" in image:
-            return texture.decoded(self.file.view_bytes(image["bufferView"]), where)
+            return self._pictures.inside(number, lambda: self.file.view_bytes(image["bufferView"]), where)
         uri = image["uri"]
         if uri.startswith("data:"):
-            return texture.decoded(base64.b64decode(uri.split(",", 1)[1]), where)
-        return texture.decoded(texture.beside(self.file.path, uri, where), where)
+            return self._pictures.inside(number, lambda: base64.b64decode(uri.split(",", 1)[1]), where)
+        return self._pictures.beside(uri, where)
+
+
+def _older(extensions: dict[str, Any]) -> dict[str, Any]:
+    """What KHR_materials_pbrSpecularGlossiness, which is out of use, says of diffuse colour, in the words of today."""
+    said = extensions.get("KHR_materials_pbrSpecularGlossiness", {})
+    names = {"diffuseFactor": "baseColorFactor", "diffuseTexture": "baseColorTexture"}
+    return {today: said[name] for name, today in names.items() if name in said}
 
 
 def _item(file: GltfFile, kind: str, number: object) -> dict[str, Any]:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 
 from quadgraph.base.errors import InputError
@@ -30,8 +28,9 @@ class ObjLook:
         return Look(self.name, self.colour, self.texture, None, self.eta)
 
 
-def read_mtl(obj: Path, name: str) -> dict[str, ObjLook]:
-    """The materials of a library that an OBJ file names. Raises InputError naming file and line."""
+def read_mtl(pictures: texture.Pictures, name: str) -> dict[str, ObjLook]:
+    """The materials of a library that an OBJ file, `pictures.mesh`, names. Raises InputError naming file and line."""
+    obj = pictures.mesh
     path = obj.parent / name
     data = texture.beside(obj, name, f"{obj}, mtllib")
     if len(data) > MOST_BYTES:
@@ -44,11 +43,11 @@ def read_mtl(obj: Path, name: str) -> dict[str, ObjLook]:
         if key == "newmtl":
             present = found.setdefault(rest, ObjLook(rest or "unnamed"))
         elif present is not None:
-            _read_line(obj, present, key.lower(), rest, where)
+            _read_line(pictures, present, key.lower(), rest, where)
     return found
 
 
-def _read_line(obj: Path, present: ObjLook, key: str, rest: str, where: str) -> None:
+def _read_line(pictures: texture.Pictures, present: ObjLook, key: str, rest: str, where: str) -> None:
     if key == "kd":
         values = _floats(rest.split(), where)
         values = values * 3 if len(values) == 1 else values
@@ -58,7 +57,7 @@ def _read_line(obj: Path, present: ObjLook, key: str, rest: str, where: str) -> 
         (value,) = numbers_of(where, {"Ni": _floats(rest.split(), where)}, "Ni", (1.5,), 0, 1e6)
         present.eta = value if 1 < value <= 3 else None  # 1 is what programs write that have no index
     elif key == "map_kd":
-        _read_map(obj, present, rest.split(), where)
+        _read_map(pictures, present, rest.split(), where)
 
 
 def _floats(words: list[str], where: str) -> list[float]:
@@ -68,7 +67,7 @@ def _floats(words: list[str], where: str) -> list[float]:
         raise InputError(f"{where}: cannot read {' '.join(words)[:80]!r}, numbers are wanted") from None
 
 
-def _read_map(obj: Path, present: ObjLook, words: list[str], where: str) -> None:
+def _read_map(pictures: texture.Pictures, present: ObjLook, words: list[str], where: str) -> None:
     """A texture with its options, each with the words that go with it; the name is the rest, blanks included."""
     clamp = False
     while words and words[0].startswith("-"):
@@ -87,7 +86,7 @@ def _read_map(obj: Path, present: ObjLook, words: list[str], where: str) -> None
     name = " ".join(words)
     if not name:
         raise InputError(f"{where}: map_Kd without a picture found")
-    pixels = texture.decoded(texture.beside(obj, name, where), where)
+    pixels = pictures.beside(name, where)
     present.texture = texture.Texture(pixels, ("clamp", "clamp") if clamp else ("repeat", "repeat"))
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from quadgraph.base.errors import InputError
 from quadgraph.mesh.looks.mtl import ObjLook, read_mtl
 from quadgraph.mesh.looks.parts import ColouredMesh, Look, Part
-from quadgraph.mesh.looks.texture import linear
+from quadgraph.mesh.looks.texture import Pictures, linear
 from quadgraph.mesh.mesh_text import numbered_lines
 
 _Corners = list[list[tuple[int, int]]]  # polygons; position and coordinate of each corner, from 0, -1 for none
@@ -20,6 +20,7 @@ class _File:
 
     def __init__(self, path: Path) -> None:
         self.path = path
+        self._pictures = Pictures(path)
         self.vertices: list[list[float]] = []
         self.colours: list[list[float]] = []
         self.uv: list[list[float]] = []
@@ -42,7 +43,7 @@ class _File:
             if len(rest) < 3:
                 raise ValueError
         elif kind == "mtllib":
-            self.looks.update(read_mtl(self.path, " ".join(rest)))
+            self.looks.update(read_mtl(self._pictures, " ".join(rest)))
         elif kind == "usemtl":
             name = " ".join(rest)
             if name not in self.looks:

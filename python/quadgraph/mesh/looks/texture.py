@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Literal
@@ -16,6 +17,7 @@ from quadgraph.base.errors import InputError
 
 FORMATS = ("PNG", "JPEG", "WEBP", "BMP", "TGA", "TIFF")
 MOST_PIXELS = 50_000_000  # of a picture, as of all images (docs/limits.md): 0.15 GB decoded
+MOST_TOGETHER = 200_000_000  # pixels of all pictures of a mesh: 0.6 GB
 MOST_BYTES = 1 << 28  # of a picture's file
 MOST_UV = 1e5  # a larger coordinate has lost the place within the texture to rounding
 Wrap = Literal["repeat", "clamp", "mirror"]
@@ -62,10 +64,11 @@ def _wrapped(index: np.ndarray, count: int, wrap: Wrap) -> np.ndarray:
     return np.minimum(twice, 2 * count - 1 - twice).astype(np.int64)
 
 
-def decoded(data: bytes, where: str) -> np.ndarray:
+def decoded(data: bytes, where: str, most: int = MOST_PIXELS) -> np.ndarray:
     """Pixels (h, w, 3) uint8 of a picture's bytes; transparency is left out.
 
-    where: file and field, for errors. Raises InputError for another format, too many pixels or a damaged picture.
+    where: file and field, for errors; most: pixels. Raises InputError for another format, more pixels than that or a
+    damaged picture.
     """
     from PIL import Image, UnidentifiedImageError
 
@@ -75,10 +78,10 @@ def decoded(data: bytes, where: str) -> np.ndarray:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # our limit is lower
             picture = Image.open(io.BytesIO(data), formats=FORMATS)
-            if not 0 < picture.width * picture.height <= MOST_PIXELS:
+            if not 0 < picture.width * picture.height <= most:
                 raise InputError(
                     f"{where}: a picture of {picture.width} x {picture.height} pixels found, allowed are 1 to "
-                    f"{MOST_PIXELS}; write it smaller"
+                    f"{MOST_PIXELS}, and {MOST_TOGETHER} in all pictures of a mesh; write it smaller"
                 )
             return _rgb(picture)
     except InputError:
@@ -89,6 +92,25 @@ def decoded(data: bytes, where: str) -> np.ndarray:
         foreign = isinstance(error, UnidentifiedImageError)
         words = "another kind of file" if foreign else " ".join(str(error).split())[:200] or type(error).__name__
         raise InputError(f"{where}: cannot be read as a picture ({words}); allowed are {', '.join(FORMATS)}") from error
+
+
+class Pictures:
+    """The pictures of a mesh, each decoded once, and no more pixels of all than MOST_TOGETHER."""
+
+    def __init__(self, mesh: Path) -> None:
+        self.mesh = mesh
+        self._known: dict[object, np.ndarray] = {}
+
+    def inside(self, key: object, data: Callable[[], bytes], where: str) -> np.ndarray:
+        """Pixels of bytes in the mesh file, or of the same key as before. Raises InputError as `decoded`."""
+        if key not in self._known:
+            used = sum(pixels.shape[0] * pixels.shape[1] for pixels in self._known.values())
+            self._known[key] = decoded(data(), where, min(MOST_PIXELS, MOST_TOGETHER - used))
+        return self._known[key]
+
+    def beside(self, name: str, where: str) -> np.ndarray:
+        """Pixels of a file in the mesh's folder or below it. Raises InputError as `beside` and `decoded`."""
+        return self.inside(name, lambda: beside(self.mesh, name, where), where)
 
 
 def _rgb(picture) -> np.ndarray:
