@@ -137,15 +137,21 @@ def shown_engine(file: Path, args: argparse.Namespace) -> Engine:
     Tells what became of colours, and of a map that carried the material there. Raises FormatError, InputError,
     DeviceError.
     """
-    own = own_material.options_of(args.material, file) if own_material.is_own(args.material) else None
-    if own is not None and args.map is not None:
-        raise InputError(f"--map: found with --material {own_material.NAME}, whose colours lie where the mesh has them")
+    own = _own(file, args) if own_material.is_own(args.material) else None
     with _loaded(file, args) as (engine, body):
         if own is not None:
-            tell_map(own_material.set_on(engine, own, file, body))
+            tell_map(own.set_on(engine, body))
         else:
             tell_map(engine.set_material(material(args)))
     return engine
+
+
+def _own(file: Path, args: argparse.Namespace) -> own_material.OwnColours:
+    if args.map is not None:
+        raise InputError(f"--map: found with --material {own_material.NAME}, whose colours lie where the mesh has them")
+    written = [getattr(args, name, None) for name in ("output", "json", "field")]
+    paths = [path for each in written for path in (each if isinstance(each, list) else [each])]
+    return own_material.read(args.material, file, [path for path in paths if isinstance(path, Path)])
 
 
 def material(args: argparse.Namespace) -> str:

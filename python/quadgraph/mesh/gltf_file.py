@@ -117,7 +117,8 @@ class GltfFile:
             raise InputError(f"{self.path}, accessor {index}: count {count} found, more than the buffers can need")
         values = np.zeros((count, width), np.float64 if kind is np.float32 else np.int64)
         if found is not None:
-            values[:] = found
+            with np.errstate(invalid="ignore"):  # a signalling NaN is one for who uses it
+                values[:] = found
         if "sparse" in accessor:
             sparse = accessor["sparse"]
             where = self._view(sparse["indices"], _TYPES[sparse["indices"]["componentType"]], sparse["count"], 1)[:, 0]

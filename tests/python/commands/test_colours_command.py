@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 
 from baked import write_levels
-from coloured_files import ramp_glb, ramp_ply
+from coloured_files import ramp_glb, ramp_obj, ramp_ply
 from quadgraph import cli
 from quadgraph.mesh.surface import Surface
 from shapes import icosphere
@@ -103,6 +103,14 @@ def test_own_colours_that_are_none(folder, capsys, monkeypatch, file, material, 
     assert cli.main(command + (["--longest", "20mm"] if file.endswith(".glb") else [])) == 1
     assert words in capsys.readouterr().err
     assert not (folder / "a.png").exists()
+
+
+def test_no_picture_of_the_mesh_is_replaced(folder, capsys):
+    ramp_obj(folder / "toy.obj", BALL)
+    before = (folder / "ramp.png").read_bytes()
+    assert cli.main(["render", "toy.obj", "--longest", "20mm", "--material", "own", "-o", "ramp.png"]) == 1
+    assert "ramp.png: is read" in capsys.readouterr().err
+    assert (folder / "ramp.png").read_bytes() == before
 
 
 @pytest.mark.parametrize("path", ["1/2", "0", "a", "-1"])

@@ -110,6 +110,13 @@ def test_textures_beside_the_file_and_below_it(tmp_path):
     assert colours_at_middles(read_looks(path))[1] == pytest.approx(np.tile(RED, (len(BALL.triangles), 1)), abs=0.02)
 
 
+def test_webp_comes_by_an_extension(tmp_path):
+    picture = encoded(np.full((8, 8, 3), srgb(RED)), "WEBP")
+    textures = [{"extensions": {"EXT_texture_webp": {"source": 0}}}]
+    path = coloured_glb(tmp_path / "a.glb", BALL, textured(), picture, textures=textures)
+    assert colours_at_middles(read_looks(path))[1] == pytest.approx(np.tile(RED, (len(BALL.triangles), 1)), abs=0.03)
+
+
 def test_parts_have_their_own_colours(tmp_path):
     """Two nodes, one of them mirrored: transforms, and which way faces look, as the bake has them."""
     path = coloured_glb(tmp_path / "a.gltf", BALL, {"pbrMetallicRoughness": {"baseColorFactor": [*RED, 1]}})

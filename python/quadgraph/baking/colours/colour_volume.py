@@ -17,6 +17,7 @@ from quadgraph.baking.colours.reflectances import coefficients
 from quadgraph.baking.colours.surface_means import SurfaceMeans, surface_means
 from quadgraph.base.units import DEFAULT_ETA
 from quadgraph.mesh.display_map import closest_point_coordinates
+from quadgraph.mesh.looks.parts import ColouredMesh
 from quadgraph.mesh.looks.read_looks import read_looks
 
 _PLATEAU = 0.5  # of the depth, down to which the colour is the surface's
@@ -32,10 +33,13 @@ def mesh_colours(
     glTF states a medium (KHR_materials_volume and what goes with it) that is taken: docs/materials.md, From the mesh
     file. Raises InputError naming file, field, what was found and what is allowed, FormatError for a broken body.
     """
-    given = options or ColourOptions()
-    looks = read_looks(Path(mesh))
-    placed = place(looks, Path(mesh), Path(body))
-    graph = core.load(Path(body))
+    return volume_of(read_looks(Path(mesh)), Path(mesh), Path(body), options or ColourOptions())
+
+
+def volume_of(looks: ColouredMesh, mesh: Path, body: Path, given: ColourOptions) -> tuple[VolumeMaterial, ColourReport]:
+    """Do the same with a mesh file whose looks have been read."""
+    placed = place(looks, mesh, body)
+    graph = core.load(body)
     eta = _eta(placed, given)
     corners = np.asarray(graph.levels[0].vertices if graph.levels else graph.display["vertices"], np.float64)
     box = corners.min(axis=0), corners.max(axis=0)

@@ -56,7 +56,7 @@ def place(looks: ColouredMesh, mesh: Path, body: Path) -> PlacedMesh:
     if not np.isfinite(used).all():
         raise InputError(f"{mesh}: a vertex that is not finite found")
     far = []
-    for unit_mm in _units(file, mesh, used, shown):
+    for unit_mm in _units(file, body, mesh, used, shown):
         surface = Surface(stood * unit_mm, looks.triangles)
         far.append(_distance(surface, shown))
         diagonal = float(np.linalg.norm(np.ptp(shown, axis=0)))
@@ -68,12 +68,15 @@ def place(looks: ColouredMesh, mesh: Path, body: Path) -> PlacedMesh:
     )
 
 
-def _units(file: qgraph_file.QGraphFile, mesh: Path, used: np.ndarray, shown: np.ndarray) -> list[float]:
+def _units(file: qgraph_file.QGraphFile, body: Path, mesh: Path, used: np.ndarray, shown: np.ndarray) -> list[float]:
     """Lengths of one unit of the mesh, mm, to try: that of the bake, and of another file what gives it its size."""
-    baked = file.metadata["unit_mm"]
-    if not isinstance(baked, int | float) or not 0 < baked < np.inf:
-        raise FormatError(f"{mesh}: metadata: unit_mm: {str(baked)[:40]} found, a number above 0 is wanted")
-    same = hashlib.sha256(regular_file.read_bytes(mesh)).hexdigest() == file.metadata["source"].get("sha256")
+    baked, source = file.metadata.get("unit_mm"), file.metadata.get("source")
+    if not isinstance(baked, int | float) or not 0 < baked < np.inf or not isinstance(source, dict):
+        raise FormatError(
+            f"{body}: metadata: unit_mm {str(baked)[:40]} and source {str(source)[:40]} found, wanted are a number "
+            "above 0 and an object"
+        )
+    same = hashlib.sha256(regular_file.read_bytes(mesh)).hexdigest() == source.get("sha256")
     longest = float(np.ptp(used, axis=0).max())
     if same or longest == 0:
         return [float(baked)]

@@ -6,6 +6,7 @@ import base64
 import math
 from pathlib import Path
 from typing import Any, cast
+from urllib.parse import unquote
 
 import numpy as np
 
@@ -33,7 +34,7 @@ def read_gltf_looks(path: Path) -> ColouredMesh:
 
 def _coloured(file: GltfFile) -> ColouredMesh:
     looks = _Looks(file)
-    mesh = ColouredMesh([], looks.notes)
+    mesh = ColouredMesh([], looks.notes, looks.pictures.files)
     for number, transform in sorted(file.transforms().items()):
         for primitive in file.mesh(file.document["nodes"][number]).get("primitives", []):
             if primitive.get("mode", _TRIANGLES) not in _NO_SURFACES:
@@ -79,7 +80,7 @@ class _Looks:
         self.file = file
         self.notes: list[str] = []
         self._known: dict[int | None, tuple[Look, tuple[np.ndarray, int]]] = {None: (Look(), (np.eye(3)[:2], 0))}
-        self._pictures = Pictures(file.path)
+        self.pictures = Pictures(file.path)
 
     def of(self, number: int | None) -> tuple[Look, tuple[np.ndarray, int]]:
         """A material, the transform (2, 3) of its texture's coordinates, and which set of them it goes by."""
@@ -125,11 +126,11 @@ class _Looks:
     def _picture(self, number: int) -> np.ndarray:
         image, where = _item(self.file, "images", number), f"{self.file.path}, image {number}"
         if "bufferView" in image:
-            return self._pictures.inside(number, lambda: self.file.view_bytes(image["bufferView"]), where)
+            return self.pictures.inside(number, lambda: self.file.view_bytes(image["bufferView"]), where)
         uri = image["uri"]
         if uri.startswith("data:"):
-            return self._pictures.inside(number, lambda: base64.b64decode(uri.split(",", 1)[1]), where)
-        return self._pictures.beside(uri, where)
+            return self.pictures.inside(number, lambda: base64.b64decode(uri.split(",", 1)[1]), where)
+        return self.pictures.beside(unquote(uri), where)
 
 
 def _older(extensions: dict[str, Any]) -> dict[str, Any]:

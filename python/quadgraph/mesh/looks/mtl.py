@@ -32,7 +32,7 @@ def read_mtl(pictures: texture.Pictures, name: str) -> dict[str, ObjLook]:
     """The materials of a library that an OBJ file, `pictures.mesh`, names. Raises InputError naming file and line."""
     obj = pictures.mesh
     path = obj.parent / name
-    data = texture.beside(obj, name, f"{obj}, mtllib")
+    data = pictures.read(name, f"{obj}, mtllib")
     if len(data) > MOST_BYTES:
         raise InputError(f"{path}: {len(data)} bytes found, at most {MOST_BYTES} are allowed")
     found: dict[str, ObjLook] = {}

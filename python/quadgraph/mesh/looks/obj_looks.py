@@ -20,7 +20,7 @@ class _File:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self._pictures = Pictures(path)
+        self.pictures = Pictures(path)
         self.vertices: list[list[float]] = []
         self.colours: list[list[float]] = []
         self.uv: list[list[float]] = []
@@ -43,7 +43,7 @@ class _File:
             if len(rest) < 3:
                 raise ValueError
         elif kind == "mtllib":
-            self.looks.update(read_mtl(self._pictures, " ".join(rest)))
+            self.looks.update(read_mtl(self.pictures, " ".join(rest)))
         elif kind == "usemtl":
             name = " ".join(rest)
             if name not in self.looks:
@@ -79,7 +79,7 @@ def read_obj_looks(path: Path) -> ColouredMesh:
         counts = f"{len(file.colours)} of {len(file.vertices)}"
         raise InputError(f"{path}: {counts} vertices have colours, all or none are allowed")
     parts = [_part(file, name, polygons) for name, polygons in file.polygons.items() if polygons]
-    return ColouredMesh(parts)
+    return ColouredMesh(parts, files=file.pictures.files)
 
 
 def _part(file: _File, name: str, polygons: _Corners) -> Part:

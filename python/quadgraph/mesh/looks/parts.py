@@ -78,18 +78,17 @@ class Part:
         if self.colours is not None:
             bad = np.flatnonzero(~((self.colours >= 0) & (self.colours <= 1)).all(axis=1))
             if len(bad):
-                raise InputError(
-                    f"{where}, colour {bad[0]}: {self.colours[bad[0]].tolist()} found, allowed are 0 to 1 (linear)"
-                )
+                raise InputError(f"{where}, colour {bad[0]}: {self.colours[bad[0]].tolist()} found, allowed are 0 to 1")
         return self
 
 
 @dataclass(frozen=True, eq=False)
 class ColouredMesh:
-    """All parts of a file, and sentences on what of it was left out."""
+    """All parts of a file; notes: what of it was left out, in sentences; files: those beside it that were read."""
 
     parts: list[Part]
     notes: list[str] = field(default_factory=list)
+    files: list[Path] = field(default_factory=list)
 
     @cached_property
     def vertices(self) -> np.ndarray:

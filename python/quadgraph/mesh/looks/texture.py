@@ -8,7 +8,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Literal
-from urllib.parse import unquote
 
 import numpy as np
 
@@ -25,7 +24,8 @@ Wrap = Literal["repeat", "clamp", "mirror"]
 
 def linear(srgb: np.ndarray) -> np.ndarray:
     """Linear light of sRGB values, 0 to 1 (IEC 61966-2-1)."""
-    return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+    with np.errstate(over="ignore"):  # what is no colour stays none
+        return np.where(srgb <= 0.04045, srgb / 12.92, ((np.maximum(srgb, 0) + 0.055) / 1.055) ** 2.4)
 
 
 _LINEAR = linear(np.arange(256) / 255)
@@ -95,10 +95,14 @@ def decoded(data: bytes, where: str, most: int = MOST_PIXELS) -> np.ndarray:
 
 
 class Pictures:
-    """The pictures of a mesh, each decoded once, and no more pixels of all than MOST_TOGETHER."""
+    """The pictures of a mesh, each decoded once, and no more pixels of all than MOST_TOGETHER.
+
+    mesh: the file; files: those beside it that were read.
+    """
 
     def __init__(self, mesh: Path) -> None:
         self.mesh = mesh
+        self.files: list[Path] = []
         self._known: dict[object, np.ndarray] = {}
 
     def inside(self, key: object, data: Callable[[], bytes], where: str) -> np.ndarray:
@@ -109,8 +113,34 @@ class Pictures:
         return self._known[key]
 
     def beside(self, name: str, where: str) -> np.ndarray:
-        """Pixels of a file in the mesh's folder or below it. Raises InputError as `beside` and `decoded`."""
-        return self.inside(name, lambda: beside(self.mesh, name, where), where)
+        """Pixels of a file as `read` finds it. Raises InputError as `read` and `decoded`."""
+        return self.inside(name, lambda: self.read(name, where), where)
+
+    def read(self, name: str, where: str) -> bytes:
+        """Bytes of a file in the mesh's folder or below it, by the name that the mesh has for it.
+
+        where: the field that names it. Raises InputError where that leads out of the folder, to no file, or to one that
+        is too large.
+        """
+        plain = name.replace("\\", "/")
+        path, folder = self.mesh.parent / plain, self.mesh.parent.resolve()
+        outside = ":" in plain.split("/")[0] or "\0" in plain or PurePosixPath(plain).is_absolute()
+        if outside or not path.resolve().is_relative_to(folder):
+            raise InputError(
+                f"{where}: {name[:200]!r} found, allowed is a picture in the mesh's folder or below it; copy it there "
+                "and name it so"
+            )
+        try:
+            if path.exists() and path.stat().st_size > MOST_BYTES:
+                found = f"{name[:200]!r} has {path.stat().st_size} bytes"
+                raise InputError(f"{where}: {found}, at most {MOST_BYTES} are allowed")
+            data = regular_file.read_bytes(path)
+        except OSError as error:
+            raise InputError(
+                f"{where}: {name[:200]!r} found, which cannot be read beside the mesh ({error.strerror})"
+            ) from error
+        self.files.append(path)
+        return data
 
 
 def _rgb(picture) -> np.ndarray:
@@ -118,28 +148,3 @@ def _rgb(picture) -> np.ndarray:
         grey = np.clip(np.asarray(picture, np.int64) // 257, 0, 255).astype(np.uint8)
         return np.repeat(grey[..., None], 3, axis=2)
     return np.asarray(picture.convert("RGB"), np.uint8)
-
-
-def beside(mesh: Path, name: str, where: str) -> bytes:
-    """Bytes of a picture that a mesh file names; where: the field that does.
-
-    Raises InputError where that leads out of the mesh's folder, to no file, or to one that is too large.
-    """
-    plain = unquote(name).replace("\\", "/")
-    path = mesh.parent / plain
-    inside = not PurePosixPath(plain).is_absolute() and path.resolve().is_relative_to(mesh.parent.resolve())
-    if ":" in plain.split("/")[0] or "\0" in plain or not inside:
-        raise InputError(
-            f"{where}: {name[:200]!r} found, allowed is a picture in the mesh's folder or below it; copy it there and "
-            "name it so"
-        )
-    try:
-        if path.exists() and path.stat().st_size > MOST_BYTES:
-            raise InputError(
-                f"{where}: {name[:200]!r} has {path.stat().st_size} bytes, at most {MOST_BYTES} are allowed"
-            )
-        return regular_file.read_bytes(path)
-    except OSError as error:
-        raise InputError(
-            f"{where}: {name[:200]!r} found, which cannot be read beside the mesh ({error.strerror})"
-        ) from error
