@@ -210,6 +210,7 @@ def test_a_body_too_coarse_for_the_texture_says_so(body, tmp_path):
     [
         ({"mean_free_path": 0}, "mean_free_path: 0 found"),
         ({"mean_free_path": (1, np.nan, 1)}, "mean_free_path"),
+        ({"mean_free_path": "1mm"}, "mean_free_path: text found"),
         ({"depth": 2}, "depth: found without a base"),
         ({"base": "wax", "depth": -1}, "depth: -1 found"),
         ({"base": "a.npz"}, "base: the volume 'a.npz' found"),

@@ -8,7 +8,7 @@ import numpy as np
 
 from quadgraph import core
 from quadgraph.api.coefficients import MOST_CELLS
-from quadgraph.api.values import RGB
+from quadgraph.api.values import RGB, numbers
 from quadgraph.base.errors import InputError
 
 LEAST_CELLS = 1000
@@ -36,7 +36,7 @@ class ColourOptions:
 
     def __post_init__(self) -> None:
         """Check. Raises InputError."""
-        paths = np.asarray(self.mean_free_path, float)
+        paths = numbers("mean_free_path", self.mean_free_path, "one number or three above 0 (mm) are wanted")
         if paths.shape not in ((), (3,)) or not (np.isfinite(paths) & (paths > 1 / core.COEFFICIENT_MAX)).all():
             raise InputError(f"mean_free_path: {self.mean_free_path} found, one number or three above 1e-6 (mm) wanted")
         for name in ("depth", "spacing"):
