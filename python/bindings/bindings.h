@@ -34,6 +34,7 @@ void bind_options(pybind11::module_& module);
 void bind_fluence(pybind11::module_& module);
 void bind_values(pybind11::module_& module);
 void bind_volume(pybind11::module_& module);
+void bind_surface(pybind11::module_& module);
 void bind_derivative(pybind11::module_& module);
 void bind_devices(pybind11::module_& module);
 

@@ -55,6 +55,9 @@ if TYPE_CHECKING:
     from quadgraph.api.stage import Stage
     from quadgraph.api.tensors import OutgoingTensors, outgoing_tensors
     from quadgraph.api.volume_map import MapReport, VolumeMap
+    from quadgraph.baking.colours.colour_options import ColourOptions
+    from quadgraph.baking.colours.colour_report import ColourReport
+    from quadgraph.baking.colours.colour_volume import mesh_colours
     from quadgraph.baking.pipeline import BakeOptions, BakeReport, bake
     from quadgraph.base.errors import (
         DeviceError,
@@ -75,6 +78,8 @@ __all__ = [
     "Camera",
     "Certificate",
     "CertifiedPart",
+    "ColourOptions",
+    "ColourReport",
     "Convergence",
     "ConvergenceStep",
     "CorrectedSweep",
@@ -129,6 +134,7 @@ __all__ = [
     "bake",
     "default_lights",
     "material_names",
+    "mesh_colours",
     "outgoing_tensors",
 ]
 
@@ -150,6 +156,9 @@ _PLACES = {
     "quadgraph.api.stage": "Stage",
     "quadgraph.api.tensors": "OutgoingTensors outgoing_tensors",
     "quadgraph.api.volume_map": "MapReport VolumeMap",
+    "quadgraph.baking.colours.colour_options": "ColourOptions",
+    "quadgraph.baking.colours.colour_report": "ColourReport",
+    "quadgraph.baking.colours.colour_volume": "mesh_colours",
     "quadgraph.baking.pipeline": "BakeOptions BakeReport bake",
     "quadgraph.base.errors": "FormatError InputError QuadGraphError SolverError ToolError DeviceError",
 }

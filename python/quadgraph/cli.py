@@ -25,6 +25,7 @@ SUBCOMMANDS = {
     "bake": "bake",
     "shapes": "shapes",
     "volume": "volume",
+    "colours": "colours",
     "info": "info",
     "view": "view",
     "serve": "serve",

@@ -13,7 +13,7 @@ import numpy as np
 from quadgraph.mesh.surface import Surface
 
 _KINDS = {"uint8": 5121, "uint16": 5123, "uint32": 5125, "float32": 5126}
-_TYPES = {1: "SCALAR", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
+_TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
 
 
 class Builder:
@@ -29,13 +29,18 @@ class Builder:
     def add(self, values: np.ndarray, **more: Any) -> int:
         """Number of an accessor of the rows of `values`."""
         values = np.ascontiguousarray(values, np.float32 if values.dtype == np.float64 else values.dtype)
-        self.binary += b"\0" * (-len(self.binary) % 4)
-        self.views.append({"buffer": 0, "byteOffset": len(self.binary), "byteLength": values.nbytes})
-        self.binary += values.tobytes()
         kind, shape = _KINDS[values.dtype.name], _TYPES[values.shape[1]]
-        view = {"bufferView": len(self.views) - 1, "componentType": kind, "type": shape, "count": len(values)}
+        view = {"bufferView": self.add_bytes(values.tobytes()), "componentType": kind, "type": shape}
+        view["count"] = len(values)
         self.accessors.append(view | more)
         return len(self.accessors) - 1
+
+    def add_bytes(self, data: bytes) -> int:
+        """Number of a buffer view of bytes."""
+        self.binary += b"\0" * (-len(self.binary) % 4)
+        self.views.append({"buffer": 0, "byteOffset": len(self.binary), "byteLength": len(data)})
+        self.binary += data
+        return len(self.views) - 1
 
     def mesh(self, surface: Surface, **attributes: int) -> int:
         """Number of a mesh with these attributes besides its places."""

@@ -9,9 +9,11 @@ import pytest
 
 from quadgraph.api import coefficients
 from quadgraph.baking import kept, pipeline
+from quadgraph.baking.colours import colour_options
 from quadgraph.base import child_process, json_text, message, units
 from quadgraph.file import npz
 from quadgraph.mesh import gltf_file, ply_header
+from quadgraph.mesh.looks import mtl, texture
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs/limits.md").read_text()
@@ -51,6 +53,8 @@ ALLOWED = {
     "values that keys of tracks change": f"{brief(constant('scene/scene_file.h', 'most_key_values'))}: of each part",
     "spacing and origin of a volume": f"at most {brief(LENGTH)} mm, as places of lights",
     "cells that `VolumeMaterial.from_function` samples": f"at most {coefficients.MOST_CELLS:,}",
+    "cells of `quadgraph colours`": f"{colour_options.LEAST_CELLS:,} to {coefficients.MOST_CELLS:,}, "
+    f"{colour_options.ColourOptions.cells:,} unless",
     "cells of a volume that is carried onto another shape": f"at most {MAP_CELLS:,.0f}",
     "`--time-limit`, `--memory-limit`": f"at most {brief(child_process.MOST_TIME_S)} s, "
     f"{brief(child_process.MOST_MEMORY_BYTES / 1e9)} GB",
@@ -69,6 +73,9 @@ SENTENCES = (
     f"at most {NPZ['free_bytes'] / 4e6:.3g} million numbers and {NPZ['most_packed'] / 8:g} for each byte of the file",
     f"at most {IMAGE['largest_side']:g} texels a side, {IMAGE['free_texels'] / 1e6:g} million texels and "
     f"{IMAGE['texels_a_byte']:g} for each byte of the file",
+    f"at most {texture.MOST_PIXELS / 1e6:g} million pixels and {texture.MOST_BYTES >> 20} MiB, which",
+    f"{texture.MOST_TOGETHER / 1e6:g} million pixels in all",
+    f"coordinates at most {brief(texture.MOST_UV)}; a `.mtl` at most {mtl.MOST_BYTES >> 20} MiB",
     f"a header has at most {ply_header.HEADER_BYTES >> 10} KiB",
     f"transforms with numbers above {brief(gltf_file.LARGEST)}, are refused",
 )

@@ -102,11 +102,10 @@ def read(path: Path, args: argparse.Namespace) -> Side:
         report, picture = stage.solve(), stage.render()
         scene_options.check_validation(stage.engine)
         return Side(path.name, radiance(picture), True, [report])
-    engine = scene_options.load_engine(path, args)
+    engine = scene_options.shown_engine(path, args)
     if not (args.view or args.eye):
         front = engine.graph.front if args.up == "y" else 0
         args.view = f"{front:.9g},10"  # the second is seen from where the first is
-    scene_options.set_material(engine, args)
     engine.set_lights(scene_options.lights(engine, args))
     picture, report = scene_options.picture(engine, args)
     return Side(path.name, radiance(picture), True, [report])

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import math
 import re
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Iterator
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,7 +15,7 @@ from rich.console import Console
 
 from quadgraph.base.arguments import add_device_arguments, add_strict_argument
 from quadgraph.base.errors import InputError
-from quadgraph.commands import converging, own_mesh
+from quadgraph.commands import converging, own_material, own_mesh
 from quadgraph.core import load_core
 
 if TYPE_CHECKING:
@@ -67,7 +68,7 @@ def add_run_arguments(parser: argparse.ArgumentParser, groups: Collection[str], 
         for option in options((name,)):
             if option.name not in without:
                 add_option(group, option)
-    own_mesh.add_size_arguments(parser.add_argument_group("Mesh of your own"))
+    own_mesh.add_size_arguments(parser.add_argument_group("Mesh of your own", own_material.HELP))
 
 
 def add_option(group: argparse._ArgumentGroup, option: SceneOption) -> None:
@@ -125,15 +126,32 @@ def numbers_of(name: str, text: str, counts: Collection[int]) -> list[float]:
 
 def make_engine(args: argparse.Namespace) -> Engine:
     """Load `args.file` and set material and lights. Raises FormatError, InputError, DeviceError."""
-    engine = load_engine(args.file, args)
-    set_material(engine, args)
+    engine = shown_engine(args.file, args)
     engine.set_lights(lights(engine, args))
     return engine
 
 
-def set_material(engine: Engine, args: argparse.Namespace) -> None:
-    """Set the material that the arguments say, and tell of the map that carried it there. Raises InputError."""
-    tell_map(engine.set_material(material(args)))
+def shown_engine(file: Path, args: argparse.Namespace) -> Engine:
+    """Load a body, baked first where it is a mesh, and set the material that the arguments say, which may be its own.
+
+    Tells what became of colours, and of a map that carried the material there. Raises FormatError, InputError,
+    DeviceError.
+    """
+    own = _own(file, args) if own_material.is_own(args.material) else None
+    with _loaded(file, args) as (engine, body):
+        if own is not None:
+            tell_map(own.set_on(engine, body))
+        else:
+            tell_map(engine.set_material(material(args)))
+    return engine
+
+
+def _own(file: Path, args: argparse.Namespace) -> own_material.OwnColours:
+    if args.map is not None:
+        raise InputError(f"--map: found with --material {own_material.NAME}, whose colours lie where the mesh has them")
+    written = [getattr(args, name, None) for name in ("output", "json", "field")]
+    paths = [path for each in written for path in (each if isinstance(each, list) else [each])]
+    return own_material.read(args.material, file, [path for path in paths if isinstance(path, Path)])
 
 
 def material(args: argparse.Namespace) -> str:
@@ -142,16 +160,23 @@ def material(args: argparse.Namespace) -> str:
 
 
 def tell_map(report: str) -> None:
-    """Say on standard error what a map did, if there was one."""
+    """Say on standard error what a map, or a mesh's colours, made of a material, if there was one."""
     if report:
         Console(stderr=True, highlight=False, soft_wrap=True).print(report, markup=False)
 
 
 def load_engine(file: Path, args: argparse.Namespace) -> Engine:
     """Load a body, baked first where it is a mesh. Raises FormatError, InputError, DeviceError."""
+    with _loaded(file, args) as (engine, _):
+        return engine
+
+
+@contextlib.contextmanager
+def _loaded(file: Path, args: argparse.Namespace) -> Iterator[tuple[Engine, Path]]:
+    """An engine, and the baked file in it, which is there as long as the block runs."""
     core = load_core()
     with own_mesh.body(file, args, surface_only=args.method == "shortest-path") as path:
-        return core.Engine(path, device=args.device, validation=args.validation)
+        yield core.Engine(path, device=args.device, validation=args.validation), path
 
 
 def lights(engine: Engine, args: argparse.Namespace) -> list[str]:

@@ -58,11 +58,11 @@ def from_gltf(body: Path, path: Path, rate: float = 24, animation: str | None = 
     file = qgraph_file.read(body)
     unit_mm = file.metadata["unit_mm"]
     vertices, triangles, moves = read(path, lambda gltf: _moves_of(gltf, rate, animation))
-    up = _up(file, body)
+    up = up_of(file, body)
     return of_moves(file, Surface(stood_up(vertices, up) * unit_mm, triangles), stood_up(moves, up) * unit_mm)
 
 
-def _up(file: qgraph_file.QGraphFile, body: Path) -> str:
+def up_of(file: qgraph_file.QGraphFile, body: Path) -> str:
     """The axis that points up in the mesh of a body; files from before it was kept have y."""
     options = file.metadata.get("options")
     up = options.get("up", "y") if isinstance(options, dict) else "y"
@@ -86,7 +86,7 @@ def from_frames(body: Path, rest: Path, frames: Sequence[Path]) -> StoredShapes:
     .obj, .ply or .off, all with the vertices and triangles of `rest` in its order. Raises InputError, FormatError.
     """
     file = qgraph_file.read(body)
-    way = file.metadata["unit_mm"], _up(file, body)
+    way = file.metadata["unit_mm"], up_of(file, body)
     start = _read(rest, *way)
     moves = [_moved(start, frame, *way) for frame in frames]
     return of_moves(file, start, np.array(moves))

@@ -117,7 +117,8 @@ class GltfFile:
             raise InputError(f"{self.path}, accessor {index}: count {count} found, more than the buffers can need")
         values = np.zeros((count, width), np.float64 if kind is np.float32 else np.int64)
         if found is not None:
-            values[:] = found
+            with np.errstate(invalid="ignore"):  # a signalling NaN is one for who uses it
+                values[:] = found
         if "sparse" in accessor:
             sparse = accessor["sparse"]
             where = self._view(sparse["indices"], _TYPES[sparse["indices"]["componentType"]], sparse["count"], 1)[:, 0]
@@ -135,6 +136,14 @@ class GltfFile:
         if first < 0 or count < 0 or stride < size or first + stride * (count - 1) + size * width > len(data):
             raise InputError(f"{self.path}: an accessor reaches beyond its buffer")
         return np.ndarray((count, width), kind, data, first, (stride, size))
+
+    def view_bytes(self, index: int) -> bytes:
+        """Bytes of a buffer view."""
+        view = self.document["bufferViews"][index]
+        data, first, count = self._buffer(view["buffer"]), view.get("byteOffset", 0), view["byteLength"]
+        if first < 0 or count < 0 or first + count > len(data):
+            raise InputError(f"{self.path}, buffer view {index}: reaches beyond its buffer")
+        return data[first : first + count]
 
     def _bytes(self) -> int:
         """Of all buffers together."""

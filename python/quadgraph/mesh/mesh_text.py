@@ -27,6 +27,11 @@ def _numbered(lines: list[str]) -> list[tuple[int, list[str]]]:
     return [(number, words) for number, words in enumerate(map(str.split, lines), 1) if words]
 
 
+def numbered_lines(path: Path) -> list[tuple[int, list[str]]]:
+    """(line number, words) of the lines of a file that hold more than a comment. Raises OSError."""
+    return _numbered(_without_comments(path))
+
+
 def read_obj(path: Path) -> tuple[np.ndarray, np.ndarray]:
     """(n, 3) float64 vertices and (m, 3) int64 triangles of an OBJ file; raises InputError naming the line."""
     lines = _without_comments(path)
@@ -81,7 +86,7 @@ def _obj_by_line(path: Path, lines: list[tuple[int, list[str]]]) -> tuple[np.nda
 
 def read_off(path: Path) -> tuple[np.ndarray, np.ndarray]:
     """(n, 3) float64 vertices and (m, 3) int64 triangles of an ASCII OFF file; raises InputError naming the line."""
-    lines = _numbered(_without_comments(path))
+    lines = numbered_lines(path)
     if not lines or not lines[0][1][0].endswith("OFF") or "BINARY" in lines[0][1]:
         raise InputError(f"{path}: an ASCII OFF file starts with the word OFF")
     header = lines[0][1][1:]

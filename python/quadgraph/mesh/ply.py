@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import warnings
 from array import array
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -30,17 +31,39 @@ def read_ply(path: Path) -> Arrays:
     vertices that are not finite and in no triangle, are left out. Other elements and properties are skipped. Raises
     InputError naming element, property, what was found and what is allowed.
     """
+    return _read(path, "xyz")
+
+
+def read_coloured_ply(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
+    """Vertices and triangles as `read_ply`, and (n, 3) colours of the vertices, 0 to 1 as they are stored, or None.
+
+    Those are `red`, `green`, `blue`, or the same behind `diffuse_`: whole numbers count as shares of their type's
+    largest. Raises InputError also where some of the three are missing.
+    """
+    header = read_header(path, path.read_bytes())
+    names = {item.name: item.item for each in header.elements if each.name == "vertex" for item in each.properties}
+    found = next((prefix for prefix in ("", "diffuse_") if f"{prefix}red" in names), None)
+    if found is None:
+        return *read_ply(path), None
+    channels = tuple(f"{found}{name}" for name in ("red", "green", "blue"))
+    rows, triangles = _read(path, (*"xyz", *channels))
+    kind = names[channels[0]]
+    return rows[:, :3], triangles, rows[:, 3:] / (1 if kind.kind == "f" else np.iinfo(kind).max)
+
+
+def _read(path: Path, of_vertices: Sequence[str]) -> Arrays:
+    """(n, k) numbers of the vertices, the first three their places, and triangles."""
     data = path.read_bytes()
     header = read_header(path, data)
     body = _Body.of(path, data, header)
-    vertices, parts = np.empty((0, 3)), [np.empty((0, 3), np.int64)]
+    vertices, parts = np.empty((0, len(of_vertices))), [np.empty((0, 3), np.int64)]
     seen: set[str] = set()
     for element in header.elements:
         if element.name in seen and element.name in ("vertex", "face", "tristrips"):
             raise InputError(f"{path}, element {element.name}: stated twice")
         seen.add(element.name)
         if element.name == "vertex":
-            vertices = body.vertices(element)
+            vertices = body.vertices(element, of_vertices)
         elif element.name == "face":
             parts.append(body.polygons(element))
         elif element.name == "tristrips":
@@ -63,7 +86,7 @@ def _check_corners(path: Path, triangles: np.ndarray, count: int) -> None:
 
 def _without_unused(vertices: np.ndarray, triangles: np.ndarray) -> Arrays:
     """Leave vertices out that are not finite where no triangle has them."""
-    kept = np.isfinite(vertices).all(axis=1)
+    kept = np.isfinite(vertices[:, :3]).all(axis=1)
     kept[triangles] = True
     if kept.all():
         return vertices, triangles
@@ -123,11 +146,11 @@ class _Body:
         self.at = rows.end
         return rows
 
-    def vertices(self, element: Element) -> np.ndarray:
-        """(n, 3) positions."""
-        where = [self._find(element, (axis,), of_list=False) for axis in "xyz"]
+    def vertices(self, element: Element, names: Sequence[str]) -> np.ndarray:
+        """(n, k) numbers of these names."""
+        where = [self._find(element, (name,), of_list=False) for name in names]
         rows = self.rows(element, where)
-        vertices = np.empty((element.count, 3))
+        vertices = np.empty((element.count, len(names)))
         for axis, index in enumerate(where):
             item = element.properties[index].item
             with np.errstate(over="ignore", invalid="ignore"):

@@ -7,13 +7,13 @@ from collections.abc import Callable
 import numpy as np
 
 from attack.case import Case
-from attack.families import api, commands, data, load, meshes, outputs, scenes, sealed, sections, signals
+from attack.families import api, commands, data, load, looks, meshes, outputs, scenes, sealed, sections, signals
 
 Recipe = Callable[[np.random.Generator], Case]
 
 FAMILIES: dict[str, tuple[Recipe, ...]] = {
     "sealed": (*sealed.RECIPES, *sections.RECIPES),
-    "meshes": meshes.RECIPES,
+    "meshes": (*meshes.RECIPES, *looks.RECIPES),
     "data": data.RECIPES,
     "scenes": scenes.RECIPES,
     "commands": (*commands.RECIPES, *outputs.RECIPES),

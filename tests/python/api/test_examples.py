@@ -14,6 +14,7 @@ EXPECTED = {
     "inverse.py": pytest.approx(0, abs=0.1),
     "lights_and_materials.py": pytest.approx(2, rel=1e-5),
     "spotted.py": pytest.approx(4, rel=1e-5),
+    "toadstool.py": pytest.approx(0, abs=1e-4),
     "torch_optimiser.py": pytest.approx(0, abs=1e-3),
     "veined_block.py": pytest.approx(0, abs=1e-6),
 }

@@ -13,6 +13,7 @@ from shell_pages import BLOCK, PAGES, PROGRAMS, ROOT, commands, exceptions, pars
 import quadgraph
 from engine_program import ENGINE
 from quadgraph import cli
+from quadgraph.commands import own_material
 
 pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 pytest.importorskip("quadgraph_validation", reason="quadgraph-validation is not installed: run tools/setup")
@@ -46,7 +47,9 @@ def fault(words: tuple[str, ...], folder: Path, capsys: pytest.CaptureFixture[st
         return capsys.readouterr().err if end.code else ""
     try:
         material = getattr(args, "material", None)
-        if isinstance(material, str) and not material.endswith(".npz"):  # the file of a volume, not there yet
+        if isinstance(material, str) and own_material.is_own(material):
+            own_material.options_of(material, args.file)
+        elif isinstance(material, str) and not material.endswith(".npz"):  # the file of a volume, not there yet
             quadgraph.Material.parse(material)
         for light in getattr(args, "light", None) or []:
             quadgraph.Light.parse(light)
