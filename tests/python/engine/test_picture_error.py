@@ -63,11 +63,14 @@ def test_the_more_radiance_depends_on_the_angle_the_less_certain_it_is(engine):
 
 
 def test_more_samples_of_a_pixel_leave_the_error_as_it_is(engine):
+    """Not as the noise of 4 and 64 samples would have it, which is a factor of 4. From the side the silhouette, of which
+    pixels have shares, lies in the dimmest third, and what these show of the unlit face moves its error by 3%.
+    """
     engine.solve(**QUICK)
     for elevation in (LIT, UNLIT, 0.0):
         few, many = (shown(engine, elevation, samples=samples).error for samples in (4, 64))
-        for part in ("whole", "unlit", "dimmest"):
-            assert getattr(many, part) == pytest.approx(getattr(few, part), rel=0.03)
+        for part, within in (("whole", 0.03), ("unlit", 0.03), ("dimmest", 0.06)):
+            assert getattr(many, part) == pytest.approx(getattr(few, part), rel=within)
 
 
 def test_nothing_is_said_where_nothing_is_known(engine):
