@@ -11,8 +11,8 @@ using glm::pow;
 using glm::sqrt;
 #endif
 
-// Rate at which light falls deep inside an even body, 1/mm: the root k of albedo atanh(k) = k of isotropic scattering, in
-// mean free paths [Case 1967], within .6% at every albedo.
+// Rate at which light falls deep inside an even body, 1/mm: the root k of albedo atanh(k) = k of isotropic scattering,
+// in mean free paths [Case 1967], within .6% at every albedo.
 QG_INLINE vec3 decay_rate(Optical o) {
   vec3 lost = max(vec3(1.0f) - o.sigma_s_prime / sigma_t(o), vec3(0));
   vec3 squared = lost * (vec3(3.0f) - 0.155f * lost) / (vec3(1.0f) + 0.598f * lost + 1.247f * lost * lost);

@@ -42,8 +42,8 @@ def medium(albedo: float, extinction: float) -> str:
 @pytest.mark.parametrize("light", ["ambient:1", SUN])
 def test_a_body_that_absorbs_much_returns_what_a_half_space_does(engine, albedo, light):
     """Even light, and a beam that meets all angles of a ball evenly, of which isotropic scattering returns what Hulst's
-    approximation says (1980, within .1%). The ball is 70 mean free paths across its radius; sweeps of linear elements, 8 of
-    them deep, see a tenth to a third less.
+    approximation says (1980, within .1%). The radius is 70 mean free paths; sweeps of linear elements 8 of them deep see
+    a tenth to a third less.
     """
     engine.material, engine.lights = medium(albedo, 1.8), [light]
     engine.solve()
@@ -60,8 +60,8 @@ def lumps(subdivisions: int) -> Surface:
 
 
 def test_sweeps_go_on_while_they_settle_slowly(tmp_path):
-    """The first one changes the unlit side by 6%, of which an eighth would be left in elements that resolve the light; in
-    those of 6 mean free paths more is, and the second one finds it.
+    """The first one changes the unlit side by 6%, of which an eighth would be left in elements that resolve the light;
+    in those of 6 mean free paths more is, and the second one finds it.
     """
     path = write_levels(tmp_path / "lumps.qgraph", [lumps(4), lumps(3)])
     with quadgraph.Engine(path, device="cpu") as engine:

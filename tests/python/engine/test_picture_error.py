@@ -63,8 +63,8 @@ def test_the_more_radiance_depends_on_the_angle_the_less_certain_it_is(engine):
 
 
 def test_more_samples_of_a_pixel_leave_the_error_as_it_is(engine):
-    """Not as the noise of 4 and 64 samples would have it, which is a factor of 4. From the side the silhouette, of which
-    pixels have shares, lies in the dimmest third, and what these show of the unlit face moves its error by 3%.
+    """Not as the noise of 4 and 64 samples would have it, which is a factor of 4. From the side the silhouette, of
+    which pixels have shares, lies in the dimmest third, and what these show of the unlit face moves its error by 3%.
     """
     engine.solve(**QUICK)
     for elevation in (LIT, UNLIT, 0.0):

@@ -64,6 +64,19 @@ def test_cases_cover_what_they_are_drawn_from(body):
         assert 1 <= case.medium.eta <= 1.5
 
 
+def test_denser_bodies_are_the_same_ones_with_shorter_mean_free_paths(body):
+    for seed in range(20):
+        usual, dense = (unseen_cases.drawn(seed, body, "beams", sizes) for sizes in ((2, 40), (40, 800)))
+        assert dense.size == pytest.approx(20 * usual.size)
+        assert (dense.albedo, dense.medium.kind, dense.light) == (usual.albedo, usual.medium.kind, usual.light)
+        assert dense.medium.sigma_a == pytest.approx(20 * usual.medium.sigma_a, rel=1e-5)
+
+
+def test_mean_free_paths_the_wrong_way_round_are_refused(capsys):
+    assert cli.main(["accuracy", "unseen", "--mean-free-paths", "5", "2"]) == 1
+    assert "--mean-free-paths: 5 2 found" in capsys.readouterr().err
+
+
 def test_a_volume_covers_its_body(body):
     case = next(c for c in (unseen_cases.drawn(seed, body) for seed in range(99)) if not c.medium.even)
     first, counts = np.array(case.medium.first), np.array(case.medium.sigma_a.shape[::-1])

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from quadgraph_validation.truth.unseen_truth import UnseenTruth
 
 _UNLIT = 0.1  # of the mean q: below it a patch is unlit, as a face is in the engine's report
+_ASKED = ("seed", "lights", "inter_reflection", "walks", "for_material", "mean_free_paths")  # of a run, in its record
 _FEW = 5  # patches: a part with fewer is not judged
 
 
@@ -32,7 +33,8 @@ class UnseenRun:
     """What is judged. count: of seeds from the first; walks: of the truth of each; truths: folder where these are kept;
     sweeps: what solves are asked for, None for the engine's own choice; device: as Engine takes it; lights: beams or
     sky; inter_reflection: in the engine and in the truth; motion: also in frames whose light and material change;
-    for_material: bake for the case's own material in place of for none.
+    for_material: bake for the case's own material in place of for none; mean_free_paths: least and most of them across
+    a body's longest side.
     """
 
     seed: int
@@ -45,6 +47,7 @@ class UnseenRun:
     inter_reflection: bool = True
     motion: bool = False
     for_material: bool = False
+    mean_free_paths: tuple[float, float] = unseen_cases.MEAN_FREE_PATHS
 
 
 def run(wanted: UnseenRun) -> dict[str, Any]:
@@ -74,13 +77,16 @@ def run(wanted: UnseenRun) -> dict[str, Any]:
 def check(wanted: UnseenRun) -> None:
     """Raise InputError for what cannot be judged here."""
     extra_module.load("numba", "walks")
+    least, most = wanted.mean_free_paths
+    if least > most:
+        raise InputError(f"--mean-free-paths: {least:g} {most:g} found; give the smaller number first")
     if wanted.motion and wanted.lights != "beams":
         raise InputError(f"--motion: with --lights {wanted.lights}, which does not turn; take --lights beams")
 
 
 def record_of(wanted: UnseenRun, rows: list[dict[str, Any]]) -> dict[str, Any]:
     """The record of a run with these rows."""
-    asked = {key: getattr(wanted, key) for key in ("seed", "lights", "inter_reflection", "walks", "for_material")}
+    asked = {key: getattr(wanted, key) for key in _ASKED}
     record = asked | {"rows": rows, "summary": summary(rows)}
     return record | {"motion": motion_summary(rows)} if wanted.motion else record
 
@@ -90,7 +96,8 @@ def judged(seed: int, wanted: UnseenRun, tell: Callable[[str, int], None]) -> di
     from quadgraph_validation.truth import unseen_truth
 
     tell("body", 0)
-    case = unseen_cases.drawn(seed, unseen_bodies.surface_of(seed), wanted.lights)
+    low, high = wanted.mean_free_paths
+    case = unseen_cases.drawn(seed, unseen_bodies.surface_of(seed), wanted.lights, (low, high))
     case = replace(case, inter_reflection=wanted.inter_reflection)
     truth = unseen_truth.make(case, wanted.walks, wanted.truths, lambda walks: tell("random walks", walks))
     tell("engine", wanted.walks)

@@ -56,10 +56,12 @@ class UnseenCase:
     inter_reflection: bool = True
 
 
-def drawn(seed: int, surface: Surface, lights: str = "beams") -> UnseenCase:
-    """What belongs to a seed's body; lights: beams or sky."""
+def drawn(
+    seed: int, surface: Surface, lights: str = "beams", mean_free_paths: tuple[float, float] = MEAN_FREE_PATHS
+) -> UnseenCase:
+    """What belongs to a seed's body; lights: beams or sky; mean_free_paths: least and most, across the longest side."""
     generator = np.random.default_rng([seed, 1])
-    size = float(np.exp(generator.uniform(*np.log(MEAN_FREE_PATHS))))
+    size = float(np.exp(generator.uniform(*np.log(mean_free_paths))))
     albedo = _albedo(generator)
     total = size / float(np.ptp(surface.vertices, axis=0).max())
     eta = 1.0 if generator.random() < _MATCHED else round(float(generator.uniform(*ETA)), 3)

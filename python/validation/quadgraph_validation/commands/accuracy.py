@@ -124,6 +124,13 @@ def _add_unseen_options(group: argparse._ArgumentGroup) -> None:
         help="one beam, point, spot or rectangle, or a smooth sky",
     )
     group.add_argument(
+        "--mean-free-paths",
+        type=positive_float,
+        nargs=2,
+        metavar=("LEAST", "MOST"),
+        help="across a body's longest side, of unseen (default: 2 40)",
+    )
+    group.add_argument(
         "--no-inter-reflection",
         dest="inter_reflection",
         action="store_false",
@@ -232,6 +239,7 @@ def _run_on_engine(study: ModuleType, args: argparse.Namespace) -> dict:
             args.inter_reflection,
             args.motion,
             args.for_material,
+            *([tuple(args.mean_free_paths)] if args.mean_free_paths else []),
         )
         record = row_tasks.unseen(wanted, args.scheduler) if args.scheduler else study.run(wanted)
         if args.images:
