@@ -42,8 +42,8 @@ def medium(albedo: float, extinction: float) -> str:
 @pytest.mark.parametrize("light", ["ambient:1", SUN])
 def test_a_body_that_absorbs_much_returns_what_a_half_space_does(engine, albedo, light):
     """Even light, and a beam that meets all angles of a ball evenly, of which isotropic scattering returns what Hulst's
-    approximation says (1980, within .1%). The radius is 70 mean free paths; sweeps of linear elements 8 of them deep see
-    a tenth to a third less.
+    approximation says (1980, within .1%). The radius is 70 mean free paths; sweeps of linear elements that are 8 deep
+    see a tenth to a third less.
     """
     engine.material, engine.lights = medium(albedo, 1.8), [light]
     engine.solve()
