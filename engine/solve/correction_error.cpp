@@ -21,6 +21,10 @@ constexpr double solver_left = left_by_first, mesh_left = 0.15, unseen = 0.004;
 // whole surface, and of the dimmest third, whose levels differ by as much as it has, there is no sign of that.
 constexpr ErrorEstimate mesh_left_more{.whole = 0, .unlit = 0.8, .dimmest = 0};
 
+// And so much more of its share, times Resolution::slow: in elements of many mean free paths sweeps cannot mend what
+// these make of the terminator.
+constexpr ErrorEstimate mesh_left_slow{.whole = 0, .unlit = 0.3, .dimmest = 0};
+
 // The halves share what their points see of the body; so much more than they differ by is the noise.
 constexpr double noise_over_difference = 1.2;
 
@@ -99,11 +103,11 @@ void state_corrected_error(SolveReport& report, double unresolved, std::uint32_t
     report.algebraic = by_parts([](double part) { return solver_left * part; }, *report.algebraic);
   }
   if (report.mesh_error) {
-    const auto of_mesh = [&](double part, double noise, double more) {
-      const double left = std::min(1.0, std::hypot(mesh_left, more * part));
+    const auto of_mesh = [&](double part, double noise, double more, double slow) {
+      const double left = std::min(1.0, std::hypot(mesh_left + slow * report.correction->slow, more * part));
       return noise > 0 ? std::hypot(left * part, unseen, unresolved) : 0;
     };
-    report.mesh_error = by_parts(of_mesh, *report.mesh_error, last.noise, mesh_left_more);
+    report.mesh_error = by_parts(of_mesh, *report.mesh_error, last.noise, mesh_left_more, mesh_left_slow);
   }
   state_model_error(report, mean_of);
 }
