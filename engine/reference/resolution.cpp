@@ -33,7 +33,7 @@ struct Local {
 };
 
 // Sweeps settle slowly where elements are many mean free paths deep and little is absorbed: what the solve and the
-// sweep make of light within an element differs, and diffusion carries that on. Measured on three bodies, at .5 to 10
+// sweep make of light within an element differs, and diffusion carries that on. Measured on two bodies, at .5 to 10
 // mean free paths and albedos of .9 to .9995 (docs/physics.md, "Transport correction").
 constexpr double slow_per_depth = 0.45, slow_power = 8;
 

@@ -61,11 +61,7 @@ void take_patches(CorrectionReport& done, const CorrectedPatches& patches, const
   };
   done.patches = {by_parts(bounded, patches.change, done.changed),
                   by_parts(bounded, patches.noise, done.sweeps.back().noise)};
-  if (takes_share(options)) done.taken = share_taken(done, options.mean_of);
-}
-
-bool takes_share(const SolveOptions& options) {
-  return options.sweeps == 0 || options.mean_of > 0;
+  if (options.sweeps == 0 || options.mean_of > 0) done.taken = share_taken(done, options.mean_of);
 }
 
 ErrorEstimate left_by_sweeps(const CorrectionReport& done) {
@@ -79,37 +75,27 @@ ErrorEstimate noise_of(const CorrectionReport& done, std::uint32_t mean_of) {
   return by_parts([&](double own, double taken) { return share * taken * own; }, noise, done.taken);
 }
 
-namespace {
-
-void state_model_error(SolveReport& report, std::uint32_t mean_of) {
+void state_corrected_error(SolveReport& report, double unresolved, std::uint32_t mean_of) {
   const CorrectionReport& done = *report.correction;
+  const CorrectedSweep& last = done.sweeps.back();
   const auto of_model = [](double left, double noise, double all, double taken) {
     return std::hypot(left, noise, noise_over_difference * (1 - taken) * all);
   };
   const ErrorEstimate& change = done.patches ? done.patches->change : done.changed;
   report.model_error = by_parts(of_model, left_by_sweeps(done), noise_of(done, mean_of), change, done.taken);
-  report.error.reset();
-  if (!report.mesh_error) return;
-  const auto all = [](double a, double b, double c) { return std::sqrt(a * a + b * b + c * c); };
-  const ErrorEstimate solver = report.algebraic.value_or(ErrorEstimate{});
-  report.error = by_parts(all, *report.model_error, *report.mesh_error, solver);
-}
-
-}  // namespace
-
-void state_corrected_error(SolveReport& report, double unresolved, std::uint32_t mean_of) {
-  const CorrectedSweep& last = report.correction->sweeps.back();
   if (report.algebraic) {
     report.algebraic = by_parts([](double part) { return solver_left * part; }, *report.algebraic);
   }
-  if (report.mesh_error) {
-    const auto of_mesh = [&](double part, double noise, double more, double slow) {
-      const double left = std::min(1.0, std::hypot(mesh_left + slow * report.correction->slow, more * part));
-      return noise > 0 ? std::hypot(left * part, unseen, unresolved) : 0;
-    };
-    report.mesh_error = by_parts(of_mesh, *report.mesh_error, last.noise, mesh_left_more, mesh_left_slow);
-  }
-  state_model_error(report, mean_of);
+  report.error.reset();
+  if (!report.mesh_error) return;
+  const auto of_mesh = [&](double part, double noise, double more, double slow) {
+    const double left = std::min(1.0, std::hypot(mesh_left + slow * done.slow, more * part));
+    return noise > 0 ? std::hypot(left * part, unseen, unresolved) : 0;
+  };
+  report.mesh_error = by_parts(of_mesh, *report.mesh_error, last.noise, mesh_left_more, mesh_left_slow);
+  const auto all = [](double a, double b, double c) { return std::sqrt(a * a + b * b + c * c); };
+  const ErrorEstimate solver = report.algebraic.value_or(ErrorEstimate{});
+  report.error = by_parts(all, *report.model_error, *report.mesh_error, solver);
 }
 
 }  // namespace quadgraph

@@ -15,10 +15,8 @@ double share_left_by(const CorrectionReport& done);
 // where these are known. mean_of: as SolveOptions has it.
 ErrorEstimate share_taken(const CorrectionReport& done, std::uint32_t mean_of);
 
-// Whether such a share is taken, and not all of what the sweeps change.
-bool takes_share(const SolveOptions& options);
-
-// What means over patches say goes into the report, and into the share that is taken.
+// What means over patches say goes into the report, and the share that is taken: all of it where so many sweeps were
+// asked for.
 void take_patches(CorrectionReport& done, const CorrectedPatches& patches, const SolveOptions& options);
 
 // What the exitance is off by after all sweeps, by part: of the model, the noise and what another sweep would change;

@@ -126,17 +126,34 @@ void Simulation::Implementation::correction_room(std::uint32_t points) {
   gather_room().make_room_corrected(device, shape.levels()[0]);
 }
 
-CorrectedPatches Simulation::Implementation::measure_patches(const Boundary& boundary) {
-  const TransportCorrection::Halves halves = correction->halves_of_change(device);
+void Simulation::Implementation::with_solution(const Boundary& boundary,
+                                               const std::function<void(const PerturbedSolution&)>& use) {
   SurfaceField field = surface_of(shape.present(device, levels[0]));
   field.q = device::download<glm::vec3>(device, levels[0].q);
   field.exitance = device::download<glm::vec3>(device, results.exitance());
-  const float unlit = device::download<gpu::Scale>(device, work.scale)[0].unlit;
-  const PerturbedSolution solution{work, levels[0], operators, correction_key, boundary, field, unlit};
-  const auto relative = [&](const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& b) {
-    return perturbation->relative(solution, a, b, glm::dvec3(1));
-  };
-  return {.change = relative(halves.change[0], halves.change[1]), .noise = relative(halves.noise, halves.noise)};
+  use({.work = work,
+       .level = levels[0],
+       .operators = operators,
+       .key = correction_key,
+       .boundary = boundary,
+       .field = field,
+       .unlit = device::download<gpu::Scale>(device, work.scale)[0].unlit});
+}
+
+CorrectedPatches Simulation::Implementation::measure_patches(const Boundary& boundary) {
+  auto [a, b] = correction->exitance_by_halves(device);
+  std::vector<glm::vec3> noise(a.size());
+  CorrectedPatches patches;
+  with_solution(boundary, [&](const PerturbedSolution& solution) {
+    for (std::size_t f = 0; f < noise.size(); ++f) {
+      noise[f] = 0.5f * (a[f] - b[f]);
+      a[f] -= solution.field.exitance[f];
+      b[f] -= solution.field.exitance[f];
+    }
+    patches = {.change = perturbation->relative(solution, a, b, glm::dvec3(1)),
+               .noise = perturbation->relative(solution, noise, noise, glm::dvec3(1))};
+  });
+  return patches;
 }
 
 LightRoom Simulation::light_room(const SolveOptions& options) {
@@ -183,17 +200,7 @@ void Simulation::certify(const SolveOptions& options, SolveReport& report, const
 void Simulation::perturb(const SolveOptions& options, SolveReport& report,
                          const std::function<void(const PerturbedSolution&)>& state) {
   Implementation& self = *implementation_;
-  const Boundary boundary = diffusion_boundary(eta());
-  SurfaceField field = surface_of(present_level());
-  field.q = device::download<glm::vec3>(self.device, self.levels[0].q);
-  field.exitance = device::download<glm::vec3>(self.device, self.results.exitance());
-  state({.work = self.work,
-         .level = self.levels[0],
-         .operators = self.operators,
-         .key = correction_key,
-         .boundary = boundary,
-         .field = field,
-         .unlit = device::download<gpu::Scale>(self.device, self.work.scale)[0].unlit});
+  self.with_solution(diffusion_boundary(eta()), state);
   state_missed(report, options.error);
   report.advice = advice(report);
   self.passes = self.work.recorder.passes();

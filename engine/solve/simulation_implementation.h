@@ -232,7 +232,10 @@ struct Simulation::Implementation {
     }
   }
 
-  // Before the results of the correction, at rest, are taken.
+  // With the present results on the finest level, for as long as `use` runs.
+  void with_solution(const Boundary& boundary, const std::function<void(const PerturbedSolution&)>& use);
+
+  // Before the results of the correction, at rest, are taken: the exitance is still that of the solve.
   CorrectedPatches measure_patches(const Boundary& boundary);
 
   void correct(const OperatorKey& key, const SolveOptions& options, const Check& check, SolveReport& report) {

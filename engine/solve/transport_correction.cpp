@@ -114,7 +114,6 @@ TransportCorrection::TransportCorrection(device::Device& device, const Level& le
   }
   halves_ = room(halves * level.face_count() * vec3_bytes, "exitance of both halves");
   exitance_ = room(level.face_count() * vec3_bytes, "exitance");
-  of_solve_ = room(level.face_count() * vec3_bytes, "exitance of the solve");
   statistics_ = room(2 * sizeof(gpu::TransportChange), "change");
   statistics_on_host_ = room(2 * sizeof(gpu::TransportChange), "change, read back", device::Place::host);
 }
@@ -282,24 +281,19 @@ void TransportCorrection::start(const CorrectionParts& parts, const WalkTask& ta
   for (std::uint32_t half = 0; half < halves; ++half) {
     recorder.copy(exitance, halves_, exitance.size(), half * exitance.size());
   }
-  recorder.copy(exitance, of_solve_, exitance.size());
 }
 
 // The halves are what sweeps see, their mean over what they should is the exitance.
-TransportCorrection::Halves TransportCorrection::halves_of_change(device::Device& device) const {
-  const auto seen = device::download<glm::vec3>(device, halves_),
-             exitance = device::download<glm::vec3>(device, exitance_),
-             before = device::download<glm::vec3>(device, of_solve_);
-  const std::size_t faces = exitance.size();
-  Halves found{{std::vector<glm::vec3>(faces), std::vector<glm::vec3>(faces)}, std::vector<glm::vec3>(faces)};
+std::array<std::vector<glm::vec3>, 2> TransportCorrection::exitance_by_halves(device::Device& device) const {
+  const auto seen = device::download<glm::vec3>(device, halves_), both = device::download<glm::vec3>(device, exitance_);
+  const std::size_t faces = both.size();
+  std::array<std::vector<glm::vec3>, 2> found{std::vector<glm::vec3>(faces), std::vector<glm::vec3>(faces)};
   for (std::size_t f = 0; f < faces; ++f) {
-    const glm::vec3 all = seen[f] + seen[faces + f];
+    const glm::vec3 a = seen[f], b = seen[faces + f];
     for (int c = 0; c < 3; ++c) {
-      const float whole = all[c] > 0 ? 2 * exitance[f][c] / all[c] : 1, a = whole * seen[f][c],
-                  b = whole * seen[faces + f][c];
-      found.change[0][f][c] = a - before[f][c];
-      found.change[1][f][c] = b - before[f][c];
-      found.noise[f][c] = 0.5f * (a - b);
+      const float whole = a[c] + b[c] > 0 ? 2 * both[f][c] / (a[c] + b[c]) : 1;
+      found[0][f][c] = whole * a[c];
+      found[1][f][c] = whole * b[c];
     }
   }
   return found;
@@ -337,7 +331,6 @@ void TransportCorrection::sweep_at_rest(const CorrectionParts& parts, const Solv
     report.returns = samples_.returns();
   } while (report.sweeps.size() < most && (options.sweeps > 0 || !last_of_all(report, enough)));
   report.changed = change_of_all(report);
-  if (takes_share(options)) report.taken = share_taken(report, options.mean_of);
 }
 
 void TransportCorrection::record_taken(const CorrectionParts& parts, const CorrectionReport& report) {

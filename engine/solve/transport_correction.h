@@ -68,13 +68,8 @@ class TransportCorrection {
   const device::Buffer& field() const { return samples_.field(); }  // TransportFieldRef, the body that rays see
   const device::Buffer& exitance() const { return exitance_; }
 
-  // Of the last run at rest, W/mm^2 per face: what both halves of the samples, for all faces each, change of the
-  // solve's exitance, and half the difference between them.
-  struct Halves {
-    std::array<std::vector<glm::vec3>, 2> change;
-    std::vector<glm::vec3> noise;
-  };
-  Halves halves_of_change(device::Device& device) const;
+  // Of the last run at rest, W/mm^2 per face, by each half of the samples alone.
+  std::array<std::vector<glm::vec3>, 2> exitance_by_halves(device::Device& device) const;
 
   // Power of the light's own rays, W; `entered_again` with the scattered light of which `scattered_out` W leave.
   TransportPower power(const glm::dvec3& scale, const glm::dvec3& scattered_out) const;
@@ -108,7 +103,6 @@ class TransportCorrection {
   // vec3 per vertex: b and x of the solve of each half, and b of the sweep before.
   std::array<device::Buffer, 2> right_side_, change_, known_;
   device::Buffer halves_, exitance_;                // vec3 per face, W/mm^2: of each half, and what that makes together
-  device::Buffer of_solve_;                         // vec3 per face, W/mm^2: of the solve before
   device::Buffer statistics_, statistics_on_host_;  // two TransportChange
 };
 

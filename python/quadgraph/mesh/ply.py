@@ -31,7 +31,8 @@ def read_ply(path: Path) -> Arrays:
     vertices that are not finite and in no triangle, are left out. Other elements and properties are skipped. Raises
     InputError naming element, property, what was found and what is allowed.
     """
-    return _read(path, "xyz")
+    data = path.read_bytes()
+    return _read(path, data, read_header(path, data), "xyz")
 
 
 def read_coloured_ply(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
@@ -40,21 +41,20 @@ def read_coloured_ply(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray | 
     Those are `red`, `green`, `blue`, or the same behind `diffuse_`: whole numbers count as shares of their type's
     largest. Raises InputError also where some of the three are missing.
     """
-    header = read_header(path, path.read_bytes())
+    data = path.read_bytes()
+    header = read_header(path, data)
     names = {item.name: item.item for each in header.elements if each.name == "vertex" for item in each.properties}
     found = next((prefix for prefix in ("", "diffuse_") if f"{prefix}red" in names), None)
     if found is None:
-        return *read_ply(path), None
+        return *_read(path, data, header, "xyz"), None
     channels = tuple(f"{found}{name}" for name in ("red", "green", "blue"))
-    rows, triangles = _read(path, (*"xyz", *channels))
+    rows, triangles = _read(path, data, header, (*"xyz", *channels))
     kind = names[channels[0]]
     return rows[:, :3], triangles, rows[:, 3:] / (1 if kind.kind == "f" else np.iinfo(kind).max)
 
 
-def _read(path: Path, of_vertices: Sequence[str]) -> Arrays:
+def _read(path: Path, data: bytes, header: Header, of_vertices: Sequence[str]) -> Arrays:
     """(n, k) numbers of the vertices, the first three their places, and triangles."""
-    data = path.read_bytes()
-    header = read_header(path, data)
     body = _Body.of(path, data, header)
     vertices, parts = np.empty((0, len(of_vertices))), [np.empty((0, 3), np.int64)]
     seen: set[str] = set()
