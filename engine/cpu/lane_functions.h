@@ -89,17 +89,27 @@ inline float log2(float x) {
   return __builtin_constant_p(x) ? __builtin_log2f(x) : log2_of_lanes(x - Lanes{})[0];
 }
 
+// The sign bits of lanes.
+#ifdef __SSE4_1__
+inline uint signs_of(IntLanes a) {
+  return static_cast<uint>(_mm_movemask_ps(Lanes(a)));
+}
+#else
+inline uint signs_of(IntLanes a) {
+  return (a[0] < 0 ? 1u : 0u) | (a[1] < 0 ? 2u : 0u) | (a[2] < 0 ? 4u : 0u) | (a[3] < 0 ? 8u : 0u);
+}
+#endif
 inline bool any(bvec3 a) {
-  return (a.lanes[0] | a.lanes[1] | a.lanes[2]) != 0;
+  return (signs_of(a.lanes) & 7u) != 0;
 }
 inline bool all(bvec3 a) {
-  return (a.lanes[0] & a.lanes[1] & a.lanes[2]) != 0;
+  return (signs_of(a.lanes) & 7u) == 7u;
 }
 inline bool any(bvec4 a) {
-  return (a.lanes[0] | a.lanes[1] | a.lanes[2] | a.lanes[3]) != 0;
+  return signs_of(a.lanes) != 0;
 }
 inline bool all(bvec4 a) {
-  return (a.lanes[0] & a.lanes[1] & a.lanes[2] & a.lanes[3]) != 0;
+  return signs_of(a.lanes) == 15u;
 }
 
 #define QG_COMPARE_LANES(Vector, Mask, name, op)   \

@@ -1,5 +1,7 @@
 // A ray through the tets of a level. The shader that includes it defines first
 //   BODY  where the BodyRef is, e.g. push.body
+// and, where several rays are followed side by side, so that none need ask memory ahead for what comes,
+//   RAYS_ABREAST
 //
 // The ray's point is carried in barycentric coordinates, which pass from tet to tet with the shared corners: it then
 // never leaves the mesh by rounding. What belongs to corners stands in the order of the tet's, and is put into that of
@@ -145,7 +147,8 @@ uint crossing_at(uint tet, uint place) {
   return BODY.cells.at[tet].crossings[place];
 }
 
-#ifdef QG_PROCESSOR
+#if defined(QG_PROCESSOR) && !defined(RAYS_ABREAST)
+#define FETCHES_AROUND
 // Asks memory for the tets across the faces of one, before the ray leaves it for one of them.
 void fetch_around(uint tet) {
   bool varied = (BODY.flags & BODY_EVEN) == 0u;
@@ -161,7 +164,7 @@ void fetch_around(uint tet) {
 // Enters the tet across the face opposite the corner at `place`.
 void enter(inout TetPoint at, uint place, uint crossing) {
   at.tet = crossing >> CROSSING_BITS;
-#ifdef QG_PROCESSOR
+#ifdef FETCHES_AROUND
   fetch_around(at.tet);
 #endif
   bar(at, place);

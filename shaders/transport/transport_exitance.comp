@@ -41,8 +41,7 @@ void add_leaving(Surface at, float stratum, float azimuth, inout uint state) {
   vec3 across = cos(azimuth) * at.tangent + sin(azimuth) * at.side;
   vec3 inside = normalize(sqrt(1.0 - u) / BODY.eta * across - cosine * at.normal);
   vec3 l = vec3(1.0 - s, s * (1.0 - t), s * t);
-  Ray ray = Ray(start_on_face(at.tet, at.ids, l), inside, vec3(1), vec3(sees_before() ? 1.0 : 0.0));
-  vec3 before, now = arriving(ray, state, before);
+  vec3 before, now = arriving(ray_from(start_on_face(at.tet, at.ids, l), inside, hash(state)), before);
   vec3 leaves = fresnel_transmittance(sqrt(u), BODY.eta) * (now - before);
   left += leaves;
   if (!sees_body(at.face)) return;

@@ -10,6 +10,7 @@
 #endif
 
 #define BODY FIELD.body
+#define RAYS_ABREAST
 #include "transport/transport_surface.glsl"
 
 const float GOLDEN_ANGLE = 2.3999632;
@@ -22,10 +23,23 @@ struct Ray {
   vec3 direction;
   vec3 left;         // of 1, on the way so far
   vec3 left_before;  // the same in the body before
+  uint state;        // of its random numbers
+  uint steps;        // tets so far
+};
+
+// Where a ray leaves the tet that it has crossed.
+struct Way {
+  bool found;  // false where the ray ends in it
+  uint place;  // of the corner opposite
+  uint crossing;
 };
 
 bool sees_before() {
   return uvec2(FIELD.source_before) != uvec2(0);
+}
+
+Ray ray_from(TetPoint at, vec3 direction, uint state) {
+  return Ray(at, direction, vec3(1), vec3(sees_before() ? 1.0 : 0.0), state, 0u);
 }
 
 float largest(vec3 v) {
@@ -51,20 +65,38 @@ vec3 source_at(uint tet, vec4 l) {
 // Adds the source between two places of a tet `path` apart, attenuated on the way to the ray's start: exact where the
 // source is linear.
 void add_source(vec3 from, vec3 to, vec3 sigma_t, float path, inout vec3 sum, inout vec3 left) {
-  vec3 tau = max(sigma_t * path, vec3(1e-20)), t = min(tau, vec3(0.25));
+  vec3 tau = max(sigma_t * path, vec3(1e-20)), t = min(tau, vec3(0.1));
   vec3 passes = exp(-tau), inverse = 1.0 / tau;
-  bvec3 small = lessThan(tau, vec3(0.25));
+  bvec3 small = lessThan(tau, vec3(0.1));
   // Means over the path of e^-tau s and of s e^-tau s, and series where these cancel.
   vec3 all = mix((1.0 - passes) * inverse,
-                 1.0 - t * (1.0 / 2.0 - t * (1.0 / 6.0 - t * (1.0 / 24.0 - t * (1.0 / 120.0)))), small);
+                 1.0 - t * (1.0 / 2.0 - t * (1.0 / 6.0 - t * (1.0 / 24.0))), small);
   vec3 late = mix((all - passes) * inverse,
-                  1.0 / 2.0 - t * (1.0 / 3.0 - t * (1.0 / 8.0 - t * (1.0 / 30.0 - t * (1.0 / 144.0)))), small);
+                  1.0 / 2.0 - t * (1.0 / 3.0 - t * (1.0 / 8.0 - t * (1.0 / 30.0))), small);
   sum += path * left * (from * all + (to - from) * late);
   left *= passes;
 }
 
+// Adds the source along the ray in its tet, attenuated on the way to the ray's start, for the field that is seen and the
+// one before, and takes the ray to where it leaves that tet. It has no branch, so that several rays can be followed side
+// by side.
+Way across_tet(inout Ray ray, inout vec3 sum, inout vec3 before) {
+  Exit exit = find_exit(ray.at, ray.direction);
+  crossed += exit.found ? 1u : 0u;
+  float path = exit.found ? exit.path : 0.0;
+  uint tet = ray.at.tet;
+  vec4 start = ray.at.l, end = exit_point(ray.at, exit);
+  add_source(source_at(tet, start), source_at(tet, end), extinction(optical_in(tet)), path, sum, ray.left);
+  if (sees_before()) {
+    add_source(source_before_at(tet, start), source_before_at(tet, end), extinction(optical_before(tet)), path,
+               before, ray.left_before);
+  }
+  ray.at.l = end;
+  return Way(exit.found, exit.place, crossing_at(tet, exit.place));
+}
+
 // At the surface from inside: on, mirrored or through the air. False where the ray ends.
-bool goes_past(uint face, inout Ray ray, inout uint state) {
+bool goes_past(uint face, inout Ray ray) {
   vec3 n = outward_normal(face);
   float cosine = clamp(dot(ray.direction, n), 0.0, 1.0);
   if (BODY.face_kinds.at[face] == FACE_OPEN) {
@@ -73,8 +105,8 @@ bool goes_past(uint face, inout Ray ray, inout uint state) {
       ray.left *= reflected;
       ray.left_before *= reflected;
       if (reflected == 0.0) return false;
-    } else if (uniform_number(state) >= reflected) {
-      Entrance entry = through_air(face, in_space(ray.at), leaving_direction(ray.direction, n, cosine), state);
+    } else if (uniform_number(ray.state) >= reflected) {
+      Entrance entry = through_air(face, in_space(ray.at), leaving_direction(ray.direction, n, cosine), ray.state);
       if (entry.face == NO_FACE) return false;
       ray.at = entrance_point(entry);
       ray.direction = entry.direction;
@@ -85,43 +117,39 @@ bool goes_past(uint face, inout Ray ray, inout uint state) {
   return true;
 }
 
-// Whether a ray goes on; by chance, without bias, where little of it is left.
-bool goes_on(inout Ray ray, inout uint state) {
-  float most = max(largest(ray.left), largest(ray.left_before));
-  if (most >= TRANSPORT_ROULETTE) return true;
-  if (uniform_number(state) * TRANSPORT_ROULETTE >= most) return false;
+// Whether a ray is kept; by chance, without bias, where little of it is left.
+bool survives(inout Ray ray) {
+  vec3 left = max(ray.left, ray.left_before);
+  if (any(greaterThanEqual(left, vec3(TRANSPORT_ROULETTE)))) return true;
+  float most = largest(left);
+  if (uniform_number(ray.state) * TRANSPORT_ROULETTE >= most) return false;
   ray.left *= TRANSPORT_ROULETTE / most;
   ray.left_before *= TRANSPORT_ROULETTE / most;
   return true;
 }
 
+// Into what lies across. False where the ray ends.
+bool goes_on(inout Ray ray, Way way) {
+  if (!way.found || ++ray.steps == MAX_WALK_STEPS) return false;
+  uint across = way.crossing >> CROSSING_BITS;
+  if (across < BODY.tet_count) {
+    enter(ray.at, way.place, way.crossing);
+  } else {
+    bar(ray.at, way.place);
+    if (!goes_past(across - BODY.tet_count, ray)) return false;
+  }
+  return survives(ray);
+}
+
 // The source along the ray from its point, attenuated on the way to that point: 4 pi times the radiance there, against
 // the ray's direction. `before`: that of the field before, where it is seen.
-vec3 arriving(Ray ray, inout uint state, out vec3 before) {
+vec3 arriving(Ray ray, out vec3 before) {
   vec3 sum = vec3(0);
   before = vec3(0);
-  for (uint step = 0u; step < MAX_WALK_STEPS; ++step) {
-    Exit exit = find_exit(ray.at, ray.direction);
-    if (!exit.found) break;
-    ++crossed;
-    uint tet = ray.at.tet;
-    vec4 start = ray.at.l, end = exit_point(ray.at, exit);
-    add_source(source_at(tet, start), source_at(tet, end), extinction(optical_in(tet)), exit.path, sum, ray.left);
-    if (sees_before()) {
-      add_source(source_before_at(tet, start), source_before_at(tet, end), extinction(optical_before(tet)), exit.path,
-                 before, ray.left_before);
-    }
-    ray.at.l = end;
-    uint crossing = crossing_at(tet, exit.place), across = crossing >> CROSSING_BITS;
-    if (across < BODY.tet_count) {
-      enter(ray.at, exit.place, crossing);
-    } else {
-      bar(ray.at, exit.place);
-      if (!goes_past(across - BODY.tet_count, ray, state)) break;
-    }
-    if (!goes_on(ray, state)) break;
+  for (;;) {
+    Way way = across_tet(ray, sum, before);
+    if (!goes_on(ray, way)) return sum;
   }
-  return sum;
 }
 
 #endif

@@ -56,20 +56,65 @@ void frame_about(vec3 n, out vec3 a, out vec3 b) {
   b = vec3(d, side + n.y * n.y * c, -n.y);
 }
 
-// Mean over directions that are spread evenly and turned by three numbers in [0, 1). `before` as in arriving.
-vec3 transported(TetPoint at, vec3 turn, inout uint state, out vec3 before) {
-  vec3 axis = on_sphere(2.0 * turn.x - 1.0, TWO_PI * turn.y), a, b;
-  frame_about(axis, a, b);
-  float turned = TWO_PI * turn.z;
-  vec3 sum = vec3(0), sum_before = vec3(0), left_before = vec3(sees_before() ? 1.0 : 0.0);
-  for (uint k = 0u; k < push.directions; ++k) {
-    vec3 d = on_sphere(1.0 - (2.0 * float(k) + 1.0) / float(push.directions), turned + GOLDEN_ANGLE * float(k));
-    vec3 direction = normalize(d.x * a + d.y * b + d.z * axis);
-    vec3 then;
-    sum += arriving(Ray(at, direction, vec3(1), left_before), state, then);
-    sum_before += then;
+// How many rays of a point are followed at a time: a processor goes on with one while it waits for what another needs.
+#ifdef QG_PROCESSOR
+const uint ABREAST = 4u;
+#else
+const uint ABREAST = 1u;
+#endif
+
+// Directions that are spread evenly, one after the other.
+struct Directions {
+  vec3 a, b, axis;  // orthonormal
+  vec2 azimuth;     // of the next: cosine and sine
+  uint next;
+};
+
+vec3 next_of(inout Directions spread) {
+  float z = 1.0 - (2.0 * float(spread.next++) + 1.0) / float(push.directions), s = sqrt(max(1.0 - z * z, 0.0));
+  vec2 d = s * spread.azimuth;
+  const vec2 turn = vec2(-0.737368878, 0.675490294);  // by the golden angle
+  spread.azimuth = vec2(turn.x * spread.azimuth.x - turn.y * spread.azimuth.y,
+                        turn.y * spread.azimuth.x + turn.x * spread.azimuth.y);
+  return d.x * spread.a + d.y * spread.b + z * spread.axis;
+}
+
+// The same, turned by three numbers in [0, 1).
+Directions turned_by(vec3 turn) {
+  Directions spread;
+  spread.axis = on_sphere(2.0 * turn.x - 1.0, TWO_PI * turn.y);
+  frame_about(spread.axis, spread.a, spread.b);
+  spread.azimuth = vec2(cos(TWO_PI * turn.z), sin(TWO_PI * turn.z));
+  spread.next = 0u;
+  return spread;
+}
+
+Ray next_ray(TetPoint at, uint seed, inout Directions spread) {
+  uint state = hash(seed + spread.next);
+  return ray_from(at, next_of(spread), state);
+}
+
+// Mean over directions that are turned so. Chance begins at `seed`. `before` as in arriving.
+vec3 transported(TetPoint at, vec3 turn, uint seed, out vec3 before) {
+  Directions spread = turned_by(turn);
+  Ray rays[ABREAST];
+  Way ways[ABREAST];
+  uint count = 0u;
+  while (count < min(ABREAST, push.directions)) rays[count++] = next_ray(at, seed, spread);
+  vec3 sum = vec3(0);
+  before = vec3(0);
+  while (count > 0u) {
+    for (uint j = 0u; j < count; ++j) ways[j] = across_tet(rays[j], sum, before);
+    for (uint j = count; j-- > 0u;) {
+      if (goes_on(rays[j], ways[j])) continue;
+      if (spread.next < push.directions) {
+        rays[j] = next_ray(at, seed, spread);
+      } else {
+        rays[j] = rays[--count];
+      }
+    }
   }
-  before = sum_before / float(push.directions);
+  before /= float(push.directions);
   return sum / float(push.directions);
 }
 
@@ -89,8 +134,8 @@ void main() {
     solved += l[k] * push.fluence.at[ids[k]];
     if (sees_before()) solved_before += l[k] * push.fluence_before.at[ids[k]];
   }
-  uint state = hash(start + point.number);
-  vec3 before, now = transported(TetPoint(point.tet, l, vec4(0)), vec3(u[3], u[4], u[5]), state, before);
+  uint seed = hash(start + point.number);
+  vec3 before, now = transported(TetPoint(point.tet, l, vec4(0)), vec3(u[3], u[4], u[5]), seed, before);
   Optical optical = optical_in(point.tet);
   vec3 found = point.volume * (now - solved), load = optical.sigma_s_prime * found;
   vec3 sum = load + optical.sigma_a * found;
