@@ -3,6 +3,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "engine/app/modes.h"
 #include "engine/app/panel_widgets.h"
 #include "engine/render/light/image_file.h"
 
@@ -44,7 +45,7 @@ void draw_edits(State& state, const Sphere& bounds) {
   ImGui::SameLine();
   if (ImGui::Button("Save scene")) state.save = true;
   Edit& edit = state.brush.edit;
-  if (ImGui::Checkbox("Paint with left drag", &state.brush.on) && state.brush.on) state.knife.on = false;
+  if (bool on = state.brush.on; ImGui::Checkbox("Paint with left drag", &on)) take_brush(state, on);
   choose("Operation", edit.operation);
   draw_coefficient("Absorption", edit.sigma_a, edit.operation);
   draw_coefficient("Scattering", edit.sigma_s_prime, edit.operation);

@@ -110,6 +110,22 @@ void draw_message(const State& state, float left, float unit, float above) {
   draw_note("message", state.message, colour, true, left, ImGui::GetIO().DisplaySize.y - 12 * unit - above, unit);
 }
 
+void draw_question(State& state, float unit) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({0.5f * size.x, 0.4f * size.y}, ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::SetNextWindowFocus();
+  ImGui::Begin("Save the scene before closing?", nullptr,
+               ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove);
+  ImGui::TextUnformatted("What was changed since the scene was opened or saved is lost otherwise.");
+  ImGui::Dummy({0, 4 * unit});
+  if (ImGui::Button("Save scene (S)")) state.save = state.quit = true;
+  ImGui::SameLine();
+  if (ImGui::Button("Discard (D)")) state.discard = true;
+  ImGui::SameLine();
+  if (ImGui::Button("Cancel (Esc)")) state.asks = false;
+  ImGui::End();
+}
+
 void draw_knife(const Knife& knife, float left, float unit) {
   if (!knife.cuts()) return;
   const ImVec2 size = ImGui::GetIO().DisplaySize;

@@ -280,7 +280,7 @@ void draw_panel(State& state, const PanelFacts& facts) {
   if (state.focus_panel) ImGui::SetNextWindowFocus();
   ImGui::Begin("panel", nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_NoBringToFrontOnFocus);
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoFocusOnAppearing);
   ImGui::PushItemWidth(0.62f * ImGui::GetContentRegionAvail().x);
   ImGui::TextUnformatted(state.scene.body.filename().string().c_str());
   ImGui::TextDisabled("%s", facts.engine.device().info().name.c_str());

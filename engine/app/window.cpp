@@ -133,17 +133,12 @@ void Window::show_busy(bool busy) {
   glfwSetWindowTitle(window_, (title_ + (busy ? " ..." : "")).c_str());
 }
 
-bool Window::wanted() const {
-  const auto acts = [](const Event& event) { return !std::holds_alternative<MotionEvent>(event); };
-  return closing() || std::any_of(events_.begin(), events_.end(), acts);
-}
-
 bool Window::closing() const {
   return glfwWindowShouldClose(window_) == GLFW_TRUE;
 }
 
-void Window::close() {
-  glfwSetWindowShouldClose(window_, GLFW_TRUE);
+void Window::keep_open() {
+  glfwSetWindowShouldClose(window_, GLFW_FALSE);
 }
 
 void Window::toggle_full_screen() {

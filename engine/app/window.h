@@ -58,7 +58,7 @@ class Window {
   void show_busy(bool busy);
 
   bool closing() const;
-  void close();
+  void keep_open();  // though it is to be closed
   void toggle_full_screen();
 
   // Collects what has happened, after waiting for something at most so many seconds.
@@ -70,9 +70,6 @@ class Window {
 
   // Whether there is anything to take.
   bool events_wait() const { return !events_.empty(); }
-
-  // Whether there is more than motions of the pointer, or the window is to be closed.
-  bool wanted() const;
 
  private:
   void listen();

@@ -166,8 +166,8 @@ class Hand:
         return now
 
     def close(self, key: str = "q") -> None:
-        """Quit by key; the program must end well."""
-        self.keys(key)
+        """Quit by key, without saving; the program must end well."""
+        self.keys(key, "d")  # asked only where something was changed
         output, errors = self.process.communicate(timeout=20)
         assert (self.process.returncode, output, errors) == (0, "", "")
 
@@ -301,6 +301,29 @@ def test_the_window_changes_its_size(open_window):
     hand.keys("F11")
     hand.settle()
     hand.close("Escape")
+
+
+def test_what_is_not_saved_is_asked_for_before_it_ends(open_window, tmp_path: Path):
+    """By both keys; Esc leaves brush and question first, and where nothing was changed nothing is asked."""
+    hand = open_window("--material", "wholemilk")
+    before = hand.picture()
+    hand.keys("Right", "p", "Escape", "m")  # a turned view is nothing to save
+    changed = hand.other_picture(before)
+    for key in ("Escape", "q"):
+        hand.keys(key)
+        asked = hand.other_picture(changed)
+        assert not np.array_equal(asked, changed)
+        hand.keys("Escape")
+        assert np.array_equal(hand.other_picture(asked), changed)
+    hand.keys("q", "s")
+    output, errors = hand.process.communicate(timeout=20)
+    assert (hand.process.returncode, output, errors) == (0, "", "")
+    saved = tmp_path / "tiny-1.json"
+    assert json.loads(saved.read_text())["material"] != "wholemilk"
+    again = open_window(body=saved)
+    again.picture()
+    again.keys("Escape")
+    assert again.process.wait(timeout=20) == 0
 
 
 def test_a_wrong_material_is_told_and_changes_nothing(open_window):
