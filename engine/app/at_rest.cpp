@@ -23,9 +23,10 @@ bool Viewer::converges() const {
 // A solve or a frame more.
 void Viewer::converge() {
   if (!converges()) return;
-  making_ = Making{.scene = state_.scene, .part = shown_part_, .settles = true, .droppable = true};
+  making_ = Making{.scene = wanted_scene(), .part = shown_part_, .settles = true, .droppable = true};
   try {
     if (!converging_) begin_convergence();
+    measured_.convergence = progress_text(converging_->found());
     const std::size_t known = converging_->found().steps.size();
     if (!converging_->ended()) converging_->advance([this] { hear(false); });
     if (converging_->found().steps.size() > known) show_convergence();
@@ -42,7 +43,7 @@ void Viewer::converge() {
 }
 
 void Viewer::begin_convergence() {
-  const Scene& scene = state_.scene;
+  const Scene& scene = making_->scene;
   if (!rest_) rest_.emplace(stage_.shared_device());
   rest_->show(scene);
   ConvergingStart start{scene.view, scene.render, scene.solve, measured_.solve, *measured_.picture_error};

@@ -147,6 +147,8 @@ constexpr auto table = std::to_array<Command>({
     {"B", GLFW_KEY_B, 0, 0, "other source: buried, diffuse", next_source},
     {"O", GLFW_KEY_O, 0, 0, "next model", next_model},
     {"E", GLFW_KEY_E, 0, 0, "next error target: none, 10, 5, 2, 1%", next_error},
+    {"T", GLFW_KEY_T, 0, 0, "turntable on or off", [](S s, W) { s.turntable = !s.turntable; }},
+    {"C", GLFW_KEY_C, 0, 0, "while it is held: before the last change", [](S s, W) { s.compares_by_key = true; }},
     {"P", GLFW_KEY_P, 0, 0, "brush on or off", [](S s, W) { take_brush(s, !s.brush.on); }},
     {"K", GLFW_KEY_K, 0, 0, "knife on or off (by shortest-path, as long as there are cuts)",
      [](S s, W) { take_knife(s, !s.knife.on); }},
@@ -165,7 +167,7 @@ constexpr auto table = std::to_array<Command>({
     {"F11", GLFW_KEY_F11, 0, 0, "toggle full screen", [](S s, W) { s.full_screen = true; }},
     {"F12", GLFW_KEY_F12, 0, 0, "save the image as PNG and EXR", [](S s, W) { s.screenshot = true; }},
     {"F1, H", GLFW_KEY_F1, GLFW_KEY_H, 0, "show or hide these shortcuts", [](S s, W) { s.help = !s.help; }},
-    {"Esc", GLFW_KEY_ESCAPE, 0, 0, "leave brush, knife or shortcuts; else quit", leave},
+    {"Esc", GLFW_KEY_ESCAPE, 0, 0, "leave turntable, brush, knife or shortcuts; else quit", leave},
     {"Q", GLFW_KEY_Q, 0, 0, "quit; asks where something is not saved", [](S s, W) { s.quit = true; }},
 });
 

@@ -34,18 +34,24 @@ void Viewer::fulfil_wishes() {
   if (state_.undo || state_.redo) history_.note(state_.scene);
   if (state_.undo) state_.scene = history_.undo(state_.scene);
   if (state_.redo) state_.scene = history_.redo(state_.scene);
-  if (state_.save) save_scene();
+  if (state_.save || state_.save_first) save_scene();
   keep_method(state_);
   leave_or_ask();
   state_.full_screen = state_.save = state_.undo = state_.redo = false;
 }
 
-// The display, a key or a button wants it to end.
+// Ends, or opens another file, where that is wanted and nothing is lost by it. What is opened waits for the engine.
 void Viewer::leave_or_ask() {
-  const bool wanted = std::exchange(state_.quit, false) || window_.closing();
+  state_.quit = state_.quit || window_.closing();
   window_.keep_open();
-  if (wanted && !same_work(state_.scene, saved_) && !state_.discard) state_.asks = true;
-  leaving_ = state_.discard || (wanted && !state_.asks);
+  if (!state_.quit && state_.opening.empty()) return;
+  state_.asks = replaces_work() && !state_.discard && !same_work(state_.scene, saved_);
+  leaving_ = state_.quit && !state_.asks;
+}
+
+// A mesh has a window of its own, and a sky is one more light.
+bool Viewer::replaces_work() const {
+  return state_.quit || state_.opening.extension() == ".qgraph" || state_.opening.extension() == ".json";
 }
 
 // half_way: amid a piece of work, which is then lost.
@@ -66,7 +72,7 @@ void Viewer::hear(bool half_way) {
 bool Viewer::unwanted() const {
   if (leaving_) return true;
   if (!making_ || !making_->droppable || writing_) return false;
-  return state_.screenshot || state_.scene != making_->scene || part() != making_->part;
+  return state_.screenshot || opens() || wanted_scene() != making_->scene || part() != making_->part;
 }
 
 }  // namespace quadgraph

@@ -45,6 +45,13 @@ Scene History::undo(const Scene& scene) {
   return step(scene, now_, past_, future_);
 }
 
+Scene History::before(const Scene& scene) const {
+  History copy(now_);
+  copy.past_ = past_.empty() ? past_ : std::vector<Scene>{past_.back()};
+  copy.note(scene);
+  return copy.undo(scene);
+}
+
 Scene History::redo(const Scene& scene) {
   return step(scene, now_, future_, past_);
 }

@@ -26,6 +26,9 @@ class History {
   Scene undo(const Scene& scene);
   Scene redo(const Scene& scene);
 
+  // What `undo` would give of `scene`.
+  Scene before(const Scene& scene) const;
+
   // Forgets `scene`, which was noted last and cannot be shown.
   void refuse(const Scene& scene);
 

@@ -16,6 +16,8 @@ void take_knife(State& state, bool on) {
 
 bool leave_mode(State& state) {
   if (std::exchange(state.help, false)) return true;
+  if (std::exchange(state.compares_by_key, false)) return true;
+  if (std::exchange(state.turntable, false)) return true;
   const bool brush = std::exchange(state.brush.on, false), knife = std::exchange(state.knife.on, false);
   return brush || knife;
 }

@@ -19,14 +19,14 @@ double milliseconds(std::chrono::steady_clock::duration duration) {
 // Brings the picture up to the scene: at once, as good as the budget allows, and exactly when nothing changes any more.
 void Viewer::keep_up() {
   if (swapchain_.width() == 0) return;
-  const bool changed = !shown_ || state_.scene != *shown_ || part() != shown_part_;
+  const bool changed = !shown_ || wanted_scene() != *shown_ || part() != shown_part_;
   if (changed) changed_ = Clock::now();
   window_.show_busy(changed || !measured_.settled);  // what is converged has been presented
   if (!changed && measured_.settled && !dragging_) return converge();
   if (!changed && (measured_.settled || milliseconds(Clock::now() - changed_) < 1000 * settle_after || dragging_))
     return;
   const std::optional<Scene> before = shown_;
-  const Scene made = state_.scene;
+  const Scene made = wanted_scene();
   try {
     remake(!changed);
   } catch (const Interrupted&) {
@@ -37,6 +37,11 @@ void Viewer::keep_up() {
   }
   making_.reset();
   frames_wanted_ = 3;
+}
+
+// What is to be seen: the scene, or what it was before the last change.
+Scene Viewer::wanted_scene() const {
+  return state_.compares() ? history_.before(state_.scene) : state_.scene;
 }
 
 // Goes back to the scene before, if there was one, unless the user has changed what could not be shown meanwhile.
@@ -72,7 +77,7 @@ void Viewer::remake(bool settle) {
   forget_convergence();
   const Clock::time_point start = Clock::now();
   const Part now = part();
-  making_ = Making{.scene = state_.scene, .part = now, .settles = settle};
+  making_ = Making{.scene = wanted_scene(), .part = now, .settles = settle};
   const bool solving = must_solve();
   if (solving) {
     stage_.show(making_->scene);

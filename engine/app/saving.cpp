@@ -20,11 +20,11 @@ void Viewer::save_scene() {
     if (*from_here.begin() != "..") scene.body = from_here;  // so that the file names it by its own place
     SceneFile(scene).save(path);
     saved_ = state_.scene;
-    state_.asks = false;
+    state_.save_first = false;
     state_.say("saved: " + path.string());
   } catch (const std::exception& error) {
     state_.say(error.what(), true);
-    state_.asks = state_.quit = false;  // what cannot be saved is not thrown away for that
+    state_.keep();  // what cannot be saved is not thrown away for that
   }
   frames_wanted_ = 3;
 }

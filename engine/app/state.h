@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <optional>
@@ -58,8 +59,13 @@ struct State {
   bool can_undo = false, can_redo = false;
   std::string material_text, image_text;     // being typed
   std::optional<LightKind> kind_with_image;  // what the selected light is to be once its image is known
+  std::string file_text, sky_text;
+  float longest_mm = 80;  // of a mesh that is opened
   bool panel = true, help = false;
-  bool asks = false;     // whether to save what was changed, before it ends
+  bool lab = false;                                          // the panel has all, else what is looked at
+  bool turntable = false;                                    // the body turns
+  bool compares_by_key = false, compares_by_button = false;  // what was before the last step is shown
+  bool asks = false;                                         // whether to save what was changed, before it ends
   std::string preview;   // what is shown in the place of the body, empty where it is the body
   std::string message;   // the last thing to tell the user
   bool refused = false;  // it is a complaint
@@ -67,8 +73,17 @@ struct State {
   // Wishes that the viewer fulfils.
   bool focus_panel = false, focus_picture = false;
   bool screenshot = false, save = false, undo = false, redo = false, full_screen = false;
-  bool quit = false;     // asks first where something was changed
-  bool discard = false;  // what was changed, and quit
+  std::filesystem::path opening;             // asks first too
+  bool quit = false;                         // asks first where something was changed
+  bool discard = false, save_first = false;  // answers to the question
+
+  // Nothing is quit or opened.
+  void keep() {
+    asks = quit = discard = save_first = false;
+    opening.clear();
+  }
+
+  bool compares() const { return compares_by_key || compares_by_button; }
 
   // `methods`, and shortest-path, which needs no levels.
   std::vector<Method> all_methods() const {

@@ -9,13 +9,16 @@
 #include "engine/app/modes.h"
 #include "engine/app/overlays.h"
 #include "engine/app/panel.h"
+#include "engine/scene/gestures.h"
 
 namespace quadgraph {
 namespace {
 
-constexpr double budget_ms = 90;   // of a picture in motion: ten a second
-constexpr double idle_wait = 0.5;  // seconds
-constexpr double news_wait = 0.1;  // seconds, while a body is being baked
+constexpr double budget_ms = 90;       // of a picture in motion: ten a second
+constexpr double idle_wait = 0.5;      // seconds
+constexpr double news_wait = 0.1;      // seconds, while a body is being baked
+constexpr float turntable_speed = 24;  // degrees a second: once in a quarter of a minute
+constexpr float longest_step = 0.25f;  // seconds that it goes on by at once, however long a picture takes
 
 }  // namespace
 
@@ -55,7 +58,9 @@ void Viewer::run() {
     const std::vector<Event> events = take_events();
     try {
       if (std::exchange(state_.screenshot, false) && shown_) write_picture();
+      if (opens()) open_file(std::exchange(state_.opening, {}));
       follow_preview();
+      turn();
       keep_up();
     } catch (const Interrupted&) {  // of what nothing else is made in the place of: the window closes
     }
@@ -64,8 +69,18 @@ void Viewer::run() {
   }
 }
 
+// The body goes round while the turntable is on.
+void Viewer::turn() {
+  const Clock::time_point now = Clock::now();
+  const std::chrono::duration<float> since = now - std::exchange(turned_, now);
+  if (!state_.turntable || dragging_) return;
+  const float degrees = turntable_speed * std::min(since.count(), longest_step);
+  state_.scene.view = orbited(state_.scene.view, engine().bounds(), degrees, 0);
+}
+
 // Seconds that nothing need happen for.
 double Viewer::patience() const {
+  if (state_.turntable) return 0;
   if (frames_wanted_ > 0 || window_.events_wait() || !shown_) return 0;
   if ((measured_.frames > 0 && !measured_.settled) || converges()) return 0;
   if (swapchain_.width() > 0 && part() != shown_part_) return 0;
@@ -101,8 +116,10 @@ void Viewer::build_widgets(const std::vector<Event>& events) {
   const float taken = legend ? draw_colour_bar(*legend, left, interface_.unit()) : 0;
   draw_message(state_, left, interface_.unit(), taken);
   draw_preview(state_.preview, left, interface_.unit());
-  draw_convergence(measured_.convergence, left, interface_.unit());
+  if (!state_.compares()) draw_convergence(measured_.convergence, left, interface_.unit());
+  draw_ring(brush_ring(), state_.brush.look.colour, left, interface_.unit());
   draw_knife(state_.knife, left, interface_.unit());
+  if (state_.compares()) draw_convergence("Before the last change", left, interface_.unit());
   if (state_.asks) draw_question(state_, interface_.unit());
   keep_method(state_);
   if (!dragging_ && !ImGui::IsAnyItemActive()) history_.note(state_.scene);

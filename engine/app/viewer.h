@@ -72,6 +72,8 @@ class Viewer {
   void begin_or_end_drag(const ButtonEvent& event);
   glm::vec2 pointer() const;
   std::optional<Touch> pointed_at() const;
+  std::vector<glm::vec2> brush_ring() const;
+  void touch_down(const Touch& touch);
   void listen();
   std::vector<Event> take_events();
   void fulfil_wishes();
@@ -97,6 +99,12 @@ class Viewer {
   void measure(Clock::time_point start, double draw_ms, bool gathered);
   void save_scene();
   void leave_or_ask();
+  bool replaces_work() const;
+  bool opens() const { return !state_.opening.empty() && !state_.asks; }
+  void open_file(const std::filesystem::path& file);
+  void show_opened(const Scene& scene);
+  Scene wanted_scene() const;
+  void turn();
   void present();
   Picture settled_picture();
   void write_picture();
@@ -129,6 +137,7 @@ class Viewer {
   bool solved_exactly_ = false;             // it was solved to the tolerance
   std::optional<Making> making_;
   std::optional<Clock::time_point> unwanted_since_;
+  Clock::time_point turned_;                 // when the turntable went on last
   Clock::time_point answered_;               // when a frame was presented last
   Clock::time_point changed_;                // when something changed last
   std::vector<Clock::time_point> pictures_;  // of the last second

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <glm/geometric.hpp>
+
 #include "engine/app/brush.h"
 
 using namespace quadgraph;
@@ -64,6 +66,66 @@ TEST_CASE("a stroke follows the hand in steps of the brush's size") {
   CHECK(stroke.back().x > 5 - 0.4f);
   brush.begin(scene, {.at = {0, 3, 0}});
   CHECK(scene.edits.size() == 2);
+}
+
+TEST_CASE("paint has the colour that was asked for, as strong as that, and can be picked and erased") {
+  Brush brush = Brush::for_body(15);
+  Scene scene;
+  scene.material = "wholemilk";
+  const MaterialLook own = look_of(scene.material).value();
+  const auto painted = [&](float strength) {
+    brush.strength = strength;
+    brush.begin(scene, {.at = {0, 0, 0}});
+    const Edit& edit = scene.edits.back();
+    check_edit(edit);
+    CHECK(edit.operation == EditOperation::set);
+    gpu::Material material{};
+    material.sigma_s_prime = edit.sigma_s_prime.value();
+    material.sigma_a = edit.sigma_a.value();
+    material.eta = own.eta;
+    return look_of(material);
+  };
+  const MaterialLook whole = painted(1), none = painted(0);
+  CHECK(glm::distance(whole.colour, brush.look.colour) < 0.01f);
+  CHECK(whole.distance == doctest::Approx(brush.look.distance).epsilon(0.01));
+  CHECK(glm::distance(none.colour, own.colour) < 0.02f);
+  brush.strength = 1;
+  scene.edits.pop_back();
+  const glm::vec3 red = brush.look.colour;
+  brush.pick(scene, {.at = {5, 0, 0}});  // beside the stroke
+  CHECK(glm::distance(brush.look.colour, own.colour) < 0.01f);
+  brush.pick(scene, {.at = {0.1f, 0, 0}});
+  CHECK(glm::distance(brush.look.colour, red) < 0.01f);
+  Brush::erase(scene, {.at = {5, 0, 0}});
+  CHECK(scene.edits.size() == 1);
+  Brush::erase(scene, {.at = {0.1f, 0, 0}});
+  CHECK(scene.edits.empty());
+  Brush::erase(scene, {.at = {0, 0, 0}});
+}
+
+TEST_CASE("a material of a colour and a distance shows them") {
+  for (const Swatch& swatch : swatches()) {
+    if (swatch.name == "spectralon") continue;  // absorbs nothing: no colour has an inverse there
+    const MaterialLook look = look_of(material_of(swatch.look)).value();
+    CHECK_MESSAGE(glm::distance(look.colour, swatch.look.colour) < 0.03f, swatch.name);
+    CHECK(look.eta == doctest::Approx(swatch.look.eta));
+  }
+  CHECK(!look_of("wax.npz"));
+}
+
+TEST_CASE("what was before the last step is told and changes nothing") {
+  Scene scene;
+  History history(scene);
+  const Scene first = scene;
+  CHECK(history.before(scene) == scene);
+  scene.material = "jade";
+  history.note(scene);
+  scene.view.azimuth = 50;
+  CHECK(same_work(history.before(scene), first));
+  CHECK(history.before(scene).view.azimuth == 50);
+  CHECK(history.can_undo());
+  scene.material = "wax";  // not noted yet: a slider is held
+  CHECK(history.before(scene).material == "jade");
 }
 
 TEST_CASE("a stamp lies on the surface where the brush touches it, the way up that is seen") {
