@@ -7,9 +7,6 @@
 namespace quadgraph {
 namespace {
 
-// What the user does ends the solve that is being made.
-struct UserWaits {};
-
 std::string progress_text(const Convergence& found) {
   const std::string said = step_text(found.steps.back());
   if (found.reached) return said;
@@ -26,28 +23,27 @@ bool Viewer::converges() const {
 // A solve or a frame more.
 void Viewer::converge() {
   if (!converges()) return;
-  const auto check = [this] {
-    window_.poll(0);
-    if (window_.wanted()) throw UserWaits();
-  };
+  making_ = Making{.scene = wanted_scene(), .part = shown_part_, .settles = true, .droppable = true};
   try {
     if (!converging_) begin_convergence();
+    measured_.convergence = progress_text(converging_->found());
     const std::size_t known = converging_->found().steps.size();
-    if (!converging_->ended()) converging_->advance(check);
+    if (!converging_->ended()) converging_->advance([this] { hear(false); });
     if (converging_->found().steps.size() > known) show_convergence();
     measured_.convergence = progress_text(converging_->found());
-  } catch (const UserWaits&) {
+  } catch (const Interrupted&) {
   } catch (const DeviceError&) {
     throw;
   } catch (const std::exception& error) {
     state_.say(error.what(), true);
     measured_.picture_error.reset();
   }
+  making_.reset();
   frames_wanted_ = 3;
 }
 
 void Viewer::begin_convergence() {
-  const Scene& scene = state_.scene;
+  const Scene& scene = making_->scene;
   if (!rest_) rest_.emplace(stage_.shared_device());
   rest_->show(scene);
   ConvergingStart start{scene.view, scene.render, scene.solve, measured_.solve, *measured_.picture_error};

@@ -30,12 +30,13 @@ void Viewer::change_over(const std::filesystem::path& body) {
     state_.scene = before;
     shown_.reset();
     remake(false);
+    making_.reset();
     throw;
   }
+  making_.reset();
   preview_.reset();
   take_up_body();
   changed_ = Clock::now();
-  history_.change_all([&](Scene& scene) { scene = preview.after(scene, body); });
 }
 
 // What the window knows of the body that the stage shows.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "engine/app/modes.h"
 #include "engine/optics/material.h"
 #include "engine/scene/gestures.h"
 
@@ -63,6 +64,7 @@ void next(T& value, const All& all) {
 }
 
 void next_method(S s, W) {
+  if (s.knife.on || !s.scene.cuts.empty()) return s.say("cuts are shown by shortest-path alone: undo them first", true);
   next(s.scene.solve.method, s.all_methods());
   if (!on_grid(s.scene.solve.method)) s.scene.solve.active_layers = 0;
 }
@@ -108,16 +110,8 @@ void next_level(S s, W w) {
   if (w.levels > 0) s.scene.render.show.level = (s.scene.render.show.level + 1) % w.levels;
 }
 
-void take_brush(S s, W) {
-  s.brush.on = !s.brush.on;
-  s.knife.on = false;
-}
-
-// Only shortest paths know cuts.
-void take_knife(S s, W) {
-  s.knife.on = !s.knife.on;
-  s.brush.on = false;
-  if (s.knife.on) s.scene.solve.method = Method::shortest_path;
+void leave(S s, W) {
+  if (!leave_mode(s)) s.quit = true;
 }
 
 void reset_view(S s, W) {
@@ -153,8 +147,11 @@ constexpr auto table = std::to_array<Command>({
     {"B", GLFW_KEY_B, 0, 0, "other source: buried, diffuse", next_source},
     {"O", GLFW_KEY_O, 0, 0, "next model", next_model},
     {"E", GLFW_KEY_E, 0, 0, "next error target: none, 10, 5, 2, 1%", next_error},
-    {"P", GLFW_KEY_P, 0, 0, "brush on or off", take_brush},
-    {"K", GLFW_KEY_K, 0, 0, "knife on or off (switches to method shortest-path)", take_knife},
+    {"T", GLFW_KEY_T, 0, 0, "turntable on or off", [](S s, W) { s.turntable = !s.turntable; }},
+    {"C", GLFW_KEY_C, 0, 0, "while it is held: before the last change", [](S s, W) { s.compares_by_key = true; }},
+    {"P", GLFW_KEY_P, 0, 0, "brush on or off", [](S s, W) { take_brush(s, !s.brush.on); }},
+    {"K", GLFW_KEY_K, 0, 0, "knife on or off (by shortest-path, as long as there are cuts)",
+     [](S s, W) { take_knife(s, !s.knife.on); }},
     {"V", GLFW_KEY_V, 0, 0, "next view of the inside", [](S s, W w) { next_quantity(s, w, 1); }},
     {"Shift+V", GLFW_KEY_V, 0, shift, "previous view of the inside", [](S s, W w) { next_quantity(s, w, -1); }},
     {"X", GLFW_KEY_X, 0, 0, "axis of the cutting plane: x, y, z", next_axis},
@@ -170,7 +167,8 @@ constexpr auto table = std::to_array<Command>({
     {"F11", GLFW_KEY_F11, 0, 0, "toggle full screen", [](S s, W) { s.full_screen = true; }},
     {"F12", GLFW_KEY_F12, 0, 0, "save the image as PNG and EXR", [](S s, W) { s.screenshot = true; }},
     {"F1, H", GLFW_KEY_F1, GLFW_KEY_H, 0, "show or hide these shortcuts", [](S s, W) { s.help = !s.help; }},
-    {"Q, Esc", GLFW_KEY_Q, GLFW_KEY_ESCAPE, 0, "quit", [](S s, W) { s.quit = true; }},
+    {"Esc", GLFW_KEY_ESCAPE, 0, 0, "leave turntable, brush, knife or shortcuts; else quit", leave},
+    {"Q", GLFW_KEY_Q, 0, 0, "quit; asks where something is not saved", [](S s, W) { s.quit = true; }},
 });
 
 }  // namespace

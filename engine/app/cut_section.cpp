@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "engine/app/modes.h"
 #include "engine/app/panel_widgets.h"
 #include "engine/scene/gestures.h"
 
@@ -55,7 +56,7 @@ void draw_cut(BodyCut& cut, const Sphere& bounds, UpAxis up) {
 void draw_cuts(State& state, const Sphere& bounds) {
   if (!section("Cuts")) return;
   auto& cuts = state.scene.cuts;
-  if (ImGui::Checkbox("Cut with left drag", &state.knife.on) && state.knife.on) state.brush.on = false;
+  if (bool on = state.knife.on; ImGui::Checkbox("Cut with left drag", &on)) take_knife(state, on);
   for (std::size_t i = 0; i < cuts.size(); ++i) {
     ImGui::PushID(static_cast<int>(i));
     const std::string name = formatted("%zu  %s##cuts", i + 1, std::string(name_of(cuts[i].kind)).c_str());

@@ -3,6 +3,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "engine/app/modes.h"
 #include "engine/app/panel_widgets.h"
 #include "engine/render/light/image_file.h"
 
@@ -34,27 +35,50 @@ void draw_image(State& state, const char* name, std::shared_ptr<const ImagePyram
   }
 }
 
+void draw_tools(Brush& brush) {
+  auto tool = static_cast<int>(brush.tool);
+  ImGui::RadioButton("Paint##tool", &tool, static_cast<int>(BrushTool::paint));
+  ImGui::SameLine();
+  ImGui::RadioButton("Erase", &tool, static_cast<int>(BrushTool::erase));
+  ImGui::SameLine();
+  ImGui::RadioButton("Pick colour", &tool, static_cast<int>(BrushTool::pick));
+  brush.tool = static_cast<BrushTool>(tool);
+}
+
+void draw_paint(Brush& brush) {
+  colour_button("Colour##brush", brush.look.colour);
+  slide("Light goes##brush", brush.look.distance, 0.02f, 50, "%.2f mm", true);
+  float share = 100 * brush.strength;
+  if (slide("Strength", share, 0, 100, "%.0f%%")) brush.strength = share / 100;
+}
+
+// What a stroke does where it is said by coefficients.
+void draw_coefficients(State& state, const Sphere& bounds) {
+  Brush& brush = state.brush;
+  bool by_hand = !brush.by_colour;
+  if (ImGui::Checkbox("By coefficients", &by_hand)) brush.by_colour = !by_hand;
+  slide("Depth from", brush.edit.depth_from, 0, bounds.radius, "%.1f mm");
+  draw_image(state, "Pattern", brush.edit.image);
+  if (!by_hand) return;
+  choose("Operation", brush.edit.operation);
+  draw_coefficient("Absorption", brush.edit.sigma_a, brush.edit.operation);
+  draw_coefficient("Scattering", brush.edit.sigma_s_prime, brush.edit.operation);
+}
+
 }  // namespace
 
 void draw_edits(State& state, const Sphere& bounds) {
-  if (!section("Edit", false)) return;
-  if (ImGui::Button("Undo") && state.can_undo) state.undo = true;
-  ImGui::SameLine();
-  if (ImGui::Button("Redo") && state.can_redo) state.redo = true;
-  ImGui::SameLine();
-  if (ImGui::Button("Save scene")) state.save = true;
-  Edit& edit = state.brush.edit;
-  if (ImGui::Checkbox("Paint with left drag", &state.brush.on) && state.brush.on) state.knife.on = false;
-  choose("Operation", edit.operation);
-  draw_coefficient("Absorption", edit.sigma_a, edit.operation);
-  draw_coefficient("Scattering", edit.sigma_s_prime, edit.operation);
-  draw_image(state, "Pattern", edit.image);
-  draw_image(state, "Mask", edit.mask);
-  slide("Radius", edit.radius, 0.005f * bounds.radius, 0.5f * bounds.radius, "%.1f mm");
-  slide("Depth from", edit.depth_from, 0, bounds.radius, "%.1f mm");
-  slide("Depth to", edit.depth_to, edit.depth_from + 1e-3f * bounds.radius, 2 * bounds.radius, "%.1f mm");
-  slide("Softness", edit.softness, 0, edit.radius, "%.1f mm");
-  tell("Edits", formatted("%zu", state.scene.edits.size()));
+  if (!section("Paint", false)) return;
+  Brush& brush = state.brush;
+  if (bool on = brush.on; ImGui::Checkbox("Paint with left drag (P)", &on)) take_brush(state, on);
+  draw_tools(brush);
+  if (brush.by_colour) draw_paint(brush);
+  slide("Radius", brush.edit.radius, 0.005f * bounds.radius, 0.5f * bounds.radius, "%.1f mm");
+  slide("Depth", brush.edit.depth_to, brush.edit.depth_from + 1e-3f * bounds.radius, 2 * bounds.radius, "%.1f mm");
+  slide("Falloff", brush.edit.softness, 0, brush.edit.radius, "%.1f mm");
+  draw_image(state, "Mask", brush.edit.mask);
+  if (state.lab) draw_coefficients(state, bounds);
+  tell("Strokes", formatted("%zu", state.scene.edits.size()));
 }
 
 }  // namespace quadgraph

@@ -4,6 +4,7 @@
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_vulkan.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <filesystem>
 
@@ -28,6 +29,7 @@ void set_colours() {
   ImGuiStyle& style = ImGui::GetStyle();
   style.WindowRounding = 0;
   style.WindowBorderSize = 0;
+  style.GrabMinSize = 6;  // values are read beside it
   style.FrameRounding = style.GrabRounding = style.PopupRounding = 3;
   style.ItemSpacing = {8, 5};
   style.WindowPadding = {12, 10};
@@ -45,7 +47,7 @@ void set_colours() {
   colour(ImGuiCol_Button, 0.22f, 0.23f, 0.26f);
   colour(ImGuiCol_ButtonHovered, 0.31f, 0.32f, 0.36f);
   colour(ImGuiCol_ButtonActive, 0.80f, 0.52f, 0.24f);
-  colour(ImGuiCol_SliderGrab, 0.80f, 0.52f, 0.24f);
+  colour(ImGuiCol_SliderGrab, 0.80f, 0.52f, 0.24f, 0.75f);
   colour(ImGuiCol_SliderGrabActive, 0.95f, 0.65f, 0.32f);
   colour(ImGuiCol_CheckMark, 0.95f, 0.65f, 0.32f);
   colour(ImGuiCol_PlotHistogram, 0.80f, 0.52f, 0.24f);
@@ -184,7 +186,10 @@ bool Interface::has_keys() const {
 }
 
 bool Interface::has_text() const {
-  return ImGui::GetIO().WantTextInput;
+  const ImGuiContext& context = *ImGui::GetCurrentContext();
+  const bool typing =
+      context.ActiveId != 0 && context.ActiveId == context.InputTextState.ID;  // WantTextInput is a frame late
+  return typing || ImGui::GetIO().WantTextInput;
 }
 
 void Interface::follow_swapchain() {

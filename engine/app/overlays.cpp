@@ -29,6 +29,11 @@ void draw_note(const char* name, const std::string& text, const ImVec4& colour, 
   ImGui::End();
 }
 
+ImVec2 place_of(const glm::vec2& clip, float left) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  return {left + (size.x - left) * 0.5f * (1 + clip.x), size.y * 0.5f * (1 - clip.y)};
+}
+
 }  // namespace
 
 void draw_help(State& state, float unit) {
@@ -110,13 +115,40 @@ void draw_message(const State& state, float left, float unit, float above) {
   draw_note("message", state.message, colour, true, left, ImGui::GetIO().DisplaySize.y - 12 * unit - above, unit);
 }
 
+void draw_question(State& state, float unit) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({0.5f * size.x, 0.4f * size.y}, ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::SetNextWindowFocus();
+  ImGui::Begin("Save the scene first?", nullptr,
+               ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove);
+  ImGui::TextUnformatted("What was changed since the scene was opened or saved is lost otherwise.");
+  ImGui::Dummy({0, 4 * unit});
+  if (ImGui::Button("Save scene (S)")) state.save_first = true;
+  ImGui::SameLine();
+  if (ImGui::Button("Discard (D)")) state.discard = true;
+  ImGui::SameLine();
+  if (ImGui::Button("Cancel (Esc)")) state.keep();
+  ImGui::End();
+}
+
+void draw_ring(const std::vector<glm::vec2>& ring, const glm::vec3& linear, float left, float unit) {
+  if (ring.empty()) return;
+  std::vector<ImVec2> places;
+  for (const glm::vec2& clip : ring) places.push_back(place_of(clip, left));
+  const ImVec4 colour(srgb_encode(linear.x), srgb_encode(linear.y), srgb_encode(linear.z), 1);
+  const auto draw = [&](ImU32 line, float width) {
+    ImGui::GetBackgroundDrawList()->AddPolyline(places.data(), static_cast<int>(places.size()), line,
+                                                ImDrawFlags_Closed, width * unit);
+  };
+  draw(IM_COL32(0, 0, 0, 160), 4);
+  draw(ImGui::GetColorU32(colour), 2.5f);
+  draw(IM_COL32(255, 255, 255, 220), 1);
+}
+
 void draw_knife(const Knife& knife, float left, float unit) {
   if (!knife.cuts()) return;
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
-  const auto place = [&](const glm::vec2& clip) {
-    return ImVec2(left + (size.x - left) * 0.5f * (1 + clip.x), size.y * 0.5f * (1 - clip.y));
-  };
-  ImGui::GetForegroundDrawList()->AddLine(place(*knife.from), place(*knife.to), IM_COL32(255, 170, 80, 255), 2 * unit);
+  ImGui::GetForegroundDrawList()->AddLine(place_of(*knife.from, left), place_of(*knife.to, left),
+                                          IM_COL32(255, 170, 80, 255), 2 * unit);
 }
 
 }  // namespace quadgraph

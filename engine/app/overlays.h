@@ -22,6 +22,12 @@ void draw_convergence(const std::string& text, float left, float unit);
 // The last thing to tell the user, in the picture's lower left corner, `above` what lies there.
 void draw_message(const State& state, float left, float unit, float above);
 
+// Whether to save before the window closes, in the middle.
+void draw_question(State& state, float unit);
+
+// The edge of the brush, clip coordinates, around a spot of its colour; nothing where there is none.
+void draw_ring(const std::vector<glm::vec2>& ring, const glm::vec3& linear, float left, float unit);
+
 // The way of the knife over the picture, which begins at `left`.
 void draw_knife(const Knife& knife, float left, float unit);
 

@@ -6,6 +6,9 @@
 #include <cstdint>
 #include <cstdio>
 
+#include "engine/render/picture/tone_map.h"
+#include "shaders/display/tone_curve.h"
+
 namespace quadgraph {
 
 bool section(const char* name, bool open) {
@@ -34,6 +37,13 @@ bool slide(const char* label, float& value, float low, float high, const char* f
 
 bool slide(const char* label, float& value, const Range& range, const char* format) {
   return slide(label, value, static_cast<float>(range.low), static_cast<float>(range.high), format);
+}
+
+bool colour_button(const char* label, glm::vec3& linear) {
+  glm::vec3 shown(srgb_encode(linear.x), srgb_encode(linear.y), srgb_encode(linear.z));
+  if (!ImGui::ColorEdit3(label, &shown.x, ImGuiColorEditFlags_NoInputs)) return false;
+  linear = {gpu::srgb_decode(shown.x), gpu::srgb_decode(shown.y), gpu::srgb_decode(shown.z)};
+  return true;
 }
 
 void tell(const char* name, const std::string& value) {

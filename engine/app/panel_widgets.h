@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <glm/vec3.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,6 +37,9 @@ bool choose(const char* label, Enum& value) {
 // A slider; whether it was moved. The format is printf's.
 bool slide(const char* label, float& value, float low, float high, const char* format, bool logarithmic = false);
 bool slide(const char* label, float& value, const Range& range, const char* format);
+
+// A button that shows a linear colour and opens a chooser of it; whether another one was chosen.
+bool colour_button(const char* label, glm::vec3& linear);
 
 // A dim name and a value after it.
 void tell(const char* name, const std::string& value);

@@ -19,9 +19,12 @@ void Viewer::save_scene() {
     const std::filesystem::path from_here = std::filesystem::proximate(scene.body);
     if (*from_here.begin() != "..") scene.body = from_here;  // so that the file names it by its own place
     SceneFile(scene).save(path);
+    saved_ = state_.scene;
+    state_.save_first = false;
     state_.say("saved: " + path.string());
   } catch (const std::exception& error) {
     state_.say(error.what(), true);
+    state_.keep();  // what cannot be saved is not thrown away for that
   }
   frames_wanted_ = 3;
 }
@@ -30,11 +33,11 @@ void Viewer::save_scene() {
 Picture Viewer::settled_picture() {
   measured_.frames = 0;
   remake(true);
-  RenderOptions options = state_.scene.render;
+  RenderOptions options = making_->scene.render;
   options.width = shown_part_.width;
   options.height = shown_part_.height;
   options.converge = options.time_limit = 0;
-  Picture picture = engine().render(state_.scene.view, options);
+  Picture picture = engine().render(making_->scene.view, options);
   measured_.frames = 0;  // the mean of those on the screen is lost
   measured_.settled = false;
   return picture;
@@ -43,6 +46,7 @@ Picture Viewer::settled_picture() {
 // The converged picture: the mean that the screen shows at rest, or that of one solve.
 void Viewer::write_picture() {
   writing_ = true;
+  const ToneOptions tone = state_.scene.tone;
   try {
     const bool at_rest = converging_ && converging_->found().steps.size() > 1;
     const Picture picture = at_rest ? converging_->picture() : settled_picture();
@@ -53,8 +57,8 @@ void Viewer::write_picture() {
       exr = png;
       exr.replace_extension(".exr");
     } while (std::filesystem::exists(png) || std::filesystem::exists(exr));
-    write_png(png, picture, state_.scene.tone, metadata);
-    write_exr(exr, picture, state_.scene.tone, metadata);
+    write_png(png, picture, tone, metadata);
+    write_exr(exr, picture, tone, metadata);
     state_.say("saved: " + png.string() + ", " + exr.string());
   } catch (const DeviceError&) {
     throw;
@@ -62,6 +66,7 @@ void Viewer::write_picture() {
     state_.say(error.what(), true);
   }
   writing_ = false;
+  making_.reset();
   frames_wanted_ = 3;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <optional>
@@ -39,6 +40,13 @@ struct Knife {
   bool cuts() const { return from && to && glm::distance(*from, *to) > 0.05f; }
 };
 
+// How a body is shown that shortest paths need not show.
+struct Uncut {
+  Method method;
+  std::uint32_t active_layers;  // of that method
+  Show show;
+};
+
 struct State {
   Scene scene;
   std::vector<Method> methods;  // that the file's levels serve
@@ -46,18 +54,36 @@ struct State {
   std::size_t light = 0;        // the selected one
   Brush brush;
   Knife knife;
-  std::size_t cut = 0;  // the selected one
+  std::optional<Uncut> uncut;  // how it was shown before it was cut, until it is whole again
+  std::size_t cut = 0;         // the selected one
   bool can_undo = false, can_redo = false;
   std::string material_text, image_text;     // being typed
   std::optional<LightKind> kind_with_image;  // what the selected light is to be once its image is known
+  std::string file_text, sky_text;
+  float longest_mm = 80;  // of a mesh that is opened
   bool panel = true, help = false;
+  bool lab = false;                                          // the panel has all, else what is looked at
+  bool turntable = false;                                    // the body turns
+  bool compares_by_key = false, compares_by_button = false;  // what was before the last step is shown
+  bool asks = false;                                         // whether to save what was changed, before it ends
   std::string preview;   // what is shown in the place of the body, empty where it is the body
   std::string message;   // the last thing to tell the user
   bool refused = false;  // it is a complaint
 
   // Wishes that the viewer fulfils.
   bool focus_panel = false, focus_picture = false;
-  bool screenshot = false, save = false, undo = false, redo = false, full_screen = false, quit = false;
+  bool screenshot = false, save = false, undo = false, redo = false, full_screen = false;
+  std::filesystem::path opening;             // asks first too
+  bool quit = false;                         // asks first where something was changed
+  bool discard = false, save_first = false;  // answers to the question
+
+  // Nothing is quit or opened.
+  void keep() {
+    asks = quit = discard = save_first = false;
+    opening.clear();
+  }
+
+  bool compares() const { return compares_by_key || compares_by_button; }
 
   // `methods`, and shortest-path, which needs no levels.
   std::vector<Method> all_methods() const {

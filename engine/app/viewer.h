@@ -8,6 +8,7 @@
 #include "engine/app/history.h"
 #include "engine/app/interface.h"
 #include "engine/app/pace.h"
+#include "engine/app/picker.h"
 #include "engine/app/preview.h"
 #include "engine/app/state.h"
 #include "engine/app/window.h"
@@ -40,6 +41,7 @@ class Viewer {
 
  private:
   using Clock = std::chrono::steady_clock;
+  static constexpr double settle_after = 0.25;  // seconds without a change
 
   // The part of the window that shows the picture, pixels.
   struct Part {
@@ -48,26 +50,46 @@ class Viewer {
     bool operator==(const Part&) const = default;
   };
 
+  // Thrown where the picture that is being made is not wanted any more.
+  struct Interrupted {};
+
+  // What is being made.
+  struct Making {
+    Scene scene;
+    Part part;
+    bool settles = false;    // to the tolerance
+    bool droppable = false;  // where another is wanted, it ends
+  };
+
   Engine& engine() const { return stage_.engine(); }  // another one once the body is another
   Part part() const;
   CommandContext command_context() const;
   double patience() const;
   void handle(const std::vector<Event>& events);
   void handle_key(const KeyEvent& event);
+  void answer_question(int key);
   void handle_motion(const MotionEvent& event);
   void begin_or_end_drag(const ButtonEvent& event);
   glm::vec2 pointer() const;
   std::optional<Touch> pointed_at() const;
+  std::vector<glm::vec2> brush_ring() const;
+  void touch_down(const Touch& touch);
+  void listen();
+  std::vector<Event> take_events();
   void fulfil_wishes();
+  void hear(bool half_way);
+  bool unwanted() const;
   void build_widgets(const std::vector<Event>& events);
   void follow_preview();
   void change_over(const std::filesystem::path& body);
   void take_up_body();
   void keep_up();
+  void refuse(const Scene& made, const std::optional<Scene>& before, const std::string& why);
   void remake(bool settle);
-  void solve(bool settle);
-  SolveOptions options_of_solve(bool settle) const;
-  void make_picture(bool settle, bool gather);
+  bool must_solve() const;
+  void solve();
+  SolveOptions options_of_solve() const;
+  void make_picture(bool gather);
   bool converges() const;
   void converge();
   void begin_convergence();
@@ -76,6 +98,13 @@ class Viewer {
   void show(const device::Buffer& pixels);
   void measure(Clock::time_point start, double draw_ms, bool gathered);
   void save_scene();
+  void leave_or_ask();
+  bool replaces_work() const;
+  bool opens() const { return !state_.opening.empty() && !state_.asks; }
+  void open_file(const std::filesystem::path& file);
+  void show_opened(const Scene& scene);
+  Scene wanted_scene() const;
+  void turn();
   void present();
   Picture settled_picture();
   void write_picture();
@@ -90,8 +119,11 @@ class Viewer {
   Saving saving_;
   std::optional<Preview> preview_;  // what is shown, until it is changed for the baked body
   std::uint32_t pictures_written_ = 0, scenes_written_ = 0;
+  Picker picker_;
   State state_;
   History history_;
+  Scene saved_;           // as it was opened or saved last
+  bool leaving_ = false;  // the window closes, and nothing is asked any more
   Measured measured_;
   bool dragging_ = false;
   bool painting_ = false;  // the drag is a stroke of the brush
@@ -99,15 +131,19 @@ class Viewer {
   double pointer_x_ = 0, pointer_y_ = 0;  // pixels
   std::optional<Scene> shown_;            // empty before the first picture
   Part shown_part_;
-  const device::Buffer* pixels_ = nullptr;   // of shown_part_, on the presenter
-  device::Buffer presented_;                 // where the engine has another device
-  bool solved_ = false;                      // the engine has a solution
-  bool solved_exactly_ = false;              // it was solved to the tolerance
+  const device::Buffer* pixels_ = nullptr;  // of shown_part_, on the presenter
+  device::Buffer presented_;                // where the engine has another device
+  bool solved_ = false;                     // the engine has a solution
+  bool solved_exactly_ = false;             // it was solved to the tolerance
+  std::optional<Making> making_;
+  std::optional<Clock::time_point> unwanted_since_;
+  Clock::time_point turned_;                 // when the turntable went on last
+  Clock::time_point answered_;               // when a frame was presented last
   Clock::time_point changed_;                // when something changed last
   std::vector<Clock::time_point> pictures_;  // of the last second
   std::optional<Stage> rest_;                // on which the picture goes on converging; made at first use
   std::optional<Converging> converging_;     // of what is shown, at rest
-  bool writing_ = false;                     // a picture, for which what the user does has to wait
+  bool writing_ = false;                     // a picture, which what the user does leaves as it was
   int frames_wanted_ = 3;                    // widgets settle over several frames
 };
 

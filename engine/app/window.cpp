@@ -85,6 +85,9 @@ void Window::listen() {
     const auto ratio = static_cast<double>(self.pixels_per_unit());
     self.events_.push_back(MotionEvent{x * ratio, y * ratio});
   });
+  glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** files) {
+    if (count > 0) owner(window).events_.push_back(DropEvent{files[0]});
+  });
   glfwSetScrollCallback(
       window_, [](GLFWwindow* window, double x, double y) { owner(window).events_.push_back(ScrollEvent{x, y}); });
 }
@@ -133,17 +136,12 @@ void Window::show_busy(bool busy) {
   glfwSetWindowTitle(window_, (title_ + (busy ? " ..." : "")).c_str());
 }
 
-bool Window::wanted() const {
-  const auto acts = [](const Event& event) { return !std::holds_alternative<MotionEvent>(event); };
-  return closing() || std::any_of(events_.begin(), events_.end(), acts);
-}
-
 bool Window::closing() const {
   return glfwWindowShouldClose(window_) == GLFW_TRUE;
 }
 
-void Window::close() {
-  glfwSetWindowShouldClose(window_, GLFW_TRUE);
+void Window::keep_open() {
+  glfwSetWindowShouldClose(window_, GLFW_FALSE);
 }
 
 void Window::toggle_full_screen() {
@@ -176,7 +174,7 @@ std::vector<Event> Window::take_events() {
     const Event& next = events_.front();
     const auto* key = std::get_if<KeyEvent>(&next);
     const auto* button = std::get_if<ButtonEvent>(&next);
-    if (key != nullptr && !keys.insert(key->key).second) break;
+    if (key != nullptr && (!buttons.empty() || !keys.insert(key->key).second)) break;
     if (button != nullptr && (moved || !buttons.insert(button->button).second)) break;
     moved = moved || std::holds_alternative<MotionEvent>(next);
     taken.push_back(next);

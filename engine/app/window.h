@@ -30,7 +30,10 @@ struct MotionEvent {
 struct ScrollEvent {
   double x, y;  // steps
 };
-using Event = std::variant<KeyEvent, TextEvent, ButtonEvent, MotionEvent, ScrollEvent>;
+struct DropEvent {
+  std::filesystem::path file;  // the first of those that were dropped
+};
+using Event = std::variant<KeyEvent, TextEvent, ButtonEvent, MotionEvent, ScrollEvent, DropEvent>;
 
 class Window {
  public:
@@ -58,21 +61,19 @@ class Window {
   void show_busy(bool busy);
 
   bool closing() const;
-  void close();
+  void keep_open();  // though it is to be closed
   void toggle_full_screen();
 
   // Collects what has happened, after waiting for something at most so many seconds.
   void poll(double wait_seconds);
 
   // What has happened and has not been taken yet, up to what must be left for the next frame because Dear ImGui 1.86
-  // looks at keys and pointer once a frame: a key or button that changes again, and a button after a motion.
+  // looks at keys and pointer once a frame: a key or button that changes again, a button after a motion, and a key
+  // after a button, which may go to what that has opened.
   std::vector<Event> take_events();
 
   // Whether there is anything to take.
   bool events_wait() const { return !events_.empty(); }
-
-  // Whether there is more than motions of the pointer, or the window is to be closed.
-  bool wanted() const;
 
  private:
   void listen();

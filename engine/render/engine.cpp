@@ -305,11 +305,16 @@ const std::optional<Legend>& Engine::legend() const {
   return implementation_->legend;
 }
 
+std::vector<glm::vec3> Engine::present_vertices() const {
+  const auto turn = implementation_->in_use.take();
+  return device::download<glm::vec3>(implementation_->device, implementation_->mesh.vertices);
+}
+
 std::optional<Picked> Engine::pick(const View& view, float aspect, const glm::vec2& at) const {
   const auto turn = implementation_->in_use.take();
   auto& self = *implementation_;
-  const auto vertices = device::download<glm::vec3>(self.device, self.mesh.vertices);
-  return quadgraph::pick(self.graph.display(), vertices, place_camera(view, self.bounds, aspect), at, self.cut_tools);
+  const Camera camera = place_camera(view, self.bounds, aspect);
+  return quadgraph::pick(self.graph.display(), present_vertices(), camera, at, self.cut_tools);
 }
 
 Leaving Engine::leaving(std::span<const std::uint32_t> face, std::span<const glm::vec3> direction) {

@@ -48,6 +48,7 @@ OperatorBuffers::OperatorBuffers(device::Device& device, const Level& level, std
   const SlicedColumns columns = fem               ? slice(vertex_neighbours(level), slice_rows)
                                 : on_grid(method) ? grid_columns(level, slice_rows)
                                                   : node_columns(level, slice_rows);
+  device.heed();
   if (on_grid(method)) layer_ends = ends_of(grid_layers(level));
   if (!fem) to_phi = buffer(count * sizeof(glm::vec3), rows, "to_phi");
   entries = static_cast<std::uint32_t>(columns.column.size());
@@ -90,6 +91,7 @@ void OperatorBuffers::make_room(device::Device& device, const Level& level, bool
 
 void OperatorBuffers::upload_shape(device::Device& device, const Level& level) {
   const Neighbours rows = vertex_neighbours(level);
+  device.heed();
   const FemShape shape = fem_shape(level, rows, slice(rows, slice_rows));
   const std::string prefix = "assembly/" + prefix_;
   entry_shape = upload(device, shape.entry, prefix + "entry_shape");
@@ -99,6 +101,7 @@ void OperatorBuffers::upload_shape(device::Device& device, const Level& level) {
 
 void OperatorBuffers::upload_rings(device::Device& device, const Level& level) {
   const Neighbours rows = vertex_neighbours(level);
+  device.heed();
   const FemRings rings = fem_rings(level, rows, slice(rows, slice_rows));
   const std::string prefix = "assembly/" + prefix_;
   edge_count = static_cast<std::uint32_t>(rings.edge_entry.size());

@@ -29,7 +29,10 @@ void Operators::create(device::Device& device, std::span<const Level> levels, co
     for (std::uint32_t i = 0; i < count; ++i) write_gates(device, of_key, i);
     levels_.emplace(key, std::move(of_key));
   }
-  for (std::uint32_t i = 0; i < count; ++i) at(key, i).make_room(device, levels[i], even, two_steps || i + 1 == count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    device.heed();  // making room is host work
+    at(key, i).make_room(device, levels[i], even, two_steps || i + 1 == count);
+  }
 }
 
 // What opens the gates of the level's state.

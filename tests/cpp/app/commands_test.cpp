@@ -6,6 +6,8 @@
 
 #include <set>
 
+#include "engine/app/modes.h"
+
 using namespace quadgraph;
 
 namespace {
@@ -34,4 +36,50 @@ TEST_CASE("a key goes through all views of the inside, and past those of a certa
     CHECK(!seen.contains(Quantity::sigma_a_deviation));
     CHECK(!seen.contains(Quantity::sigma_s_prime_resolution));
   }
+}
+
+TEST_CASE("Esc leaves a mode before it quits") {
+  const CommandContext context;
+  State state;
+  for (const int key : {GLFW_KEY_F1, GLFW_KEY_P, GLFW_KEY_K}) {
+    CHECK(run_command(key, 0, state, context));
+    CHECK((state.help || state.brush.on || state.knife.on));
+    CHECK(run_command(GLFW_KEY_ESCAPE, 0, state, context));
+    CHECK(!(state.help || state.brush.on || state.knife.on || state.quit));
+  }
+  CHECK(run_command(GLFW_KEY_ESCAPE, 0, state, context));
+  CHECK(state.quit);
+}
+
+TEST_CASE("the knife takes a method that can cut, and gives it back when nothing is cut any more") {
+  const CommandContext context;
+  State state;
+  state.methods = {Method::fem, Method::quadgraph_fv};
+  state.scene.solve.method = Method::quadgraph_fv;
+  state.scene.render.show.quantity = Quantity::phi;
+  const Scene before = state.scene;
+  const auto press = [&](int key) {
+    CHECK(run_command(key, 0, state, context));
+    keep_method(state);
+  };
+  press(GLFW_KEY_K);
+  CHECK(state.scene.solve.method == Method::shortest_path);
+  CHECK(state.scene.render.show == Show{});
+  press(GLFW_KEY_K);
+  CHECK(state.scene == before);
+  press(GLFW_KEY_K);
+  state.scene.cuts.resize(1);
+  press(GLFW_KEY_ESCAPE);
+  CHECK(!state.knife.on);
+  CHECK(state.scene.solve.method == Method::shortest_path);  // there is still something cut
+  press(GLFW_KEY_G);
+  CHECK(state.scene.solve.method == Method::shortest_path);
+  CHECK(state.refused);
+  state.scene.cuts.clear();  // as undo does
+  keep_method(state);
+  CHECK(state.scene == before);
+  state.scene.solve.method = Method::shortest_path;  // by hand: this stays
+  press(GLFW_KEY_K);
+  press(GLFW_KEY_K);
+  CHECK(state.scene.solve.method == Method::shortest_path);
 }

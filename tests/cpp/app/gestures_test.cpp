@@ -164,7 +164,7 @@ TEST_CASE("every key does something, and no two share one") {
     const bool wished = state.quit || state.full_screen || state.undo || state.redo || state.save || state.screenshot ||
                         state.focus_panel || state.help != before.help || state.panel != before.panel ||
                         state.light != before.light || state.brush.on != before.brush.on ||
-                        state.knife.on != before.knife.on;
+                        state.knife.on != before.knife.on || state.turntable || state.compares();
     CHECK_MESSAGE((wished || state.scene != before.scene), commands[i].keys);
   }
   State state;

@@ -30,8 +30,7 @@ pytestmark = [
 ]
 
 PANEL = 340  # pixels of the panel's width at a scale of 1
-FRAME = 84  # height of the section that says what the picture has taken, which is closed by a click
-FIELD = 208  # height at which materials are typed, once it is
+FIELD = 412  # height at which materials are typed
 SIZE = (900, 600)
 LIGHTS = ["--light", "directional:-0.94,-0.1,0.34:1"]  # from azimuth 110
 
@@ -166,8 +165,8 @@ class Hand:
         return now
 
     def close(self, key: str = "q") -> None:
-        """Quit by key; the program must end well."""
-        self.keys(key)
+        """Quit by key, without saving; the program must end well."""
+        self.keys(key, "d")  # asked only where something was changed
         output, errors = self.process.communicate(timeout=20)
         assert (self.process.returncode, output, errors) == (0, "", "")
 
@@ -267,6 +266,8 @@ def test_a_stroke_of_the_brush_shows_where_it_went_and_can_be_taken_back(open_wi
     assert stroke.mean() > 20
     assert stroke.mean() > 3 * beside.mean()
 
+    hand.keys("Escape")  # leaves the brush, whose ring is on the body
+    painted = hand.picture()
     hand.keys("ctrl+z")
     assert np.abs(hand.picture() - before).max() <= 1
     hand.keys("ctrl+y")
@@ -303,11 +304,33 @@ def test_the_window_changes_its_size(open_window):
     hand.close("Escape")
 
 
+def test_what_is_not_saved_is_asked_for_before_it_ends(open_window, tmp_path: Path):
+    """By both keys; Esc leaves brush and question first, and where nothing was changed nothing is asked."""
+    hand = open_window("--material", "wholemilk")
+    before = hand.picture()
+    hand.keys("Right", "p", "Escape", "m")  # a turned view is nothing to save
+    changed = hand.other_picture(before)
+    for key in ("Escape", "q"):
+        hand.keys(key)
+        asked = hand.other_picture(changed)
+        assert not np.array_equal(asked, changed)
+        hand.keys("Escape")
+        assert np.array_equal(hand.other_picture(asked), changed)
+    hand.keys("q", "s")
+    output, errors = hand.process.communicate(timeout=20)
+    assert (hand.process.returncode, output, errors) == (0, "", "")
+    saved = tmp_path / "tiny-1.json"
+    assert json.loads(saved.read_text())["material"] != "wholemilk"
+    again = open_window(body=saved)
+    again.picture()
+    again.keys("Escape")
+    assert again.process.wait(timeout=20) == 0
+
+
 def test_a_wrong_material_is_told_and_changes_nothing(open_window):
     """Typed into the panel."""
     hand = open_window("--material", "wholemilk")
     hand.settle()
-    hand.do("mousemove", "100", str(FRAME), "click", "1")
     before = hand.picture()
     hand.do("mousemove", "150", str(FIELD), "click", "--repeat", "2", "1", "type", "--delay", "20", "granite")
     hand.keys("Return")

@@ -1,0 +1,153 @@
+// What the viewer does with keys and pointer.
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+
+#include "engine/app/viewer.h"
+#include "engine/scene/gestures.h"
+
+namespace quadgraph {
+namespace {
+
+constexpr int ring_points = 48;
+constexpr float degrees_per_height = 180.0f;  // of a drag over the height of the picture
+
+}  // namespace
+
+void Viewer::handle(const std::vector<Event>& events) {
+  for (const Event& event : events) {
+    if (const auto* key = std::get_if<KeyEvent>(&event)) {
+      handle_key(*key);
+    } else if (const auto* motion = std::get_if<MotionEvent>(&event)) {
+      handle_motion(*motion);
+    } else if (const auto* button = std::get_if<ButtonEvent>(&event)) {
+      begin_or_end_drag(*button);
+    } else if (const auto* drop = std::get_if<DropEvent>(&event)) {
+      state_.opening = drop->file;
+    } else if (const auto* scroll = std::get_if<ScrollEvent>(&event); scroll != nullptr && !interface_.has_pointer()) {
+      const CommandContext context = command_context();
+      state_.scene.view = zoomed(state_.scene.view, context.bounds, context.aspect, static_cast<float>(scroll->y));
+    }
+  }
+}
+
+void Viewer::begin_or_end_drag(const ButtonEvent& event) {
+  dragging_ = event.action == GLFW_PRESS && !interface_.has_pointer();
+  drag_button_ = event.button;
+  drag_mods_ = event.mods;
+  if (dragging_) state_.focus_picture = true;
+  const bool plain = event.button == GLFW_MOUSE_BUTTON_LEFT && event.mods == 0;
+  const auto touch = dragging_ && plain && state_.brush.on ? pointed_at() : std::nullopt;
+  painting_ = touch.has_value();
+  if (touch) touch_down(*touch);
+  Knife& knife = state_.knife;
+  if (!dragging_ && knife.cuts()) {
+    const CommandContext context = command_context();
+    state_.cut = state_.scene.cuts.size();
+    state_.scene.cuts.push_back(cut_along(state_.scene.view, context.bounds, context.aspect, *knife.from, *knife.to));
+  }
+  knife.from = dragging_ && plain && knife.on ? std::optional(pointer()) : std::nullopt;
+  knife.to.reset();
+}
+
+void Viewer::touch_down(const Touch& touch) {
+  Brush& brush = state_.brush;
+  if (brush.tool == BrushTool::paint) return brush.begin(state_.scene, touch);
+  if (brush.tool == BrushTool::erase) return Brush::erase(state_.scene, touch);
+  brush.pick(state_.scene, touch);
+  brush.tool = BrushTool::paint;
+}
+
+void Viewer::handle_key(const KeyEvent& event) {
+  const bool plain = event.mods == 0 && !interface_.has_text();
+  if (event.key == GLFW_KEY_C) state_.compares_by_key = plain && event.action != GLFW_RELEASE && !state_.asks;
+  if (event.action == GLFW_RELEASE) return;
+  if (state_.asks) return answer_question(event.key);
+  if (interface_.has_text()) return;
+  if (interface_.has_keys()) {
+    // The panel has the keys that move in it.
+    constexpr int theirs[] = {GLFW_KEY_LEFT, GLFW_KEY_RIGHT, GLFW_KEY_UP,    GLFW_KEY_DOWN,
+                              GLFW_KEY_TAB,  GLFW_KEY_SPACE, GLFW_KEY_ENTER, GLFW_KEY_HOME};
+    if (event.key == GLFW_KEY_ESCAPE) state_.focus_picture = true;
+    if (event.key == GLFW_KEY_ESCAPE || std::find(std::begin(theirs), std::end(theirs), event.key) != std::end(theirs))
+      return;
+  }
+  run_command(event.key, event.mods, state_, command_context());
+}
+
+// Of whether to save before it ends.
+void Viewer::answer_question(int key) {
+  if (key == GLFW_KEY_S || key == GLFW_KEY_ENTER) state_.save_first = true;
+  if (key == GLFW_KEY_D) state_.discard = true;
+  if (key == GLFW_KEY_ESCAPE) state_.keep();
+}
+
+void Viewer::handle_motion(const MotionEvent& event) {
+  const CommandContext context = command_context();
+  const auto height = static_cast<float>(std::max(part().height, 1u));
+  const float right = static_cast<float>(event.x - pointer_x_) / height;
+  const float up = static_cast<float>(pointer_y_ - event.y) / height;
+  pointer_x_ = event.x;
+  pointer_y_ = event.y;
+  if (!dragging_) return;
+  if (painting_) {
+    const auto touch = pointed_at();
+    if (!touch) return;
+    if (state_.brush.tool == BrushTool::paint) state_.brush.lead(state_.scene, *touch);
+    if (state_.brush.tool == BrushTool::erase) Brush::erase(state_.scene, *touch);
+    return;
+  }
+  if (state_.knife.from) {
+    state_.knife.to = pointer();
+    return;
+  }
+  View& view = state_.scene.view;
+  if (drag_button_ != GLFW_MOUSE_BUTTON_LEFT) {
+    view = panned(view, context.bounds, context.aspect, right, up);
+  } else if ((drag_mods_ & (GLFW_MOD_CONTROL | GLFW_MOD_SHIFT)) == 0) {
+    view = orbited(view, context.bounds, degrees_per_height * right, degrees_per_height * up);
+  } else if (state_.light < state_.scene.lights.size()) {
+    Light& light = state_.scene.lights[state_.light];
+    light = turned(light, view, context.bounds, degrees_per_height * right, degrees_per_height * up);
+  }
+}
+
+// In clip coordinates.
+glm::vec2 Viewer::pointer() const {
+  const Part now = part();
+  const glm::vec2 share((pointer_x_ - now.left) / std::max(now.width, 1u), pointer_y_ / std::max(now.height, 1u));
+  return {2 * share.x - 1, 1 - 2 * share.y};
+}
+
+// The brush's edge on the body around the pointer, clip coordinates; empty where it is not on the body.
+std::vector<glm::vec2> Viewer::brush_ring() const {
+  if (!state_.brush.on || interface_.has_pointer()) return {};
+  const CommandContext context = command_context();
+  const Camera camera = place_camera(state_.scene.view, context.bounds, context.aspect);
+  const auto found = picker_.pick(camera, pointer());
+  if (!found) return {};
+  const glm::vec3 side = std::abs(found->normal.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
+  const glm::vec3 u = glm::normalize(glm::cross(found->normal, side)), v = glm::cross(found->normal, u);
+  std::vector<glm::vec2> ring;
+  for (int i = 0; i < ring_points; ++i) {
+    const float angle = glm::radians(360.0f * static_cast<float>(i) / ring_points);
+    const glm::vec3 point = found->position + state_.brush.edit.radius * (std::cos(angle) * u + std::sin(angle) * v);
+    const glm::vec4 clip = camera.clip(point);
+    ring.emplace_back(clip.x / clip.w, clip.y / clip.w);
+  }
+  return ring;
+}
+
+// Where the pointer meets the body.
+std::optional<Touch> Viewer::pointed_at() const {
+  const CommandContext context = command_context();
+  const Camera camera = place_camera(state_.scene.view, context.bounds, context.aspect);
+  const auto found = picker_.pick(camera, pointer());
+  if (!found) return std::nullopt;
+  return touched(*found, camera);
+}
+
+}  // namespace quadgraph

@@ -1,0 +1,112 @@
+#include "engine/app/material_section.h"
+
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+
+#include "engine/app/material_look.h"
+#include "engine/app/panel_widgets.h"
+#include "engine/optics/material.h"
+#include "engine/render/picture/tone_map.h"
+#include "engine/scene/volume.h"
+
+namespace quadgraph {
+namespace {
+
+constexpr int swatches_in_row = 8;
+constexpr float least_mm = 0.02f, most_mm = 50;  // of how far light goes
+
+// As rough as its name says.
+void take(State& state, const std::string& name) {
+  state.scene.material = name;
+  state.scene.render.roughness.reset();
+}
+
+ImVec4 shown(const glm::vec3& linear) {
+  return {srgb_encode(linear.x), srgb_encode(linear.y), srgb_encode(linear.z), 1};
+}
+
+// A button of two colours, the second in its lower right half; whether it was pressed.
+bool swatch_button(const Swatch& swatch, bool chosen, const ImVec2& size) {
+  const bool pressed = ImGui::InvisibleButton(swatch.name.c_str(), size);
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  ImDrawList* draw = ImGui::GetWindowDrawList();
+  draw->AddRectFilled(low, high, ImGui::GetColorU32(shown(swatch.look.colour)), 3);
+  draw->AddTriangleFilled({high.x, low.y}, high, {low.x, high.y}, ImGui::GetColorU32(shown(swatch.look.second)));
+  const bool marked = chosen || ImGui::IsItemHovered() || ImGui::IsItemFocused();
+  if (marked) draw->AddRect(low, high, ImGui::GetColorU32(ImGuiCol_CheckMark), 3, 0, 2);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", swatch.name.c_str());
+  return pressed;
+}
+
+void draw_swatches(State& state, float unit) {
+  const float gap = 4 * unit;
+  const float wide = (ImGui::GetContentRegionAvail().x - gap * (swatches_in_row - 1)) / swatches_in_row;
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {gap, gap});
+  int at = 0;
+  for (const Swatch& swatch : swatches()) {
+    if (at++ % swatches_in_row != 0) ImGui::SameLine();
+    const bool chosen = state.scene.material == swatch.name;
+    if (swatch_button(swatch, chosen, {wide, 22 * unit})) take(state, swatch.name);
+  }
+  ImGui::PopStyleVar();
+}
+
+void draw_preset(State& state) {
+  const auto& names = material_names();
+  const auto found = std::find(names.begin(), names.end(), state.scene.material);
+  const char* shown = found == names.end() ? "Custom" : found->c_str();
+  if (!ImGui::BeginCombo("Preset", shown, ImGuiComboFlags_HeightLarge)) return;
+  for (const std::string& name : names) {
+    const bool chosen = name == state.scene.material;
+    if (ImGui::Selectable(name.c_str(), chosen)) take(state, name);
+    if (chosen) ImGui::SetItemDefaultFocus();
+  }
+  ImGui::EndCombo();
+}
+
+// What is changed here makes a material of one colour of the one that was there, as rough as that.
+void draw_look(State& state) {
+  if (const auto look = look_of(state.scene.material)) {
+    MaterialLook changed = *look;
+    const bool other_colour = colour_button("Colour##material", changed.colour);
+    const bool other_distance = slide("Light goes", changed.distance, least_mm, most_mm, "%.2f mm", true);
+    if (other_colour || other_distance) {
+      auto& asked = state.scene.render.roughness;
+      if (!asked) asked = stated_roughness(state.scene.material);
+      state.scene.material = material_of(changed);
+    }
+  }
+  auto& asked = state.scene.render.roughness;
+  float roughness = asked.value_or(stated_roughness(state.scene.material).value_or(default_roughness));
+  if (slide("Roughness", roughness, roughness_range, "%.2f")) asked = roughness;
+}
+
+void draw_text(State& state) {
+  if (!ImGui::IsAnyItemActive()) state.material_text = state.scene.material;
+  ImGui::PushItemWidth(-1);
+  if (ImGui::InputTextWithHint("##text", "marble,sigma_a=.01/.02/.05", &state.material_text,
+                               ImGuiInputTextFlags_EnterReturnsTrue)) {
+    try {
+      check_material_text(state.material_text);
+      state.scene.material = state.material_text;
+      state.say("");
+    } catch (const std::exception& error) {
+      state.say(error.what(), true);
+    }
+  }
+  ImGui::PopItemWidth();
+}
+
+}  // namespace
+
+void draw_material(State& state, float unit) {
+  if (!section("Material")) return;
+  draw_preset(state);
+  draw_swatches(state, unit);
+  draw_look(state);
+  draw_text(state);
+}
+
+}  // namespace quadgraph

@@ -1,0 +1,18 @@
+#include "engine/app/picker.h"
+
+namespace quadgraph {
+
+void Picker::follow(Stage& stage) {
+  const QuadGraph& graph = stage.engine().graph();
+  if (graph_ != &graph || deformation_ != stage.scene().deformation) vertices_ = stage.engine().present_vertices();
+  graph_ = &graph;
+  deformation_ = stage.scene().deformation;
+  tools_ = path_tools(stage.scene().cuts);
+}
+
+std::optional<Picked> Picker::pick(const Camera& camera, const glm::vec2& at) const {
+  if (graph_ == nullptr) return std::nullopt;
+  return quadgraph::pick(graph_->display(), vertices_, camera, at, tools_);
+}
+
+}  // namespace quadgraph

@@ -1,0 +1,28 @@
+// What lies under the pointer, told at any time: also while the engine computes.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/render/display/pick.h"
+#include "engine/scene/stage.h"
+
+namespace quadgraph {
+
+class Picker {
+ public:
+  // Takes up body, shape and cuts of what the stage shows, where they are others than before. The stage must keep its
+  // engine until the next call.
+  void follow(Stage& stage);
+
+  // As the function pick, of what was followed last; empty before.
+  std::optional<Picked> pick(const Camera& camera, const glm::vec2& at) const;
+
+ private:
+  const QuadGraph* graph_ = nullptr;
+  std::vector<Deformer> deformation_;
+  std::vector<glm::vec3> vertices_;  // mm, where they are now
+  std::vector<gpu::PathTool> tools_;
+};
+
+}  // namespace quadgraph
