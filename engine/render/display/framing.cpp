@@ -57,13 +57,13 @@ Extent turned_extent(std::span<const glm::vec3> points, const glm::dvec3& centre
 }  // namespace
 
 // The four planes through the eye that bound the picture touch the body, or two of them that face each other do.
-OutlineFit fit_outline(std::span<const glm::vec3> points, const glm::dvec3& centre, const CameraAxes& axes, double slope,
-                       double aspect, const glm::dvec3& upright) {
+OutlineFit fit_outline(std::span<const glm::vec3> points, const glm::dvec3& centre, const CameraAxes& axes,
+                       double slope, double aspect, const glm::dvec3& upright) {
   const bool parallel = slope == 0, turning = upright != glm::dvec3(0);
   const double filled = 1 - outline_margin;
   const glm::dvec2 slopes = filled * slope * glm::dvec2(aspect, 1);
-  const Extent extent = turning ? turned_extent(points, centre, axes, slopes, upright)
-                                : extent_of(points, centre, axes, slopes);
+  const Extent extent =
+      turning ? turned_extent(points, centre, axes, slopes, upright) : extent_of(points, centre, axes, slopes);
   const glm::dvec2 middle(0.5 * (extent.right - extent.left), 0.5 * (extent.up - extent.down));
   const double across = 0.5 * (extent.right + extent.left), upward = 0.5 * (extent.up + extent.down);
   constexpr double least = 1e-6;  // mm; of a body that is a point

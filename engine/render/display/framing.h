@@ -24,7 +24,7 @@ struct OutlineFit {
 // slope: tangent of half the vertical field of view, 0: parallel rays. aspect: width / height. upright: the axis about
 // which the points, mm, turn through the centre and are to be seen all the time, so that the picture's middle is on it;
 // (0, 0, 0) if they stand still.
-OutlineFit fit_outline(std::span<const glm::vec3> points, const glm::dvec3& centre, const CameraAxes& axes, double slope,
-                       double aspect, const glm::dvec3& upright);
+OutlineFit fit_outline(std::span<const glm::vec3> points, const glm::dvec3& centre, const CameraAxes& axes,
+                       double slope, double aspect, const glm::dvec3& upright);
 
 }  // namespace quadgraph

@@ -20,7 +20,8 @@ Sphere bar() {
   std::vector<glm::vec3> points;
   for (int i = 0; i < 8; ++i) {
     const glm::vec3 side(i & 1 ? 40 : -40, i & 2 ? 2 : -2, i & 4 ? 1 : -1);
-    points.push_back(glm::vec3(7, -3, 11) + glm::vec3(0.8f * side.x - 0.6f * side.y, 0.6f * side.x + 0.8f * side.y, side.z));
+    points.push_back(glm::vec3(7, -3, 11) +
+                     glm::vec3(0.8f * side.x - 0.6f * side.y, 0.6f * side.x + 0.8f * side.y, side.z));
   }
   Sphere body = bounding_sphere(points);
   body.outline = std::make_shared<const std::vector<glm::vec3>>(points);
@@ -44,7 +45,8 @@ void at_many_places(const Look& look) {
   for (const float aspect : {0.4f, 1.0f, 2.5f}) {
     for (const float elevation : {-90.0f, -20.0f, 0.0f, 35.0f, 90.0f}) {
       for (const float azimuth : {0.0f, 33.0f, 90.0f, 217.0f}) {
-        for (const UpAxis up : {UpAxis::y, UpAxis::z}) look(View{.azimuth = azimuth, .elevation = elevation, .up = up}, aspect);
+        for (const UpAxis up : {UpAxis::y, UpAxis::z})
+          look(View{.azimuth = azimuth, .elevation = elevation, .up = up}, aspect);
       }
     }
   }
@@ -52,7 +54,8 @@ void at_many_places(const Look& look) {
 
 }  // namespace
 
-TEST_CASE("the outline of a long thin body touches the margin and never leaves the picture, in perspective and without") {
+TEST_CASE(
+    "the outline of a long thin body touches the margin and never leaves the picture, in perspective and without") {
   const Sphere body = bar();
   at_many_places([&](View view, float aspect) {
     for (const bool parallel : {false, true}) {
@@ -97,7 +100,8 @@ TEST_CASE("a body that turns stays in the picture, which stays where it is") {
 
 TEST_CASE("a distance, places or a height that are said count as before") {
   const Sphere body = bar(), sphere{body.centre, body.radius};
-  View views[] = {{.azimuth = 33, .distance = 200.0f}, {.azimuth = 33}, {.eye = glm::vec3(90, 80, 70), .look_at = glm::vec3(1)}};
+  View views[] = {
+      {.azimuth = 33, .distance = 200.0f}, {.azimuth = 33}, {.eye = glm::vec3(90, 80, 70), .look_at = glm::vec3(1)}};
   views[1].orthographic = 50.0f;
   for (const View& view : views) {
     CHECK(glm::distance(place_camera(view, body, 1.5f).eye, place_camera(view, sphere, 1.5f).eye) < 1e-9);

@@ -44,7 +44,8 @@ double far_of(std::uint32_t texel, const GroundPart& part) {
 
 }  // namespace
 
-TEST_CASE("under a ball of one exitance the ground has the irradiance M r^2 h / d^3, and the ball that share of its sky") {
+TEST_CASE(
+    "under a ball of exitance M the ground has the irradiance M r^2 h / d^3, and the ball that share of its sky") {
   const glm::vec3 exitance(3, 2, 0.5f);
   for (const bool z_up : {false, true}) {
     for (const float height : {12.0f, 25.0f}) {
