@@ -21,7 +21,7 @@ constexpr float brighter = 1.25f;
 constexpr int control = GLFW_MOD_CONTROL, shift = GLFW_MOD_SHIFT;
 
 void orbit(S s, W w, float right, float up) {
-  s.scene.view = orbited(s.scene.view, w.bounds, right, up);
+  s.scene.view = orbited(s.scene.view, w.bounds, w.aspect, right, up);
 }
 
 void pan(S s, W w, float right, float up) {

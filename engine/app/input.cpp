@@ -108,7 +108,7 @@ void Viewer::handle_motion(const MotionEvent& event) {
   if (drag_button_ != GLFW_MOUSE_BUTTON_LEFT) {
     view = panned(view, context.bounds, context.aspect, right, up);
   } else if ((drag_mods_ & (GLFW_MOD_CONTROL | GLFW_MOD_SHIFT)) == 0) {
-    view = orbited(view, context.bounds, degrees_per_height * right, degrees_per_height * up);
+    view = orbited(view, context.bounds, context.aspect, degrees_per_height * right, degrees_per_height * up);
   } else if (state_.light < state_.scene.lights.size()) {
     Light& light = state_.scene.lights[state_.light];
     light = turned(light, view, context.bounds, degrees_per_height * right, degrees_per_height * up);

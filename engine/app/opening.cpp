@@ -11,7 +11,6 @@
 #include "engine/app/viewer.h"
 #include "engine/base/error.h"
 #include "engine/file/front.h"
-#include "engine/render/light/default_lights.h"
 #include "engine/scene/scene_file.h"
 
 extern char** environ;
@@ -35,11 +34,7 @@ std::string suffix_of(const std::filesystem::path& file) {
 
 // What a scene file shows first, or another body under the light that is there.
 Scene opened(const std::filesystem::path& file, const Scene& before) {
-  if (suffix_of(file) == ".json") {
-    Scene scene = SceneFile::load(file).at(0);
-    if (scene.lights.empty()) scene.lights = default_lights(scene.view);
-    return scene;
-  }
+  if (suffix_of(file) == ".json") return SceneFile::load(file).at(0);
   Scene scene = before;
   scene.body = file;
   scene.edits.clear();

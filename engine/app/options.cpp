@@ -7,10 +7,9 @@
 #include "engine/base/error.h"
 #include "engine/base/outputs.h"
 #include "engine/file/front.h"
-#include "engine/render/light/default_lights.h"
-#include "engine/render/light/studio.h"
 #include "engine/scene/options.h"
 #include "engine/scene/scene_file.h"
+#include "engine/scene/usual_light.h"
 
 namespace quadgraph {
 namespace {
@@ -106,14 +105,6 @@ void apply(const Typed& typed, const CLI::App& app, Scene& scene) {
   }
 }
 
-// Studios that were asked for by their name alone stand behind the body as the view sees it.
-void turn_studios(const Typed& typed, Scene& scene) {
-  const auto told = typed.texts.find("light");
-  for (std::size_t i = 0; told != typed.texts.end() && i < told->second.size(); ++i) {
-    if (told->second[i] == studio_name) scene.lights.at(i) = studio_of(scene.view);
-  }
-}
-
 Scene scene_of(const Typed& typed, const CLI::App& app) {
   const std::filesystem::path file = typed.file;
   const bool from_file = file.extension() == ".json";
@@ -127,8 +118,10 @@ Scene scene_of(const Typed& typed, const CLI::App& app) {
   }
   apply(typed, app, scene);
   if (!from_file && !given(app, "view")) scene.view.azimuth = first_view(front_of(file), scene.view.up).azimuth;
-  if (scene.lights.empty()) scene.lights = default_lights(scene.view);
-  turn_studios(typed, scene);
+  const bool lit = given(app, "light");
+  if (lit) scene.lights = named_lights(typed.texts.at("light"), scene.view);
+  const bool on_ground = !typed.headless || given(app, "ground");
+  if (!from_file) light_unlit(scene, scene.view, {.lights = lit, .ground = on_ground});
   return scene;
 }
 

@@ -75,7 +75,8 @@ void Viewer::turn() {
   const std::chrono::duration<float> since = now - std::exchange(turned_, now);
   if (!state_.turntable || dragging_) return;
   const float degrees = turntable_speed * std::min(since.count(), longest_step);
-  state_.scene.view = orbited(state_.scene.view, engine().bounds(), degrees, 0);
+  const CommandContext context = command_context();
+  state_.scene.view = orbited(state_.scene.view, context.bounds, context.aspect, degrees, 0);
 }
 
 // Seconds that nothing need happen for.

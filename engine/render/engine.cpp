@@ -156,7 +156,7 @@ void Engine::set_deformation(std::span<const Deformer> list) {
     return;
   }
   self.moved = !list.empty();
-  self.bounds = list.empty() ? bounding_sphere(self.graph.display().vertices) : self.motion.bounds();
+  self.bounds = list.empty() ? Implementation::bounds_of(self.graph) : self.moved_bounds();
   self.stale();
   self.shadows.forget();
   self.deformed = true;
@@ -222,6 +222,7 @@ SolveReport Engine::solve(const SolveOptions& options, const std::function<void(
   }
   if (!by_path) self.report->size_warning = size_warning(self.material, self.of_text, self.simulation->chord());
   judge(*self.report, self.lights, self.lights_inside());
+  if (self.ground) self.ground->relight();
   self.options = options;
   return *self.report;
 }

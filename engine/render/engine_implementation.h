@@ -26,7 +26,7 @@ struct Engine::Implementation {
   Implementation(const std::filesystem::path& path, std::shared_ptr<device::Device> shared)
       : source(path.filename().string()),
         graph(QuadGraph::load(path)),
-        bounds(bounding_sphere(graph.display().vertices)),
+        bounds(bounds_of(graph)),
         owned(std::move(shared)),
         device(*owned),
         simulation(graph.levels().empty() ? nullptr : std::make_unique<Simulation>(device, graph)),
@@ -92,6 +92,19 @@ struct Engine::Implementation {
   std::optional<std::vector<bool>> in_body;  // of the present lights and shape, at first use
   bool moved = false;                        // the display mesh is not at rest
   bool edited = false;                       // the material has edits
+
+  static Sphere bounds_of(const QuadGraph& at_rest) {
+    const auto& vertices = at_rest.display().vertices;
+    Sphere sphere = bounding_sphere(vertices);
+    sphere.outline = std::make_shared<const std::vector<glm::vec3>>(vertices.begin(), vertices.end());
+    return sphere;
+  }
+
+  Sphere moved_bounds() const {
+    Sphere sphere = motion.bounds();
+    sphere.outline = std::make_shared<const std::vector<glm::vec3>>(device::download<glm::vec3>(device, mesh.vertices));
+    return sphere;
+  }
 
   // Throws InputError where there are none.
   Simulation& levels() const {
@@ -326,6 +339,12 @@ struct Engine::Implementation {
     return leaves;
   }
 
+  // None of shortest paths, which know no faces.
+  std::optional<GroundSource> ground_source() const {
+    if (report->path) return std::nullopt;
+    return GroundSource{graph.levels()[0], simulation->level(0), simulation->exitance()};
+  }
+
   void draw_picture(const View& from, const Camera& camera, const RenderOptions& render) {
     legend.reset();
     const auto& map = render.roughness_map;
@@ -333,7 +352,7 @@ struct Engine::Implementation {
     radiance = draw_surface(camera, render);
     if (render.ground) {
       if (!ground) ground.emplace(device);
-      add(render_passes, ground->run(mesh, bounds, from, camera, rasteriser.picture()));
+      add_all(ground->run(mesh, bounds, from, camera, rasteriser.picture(), ground_source()));
     }
     if (render.surroundings) {
       if (!surroundings) surroundings.emplace(device);

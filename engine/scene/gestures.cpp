@@ -15,8 +15,8 @@ constexpr float nearest = 0.05f, farthest = 40.0f;  // radii
 
 }  // namespace
 
-View orbited(const View& view, const Sphere& bounds, float right, float up) {
-  View moved = by_angles(view, bounds);
+View orbited(const View& view, const Sphere& bounds, float aspect, float right, float up) {
+  View moved = framed(view, bounds, aspect);
   moved.azimuth = std::remainder(moved.azimuth - right, 360.0f);
   moved.elevation = std::clamp(moved.elevation - up, -90.0f, 90.0f);
   return moved;
@@ -25,7 +25,7 @@ View orbited(const View& view, const Sphere& bounds, float right, float up) {
 View panned(const View& view, const Sphere& bounds, float aspect, float right, float up) {
   const Camera camera = place_camera(view, bounds, aspect);
   const float height = static_cast<float>(2 * camera.half_height);
-  View moved = by_angles(view, bounds);
+  View moved = framed(view, bounds, aspect);
   moved.target -= height * (right * camera.right + up * camera.up);
   const float length = glm::length(moved.target);
   if (length > 2 * bounds.radius) moved.target *= 2 * bounds.radius / length;
@@ -37,7 +37,7 @@ View zoomed(const View& view, const Sphere& bounds, float aspect, float steps) {
   const double size = camera.parallel ? 2 * camera.half_height : camera.distance;
   const float wanted =
       std::clamp(static_cast<float>(size) * std::pow(closer, steps), nearest * bounds.radius, farthest * bounds.radius);
-  View moved = by_angles(view, bounds);
+  View moved = framed(view, bounds, aspect);
   (camera.parallel ? moved.orthographic : moved.distance) = wanted;
   return moved;
 }

@@ -9,10 +9,10 @@
 
 namespace quadgraph {
 
-// What moves a view makes of one by places the same by angles.
+// What moves a view makes of one by places the same by angles, and keeps of one that fits the picture what it has.
 
 // The object turns with the hand: the eye goes `right` and `up` degrees the other way round it.
-View orbited(const View& view, const Sphere& bounds, float right, float up);
+View orbited(const View& view, const Sphere& bounds, float aspect, float right, float up);
 
 // The object moves right and up by shares of the picture's height.
 View panned(const View& view, const Sphere& bounds, float aspect, float right, float up);

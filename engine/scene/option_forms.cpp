@@ -5,8 +5,10 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/optics/material.h"
+#include "engine/render/light/lights.h"
 #include "engine/scene/material_map.h"
 #include "engine/scene/option_members.h"
+#include "engine/scene/usual_light.h"
 
 namespace quadgraph {
 
@@ -45,6 +47,12 @@ void set_map(Scene& scene, const OptionValue& value) {
   scene.material = with_map(scene.material, text_in(value));
 }
 
+std::string light_help() {
+  return light_forms() + ", or " + std::string(lamps_name) +
+         " (a warm key light from behind the object, a cool one from the side, a little ambient light). May be "
+         "repeated. Default: studio, and with it --ground; lamps where no picture is made";
+}
+
 OptionValue lights_of(const Scene& scene) {
   std::vector<std::string> texts;
   for (const Light& light : scene.lights) texts.push_back(to_string(light));
@@ -52,8 +60,7 @@ OptionValue lights_of(const Scene& scene) {
 }
 
 void set_lights(Scene& scene, const OptionValue& value) {
-  scene.lights.clear();
-  for (const std::string& text : std::get<std::vector<std::string>>(value)) scene.lights.push_back(parse_light(text));
+  scene.lights = named_lights(std::get<std::vector<std::string>>(value), scene.view);
 }
 
 OptionValue view_of(const Scene& scene) {

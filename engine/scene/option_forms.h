@@ -12,6 +12,9 @@ std::string material_help();
 
 // How the volume that is the material is carried into the body.
 std::string map_help();
+
+// The texts that a light may have, and what there is without.
+std::string light_help();
 OptionValue map_of(const Scene& scene);
 void set_map(Scene& scene, const OptionValue& value);
 

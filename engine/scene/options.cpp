@@ -20,13 +20,8 @@ void add_scene(OptionTable& table) {
   table.text(OptionKind::text, {.name = "map", .own_form = true, .metavar = "KIND[,NAME=VALUE]", .help = map_help()},
              map_of, set_map);
   table.text(OptionKind::texts,
-             {.name = "light",
-              .member = "/lights",
-              .own_form = true,
-              .metavar = "L",
-              .help = light_forms() + ". May be repeated. Default: a warm key light from behind the object, a cool "
-                                      "one from the side, a little ambient light"},
-             lights_of, set_lights);
+             {.name = "light", .member = "/lights", .own_form = true, .metavar = "L", .help = light_help()}, lights_of,
+             set_lights);
 }
 
 void add_camera(OptionTable& table) {
@@ -97,6 +92,10 @@ void add_projection(OptionTable& table) {
        .range = height_range,
        .help = "parallel rays, with which the height of the picture shows so many mm at any distance; 0: the object "
                "fits the picture; left out: perspective"});
+  table.member<&Scene::view, &View::framing>({.name = "framing",
+                                              .member = "/camera/framing",
+                                              .keyword = "framing",
+                                              .help = "what fits the picture where no distance is said"});
 }
 
 void add_lens(OptionTable& table) {
@@ -335,7 +334,8 @@ void add_picture(OptionTable& table) {
       {.name = "ground",
        .member = "/picture/ground",
        .keyword = "ground",
-       .help = "shadow catcher under the object; on by default in a window"});
+       .help = "what the object stands on: its shadow there, and the light that it gives. On by default in a window, "
+               "and wherever no light is named"});
   table.member<&Scene::render, &RenderOptions::surroundings>({.name = "surroundings",
                                                               .member = "/picture/surroundings",
                                                               .keyword = "surroundings",

@@ -10,10 +10,10 @@
 #include "engine/base/regular_file.h"
 #include "engine/base/text.h"
 #include "engine/file/front.h"
-#include "engine/render/light/default_lights.h"
 #include "engine/render/light/studio.h"
 #include "engine/scene/material_map.h"
 #include "engine/scene/track_parts.h"
+#include "engine/scene/usual_light.h"
 
 namespace quadgraph {
 namespace {
@@ -175,7 +175,12 @@ Scene SceneFile::shown(Json document) const {
   Scene scene = scene_from(JsonField(document, ""));
   if (!document.contains("/camera/azimuth"_json_pointer))
     scene.view.azimuth = first_view(front_, scene.view.up).azimuth;
-  if (!document.contains("lights")) scene.lights = default_lights(first_view_.value_or(scene.view));
+  const bool goes_around = std::ranges::any_of(tracks_, [](const Track& track) {
+    return track.target() == "/camera" || track.target().starts_with("/camera/");
+  });
+  if (goes_around && scene.view.framing == Framing::automatic) scene.view.framing = Framing::turned;
+  light_unlit(scene, first_view_.value_or(scene.view),
+              {.lights = document.contains("lights"), .ground = document.contains("/picture/ground"_json_pointer)});
   return scene;
 }
 

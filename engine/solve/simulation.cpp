@@ -238,6 +238,10 @@ std::vector<LevelBeam> Simulation::light_on(std::uint32_t level) {
   return level_light(implementation_->device, implementation_->beams, buffers);
 }
 
+const device::Buffer& Simulation::exitance() const {
+  return implementation_->results.exitance();
+}
+
 const device::Buffer& Simulation::vertex_exitance() const {
   return implementation_->results.vertex_exitance();
 }

@@ -155,6 +155,9 @@ class Simulation {
   // where there is no such level.
   std::vector<LevelBeam> light_on(std::uint32_t level);
 
+  // vec3 per outside face of level 0, W/mm^2, scattered.
+  const device::Buffer& exitance() const;
+
   // vec3 per surface vertex of level 0, W/mm^2, for display: of scattered light, and of light that was not.
   const device::Buffer& vertex_exitance() const;
   const device::Buffer& vertex_unscattered() const;

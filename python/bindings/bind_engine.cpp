@@ -12,7 +12,6 @@
 #include "engine/device/memory.h"
 #include "engine/devices/open_device.h"
 #include "engine/render/engine.h"
-#include "engine/render/light/default_lights.h"
 #include "engine/scene/cut_json.h"
 #include "engine/scene/measured_error.h"
 #include "engine/scene/options.h"
@@ -111,17 +110,6 @@ View view_from(const std::string& text, const std::string& up, float vertical_fo
   View view = first_view(front, from_name<UpAxis>(up));
   view.vertical_fov = vertical_fov;
   return text.empty() ? view : parse_view(text, view);
-}
-
-std::vector<std::string> default_light_texts(const std::string& text, const std::string& up, float front,
-                                             const std::string& eye, const std::string& look_at, bool studio) {
-  View view = view_from(text, up, View{}.vertical_fov, front);
-  if (!eye.empty()) view.eye = parse_place(eye, "eye");
-  if (!look_at.empty()) view.look_at = parse_place(look_at, "look-at");
-  if (studio) return {to_string(studio_of(view))};
-  std::vector<std::string> texts;
-  for (const Light& light : default_lights(view)) texts.push_back(to_string(light));
-  return texts;
 }
 
 Scene pictured(Engine& engine, const std::string& view, const py::kwargs& given) {
@@ -371,11 +359,6 @@ void heed_signals() {
 }
 
 void bind_engine(py::module_& module) {
-  const std::string usual_up(name_of(View{}.up));
-  module.def("default_lights", &default_light_texts, py::arg("view") = "", py::arg("up") = usual_up,
-             py::arg("front") = 0.0f, py::arg("eye") = "", py::arg("look_at") = "", py::arg("studio") = false,
-             "The usual lights: a warm key from behind the object as `view` sees it (without one the azimuth `front`, "
-             "degrees), a cool one from the side, a little ambient light; or the studio, turned in the same way.");
   module.def(
       "copy_bandwidth", &copy_bandwidth, py::arg("device") = "",
       "GB/s, read and written, at which a device copies one buffer into another: kernel (a compute pass), transfer "

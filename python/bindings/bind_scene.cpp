@@ -74,7 +74,7 @@ std::string after_gesture(Stage& stage, const std::string& name, float right, fl
   const Sphere& bounds = stage.engine().bounds();
   const float aspect = static_cast<float>(scene.render.width) / static_cast<float>(scene.render.height);
   if (name == "orbit") {
-    scene.view = orbited(scene.view, bounds, right, up);
+    scene.view = orbited(scene.view, bounds, aspect, right, up);
   } else if (name == "pan") {
     scene.view = panned(scene.view, bounds, aspect, right, up);
   } else if (name == "zoom") {

@@ -26,6 +26,7 @@ void bind_materials(pybind11::module_& module);
 void bind_reference(pybind11::module_& module);
 void bind_picture(pybind11::module_& module);
 void bind_engine(pybind11::module_& module);
+void bind_lights(pybind11::module_& module);
 void bind_live_objects(pybind11::module_& module);
 void bind_scene(pybind11::module_& module);
 void bind_path(pybind11::module_& module);

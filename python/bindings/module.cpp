@@ -239,6 +239,7 @@ PYBIND11_MODULE(_core, module) {
   quadgraph::python::bind_picture(module);
   quadgraph::python::bind_options(module);
   quadgraph::python::bind_engine(module);
+  quadgraph::python::bind_lights(module);
   quadgraph::python::bind_live_objects(module);
   quadgraph::python::bind_fluence(module);
   quadgraph::python::bind_derivative(module);

@@ -72,7 +72,7 @@ PixelDoubt doubt_at(uint face, vec3 l, vec3 v, vec3 n, vec3 radiance) {
     area += l[k] / max(share.area.x, 1e-30) * share.area;
   }
   float through = fresnel_transmittance(clamp(dot(v, n), 0.0, 1.0), scene.eta);
-  return PixelDoubt(area.y, area.z, summed(radiance - through / scene.radiance_norm * exitance));
+  return PixelDoubt(area.y, area.z, summed(radiance - through / scene.radiance_norm * exitance), 1.0);
 }
 
 // One view ray for all samples that lie together: where faces are larger than pixels, one per pixel. Samples are read
@@ -85,7 +85,7 @@ void main() {
   for (uint k = 0u; k < 4u; ++k) waiting |= push.samples[0].at[sample_of(pixel, k)].w > 0.0 ? 1u << k : 0u;
   bool doubted = uvec2(push.doubt) != uvec2(0);
   vec3 scattered = vec3(0), specular = vec3(0), seen = vec3(0), unscattered = vec3(0);
-  PixelDoubt doubt = PixelDoubt(0.0, 0.0, 0.0);
+  PixelDoubt doubt = PixelDoubt(0.0, 0.0, 0.0, 0.0);
   float alpha = 0.0;
   while (waiting != 0u) {
     Sample first = sample_at(sample_of(pixel, findLSB(waiting)));
@@ -115,6 +115,7 @@ void main() {
     doubt.unlit += share * here.unlit;
     doubt.dimmest += share * here.dimmest;
     doubt.angle += share * here.angle;
+    doubt.covered += share * here.covered;
   }
   vec3 layers[PICTURE_LAYERS];
   layers[0] = scattered;

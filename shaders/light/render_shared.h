@@ -100,6 +100,7 @@ struct SurfacePush {
 struct PixelDoubt {
   float unlit, dimmest;  // shares of the pixel that are of these parts of the surface
   float angle;           // W/(mm^2 sr), channels together: what the radiance is more than that of a diffuser
+  float covered;         // share of the pixel that the body covers, without the ground
 };
 #ifndef __cplusplus
 QG_ARRAY(PixelDoubts, PixelDoubt);

@@ -55,7 +55,7 @@ def test_the_wheel_has_the_types_and_the_licences(tmp_path):
     (wheel,) = tmp_path.glob("*.whl")
     found = set(zipfile.ZipFile(wheel).namelist())
     page = {f"quadgraph/browser/page/page.{kind}" for kind in ("css", "html", "js")}
-    assert {"quadgraph/py.typed", "quadgraph/_core.pyi", *page} <= found
+    assert {"quadgraph/py.typed", "quadgraph/_core.pyi", "quadgraph/_core_options.pyi", *page} <= found
     (metadata,) = {name.partition("/")[0] for name in found if ".dist-info/" in name}
     assert {f"{metadata}/licenses/LICENSE", f"{metadata}/licenses/tools/cgal_mesh/LICENSE.md"} <= found
 

@@ -8,11 +8,12 @@
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
+#include "engine/render/display/framing.h"
 
 namespace quadgraph {
 namespace {
 
-constexpr double margin = 1.02;  // around an object that fits the picture
+constexpr double margin = 1.02;  // around a sphere that fits the picture
 
 // From y up to the view's axis: z up is y up turned by 90 degrees about x. And back.
 glm::dvec3 turned(const glm::dvec3& v, UpAxis up) {
@@ -42,11 +43,7 @@ Pose pose_of(const View& view, const Sphere& bounds) {
   return pose;
 }
 
-struct Axes {
-  glm::dvec3 right, up, backward;
-};
-
-Axes axes_of(const Pose& pose, UpAxis up) {
+CameraAxes axes_of(const Pose& pose, UpAxis up) {
   const double sin_a = std::sin(pose.azimuth), cos_a = std::cos(pose.azimuth);
   const double sin_e = std::sin(pose.elevation), cos_e = std::cos(pose.elevation);
   const glm::dvec3 backward = turned({sin_a * cos_e, sin_e, cos_a * cos_e}, up);
@@ -62,7 +59,7 @@ void set_row(glm::mat4& matrix, int row, const glm::dvec3& along, double constan
 
 // Sets what takes places to clip space. Depth is fitted to the object and falls from 1 to 0, so that it is finest where
 // the eye is, which may all but touch the object. All differences of large numbers are taken here, in double precision.
-void set_clip(Camera& camera, const Axes& axes, const Sphere& bounds) {
+void set_clip(Camera& camera, const CameraAxes& axes, const Sphere& bounds) {
   const double radius = bounds.radius;
   const double depth = glm::dot(camera.eye - glm::dvec3(bounds.centre), axes.backward);
   const double near = std::max(depth - 1.01 * radius, 1e-6 * radius), far = std::max(depth + 1.01 * radius, 2 * near);
@@ -80,6 +77,16 @@ void set_clip(Camera& camera, const Axes& axes, const Sphere& bounds) {
   } else {
     set_row(camera.clip_from_offset, 3, -axes.backward, ahead);
   }
+}
+
+// Where nothing says how far the eye is, of an object whose outline is known.
+std::optional<OutlineFit> outline_fit(const View& view, const Pose& pose, const CameraAxes& axes, const Sphere& bounds,
+                                      double aspect) {
+  const bool placed = view.orthographic ? *view.orthographic > 0 : pose.distance.has_value();
+  if (placed || view.eye || !bounds.outline || bounds.outline->empty()) return std::nullopt;
+  const double slope = view.orthographic ? 0 : std::tan(0.5 * glm::radians(double{view.vertical_fov}));
+  const glm::dvec3 upright = view.framing == Framing::turned ? turned({0, 1, 0}, view.up) : glm::dvec3(0);
+  return fit_outline(*bounds.outline, bounds.centre, axes, slope, aspect, upright);
 }
 
 }  // namespace
@@ -176,6 +183,20 @@ View by_angles(const View& view, const Sphere& bounds) {
   return same;
 }
 
+View framed(const View& view, const Sphere& bounds, float aspect) {
+  View same = by_angles(view, bounds);
+  const bool fits = view.orthographic ? *view.orthographic == 0 : !same.distance;
+  if (!fits) return same;
+  const Camera camera = place_camera(view, bounds, aspect);
+  same.target = glm::vec3(camera.target - glm::dvec3(bounds.centre));
+  if (camera.parallel) {
+    same.orthographic = static_cast<float>(2 * camera.half_height);
+  } else {
+    same.distance = static_cast<float>(camera.distance);
+  }
+  return same;
+}
+
 glm::vec4 Camera::seen_from() const {
   return parallel ? glm::vec4(backward, 0) : glm::vec4(eye, 1);
 }
@@ -214,8 +235,10 @@ Camera moved(const Camera& camera, const glm::dvec2& shift, const glm::dvec2& le
 
 Camera place_camera(const View& view, const Sphere& bounds, float aspect) {
   check_view(view);
-  const Pose pose = pose_of(view, bounds);
-  const Axes axes = axes_of(pose, view.up);
+  Pose pose = pose_of(view, bounds);
+  const CameraAxes axes = axes_of(pose, view.up);
+  const auto fit = outline_fit(view, pose, axes, bounds, double{aspect});
+  if (fit) pose.target += fit->middle.x * axes.right + fit->middle.y * axes.up;
   const double radius = bounds.radius, narrower = std::min(double{aspect}, 1.0);
   const double slope = std::tan(0.5 * glm::radians(double{view.vertical_fov}));
   Camera camera{.parallel = view.orthographic.has_value(),
@@ -225,10 +248,12 @@ Camera place_camera(const View& view, const Sphere& bounds, float aspect) {
                 .backward = axes.backward,
                 .reach = static_cast<float>(2.1 * radius)};
   if (camera.parallel) {
-    camera.half_height = *view.orthographic > 0 ? 0.5 * double{*view.orthographic} : margin * radius / narrower;
+    const double fitting = fit ? fit->size : margin * radius / narrower;
+    camera.half_height = *view.orthographic > 0 ? 0.5 * double{*view.orthographic} : fitting;
     camera.distance = glm::dot(glm::dvec3(bounds.centre) - pose.target, axes.backward) + 2 * radius;
   } else {
-    camera.distance = pose.distance.value_or(margin * radius / std::sin(std::atan(slope * narrower)));
+    const double fitting = fit ? fit->size : margin * radius / std::sin(std::atan(slope * narrower));
+    camera.distance = pose.distance.value_or(fitting);
     camera.half_height = slope * camera.distance;
   }
   camera.half_width = double{aspect} * camera.half_height;

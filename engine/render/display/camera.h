@@ -6,10 +6,12 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/base/names.h"
 #include "engine/base/range.h"
@@ -19,9 +21,12 @@ namespace quadgraph {
 struct Sphere {
   glm::vec3 centre{0};  // mm
   float radius = 0;     // mm
+  // mm: points on whose outline pictures are framed; without them it is that of the sphere. Shared, for they may be
+  // many.
+  std::shared_ptr<const std::vector<glm::vec3>> outline{};
 };
 
-// The sphere around the middle of the bounding box that holds every point.
+// The sphere around the middle of the bounding box that holds every point, without an outline.
 Sphere bounding_sphere(std::span<const glm::vec3> points);
 
 enum class UpAxis { y, z };
@@ -32,6 +37,18 @@ struct Names<UpAxis> {
   static constexpr auto values =
       std::to_array<Named<UpAxis>>({{UpAxis::y, "y", "azimuth 0 looks along -z, 90 along -x"},
                                     {UpAxis::z, "z", "azimuth 0 looks along +y, 90 along -x"}});
+};
+
+// What fits the picture where nothing says how far the eye is.
+enum class Framing { automatic, outline, turned };
+
+template <>
+struct Names<Framing> {
+  static constexpr std::string_view what = "framing";
+  static constexpr auto values = std::to_array<Named<Framing>>(
+      {{Framing::automatic, "auto", "turned where the camera goes around, as of turntables, else outline"},
+       {Framing::outline, "outline", "what the body covers in this picture"},
+       {Framing::turned, "turned", "what it covers in any picture as it turns about the axis that points up"}});
 };
 
 inline constexpr Range elevation_range{.low = -90, .high = 90},
@@ -46,11 +63,12 @@ inline constexpr Range aperture_range{.low = 0};                                
 struct View {
   float azimuth = 0;                // degrees
   float elevation = 10;             // degrees, in elevation_range
-  std::optional<float> distance{};  // mm from the centre; without it the bounding sphere fits the picture
+  std::optional<float> distance{};  // mm from the centre; without it the outline fits the picture
   UpAxis up = UpAxis::y;
   float vertical_fov = 30;  // degrees, in fov_range
-  glm::vec3 target{0};      // mm from the object's centre: what the middle of the picture shows
-  // mm that the height of an orthographic picture shows, 0: the bounding sphere fits. Parallel rays, which come from
+  // mm: what the middle of the picture shows, from the object's centre, or from the middle of what fits.
+  glm::vec3 target{0};
+  // mm that the height of an orthographic picture shows, 0: the outline fits. Parallel rays, which come from
   // in front of the whole object however far the eye is; without it, perspective.
   std::optional<float> orthographic{};
   std::optional<glm::vec3> eye{}, look_at{};  // mm, as positions of lights are
@@ -59,6 +77,7 @@ struct View {
   // mm from the eye along the view to the plane that is sharp; without it, that of the nearest of the object in the
   // middle of the picture, or of the target where nothing is.
   std::optional<float> focus{};
+  Framing framing = Framing::automatic;  // where the outline is to fit
 
   bool operator==(const View&) const = default;
 };
@@ -68,6 +87,10 @@ View first_view(float front, UpAxis up);
 
 // The same view by azimuth, elevation, distance and target.
 View by_angles(const View& view, const Sphere& bounds);
+
+// The same view by angles, with the distance (or the height of an orthographic picture) and the target that it has
+// where it fits: it then stays as it is.
+View framed(const View& view, const Sphere& bounds, float aspect);
 
 // Throws InputError if a number is out of range, or if of `eye` and `look_at` one is missing or both are the same.
 void check_view(const View& view);

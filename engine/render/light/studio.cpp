@@ -19,12 +19,14 @@ struct SoftBox {
   glm::vec3 radiance;
 };
 
-// From the front to the right, large; a strip to the left; and a warm one behind the object, which shows what comes
-// through it.
-constexpr std::array<SoftBox, 3> boxes = {{{140, 35, 60, 45, {5.0f, 4.9f, 4.75f}},
-                                           {-115, 25, 28, 70, {2.0f, 2.1f, 2.2f}},
-                                           {-28, 35, 30, 60, {14.0f, 13.0f, 11.5f}}}};
-constexpr glm::vec3 floor_radiance{0.06f}, wall_radiance{0.08f}, ceiling_radiance{0.18f};
+// A warm one behind the object, to the left, as large as it is strong, which shows what comes through thin parts and
+// gives them rims; a narrow cool strip to the right; one above the camera, which is reflected in front; and a faint
+// backdrop, which is seen through what is clear.
+constexpr std::array<SoftBox, 4> boxes = {{{-36, 30, 60, 56, {28.0f, 22.0f, 15.0f}},
+                                           {90, 25, 18, 90, {11.0f, 13.0f, 16.0f}},
+                                           {-145, 42, 60, 46, {5.0f, 5.0f, 5.0f}},
+                                           {25, 6, 110, 32, {1.4f, 1.3f, 1.2f}}}};
+constexpr glm::vec3 floor_radiance{0.04f}, wall_radiance{0.02f}, ceiling_radiance{0.03f};
 
 float inside(float distance, float width) {
   return std::clamp((width / 2 - std::abs(distance)) / edge + 0.5f, 0.0f, 1.0f);

@@ -1,4 +1,4 @@
-// Surroundings that are built in: soft-boxes in a grey room, for pictures that need no sky of a certain place.
+// Surroundings that are built in: soft-boxes in a dark room, for pictures that need no sky of a certain place.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@ namespace quadgraph {
 inline constexpr std::string_view studio_name = "studio";
 inline constexpr std::string_view studio_light = "environment:studio:0:0.0002";
 
-// As engine/render/light/environment.h has such pictures; its brightest texels are about 14.
+// As engine/render/light/environment.h has such pictures; its brightest texels are about 28.
 Image studio_picture();
 
 // The picture of an environment's file: that of the studio by its name, else as read_image.

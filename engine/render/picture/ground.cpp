@@ -56,6 +56,7 @@ void Ground::make_map(const DisplayBuffers& mesh, const Sphere& bounds, UpAxis u
   middle_ = bounds.centre;
   middle_[axis] = lowest(device_, mesh, axis);
   half_width_ = shadow_margin * bounds.radius;
+  light_half_width_ = gpu::GROUND_LIGHT_REACH * bounds.radius;
   const float far = 2.02f * bounds.radius, size = gpu::GROUND_SIZE;
   device::Commands commands(device_);
   commands.draw({{}, &image_}, {0, 0, size, size}, below_,
@@ -69,14 +70,30 @@ void Ground::make_map(const DisplayBuffers& mesh, const Sphere& bounds, UpAxis u
       texels);
   commands.submit_and_wait();
   made_for_ = up;
+  lit_ = false;
 }
 
-PassStats Ground::run(const DisplayBuffers& mesh, const Sphere& bounds, const View& view, const Camera& camera,
-                      const PictureBuffers& picture) {
+PassStats Ground::make_light(const GroundSource& source) {
+  if (!light_) light_.emplace(device_, source.at_rest);
+  device::Commands commands(device_, 1);
+  commands.begin_pass("ground light");
+  light_->record(commands, source, {middle_, light_half_width_, made_for_ == UpAxis::z});
+  commands.end_pass();
+  lit_ = true;
+  return {"ground light", commands.submit_and_wait()[0].time_ms, light_->bytes(), 1};
+}
+
+std::vector<PassStats> Ground::run(const DisplayBuffers& mesh, const Sphere& bounds, const View& view,
+                                   const Camera& camera, const PictureBuffers& picture,
+                                   const std::optional<GroundSource>& source) {
   if (made_for_ != view.up) make_map(mesh, bounds, view.up);
+  std::vector<PassStats> passes;
+  if (source && !lit_) passes.push_back(make_light(*source));
   const glm::vec3 right = static_cast<float>(camera.half_width) * camera.right;
   const glm::vec3 up = static_cast<float>(camera.half_height) * camera.up;
   const gpu::GroundPush push{.shadow = shadow_.address(),
+                             .light = source ? light_->light().address() : 0,
+                             .scattered = picture.layers[0].address(),
                              .alpha = picture.alpha.address(),
                              .target = camera.target - glm::dvec3(middle_),
                              .corner = up - right,
@@ -85,6 +102,7 @@ PassStats Ground::run(const DisplayBuffers& mesh, const Sphere& bounds, const Vi
                              .ahead = camera.ahead,
                              .spread = camera.parallel ? 0.0f : static_cast<float>(1 / camera.distance),
                              .half_width = half_width_,
+                             .light_half_width = light_half_width_,
                              .z_up = view.up == UpAxis::z ? 1u : 0u,
                              .width = picture.width,
                              .height = picture.height};
@@ -94,7 +112,8 @@ PassStats Ground::run(const DisplayBuffers& mesh, const Sphere& bounds, const Vi
   const bool from_above = camera.parallel || camera.eye[axis] > double{middle_[axis]};
   if (from_above) commands.dispatch(ground_, push, picture.pixels());
   commands.end_pass();
-  return {"ground", commands.submit_and_wait()[0].time_ms, 2 * sizeof(float) * picture.pixels(), 1};
+  passes.push_back({"ground", commands.submit_and_wait()[0].time_ms, 8 * sizeof(float) * picture.pixels(), 1});
+  return passes;
 }
 
 }  // namespace quadgraph

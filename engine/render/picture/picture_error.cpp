@@ -20,8 +20,9 @@ double square(double x) {
   return x * x;
 }
 
-Seen seen_in(const glm::vec3& scattered, const gpu::PixelDoubt& doubt, double alpha, const ErrorEstimate& exitance) {
-  const double unlit = doubt.unlit / alpha, dimmest = exitance.dimmest > 0 ? doubt.dimmest / alpha : 0;
+Seen seen_in(const glm::vec3& scattered, const gpu::PixelDoubt& doubt, const ErrorEstimate& exitance) {
+  const double covered = doubt.covered, unlit = doubt.unlit / covered;
+  const double dimmest = exitance.dimmest > 0 ? doubt.dimmest / covered : 0;
   const double radiance = double{scattered.x} + scattered.y + scattered.z;
   const double bright = glm::mix(square(exitance.whole), square(exitance.unlit), unlit);
   const double relative = glm::mix(bright, square(exitance.dimmest), dimmest);
@@ -46,14 +47,12 @@ std::optional<ErrorEstimate> picture_error(device::Device& device, const Picture
   if (!picture.has_doubt) return std::nullopt;
   const std::uint64_t count = picture.pixels();
   std::vector<glm::vec3> scattered(count);
-  std::vector<float> alpha(count);
   std::vector<gpu::PixelDoubt> doubt(count);
   device::read_bytes(device, picture.layers[0], std::as_writable_bytes(std::span(scattered)));
-  device::read_bytes(device, picture.alpha, std::as_writable_bytes(std::span(alpha)));
   device::read_bytes(device, picture.doubt, std::as_writable_bytes(std::span(doubt)));
   std::vector<Seen> pixels;
   for (std::uint64_t i = 0; i < count; ++i) {
-    if (alpha[i] > 0) pixels.push_back(seen_in(scattered[i], doubt[i], alpha[i], exitance));
+    if (doubt[i].covered > 0) pixels.push_back(seen_in(scattered[i], doubt[i], exitance));
   }
   const std::size_t third = pixels.size() / 3;
   std::nth_element(pixels.begin(), pixels.begin() + static_cast<std::ptrdiff_t>(third), pixels.end(),

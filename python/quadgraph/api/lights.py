@@ -142,7 +142,7 @@ def as_light(light: Light | str) -> Light:
 
 
 def default_lights(view: str = "", up: Literal["y", "z"] = "y", front: float = 0.0) -> tuple[Light, ...]:
-    """Return the default lights of a picture.
+    """Return the lamps, which light what is no picture and what nobody lit.
 
     A warm key light from behind the object, a cool one from the side, a little ambient light. view:
     azimuth,elevation[,distance] in degrees and mm; without one the azimuth `front`, degrees. Raises InputError.

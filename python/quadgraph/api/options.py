@@ -81,7 +81,8 @@ class Camera(TypedDict, total=False):
     body's coordinates, together and in place of azimuth, elevation, distance and target; orthographic: parallel rays,
     with which the picture's height shows so many mm, 0 for the whole body; aperture: diameter of the lens, mm, 0 for a
     picture that is sharp everywhere; focus: how far before the eye it is sharp, mm along the view, left out for what is
-    nearest in the middle of the picture.
+    nearest in the middle of the picture; framing: what fits without a distance, "outline" of the body in this picture,
+    "turned" for that in any as the body turns, "auto" for turned where tracks move the camera.
     """
 
     azimuth: float
@@ -95,6 +96,7 @@ class Camera(TypedDict, total=False):
     orthographic: float
     aperture: float
     focus: float
+    framing: Literal["auto", "outline", "turned"]
 
 
 class PictureOptions(TypedDict, total=False):
@@ -103,10 +105,10 @@ class PictureOptions(TypedDict, total=False):
     width, height: pixels, 1 to 16384; samples: of a pixel, four at a time, 0 for 16, or 256 with an aperture; converge:
     the error down to which corrections and samples run on, 0 for none; time_limit: seconds for that, 0 for no limit;
     roughness: of the surface, GGX alpha, left out, the material's; radiance: how it leaves the surface; show:
-    "picture", or what is inside (docs/window.md, "Views of the inside"); ground: a shadow where the body stands;
-    surroundings: what environment lights show, behind it; roughness_map: as in scene files; exposure: "auto" or stops;
-    tone: the curve from radiance to a screen; white_balance: kelvin of the light that is shown white, 6504 for none
-    changed; background: "studio", "black", "white", "transparent" (PNG only), a grey, three numbers, or
+    "picture", or what is inside (docs/window.md, "Views of the inside"); ground: its shadow where the body stands, and
+    its light; surroundings: what environment lights show, behind it; roughness_map: as in scene files; exposure: "auto"
+    or stops; tone: the curve from radiance to a screen; white_balance: kelvin of the light that is shown white, 6504
+    for none changed; background: "studio", "black", "white", "transparent" (PNG only), a grey, three numbers, or
     {"top": ..., "bottom": ...}, linear.
     """
 

@@ -23,7 +23,7 @@ _STILL = Twist(0).to_dict()
 class Scene:
     """All that is shown. body: a baked .qgraph; what is None or left out is as in a scene file.
 
-    material: a `Material` or a text as --material takes it; lights: None for `default_lights` of the camera, [] for
+    material: a `Material` or a text as --material takes it; lights: None for the studio, and the ground with it, [] for
     darkness; edits and cuts: objects as scene files have them. Raises InputError naming the member and what is allowed.
     """
 

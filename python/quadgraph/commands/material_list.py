@@ -147,6 +147,7 @@ def draw(args: argparse.Namespace, listed: Sequence[dict[str, Any]]) -> int:
     check_bodies(args)
     if args.body is None and not (args.view or args.eye):
         args.view = reference_body.VIEW
+    args.light = args.light or ["lamps"]  # swatches are to be compared with those of any time
     columns, reports, metadata = [], [], []
     with progress_bar() as progress:
         task = progress.add_task("swatches", total=len(listed) * len(bodies) * len(sizes))

@@ -7,7 +7,6 @@ import contextlib
 import math
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -46,6 +45,8 @@ def destination(option: SceneOption) -> str:
 def keywords(args: argparse.Namespace, groups: Collection[str]) -> dict[str, Any]:
     """Keyword arguments of Engine.solve or Engine.render that the arguments say."""
     given = {option.keyword: getattr(args, destination(option)) for option in options(groups) if option.keyword}
+    if "ground" in given:
+        _, given["ground"] = load_core().picture_light(args.light or [], args.ground)
     return {keyword: value for keyword, value in given.items() if value is not None}
 
 
@@ -82,7 +83,7 @@ def add_option(group: argparse._ArgumentGroup, option: SceneOption) -> None:
         flag = group.add_argument(
             name, action=argparse.BooleanOptionalAction, default=argparse.SUPPRESS, help=described
         )
-        flag.default = option.default
+        flag.default = None if option.name == "ground" else option.default  # see `keywords`
     elif option.kind == "texts":
         group.add_argument(name, action="append", metavar=option.metavar, help=described)
     elif option.choices:
@@ -180,14 +181,16 @@ def _loaded(file: Path, args: argparse.Namespace) -> Iterator[tuple[Engine, Path
 
 
 def lights(engine: Engine, args: argparse.Namespace) -> list[str]:
-    """The lights that the arguments say, a studio turned to their view, or else the usual ones about it."""
-    seen_from = {
-        name: value for name in ("view", "up", "eye", "look_at") if (value := getattr(args, name, None)) is not None
-    }
-    usual = partial(load_core().default_lights, **seen_from, front=engine.graph.front)
-    if not args.light:
-        return usual()
-    return [light for text in args.light for light in (usual(studio=True) if text == "studio" else [text])]
+    """The lights that the arguments say, by name about their view; else those of a picture, or the lamps for others."""
+    pictured = hasattr(args, "ground")
+    texts = args.light or ([] if pictured else ["lamps"])
+    return load_core().picture_light(texts, **seen_from(args), front=engine.graph.front)[0]
+
+
+def seen_from(args: argparse.Namespace) -> dict[str, str]:
+    """Keyword arguments of `picture_light` for the view of the arguments, as far as they say one."""
+    names = ("view", "up", "eye", "look_at")
+    return {name: value for name in names if (value := getattr(args, name, None)) is not None}
 
 
 def inputs(args: argparse.Namespace) -> list[Path | str | None]:

@@ -58,6 +58,8 @@ def changes(args: argparse.Namespace) -> dict[str, Any]:
         if name not in args.given:
             continue
         value = getattr(args, name)
+        if option.name == "light":
+            value = load_core().picture_light(value, **scene_options.seen_from(args))[0]
         found |= OWN_FORMS[option.name](value) if option.own_form else {option.member: value}
     return found
 

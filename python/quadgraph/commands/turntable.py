@@ -123,6 +123,8 @@ class Turn:
             self._solved = of_lights
         options = scene_options.keywords(self._args, scene_options.PICTURE_GROUPS)
         options |= turning.view(self._args, self._engine, of_camera)
+        if self._args.turn != "light" and options["framing"] == "auto":
+            options["framing"] = "turned"
         if share != 1:
             options["size"] = "x".join(str(max(16, int(share * side))) for side in scene_options.size_of(self._args))
         picture = self._engine.render(**options)

@@ -3,7 +3,9 @@
 Files do not tell which side of a body is its front; +z by convention. Bodies that show little from there are shown from
 where most of their relief is seen: how much the normals of what is visible turn from pixel to pixel. (Measures of what
 is seen from a viewpoint, of which this is one: Polonsky, Patane, Biasotti, Gotsman, Spagnuolo, "What's in an image?
-Towards the computation of the best view of an object", 2005.)
+Towards the computation of the best view of an object", 2005.) Bodies with a plane of symmetry show about as much from
+in front as from behind. What is high on most of them is a head, so that of two such views the one that has it nearer is
+taken.
 """
 
 from __future__ import annotations
@@ -19,15 +21,25 @@ from quadgraph.mesh.surface import Surface
 AZIMUTHS = tuple(range(0, 360, 45))  # degrees about y; 0 is seen from +z
 ELEVATION = 10.0  # degrees, of pictures that nobody chose a view for
 PLAINLY_MORE = 1.12  # relief that another view must show of the front's to be taken
+NEARLY_AS_MUCH = 0.94  # of the most relief, that a view from the other side must show to be taken for it
+HIGH = 0.2  # share of the surface that counts as its upper end
+AWAY = 0.1  # radii by which that end is behind the middle of a body that is seen from behind
 PIXELS = 96
 POINTS = 200_000  # samples of the surface: some ten for each pixel it covers
 
 
 def azimuth(surface: Surface) -> float:
     """Degrees about y from which to look: 0, unless another of AZIMUTHS shows plainly more relief."""
-    seen = reliefs(surface)
+    points, normals = _placed(surface)
+    seen = _reliefs(points, normals)
     best = int(np.argmax(seen))
-    return float(AZIMUTHS[best]) if seen[best] > PLAINLY_MORE * seen[0] else 0.0
+    if seen[best] <= PLAINLY_MORE * seen[0]:
+        return 0.0
+    nearer = _upper_ends(points)
+    if nearer[best] < -AWAY:
+        others = (seen >= NEARLY_AS_MUCH * seen[best]) & (nearer > AWAY)
+        best = int(np.argmax(np.where(others, seen, 0))) if others.any() else best
+    return float(AZIMUTHS[best])
 
 
 def check(degrees: float | None) -> None:
@@ -38,15 +50,33 @@ def check(degrees: float | None) -> None:
 
 def reliefs(surface: Surface) -> np.ndarray:
     """Sum of the differences between the normals of neighbouring pixels, by azimuth: (8,)."""
-    points, normals = _samples(surface)
+    return _reliefs(*_placed(surface))
+
+
+def _upper_ends(points: np.ndarray) -> np.ndarray:
+    """How much nearer the upper end of points within the unit sphere is than their middle, by azimuth: (8,)."""
+    high = points[points[:, 1] >= np.quantile(points[:, 1], 1 - HIGH)]
+    beside = high.mean(axis=0) - points.mean(axis=0)
+    turn = np.radians(AZIMUTHS)
+    return beside[0] * np.sin(turn) + beside[2] * np.cos(turn)
+
+
+def _reliefs(points: np.ndarray, normals: np.ndarray) -> np.ndarray:
     if not len(points):
         return np.zeros(len(AZIMUTHS))
-    points = points - 0.5 * (surface.vertices.min(axis=0) + surface.vertices.max(axis=0))
-    points /= np.linalg.norm(points, axis=1).max()
     x, y, z = np.ascontiguousarray(points.T)
     # By columns: threads of BLAS take ten times as long for a matrix of three columns.
     seen = (tuple(a * x + b * y + c * z for a, b, c in _axes(degrees)) for degrees in AZIMUTHS)
     return np.array([_relief(right, up, depth, normals) for right, up, depth in seen])
+
+
+def _placed(surface: Surface) -> tuple[np.ndarray, np.ndarray]:
+    """Samples of the surface, moved into the unit sphere about the middle of its box."""
+    points, normals = _samples(surface)
+    if len(points):
+        points = points - 0.5 * (surface.vertices.min(axis=0) + surface.vertices.max(axis=0))
+        points /= np.linalg.norm(points, axis=1).max()
+    return points, normals
 
 
 def _samples(surface: Surface) -> tuple[np.ndarray, np.ndarray]:

@@ -4,6 +4,8 @@
 #include <doctest/doctest.h>
 
 #include <glm/geometric.hpp>
+#include <memory>
+#include <vector>
 
 #include "engine/app/commands.h"
 #include "engine/app/pace.h"
@@ -36,8 +38,8 @@ std::vector<View> views() {
 TEST_CASE("what is dragged follows the hand") {
   for (const View& view : views()) {
     const glm::vec3 near = bounds.centre + 0.5f * bounds.radius * place_camera(view, bounds, 1).backward;
-    CHECK(seen(orbited(view, bounds, 10, 0), near).x > seen(view, near).x + 0.05f);
-    CHECK(seen(orbited(view, bounds, 0, 10), near).y > seen(view, near).y + 0.05f);
+    CHECK(seen(orbited(view, bounds, 1, 10, 0), near).x > seen(view, near).x + 0.05f);
+    CHECK(seen(orbited(view, bounds, 1, 0, 10), near).y > seen(view, near).y + 0.05f);
     const glm::vec3 middle = place_camera(view, bounds, 1).target;
     const glm::vec2 moved = seen(panned(view, bounds, 1, 0.25f, -0.1f), middle);
     CHECK(moved.x == doctest::Approx(0.5).epsilon(1e-3));
@@ -75,7 +77,7 @@ TEST_CASE("a cut goes through the stroke, and takes what lies to the right of th
 TEST_CASE("a view can be turned, moved and zoomed for ever and stays one that can be shown") {
   for (View view : views())
     for (int i = 0; i < 400; ++i) {
-      view = orbited(view, bounds, 37, 23);
+      view = orbited(view, bounds, 1.5f, 37, 23);
       view = panned(view, bounds, 1.5f, 0.3f, -0.2f);
       view = zoomed(view, bounds, 1.5f, i < 200 ? 1 : -1);
       CHECK_NOTHROW(place_camera(view, bounds, 1.5f));
@@ -201,4 +203,24 @@ TEST_CASE("a picture in motion is corrected where that keeps to its budget") {
   CHECK_FALSE(quick.corrects());  // as measured
   for (int i = 0; i < 5; ++i) quick.solved(80, true);
   CHECK(quick.corrects());
+}
+
+TEST_CASE("a hand that begins to move the view finds it where it is") {
+  Sphere box = bounds;
+  box.outline = std::make_shared<const std::vector<glm::vec3>>(
+      std::vector{bounds.centre + glm::vec3(9, 1, 0), bounds.centre - glm::vec3(9, 2, 1)});
+  for (const bool parallel : {false, true}) {
+    View view{.azimuth = 33, .target = {1, 2, 3}};
+    if (parallel) view.orthographic = 0.0f;
+    const Camera before = place_camera(view, box, 1.5f);
+    const View moved[] = {framed(view, box, 1.5f), orbited(view, box, 1.5f, 0, 0), panned(view, box, 1.5f, 0, 0),
+                          zoomed(view, box, 1.5f, 0)};
+    for (const View& after : moved) {
+      const Camera there = place_camera(after, box, 1.5f);
+      for (const glm::vec3& point : *box.outline) {
+        const glm::vec4 a = before.clip(point), b = there.clip(point);
+        CHECK(glm::distance(glm::vec2(a) / a.w, glm::vec2(b) / b.w) < 1e-3f);
+      }
+    }
+  }
 }

@@ -32,8 +32,20 @@ Scene parsed(std::vector<std::string> arguments) {
 TEST_CASE("without options the command line shows the default scene") {
   Scene expected;
   expected.body = cube;
-  expected.lights = default_lights(expected.view);
+  expected.lights = {studio_of(expected.view)};
+  expected.render.ground = true;
   CHECK(parsed({}) == expected);
+}
+
+TEST_CASE("lights by name stand about the view, and what is lit has no ground of itself") {
+  const Scene lamps = parsed({"--light", "lamps", "--view", "40,10", "--light", "studio"});
+  std::vector<Light> expected = default_lights(lamps.view);
+  expected.push_back(studio_of(lamps.view));
+  CHECK(lamps.lights == expected);
+  CHECK(!lamps.render.ground);
+  CHECK(parsed({"--light", "lamps", "--ground"}).render.ground);
+  CHECK(!parsed({"--no-ground"}).render.ground);
+  CHECK(parsed({"--no-ground"}).lights == std::vector{studio_of(View{})});
 }
 
 TEST_CASE("every option of the table is one of the command line and does what its text says") {
@@ -64,11 +76,13 @@ TEST_CASE("every option of the table is one of the command line and does what it
   }
 }
 
-TEST_CASE("a window has a ground without being asked, a picture has not") {
+TEST_CASE("a window has a ground without being asked, a picture of what is lit has not") {
   int code = 0;
   const char* argv[] = {"quadgraph-engine", cube.c_str()};
   CHECK(parse_command_line(2, argv, code)->scene.render.ground);
-  CHECK_FALSE(parsed({}).render.ground);
+  const char* lit[] = {"quadgraph-engine", cube.c_str(), "--light", "studio"};
+  CHECK(parse_command_line(4, lit, code)->scene.render.ground);
+  CHECK_FALSE(parsed({"--light", "studio"}).render.ground);
 }
 
 TEST_CASE("a scene that is saved gets a copy of its body where a window is told to make one") {

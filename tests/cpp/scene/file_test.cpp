@@ -144,12 +144,18 @@ TEST_CASE("what a file does not say is the default, and its lights belong to the
   Scene expected;
   expected.body = folder.path / "a.qgraph";
   expected.view.azimuth = 20;
-  expected.lights = default_lights(expected.view);
+  expected.lights = {studio_of(expected.view)};
+  expected.render.ground = true;
+  expected.view.framing = Framing::turned;  // the camera goes around
   CHECK(file.at(0) == expected);
   expected.view.azimuth = 65;
   CHECK(file.at(9) == expected);
   CHECK(file.frames() == 10);
-  CHECK(folder.scene(R"({"body": "a.qgraph", "lights": []})").at(0).lights.empty());
+  const Scene dark = folder.scene(R"({"body": "a.qgraph", "lights": []})").at(0);
+  CHECK(dark.lights.empty());
+  CHECK(!dark.render.ground);
+  CHECK(!folder.scene(R"({"body": "a.qgraph", "picture": {"ground": false}})").at(0).render.ground);
+  CHECK(folder.scene(R"({"body": "a.qgraph"})").at(0).view.framing == Framing::automatic);
 }
 
 TEST_CASE("tracks move numbers and triples, step through all else, and stay beyond their ends") {

@@ -1,4 +1,4 @@
-"""python/quadgraph/_core.pyi says of the compiled module what that says of itself."""
+"""python/quadgraph/_core.pyi and _core_options.pyi say of the compiled module what that says of itself."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ import pytest
 from quadgraph.core import load_core
 
 core = load_core()
-STUB = ast.parse((Path(__file__).resolve().parents[3] / "python/quadgraph/_core.pyi").read_text())
+PACKAGE = Path(__file__).resolve().parents[3] / "python/quadgraph"
+STUB, OPTIONS = (ast.parse((PACKAGE / name).read_text()) for name in ("_core.pyi", "_core_options.pyi"))
 Signature = list[tuple[str, bool]]  # the name of each argument, and whether it may be left out
 
 
@@ -49,7 +50,7 @@ def compiled(holder: object) -> dict[str, list[Signature]]:
 
 
 def classes() -> dict[str, ast.ClassDef]:
-    return {each.name: each for each in STUB.body if isinstance(each, ast.ClassDef)}
+    return {each.name: each for each in [*STUB.body, *OPTIONS.body] if isinstance(each, ast.ClassDef)}
 
 
 def test_names_are_the_compiled_ones():

@@ -143,7 +143,7 @@ def test_it_hears_while_it_solves_and_drops_what_nobody_waits_for(ball):
             serials.append(frame["serial"])
         return serials
 
-    with served(ball, "--samples", "65536", "--size", "768x768") as (process, address):
+    with served(ball, "--light", "lamps", "--samples", "65536", "--size", "768x768") as (process, address):
         serials = talk(address, conversation)
         assert serials == sorted(set(serials))
         process.send_signal(signal.SIGINT)

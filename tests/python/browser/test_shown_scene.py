@@ -29,7 +29,9 @@ def stage(ball):
 
 @pytest.fixture
 def shown(ball, stage):
-    made = ShownScene(quadgraph.SceneFile(quadgraph.Scene(ball, material="skin1", picture=SIZE)).at(0))
+    lamps = quadgraph.default_lights()
+    scene = quadgraph.Scene(ball, material="skin1", lights=lamps, picture=SIZE)
+    made = ShownScene(quadgraph.SceneFile(scene).at(0))
     stage.show(made.scene)
     return made
 

@@ -91,7 +91,7 @@ def test_lights_turn_as_the_camera_does(engine):
 def test_films_and_pictures_of_a_turn(tmp_path, capsys):
     gif, report = tmp_path / "a.gif", tmp_path / "report.json"
     outputs = ["-o", gif, "-o", tmp_path / "f" / "%02d.png", "-o", tmp_path / "f" / "%02d.exr", "--json", report]
-    assert turntable("--frames", 4, "--seconds", 2, *outputs) == 0
+    assert turntable("--frames", 4, "--seconds", 2, "--light", "lamps", *outputs) == 0
     said = capsys.readouterr().out
     assert "frames: 4, made in" in said
     assert f"film: {gif}" in said

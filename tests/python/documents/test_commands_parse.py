@@ -51,8 +51,7 @@ def fault(words: tuple[str, ...], folder: Path, capsys: pytest.CaptureFixture[st
             own_material.options_of(material, args.file)
         elif isinstance(material, str) and not material.endswith(".npz"):  # the file of a volume, not there yet
             quadgraph.Material.parse(material)
-        for light in getattr(args, "light", None) or []:
-            quadgraph.Light.parse(light)
+        quadgraph.core.picture_light(getattr(args, "light", None) or [])
     except quadgraph.QuadGraphError as error:
         return str(error)
     return engine_fault(args.options, folder) if args.command == "view" else ""

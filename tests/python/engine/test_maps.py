@@ -20,8 +20,10 @@ from shapes import from_trimesh, icosphere, torus
 
 core = pytest.importorskip("quadgraph._core", reason="the compiled engine is not built: run tools/setup")
 
-from quadgraph import Engine, Scene, Stage, VolumeMap, VolumeMaterial  # noqa: E402
+from quadgraph import Engine, Stage, VolumeMap, VolumeMaterial, default_lights  # noqa: E402
 from quadgraph.api.volume_map import MapKind, MapRepeat  # noqa: E402
+
+LAMPS = [light.to_dict() for light in default_lights()]  # what an engine has
 
 DOCS = Path(__file__).resolve().parents[3] / "docs"
 SIDES = np.array([16.0, 12.0, 8.0])  # mm, of the block
@@ -214,14 +216,14 @@ def test_every_way_to_say_it_shows_the_same(tmp_path, ball, block, capsys):
     found = []
     for number, material in enumerate(materials):
         path = tmp_path / f"{number}.json"
-        path.write_text(json.dumps({"body": "ball.qgraph", "material": material, "solver": {"cycles": 2}}))
+        scene = {"body": "ball.qgraph", "material": material, "lights": LAMPS, "solver": {"cycles": 2}}
+        path.write_text(json.dumps(scene))
         with Stage() as stage:
             stage.show(path)
             stage.solve()
             found.append(stage.engine.surface().exitance)
     with Engine(ball) as engine:
         engine.material = f"{tmp_path / 'wax.npz'},map={how}"
-        engine.lights = Scene(ball).lights or engine.lights
         engine.solve(cycles=2)
         found.append(engine.surface().exitance)
     for other in found[1:]:

@@ -49,6 +49,43 @@ def test_a_command_line_turns_it_with_the_view(tmp_path):
     assert np.array_equal(pixels(tmp_path / "a.png"), pixels(tmp_path / "b.png"))
 
 
+def test_a_picture_that_nobody_lit_has_it_and_the_ground(tmp_path):
+    fast = ["--size", "24x24", "--samples", "4", "--device", "cpu", "--view", "40,10"]
+    for name, told in (("a", []), ("b", ["--light", "studio", "--ground"]), ("c", ["--light", "studio"])):
+        told = [str(tiny.PATH), "--material", "milk", *told, *fast, "-o", str(tmp_path / f"{name}.png")]
+        assert cli.main(["render", *told]) == 0
+    assert np.array_equal(pixels(tmp_path / "a.png"), pixels(tmp_path / "b.png"))
+    assert not np.array_equal(pixels(tmp_path / "a.png"), pixels(tmp_path / "c.png"))
+
+
+def test_lamps_are_the_lights_of_solves_and_have_no_ground():
+    lamps, ground = quadgraph.core.picture_light(["lamps"], view="40,10")
+    assert lamps == quadgraph.core.default_lights("40,10")
+    assert not ground
+    studio, ground = quadgraph.core.picture_light([], view="40,10")
+    assert studio == ["environment:studio:40,y:2e-04"]
+    assert ground
+    assert quadgraph.core.picture_light([], ground=False)[1] is False
+
+
+def test_the_ground_gets_the_light_of_the_body():
+    """Its colour is that of what leaves the body, which no light from beside colours."""
+    with quadgraph.Engine(tiny.PATH, device="cpu") as engine:
+        engine.material = "sigma_s_prime=2,sigma_a=.01/.3/1,eta=1.3"
+        engine.lights = ["ambient:1"]
+        engine.solve()
+        small = {"width": 48, "height": 48, "samples": 4}
+        plain, standing = (engine.render("0,20", ground=ground, **small) for ground in (False, True))
+    beside = (plain.alpha == 0) & (standing.alpha > 0.05)
+    light = standing.scattered[beside].sum(axis=0)
+    assert beside.sum() > 50
+    assert light[0] > 1.3 * light[1] > 1.3 * light[2] > 0
+    assert standing.alpha.max() <= 1
+    assert (standing.alpha[beside] <= 0.9 + 1e-6).all()
+    covered = plain.alpha == 1
+    assert np.array_equal(standing.scattered[covered], plain.scattered[covered])
+
+
 def test_a_scene_names_it_as_no_file_of_its_folder(shown, tmp_path):
     shutil.copy(tiny.PATH, tmp_path / "a.qgraph")
     scene = {

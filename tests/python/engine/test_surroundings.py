@@ -113,7 +113,7 @@ def pictures_of(folder: Path, **picture) -> np.ndarray:
         ],
         "deformation": deformation,
         "solver": {"correction": False},
-        "camera": {"elevation": 0},
+        "camera": {"elevation": 0, "distance": 39.4096},
         "picture": {"width": 96, "height": 96, **picture},
     }
     (folder / "rough.json").write_text(json.dumps(scene))

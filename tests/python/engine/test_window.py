@@ -69,6 +69,22 @@ def screen_of(memory: Path) -> np.ndarray:
     return rows[:, : 4 * width].reshape(height, width, 4)[..., 2::-1].astype(int)
 
 
+class Patience:
+    """So many seconds of both cores for a process, or ten times as long by the clock: busy machines are waited for."""
+
+    def __init__(self, process: subprocess.Popen, seconds: float):
+        self.times = Path(f"/proc/{process.pid}/stat")
+        self.computed = self._computed() + 2 * seconds
+        self.clock = time.monotonic() + 10 * seconds
+
+    def _computed(self) -> float:
+        user, system = self.times.read_text().rpartition(")")[2].split()[11:13]
+        return (int(user) + int(system)) / os.sysconf("SC_CLK_TCK")
+
+    def left(self) -> bool:
+        return self._computed() < self.computed and time.monotonic() < self.clock
+
+
 class Hand:
     """A running window and what can be done to it."""
 
@@ -91,6 +107,9 @@ class Hand:
         )
         self.window = self.do("search", "--sync", "--onlyvisible", "--name", "QuadGraph").split()[0]
         self.do("windowmove", self.window, "0", "0", "windowsize", "--sync", self.window, *map(str, SIZE))
+
+    def patience(self, seconds: float) -> Patience:
+        return Patience(self.process, seconds)
 
     def do(self, *arguments: str) -> str:
         """Run xdotool."""
@@ -132,17 +151,17 @@ class Hand:
 
     def calm(self) -> None:
         """Wait until the picture of what has been seen has converged."""
-        deadline = time.monotonic() + 60
+        patience = self.patience(60)
         quiet = 0
         while quiet < 3:  # a change that has just come may not be in the title yet
             quiet = 0 if self.busy() else quiet + 1
-            assert time.monotonic() < deadline, "the picture does not settle"
+            assert patience.left(), "the picture does not settle"
             time.sleep(0.05)
 
     def screen(self) -> np.ndarray:
         """The whole screen once it has settled; a display shows what was presented when it likes."""
         self.settle()
-        deadline = time.monotonic() + 20
+        patience = self.patience(20)
         before = self.look()
         while True:
             time.sleep(0.2)
@@ -150,7 +169,7 @@ class Hand:
             seen = now[: SIZE[1], PANEL : SIZE[0]]
             if seen.any() and np.array_equal(seen, before[: SIZE[1], PANEL : SIZE[0]]):
                 return now
-            assert time.monotonic() < deadline, "no picture is seen, or it changes by itself"
+            assert patience.left(), "no picture is seen, or it changes by itself"
             before = now
 
     def picture(self) -> np.ndarray:
@@ -158,9 +177,9 @@ class Hand:
         return self.screen()[: SIZE[1], PANEL : SIZE[0]]
 
     def other_picture(self, before: np.ndarray) -> np.ndarray:
-        """The same once it is another one, for which it waits twenty seconds: a busy machine sees keys late."""
-        deadline = time.monotonic() + 20
-        while np.array_equal(now := self.picture(), before) and time.monotonic() < deadline:
+        """The same once it is another one, for which it waits: a busy machine sees keys late."""
+        patience = self.patience(20)
+        while np.array_equal(now := self.picture(), before) and patience.left():
             time.sleep(0.1)
         return now
 
@@ -237,8 +256,8 @@ def test_a_hand_at_the_window(open_window, tmp_path: Path):
 
     hand.keys("F12")
     written = tmp_path / "tiny-1.png"
-    deadline = time.monotonic() + 20
-    while not (written.exists() and written.with_suffix(".exr").exists()) and time.monotonic() < deadline:
+    patience = hand.patience(20)
+    while not (written.exists() and written.with_suffix(".exr").exists()) and patience.left():
         time.sleep(0.1)
     with Image.open(written) as image:
         assert image.size == (SIZE[0] - PANEL, SIZE[1])

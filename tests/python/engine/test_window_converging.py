@@ -12,7 +12,7 @@ from test_window import PANEL, SIZE, open_window, pytestmark, server
 __all__ = ["open_window", "pytestmark", "server"]
 
 NOTE = 60  # pixels at the top, where it says how far it has come
-LOOK = ["--material", "sigma_s_prime=.4,sigma_a=.05,eta=1.3", "--view", "45,15", "--light", "directional:-1,0,0:3"]
+LOOK = ["--material", "sigma_s_prime=.4,sigma_a=.05,eta=1.3", "--view", "45,15,6.83", "--light", "directional:-1,0,0:3"]
 QUICK = ["--sweep-points", "300", "--no-ground", "--exposure", "1", "--background", "black"]
 
 
@@ -21,10 +21,10 @@ def body_of(hand) -> np.ndarray:
 
 
 def wait_for(hand, what: str, seen) -> None:
-    deadline = time.monotonic() + 60
+    patience = hand.patience(60)
     while not seen():
         assert hand.process.poll() is None, hand.process.communicate()
-        assert time.monotonic() < deadline, what
+        assert patience.left(), what
         time.sleep(0.1)
 
 

@@ -36,10 +36,10 @@ def time_of_solve(hand: Hand) -> float:
 
 
 def wait_until(seen, hand: Hand, what: str) -> None:
-    deadline = time.monotonic() + 60
+    patience = hand.patience(60)
     while not seen():
         assert hand.process.poll() is None, hand.process.communicate()
-        assert time.monotonic() < deadline, what
+        assert patience.left(), what
         time.sleep(0.005)
 
 

@@ -55,8 +55,8 @@ def test_a_scene_that_is_typed_is_opened_and_what_is_none_changes_nothing(open_w
     hand.settle()
     hand.keys("d")
     opened = hand.other_picture(told)
-    deadline = time.monotonic() + 20
-    while np.abs(opened - wanted).max() > 1 and time.monotonic() < deadline:
+    patience = hand.patience(20)
+    while np.abs(opened - wanted).max() > 1 and patience.left():
         opened = hand.picture()
     assert np.abs(opened - wanted).max() <= 1
     hand.keys("m")
@@ -84,16 +84,16 @@ def test_the_turntable_turns_until_it_is_left(open_window, tmp_path: Path):
     hand.picture()
     hand.keys("t")
     seen = []
-    deadline = time.monotonic() + 60
+    patience = hand.patience(60)
     while len(seen) < 4:
         now = hand.look()[: SIZE[1], PANEL : SIZE[0]]
         if not any(np.array_equal(now, one) for one in seen):
             seen.append(now)
-        assert time.monotonic() < deadline, "nothing turns"
+        assert patience.left(), "nothing turns"
     hand.keys("Escape", "ctrl+s")
     saved = tmp_path / "tiny-1.json"
     while not saved.exists():
-        assert time.monotonic() < deadline, "the scene is not saved"
+        assert patience.left(), "the scene is not saved"
         time.sleep(0.05)
     assert json.loads(saved.read_text())["camera"]["azimuth"] != 0
     still = hand.picture()

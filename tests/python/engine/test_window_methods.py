@@ -27,13 +27,13 @@ def sides(picture: np.ndarray) -> tuple[float, float]:
 
 def wait_for_light(hand: Hand, left: bool) -> np.ndarray:
     """The first picture whose brighter side is that one."""
-    deadline = time.monotonic() + 60
+    patience = hand.patience(60)
     while True:
         picture = hand.look()[: SIZE[1], PANEL : SIZE[0]]  # settled or not
         dark, bright = sides(picture)[:: -1 if left else 1]
         if bright > BRIGHTER * dark:
             return picture
-        assert time.monotonic() < deadline, f"the bright side does not follow the light: {sides(picture)}"
+        assert patience.left(), f"the bright side does not follow the light: {sides(picture)}"
 
 
 def written(folder: Path, number: int) -> dict:

@@ -38,10 +38,10 @@ def seen(hand: Hand) -> np.ndarray:
 
 def wait_until(what, hand: Hand, seconds: float = 60):
     """What it gives once that is something."""
-    deadline = time.monotonic() + seconds
+    patience = hand.patience(seconds)
     while not (found := what()):
         assert hand.process.poll() is None, hand.process.communicate()
-        assert time.monotonic() < deadline, "it does not happen"
+        assert patience.left(), "it does not happen"
         time.sleep(0.05)
     return found
 
