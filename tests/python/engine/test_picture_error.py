@@ -18,7 +18,7 @@ MATERIAL = "sigma_s_prime=1,sigma_a=0.02,eta=1.3"
 SUN = DirectionalLight((0.0, 0.0, -1.0), 1.0)
 QUICK = {"sweeps": 1, "sweep_points": 2000}
 SIZE = {"width": 64, "height": 64}
-LARGE = {"width": 128, "height": 128}  # the shares that pixels of the silhouette have are of little weight
+LARGE = {"width": 256, "height": 256}  # the shares that pixels of the silhouette have are of little weight
 LIT, UNLIT = 89.0, -89.0  # elevations: from the sun, and from the other side
 
 
