@@ -37,7 +37,7 @@ void main() {
     if (above <= 0.0) continue;
     float far2 = dot(from, from);
     // The inverse square law with both cosines; softened by half the area, so that what is nearer than a patch is wide
-    // does not show where its middle is (cf. the disc of Wallace, Elmquist, Haines 1989).
+    // does not show where its middle is (cf. the disc of Wallace 1989).
     float share = above / (far2 * (PI * far2 + 0.5 * part.area));
     sum += share * max(vec4(dot(part.red, from), dot(part.green, from), dot(part.blue, from),
                             dot(part.facing, from)), vec4(0));
