@@ -122,11 +122,15 @@ glm::vec2 Viewer::pointer() const {
   return {2 * share.x - 1, 1 - 2 * share.y};
 }
 
+Camera Viewer::seen_from() const {
+  const CommandContext context = command_context();
+  return place_camera(state_.scene.view, context.bounds, context.aspect);
+}
+
 // The brush's edge on the body around the pointer, clip coordinates; empty where it is not on the body.
 std::vector<glm::vec2> Viewer::brush_ring() const {
   if (!state_.brush.on || interface_.has_pointer()) return {};
-  const CommandContext context = command_context();
-  const Camera camera = place_camera(state_.scene.view, context.bounds, context.aspect);
+  const Camera camera = seen_from();
   const auto found = picker_.pick(camera, pointer());
   if (!found) return {};
   const glm::vec3 side = std::abs(found->normal.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
@@ -143,8 +147,7 @@ std::vector<glm::vec2> Viewer::brush_ring() const {
 
 // Where the pointer meets the body.
 std::optional<Touch> Viewer::pointed_at() const {
-  const CommandContext context = command_context();
-  const Camera camera = place_camera(state_.scene.view, context.bounds, context.aspect);
+  const Camera camera = seen_from();
   const auto found = picker_.pick(camera, pointer());
   if (!found) return std::nullopt;
   return touched(*found, camera);

@@ -75,6 +75,7 @@ void Viewer::open_file(const std::filesystem::path& file) {
       state_.say("");
     } else if (suffix == ".qgraph" || suffix == ".json") {
       show_opened(opened(file, state_.scene));
+      window_.set_name(file.filename().string());
     } else {
       throw InputError(file.string() + ": found '" + suffix +
                        "', expected .qgraph, .json (a scene), a mesh (.obj, .off, " +

@@ -3,16 +3,14 @@
 namespace quadgraph {
 
 void Picker::follow(Stage& stage) {
-  const QuadGraph& graph = stage.engine().graph();
-  if (graph_ != &graph || deformation_ != stage.scene().deformation) vertices_ = stage.engine().present_vertices();
-  graph_ = &graph;
-  deformation_ = stage.scene().deformation;
+  graph_ = &stage.engine().graph();
+  vertices_ = stage.engine().bounds().outline;
   tools_ = path_tools(stage.scene().cuts);
 }
 
 std::optional<Picked> Picker::pick(const Camera& camera, const glm::vec2& at) const {
   if (graph_ == nullptr) return std::nullopt;
-  return quadgraph::pick(graph_->display(), vertices_, camera, at, tools_);
+  return quadgraph::pick(graph_->display(), *vertices_, camera, at, tools_);
 }
 
 }  // namespace quadgraph

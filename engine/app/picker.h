@@ -1,6 +1,7 @@
 // What lies under the pointer, told at any time: also while the engine computes.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -11,8 +12,7 @@ namespace quadgraph {
 
 class Picker {
  public:
-  // Takes up body, shape and cuts of what the stage shows, where they are others than before. The stage must keep its
-  // engine until the next call.
+  // Takes up body, shape and cuts of what the stage shows. The stage must keep its engine until the next call.
   void follow(Stage& stage);
 
   // As the function pick, of what was followed last; empty before.
@@ -20,8 +20,7 @@ class Picker {
 
  private:
   const QuadGraph* graph_ = nullptr;
-  std::vector<Deformer> deformation_;
-  std::vector<glm::vec3> vertices_;  // mm, where they are now
+  std::shared_ptr<const std::vector<glm::vec3>> vertices_;  // mm, where they are now
   std::vector<gpu::PathTool> tools_;
 };
 

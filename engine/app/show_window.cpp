@@ -38,7 +38,7 @@ std::shared_ptr<vk::Context> presenter_of(const Window& window, device::DeviceOp
 int show_window(const AppOptions& options) {
   needed(vk::require_loader);
   const std::filesystem::path name = options.scene.body.filename();
-  Window window(name.string() + " - QuadGraph", 1280, 800);
+  Window window(name.string(), 1280, 800);
   const auto presenter = presenter_of(window, options.device);
   const std::string wanted = wanted_device(options.device);
   const bool on_processor = wanted.empty() ? presenter->info().cpu : wanted == device::processor;

@@ -72,6 +72,7 @@ class Viewer {
   void begin_or_end_drag(const ButtonEvent& event);
   glm::vec2 pointer() const;
   std::optional<Touch> pointed_at() const;
+  Camera seen_from() const;
   std::vector<glm::vec2> brush_ring() const;
   void touch_down(const Touch& touch);
   void listen();

@@ -48,13 +48,13 @@ GLFWmonitor* monitor_of(GLFWwindow* window) {
 
 }  // namespace
 
-Window::Window(const std::string& title, int width, int height) : title_(title) {
+Window::Window(const std::string& name, int width, int height) : name_(name) {
   if (glfwInit() != GLFW_TRUE) no_window("there is no display to open a window on");
   try {
     if (glfwVulkanSupported() != GLFW_TRUE) no_window("this display has no Vulkan");
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
     glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
-    window_ = glfwCreateWindow(width, height, (title + " ...").c_str(), nullptr, nullptr);
+    window_ = glfwCreateWindow(width, height, title().c_str(), nullptr, nullptr);
     if (window_ == nullptr) no_window("the display opens no window");
   } catch (...) {
     glfwTerminate();
@@ -133,7 +133,16 @@ float Window::pixels_per_unit() const {
 void Window::show_busy(bool busy) {
   if (busy == busy_) return;
   busy_ = busy;
-  glfwSetWindowTitle(window_, (title_ + (busy ? " ..." : "")).c_str());
+  glfwSetWindowTitle(window_, title().c_str());
+}
+
+void Window::set_name(const std::string& name) {
+  name_ = name;
+  glfwSetWindowTitle(window_, title().c_str());
+}
+
+std::string Window::title() const {
+  return name_ + " - QuadGraph" + (busy_ ? " ..." : "");
 }
 
 bool Window::closing() const {

@@ -38,7 +38,7 @@ using Event = std::variant<KeyEvent, TextEvent, ButtonEvent, MotionEvent, Scroll
 class Window {
  public:
   // Throws InputError where there is no display or it has no Vulkan, and names --headless.
-  Window(const std::string& title, int width, int height);
+  Window(const std::string& name, int width, int height);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
@@ -59,6 +59,7 @@ class Window {
 
   // Adds dots to the title, or takes them away; it has them at first.
   void show_busy(bool busy);
+  void set_name(const std::string& name);  // of what is shown, with which the title begins
 
   bool closing() const;
   void keep_open();  // though it is to be closed
@@ -77,9 +78,10 @@ class Window {
 
  private:
   void listen();
+  std::string title() const;
 
   GLFWwindow* window_ = nullptr;
-  std::string title_;
+  std::string name_;
   bool busy_ = true;
   std::deque<Event> events_;
   bool full_screen_ = false;

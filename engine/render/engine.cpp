@@ -306,16 +306,11 @@ const std::optional<Legend>& Engine::legend() const {
   return implementation_->legend;
 }
 
-std::vector<glm::vec3> Engine::present_vertices() const {
-  const auto turn = implementation_->in_use.take();
-  return device::download<glm::vec3>(implementation_->device, implementation_->mesh.vertices);
-}
-
 std::optional<Picked> Engine::pick(const View& view, float aspect, const glm::vec2& at) const {
   const auto turn = implementation_->in_use.take();
   auto& self = *implementation_;
   const Camera camera = place_camera(view, self.bounds, aspect);
-  return quadgraph::pick(self.graph.display(), present_vertices(), camera, at, self.cut_tools);
+  return quadgraph::pick(self.graph.display(), *self.bounds.outline, camera, at, self.cut_tools);
 }
 
 Leaving Engine::leaving(std::span<const std::uint32_t> face, std::span<const glm::vec3> direction) {

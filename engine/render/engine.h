@@ -187,9 +187,6 @@ class Engine {
   Picture render(const View& view, const RenderOptions& options = {},
                  const std::function<void(const ConvergenceStep&)>& told = {});
 
-  // The vertices of the display mesh in its present shape, mm.
-  std::vector<glm::vec3> present_vertices() const;
-
   // What a picture of this view and shape (width / height) shows at `at` (engine/render/display/pick.h).
   std::optional<Picked> pick(const View& view, float aspect, const glm::vec2& at) const;
 

@@ -21,8 +21,8 @@ namespace quadgraph {
 struct Sphere {
   glm::vec3 centre{0};  // mm
   float radius = 0;     // mm
-  // mm: points on whose outline pictures are framed; without them it is that of the sphere. Shared, for they may be
-  // many.
+  // mm: the points, on whose outline pictures are framed; without them it is that of the sphere. Shared, for they may
+  // be many.
   std::shared_ptr<const std::vector<glm::vec3>> outline{};
 };
 

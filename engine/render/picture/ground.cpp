@@ -73,22 +73,21 @@ void Ground::make_map(const DisplayBuffers& mesh, const Sphere& bounds, UpAxis u
   lit_ = false;
 }
 
-PassStats Ground::make_light(const GroundSource& source) {
+void Ground::record_light(device::Commands& commands, const GroundSource& source) {
   if (!light_) light_.emplace(device_, source.at_rest);
-  device::Commands commands(device_, 1);
   commands.begin_pass("ground light");
   light_->record(commands, source, {middle_, light_half_width_, made_for_ == UpAxis::z});
   commands.end_pass();
   lit_ = true;
-  return {"ground light", commands.submit_and_wait()[0].time_ms, light_->bytes(), 1};
 }
 
 std::vector<PassStats> Ground::run(const DisplayBuffers& mesh, const Sphere& bounds, const View& view,
                                    const Camera& camera, const PictureBuffers& picture,
                                    const std::optional<GroundSource>& source) {
   if (made_for_ != view.up) make_map(mesh, bounds, view.up);
-  std::vector<PassStats> passes;
-  if (source && !lit_) passes.push_back(make_light(*source));
+  device::Commands commands(device_, 2);
+  const bool relit = source && !lit_;
+  if (relit) record_light(commands, *source);
   const glm::vec3 right = static_cast<float>(camera.half_width) * camera.right;
   const glm::vec3 up = static_cast<float>(camera.half_height) * camera.up;
   const gpu::GroundPush push{.shadow = shadow_.address(),
@@ -106,13 +105,15 @@ std::vector<PassStats> Ground::run(const DisplayBuffers& mesh, const Sphere& bou
                              .z_up = view.up == UpAxis::z ? 1u : 0u,
                              .width = picture.width,
                              .height = picture.height};
-  device::Commands commands(device_, 1);
   commands.begin_pass("ground");
   const int axis = axis_of(view.up);
   const bool from_above = camera.parallel || camera.eye[axis] > double{middle_[axis]};
   if (from_above) commands.dispatch(ground_, push, picture.pixels());
   commands.end_pass();
-  passes.push_back({"ground", commands.submit_and_wait()[0].time_ms, 8 * sizeof(float) * picture.pixels(), 1});
+  const auto times = commands.submit_and_wait();
+  std::vector<PassStats> passes;
+  if (relit) passes.push_back({"ground light", times.front().time_ms, light_->bytes(), 1});
+  passes.push_back({"ground", times.back().time_ms, 8 * sizeof(float) * picture.pixels(), 1});
   return passes;
 }
 

@@ -31,7 +31,7 @@ class Ground {
 
  private:
   void make_map(const DisplayBuffers& mesh, const Sphere& bounds, UpAxis up);
-  PassStats make_light(const GroundSource& source);
+  void record_light(device::Commands& commands, const GroundSource& source);
 
   device::Device& device_;
   device::GraphicsPass below_;

@@ -158,7 +158,8 @@ def test_hardly_anything_is_cheaper(judged):
 def test_less_than_the_mesh_is_baked(record):
     found = record
     assert found["measured"] <= ERROR
-    assert found["surface_vertices"] < found["mesh_vertices"]
+    # Steps go down by a fifth: 0.64 of the mesh is off by half of what is allowed, and 0.51 of it may be the last.
+    assert found["surface_vertices"] < 0.6 * found["mesh_vertices"]
     finer = [t for t in found["trials"] if t["surface_vertices"] > found["surface_vertices"]]
     assert finer
     # The next coarser surface tried does not do: nothing is left over.

@@ -59,6 +59,7 @@ def test_a_scene_that_is_typed_is_opened_and_what_is_none_changes_nothing(open_w
     while np.abs(opened - wanted).max() > 1 and patience.left():
         opened = hand.picture()
     assert np.abs(opened - wanted).max() <= 1
+    assert hand.do("getwindowname", hand.window).startswith("jade.json - QuadGraph")
     hand.keys("m")
     changed = hand.other_picture(opened)
     hand.keys("q")  # the answer was for the file

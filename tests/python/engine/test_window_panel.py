@@ -154,13 +154,13 @@ def test_a_stamp_prints_its_mask_where_the_hand_lets_it_go(open_window, tmp_path
 
     upper, lower = printed(stamp(0), 280)
     assert upper > 60
-    assert lower < 0.3 * upper
+    assert lower < 0.2 * upper
     hand.keys("ctrl+z")
     darker = stamp(130)
     upper, lower = printed(darker, 410)
     assert upper > 60
-    assert lower < 0.3 * upper
-    assert printed(darker, 230)[0] < 0.3 * upper
+    assert lower < 0.2 * upper
+    assert printed(darker, 230)[0] < 0.2 * upper
     hand.keys("ctrl+s")
     hand.settle()
     (edit,) = json.loads((tmp_path / "ball-1.json").read_text())["edits"]
