@@ -36,6 +36,11 @@ constexpr std::uint32_t most_sweeps = 4;
 constexpr std::uint32_t rest_directions = 16, rest_rays = 8, motion_directions = 8, motion_rays = 1;
 constexpr double most_draws = 16, segments_per_tet = 400;
 
+// Noise that the solves of a frame in motion may have. Its points are halved, down to a share, where half as many would
+// do, with room for what the memory of frames hides: of a thin body the rays are long, and few points tell enough.
+constexpr ErrorEstimate motion_noise_wanted{.whole = 0.005, .unlit = 0.008};
+constexpr double halving_excess = 0.3, least_drawn = 0.125;
+
 // Of what is known from the frames before, the least that the newest has a say in; frames that a solve at rest is
 // worth.
 constexpr float least_share = 0.15f;
@@ -231,7 +236,7 @@ void TransportCorrection::draw(const CorrectionParts& parts, const Sampling& sam
       parts.transport.work.recorder.submit();
       parts.check();
     }
-    samples_.record_draw(parts.transport, sampling.directions);
+    samples_.record_draw(parts.transport, sampling.directions, sampling.share);
   }
   draws_ += draws;
   samples_.record_books(parts.transport, 1.0f / static_cast<float>(draws_), shares.known);
@@ -269,7 +274,7 @@ CorrectedSweep TransportCorrection::sweep(const CorrectionParts& parts, const Sa
   const double faces = parts.transport.level.face_count;
   const auto of_part = [&](double at_vertices, double of_solves) { return of_patches(at_vertices, of_solves, faces); };
   return {relative(found[0].change, found[0].size), by_parts(of_part, all, solves_noise_),
-          static_cast<double>(draws_) * samples_.points()};
+          sampling.share * draws_ * samples_.points()};
 }
 
 void TransportCorrection::start(const CorrectionParts& parts, const WalkTask& task, const TransportShares& shares) {
@@ -313,7 +318,14 @@ CorrectedSweep TransportCorrection::sweep_in_motion(const CorrectionParts& parts
                                                     const TransportShares& shares) {
   start(parts, task, shares);
   if (moved_ && shares.ahead) samples_.record_carried(parts.transport, parts.boundary.k11);
-  return sweep(parts, {motion_directions, motion_rays, 1}, shares);
+  if (!shares.ahead) drawn_share_ = 1;
+  const Sampling sampling{
+      .directions = motion_directions, .face_rays = motion_rays, .most_draws = 1, .share = drawn_share_};
+  const CorrectedSweep swept = sweep(parts, sampling, shares);
+  const double excess = excess_of(solves_noise_, {}, motion_noise_wanted);
+  if (excess > 1) drawn_share_ = std::min(2 * drawn_share_, 1.0);
+  if (excess < halving_excess) drawn_share_ = std::max(drawn_share_ / 2, least_drawn);
+  return swept;
 }
 
 // The second sweep and those behind it sample what the one before has changed, whose noise is small.
@@ -355,6 +367,7 @@ CorrectionReport TransportCorrection::run(const CorrectionParts& parts, const So
     start(parts, {task.method, task.eta, task.even, task.mean_rays, options.sweep_seed}, {});
     sweep_at_rest(parts, options, report);
     frames_ = frames_of_rest;
+    drawn_share_ = 1;
   }
   moved_ = edited_ = false;
   report.segments = samples_.segments();

@@ -75,12 +75,13 @@ class TransportCorrection {
   TransportPower power(const glm::dvec3& scale, const glm::dvec3& scattered_out) const;
 
  private:
-  // How a sweep samples: directions per point, rays per face and half, and draws of points while they add more noise to
-  // that of the sweep before than is wanted.
+  // How a sweep samples: directions per point, rays per face and half, and draws of points, each such a share of what
+  // one has at rest, while they add more noise to that of the sweep before than is wanted.
   struct Sampling {
     std::uint32_t directions, face_rays;
     double most_draws;
     ErrorEstimate noise_wanted{}, noise_before{};
+    double share = 1;
   };
 
   void record_load(const CorrectionParts& parts, OperatorBuffers& op, std::uint32_t half, float known);
@@ -99,6 +100,7 @@ class TransportCorrection {
   std::uint32_t frames_ = 0;    // that what is known is made of; 0: nothing is known
   ErrorEstimate changed_;       // of the last sweep: all that differs from the solve
   ErrorEstimate solves_noise_;  // of the last sweep, without that of the gathered exitance
+  double drawn_share_ = 1;      // of the points of a draw, what a frame in motion has
   bool moved_ = false, edited_ = false;
   // vec3 per vertex: b and x of the solve of each half, and b of the sweep before.
   std::array<device::Buffer, 2> right_side_, change_, known_;

@@ -174,7 +174,7 @@ void TransportSamples::record_walk(const TransportParts& parts, const WalkTask& 
                               .rays = 1,
                               .sky = 0,
                               .first = 0,
-                              .deposits = gpu::WALK_CORNERS};
+                              .deposits = gpu::WALK_CORNERS | (task.mean_rays ? gpu::WALK_TO_MEAN : 0u)};
   for (const gpu::Beam& beam : parts.beams.beams) {
     const std::uint32_t kind = beam.way.kind;
     if (kind == gpu::BEAM_MEAN) continue;
@@ -274,7 +274,7 @@ void TransportSamples::record_no_load(const TransportParts& parts) {
   record_totals(parts);
 }
 
-void TransportSamples::record_draw(const TransportParts& parts, std::uint32_t directions) {
+void TransportSamples::record_draw(const TransportParts& parts, std::uint32_t directions, double share) {
   Workspace& work = parts.work;
   work.recorder.fill(drawn_, 0);
   const gpu::TransportPointsPush points{.weights = weights_.address(),
@@ -283,7 +283,7 @@ void TransportSamples::record_draw(const TransportParts& parts, std::uint32_t di
                                         .points = points_.address(),
                                         .tet_count = parts.level.tet_count,
                                         .draw = draw_++ % draws_apart,
-                                        .wanted = static_cast<float>(points_wanted_) / halves,
+                                        .wanted = static_cast<float>(share * points_wanted_) / halves,
                                         .room = room_};
   work.recorder.dispatch(work.passes.of(shader::transport_points), points, parts.level.tet_count, "transport points",
                          weights_.size() + points_.size());
@@ -298,8 +298,9 @@ void TransportSamples::record_draw(const TransportParts& parts, std::uint32_t di
                                       .directions = directions,
                                       .vertex_count = parts.level.vertex_count,
                                       .seed = seed_};
-  work.recorder.dispatch(work.passes.of(shader::transport_sweep), sweep, room_, "transport sweep",
-                         std::uint64_t{points_wanted_} * directions * tets_per_ray * segment_bytes);
+  work.recorder.dispatch(
+      work.passes.of(shader::transport_sweep), sweep, room_, "transport sweep",
+      static_cast<std::uint64_t>(share * points_wanted_) * directions * tets_per_ray * segment_bytes);
 }
 
 void TransportSamples::record_totals(const TransportParts& parts) {

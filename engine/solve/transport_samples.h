@@ -72,9 +72,10 @@ class TransportSamples {
   // enters again.
   void record_exitance(const TransportParts& parts, std::uint32_t rays, float known);
 
-  // Forgets the load; then one draw of points after the other is added to it, with so many rays each.
+  // Forgets the load; then one draw of points after the other is added to it, with so many rays each, or a share of
+  // one.
   void record_no_load(const TransportParts& parts);
-  void record_draw(const TransportParts& parts, std::uint32_t directions);
+  void record_draw(const TransportParts& parts, std::uint32_t directions, double share);
 
   // Segments so far, to be read after the next submission.
   void record_segments(const TransportParts& parts);

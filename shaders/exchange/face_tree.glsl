@@ -1,4 +1,4 @@
-// The first face that a line meets. The shader that includes it defines first
+// Faces that a line meets. The shader that includes it defines first
 //   TREE      what has order, leaf_begin, boxes and leaf_count, e.g. a TreeRef
 //   TREE_BODY what has vertices and faces
 #ifndef QUADGRAPH_FACE_TREE_GLSL
@@ -57,11 +57,11 @@ bool may_meet(Line line, Box box, float least) {
   return enter <= min(leave, least);
 }
 
-// The first face that a line meets, other than `own`, up to the distance `reach`.
-Hit first_met(Line line, uint own, float reach) {
+// A face that a line meets, other than `own`, up to the distance `reach`: any, or the first.
+Hit met(Line line, uint own, float reach, bool any_does) {
   Hit hit = Hit(reach, NO_FACE, false, vec2(0));
   uint node = 1u;
-  while (node != 0u) {
+  while (node != 0u && !(any_does && hit.face != NO_FACE)) {
     if (may_meet(line, TREE.boxes.at[node], hit.distance)) {
       if (node < TREE.leaf_count) {
         node *= 2u;
@@ -78,6 +78,14 @@ Hit first_met(Line line, uint own, float reach) {
     if (node != 0u) ++node;
   }
   return hit;
+}
+
+Hit first_met(Line line, uint own, float reach) {
+  return met(line, own, reach, false);
+}
+
+bool meets_any(Line line, uint own, float reach) {
+  return met(line, own, reach, true).face != NO_FACE;
 }
 
 #endif

@@ -58,7 +58,7 @@ Face face_of(uint number) {
 }
 
 bool is_hidden(uint face, vec3 point, vec3 towards, float reach) {
-  return first_met(line_along(point, towards), face, reach).face != NO_FACE;
+  return meets_any(line_along(point, towards), face, reach);
 }
 
 // What a light in one place would bring to a point if nothing hid it, W/mm^2 that enter.

@@ -22,19 +22,24 @@ float enter_again(Entrance entry, inout Ray ray) {
   return 1.0;
 }
 
+// A reflected ray is followed by chance, as it is little light and takes as long as what went in: so many times its
+// share of the latter.
+const float REFLECTED_RAYS = 4.0;
+
 // What the surface reflects of light that travels along `direction` and whose power `went_in`, where that enters
 // elsewhere.
 void follow_reflected(vec3 direction, uint face, vec3 point, vec3 normal, vec3 went_in) {
   if (BODY.eta == 1.0 || !sees_body(face)) return;
   float cosine = clamp(-dot(direction, normal), 0.0, 1.0);
   float transmitted = fresnel_transmittance(cosine, BODY.eta);
-  direction = normalize(direction + 2.0 * cosine * normal);
   if (transmitted < 1e-3) return;
-  Entrance entry = through_air(face, point, direction, state);
+  float reflected = 1.0 / transmitted - 1.0, chance = min(REFLECTED_RAYS * reflected, 1.0);
+  if (uniform_number(state) >= chance) return;
+  Entrance entry = through_air(face, point, normalize(direction + 2.0 * cosine * normal), state);
   if (entry.face == NO_FACE) return;
-  Ray reflected = Ray(entrance_point(entry), entry.direction, (1.0 / transmitted - 1.0) * went_in, vec3(0), 1.0);
-  entered_again += reflected.power;
-  go_in(reflected);
+  Ray ray = Ray(entrance_point(entry), entry.direction, reflected / chance * went_in, vec3(0), 1.0);
+  entered_again += ray.power;
+  go_in(ray);
 }
 
 // Of a beam whose light comes evenly from everywhere.
@@ -63,7 +68,7 @@ void walk_from_sky(Beam beam, uint face, uint ray) {
   vec3 power = open.area / float(push.rays) * drawn.let_in * push.scale.at[0].inverse;
   if (power == vec3(0)) return;
   vec3 l = spread_over_face(number), point = open.corners * l;
-  if (field.sky.at[face] < 1.0 && first_met(line_along(point, drawn.towards), face, FAR).face != NO_FACE) return;
+  if (field.sky.at[face] < 1.0 && meets_any(line_along(point, drawn.towards), face, FAR)) return;
   enter(open, face, l, -drawn.towards, power);
 }
 

@@ -7,7 +7,8 @@
 #include "shared/environment_picture.h"
 #include "transport/random.glsl"
 
-const uint SKY_CANDIDATES = 8u;  // directions that one is drawn from, by what it brings
+// Directions that one is drawn from, by what it brings; where a sky is even, it is taken as it comes.
+const uint SKY_CANDIDATES = 8u;
 
 // Whether a beam is ambient light or that of an environment.
 bool is_sky(Beam beam) {
@@ -34,8 +35,9 @@ SkyRay drawn_from_sky(Beam beam, uint number, vec3 normal, vec3 along, float eta
   SkyRay drawn = SkyRay(normal, vec3(0));
   vec3 other = cross(normal, tangent);
   float all = 0.0, chosen = 1.0;
-  for (uint k = 0u; k < SKY_CANDIDATES; ++k) {
-    uint n = SKY_CANDIDATES * number + k;
+  uint candidates = uvec2(beam.picture) == uvec2(0) ? 1u : SKY_CANDIDATES;
+  for (uint k = 0u; k < candidates; ++k) {
+    uint n = candidates * number + k;
     float square = spread_number(0u, n, 0u), azimuth = 6.2831853 * spread_number(0u, n, 1u);
     vec3 across = cos(azimuth) * tangent + sin(azimuth) * other;
     vec3 towards = sqrt(square) * normal + sqrt(1.0 - square) * across;
@@ -47,7 +49,7 @@ SkyRay drawn_from_sky(Beam beam, uint number, vec3 normal, vec3 along, float eta
       chosen = weight;
     }
   }
-  drawn.let_in *= all / (float(SKY_CANDIDATES) * chosen);
+  drawn.let_in *= all / (float(candidates) * chosen);
   return drawn;
 }
 

@@ -248,8 +248,7 @@ def check_options(output: Path, options: BakeOptions) -> None:
     _check_polygrid_options(options)
     subdivide.check(options.refine)
     wrap.check(options.wrap)
-    if not output.parent.is_dir():
-        raise InputError(f"{output}: the folder {output.parent} does not exist")
+    outputs.check_folder(output)
     outputs.check_kind(output)
     load_core()  # holds what is written to the rules of the file
 

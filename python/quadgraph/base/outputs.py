@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from pathlib import Path
 
 from quadgraph.base.errors import InputError
@@ -22,10 +22,19 @@ def check_kind(path: Path) -> None:
     raise InputError(f"{path}: is {what}, allowed is a regular file or a new name")
 
 
-def check_outputs(outputs: Iterable[Path | None], inputs: Iterable[Path | str | None]) -> None:
-    """Raise InputError where an output is one of the inputs or another output, or as `check_kind`.
+def check_folder(path: Path) -> None:
+    """Raise InputError unless there is a folder for `path` to lie in."""
+    if not path.parent.is_dir():
+        raise InputError(f"{path}: the folder {path.parent} does not exist; make it, or give another name")
 
-    inputs: files, and texts that may name some, as those of lights do: each part between colons counts.
+
+def check_outputs(
+    outputs: Iterable[Path | None], inputs: Iterable[Path | str | None], made: Collection[Path] = ()
+) -> None:
+    """Raise InputError where an output is one of the inputs or another output, or as `check_kind` or `check_folder`.
+
+    inputs: files, and texts that may name some, as those of lights do: each part between colons counts; made: outputs
+    whose folders are made where they are missing.
     """
     read = {_identity(Path(part)): part for text in inputs if text for part in _parts(text)}
     written: set[object] = set()
@@ -33,6 +42,8 @@ def check_outputs(outputs: Iterable[Path | None], inputs: Iterable[Path | str | 
         if path is None:
             continue
         check_kind(path)
+        if path not in made:
+            check_folder(path)
         name = _identity(path)
         if name in read:
             raise InputError(f"{path}: is read ({read[name]}) and would be replaced; give the output another name")

@@ -85,7 +85,7 @@ def run(args: argparse.Namespace) -> int:
         if transparent:
             image_file.check_transparent(path)
     read = [*scene_options.inputs(args), *named_files(args.file), *args.set]
-    outputs.check_outputs([*args.output, args.json], read)
+    outputs.check_outputs([*args.output, args.json], read, made=args.output if with_numbers else ())
     reports = _by_tasks(args, file) if args.scheduler and with_numbers else _in_turn(args, file, frames)
     if args.json:
         atomic_file.write_json(args.json, reports if with_numbers else reports[0])

@@ -59,7 +59,7 @@ def run(args: argparse.Namespace) -> int:
         frame_output.check(path, with_numbers=True)
         if args.background == "transparent":
             image_file.check_transparent(path)
-    outputs.check_outputs([*args.output, args.json], scene_options.inputs(args))
+    outputs.check_outputs([*args.output, args.json], scene_options.inputs(args), made=args.output)
     rate = args.frames / args.seconds if args.seconds else _RATE
     if not _SLOWEST <= rate <= _QUICKEST:
         raise InputError(

@@ -123,6 +123,21 @@ def test_a_sweep_in_motion_goes_on_from_those_before(engine):
     assert solution.error.whole < 0.04
 
 
+def test_frames_have_as_many_points_as_their_noise_asks_for(engine):
+    """Few in a body that rays cross at once; all in one in which light stays and noise with it."""
+    points = {}
+    for material in (MATERIAL, "wholemilk"):
+        engine.material = material
+        engine.solve()
+        points[material] = []
+        for turn in np.radians(np.arange(0, 8) * 3):
+            engine.lights = [f"directional:{np.sin(turn)},0,{-np.cos(turn)}:1"]
+            points[material].append(engine.solve(motion=True).correction.sweeps[0].points)
+    assert points[MATERIAL][0] == points["wholemilk"][0]
+    assert max(points[MATERIAL][4:]) < 0.3 * points[MATERIAL][0]
+    assert min(points["wholemilk"]) == points["wholemilk"][0]
+
+
 def test_after_a_change_of_shape_frames_go_on_from_the_solve_at_rest(engine):
     first = engine.solve(sweeps=1).correction.sweeps[0].change.whole
     engine.set_deformation([Stretch(factor=1.1)])

@@ -75,6 +75,21 @@ def test_what_has_no_transparency_is_refused_before_any_work(tmp_path, capsys):
     assert list(tmp_path.iterdir()) == [scene]
 
 
+@pytest.mark.parametrize("command", ["render", "sheet", "solve"])
+def test_a_file_in_a_folder_that_is_not_there_is_refused_before_any_work(command, tmp_path, capsys):
+    missing = tmp_path / "none"
+    outputs = {
+        "render": ["--output", missing / "a.png"],
+        "sheet": ["--material", "jade", "--output", missing / "a.png"],
+        "solve": ["--json", missing / "a.json"],
+    }
+    assert cli.main([command, str(tiny.PATH), *map(str, outputs[command])]) == 1
+    said = capsys.readouterr().err
+    assert f"the folder {missing} does not exist" in " ".join(said.split())
+    assert "100%" not in said
+    assert not missing.exists()
+
+
 def test_scenes_write_jpeg_frames_and_transparent_stills(tmp_path):
     scene = tmp_path / "scene.json"
     picture = {"width": 32, "height": 32, "background": "transparent"}

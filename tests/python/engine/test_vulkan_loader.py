@@ -86,5 +86,5 @@ def test_without_a_loader_a_gpu_is_refused_and_the_loader_named(no_loader, tmp_p
 def test_without_vulkan_the_window_says_what_is_missing(absent, said, request, tmp_path):
     environment = request.getfixturevalue(absent)
     with display(tmp_path) as server:
-        done = run(environment | {"DISPLAY": server}, ENGINE, tiny.PATH, "--device", "cpu")
+        done = run(environment | {"DISPLAY": server.name}, ENGINE, tiny.PATH, "--device", "cpu")
     assert_refused(done, "Vulkan", said, "--headless")

@@ -35,9 +35,17 @@ SIZE = (900, 600)
 LIGHTS = ["--light", "directional:-0.94,-0.1,0.34:1"]  # from azimuth 110
 
 
+class Server(NamedTuple):
+    """A display: its name, the file of what is on its screen, and its process."""
+
+    name: str
+    memory: Path
+    pid: int
+
+
 @contextlib.contextmanager
-def display(folder: Path) -> Iterator[str]:
-    """An X server that draws into a file in the folder, without a pointer in the picture; its name."""
+def display(folder: Path) -> Iterator[Server]:
+    """An X server that draws into a file in the folder, without a pointer in the picture."""
     read, write = os.pipe()
     screen = ("-screen", "0", "1280x900x24", "-nocursor", "-fbdir", str(folder))
     server = subprocess.Popen(
@@ -48,17 +56,16 @@ def display(folder: Path) -> Iterator[str]:
     os.close(write)
     try:
         with os.fdopen(read) as pipe:
-            yield f":{pipe.readline().strip()}"
+            yield Server(f":{pipe.readline().strip()}", folder / "Xvfb_screen0", server.pid)
     finally:
         server.terminate()
         server.wait(timeout=10)
 
 
-class Server(NamedTuple):
-    """A display: its name, and the file of what is on its screen."""
-
-    name: str
-    memory: Path
+def sleeps(pid: int) -> bool:
+    """Whether no thread of a process has anything to do."""
+    states = [file.read_text().rpartition(")")[2].split()[0] for file in Path(f"/proc/{pid}/task").glob("*/stat")]
+    return all(state in "SI" for state in states)
 
 
 def screen_of(memory: Path) -> np.ndarray:
@@ -95,7 +102,7 @@ class Hand:
             arguments = (*arguments, "--converge", "0")  # else a picture at rest goes on changing
         self.environment = os.environ | {"DISPLAY": server.name}
         self.environment.pop("WAYLAND_DISPLAY", None)
-        self.memory = server.memory
+        self.server = server
         self.process = subprocess.Popen(
             [*(program or (str(ENGINE),)), str(body), "--validation", *arguments],
             env=self.environment,
@@ -135,7 +142,7 @@ class Hand:
 
     def look(self) -> np.ndarray:
         """What is on the screen, (height, width, 3)."""
-        return screen_of(self.memory)
+        return screen_of(self.server.memory)
 
     def busy(self) -> bool:
         """Whether it says in its title that the picture is not the converged one."""
@@ -159,18 +166,21 @@ class Hand:
             time.sleep(0.05)
 
     def screen(self) -> np.ndarray:
-        """The whole screen once it has settled; a display shows what was presented when it likes."""
+        """The whole screen once it has settled and neither window nor display has anything left to do: what was
+        presented may be seen later.
+        """
         self.settle()
         patience = self.patience(20)
-        before = self.look()
-        while True:
-            time.sleep(0.2)
+        before, quiet = self.look(), 0
+        while quiet < 3:
+            time.sleep(0.1)
             now = self.look()
             seen = now[: SIZE[1], PANEL : SIZE[0]]
-            if seen.any() and np.array_equal(seen, before[: SIZE[1], PANEL : SIZE[0]]):
-                return now
+            same = seen.any() and np.array_equal(seen, before[: SIZE[1], PANEL : SIZE[0]])
+            quiet = quiet + 1 if same and sleeps(self.process.pid) and sleeps(self.server.pid) else 0
             assert patience.left(), "no picture is seen, or it changes by itself"
             before = now
+        return now
 
     def picture(self) -> np.ndarray:
         """The part without the panel, once it has settled."""
@@ -193,9 +203,8 @@ class Hand:
 @pytest.fixture(scope="module")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     """A display for all tests."""
-    folder = tmp_path_factory.mktemp("display")
-    with display(folder) as name:
-        yield Server(name, folder / "Xvfb_screen0")
+    with display(tmp_path_factory.mktemp("display")) as found:
+        yield found
 
 
 @pytest.fixture
