@@ -73,7 +73,7 @@ std::optional<double> promised_chord(std::string_view text) {
                        [&](std::string_view part) { return part.substr(0, part.find('=')) == key; });
   };
   if (says("reflectance")) return deepest;
-  const bool own = says("sigma_s_prime") || says("sigma_a");
+  const bool own = says("sigma_s_prime") || says("sigma_s") || says("sigma_a");
   return named_material(parts[0]) && !own ? std::optional(meant_chord) : std::nullopt;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <initializer_list>
 #include <optional>
 #include <span>
 
@@ -21,9 +22,9 @@ namespace {
 constexpr std::array<std::string_view, gpu::PATTERNS> patterns = {"none",  "veins", "clouds",  "bands",
                                                                   "rings", "spots", "checker", "layers"};
 constexpr std::string_view allowed_keys =
-    "pattern, eta, roughness, period, sharpness, sigma_s_prime, sigma_a, or reflectance, mean_free_path, and these "
-    "four "
-    "after second_";
+    "pattern, eta, roughness, period, sharpness, sigma_s_prime, sigma_a, or reflectance, mean_free_path, or sigma_s "
+    "and "
+    "g in place of sigma_s_prime, and these six after second_";
 constexpr std::string_view roughness_key = "roughness";
 
 std::string joined(std::span<const std::string_view> names) {
@@ -57,12 +58,19 @@ glm::vec3 parse_colour(std::string_view key, std::string_view text) {
   return {parse_number(key, parts[0]), parse_number(key, parts[1]), parse_number(key, parts[2])};
 }
 
-// One of the two sets of coefficients, and a colour in place of them.
+void check_colour(std::string_view key, const glm::vec3& value) {
+  for (int c = 0; c < 3; ++c) {
+    const bool fits = value[c] >= 0 && value[c] <= gpu::COEFFICIENT_MAX;
+    if (!fits) bad_field(key, number_text(value[c]), "0 to 1e6 (1/mm)");
+  }
+}
+
+// One of the two sets of coefficients, and a colour in place of them, or a phase function beside the absorption.
 struct Set {
   std::string_view prefix;
   glm::vec3& sigma_s_prime;
   glm::vec3& sigma_a;
-  std::optional<glm::vec3> reflectance = {}, mean_free_path = {};
+  std::optional<glm::vec3> reflectance = {}, mean_free_path = {}, sigma_s = {}, g = {};
 
   std::string key(std::string_view name) const { return std::string(prefix) + std::string(name); }
 
@@ -75,6 +83,10 @@ struct Set {
       reflectance = parse_colour(name, value);
     } else if (name == key("mean_free_path")) {
       mean_free_path = parse_colour(name, value);
+    } else if (name == key("sigma_s")) {
+      sigma_s = parse_colour(name, value);
+    } else if (name == key("g")) {
+      g = parse_colour(name, value);
     } else {
       return false;
     }
@@ -95,6 +107,15 @@ struct Set {
       const double albedo = albedo_of(shown, static_cast<double>(eta));
       sigma_s_prime[c] = static_cast<float>(albedo / static_cast<double>(length));
       sigma_a[c] = static_cast<float>((1 - albedo) / static_cast<double>(length));
+    }
+  }
+
+  // The reduced coefficient, if a phase function was given: similarity (docs/physics.md).
+  void reduce() {
+    if (sigma_s) check_colour(key("sigma_s"), *sigma_s);
+    for (int c = 0; sigma_s && c < 3; ++c) {
+      if (!(std::abs((*g)[c]) < 1)) bad_field(key("g"), number_text((*g)[c]), "a number above -1 and below 1");
+      sigma_s_prime[c] = (1 - (*g)[c]) * (*sigma_s)[c];
     }
   }
 };
@@ -128,13 +149,6 @@ bool take_field(gpu::Material& material, std::string_view key, std::string_view 
   return true;
 }
 
-void check_colour(std::string_view key, const glm::vec3& value) {
-  for (int c = 0; c < 3; ++c) {
-    const bool fits = value[c] >= 0 && value[c] <= gpu::COEFFICIENT_MAX;
-    if (!fits) bad_field(key, number_text(value[c]), "0 to 1e6 (1/mm)");
-  }
-}
-
 // A material by its name. Throws InputError if there is none.
 gpu::Material named(std::string_view name) {
   if (const NamedMaterial* row = named_material(name)) return parse_material(row->text);
@@ -152,20 +166,34 @@ class Given {
 
   bool has(std::string_view key) const { return std::find(keys_.begin(), keys_.end(), key) != keys_.end(); }
 
-  // A colour is wanted whole and without coefficients; without one, coefficients are wanted unless they are known.
+  // A colour is wanted whole and without coefficients, a phase function whole and in place of the reduced scattering;
+  // without one, coefficients are wanted unless they are known.
   void check(const Set& set, bool known) const {
-    const bool colour = set.reflectance || set.mean_free_path;
-    if (known && !colour) return;
-    for (std::string_view name : {"sigma_s_prime", "sigma_a"}) {
-      if (colour && has(set.key(name))) bad_field(set.key(name), "a value", "none beside a reflectance");
-      if (!colour && !has(set.key(name))) bad_field(set.key(name), "nothing", "a value (it is required)");
-    }
-    for (std::string_view name : {"reflectance", "mean_free_path"}) {
-      if (colour && !has(set.key(name))) bad_field(set.key(name), "nothing", "a value (it is required)");
+    if (set.reflectance || set.mean_free_path) {
+      want(set, {"reflectance", "mean_free_path"});
+      refuse(set, {"sigma_s_prime", "sigma_s", "g", "sigma_a"}, "none beside a reflectance");
+    } else if (set.sigma_s || set.g) {
+      want(set, {"sigma_s", "g"});
+      refuse(set, {"sigma_s_prime"}, "none beside a sigma_s");
+      if (!known) want(set, {"sigma_a"});
+    } else if (!known) {
+      want(set, {"sigma_s_prime", "sigma_a"});
     }
   }
 
  private:
+  void want(const Set& set, std::initializer_list<std::string_view> names) const {
+    for (std::string_view name : names) {
+      if (!has(set.key(name))) bad_field(set.key(name), "nothing", "a value (it is required)");
+    }
+  }
+
+  void refuse(const Set& set, std::initializer_list<std::string_view> names, const std::string& allowed) const {
+    for (std::string_view name : names) {
+      if (has(set.key(name))) bad_field(set.key(name), "a value", allowed);
+    }
+  }
+
   std::vector<std::string_view> keys_;
 };
 
@@ -226,12 +254,14 @@ gpu::Material parse_material(std::string_view text) {
   given.check(first, starts_with_name);
   if (material.pattern != gpu::PATTERN_NONE) given.check(second, had_pattern);
   for (std::string_view key : {"second_sigma_s_prime", "second_sigma_a", "second_reflectance", "second_mean_free_path",
-                               "period", "sharpness"}) {
+                               "second_sigma_s", "second_g", "period", "sharpness"}) {
     if (material.pattern == gpu::PATTERN_NONE && given.has(key)) bad_field(key, "a value", "one beside a pattern");
   }
   check_range("eta", material.eta, {.low = min_eta, .high = max_eta}, "1 to 3");
   first.show(material.eta);
   second.show(material.eta);
+  first.reduce();
+  second.reduce();
   check_material(material);
   return material;
 }

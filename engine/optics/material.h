@@ -33,11 +33,13 @@ std::string_view pattern_name(const gpu::Material& material);
 
 // Parses "marble" (a name), or "sigma_s_prime=2.0,sigma_a=0.01,eta=1.3" with one value or R/G/B each; eta may be left
 // out (default_eta), the other two are required. Instead of these, "reflectance=0.8/0.6/0.5,mean_free_path=0.5" takes
-// the colour that a thick body shows in white light (engine/optics/colour.h) and 1 / sigma_t, mm. "NAME,key=value"
-// overrides a named material. "pattern=veins,period=16,sharpness=14" mixes in second_sigma_s_prime and second_sigma_a,
-// or second_reflectance and second_mean_free_path. "roughness=0.1" is of the surface (stated_roughness). Throws
-// InputError naming the field, what was found and what is allowed (sigma_s_prime, sigma_a 0 to 1e6, eta in [1, 3],
-// mean_free_path > 0, roughness in roughness_range; all finite).
+// the colour that a thick body shows in white light (engine/optics/colour.h) and 1 / sigma_t, mm, and
+// "sigma_s=20,g=0.9,sigma_a=0.01" the scattering of a phase function of mean cosine g, whose reduced coefficient is
+// (1 - g) sigma_s. "NAME,key=value" overrides a named material. "pattern=veins,period=16,sharpness=14" mixes in
+// second_sigma_s_prime and second_sigma_a, or second_reflectance and second_mean_free_path, or second_sigma_s and
+// second_g. "roughness=0.1" is of the surface (stated_roughness). Throws InputError naming the field, what was found
+// and what is allowed (sigma_s_prime, sigma_a 0 to 1e6, eta in [1, 3], mean_free_path > 0, g above -1 and below 1,
+// roughness in roughness_range; all finite).
 gpu::Material parse_material(std::string_view text);
 
 // Throws InputError if a coefficient is out of range.

@@ -21,7 +21,8 @@ std::string material_help() {
   for (const std::string& name : material_names()) names += (names.empty() ? "" : ", ") + name;
   return "a name (" + names +
          "); or sigma_s_prime=S,sigma_a=A,eta=E in 1/mm, one value or R/G/B each; or reflectance=C,mean_free_path=L: "
-         "the colour that a thick body shows, below 1, and a length in mm; or NAME,key=value; "
+         "the colour that a thick body shows, below 1, and a length in mm; or sigma_s=S,g=G in place of sigma_s_prime: "
+         "scattering of mean cosine G, by similarity; or NAME,key=value; "
          "roughness=ALPHA of the surface; pattern=P,period=D,sharpness=K mixes in a second set, second_sigma_a and so "
          "on; "
          "or a file .npz of coefficients on a grid (docs/scene.md)";

@@ -73,6 +73,15 @@ class Material:
         members = {"reflectance": reflectance, "mean_free_path": mean_free_path, "eta": eta}
         return Material.parse(",".join(f"{name}={_numbers(value)}" for name, value in members.items()))
 
+    @staticmethod
+    def from_phase_function(sigma_s: RGB, g: RGB, sigma_a: RGB, eta: float = DEFAULT_ETA) -> Material:
+        """Return the material that is similar to one which scatters forwards (docs/physics.md, Similarity relation).
+
+        sigma_s, sigma_a: 1/mm, >= 0; g: the mean cosine of scattering, above -1 and below 1. Raises InputError.
+        """
+        members = {"sigma_s": sigma_s, "g": g, "sigma_a": sigma_a, "eta": eta}
+        return Material.parse(",".join(f"{name}={_numbers(value)}" for name, value in members.items()))
+
     @property
     def text(self) -> str:
         """The text as --material takes it."""

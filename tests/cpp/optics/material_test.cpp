@@ -109,6 +109,26 @@ TEST_CASE("a colour gives the coefficients of a body that shows it") {
   check_refused("reflectance=0.5,mean_free_path=1,eta=7", "eta");
 }
 
+TEST_CASE("scattering of a mean cosine is reduced by it, channel by channel") {
+  const gpu::Material tissue = parse_material("sigma_s=20/10/5,g=0.9/0.8/-0.5,sigma_a=0.01");
+  const glm::vec3 reduced(2, 2, 7.5f);
+  for (int c = 0; c < 3; ++c) CHECK(tissue.sigma_s_prime[c] == doctest::Approx(reduced[c]));
+  CHECK(tissue.sigma_a == glm::vec3(0.01f));
+  const gpu::Material marble = parse_material("marble,sigma_s=8,g=0.5");
+  CHECK(marble.sigma_s_prime == glm::vec3(4));
+  CHECK(marble.sigma_a == parse_material("marble").sigma_a);
+  CHECK(parse_material("marble,pattern=veins,second_sigma_s=4,second_g=0.75,second_sigma_a=1").second_sigma_s_prime ==
+        glm::vec3(1));
+  check_refused("sigma_s=20,sigma_a=0", "'g': found 'nothing'");
+  check_refused("g=0.5,sigma_a=0", "'sigma_s': found 'nothing'");
+  check_refused("sigma_s=20,g=0.9", "'sigma_a': found 'nothing'");
+  check_refused("sigma_s=20,g=1,sigma_a=0", "above -1 and below 1");
+  check_refused("sigma_s=-1,g=0,sigma_a=0", "'sigma_s'");
+  check_refused("sigma_s=20,g=0.9,sigma_s_prime=2,sigma_a=0", "none beside a sigma_s");
+  check_refused("sigma_s=20,g=0.9,reflectance=0.5,mean_free_path=1", "none beside a reflectance");
+  check_refused("marble,second_sigma_s=4,second_g=0", "one beside a pattern");
+}
+
 TEST_CASE("what cannot be a material is refused by the field") {
   check_refused("", "marble-veins");
   check_refused("granite", "granite");

@@ -63,3 +63,11 @@ def test_a_picture_has_the_roughness_that_it_is_asked_for_else_that_of_the_mater
     assert np.array_equal(usual, shown("wholemilk,roughness=0.05", roughness=0.3))
     assert np.array_equal(shown("milk"), shown(quadgraph.Material.parse("milk")))
     assert not np.array_equal(shown("milk"), usual)
+
+
+def test_a_phase_function_gives_what_its_reduced_coefficient_does():
+    tissue = quadgraph.Material.from_phase_function((20, 10, 5), (0.9, 0.8, 0.5), 0.03, 1.4)
+    assert np.allclose(tissue.sigma_s_prime, (2, 2, 2.5))
+    assert np.allclose(quadgraph.Material.parse("skin1,sigma_s=10,g=.8").sigma_s_prime, 2)
+    with pytest.raises(quadgraph.InputError, match="'g': found '1', allowed is a number above -1 and below 1"):
+        quadgraph.Material.from_phase_function(20, 1, 0.03)
