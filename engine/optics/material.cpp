@@ -110,7 +110,7 @@ struct Set {
     }
   }
 
-  // The reduced coefficient, if a phase function was given: similarity (docs/physics.md).
+  // The reduced coefficient, if a phase function was given (docs/physics.md, "Similarity relation").
   void reduce() {
     if (sigma_s) check_colour(key("sigma_s"), *sigma_s);
     for (int c = 0; sigma_s && c < 3; ++c) {

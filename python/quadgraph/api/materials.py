@@ -75,7 +75,7 @@ class Material:
 
     @staticmethod
     def from_phase_function(sigma_s: RGB, g: RGB, sigma_a: RGB, eta: float = DEFAULT_ETA) -> Material:
-        """Return the material that is similar to one which scatters forwards (docs/physics.md, Similarity relation).
+        """Return the material that is similar to one which scatters forwards (docs/physics.md, "Similarity relation").
 
         sigma_s, sigma_a: 1/mm, >= 0; g: the mean cosine of scattering, above -1 and below 1. Raises InputError.
         """
