@@ -16,7 +16,7 @@ using namespace quadgraph;
 
 namespace {
 
-const glm::dvec3 one(1.0);
+const glm::dvec3 unit_light(1.0);
 
 bool inside(const OwnedLevel& level, std::uint32_t f, double radius) {
   return glm::length(corners_of(level, f).centre()) < radius;
@@ -119,7 +119,7 @@ TEST_CASE("light from a square arrives at a facing one by the closed form") {
   const Level level = plates().view();
   std::vector<glm::dvec3> radiosity(level.faces.size(), glm::dvec3(0));
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {
-    if (faces_upper(plates(), f)) radiosity[f] = one;
+    if (faces_upper(plates(), f)) radiosity[f] = unit_light;
   }
   const auto irradiance = received_irradiance(level, radiosity);
   double sum = 0, squares = 0, variance = 0;
@@ -148,7 +148,7 @@ TEST_CASE("nothing arrives at reflecting faces") {
     owned.face_kinds.push_back(faces_lower(owned, f) && f % 2 == 0 ? face_reflecting : face_open);
   }
   const Level level = owned.view();
-  const auto irradiance = received_irradiance(level, std::vector<glm::dvec3>(level.faces.size(), one));
+  const auto irradiance = received_irradiance(level, std::vector<glm::dvec3>(level.faces.size(), unit_light));
   double least = INFINITY;
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {
     if (level.reflecting(f)) {
