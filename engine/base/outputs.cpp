@@ -24,6 +24,10 @@ std::optional<FileNumber> number_of(const std::filesystem::path& path) {
 
 void check_not_read(const std::filesystem::path& output, std::span<const std::string> inputs) {
   check_replaceable(output);
+  if (const auto folder = output.parent_path(); !folder.empty() && !std::filesystem::is_directory(folder)) {
+    throw InputError(output.string() + ": the folder " + folder.string() +
+                     " does not exist; make it, or give another name");
+  }
   const auto written = number_of(output);
   if (!written) return;
   for (const std::string& input : inputs) {

@@ -8,7 +8,7 @@
 namespace quadgraph {
 
 // Throws InputError where `output` is one of the inputs, by whatever name, or nothing that may be replaced
-// (check_replaceable). Inputs: texts that may name files.
+// (check_replaceable), or has no folder to lie in. Inputs: texts that may name files.
 void check_not_read(const std::filesystem::path& output, std::span<const std::string> inputs);
 
 }  // namespace quadgraph

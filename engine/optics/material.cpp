@@ -23,8 +23,7 @@ constexpr std::array<std::string_view, gpu::PATTERNS> patterns = {"none",  "vein
                                                                   "rings", "spots", "checker", "layers"};
 constexpr std::string_view allowed_keys =
     "pattern, eta, roughness, period, sharpness, sigma_s_prime, sigma_a, or reflectance, mean_free_path, or sigma_s "
-    "and "
-    "g in place of sigma_s_prime, and these six after second_";
+    "and g in place of sigma_s_prime, and these six after second_";
 constexpr std::string_view roughness_key = "roughness";
 
 std::string joined(std::span<const std::string_view> names) {

@@ -42,6 +42,11 @@ constexpr std::uint32_t passes_between = 1000003, draws_between = 61;
 // Sums of each of the WALK_SUMS of what is gathered.
 constexpr std::uint32_t gather_sums = 4;
 
+// Of each tet at most one point more than it weighs is drawn: ten standard deviations of their number are left.
+std::uint32_t room_for(std::uint32_t points) {
+  return points + points / 8 + 1024;
+}
+
 }  // namespace
 
 std::uint32_t entering_rays(bool mean_rays) {
@@ -82,10 +87,9 @@ TransportSamples::TransportSamples(device::Device& device, const Level& level) {
   books_on_host_ = room(books_.size(), "books, read back", device::Place::host);
 }
 
-// Of each tet at most one point more than it weighs is drawn: ten standard deviations of their number are left.
 void TransportSamples::make_room(device::Device& device, std::uint32_t points) {
   points_wanted_ = points;
-  const std::uint32_t room = points + points / 8 + 1024;
+  const std::uint32_t room = room_for(points);
   if (room_ == room) return;
   room_ = room;
   points_ = {device, room * sizeof(gpu::TransportPoint), device::Place::device, "transport/points"};
@@ -276,6 +280,7 @@ void TransportSamples::record_no_load(const TransportParts& parts) {
 
 void TransportSamples::record_draw(const TransportParts& parts, std::uint32_t directions, double share) {
   Workspace& work = parts.work;
+  const auto wanted = static_cast<std::uint32_t>(share * points_wanted_);
   work.recorder.fill(drawn_, 0);
   const gpu::TransportPointsPush points{.weights = weights_.address(),
                                         .total = total_.address(),
@@ -283,7 +288,7 @@ void TransportSamples::record_draw(const TransportParts& parts, std::uint32_t di
                                         .points = points_.address(),
                                         .tet_count = parts.level.tet_count,
                                         .draw = draw_++ % draws_apart,
-                                        .wanted = static_cast<float>(share * points_wanted_) / halves,
+                                        .wanted = static_cast<float>(wanted) / halves,
                                         .room = room_};
   work.recorder.dispatch(work.passes.of(shader::transport_points), points, parts.level.tet_count, "transport points",
                          weights_.size() + points_.size());
@@ -298,9 +303,8 @@ void TransportSamples::record_draw(const TransportParts& parts, std::uint32_t di
                                       .directions = directions,
                                       .vertex_count = parts.level.vertex_count,
                                       .seed = seed_};
-  work.recorder.dispatch(
-      work.passes.of(shader::transport_sweep), sweep, room_, "transport sweep",
-      static_cast<std::uint64_t>(share * points_wanted_) * directions * tets_per_ray * segment_bytes);
+  work.recorder.dispatch(work.passes.of(shader::transport_sweep), sweep, room_for(wanted), "transport sweep",
+                         std::uint64_t{wanted} * directions * tets_per_ray * segment_bytes);
 }
 
 void TransportSamples::record_totals(const TransportParts& parts) {

@@ -43,15 +43,12 @@ void main() {
   uint per_face = 0u;
   for (uint b = 0u; b < push.beam_count; ++b) per_face += rays_of(b);
   if (i >= BODY.face_count * per_face) return;
-#ifdef QG_PROCESSOR
-  uint face = i / per_face, ray = i % per_face;  // rays near each other, so that what they cross stays in a cache
-#else
-  uint face = i % BODY.face_count, ray = i / BODY.face_count;  // rays alike, so that none waits for others
-#endif
+  uvec2 own = face_and_ray(i, per_face);
+  uint ray = own.y;
   uint beam = 0u;
   while (ray >= rays_of(beam)) ray -= rays_of(beam++);
   rays = rays_of(beam);
-  walk_from(push.beams.at[beam], face, ray);
+  walk_from(push.beams.at[beam], own.x, ray);
   // In turn, so that invocations seldom wait for each other.
   uint at = gl_WorkGroupID.x % WALK_SUMS;
   add_power(push.sums, 2u * at, absorbed);

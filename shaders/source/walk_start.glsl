@@ -102,6 +102,15 @@ Ray start(BeamRecord way, uint ray, TetPoint point, Frame at, vec3 power) {
 // Walks a ray from a point of a face.
 void follow(BeamRecord way, uint ray, uint face, TetPoint point, Frame at, vec3 power);
 
+// Face and ray of an invocation, of so many rays a face.
+uvec2 face_and_ray(uint i, uint per_face) {
+#ifdef QG_PROCESSOR
+  return uvec2(i / per_face, i % per_face);  // rays near each other, so that what they cross stays in a cache
+#else
+  return uvec2(i % BODY.face_count, i / BODY.face_count);  // rays alike, so that none waits for others
+#endif
+}
+
 // Ray `ray` of every origin on a face.
 void walk_from(Beam beam, uint face, uint ray) {
   vec3 q[FACE_QUARTERS];

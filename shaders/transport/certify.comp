@@ -138,7 +138,8 @@ void main() {
   walks = 0u;
   crossed = 0u;
   if (i >= BODY.face_count * push.rays) return;
-  let_in_by(i % BODY.face_count, i / BODY.face_count);
+  uvec2 own = face_and_ray(i, push.rays);
+  let_in_by(own.x, own.y);
   uint group = gl_WorkGroupID.x % WALK_SUMS, at = CERTIFY_SUMS * group;
   add_power(push.sums, at, absorbed);
   add_power(push.sums, at + 1u, unscattered);

@@ -57,11 +57,8 @@ void main() {
   absorbed = vec3(0);
   unscattered = vec3(0);
   if (i >= BODY.face_count * push.rays) return;
-#ifdef QG_PROCESSOR
-  let_in_by(i / push.rays, i % push.rays);  // rays near each other, so that what they cross stays in a cache
-#else
-  let_in_by(i % BODY.face_count, i / BODY.face_count);  // rays alike, so that none waits for others
-#endif
+  uvec2 own = face_and_ray(i, push.rays);
+  let_in_by(own.x, own.y);
   uint at = TRANSPORT_WALK_SUMS * (gl_WorkGroupID.x % WALK_SUMS);
   add_power(push.sums, at, absorbed);
   add_power(push.sums, at + 1u, unscattered);

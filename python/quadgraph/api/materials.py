@@ -70,8 +70,7 @@ class Material:
 
         reflectance: of white light, 0 to below 1; mean_free_path: 1 / sigma_t, mm. Raises InputError.
         """
-        members = {"reflectance": reflectance, "mean_free_path": mean_free_path, "eta": eta}
-        return Material.parse(",".join(f"{name}={_numbers(value)}" for name, value in members.items()))
+        return Material.parse(_text(reflectance=reflectance, mean_free_path=mean_free_path, eta=eta))
 
     @staticmethod
     def from_phase_function(sigma_s: RGB, g: RGB, sigma_a: RGB, eta: float = DEFAULT_ETA) -> Material:
@@ -79,14 +78,17 @@ class Material:
 
         sigma_s, sigma_a: 1/mm, >= 0; g: the mean cosine of scattering, above -1 and below 1. Raises InputError.
         """
-        members = {"sigma_s": sigma_s, "g": g, "sigma_a": sigma_a, "eta": eta}
-        return Material.parse(",".join(f"{name}={_numbers(value)}" for name, value in members.items()))
+        return Material.parse(_text(sigma_s=sigma_s, g=g, sigma_a=sigma_a, eta=eta))
 
     @property
     def text(self) -> str:
         """The text as --material takes it."""
-        members = {each.name: getattr(self, each.name) for each in fields(self)}
-        return ",".join(f"{name}={_numbers(value)}" for name, value in members.items() if value is not None)
+        return _text(**{each.name: getattr(self, each.name) for each in fields(self)})
+
+
+def _text(**members: object) -> str:
+    """What --material takes, of those members that are given."""
+    return ",".join(f"{name}={_numbers(value)}" for name, value in members.items() if value is not None)
 
 
 def _numbers(value: object) -> str:

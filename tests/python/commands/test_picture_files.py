@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import subprocess
 
 import numpy as np
 import pytest
 from PIL import Image
 
 import tiny
+from engine_program import ENGINE
 from quadgraph import InputError, cli
 from quadgraph.base import image_file
 
@@ -75,18 +77,28 @@ def test_what_has_no_transparency_is_refused_before_any_work(tmp_path, capsys):
     assert list(tmp_path.iterdir()) == [scene]
 
 
-@pytest.mark.parametrize("command", ["render", "sheet", "solve"])
+@pytest.mark.parametrize("command", ["render", "render scene", "sheet", "solve", "bench", "accuracy", "program"])
 def test_a_file_in_a_folder_that_is_not_there_is_refused_before_any_work(command, tmp_path, capsys):
-    missing = tmp_path / "none"
-    outputs = {
-        "render": ["--output", missing / "a.png"],
-        "sheet": ["--material", "jade", "--output", missing / "a.png"],
-        "solve": ["--json", missing / "a.json"],
-    }
-    assert cli.main([command, str(tiny.PATH), *map(str, outputs[command])]) == 1
-    said = capsys.readouterr().err
+    """Before the body is read, which is none: what it is would be said otherwise."""
+    missing, body, scene = tmp_path / "none", tmp_path / "body.qgraph", tmp_path / "scene.json"
+    body.write_bytes(b"no body")
+    scene.write_text(json.dumps({"body": "body.qgraph"}))
+    asked = {
+        "render": ["render", body, "-o", missing / "a.png"],
+        "render scene": ["render", scene, "-o", missing / "a.png"],
+        "sheet": ["sheet", body, "--material", "jade", "-o", missing / "a.png"],
+        "solve": ["solve", body, "--json", missing / "a.json"],
+        "bench": ["bench", body, "--json", missing / "a.json"],
+        "accuracy": ["accuracy", "orders", "--json", missing / "a.json"],
+        "program": [body, "--headless", "-o", missing / "a.png"],
+    }[command]
+    if command == "program":
+        done = subprocess.run([str(ENGINE), *map(str, asked)], capture_output=True, text=True, timeout=60)
+        status, said = done.returncode, done.stderr
+    else:
+        status, said = cli.main(list(map(str, asked))), capsys.readouterr().err
+    assert status == 1
     assert f"the folder {missing} does not exist" in " ".join(said.split())
-    assert "100%" not in said
     assert not missing.exists()
 
 

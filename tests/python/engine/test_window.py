@@ -63,9 +63,12 @@ def display(folder: Path) -> Iterator[Server]:
 
 
 def sleeps(pid: int) -> bool:
-    """Whether no thread of a process has anything to do."""
-    states = [file.read_text().rpartition(")")[2].split()[0] for file in Path(f"/proc/{pid}/task").glob("*/stat")]
-    return all(state in "SI" for state in states)
+    """Whether no thread of a process has anything to do; not while one ends."""
+    try:
+        stats = [file.read_text() for file in Path(f"/proc/{pid}/task").glob("*/stat")]
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+    return all(stat.rpartition(")")[2].split()[0] in "SI" for stat in stats)
 
 
 def screen_of(memory: Path) -> np.ndarray:

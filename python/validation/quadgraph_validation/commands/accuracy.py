@@ -10,7 +10,7 @@ from typing import Any
 
 from rich.console import Console
 
-from quadgraph.base import atomic_file
+from quadgraph.base import atomic_file, outputs
 from quadgraph.base.arguments import positive_float, positive_int
 from quadgraph.base.cache_folder import cache_folder
 from quadgraph.base.errors import InputError
@@ -173,6 +173,7 @@ def run(args: argparse.Namespace) -> int:
     from quadgraph_validation.truth import schemes
 
     load_core()
+    outputs.check_outputs([args.json], [])
     if args.scheduler:
         from quadgraph_validation.accuracy import row_tasks
 

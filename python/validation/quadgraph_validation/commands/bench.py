@@ -10,7 +10,7 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from quadgraph.base import atomic_file
+from quadgraph.base import atomic_file, outputs
 from quadgraph.base.arguments import add_device_arguments, positive_int
 from quadgraph.base.errors import InputError
 from quadgraph.core import load_core
@@ -100,6 +100,7 @@ def run(args: argparse.Namespace) -> int:
     """Measure, print, record, or compare; 0 on success, _SLOWER if the comparison found something slower."""
     if args.compare:
         return _compare(args)
+    outputs.check_outputs([args.json], [])
     if not (args.passes or args.solvers or args.live or args.rivals or args.scaling or args.growth):
         args.passes = args.solvers = True
     _check(args)

@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from quadgraph.base import atomic_file
+from quadgraph.base import atomic_file, outputs
 from quadgraph.base.arguments import positive_int
 from quadgraph.base.errors import InputError
 from quadgraph.work.schedulers import add_scheduler_argument
@@ -106,6 +106,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _check(args: argparse.Namespace) -> None:
     """Refuse before the work what would fail after it."""
+    outputs.check_outputs([args.json], [])
     if args.add and not args.json:
         raise InputError("--add: needs --json FILE, whose scenes are kept")
     if args.record and (args.json or args.scene or args.method or args.against):

@@ -6,7 +6,7 @@ import argparse
 import json
 from pathlib import Path
 
-from quadgraph.base import atomic_file
+from quadgraph.base import atomic_file, outputs
 from quadgraph.base.errors import InputError
 from quadgraph_validation.base.study_folders import add_meshes_argument
 
@@ -31,6 +31,7 @@ def run(args: argparse.Namespace) -> int:
     """Measure or read, print, draw; 0 on success."""
     from quadgraph_validation.tables import polygrid_table
 
+    outputs.check_outputs([args.json], [])
     if args.chart:
         from quadgraph_validation.base.pyplot import load_pyplot
 

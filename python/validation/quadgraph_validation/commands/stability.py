@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from quadgraph.base import atomic_file
+from quadgraph.base import atomic_file, outputs
 from quadgraph.base.arguments import add_device_arguments, positive_int
 from quadgraph.base.cache_folder import cache_folder
 from quadgraph.base.errors import InputError
@@ -63,6 +63,7 @@ def run(args: argparse.Namespace) -> int:
 
     from quadgraph_validation.stability import map_tables, stability_methods, stability_suite
 
+    outputs.check_outputs([args.json], [])
     stability_methods.check(args.method)
     names = [each.name for each in stability_suite.maps_with(args.axis)]
     if args.images:
