@@ -27,13 +27,22 @@ def prose(page: str) -> str:
     return BLOCK.sub("", (ROOT / page).read_text())
 
 
+@pytest.fixture
+def demonstrated(tmp_path, monkeypatch):
+    """A current folder like that of a reader after tools/demo: the documents' files, and out/ to write to."""
+    (tmp_path / "docs").symlink_to(ROOT / "docs")
+    (tmp_path / "out").mkdir()
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
 def engine_fault(words: list[str], folder: Path) -> str:
     """What quadgraph-engine says of its options, of a body that is not there; nothing where they can be read."""
     if ENGINE is None:
         return ""
     without_window = [] if "--headless" in words else ["--headless", "-o", str(folder / "picture.png")]
     whole = [ENGINE, str(folder / "nothing.qgraph"), *words, *without_window]
-    said = subprocess.run(whole, capture_output=True, text=True, cwd=ROOT, timeout=60).stderr
+    said = subprocess.run(whole, capture_output=True, text=True, timeout=60).stderr
     return "" if "nothing.qgraph: cannot be read" in said else said
 
 
@@ -58,10 +67,9 @@ def fault(words: tuple[str, ...], folder: Path, capsys: pytest.CaptureFixture[st
 
 
 @pytest.mark.parametrize("page", WITH_COMMANDS)
-def test_every_command_can_be_read(page, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(ROOT)
+def test_every_command_can_be_read(page, demonstrated, capsys):
     lines = [words for words in started(commands(page)) if words[0] in PROGRAMS]
-    faults = {" ".join(words): fault(words, tmp_path, capsys) for words in lines}
+    faults = {" ".join(words): fault(words, demonstrated, capsys) for words in lines}
     assert {line: said for line, said in faults.items() if said} == {}
 
 
@@ -84,11 +92,11 @@ def test_a_stale_command_is_found(line, said, tmp_path, capsys):
 
 
 @pytest.mark.parametrize("page", PAGES)
-def test_commands_in_sentences_can_be_read(page, tmp_path, capsys):
+def test_commands_in_sentences_can_be_read(page, demonstrated, capsys):
     """Spans of code that begin with a subcommand and an argument; STUDY and the like stand for one."""
     spans = re.findall(rf"`(quadgraph (?:{'|'.join([*cli.SUBCOMMANDS, *cli.VALIDATION])}) [^`]+)`", prose(page))
     lines = [tuple(STANDING_FOR.get(word, word) for word in shlex.split(span)) for span in spans]
-    faults = {" ".join(words): fault(words, tmp_path, capsys) for words in lines}
+    faults = {" ".join(words): fault(words, demonstrated, capsys) for words in lines}
     assert {line: said for line, said in faults.items() if said} == {}
 
 
